@@ -1,0 +1,128 @@
+/* What the parts of the bulk data reader hand each other; private to them. */
+#ifndef RITZ_FORMATS_BULK_PARTS_H
+#define RITZ_FORMATS_BULK_PARTS_H
+
+#include "formats/cards.h"
+
+#include <ritz/bulk.h>
+
+/* GRID as it is written. */
+typedef struct ritz_bulk_grid {
+    int64_t id, line;
+    int64_t cp, cd; /* frames by id; -2 blank */
+    int64_t spc;    /* directions as digits, 0 none; -2 blank */
+    double x[3];
+} ritz_bulk_grid;
+
+enum { RITZ_BULK_BLANK = -2 };
+
+enum { RITZ_RECTANGULAR, RITZ_CYLINDRICAL, RITZ_SPHERICAL };
+
+/* CORD1R to CORD2S as written, then as resolved. */
+typedef struct ritz_bulk_frame {
+    int64_t id, line;
+    int32_t kind;
+    bool by_grids;    /* CORD1: else CORD2 */
+    int64_t grid[3];  /* by grids: ids of origin, z axis, x-z plane */
+    int64_t base;     /* by points: the frame these are in */
+    double point[9];  /* the points, row by row */
+    int32_t progress; /* of resolving it */
+    double origin[3]; /* basic frame, from here on */
+    double axes[9];   /* row i is axis i */
+} ritz_bulk_frame;
+
+/* Grids from..to have these directions in a set; one grid if from == to. */
+typedef struct ritz_bulk_range {
+    int64_t from, to;
+    int64_t set;  /* SPC set, 0 where there are none */
+    int64_t line; /* in the deck */
+    uint8_t mask; /* bit c: direction c; bit 0: scalar points */
+    bool each;    /* explicitly named: THRU covers what there is */
+} ritz_bulk_range;
+
+typedef struct ritz_bulk_ranges {
+    int64_t count, room;
+    ritz_bulk_range *range;
+} ritz_bulk_ranges;
+
+/* A combination of sets, SPCADD or MPCADD. */
+typedef struct ritz_bulk_sum {
+    int64_t set, member;
+    int64_t which; /* RITZ_SELECT_SPC or RITZ_SELECT_MPC */
+} ritz_bulk_sum;
+
+/* A card that eliminates dofs. */
+typedef struct ritz_bulk_constraint {
+    char name[RITZ_CARD_NAME_SIZE];
+    int64_t id;
+    bool is_set; /* MPC: acts if the case control selects it */
+} ritz_bulk_constraint;
+
+enum { RITZ_BULK_SPC = 3, RITZ_BULK_SETS = 4 }; /* after RITZ_SET_A, B, Q */
+
+/* Everything that the cards say, before it is put together. */
+typedef struct ritz_bulk_cards {
+    ritz_deck deck;
+    int64_t num_grids, grids_room;
+    ritz_bulk_grid *grid; /* sorted by id, each once, once settled */
+    int64_t num_frames, frames_room;
+    ritz_bulk_frame *frame;  /* the same */
+    ritz_bulk_grid defaults; /* GRDSET; line -1: there is none */
+    int64_t num_sums, sums_room;
+    ritz_bulk_sum *sum;
+    int64_t num_constraints, constraints_room;
+    ritz_bulk_constraint *constraint;
+    ritz_bulk_ranges points; /* SPOINT */
+    ritz_bulk_ranges ranges[RITZ_BULK_SETS];
+} ritz_bulk_cards;
+
+/** Take a card into what was read. */
+ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card);
+ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all,
+                                    const ritz_card *card);
+ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
+                                 int32_t kind, bool by_grids);
+
+/** Sort grids and frames, once all cards are there; each id once. */
+ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all);
+ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all);
+
+/** Find origin and axes of every frame. @cost O(n log n) */
+ritz_status ritz_bulk_resolve_frames(ritz_bulk_cards *all);
+
+/** Frame or grid by id; NULL if there is none. */
+ritz_bulk_frame *ritz_bulk_find_frame(const ritz_bulk_cards *all, int64_t id);
+const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
+                                          int64_t id);
+
+/** Coordinates @p x of a resolved frame, NULL the basic one, as a position. */
+void ritz_bulk_position(const ritz_bulk_frame *frame, const double x[static 3],
+                        double out[static 3]);
+
+/** Displacement axes of a frame at a position of the basic frame. */
+void ritz_bulk_axes(const ritz_bulk_frame *frame,
+                    const double position[static 3], double out[static 9]);
+
+/** Positions and displacement frames of all grids. */
+ritz_status ritz_bulk_place_grids(const ritz_bulk_cards *all, ritz_grids *out);
+
+/** Directions "123" as digits; @return false if they are not distinct 0-6 */
+bool ritz_bulk_mask(int64_t digits, uint8_t *out);
+
+/** Append a range to a set. */
+ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range);
+
+/** The scalar points, ascending. */
+ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out);
+
+/**
+ * The dofs of some ranges, sorted, each once.
+ *
+ * @param[in] built  its grids and points are there already
+ */
+ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
+                               const ritz_bulk_ranges *list,
+                               const ritz_bulk *built, int64_t *count,
+                               ritz_dof **out);
+
+#endif

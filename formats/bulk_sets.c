@@ -1,0 +1,293 @@
+/*
+ * Sets of dofs in bulk data: lists of grids, THRU ranges, directions.
+ *
+ * A grid that is named counts whether the deck defines it or not. THRU and ALL
+ * mean those of the range that exist: grids where directions are given, scalar
+ * points where none are. Ranges may overlap as much as they like: they are
+ * merged direction by direction, so the work grows with what comes out.
+ */
+#include "formats/bulk_parts.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+
+enum { MOST_IDS = 10000000 }; /* that ranges alone may stand for */
+
+bool ritz_bulk_mask(int64_t digits, uint8_t *out)
+{
+    uint8_t mask = digits == 0 ? 1 : 0;
+
+    if (digits < 0 || digits > 6543210)
+        return false;
+    for (; digits > 0; digits /= 10) {
+        uint8_t bit = (uint8_t)(1U << (unsigned)(digits % 10));
+
+        if (digits % 10 > 6 || (mask & bit) || digits % 10 == 0)
+            return false;
+        mask |= bit;
+    }
+    *out = mask;
+    return true;
+}
+
+ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_ROOM(list->range, list->count, list->room);
+    list->range[list->count++] = range;
+done:
+    return status;
+}
+
+static int compare_ranges(const void *a, const void *b)
+{
+    const ritz_bulk_range *left = a;
+    const ritz_bulk_range *right = b;
+
+    return (left->from > right->from) - (left->from < right->from);
+}
+
+/* Ranges that overlap or touch become one; returns how many are left. */
+static int64_t merge(int64_t count, ritz_bulk_range *range)
+{
+    int64_t kept = 0;
+
+    if (count > 1)
+        qsort(range, (size_t)count, sizeof *range, compare_ranges);
+    for (int64_t k = 0; k < count; k++) {
+        if (kept > 0 && range[k].from <= range[kept - 1].to) {
+            if (range[k].to > range[kept - 1].to)
+                range[kept - 1].to = range[k].to;
+        } else {
+            range[kept++] = range[k];
+        }
+    }
+    return kept;
+}
+
+/* How many ids the ranges stand for, refused if too many. */
+static ritz_status count_ids(const ritz_deck *deck, int64_t count,
+                             const ritz_bulk_range *range, int64_t *out)
+{
+    ritz_status status = RITZ_OK;
+
+    *out = 0;
+    for (int64_t k = 0; k < count; k++) {
+        if (range[k].to - range[k].from >= MOST_IDS - *out)
+            RITZ_TRY(ritz_deck_refuse(deck, range[k].line,
+                                      "THRU stands for more than %d points",
+                                      MOST_IDS));
+        *out += range[k].to - range[k].from + 1;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_bulk_range *range = NULL;
+    int64_t *point = NULL;
+    int64_t count = 0;
+    int64_t num = 0;
+
+    RITZ_NEW(range, all->points.count);
+    if (all->points.count > 0)
+        memcpy(range, all->points.range,
+               (size_t)all->points.count * sizeof *range);
+    count = merge(all->points.count, range);
+    RITZ_TRY(count_ids(&all->deck, count, range, &num));
+    RITZ_NEW(point, num);
+    num = 0;
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t id = range[k].from; id <= range[k].to; id++) {
+            if (ritz_bulk_find_grid(all, id))
+                RITZ_TRY(ritz_deck_refuse(&all->deck, range[k].line,
+                                          "%" PRId64 " is a GRID and an "
+                                          "SPOINT",
+                                          id));
+            point[num++] = id;
+        }
+    out->point = point;
+    out->num_points = num;
+    point = NULL;
+done:
+    free(range);
+    free(point);
+    return status;
+}
+
+/* ---- sets -------------------------------------------------------------- */
+
+/* A list of dofs that grows. */
+typedef struct dofs {
+    int64_t count, room;
+    ritz_dof *dof;
+} dofs;
+
+static ritz_status add_dof(dofs *list, int64_t grid, int64_t component)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_ROOM(list->dof, list->count, list->room);
+    list->dof[list->count++] = (ritz_dof){grid, component};
+done:
+    return status;
+}
+
+/* First of ascending ids that is not below `id`. */
+static int64_t lower_bound(int64_t count, const int64_t *ids, int64_t id)
+{
+    int64_t low = 0;
+
+    while (low < count) {
+        int64_t middle = low + (count - low) / 2;
+
+        if (ids[middle] < id)
+            low = middle + 1;
+        else
+            count = middle;
+    }
+    return low;
+}
+
+static bool holds(int64_t count, const int64_t *ids, int64_t id)
+{
+    int64_t k = lower_bound(count, ids, id);
+
+    return k < count && ids[k] == id;
+}
+
+static bool has(const ritz_bulk_range *range, int64_t c)
+{
+    return (((unsigned)range->mask >> (unsigned)c) & 1U) != 0;
+}
+
+/* The dofs of a grid or point that is named. */
+static ritz_status add_named(const ritz_bulk_cards *all,
+                             const ritz_bulk_range *one, const ritz_bulk *built,
+                             dofs *list)
+{
+    ritz_status status = RITZ_OK;
+    bool point = holds(built->num_points, built->point, one->from);
+    bool grid = holds(built->grids.count, built->grids.id, one->from);
+
+    if (point && (one->mask & ~3U))
+        RITZ_TRY(ritz_deck_refuse(&all->deck, one->line,
+                                  "scalar point %" PRId64 " has no directions",
+                                  one->from));
+    if (grid && has(one, 0))
+        RITZ_TRY(ritz_deck_refuse(&all->deck, one->line,
+                                  "no directions of GRID %" PRId64 " are given",
+                                  one->from));
+    for (int64_t c = 0; c <= 6; c++)
+        if (has(one, c))
+            RITZ_TRY(add_dof(list, one->from, point ? 0 : c));
+done:
+    return status;
+}
+
+/* Direction c of what exists in merged ranges. */
+static ritz_status add_existing(int64_t num_ids, const int64_t *ids, int64_t c,
+                                int64_t count, const ritz_bulk_range *range,
+                                dofs *list)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t at = lower_bound(num_ids, ids, range[k].from);
+             at < num_ids && ids[at] <= range[k].to; at++)
+            RITZ_TRY(add_dof(list, ids[at], c));
+done:
+    return status;
+}
+
+/* Direction c of all in the ranges, where the deck defines no grid at all. */
+static ritz_status add_all(const ritz_bulk_cards *all, int64_t c, int64_t count,
+                           const ritz_bulk_range *range, dofs *list)
+{
+    ritz_status status = RITZ_OK;
+    int64_t ids = 0;
+
+    RITZ_TRY(count_ids(&all->deck, count, range, &ids));
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t id = range[k].from; id <= range[k].to; id++)
+            RITZ_TRY(add_dof(list, id, c));
+done:
+    return status;
+}
+
+static ritz_status add_direction(const ritz_bulk_cards *all,
+                                 const ritz_bulk_ranges *given,
+                                 const ritz_bulk *built, int64_t c, dofs *list)
+{
+    ritz_status status = RITZ_OK;
+    ritz_bulk_range *range = NULL;
+    int64_t count = 0;
+
+    RITZ_NEW(range, given->count);
+    for (int64_t k = 0; k < given->count; k++)
+        if (!given->range[k].each && has(&given->range[k], c))
+            range[count++] = given->range[k];
+    count = merge(count, range);
+    if (built->grids.count + built->num_points == 0)
+        RITZ_TRY(add_all(all, c, count, range, list));
+    else if (c == 0)
+        RITZ_TRY(add_existing(built->num_points, built->point, c, count, range,
+                              list));
+    else
+        RITZ_TRY(add_existing(built->grids.count, built->grids.id, c, count,
+                              range, list));
+done:
+    free(range);
+    return status;
+}
+
+static int compare_dofs(const void *a, const void *b)
+{
+    const ritz_dof *left = a;
+    const ritz_dof *right = b;
+    int order = (left->grid > right->grid) - (left->grid < right->grid);
+
+    return order ? order
+                 : (left->component > right->component) -
+                       (left->component < right->component);
+}
+
+static void sort_dofs(dofs *list)
+{
+    int64_t kept = 0;
+
+    if (list->count > 1)
+        qsort(list->dof, (size_t)list->count, sizeof *list->dof, compare_dofs);
+    for (int64_t k = 0; k < list->count; k++)
+        if (kept == 0 || compare_dofs(&list->dof[kept - 1], &list->dof[k]) != 0)
+            list->dof[kept++] = list->dof[k];
+    list->count = kept;
+}
+
+ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
+                               const ritz_bulk_ranges *list,
+                               const ritz_bulk *built, int64_t *count,
+                               ritz_dof **out)
+{
+    ritz_status status = RITZ_OK;
+    dofs found = {0};
+
+    for (int64_t k = 0; k < list->count; k++)
+        if (list->range[k].each)
+            RITZ_TRY(add_named(all, &list->range[k], built, &found));
+    for (int64_t c = 0; c <= 6; c++)
+        RITZ_TRY(add_direction(all, list, built, c, &found));
+    sort_dofs(&found);
+    if (!found.dof)
+        RITZ_NEW(found.dof, 0);
+    *out = found.dof;
+    *count = found.count;
+    found.dof = NULL;
+done:
+    free(found.dof);
+    return status;
+}

@@ -1,0 +1,141 @@
+/*
+ * The cards of a NASTRAN deck, whatever is written on them: one tokenizer for
+ * all that reads bulk data.
+ *
+ * A deck is scanned once into lines that know their card; a card is taken apart
+ * only when it is asked for, so the elements of a large model cost a glance.
+ */
+#ifndef RITZ_FORMATS_CARDS_H
+#define RITZ_FORMATS_CARDS_H
+
+#include <ritz/status.h>
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    RITZ_CARD_NAME_SIZE = 12,  /* a name has up to 8 letters */
+    RITZ_CARD_FIELD_SIZE = 36, /* a free field may be wider than 16 */
+};
+
+/* A line of bulk data that is neither blank nor a comment. */
+typedef struct ritz_line {
+    const char *text; /* in a ritz_deck_file, without comment and line end */
+    int32_t length;
+    int32_t file;   /* index of the ritz_deck_file */
+    int64_t number; /* from 1 */
+    int64_t next;   /* the line that continues it, -1 if none does */
+} ritz_line;
+
+typedef struct ritz_deck_file {
+    char *path;
+    char *text; /* NULL if borrowed */
+} ritz_deck_file;
+
+/* Where a card is and what it is called, "GRID" for GRID*. */
+typedef struct ritz_entry {
+    char name[RITZ_CARD_NAME_SIZE]; /* capitals */
+    int64_t line;
+} ritz_entry;
+
+typedef struct ritz_deck {
+    int64_t num_files;
+    int64_t num_lines;
+    int64_t num_entries;
+    int64_t files_room, lines_room, entries_room;
+    ritz_deck_file *file;
+    ritz_line *line;
+    ritz_entry *entry;   /* in the order of the file */
+    int64_t num_skipped; /* INCLUDE lines, where these are not followed */
+    int64_t num_selected[2];
+    int64_t selected_room[2];
+    int64_t *selected[2]; /* sets of SPC and of MPC in the case control */
+} ritz_deck;
+
+enum { RITZ_SELECT_SPC, RITZ_SELECT_MPC };
+
+typedef struct ritz_field {
+    char text[RITZ_CARD_FIELD_SIZE]; /* without blanks around it */
+    int64_t line;                    /* index in the deck */
+} ritz_field;
+
+/* A card taken apart; {0} at first, and reused from card to card. */
+typedef struct ritz_card {
+    const ritz_deck *deck;
+    const ritz_entry *entry;
+    int64_t count; /* up to the last field that is not blank */
+    int64_t room;
+    ritz_field *field; /* fields 2 to 9 of the first line, then of the next */
+} ritz_card;
+
+/**
+ * Scan a deck: leave out executive and case control, comments and what follows
+ * ENDDATA; follow INCLUDE; give every continuation to its card.
+ *
+ * A continuation belongs to the line above it if both markers are blank or one
+ * of them is, or if they are equal; else to the line anywhere in the deck whose
+ * tenth field has its marker.
+ *
+ * @param[in] path    for messages; NULL: they begin with the line
+ * @param[in] text    borrowed as long as the deck lives
+ * @param[in] folder  to which INCLUDE is relative; NULL: it is counted only
+ * @return RITZ_ERR_FORMAT if a continuation has no card, or INCLUDE goes in a
+ *         circle or too deep; RITZ_ERR_FILE if an included file is missing
+ * @cost   O(size), and O(n log n) in continuations that are out of order
+ */
+ritz_status ritz_deck_parse(const char *path, const char *text, int64_t size,
+                            const char *folder, ritz_deck *out);
+
+/** Take the @p k -th card apart. @return RITZ_ERR_FORMAT, naming the line */
+ritz_status ritz_deck_card(const ritz_deck *deck, int64_t k, ritz_card *card);
+
+/** Field @p k of a card, from 0; "" behind its end. */
+const char *ritz_card_text(const ritz_card *card, int64_t k);
+
+/** The same as a number; a blank one is @p blank. */
+ritz_status ritz_card_whole(const ritz_card *card, int64_t k, int64_t blank,
+                            int64_t *out);
+ritz_status ritz_card_real(const ritz_card *card, int64_t k, double blank,
+                           double *out);
+
+/** The same where a positive number must be. */
+ritz_status ritz_card_id(const ritz_card *card, int64_t k, int64_t *out);
+
+/** Numbers as NASTRAN writes them: 1.5D+3, 1.5+3, .5, -1.-3. */
+bool ritz_card_number(const char *text, double *out);
+
+/** Significant digits that a number is written with; 0 for a zero. */
+int64_t ritz_card_digits(const char *text);
+
+/** Fail with file and line before the sentence. */
+[[gnu::format(printf, 3, 4)]] ritz_status
+ritz_deck_refuse(const ritz_deck *deck, int64_t line, const char *format, ...);
+
+/** Fail about field @p k of a card. */
+ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
+                             const char *wanted);
+
+void ritz_card_free(ritz_card *card);
+void ritz_deck_free(ritz_deck *deck);
+
+/**
+ * An array that has room for one more item: itself, or a larger copy in its
+ * place, which is then freed; NULL if there is no memory for it.
+ */
+void *ritz_array_grown(void *array, int64_t count, int64_t *room, size_t size);
+
+/* Make sure of room for one more item. */
+#define RITZ_ROOM(array, count, room)                                          \
+    do {                                                                       \
+        void *grown_ =                                                         \
+            ritz_array_grown((array), (count), &(room), sizeof *(array));      \
+        if (!grown_) {                                                         \
+            status = RITZ_ERR_MEMORY;                                          \
+            goto done;                                                         \
+        }                                                                      \
+        (array) = grown_;                                                      \
+    } while (0)
+
+#endif

@@ -1,0 +1,27 @@
+/* Decimal numbers of text files, read fast and rounded as strtod rounds. */
+#ifndef RITZ_FORMATS_DECIMAL_H
+#define RITZ_FORMATS_DECIMAL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct ritz_decimal {
+    double value;   /* not finite if the text says so or is too large */
+    int64_t digits; /* as written, from the first that is not zero */
+} ritz_decimal;
+
+/**
+ * One number at @p at, which is moved behind it: C's spellings and Fortran's,
+ * "1.5E+3", "1.5D+3", "1.5+3", ".5", "nan", "inf". Blanks are not skipped.
+ *
+ * @return false if there is none; @p at is then where it was
+ */
+bool ritz_decimal_scan(const char **at, const char *end, ritz_decimal *out);
+
+/** The same of a whole number of at most 18 digits. */
+bool ritz_decimal_scan_whole(const char **at, const char *end, int64_t *out);
+
+/** Move over blanks and tabs; NUL is a blank too, as old files pad so. */
+const char *ritz_decimal_skip(const char *at, const char *end);
+
+#endif

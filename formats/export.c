@@ -1,0 +1,50 @@
+#include "base/alloc.h"
+
+#include <ritz/export.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A new format is a new file that defines one descriptor, and one line here. */
+const ritz_exporter *const ritz_exporters[] = {
+    &ritz_exporter_exudyn,
+    &ritz_exporter_matrix_market,
+    &ritz_exporter_output4,
+    &ritz_exporter_tsv,
+    NULL,
+};
+
+const ritz_exporter *ritz_exporter_find(const char *name)
+{
+    for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
+        if (strcmp((*e)->name, name) == 0)
+            return *e;
+    return NULL;
+}
+
+ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
+{
+    ritz_status status = RITZ_OK;
+    char(*more)[256] = NULL;
+    va_list args;
+
+    RITZ_NEW(more, report->count + 1);
+    if (report->count > 0)
+        memcpy(more, report->line, (size_t)report->count * sizeof *more);
+    va_start(args, format);
+    vsnprintf(more[report->count], sizeof *more, format, args);
+    va_end(args);
+    free(report->line);
+    report->line = more;
+    report->count++;
+done:
+    return status;
+}
+
+void ritz_export_report_free(ritz_export_report *report)
+{
+    free(report->line);
+    *report = (ritz_export_report){0};
+}

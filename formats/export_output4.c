@@ -1,0 +1,39 @@
+/* Matrices of a reduced component as one OUTPUT4 file. */
+#include "formats/reduced_matrices.h"
+
+static ritz_status write(const ritz_reduced *reduced,
+                         const ritz_export_request *request,
+                         ritz_export_report *report)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_output4_style style = {
+        .text = request->text,
+        .sparse = !request->dense,
+        .digits = request->digits > 0 ? request->digits : 17,
+    };
+    ritz_matrices list = {0};
+
+    RITZ_TRY(ritz_reduced_matrices(reduced, request->matrices, &list));
+    for (int64_t k = 0; k < list.count; k++)
+        RITZ_TRY(ritz_export_say(report, "%s  %lld x %lld", list.matrix[k].name,
+                                 (long long)list.matrix[k].A.nrow,
+                                 (long long)list.matrix[k].A.ncol));
+    if (style.text && style.digits < 17)
+        RITZ_TRY(ritz_export_say(report,
+                                 "%lld digits: values are rounded, and a free "
+                                 "body is then not quite free",
+                                 (long long)style.digits));
+    RITZ_TRY(
+        ritz_output4_write(request->output, list.count, list.matrix, &style));
+done:
+    ritz_matrices_free(&list);
+    return status;
+}
+
+const ritz_exporter ritz_exporter_output4 = {
+    .name = "output4",
+    .summary = "NASTRAN OUTPUT4 matrices, binary or text",
+    .reference = "NastranOutput4",
+    .kind = "reduced",
+    .write_reduced = write,
+};

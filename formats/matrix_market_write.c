@@ -1,0 +1,118 @@
+/*
+ * Matrix Market as it is written: 17 digits, which read back to the same bits.
+ *
+ * A matrix is called symmetric, and written as its lower triangle, if it says
+ * so and its triangles agree in every bit; else nothing would bring the
+ * difference back. It is an array if all its entries are stored.
+ */
+#include "formats/sink.h"
+
+#include <ritz/foreign.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct job {
+    const ritz_matrix *matrix;
+    const char *comment;
+} job;
+
+/* Place of A(i,j) among the entries; -1 if nothing is stored there. */
+static int64_t find(const ritz_sparse *A, int64_t i, int64_t j)
+{
+    int64_t low = A->colptr[j];
+    int64_t high = A->colptr[j + 1];
+
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (A->rowind[middle] < i)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < A->colptr[j + 1] && A->rowind[low] == i ? low : -1;
+}
+
+/* Whether A(j,i) is stored and the same for each A(i,j). */
+static bool is_mirrored(const ritz_matrix *m)
+{
+    for (int64_t j = 0; j < m->A.ncol; j++)
+        for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++) {
+            int64_t q = find(&m->A, j, m->A.rowind[p]);
+
+            if (q < 0 || m->A.val[p] != m->A.val[q] ||
+                (m->imaginary && m->imaginary[p] != m->imaginary[q]))
+                return false;
+        }
+    return true;
+}
+
+static void write_comment(FILE *file, const char *comment)
+{
+    while (comment && *comment) {
+        size_t length = strcspn(comment, "\r\n");
+
+        fprintf(file, "%% %.*s\n", (int)length, comment);
+        comment += length;
+        comment += *comment != '\0';
+    }
+}
+
+static ritz_status write_market(FILE *file, const void *what)
+{
+    ritz_status status = RITZ_OK;
+    const job *all = what;
+    const ritz_matrix *m = all->matrix;
+    const ritz_sparse *A = &m->A;
+    int64_t nnz = A->colptr[A->ncol];
+    bool symmetric =
+        m->symmetric && A->nrow == A->ncol && nnz > 0 && is_mirrored(m);
+    bool array = A->ncol > 0 && nnz % A->ncol == 0 && nnz / A->ncol == A->nrow;
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            RITZ_FAIL_IF(!isfinite(A->val[p]) ||
+                             (m->imaginary && !isfinite(m->imaginary[p])),
+                         RITZ_ERR_ARGUMENT,
+                         "row %" PRId64 " of column %" PRId64
+                         " of '%s' is not finite",
+                         A->rowind[p] + 1, j + 1, m->name);
+            count += !symmetric || A->rowind[p] >= j;
+        }
+    fprintf(file, "%%%%MatrixMarket matrix %s %s %s\n",
+            array ? "array" : "coordinate", m->imaginary ? "complex" : "real",
+            symmetric ? "symmetric" : "general");
+    write_comment(file, all->comment);
+    fprintf(file, "%" PRId64 " %" PRId64, A->nrow, A->ncol);
+    if (!array)
+        fprintf(file, " %" PRId64, count);
+    fputc('\n', file);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            if (symmetric && A->rowind[p] < j)
+                continue;
+            if (!array)
+                fprintf(file, "%" PRId64 " %" PRId64 " ", A->rowind[p] + 1,
+                        j + 1);
+            fprintf(file, "%.16e", A->val[p]);
+            if (m->imaginary)
+                fprintf(file, " %.16e", m->imaginary[p]);
+            fputc('\n', file);
+        }
+done:
+    return status;
+}
+
+ritz_status ritz_matrix_market_write(const char *path,
+                                     const ritz_matrix *matrix,
+                                     const char *comment)
+{
+    job all = {matrix, comment};
+
+    return ritz_sink_write(path, write_market, &all);
+}

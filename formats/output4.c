@@ -1,0 +1,388 @@
+/*
+ * NASTRAN OUTPUT4: matrices by columns, what text and binary have in common.
+ *
+ * A sparse column is a sequence of strings, each consecutive rows behind one or
+ * two integers. There are three readings of these, w words to a value:
+ *
+ *     words    IS = 65536 (w + 1) + row
+ *     values   IS = 65536 v + row            NASTRAN-95, v counts values
+ *     bigmat   w + 1, row
+ *
+ * Headers do not always tell which (a bigmat of few rows may be unmarked), so
+ * that one is taken by which the strings of a column add up to its word count.
+ *
+ * FORM: 3 with one row or column is a diagonal; 6 symmetric, both triangles
+ * stored, a file with one only is completed; 8 without entries the identity.
+ */
+#include "formats/output4.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIAGONAL = 3, SYMMETRIC = 6, IDENTITY = 8 };
+enum { WORDS, VALUES, BIGMAT };
+
+int64_t ritz_output4_integers(int64_t rule)
+{
+    return rule == BIGMAT ? 2 : 1;
+}
+
+int64_t ritz_output4_rule(const ritz_output4_build *build, int64_t k)
+{
+    return (build->rule + k) % RITZ_OUTPUT4_RULES;
+}
+
+bool ritz_output4_decode(const ritz_output4_build *build, int64_t rule,
+                         int64_t wide, const int64_t *integers, int64_t left,
+                         ritz_output4_string *out)
+{
+    int64_t count = rule == BIGMAT ? integers[0] : integers[0] / 65536;
+    int64_t row = rule == BIGMAT ? integers[1] : integers[0] % 65536;
+    int64_t value = build->numbers * wide; /* words of one */
+    int64_t words = count - 1;
+
+    if (count < 1 || count > left)
+        return false;
+    if (rule == VALUES)
+        words = count * value;
+    *out = (ritz_output4_string){
+        .row = row - 1,
+        .reals = words / wide,
+        .words = words + ritz_output4_integers(rule),
+    };
+    return words >= 1 && words % value == 0 && out->words <= left && row >= 1 &&
+           row - 1 + words / value <= build->header.nrow;
+}
+
+/* Room for `need` entries, doubled so that growing costs O(1) an entry. */
+static ritz_status grow(ritz_output4_build *build, int64_t need)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrix *m = &build->matrix;
+    int64_t room = need > 2 * build->room ? need : 2 * build->room;
+    size_t used = (size_t)build->nnz;
+    int64_t *rowind = NULL;
+    double *val = NULL;
+    double *imaginary = NULL;
+
+    RITZ_NEW(rowind, room);
+    RITZ_NEW(val, room);
+    if (build->numbers == 2)
+        RITZ_NEW(imaginary, room);
+    if (used > 0) {
+        memcpy(rowind, m->A.rowind, used * sizeof *rowind);
+        memcpy(val, m->A.val, used * sizeof *val);
+        if (imaginary)
+            memcpy(imaginary, m->imaginary, used * sizeof *imaginary);
+    }
+    free(m->A.rowind);
+    free(m->A.val);
+    free(m->imaginary);
+    m->A.rowind = rowind;
+    m->A.val = val;
+    m->imaginary = imaginary;
+    build->room = room;
+    rowind = NULL;
+    val = imaginary = NULL;
+done:
+    free(rowind);
+    free(val);
+    free(imaginary);
+    return status;
+}
+
+/* Room for pointers 0..column + 1, at most of all columns. */
+static ritz_status grow_pointers(ritz_output4_build *build, int64_t column)
+{
+    ritz_status status = RITZ_OK;
+    int64_t most = build->header.ncol + 1;
+    int64_t room = 2 * build->pointers;
+    int64_t *colptr = NULL;
+
+    if (column + 2 <= build->pointers)
+        goto done;
+    if (room < column + 2)
+        room = column + 2;
+    if (room > most)
+        room = most;
+    RITZ_NEW(colptr, room);
+    if (build->pointers > 0)
+        memcpy(colptr, build->matrix.A.colptr,
+               (size_t)build->pointers * sizeof *colptr);
+    free(build->matrix.A.colptr);
+    build->matrix.A.colptr = colptr;
+    build->pointers = room;
+done:
+    return status;
+}
+
+ritz_status ritz_output4_begin(ritz_output4_list *list,
+                               const ritz_output4_header *header, int64_t nnz,
+                               ritz_output4_build *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_output4_build build = {.header = *header, .column = -1};
+
+    RITZ_FAIL_IF(header->ncol > list->columns, RITZ_ERR_FORMAT,
+                 "'%s' is said to have %" PRId64
+                 " columns, far more than its file can fill",
+                 header->name, header->ncol);
+    list->columns -= header->ncol;
+    build.matrix.A.nrow = header->nrow;
+    build.matrix.A.ncol = header->ncol;
+    build.numbers = header->type > 2 ? 2 : 1;
+    build.rule = header->bigmat ? BIGMAT : WORDS;
+    memcpy(build.matrix.name, header->name, sizeof build.matrix.name);
+    RITZ_TRY(grow(&build, nnz > 0 ? nnz : 1));
+    RITZ_TRY(grow_pointers(&build, -1));
+    *out = build;
+    build = (ritz_output4_build){0};
+done:
+    ritz_matrix_free(&build.matrix);
+    return status;
+}
+
+/* Columns after the present one up to `column` begin where entries end. */
+static ritz_status close_columns(ritz_output4_build *build, int64_t column)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(grow_pointers(build, column - 1));
+    for (int64_t j = build->column + 1; j <= column; j++)
+        build->matrix.A.colptr[j] = build->nnz;
+    build->column = column;
+    build->below = 0;
+done:
+    return status;
+}
+
+ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
+                 "'%s' has %" PRId64 " columns, but one is numbered %" PRId64,
+                 build->header.name, build->header.ncol, column);
+    RITZ_FAIL_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
+                 "column %" PRId64 " of '%s' follows column %" PRId64, column,
+                 build->header.name, build->column + 1);
+    RITZ_TRY(close_columns(build, column - 1));
+done:
+    return status;
+}
+
+void ritz_output4_rewind(ritz_output4_build *build)
+{
+    build->nnz = build->matrix.A.colptr[build->column];
+    build->below = 0;
+}
+
+ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
+                              int64_t count)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(row < build->below, RITZ_ERR_FORMAT,
+                 "rows of column %" PRId64 " of '%s' do not ascend",
+                 build->column + 1, build->header.name);
+    RITZ_FAIL_IF(count > build->header.nrow || row > build->header.nrow - count,
+                 RITZ_ERR_FORMAT,
+                 "column %" PRId64 " of '%s' has %" PRId64
+                 " values from row %" PRId64 ", but the matrix %" PRId64
+                 " rows",
+                 build->column + 1, build->header.name, count, row + 1,
+                 build->header.nrow);
+    build->below = row + count;
+    if (count > build->room - build->nnz)
+        RITZ_TRY(grow(build, build->nnz + count));
+done:
+    return status;
+}
+
+ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row)
+{
+    return ritz_fail(RITZ_ERR_FORMAT,
+                     "row %" PRId64 " of column %" PRId64
+                     " of '%s' is not finite",
+                     row + 1, build->column + 1, build->header.name);
+}
+
+/* Whether entries lie beside the diagonal, and all on the same side of it. */
+static bool is_triangle(const ritz_sparse *A)
+{
+    bool above = false;
+    bool below = false;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            above = above || A->rowind[p] < j;
+            below = below || A->rowind[p] > j;
+        }
+    return above != below;
+}
+
+/* m := entries (row, col) with its values and those of its imaginary part. */
+static ritz_status replace(ritz_matrix *m, int64_t n, int64_t count,
+                           const int64_t *row, const int64_t *col,
+                           const double *re, const double *im)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse real = {0};
+    ritz_sparse imaginary = {0};
+
+    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, re, &real));
+    if (m->imaginary) {
+        RITZ_TRY(
+            ritz_sparse_from_triplets(n, n, count, row, col, im, &imaginary));
+        free(m->imaginary);
+        m->imaginary = imaginary.val;
+        imaginary.val = NULL;
+    }
+    ritz_sparse_free(&m->A);
+    m->A = real;
+    real = (ritz_sparse){0};
+done:
+    ritz_sparse_free(&real);
+    ritz_sparse_free(&imaginary);
+    return status;
+}
+
+/* Which matrix an entry of the file stands for. */
+typedef enum shape { MIRRORED, ON_DIAGONAL, UNIT } shape;
+
+/* m := the n x n matrix that its entries are a shorthand of. */
+static ritz_status expand(ritz_matrix *m, shape as, int64_t n)
+{
+    ritz_status status = RITZ_OK;
+    int64_t nnz = m->A.colptr[m->A.ncol];
+    int64_t most = as == UNIT ? n : 2 * nnz;
+    int64_t count = 0;
+    int64_t *row = NULL;
+    int64_t *col = NULL;
+    double *re = NULL;
+    double *im = NULL;
+
+    RITZ_NEW(row, most);
+    RITZ_NEW(col, most);
+    RITZ_NEW(re, most);
+    RITZ_NEW(im, most);
+    for (; as == UNIT && count < n; count++) {
+        row[count] = col[count] = count;
+        re[count] = 1.0;
+    }
+    for (int64_t j = 0; as != UNIT && j < m->A.ncol; j++)
+        for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++) {
+            int64_t i = m->A.rowind[p];
+            int64_t at = m->A.ncol == 1 ? i : j;
+
+            for (int turn = 0; turn < (as == MIRRORED && i != j ? 2 : 1);
+                 turn++) {
+                row[count] = as == ON_DIAGONAL ? at : (turn ? j : i);
+                col[count] = as == ON_DIAGONAL ? at : (turn ? i : j);
+                re[count] = m->A.val[p];
+                im[count++] = m->imaginary ? m->imaginary[p] : 0.0;
+            }
+        }
+    RITZ_TRY(replace(m, n, count, row, col, re, im));
+done:
+    free(row);
+    free(col);
+    free(re);
+    free(im);
+    return status;
+}
+
+/* Give the matrix the meaning that FORM says. */
+static ritz_status obey_form(ritz_output4_list *list, ritz_output4_build *build)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrix *m = &build->matrix;
+    int64_t nrow = m->A.nrow;
+    int64_t ncol = m->A.ncol;
+    int64_t n = nrow > ncol ? nrow : ncol;
+    int64_t form = build->header.form;
+    bool vector = form == DIAGONAL && (nrow == 1 || ncol == 1) && n > 1;
+    bool unit = form == IDENTITY && nrow == ncol && build->nnz == 0;
+
+    RITZ_FAIL_IF((vector || unit) && n > list->columns, RITZ_ERR_FORMAT,
+                 "'%s' is said to be a diagonal of %" PRId64
+                 " rows, far more than its file can fill",
+                 build->header.name, n);
+    if (vector || unit) {
+        list->columns -= n;
+        RITZ_TRY(expand(m, unit ? UNIT : ON_DIAGONAL, n));
+    }
+    if (form == SYMMETRIC && nrow == ncol && is_triangle(&m->A))
+        RITZ_TRY(expand(m, MIRRORED, n));
+    m->symmetric = m->A.nrow == m->A.ncol &&
+                   (form == SYMMETRIC || form == DIAGONAL || form == IDENTITY);
+done:
+    return status;
+}
+
+ritz_status ritz_output4_end(ritz_output4_list *list, ritz_output4_build *build)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrix *more = NULL;
+    int64_t count = list->all.count;
+
+    RITZ_TRY(close_columns(build, build->header.ncol));
+    RITZ_TRY(obey_form(list, build));
+    if (count == list->room) {
+        RITZ_NEW(more, 2 * count + 4);
+        if (count > 0)
+            memcpy(more, list->all.matrix, (size_t)count * sizeof *more);
+        free(list->all.matrix);
+        list->all.matrix = more;
+        list->room = 2 * count + 4;
+    }
+    list->all.matrix[list->all.count++] = build->matrix;
+    build->matrix = (ritz_matrix){0};
+done:
+    return status;
+}
+
+void ritz_output4_name(const char *bytes, int64_t size,
+                       char out[RITZ_NAME_SIZE])
+{
+    int64_t used = 0;
+
+    for (int64_t k = 0; k < size && used < RITZ_NAME_SIZE - 1; k++)
+        if (bytes[k] > ' ' && bytes[k] < 127)
+            out[used++] = bytes[k];
+    out[used] = '\0';
+}
+
+static bool recognise(const char *bytes, int64_t size)
+{
+    return ritz_output4_is_binary(bytes, size) ||
+           ritz_output4_is_text(bytes, size);
+}
+
+static ritz_status read_all(const char *bytes, int64_t size, ritz_matrices *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_output4_list list = {.columns = RITZ_OUTPUT4_NULL_COLUMNS + size};
+
+    if (ritz_output4_is_binary(bytes, size))
+        RITZ_TRY(ritz_output4_read_binary(bytes, size, &list));
+    else
+        RITZ_TRY(ritz_output4_read_text(bytes, size, &list));
+    RITZ_FAIL_IF(list.all.count == 0, RITZ_ERR_FORMAT, "holds no matrix");
+    *out = list.all;
+    list.all = (ritz_matrices){0};
+done:
+    ritz_matrices_free(&list.all);
+    return status;
+}
+
+const ritz_format ritz_format_output4 = {
+    .name = "output4",
+    .summary = "NASTRAN OUTPUT4, text or binary, dense or sparse",
+    .reference = "MSC2014",
+    .recognise = recognise,
+    .read = read_all,
+};

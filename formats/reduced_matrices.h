@@ -1,0 +1,17 @@
+/* The matrices of a reduced component by name, for formats of matrices. */
+#ifndef RITZ_FORMATS_REDUCED_MATRICES_H
+#define RITZ_FORMATS_REDUCED_MATRICES_H
+
+#include <ritz/export.h>
+#include <ritz/foreign.h>
+
+/**
+ * The matrices that `names` lists: K, M, D, T, B (inputs), C, Cv, Ca (outputs).
+ *
+ * @param[in] names  with commas between; NULL: K, M, and D if there is one
+ * @return RITZ_ERR_ARGUMENT if there is no such matrix
+ */
+ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
+                                  const char *names, ritz_matrices *out);
+
+#endif

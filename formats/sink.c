@@ -1,0 +1,33 @@
+#include "formats/sink.h"
+
+#include "base/draft.h"
+
+#include <errno.h>
+#include <string.h>
+
+ritz_status ritz_sink_write(const char *path,
+                            ritz_status (*write)(FILE *file, const void *what),
+                            const void *what)
+{
+    ritz_status status = RITZ_OK;
+    ritz_draft draft = {0};
+    FILE *file = NULL;
+    int failed = 0;
+
+    RITZ_TRY_IN(path, ritz_draft_new(path, &draft));
+    file = fopen(draft.name, "wb");
+    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", path,
+                 strerror(errno));
+    RITZ_TRY(write(file, what));
+    failed = ferror(file);
+    failed = fclose(file) != 0 || failed;
+    file = NULL;
+    RITZ_FAIL_IF(failed, RITZ_ERR_FILE, "cannot write all of '%s': %s", path,
+                 strerror(errno));
+    RITZ_TRY(ritz_draft_publish(&draft));
+done:
+    if (file)
+        fclose(file);
+    ritz_draft_free(&draft);
+    return status;
+}

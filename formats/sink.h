@@ -1,0 +1,18 @@
+/* A file of a foreign format, which appears whole or not at all. */
+#ifndef RITZ_FORMATS_SINK_H
+#define RITZ_FORMATS_SINK_H
+
+#include <ritz/status.h>
+
+#include <stdio.h>
+
+/**
+ * Let @p write put @p what into a draft of @p path, then give it its name.
+ *
+ * @return RITZ_ERR_FILE if not all of it could be written; what @p write says
+ */
+ritz_status ritz_sink_write(const char *path,
+                            ritz_status (*write)(FILE *file, const void *what),
+                            const void *what);
+
+#endif

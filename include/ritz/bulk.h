@@ -1,0 +1,44 @@
+/*
+ * NASTRAN bulk data: the geometry and the sets that a deck states, nothing of
+ * its elements but those that would eliminate dofs.
+ */
+#ifndef RITZ_BULK_H
+#define RITZ_BULK_H
+
+#include <ritz/component.h>
+
+typedef struct ritz_bulk {
+    ritz_grids grids; /* positions in the basic frame, displacement frames */
+    int64_t num_points;
+    int64_t *point; /* SPOINT ids, ascending */
+    int64_t num_fixed;
+    ritz_dof *fixed; /* SPC1, SPC, and field 8 of GRID, each once, sorted; of
+                        SPC sets those that the case control selects, all if
+                        it selects none */
+    int64_t num_sets[3];
+    ritz_dof *set[3]; /* ASET1/ASET, BSET1/BSET, QSET1/QSET, sorted */
+    int64_t num_constraints;
+    char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600": elements that would have
+                                           to be eliminated from matrices, and
+                                           MPC sets that act: selected as SPC
+                                           sets are */
+} ritz_bulk;
+
+enum { RITZ_SET_A, RITZ_SET_B, RITZ_SET_Q };
+
+/**
+ * Read a deck or a bulk data file: small, large and free field, continuations,
+ * INCLUDE (relative to the including file), comments. Executive and case
+ * control are skipped. Cards that do not concern geometry are passed over.
+ *
+ * @return RITZ_ERR_FORMAT with file and line, and what is wrong with the card
+ */
+ritz_status ritz_bulk_read(const char *path, ritz_bulk *out);
+
+/** The same from text; INCLUDE is then relative to the folder @p folder. */
+ritz_status ritz_bulk_parse(const char *path, const char *text,
+                            const char *folder, ritz_bulk *out);
+
+void ritz_bulk_free(ritz_bulk *bulk);
+
+#endif

@@ -1,0 +1,71 @@
+/*
+ * The HDF5 container in which tools hand their objects to each other: see
+ * docs/container.md for what lies where.
+ *
+ * Reading checks before it believes: kind and format, declared sizes against
+ * what is stored, indices against sizes, that values are finite. A file that is
+ * written appears under its name once it is complete, or not at all; written
+ * twice it has the same bytes.
+ */
+#ifndef RITZ_CONTAINER_H
+#define RITZ_CONTAINER_H
+
+#include <ritz/basis.h>
+#include <ritz/component.h>
+#include <ritz/ranking.h>
+#include <ritz/reduced.h>
+#include <ritz/response.h>
+#include <ritz/system.h>
+
+/* What every file says about how it was made. */
+typedef struct ritz_stamp {
+    const char *command; /* that made it */
+    int64_t num_inputs;
+    char *const *input; /* "SHA256  NAME", one for each file that was read */
+} ritz_stamp;
+
+/* What can be said of any container without reading its matrices. */
+typedef struct ritz_summary {
+    char kind[RITZ_NAME_SIZE];
+    char version[RITZ_NAME_SIZE];
+    char units[RITZ_NAME_SIZE];
+    char *command;
+    int64_t num_inputs;
+    char **input;
+} ritz_summary;
+
+/** Whether a file is a container at all (HDF5 with a `ritz_kind`). */
+bool ritz_container_is(const char *path);
+
+ritz_status ritz_container_summary(const char *path, ritz_summary *out);
+void ritz_summary_free(ritz_summary *summary);
+
+/* One pair for each kind. Reading a component settles it. */
+ritz_status ritz_container_read_component(const char *path,
+                                          ritz_component *out);
+ritz_status ritz_container_write_component(const char *path,
+                                           const ritz_component *component,
+                                           const ritz_stamp *stamp);
+ritz_status ritz_container_read_basis(const char *path, ritz_basis *out);
+ritz_status ritz_container_write_basis(const char *path,
+                                       const ritz_basis *basis,
+                                       const char *units,
+                                       const ritz_stamp *stamp);
+ritz_status ritz_container_read_reduced(const char *path, ritz_reduced *out);
+ritz_status ritz_container_write_reduced(const char *path,
+                                         const ritz_reduced *reduced,
+                                         const ritz_stamp *stamp);
+ritz_status ritz_container_read_system(const char *path, ritz_system *out);
+ritz_status ritz_container_write_system(const char *path,
+                                        const ritz_system *system,
+                                        const ritz_stamp *stamp);
+ritz_status ritz_container_read_response(const char *path, ritz_response *out);
+ritz_status ritz_container_write_response(const char *path,
+                                          const ritz_response *response,
+                                          const ritz_stamp *stamp);
+ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out);
+ritz_status ritz_container_write_ranking(const char *path,
+                                         const ritz_ranking *ranking,
+                                         const ritz_stamp *stamp);
+
+#endif

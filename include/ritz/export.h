@@ -1,0 +1,48 @@
+/* From containers to files that others read: what ritz-export does. */
+#ifndef RITZ_EXPORT_H
+#define RITZ_EXPORT_H
+
+#include <ritz/reduced.h>
+#include <ritz/response.h>
+
+/* What may be asked of an exporter; zero where not given. */
+typedef struct ritz_export_request {
+    const char *output;   /* path */
+    const char *matrices; /* "K,M"; NULL: all that the format takes */
+    bool text, dense;     /* output4 */
+    int64_t digits;       /* text */
+} ritz_export_request;
+
+/* What an exporter says it lost or did: lines for people. */
+typedef struct ritz_export_report {
+    int64_t count;
+    char (*line)[256];
+} ritz_export_report;
+
+typedef struct ritz_exporter {
+    const char *name;
+    const char *summary;
+    const char *reference;
+    const char *kind; /* of container it takes: "reduced", "response" */
+    ritz_status (*write_reduced)(const ritz_reduced *reduced,
+                                 const ritz_export_request *request,
+                                 ritz_export_report *report);
+    ritz_status (*write_response)(const ritz_response *response,
+                                  const ritz_export_request *request,
+                                  ritz_export_report *report);
+} ritz_exporter;
+
+/** All exporters, ended by NULL. */
+extern const ritz_exporter *const ritz_exporters[];
+extern const ritz_exporter ritz_exporter_exudyn;
+extern const ritz_exporter ritz_exporter_matrix_market;
+extern const ritz_exporter ritz_exporter_output4;
+extern const ritz_exporter ritz_exporter_tsv;
+
+const ritz_exporter *ritz_exporter_find(const char *name);
+
+[[gnu::format(printf, 2, 3)]] ritz_status
+ritz_export_say(ritz_export_report *report, const char *format, ...);
+void ritz_export_report_free(ritz_export_report *report);
+
+#endif

@@ -1,0 +1,87 @@
+/*
+ * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market.
+ * A format is recognised by content, never by name.
+ */
+#ifndef RITZ_FOREIGN_H
+#define RITZ_FOREIGN_H
+
+#include <ritz/dofs.h>
+#include <ritz/sparse.h>
+#include <ritz/text.h>
+
+/* One matrix as its file states it; both triangles once read. */
+typedef struct ritz_matrix {
+    char name[RITZ_NAME_SIZE]; /* "KGG"; "" where the format has none */
+    ritz_sparse A;
+    double *imaginary; /* beside A.val; NULL if real */
+    bool symmetric;    /* the file says so */
+    int64_t digits;    /* significant decimal digits of its values: 17 binary
+                          double, 7 binary single, else as written */
+    char spelling[RITZ_NAME_SIZE]; /* "OUTPUT4 text, bigmat, 1P,3E23.16" */
+    ritz_dof *row; /* dof of each row where the file says; else NULL */
+    ritz_dof *col; /* of each column, of rectangular ones; NULL: as rows */
+} ritz_matrix;
+
+typedef struct ritz_matrices {
+    int64_t count;
+    ritz_matrix *matrix;
+    char format[RITZ_NAME_SIZE]; /* of the descriptor that read them */
+} ritz_matrices;
+
+typedef struct ritz_format {
+    const char *name;      /* "output4" */
+    const char *summary;   /* one line */
+    const char *reference; /* key in docs/references.bib */
+    /** Whether these bytes look like the format. @p size may be 0. */
+    bool (*recognise)(const char *bytes, int64_t size);
+    /** All matrices; @return RITZ_ERR_FORMAT naming line or byte. */
+    ritz_status (*read)(const char *bytes, int64_t size, ritz_matrices *out);
+} ritz_format;
+
+/** All formats of matrices, ended by NULL. */
+extern const ritz_format *const ritz_formats[];
+extern const ritz_format ritz_format_dmig;
+extern const ritz_format ritz_format_matrix_market;
+extern const ritz_format ritz_format_output4;
+
+/** Recognise and read; @return RITZ_ERR_FORMAT if no format knows it. */
+ritz_status ritz_foreign_read(const char *path, ritz_matrices *out);
+ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
+                               ritz_matrices *out);
+
+/**
+ * The matrix that "FILE[:NAME[#K]]" names: without a name the only one; the
+ * K-th of that name, from 1. Without K there must be one only.
+ *
+ * A file whose whole name holds a colon is tried first.
+ *
+ * @return RITZ_ERR_ARGUMENT listing what the file holds
+ */
+ritz_status ritz_foreign_select(const char *spec, ritz_matrix *out);
+
+/** The part of a spec that names the file; the caller frees @p out. */
+ritz_status ritz_foreign_path(const char *spec, char **out);
+
+/* How OUTPUT4 is written. */
+typedef struct ritz_output4_style {
+    bool text;      /* else binary, native byte order, 32-bit integers */
+    bool sparse;    /* else dense */
+    int64_t digits; /* text: significant digits, 1 to 17; 17 by default */
+} ritz_output4_style;
+
+/** Write matrices as one OUTPUT4 file (draft, then rename). Names are cut to 8
+ * letters and capitals. */
+ritz_status ritz_output4_write(const char *path, int64_t count,
+                               const ritz_matrix *matrix,
+                               const ritz_output4_style *style);
+
+/** Write one matrix, 17 digits; symmetric ones as lower triangle; dense ones
+ * (all entries stored) as array. Comment lines may be NULL. */
+ritz_status ritz_matrix_market_write(const char *path,
+                                     const ritz_matrix *matrix,
+                                     const char *comment);
+
+void ritz_matrix_free(ritz_matrix *matrix);
+void ritz_matrices_free(ritz_matrices *matrices);
+
+#endif

@@ -1,0 +1,63 @@
+/* Methods that make a basis: what they are asked, how to find one. */
+#ifndef RITZ_METHOD_H
+#define RITZ_METHOD_H
+
+#include <ritz/basis.h>
+#include <ritz/component.h>
+
+/*
+ * What is asked of a method. A method that needs more gets a field here, which
+ * is zero for all others; its signature stays.
+ */
+typedef struct ritz_request {
+    const ritz_component *component; /* borrowed */
+    ritz_dofs attached; /* kept as they are, in this order; borrowed */
+    int64_t modes;      /* how many flexible ones; -1: as up_to_hz says */
+    double up_to_hz;    /* every mode up to this frequency; 0: modes decides */
+    double tolerance;   /* relative, below which a column is dependent */
+} ritz_request;
+
+/* Which fields of a request a method heeds; the others must be left alone. */
+enum { RITZ_USES_MODES = 1, RITZ_USES_ATTACHED = 2 };
+
+/* A request that asks for nothing yet. */
+#define RITZ_REQUEST_NONE                                                      \
+    {                                                                          \
+        .modes = -1, .tolerance = 1e-10                                        \
+    }
+
+typedef struct ritz_method {
+    const char *name;      /* as typed on the command line */
+    const char *summary;   /* one line for --list */
+    const char *reference; /* key in docs/references.bib */
+    int uses;              /* RITZ_USES_... */
+    /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
+    ritz_status (*make)(const ritz_request *request, ritz_basis *out);
+} ritz_method;
+
+/** All methods, ended by NULL. */
+extern const ritz_method *const ritz_methods[];
+
+extern const ritz_method ritz_method_craig_bampton;
+extern const ritz_method ritz_method_full;
+extern const ritz_method ritz_method_guyan;
+extern const ritz_method ritz_method_macneal_rubin;
+extern const ritz_method ritz_method_rigid;
+
+/** Method called @p name; NULL and a sentence with the nearest if none. */
+const ritz_method *ritz_method_find(const char *name);
+
+/**
+ * Say whether a request makes sense to a method, before there is a component.
+ *
+ * @return RITZ_ERR_ARGUMENT if it names both a number of modes and a frequency,
+ *         neither, or what the method does not use
+ */
+ritz_status ritz_request_check(const ritz_method *method,
+                               const ritz_request *request);
+
+/** Make a basis and sign it with method, options and reference. */
+ritz_status ritz_basis_make(const ritz_method *method,
+                            const ritz_request *request, ritz_basis *out);
+
+#endif

@@ -1,0 +1,96 @@
+/*
+ * A reduced component: M q'' + D q' + K q = B f, u = T q, small and dense.
+ *
+ * It carries all that assembly and export need without the full matrices:
+ * where its ports are and how they move with q, inputs and outputs, mass
+ * properties, and what is known of its errors.
+ */
+#ifndef RITZ_REDUCED_H
+#define RITZ_REDUCED_H
+
+#include <ritz/basis.h>
+#include <ritz/component.h>
+#include <ritz/io.h>
+
+/* How a port moves: along basic axes, displacement = map q. */
+typedef struct ritz_port_map {
+    char name[RITZ_NAME_SIZE];
+    double origin[3], axes[9];
+    int64_t count;    /* p */
+    ritz_dof *dof;    /* p, grid and basic direction of each row */
+    double *position; /* p x 3, of that grid; zero for scalar points */
+    ritz_dense map;   /* p x r */
+} ritz_port_map;
+
+/* One named number: an estimate or a measured error, and what it is held to. */
+typedef struct ritz_measure {
+    char name[RITZ_NAME_SIZE]; /* "frequency-relative" */
+    double value;
+    double limit;               /* NaN: none was asked */
+    char where[RITZ_NAME_SIZE]; /* "mode 7, 3.41 Hz"; "" if nowhere special */
+} ritz_measure;
+
+typedef struct ritz_measures {
+    int64_t count;
+    ritz_measure *item;
+} ritz_measures;
+
+/* Mass properties about the basic origin, from M and rigid geometry. */
+typedef struct ritz_inertia {
+    double mass;      /* mean of the three translations */
+    double centre[3]; /* of mass */
+    double tensor[9]; /* about the centre, row by row */
+    bool known;
+} ritz_inertia;
+
+typedef struct ritz_reduced {
+    ritz_dense K, M, D; /* r x r; D {0}: none */
+    ritz_columns columns;
+    ritz_origin origin;
+    int64_t num_ports;
+    ritz_port_map *port;
+    ritz_io io; /* for r coordinates */
+    ritz_inertia inertia;
+    ritz_dense T;                 /* n x r; {0} without basis */
+    int64_t num_dofs;             /* n, of the full component */
+    ritz_dof *dof;                /* n; NULL without basis */
+    ritz_grids grids;             /* of the full component; {0} without basis */
+    char damping[RITZ_NAME_SIZE]; /* as ritz_damping_parse reads; "" none */
+    ritz_measures estimates;      /* by ritz-reduce */
+    ritz_measures errors;         /* by ritz-verify */
+    char units[RITZ_NAME_SIZE];
+} ritz_reduced;
+
+/**
+ * Project a component on a basis: K_r = T'KT and so on, all ports and io.
+ *
+ * @param[in] T  n x r, columns independent
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree
+ * @cost   O(r nnz + n r^2)
+ */
+ritz_status ritz_reduce(const ritz_component *component,
+                        const ritz_basis *basis, ritz_reduced *out);
+
+/**
+ * Project once more: q = V p with V r x s (the second stage of COMPARE).
+ * T becomes T V; columns are all of kind system.
+ */
+ritz_status ritz_reduced_project(const ritz_reduced *reduced,
+                                 const ritz_dense *V, ritz_reduced *out);
+
+/** Port called @p name; NULL and a sentence if there is none. */
+const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
+                                       const char *name);
+
+/** Mass, centre and inertia of a component by geometry: R'MR. */
+ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out);
+
+/** Append a measure; @p where may be NULL. */
+ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
+                              double value, double limit, const char *where);
+
+void ritz_measures_free(ritz_measures *measures);
+void ritz_port_map_free(ritz_port_map *port);
+void ritz_reduced_free(ritz_reduced *reduced);
+
+#endif

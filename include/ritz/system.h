@@ -1,0 +1,60 @@
+/*
+ * A system: components joined at one or several configurations.
+ *
+ * At a configuration the coordinates q of all components, one block after the
+ * other, are q = P x with the joints' constraints C P = 0; x are the system's
+ * own coordinates: its mass-normalised modes, rigid ones first, so that M = I
+ * and K = diag(lambda).
+ */
+#ifndef RITZ_SYSTEM_H
+#define RITZ_SYSTEM_H
+
+#include <ritz/reduced.h>
+
+typedef struct ritz_configuration {
+    char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
+    int64_t num_angles;
+    double *angle_deg;  /* one for each hinge of the scene, in its order */
+    int64_t rank;       /* of the constraints */
+    ritz_dense K, M, D; /* e x e; D {0}: none beside the damping below */
+    double *lambda;     /* e, ascending  [rad^2/s^2] */
+    int64_t num_rigid;
+    ritz_io io;           /* for e coordinates */
+    int64_t num_blocks;   /* as many as there are components */
+    ritz_dense *P;        /* num_blocks, r_c x e */
+    ritz_measures errors; /* by ritz-verify or ritz-compare */
+} ritz_configuration;
+
+typedef struct ritz_system {
+    char name[RITZ_NAME_SIZE];
+    int64_t num_components;
+    char (*component)[RITZ_NAME_SIZE];
+    int64_t *order;      /* r_c of each */
+    int64_t *order_full; /* n of each full component */
+    int64_t num_hinges;
+    char (*hinge)[RITZ_NAME_SIZE];
+    int64_t num_configurations;
+    ritz_configuration *configuration;
+    double band_hz[2];
+    char damping[RITZ_NAME_SIZE]; /* as ritz_damping_parse reads */
+    char units[RITZ_NAME_SIZE];
+} ritz_system;
+
+/**
+ * The configuration that @p at names: "clock=60,cone=0", angles compared
+ * within 1e-9 degrees; hinges that are not named must have one angle only.
+ * NULL @p at: the only configuration.
+ *
+ * @return RITZ_ERR_ARGUMENT listing what there is
+ */
+ritz_status ritz_system_find(const ritz_system *system, const char *at,
+                             const ritz_configuration **out);
+
+/** "clock=60,cone=0" from names and angles. */
+void ritz_configuration_name(int64_t count, const char (*hinge)[RITZ_NAME_SIZE],
+                             const double *angle_deg, char out[RITZ_NAME_SIZE]);
+
+void ritz_configuration_free(ritz_configuration *configuration);
+void ritz_system_free(ritz_system *system);
+
+#endif

@@ -1,0 +1,54 @@
+/* Full against reduced: every error measure, never one alone. */
+#ifndef RITZ_VERIFY_H
+#define RITZ_VERIFY_H
+
+#include <ritz/reduced.h>
+#include <ritz/response.h>
+#include <ritz/system.h>
+
+/* What is compared, and what it is held to; NaN limits: only measured. */
+typedef struct ritz_verify_request {
+    double band_hz[2];      /* [0, 0]: up to the highest kept mode below half
+                               of the reduced model's */
+    ritz_damping damping;   /* of the responses */
+    double limit_frequency; /* relative */
+    double limit_mac;       /* smallest */
+    double limit_damping;   /* relative error of damping ratios */
+    double limit_response;  /* relative to the largest |H| in the band */
+    double limit_gain;      /* relative, flexible static gain */
+} ritz_verify_request;
+
+#define RITZ_VERIFY_NONE                                                       \
+    {                                                                          \
+        .limit_frequency = NAN, .limit_mac = NAN, .limit_damping = NAN,        \
+        .limit_response = NAN, .limit_gain = NAN                               \
+    }
+
+/** A full component and its reduction. */
+ritz_status ritz_verify_reduced(const ritz_component *full,
+                                const ritz_reduced *reduced,
+                                const ritz_verify_request *request,
+                                ritz_measures *out);
+
+/**
+ * A full-order assembled system and one reduced configuration: the same
+ * measures, but MAC, which needs shapes, is taken from outputs when the
+ * coordinates of the two cannot be matched.
+ */
+ritz_status ritz_verify_system(const ritz_component *full,
+                               const ritz_configuration *reduced,
+                               const ritz_verify_request *request,
+                               ritz_measures *out);
+
+/** Whether a measure meets its limit (a NaN limit always). MAC is a minimum. */
+bool ritz_measure_holds(const ritz_measure *measure);
+
+/** Flexible static gain C Phi_f Lambda_f^-1 Phi_f' B of a dense model. */
+ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
+                             const ritz_io *io, ritz_dense *out);
+
+/** Residual bounds of a reduced component's own modes, for its estimates. */
+ritz_status ritz_estimate(const ritz_component *component,
+                          const ritz_basis *basis, ritz_reduced *reduced);
+
+#endif

@@ -1,0 +1,127 @@
+#include "base/draft.h"
+
+#include "base/alloc.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/*
+ * Names of the files that a signal must not leave behind. A handler has no
+ * argument, so this is the one place where the library keeps state.
+ */
+static _Atomic(const char *) unfinished[RITZ_MAX_DRAFTS];
+
+static bool enlist(const char *name)
+{
+    for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
+        const char *none = NULL;
+
+        if (atomic_compare_exchange_strong(&unfinished[k], &none, name))
+            return true;
+    }
+    return false;
+}
+
+static void strike(const char *name)
+{
+    for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
+        const char *expected = name;
+
+        if (atomic_compare_exchange_strong(&unfinished[k], &expected, NULL))
+            return;
+    }
+}
+
+/*
+ * Create and enlist with signals held back: enlisted before it exists, a name
+ * that turns out to be another process' would be removed by our handler.
+ */
+static int create(const char *name, bool *enlisted)
+{
+    sigset_t all;
+    sigset_t before;
+    int file = -1;
+    int error = 0;
+
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, &before);
+    file = open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
+    error = errno;
+    *enlisted = file >= 0 && enlist(name);
+    if (file >= 0 && !*enlisted)
+        unlink(name);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    errno = error;
+    return file;
+}
+
+ritz_status ritz_draft_new(const char *path, ritz_draft *out)
+{
+    ritz_status status = RITZ_OK;
+    size_t size = strlen(path) + sizeof ".4294967295-999999.part";
+    char *name = NULL;
+    struct stat there;
+    bool enlisted = false;
+    int file = -1;
+
+    RITZ_FAIL_IF(stat(path, &there) == 0 && !S_ISREG(there.st_mode),
+                 RITZ_ERR_FILE, "not a regular file");
+    RITZ_NEW(name, (int64_t)size);
+    for (int k = 0; file < 0; k++) {
+        snprintf(name, size, "%s.%ld-%d.part", path, (long)getpid(), k);
+        file = create(name, &enlisted);
+        RITZ_FAIL_IF(file < 0 && (errno != EEXIST || k == 999999),
+                     RITZ_ERR_FILE, "cannot create '%s': %s", name,
+                     strerror(errno));
+    }
+    RITZ_FAIL_IF(!enlisted, RITZ_ERR_ARGUMENT,
+                 "more than %d files are being written", RITZ_MAX_DRAFTS);
+    *out = (ritz_draft){path, name};
+    name = NULL;
+done:
+    if (file >= 0)
+        close(file);
+    free(name);
+    return status;
+}
+
+ritz_status ritz_draft_publish(ritz_draft *draft)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
+                 "cannot rename '%s': %s", draft->name, strerror(errno));
+    strike(draft->name);
+    free(draft->name);
+    *draft = (ritz_draft){0};
+done:
+    return status;
+}
+
+void ritz_draft_free(ritz_draft *draft)
+{
+    if (draft->name) {
+        remove(draft->name);
+        strike(draft->name);
+    }
+    free(draft->name);
+    *draft = (ritz_draft){0};
+}
+
+void ritz_draft_discard_all(void)
+{
+    for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
+        const char *name = atomic_load(&unfinished[k]);
+
+        if (name)
+            unlink(name);
+    }
+}

@@ -1,0 +1,234 @@
+#include "base/alloc.h"
+
+#include <ritz/text.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Move `used` bytes into a block of `size`, the rest of it zero. */
+static ritz_status grow(char **text, int64_t used, int64_t size)
+{
+    ritz_status status = RITZ_OK;
+    char *bigger = NULL;
+
+    RITZ_NEW(bigger, size);
+    if (used > 0)
+        memcpy(bigger, *text, (size_t)used);
+    free(*text);
+    *text = bigger;
+done:
+    return status;
+}
+
+ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
+{
+    ritz_status status = RITZ_OK;
+    char *bytes = NULL;
+    int64_t used = 0;
+    int64_t room = 0;
+    FILE *file = fopen(path, "rb");
+
+    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                 strerror(errno));
+    while (used == room) { /* full: there may be more */
+        room = room > 0 ? 2 * room : 4096;
+        RITZ_TRY(grow(&bytes, used, room + 1));
+        used += (int64_t)fread(bytes + used, 1, (size_t)(room - used), file);
+    }
+    RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot read '%s': %s", path,
+                 strerror(errno));
+    *size = used;
+    *out = bytes;
+    bytes = NULL;
+done:
+    if (file)
+        fclose(file);
+    free(bytes);
+    return status;
+}
+
+ritz_status ritz_text_read(const char *path, char **out)
+{
+    ritz_status status = RITZ_OK;
+    char *text = NULL;
+    int64_t size = 0;
+
+    RITZ_TRY(ritz_bytes_read(path, &size, &text));
+    RITZ_FAIL_IF(strlen(text) != (size_t)size, RITZ_ERR_FORMAT,
+                 "'%s' is not a text file", path);
+    *out = text;
+    text = NULL;
+done:
+    free(text);
+    return status;
+}
+
+bool ritz_text_real(const char *text, double *out)
+{
+    char *end = NULL;
+    double value = 0.0;
+
+    if (text[strspn(text, "+-.0123456789eE")] != '\0')
+        return false; /* strtod would take hexadecimal, inf and nan */
+    value = strtod(text, &end);
+    if (end == text || *end || !isfinite(value))
+        return false;
+    *out = value;
+    return true;
+}
+
+bool ritz_text_whole(const char *text, int64_t *out)
+{
+    char *end = NULL;
+    long long value = 0;
+
+    if (text[strspn(text, "+-0123456789")] != '\0')
+        return false;
+    errno = 0;
+    value = strtoll(text, &end, 10);
+    if (end == text || *end || errno)
+        return false;
+    *out = value;
+    return true;
+}
+
+/* One part of a list, "5" or "10-20", appended if there is a place for it. */
+static bool take_part(const char *part, int64_t most, int64_t *count,
+                      int64_t *out)
+{
+    char copy[48];
+    char *dash = NULL;
+    int64_t from = 0;
+    int64_t to = 0;
+
+    if (strlen(part) >= sizeof copy)
+        return false;
+    memcpy(copy, part, strlen(part) + 1);
+    dash = strchr(copy, '-');
+    if (dash)
+        *dash = '\0';
+    if (!ritz_text_whole(copy, &from) || from < 0)
+        return false;
+    to = from;
+    if (dash && (!ritz_text_whole(dash + 1, &to) || to < from))
+        return false;
+    if (to - from >= most - *count)
+        return false;
+    for (int64_t k = from; k <= to; k++) {
+        if (out)
+            out[*count] = k;
+        (*count)++;
+    }
+    return true;
+}
+
+/* Go through a list once; `out` NULL: only count. */
+static ritz_status walk_list(const char *text, int64_t *count, int64_t *out)
+{
+    enum { MOST = 10000000 };
+    ritz_status status = RITZ_OK;
+    char part[48];
+
+    *count = 0;
+    for (const char *at = text; at;) {
+        size_t length = strcspn(at, ",");
+
+        RITZ_FAIL_IF(length == 0 || length >= sizeof part, RITZ_ERR_ARGUMENT,
+                     "'%.60s' is not a list such as 1,5,10-20", text);
+        memcpy(part, at, length);
+        part[length] = '\0';
+        RITZ_FAIL_IF(!take_part(part, MOST, count, out), RITZ_ERR_ARGUMENT,
+                     "'%s' is no part of a list such as 1,5,10-20", part);
+        at = at[length] ? at + length + 1 : NULL;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_text_list(const char *text, int64_t *count, int64_t **out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *list = NULL;
+
+    RITZ_TRY(walk_list(text, count, NULL));
+    RITZ_NEW(list, *count);
+    RITZ_TRY(walk_list(text, count, list));
+    *out = list;
+    list = NULL;
+done:
+    free(list);
+    return status;
+}
+
+ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+    size_t length = strlen(name);
+
+    RITZ_FAIL_IF(length == 0, RITZ_ERR_ARGUMENT, "a name is empty");
+    RITZ_FAIL_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                 "'%.40s...' is longer than %d letters", name,
+                 RITZ_NAME_SIZE - 1);
+    for (const char *c = name; *c; c++)
+        RITZ_FAIL_IF((unsigned char)*c < ' ' || *c == '/' || *c == 127,
+                     RITZ_ERR_ARGUMENT,
+                     "'%s' holds '/' or a control character, a name cannot",
+                     name);
+    RITZ_FAIL_IF(strcmp(name, ".") == 0 || strcmp(name, "..") == 0,
+                 RITZ_ERR_ARGUMENT, "'%s' cannot be a name", name);
+    memcpy(out, name, length + 1);
+done:
+    return status;
+}
+
+enum { FAR = 1000, LONGEST = 64 };
+
+/* Edit distance of two short words, FAR if one is long. */
+static int distance(const char *a, const char *b)
+{
+    int row[LONGEST + 1];
+    int m = (int)strlen(a);
+    int n = (int)strlen(b);
+
+    if (m > LONGEST || n > LONGEST)
+        return FAR;
+    for (int j = 0; j <= n; j++)
+        row[j] = j;
+    for (int i = 1; i <= m; i++) {
+        int diagonal = row[0];
+
+        row[0] = i;
+        for (int j = 1; j <= n; j++) {
+            int best = diagonal + (a[i - 1] != b[j - 1]);
+
+            diagonal = row[j];
+            if (row[j] + 1 < best)
+                best = row[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[n];
+}
+
+const char *ritz_text_nearest(const char *word, int64_t count,
+                              const char *first, size_t stride)
+{
+    const char *nearest = NULL;
+    int best = FAR;
+
+    for (int64_t k = 0; k < count; k++) {
+        const char *name = first + (size_t)k * stride;
+        int apart = distance(word, name);
+
+        if (apart < best) {
+            best = apart;
+            nearest = name;
+        }
+    }
+    return best <= (int)(strlen(word) + 1) / 2 ? nearest : NULL;
+}

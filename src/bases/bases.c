@@ -1,0 +1,75 @@
+#include <ritz/method.h>
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A new method is a new file that defines one descriptor, and one line here. */
+const ritz_method *const ritz_methods[] = {
+    &ritz_method_craig_bampton, &ritz_method_full,  &ritz_method_guyan,
+    &ritz_method_macneal_rubin, &ritz_method_rigid, NULL,
+};
+
+enum { MOST = 64 };
+
+const ritz_method *ritz_method_find(const char *name)
+{
+    char names[MOST][RITZ_NAME_SIZE];
+    const char *near = NULL;
+    int64_t count = 0;
+
+    for (; ritz_methods[count] && count < MOST; count++) {
+        if (strcmp(ritz_methods[count]->name, name) == 0)
+            return ritz_methods[count];
+        snprintf(names[count], RITZ_NAME_SIZE, "%s", ritz_methods[count]->name);
+    }
+    near = ritz_text_nearest(name, count, names[0], sizeof names[0]);
+    ritz_record(near ? "there is no method '%s', is '%s' meant?"
+                     : "there is no method '%s'",
+                name, near ? near : "");
+    return NULL;
+}
+
+ritz_status ritz_request_check(const ritz_method *method,
+                               const ritz_request *request)
+{
+    ritz_status status = RITZ_OK;
+    bool by_number = request->modes >= 0;
+    bool by_frequency = request->up_to_hz > 0.0;
+
+    if (method->uses & RITZ_USES_MODES)
+        RITZ_FAIL_IF(by_number == by_frequency, RITZ_ERR_ARGUMENT,
+                     "%s takes either a number of modes or a frequency",
+                     method->name);
+    else
+        RITZ_FAIL_IF(by_number || by_frequency, RITZ_ERR_ARGUMENT,
+                     "%s has no modes to choose", method->name);
+done:
+    return status;
+}
+
+static void sign(const ritz_method *method, const ritz_request *request,
+                 ritz_origin *origin)
+{
+    snprintf(origin->method, RITZ_NAME_SIZE, "%s", method->name);
+    snprintf(origin->reference, RITZ_NAME_SIZE, "%s", method->reference);
+    if (request->modes >= 0)
+        snprintf(origin->options, RITZ_NAME_SIZE, "modes %" PRId64,
+                 request->modes);
+    else if (request->up_to_hz > 0.0)
+        snprintf(origin->options, RITZ_NAME_SIZE, "up-to-hz %.17g",
+                 request->up_to_hz);
+}
+
+ritz_status ritz_basis_make(const ritz_method *method,
+                            const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_request_check(method, request));
+    RITZ_TRY_IN(method->name, method->make(request, out));
+    sign(method, request, &out->origin);
+done:
+    return status;
+}

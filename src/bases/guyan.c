@@ -1,0 +1,31 @@
+/*
+ * Guyan (static) reduction: Craig-Bampton without modes.
+ *
+ * [Guyan1965] R. J. Guyan, Reduction of stiffness and mass matrices,
+ * AIAA Journal 3 (1965) 380.
+ */
+#include <ritz/method.h>
+
+#include <stdio.h>
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_request without_modes = *request;
+
+    RITZ_FAIL_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
+                 "nothing is attached, so nothing would be kept: name a port");
+    without_modes.modes = 0;
+    RITZ_TRY(ritz_method_craig_bampton.make(&without_modes, out));
+    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");
+done:
+    return status;
+}
+
+const ritz_method ritz_method_guyan = {
+    .name = "guyan",
+    .summary = "constraint modes only: static condensation",
+    .reference = "Guyan1965",
+    .uses = RITZ_USES_ATTACHED,
+    .make = make,
+};

@@ -1,0 +1,360 @@
+/*
+ * MacNeal-Rubin reduction: free-interface modes and residual attachment modes.
+ *
+ * Keep the rigid modes Phi_r and the lowest flexible ones Phi_f of (K, M), and
+ * add what the modes that are left out answer to unit forces F at the attached
+ * dofs [LeeTsuha1992, eq. 6]:
+ *
+ *     Psi = (P' S P - Phi_f Lambda_f^-1 Phi_f') F,    P = I - M Phi_r Phi_r'
+ *
+ * S is the pseudo-flexibility of any determinate support, of which Psi is
+ * independent. None is chosen here: with Phi = [Phi_r, Phi_f], Psi solves
+ *
+ *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
+ *
+ * and is found from one definite factor of A = K + s M, s > 0, by
+ *
+ *     Psi <- A^-1 (G + s M Psi),
+ *
+ * which contracts by s / (lambda + s) for every mode lambda that was left out.
+ * Psi is M- and K-orthogonal to Phi; F' Psi = Psi' K Psi is the residual
+ * flexibility. Columns that it shows to be dependent, or nothing beside the
+ * flexibility of the kept modes, are left out and named.
+ */
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+#include <ritz/factor.h>
+#include <ritz/method.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SWEEPS = 60 };
+
+/* X := X - Y (Y' M X), or its transpose's counterpart on forces. */
+static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
+                            ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0}, gone = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(right, X, &part));
+    RITZ_TRY(ritz_dense_mul(left, &part, &gone));
+    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
+        X->val[k] -= gone.val[k];
+done:
+    ritz_dense_free(&part);
+    ritz_dense_free(&gone);
+    return status;
+}
+
+/* K + s M. */
+static ritz_status shift(const ritz_sparse *K, const ritz_sparse *M, double s,
+                         ritz_sparse *out)
+{
+    return ritz_sparse_add(1.0, K, s, M, out);
+}
+
+/*
+ * A shift below the first flexible mode contracts at once and is as definite
+ * as can be; without a kept flexible mode, the one the modes were found with,
+ * or one of the scale of the matrices.
+ */
+static double choose_shift(const ritz_component *component,
+                           const ritz_pairs *modes)
+{
+    int64_t r = modes->num_rigid;
+    double K = ritz_sparse_max(&component->K);
+    double M = ritz_sparse_max(&component->M);
+
+    if (modes->Phi.ncol > r && modes->lambda[r] > 0.0)
+        return 1e-2 * modes->lambda[r];
+    if (modes->sigma != 0.0)
+        return fabs(modes->sigma);
+    return K > 0.0 ? 1e-6 * K / M : 1.0;
+}
+
+/* What the kept modes answer to attached dof j, at most. */
+static double largest_answer(const ritz_pairs *modes, int64_t row)
+{
+    double most = 0.0;
+
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
+        const double *phi = ritz_dense_col(&modes->Phi, k);
+        double size = 0.0;
+
+        for (int64_t i = 0; i < modes->Phi.nrow; i++)
+            size = fmax(size, fabs(phi[i]));
+        most = fmax(most, size * fabs(phi[row]) / modes->lambda[k]);
+    }
+    return most;
+}
+
+/*
+ * One sweep; *change is the largest change of a column relative to its size,
+ * or to least[j] where it is smaller still: then it is rounding.
+ */
+static ritz_status sweep(ritz_factor *A, const ritz_sparse *M, double s,
+                         const ritz_dense *G, const double *least,
+                         ritz_dense *Psi, double *change)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense next = {0};
+
+    RITZ_TRY(ritz_sparse_mul(M, Psi, &next));
+    for (int64_t k = 0; k < G->nrow * G->ncol; k++)
+        next.val[k] = G->val[k] + s * next.val[k];
+    RITZ_TRY(ritz_factor_solve(A, &next));
+    *change = 0.0;
+    for (int64_t j = 0; j < G->ncol; j++) {
+        const double *now = ritz_dense_col(&next, j);
+        const double *before = ritz_dense_col(Psi, j);
+        double moved = 0.0;
+        double size = least[j];
+
+        for (int64_t i = 0; i < G->nrow; i++) {
+            moved = fmax(moved, fabs(now[i] - before[i]));
+            size = fmax(size, fabs(now[i]));
+        }
+        if (size > 0.0)
+            *change = fmax(*change, moved / size);
+    }
+    ritz_dense_free(Psi);
+    *Psi = next;
+    next = (ritz_dense){0};
+done:
+    ritz_dense_free(&next);
+    return status;
+}
+
+/* Unit forces at the attached dofs, less what the kept modes take up. */
+static ritz_status find_load(const ritz_request *request, const ritz_dense *Phi,
+                             const ritz_dense *MPhi, ritz_dense *G)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *a = &request->attached;
+
+    RITZ_TRY(ritz_dense_new(request->component->num_dofs, a->count, G));
+    for (int64_t j = 0; j < a->count; j++)
+        ritz_dense_col(G, j)[a->at[j]] = 1.0;
+    RITZ_TRY(take_out(MPhi, Phi, G));
+    RITZ_TRY(take_out(MPhi, Phi, G)); /* twice is enough */
+done:
+    return status;
+}
+
+static ritz_status find_residual(const ritz_request *request,
+                                 const ritz_pairs *modes, ritz_dense *Psi)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    const double s = choose_shift(component, modes);
+    const double settled = 1e-14 * sqrt((double)component->num_dofs);
+    double change = 1.0, best = INFINITY;
+    ritz_sparse A = {0};
+    ritz_factor *L = NULL;
+    ritz_dense MPhi = {0}, G = {0};
+    double *least = NULL;
+
+    RITZ_NEW(least, request->attached.count);
+    for (int64_t j = 0; j < request->attached.count; j++)
+        least[j] =
+            request->tolerance * largest_answer(modes, request->attached.at[j]);
+    RITZ_TRY(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
+    RITZ_TRY(find_load(request, &modes->Phi, &MPhi, &G));
+    RITZ_TRY(shift(&component->K, &component->M, s, &A));
+    RITZ_TRY_IN("shifted stiffness", ritz_factor_spd(&A, &L));
+    RITZ_TRY(ritz_dense_new(G.nrow, G.ncol, Psi));
+    for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
+        RITZ_TRY(sweep(L, &component->M, s, &G, least, Psi, &change));
+        RITZ_TRY(take_out(&modes->Phi, &MPhi, Psi));
+        if (k > 8 && change > 0.5 * best)
+            break; /* rounding, not contraction, is what is left */
+        best = fmin(best, change);
+    }
+    RITZ_FAIL_IF(change > 1e-9, RITZ_ERR_CONVERGENCE,
+                 "residual attachment modes still change by %.1e", change);
+done:
+    free(least);
+    ritz_sparse_free(&A);
+    ritz_factor_free(&L);
+    ritz_dense_free(&MPhi);
+    ritz_dense_free(&G);
+    return status;
+}
+
+/* Flexibility Phi_f Lambda_f^-1 Phi_f' of the kept modes at dof `row`. */
+static double kept_flexibility(const ritz_pairs *modes, int64_t row)
+{
+    double sum = 0.0;
+
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
+        double x = ritz_dense_col(&modes->Phi, k)[row];
+
+        sum += x * x / modes->lambda[k];
+    }
+    return sum;
+}
+
+/*
+ * Independent columns by pivoted Cholesky of R = F' Psi scaled to a unit
+ * diagonal: the square of what is new in a column must exceed the tolerance.
+ * keep[j] says whether column j stays; R is destroyed.
+ */
+static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
+{
+    int64_t a = R->ncol;
+
+    for (;;) {
+        int64_t pivot = -1;
+        double *column = NULL;
+        double d = tolerance;
+
+        for (int64_t j = 0; j < a; j++)
+            if (!keep[j] && ritz_dense_col(R, j)[j] > d) {
+                pivot = j;
+                d = ritz_dense_col(R, j)[j];
+            }
+        if (pivot < 0)
+            return;
+        keep[pivot] = true;
+        column = ritz_dense_col(R, pivot);
+        for (int64_t j = 0; j < a; j++) {
+            double factor = ritz_dense_col(R, j)[pivot] / d;
+
+            for (int64_t i = 0; i < a && j != pivot; i++)
+                ritz_dense_col(R, j)[i] -= factor * column[i];
+        }
+    }
+}
+
+/* Which residual modes are more than rounding and independent. */
+static ritz_status sift(const ritz_request *request, const ritz_pairs *modes,
+                        const ritz_dense *Psi, bool *keep)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *a = &request->attached;
+    ritz_dense R = {0};
+    double *scale = NULL;
+
+    RITZ_NEW(scale, a->count);
+    RITZ_TRY(ritz_dense_new(a->count, a->count, &R));
+    for (int64_t j = 0; j < a->count; j++) {
+        double own = ritz_dense_col(Psi, j)[a->at[j]];
+        double all = own + kept_flexibility(modes, a->at[j]);
+
+        scale[j] =
+            own > request->tolerance * all && own > 0.0 ? 1.0 / sqrt(own) : 0.0;
+    }
+    for (int64_t j = 0; j < a->count; j++)
+        for (int64_t i = 0; i < a->count; i++)
+            ritz_dense_col(&R, j)[i] =
+                scale[i] * scale[j] * ritz_dense_col(Psi, j)[a->at[i]];
+    ritz_dense_symmetrise(&R);
+    choose_columns(&R, request->tolerance, keep);
+done:
+    free(scale);
+    ritz_dense_free(&R);
+    return status;
+}
+
+static void remark(const ritz_request *request, const bool *keep,
+                   ritz_basis *basis)
+{
+    char name[RITZ_DOF_NAME_SIZE] = "";
+    int64_t left_out = 0;
+
+    for (int64_t j = 0; j < request->attached.count; j++)
+        if (!keep[j] && left_out++ == 0)
+            ritz_dof_name(request->component->dof[request->attached.at[j]],
+                          name);
+    if (left_out > 0)
+        snprintf(basis->remark, sizeof basis->remark,
+                 "%" PRId64 " residual mode(s) left out, the first of %s: "
+                 "dependent, or nothing beside the kept modes",
+                 left_out, name);
+}
+
+/* Rigid, normal, residual. */
+static ritz_status join(const ritz_request *request, const ritz_pairs *modes,
+                        const ritz_dense *Psi, const bool *keep,
+                        ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = request->component->num_dofs;
+    int64_t k = modes->Phi.ncol;
+    int64_t r = k;
+    ritz_columns *columns = &out->columns;
+
+    for (int64_t j = 0; j < request->attached.count; j++)
+        r += keep[j];
+    RITZ_TRY(ritz_basis_new(n, r, out));
+    for (int64_t j = 0; j < k; j++) {
+        bool rigid = j < modes->num_rigid;
+
+        columns->kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
+        columns->hertz[j] = rigid ? 0.0 : ritz_eigen_hertz(modes->lambda[j]);
+        columns->residual[j] = modes->residual[j];
+        memcpy(ritz_dense_col(&out->T, j), ritz_dense_col(&modes->Phi, j),
+               (size_t)n * sizeof *out->T.val);
+    }
+    for (int64_t j = 0; j < request->attached.count; j++) {
+        if (!keep[j])
+            continue;
+        columns->kind[k] = RITZ_COLUMN_RESIDUAL;
+        columns->dof[k] = request->attached.at[j];
+        memcpy(ritz_dense_col(&out->T, k++), ritz_dense_col(Psi, j),
+               (size_t)n * sizeof *out->T.val);
+    }
+    memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
+    remark(request, keep, out);
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    const ritz_span span = {request->modes, request->up_to_hz};
+    ritz_pairs modes = {0};
+    ritz_dense Psi = {0};
+    ritz_dofs rest = {0};
+    bool *keep = NULL;
+
+    /* refuses attached dofs that are out of range or repeated */
+    RITZ_TRY(
+        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_NEW(keep, request->attached.count);
+    RITZ_TRY_IN("free-interface modes",
+                ritz_eigen_sparse(&component->K, &component->M, &span, &modes));
+    RITZ_FAIL_IF(modes.Phi.ncol > 0 && modes.num_rigid == 0 &&
+                     modes.lambda[0] <= 0.0,
+                 RITZ_ERR_SINGULAR,
+                 "K is not positive semidefinite: an eigenvalue is %.3g",
+                 modes.lambda[0]);
+    if (request->attached.count > 0) {
+        RITZ_TRY(find_residual(request, &modes, &Psi));
+        RITZ_TRY(sift(request, &modes, &Psi, keep));
+    }
+    RITZ_TRY(join(request, &modes, &Psi, keep, out));
+done:
+    ritz_pairs_free(&modes);
+    ritz_dense_free(&Psi);
+    ritz_dofs_free(&rest);
+    free(keep);
+    return status;
+}
+
+const ritz_method ritz_method_macneal_rubin = {
+    .name = "macneal-rubin",
+    .summary = "rigid, free-interface and residual attachment modes",
+    .reference = "LeeTsuha1992",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .make = make,
+};

@@ -1,0 +1,90 @@
+/*
+ * All finite modes of few masses. Only the rows h of M x are not zero, so
+ *
+ *     x = theta W M_hh x_h,   W = A^-1 E_h,   G = E_h' W = (A^-1)_hh
+ *
+ * and x_h solves the dense pencil G^-1 x_h = theta M_hh x_h, theta = lambda -
+ * sigma: G^-1 is A condensed to h.
+ */
+#include "base/alloc.h"
+#include "linear/shifted.h"
+
+#include <lapacke.h>
+#include <stdlib.h>
+
+/* Rows h of W. */
+static ritz_status pick_rows(const ritz_dense *W, const int64_t *h,
+                             ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(W->ncol, W->ncol, out));
+    for (int64_t j = 0; j < W->ncol; j++)
+        for (int64_t i = 0; i < W->ncol; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(W, j)[h[i]];
+done:
+    return status;
+}
+
+/* G := G^-1, symmetric positive definite. */
+static ritz_status invert(ritz_dense *G)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)G->nrow;
+    int info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, G->val, n);
+
+    if (info == 0)
+        info = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', n, G->val, n);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
+                 "stiffness condensed to the masses is not positive definite");
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < j; i++)
+            G->val[i + j * n] = G->val[j + i * n];
+done:
+    return status;
+}
+
+/* M_hh. */
+static ritz_status pick_mass(const ritz_sparse *M, int64_t count,
+                             const int64_t *h, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse M_hh = {0};
+
+    RITZ_TRY(ritz_sparse_extract(M, count, h, count, h, &M_hh));
+    RITZ_TRY(ritz_sparse_dense(&M_hh, out));
+done:
+    ritz_sparse_free(&M_hh);
+    return status;
+}
+
+ritz_status ritz_condensed_all(const ritz_shifted *S, int64_t count,
+                               const int64_t *heavy, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense W = {0}, G = {0}, M_hh = {0}, MX_h = {0};
+    ritz_pairs small = {0};
+
+    RITZ_TRY(ritz_dense_new(S->K->nrow, count, &W));
+    if (count > 0) {
+        for (int64_t j = 0; j < count; j++)
+            ritz_dense_col(&W, j)[heavy[j]] = 1.0;
+        RITZ_TRY(ritz_factor_solve(S->A, &W));
+        RITZ_TRY(pick_rows(&W, heavy, &G));
+        RITZ_TRY(invert(&G));
+    }
+    RITZ_TRY(pick_mass(S->M, count, heavy, &M_hh));
+    RITZ_TRY(ritz_eigen_dense(&G, &M_hh, &small));
+    RITZ_TRY(ritz_dense_mul(&M_hh, &small.Phi, &MX_h));
+    RITZ_TRY(ritz_dense_mul(&W, &MX_h, X));
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < X->nrow; i++)
+            ritz_dense_col(X, j)[i] *= small.lambda[j];
+done:
+    ritz_dense_free(&W);
+    ritz_dense_free(&G);
+    ritz_dense_free(&M_hh);
+    ritz_dense_free(&MX_h);
+    ritz_pairs_free(&small);
+    return status;
+}

@@ -1,0 +1,148 @@
+#include "base/alloc.h"
+
+#include <ritz/dense.h>
+
+#include <cblas.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double equal_within = 1e-9;
+
+ritz_status ritz_dense_new(int64_t nrow, int64_t ncol, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+
+    RITZ_FAIL_IF(nrow < 0 || ncol < 0 || nrow > INT_MAX || ncol > INT_MAX,
+                 RITZ_ERR_ARGUMENT,
+                 "a dense matrix cannot be %" PRId64 " x %" PRId64, nrow, ncol);
+    count = nrow * ncol;
+    RITZ_NEW(out->val, count);
+    out->nrow = nrow;
+    out->ncol = ncol;
+done:
+    return status;
+}
+
+/* C = op(A) op(B), m x q with p summed over. */
+static ritz_status multiply(CBLAS_TRANSPOSE left, const ritz_dense *A,
+                            CBLAS_TRANSPOSE right, const ritz_dense *B,
+                            ritz_dense *C)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = left == CblasTrans ? A->ncol : A->nrow;
+    int64_t p = left == CblasTrans ? A->nrow : A->ncol;
+    int64_t rows = right == CblasTrans ? B->ncol : B->nrow;
+    int64_t q = right == CblasTrans ? B->nrow : B->ncol;
+
+    RITZ_FAIL_IF(p != rows, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " columns meet %" PRId64 " rows", p, rows);
+    RITZ_TRY(ritz_dense_new(m, q, C));
+    if (m > 0 && p > 0 && q > 0)
+        cblas_dgemm(CblasColMajor, left, right, (int)m, (int)q, (int)p, 1.0,
+                    A->val, (int)A->nrow, B->val, (int)B->nrow, 0.0, C->val,
+                    (int)m);
+done:
+    return status;
+}
+
+ritz_status ritz_dense_mul(const ritz_dense *A, const ritz_dense *B,
+                           ritz_dense *C)
+{
+    return multiply(CblasNoTrans, A, CblasNoTrans, B, C);
+}
+
+ritz_status ritz_dense_mul_tn(const ritz_dense *A, const ritz_dense *B,
+                              ritz_dense *C)
+{
+    return multiply(CblasTrans, A, CblasNoTrans, B, C);
+}
+
+ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
+                              ritz_dense *C)
+{
+    return multiply(CblasNoTrans, A, CblasTrans, B, C);
+}
+
+ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
+                               int64_t count, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    if (A->nrow * count > 0)
+        memcpy(out->val, ritz_dense_col(A, first),
+               (size_t)(A->nrow * count) * sizeof *out->val);
+done:
+    return status;
+}
+
+ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out)
+{
+    return ritz_dense_columns(A, 0, A->ncol, out);
+}
+
+void ritz_dense_symmetrise(ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < j; i++) {
+            double *upper = &ritz_dense_col(A, j)[i];
+            double *lower = &ritz_dense_col(A, i)[j];
+
+            *upper = *lower = 0.5 * (*upper + *lower);
+        }
+}
+
+ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
+                                  ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AB = {0};
+
+    RITZ_TRY(ritz_dense_mul(A, B, &AB));
+    RITZ_TRY(ritz_dense_mul_tn(B, &AB, out));
+    ritz_dense_symmetrise(out);
+done:
+    ritz_dense_free(&AB);
+    return status;
+}
+
+double ritz_dense_max(const ritz_dense *A)
+{
+    double largest = 0.0;
+
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        largest = fmax(largest, fabs(A->val[k]));
+    return largest;
+}
+
+void ritz_dense_orient(ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++) {
+        double *a = ritz_dense_col(A, j);
+        double largest = 0.0;
+        int64_t first = 0;
+
+        for (int64_t i = 0; i < A->nrow; i++)
+            largest = fmax(largest, fabs(a[i]));
+        while (first < A->nrow && fabs(a[first]) < largest * (1 - equal_within))
+            first++;
+        if (first < A->nrow && a[first] < 0.0)
+            for (int64_t i = 0; i < A->nrow; i++)
+                a[i] = -a[i];
+    }
+}
+
+double *ritz_dense_col(const ritz_dense *A, int64_t j)
+{
+    return A->val + j * A->nrow;
+}
+
+void ritz_dense_free(ritz_dense *A)
+{
+    free(A->val);
+    *A = (ritz_dense){0};
+}

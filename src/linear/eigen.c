@@ -1,0 +1,102 @@
+/* What all eigensolvers share: counts, rigid modes, units. */
+#include "base/alloc.h"
+#include "linear/shifted.h"
+
+#include <ritz/monitor.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+
+ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
+                             double tau, int64_t *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse A = {0};
+    ritz_ldl *F = NULL;
+
+    RITZ_FAIL_IF(K->nrow != K->ncol || M->nrow != K->nrow || M->ncol != K->nrow,
+                 RITZ_ERR_ARGUMENT,
+                 "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                 " x %" PRId64,
+                 K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_FAIL_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
+                 "modes below %g cannot be counted", tau);
+    RITZ_TRY(ritz_sparse_add(1.0, K, -tau, M, &A));
+    ritz_monitor_step("count of modes", 0, 0);
+    RITZ_TRY(ritz_ldl_new(&A, out, &F));
+done:
+    ritz_sparse_free(&A);
+    ritz_ldl_free(&F);
+    return status;
+}
+
+/*
+ * One way to tell: up to `limit` rounding may have left an eigenvalue, and the
+ * next one is at least `gap` times larger.
+ */
+typedef struct cut {
+    double limit; /* of |lambda| */
+    double floor; /* what is smaller is as good as zero */
+    double gap;
+} cut;
+
+/* The most that the cut allows; all of them, if none stands above. */
+static int64_t below(const cut *c, int64_t count, const double *lambda)
+{
+    double largest = c->floor;
+    int64_t found = 0;
+
+    for (int64_t k = 0; k < count && fabs(lambda[k]) <= c->limit; k++) {
+        largest = fmax(largest, fabs(lambda[k]));
+        if (k + 1 == count || lambda[k + 1] >= c->gap * largest)
+            found = k + 1;
+    }
+    return found;
+}
+
+int64_t ritz_eigen_rigid(int64_t count, const double *lambda, double lambda_max)
+{
+    const double rounding = DBL_EPSILON * fabs(lambda_max);
+    const double ten_digits = 1e-9 * fabs(lambda_max);
+    const double negative = count > 0 ? fmax(-lambda[0], 0.0) : 0.0;
+    const cut body = {ten_digits, rounding, 1e4};
+    const cut noisy = {fmin(100.0 * negative, ten_digits), rounding, 1e4};
+    const cut clean = {64.0 * rounding, rounding, 100.0};
+    int64_t found = 0;
+
+    if (count > 6 && below(&body, 7, lambda) == 6)
+        return 6;
+    if (negative > clean.limit) {
+        found = below(&noisy, count, lambda);
+        return found < count ? found : 0;
+    }
+    found = below(&clean, count, lambda);
+    for (int64_t k = 0; found == 0 && k + 1 < count; k++)
+        if (fabs(lambda[k]) <= 1e-8 * lambda[k + 1])
+            found = k + 1;
+    return found;
+}
+
+double ritz_eigen_hertz(double lambda)
+{
+    return copysign(sqrt(fabs(lambda)), lambda) / (2.0 * pi);
+}
+
+double ritz_eigen_lambda(double hertz)
+{
+    double omega = 2.0 * pi * hertz;
+
+    return copysign(omega * omega, hertz);
+}
+
+void ritz_pairs_free(ritz_pairs *pairs)
+{
+    ritz_dense_free(&pairs->Phi);
+    free(pairs->lambda);
+    free(pairs->residual);
+    *pairs = (ritz_pairs){0};
+}

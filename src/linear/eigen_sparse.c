@@ -1,0 +1,430 @@
+/*
+ * Lowest pairs of a sparse pencil.
+ *
+ *     find     Lanczos on (K - sigma M)^-1 M, sigma < 0: K alone is singular
+ *              for a free body, and sigma = 0 loses one of a double mode
+ *     polish   inverse iteration and Rayleigh-Ritz on what was found
+ *     prove    Sylvester: K - tau M has as many negative pivots as there are
+ *              eigenvalues below tau
+ *
+ * sigma is a guess until modes are known. It should lie no further from the
+ * lowest flexible mode than the modes asked for: further, and they look alike;
+ * too near to zero, and K - sigma M is singular.
+ *
+ * Held to: bars and membranes in closed form, free, clamped, with double modes
+ * and with dofs without mass.
+ */
+#include "base/alloc.h"
+#include "linear/shifted.h"
+
+#include <ritz/monitor.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum {
+    SMALL = 600,   /* dofs, or dofs with mass: dense is faster */
+    MEDIUM = 4000, /* dense where a quarter of all modes is wanted */
+    ATTEMPTS = 12, /* changes of sigma, and requests for more */
+    BODY = 6,      /* rigid modes of one free body */
+    SPARE = 4,     /* modes asked for beyond those needed */
+    MISSES = 3,
+    POLISHES = 3, /* inverse iterations, most often one */
+};
+
+static const double same_cluster = 1e-6; /* relative */
+static const double lowest_part = 0.3;   /* of a gap, where modes are counted */
+static const double first_shift = 1e-5;  /* of the median of K_jj / M_jj */
+
+typedef struct search {
+    const ritz_span *span;
+    double limit;   /* of lambda by frequency, a little above */
+    int64_t target; /* modes below limit */
+    ritz_shifted S;
+    ritz_survey seen;
+    double broken; /* -sigma at which the factor broke down */
+    int64_t ask;
+    int64_t misses; /* how often the count found more */
+    bool all;       /* found holds every finite mode */
+    ritz_pairs found;
+} search;
+
+static bool clustered(double a, double b)
+{
+    return fabs(b - a) <= same_cluster * fmax(fabs(a), fabs(b));
+}
+
+/* How many of the pairs were asked for. */
+static int64_t wanted(const ritz_pairs *P, const ritz_span *span, double limit)
+{
+    int64_t end = P->num_rigid + (span->modes < 0 ? 0 : span->modes);
+    int64_t count = P->Phi.ncol;
+
+    if (span->modes < 0)
+        for (end = 0; end < count && P->lambda[end] <= limit;)
+            end++;
+    end = end < count ? end : count;
+    while (end > 0 && end < count &&
+           clustered(P->lambda[end - 1], P->lambda[end]))
+        end++;
+    return end;
+}
+
+/* Keep the first @p end pairs. */
+static void truncate(ritz_pairs *P, int64_t end)
+{
+    P->Phi.ncol = end;
+    P->num_rigid = P->num_rigid < end ? P->num_rigid : end;
+}
+
+/* Factor K - sigma M in place of what was factored before. */
+static ritz_status shift_to(search *s, double sigma)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse A = {0};
+
+    ritz_factor_free(&s->S.A); /* two at once may not fit */
+    ritz_monitor_step("factor", 0, 0);
+    RITZ_TRY(ritz_sparse_add(1.0, s->S.K, -sigma, s->S.M, &A));
+    status = ritz_factor_spd(&A, &s->S.A);
+    if (status == RITZ_ERR_SINGULAR)
+        s->broken = fmax(s->broken, -sigma);
+    s->S.sigma = sigma;
+done:
+    ritz_sparse_free(&A);
+    return status;
+}
+
+/* The same, further away for as long as the factor breaks down. */
+static ritz_status shift_near(search *s, double sigma)
+{
+    ritz_status status = shift_to(s, sigma);
+
+    while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * s->seen.typical) {
+        sigma *= 100.0;
+        status = shift_to(s, sigma);
+    }
+    if (status == RITZ_ERR_SINGULAR)
+        ritz_record("stiffness and mass together are not positive definite, "
+                    "is there a mechanism without mass?");
+    return status;
+}
+
+/* s->found from the vectors in X, which it takes. */
+static ritz_status refine(search *s, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    const double limit = 1e-11;
+    double worst = HUGE_VAL;
+
+    ritz_pairs_free(&s->found);
+    s->found.Phi = *X;
+    *X = (ritz_dense){0};
+    RITZ_NEW(s->found.lambda, s->found.Phi.ncol);
+    RITZ_NEW(s->found.residual, s->found.Phi.ncol);
+    for (int k = 0; k < POLISHES && !(worst <= limit); k++) {
+        RITZ_TRY(ritz_shifted_polish(&s->S, &s->found.Phi, s->found.lambda));
+        worst = ritz_shifted_assess(&s->S, &s->found);
+    }
+    RITZ_FAIL_IF(!(worst <= limit), RITZ_ERR_CONVERGENCE,
+                 "a residual of %.1e stays above %.0e", worst, limit);
+done:
+    return status;
+}
+
+/* Where to look instead, once it is known how far the modes reach. */
+static ritz_status shift_elsewhere(search *s, double reach)
+{
+    double sigma = s->S.sigma;
+
+    if (-sigma > fabs(reach))
+        sigma = -fmax(fabs(reach), -sigma / 1e3);
+    else if (reach > -1e4 * sigma)
+        sigma = -reach / 100.0;
+    if (sigma == s->S.sigma || -sigma <= s->broken) {
+        s->ask += s->ask / 2 + SPARE;
+        return RITZ_OK;
+    }
+    return shift_near(s, sigma);
+}
+
+/* Fill s->found; it is empty if sigma or the number asked had to change. */
+static ritz_status look(search *s)
+{
+    ritz_status status = RITZ_OK;
+    ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
+    ritz_dense X = {0};
+    double reach = 0.0;
+
+    ritz_pairs_free(&s->found);
+    s->all =
+        s->all || s->seen.num_heavy <= SMALL || s->ask + 21 > s->seen.num_heavy;
+    if (s->all)
+        RITZ_TRY(
+            ritz_condensed_all(&s->S, s->seen.num_heavy, s->seen.heavy, &X));
+    else
+        RITZ_TRY(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
+    if (end == RITZ_LANCZOS_FOUND)
+        RITZ_TRY(refine(s, &X));
+    if (end == RITZ_LANCZOS_SLOW)
+        RITZ_TRY(shift_elsewhere(s, reach));
+    if (end == RITZ_LANCZOS_EXHAUSTED)
+        s->all = true;
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* Sigma far beyond the first flexible mode blurs it: come closer, if may be. */
+static ritz_status come_closer(search *s, bool *moved)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_pairs *P = &s->found;
+    double first = P->num_rigid < P->Phi.ncol ? P->lambda[P->num_rigid] : 0.0;
+
+    *moved = first > 0.0 && s->S.sigma < -10.0 * first && first > s->broken;
+    if (*moved)
+        RITZ_TRY(shift_near(s, -first));
+done:
+    return status;
+}
+
+/* The widest relative gap at or behind @p end, to count modes below it. */
+static int64_t widest_gap(const ritz_pairs *P, int64_t end)
+{
+    double widest = 0.0;
+    int64_t at = end;
+
+    for (int64_t k = end > 0 ? end : 1; k < P->Phi.ncol; k++) {
+        double gap = (P->lambda[k] - P->lambda[k - 1]) / fabs(P->lambda[k]);
+
+        if (gap > widest) {
+            widest = gap;
+            at = k;
+        }
+    }
+    return at;
+}
+
+/* A place between pairs k - 1 and k, part of the way. */
+static double between(const ritz_pairs *P, int64_t k, double part)
+{
+    double above = k < P->Phi.ncol ? P->lambda[k] : HUGE_VAL;
+    double below = k > 0 ? P->lambda[k - 1] : above - fabs(above) - DBL_MIN;
+
+    if (k == P->Phi.ncol)
+        above = below + fabs(below) + DBL_MIN;
+    return below + part * (above - below);
+}
+
+/* Modes below a place between pairs k - 1 and k, none of which it may hit. */
+static ritz_status count_below(const search *s, int64_t k, int64_t *out)
+{
+    const double parts[] = {0.5, lowest_part, 0.7};
+    ritz_status status = RITZ_ERR_SINGULAR;
+
+    for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++)
+        status = ritz_eigen_count(s->S.K, s->S.M,
+                                  between(&s->found, k, parts[i]), out);
+    return status;
+}
+
+/* Ask for more, as so many were missed or are needed to see a gap behind. */
+static ritz_status ask_more(search *s, int64_t more)
+{
+    ritz_status status = RITZ_OK;
+    double hertz = ritz_eigen_hertz(s->found.lambda[s->found.Phi.ncol - 1]);
+
+    RITZ_FAIL_IF(s->all || s->misses > MISSES, RITZ_ERR_CONVERGENCE,
+                 "%" PRId64 " modes below %g Hz are not found", more, hertz);
+    s->ask += more + SPARE;
+done:
+    return status;
+}
+
+/* By number: is the end of what was asked for seen, and none missed? */
+static ritz_status prove_number(search *s, int64_t *end, bool *done)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_pairs *P = &s->found;
+    int64_t count = 0;
+    int64_t at = 0;
+
+    *end = wanted(P, s->span, 0.0);
+    if (*end >= P->Phi.ncol && !s->all) {
+        s->ask += P->num_rigid + SPARE; /* there is no end of rigid modes yet */
+        goto done;
+    }
+    at = s->all ? *end : widest_gap(P, *end);
+    if (P->Phi.ncol > 0)
+        RITZ_TRY(count_below(s, at, &count));
+    RITZ_FAIL_IF(count < at, RITZ_ERR_CONVERGENCE,
+                 "%" PRId64 " modes were found where there are %" PRId64, at,
+                 count);
+    *done = count == at;
+    s->found.proven_to =
+        P->Phi.ncol > 0 ? between(P, *end, lowest_part) : HUGE_VAL;
+    if (!*done) {
+        s->misses++;
+        RITZ_TRY(ask_more(s, count - at));
+    }
+done:
+    return status;
+}
+
+/* By frequency: are there as many as counted before? */
+static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_pairs *P = &s->found;
+    int64_t below = 0;
+
+    while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
+        below++;
+    *end = wanted(P, s->span, s->limit);
+    RITZ_FAIL_IF(below > s->target, RITZ_ERR_CONVERGENCE,
+                 "%" PRId64 " modes were found where there are %" PRId64, below,
+                 s->target);
+    *done = below == s->target;
+    s->found.proven_to = s->limit;
+    if (!*done) {
+        s->misses++;
+        RITZ_TRY(ask_more(s, s->target - below));
+    }
+done:
+    return status;
+}
+
+/* Search until what was found is proven; *end of the pairs are wanted. */
+static ritz_status search_proven(search *s, int64_t *end)
+{
+    ritz_status status = RITZ_OK;
+    bool done = false;
+    bool moved = false;
+
+    for (int k = 0; k < ATTEMPTS && !done; k++) {
+        RITZ_TRY(look(s));
+        if (!s->found.lambda)
+            continue;
+        RITZ_TRY(come_closer(s, &moved));
+        if (moved)
+            continue;
+        if (s->span->modes < 0)
+            RITZ_TRY(prove_frequency(s, end, &done));
+        else
+            RITZ_TRY(prove_number(s, end, &done));
+    }
+    RITZ_FAIL_IF(!done, RITZ_ERR_CONVERGENCE,
+                 "the iteration for %" PRId64 " modes does not converge",
+                 s->ask);
+done:
+    return status;
+}
+
+/* Modes up to the frequency, counted a little above it lest one lie there. */
+static ritz_status count_target(search *s)
+{
+    const double above[] = {1e-8, 1e-7, 3e-7};
+    ritz_status status = RITZ_ERR_SINGULAR;
+    double lambda = ritz_eigen_lambda(s->span->up_to_hz);
+
+    for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
+        s->limit = lambda * (1.0 + above[i]);
+        status = ritz_eigen_count(s->S.K, s->S.M, s->limit, &s->target);
+    }
+    return status;
+}
+
+static ritz_status begin(search *s)
+{
+    ritz_status status = RITZ_OK;
+    double sigma = 0.0;
+
+    RITZ_TRY(ritz_shifted_survey(s->S.K, s->S.M, &s->seen));
+    sigma = first_shift * s->seen.typical;
+    s->ask = BODY + s->span->modes + s->span->modes / 10 + SPARE;
+    if (s->span->modes < 0) {
+        RITZ_TRY(count_target(s));
+        s->ask = s->target + SPARE;
+        sigma = fmax(fmin(sigma, 0.1 * s->limit), 1e-6 * sigma);
+    }
+    RITZ_TRY(shift_near(s, -sigma));
+done:
+    return status;
+}
+
+static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
+                              const ritz_span *span, ritz_pairs *out)
+{
+    ritz_status status = RITZ_OK;
+    search s = {.span = span, .S = {.K = K, .M = M}};
+    int64_t end = 0;
+
+    RITZ_TRY(begin(&s));
+    RITZ_TRY(search_proven(&s, &end));
+    truncate(&s.found, end);
+    ritz_dense_orient(&s.found.Phi);
+    s.found.sigma = s.S.sigma;
+    snprintf(s.found.engine, sizeof s.found.engine, "%s",
+             s.all ? "condensed LAPACK" : "ARPACK");
+    *out = s.found;
+    s.found = (ritz_pairs){0};
+done:
+    free(s.seen.heavy);
+    ritz_factor_free(&s.S.A);
+    ritz_pairs_free(&s.found);
+    return status;
+}
+
+/* Every mode, which proves itself; then those that are wanted. */
+static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
+                             const ritz_span *span, ritz_pairs *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs P = {0};
+    ritz_dense K_d = {0}, M_d = {0};
+    int64_t end = 0;
+
+    RITZ_TRY(ritz_sparse_dense(K, &K_d));
+    RITZ_TRY(ritz_sparse_dense(M, &M_d));
+    RITZ_TRY(ritz_eigen_dense(&K_d, &M_d, &P));
+    end = wanted(&P, span, ritz_eigen_lambda(span->up_to_hz) * (1.0 + 1e-8));
+    if (end < P.Phi.ncol)
+        P.proven_to = between(&P, end, lowest_part);
+    truncate(&P, end);
+    *out = P;
+    P = (ritz_pairs){0};
+done:
+    ritz_dense_free(&K_d);
+    ritz_dense_free(&M_d);
+    ritz_pairs_free(&P);
+    return status;
+}
+
+ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
+                              const ritz_span *span, ritz_pairs *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = K->nrow;
+
+    RITZ_FAIL_IF(K->ncol != n || M->nrow != n || M->ncol != n,
+                 RITZ_ERR_ARGUMENT,
+                 "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                 " x %" PRId64,
+                 K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_FAIL_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " modes cannot be asked for", span->modes);
+    RITZ_FAIL_IF(span->modes < 0 &&
+                     !(span->up_to_hz > 0.0 && isfinite(span->up_to_hz)),
+                 RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
+                 span->up_to_hz);
+    if (n <= SMALL || (n <= MEDIUM && span->modes > n / 4))
+        RITZ_TRY(by_lapack(K, M, span, out));
+    else
+        RITZ_TRY(by_lanczos(K, M, span, out));
+done:
+    return status;
+}

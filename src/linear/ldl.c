@@ -1,0 +1,131 @@
+/* A = L D L' by sequential MUMPS, real: see mumps.h. */
+#include "base/alloc.h"
+#include "linear/mumps.h"
+
+#include <ritz/factor.h>
+
+#include <dmumps_c.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+enum { NEGATIVE_PIVOTS = 11 }; /* of INFOG */
+
+struct ritz_ldl {
+    DMUMPS_STRUC_C id;
+    bool started;
+    ritz_mumps_pattern pattern; /* borrowed by MUMPS, as val is */
+    double *val;
+};
+
+static void call(void *id)
+{
+    dmumps_c(id);
+}
+
+static void set_rhs(void *id, int n, int k, void *x)
+{
+    DMUMPS_STRUC_C *d = id;
+
+    d->rhs = x;
+    d->nrhs = k;
+    d->lrhs = n;
+}
+
+static ritz_mumps view(ritz_ldl *F)
+{
+    return (ritz_mumps){
+        .id = &F->id,
+        .call = call,
+        .set_rhs = set_rhs,
+        .job = &F->id.job,
+        .icntl = F->id.icntl,
+        .infog = F->id.infog,
+        .cntl = F->id.cntl,
+        .width = 1,
+    };
+}
+
+/* Values of the lower triangle, in the order ritz_mumps_unite left them. */
+static ritz_status copy_values(const ritz_sparse *A, int64_t nnz, double **out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t k = 0;
+
+    RITZ_NEW(*out, nnz);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            if (A->rowind[p] >= j)
+                (*out)[k++] = A->val[p];
+done:
+    return status;
+}
+
+static ritz_status factorise(ritz_ldl *F)
+{
+    ritz_status status = RITZ_OK;
+    ritz_mumps mumps = view(F);
+
+    F->id.sym = 2;
+    F->id.par = 1;
+    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
+    F->started = true;
+    ritz_mumps_configure(&mumps);
+    F->id.n = (MUMPS_INT)F->pattern.n;
+    F->id.nnz = F->pattern.nnz;
+    F->id.irn = F->pattern.row;
+    F->id.jcn = F->pattern.col;
+    F->id.a = F->val;
+    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_ANALYSE));
+    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
+    RITZ_TRY(ritz_mumps_judge(&mumps, &F->pattern, F->val));
+done:
+    return status;
+}
+
+ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
+                         ritz_ldl **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_ldl *F = NULL;
+
+    RITZ_NEW(F, 1);
+    RITZ_TRY(ritz_mumps_unite(1, &A, &F->pattern));
+    RITZ_TRY(copy_values(A, F->pattern.nnz, &F->val));
+    if (A->nrow > 0)
+        RITZ_TRY(factorise(F));
+    if (negative)
+        *negative = A->nrow > 0 ? F->id.infog[NEGATIVE_PIVOTS] : 0;
+    *out = F;
+    F = NULL;
+done:
+    ritz_ldl_free(&F);
+    return status;
+}
+
+ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_mumps mumps = view(F);
+
+    RITZ_FAIL_IF(X->nrow != F->pattern.n, RITZ_ERR_ARGUMENT,
+                 "a factor of %" PRId64 " rows meets %" PRId64, F->pattern.n,
+                 X->nrow);
+    RITZ_TRY(ritz_mumps_solve(&mumps, X->nrow, X->ncol, X->val));
+done:
+    return status;
+}
+
+void ritz_ldl_free(ritz_ldl **F)
+{
+    if (!*F)
+        return;
+    if ((*F)->started) {
+        (*F)->id.job = RITZ_MUMPS_END;
+        dmumps_c(&(*F)->id);
+    }
+    ritz_mumps_pattern_free(&(*F)->pattern);
+    free((*F)->val);
+    free(*F);
+    *F = NULL;
+}

@@ -1,0 +1,359 @@
+#include "base/alloc.h"
+
+#include <ritz/sparse.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
+                            ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse A = {.nrow = nrow, .ncol = ncol};
+
+    RITZ_FAIL_IF(nrow < 0 || ncol < 0 || nnz < 0, RITZ_ERR_ARGUMENT,
+                 "a matrix cannot be %" PRId64 " x %" PRId64, nrow, ncol);
+    RITZ_NEW(A.colptr, ncol + 1);
+    RITZ_NEW(A.rowind, nnz);
+    RITZ_NEW(A.val, nnz);
+    *out = A;
+    A = (ritz_sparse){0};
+done:
+    ritz_sparse_free(&A);
+    return status;
+}
+
+/* Turn counts kept in start[1..n] into offsets start[0..n]. */
+static void accumulate(int64_t n, int64_t *start)
+{
+    for (int64_t j = 0; j < n; j++)
+        start[j + 1] += start[j];
+}
+
+/* order = the entries sorted by row, stably: one pass of counting sort. */
+static ritz_status sort_by_row(int64_t nrow, int64_t count, const int64_t *row,
+                               int64_t *order)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *start = NULL;
+
+    RITZ_NEW(start, nrow + 1);
+    for (int64_t k = 0; k < count; k++)
+        start[row[k] + 1]++;
+    accumulate(nrow, start);
+    for (int64_t k = 0; k < count; k++)
+        order[start[row[k]]++] = k;
+done:
+    free(start);
+    return status;
+}
+
+/* Close the gaps that summing left: column j holds entries up to end[j]. */
+static void squeeze(ritz_sparse *A, const int64_t *end)
+{
+    int64_t kept = 0;
+
+    for (int64_t j = 0; j < A->ncol; j++) {
+        int64_t begin = A->colptr[j];
+
+        A->colptr[j] = kept;
+        for (int64_t p = begin; p < end[j]; p++, kept++) {
+            A->rowind[kept] = A->rowind[p];
+            A->val[kept] = A->val[p];
+        }
+    }
+    A->colptr[A->ncol] = kept;
+}
+
+ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
+                                      const int64_t *row, const int64_t *col,
+                                      const double *val, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse A = {0};
+    int64_t *order = NULL;
+    int64_t *end = NULL;
+
+    for (int64_t k = 0; k < count; k++)
+        RITZ_FAIL_IF(row[k] < 0 || row[k] >= nrow || col[k] < 0 ||
+                         col[k] >= ncol,
+                     RITZ_ERR_ARGUMENT,
+                     "entry (%" PRId64 ", %" PRId64 ") lies outside a %" PRId64
+                     " x %" PRId64 " matrix",
+                     row[k], col[k], nrow, ncol);
+
+    RITZ_NEW(order, count);
+    RITZ_TRY(sort_by_row(nrow, count, row, order));
+    RITZ_TRY(ritz_sparse_new(nrow, ncol, count, &A));
+    for (int64_t k = 0; k < count; k++)
+        A.colptr[col[k] + 1]++;
+    accumulate(ncol, A.colptr);
+
+    /* Rows arrive ascending, so entries to be summed meet as neighbours. */
+    RITZ_NEW(end, ncol);
+    memcpy(end, A.colptr, (size_t)ncol * sizeof *end);
+    for (int64_t n = 0; n < count; n++) {
+        int64_t k = order[n];
+        int64_t p = end[col[k]];
+
+        if (p > A.colptr[col[k]] && A.rowind[p - 1] == row[k]) {
+            A.val[p - 1] += val[k];
+        } else {
+            A.rowind[p] = row[k];
+            A.val[p] = val[k];
+            end[col[k]]++;
+        }
+    }
+    squeeze(&A, end);
+    *out = A;
+    A = (ritz_sparse){0};
+done:
+    free(order);
+    free(end);
+    ritz_sparse_free(&A);
+    return status;
+}
+
+ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
+                                const int64_t *rows, int64_t num_cols,
+                                const int64_t *cols, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *new_row = NULL; /* position in rows plus one, 0 if not wanted */
+    int64_t *row = NULL;
+    int64_t *col = NULL;
+    double *val = NULL;
+    int64_t nnz = 0;
+    int64_t kept = 0;
+
+    RITZ_NEW(new_row, A->nrow);
+    for (int64_t k = 0; k < num_rows; k++) {
+        RITZ_FAIL_IF(rows[k] < 0 || rows[k] >= A->nrow, RITZ_ERR_ARGUMENT,
+                     "row %" PRId64 " is out of range", rows[k]);
+        new_row[rows[k]] = k + 1;
+    }
+    for (int64_t k = 0; k < num_cols; k++) {
+        RITZ_FAIL_IF(cols[k] < 0 || cols[k] >= A->ncol, RITZ_ERR_ARGUMENT,
+                     "column %" PRId64 " is out of range", cols[k]);
+        nnz += A->colptr[cols[k] + 1] - A->colptr[cols[k]];
+    }
+    RITZ_NEW(row, nnz);
+    RITZ_NEW(col, nnz);
+    RITZ_NEW(val, nnz);
+    for (int64_t k = 0; k < num_cols; k++) {
+        for (int64_t p = A->colptr[cols[k]]; p < A->colptr[cols[k] + 1]; p++) {
+            if (!new_row[A->rowind[p]])
+                continue;
+            row[kept] = new_row[A->rowind[p]] - 1;
+            col[kept] = k;
+            val[kept++] = A->val[p];
+        }
+    }
+    RITZ_TRY(ritz_sparse_from_triplets(num_rows, num_cols, kept, row, col, val,
+                                       out));
+done:
+    free(new_row);
+    free(row);
+    free(col);
+    free(val);
+    return status;
+}
+
+/* Merge column j of both into C from entry *at on. */
+static void merge_column(double alpha, const ritz_sparse *A, double beta,
+                         const ritz_sparse *B, int64_t j, ritz_sparse *C,
+                         int64_t *at)
+{
+    int64_t p = A->colptr[j];
+    int64_t q = B->colptr[j];
+
+    while (p < A->colptr[j + 1] || q < B->colptr[j + 1]) {
+        int64_t a = p < A->colptr[j + 1] ? A->rowind[p] : INT64_MAX;
+        int64_t b = q < B->colptr[j + 1] ? B->rowind[q] : INT64_MAX;
+        double value = 0.0;
+
+        if (a <= b)
+            value += alpha * A->val[p++];
+        if (b <= a)
+            value += beta * B->val[q++];
+        C->rowind[*at] = a < b ? a : b;
+        C->val[(*at)++] = value;
+    }
+    C->colptr[j + 1] = *at;
+}
+
+ritz_status ritz_sparse_add(double alpha, const ritz_sparse *A, double beta,
+                            const ritz_sparse *B, ritz_sparse *C)
+{
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_FAIL_IF(A->nrow != B->nrow || A->ncol != B->ncol, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " x %" PRId64 " meets %" PRId64 " x %" PRId64,
+                 A->nrow, A->ncol, B->nrow, B->ncol);
+    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol,
+                             A->colptr[A->ncol] + B->colptr[B->ncol], C));
+    for (int64_t j = 0; j < A->ncol; j++)
+        merge_column(alpha, A, beta, B, j, C, &at);
+done:
+    return status;
+}
+
+ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t nnz = A->colptr[A->ncol];
+
+    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol, nnz, out));
+    memcpy(out->colptr, A->colptr, (size_t)(A->ncol + 1) * sizeof *A->colptr);
+    if (nnz > 0) {
+        memcpy(out->rowind, A->rowind, (size_t)nnz * sizeof *A->rowind);
+        memcpy(out->val, A->val, (size_t)nnz * sizeof *A->val);
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_sparse_dense(const ritz_sparse *A, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol, out));
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            ritz_dense_col(out, j)[A->rowind[p]] = A->val[p];
+done:
+    return status;
+}
+
+ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
+                            ritz_dense *Y)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
+                 "A has %" PRId64 " columns but X has %" PRId64 " rows",
+                 A->ncol, X->nrow);
+    RITZ_TRY(ritz_dense_new(A->nrow, X->ncol, Y));
+    for (int64_t k = 0; k < X->ncol; k++) {
+        const double *x = ritz_dense_col(X, k);
+        double *y = ritz_dense_col(Y, k);
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+                y[A->rowind[p]] += A->val[p] * x[j];
+    }
+done:
+    return status;
+}
+
+static ritz_status check_column(const ritz_sparse *A, int64_t j)
+{
+    ritz_status status = RITZ_OK;
+    int64_t above = -1;
+
+    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+        int64_t i = A->rowind[p];
+
+        RITZ_FAIL_IF(i <= above || i >= A->nrow, RITZ_ERR_FORMAT,
+                     "rows of column %" PRId64 " do not ascend", j);
+        RITZ_FAIL_IF(!isfinite(A->val[p]), RITZ_ERR_FORMAT,
+                     "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
+        above = i;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(A->colptr[0] != 0 || A->colptr[A->ncol] != nnz,
+                 RITZ_ERR_FORMAT, "column pointers and entries disagree");
+    for (int64_t j = 0; j < A->ncol; j++)
+        RITZ_FAIL_IF(A->colptr[j] > A->colptr[j + 1], RITZ_ERR_FORMAT,
+                     "column pointers descend at column %" PRId64, j);
+    for (int64_t j = 0; j < A->ncol; j++)
+        RITZ_TRY(check_column(A, j));
+done:
+    return status;
+}
+
+/* A(i,j), 0 where nothing is stored: binary search in column j. */
+static double entry(const ritz_sparse *A, int64_t i, int64_t j)
+{
+    int64_t low = A->colptr[j];
+    int64_t high = A->colptr[j + 1];
+
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (A->rowind[middle] < i)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < A->colptr[j + 1] && A->rowind[low] == i ? A->val[low] : 0.0;
+}
+
+double ritz_sparse_max(const ritz_sparse *A)
+{
+    double largest = 0.0;
+
+    for (int64_t p = 0; p < A->colptr[A->ncol]; p++)
+        largest = fmax(largest, fabs(A->val[p]));
+    return largest;
+}
+
+double ritz_sparse_asymmetry(const ritz_sparse *A)
+{
+    double largest = 0.0;
+    double gap = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            largest = fmax(largest, fabs(A->val[p]));
+            gap = fmax(gap, fabs(A->val[p] - entry(A, j, A->rowind[p])));
+        }
+    return gap > 0.0 ? gap / largest : 0.0;
+}
+
+ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse mean = {0};
+    int64_t nnz = A->colptr[A->ncol];
+    int64_t *row = NULL;
+    int64_t *col = NULL;
+    double *half = NULL;
+
+    RITZ_NEW(row, 2 * nnz);
+    RITZ_NEW(col, 2 * nnz);
+    RITZ_NEW(half, 2 * nnz);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            row[p] = col[nnz + p] = A->rowind[p];
+            col[p] = row[nnz + p] = j;
+            half[p] = half[nnz + p] = A->val[p] / 2.0;
+        }
+    RITZ_TRY(ritz_sparse_from_triplets(A->nrow, A->ncol, 2 * nnz, row, col,
+                                       half, &mean));
+    ritz_sparse_free(A);
+    *A = mean;
+done:
+    free(row);
+    free(col);
+    free(half);
+    return status;
+}
+
+void ritz_sparse_free(ritz_sparse *A)
+{
+    free(A->colptr);
+    free(A->rowind);
+    free(A->val);
+    *A = (ritz_sparse){0};
+}

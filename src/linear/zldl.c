@@ -1,0 +1,158 @@
+/* sum_k c_k A_k = L D L' by sequential MUMPS, complex: see mumps.h. */
+#include "base/alloc.h"
+#include "linear/mumps.h"
+
+#include <ritz/factor.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zmumps_c.h>
+
+struct ritz_zldl {
+    ZMUMPS_STRUC_C id;
+    bool started;
+    bool factored;
+    ritz_mumps_pattern pattern; /* borrowed by MUMPS, as val is */
+    double _Complex *val;
+    int64_t count;
+    const ritz_sparse **A;
+    int64_t *place; /* of each row among the entries of one column */
+};
+
+static void call(void *id)
+{
+    zmumps_c(id);
+}
+
+static void set_rhs(void *id, int n, int k, void *x)
+{
+    ZMUMPS_STRUC_C *z = id;
+
+    z->rhs = x;
+    z->nrhs = k;
+    z->lrhs = n;
+}
+
+static ritz_mumps view(ritz_zldl *F)
+{
+    return (ritz_mumps){
+        .id = &F->id,
+        .call = call,
+        .set_rhs = set_rhs,
+        .job = &F->id.job,
+        .icntl = F->id.icntl,
+        .infog = F->id.infog,
+        .cntl = F->id.cntl,
+        .width = 2,
+    };
+}
+
+static ritz_status analyse(ritz_zldl *F)
+{
+    ritz_status status = RITZ_OK;
+    ritz_mumps mumps = view(F);
+
+    F->id.sym = 2;
+    F->id.par = 1;
+    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
+    F->started = true;
+    ritz_mumps_configure(&mumps);
+    F->id.n = (MUMPS_INT)F->pattern.n;
+    F->id.nnz = F->pattern.nnz;
+    F->id.irn = F->pattern.row;
+    F->id.jcn = F->pattern.col;
+    F->id.a = (void *)F->val; /* two doubles each, for both */
+    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_ANALYSE));
+done:
+    return status;
+}
+
+ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
+                          ritz_zldl **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_zldl *F = NULL;
+
+    RITZ_NEW(F, 1);
+    RITZ_TRY(ritz_mumps_unite(count, A, &F->pattern));
+    RITZ_NEW(F->val, F->pattern.nnz);
+    RITZ_NEW(F->place, F->pattern.n);
+    RITZ_NEW(F->A, count);
+    for (int64_t k = 0; k < count; k++)
+        F->A[k] = A[k];
+    F->count = count;
+    if (F->pattern.n > 0)
+        RITZ_TRY(analyse(F));
+    *out = F;
+    F = NULL;
+done:
+    ritz_zldl_free(&F);
+    return status;
+}
+
+/* val += c A, A's lower triangle. */
+static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
+{
+    int64_t at = 0;
+
+    for (int64_t j = 0; j < F->pattern.n; j++) {
+        for (; at < F->pattern.nnz && F->pattern.col[at] == j + 1; at++)
+            F->place[F->pattern.row[at] - 1] = at;
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            if (A->rowind[p] >= j)
+                F->val[F->place[A->rowind[p]]] += c * A->val[p];
+    }
+}
+
+ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
+{
+    ritz_status status = RITZ_OK;
+    ritz_mumps mumps = view(F);
+
+    F->factored = false;
+    memset(F->val, 0, (size_t)F->pattern.nnz * sizeof *F->val);
+    for (int64_t k = 0; k < F->count; k++) {
+        RITZ_FAIL_IF(
+            !isfinite(creal(c[k])) || !isfinite(cimag(c[k])), RITZ_ERR_ARGUMENT,
+            "coefficient %" PRId64 " of the matrices is not finite", k + 1);
+        add(F->A[k], c[k], F);
+    }
+    if (F->pattern.n > 0) {
+        RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
+        RITZ_TRY(ritz_mumps_judge(&mumps, &F->pattern, (double *)F->val));
+    }
+    F->factored = true;
+done:
+    return status;
+}
+
+ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_mumps mumps = view(F);
+
+    RITZ_FAIL_IF(!F->factored, RITZ_ERR_ARGUMENT,
+                 "a solve needs a factor first");
+    RITZ_TRY(ritz_mumps_solve(&mumps, F->pattern.n, k, X));
+done:
+    return status;
+}
+
+void ritz_zldl_free(ritz_zldl **F)
+{
+    if (!*F)
+        return;
+    if ((*F)->started) {
+        (*F)->id.job = RITZ_MUMPS_END;
+        zmumps_c(&(*F)->id);
+    }
+    ritz_mumps_pattern_free(&(*F)->pattern);
+    free((*F)->val);
+    free((*F)->A);
+    free((*F)->place);
+    free(*F);
+    *F = NULL;
+}

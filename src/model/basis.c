@@ -1,0 +1,97 @@
+#include "base/alloc.h"
+
+#include <ritz/basis.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const names[] = {
+    [RITZ_COLUMN_RIGID] = "rigid",   [RITZ_COLUMN_CONSTRAINT] = "constraint",
+    [RITZ_COLUMN_NORMAL] = "normal", [RITZ_COLUMN_RESIDUAL] = "residual",
+    [RITZ_COLUMN_SYSTEM] = "system",
+};
+
+ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_columns columns = {.count = r};
+
+    RITZ_NEW(columns.kind, r);
+    RITZ_NEW(columns.dof, r);
+    RITZ_NEW(columns.hertz, r);
+    RITZ_NEW(columns.residual, r);
+    for (int64_t j = 0; j < r; j++) {
+        columns.kind[j] = RITZ_COLUMN_NORMAL;
+        columns.dof[j] = -1;
+        columns.hertz[j] = columns.residual[j] = nan("");
+    }
+    *out = columns;
+    columns = (ritz_columns){0};
+done:
+    ritz_columns_free(&columns);
+    return status;
+}
+
+ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_columns copy = {0};
+    size_t r = (size_t)columns->count;
+
+    RITZ_TRY(ritz_columns_new(columns->count, &copy));
+    if (r > 0) {
+        memcpy(copy.kind, columns->kind, r * sizeof *copy.kind);
+        memcpy(copy.dof, columns->dof, r * sizeof *copy.dof);
+        memcpy(copy.hertz, columns->hertz, r * sizeof *copy.hertz);
+        memcpy(copy.residual, columns->residual, r * sizeof *copy.residual);
+    }
+    *out = copy;
+done:
+    return status;
+}
+
+ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_basis basis = {0};
+
+    RITZ_TRY(ritz_dense_new(n, r, &basis.T));
+    RITZ_TRY(ritz_columns_new(r, &basis.columns));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const char *ritz_column_name(ritz_column_kind kind)
+{
+    return names[kind];
+}
+
+bool ritz_column_find(const char *name, ritz_column_kind *out)
+{
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        if (strcmp(names[k], name) == 0) {
+            *out = (ritz_column_kind)k;
+            return true;
+        }
+    return false;
+}
+
+void ritz_columns_free(ritz_columns *columns)
+{
+    free(columns->kind);
+    free(columns->dof);
+    free(columns->hertz);
+    free(columns->residual);
+    *columns = (ritz_columns){0};
+}
+
+void ritz_basis_free(ritz_basis *basis)
+{
+    ritz_dense_free(&basis->T);
+    ritz_columns_free(&basis->columns);
+    *basis = (ritz_basis){0};
+}

@@ -1,0 +1,270 @@
+#include "base/alloc.h"
+
+#include <ritz/component.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What rounding leaves in superelements as supplied (6e-7 was met). */
+static const double symmetric_within = 1e-6;
+
+static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
+                                 double *worst)
+{
+    ritz_status status = RITZ_OK;
+    double asymmetry = 0.0;
+
+    RITZ_FAIL_IF(A->nrow != n || A->ncol != n, RITZ_ERR_FORMAT,
+                 "%" PRId64 " x %" PRId64 " where %" PRId64 " x %" PRId64
+                 " is due",
+                 A->nrow, A->ncol, n, n);
+    RITZ_TRY(ritz_sparse_check(A, A->colptr[n]));
+    asymmetry = ritz_sparse_asymmetry(A);
+    RITZ_FAIL_IF(asymmetry > symmetric_within && !symmetrise, RITZ_ERR_FORMAT,
+                 "unsymmetric by %.1e of its largest entry, %.0e is let pass "
+                 "(--symmetrise averages it away)",
+                 asymmetry, symmetric_within);
+    if (asymmetry > 0.0)
+        RITZ_TRY(ritz_sparse_symmetrise(A));
+    *worst = fmax(*worst, asymmetry);
+done:
+    return status;
+}
+
+/* A matrix that may be absent: then it is left so, or made empty. */
+static ritz_status settle_optional(ritz_sparse *A, int64_t n, bool complete,
+                                   bool symmetrise, double *worst)
+{
+    if (A->colptr)
+        return settle_matrix(A, n, symmetrise, worst);
+    return complete ? ritz_sparse_new(n, n, 0, A) : RITZ_OK;
+}
+
+static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = component->num_dofs;
+    double worst = 0.0;
+
+    RITZ_FAIL_IF(!component->M.colptr, RITZ_ERR_FORMAT, "there is no mass");
+    RITZ_TRY_IN("M", settle_matrix(&component->M, n, symmetrise, &worst));
+    RITZ_TRY_IN("K",
+                settle_optional(&component->K, n, true, symmetrise, &worst));
+    RITZ_TRY_IN("D",
+                settle_optional(&component->D, n, false, symmetrise, &worst));
+    RITZ_TRY_IN("K4",
+                settle_optional(&component->K4, n, false, symmetrise, &worst));
+    for (int64_t k = 0; k < component->num_loads; k++)
+        RITZ_TRY_IN(component->load[k].name,
+                    settle_optional(&component->load[k].KG, n, true, symmetrise,
+                                    &worst));
+    component->asymmetry = worst;
+done:
+    return status;
+}
+
+static int compare_dofs(const void *left, const void *right)
+{
+    const ritz_dof *a = left;
+    const ritz_dof *b = right;
+
+    if (a->grid != b->grid)
+        return a->grid < b->grid ? -1 : 1;
+    return (a->component > b->component) - (a->component < b->component);
+}
+
+static ritz_status check_dofs(const ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = component->num_dofs;
+    ritz_dof *sorted = NULL;
+    char name[RITZ_DOF_NAME_SIZE];
+
+    RITZ_FAIL_IF(n > 0 && !component->dof, RITZ_ERR_FORMAT,
+                 "rows have no names");
+    RITZ_NEW(sorted, n);
+    for (int64_t k = 0; k < n; k++) {
+        sorted[k] = component->dof[k];
+        RITZ_FAIL_IF(sorted[k].component < 0 || sorted[k].component > 6,
+                     RITZ_ERR_FORMAT,
+                     "row %" PRId64 " has direction %" PRId64
+                     ", which is not among 0 to 6",
+                     k + 1, sorted[k].component);
+    }
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_dofs);
+    for (int64_t k = 1; k < n; k++)
+        RITZ_FAIL_IF(compare_dofs(&sorted[k - 1], &sorted[k]) == 0,
+                     RITZ_ERR_FORMAT, "%s has two rows",
+                     ritz_dof_name(sorted[k], name));
+done:
+    free(sorted);
+    return status;
+}
+
+static ritz_status check_grids(const ritz_grids *grids)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < grids->count; k++) {
+        RITZ_FAIL_IF(k > 0 && grids->id[k - 1] >= grids->id[k], RITZ_ERR_FORMAT,
+                     "grids do not ascend at %" PRId64, grids->id[k]);
+        RITZ_FAIL_IF(grids->frame[k] < 0 ||
+                         grids->frame[k] >= grids->num_frames,
+                     RITZ_ERR_FORMAT, "grid %" PRId64 " has no such frame",
+                     grids->id[k]);
+        for (int i = 0; i < 3; i++)
+            RITZ_FAIL_IF(!isfinite(grids->position[3 * k + i]), RITZ_ERR_FORMAT,
+                         "grid %" PRId64 " is nowhere", grids->id[k]);
+    }
+done:
+    return status;
+}
+
+static ritz_status check_ports(const ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < component->num_ports; k++) {
+        const ritz_port *port = &component->port[k];
+
+        for (int64_t j = 0; j < k; j++)
+            RITZ_FAIL_IF(strcmp(component->port[j].name, port->name) == 0,
+                         RITZ_ERR_FORMAT, "there are two ports '%s'",
+                         port->name);
+        for (int64_t i = 0; i < port->dofs.count; i++)
+            RITZ_FAIL_IF(port->dofs.at[i] < 0 ||
+                             port->dofs.at[i] >= component->num_dofs,
+                         RITZ_ERR_FORMAT,
+                         "port '%s' holds dof %" PRId64
+                         ", which is not among the %" PRId64,
+                         port->name, port->dofs.at[i], component->num_dofs);
+    }
+done:
+    return status;
+}
+
+static ritz_status settle_io(ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+    ritz_io *io = &component->io;
+    int64_t n = component->num_dofs;
+
+    if (!io->B.val)
+        return ritz_io_new(n, 0, 0, io);
+    RITZ_FAIL_IF(io->B.nrow != n || io->B.ncol != io->num_inputs,
+                 RITZ_ERR_FORMAT, "inputs are of another size");
+    RITZ_FAIL_IF(io->C.ncol != n || io->C.nrow != io->num_outputs ||
+                     io->Cv.ncol != n || io->Cv.nrow != io->num_outputs ||
+                     io->Ca.ncol != n || io->Ca.nrow != io->num_outputs,
+                 RITZ_ERR_FORMAT, "outputs are of another size");
+done:
+    return status;
+}
+
+ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(check_dofs(component));
+    RITZ_TRY(settle_matrices(component, symmetrise));
+    RITZ_TRY(check_grids(&component->grids));
+    RITZ_TRY(check_ports(component));
+    RITZ_TRY(settle_io(component));
+done:
+    return status;
+}
+
+const ritz_port *ritz_component_port(const ritz_component *component,
+                                     const char *name)
+{
+    const char *near = NULL;
+
+    for (int64_t k = 0; k < component->num_ports; k++)
+        if (strcmp(component->port[k].name, name) == 0)
+            return &component->port[k];
+    near = ritz_text_nearest(name, component->num_ports,
+                             (const char *)component->port,
+                             sizeof *component->port);
+    if (near)
+        ritz_record("there is no port '%s', is '%s' meant?", name, near);
+    else
+        ritz_record("there is no port '%s'", name);
+    return NULL;
+}
+
+/* Ports may share a dof, which is attached once. */
+static void attach(const ritz_port *port, bool *taken, ritz_dofs *set)
+{
+    for (int64_t i = 0; i < port->dofs.count; i++) {
+        int64_t dof = port->dofs.at[i];
+
+        if (!taken[dof])
+            set->at[set->count++] = dof;
+        taken[dof] = true;
+    }
+}
+
+ritz_status ritz_component_attached(const ritz_component *component,
+                                    const char *ports, ritz_dofs *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dofs set = {0};
+    bool *taken = NULL;
+
+    RITZ_NEW(taken, component->num_dofs);
+    RITZ_NEW(set.at, component->num_dofs);
+    for (int64_t k = 0; !ports && k < component->num_ports; k++)
+        attach(&component->port[k], taken, &set);
+    while (ports && *ports) {
+        char name[RITZ_NAME_SIZE];
+        size_t length = strcspn(ports, ",");
+        const ritz_port *port = NULL;
+
+        RITZ_FAIL_IF(length >= sizeof name, RITZ_ERR_ARGUMENT,
+                     "there is no port '%.40s...'", ports);
+        memcpy(name, ports, length);
+        name[length] = '\0';
+        port = ritz_component_port(component, name);
+        if (!port) {
+            status = RITZ_ERR_ARGUMENT;
+            goto done;
+        }
+        attach(port, taken, &set);
+        ports += length + (ports[length] != '\0');
+    }
+    *out = set;
+    set = (ritz_dofs){0};
+done:
+    free(taken);
+    ritz_dofs_free(&set);
+    return status;
+}
+
+int64_t ritz_component_row(const ritz_component *component, ritz_dof dof)
+{
+    for (int64_t k = 0; k < component->num_dofs; k++)
+        if (component->dof[k].grid == dof.grid &&
+            component->dof[k].component == dof.component)
+            return k;
+    return -1;
+}
+
+void ritz_component_free(ritz_component *component)
+{
+    ritz_sparse_free(&component->K);
+    ritz_sparse_free(&component->M);
+    ritz_sparse_free(&component->D);
+    ritz_sparse_free(&component->K4);
+    for (int64_t k = 0; k < component->num_loads; k++)
+        ritz_sparse_free(&component->load[k].KG);
+    free(component->load);
+    free(component->dof);
+    ritz_grids_free(&component->grids);
+    for (int64_t k = 0; k < component->num_ports; k++)
+        ritz_dofs_free(&component->port[k].dofs);
+    free(component->port);
+    ritz_io_free(&component->io);
+    *component = (ritz_component){0};
+}

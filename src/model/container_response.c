@@ -1,0 +1,182 @@
+/* Containers of frequency responses. */
+#include "model/container_parts.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+static const ritz_text_member members[] = {
+    {"method", offsetof(ritz_response, method)},
+    {"damping", offsetof(ritz_response, damping)},
+    {NULL, 0},
+};
+
+static ritz_status write_group_names(hid_t at, const char *name, int64_t count,
+                                     const ritz_name *names)
+{
+    ritz_status status = RITZ_OK;
+    hid_t group = 0;
+
+    RITZ_TRY(ritz_h5_group(at, name, &group));
+    RITZ_TRY_IN(name, ritz_part_write_names(group, "names", count, names));
+done:
+    ritz_h5_close(group);
+    return status;
+}
+
+static ritz_status read_group_names(hid_t at, const char *name, int64_t *count,
+                                    ritz_name **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_name *names = NULL;
+    int64_t found = 0;
+    hid_t group = 0;
+
+    RITZ_TRY(ritz_h5_enter(at, name, &group));
+    RITZ_TRY_IN(name, ritz_h5_count(group, "names", &found));
+    RITZ_NEW(names, found);
+    RITZ_TRY_IN(name, ritz_part_read_names(group, "names", found, names));
+    *count = found;
+    *out = names;
+    names = NULL;
+done:
+    free(names);
+    ritz_h5_close(group);
+    return status;
+}
+
+static ritz_h5_shape shape_of(const ritz_response *response)
+{
+    return ritz_h5_stack(response->count, response->num_outputs,
+                         response->num_inputs);
+}
+
+static int64_t count_values(const ritz_response *response)
+{
+    return response->count * response->num_outputs * response->num_inputs;
+}
+
+/* H as two data sets of shape (hertz, outputs, inputs). */
+static ritz_status write_values(hid_t file, const ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = count_values(response);
+    double *part = NULL;
+    hid_t group = 0;
+
+    RITZ_NEW(part, count);
+    RITZ_TRY(ritz_h5_group(file, "H", &group));
+    for (int64_t k = 0; k < count; k++)
+        part[k] = creal(response->H[k]);
+    RITZ_TRY(
+        ritz_h5_write(group, "real", H5T_IEEE_F64LE, shape_of(response), part));
+    for (int64_t k = 0; k < count; k++)
+        part[k] = cimag(response->H[k]);
+    RITZ_TRY(
+        ritz_h5_write(group, "imag", H5T_IEEE_F64LE, shape_of(response), part));
+done:
+    free(part);
+    ritz_h5_close(group);
+    return ritz_context(status, "H");
+}
+
+/* One of the parts, alternating with the other in H. */
+static ritz_status read_part(hid_t group, const char *name, int offset,
+                             ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = count_values(response);
+    double *H = (double *)response->H; /* re, im, re, im, ... (C 6.2.5) */
+    double *part = NULL;
+
+    RITZ_NEW(part, count);
+    RITZ_TRY(ritz_h5_read_real(group, name, shape_of(response), false, part));
+    for (int64_t k = 0; k < count; k++)
+        H[2 * k + offset] = part[k];
+done:
+    free(part);
+    return status;
+}
+
+static ritz_status read_values(hid_t file, ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    ritz_h5_shape found = {0};
+    ritz_h5_shape due = shape_of(response);
+    hid_t group = 0;
+
+    RITZ_TRY(ritz_h5_enter(file, "H", &group));
+    RITZ_TRY(ritz_h5_shape_of(group, "real", 3, &found));
+    for (int k = 0; k < 3; k++) /* before anything of that size is allocated */
+        RITZ_FAIL_IF(found.dims[k] != due.dims[k], RITZ_ERR_FORMAT,
+                     "'real' is not hertz x outputs x inputs");
+    RITZ_NEW(response->H, count_values(response));
+    RITZ_TRY(read_part(group, "real", 0, response));
+    RITZ_TRY(read_part(group, "imag", 1, response));
+done:
+    ritz_h5_close(group);
+    return ritz_context(status, "H");
+}
+
+static ritz_status read_all(hid_t file, ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_part_get_members(file, members, response));
+    RITZ_TRY(ritz_h5_count(file, "hertz", &response->count));
+    RITZ_NEW(response->hertz, response->count);
+    RITZ_TRY(ritz_h5_read_real(file, "hertz", ritz_h5_vector(response->count),
+                               false, response->hertz));
+    for (int64_t k = 1; k < response->count; k++)
+        RITZ_FAIL_IF(response->hertz[k] < response->hertz[k - 1],
+                     RITZ_ERR_FORMAT, "'hertz' descends at value %" PRId64,
+                     k + 1);
+    RITZ_TRY(read_group_names(file, "inputs", &response->num_inputs,
+                              &response->input));
+    RITZ_TRY(read_group_names(file, "outputs", &response->num_outputs,
+                              &response->output));
+    RITZ_TRY(read_values(file, response));
+done:
+    return status;
+}
+
+ritz_status ritz_container_read_response(const char *path, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_response response = {0};
+    hid_t file = 0;
+
+    RITZ_TRY(ritz_part_open(path, "response", &file));
+    RITZ_TRY(read_all(file, &response));
+    *out = response;
+    response = (ritz_response){0};
+done:
+    ritz_response_free(&response);
+    ritz_h5_close(file);
+    return ritz_context(status, path);
+}
+
+ritz_status ritz_container_write_response(const char *path,
+                                          const ritz_response *response,
+                                          const ritz_stamp *stamp)
+{
+    ritz_status status = RITZ_OK;
+    ritz_writer writer = {0};
+    hid_t file = 0;
+
+    RITZ_TRY(ritz_writer_new(path, "response", "", stamp, &writer));
+    file = writer.file;
+    RITZ_TRY(ritz_part_set_members(file, members, response));
+    RITZ_TRY(ritz_h5_write(file, "hertz", H5T_IEEE_F64LE,
+                           ritz_h5_vector(response->count), response->hertz));
+    RITZ_TRY(write_group_names(file, "inputs", response->num_inputs,
+                               response->input));
+    RITZ_TRY(write_group_names(file, "outputs", response->num_outputs,
+                               response->output));
+    RITZ_TRY(write_values(file, response));
+    RITZ_TRY(ritz_writer_finish(&writer));
+done:
+    ritz_writer_free(&writer);
+    return ritz_context(status, path);
+}

@@ -1,0 +1,282 @@
+#include <ritz/damping.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for the longest text: 8 bands of three numbers of 24 letters. */
+enum { MOST_NUMBERS = 3 * RITZ_MAX_BANDS, NUMBER_SIZE = 32, TEXT_SIZE = 800 };
+
+static const double pi = 3.14159265358979323846;
+
+static ritz_status check_ratio(double zeta)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(!(zeta > 0.0), RITZ_ERR_ARGUMENT,
+                 "damping ratio %g is not above 0", zeta);
+    RITZ_FAIL_IF(!(zeta < 1.0), RITZ_ERR_ARGUMENT,
+                 "damping ratio %g is overdamped, it must stay below 1", zeta);
+done:
+    return status;
+}
+
+static ritz_status check_none(const ritz_damping *damping)
+{
+    (void)damping;
+    return RITZ_OK;
+}
+
+static ritz_status check_modal(const ritz_damping *damping)
+{
+    return check_ratio(damping->zeta);
+}
+
+static ritz_status check_bands(const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(damping->count < 1 || damping->count > RITZ_MAX_BANDS,
+                 RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " damping bands are given, 1 to %d can be",
+                 damping->count, RITZ_MAX_BANDS);
+    for (int64_t k = 0; k < damping->count; k++) {
+        const double *band = damping->band[k];
+        double below = k > 0 ? damping->band[k - 1][1] : 0.0;
+
+        RITZ_FAIL_IF(
+            !(band[0] >= 0.0 && band[1] > band[0] && isfinite(band[1])),
+            RITZ_ERR_ARGUMENT,
+            "damping band %g to %g Hz does not ascend from 0 or above", band[0],
+            band[1]);
+        RITZ_FAIL_IF(band[0] < below, RITZ_ERR_ARGUMENT,
+                     "damping band %g to %g Hz begins before %g Hz, where the "
+                     "one before it ends",
+                     band[0], band[1], below);
+        RITZ_TRY(check_ratio(band[2]));
+    }
+done:
+    return status;
+}
+
+static ritz_status check_rayleigh(const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(!(damping->a >= 0.0 && damping->b >= 0.0 &&
+                   isfinite(damping->a) && isfinite(damping->b)),
+                 RITZ_ERR_ARGUMENT,
+                 "rayleigh damping %g %g is negative or not finite", damping->a,
+                 damping->b);
+    RITZ_FAIL_IF(damping->a == 0.0 && damping->b == 0.0, RITZ_ERR_ARGUMENT,
+                 "rayleigh damping 0 0 is none");
+done:
+    return status;
+}
+
+/* The numbers behind the word, in the order of the text; how many. */
+static int64_t numbers_of(const ritz_damping *damping,
+                          double number[MOST_NUMBERS])
+{
+    switch (damping->kind) {
+    case RITZ_DAMPING_NONE:
+        break;
+    case RITZ_DAMPING_MODAL:
+        number[0] = damping->zeta;
+        return 1;
+    case RITZ_DAMPING_BANDS:
+        memcpy(number, damping->band, sizeof damping->band);
+        return 3 * damping->count;
+    case RITZ_DAMPING_RAYLEIGH:
+        number[0] = damping->a;
+        number[1] = damping->b;
+        return 2;
+    }
+    return 0;
+}
+
+static void take_modal(const double *number, int64_t count, ritz_damping *out)
+{
+    (void)count;
+    out->zeta = number[0];
+}
+
+static void take_bands(const double *number, int64_t count, ritz_damping *out)
+{
+    out->count = count / 3;
+    memcpy(out->band, number, (size_t)count * sizeof *number);
+}
+
+static void take_rayleigh(const double *number, int64_t count,
+                          ritz_damping *out)
+{
+    (void)count;
+    out->a = number[0];
+    out->b = number[1];
+}
+
+static void take_nothing(const double *number, int64_t count, ritz_damping *out)
+{
+    (void)number;
+    (void)count;
+    (void)out;
+}
+
+static const struct form {
+    char name[16];
+    int64_t least, step, most; /* numbers behind the word */
+    void (*take)(const double *number, int64_t count, ritz_damping *out);
+    ritz_status (*check)(const ritz_damping *damping);
+    const char *example;
+} forms[] = {
+    [RITZ_DAMPING_NONE] = {"", 0, 1, 0, take_nothing, check_none, ""},
+    [RITZ_DAMPING_MODAL] = {"modal", 1, 1, 1, take_modal, check_modal,
+                            "modal 0.002"},
+    [RITZ_DAMPING_BANDS] = {"bands", 3, 3, MOST_NUMBERS, take_bands,
+                            check_bands, "bands 0 5 0.002 5 20 0.005"},
+    [RITZ_DAMPING_RAYLEIGH] = {"rayleigh", 2, 1, 2, take_rayleigh,
+                               check_rayleigh, "rayleigh 0.1 2e-5"},
+};
+
+enum { NUM_FORMS = sizeof forms / sizeof *forms };
+
+/* Shortest of %.1g, %.2g, ... that reads back as the same number: 20, 2e-05. */
+static size_t print_number(double value, char out[NUMBER_SIZE])
+{
+    size_t shortest = NUMBER_SIZE;
+
+    for (int digits = 1; digits <= 17; digits++) {
+        char text[NUMBER_SIZE];
+        size_t length =
+            (size_t)snprintf(text, sizeof text, "%.*g", digits, value);
+
+        if (length < shortest && strtod(text, NULL) == value) {
+            memcpy(out, text, length + 1);
+            shortest = length;
+        }
+    }
+    return shortest;
+}
+
+static size_t print(const ritz_damping *damping, char text[TEXT_SIZE])
+{
+    double number[MOST_NUMBERS];
+    int64_t count = numbers_of(damping, number);
+    size_t used = strlen(forms[damping->kind].name);
+
+    memcpy(text, forms[damping->kind].name, used + 1);
+    for (int64_t k = 0; k < count; k++) {
+        text[used++] = ' ';
+        used += print_number(number[k], text + used);
+    }
+    return used;
+}
+
+ritz_status ritz_damping_check(const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+    char text[TEXT_SIZE];
+
+    RITZ_TRY(forms[damping->kind].check(damping));
+    RITZ_FAIL_IF(print(damping, text) >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                 "the damping '%.40s...' takes more than %d letters: give "
+                 "fewer bands or digits",
+                 text, RITZ_NAME_SIZE - 1);
+done:
+    return status;
+}
+
+void ritz_damping_print(const ritz_damping *damping, char text[RITZ_NAME_SIZE])
+{
+    char whole[TEXT_SIZE];
+
+    if (print(damping, whole) >= RITZ_NAME_SIZE)
+        whole[0] = '\0'; /* such a damping does not pass ritz_damping_check */
+    memcpy(text, whole, strlen(whole) + 1);
+}
+
+/* Cut a text at its spaces; how many words there are, at most `most`. */
+static int64_t split(char *text, int64_t most, char *word[])
+{
+    int64_t count = 0;
+    char *rest = NULL;
+
+    for (char *at = strtok_r(text, " ", &rest); at && count < most;
+         at = strtok_r(NULL, " ", &rest))
+        word[count++] = at;
+    return count;
+}
+
+static ritz_status read_numbers(const struct form *form, int64_t count,
+                                char *word[], double number[MOST_NUMBERS])
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(count < form->least || count > form->most ||
+                     (count - form->least) % form->step != 0,
+                 RITZ_ERR_ARGUMENT,
+                 "damping '%s' with %" PRId64 " numbers is not such as '%s'",
+                 form->name, count, form->example);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_FAIL_IF(!ritz_text_real(word[k], &number[k]), RITZ_ERR_ARGUMENT,
+                     "'%.40s' in a damping is not a finite number", word[k]);
+done:
+    return status;
+}
+
+ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_damping damping = {0};
+    char copy[TEXT_SIZE];
+    char *word[MOST_NUMBERS + 2] = {0};
+    double number[MOST_NUMBERS] = {0};
+    int64_t count = 0;
+    int kind = 0;
+
+    RITZ_FAIL_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
+                 "the damping '%.40s...' is too long", text);
+    memcpy(copy, text, strlen(text) + 1);
+    count = split(copy, MOST_NUMBERS + 2, word);
+    while (count > 0 && kind < NUM_FORMS &&
+           strcmp(word[0], forms[kind].name) != 0)
+        kind++;
+    RITZ_FAIL_IF(kind == NUM_FORMS, RITZ_ERR_ARGUMENT,
+                 "unknown damping '%.40s', there is modal, bands, rayleigh",
+                 word[0]);
+    if (count > 0) {
+        damping.kind = (ritz_damping_kind)kind;
+        RITZ_TRY(read_numbers(&forms[kind], count - 1, word + 1, number));
+        forms[kind].take(number, count - 1, &damping);
+    }
+    RITZ_TRY(ritz_damping_check(&damping));
+    *out = damping;
+done:
+    return status;
+}
+
+double ritz_damping_ratio(const ritz_damping *damping, double omega)
+{
+    double hertz = omega / (2.0 * pi);
+
+    switch (damping->kind) {
+    case RITZ_DAMPING_NONE:
+        break;
+    case RITZ_DAMPING_MODAL:
+        return damping->zeta;
+    case RITZ_DAMPING_BANDS:
+        /* an edge that two bands share is the upper one's */
+        for (int64_t k = damping->count - 1; k >= 0; k--)
+            if (hertz >= damping->band[k][0] && hertz <= damping->band[k][1])
+                return damping->band[k][2];
+        break;
+    case RITZ_DAMPING_RAYLEIGH:
+        /* phi'(a M + b K)phi = a + b omega^2 = 2 zeta omega */
+        if (omega > 0.0)
+            return 0.5 * (damping->a / omega + damping->b * omega);
+        break;
+    }
+    return 0.0;
+}

@@ -1,0 +1,69 @@
+#include "base/alloc.h"
+
+#include <ritz/dofs.h>
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+ritz_status ritz_dofs_complement(const ritz_dofs *set, int64_t n,
+                                 ritz_dofs *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dofs rest = {0};
+    bool *taken = NULL;
+
+    RITZ_NEW(taken, n);
+    for (int64_t k = 0; k < set->count; k++) {
+        int64_t dof = set->at[k];
+
+        RITZ_FAIL_IF(dof < 0 || dof >= n, RITZ_ERR_ARGUMENT,
+                     "dof %" PRId64 " is not among the %" PRId64
+                     " of the component",
+                     dof, n);
+        RITZ_FAIL_IF(taken[dof], RITZ_ERR_ARGUMENT,
+                     "dof %" PRId64 " is listed twice", dof);
+        taken[dof] = true;
+    }
+    RITZ_NEW(rest.at, n - set->count);
+    for (int64_t dof = 0; dof < n; dof++)
+        if (!taken[dof])
+            rest.at[rest.count++] = dof;
+    *out = rest;
+done:
+    free(taken);
+    return status;
+}
+
+ritz_status ritz_dofs_copy(const ritz_dofs *set, ritz_dofs *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dofs copy = {0};
+
+    RITZ_NEW(copy.at, set->count);
+    copy.count = set->count;
+    if (set->count > 0)
+        memcpy(copy.at, set->at, (size_t)set->count * sizeof *set->at);
+    *out = copy;
+done:
+    return status;
+}
+
+const char *ritz_dof_name(ritz_dof dof, char text[RITZ_DOF_NAME_SIZE])
+{
+    if (dof.component == 0)
+        snprintf(text, RITZ_DOF_NAME_SIZE, "point %" PRId64, dof.grid);
+    else
+        snprintf(text, RITZ_DOF_NAME_SIZE, "grid %" PRId64 " %c%" PRId64,
+                 dof.grid, dof.component <= 3 ? 'T' : 'R',
+                 dof.component <= 3 ? dof.component : dof.component - 3);
+    return text;
+}
+
+void ritz_dofs_free(ritz_dofs *set)
+{
+    free(set->at);
+    *set = (ritz_dofs){0};
+}

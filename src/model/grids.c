@@ -1,0 +1,195 @@
+/* Where grids are, along which axes they move, and rigid-body geometry. */
+#include "base/alloc.h"
+
+#include <ritz/component.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int64_t ritz_grids_find(const ritz_grids *grids, int64_t id)
+{
+    int64_t low = 0;
+    int64_t high = grids->count;
+
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (grids->id[middle] < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < grids->count && grids->id[low] == id ? low : -1;
+}
+
+/* Displacement axes of a grid, row by row; the basic ones if it has none. */
+static const double *axes_of(const ritz_grids *grids, int64_t id)
+{
+    static const double basic[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    int64_t k = ritz_grids_find(grids, id);
+
+    return k < 0 ? basic : grids->axes + 9 * grids->frame[k];
+}
+
+static bool is_basic(const double *axes)
+{
+    for (int k = 0; k < 9; k++)
+        if (axes[k] != (k % 4 == 0 ? 1.0 : 0.0))
+            return false;
+    return true;
+}
+
+/* One grid of a port, and where in the port's dofs its six directions are. */
+typedef struct member {
+    int64_t grid;
+    int64_t place[6]; /* -1 where it is absent */
+    int64_t point;    /* of a scalar point, -1 otherwise */
+} member;
+
+/* The port's grids in order of first appearance. */
+static int64_t gather(const ritz_component *component, const ritz_port *port,
+                      member *list)
+{
+    int64_t count = 0;
+
+    for (int64_t i = 0; i < port->dofs.count; i++) {
+        ritz_dof dof = component->dof[port->dofs.at[i]];
+        int64_t k = 0;
+
+        while (k < count && list[k].grid != dof.grid)
+            k++;
+        if (k == count)
+            list[count++] = (member){dof.grid, {-1, -1, -1, -1, -1, -1}, -1};
+        if (dof.component == 0)
+            list[k].point = i;
+        else
+            list[k].place[dof.component - 1] = i;
+    }
+    return count;
+}
+
+/*
+ * Three translations or rotations of a grid along basic axes. With the
+ * displacement axes as rows of A, u_basic = A' u.
+ */
+static ritz_status turn_triple(const member *grid, int first,
+                               const double *axes, ritz_dense *turn,
+                               int64_t *row, ritz_dof *label)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t *place = grid->place + first;
+    bool plain = is_basic(axes);
+    bool all = place[0] >= 0 && place[1] >= 0 && place[2] >= 0;
+    bool none = place[0] < 0 && place[1] < 0 && place[2] < 0;
+
+    RITZ_FAIL_IF(!plain && !all && !none, RITZ_ERR_ARGUMENT,
+                 "grid %" PRId64 " has axes of its own and brings only some "
+                 "of its %s",
+                 grid->grid, first == 0 ? "translations" : "rotations");
+    for (int i = 0; i < 3; i++) {
+        if (place[i] < 0)
+            continue;
+        for (int j = 0; j < 3; j++)
+            if (place[j] >= 0)
+                ritz_dense_col(turn, place[j])[*row] = axes[3 * j + i];
+        label[*row] = (ritz_dof){grid->grid, first + i + 1};
+        (*row)++;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_port_turn(const ritz_component *component,
+                           const ritz_port *port, ritz_dense *turn,
+                           ritz_dof **label)
+{
+    ritz_status status = RITZ_OK;
+    int64_t p = port->dofs.count;
+    int64_t row = 0;
+    int64_t count = 0;
+    member *list = NULL;
+    ritz_dense U = {0};
+    ritz_dof *names = NULL;
+
+    RITZ_NEW(list, p);
+    RITZ_NEW(names, p);
+    RITZ_TRY(ritz_dense_new(p, p, &U));
+    count = gather(component, port, list);
+    for (int64_t k = 0; k < count; k++) {
+        const double *axes = axes_of(&component->grids, list[k].grid);
+
+        if (list[k].point >= 0) {
+            ritz_dense_col(&U, list[k].point)[row] = 1.0;
+            names[row++] = (ritz_dof){list[k].grid, 0};
+        }
+        RITZ_TRY_IN(port->name,
+                    turn_triple(&list[k], 0, axes, &U, &row, names));
+        RITZ_TRY_IN(port->name,
+                    turn_triple(&list[k], 3, axes, &U, &row, names));
+    }
+    *turn = U;
+    U = (ritz_dense){0};
+    if (label) {
+        *label = names;
+        names = NULL;
+    }
+done:
+    free(list);
+    free(names);
+    ritz_dense_free(&U);
+    return status;
+}
+
+/*
+ * Motion of a point at d from the origin: translation t + rotation r x d. Row
+ * of one direction with axis a: a . (t + r x d) or a . r.
+ */
+static void fill_row(const double *a, const double *d, bool rotation,
+                     int64_t row, ritz_dense *R)
+{
+    const double turned[3] = {d[1] * a[2] - d[2] * a[1],
+                              d[2] * a[0] - d[0] * a[2],
+                              d[0] * a[1] - d[1] * a[0]};
+
+    for (int j = 0; j < 3; j++) {
+        ritz_dense_col(R, j)[row] = rotation ? 0.0 : a[j];
+        ritz_dense_col(R, 3 + j)[row] = rotation ? a[j] : turned[j];
+    }
+}
+
+ritz_status ritz_rigid_geometry(const ritz_component *component,
+                                const double origin[static 3], ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_grids *grids = &component->grids;
+    ritz_dense R = {0};
+
+    RITZ_TRY(ritz_dense_new(component->num_dofs, 6, &R));
+    for (int64_t row = 0; row < component->num_dofs; row++) {
+        ritz_dof dof = component->dof[row];
+        int64_t k = dof.component == 0 ? -1 : ritz_grids_find(grids, dof.grid);
+        double d[3];
+
+        if (k < 0)
+            continue;
+        for (int i = 0; i < 3; i++)
+            d[i] = grids->position[3 * k + i] - origin[i];
+        fill_row(grids->axes + 9 * grids->frame[k] +
+                     3 * ((dof.component - 1) % 3),
+                 d, dof.component > 3, row, &R);
+    }
+    *out = R;
+done:
+    return status;
+}
+
+void ritz_grids_free(ritz_grids *grids)
+{
+    free(grids->id);
+    free(grids->position);
+    free(grids->frame);
+    free(grids->axes);
+    *grids = (ritz_grids){0};
+}

@@ -1,0 +1,78 @@
+/*
+ * Mass properties from the mass matrix: with rigid motions R = [T, Theta] of
+ * unit translations and unit rotations about the basic origin,
+ *
+ *     R'MR = |  m I     -m c~ |     c the centre of mass, c~ x = c x x,
+ *            |  m c~     J_o  |     J_c = J_o - m (c'c I - c c')
+ */
+#include <ritz/reduced.h>
+
+#include <math.h>
+
+/* R'MR, 6 x 6. */
+static ritz_status condense(const ritz_component *component, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const double origin[3] = {0.0, 0.0, 0.0};
+    ritz_dense R = {0}, MR = {0};
+
+    RITZ_TRY(ritz_rigid_geometry(component, origin, &R));
+    RITZ_TRY(ritz_sparse_mul(&component->M, &R, &MR));
+    RITZ_TRY(ritz_dense_mul_tn(&R, &MR, out));
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&MR);
+    return status;
+}
+
+/* The mean over the translations that there are: a plane model has two. */
+static double mean_mass(const ritz_dense *A)
+{
+    double sum = 0.0;
+    int count = 0;
+
+    for (int i = 0; i < 3; i++)
+        if (ritz_dense_col(A, i)[i] > 0.0) {
+            sum += ritz_dense_col(A, i)[i];
+            count++;
+        }
+    return count > 0 ? sum / count : 0.0;
+}
+
+static void read_off(const ritz_dense *A, ritz_inertia *inertia)
+{
+    double m = mean_mass(A);
+    double *c = inertia->centre;
+    double square = 0.0;
+
+    inertia->mass = m;
+    for (int i = 0; i < 3 && m > 0.0; i++) {
+        int j = (i + 1) % 3;
+        int k = (i + 2) % 3;
+
+        c[i] = (ritz_dense_col(A, 3 + k)[j] - ritz_dense_col(A, 3 + j)[k]) /
+               (2.0 * m);
+        square += c[i] * c[i];
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            inertia->tensor[3 * i + j] =
+                ritz_dense_col(A, 3 + j)[3 + i] -
+                m * ((i == j ? square : 0.0) - c[i] * c[j]);
+    inertia->known = m > 0.0;
+}
+
+ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense A = {0};
+
+    *out = (ritz_inertia){0};
+    if (component->grids.count > 0) {
+        RITZ_TRY(condense(component, &A));
+        read_off(&A, out);
+    }
+done:
+    ritz_dense_free(&A);
+    return status;
+}

@@ -1,0 +1,32 @@
+/* Names in sentences: looked up with a suggestion, cut to a readable length. */
+#ifndef RITZ_MODEL_NAMES_H
+#define RITZ_MODEL_NAMES_H
+
+#include <ritz/text.h>
+
+/* Names of one sort: an array of structs that each begin with a name. */
+typedef struct ritz_names {
+    const char *what; /* "component", for sentences */
+    int64_t count;
+    const char *first;
+    size_t stride;
+} ritz_names;
+
+/**
+ * Index of @p word.
+ *
+ * @return RITZ_ERR_ARGUMENT "unknown WHAT 'modez', is 'modes' meant?", or with
+ *         all there are if none is near
+ */
+ritz_status ritz_names_find(const ritz_names *names, const char *word,
+                            int64_t *out);
+
+/** The same without a sentence; -1 if it is not there. */
+int64_t ritz_names_index(const ritz_names *names, const char *word);
+
+enum { RITZ_SHORT_SIZE = 48 };
+
+/** Beginning of a text on one line, for 'quotes'; returns @p out. */
+const char *ritz_text_short(const char *text, char out[RITZ_SHORT_SIZE]);
+
+#endif

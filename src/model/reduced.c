@@ -1,0 +1,264 @@
+#include "base/alloc.h"
+
+#include <ritz/reduced.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* T'AT of a sparse symmetric A, exactly symmetric. */
+static ritz_status project_sparse(const ritz_sparse *A, const ritz_dense *T,
+                                  ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AT = {0};
+
+    RITZ_TRY(ritz_sparse_mul(A, T, &AT));
+    RITZ_TRY(ritz_dense_mul_tn(T, &AT, out));
+    ritz_dense_symmetrise(out);
+done:
+    ritz_dense_free(&AT);
+    return status;
+}
+
+static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_grids copy = {.count = grids->count, .num_frames = grids->num_frames};
+    size_t n = (size_t)grids->count;
+
+    RITZ_NEW(copy.id, grids->count);
+    RITZ_NEW(copy.position, 3 * grids->count);
+    RITZ_NEW(copy.frame, grids->count);
+    RITZ_NEW(copy.axes, 9 * grids->num_frames);
+    if (n > 0) {
+        memcpy(copy.id, grids->id, n * sizeof *copy.id);
+        memcpy(copy.position, grids->position, 3 * n * sizeof *copy.position);
+        memcpy(copy.frame, grids->frame, n * sizeof *copy.frame);
+        memcpy(copy.axes, grids->axes,
+               9 * (size_t)grids->num_frames * sizeof *copy.axes);
+    }
+    *out = copy;
+    copy = (ritz_grids){0};
+done:
+    ritz_grids_free(&copy);
+    return status;
+}
+
+static ritz_status copy_dofs(int64_t n, const ritz_dof *dof, ritz_dof **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dof *copy = NULL;
+
+    RITZ_NEW(copy, n);
+    if (n > 0)
+        memcpy(copy, dof, (size_t)n * sizeof *copy);
+    *out = copy;
+done:
+    return status;
+}
+
+/* Rows `at` of T. */
+static ritz_status pick_rows(const ritz_dense *T, const ritz_dofs *at,
+                             ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(at->count, T->ncol, out));
+    for (int64_t j = 0; j < T->ncol; j++)
+        for (int64_t i = 0; i < at->count; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(T, j)[at->at[i]];
+done:
+    return status;
+}
+
+/* A port moves by its rows of T, turned into basic axes. */
+static ritz_status map_port(const ritz_component *component,
+                            const ritz_port *port, const ritz_dense *T,
+                            ritz_port_map *map)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_grids *grids = &component->grids;
+    ritz_dense turn = {0}, rows = {0};
+
+    memcpy(map->name, port->name, sizeof map->name);
+    memcpy(map->origin, port->origin, sizeof map->origin);
+    memcpy(map->axes, port->axes, sizeof map->axes);
+    map->count = port->dofs.count;
+    RITZ_TRY(ritz_port_turn(component, port, &turn, &map->dof));
+    RITZ_TRY(pick_rows(T, &port->dofs, &rows));
+    RITZ_TRY(ritz_dense_mul(&turn, &rows, &map->map));
+    RITZ_NEW(map->position, 3 * map->count);
+    for (int64_t i = 0; i < map->count; i++) {
+        int64_t k = ritz_grids_find(grids, map->dof[i].grid);
+
+        if (k >= 0)
+            memcpy(map->position + 3 * i, grids->position + 3 * k,
+                   3 * sizeof *map->position);
+    }
+done:
+    ritz_dense_free(&turn);
+    ritz_dense_free(&rows);
+    return status;
+}
+
+static ritz_status map_ports(const ritz_component *component,
+                             const ritz_dense *T, ritz_reduced *reduced)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(reduced->port, component->num_ports);
+    for (int64_t k = 0; k < component->num_ports; k++) {
+        reduced->num_ports++;
+        RITZ_TRY(
+            map_port(component, &component->port[k], T, &reduced->port[k]));
+    }
+done:
+    return status;
+}
+
+static ritz_status keep_names(const ritz_component *component,
+                              const ritz_basis *basis, ritz_reduced *reduced)
+{
+    ritz_status status = RITZ_OK;
+
+    reduced->origin = basis->origin;
+    reduced->num_dofs = component->num_dofs;
+    memcpy(reduced->units, component->units, sizeof reduced->units);
+    memcpy(reduced->damping, component->damping, sizeof reduced->damping);
+    RITZ_TRY(ritz_columns_copy(&basis->columns, &reduced->columns));
+    RITZ_TRY(ritz_dense_copy(&basis->T, &reduced->T));
+    RITZ_TRY(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
+    RITZ_TRY(copy_grids(&component->grids, &reduced->grids));
+    RITZ_TRY(ritz_inertia_of(component, &reduced->inertia));
+done:
+    return status;
+}
+
+ritz_status ritz_reduce(const ritz_component *component,
+                        const ritz_basis *basis, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *T = &basis->T;
+    ritz_reduced reduced = {0};
+
+    RITZ_FAIL_IF(T->nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
+                 "the basis is for %lld dofs, the component has %lld",
+                 (long long)T->nrow, (long long)component->num_dofs);
+    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
+                 "structural damping is not carried through a reduction yet, "
+                 "give it as a modal ratio");
+    RITZ_TRY(keep_names(component, basis, &reduced));
+    RITZ_TRY(project_sparse(&component->K, T, &reduced.K));
+    RITZ_TRY(project_sparse(&component->M, T, &reduced.M));
+    if (component->D.colptr)
+        RITZ_TRY(project_sparse(&component->D, T, &reduced.D));
+    RITZ_TRY(map_ports(component, T, &reduced));
+    RITZ_TRY(ritz_io_project(&component->io, T, &reduced.io));
+    *out = reduced;
+    reduced = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&reduced);
+    return status;
+}
+
+static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
+                                 ritz_reduced *to)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(to->port, from->num_ports);
+    for (int64_t k = 0; k < from->num_ports; k++) {
+        const ritz_port_map *port = &from->port[k];
+        ritz_port_map *copy = &to->port[k];
+
+        to->num_ports++;
+        *copy = *port;
+        copy->dof = NULL;
+        copy->position = NULL;
+        copy->map = (ritz_dense){0};
+        RITZ_TRY(copy_dofs(port->count, port->dof, &copy->dof));
+        RITZ_NEW(copy->position, 3 * port->count);
+        if (port->count > 0)
+            memcpy(copy->position, port->position,
+                   3 * (size_t)port->count * sizeof *copy->position);
+        RITZ_TRY(ritz_dense_mul(&port->map, V, &copy->map));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_reduced_project(const ritz_reduced *reduced,
+                                 const ritz_dense *V, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced second = {.origin = reduced->origin,
+                           .inertia = reduced->inertia,
+                           .num_dofs = reduced->num_dofs};
+
+    memcpy(second.units, reduced->units, sizeof second.units);
+    memcpy(second.damping, reduced->damping, sizeof second.damping);
+    RITZ_TRY(ritz_columns_new(V->ncol, &second.columns));
+    for (int64_t j = 0; j < V->ncol; j++)
+        second.columns.kind[j] = RITZ_COLUMN_SYSTEM;
+    RITZ_TRY(ritz_dense_congruence(&reduced->K, V, &second.K));
+    RITZ_TRY(ritz_dense_congruence(&reduced->M, V, &second.M));
+    if (reduced->D.val)
+        RITZ_TRY(ritz_dense_congruence(&reduced->D, V, &second.D));
+    RITZ_TRY(project_ports(reduced, V, &second));
+    RITZ_TRY(ritz_io_project(&reduced->io, V, &second.io));
+    if (reduced->T.val) {
+        RITZ_TRY(ritz_dense_mul(&reduced->T, V, &second.T));
+        RITZ_TRY(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
+        RITZ_TRY(copy_grids(&reduced->grids, &second.grids));
+    }
+    *out = second;
+    second = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&second);
+    return status;
+}
+
+const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
+                                       const char *name)
+{
+    const char *near = NULL;
+
+    for (int64_t k = 0; k < reduced->num_ports; k++)
+        if (strcmp(reduced->port[k].name, name) == 0)
+            return &reduced->port[k];
+    near =
+        ritz_text_nearest(name, reduced->num_ports, (const char *)reduced->port,
+                          sizeof *reduced->port);
+    if (near)
+        ritz_record("there is no port '%s', is '%s' meant?", name, near);
+    else
+        ritz_record("there is no port '%s'", name);
+    return NULL;
+}
+
+void ritz_port_map_free(ritz_port_map *port)
+{
+    free(port->dof);
+    free(port->position);
+    ritz_dense_free(&port->map);
+    *port = (ritz_port_map){0};
+}
+
+void ritz_reduced_free(ritz_reduced *reduced)
+{
+    ritz_dense_free(&reduced->K);
+    ritz_dense_free(&reduced->M);
+    ritz_dense_free(&reduced->D);
+    ritz_columns_free(&reduced->columns);
+    for (int64_t k = 0; k < reduced->num_ports; k++)
+        ritz_port_map_free(&reduced->port[k]);
+    free(reduced->port);
+    ritz_io_free(&reduced->io);
+    ritz_dense_free(&reduced->T);
+    free(reduced->dof);
+    ritz_grids_free(&reduced->grids);
+    ritz_measures_free(&reduced->estimates);
+    ritz_measures_free(&reduced->errors);
+    *reduced = (ritz_reduced){0};
+}

@@ -1,0 +1,139 @@
+#include <ritz/system.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double same_angle = 1e-9; /* degrees */
+
+void ritz_configuration_name(int64_t count, const char (*hinge)[RITZ_NAME_SIZE],
+                             const double *angle_deg, char out[RITZ_NAME_SIZE])
+{
+    size_t used = 0;
+
+    out[0] = '\0';
+    for (int64_t k = 0; k < count && used < RITZ_NAME_SIZE; k++)
+        used += (size_t)snprintf(out + used, RITZ_NAME_SIZE - used, "%s%s=%.9g",
+                                 k > 0 ? "," : "", hinge[k], angle_deg[k]);
+    if (count == 0)
+        snprintf(out, RITZ_NAME_SIZE, "fixed");
+}
+
+/* One part, "clock=60", of a configuration's name: the angle it asks for. */
+static ritz_status read_part(const ritz_system *system, const char *part,
+                             double *wanted)
+{
+    ritz_status status = RITZ_OK;
+    const char *equals = strchr(part, '=');
+    size_t length = equals ? (size_t)(equals - part) : 0;
+    double angle = 0.0;
+
+    RITZ_FAIL_IF(!equals || !ritz_text_real(equals + 1, &angle),
+                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=ANGLE", part);
+    for (int64_t k = 0; k < system->num_hinges; k++)
+        if (strlen(system->hinge[k]) == length &&
+            strncmp(system->hinge[k], part, length) == 0) {
+            wanted[k] = angle;
+            return RITZ_OK;
+        }
+    RITZ_FAIL_IF(true, RITZ_ERR_ARGUMENT, "there is no hinge '%.*s'",
+                 (int)length, part);
+done:
+    return status;
+}
+
+static bool matches(const ritz_configuration *c, const double *wanted)
+{
+    for (int64_t k = 0; k < c->num_angles; k++)
+        if (!isnan(wanted[k]) && fabs(c->angle_deg[k] - wanted[k]) > same_angle)
+            return false;
+    return true;
+}
+
+enum { MAX_HINGES = 16 };
+
+/* What is asked of each hinge, NaN where nothing is. */
+static ritz_status read_wanted(const ritz_system *system, const char *at,
+                               double wanted[MAX_HINGES])
+{
+    ritz_status status = RITZ_OK;
+    char part[2 * RITZ_NAME_SIZE];
+
+    RITZ_FAIL_IF(system->num_hinges > MAX_HINGES, RITZ_ERR_ARGUMENT,
+                 "more than %d hinges", MAX_HINGES);
+    for (int64_t k = 0; k < MAX_HINGES; k++)
+        wanted[k] = NAN;
+    while (at && *at) {
+        size_t length = strcspn(at, ",");
+
+        RITZ_FAIL_IF(length >= sizeof part, RITZ_ERR_ARGUMENT,
+                     "'%.40s...' is not JOINT=ANGLE", at);
+        memcpy(part, at, length);
+        part[length] = '\0';
+        RITZ_TRY(read_part(system, part, wanted));
+        at += length + (at[length] != '\0');
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_system_find(const ritz_system *system, const char *at,
+                             const ritz_configuration **out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_configuration *found = NULL;
+    double wanted[MAX_HINGES];
+
+    RITZ_FAIL_IF(system->num_configurations < 1, RITZ_ERR_ARGUMENT,
+                 "the system has no configuration");
+    RITZ_TRY(read_wanted(system, at, wanted));
+    for (int64_t k = 0; k < system->num_configurations; k++) {
+        const ritz_configuration *c = &system->configuration[k];
+
+        if (!matches(c, wanted))
+            continue;
+        RITZ_FAIL_IF(found, RITZ_ERR_ARGUMENT,
+                     "there are %" PRId64 " configurations, from '%s' to "
+                     "'%s': name one with --at",
+                     system->num_configurations, system->configuration[0].at,
+                     system->configuration[system->num_configurations - 1].at);
+        found = c;
+    }
+    RITZ_FAIL_IF(
+        !found, RITZ_ERR_ARGUMENT,
+        "no configuration is at '%s', there are %" PRId64 " from '%s' to '%s'",
+        at ? at : "", system->num_configurations, system->configuration[0].at,
+        system->configuration[system->num_configurations - 1].at);
+    *out = found;
+done:
+    return status;
+}
+
+void ritz_configuration_free(ritz_configuration *configuration)
+{
+    for (int64_t k = 0; k < configuration->num_blocks; k++)
+        ritz_dense_free(&configuration->P[k]);
+    free(configuration->P);
+    free(configuration->angle_deg);
+    free(configuration->lambda);
+    ritz_dense_free(&configuration->K);
+    ritz_dense_free(&configuration->M);
+    ritz_dense_free(&configuration->D);
+    ritz_io_free(&configuration->io);
+    ritz_measures_free(&configuration->errors);
+    *configuration = (ritz_configuration){0};
+}
+
+void ritz_system_free(ritz_system *system)
+{
+    for (int64_t k = 0; k < system->num_configurations; k++)
+        ritz_configuration_free(&system->configuration[k]);
+    free(system->configuration);
+    free(system->component);
+    free(system->order);
+    free(system->order_full);
+    free(system->hinge);
+    *system = (ritz_system){0};
+}

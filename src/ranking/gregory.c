@@ -1,0 +1,106 @@
+/*
+ * Hankel values in the limit of light damping and separate frequencies
+ *
+ *     sigma = sqrt(b b' (w^-2 c_d' c_d + c_v' c_v)) / (4 zeta w)
+ *
+ * with b a row, c_d and c_v columns. A cluster of modes at one frequency is
+ * taken as a whole, lest the value depend on which vectors span it:
+ *
+ *     sigma = | [C_d/w; C_v] B |_2 / (4 zeta w),
+ *
+ * which is the same for a single mode.
+ *
+ * [Gregory1984], [McDaniel2000] eq. 3.2.22
+ */
+#include "base/alloc.h"
+#include "ranking/cluster.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* B / sqrt(4 zeta w) and [C_d / w; C_v] / sqrt(4 zeta w) of some modes. */
+static void scale(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
+{
+    int64_t p = modal->C.nrow;
+
+    for (int64_t k = 0; k < modal->count; k++) {
+        double w = modal->omega[k];
+        double s = 1.0 / sqrt(4.0 * modal->zeta[k] * w);
+        const double *cd = ritz_dense_col(&modal->C, k);
+        const double *cv = ritz_dense_col(&modal->Cv, k);
+        double *c = ritz_dense_col(C, k);
+
+        for (int64_t j = 0; j < B->ncol; j++)
+            ritz_dense_col(B, j)[k] = s * ritz_dense_col(&modal->B, j)[k];
+        for (int64_t i = 0; i < p; i++) {
+            c[i] = s * cd[i] / w;
+            c[p + i] = s * cv[i];
+        }
+    }
+}
+
+/* Largest singular value; overwrites A. */
+static ritz_status norm(ritz_dense *A, double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t k = A->nrow < A->ncol ? A->nrow : A->ncol;
+    double *sigma = NULL;
+    int info = 0;
+
+    RITZ_NEW(sigma, k);
+    if (k > 0)
+        info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
+                              A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "singular values of a cluster of modes were not found");
+    *out = sigma[0];
+done:
+    free(sigma);
+    return status;
+}
+
+static ritz_status cluster_value(const ritz_modal *cluster, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense B = {0};
+    ritz_dense C = {0};
+    ritz_dense CB = {0};
+
+    RITZ_TRY(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
+    RITZ_TRY(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
+    scale(cluster, &B, &C);
+    RITZ_TRY(ritz_dense_mul(&C, &B, &CB));
+    RITZ_TRY(norm(&CB, out));
+done:
+    ritz_dense_free(&B);
+    ritz_dense_free(&C);
+    ritz_dense_free(&CB);
+    return status;
+}
+
+static ritz_status rank(const ritz_modal *modal, double *value)
+{
+    ritz_status status = RITZ_OK;
+    ritz_modal cluster = {0};
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        last = ritz_modal_cluster(modal, first);
+        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
+        RITZ_TRY(cluster_value(&cluster, &value[first]));
+        for (int64_t k = first + 1; k < last; k++)
+            value[k] = value[first];
+        ritz_modal_free(&cluster);
+    }
+done:
+    ritz_modal_free(&cluster);
+    return status;
+}
+
+const ritz_ranker ritz_ranker_gregory = {
+    .name = "gregory",
+    .summary = "Hankel values in the limit of light damping, mode by mode",
+    .reference = "Gregory1984",
+    .rank = rank,
+};

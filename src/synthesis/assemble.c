@@ -1,0 +1,395 @@
+/*
+ * Assembly at a configuration: with the coordinates q of all bodies and the
+ * joints' constraints C q = 0, any P of full column rank whose columns span
+ * the null space of C gives
+ *
+ *     M_e = P'MP,   K_e = P'KP,   e = Q - rank(C)
+ *
+ * The rank is what counts: a row of C that is rounding and no constraint would
+ * give a wrong system [McDaniel2000, table 3.3]. Coordinates are scaled to unit
+ * mass and the rows of one joint and kind by the largest among them, so that
+ * rounding stays small beside constraints; C' = Q_1 R and a singular value
+ * decomposition of the small R then show what is which. The system's modes
+ * Phi_e are put into P, so that its coordinates are modal.
+ */
+#include "base/alloc.h"
+#include "synthesis/joints.h"
+
+#include <ritz/eigen.h>
+#include <ritz/monitor.h>
+#include <ritz/synthesis.h>
+
+#include <lapacke.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Singular values below this, relative to the largest, are rounding. */
+static const double rank_tolerance = 1e-9;
+
+static ritz_joint_end describe_end(const ritz_stage *stage,
+                                   const ritz_scene_place *place,
+                                   const ritz_port_map *port)
+{
+    return (ritz_joint_end){
+        .component = stage->scene->component[place->component].name,
+        .port = port->name,
+        .origin = port->origin,
+        .count = port->count,
+        .dof = port->dof,
+        .position = port->position,
+    };
+}
+
+/* The ports that a joint holds. */
+static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
+                              const ritz_port_map *port[2])
+{
+    for (int k = 0; k < 2; k++) {
+        port[k] = ritz_reduced_port(&stage->body[joint->between[k].component],
+                                    joint->between[k].port);
+        if (!port[k]) {
+            char what[RITZ_NAME_SIZE + 60];
+
+            snprintf(what, sizeof what, "scene, line %" PRId64 ": joint '%s'",
+                     joint->line, joint->name);
+            return ritz_context(RITZ_ERR_ARGUMENT, what);
+        }
+    }
+    return RITZ_OK;
+}
+
+/* Row of C, in scaled coordinates: ends of opposite sign. */
+static void fill_row(const ritz_stage *stage, const ritz_joint *joint,
+                     const ritz_port_map *const port[2],
+                     const ritz_constraint *c, const double *scale, int64_t row,
+                     ritz_dense *C)
+{
+    for (int end = 0; end < 2; end++) {
+        int64_t first = stage->first[joint->between[end].component];
+        const ritz_dense *map = &port[end]->map;
+
+        for (int64_t j = 0; j < map->ncol; j++) {
+            double sum = 0.0;
+
+            for (int64_t k = 0; k < c->num_terms[end]; k++)
+                sum +=
+                    c->factor[end][k] * ritz_dense_col(map, j)[c->row[end][k]];
+            ritz_dense_col(C, first + j)[row] +=
+                (end == 0 ? sum : -sum) * scale[first + j];
+        }
+    }
+}
+
+static double row_norm(const ritz_dense *C, int64_t row)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < C->ncol; j++) {
+        double x = ritz_dense_col(C, j)[row];
+
+        sum += x * x;
+    }
+    return sqrt(sum);
+}
+
+/* Divide the rows of each kind by the largest norm among them. */
+static void level(const ritz_constraints *list, int64_t first, ritz_dense *C)
+{
+    double most[2] = {0.0, 0.0};
+
+    for (int64_t k = 0; k < list->count; k++) {
+        int kind = list->item[k].rotation;
+
+        most[kind] = fmax(most[kind], row_norm(C, first + k));
+    }
+    for (int64_t k = 0; k < list->count; k++)
+        for (int64_t j = 0; j < C->ncol; j++)
+            if (most[list->item[k].rotation] > 0.0)
+                ritz_dense_col(C, j)[first + k] /= most[list->item[k].rotation];
+}
+
+/* The constraints of every joint, and how many there are. */
+static ritz_status list_all(const ritz_stage *stage, const double *angle_deg,
+                            ritz_constraints *list, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    int64_t hinge = 0;
+
+    *count = 0;
+    for (int64_t j = 0; j < scene->num_joints; j++) {
+        const ritz_joint *joint = &scene->joint[j];
+        const ritz_port_map *port[2];
+        ritz_joint_end end[2];
+        bool turns = joint->type == RITZ_JOINT_HINGE;
+
+        RITZ_TRY(find_ports(stage, joint, port));
+        for (int k = 0; k < 2; k++)
+            end[k] = describe_end(stage, &joint->between[k], port[k]);
+        RITZ_TRY(ritz_joint_constrain(
+            joint, end, turns ? angle_deg[hinge] : 0.0, &list[j]));
+        hinge += turns;
+        *count += list[j].count;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_stage_constraints(const ritz_stage *stage,
+                                   const double *angle_deg, const double *scale,
+                                   ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    ritz_constraints *list = NULL;
+    ritz_dense C = {0};
+    int64_t count = 0;
+    int64_t first = 0;
+
+    RITZ_NEW(list, scene->num_joints);
+    RITZ_TRY(list_all(stage, angle_deg, list, &count));
+    RITZ_TRY(ritz_dense_new(count, stage->num_coordinates, &C));
+    for (int64_t j = 0; j < scene->num_joints; j++) {
+        const ritz_port_map *port[2];
+
+        RITZ_TRY(find_ports(stage, &scene->joint[j], port));
+        for (int64_t k = 0; k < list[j].count; k++)
+            fill_row(stage, &scene->joint[j], port, &list[j].item[k], scale,
+                     first + k, &C);
+        level(&list[j], first, &C);
+        first += list[j].count;
+    }
+    *out = C;
+    C = (ritz_dense){0};
+done:
+    for (int64_t j = 0; list && j < scene->num_joints; j++)
+        ritz_constraints_free(&list[j]);
+    free(list);
+    ritz_dense_free(&C);
+    return status;
+}
+
+/* How many singular values are more than rounding. */
+static int64_t count_rank(int64_t count, const double *sigma)
+{
+    int64_t rank = 0;
+
+    while (rank < count && sigma[rank] > rank_tolerance * sigma[0])
+        rank++;
+    return rank;
+}
+
+/*
+ * N = Q_1 [U_2, 0; 0, I] with C' = Q_1 [R; 0], R = U S W', U_2 the left vectors
+ * of no singular value: orthonormal, spans the null space of C.
+ */
+static ritz_status find_null_space(const ritz_dense *C, int64_t *rank,
+                                   ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = C->ncol;
+    int64_t c = C->nrow < n ? C->nrow : n;
+    ritz_dense F = {0}, R = {0}, U = {0}, N = {0};
+    double *tau = NULL, *sigma = NULL, *work = NULL;
+
+    RITZ_NEW(tau, c);
+    RITZ_NEW(sigma, c);
+    RITZ_NEW(work, c);
+    RITZ_TRY(ritz_dense_new(n, C->nrow, &F));
+    RITZ_TRY(ritz_dense_new(c, C->nrow, &R));
+    RITZ_TRY(ritz_dense_new(c, c, &U));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < C->nrow; i++)
+            ritz_dense_col(&F, i)[j] = ritz_dense_col(C, j)[i];
+    *rank = 0;
+    if (c > 0) {
+        RITZ_FAIL_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)n, (int)C->nrow,
+                                    F.val, (int)n, tau) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+        for (int64_t j = 0; j < C->nrow; j++)
+            for (int64_t i = 0; i <= j && i < c; i++)
+                ritz_dense_col(&R, j)[i] = ritz_dense_col(&F, j)[i];
+        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', (int)c,
+                                    (int)C->nrow, R.val, (int)c, sigma, U.val,
+                                    (int)c, NULL, 1, work) != 0,
+                     RITZ_ERR_CONVERGENCE,
+                     "singular values of the constraints do not converge");
+        *rank = count_rank(c, sigma);
+    }
+    RITZ_TRY(ritz_dense_new(n, n - *rank, &N));
+    for (int64_t j = *rank; j < n; j++)
+        if (j < c)
+            memcpy(ritz_dense_col(&N, j - *rank), ritz_dense_col(&U, j),
+                   (size_t)c * sizeof *N.val);
+        else
+            ritz_dense_col(&N, j - *rank)[j] = 1.0;
+    if (c > 0 && N.ncol > 0)
+        RITZ_FAIL_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', (int)n,
+                                    (int)N.ncol, (int)c, F.val, (int)n, tau,
+                                    N.val, (int)n) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+    *out = N;
+    N = (ritz_dense){0};
+done:
+    free(tau);
+    free(sigma);
+    free(work);
+    ritz_dense_free(&F);
+    ritz_dense_free(&R);
+    ritz_dense_free(&U);
+    ritz_dense_free(&N);
+    return status;
+}
+
+/* Rows first..first+count-1 of P. */
+static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
+                              ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(count, P->ncol, out));
+    for (int64_t j = 0; j < P->ncol && count > 0; j++)
+        memcpy(ritz_dense_col(out, j), ritz_dense_col(P, j) + first,
+               (size_t)count * sizeof *P->val);
+done:
+    return status;
+}
+
+/* A_e += P_k' A_k P_k. */
+static ritz_status add_block(const ritz_dense *A, const ritz_dense *P,
+                             ritz_dense *sum)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_congruence(A, P, &part));
+    for (int64_t k = 0; k < part.nrow * part.ncol; k++)
+        sum->val[k] += part.val[k];
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* M, K or D of the system, sum over bodies; NULL bodies without D. */
+static ritz_status project_all(const ritz_stage *stage, const ritz_dense *P,
+                               ritz_dense *K, ritz_dense *M, ritz_dense *D)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense block = {0};
+    bool damped = false;
+
+    for (int64_t k = 0; k < stage->count; k++)
+        damped = damped || stage->body[k].D.val;
+    RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, K));
+    RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, M));
+    if (damped)
+        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, D));
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+
+        RITZ_TRY(take_block(P, stage->first[k], body->K.ncol, &block));
+        RITZ_TRY(add_block(&body->K, &block, K));
+        RITZ_TRY(add_block(&body->M, &block, M));
+        if (body->D.val)
+            RITZ_TRY(add_block(&body->D, &block, D));
+        ritz_dense_free(&block);
+    }
+done:
+    ritz_dense_free(&block);
+    return status;
+}
+
+/* The system in coordinates P becomes that in its modes; P becomes P Phi. */
+static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
+                              ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense K = {0}, M = {0}, D = {0}, Q = {0};
+    ritz_pairs pairs = {0};
+    int64_t e = 0;
+
+    RITZ_TRY(project_all(stage, P, &K, &M, &D));
+    RITZ_TRY_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
+    e = pairs.Phi.ncol;
+    RITZ_TRY(ritz_dense_mul(P, &pairs.Phi, &Q));
+    if (D.val)
+        RITZ_TRY(ritz_dense_congruence(&D, &pairs.Phi, &c->D));
+    RITZ_TRY(ritz_dense_new(e, e, &c->K));
+    RITZ_TRY(ritz_dense_new(e, e, &c->M));
+    RITZ_NEW(c->lambda, e);
+    for (int64_t j = 0; j < e; j++) {
+        c->lambda[j] = ritz_dense_col(&c->K, j)[j] = pairs.lambda[j];
+        ritz_dense_col(&c->M, j)[j] = 1.0;
+    }
+    c->num_rigid = pairs.num_rigid;
+    ritz_dense_free(P);
+    *P = Q;
+    Q = (ritz_dense){0};
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&D);
+    ritz_dense_free(&Q);
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* Name, angles, blocks and io of a configuration with modal P. */
+static ritz_status finish(const ritz_stage *stage, const double *angle_deg,
+                          const ritz_dense *P, ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    char(*hinge)[RITZ_NAME_SIZE] = NULL;
+
+    RITZ_NEW(hinge, scene->num_hinges);
+    RITZ_NEW(c->angle_deg, scene->num_hinges);
+    c->num_angles = scene->num_hinges;
+    for (int64_t k = 0; k < scene->num_hinges; k++) {
+        memcpy(hinge[k], scene->joint[scene->hinge[k]].name, RITZ_NAME_SIZE);
+        c->angle_deg[k] = angle_deg[k];
+    }
+    ritz_configuration_name(scene->num_hinges, hinge, angle_deg, c->at);
+    RITZ_NEW(c->P, stage->count);
+    for (int64_t k = 0; k < stage->count; k++) {
+        c->num_blocks++;
+        RITZ_TRY(
+            take_block(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
+    }
+    RITZ_TRY(ritz_io_project(&stage->io, P, &c->io));
+done:
+    free(hinge);
+    return status;
+}
+
+ritz_status ritz_stage_assemble(const ritz_stage *stage,
+                                const double *angle_deg,
+                                ritz_configuration *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_configuration c = {0};
+    ritz_dense C = {0}, P = {0};
+    double *scale = NULL;
+
+    RITZ_NEW(scale, stage->num_coordinates);
+    ritz_stage_scale(stage, scale);
+    RITZ_TRY(ritz_stage_constraints(stage, angle_deg, scale, &C));
+    RITZ_TRY(find_null_space(&C, &c.rank, &P));
+    for (int64_t j = 0; j < P.ncol; j++)
+        for (int64_t i = 0; i < P.nrow; i++)
+            ritz_dense_col(&P, j)[i] *= scale[i];
+    RITZ_TRY(make_modal(stage, &P, &c));
+    RITZ_TRY(finish(stage, angle_deg, &P, &c));
+    *out = c;
+    c = (ritz_configuration){0};
+done:
+    free(scale);
+    ritz_dense_free(&C);
+    ritz_dense_free(&P);
+    ritz_configuration_free(&c);
+    return status;
+}

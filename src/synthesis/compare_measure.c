@@ -1,0 +1,214 @@
+/*
+ * The second system against the first. Both have modal coordinates of unit
+ * mass, so that with q_c = P_c x and q_c = V_c P2_c z
+ *
+ *     X = sum_c P_c' M_c V_c P2_c,    X_kj^2 = MAC of mode k and mode j
+ */
+#include "base/alloc.h"
+#include "synthesis/compare_parts.h"
+#include "verify/dense_poles.h"
+
+#include <ritz/eigen.h>
+#include <ritz/verify.h>
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Modes closer than this in frequency are one cluster. */
+static const double same_frequency = 1e-6;
+
+/*
+ * An eigenvalue of a dense pencil of order e is in error by up to
+ * c eps lambda_max; two are compared, and P and V add their own rounding.
+ */
+static const double rounding = 20.0; /* c = rounding * e */
+
+static ritz_status correlate(const ritz_stage *stage, const ritz_dense *V,
+                             const ritz_configuration *first,
+                             const ritz_configuration *second, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense VP = {0}, MVP = {0}, part = {0};
+
+    RITZ_TRY(ritz_dense_new(first->K.ncol, second->K.ncol, X));
+    for (int64_t c = 0; c < stage->count; c++) {
+        RITZ_TRY(ritz_dense_mul(&V[c], &second->P[c], &VP));
+        RITZ_TRY(ritz_dense_mul(&stage->body[c].M, &VP, &MVP));
+        RITZ_TRY(ritz_dense_mul_tn(&first->P[c], &MVP, &part));
+        for (int64_t k = 0; k < part.nrow * part.ncol; k++)
+            X->val[k] += part.val[k];
+        ritz_dense_free(&VP);
+        ritz_dense_free(&MVP);
+        ritz_dense_free(&part);
+    }
+done:
+    ritz_dense_free(&VP);
+    ritz_dense_free(&MVP);
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* The mode of the second system that is most like mode k, and how like. */
+static int64_t find_partner(const ritz_configuration *second,
+                            const ritz_dense *X, int64_t k, double *mac)
+{
+    int64_t best = second->num_rigid;
+    double sum = 0.0;
+
+    for (int64_t j = second->num_rigid; j < X->ncol; j++)
+        if (fabs(ritz_dense_col(X, j)[k]) > fabs(ritz_dense_col(X, best)[k]))
+            best = j;
+    for (int64_t j = second->num_rigid; j < X->ncol; j++)
+        if (fabs(sqrt(second->lambda[j] / second->lambda[best]) - 1.0) <=
+            same_frequency)
+            sum += ritz_dense_col(X, j)[k] * ritz_dense_col(X, j)[k];
+    *mac = sum;
+    return best;
+}
+
+/* Modes that are compared: the kept ones, or between angles those in band. */
+static bool compares(const ritz_compare_row *row, const ritz_scene *scene,
+                     const ritz_configuration *first, int64_t k)
+{
+    if (!row->listed)
+        return first->lambda[k] <= ritz_eigen_lambda(scene->band_hz[1]);
+    for (int64_t j = 0; j < row->num_kept; j++)
+        if (first->num_rigid + row->kept[j] == k)
+            return true;
+    return false;
+}
+
+/* Worst frequency against what rounding allows it, and smallest MAC. */
+static void measure_modes(const ritz_scene *scene,
+                          const ritz_configuration *first,
+                          const ritz_configuration *second, const ritz_dense *X,
+                          ritz_compare_row *row)
+{
+    int64_t e = first->K.ncol;
+    double c = rounding * (double)e;
+    double worst = -1.0;
+
+    row->mac = 1.0;
+    for (int64_t k = first->num_rigid; k < e; k++) {
+        double mac = 0.0, error = 0.0, allowed = 0.0;
+        int64_t j = 0;
+
+        if (!compares(row, scene, first, k) ||
+            second->K.ncol <= second->num_rigid)
+            continue;
+        j = find_partner(second, X, k, &mac);
+        error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
+        allowed = c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k];
+        row->mac = fmin(row->mac, mac);
+        if (error / (row->listed ? allowed : 1.0) > worst) {
+            worst = error / (row->listed ? allowed : 1.0);
+            row->frequency_error = error;
+            row->allowed = allowed;
+        }
+    }
+}
+
+static void measure_rigid(const ritz_configuration *second,
+                          ritz_compare_row *row)
+{
+    row->rigid_error = 0.0;
+    for (int64_t j = 0; j < second->num_rigid; j++)
+        row->rigid_error =
+            fmax(row->rigid_error, fabs(ritz_eigen_hertz(second->lambda[j])));
+}
+
+/* Relative to the largest entry of the first. */
+static ritz_status measure_gain(const ritz_configuration *first,
+                                const ritz_configuration *second,
+                                ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense one = {0}, two = {0};
+    double largest = 0.0;
+
+    RITZ_TRY(ritz_static_gain(&first->K, &first->M, &first->io, &one));
+    RITZ_TRY(ritz_static_gain(&second->K, &second->M, &second->io, &two));
+    largest = ritz_dense_max(&one);
+    for (int64_t k = 0; k < one.nrow * one.ncol; k++)
+        two.val[k] -= one.val[k];
+    row->gain_error = largest > 0.0 ? ritz_dense_max(&two) / largest : 0.0;
+done:
+    ritz_dense_free(&one);
+    ritz_dense_free(&two);
+    return status;
+}
+
+/* Poles of a configuration, damped as the scene says. */
+static ritz_status find_poles(const ritz_scene *scene,
+                              const ritz_configuration *c, ritz_poles *out)
+{
+    return ritz_poles_of_dense(&c->K, &c->M, c->D.val ? &c->D : NULL, &c->io,
+                               &scene->damping, out);
+}
+
+/* Largest difference over largest magnitude, on the first system's points. */
+static ritz_status measure_response(const ritz_scene *scene,
+                                    const ritz_configuration *first,
+                                    const ritz_configuration *second,
+                                    ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_grid grid = {
+        .from_hz = fmax(scene->band_hz[0], 1e-3 * scene->band_hz[1]),
+        .to_hz = scene->band_hz[1],
+        .count = 200,
+        .refine = true,
+    };
+    ritz_poles one = {0}, two = {0};
+    ritz_response r = {0}, s = {0};
+    double largest = 0.0, gap = 0.0;
+    int64_t size = first->io.num_inputs * first->io.num_outputs;
+
+    RITZ_TRY(find_poles(scene, first, &one));
+    RITZ_TRY(find_poles(scene, second, &two));
+    RITZ_TRY(ritz_response_new(&grid, &one, "modal", &scene->damping, &r));
+    RITZ_TRY(ritz_response_new(&grid, &one, "modal", &scene->damping, &s));
+    for (int64_t k = 0; k < r.count; k++) {
+        RITZ_TRY(ritz_poles_add(&one, r.hertz[k], r.H + k * size));
+        RITZ_TRY(ritz_poles_add(&two, r.hertz[k], s.H + k * size));
+    }
+    for (int64_t k = 0; k < r.count * size; k++) {
+        largest = fmax(largest, cabs(r.H[k]));
+        gap = fmax(gap, cabs(r.H[k] - s.H[k]));
+    }
+    row->response_error = largest > 0.0 ? gap / largest : 0.0;
+done:
+    ritz_poles_free(&one);
+    ritz_poles_free(&two);
+    ritz_response_free(&r);
+    ritz_response_free(&s);
+    return status;
+}
+
+ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
+                                 const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
+    ritz_dense X = {0};
+
+    row->num_rigid = first->num_rigid;
+    row->num_flexible = first->K.ncol - first->num_rigid;
+    row->order = second->K.ncol;
+    row->gain_error = row->response_error = NAN;
+    RITZ_TRY(correlate(stage, V, first, second, &X));
+    measure_modes(scene, first, second, &X, row);
+    measure_rigid(second, row);
+    if (driven)
+        RITZ_TRY(measure_gain(first, second, row));
+    if (driven && scene->band_hz[1] > 0.0 &&
+        scene->damping.kind != RITZ_DAMPING_NONE)
+        RITZ_TRY(measure_response(scene, first, second, row));
+done:
+    ritz_dense_free(&X);
+    return status;
+}

@@ -1,0 +1,279 @@
+/* A scene's models, loaded and reduced: the bodies that synthesis joins. */
+#include "base/alloc.h"
+
+#include <ritz/container.h>
+#include <ritz/method.h>
+#include <ritz/monitor.h>
+#include <ritz/synthesis.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WHAT_SIZE = 2 * RITZ_NAME_SIZE };
+
+/* "line 12: component 'rotor'": where in the scene a refusal comes from. */
+static ritz_status at_line(ritz_status status, int64_t line, const char *kind,
+                           const char *name)
+{
+    char what[WHAT_SIZE + 32];
+
+    snprintf(what, sizeof what, "scene, line %" PRId64 ": %s '%s'", line, kind,
+             name);
+    return ritz_context(status, what);
+}
+
+/* Append a port's name to a list with commas, once. */
+static ritz_status append_port(char **list, const char *port)
+{
+    ritz_status status = RITZ_OK;
+    size_t used = *list ? strlen(*list) : 0;
+    size_t length = strlen(port);
+    char *longer = NULL;
+
+    for (const char *at = *list; at && *at;) {
+        size_t word = strcspn(at, ",");
+
+        if (word == length && strncmp(at, port, length) == 0)
+            return RITZ_OK;
+        at += word + (at[word] != '\0');
+    }
+    RITZ_NEW(longer, (int64_t)(used + length + 2));
+    snprintf(longer, used + length + 2, "%s%s%s", used ? *list : "",
+             used ? "," : "", port);
+    free(*list);
+    *list = longer;
+done:
+    return status;
+}
+
+/* The ports of body k that a joint holds or an input drives. */
+static ritz_status used_ports(const ritz_scene *scene, int64_t k, char **out)
+{
+    ritz_status status = RITZ_OK;
+    char *list = NULL;
+
+    RITZ_NEW(list, 1);
+    for (int64_t j = 0; j < scene->num_joints; j++)
+        for (int end = 0; end < 2; end++)
+            if (scene->joint[j].between[end].component == k)
+                RITZ_TRY(append_port(&list, scene->joint[j].between[end].port));
+    for (int64_t j = 0; j < scene->num_inputs; j++)
+        if (scene->input[j].at.component == k)
+            RITZ_TRY(append_port(&list, scene->input[j].at.port));
+    *out = list;
+    list = NULL;
+done:
+    free(list);
+    return status;
+}
+
+/* Reduce a full model as the scene says. */
+static ritz_status reduce_body(const ritz_scene *scene, int64_t k,
+                               const ritz_component *component,
+                               ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_component *item = &scene->component[k];
+    ritz_request request = RITZ_REQUEST_NONE;
+    const ritz_method *method = ritz_method_find(item->basis);
+    ritz_basis basis = {0};
+    char *ports = NULL;
+
+    if (!method) {
+        status = RITZ_ERR_ARGUMENT;
+        goto done;
+    }
+    request.component = component;
+    request.modes = item->modes;
+    request.up_to_hz = item->up_to_hz;
+    if (!item->attach)
+        RITZ_TRY(used_ports(scene, k, &ports));
+    RITZ_TRY(ritz_component_attached(
+        component, item->attach ? item->attach : ports, &request.attached));
+    RITZ_TRY(ritz_basis_make(method, &request, &basis));
+    RITZ_TRY(ritz_reduce(component, &basis, out));
+done:
+    ritz_dofs_free(&request.attached);
+    ritz_basis_free(&basis);
+    free(ports);
+    return status;
+}
+
+static ritz_status load_body(const ritz_scene *scene, int64_t k,
+                             ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_component *item = &scene->component[k];
+    ritz_summary summary = {0};
+    ritz_component component = {0};
+
+    RITZ_TRY(ritz_container_summary(item->model, &summary));
+    if (strcmp(summary.kind, "reduced") == 0) {
+        RITZ_FAIL_IF(item->basis[0], RITZ_ERR_ARGUMENT,
+                     "'%s' is reduced already, so it takes no basis",
+                     item->model);
+        RITZ_TRY(ritz_container_read_reduced(item->model, out));
+        goto done;
+    }
+    RITZ_FAIL_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
+                 "'%s' is a full model, so a basis is due", item->model);
+    RITZ_TRY(ritz_container_read_component(item->model, &component));
+    RITZ_TRY(reduce_body(scene, k, &component, out));
+done:
+    ritz_summary_free(&summary);
+    ritz_component_free(&component);
+    return at_line(status, item->line, "component", item->name);
+}
+
+/* The port row that an input or output of the scene stands for. */
+static ritz_status find_row(const ritz_scene_io *io, const ritz_reduced *body,
+                            const ritz_port_map **port, int64_t *row)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_port_map *found = ritz_reduced_port(body, io->at.port);
+    int64_t matches = 0;
+
+    if (!found)
+        return RITZ_ERR_ARGUMENT;
+    for (int64_t k = 0; k < found->count; k++)
+        if (found->dof[k].component == io->component &&
+            (io->grid == 0 || found->dof[k].grid == io->grid)) {
+            *row = k;
+            matches++;
+        }
+    RITZ_FAIL_IF(matches == 0, RITZ_ERR_ARGUMENT,
+                 "port '%s' has no direction %" PRId64 "%s", found->name,
+                 io->component, io->grid ? " at that grid" : "");
+    RITZ_FAIL_IF(matches > 1, RITZ_ERR_ARGUMENT,
+                 "port '%s' has %" PRId64 " grids with direction %" PRId64
+                 ": name one with 'grid'",
+                 found->name, matches, io->component);
+    *port = found;
+done:
+    return status;
+}
+
+static ritz_status set_input(ritz_stage *stage, int64_t j)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_io *input = &stage->scene->input[j];
+    int64_t k = input->at.component;
+    const ritz_port_map *port = NULL;
+    int64_t row = 0;
+
+    RITZ_TRY(at_line(find_row(input, &stage->body[k], &port, &row), input->line,
+                     "input", input->name));
+    memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
+    for (int64_t i = 0; i < port->map.ncol; i++)
+        ritz_dense_col(&stage->io.B, j)[stage->first[k] + i] =
+            input->scale * ritz_dense_col(&port->map, i)[row];
+done:
+    return status;
+}
+
+static ritz_status set_output(ritz_stage *stage, int64_t j)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_io *output = &stage->scene->output[j];
+    ritz_dense *const into[] = {&stage->io.C, &stage->io.Cv, &stage->io.Ca};
+    int64_t k = output->at.component;
+    const ritz_port_map *port = NULL;
+    int64_t row = 0;
+
+    RITZ_TRY(at_line(find_row(output, &stage->body[k], &port, &row),
+                     output->line, "output", output->name));
+    memcpy(stage->io.output[j], output->name, RITZ_NAME_SIZE);
+    stage->io.limit[j] = output->limit;
+    for (int64_t i = 0; i < port->map.ncol; i++)
+        ritz_dense_col(into[output->derivative], stage->first[k] + i)[j] =
+            ritz_dense_col(&port->map, i)[row];
+done:
+    return status;
+}
+
+/* Count coordinates and set up the scene's inputs and outputs. */
+static ritz_status complete(ritz_stage *stage)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+
+    RITZ_NEW(stage->first, stage->count);
+    for (int64_t k = 0; k < stage->count; k++) {
+        stage->first[k] = stage->num_coordinates;
+        stage->num_coordinates += stage->body[k].K.ncol;
+    }
+    RITZ_TRY(ritz_io_new(stage->num_coordinates, scene->num_inputs,
+                         scene->num_outputs, &stage->io));
+    for (int64_t j = 0; j < scene->num_inputs; j++)
+        RITZ_TRY(set_input(stage, j));
+    for (int64_t j = 0; j < scene->num_outputs; j++)
+        RITZ_TRY(set_output(stage, j));
+done:
+    return status;
+}
+
+ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_stage stage = {.scene = scene};
+
+    RITZ_NEW(stage.body, scene->num_components);
+    for (int64_t k = 0; k < scene->num_components; k++) {
+        ritz_monitor_step("component", k, scene->num_components);
+        RITZ_TRY(load_body(scene, k, &stage.body[k]));
+        stage.count++;
+    }
+    RITZ_TRY(complete(&stage));
+    *out = stage;
+    stage = (ritz_stage){0};
+done:
+    ritz_stage_free(&stage);
+    return status;
+}
+
+ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
+                            ritz_stage *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_stage stage = {.scene = scene};
+
+    RITZ_NEW(stage.body, scene->num_components);
+    stage.count = scene->num_components;
+    memcpy(stage.body, body, (size_t)stage.count * sizeof *body);
+    RITZ_TRY(complete(&stage));
+    memset(body, 0, (size_t)stage.count * sizeof *body);
+    *out = stage;
+    stage = (ritz_stage){0};
+done:
+    if (stage.body)
+        memset(stage.body, 0, (size_t)stage.count * sizeof *stage.body);
+    ritz_stage_free(&stage);
+    return status;
+}
+
+void ritz_stage_scale(const ritz_stage *stage, double *scale)
+{
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+
+        for (int64_t j = 0; j < body->K.ncol; j++) {
+            double m = ritz_dense_col(&body->M, j)[j];
+            double own = m > 0.0 ? m : ritz_dense_col(&body->K, j)[j];
+
+            scale[stage->first[k] + j] = own > 0.0 ? 1.0 / sqrt(own) : 1.0;
+        }
+    }
+}
+
+void ritz_stage_free(ritz_stage *stage)
+{
+    for (int64_t k = 0; stage->body && k < stage->count; k++)
+        ritz_reduced_free(&stage->body[k]);
+    free(stage->body);
+    free(stage->first);
+    ritz_io_free(&stage->io);
+    *stage = (ritz_stage){0};
+}

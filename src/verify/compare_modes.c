@@ -1,0 +1,155 @@
+/* Measures between the modes of two models. */
+#include "verify/compare_sides.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* The edge of a band belongs to it, and rounding of the edge too. */
+static const double edge = 1e-9;
+
+/* The largest (or smallest) of something, and the full mode where it is. */
+typedef struct extreme {
+    double value;
+    int64_t mode; /* -1: there was none */
+} extreme;
+
+static bool in_band(const ritz_sides *sides, double lambda)
+{
+    double hertz = ritz_eigen_hertz(lambda);
+
+    return hertz >= sides->band_hz[0] * (1.0 - edge) &&
+           hertz <= sides->band_hz[1] * (1.0 + edge);
+}
+
+static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
+{
+    double full = sqrt(sides->full.lambda[k]);
+    double reduced = sqrt(sides->reduced.lambda[r]);
+
+    return fabs(reduced - full) / full;
+}
+
+static double damping_error(const ritz_sides *sides, int64_t k, int64_t r)
+{
+    double full = sides->zeta_full[k];
+    double reduced = sides->zeta_reduced[r];
+
+    if (full == reduced)
+        return 0.0;
+    return fabs(reduced - full) / fmax(fabs(full), fabs(reduced));
+}
+
+static void keep(extreme *of, double sign, double value, int64_t mode)
+{
+    if (isnan(value) || (of->mode >= 0 && sign * value <= sign * of->value))
+        return;
+    of->value = value;
+    of->mode = mode;
+}
+
+static ritz_status add(const ritz_sides *sides, const char *name, double limit,
+                       extreme found, ritz_measures *out)
+{
+    char where[RITZ_NAME_SIZE];
+
+    if (found.mode < 0)
+        return RITZ_OK;
+    (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz",
+                   found.mode + 1,
+                   ritz_eigen_hertz(sides->full.lambda[found.mode]));
+    return ritz_measures_add(out, name, found.value, limit, where);
+}
+
+/* A count, and the first that was counted. */
+static ritz_status add_count(const char *name, int64_t count, int64_t first,
+                             const ritz_poles *poles, double limit,
+                             ritz_measures *out)
+{
+    char where[RITZ_NAME_SIZE] = "";
+
+    if (count > 0)
+        (void)snprintf(where, sizeof where, "first: mode %" PRId64 ", %.4g Hz",
+                       first + 1, ritz_eigen_hertz(poles->lambda[first]));
+    return ritz_measures_add(out, name, (double)count, limit, where);
+}
+
+static ritz_status add_missing(const ritz_sides *sides, double limit,
+                               ritz_measures *out)
+{
+    const ritz_match *match = &sides->match;
+    int64_t count = 0;
+    int64_t first = -1;
+
+    for (int64_t k = sides->full.num_rigid; k < match->count; k++)
+        if (match->partner[k] < 0 && in_band(sides, sides->full.lambda[k])) {
+            first = count == 0 ? k : first;
+            count++;
+        }
+    return add_count("missing-modes", count, first, &sides->full, limit, out);
+}
+
+static ritz_status add_extra(const ritz_sides *sides, ritz_measures *out)
+{
+    const ritz_match *match = &sides->match;
+    int64_t count = 0;
+    int64_t first = -1;
+
+    for (int64_t r = sides->reduced.num_rigid; r < match->num_reduced; r++)
+        if (!match->taken[r] && in_band(sides, sides->reduced.lambda[r])) {
+            first = count == 0 ? r : first;
+            count++;
+        }
+    return add_count("extra-modes", count, first, &sides->reduced, nan(""),
+                     out);
+}
+
+/* As many modes as the full model has rigid ones: how far from 0 they are. */
+static ritz_status add_rigid(const ritz_sides *sides, ritz_measures *out)
+{
+    double largest = 0.0;
+
+    for (int64_t k = 0; k < sides->full.num_rigid && k < sides->small.Phi.ncol;
+         k++)
+        largest = fmax(largest, fabs(ritz_eigen_hertz(sides->small.lambda[k])));
+    return sides->full.num_rigid > 0
+               ? ritz_measures_add(out, "rigid-hertz", largest, nan(""), "")
+               : RITZ_OK;
+}
+
+ritz_status ritz_sides_modes(const ritz_sides *sides,
+                             const ritz_verify_request *request,
+                             ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_match *match = &sides->match;
+    extreme frequency = {0.0, -1};
+    extreme mac = {0.0, -1};
+    extreme damping = {0.0, -1};
+    /* a frequency that is asked to be near must be there */
+    double none_missing = isnan(request->limit_frequency) ? nan("") : 0.0;
+
+    for (int64_t k = sides->full.num_rigid; k < match->count; k++) {
+        int64_t r = match->partner[k];
+
+        if (!in_band(sides, sides->full.lambda[k]))
+            continue;
+        keep(&mac, -1.0, match->mac[k], k);
+        if (r < 0)
+            continue;
+        keep(&frequency, 1.0, frequency_error(sides, k, r), k);
+        if (!sides->assumed)
+            keep(&damping, 1.0, damping_error(sides, k, r), k);
+    }
+    RITZ_TRY(add(sides, "frequency-relative", request->limit_frequency,
+                 frequency, out));
+    if (sides->shapes || sides->outputs)
+        RITZ_TRY(add(sides, "mac", request->limit_mac, mac, out));
+    RITZ_TRY(
+        add(sides, "damping-relative", request->limit_damping, damping, out));
+    RITZ_TRY(add_rigid(sides, out));
+    RITZ_TRY(add_missing(sides, none_missing, out));
+    RITZ_TRY(add_extra(sides, out));
+done:
+    return status;
+}

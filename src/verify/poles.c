@@ -1,0 +1,294 @@
+#include "verify/poles.h"
+
+#include "base/alloc.h"
+
+#include <complex.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+/* Modal matrices whose other entries are smaller than this, against what
+   stands on the diagonal, are diagonal: the error is of its square. */
+static const double diagonal_within = 1e-9;
+/* Of w^2: nearer to an undamped pole than this there is no answer. */
+static const double pole_within = 1e-12;
+/* Of the product of all modes' shares: what is below is not driven and seen. */
+static const double unseen_below = 1e-10;
+
+static bool couples(const ritz_dense *A)
+{
+    double largest = 0.0;
+
+    for (int64_t k = 0; k < A->ncol; k++)
+        largest = fmax(largest, fabs(ritz_dense_col(A, k)[k]));
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < j; i++) {
+            double own = sqrt(fabs(ritz_dense_col(A, i)[i]) *
+                              fabs(ritz_dense_col(A, j)[j]));
+
+            if (!(fabs(ritz_dense_col(A, j)[i]) <=
+                  diagonal_within * own + 1e-15 * largest))
+                return true;
+        }
+    return false;
+}
+
+static ritz_status copy(const ritz_dense *A, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol, out));
+    memcpy(out->val, A->val, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
+done:
+    return status;
+}
+
+/* K4 is kept whole where there is any: it has no rate. */
+static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
+                                ritz_poles *poles)
+{
+    ritz_status status = RITZ_OK;
+    bool has_k4 = K4 && K4->val;
+
+    if (D && D->val) {
+        for (int64_t k = 0; k < poles->count; k++)
+            poles->rate[k] += ritz_dense_col(D, k)[k];
+        poles->coupled = couples(D);
+        RITZ_TRY(copy(D, &poles->D));
+    } else if (has_k4) {
+        RITZ_TRY(ritz_dense_new(poles->count, poles->count, &poles->D));
+    }
+    if (has_k4) {
+        poles->coupled = true;
+        RITZ_TRY(copy(K4, &poles->K4));
+    }
+    for (int64_t k = 0; poles->D.val && k < poles->count; k++)
+        ritz_dense_col(&poles->D, k)[k] = poles->rate[k];
+done:
+    return status;
+}
+
+ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
+                           const ritz_dense *K4, const ritz_io *io,
+                           const ritz_damping *damping, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_poles poles = {.count = pairs->Phi.ncol,
+                        .num_rigid = pairs->num_rigid};
+
+    RITZ_NEW(poles.lambda, poles.count);
+    RITZ_NEW(poles.rate, poles.count);
+    for (int64_t k = 0; k < poles.count; k++) {
+        bool rigid = k < poles.num_rigid;
+        double w = rigid ? 0.0 : sqrt(fmax(pairs->lambda[k], 0.0));
+
+        poles.lambda[k] = w * w;
+        if (damping && !rigid)
+            poles.rate[k] = 2.0 * w * ritz_damping_ratio(damping, w);
+        /* a M + b K damps rigid motion too; a ratio does not */
+        if (damping && rigid && damping->kind == RITZ_DAMPING_RAYLEIGH)
+            poles.rate[k] = damping->a;
+    }
+    RITZ_TRY(add_matrices(D, K4, &poles));
+    RITZ_TRY(ritz_io_project(io, &pairs->Phi, &poles.io));
+    *out = poles;
+    poles = (ritz_poles){0};
+done:
+    ritz_poles_free(&poles);
+    return status;
+}
+
+/* Whether any output sees, through mode k, any input; of what all modes do. */
+static bool matters(const ritz_poles *poles, int64_t k)
+{
+    const ritz_io *io = &poles->io;
+
+    for (int64_t j = 0; j < io->num_inputs; j++) {
+        const double *b = ritz_dense_col(&io->B, j);
+        double driven = 0.0;
+
+        for (int64_t m = 0; m < poles->count; m++)
+            driven = fmax(driven, fabs(b[m]));
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            double seen = 0.0;
+            double own = fabs(ritz_dense_col(&io->C, k)[i]) +
+                         fabs(ritz_dense_col(&io->Cv, k)[i]);
+
+            for (int64_t m = 0; m < poles->count; m++)
+                seen = fmax(seen, fabs(ritz_dense_col(&io->C, m)[i]) +
+                                      fabs(ritz_dense_col(&io->Cv, m)[i]));
+            if (fabs(b[k]) * own > unseen_below * driven * seen)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* One over the pole's factor; 0 where it is infinite and does not matter. */
+static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
+                          double _Complex *out)
+{
+    ritz_status status = RITZ_OK;
+    double w = 2.0 * pi * hertz;
+    double _Complex z =
+        ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
+    bool on_pole = cabs(z) <= pole_within * (poles->lambda[k] + w * w);
+
+    *out = 0.0;
+    if (on_pole) {
+        RITZ_FAIL_IF(matters(poles, k) && k < poles->num_rigid,
+                     RITZ_ERR_SINGULAR,
+                     "at 0 Hz the response is infinite: a rigid-body motion is "
+                     "driven and seen, begin above 0 Hz");
+        RITZ_FAIL_IF(matters(poles, k), RITZ_ERR_SINGULAR,
+                     "%.9g Hz is the frequency of an undamped mode: give it "
+                     "damping or leave the point out",
+                     hertz);
+    } else {
+        *out = 1.0 / z;
+    }
+done:
+    return status;
+}
+
+static ritz_status solve_apart(const ritz_poles *poles, double hertz,
+                               double _Complex *q)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex g = 0.0;
+
+    for (int64_t k = 0; k < poles->count; k++) {
+        RITZ_TRY(invert(poles, k, hertz, &g));
+        for (int64_t j = 0; j < poles->io.num_inputs; j++)
+            q[k + j * poles->count] = g * ritz_dense_col(&poles->io.B, j)[k];
+    }
+done:
+    return status;
+}
+
+/* Z = Lambda - w^2 I + i (w D + K4), lower triangle and all. */
+static void assemble(const ritz_poles *poles, double w, double _Complex *Z)
+{
+    int64_t m = poles->count;
+
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++) {
+            double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, j)[i] : 0.0;
+            double d = w * ritz_dense_col(&poles->D, j)[i];
+
+            Z[i + j * m] =
+                ritz_complex(i == j ? poles->lambda[j] - w * w : 0.0, d + k4);
+        }
+}
+
+static ritz_status solve_together(const ritz_poles *poles, double hertz,
+                                  double _Complex *q)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = poles->count;
+    int64_t inputs = poles->io.num_inputs;
+    double _Complex *Z = NULL;
+    lapack_int *pivot = NULL;
+    double norm = 0.0;
+    double rcond = 0.0;
+    int info = 0;
+
+    RITZ_NEW(Z, m * m);
+    RITZ_NEW(pivot, m);
+    assemble(poles, 2.0 * pi * hertz, Z);
+    for (int64_t k = 0; k < m * inputs; k++)
+        q[k] = poles->io.B.val[k];
+    norm = LAPACKE_zlansy(LAPACK_COL_MAJOR, '1', 'L', (int)m, Z, (int)m);
+    info = LAPACKE_zsytrf(LAPACK_COL_MAJOR, 'L', (int)m, Z, (int)m, pivot);
+    if (info == 0)
+        info = LAPACKE_zsycon(LAPACK_COL_MAJOR, 'L', (int)m, Z, (int)m, pivot,
+                              norm, &rcond);
+    RITZ_FAIL_IF(info != 0 || !(rcond > 1e-16), RITZ_ERR_SINGULAR,
+                 "the response at %.9g Hz is infinite: an undamped mode, or at "
+                 "0 Hz a rigid-body motion",
+                 hertz);
+    (void)LAPACKE_zsytrs(LAPACK_COL_MAJOR, 'L', (int)m, (int)inputs, Z, (int)m,
+                         pivot, q, (int)m);
+done:
+    free(Z);
+    free(pivot);
+    return status;
+}
+
+ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
+                             double _Complex *q)
+{
+    if (poles->count == 0 || poles->io.num_inputs == 0)
+        return RITZ_OK;
+    return poles->coupled ? solve_together(poles, hertz, q)
+                          : solve_apart(poles, hertz, q);
+}
+
+/*
+ * A rigid mode at 0 Hz has no finite q, but an acceleration: -w^2 q = b, which
+ * ritz_poles_solve leaves to this.
+ */
+static void add_rigid_acceleration(const ritz_poles *poles, double _Complex *H)
+{
+    const ritz_io *io = &poles->io;
+
+    for (int64_t k = 0; k < poles->num_rigid; k++)
+        for (int64_t i = 0; poles->rate[k] == 0.0 && i < io->num_outputs; i++)
+            for (int64_t j = 0; j < io->num_inputs; j++)
+                H[i * io->num_inputs + j] += ritz_dense_col(&io->Ca, k)[i] *
+                                             ritz_dense_col(&io->B, j)[k];
+}
+
+ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
+                           double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex *q = NULL;
+
+    RITZ_NEW(q, poles->count * poles->io.num_inputs);
+    RITZ_TRY(ritz_poles_solve(poles, hertz, q));
+    ritz_response_see(&poles->io, hertz, q, H);
+    if (hertz == 0.0 && !poles->coupled)
+        add_rigid_acceleration(poles, H);
+done:
+    free(q);
+    return status;
+}
+
+ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
+                              double **zeta)
+{
+    ritz_status status = RITZ_OK;
+    double *w = NULL;
+    double *z = NULL;
+
+    RITZ_NEW(w, poles->count);
+    RITZ_NEW(z, poles->count);
+    for (int64_t k = 0; k < poles->count; k++) {
+        double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, k)[k] : 0.0;
+
+        w[k] = sqrt(poles->lambda[k]);
+        if (w[k] > 0.0)
+            z[k] = (poles->rate[k] + k4 / w[k]) / (2.0 * w[k]);
+    }
+    *omega = w;
+    *zeta = z;
+    w = NULL;
+    z = NULL;
+done:
+    free(w);
+    free(z);
+    return status;
+}
+
+void ritz_poles_free(ritz_poles *poles)
+{
+    free(poles->lambda);
+    free(poles->rate);
+    ritz_dense_free(&poles->D);
+    ritz_dense_free(&poles->K4);
+    ritz_io_free(&poles->io);
+    *poles = (ritz_poles){0};
+}

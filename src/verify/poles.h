@@ -1,0 +1,101 @@
+/*
+ * Some modes of a model with their share of its inputs and outputs, and the
+ * response they make:
+ *
+ *     (Lambda - w^2 I + i w (d + D) + i K4) q = B u,
+ *     y = (C + i w Cv - w^2 Ca) q
+ */
+#ifndef RITZ_VERIFY_POLES_H
+#define RITZ_VERIFY_POLES_H
+
+#include <ritz/damping.h>
+#include <ritz/eigen.h>
+#include <ritz/response.h>
+
+/* CMPLX is not to be had of every compiler, and I is a float. */
+static inline double _Complex ritz_complex(double re, double im)
+{
+    return re + (double _Complex)_Complex_I * im;
+}
+
+typedef struct ritz_poles {
+    int64_t count;
+    int64_t num_rigid;
+    double *lambda; /* count, 0 where rigid  [rad^2/s^2] */
+    double *rate;   /* count, 2 zeta w of given ratios and D's diagonal */
+    bool coupled;   /* D or K4 couple modes: below are what to use */
+    ritz_dense D;   /* count x count, with `rate` on its diagonal, or {0} */
+    ritz_dense K4;  /* count x count, or {0} */
+    ritz_io io;     /* for the modes */
+} ritz_poles;
+
+/* Modal matrices are borrowed until the call ends; {0} or NULL: none. */
+ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
+                           const ritz_dense *K4, const ritz_io *io,
+                           const ritz_damping *damping, ritz_poles *out);
+
+/**
+ * Modal coordinates at one frequency.
+ *
+ * @param[out] q  count x num_inputs, column-major
+ * @return RITZ_ERR_SINGULAR if that is on an undamped pole, or at 0 Hz where
+ *         rigid modes are driven and seen
+ */
+ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
+                             double _Complex *q);
+
+/** Add what the modes answer to H, num_outputs x num_inputs, row by row. */
+ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
+                           double _Complex *H);
+
+/** Damping ratio of each mode, from its rate; 0 where rigid. */
+ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
+                              double **zeta);
+
+void ritz_poles_free(ritz_poles *poles);
+
+/** Whether a grid is one. @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_grid_check(const ritz_grid *grid);
+
+/** Response of zeros at the points of a grid, for these modes. */
+ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
+                              const char *method, const ritz_damping *damping,
+                              ritz_response *out);
+
+/**
+ * Modes of a component up to a frequency, and what they make of its damping.
+ *
+ * @param[out] pairs  may be NULL: not wanted
+ */
+ritz_status ritz_poles_of_component(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    double up_to_hz, ritz_pairs *pairs,
+                                    ritz_poles *out);
+
+/*
+ * What the modes that were left out answer, without damping: with K^+ the
+ * inverse of K where they live, X = sum_j w^(2j) R_j, R_0 = K^+ B and
+ * R_j = K^+ M R_(j-1); of it only what the outputs see.
+ */
+typedef struct ritz_residual {
+    int64_t count, num_outputs, num_inputs;
+    double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
+                            as ritz_dense */
+} ritz_residual;
+
+/** @param[in] to_hz  where the series is to be good to 1e-12 */
+ritz_status ritz_residual_new(const ritz_component *component,
+                              const ritz_pairs *pairs, double to_hz,
+                              ritz_residual *out);
+
+/** H += the residual's share. */
+void ritz_residual_add(const ritz_residual *residual, double hertz,
+                       double _Complex *H);
+
+void ritz_residual_free(ritz_residual *residual);
+
+/** H += (C + i w Cv - w^2 Ca) X, X n x num_inputs; H as above. */
+void ritz_response_see(const ritz_io *io, double hertz,
+                       const double _Complex *X, double _Complex *H);
+
+#endif

@@ -1,0 +1,228 @@
+/*
+ * The answer of all modes above those of `pairs`, free bodies included:
+ *
+ *     K R_0 = B - M Phi Phi'B,   K R_j = M R_(j-1),   Phi'M R_j = 0
+ *
+ * Each is consistent, the rigid modes being among Phi, and is solved with
+ * A = K - sigma M, sigma < 0, by
+ *
+ *     A R_new = f - sigma M R,
+ *
+ * whose error falls by |sigma| / (lambda + |sigma|) a step, lambda being of the
+ * first mode that is left out. The series falls by (w / w_out)^2 a term.
+ */
+#include "verify/poles.h"
+
+#include "base/alloc.h"
+
+#include <ritz/factor.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Steps shrink by 100 or more, so that 8 reach rounding; a body of which no
+   flexible mode is kept may need more. */
+enum { MOST_STEPS = 200, MOST_TERMS = 40 };
+static const double settled = 1e-14;
+static const double small_shift = 0.01;
+static const double series_within = 1e-12;
+
+/* What the terms are solved with. */
+typedef struct solver {
+    const ritz_sparse *M;
+    const ritz_dense *Phi;
+    ritz_dense MPhi;
+    ritz_factor *F;
+    double sigma;
+} solver;
+
+/* X -= A (B'X) */
+static ritz_status remove_modes(const ritz_dense *A, const ritz_dense *B,
+                                ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense q = {0};
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(B, X, &q));
+    RITZ_TRY(ritz_dense_mul(A, &q, &part));
+    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
+        X->val[k] -= part.val[k];
+done:
+    ritz_dense_free(&q);
+    ritz_dense_free(&part);
+    return status;
+}
+
+static ritz_status solver_new(const ritz_component *component,
+                              const ritz_pairs *pairs, solver *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = pairs->Phi.ncol;
+    ritz_sparse A = {0};
+
+    s->M = &component->M;
+    s->Phi = &pairs->Phi;
+    s->sigma = pairs->sigma < 0.0 ? pairs->sigma : -1.0;
+    if (m > pairs->num_rigid)
+        s->sigma = -small_shift * pairs->lambda[m - 1];
+    RITZ_TRY(ritz_sparse_mul(s->M, s->Phi, &s->MPhi));
+    RITZ_TRY(ritz_sparse_add(1.0, &component->K, -s->sigma, &component->M, &A));
+    RITZ_TRY_IN("static answer", ritz_factor_spd(&A, &s->F));
+done:
+    ritz_sparse_free(&A);
+    return status;
+}
+
+static bool stands_still(const ritz_dense *a, const ritz_dense *b)
+{
+    double change = 0.0;
+    double size = 0.0;
+
+    for (int64_t k = 0; k < a->nrow * a->ncol; k++) {
+        change = fmax(change, fabs(a->val[k] - b->val[k]));
+        size = fmax(size, fabs(a->val[k]));
+    }
+    return change <= settled * size;
+}
+
+/* K R = f in the space of what was left out; f is made to lie there. */
+static ritz_status solve(const solver *s, ritz_dense *f, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense R = {0};
+    ritz_dense next = {0};
+    bool still = false;
+
+    RITZ_TRY(remove_modes(&s->MPhi, s->Phi, f));
+    RITZ_TRY(ritz_dense_new(f->nrow, f->ncol, &R));
+    for (int step = 0; step < MOST_STEPS && !still; step++) {
+        RITZ_TRY(ritz_sparse_mul(s->M, &R, &next));
+        for (int64_t k = 0; k < f->nrow * f->ncol; k++)
+            next.val[k] = f->val[k] - s->sigma * next.val[k];
+        RITZ_TRY(ritz_factor_solve(s->F, &next));
+        RITZ_TRY(remove_modes(s->Phi, &s->MPhi, &next));
+        still = stands_still(&next, &R);
+        ritz_dense_free(&R);
+        R = next;
+        next = (ritz_dense){0};
+    }
+    *out = R;
+    R = (ritz_dense){0};
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&next);
+    return status;
+}
+
+/* Term j as the outputs see it. */
+static ritz_status see(const ritz_dense *C, const ritz_dense *R, int64_t j,
+                       double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense CR = {0};
+
+    RITZ_TRY(ritz_dense_mul(C, R, &CR));
+    memcpy(out + j * CR.nrow * CR.ncol, CR.val,
+           (size_t)(CR.nrow * CR.ncol) * sizeof *out);
+done:
+    ritz_dense_free(&CR);
+    return status;
+}
+
+static ritz_status add_terms(const ritz_component *component, const solver *s,
+                             ritz_residual *r)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &component->io;
+    ritz_dense f = {0};
+    ritz_dense R = {0};
+
+    RITZ_TRY(ritz_dense_new(io->B.nrow, io->B.ncol, &f));
+    memcpy(f.val, io->B.val, (size_t)(f.nrow * f.ncol) * sizeof *f.val);
+    for (int64_t j = 0; j < r->count; j++) {
+        RITZ_TRY(solve(s, &f, &R));
+        RITZ_TRY(see(&io->C, &R, j, r->C));
+        RITZ_TRY(see(&io->Cv, &R, j, r->Cv));
+        RITZ_TRY(see(&io->Ca, &R, j, r->Ca));
+        ritz_dense_free(&f);
+        RITZ_TRY(ritz_sparse_mul(&component->M, &R, &f));
+        ritz_dense_free(&R);
+    }
+done:
+    ritz_dense_free(&f);
+    ritz_dense_free(&R);
+    return status;
+}
+
+/* Terms until (to / out)^(2 j) is small, of the highest mode that is kept. */
+static int64_t count_terms(const ritz_pairs *pairs, double to_hz)
+{
+    int64_t m = pairs->Phi.ncol;
+    double falls = 0.0;
+
+    if (m <= pairs->num_rigid)
+        return MOST_TERMS / 2;
+    falls = ritz_eigen_lambda(to_hz) / pairs->lambda[m - 1];
+    if (!(falls < 1.0))
+        return MOST_TERMS;
+    return (int64_t)fmin(MOST_TERMS,
+                         1.0 + ceil(log(series_within) / log(falls)));
+}
+
+ritz_status ritz_residual_new(const ritz_component *component,
+                              const ritz_pairs *pairs, double to_hz,
+                              ritz_residual *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &component->io;
+    int64_t pm = io->num_outputs * io->num_inputs;
+    ritz_residual r = {.num_outputs = io->num_outputs,
+                       .num_inputs = io->num_inputs};
+    solver s = {0};
+
+    if (pairs->Phi.ncol < component->num_dofs && pm > 0)
+        r.count = count_terms(pairs, to_hz);
+    RITZ_NEW(r.C, r.count * pm);
+    RITZ_NEW(r.Cv, r.count * pm);
+    RITZ_NEW(r.Ca, r.count * pm);
+    if (r.count > 0) {
+        RITZ_TRY(solver_new(component, pairs, &s));
+        RITZ_TRY(add_terms(component, &s, &r));
+    }
+    *out = r;
+    r = (ritz_residual){0};
+done:
+    ritz_dense_free(&s.MPhi);
+    ritz_factor_free(&s.F);
+    ritz_residual_free(&r);
+    return status;
+}
+
+void ritz_residual_add(const ritz_residual *residual, double hertz,
+                       double _Complex *H)
+{
+    double w2 = ritz_eigen_lambda(hertz);
+    double w = sqrt(w2);
+    double power = 1.0;
+    int64_t p = residual->num_outputs;
+    int64_t k = 0;
+
+    for (int64_t term = 0; term < residual->count; term++) {
+        for (int64_t j = 0; j < residual->num_inputs; j++)
+            for (int64_t i = 0; i < p; i++, k++)
+                H[i * residual->num_inputs + j] +=
+                    power * ritz_complex(residual->C[k] - w2 * residual->Ca[k],
+                                         w * residual->Cv[k]);
+        power *= w2;
+    }
+}
+
+void ritz_residual_free(ritz_residual *residual)
+{
+    free(residual->C);
+    free(residual->Cv);
+    free(residual->Ca);
+    *residual = (ritz_residual){0};
+}

@@ -1,0 +1,472 @@
+#include "samples.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void fill(ritz_dense *A, double first)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        A->val[k] = first + 0.125 * (double)k;
+}
+
+static ritz_status filled(int64_t n, int64_t m, double first, ritz_dense *out)
+{
+    ritz_status status = ritz_dense_new(n, m, out);
+
+    if (status == RITZ_OK)
+        fill(out, first);
+    return status;
+}
+
+/* Symmetric and tridiagonal. */
+static ritz_status chain(double scale, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+
+    RITZ_TRY(
+        ritz_sparse_new(SAMPLE_DOFS, SAMPLE_DOFS, 3 * SAMPLE_DOFS - 2, out));
+    for (int64_t j = 0; j < SAMPLE_DOFS; j++) {
+        for (int64_t i = j - 1; i <= j + 1; i++) {
+            if (i < 0 || i >= SAMPLE_DOFS)
+                continue;
+            out->rowind[count] = i;
+            out->val[count++] = scale * (i == j ? 2.0 : -1.0 / (double)(i + j));
+        }
+        out->colptr[j + 1] = count;
+    }
+done:
+    return status;
+}
+
+static ritz_status label(int64_t count, ritz_dof **out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(*out, count);
+    for (int64_t k = 0; k < count; k++)
+        (*out)[k] = (ritz_dof){101 + k / 6, 1 + k % 6};
+done:
+    return status;
+}
+
+static ritz_status sample_io(int64_t n, ritz_io *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_io_new(n, 2, 3, out));
+    snprintf(out->input[0], RITZ_NAME_SIZE, "torque");
+    snprintf(out->input[1], RITZ_NAME_SIZE, "force at the tip");
+    snprintf(out->output[0], RITZ_NAME_SIZE, "gyro");
+    snprintf(out->output[1], RITZ_NAME_SIZE, "encoder");
+    snprintf(out->output[2], RITZ_NAME_SIZE, "accelerometer");
+    out->limit[1] = 1e-3;
+    fill(&out->B, 1.0);
+    fill(&out->C, 2.0);
+    fill(&out->Cv, -3.0);
+    fill(&out->Ca, 4.0);
+done:
+    return status;
+}
+
+static ritz_status sample_grids(ritz_grids *out)
+{
+    static const double turned[9] = {0, 1, 0, -1, 0, 0, 0, 0, 1};
+    ritz_status status = RITZ_OK;
+
+    out->count = 3;
+    out->num_frames = 2;
+    RITZ_NEW(out->id, 3);
+    RITZ_NEW(out->frame, 3);
+    RITZ_NEW(out->position, 9);
+    RITZ_NEW(out->axes, 18);
+    for (int64_t k = 0; k < 3; k++) {
+        out->id[k] = 101 + k;
+        out->frame[k] = k == 1;
+        out->position[3 * k] = 0.5 * (double)k;
+        out->axes[4 * k] = 1.0;
+    }
+    memcpy(out->axes + 9, turned, sizeof turned);
+done:
+    return status;
+}
+
+/* The second by name comes first: their order is not that of their names. */
+static ritz_status sample_ports(ritz_component *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(out->port, 2);
+    out->num_ports = 2;
+    for (int64_t k = 0; k < 2; k++) {
+        ritz_port *port = &out->port[k];
+
+        snprintf(port->name, RITZ_NAME_SIZE, k == 0 ? "tip" : "base");
+        RITZ_NEW(port->dofs.at, 3);
+        port->dofs.count = 3;
+        for (int64_t i = 0; i < 3; i++) {
+            port->dofs.at[i] = 12 * k + 2 * i;
+            port->origin[i] = 0.25 * (double)(i + k);
+            port->axes[4 * i] = 1.0;
+        }
+    }
+done:
+    return status;
+}
+
+static ritz_status sample_loads(ritz_component *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(out->load, 2);
+    out->num_loads = 2;
+    snprintf(out->load[0].name, RITZ_NAME_SIZE, "spin");
+    snprintf(out->load[1].name, RITZ_NAME_SIZE, "gravity");
+    RITZ_TRY(chain(5.0, &out->load[0].KG));
+    RITZ_TRY(chain(6.0, &out->load[1].KG));
+done:
+    return status;
+}
+
+ritz_status sample_component(bool full, ritz_component *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_component component = {.num_dofs = SAMPLE_DOFS, .units = "kg m s"};
+
+    RITZ_TRY(label(SAMPLE_DOFS, &component.dof));
+    RITZ_TRY(chain(1.0, &component.M));
+    if (full) {
+        RITZ_TRY(chain(2.0, &component.K));
+        RITZ_TRY(chain(3.0, &component.D));
+        RITZ_TRY(chain(4.0, &component.K4));
+        RITZ_TRY(sample_loads(&component));
+        RITZ_TRY(sample_grids(&component.grids));
+        RITZ_TRY(sample_ports(&component));
+        RITZ_TRY(sample_io(SAMPLE_DOFS, &component.io));
+        snprintf(component.damping, RITZ_NAME_SIZE, "modal 0.002");
+        component.digits = 16.0;
+    }
+    RITZ_TRY(ritz_component_settle(&component, false));
+    component.asymmetry = full ? 3e-8 : 0.0;
+    *out = component;
+    component = (ritz_component){0};
+done:
+    ritz_component_free(&component);
+    return status;
+}
+
+static const ritz_origin origin = {"craig-bampton", "modes 7",
+                                   "CraigBampton1968", "dense LAPACK"};
+
+static ritz_status sample_columns(ritz_columns *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_columns_new(SAMPLE_ORDER, out));
+    for (int64_t j = 0; j < SAMPLE_ORDER; j++) {
+        out->kind[j] = (ritz_column_kind)(j % (RITZ_COLUMN_SYSTEM + 1));
+        out->dof[j] = j < 2 ? 3 * j : -1;
+        if (j >= 2) {
+            out->hertz[j] = 1.5 * (double)j;
+            out->residual[j] = 1e-13 * (double)j;
+        }
+    }
+done:
+    return status;
+}
+
+ritz_status sample_basis(ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_basis basis = {.origin = origin};
+
+    RITZ_TRY(filled(SAMPLE_DOFS, SAMPLE_ORDER, -7.0, &basis.T));
+    RITZ_TRY(sample_columns(&basis.columns));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_basis_free(&basis);
+    return status;
+}
+
+static ritz_status sample_maps(ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(out->port, 2);
+    out->num_ports = 2;
+    for (int64_t k = 0; k < 2; k++) {
+        ritz_port_map *port = &out->port[k];
+
+        snprintf(port->name, RITZ_NAME_SIZE, k == 0 ? "tip" : "base");
+        port->count = 6;
+        RITZ_TRY(label(6, &port->dof));
+        RITZ_NEW(port->position, 18);
+        RITZ_TRY(filled(6, SAMPLE_ORDER, (double)k, &port->map));
+        port->position[4] = port->origin[1] = 0.75;
+        port->axes[0] = port->axes[4] = port->axes[8] = 1.0;
+    }
+done:
+    return status;
+}
+
+static ritz_status sample_measures(ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_measures_add(out, "frequency-relative", 2e-3, 1e-2,
+                               "mode 7, 3.41 Hz"));
+    RITZ_TRY(ritz_measures_add(out, "mass-relative", 1e-15, nan(""), NULL));
+done:
+    return status;
+}
+
+ritz_status sample_reduced(bool full, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t r = SAMPLE_ORDER;
+    ritz_reduced reduced = {
+        .origin = origin, .num_dofs = SAMPLE_DOFS, .units = "kg m s"};
+
+    RITZ_TRY(filled(r, r, 1.0, &reduced.K));
+    RITZ_TRY(filled(r, r, 2.0, &reduced.M));
+    RITZ_TRY(sample_columns(&reduced.columns));
+    if (full) {
+        RITZ_TRY(filled(r, r, 3.0, &reduced.D));
+        RITZ_TRY(filled(SAMPLE_DOFS, r, 4.0, &reduced.T));
+        RITZ_TRY(label(SAMPLE_DOFS, &reduced.dof));
+        RITZ_TRY(sample_grids(&reduced.grids));
+        RITZ_TRY(sample_maps(&reduced));
+        RITZ_TRY(sample_io(r, &reduced.io));
+        RITZ_TRY(sample_measures(&reduced.estimates));
+        RITZ_TRY(sample_measures(&reduced.errors));
+        reduced.inertia =
+            (ritz_inertia){12.5, {1, 2, 3}, {4, 0, 0, 0, 5, 0, 0, 0, 6}, true};
+        snprintf(reduced.damping, RITZ_NAME_SIZE, "rayleigh 0.1 1e-5");
+    }
+    *out = reduced;
+    reduced = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&reduced);
+    return status;
+}
+
+static ritz_status sample_configuration(bool full, int64_t k,
+                                        ritz_configuration *out)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t e = SAMPLE_ORDER;
+
+    snprintf(out->at, RITZ_NAME_SIZE, "clock=%d,cone=0", 60 * (int)k);
+    out->rank = 3;
+    out->num_rigid = 1;
+    RITZ_TRY(filled(e, e, 1.0, &out->K));
+    RITZ_TRY(filled(e, e, 2.0, &out->M));
+    RITZ_NEW(out->lambda, e);
+    for (int64_t j = 0; j < e; j++)
+        out->lambda[j] = (double)(j * j);
+    RITZ_NEW(out->P, 2);
+    out->num_blocks = 2;
+    RITZ_TRY(filled(5, e, 3.0, &out->P[0]));
+    RITZ_TRY(filled(7, e, 4.0, &out->P[1]));
+    RITZ_NEW(out->angle_deg, 2);
+    if (!full)
+        goto done;
+    out->num_angles = 2;
+    out->angle_deg[0] = 60.0 * (double)k;
+    RITZ_TRY(filled(e, e, 5.0, &out->D));
+    RITZ_TRY(sample_io(e, &out->io));
+    RITZ_TRY(sample_measures(&out->errors));
+done:
+    return status;
+}
+
+ritz_status sample_system(bool full, ritz_system *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_system system = {.name = "dual-spin spacecraft, cruise",
+                          .num_components = 2,
+                          .num_hinges = full ? 2 : 0,
+                          .band_hz = {0.0, 10.0},
+                          .damping = "bands 0 5 0.002 5 20 0.005",
+                          .units = "kg m s"};
+    int64_t configurations = full ? 3 : 1;
+
+    RITZ_NEW(system.component, 2);
+    RITZ_NEW(system.order, 2);
+    RITZ_NEW(system.order_full, 2);
+    RITZ_NEW(system.hinge, 2);
+    snprintf(system.component[0], RITZ_NAME_SIZE, "stator");
+    snprintf(system.component[1], RITZ_NAME_SIZE, "rotor");
+    snprintf(system.hinge[0], RITZ_NAME_SIZE, "clock");
+    snprintf(system.hinge[1], RITZ_NAME_SIZE, "cone");
+    system.order[0] = 5;
+    system.order[1] = 7;
+    system.order_full[0] = 3000;
+    system.order_full[1] = 120000;
+    RITZ_NEW(system.configuration, configurations);
+    for (int64_t k = 0; k < configurations; k++) {
+        system.num_configurations++;
+        RITZ_TRY(sample_configuration(full, k, &system.configuration[k]));
+    }
+    *out = system;
+    system = (ritz_system){0};
+done:
+    ritz_system_free(&system);
+    return status;
+}
+
+ritz_status sample_response(ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_response response = {.count = 20,
+                              .num_inputs = 2,
+                              .num_outputs = 3,
+                              .method = "modal",
+                              .damping = "modal 0.002"};
+
+    RITZ_NEW(response.hertz, 20);
+    RITZ_NEW(response.input, 2);
+    RITZ_NEW(response.output, 3);
+    RITZ_NEW(response.H, 120);
+    snprintf(response.input[0], RITZ_NAME_SIZE, "torque");
+    snprintf(response.input[1], RITZ_NAME_SIZE, "force");
+    snprintf(response.output[0], RITZ_NAME_SIZE, "z");
+    snprintf(response.output[1], RITZ_NAME_SIZE, "y");
+    snprintf(response.output[2], RITZ_NAME_SIZE, "x");
+    for (int k = 0; k < 20; k++)
+        response.hertz[k] = 0.5 * k;
+    for (int k = 0; k < 120; k++) {
+        double *H = (double *)&response.H[k]; /* real, imaginary */
+
+        H[0] = k;
+        H[1] = -0.25 * k;
+    }
+    *out = response;
+    response = (ritz_response){0};
+done:
+    ritz_response_free(&response);
+    return status;
+}
+
+ritz_status sample_ranking(ritz_ranking *out)
+{
+    enum { MODES = 70 };
+    ritz_status status = RITZ_OK;
+    ritz_ranking ranking = {.by = "hankel",
+                            .reference = "Gawronski2004",
+                            .count = MODES,
+                            .num_system = 2 * MODES,
+                            .coupling = nan("")};
+
+    RITZ_NEW(ranking.hertz, MODES);
+    RITZ_NEW(ranking.zeta, MODES);
+    RITZ_NEW(ranking.value, MODES);
+    RITZ_NEW(ranking.order, MODES);
+    RITZ_NEW(ranking.system_value, 2 * MODES);
+    for (int k = 0; k < MODES; k++) {
+        ranking.hertz[k] = 1.0 + k;
+        ranking.zeta[k] = 0.002 + 1e-5 * k;
+        ranking.value[k] = 1.0 / (1.0 + (k * 29) % MODES);
+        ranking.order[k] = (k * 29) % MODES; /* 29 and 70 share no factor */
+        ranking.system_value[2 * k] = 1.0 / (1.0 + k);
+        ranking.system_value[2 * k + 1] = 1.0 / (1.5 + k);
+    }
+    *out = ranking;
+    ranking = (ritz_ranking){0};
+done:
+    ritz_ranking_free(&ranking);
+    return status;
+}
+
+#define WRITE(function, kind, sample)                                          \
+    static ritz_status function(const char *path, const ritz_stamp *stamp)     \
+    {                                                                          \
+        ritz_##kind object = {0};                                              \
+        ritz_status status = sample;                                           \
+                                                                               \
+        if (status == RITZ_OK)                                                 \
+            status = ritz_container_write_##kind(path, &object, stamp);        \
+        ritz_##kind##_free(&object);                                           \
+        return status;                                                         \
+    }
+
+#define COPY(kind)                                                             \
+    static ritz_status copy_##kind(const char *from, const char *to,           \
+                                   const ritz_stamp *stamp)                    \
+    {                                                                          \
+        ritz_##kind object = {0};                                              \
+        ritz_status status = ritz_container_read_##kind(from, &object);        \
+                                                                               \
+        if (status == RITZ_OK)                                                 \
+            status = ritz_container_write_##kind(to, &object, stamp);          \
+        ritz_##kind##_free(&object);                                           \
+        return status;                                                         \
+    }
+
+WRITE(make_component, component, sample_component(true, &object))
+WRITE(bare_component, component, sample_component(false, &object))
+WRITE(make_reduced, reduced, sample_reduced(true, &object))
+WRITE(bare_reduced, reduced, sample_reduced(false, &object))
+WRITE(make_system, system, sample_system(true, &object))
+WRITE(bare_system, system, sample_system(false, &object))
+WRITE(make_response, response, sample_response(&object))
+WRITE(bare_response, response, RITZ_OK)
+WRITE(make_ranking, ranking, sample_ranking(&object))
+WRITE(bare_ranking, ranking, RITZ_OK)
+COPY(component)
+COPY(reduced)
+COPY(system)
+COPY(response)
+COPY(ranking)
+
+static ritz_status make_basis(const char *path, const ritz_stamp *stamp)
+{
+    ritz_basis basis = {0};
+    ritz_status status = sample_basis(&basis);
+
+    if (status == RITZ_OK)
+        status = ritz_container_write_basis(path, &basis, "kg m s", stamp);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+static ritz_status bare_basis(const char *path, const ritz_stamp *stamp)
+{
+    ritz_basis basis = {0};
+    ritz_status status = ritz_basis_new(3, 0, &basis);
+
+    if (status == RITZ_OK)
+        status = ritz_container_write_basis(path, &basis, "", stamp);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+static ritz_status copy_basis(const char *from, const char *to,
+                              const ritz_stamp *stamp)
+{
+    ritz_basis basis = {0};
+    ritz_summary summary = {0};
+    ritz_status status = ritz_container_read_basis(from, &basis);
+
+    if (status == RITZ_OK)
+        status = ritz_container_summary(from, &summary);
+    if (status == RITZ_OK)
+        status = ritz_container_write_basis(to, &basis, summary.units, stamp);
+    ritz_summary_free(&summary);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const sample_kind sample_kinds[SAMPLE_KINDS] = {
+    {"component", make_component, bare_component, copy_component},
+    {"basis", make_basis, bare_basis, copy_basis},
+    {"reduced", make_reduced, bare_reduced, copy_reduced},
+    {"system", make_system, bare_system, copy_system},
+    {"response", make_response, bare_response, copy_response},
+    {"ranking", make_ranking, bare_ranking, copy_ranking},
+};

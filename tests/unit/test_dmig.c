@@ -1,0 +1,344 @@
+/* DMIG cards: matrices of every form, and what cannot be one. */
+#include "testing.h"
+
+#include <ritz/foreign.h>
+
+#include <lapacke.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static ritz_status parse(const char *text, ritz_matrices *out)
+{
+    return ritz_format_dmig.read(text, (int64_t)strlen(text), out);
+}
+
+/* A(i,j), 0 where nothing is stored. */
+static double at(const ritz_sparse *A, const double *val, int64_t i, int64_t j)
+{
+    if (!A->colptr)
+        return (double)NAN;
+    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+        if (A->rowind[p] == i)
+            return val[p];
+    return 0.0;
+}
+
+static double re(const ritz_matrix *m, int64_t i, int64_t j)
+{
+    return at(&m->A, m->A.val, i, j);
+}
+
+static double im(const ritz_matrix *m, int64_t i, int64_t j)
+{
+    return at(&m->A, m->imaginary, i, j);
+}
+
+/* The same 3 x 3: grids 2 T1, 2 R3 and point 10. */
+static const char SMALL[] =
+    "DMIG    K       0       6       2       0                       3\n"
+    "DMIG    K       2       6               2       6       4.\n"
+    "DMIG    K       10      0               2       1       -1.5\n"
+    "        10              7.5-1\n"
+    "DMIG    K       2       1               2       1       2.\n";
+static const char LARGE[] =
+    "GRID    2\n"
+    "DMIG*   K                              2               6\n"
+    "*                      2               6 4.000000000D+00\n"
+    "DMIG*   K                              2               1\n"
+    "*                      2               1 2.000000000D+00\n"
+    "*                     10               0-1.500000000D+00\n"
+    "CBAR    1       1       1       2\n"
+    "DMIG*   K                             10               0\n"
+    "*                     10               0 7.500000000D-01\n"
+    "DMIG    K              0       6       2       0                  3\n";
+static const char FREE[] = "$ comment\nSOL 103\nCEND\nBEGIN BULK\n"
+                           "dmig,k,0,6,2,0\n"
+                           "dmig,k,2,1,,2,1,2.\n,10,,-1.5\n"
+                           "dmig,k,2,6,,2,6,4.0\n"
+                           "dmig,k,10,0,,10,0,.75\nENDDATA\n";
+
+static void check_spelling(const char *text, int64_t digits)
+{
+    static const double K[3][3] = {
+        {2.0, 0.0, -1.5}, {0.0, 4.0, 0.0}, {-1.5, 0.0, 0.75}};
+    static const ritz_dof ROWS[] = {{2, 1}, {2, 6}, {10, 0}};
+    ritz_matrices all = {0};
+    ritz_matrix *m = NULL;
+
+    assert_true(ritz_format_dmig.recognise(text, (int64_t)strlen(text)));
+    assert_ok(parse(text, &all));
+    assert_int_equal(all.count, 1);
+    m = all.matrix;
+    assert_string_equal(m->name, "K");
+    assert_true(m->symmetric);
+    assert_null(m->imaginary);
+    assert_null(m->col);
+    assert_int_equal(m->digits, digits);
+    assert_int_equal(m->A.nrow, 3);
+    for (int k = 0; k < 9; k++) {
+        int i = k / 3;
+        int j = k % 3;
+
+        assert_int_equal(m->row[i].grid, ROWS[i].grid);
+        assert_int_equal(m->row[i].component, ROWS[i].component);
+        assert_near(re(m, i, j), K[i][j], 0.0); /* no arithmetic */
+    }
+    ritz_matrices_free(&all);
+}
+
+static void three_spellings_give_the_same_bits(void **state)
+{
+    (void)state;
+    check_spelling(SMALL, 2);
+    check_spelling(LARGE, 10);
+    check_spelling(FREE, 2);
+}
+
+static void square_ones_stay_as_they_are_given(void **state)
+{
+    ritz_matrices all = {0};
+
+    (void)state;
+    assert_ok(
+        parse("DMIG,B,0,1,1,0\nDMIG,B,7,0,,5,0,2.,,\nDMIG,E,0,6,2\n", &all));
+    assert_int_equal(all.count, 2);
+    assert_false(all.matrix[0].symmetric);
+    assert_int_equal(all.matrix[0].A.nrow, 2);
+    assert_near(re(&all.matrix[0], 0, 1), 2.0, 0.0);
+    assert_near(re(&all.matrix[0], 1, 0), 0.0, 0.0);
+    assert_int_equal(all.matrix[1].A.nrow, 0);
+    ritz_matrices_free(&all);
+}
+
+static void polar_values_are_turned(void **state)
+{
+    ritz_matrices all = {0};
+    double half = 2.0 * sqrt(0.5);
+
+    (void)state;
+    assert_ok(parse("DMIG,P,0,9,4,0,1,,2\nDMIG,P,3,,,1,1,2.,45.\n", &all));
+    assert_non_null(all.matrix[0].imaginary);
+    assert_int_equal(all.matrix[0].A.ncol, 1);
+    assert_int_equal(all.matrix[0].col[0].grid, 3);
+    /* sin and cos of a rounded angle: two units in the last place of 1.4 */
+    assert_near(re(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
+    assert_near(im(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
+    ritz_matrices_free(&all);
+}
+
+static void what_is_no_matrix_is_refused(void **state)
+{
+    static const struct {
+        const char *text, *words;
+    } CASES[] = {
+        {"GRID,1\n", "there is no DMIG card"},
+        {"DMIG,K,1,1,,1,1,1.\n", "line 1: DMIG 'K' has no header"},
+        {"DMIG,K,0,6,2\n\nDMIG,K,0,6,2\n", "line 3: DMIG 'K' has a second"},
+        {"DMIG,K,0,3,2\n", "'3' in DMIG is not a form: 1, 2, 6 or 9"},
+        {"DMIG,K,0,6,7\n", "'7' in DMIG is not a type"},
+        {"DMIG,K,0,6,2,0,2\n", "'2' in DMIG is not 0 or 1 for POLAR"},
+        {"DMIG,1K,0,6,2\n", "'1K' in DMIG is not the name of a matrix"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,7,,1,1,1.\n", "line 2: '7' in DMIG is not a "
+                                               "direction"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,x\n", "line 2: 'x' in DMIG is not a "
+                                              "number"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,1e999\n", "is not a number"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,nan\n", "is not a number"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,1,,,1,1.\n", "a field of DMIG is blank"},
+        {"DMIG,K,0,6,2\nDMIG,K,-1,1,,1,1,1.\n", "positive whole number"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,1.,2.\n", "'2.' in DMIG is not blank"},
+        {"DMIG,K,0,1,2\nDMIG,K,1,1,,1,1,1.\nDMIG,K,1,1,,1,1,1.\n",
+         "line 3: DMIG 'K' gives (grid 1 T1, grid 1 T1) twice"},
+        {"DMIG,K,0,6,2\nDMIG,K,1,1,,2,4,1.\nDMIG,K,2,4,,1,1,1.\n",
+         "line 3: DMIG 'K' gives (grid 2 R1, grid 1 T1) twice; a symmetric"},
+        {"DMIG,K,0,6,2\nINCLUDE 'columns.pch'\n",
+         "line 1: DMIG 'K' has no columns here, and INCLUDE"},
+    };
+    ritz_matrices all = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        assert_fails(parse(CASES[k].text, &all), RITZ_ERR_FORMAT,
+                     CASES[k].words);
+        assert_null(all.matrix);
+    }
+}
+
+static void only_a_dmig_card_is_recognised(void **state)
+{
+    static const char *const OTHERS[] = {"",      "DMIGX,1", "$DMIG,K",
+                                         "DMI,K", "DMIG",    " 1 DMIG 2\n"};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof OTHERS / sizeof *OTHERS; k++)
+        assert_false(
+            ritz_format_dmig.recognise(OTHERS[k], (int64_t)strlen(OTHERS[k])));
+}
+
+/* Whatever the bytes are: success or a sentence, and nothing left over. */
+static void try_bytes(const char *bytes, int64_t size)
+{
+    ritz_matrices all = {0};
+    char *copy = malloc((size_t)size + 1); /* so that ASan sees its end */
+
+    assert_non_null(copy);
+    memcpy(copy, bytes, (size_t)size);
+    (void)ritz_format_dmig.recognise(copy, size);
+    if (ritz_format_dmig.read(copy, size, &all) == RITZ_OK)
+        ritz_matrices_free(&all);
+    else
+        assert_null(all.matrix);
+    free(copy);
+}
+
+static void a_deck_cut_or_corrupted_anywhere_ends_well(void **state)
+{
+    static const char *const TEXTS[] = {SMALL, LARGE, FREE};
+    char text[sizeof LARGE];
+
+    (void)state;
+    for (int t = 0; t < 3; t++) {
+        int64_t size = (int64_t)strlen(TEXTS[t]);
+
+        for (int64_t k = 0; k <= size; k++)
+            try_bytes(TEXTS[t], k);
+        for (unsigned seed = 0; size > 0 && seed < 500; seed++) {
+            unsigned random = seed * 2654435761U + 12345U;
+
+            memcpy(text, TEXTS[t], (size_t)size);
+            for (int n = 0; n < 5; n++) {
+                random = random * 1664525U + 1013904223U;
+                text[(random >> 8) % (unsigned)size] = (char)(random >> 3);
+            }
+            try_bytes(text, size);
+        }
+    }
+}
+
+static ritz_status read_and_free(const char *text)
+{
+    ritz_matrices all = {0};
+    ritz_status status = parse(text, &all);
+
+    if (status == RITZ_OK)
+        ritz_matrices_free(&all);
+    return status;
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    assert_survives_every_allocation(read_and_free(LARGE));
+    assert_survives_every_allocation(
+        read_and_free("DMIG,P,0,9,4,0,1,,2\nDMIG,P,3,,,1,1,2.,45.\n"));
+}
+
+/* ---- what others wrote ------------------------------------------------- */
+
+static bool external(const char *name, ritz_matrices *out)
+{
+    const char *folder = getenv("RITZ_EXTERNAL_DATA");
+    char path[600];
+    FILE *file = NULL;
+
+    snprintf(path, sizeof path, "%s/nastran/%s", folder ? folder : "", name);
+    file = folder ? fopen(path, "rb") : NULL;
+    if (!file) {
+        print_message("skipped: no external data\n");
+        return false;
+    }
+    fclose(file);
+    assert_ok(ritz_foreign_read(path, out));
+    return out->matrix != NULL;
+}
+
+static void a_punched_model_has_its_published_frequencies(void **state)
+{
+    enum { N = 15 };
+    ritz_matrices all = {0};
+    double K[N * N];
+    double M[N * N];
+    double w[N];
+    double f[2] = {0.0, 0.0};
+
+    (void)state;
+    if (!external("pynastran/dmig.pch", &all)) {
+        skip();
+        return;
+    }
+    assert_int_equal(all.count, 6);
+    assert_string_equal(all.matrix[0].name, "KAAX");
+    assert_string_equal(all.matrix[1].name, "MAAX");
+    assert_int_equal(all.matrix[0].A.nrow, N);
+    assert_int_equal(all.matrix[1].A.nrow, N);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++) {
+            K[i + N * j] = re(&all.matrix[0], i, j);
+            M[i + N * j] = re(&all.matrix[1], i, j);
+        }
+    assert_int_equal(
+        LAPACKE_dsygv(LAPACK_COL_MAJOR, 1, 'N', 'L', N, K, N, M, N, w), 0);
+    for (int k = N - 1; k >= 0; k--) {
+        double hertz = sqrt(fmax(w[k], 0.0)) / (2.0 * 3.14159265358979323846);
+
+        if (hertz > 0.01) { /* above the rigid motions */
+            f[1] = f[0];
+            f[0] = hertz;
+        }
+    }
+    /* oracles.md, section 7: printed with six decimals */
+    assert_near(f[0], 1.033490, 5e-7);
+    assert_near(f[1], 2.130694, 5e-7);
+    assert_int_equal(all.matrix[3].A.ncol, 1); /* VAX */
+    assert_int_equal(all.matrix[3].col[0].component, 0);
+    ritz_matrices_free(&all);
+}
+
+static void forms_and_types_of_others_are_read(void **state)
+{
+    ritz_matrices all = {0};
+
+    (void)state;
+    if (!external("pynastran/dmig.bdf", &all)) {
+        skip();
+        return;
+    }
+    assert_int_equal(all.count, 5);
+    assert_near(re(&all.matrix[0], 0, 2), 0.25, 0.0); /* REALS, mirrored */
+    assert_near(re(&all.matrix[1], 2, 0), 0.0, 0.0);  /* REAL */
+    assert_near(im(&all.matrix[3], 1, 2), 0.751, 0.0);
+    assert_near(im(&all.matrix[3], 2, 1), 0.751, 0.0);
+    assert_near(im(&all.matrix[4], 0, 0), sqrt(0.5), 2 * 1.2e-16);
+    ritz_matrices_free(&all);
+    assert_true(external("dmig/matrix_factory.pch", &all));
+    assert_int_equal(all.count, 4);
+    for (int j = 0; j < 21; j++) { /* PATRN counts its columns */
+        assert_near(re(&all.matrix[0], 20, j), j + 1.0, 0.0);
+        assert_near(re(&all.matrix[1], j, j), 1.0, 0.0);
+    }
+    assert_int_equal(all.matrix[3].A.nrow, 21);
+    assert_int_equal(all.matrix[3].A.ncol, 50);
+    assert_near(re(&all.matrix[3], 20, 49), 0.3924328341, 0.0);
+    assert_near(im(&all.matrix[3], 20, 49), 0.9245890204, 0.0);
+    ritz_matrices_free(&all);
+    assert_true(external("pynastran/dmig_sparse.pch", &all));
+    assert_near(re(&all.matrix[0], 0, 1), 4.413810330e5, 0.0);
+    ritz_matrices_free(&all);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_spellings_give_the_same_bits),
+        cmocka_unit_test(square_ones_stay_as_they_are_given),
+        cmocka_unit_test(polar_values_are_turned),
+        cmocka_unit_test(what_is_no_matrix_is_refused),
+        cmocka_unit_test(only_a_dmig_card_is_recognised),
+        cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
+        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(a_punched_model_has_its_published_frequencies),
+        cmocka_unit_test(forms_and_types_of_others_are_read),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

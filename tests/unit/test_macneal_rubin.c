@@ -1,0 +1,279 @@
+#include "testing.h"
+
+#include "bar.h"
+#include "project.h"
+
+#include <ritz/eigen.h>
+#include <ritz/factor.h>
+#include <ritz/method.h>
+#include <ritz/reduced.h>
+#include <ritz/verify.h>
+
+#include <float.h>
+#include <stdlib.h>
+
+enum { ELEMENTS = 16, DOFS = ELEMENTS + 1, MODES = 4 };
+
+/* Rounding of a solve: the condition number of the bar is (2 / pi h)^2. */
+static const double solve_error = DOFS * DBL_EPSILON * ELEMENTS * ELEMENTS;
+
+static int64_t attached[] = {0, 5, DOFS - 1};
+
+typedef struct fixture {
+    ritz_component bar;
+    ritz_request request;
+    ritz_basis basis;
+} fixture;
+
+static int set_up(void **state)
+{
+    static fixture f;
+
+    f = (fixture){.request = RITZ_REQUEST_NONE};
+    f.request.component = &f.bar;
+    f.request.attached = (ritz_dofs){3, attached};
+    f.request.modes = MODES;
+    assert_ok(bar_component(ELEMENTS, &f.bar));
+    assert_ok(
+        ritz_basis_make(&ritz_method_macneal_rubin, &f.request, &f.basis));
+    *state = &f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+
+    ritz_component_free(&f->bar);
+    ritz_basis_free(&f->basis);
+    return 0;
+}
+
+static void columns_are_rigid_then_normal_then_residual(void **state)
+{
+    const ritz_columns *columns = &((fixture *)*state)->basis.columns;
+
+    assert_int_equal(columns->count, 1 + MODES + 3);
+    assert_int_equal(columns->kind[0], RITZ_COLUMN_RIGID);
+    assert_true(columns->hertz[0] == 0.0);
+    for (int64_t j = 1; j <= MODES; j++) {
+        double exact = ritz_eigen_hertz(bar_eigenvalue(ELEMENTS, j));
+
+        assert_int_equal(columns->kind[j], RITZ_COLUMN_NORMAL);
+        assert_near(columns->hertz[j], exact, solve_error * exact);
+    }
+    for (int64_t j = 0; j < 3; j++) {
+        assert_int_equal(columns->kind[1 + MODES + j], RITZ_COLUMN_RESIDUAL);
+        assert_int_equal(columns->dof[1 + MODES + j], attached[j]);
+    }
+}
+
+/* Phi' M Psi = 0 and Phi' K Psi = 0, to the accuracy of a solve. */
+static void residual_modes_are_orthogonal_to_kept_ones(void **state)
+{
+    fixture *f = *state;
+    ritz_dense Kr = project(&f->bar.K, &f->basis.T);
+    ritz_dense Mr = project(&f->bar.M, &f->basis.T);
+
+    for (int64_t j = 1 + MODES; j < Kr.ncol; j++)
+        for (int64_t i = 0; i <= MODES; i++) {
+            double stiffness =
+                sqrt(bar_eigenvalue(ELEMENTS, i) * ritz_dense_col(&Kr, j)[j]);
+            double mass = sqrt(ritz_dense_col(&Mr, j)[j]);
+
+            assert_near(ritz_dense_col(&Mr, j)[i], 0.0, solve_error * mass);
+            assert_near(ritz_dense_col(&Kr, j)[i], 0.0,
+                        solve_error * (stiffness + mass));
+        }
+    ritz_dense_free(&Kr);
+    ritz_dense_free(&Mr);
+}
+
+/*
+ * Psi of equation (6) as it is printed, with a support at dof r: S is the
+ * inverse of K without row and column r, bordered by zeros.
+ */
+static void find_by_the_book(const fixture *f, int64_t r, ritz_dense *out)
+{
+    ritz_dofs support = {1, &r}, rest = {0};
+    ritz_sparse K_ii = {0};
+    ritz_factor *L = NULL;
+    const ritz_dense *T = &f->basis.T;
+    ritz_dense MT = {0}, X = {0};
+
+    assert_ok(ritz_dense_new(DOFS, 3, out));
+    assert_ok(ritz_dofs_complement(&support, DOFS, &rest));
+    assert_ok(ritz_sparse_extract(&f->bar.K, rest.count, rest.at, rest.count,
+                                  rest.at, &K_ii));
+    assert_ok(ritz_factor_spd(&K_ii, &L));
+    assert_ok(ritz_sparse_mul(&f->bar.M, T, &MT));
+    for (int64_t j = 0; j < 3; j++) {
+        double F[DOFS] = {0.0};
+        double *psi = ritz_dense_col(out, j);
+        double share = ritz_dense_col(T, 0)[attached[j]];
+
+        F[attached[j]] = 1.0; /* P F = F - M Phi_r Phi_r' F */
+        for (int64_t i = 0; i < DOFS; i++)
+            F[i] -= ritz_dense_col(&MT, 0)[i] * share;
+        assert_ok(ritz_dense_new(rest.count, 1, &X));
+        for (int64_t i = 0; i < rest.count; i++)
+            X.val[i] = F[rest.at[i]];
+        assert_ok(ritz_factor_solve(L, &X));
+        for (int64_t i = 0; i < rest.count; i++)
+            psi[rest.at[i]] = X.val[i];
+        ritz_dense_free(&X);
+        share = 0.0; /* P' S P F */
+        for (int64_t i = 0; i < DOFS; i++)
+            share += ritz_dense_col(&MT, 0)[i] * psi[i];
+        for (int64_t i = 0; i < DOFS; i++)
+            psi[i] -= ritz_dense_col(T, 0)[i] * share;
+        for (int64_t k = 1; k <= MODES; k++)
+            for (int64_t i = 0; i < DOFS; i++)
+                psi[i] -= ritz_dense_col(T, k)[i] *
+                          ritz_dense_col(T, k)[attached[j]] /
+                          bar_eigenvalue(ELEMENTS, k);
+    }
+    ritz_dofs_free(&rest);
+    ritz_sparse_free(&K_ii);
+    ritz_factor_free(&L);
+    ritz_dense_free(&MT);
+}
+
+static void the_formula_with_any_support_gives_the_same(void **state)
+{
+    fixture *f = *state;
+    const int64_t supports[] = {0, 7, DOFS - 1};
+
+    for (int s = 0; s < 3; s++) {
+        ritz_dense Psi = {0};
+
+        find_by_the_book(f, supports[s], &Psi);
+        for (int64_t j = 0; j < 3; j++)
+            for (int64_t i = 0; i < DOFS; i++)
+                assert_near(ritz_dense_col(&f->basis.T, 1 + MODES + j)[i],
+                            ritz_dense_col(&Psi, j)[i], solve_error);
+        ritz_dense_free(&Psi);
+    }
+}
+
+/* Flexible static gain at attached dofs: full and reduced agree. */
+static void flexible_static_gain_is_exact(void **state)
+{
+    fixture *f = *state;
+    ritz_dense K = {0}, M = {0}, full = {0}, reduced = {0};
+    ritz_io io = {0}, part = {0};
+    ritz_dense Kr = project(&f->bar.K, &f->basis.T);
+    ritz_dense Mr = project(&f->bar.M, &f->basis.T);
+
+    assert_ok(ritz_io_new(DOFS, 3, 3, &io));
+    for (int64_t j = 0; j < 3; j++) {
+        ritz_dense_col(&io.B, j)[attached[j]] = 1.0;
+        ritz_dense_col(&io.C, attached[j])[j] = 1.0;
+    }
+    assert_ok(ritz_io_project(&io, &f->basis.T, &part));
+    assert_ok(ritz_sparse_dense(&f->bar.K, &K));
+    assert_ok(ritz_sparse_dense(&f->bar.M, &M));
+    assert_ok(ritz_static_gain(&K, &M, &io, &full));
+    assert_ok(ritz_static_gain(&Kr, &Mr, &part, &reduced));
+    for (int64_t k = 0; k < 9; k++)
+        assert_near(reduced.val[k], full.val[k],
+                    10.0 * solve_error * ritz_dense_max(&full));
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&Kr);
+    ritz_dense_free(&Mr);
+    ritz_dense_free(&full);
+    ritz_dense_free(&reduced);
+    ritz_io_free(&io);
+    ritz_io_free(&part);
+}
+
+/* With all modes kept nothing is left to answer: residual modes are dropped. */
+static void residual_modes_of_nothing_are_left_out_and_named(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+    ritz_basis basis = {0};
+
+    request.modes = DOFS - 1;
+    assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
+    assert_int_equal(basis.T.ncol, DOFS);
+    assert_non_null(strstr(basis.remark, "3 residual mode(s) left out"));
+    assert_non_null(strstr(basis.remark, "grid 1 T1"));
+    ritz_basis_free(&basis);
+}
+
+/* Two flexible modes are left out, so three residual modes are dependent. */
+static void dependent_residual_modes_are_left_out(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+    ritz_basis basis = {0};
+
+    request.modes = DOFS - 3;
+    assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
+    assert_int_equal(basis.T.ncol, DOFS);
+    assert_non_null(strstr(basis.remark, "1 residual mode(s) left out"));
+    ritz_basis_free(&basis);
+}
+
+static void a_dof_attached_twice_is_refused(void **state)
+{
+    fixture *f = *state;
+    int64_t twice[] = {4, 4};
+    ritz_request request = f->request;
+    ritz_basis none = {0};
+
+    request.attached = (ritz_dofs){2, twice};
+    assert_fails(ritz_basis_make(&ritz_method_macneal_rubin, &request, &none),
+                 RITZ_ERR_ARGUMENT, "listed twice");
+}
+
+/* A mass alone is all rigid modes, and its residual is nothing. */
+static void a_rigid_body_keeps_its_mass(void **state)
+{
+    ritz_request request = ((fixture *)*state)->request;
+    ritz_component mass = {.num_dofs = 1};
+    int64_t zero = 0;
+    ritz_basis basis = {0};
+
+    assert_non_null(mass.dof = calloc(1, sizeof *mass.dof));
+    mass.dof[0] = (ritz_dof){1, 1};
+    assert_ok(ritz_sparse_from_triplets(1, 1, 1, &zero, &zero, &(double){4.0},
+                                        &mass.M));
+    assert_ok(ritz_component_settle(&mass, false));
+    request.component = &mass;
+    request.attached = (ritz_dofs){1, &zero};
+    assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
+    assert_int_equal(basis.T.ncol, 1);
+    assert_near(basis.T.val[0], 0.5, 4 * DBL_EPSILON);
+    ritz_basis_free(&basis);
+    ritz_component_free(&mass);
+}
+
+static void no_allocation_failure_leaks(void **state)
+{
+    fixture *f = *state;
+    ritz_basis basis = {0};
+
+    assert_survives_every_allocation(
+        ritz_method_macneal_rubin.make(&f->request, &basis));
+    ritz_basis_free(&basis);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(columns_are_rigid_then_normal_then_residual),
+        cmocka_unit_test(residual_modes_are_orthogonal_to_kept_ones),
+        cmocka_unit_test(the_formula_with_any_support_gives_the_same),
+        cmocka_unit_test(flexible_static_gain_is_exact),
+        cmocka_unit_test(residual_modes_of_nothing_are_left_out_and_named),
+        cmocka_unit_test(dependent_residual_modes_are_left_out),
+        cmocka_unit_test(a_dof_attached_twice_is_refused),
+        cmocka_unit_test(a_rigid_body_keeps_its_mass),
+        cmocka_unit_test(no_allocation_failure_leaks),
+    };
+
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

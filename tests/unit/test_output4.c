@@ -1,0 +1,732 @@
+#include "formats/decimal.h"
+#include "testing.h"
+
+#include <ritz/foreign.h>
+
+#include <dirent.h>
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 600 };
+
+static bool external(const char *name, char path[PATH_SIZE])
+{
+    const char *folder = getenv("RITZ_EXTERNAL_DATA");
+
+    if (!folder || access(folder, R_OK) != 0) {
+        print_message("skipped: no external data\n");
+        return false;
+    }
+    snprintf(path, PATH_SIZE, "%s/nastran/%s", folder, name);
+    return true;
+}
+
+static void parse(const char *bytes, ritz_matrices *out)
+{
+    assert_ok(ritz_foreign_parse(bytes, (int64_t)strlen(bytes), out));
+}
+
+static double at(const ritz_matrix *m, int64_t i, int64_t j)
+{
+    for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++)
+        if (m->A.rowind[p] == i)
+            return m->A.val[p];
+    return 0.0;
+}
+
+/* Same pattern; numbers equal to half a unit of digit `digits`, 0: bits. */
+static void assert_same(const ritz_matrix *a, const ritz_matrix *b,
+                        int64_t digits)
+{
+    int64_t nnz = a->A.colptr[a->A.ncol];
+
+    assert_int_equal(a->A.nrow, b->A.nrow);
+    assert_int_equal(a->A.ncol, b->A.ncol);
+    assert_memory_equal(a->A.colptr, b->A.colptr,
+                        (size_t)(a->A.ncol + 1) * sizeof *a->A.colptr);
+    assert_int_equal(!a->imaginary, !b->imaginary);
+    for (int64_t p = 0; p < nnz; p++) {
+        const double x[2] = {a->A.val[p], a->imaginary ? a->imaginary[p] : 0};
+        const double y[2] = {b->A.val[p], b->imaginary ? b->imaginary[p] : 0};
+
+        assert_int_equal(a->A.rowind[p], b->A.rowind[p]);
+        for (int part = 0; part < 2; part++) {
+            double scale = fmax(fabs(x[part]), 1e-300);
+            /* half a unit of the last digit, two ulp for both roundings */
+            double unit = pow(10.0, floor(log10(scale)) + 1.0 - (double)digits);
+            double bound =
+                digits > 0 ? 0.5 * unit + 2.0 * DBL_EPSILON * scale : 0.0;
+
+            assert_near(x[part], y[part], bound);
+        }
+    }
+}
+
+/* 1 0 / 2 3 / 0 4 in each spelling of text; words differ, not the matrix. */
+static const char dense[] = "       2       3       2       2A       "
+                            "1P,3E16.9\n"
+                            "       1       1       2\n"
+                            " 1.000000000E+00 2.000000000E+00\n"
+                            "       2       2       2\n"
+                            " 3.000000000E+00 4.000000000E+00\n"
+                            "       3       1       1\n"
+                            " 1.414213562E+00\n";
+static const char bigmat[] = "       2      -3       2       2A       "
+                             "1P,3D16.9\n"
+                             "       1       0       6\n"
+                             "       5       1\n"
+                             " 1.000000000D+00 2.000000000D+00\n"
+                             "       2       0       6\n"
+                             "       5       2\n"
+                             " 3.000000000D+00 4.000000000D+00\n"
+                             "       3       1       1\n"
+                             " 1.414213562D+00\n";
+static const char unmarked[] = "       2       3       2       2A       "
+                               "1P,3E16.9\n"
+                               "       1       0       6\n"
+                               "       5       1\n"
+                               " 1.000000000+000 2.000000000+000\n"
+                               "       2       0       6\n"
+                               "       5       2\n"
+                               " 3.000000000+000 4.000000000+000\n"
+                               "       3       1       1\n"
+                               " 1.414213562+000\n";
+static const char strings[] = "       2       3       2       2A\n"
+                              "       1       0       5\n"
+                              "  327681\n"
+                              " 1.000000000E+00 2.000000000E+00\n"
+                              "       2       0       5\n"
+                              "  327682\n"
+                              " 3.000000000E+00 4.000000000E+00\n"
+                              "       3       1       2\n"
+                              " 1.414213562E+00\n";
+static const char nastran95[] = "       2       3       2       2A       "
+                                "1P,3E16.9\r\n"
+                                "       1       0       5\r\n"
+                                "  131073\r\n"
+                                " 1.000000000E+00 2.000000000E+00\r\n"
+                                "       2       0       6\r\n"
+                                "   65538\r\n"
+                                " 3.000000000E+00\r\n"
+                                "   65539\r\n"
+                                " 4.000000000E+00\r\n"
+                                "       3       1       1\r\n"
+                                " 1.414213562E+00\r\n";
+static const char wide[] = "               2               3       2       2"
+                           "A       1P,3E16.9|I16\n"
+                           "               1               1               2\n"
+                           " 1.000000000E+00 2.000000000E+00\n"
+                           "               2               2               2\n"
+                           " 3.000000000E+00 4.000000000E+00\n"
+                           "               3               1               1\n"
+                           " 1.414213562E+00\n";
+static const char one_word[] = "       2       3       2       2A       "
+                               "1P,3E16.9\n"
+                               "       1       0       3\n"
+                               "  196609\n"
+                               " 1.000000000E+00 2.000000000E+00\n"
+                               "       2       0       3\n"
+                               "  196610\n"
+                               " 3.000000000E+00 4.000000000E+00\n"
+                               "       3       1       1\n"
+                               " 1.414213562E+00\n";
+static const char *const spellings[] = {dense,     bigmat, unmarked, strings,
+                                        nastran95, wide,   one_word};
+enum { SPELLINGS = sizeof spellings / sizeof *spellings };
+
+static void every_spelling_of_text_gives_the_same_matrix(void **state)
+{
+    (void)state;
+    for (int k = 0; k < SPELLINGS; k++) {
+        ritz_matrices all = {0};
+        const ritz_matrix *m = NULL;
+
+        parse(spellings[k], &all);
+        m = &all.matrix[0];
+        assert_int_equal(all.count, 1);
+        assert_string_equal(m->name, "A");
+        assert_string_equal(all.format, "output4");
+        assert_int_equal(m->A.nrow, 3);
+        assert_int_equal(m->A.ncol, 2);
+        assert_int_equal(m->A.colptr[2], 4);
+        assert_true(at(m, 0, 0) == 1.0 && at(m, 1, 0) == 2.0);
+        assert_true(at(m, 1, 1) == 3.0 && at(m, 2, 1) == 4.0);
+        assert_int_equal(m->digits, 10);
+        assert_false(m->symmetric);
+        ritz_matrices_free(&all);
+    }
+}
+
+static void forms_mean_what_nastran_means_by_them(void **state)
+{
+    static const char end[] = " 1.0E+00\n";
+    static const char *const text[] = {
+        /* one triangle of FORM 6 */
+        "       2       2       6       2K       1P,2E8.1\n"
+        "       1       1       2\n 1.0E+00 2.0E+00\n"
+        "       2       2       1\n 3.0E+00\n       3       1       1\n",
+        /* FORM 3 as one column */
+        "       1       2       3       2D       1P,2E8.1\n"
+        "       1       1       2\n 1.0E+00 2.0E+00\n"
+        "       2       1       1\n",
+        /* FORM 8 without entries */
+        "       2       2       8       2I       1P,2E8.1\n"
+        "       3       1       1\n",
+        /* FORM 4 stays a triangle */
+        "       2       2       4       2L       1P,2E8.1\n"
+        "       1       1       2\n 1.0E+00 2.0E+00\n"
+        "       2       2       1\n 3.0E+00\n       3       1       1\n",
+    };
+    static const double expected[4][4] = {
+        {1, 2, 2, 3}, {1, 0, 0, 2}, {1, 0, 0, 1}, {1, 2, 0, 3}};
+    (void)state;
+
+    for (int k = 0; k < 4; k++) {
+        ritz_matrices all = {0};
+        char whole[300];
+
+        snprintf(whole, sizeof whole, "%s%s", text[k], end);
+        parse(whole, &all);
+        assert_int_equal(all.matrix[0].A.ncol, 2);
+        for (int e = 0; e < 4; e++)
+            assert_true(at(&all.matrix[0], e % 2, e / 2) == expected[k][e]);
+        assert_int_equal(all.matrix[0].symmetric, k < 3);
+        ritz_matrices_free(&all);
+    }
+}
+
+static void ten_million_null_columns_are_read(void **state)
+{
+    static const char text[] =
+        "        10000001       -10000001       1       2BIG     "
+        "1P,2E8.1|I16\n"
+        "10000001       0       4\n"
+        "       3       7\n"
+        " 5.0E+00\n"
+        "10000002       1       1\n"
+        " 1.0E+00\n";
+    ritz_matrices all = {0};
+    (void)state;
+
+    parse(text, &all);
+    assert_int_equal(all.matrix[0].A.ncol, 10000001);
+    assert_int_equal(all.matrix[0].A.colptr[10000000], 0);
+    assert_true(at(&all.matrix[0], 6, 10000000) == 5.0);
+    ritz_matrices_free(&all);
+}
+
+static void what_is_wrong_is_said(void **state)
+{
+#define HEAD "       2       3       2       2A       1P,2E8.1\n"
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {HEAD "       1       3       2\n 1.0E+00 2.0E+00\n", "3 rows"},
+        {HEAD "       2       1       1\n 1.0E+00\n"
+              "       1       1       1\n 1.0E+00\n",
+         "column 1 of 'A' follows column 2"},
+        {HEAD "       1       1       1\n 1.0E+00\n"
+              "       1       2       1\n 1.0E+00\n",
+         "column 1 of 'A' follows column 1"},
+        {HEAD "       1       1       1\n     NaN\n",
+         "row 1 of column 1 of 'A' is not finite"},
+        {HEAD "       1       1       1\n1.0E+999\n",
+         "row 1 of column 1 of 'A' is not finite"},
+        {HEAD "       1       1       1\n 1.0X+00\n", "is not a number"},
+        {HEAD "       1       1       3\n 1.0E+00 2.0E+00\n",
+         "column 1 of 'A' ends after 2 of 3 numbers"},
+        {HEAD "       1       1       1\n 1.0E+00 2.0E+00\n",
+         "wants no more than 1"},
+        {HEAD "       1       1       1\n 1.0E+00\n",
+         "'A' ends after column 1 of 2"},
+        {HEAD "       1       0       5\n  131072\n 1.0E+00\n",
+         "begins no string of column 1"},
+        {HEAD "       9       1       1\n 1.0E+00\n",
+         "has 2 columns, but one is numbered 9"},
+        {HEAD "       1       0       6\n  196610\n 1.0E+00\n"
+              "  196609\n 1.0E+00\n",
+         "rows of column 1 of 'A' do not ascend"},
+        {HEAD "       3       1       1\n 1.0E+00\nhello\n",
+         "'hello' begins no matrix"},
+        {"99999999       3       2       2A       1P,2E8.1\n"
+         "       1       1       1\n 1.0E+00\n",
+         "far more than its file can fill"},
+        {"       2       3       2       4A       1P,2E8.1\n"
+         "       1       1       1\n 1.0E+00\n",
+         "half a complex value"},
+    };
+    (void)state;
+
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        ritz_matrices all = {0};
+        ritz_status status = ritz_foreign_parse(
+            cases[k].text, (int64_t)strlen(cases[k].text), &all);
+
+        assert_int_equal(status, RITZ_ERR_FORMAT);
+        if (!strstr(ritz_error_message(), cases[k].words))
+            fail_msg("'%s' does not say '%s'", ritz_error_message(),
+                     cases[k].words);
+    }
+}
+
+/* Against strtod, on the spellings that reach each path. */
+static void decimals_are_rounded_as_strtod_rounds(void **state)
+{
+    uint64_t seed = 1;
+    (void)state;
+
+    for (int k = 0; k < 200000; k++) {
+        ritz_decimal number = {0};
+        char text[64];
+        const char *from = text;
+
+        seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
+        snprintf(text, sizeof text, "%llu.%0*lluE%d",
+                 (unsigned long long)(seed >> 60), 1 + k % 17,
+                 (unsigned long long)((seed >> 13) % 10000000000000000U),
+                 (int)(seed % 640) - 330 + 20 * (k % 2));
+        assert_true(ritz_decimal_scan(&from, text + strlen(text), &number));
+        assert_true(*from == '\0');
+        if (number.value != strtod(text, NULL))
+            fail_msg("%s is not %.17g", text, number.value);
+    }
+}
+
+static void ties_and_odd_spellings_are_read(void **state)
+{
+    static const struct {
+        const char *text;
+        double value;
+    } cases[] = {
+        {"9007199254740993", 9007199254740992.0},
+        {"9007199254740995", 9007199254740996.0},
+        {"9007199254740993.00000000000000000000001", 9007199254740994.0},
+        {".5", 0.5},
+        {"-1.", -1.0},
+        {"1.5+3", 1500.0},
+        {"1.5-3", 0.0015},
+        {"1.5d+3", 1500.0},
+        {"+2.5D-1", 0.25},
+        {"0.0E+000", 0.0},
+        {"4.9406564584124654E-324", 0x1p-1074},
+        {"1.7976931348623157E308", 0x1.fffffffffffffp1023},
+        {"123456789012345678901234567890", 123456789012345678901234567890.0},
+    };
+    static const char *const bad[] = {"", ".", "-", "E5", "1E", "1E+", "x"};
+    (void)state;
+
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        ritz_decimal number = {0};
+        const char *from = cases[k].text;
+
+        assert_true(ritz_decimal_scan(&from, from + strlen(from), &number));
+        assert_true(*from == '\0');
+        assert_true(number.value == cases[k].value);
+    }
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        ritz_decimal number = {0};
+        const char *from = bad[k];
+
+        assert_false(ritz_decimal_scan(&from, from + strlen(from), &number));
+    }
+}
+
+/* A matrix with gaps, negative and extreme values; complex on request. */
+static void make(bool complex, bool extreme, ritz_matrix *out)
+{
+    enum { N = 9 };
+    double *imaginary = calloc(64, sizeof *imaginary);
+    int64_t p = 0;
+
+    assert_ok(ritz_sparse_new(N + 2, N, 64, &out->A));
+    for (int64_t j = 0; j < N; j++) {
+        out->A.colptr[j] = p;
+        for (int64_t i = j % 4; i < N + 2 && j != 3; i += 1 + (i + j) % 3) {
+            out->A.rowind[p] = i;
+            out->A.val[p] = sin((double)(7 * i + j + 1)) / 3.0;
+            if (extreme && i % 2)
+                out->A.val[p] *= 1e-200;
+            imaginary[p++] = complex ? cos((double)(i + 5 * j)) * 1e5 : 0.0;
+        }
+    }
+    out->A.colptr[N] = p;
+    strcpy(out->name, complex ? "cplx" : "kreal");
+    out->imaginary = complex ? imaginary : NULL;
+    if (!complex)
+        free(imaginary);
+}
+
+static void what_is_written_is_read_to_the_same_bits(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 16; k++) {
+        const ritz_output4_style style = {k & 1, k & 2, 17};
+        const char *path = "output4_round.op4";
+        ritz_matrix m[2] = {0};
+        ritz_matrices all = {0};
+
+        make(k & 4, k & 8, &m[0]);
+        make(!(k & 4), false, &m[1]);
+        assert_ok(ritz_output4_write(path, 2, m, &style));
+        assert_ok(ritz_foreign_read(path, &all));
+        assert_int_equal(all.count, 2);
+        assert_string_equal(all.matrix[0].name, k & 4 ? "CPLX" : "KREAL");
+        assert_int_equal(all.matrix[0].digits, 17);
+        assert_same(&m[0], &all.matrix[0], 0);
+        assert_same(&m[1], &all.matrix[1], 0);
+        ritz_matrices_free(&all);
+        ritz_matrix_free(&m[0]);
+        ritz_matrix_free(&m[1]);
+        remove(path);
+    }
+}
+
+static void fewer_digits_are_right_to_half_a_unit(void **state)
+{
+    (void)state;
+    for (int64_t digits = 1; digits <= 16; digits++) {
+        const ritz_output4_style style = {true, digits % 2, digits};
+        const char *path = "output4_digits.op4";
+        ritz_matrix m = {0};
+        ritz_matrices all = {0};
+
+        make(true, false, &m);
+        assert_ok(ritz_output4_write(path, 1, &m, &style));
+        assert_ok(ritz_foreign_read(path, &all));
+        assert_int_equal(all.matrix[0].digits, digits);
+        assert_same(&m, &all.matrix[0], digits);
+        ritz_matrices_free(&all);
+        ritz_matrix_free(&m);
+        remove(path);
+    }
+}
+
+static void what_cannot_be_written_leaves_no_file(void **state)
+{
+    const ritz_output4_style style = {.text = true, .digits = 18};
+    const ritz_output4_style binary = {0};
+    const char *path = "output4_none.op4";
+    ritz_matrix m = {0};
+    (void)state;
+
+    make(false, false, &m);
+    assert_fails(ritz_output4_write(path, 1, &m, &style), RITZ_ERR_ARGUMENT,
+                 "1 to 17");
+    assert_fails(ritz_output4_write(path, 0, &m, &binary), RITZ_ERR_ARGUMENT,
+                 "there is no matrix");
+    m.A.val[2] = HUGE_VAL;
+    assert_fails(ritz_output4_write(path, 1, &m, &binary), RITZ_ERR_ARGUMENT,
+                 "not finite");
+    m.A.val[2] = 1.0;
+    assert_fails(ritz_output4_write("/no/such/place", 1, &m, &binary),
+                 RITZ_ERR_FILE, "/no/such/place");
+    assert_int_not_equal(access(path, F_OK), 0);
+    ritz_matrix_free(&m);
+}
+
+/* Families of files that hold the same matrices; 0 digits: the same bits. */
+static const struct {
+    const char *file, *other;
+    int64_t digits;
+} families[] = {
+    {"output4/double_dense_le.op4", "output4/double_dense_be.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_dense_le_i64.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_dense_be_i64.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_bigmat_le.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_bigmat_be.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_bigmat_be_i64.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_bigmat_le_i64.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_nonbigmat_le.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_nonbigmat_be.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_nonbigmat_le_i64.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_nonbigmat_be_i64.op4", 0},
+    {"output4/double_dense_le.op4", "output4/double_dense_ascii.op4", 10},
+    {"output4/double_dense_le.op4", "output4/double_bigmat_ascii.op4", 10},
+    {"output4/double_dense_le.op4", "output4/double_nonbigmat_ascii.op4", 15},
+    {"output4/double_dense_ascii.op4", "output4/double_dense_ascii_d.op4", 0},
+    {"output4/double_dense_ascii.op4", "output4/double_dense_ascii_i64.op4", 0},
+    {"output4/double_dense_ascii.op4", "output4/double_bigmat_ascii.op4", 0},
+    {"output4/double_dense_ascii.op4", "output4/double_bigmat_ascii_d.op4", 0},
+    {"output4/double_dense_ascii.op4", "output4/double_bigmat_ascii_i64.op4",
+     0},
+    {"output4/double_dense_ascii.op4",
+     "output4/double_bigmat_ascii_badname.op4", 0},
+    {"output4/double_nonbigmat_ascii.op4",
+     "output4/double_nonbigmat_ascii_d.op4", 0},
+    {"output4/double_nonbigmat_ascii.op4",
+     "output4/double_nonbigmat_ascii_i64.op4", 0},
+    {"output4/single_dense_le.op4", "output4/single_dense_be.op4", 0},
+    {"output4/single_dense_le.op4", "output4/single_bigmat_le.op4", 0},
+    {"output4/single_dense_le.op4", "output4/single_bigmat_be.op4", 0},
+    {"output4/single_dense_le.op4", "output4/single_nonbigmat_le.op4", 0},
+    {"output4/single_dense_le.op4", "output4/single_nonbigmat_be.op4", 0},
+    {"output4/single_dense_le.op4", "output4/single_dense_ascii.op4", 10},
+    {"output4/single_dense_le.op4", "output4/single_bigmat_ascii.op4", 9},
+    {"output4/single_dense_le.op4", "output4/single_nonbigmat_ascii.op4", 0},
+    {"output4/single_dense_le_i64.op4", "output4/single_dense_be_i64.op4", 0},
+    {"output4/single_dense_le_i64.op4", "output4/double_dense_le.op4", 0},
+    {"output4/single_dense_le_i64.op4", "output4/single_bigmat_le_i64.op4", 0},
+    {"output4/single_dense_le_i64.op4", "output4/single_nonbigmat_be_i64.op4",
+     0},
+    {"output4/single_dense_le_i64.op4", "output4/single_nonbigmat_le_i64.op4",
+     0},
+    {"output4/single_dense_le_i64.op4", "output4/single_dense_ascii_i64.op4",
+     10},
+    {"output4/double_bigmat_be.op4.other",
+     "output4/double_nonbigmat_be.op4.other", 0},
+    {"output4/double_bigmat_ascii.op4.other",
+     "output4/double_nonbigmat_ascii.op4.other", 0},
+    {"output4/double_bigmat_be.op4.other",
+     "output4/double_bigmat_ascii.op4.other", 10},
+    {"output4/cdbin_ascii_sparse_bigmat.op4",
+     "output4/cdbin_ascii_sparse_nonbigmat.op4", 0},
+    {"output4/cdbin.op4", "output4/cdbin_ascii_sparse_bigmat.op4", 16},
+    {"output4/cdbin.op4", "output4/cd.op4", 17},
+    {"output4/csbin.op4", "output4/cs.op4", 10},
+    {"output4/rdbin.op4", "output4/rd.op4", 17},
+    {"output4/rsbin.op4", "output4/rs.op4", 10},
+    {"output4/binary_fabiola.op4", "output4/ascii_fabiola.op4", 17},
+    {"output4/big_dense_binary.op4", "output4/big_bigmat_binary.op4", 0},
+    {"output4/big_dense_ascii.op4", "output4/big_bigmat_ascii.op4", 0},
+    {"output4/big_dense_binary.op4", "output4/big_dense_ascii.op4", 0},
+    {"public_solvers/nastran95_inboard.op4",
+     "public_solvers/nastran95_inboard_dense.op4", 0},
+    {"pynastran/mat_b_dn.op4", "pynastran/mat_b_s1.op4", 0},
+    {"pynastran/mat_b_dn.op4", "pynastran/mat_b_s2.op4", 0},
+    {"pynastran/mat_t_dn.op4", "pynastran/mat_t_s1.op4", 15},
+    {"pynastran/mat_t_dn.op4", "pynastran/mat_t_s2.op4", 15},
+};
+
+static void spellings_of_third_party_files_agree(void **state)
+{
+    char path[PATH_SIZE];
+    (void)state;
+
+    if (!external("", path))
+        skip();
+    for (size_t k = 0; k < sizeof families / sizeof *families; k++) {
+        ritz_matrices a = {0};
+        ritz_matrices b = {0};
+
+        external(families[k].file, path);
+        assert_ok(ritz_foreign_read(path, &a));
+        external(families[k].other, path);
+        assert_ok(ritz_foreign_read(path, &b));
+        assert_int_equal(a.count, b.count);
+        for (int64_t m = 0; m < a.count; m++)
+            assert_same(&a.matrix[m], &b.matrix[m], families[k].digits);
+        ritz_matrices_free(&a);
+        ritz_matrices_free(&b);
+    }
+}
+
+static void all_third_party_files_are_read(void **state)
+{
+    static const char *const folders[] = {"output4", "pynastran",
+                                          "nas2cam_csuper", "public_solvers"};
+    char path[PATH_SIZE];
+    int files = 0;
+    (void)state;
+
+    if (!external("", path))
+        skip();
+    for (int k = 0; k < 4; k++) {
+        DIR *folder = NULL;
+        struct dirent *entry = NULL;
+
+        external(folders[k], path);
+        folder = opendir(path);
+        assert_non_null(folder);
+        while ((entry = readdir(folder)) != NULL) {
+            ritz_matrices all = {0};
+            char file[PATH_SIZE + 300];
+
+            if (!strstr(entry->d_name, ".op4"))
+                continue;
+            snprintf(file, sizeof file, "%s/%s", path, entry->d_name);
+            assert_ok(ritz_foreign_read(file, &all));
+            for (int64_t m = 0; m < all.count; m++)
+                assert_ok(ritz_sparse_check(
+                    &all.matrix[m].A,
+                    all.matrix[m].A.colptr[all.matrix[m].A.ncol]));
+            assert_string_equal(all.format, "output4");
+            files++;
+            ritz_matrices_free(&all);
+        }
+        closedir(folder);
+    }
+    assert_true(files >= 74);
+}
+
+/* Damage, in process: each ends in success or in a sentence. */
+static void assert_answered(const char *bytes, int64_t size)
+{
+    ritz_matrices all = {0};
+    char *exact = malloc((size_t)size + 1); /* so that overruns are seen */
+    ritz_status status = RITZ_OK;
+
+    memcpy(exact, bytes, (size_t)size);
+    exact = realloc(exact, (size_t)(size > 0 ? size : 1));
+    ritz_record("%s", "");
+    status = ritz_foreign_parse(exact, size, &all);
+    assert_true(status == RITZ_OK || status == RITZ_ERR_FORMAT);
+    assert_true(status == RITZ_OK || strlen(ritz_error_message()) > 0);
+    assert_true(status == RITZ_OK || (all.count == 0 && !all.matrix));
+    ritz_matrices_free(&all);
+    free(exact);
+}
+
+static void assert_every_cut_is_answered(const char *bytes, int64_t size)
+{
+    for (int64_t cut = 0; cut < size; cut++)
+        assert_answered(bytes, cut);
+}
+
+static void assert_corruption_is_answered(const char *bytes, int64_t size)
+{
+    char *damaged = malloc((size_t)size);
+    uint64_t seed = 12345;
+
+    for (int k = 0; k < 500; k++) {
+        memcpy(damaged, bytes, (size_t)size);
+        for (int n = 0; n <= k % 8; n++) {
+            seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
+            damaged[(seed >> 33) % (uint64_t)size] =
+                k % 2 ? (char)(seed >> 20) : "0123456789 -+.E\n"[seed >> 60];
+        }
+        assert_answered(damaged, size);
+    }
+    free(damaged);
+}
+
+static void damaged_text_is_answered(void **state)
+{
+    (void)state;
+    for (int k = 0; k < SPELLINGS; k++) {
+        int64_t size = (int64_t)strlen(spellings[k]);
+
+        assert_every_cut_is_answered(spellings[k], size);
+        assert_corruption_is_answered(spellings[k], size);
+    }
+}
+
+static void damaged_third_party_files_are_answered(void **state)
+{
+    static const char *const files[] = {
+        "output4/rdbin.op4",
+        "output4/cs.op4",
+        "output4/csbin.op4",
+        "output4/big_bigmat_ascii.op4",
+        "output4/big_bigmat_binary.op4",
+        "output4/big_dense_binary.op4",
+        "output4/single_nonbigmat_le.op4",
+        "output4/single_nonbigmat_be_i64.op4",
+        "output4/double_bigmat_be.op4.other",
+        "output4/double_nonbigmat_ascii.op4.other",
+        "output4/double_bigmat_ascii_badname.op4",
+        "pynastran/mat_b_s1.op4",
+    };
+    char path[PATH_SIZE];
+    (void)state;
+
+    if (!external("", path))
+        skip();
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+        char *bytes = NULL;
+        int64_t size = 0;
+
+        external(files[k], path);
+        assert_ok(ritz_bytes_read(path, &size, &bytes));
+        assert_every_cut_is_answered(bytes, size);
+        assert_corruption_is_answered(bytes, size);
+        free(bytes);
+    }
+}
+
+static ritz_status read_and_drop(const char *bytes, int64_t size)
+{
+    ritz_matrices all = {0};
+    ritz_status status = ritz_foreign_parse(bytes, size, &all);
+
+    ritz_matrices_free(&all);
+    return status;
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    const ritz_output4_style style = {.sparse = true};
+    const char *path = "output4_alloc.op4";
+    static const char form3[] =
+        "       1       2       3       4D       1P,2E8.1\n"
+        "       1       1       4\n 1.0E+00 2.0E+00\n 1.0E+00 2.0E+00\n"
+        "       2       1       1\n 1.0E+00\n";
+    char *bytes = NULL;
+    int64_t size = 0;
+    ritz_matrix m = {0};
+    (void)state;
+
+    make(true, true, &m);
+    assert_survives_every_allocation(ritz_output4_write(path, 1, &m, &style));
+    assert_ok(ritz_bytes_read(path, &size, &bytes));
+    assert_survives_every_allocation(read_and_drop(bytes, size));
+    assert_survives_every_allocation(
+        read_and_drop(form3, (int64_t)strlen(form3)));
+    for (int k = 0; k < SPELLINGS; k++)
+        assert_survives_every_allocation(
+            read_and_drop(spellings[k], (int64_t)strlen(spellings[k])));
+    free(bytes);
+    ritz_matrix_free(&m);
+    remove(path);
+}
+
+/* Empty records stand between others in some large files. */
+static void records_of_no_bytes_are_skipped(void **state)
+{
+    const ritz_output4_style style = {0};
+    const char *path = "output4_empty.op4";
+    ritz_matrices all = {0};
+    ritz_matrix m = {0};
+    char *bytes = NULL;
+    char *spaced = NULL;
+    int64_t size = 0;
+    (void)state;
+
+    make(false, false, &m);
+    assert_ok(ritz_output4_write(path, 1, &m, &style));
+    assert_ok(ritz_bytes_read(path, &size, &bytes));
+    spaced = calloc((size_t)size + 16, 1);
+    memcpy(spaced, bytes, 32); /* the header, then two records of 0 bytes */
+    memcpy(spaced + 32 + 16, bytes + 32, (size_t)size - 32);
+    assert_ok(ritz_foreign_parse(spaced, size + 16, &all));
+    assert_same(&m, &all.matrix[0], 0);
+    ritz_matrices_free(&all);
+    ritz_matrix_free(&m);
+    free(spaced);
+    free(bytes);
+    remove(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_spelling_of_text_gives_the_same_matrix),
+        cmocka_unit_test(forms_mean_what_nastran_means_by_them),
+        cmocka_unit_test(ten_million_null_columns_are_read),
+        cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(decimals_are_rounded_as_strtod_rounds),
+        cmocka_unit_test(ties_and_odd_spellings_are_read),
+        cmocka_unit_test(what_is_written_is_read_to_the_same_bits),
+        cmocka_unit_test(fewer_digits_are_right_to_half_a_unit),
+        cmocka_unit_test(what_cannot_be_written_leaves_no_file),
+        cmocka_unit_test(records_of_no_bytes_are_skipped),
+        cmocka_unit_test(spellings_of_third_party_files_agree),
+        cmocka_unit_test(all_third_party_files_are_read),
+        cmocka_unit_test(damaged_text_is_answered),
+        cmocka_unit_test(damaged_third_party_files_are_answered),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,77 @@
+/* Files that a run reads: their sums, and whether the work is large. */
+#include "cli.h"
+
+#include <ritz/text.h>
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Bytes of input above which work takes longer than starting once more: a
+ * start is 15 ms, and so is the factor of a matrix of this size (measured). */
+enum { LARGE = 1 << 20 };
+
+/*
+ * Start once more with a limit of threads, where there is none and the inputs
+ * are large. The limit is heeded only if it stands when a process starts;
+ * without it CHOLMOD's own threads crowd out those of the BLAS. If that cannot
+ * be done, it costs only speed. A pipe cannot be read again, and what was said
+ * is not to be said twice.
+ */
+static void limit_threads(cli_run *run, const struct stat *file)
+{
+    char cores[24];
+    char self[CLI_MAX_COMMAND];
+    ssize_t length = 0;
+
+    run->piped = run->piped || !S_ISREG(file->st_mode);
+    run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
+    if (!run->program->threads || run->bytes < LARGE || run->piped ||
+        json_array_size(run->warnings) > 0 || getenv("OMP_THREAD_LIMIT"))
+        return;
+    length = readlink("/proc/self/exe", self, sizeof self - 1);
+    if (length <= 0)
+        return;
+    self[length] = '\0';
+    snprintf(cores, sizeof cores, "%ld", sysconf(_SC_NPROCESSORS_ONLN));
+    if (setenv("OMP_THREAD_LIMIT", cores, 1) == 0 &&
+        setenv("OMP_NUM_THREADS", cores, 0) == 0)
+        execv(self, run->argv);
+}
+
+ritz_status cli_input(cli_run *run, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    char digest[RITZ_DIGEST_SIZE] = "-";
+    char *line = NULL;
+    char **more = NULL;
+    struct stat there = {0};
+
+    for (int64_t k = 0; k < run->num_inputs; k++)
+        if (strcmp(strstr(run->input[k], "  ") + 2, path) == 0)
+            return RITZ_OK;
+    if (stat(path, &there) == 0)
+        limit_threads(run, &there);
+    if (S_ISREG(there.st_mode) || there.st_mode == 0)
+        RITZ_TRY(ritz_digest_file(path, digest));
+    RITZ_FAIL_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
+                 path);
+    line = malloc(strlen(digest) + strlen(path) + 3);
+    more =
+        realloc(run->input, (size_t)(run->num_inputs + 1) * sizeof *run->input);
+    if (more)
+        run->input = more;
+    RITZ_FAIL_IF(!line || !more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
+    run->input[run->num_inputs++] = line;
+    line = NULL;
+done:
+    free(line);
+    return status;
+}
+
+ritz_stamp cli_stamp(const cli_run *run)
+{
+    return (ritz_stamp){run->command, run->num_inputs, run->input};
+}

@@ -1,0 +1,89 @@
+/* ritz-assemble - the components of a scene joined at its configurations. */
+#include "describe.h"
+
+#include <ritz/synthesis.h>
+
+#include <stdlib.h>
+
+static ritz_status system_of(cli_run *run, const ritz_scene *scene,
+                             const char *at)
+{
+    ritz_status status = RITZ_OK;
+    ritz_stage stage = {0};
+    ritz_system system = {0};
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY(ritz_stage_new(scene, &stage));
+    RITZ_TRY(ritz_assemble(&stage, at, &system));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
+    cli_say(run, "%s:", run->output);
+    RITZ_TRY(describe_system(run, run->report, &system));
+    cli_record(run, "assemble", system.configuration[0].K.nrow);
+done:
+    ritz_system_free(&system);
+    ritz_stage_free(&stage);
+    return status;
+}
+
+static ritz_status full_of(cli_run *run, const ritz_scene *scene,
+                           const char *at)
+{
+    ritz_status status = RITZ_OK;
+    ritz_component full = {0};
+    ritz_stamp stamp = {0};
+    double *angle_deg =
+        calloc((size_t)scene->num_hinges + 1, sizeof *angle_deg);
+
+    RITZ_FAIL_IF(!angle_deg, RITZ_ERR_MEMORY, "no memory for angles");
+    RITZ_TRY(ritz_scene_angles(scene, at ? at : "", angle_deg));
+    RITZ_TRY(ritz_assemble_full(scene, angle_deg, &full));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_component(run->output, &full, &stamp));
+    cli_say(run, "%s:", run->output);
+    describe_component(run, run->report, &full);
+    cli_record(run, "full", full.num_dofs);
+done:
+    free(angle_deg);
+    ritz_component_free(&full);
+    return status;
+}
+
+static ritz_status assemble(cli_run *run, const char *at, bool full)
+{
+    ritz_status status = RITZ_OK;
+    ritz_scene scene = {0};
+
+    RITZ_TRY(model_scene(run, run->operand[0], &scene));
+    RITZ_TRY(full ? full_of(run, &scene, at) : system_of(run, &scene, at));
+done:
+    ritz_scene_free(&scene);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const char *at = NULL;
+    bool full = false;
+    const cli_option options[] = {
+        {CLI_TEXT(&at), .name = "at", .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
+         .help = "one configuration, degrees [all of the scene's]"},
+        {CLI_FLAG(&full), .name = "full",
+         .help = "reduce nothing: one component with the dofs of all"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-assemble",
+        .operands = {{"SCENE", "scene file (YAML)", false}},
+        .summary = "Join the components of a scene, each reduced as the scene "
+                   "says, at its configurations.",
+        .example = "ritz-assemble scene.yaml --at clock=60,cone=0 -o at60.h5",
+        .options = options,
+        .output = "the system; with --full a component",
+        .threads = true,
+    };
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    return cli_finish(&run, assemble(&run, at, full));
+}

@@ -1,0 +1,139 @@
+/* ritz-export - a reduced component or a response as a file of others. */
+#include "model.h"
+
+#include <ritz/export.h>
+
+#include <string.h>
+
+enum { MAX_EXPORTERS = 64 };
+
+static void list_formats(void)
+{
+    for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
+        printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
+               (*e)->reference);
+}
+
+static const ritz_exporter *find(const cli_program *program, const char *word)
+{
+    const ritz_exporter *exporter = ritz_exporter_find(word);
+    const char *names[MAX_EXPORTERS];
+    int64_t count = 0;
+
+    if (exporter)
+        return exporter;
+    while (ritz_exporters[count] && count < MAX_EXPORTERS) {
+        names[count] = ritz_exporters[count]->name;
+        count++;
+    }
+    cli_refuse_name(program, "no format", word, count, names);
+}
+
+/* Which errors are known of it: no number without its error. */
+static ritz_status vouch(cli_run *run, const ritz_reduced *reduced, bool force)
+{
+    ritz_status status = RITZ_OK;
+    const char *rests = reduced->errors.count > 0      ? "measured"
+                        : reduced->estimates.count > 0 ? "estimated"
+                                                       : "unknown";
+    const ritz_measures *known =
+        reduced->errors.count > 0 ? &reduced->errors : &reduced->estimates;
+
+    cli_report_text(run, "errors_rest_on", rests);
+    json_object_set_new(run->report, "errors", model_measures_json(known));
+    RITZ_FAIL_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
+                 "'%s' carries neither estimated nor measured errors: run "
+                 "ritz-verify, or export it all the same with --force",
+                 run->operand[0]);
+    if (known->count == 0) {
+        cli_warn(run, "nothing is known of the errors of '%s'",
+                 run->operand[0]);
+        return RITZ_OK;
+    }
+    cli_say(run, "errors %s by %s:", rests,
+            reduced->errors.count > 0 ? "ritz-verify against the full model"
+                                      : "ritz-reduce, not verified");
+    model_say_measures(run, known);
+    for (int64_t k = 0; k < known->count; k++) {
+        cli_record_error(run, known->item[k].name, known->item[k].value);
+        if (!ritz_measure_holds(&known->item[k]))
+            cli_warn(run, "'%s' does not meet its limit", known->item[k].name);
+    }
+done:
+    return status;
+}
+
+static ritz_status export(cli_run *run, const ritz_exporter *exporter,
+                          const ritz_export_request *request, bool force)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    bool takes_response = strcmp(exporter->kind, "response") == 0;
+    model m = {0};
+    ritz_export_report done = {0};
+    json_t *said = json_array();
+
+    json_object_set_new(run->report, "said", said);
+    cli_report_text(run, "format", exporter->name);
+    cli_record(run, exporter->name, -1);
+    RITZ_TRY(model_read(run, path,
+                        takes_response ? MODEL_RESPONSE : MODEL_REDUCED, &m));
+    if (takes_response) {
+        RITZ_TRY(exporter->write_response(&m.response, request, &done));
+    } else {
+        cli_record(run, exporter->name, m.reduced.K.nrow);
+        RITZ_TRY(vouch(run, &m.reduced, force));
+        RITZ_TRY(exporter->write_reduced(&m.reduced, request, &done));
+    }
+    cli_say(run, "%s: %s", run->output, exporter->summary);
+    for (int64_t k = 0; k < done.count; k++) {
+        cli_say(run, "  %s", done.line[k]);
+        json_array_append_new(said, cli_string(done.line[k]));
+    }
+done:
+    ritz_export_report_free(&done);
+    model_free(&m);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const char *to = NULL;
+    bool force = false;
+    ritz_export_request request = {0};
+    const cli_option options[] = {
+        {CLI_TEXT(&to), .name = "to", .argument = "FORMAT",
+         .help = "one of those that --list shows"},
+        {CLI_TEXT(&request.matrices), .name = "matrix",
+         .argument = "NAME[,NAME]", .help = "these matrices only [all]"},
+        {CLI_FLAG(&request.text), .name = "text",
+         .help = "text, not binary (output4)"},
+        {CLI_FLAG(&request.dense), .name = "dense",
+         .help = "every entry, zeros too (output4)"},
+        {CLI_INT(&request.digits), .name = "digits", .argument = "N", .min = 1,
+         .max = 17, .help = "significant, of text; 17 if not given"},
+        {CLI_FLAG(&force), .name = "force",
+         .help = "even if nothing is known of the errors"},
+        {CLI_ACTION(list_formats), .name = "list",
+         .help = "list formats and what they take"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-export",
+        .operands = {{"FILE", "a reduced component or a response", false}},
+        .summary = "Write a reduced component for a simulator, or a response "
+                   "as a table, and say what\nis known of its errors.",
+        .example = "ritz-export blade-verified.h5 --to exudyn -o blade.hdf5",
+        .options = options,
+        .output = "the file in that format",
+    };
+    const ritz_exporter *exporter = NULL;
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    if (!to)
+        cli_refuse(&program, "no format, name it with --to; --list shows all");
+    exporter = find(&program, to);
+    request.output = run.output;
+    return cli_finish(&run, export(&run, exporter, &request, force));
+}

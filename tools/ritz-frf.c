@@ -1,0 +1,193 @@
+/* ritz-frf - frequency response from inputs to outputs. */
+#include "model.h"
+
+#include <complex.h>
+#include <math.h>
+#include <string.h>
+
+/* What the command line asks for; NaN or NULL where it says nothing. */
+typedef struct wish {
+    double from_hz, to_hz, up_to_hz;
+    int64_t points;
+    bool log, no_refine;
+    const char *method, *damping, *at;
+} wish;
+
+/*
+ * From the band of the system where nothing is said. A band that starts at 0
+ * starts a thousandth up instead: a free body has no static response.
+ */
+static ritz_status place(const model *m, const wish *asked, ritz_grid *out)
+{
+    ritz_status status = RITZ_OK;
+    double from = asked->from_hz;
+    double to = asked->to_hz;
+
+    if (isnan(to) && m->kind == MODEL_SYSTEM && m->system.band_hz[1] > 0.0)
+        to = m->system.band_hz[1];
+    RITZ_FAIL_IF(isnan(to), RITZ_ERR_ARGUMENT,
+                 "the model states no band: give --to-hz");
+    if (isnan(from) && m->kind == MODEL_SYSTEM && m->system.band_hz[0] > 0.0 &&
+        m->system.band_hz[0] < to)
+        from = m->system.band_hz[0];
+    if (isnan(from))
+        from = to / 1000.0;
+    RITZ_FAIL_IF(!(from < to), RITZ_ERR_ARGUMENT,
+                 "no band from %g to %g Hz: --from-hz lies above --to-hz", from,
+                 to);
+    RITZ_FAIL_IF(asked->log && !(from > 0.0), RITZ_ERR_ARGUMENT,
+                 "--log needs --from-hz above 0");
+    *out = (ritz_grid){.from_hz = from,
+                       .to_hz = to,
+                       .count = asked->points,
+                       .log = asked->log,
+                       .refine = !asked->no_refine};
+done:
+    return status;
+}
+
+static ritz_status respond(const model *m, const wish *asked,
+                           const ritz_damping *damping, const ritz_grid *grid,
+                           ritz_response *out)
+{
+    double up_to = isnan(asked->up_to_hz) ? 2.0 * grid->to_hz : asked->up_to_hz;
+    model_view view = model_look(m);
+
+    if (m->kind != MODEL_COMPONENT)
+        return ritz_response_dense(view.K, view.M, view.D, view.io, damping,
+                                   grid, out);
+    if (strcmp(asked->method, "direct") == 0)
+        return ritz_response_direct(&m->component, damping, up_to, grid, out);
+    return ritz_response_modal(&m->component, damping, up_to, grid, out);
+}
+
+/* The highest point of each response, and where it is. */
+static void report(cli_run *run, const ritz_response *r)
+{
+    json_t *measures = json_array();
+
+    cli_say(run, "%s: %s response, %lld points from %g to %g Hz", run->output,
+            r->method, (long long)r->count, r->hertz[0],
+            r->hertz[r->count - 1]);
+    cli_say(run, "%-20s %-20s %14s %14s", "output", "input", "peak |H|",
+            "at Hz");
+    for (int64_t i = 0; i < r->num_outputs; i++) {
+        for (int64_t j = 0; j < r->num_inputs; j++) {
+            char name[2 * RITZ_NAME_SIZE + 16];
+            int64_t best = 0;
+            double peak = -1.0;
+            json_t *item = json_object();
+
+            for (int64_t k = 0; k < r->count; k++) {
+                double h =
+                    cabs(r->H[(k * r->num_outputs + i) * r->num_inputs + j]);
+
+                best = h > peak ? k : best;
+                peak = h > peak ? h : peak;
+            }
+            cli_say(run, "%-20s %-20s %14.6e %14.7g", r->output[i], r->input[j],
+                    peak, r->hertz[best]);
+            snprintf(name, sizeof name, "peak %s / %s", r->output[i],
+                     r->input[j]);
+            json_object_set_new(item, "name", cli_string(name));
+            json_object_set_new(item, "value", cli_real(peak));
+            json_object_set_new(item, "at_hz", cli_real(r->hertz[best]));
+            json_object_set_new(item, "limit", json_null());
+            json_object_set_new(item, "verdict", json_string("pass"));
+            json_array_append_new(measures, item);
+        }
+    }
+    json_object_set_new(run->report, "measures", measures);
+    cli_report_text(run, "method", r->method);
+    cli_report_text(run, "damping", r->damping);
+    cli_report_int(run, "points", r->count);
+    cli_record(run, r->method, r->count);
+}
+
+static ritz_status frf(cli_run *run, const wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    model m = {0};
+    ritz_damping damping = {0};
+    ritz_grid grid = {0};
+    ritz_response response = {0};
+    ritz_stamp stamp = {0};
+    const ritz_io *io = NULL;
+
+    RITZ_TRY(model_read(run, path,
+                        MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM, &m));
+    RITZ_TRY(model_at(&m, path, asked->at));
+    RITZ_FAIL_IF(
+        m.kind != MODEL_COMPONENT && strcmp(asked->method, "direct") == 0,
+        RITZ_ERR_ARGUMENT,
+        "'%s' is small and dense: --method direct is for components", path);
+    RITZ_TRY(model_damping(&m, asked->damping, &damping));
+    RITZ_TRY_IN(path, place(&m, asked, &grid));
+    io = m.kind == MODEL_COMPONENT ? &m.component.io : model_look(&m).io;
+    RITZ_FAIL_IF(io->num_inputs == 0 || io->num_outputs == 0, RITZ_ERR_ARGUMENT,
+                 "'%s' has no %s, it responds to nothing", path,
+                 io->num_inputs == 0 ? "inputs" : "outputs");
+    RITZ_TRY_IN(path, respond(&m, asked, &damping, &grid, &response));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_response(run->output, &response, &stamp));
+    report(run, &response);
+done:
+    ritz_response_free(&response);
+    model_free(&m);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const methods[] = {"modal", "direct"};
+    wish asked = {.from_hz = (double)NAN,
+                  .to_hz = (double)NAN,
+                  .up_to_hz = (double)NAN,
+                  .points = 400,
+                  .method = "modal"};
+    const cli_option options[] = {
+        {CLI_REAL(&asked.from_hz), .name = "from-hz", .argument = "F",
+         .min = 0.0, .max = 1e9,
+         .help = "start [the band's, or a thousandth "
+                 "of the end]"},
+        {CLI_REAL(&asked.to_hz), .name = "to-hz", .argument = "F", .min = 1e-9,
+         .max = 1e9, .help = "end [the band's of a system]"},
+        {CLI_INT(&asked.points), .name = "points", .argument = "N", .min = 2,
+         .max = 1000000, .help = "how many evenly spaced points"},
+        {CLI_FLAG(&asked.log), .name = "log",
+         .help = "evenly spaced in the logarithm of frequency"},
+        {CLI_FLAG(&asked.no_refine), .name = "no-refine",
+         .help = "add no points at and around resonances"},
+        {CLI_TEXT(&asked.method), .name = "method", .argument = "NAME",
+         .help = "modal, or direct: a factor at each point (components)"},
+        {CLI_TEXT(&asked.damping), .name = "damping", .argument = "TEXT",
+         .help = "\"modal ZETA\", \"bands F F ZETA ...\" (Hz) or \"rayleigh A "
+                 "B\" [the model's]"},
+        {CLI_REAL(&asked.up_to_hz), .name = "up-to-hz", .argument = "F",
+         .min = 1e-9, .max = 1e9,
+         .help = "modes of a component up to this one [twice the end]"},
+        {CLI_TEXT(&asked.at), .name = "at",
+         .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
+         .help = "which configuration of a system, degrees"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-frf",
+        .operands = {{"FILE", "a component, reduced component or system",
+                      false}},
+        .summary = "Frequency response from every input to every output.",
+        .example = "ritz-frf system.h5 --at clock=60,cone=0 --to-hz 10 "
+                   "-o response.h5",
+        .options = options,
+        .output = "the response",
+        .threads = true,
+    };
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    if (strcmp(asked.method, "modal") != 0 &&
+        strcmp(asked.method, "direct") != 0)
+        cli_refuse_name(&program, "no method", asked.method, 2, methods);
+    return cli_finish(&run, frf(&run, &asked));
+}

@@ -1,0 +1,189 @@
+/* ritz-import - matrices and geometry of an FE code become a component. */
+#include "describe.h"
+
+#include <ritz/foreign.h>
+#include <ritz/import.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The options that may be repeated. */
+typedef struct repeated {
+    cli_list load, port, input, output;
+} repeated;
+
+/* Remember the file of "FILE[:NAME[#K]]"; NULL: none was given. */
+static ritz_status take_matrix(cli_run *run, const char *spec)
+{
+    ritz_status status = RITZ_OK;
+    char *path = NULL;
+
+    if (!spec)
+        return RITZ_OK;
+    RITZ_TRY(ritz_foreign_path(spec, &path));
+    RITZ_TRY(cli_input(run, path));
+done:
+    free(path);
+    return status;
+}
+
+/* The same of "FILE@LOAD". */
+static ritz_status take_load(cli_run *run, const char *spec)
+{
+    ritz_status status = RITZ_OK;
+    const char *at = strrchr(spec, '@');
+    char *file = NULL;
+
+    RITZ_FAIL_IF(!at || at == spec || !at[1], RITZ_ERR_ARGUMENT,
+                 "--geometric-stiffness '%s' is not FILE@LOAD", spec);
+    file = strndup(spec, (size_t)(at - spec));
+    RITZ_FAIL_IF(!file, RITZ_ERR_MEMORY, "no memory for '%s'", spec);
+    RITZ_TRY(take_matrix(run, file));
+done:
+    free(file);
+    return status;
+}
+
+static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(take_matrix(run, request->stiffness));
+    RITZ_TRY(take_matrix(run, request->mass));
+    RITZ_TRY(take_matrix(run, request->damping));
+    RITZ_TRY(take_matrix(run, request->structural_damping));
+    for (int64_t k = 0; k < request->num_loads; k++)
+        RITZ_TRY(take_load(run, request->load[k]));
+    if (request->bulk)
+        RITZ_TRY(cli_input(run, request->bulk));
+    if (request->dofs)
+        RITZ_TRY(cli_input(run, request->dofs));
+done:
+    return status;
+}
+
+/* Rows that are gone: the first few by name, all of them in JSON. */
+static void report_removed(cli_run *run, const ritz_import_report *report)
+{
+    enum { SHOWN = 8 };
+    char name[RITZ_DOF_NAME_SIZE];
+    char text[SHOWN * (RITZ_DOF_NAME_SIZE + 2) + 1] = "";
+    size_t used = 0;
+    json_t *all = json_array();
+
+    for (int64_t k = 0; k < report->num_removed; k++) {
+        ritz_dof_name(report->removed[k], name);
+        json_array_append_new(all, cli_string(name));
+        if (k < SHOWN)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s",
+                                     k > 0 ? ", " : "", name);
+    }
+    json_object_set_new(run->report, "removed", all);
+    if (report->num_removed > 0)
+        cli_say(run, "%lld rows empty in stiffness and mass removed: %s%s",
+                (long long)report->num_removed, text,
+                report->num_removed > SHOWN ? ", ..." : "");
+}
+
+static void report(cli_run *run, const ritz_component *component,
+                   const ritz_import_report *done)
+{
+    cli_say(run, "%s:", run->output);
+    describe_component(run, run->report, component);
+    cli_say(run, "  rows named by  %s", done->map);
+    report_removed(run, done);
+    if (done->num_massless > 0)
+        cli_say(run, "%lld rows have stiffness but no mass, kept",
+                (long long)done->num_massless);
+    if (done->num_floating > 0)
+        cli_say(run,
+                "%lld rows have mass but no stiffness, kept: they move "
+                "freely",
+                (long long)done->num_floating);
+    if (component->asymmetry > 0.0)
+        cli_warn(run, "unsymmetric by %.1e of the largest entry, averaged away",
+                 component->asymmetry);
+    cli_report_text(run, "map", done->map);
+    cli_report_int(run, "massless", done->num_massless);
+    cli_report_int(run, "floating", done->num_floating);
+    cli_record(run, "import", component->num_dofs);
+}
+
+static ritz_status import(cli_run *run, const ritz_import_request *request)
+{
+    ritz_status status = RITZ_OK;
+    ritz_component component = {0};
+    ritz_import_report done = {0};
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY(take_inputs(run, request));
+    RITZ_TRY(ritz_import(request, &component, &done));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_component(run->output, &component, &stamp));
+    report(run, &component, &done);
+done:
+    ritz_import_report_free(&done);
+    ritz_component_free(&component);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    repeated lists = {0};
+    ritz_import_request request = {0};
+    const cli_option options[] = {
+        {CLI_TEXT(&request.stiffness), .name = "stiffness", .argument = "F",
+         .help = "matrix K, F being FILE[:NAME[#K]]; absent: a rigid body"},
+        {CLI_TEXT(&request.mass), .name = "mass", .argument = "F",
+         .help = "matrix M"},
+        {CLI_TEXT(&request.damping), .name = "damping", .argument = "F",
+         .help = "viscous damping D"},
+        {CLI_TEXT(&request.structural_damping), .name = "structural-damping",
+         .argument = "F", .help = "structural damping K4, of K + i K4"},
+        {CLI_LIST(&lists.load), .name = "geometric-stiffness",
+         .argument = "F@LOAD", .help = "geometric stiffness of a unit load"},
+        {CLI_TEXT(&request.bulk), .name = "bulk", .argument = "F",
+         .help = "NASTRAN bulk data: grids, frames, sets"},
+        {CLI_TEXT(&request.dofs), .name = "dofs", .argument = "F",
+         .help = "what each row is: GRID COMP a line, COMP 0 a scalar point"},
+        {CLI_LIST(&lists.port), .name = "port",
+         .argument = "NAME=GRIDS[:COMPS]",
+         .help = "dofs by which other bodies hold this one"},
+        {CLI_LIST(&lists.input), .name = "input",
+         .argument = "NAME=GRID:COMP[*SCALE]",
+         .help = "force (COMP 1-3) or moment (4-6)"},
+        {CLI_LIST(&lists.output), .name = "output-at",
+         .argument = "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
+         .help = "displacement, velocity or acceleration that matters"},
+        {CLI_TEXT(&request.units), .name = "units", .argument = "LABELS",
+         .help = "\"kg m s\": kept and shown, nothing is converted"},
+        {CLI_FLAG(&request.symmetrise), .name = "symmetrise",
+         .help = "average away any asymmetry, not only up to 1e-6"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-import",
+        .summary = "Matrices and geometry of a finite-element code become a "
+                   "component.",
+        .example = "ritz-import --stiffness blade.op4:KGG --mass "
+                   "blade.op4:MGG --bulk blade.bdf \\\n"
+                   "      --port root=1-4:123 --units \"kg m s\" -o blade.h5",
+        .options = options,
+        .output = "the component",
+    };
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    if (!request.stiffness && !request.mass)
+        cli_refuse(&program, "nothing to import: name --stiffness, --mass or "
+                             "both");
+    request.num_loads = lists.load.count;
+    request.load = lists.load.text;
+    request.num_ports = lists.port.count;
+    request.port = lists.port.text;
+    request.num_inputs = lists.input.count;
+    request.input = lists.input.text;
+    request.num_outputs = lists.output.count;
+    request.output = lists.output.text;
+    return cli_finish(&run, import(&run, &request));
+}

@@ -1,0 +1,147 @@
+/* ritz-info - what is in a container, a matrix file or a bulk data deck. */
+#include "describe.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static ritz_status describe(const cli_run *run, json_t *keys, const model *m)
+{
+    switch (m->kind) {
+    case MODEL_COMPONENT:
+        describe_component(run, keys, &m->component);
+        return RITZ_OK;
+    case MODEL_BASIS:
+        describe_basis(run, keys, &m->basis);
+        return RITZ_OK;
+    case MODEL_REDUCED:
+        return describe_reduced(run, keys, &m->reduced);
+    case MODEL_SYSTEM:
+        return describe_system(run, keys, &m->system);
+    case MODEL_RESPONSE:
+        describe_response(run, keys, &m->response);
+        return RITZ_OK;
+    case MODEL_RANKING:
+        describe_ranking(run, keys, &m->ranking);
+        return RITZ_OK;
+    case MODEL_ANY:
+        break;
+    }
+    return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
+}
+
+static ritz_status container(cli_run *run, json_t *keys, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_summary summary = {0};
+    model m = {0};
+    json_t *inputs = json_array();
+
+    json_object_set_new(keys, "made_from", inputs);
+    RITZ_TRY(model_read(run, path, MODEL_ANY, &m));
+    RITZ_TRY(ritz_container_summary(path, &summary));
+    RITZ_TRY_IN(path, describe(run, keys, &m));
+    cli_say(run, "  %-14s %s", "made by", summary.command);
+    cli_say(run, "  %-14s ritz %s", "version", summary.version);
+    for (int64_t k = 0; k < summary.num_inputs; k++) {
+        json_array_append_new(inputs, cli_string(summary.input[k]));
+        cli_say(run, "  %-14s %s", k > 0 ? "" : "from", summary.input[k]);
+    }
+    json_object_set_new(keys, "command", cli_string(summary.command));
+    json_object_set_new(keys, "made_by_version", cli_string(summary.version));
+done:
+    model_free(&m);
+    ritz_summary_free(&summary);
+    return status;
+}
+
+static bool is_matrix_file(const char *bytes, int64_t size)
+{
+    for (const ritz_format *const *f = ritz_formats; *f; f++)
+        if ((*f)->recognise(bytes, size))
+            return true;
+    return false;
+}
+
+static ritz_status foreign(cli_run *run, json_t *keys, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrices matrices = {0};
+    ritz_bulk bulk = {0};
+    char *bytes = NULL;
+    int64_t size = 0;
+
+    RITZ_TRY(cli_input(run, path));
+    RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
+    if (is_matrix_file(bytes, size)) {
+        RITZ_TRY_IN(path, ritz_foreign_parse(bytes, size, &matrices));
+        describe_matrices(run, keys, &matrices);
+        goto done;
+    }
+    RITZ_FAIL_IF(size == 0, RITZ_ERR_FORMAT, "'%s' is empty", path);
+    RITZ_FAIL_IF(strlen(bytes) != (size_t)size, RITZ_ERR_FORMAT,
+                 "'%s' is neither a container nor a matrix file nor text",
+                 path);
+    RITZ_TRY(ritz_bulk_read(path, &bulk));
+    RITZ_FAIL_IF(bulk.grids.count + bulk.num_points + bulk.num_fixed +
+                         bulk.num_constraints + bulk.num_sets[RITZ_SET_A] +
+                         bulk.num_sets[RITZ_SET_B] +
+                         bulk.num_sets[RITZ_SET_Q] ==
+                     0,
+                 RITZ_ERR_FORMAT,
+                 "'%s' is no container, no matrix file that Ritz knows, and "
+                 "no bulk data with grids",
+                 path);
+    describe_bulk(run, keys, &bulk);
+done:
+    free(bytes);
+    ritz_matrices_free(&matrices);
+    ritz_bulk_free(&bulk);
+    return status;
+}
+
+/* Of one file, the keys stand in the report itself too. */
+static ritz_status inform(cli_run *run)
+{
+    ritz_status status = RITZ_OK;
+    json_t *files = json_array();
+
+    json_object_set_new(run->report, "files", files);
+    for (int k = 0; k < run->num_operands; k++) {
+        const char *path = run->operand[k];
+        json_t *keys = json_object();
+
+        json_array_append_new(files, keys);
+        json_object_set_new(keys, "file", cli_string(path));
+        cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
+        RITZ_TRY(ritz_container_is(path) ? container(run, keys, path)
+                                         : foreign(run, keys, path));
+        if (run->num_operands == 1)
+            json_object_update(run->report, keys);
+    }
+    if (run->output)
+        RITZ_TRY(cli_save(run, run->output));
+done:
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const cli_option options[] = {{0}};
+    const cli_program program = {
+        .name = "ritz-info",
+        .operands = {{"FILE",
+                      "a container, a matrix file (OUTPUT4, DMIG, "
+                      "Matrix Market) or bulk data",
+                      true}},
+        .summary = "What is in a file: sizes, names, frequencies, checksums, "
+                   "how it was made.",
+        .example = "ritz-info --json blade.h5",
+        .options = options,
+        .output = "write the text there too",
+        .output_optional = true,
+    };
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    return cli_finish(&run, inform(&run));
+}

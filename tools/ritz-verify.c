@@ -1,0 +1,158 @@
+/* ritz-verify - full against reduced: every error, pass or fail. */
+#include "model.h"
+
+#include <math.h>
+
+typedef struct wish {
+    ritz_verify_request verify;
+    const char *damping, *at;
+} wish;
+
+/* The measures, into the object that is written. */
+static ritz_status measure(cli_run *run, const model *full, model *reduced,
+                           const ritz_verify_request *request,
+                           ritz_measures **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures measures = {0};
+    ritz_measures *place =
+        reduced->at ? &reduced->at->errors : &reduced->reduced.errors;
+
+    RITZ_TRY(reduced->at
+                 ? ritz_verify_system(&full->component, reduced->at, request,
+                                      &measures)
+                 : ritz_verify_reduced(&full->component, &reduced->reduced,
+                                       request, &measures));
+    ritz_measures_free(place);
+    *place = measures;
+    measures = (ritz_measures){0};
+    *out = place;
+    for (int64_t k = 0; k < place->count; k++)
+        cli_record_error(run, place->item[k].name, place->item[k].value);
+done:
+    ritz_measures_free(&measures);
+    return status;
+}
+
+static ritz_status write(cli_run *run, const model *reduced)
+{
+    ritz_stamp stamp = cli_stamp(run);
+
+    if (reduced->at)
+        return ritz_container_write_system(run->output, &reduced->system,
+                                           &stamp);
+    return ritz_container_write_reduced(run->output, &reduced->reduced, &stamp);
+}
+
+static ritz_status judge(cli_run *run, const ritz_measures *measures)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_measure *first = NULL;
+    int64_t failed = 0;
+
+    model_say_measures(run, measures);
+    json_object_set_new(run->report, "measures", model_measures_json(measures));
+    for (int64_t k = 0; k < measures->count; k++) {
+        const ritz_measure *m = &measures->item[k];
+
+        if (ritz_measure_holds(m))
+            continue;
+        first = first ? first : m;
+        failed++;
+    }
+    RITZ_FAIL_IF(first, RITZ_ERR_CONVERGENCE,
+                 "'%s': %lld of %lld limits not met, first '%s', %.3e where "
+                 "%.3e is asked",
+                 run->operand[1], (long long)failed, (long long)measures->count,
+                 first->name, first->value, first->limit);
+done:
+    return status;
+}
+
+static ritz_status verify(cli_run *run, wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    model full = {0};
+    model reduced = {0};
+    ritz_measures *measures = NULL;
+    const char *own = asked->damping;
+
+    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
+    RITZ_TRY(model_read(run, run->operand[1], MODEL_REDUCED | MODEL_SYSTEM,
+                        &reduced));
+    RITZ_TRY(model_at(&reduced, run->operand[1], asked->at));
+    RITZ_TRY(model_damping(&reduced, own, &asked->verify.damping));
+    if (reduced.at && !(asked->verify.band_hz[1] > 0.0)) {
+        asked->verify.band_hz[0] = reduced.system.band_hz[0];
+        asked->verify.band_hz[1] = reduced.system.band_hz[1];
+    }
+    cli_record(run, reduced.at ? "system" : reduced.reduced.origin.method,
+               model_look(&reduced).K->nrow);
+    RITZ_TRY_IN(run->operand[1],
+                measure(run, &full, &reduced, &asked->verify, &measures));
+    RITZ_TRY(write(run, &reduced)); /* limits met or not: it says which */
+    RITZ_TRY(judge(run, measures));
+done:
+    model_free(&reduced);
+    model_free(&full);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const char *band = NULL;
+    const double none = (double)NAN;
+    wish asked = {.verify = {.limit_frequency = none,
+                             .limit_mac = none,
+                             .limit_damping = none,
+                             .limit_response = none,
+                             .limit_gain = none}};
+    ritz_verify_request *v = &asked.verify;
+    const cli_option options[] = {
+        {CLI_TEXT(&asked.at), .name = "at",
+         .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
+         .help = "which configuration of a system, degrees"},
+        {CLI_TEXT(&band), .name = "band-hz", .argument = "F,F",
+         .help = "where it matters [the system's; else what is reliable]"},
+        {CLI_TEXT(&asked.damping), .name = "damping", .argument = "TEXT",
+         .help = "\"modal ZETA\", \"bands F F ZETA ...\" (Hz) or \"rayleigh A "
+                 "B\" [the model's]"},
+        {CLI_REAL(&v->limit_frequency), .name = "limit-frequency",
+         .argument = "X", .min = 0.0, .max = 1e9,
+         .help = "relative error of frequencies"},
+        {CLI_REAL(&v->limit_mac), .name = "limit-mac", .argument = "X",
+         .min = 0.0, .max = 1.0, .help = "least MAC of mode shapes"},
+        {CLI_REAL(&v->limit_damping), .name = "limit-damping", .argument = "X",
+         .min = 0.0, .max = 1e9, .help = "relative error of damping ratios"},
+        {CLI_REAL(&v->limit_response), .name = "limit-response",
+         .argument = "X", .min = 0.0, .max = 1e9,
+         .help = "error of the response over the largest |H| in the band"},
+        {CLI_REAL(&v->limit_gain), .name = "limit-gain", .argument = "X",
+         .min = 0.0, .max = 1e9,
+         .help = "relative error of the flexible static gain"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-verify",
+        .operands = {{"FULL",
+                      "the full component (ritz-assemble --full of a "
+                      "system)",
+                      false},
+                     {"REDUCED", "the reduced component or system", false}},
+        .summary = "Measure every error of a reduced model against the full "
+                   "one. The output is REDUCED\nwith the errors, their limits "
+                   "and verdicts added; it is written even where a limit is\n"
+                   "not met (status 1), so that the file says so.",
+        .example = "ritz-verify blade.h5 blade-reduced.h5 --limit-frequency "
+                   "1e-3 -o blade-verified.h5",
+        .options = options,
+        .output = "REDUCED with its errors",
+        .threads = true,
+    };
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    if (band)
+        cli_pair(&program, "band-hz", band, v->band_hz);
+    return cli_finish(&run, verify(&run, &asked));
+}

@@ -1,0 +1,105 @@
+/* ritz - list the tools, and start one: `ritz basis ...` is `ritz-basis ...` */
+#include <ritz/text.h>
+#include <ritz/version.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { VERB_SIZE = 16, EXIT_USAGE = 2 };
+
+static const struct verb {
+    char name[VERB_SIZE];
+    const char *summary;
+} verbs[] = {
+    {"import", "matrices and geometry -> component"},
+    {"info", "what is in a container, a matrix file or a bulk data deck"},
+    {"check", "audit a component before it is reduced"},
+    {"basis", "component -> basis: guyan, craig-bampton, macneal-rubin, ..."},
+    {"reduce", "component + basis -> reduced component, with error estimates"},
+    {"assemble", "scene -> system at one or all configurations"},
+    {"rank", "which modes matter from inputs to outputs"},
+    {"compare", "scene -> two-stage reduction over all configurations"},
+    {"frf", "frequency response of a component, reduced component or system"},
+    {"verify", "full against reduced: every error, pass or fail"},
+    {"export", "reduced component or response -> file of a simulator"},
+};
+
+enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
+
+static int list(void)
+{
+    printf("Usage: ritz VERB [OPTION]... INPUT... -o OUTPUT\n\n"
+           "Large finite-element components into small ones for "
+           "flexible-multibody simulation,\nwith their errors.\n\n");
+    for (int k = 0; k < NUM_VERBS; k++)
+        printf("  %-10s %s\n", verbs[k].name, verbs[k].summary);
+    printf("\n'ritz VERB --help' says more; 'ritz VERB' and 'ritz-VERB' are "
+           "the same.\n");
+    if (ferror(stdout) || fclose(stdout) != 0) {
+        fprintf(stderr, "ritz: cannot write to standard output: %s\n",
+                strerror(errno));
+        return EXIT_FAILURE;
+    }
+    return EXIT_SUCCESS;
+}
+
+static int refuse(const char *word)
+{
+    const char *nearest =
+        ritz_text_nearest(word, NUM_VERBS, verbs[0].name, sizeof *verbs);
+
+    fprintf(stderr, "ritz: no tool '%s'", word);
+    if (nearest)
+        fprintf(stderr, ", is '%s' meant?", nearest);
+    fprintf(stderr, "\nTry 'ritz --help'.\n");
+    return EXIT_USAGE;
+}
+
+/* The tool beside this program, or else where the shell would find it. */
+static int start(const char *verb, char **argv)
+{
+    char self[4096] = "";
+    char tool[sizeof self + VERB_SIZE + sizeof "ritz-"];
+    ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+    char *slash = NULL;
+
+    self[length > 0 ? length : 0] = '\0';
+    slash = strrchr(self, '/');
+    if (slash) {
+        slash[1] = '\0';
+        snprintf(tool, sizeof tool, "%sritz-%s", self, verb);
+        argv[0] = tool;
+        execv(tool, argv);
+    }
+    snprintf(tool, sizeof tool, "ritz-%s", verb);
+    argv[0] = tool;
+    execvp(tool, argv);
+    fprintf(stderr, "ritz: cannot start 'ritz-%s': %s\n", verb,
+            strerror(errno));
+    return EXIT_FAILURE;
+}
+
+int main(int argc, char **argv)
+{
+    static char help[] = "--help";
+    char *asked[] = {NULL, help, NULL};
+    const char *word = argc > 1 ? argv[1] : "--help";
+    bool helping = argc > 2 && strcmp(word, "help") == 0;
+
+    if (helping)
+        word = argv[2];
+    else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 ||
+             strcmp(word, "help") == 0)
+        return list();
+    if (strcmp(word, "--version") == 0) {
+        printf("ritz (Ritz) %s\n", ritz_version());
+        return fclose(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    }
+    for (int k = 0; k < NUM_VERBS; k++)
+        if (strcmp(word, verbs[k].name) == 0)
+            return start(word, helping ? asked : argv + 1);
+    return refuse(word);
+}
