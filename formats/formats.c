@@ -63,22 +63,24 @@ done:
     return status;
 }
 
+enum { QUOTED = 192 }; /* room for a quoted path */
+
 /* "'kgg.op4'", cut to what leaves room for the rest of a sentence. */
-static void quote(const char *path, char out[RITZ_NAME_SIZE * 3])
+static void quote(const char *path, char out[QUOTED])
 {
     size_t length = strlen(path);
-    size_t most = RITZ_NAME_SIZE * 3 - 8;
+    size_t most = QUOTED - 8;
 
     if (length <= most)
-        snprintf(out, RITZ_NAME_SIZE * 3, "'%s'", path);
+        snprintf(out, QUOTED, "'%s'", path);
     else
-        snprintf(out, RITZ_NAME_SIZE * 3, "'...%s'", path + length - most);
+        snprintf(out, QUOTED, "'...%s'", path + length - most);
 }
 
 ritz_status ritz_foreign_read(const char *path, ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
-    char what[RITZ_NAME_SIZE * 3];
+    char what[QUOTED];
     char *bytes = NULL;
     int64_t size = 0;
 

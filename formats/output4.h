@@ -32,6 +32,7 @@ typedef struct ritz_output4_build {
     int64_t column;   /* the one being read, from 0; -1 before the first */
     int64_t below;    /* rows up to here are taken in this column */
     int64_t rule;     /* reading of strings that fitted last */
+    int64_t wide;     /* and words of a real by it; 0: none yet */
     bool sparse;      /* a column came in strings */
 } ritz_output4_build;
 

@@ -307,11 +307,13 @@ static ritz_status read_sparse(text *t, ritz_output4_build *build,
 {
     ritz_status status = RITZ_OK;
     text start = *t;
-    int64_t wide = build->header.type % 2 == 0 ? 2 : 1;
+    int64_t most = build->header.type % 2 == 0 ? 2 : 1;
+    int64_t wide = build->wide > 0 ? build->wide : most;
 
     build->sparse = true;
-    for (int64_t w = wide; w >= 1; w--)
+    for (int64_t turn = 0; turn < most; turn++)
         for (int64_t k = 0; k < RITZ_OUTPUT4_RULES; k++) {
+            int64_t w = turn == 0 ? wide : 3 - wide;
             int64_t rule = ritz_output4_rule(build, k);
 
             *t = start;
@@ -319,6 +321,7 @@ static ritz_status read_sparse(text *t, ritz_output4_build *build,
             status = read_strings(t, build, rule, w, words);
             if (status != RITZ_ERR_FORMAT) {
                 build->rule = rule;
+                build->wide = w;
                 return status;
             }
         }

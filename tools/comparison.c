@@ -73,14 +73,14 @@ static void say_composite(cli_run *run, const ritz_stage *first,
 {
     const ritz_scene *scene = first->scene;
     const char *rank = *scene->select_by ? scene->select_by : "hankel";
+    int64_t count = scene->num_reference > 0 ? scene->num_reference
+                                             : scene->num_configurations;
 
     cli_say(run,
             "Composite mode set: %lld vectors from %lld configurations, "
             "modes by %s above %g of the",
-            (long long)c->composite,
-            (long long)(scene->num_reference > 0 ? scene->num_reference
-                                                 : scene->num_configurations),
-            rank, scene->select_tolerance);
+            (long long)c->composite, (long long)count, rank,
+            scene->select_tolerance);
     cli_say(run,
             "largest value, vectors dependent within %g removed on each "
             "component.",
@@ -137,12 +137,9 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
     int64_t between = 0;
     double worst = 0.0;
 
-    cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "", "",
-            "stage", "1", "", "stage", "frequency", "", "rigid", "static",
-            "response", "");
     cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "#",
-            "configuration", "rigid", "flex", "kept", "2", "relative",
-            "allowed", "Hz", "gain", "in band", "1 - MAC");
+            "configuration", "rigid", "flex", "kept", "order", "frequency",
+            "allowed", "rigid Hz", "gain", "response", "1 - MAC");
     for (int64_t k = 0; k < c->num_rows; k++) {
         const ritz_compare_row *row = &c->row[k];
         json_t *modes = json_array();
@@ -152,7 +149,7 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
 
         name_row(stage, c, row, at);
         if (row->listed) {
-            snprintf(number, sizeof number, "%lld", (long long)(k + 1));
+            snprintf(number, sizeof number, "%lld", (long long)k + 1);
             snprintf(chosen, sizeof chosen, "%lld", (long long)row->num_kept);
         }
         between += !row->listed;
@@ -172,6 +169,10 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
         if (row->response_error > worst)
             worst = row->response_error;
     }
+    cli_say(run, "  rigid, flex, kept: modes of stage 1; order: of the stage-2 "
+                 "system; frequency (and what rounding");
+    cli_say(run, "  allows), static gain and response in the band: largest "
+                 "relative errors");
     if (between > 0)
         cli_say(run, "  * between listed angles, where nothing was kept on "
                      "purpose: errors of all modes in the band");
@@ -249,7 +250,7 @@ static ritz_status system_column(int64_t number, const ritz_comparison *c,
     const ritz_configuration *second = &c->second_system.configuration[number];
     char title[32];
 
-    snprintf(title, sizeof title, "#%lld", (long long)(number + 1));
+    snprintf(title, sizeof title, "#%lld", (long long)number + 1);
     RITZ_TRY(new_column(title, second->K.nrow - second->num_rigid, out));
     for (int64_t k = 0; k < out->count; k++)
         out->hertz[k] = ritz_eigen_hertz(second->lambda[second->num_rigid + k]);
@@ -265,7 +266,7 @@ static void say_column_line(cli_run *run, int64_t mode, int64_t count,
     char line[MOST] = "";
     size_t used = 0;
 
-    for (int64_t k = 0; k < count && used + 2 * WIDTH < MOST; k++) {
+    for (int64_t k = 0; k < count && used + WIDTH + WIDTH < MOST; k++) {
         const column *c = &columns[k];
 
         if (mode < 0)
@@ -283,7 +284,7 @@ static void say_column_line(cli_run *run, int64_t mode, int64_t count,
     if (mode < 0)
         cli_say(run, "%5s%s", "mode", line);
     else
-        cli_say(run, "%5lld%s", (long long)(mode + 1), line);
+        cli_say(run, "%5lld%s", (long long)mode + 1, line);
 }
 
 static ritz_status say_frequencies(cli_run *run, const ritz_comparison *c)
@@ -323,7 +324,7 @@ static ritz_status say_frequencies(cli_run *run, const ritz_comparison *c)
                  "there exactly");
     if (shown < systems)
         cli_say(run, "  %lld more configurations are in the output",
-                (long long)(systems - shown));
+                (long long)systems - (long long)shown);
 done:
     free_columns(count, columns);
     return status;

@@ -233,7 +233,7 @@ void describe_inertia(const cli_run *run, json_t *keys, const ritz_inertia *i)
         cli_say(run, "  %-14s %.8g", "mass", i->mass);
         cli_say(run, "  %-14s (%.6g, %.6g, %.6g)", "centre of mass",
                 i->centre[0], i->centre[1], i->centre[2]);
-        for (int k = 0; k < 3; k++)
+        for (size_t k = 0; k < 3; k++)
             cli_say(run, "  %-14s %14.6g %14.6g %14.6g", k > 0 ? "" : "inertia",
                     i->tensor[3 * k], i->tensor[3 * k + 1],
                     i->tensor[3 * k + 2]);
@@ -431,7 +431,7 @@ void describe_order(const cli_run *run, const ritz_ranking *r)
             snprintf(beside, sizeof beside, "%.5e %.5e", r->system_value[2 * k],
                      r->system_value[2 * k + 1]);
         cli_say(run, "%4lld %6lld %14.7g %9.3g %13.5e %6.2f%%  %s",
-                (long long)(k + 1), (long long)(mode + 1), r->hertz[mode],
+                (long long)k + 1, (long long)mode + 1, r->hertz[mode],
                 r->zeta[mode], r->value[mode],
                 total > 0.0 ? 100.0 * r->value[mode] / total : 0.0, beside);
     }

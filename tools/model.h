@@ -40,9 +40,9 @@ typedef struct model_view {
 /**
  * Hash and read a container of one of some kinds.
  *
- * @param[in] kinds  sum of those wanted; another is refused by name
+ * @param[in] wanted  sum of those wanted; another is refused by name
  */
-ritz_status model_read(cli_run *run, const char *path, int kinds, model *out);
+ritz_status model_read(cli_run *run, const char *path, int wanted, model *out);
 
 /** Hash and read a scene, and hash the models that it names. */
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
@@ -62,8 +62,7 @@ ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
                         int64_t *num_rigid, int64_t *count, double **out);
 
 /** Frequencies of a configuration, Hz, rigid modes as 0; caller frees. */
-ritz_status model_hertz_at(const ritz_configuration *configuration,
-                           double **out);
+ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 
 /** Table of measures; and as array in JSON, with verdicts. */
 void model_say_measures(const cli_run *run, const ritz_measures *measures);

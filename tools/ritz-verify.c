@@ -8,15 +8,19 @@ typedef struct wish {
     const char *damping, *at;
 } wish;
 
+/* Where the errors of what is verified stand. */
+static ritz_measures *place_of(model *reduced)
+{
+    return reduced->at ? &reduced->at->errors : &reduced->reduced.errors;
+}
+
 /* The measures, into the object that is written. */
 static ritz_status measure(cli_run *run, const model *full, model *reduced,
-                           const ritz_verify_request *request,
-                           ritz_measures **out)
+                           const ritz_verify_request *request)
 {
     ritz_status status = RITZ_OK;
     ritz_measures measures = {0};
-    ritz_measures *place =
-        reduced->at ? &reduced->at->errors : &reduced->reduced.errors;
+    ritz_measures *place = place_of(reduced);
 
     RITZ_TRY(reduced->at
                  ? ritz_verify_system(&full->component, reduced->at, request,
@@ -26,7 +30,6 @@ static ritz_status measure(cli_run *run, const model *full, model *reduced,
     ritz_measures_free(place);
     *place = measures;
     measures = (ritz_measures){0};
-    *out = place;
     for (int64_t k = 0; k < place->count; k++)
         cli_record_error(run, place->item[k].name, place->item[k].value);
 done:
@@ -74,7 +77,6 @@ static ritz_status verify(cli_run *run, wish *asked)
     ritz_status status = RITZ_OK;
     model full = {0};
     model reduced = {0};
-    ritz_measures *measures = NULL;
     const char *own = asked->damping;
 
     RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
@@ -88,10 +90,9 @@ static ritz_status verify(cli_run *run, wish *asked)
     }
     cli_record(run, reduced.at ? "system" : reduced.reduced.origin.method,
                model_look(&reduced).K->nrow);
-    RITZ_TRY_IN(run->operand[1],
-                measure(run, &full, &reduced, &asked->verify, &measures));
+    RITZ_TRY_IN(run->operand[1], measure(run, &full, &reduced, &asked->verify));
     RITZ_TRY(write(run, &reduced)); /* limits met or not: it says which */
-    RITZ_TRY(judge(run, measures));
+    RITZ_TRY(judge(run, place_of(&reduced)));
 done:
     model_free(&reduced);
     model_free(&full);

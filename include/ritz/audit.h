@@ -1,6 +1,31 @@
 /*
  * Audit of a component before it is reduced. Each check has a measured value,
- * a limit, a verdict, and the grids concerned.
+ * a limit, a verdict, and the grids concerned. docs/check.md says what each
+ * measures and where its limit comes from. They are, in this order:
+ *
+ *     finite                    values are finite; if not, the only one
+ *     symmetry                  what is, or was, averaged away
+ *     massless-dofs             empty rows of M
+ *     unconnected-dofs          empty rows of K            (if there is K)
+ *     separate-bodies           connected parts of K + M
+ *     mass-definite             negative eigenvalues of M
+ *     stiffness-definite        the same of K              (if there is K)
+ *     positions                 dofs of grids without one
+ *     rigid-modes-geometry      free motions by positions  (if there is K)
+ *     rigid-modes-null-space    by the inertia of K        (if there is K)
+ *     rigid-modes-eigenvectors  by eigenvectors
+ *     rigid-modes-agree         angle between the two      (if there is K)
+ *     grounding-translation     forces K r                 (if there is K)
+ *     grounding-rotation        the same       (if there is K, positions)
+ *     source-digits             and what they do           (if there is K)
+ *     mass-translations         the same along all axes
+ *     mass-coupling             none about the mass centre (if there is mass)
+ *     inertia-tensor            that of a body   (if positions, all motions)
+ *     port-dofs                 six or more                (if ports)
+ *     port-collinear            no rotation is left loose  (if ports)
+ *     port-dependent            no dof in two ports        (if ports)
+ *     port-positions            no two grids in one place  (if ports)
+ *     port-disconnected         ports are part of the body (if ports)
  */
 #ifndef RITZ_AUDIT_H
 #define RITZ_AUDIT_H

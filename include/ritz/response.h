@@ -40,7 +40,7 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
 
 /**
  * Modal: every mode of a small dense model, damping ratios from @p damping and
- * the diagonal of Phi'D Phi (refused if D couples modes by more than 1e-6).
+ * Phi'D Phi; where D couples modes, they are solved for together at each point.
  *
  * Rigid modes contribute 1/(-omega^2); a point at 0 Hz is refused if they
  * are driven and seen.
@@ -53,8 +53,9 @@ ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
                                 const ritz_grid *grid, ritz_response *out);
 
 /**
- * Modal, on the full matrices: modes up to @p up_to_hz, and what lies above
- * answers statically (residual flexibility of the inputs).
+ * Modal, on the full matrices: modes up to @p up_to_hz (0: three times the
+ * highest point), and what lies above answers without damping, as a series in
+ * w^2 that begins with its residual flexibility.
  */
 ritz_status ritz_response_modal(const ritz_component *component,
                                 const ritz_damping *damping, double up_to_hz,
@@ -64,7 +65,8 @@ ritz_status ritz_response_modal(const ritz_component *component,
  * Direct: one complex symmetric factor of K + i K4 + i w D - w^2 M at each
  * point. Ratios of @p damping act on the modes up to @p up_to_hz, which are
  * taken out of the load first; what lies above them is then undamped but for
- * D and K4. Rayleigh damping is exact.
+ * D and K4. Rayleigh damping is exact. With D, K4 or Rayleigh damping a free
+ * body is refused at 0 Hz.
  */
 ritz_status ritz_response_direct(const ritz_component *component,
                                  const ritz_damping *damping, double up_to_hz,

@@ -36,6 +36,13 @@
 
 enum { MOST_SWEEPS = 60 };
 
+/*
+ * Sweeps end in rounding of eps lambda_max / lambda, lambda the first mode left
+ * out: 5e-8 was measured on a rotor of stiff bars, 1e-13 on solids. More than
+ * this is no convergence.
+ */
+static const double unsettled = 1e-5;
+
 /* X := X - Y (Y' M X), or its transpose's counterpart on forces. */
 static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
                             ritz_dense *X)
@@ -177,7 +184,7 @@ static ritz_status find_residual(const ritz_request *request,
             break; /* rounding, not contraction, is what is left */
         best = fmin(best, change);
     }
-    RITZ_FAIL_IF(change > 1e-9, RITZ_ERR_CONVERGENCE,
+    RITZ_FAIL_IF(change > unsettled, RITZ_ERR_CONVERGENCE,
                  "residual attachment modes still change by %.1e", change);
 done:
     free(least);

@@ -35,7 +35,7 @@ static const char *list(const ritz_names *names, char *out, size_t size)
     return out;
 }
 
-ritz_status ritz_names_find(const ritz_names *names, const char *word,
+ritz_status ritz_words_find(const ritz_names *names, const char *word,
                             int64_t *out)
 {
     ritz_status status = RITZ_OK;

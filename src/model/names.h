@@ -18,7 +18,7 @@ typedef struct ritz_names {
  * @return RITZ_ERR_ARGUMENT "unknown WHAT 'modez', is 'modes' meant?", or with
  *         all there are if none is near
  */
-ritz_status ritz_names_find(const ritz_names *names, const char *word,
+ritz_status ritz_words_find(const ritz_names *names, const char *word,
                             int64_t *out);
 
 /** The same without a sentence; -1 if it is not there. */

@@ -22,7 +22,7 @@ ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *joint,
     int64_t at = 0;
     int64_t k = 0;
 
-    RITZ_TRY(ritz_names_find(&joints, joint, &at));
+    RITZ_TRY(ritz_words_find(&joints, joint, &at));
     RITZ_FAIL_IF(scene->joint[at].type != RITZ_JOINT_HINGE, RITZ_ERR_ARGUMENT,
                  "'%s' is a fixed joint, it has no angle", joint);
     while (scene->hinge[k] != at)

@@ -170,7 +170,7 @@ ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
         ritz_text_short(text, cut));
     memcpy(component, text, (size_t)(slash - text));
     RITZ_TRY(ritz_yaml_at(
-        yaml, node, ritz_names_find(&components, component, &out->component)));
+        yaml, node, ritz_words_find(&components, component, &out->component)));
     RITZ_TRY(ritz_yaml_at(yaml, node, ritz_name_copy(slash + 1, out->port)));
 done:
     return status;

@@ -13,7 +13,7 @@ ritz_status ritz_yaml_word(const ritz_yaml *yaml, const yaml_node_t *node,
     const char *text = NULL;
 
     RITZ_TRY(ritz_yaml_text(yaml, node, &text));
-    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_names_find(names, text, out)));
+    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_words_find(names, text, out)));
 done:
     return status;
 }
@@ -51,8 +51,8 @@ static ritz_status suggest(const ritz_yaml *yaml, const yaml_node_t *node,
             memcpy(absent[left.count++], name, sizeof *absent);
     }
     if (ritz_text_nearest(word, left.count, left.first, left.stride))
-        RITZ_TRY(ritz_names_find(&left, word, &at));
-    RITZ_TRY(ritz_names_find(names, word, &at));
+        RITZ_TRY(ritz_words_find(&left, word, &at));
+    RITZ_TRY(ritz_words_find(names, word, &at));
 done:
     return status;
 }

@@ -10,6 +10,9 @@ enum {
     RITZ_SHOWN = 4,       /* dofs that a line names before it says "..." */
 };
 
+/* Grids no further apart, over the component's size, are in one place. */
+#define RITZ_SAME_PLACE 1e-9
+
 /* Forces K r of rigid motions, and what an error of size 1 leaves of them. */
 typedef struct ritz_forces {
     double largest;
@@ -51,6 +54,10 @@ int64_t ritz_auditor_where(const ritz_auditor *it, const bool *flag,
 /** Append @p text to a list, ", ..." once where it is full. */
 void ritz_auditor_list(char where[RITZ_WHERE_SIZE], const char *text);
 
+/** What the k-th dof of a port is. */
+ritz_dof ritz_auditor_dof(const ritz_auditor *it, const ritz_port *port,
+                          int64_t k);
+
 /* The checks, in this order: each uses what those before it left. */
 ritz_status ritz_audit_values(ritz_auditor *it, bool *usable);
 ritz_status ritz_audit_dofs(ritz_auditor *it);
@@ -61,5 +68,8 @@ ritz_status ritz_audit_rigid(ritz_auditor *it);
 ritz_status ritz_audit_grounding(ritz_auditor *it);
 ritz_status ritz_audit_mass(ritz_auditor *it);
 ritz_status ritz_audit_ports(ritz_auditor *it);
+
+/** The part of the ports that asks whether their grids lie on one line. */
+ritz_status ritz_audit_port_rank(ritz_auditor *it);
 
 #endif

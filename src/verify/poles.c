@@ -93,6 +93,7 @@ ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
     }
     RITZ_TRY(add_matrices(D, K4, &poles));
     RITZ_TRY(ritz_io_project(io, &pairs->Phi, &poles.io));
+    RITZ_NEW(poles.q, poles.count * io->num_inputs);
     *out = poles;
     poles = (ritz_poles){0};
 done:
@@ -245,15 +246,12 @@ ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H)
 {
     ritz_status status = RITZ_OK;
-    double _Complex *q = NULL;
 
-    RITZ_NEW(q, poles->count * poles->io.num_inputs);
-    RITZ_TRY(ritz_poles_solve(poles, hertz, q));
-    ritz_response_see(&poles->io, hertz, q, H);
+    RITZ_TRY(ritz_poles_solve(poles, hertz, poles->q));
+    ritz_response_see(&poles->io, hertz, poles->q, H);
     if (hertz == 0.0 && !poles->coupled)
         add_rigid_acceleration(poles, H);
 done:
-    free(q);
     return status;
 }
 
@@ -287,6 +285,7 @@ void ritz_poles_free(ritz_poles *poles)
 {
     free(poles->lambda);
     free(poles->rate);
+    free(poles->q);
     ritz_dense_free(&poles->D);
     ritz_dense_free(&poles->K4);
     ritz_io_free(&poles->io);

@@ -21,12 +21,13 @@ static inline double _Complex ritz_complex(double re, double im)
 typedef struct ritz_poles {
     int64_t count;
     int64_t num_rigid;
-    double *lambda; /* count, 0 where rigid  [rad^2/s^2] */
-    double *rate;   /* count, 2 zeta w of given ratios and D's diagonal */
-    bool coupled;   /* D or K4 couple modes: below are what to use */
-    ritz_dense D;   /* count x count, with `rate` on its diagonal, or {0} */
-    ritz_dense K4;  /* count x count, or {0} */
-    ritz_io io;     /* for the modes */
+    double *lambda;     /* count, 0 where rigid  [rad^2/s^2] */
+    double *rate;       /* count, 2 zeta w of given ratios and D's diagonal */
+    bool coupled;       /* D or K4 couple modes: below are what to use */
+    ritz_dense D;       /* count x count, with `rate` on its diagonal, or {0} */
+    ritz_dense K4;      /* count x count, or {0} */
+    ritz_io io;         /* for the modes */
+    double _Complex *q; /* count x num_inputs, to work in: one thread */
 } ritz_poles;
 
 /* Modal matrices are borrowed until the call ends; {0} or NULL: none. */

@@ -117,7 +117,7 @@ components:
 joints:
   - {name: clock, between: [a/far, b/near], type: hinge, axis: [0, 0, 1], angles_deg: [0, 90]}
 inputs: [{name: torque, at: a/far, component: 6}, {name: push, at: a/far, component: 1}]
-outputs: [{name: gyro, at: b/near, component: 6}, {name: drift, at: b/near, component: 2}]
+outputs: [{name: gyro, at: b/near, component: 6}, {name: drift, at: b/near, component: 1}, {name: side, at: b/near, component: 2}]
 band_hz: [0, 10]
 damping: {modal: 0.002}
 select: {by: hankel, tolerance: 1.0e-2}

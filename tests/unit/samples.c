@@ -355,26 +355,26 @@ done:
 
 ritz_status sample_ranking(ritz_ranking *out)
 {
-    enum { MODES = 70 };
+    const int64_t modes = 70;
     ritz_status status = RITZ_OK;
     ritz_ranking ranking = {.by = "hankel",
                             .reference = "Gawronski2004",
-                            .count = MODES,
-                            .num_system = 2 * MODES,
+                            .count = modes,
+                            .num_system = 2 * modes,
                             .coupling = nan("")};
 
-    RITZ_NEW(ranking.hertz, MODES);
-    RITZ_NEW(ranking.zeta, MODES);
-    RITZ_NEW(ranking.value, MODES);
-    RITZ_NEW(ranking.order, MODES);
-    RITZ_NEW(ranking.system_value, 2 * MODES);
-    for (int k = 0; k < MODES; k++) {
-        ranking.hertz[k] = 1.0 + k;
-        ranking.zeta[k] = 0.002 + 1e-5 * k;
-        ranking.value[k] = 1.0 / (1.0 + (k * 29) % MODES);
-        ranking.order[k] = (k * 29) % MODES; /* 29 and 70 share no factor */
-        ranking.system_value[2 * k] = 1.0 / (1.0 + k);
-        ranking.system_value[2 * k + 1] = 1.0 / (1.5 + k);
+    RITZ_NEW(ranking.hertz, modes);
+    RITZ_NEW(ranking.zeta, modes);
+    RITZ_NEW(ranking.value, modes);
+    RITZ_NEW(ranking.order, modes);
+    RITZ_NEW(ranking.system_value, 2 * modes);
+    for (int64_t k = 0; k < modes; k++) {
+        ranking.hertz[k] = 1.0 + (double)k;
+        ranking.zeta[k] = 0.002 + 1e-5 * (double)k;
+        ranking.value[k] = 1.0 / (1.0 + (double)((k * 29) % modes));
+        ranking.order[k] = (k * 29) % modes; /* 29 and 70 share no factor */
+        ranking.system_value[2 * k] = 1.0 / (1.0 + (double)k);
+        ranking.system_value[2 * k + 1] = 1.0 / (1.5 + (double)k);
     }
     *out = ranking;
     ranking = (ritz_ranking){0};

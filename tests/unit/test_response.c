@@ -53,7 +53,7 @@ static void one_dof_answers_as_the_textbook_says(void **state)
 
         /* a few roundings of k over what is left of it at resonance */
         assert_near(creal(r.H[3 * j]), re / (size * size),
-                    1e-15 * k / (size * size));
+                    4e-15 * k / (size * size));
         assert_near(cabs(r.H[3 * j + 1]), w / size, 1e-13 * w / size);
         assert_near(cabs(r.H[3 * j + 2]), w * w / size, 1e-13 * w * w / size);
         assert_true(cimag(r.H[3 * j]) <= 0.0);
@@ -170,7 +170,7 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
 {
     const ritz_damping rayleigh = {
         .kind = RITZ_DAMPING_RAYLEIGH, .a = 0.002, .b = 0.003};
-    const ritz_grid grid = {0.005, 0.6, 40, false, true};
+    const ritz_grid grid = {0.005, 0.6, 10, false, true};
 
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
@@ -201,7 +201,7 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
 /* Ratios on modes to twice the band, the rest by series or by factor. */
 static void direct_and_modal_agree_with_ratios(void **state)
 {
-    const ritz_grid grid = {0.001, 0.3, 30, false, true};
+    const ritz_grid grid = {0.001, 0.3, 8, false, true};
 
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
@@ -237,7 +237,7 @@ static void add_dampers(ritz_component *beam, double d, double k4)
 /* Z + M Phi E Phi'M where all modes have the ratio, is what is solved. */
 static void dampers_and_ratios_act_together_exactly(void **state)
 {
-    const ritz_grid grid = {0.01, 0.3, 12, false, true};
+    const ritz_grid grid = {0.01, 0.3, 12, false, false};
     ritz_component beam = {0};
     ritz_response direct = {0};
     ritz_response modal = {0};
@@ -404,7 +404,7 @@ static void a_range_that_is_none_is_refused(void **state)
 
 static ritz_status respond_once(const ritz_component *beam)
 {
-    const ritz_grid grid = {0.01, 0.05, 3, false, true};
+    const ritz_grid grid = {0.01, 0.05, 2, false, false};
     ritz_status status = RITZ_OK;
     ritz_response modal = {0};
     ritz_response direct = {0};
@@ -419,10 +419,12 @@ done:
 
 static void responses_survive_every_allocation(void **state)
 {
+    const int64_t row = 4;
     ritz_component beam = {0};
 
     (void)state;
-    open_beam(true, &beam);
+    assert_ok(frame_component(2, 0.5, &frame_mcdaniel, true, false, 1, &beam));
+    assert_ok(frame_io(&beam, 1, &row, 1, &row));
     assert_survives_every_allocation(respond_once(&beam));
     add_dampers(&beam, 0.5, 0.02);
     assert_survives_every_allocation(respond_once(&beam));

@@ -1,0 +1,254 @@
+/* COMPARE on the dual-spin spacecraft, whose modes move with the clock angle. */
+#include "testing.h"
+
+#include "dualspin.h"
+
+#include <ritz/compare.h>
+#include <ritz/eigen.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct fixture {
+    ritz_scene scene;
+    ritz_stage stage;
+    ritz_comparison c;
+} fixture;
+
+static int set_up(void **state)
+{
+    static fixture f;
+
+    *state = &f;
+    if (!dualspin_is_there())
+        return 0;
+    assert_ok(dualspin_stage(&f.scene, &f.stage));
+    assert_ok(ritz_compare(&f.stage, &f.c));
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+
+    ritz_comparison_free(&f->c);
+    ritz_stage_free(&f->stage);
+    ritz_scene_free(&f->scene);
+    return 0;
+}
+
+static void skip_without_data(void)
+{
+    if (!dualspin_is_there()) {
+        print_message("skipped: no data, RITZ_DATA is not set\n");
+        skip();
+    }
+}
+
+/* 6 + 22 + 6 and 6 + 4 + 12 vectors; ten constraints, eight rigid modes. */
+static void the_first_stage_has_the_orders_of_its_bases(void **state)
+{
+    fixture *f = *state;
+    const ritz_system *system = &f->c.first_system;
+
+    skip_without_data();
+    assert_int_equal(system->order_full[0], 243);
+    assert_int_equal(system->order_full[1], 57);
+    assert_int_equal(system->order_full[2], 6);
+    assert_int_equal(system->order[0], 34);
+    assert_int_equal(system->order[1], 22);
+    assert_int_equal(system->order[2], 6);
+    for (int k = 0; k < 6; k++) {
+        assert_int_equal(system->configuration[k].rank, 10);
+        assert_int_equal(system->configuration[k].num_rigid, 8);
+    }
+}
+
+/* Within c eps lambda_max / lambda_k, c = 20 e: see compare_measure.c. */
+static void kept_modes_are_exact_at_every_listed_angle(void **state)
+{
+    fixture *f = *state;
+
+    skip_without_data();
+    for (int64_t k = 0; k < 6; k++) {
+        const ritz_compare_row *row = &f->c.row[k];
+
+        assert_true(row->listed && row->num_kept > 8);
+        assert_true(row->frequency_error <= row->allowed);
+        assert_true(row->allowed < 1e-6);
+        assert_near(row->mac, 1.0, 1e-8); /* measured: 1e-12 */
+    }
+}
+
+/* Every listed row by hand: some mode of stage two has the frequency. */
+static void kept_frequencies_are_found_in_the_second_system(void **state)
+{
+    fixture *f = *state;
+
+    skip_without_data();
+    for (int64_t k = 0; k < 6; k++) {
+        const ritz_configuration *one = &f->c.first_system.configuration[k];
+        const ritz_configuration *two = &f->c.second_system.configuration[k];
+
+        for (int64_t j = 0; j < f->c.row[k].num_kept; j++) {
+            double lambda = one->lambda[one->num_rigid + f->c.row[k].kept[j]];
+            double nearest = INFINITY;
+
+            for (int64_t i = two->num_rigid; i < two->K.ncol; i++)
+                nearest = fmin(nearest, fabs(two->lambda[i] / lambda - 1.0));
+            assert_true(nearest <= 2.0 * f->c.row[k].allowed *
+                                       one->lambda[one->K.ncol - 1] / lambda);
+        }
+    }
+}
+
+static void rigid_modes_stay_rigid(void **state)
+{
+    fixture *f = *state;
+
+    skip_without_data();
+    for (int64_t k = 0; k < 6; k++) {
+        assert_int_equal(f->c.second_system.configuration[k].num_rigid, 8);
+        /* sqrt(eps lambda_max) / 2 pi of the stage-1 system is 1e-5 Hz */
+        assert_true(f->c.row[k].rigid_error < 1e-4);
+    }
+}
+
+static void flexible_static_gain_is_exact_after_augmentation(void **state)
+{
+    fixture *f = *state;
+
+    skip_without_data();
+    for (int64_t k = 0; k < 6; k++)
+        assert_true(f->c.row[k].gain_error <= 1e-9);
+}
+
+static void the_second_stage_removes_vectors(void **state)
+{
+    fixture *f = *state;
+
+    skip_without_data();
+    assert_true(f->c.removed);
+    assert_true(f->c.V[0].ncol < 34);
+    assert_int_equal(f->c.V[2].ncol, 6);
+    assert_true(f->c.second_system.configuration[0].K.ncol <
+                f->c.first_system.configuration[0].K.ncol);
+}
+
+/* Six angles and the five between neighbours, and the one that closes. */
+static void errors_are_known_between_angles_too(void **state)
+{
+    fixture *f = *state;
+
+    skip_without_data();
+    assert_int_equal(f->c.num_rows, 12);
+    assert_near(f->c.row[6].angle_deg[0], 30.0, 1e-12);
+    assert_near(f->c.row[11].angle_deg[0], 330.0, 1e-12);
+    for (int64_t k = 6; k < 12; k++) {
+        assert_false(f->c.row[k].listed);
+        assert_true(f->c.row[k].frequency_error > 0.0);
+        assert_true(f->c.row[k].frequency_error < 0.05); /* measured: below */
+        assert_true(f->c.row[k].gain_error > 1e-12);
+    }
+}
+
+/* Without static correction the gain misses what was truncated. */
+static void without_augmentation_the_gain_is_wrong(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison c = {0};
+
+    skip_without_data();
+    f->scene.augment = RITZ_AUGMENT_NONE;
+    assert_ok(ritz_compare(&f->stage, &c));
+    f->scene.augment = RITZ_AUGMENT_SYSTEM;
+    assert_true(c.row[0].gain_error > 1e-9);
+    ritz_comparison_free(&c);
+}
+
+/* A composite of one angle is exact there and smaller, and wrong elsewhere. */
+static void a_reference_angle_is_exact_there_alone(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison c = {0};
+    int64_t reference[] = {5};
+
+    skip_without_data();
+    f->scene.num_reference = 1;
+    f->scene.reference = reference;
+    assert_ok(ritz_compare(&f->stage, &c));
+    f->scene.num_reference = 0;
+    f->scene.reference = NULL;
+    assert_true(c.V[0].ncol < f->c.V[0].ncol);
+    assert_true(c.row[5].frequency_error <= c.row[5].allowed);
+    assert_true(c.row[5].gain_error <= 1e-9);
+    assert_true(c.row[1].frequency_error > c.row[1].allowed);
+    ritz_comparison_free(&c);
+}
+
+/* Everything kept: stage two has nothing to remove, and says so. */
+static void keeping_everything_removes_nothing(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison c = {0};
+    double tolerance = f->scene.select_tolerance;
+
+    skip_without_data();
+    f->scene.select_tolerance = 0.0;
+    assert_ok(ritz_compare(&f->stage, &c));
+    f->scene.select_tolerance = tolerance;
+    assert_false(c.removed);
+    ritz_comparison_free(&c);
+}
+
+static void a_looser_tolerance_gives_smaller_bodies(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison c = {0};
+    double tolerance = f->scene.composite_tolerance;
+
+    skip_without_data();
+    f->scene.composite_tolerance = 1e-3;
+    assert_ok(ritz_compare(&f->stage, &c));
+    f->scene.composite_tolerance = tolerance;
+    assert_true(c.V[0].ncol < f->c.V[0].ncol);
+    ritz_comparison_free(&c);
+}
+
+/* Ranking needs damping; none in scene or matrices is refused in words. */
+static void a_ranking_without_damping_is_refused(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison none = {0};
+    ritz_damping kept = f->scene.damping;
+
+    skip_without_data();
+    f->scene.damping = (ritz_damping){0};
+    assert_int_equal(ritz_compare(&f->stage, &none), RITZ_ERR_ARGUMENT);
+    f->scene.damping = kept;
+    assert_non_null(strstr(ritz_error_message(), "damping"));
+    strcpy(f->scene.select_by, "hankle");
+    assert_int_equal(ritz_compare(&f->stage, &none), RITZ_ERR_ARGUMENT);
+    strcpy(f->scene.select_by, "hankel");
+    assert_non_null(strstr(ritz_error_message(), "hankle"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_stage_has_the_orders_of_its_bases),
+        cmocka_unit_test(kept_modes_are_exact_at_every_listed_angle),
+        cmocka_unit_test(kept_frequencies_are_found_in_the_second_system),
+        cmocka_unit_test(rigid_modes_stay_rigid),
+        cmocka_unit_test(flexible_static_gain_is_exact_after_augmentation),
+        cmocka_unit_test(the_second_stage_removes_vectors),
+        cmocka_unit_test(errors_are_known_between_angles_too),
+        cmocka_unit_test(without_augmentation_the_gain_is_wrong),
+        cmocka_unit_test(a_reference_angle_is_exact_there_alone),
+        cmocka_unit_test(keeping_everything_removes_nothing),
+        cmocka_unit_test(a_looser_tolerance_gives_smaller_bodies),
+        cmocka_unit_test(a_ranking_without_damping_is_refused),
+    };
+
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,659 @@
+/* Importing: small decks and matrices written here, and real ones. */
+#include "testing.h"
+
+#include <ritz/eigen.h>
+#include <ritz/import.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/ritz-import-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    static const char *const names[] = {"k.mtx", "m.mtx",  "deck.bdf",
+                                        "dofs",  "k.pch",  "c.mtx",
+                                        "r.mtx", "m24.mtx"};
+    char path[256];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[k]);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+/* Where a file of the test lies; good for the next 15 calls. */
+static const char *at(const char *name)
+{
+    static char path[16][256];
+    static int turn = 0;
+
+    turn = (turn + 1) % 16;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static const char *put(const char *name, const char *text)
+{
+    const char *path = at(name);
+    FILE *file = fopen(path, "w");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* Diagonal matrix in Matrix Market; 0 stands for a row without entry. */
+static const char *put_diagonal(const char *name, int n, const double *value)
+{
+    char text[4096];
+    int used = 0;
+    int count = 0;
+
+    for (int k = 0; k < n; k++)
+        count += value[k] != 0.0;
+    used = snprintf(text, sizeof text,
+                    "%%%%MatrixMarket matrix coordinate real symmetric\n"
+                    "%d %d %d\n",
+                    n, n, count);
+    for (int k = 0; k < n; k++)
+        if (value[k] != 0.0)
+            used += snprintf(text + used, sizeof text - (size_t)used,
+                             "%d %d %g\n", k + 1, k + 1, value[k]);
+    return put(name, text);
+}
+
+/* A file of somebody else; NULL and a word if it is not there. */
+static const char *external(const char *variable, const char *name)
+{
+    static char path[4][512];
+    static int turn = 0;
+    const char *where = getenv(variable);
+
+    if (!where) {
+        print_message("skipped: no %s\n", variable);
+        return NULL;
+    }
+    turn = (turn + 1) % 4;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", where, name);
+    return path[turn];
+}
+
+/* Three grids (7 turned by 90 degrees about z) and a point between them. */
+static const char deck[] = "BEGIN BULK\n"
+                           "CORD2R,4,,0.,0.,0.,0.,0.,1.\n"
+                           ",0.,1.,0.\n"
+                           "GRID,9,,4.,0.,0.\n"
+                           "GRID,3,,1.,0.,0.\n"
+                           "GRID,7,,2.,6.,0.,4\n"
+                           "SPOINT,5\n";
+
+static const double full[19] = {1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
+                                11, 12, 13, 14, 15, 16, 17, 18, 19};
+
+static void grids_ascend_with_six_rows_and_points_with_one(void **state)
+{
+    const char *const ports[] = {"all=1-8:123", "points=5:0", "pair=9,3"};
+    const ritz_import_request request = {
+        .stiffness = put_diagonal("k.mtx", 19, full),
+        .mass = put_diagonal("m.mtx", 19, full),
+        .bulk = put("deck.bdf", deck),
+        .num_ports = 3,
+        .port = ports,
+        .units = "kg m s"};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 19);
+    assert_int_equal(c.dof[5].grid, 3);
+    assert_int_equal(c.dof[5].component, 6);
+    assert_int_equal(c.dof[6].grid, 5);
+    assert_int_equal(c.dof[6].component, 0);
+    assert_int_equal(c.dof[7].grid, 7);
+    assert_int_equal(c.dof[18].grid, 9);
+    assert_string_equal(report.map, "grids ascending");
+    assert_string_equal(c.units, "kg m s");
+    /* the range takes the grids 3 and 7, and not the point */
+    assert_int_equal(c.port[0].dofs.count, 6);
+    assert_int_equal(c.port[0].dofs.at[3], 7);
+    assert_near(c.port[0].origin[0], 1.5, 0.0); /* mean of 1 and 2 */
+    assert_near(c.port[0].origin[1], 3.0, 0.0);
+    assert_int_equal(c.port[1].dofs.at[0], 6);
+    /* as listed: grid 9 first */
+    assert_int_equal(c.port[2].dofs.count, 12);
+    assert_int_equal(c.port[2].dofs.at[0], 13);
+    assert_int_equal(c.port[2].dofs.at[6], 0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void rows_empty_in_both_are_removed_and_others_stay(void **state)
+{
+    const double k[6] = {1, 1, 0, 1, 0, 1};
+    const double m[6] = {1, 1, 1, 0, 0, 1};
+    const ritz_import_request request = {.stiffness =
+                                             put_diagonal("k.mtx", 6, k),
+                                         .mass = put_diagonal("m.mtx", 6, m)};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 5);
+    assert_int_equal(report.num_removed, 1);
+    assert_int_equal(report.removed[0].grid, 1);
+    assert_int_equal(report.removed[0].component, 5);
+    assert_int_equal(report.num_massless, 1);
+    assert_int_equal(report.num_floating, 1);
+    assert_int_equal(c.grids.count, 1); /* one grid lies at the origin */
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void mass_alone_is_a_rigid_component(void **state)
+{
+    const ritz_import_request request = {.mass =
+                                             put_diagonal("m.mtx", 6, full)};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 6);
+    assert_int_equal(c.K.colptr[6], 0);
+    assert_int_equal(report.num_floating, 0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void rows_that_the_deck_fixes_are_taken_out(void **state)
+{
+    const ritz_import_request request = {
+        .stiffness = put_diagonal("k.mtx", 6, full),
+        .mass = put_diagonal("m.mtx", 6, full),
+        .bulk = put("deck.bdf", "GRID,3,,1.,0.,0.,,156\n")};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 3);
+    assert_int_equal(report.num_fixed, 3);
+    assert_int_equal(report.fixed[2].component, 6);
+    assert_near(c.K.val[0], 2.0, 0.0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void other_sizes_are_the_a_set_or_grids_less_spcs(void **state)
+{
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 4, full),
+                                   .bulk = put("deck.bdf",
+                                               "GRID,3,,1.,0.,0.,,156\n"
+                                               "GRID,4,,1.,0.,0.\nSPOINT,9\n"
+                                               "BSET1,123,4\nQSET1,,9\n")};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_string_equal(report.map, "A-set");
+    assert_int_equal(c.dof[0].grid, 4);
+    assert_int_equal(c.dof[3].grid, 9);
+    assert_int_equal(c.dof[3].component, 0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    request.mass = put_diagonal("m.mtx", 10, full);
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_string_equal(report.map, "grids less SPCs");
+    assert_int_equal(c.dof[0].component, 2);
+    assert_int_equal(c.dof[1].component, 3);
+    assert_int_equal(c.dof[2].component, 4);
+    assert_int_equal(c.dof[3].grid, 4);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    request.mass = put_diagonal("m.mtx", 7, full);
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "has 7 rows; the deck explains 13 (2 grids, 1 points) or 4 "
+                 "(a-set) or 10 (grids less SPCs)");
+}
+
+static void constraints_are_refused_where_they_act(void **state)
+{
+    ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 12, full),
+        .bulk = put("deck.bdf", "GRID,3,,1.,0.,0.\nGRID,4,,2.,0.,0.\n"
+                                "RBE2,600,3,123456,4\nASET1,123456,3\n")};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "the deck holds 'RBE2 600'");
+    request.mass = put_diagonal("m.mtx", 6, full); /* eliminated already */
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_string_equal(report.map, "A-set");
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void a_file_of_names_rules(void **state)
+{
+    ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 3, full),
+        .dofs = put("dofs", "# GRID COMP\n 8 3\n\n7 2 # y\n9 0\n")};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.dof[0].grid, 8);
+    assert_int_equal(c.dof[2].component, 0);
+    assert_string_equal(report.map, "--dofs");
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    put("dofs", "8 3\n7 2\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "names 2 dofs");
+    put("dofs", "8 3\n7 2\n\n8 3\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "line 4: 'grid 8 T3' was named at line 1 already");
+    put("dofs", "8 3\n7 x\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT, "line 2");
+    put("dofs", "8 3\n7 7\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "'7 7' is no dof");
+    put("dofs", "8 3 4\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT, "line 1");
+}
+
+/* K of DMIG has rows 1 T1 and 2 T1, M has 2 T1 and 5: the component all three. */
+static void matrices_that_name_their_rows_are_united(void **state)
+{
+    const char *file =
+        put("k.pch", "DMIG    K              0       6       2       0\n"
+                     "DMIG    K              1       1               1"
+                     "       1      5.\n"
+                     "DMIG    K              2       1               2"
+                     "       1      7.\n"
+                     "DMIG    M              0       6       2       0\n"
+                     "DMIG    M              2       1               2"
+                     "       1      3.\n"
+                     "DMIG    M              5       0               5"
+                     "       0      4.\n");
+    char K[300];
+    char M[300];
+    const ritz_import_request request = {.stiffness = K, .mass = M};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    snprintf(K, sizeof K, "%s:K", file);
+    snprintf(M, sizeof M, "%s:M", file);
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_string_equal(report.map, "file");
+    assert_int_equal(c.num_dofs, 3);
+    assert_int_equal(report.num_massless, 1);
+    assert_int_equal(report.num_floating, 1);
+    assert_int_equal(c.M.rowind[0], 1);
+    assert_near(c.M.val[0], 3.0, 0.0);
+    assert_int_equal(c.dof[2].grid, 5);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+/* Axis 1 of grid 7 is basic y, its axis 2 is basic -x. */
+static void inputs_and_outputs_act_along_basic_axes(void **state)
+{
+    const char *const inputs[] = {"fx=7:1*2.5", "q=5:0", "mz=3:6"};
+    const char *const outputs[] = {"y=7:2", "v=3:1/vel", "a=9:6/acc@1e-3"};
+    const ritz_import_request request = {.mass =
+                                             put_diagonal("m.mtx", 19, full),
+                                         .bulk = put("deck.bdf", deck),
+                                         .num_inputs = 3,
+                                         .input = inputs,
+                                         .num_outputs = 3,
+                                         .output = outputs};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    /* frames are built of square roots: two eps */
+    assert_near(ritz_dense_col(&c.io.B, 0)[7], 0.0, 1e-15);
+    assert_near(ritz_dense_col(&c.io.B, 0)[8], -2.5, 1e-15);
+    assert_near(ritz_dense_col(&c.io.B, 1)[6], 1.0, 0.0);
+    assert_near(ritz_dense_col(&c.io.B, 2)[5], 1.0, 0.0);
+    assert_near(ritz_dense_col(&c.io.C, 7)[0], 1.0, 1e-15);
+    assert_near(ritz_dense_col(&c.io.Cv, 0)[1], 1.0, 0.0);
+    assert_near(ritz_dense_col(&c.io.Ca, 18)[2], 1.0, 0.0);
+    assert_near(c.io.limit[2], 1e-3, 0.0);
+    assert_true(isnan(c.io.limit[0]));
+    assert_string_equal(c.io.input[0], "fx");
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+/* One wrong text, and the sentence that it gets. */
+typedef struct refusal {
+    const char *text, *says;
+} refusal;
+
+static void wrong_ports_are_refused(void **state)
+{
+    static const refusal cases[] = {
+        {"a", "form NAME=GRIDS[:COMPS]"},
+        {"a=", "form NAME=GRIDS"},
+        {"=3", "a name is empty"},
+        {"a=3,", "'' is no part"},
+        {"a=x", "'x' is no part"},
+        {"a=9-3", "'9-3' is no part"},
+        {"a=6", "no grid or point '6'"},
+        {"a=3,3", "listed twice"},
+        {"a=1-4,3", "listed twice"},
+        {"a=10-20", "nothing from 10"},
+        {"a=3:", "no directions"},
+        {"a=3:17", "'17' are not"},
+        {"a=3:11", "each once"},
+        {"a=3:01", "'01' are not"},
+        {"a=5:1", "no 'grid 5 T1'"},
+        {"a=7:1", "axes of its own"},
+        {"a=3:0", "there is no 'point 3'"},
+    };
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
+                                   .bulk = put("deck.bdf", deck),
+                                   .num_ports = 1};
+    const char *const twice[] = {"a=3", "a=9"};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        request.port = &cases[k].text;
+        assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                     cases[k].says);
+    }
+    request.num_ports = 2;
+    request.port = twice;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                 "two ports 'a'");
+    assert_null(c.dof);
+}
+
+static void wrong_inputs_and_outputs_are_refused(void **state)
+{
+    static const refusal inputs[] = {
+        {"a=3", "no grid and direction"}, {"a=3:7", "no grid and direction"},
+        {"a=4:1", "the nearest is 3"},    {"a=3:1*x", "'x' is no number"},
+        {"a=3:1*0", "other than zero"},   {"a=5:2", "no 'grid 5 T2'"},
+        {"3:1", "form NAME=GRID:COMP"},
+    };
+    static const refusal outputs[] = {
+        {"a=3:1/dis", "neither 'vel' nor 'acc'"},
+        {"a=3:1@-1", "a limit is positive"},
+        {"a=3:1@", "'' is no number"},
+    };
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
+                                   .bulk = put("deck.bdf", deck)};
+    const char *const twice[] = {"a=3:1", "a=3:2"};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    request.num_inputs = 1;
+    for (size_t k = 0; k < sizeof inputs / sizeof *inputs; k++) {
+        request.input = &inputs[k].text;
+        assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                     inputs[k].says);
+    }
+    request.num_inputs = 0;
+    request.num_outputs = 1;
+    for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
+        request.output = &outputs[k].text;
+        assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                     outputs[k].says);
+    }
+    request.num_outputs = 2;
+    request.output = twice;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                 "two outputs 'a'");
+}
+
+static void wrong_matrices_are_refused(void **state)
+{
+    ritz_import_request request = {0};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                 "no mass matrix");
+    request.mass = put("c.mtx", "%%MatrixMarket matrix coordinate complex "
+                                "general\n1 1 1\n1 1 2 3\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "is complex");
+    request.mass = put("r.mtx", "%%MatrixMarket matrix coordinate real "
+                                "general\n6 5 1\n1 1 2\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "is 6 x 5");
+    request.mass = put_diagonal("m.mtx", 7, full);
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "not six for each grid");
+    request.stiffness = put_diagonal("k.mtx", 6, full);
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "has 7 rows");
+}
+
+static void asymmetry_is_refused_unless_it_is_to_be_averaged(void **state)
+{
+    ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 6, full),
+        .stiffness = put("k.mtx", "%%MatrixMarket matrix coordinate real "
+                                  "general\n6 6 3\n1 1 2\n1 2 1\n2 1 0.5\n")};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "--symmetrise");
+    request.symmetrise = true;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_near(c.asymmetry, 0.25, 0.0); /* 0.5 of 2 */
+    assert_near(c.K.val[1], 0.75, 0.0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static ritz_status import_and_free(const ritz_import_request *request)
+{
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+    ritz_status status = ritz_import(request, &c, &report);
+
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    return status;
+}
+
+static void no_allocation_failure_leaks(void **state)
+{
+    const char *const ports[] = {"a=3,7", "b=5"};
+    const char *const inputs[] = {"u=7:1"};
+    const char *const outputs[] = {"y=7:1/acc"};
+    char load[300];
+    const char *const loads[] = {load};
+    const ritz_import_request request = {
+        .stiffness = put_diagonal("k.mtx", 19, full),
+        .mass = put_diagonal("m.mtx", 19, full),
+        .bulk = put("deck.bdf", deck),
+        .num_loads = 1,
+        .load = loads,
+        .num_ports = 2,
+        .port = ports,
+        .num_inputs = 1,
+        .input = inputs,
+        .num_outputs = 1,
+        .output = outputs};
+
+    (void)state;
+    snprintf(load, sizeof load, "%s@spin", request.stiffness);
+    assert_survives_every_allocation(import_and_free(&request));
+}
+
+/* What a real pair of matrices must come to. */
+typedef struct real {
+    const char *variable, *stiffness, *mass, *bulk;
+    int64_t dofs, removed;
+    double hertz; /* first flexible frequency; 0: rigid */
+    double bound; /* half a unit of its last digit */
+} real;
+
+static void real_files_become_components(void **state)
+{
+#define SOLVERS "nastran/public_solvers/"
+#define CSUPER  "nastran/nas2cam_csuper/"
+    /* data/dualspin/SOURCE.md; inboard, mystran, csuper: measured here */
+    static const real cases[] = {
+        {"RITZ_DATA", "dualspin/rotor.op4:KGG", "dualspin/rotor.op4:MGG",
+         "dualspin/rotor.bdf", 243, 3, 0.19878, 5e-6},
+        {"RITZ_DATA", "dualspin/stator.op4:KGG", "dualspin/stator.op4:MGG",
+         "dualspin/stator.bdf", 57, 3, 6.76982, 5e-6},
+        {"RITZ_DATA", NULL, "dualspin/platform.op4:MGG",
+         "dualspin/platform.bdf", 6, 0, 0.0, 0.0},
+        {"RITZ_EXTERNAL_DATA", SOLVERS "nastran95_inboard.op4:KGG",
+         SOLVERS "nastran95_inboard.op4:MGG", SOLVERS "nastran95_inboard.deck",
+         156, 0, 47.9210, 5e-5},
+        {"RITZ_EXTERNAL_DATA", SOLVERS "mystran_outboard.op4:KGG",
+         SOLVERS "mystran_outboard.op4:MGG", SOLVERS "mystran_outboard.dat",
+         156, 0, 1.72508, 5e-6},
+        {"RITZ_EXTERNAL_DATA", CSUPER "inboard.op4:KXX",
+         CSUPER "inboard.op4:MXX", CSUPER "inboard.dat", 32, 0, 47.9267, 5e-5},
+        /* oracles.md section 7 */
+        {"RITZ_EXTERNAL_DATA", "nastran/pynastran/dmig.pch:KAAX",
+         "nastran/pynastran/dmig.pch:MAAX", NULL, 15, 0, 1.033490, 5e-7},
+    };
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const real *it = &cases[k];
+        const ritz_span span = {.modes = 1};
+        ritz_import_request request = {0};
+        ritz_import_report report = {0};
+        ritz_component c = {0};
+        ritz_pairs pairs = {0};
+
+        request.mass = external(it->variable, it->mass);
+        if (!request.mass)
+            continue;
+        if (it->stiffness)
+            request.stiffness = external(it->variable, it->stiffness);
+        if (it->bulk)
+            request.bulk = external(it->variable, it->bulk);
+        assert_ok(ritz_import(&request, &c, &report));
+        assert_int_equal(c.num_dofs, it->dofs);
+        assert_int_equal(report.num_removed, it->removed);
+        if (it->hertz > 0.0) {
+            assert_ok(ritz_eigen_sparse(&c.K, &c.M, &span, &pairs));
+            assert_near(ritz_eigen_hertz(pairs.lambda[pairs.num_rigid]),
+                        it->hertz, it->bound);
+        }
+        ritz_pairs_free(&pairs);
+        ritz_component_free(&c);
+        ritz_import_report_free(&report);
+    }
+}
+
+/* Node numbers of a dof map, three dofs each, as a file of names. */
+static void convert_map(const char *path)
+{
+    char line[128];
+    char text[8192] = "";
+    size_t used = 0;
+    bool sized = false;
+    FILE *file = fopen(path, "r");
+
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        int node = atoi(line);
+
+        if (line[0] == '%')
+            continue;
+        for (int k = 1; sized && node > 0 && k <= 3; k++)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%d %d\n",
+                                     node, k);
+        sized = true;
+    }
+    fclose(file);
+    put("dofs", text);
+}
+
+static void a_dof_map_names_the_rows_of_the_rotor(void **state)
+{
+    const char *map =
+        external("RITZ_EXTERNAL_DATA", "ansys/rotorAnsysMatrixDofMappingVector"
+                                       ".txt");
+    const char *const ports[] = {"axis=1-7:123"};
+    /* oracles.md section 7 */
+    const double hertz[] = {104.637011, 104.637011, 187.824087, 212.329701};
+    const ritz_span span = {.modes = 4};
+    ritz_import_request request = {.num_ports = 1, .port = ports};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+    ritz_pairs pairs = {0};
+
+    (void)state;
+    if (!map)
+        skip();
+    convert_map(map);
+    request.dofs = at("dofs");
+    request.stiffness = external("RITZ_EXTERNAL_DATA",
+                                 "ansys/rotorAnsysStiffnessMatrixSparse.txt");
+    request.mass =
+        external("RITZ_EXTERNAL_DATA", "ansys/rotorAnsysMassMatrixSparse.txt");
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 345);
+    assert_int_equal(c.port[0].dofs.count, 21);
+    assert_ok(ritz_eigen_sparse(&c.K, &c.M, &span, &pairs));
+    assert_int_equal(pairs.num_rigid, 6);
+    for (int k = 0; k < 4; k++)
+        assert_near(ritz_eigen_hertz(pairs.lambda[6 + k]), hertz[k], 5e-7);
+    ritz_pairs_free(&pairs);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(grids_ascend_with_six_rows_and_points_with_one),
+        cmocka_unit_test(rows_empty_in_both_are_removed_and_others_stay),
+        cmocka_unit_test(mass_alone_is_a_rigid_component),
+        cmocka_unit_test(rows_that_the_deck_fixes_are_taken_out),
+        cmocka_unit_test(other_sizes_are_the_a_set_or_grids_less_spcs),
+        cmocka_unit_test(constraints_are_refused_where_they_act),
+        cmocka_unit_test(a_file_of_names_rules),
+        cmocka_unit_test(matrices_that_name_their_rows_are_united),
+        cmocka_unit_test(inputs_and_outputs_act_along_basic_axes),
+        cmocka_unit_test(wrong_ports_are_refused),
+        cmocka_unit_test(wrong_inputs_and_outputs_are_refused),
+        cmocka_unit_test(wrong_matrices_are_refused),
+        cmocka_unit_test(asymmetry_is_refused_unless_it_is_to_be_averaged),
+        cmocka_unit_test(no_allocation_failure_leaks),
+        cmocka_unit_test(real_files_become_components),
+        cmocka_unit_test(a_dof_map_names_the_rows_of_the_rotor),
+    };
+
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,292 @@
+#include "testing.h"
+
+#include "frame.h"
+
+#include <ritz/eigen.h>
+#include <ritz/sparse.h>
+#include <ritz/verify.h>
+
+#include <stdlib.h>
+
+static const ritz_verify_request plain = RITZ_VERIFY_NONE;
+
+/* Beam of 8 elements: force and displacement at the tip, one seen halfway. */
+static void open_beam(bool clamped, ritz_component *beam)
+{
+    int64_t in = 0;
+    int64_t seen[2];
+
+    assert_ok(
+        frame_component(8, 0.5, &frame_mcdaniel, clamped, false, 1, beam));
+    in = beam->num_dofs - 2;
+    seen[0] = in;
+    seen[1] = in - 9;
+    assert_ok(frame_io(beam, 1, &in, 2, seen));
+}
+
+/* Its lowest `modes` eigenvectors as a basis, turned among themselves. */
+static void truncate_beam(const ritz_component *beam, int64_t modes,
+                          ritz_basis *basis)
+{
+    ritz_pairs pairs = {0};
+    ritz_dense K = {0};
+    ritz_dense M = {0};
+
+    assert_ok(ritz_sparse_dense(&beam->K, &K));
+    assert_ok(ritz_sparse_dense(&beam->M, &M));
+    assert_ok(ritz_eigen_dense(&K, &M, &pairs));
+    assert_ok(ritz_basis_new(beam->num_dofs, modes, basis));
+    memcpy(basis->T.val, pairs.Phi.val,
+           (size_t)(basis->T.nrow * modes) * sizeof(double));
+    ritz_pairs_free(&pairs);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+}
+
+static const ritz_measure *find(const ritz_measures *measures, const char *name)
+{
+    for (int64_t k = 0; k < measures->count; k++)
+        if (strcmp(measures->item[k].name, name) == 0)
+            return &measures->item[k];
+    fail_msg("there is no measure '%s'", name);
+    return NULL;
+}
+
+/* A basis of exact modes: all but what they leave out is exact. */
+static void exact_modes_have_no_error_but_in_the_gain(void **state)
+{
+    (void)state;
+    for (int clamped = 0; clamped < 2; clamped++) {
+        ritz_component beam = {0};
+        ritz_basis basis = {0};
+        ritz_reduced reduced = {0};
+        ritz_measures found = {0};
+
+        open_beam(clamped, &beam);
+        truncate_beam(&beam, 8, &basis);
+        assert_ok(ritz_reduce(&beam, &basis, &reduced));
+        assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
+        /* eps lambda_max / lambda_1 of this beam is 1e-9 */
+        assert_near(find(&found, "frequency-relative")->value, 0.0, 1e-8);
+        assert_near(find(&found, "mac")->value, 1.0, 1e-10);
+        assert_near(find(&found, "missing-modes")->value, 0.0, 0.0);
+        assert_near(find(&found, "extra-modes")->value, 0.0, 0.0);
+        assert_true(find(&found, "static-gain-relative")->value > 1e-6);
+        assert_true(find(&found, "static-gain-relative")->value < 0.1);
+        assert_true(find(&found, "response-relative")->value < 0.1);
+        assert_non_null(strstr(find(&found, "response-relative")->where,
+                               "modal 0.01 assumed"));
+        if (!clamped)
+            assert_true(find(&found, "rigid-hertz")->value < 1e-6);
+        ritz_measures_free(&found);
+        ritz_reduced_free(&reduced);
+        ritz_basis_free(&basis);
+        ritz_component_free(&beam);
+    }
+}
+
+/* The identity is a basis without any error. */
+static void the_whole_space_has_no_error_at_all(void **state)
+{
+    ritz_verify_request request = plain;
+    ritz_component beam = {0};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+    ritz_measures found = {0};
+
+    (void)state;
+    open_beam(true, &beam);
+    request.band_hz[1] = 0.3;
+    request.damping = (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 1e-3};
+    request.limit_response = 1e-6;
+    assert_ok(ritz_basis_new(beam.num_dofs, beam.num_dofs, &basis));
+    for (int64_t k = 0; k < beam.num_dofs; k++)
+        ritz_dense_col(&basis.T, k)[k] = 1.0;
+    assert_ok(ritz_reduce(&beam, &basis, &reduced));
+    assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
+    /* frequencies to 1e-9, over zeta = 1e-3 at a peak */
+    assert_near(find(&found, "response-relative")->value, 0.0, 1e-6);
+    assert_true(ritz_measure_holds(find(&found, "response-relative")));
+    assert_near(find(&found, "static-gain-relative")->value, 0.0, 1e-8);
+    assert_near(find(&found, "damping-relative")->value, 0.0, 1e-12);
+    ritz_measures_free(&found);
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+    ritz_component_free(&beam);
+}
+
+/* Mode 2 is dropped: it is missing, named, and no other takes its place. */
+static void a_mode_that_was_left_out_is_missing_by_name(void **state)
+{
+    ritz_verify_request request = plain;
+    ritz_component beam = {0};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+    ritz_measures found = {0};
+
+    (void)state;
+    open_beam(true, &beam);
+    truncate_beam(&beam, 6, &basis);
+    memcpy(ritz_dense_col(&basis.T, 1), ritz_dense_col(&basis.T, 5),
+           (size_t)beam.num_dofs * sizeof(double));
+    basis.T.ncol = 5;
+    basis.columns.count = 5;
+    request.band_hz[1] = 0.1;
+    request.limit_frequency = 1e-3;
+    for (int with_shapes = 1; with_shapes >= 0; with_shapes--) {
+        assert_ok(ritz_reduce(&beam, &basis, &reduced));
+        if (!with_shapes)
+            ritz_dense_free(&reduced.T);
+        assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
+        assert_near(find(&found, "missing-modes")->value, 1.0, 0.0);
+        assert_non_null(
+            strstr(find(&found, "missing-modes")->where, "mode 2,"));
+        assert_false(ritz_measure_holds(find(&found, "missing-modes")));
+        assert_true(ritz_measure_holds(find(&found, "frequency-relative")));
+        ritz_measures_free(&found);
+        ritz_reduced_free(&reduced);
+    }
+    ritz_basis_free(&basis);
+    ritz_component_free(&beam);
+}
+
+/* Two unit masses and a unit spring. */
+static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
+{
+    double k[] = {1.0, -1.0, -1.0, 1.0};
+    double m[] = {1.0, 0.0, 0.0, 1.0};
+    const ritz_dense K = {2, 2, k};
+    const ritz_dense M = {2, 2, m};
+    ritz_io io = {0};
+    ritz_dense G = {0};
+
+    (void)s;
+    assert_ok(ritz_io_new(2, 1, 1, &io));
+    io.B.val[0] = io.C.val[0] = 1.0;
+    assert_ok(ritz_static_gain(&K, &M, &io, &G));
+    assert_near(G.val[0], 0.25, 1e-15); /* phi = 1/sqrt 2, lambda = 2 */
+    ritz_dense_free(&G);
+    ritz_io_free(&io);
+}
+
+/* |theta - lambda| <= eps (lambda - sigma): checked against the truth. */
+static void estimates_hold_and_vanish_for_exact_modes(void **state)
+{
+    ritz_component beam = {0};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+    ritz_measures found = {0};
+
+    (void)state;
+    open_beam(true, &beam);
+    truncate_beam(&beam, 6, &basis);
+    assert_ok(ritz_reduce(&beam, &basis, &reduced));
+    assert_ok(ritz_estimate(&beam, &basis, &reduced));
+    /* rounding of K x, eps lambda_max / lambda_1 */
+    assert_near(find(&reduced.estimates, "frequency-relative-bound")->value,
+                0.0, 1e-5);
+    ritz_reduced_free(&reduced);
+    for (int64_t i = 0; i < beam.num_dofs; i++)
+        for (int64_t j = 0; j < 6; j++)
+            ritz_dense_col(&basis.T, j)[i] *= 1.0 + 0.01 * (double)(i % 3);
+    assert_ok(ritz_reduce(&beam, &basis, &reduced));
+    assert_ok(ritz_estimate(&beam, &basis, &reduced));
+    assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
+    assert_true(find(&reduced.estimates, "frequency-relative-bound")->value >=
+                find(&found, "frequency-relative")->value);
+    assert_non_null(find(&reduced.estimates, "mode-1"));
+    ritz_measures_free(&found);
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+    ritz_component_free(&beam);
+}
+
+static void other_models_are_refused_in_words(void **state)
+{
+    ritz_verify_request request = plain;
+    ritz_component beam = {0};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+    ritz_measures found = {0};
+
+    (void)state;
+    open_beam(true, &beam);
+    truncate_beam(&beam, 4, &basis);
+    assert_ok(ritz_reduce(&beam, &basis, &reduced));
+    request.band_hz[0] = 2.0;
+    request.band_hz[1] = 1.0;
+    assert_fails(ritz_verify_reduced(&beam, &reduced, &request, &found),
+                 RITZ_ERR_ARGUMENT, "a band from 2 to 1 Hz");
+    beam.io.input[0][0] = 'v';
+    assert_fails(ritz_verify_reduced(&beam, &reduced, &plain, &found),
+                 RITZ_ERR_ARGUMENT, "input 1 is 'v1'");
+    reduced.num_dofs--;
+    assert_fails(ritz_verify_reduced(&beam, &reduced, &plain, &found),
+                 RITZ_ERR_ARGUMENT, "comes from 23 dofs");
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+    ritz_component_free(&beam);
+}
+
+static void limits_hold_from_the_right_side(void **state)
+{
+    const ritz_measure mac = {.name = "mac", .value = 0.9, .limit = 0.95};
+    const ritz_measure off = {
+        .name = "frequency-relative", .value = 0.9, .limit = 0.95};
+    const ritz_measure none = {.name = "mac", .value = 0.1, .limit = nan("")};
+
+    (void)state;
+    assert_false(ritz_measure_holds(&mac));
+    assert_true(ritz_measure_holds(&off));
+    assert_true(ritz_measure_holds(&none));
+}
+
+/* What verify_once borrows. */
+typedef struct pair {
+    ritz_component beam;
+    ritz_basis basis;
+    ritz_reduced reduced;
+} pair;
+
+static ritz_status verify_once(pair *p)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures found = {0};
+
+    RITZ_TRY(ritz_verify_reduced(&p->beam, &p->reduced, &plain, &found));
+    RITZ_TRY(ritz_estimate(&p->beam, &p->basis, &p->reduced));
+done:
+    ritz_measures_free(&found);
+    return status;
+}
+
+static void verifying_survives_every_allocation(void **state)
+{
+    pair p = {0};
+
+    (void)state;
+    open_beam(true, &p.beam);
+    truncate_beam(&p.beam, 4, &p.basis);
+    assert_ok(ritz_reduce(&p.beam, &p.basis, &p.reduced));
+    assert_survives_every_allocation(verify_once(&p));
+    ritz_reduced_free(&p.reduced);
+    ritz_basis_free(&p.basis);
+    ritz_component_free(&p.beam);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exact_modes_have_no_error_but_in_the_gain),
+        cmocka_unit_test(the_whole_space_has_no_error_at_all),
+        cmocka_unit_test(a_mode_that_was_left_out_is_missing_by_name),
+        cmocka_unit_test(
+            the_gain_of_one_flexible_mode_is_one_over_its_stiffness),
+        cmocka_unit_test(estimates_hold_and_vanish_for_exact_modes),
+        cmocka_unit_test(other_models_are_refused_in_words),
+        cmocka_unit_test(limits_hold_from_the_right_side),
+        cmocka_unit_test(verifying_survives_every_allocation),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
