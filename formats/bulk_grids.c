@@ -127,20 +127,10 @@ done:
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
                                           int64_t id)
 {
-    int64_t low = 0;
-    int64_t high = all->num_grids;
-
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (all->grid[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low == all->num_grids || all->grid[low].id != id)
+    if (all->num_grids == 0)
         return NULL;
-    return &all->grid[low];
+    return bsearch(&id, all->grid, (size_t)all->num_grids, sizeof *all->grid,
+                   ritz_bulk_compare_ids);
 }
 
 /* ---- putting them in place --------------------------------------------- */
@@ -177,26 +167,21 @@ typedef struct builder {
 static ritz_status add_axes(builder *build, const double axes[static 9],
                             int64_t *out)
 {
-    typedef struct nine {
-        double axis[9];
-    } nine;
     ritz_status status = RITZ_OK;
     ritz_grids *grids = &build->grids;
+    double *more = NULL;
 
     *out = 0;
     if (is_identity(axes))
         goto done;
-    if (grids->num_frames == build->room) {
-        double *more = NULL;
-
-        RITZ_NEW(more, 9 * (2 * build->room + 4));
-        if (grids->num_frames > 0)
-            memcpy(more, grids->axes, (size_t)grids->num_frames * sizeof(nine));
-        free(grids->axes);
-        grids->axes = more;
-        build->room = 2 * build->room + 4;
+    more = ritz_array_grown(grids->axes, grids->num_frames, &build->room,
+                            9 * sizeof *axes);
+    if (!more) {
+        status = RITZ_ERR_MEMORY;
+        goto done;
     }
-    memcpy(grids->axes + 9 * grids->num_frames, axes, sizeof(nine));
+    grids->axes = more;
+    memcpy(grids->axes + 9 * grids->num_frames, axes, 9 * sizeof *axes);
     *out = grids->num_frames++;
 done:
     return status;

@@ -83,6 +83,9 @@ ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all,
 ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
                                  int32_t kind, bool by_grids);
 
+/** Take every card of the deck that says something of grids or sets. */
+ritz_status ritz_bulk_take_cards(ritz_bulk_cards *all);
+
 /** Sort grids and frames, once all cards are there; each id once. */
 ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all);
 ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all);
@@ -90,10 +93,18 @@ ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all);
 /** Find origin and axes of every frame. @cost O(n log n) */
 ritz_status ritz_bulk_resolve_frames(ritz_bulk_cards *all);
 
+/** Order of two int64_t, and of structs that begin with an id. */
+int ritz_bulk_compare_ids(const void *left, const void *right);
+
 /** Frame or grid by id; NULL if there is none. */
 ritz_bulk_frame *ritz_bulk_find_frame(const ritz_bulk_cards *all, int64_t id);
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
                                           int64_t id);
+
+/** Origin and axes of a frame by three points, which no line may hold. */
+ritz_status ritz_bulk_orient(const ritz_bulk_cards *all,
+                             const double A[static 3], const double B[static 3],
+                             const double C[static 3], ritz_bulk_frame *frame);
 
 /** Coordinates @p x of a resolved frame, NULL the basic one, as a position. */
 void ritz_bulk_position(const ritz_bulk_frame *frame, const double x[static 3],

@@ -245,29 +245,6 @@ done:
     return status;
 }
 
-static int compare_dofs(const void *a, const void *b)
-{
-    const ritz_dof *left = a;
-    const ritz_dof *right = b;
-    int order = (left->grid > right->grid) - (left->grid < right->grid);
-
-    return order ? order
-                 : (left->component > right->component) -
-                       (left->component < right->component);
-}
-
-static void sort_dofs(dofs *list)
-{
-    int64_t kept = 0;
-
-    if (list->count > 1)
-        qsort(list->dof, (size_t)list->count, sizeof *list->dof, compare_dofs);
-    for (int64_t k = 0; k < list->count; k++)
-        if (kept == 0 || compare_dofs(&list->dof[kept - 1], &list->dof[k]) != 0)
-            list->dof[kept++] = list->dof[k];
-    list->count = kept;
-}
-
 ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_bulk_ranges *list,
                                const ritz_bulk *built, int64_t *count,
@@ -281,7 +258,7 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
             RITZ_TRY(add_named(all, &list->range[k], built, &found));
     for (int64_t c = 0; c <= 6; c++)
         RITZ_TRY(add_direction(all, list, built, c, &found));
-    sort_dofs(&found);
+    found.count = ritz_dof_distinct(found.count, found.dof);
     if (!found.dof)
         RITZ_NEW(found.dof, 0);
     *out = found.dof;

@@ -8,6 +8,8 @@
 #ifndef RITZ_FORMATS_CARDS_H
 #define RITZ_FORMATS_CARDS_H
 
+#include "formats/room.h"
+
 #include <ritz/status.h>
 
 #include <stdbool.h>
@@ -120,22 +122,7 @@ ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
 void ritz_card_free(ritz_card *card);
 void ritz_deck_free(ritz_deck *deck);
 
-/**
- * An array that has room for one more item: itself, or a larger copy in its
- * place, which is then freed; NULL if there is no memory for it.
- */
-void *ritz_array_grown(void *array, int64_t count, int64_t *room, size_t size);
-
-/* Make sure of room for one more item. */
-#define RITZ_ROOM(array, count, room)                                          \
-    do {                                                                       \
-        void *grown_ =                                                         \
-            ritz_array_grown((array), (count), &(room), sizeof *(array));      \
-        if (!grown_) {                                                         \
-            status = RITZ_ERR_MEMORY;                                          \
-            goto done;                                                         \
-        }                                                                      \
-        (array) = grown_;                                                      \
-    } while (0)
+/** The folder of a path: "." if it names none. */
+ritz_status ritz_deck_folder(const char *path, char **out);
 
 #endif

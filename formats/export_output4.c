@@ -33,7 +33,7 @@ done:
 const ritz_exporter ritz_exporter_output4 = {
     .name = "output4",
     .summary = "NASTRAN OUTPUT4 matrices, binary or text",
-    .reference = "NastranOutput4",
+    .reference = "MSC2014",
     .kind = "reduced",
     .write_reduced = write,
 };

@@ -41,9 +41,6 @@ typedef struct ritz_roster {
     ritz_place *place;
 } ritz_roster;
 
-/** Order of two dofs: by grid, then by direction. */
-int ritz_dof_compare(const void *left, const void *right);
-
 /** Roster of @p count dofs; a repeated one is refused. */
 ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
                             ritz_roster *out);

@@ -62,7 +62,6 @@ static ritz_status list_sets(const ritz_bulk *bulk, ritz_names *out)
 {
     ritz_status status = RITZ_OK;
     int64_t total = 0;
-    int64_t kept = 0;
 
     for (int s = 0; s < 3; s++)
         total += bulk->num_sets[s];
@@ -70,11 +69,7 @@ static ritz_status list_sets(const ritz_bulk *bulk, ritz_names *out)
     for (int s = 0; s < 3; s++)
         for (int64_t k = 0; k < bulk->num_sets[s]; k++)
             out->dof[out->count++] = bulk->set[s][k];
-    qsort(out->dof, (size_t)total, sizeof *out->dof, ritz_dof_compare);
-    for (int64_t k = 0; k < total; k++)
-        if (k == 0 || ritz_dof_compare(&out->dof[k - 1], &out->dof[k]) != 0)
-            out->dof[kept++] = out->dof[k];
-    out->count = kept;
+    out->count = ritz_dof_distinct(total, out->dof);
     snprintf(out->map, sizeof out->map, "A-set");
 done:
     return status;

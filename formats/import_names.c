@@ -40,7 +40,6 @@ static ritz_status unite(const ritz_parts *parts, ritz_names *out)
 {
     ritz_status status = RITZ_OK;
     int64_t total = 0;
-    int64_t kept = 0;
 
     for (int64_t k = 0; k < parts->count; k++)
         total += parts->part[k].matrix.A.nrow;
@@ -48,11 +47,7 @@ static ritz_status unite(const ritz_parts *parts, ritz_names *out)
     for (int64_t k = 0; k < parts->count; k++)
         for (int64_t i = 0; i < parts->part[k].matrix.A.nrow; i++)
             out->dof[out->count++] = parts->part[k].matrix.row[i];
-    qsort(out->dof, (size_t)total, sizeof *out->dof, ritz_dof_compare);
-    for (int64_t k = 0; k < total; k++)
-        if (k == 0 || ritz_dof_compare(&out->dof[k - 1], &out->dof[k]) != 0)
-            out->dof[kept++] = out->dof[k];
-    out->count = kept;
+    out->count = ritz_dof_distinct(total, out->dof);
     snprintf(out->map, sizeof out->map, "file");
 done:
     return status;

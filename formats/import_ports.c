@@ -199,7 +199,7 @@ static ritz_status fill(const char *text, draft *it)
         RITZ_TRY(add_part(at, length, it));
         at += length + 1;
     }
-    for (int i = 0; i < 3; i++)
+    for (int64_t i = 0; i < 3; i++)
         it->port.axes[4 * i] = 1.0;
 done:
     return status;

@@ -6,16 +6,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-int ritz_dof_compare(const void *left, const void *right)
-{
-    const ritz_dof *a = left;
-    const ritz_dof *b = right;
-
-    if (a->grid != b->grid)
-        return a->grid < b->grid ? -1 : 1;
-    return (a->component > b->component) - (a->component < b->component);
-}
-
 static int compare_places(const void *left, const void *right)
 {
     const ritz_place *a = left;

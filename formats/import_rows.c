@@ -174,7 +174,7 @@ static ritz_status place_alone(const ritz_names *names, ritz_grids *out)
     RITZ_NEW(grids.frame, 1);
     RITZ_NEW(grids.axes, 9);
     grids.id[0] = names->dof[0].grid;
-    for (int i = 0; i < 3; i++)
+    for (int64_t i = 0; i < 3; i++)
         grids.axes[4 * i] = 1.0;
     *out = grids;
     grids = (ritz_grids){0};

@@ -503,7 +503,7 @@ done:
 const ritz_format ritz_format_matrix_market = {
     .name = "matrix-market",
     .summary = "Matrix Market, coordinate or array",
-    .reference = "Boisvert1996",
+    .reference = "BoisvertPozoRemington1996",
     .recognise = recognise,
     .read = read_all,
 };

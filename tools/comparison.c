@@ -145,21 +145,25 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
         json_t *modes = json_array();
         char at[RITZ_NAME_SIZE];
         char number[24] = "*";
-        char chosen[24] = "-";
+        char chosen[24];
+        char allowed[24] = "-";
 
         name_row(stage, c, row, at);
         if (row->listed) {
             snprintf(number, sizeof number, "%lld", (long long)k + 1);
-            snprintf(chosen, sizeof chosen, "%lld", (long long)row->num_kept);
+            snprintf(allowed, sizeof allowed, "%.1e", row->allowed);
         }
+        snprintf(chosen, sizeof chosen, row->listed ? "%lld" : "(%lld)",
+                 (long long)row->num_kept);
         between += !row->listed;
         cli_say(run,
-                "%3s  %-28s %5lld %4lld %4s %5lld %9.1e %9.1e %9.1e %9.1e "
-                "%9.1e %9.1e",
+                "%3s  %-28s %5lld %4lld %4s %5lld %9.1e %9s %9.1e %9.1e %9.1e "
+                "%9.1e",
                 number, at, (long long)row->num_rigid,
                 (long long)row->num_flexible, chosen, (long long)row->order,
-                row->frequency_error, row->allowed, row->rigid_error,
-                row->gain_error, row->response_error, 1.0 - row->mac);
+                row->frequency_error, allowed, row->rigid_error,
+                row->gain_error, row->response_error,
+                fmax(1.0 - row->mac, 0.0));
         json_array_append_new(array, row_json(row, at));
         for (int64_t i = 0; row->listed && i < row->num_kept; i++)
             json_array_append_new(modes, json_integer(row->kept[i] + 1));
@@ -170,12 +174,12 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
             worst = row->response_error;
     }
     cli_say(run, "  rigid, flex, kept: modes of stage 1; order: of the stage-2 "
-                 "system; frequency (and what rounding");
-    cli_say(run, "  allows), static gain and response in the band: largest "
-                 "relative errors");
+                 "system; frequency of kept modes (and what");
+    cli_say(run, "  rounding allows it), flexible static gain, response in the "
+                 "band: largest relative errors");
     if (between > 0)
-        cli_say(run, "  * between listed angles, where nothing was kept on "
-                     "purpose: errors of all modes in the band");
+        cli_say(run, "  * between listed angles: errors of the modes (so many) "
+                     "that would have been kept there");
     json_object_set_new(run->report, "configurations", array);
     json_object_set_new(run->report, "kept", kept);
     cli_record_error(run, "response", worst);

@@ -154,6 +154,9 @@ void describe_component(const cli_run *run, json_t *keys,
         cli_say(run, "  %-14s %s", "damping", c->damping);
     if (c->digits > 0.0)
         cli_say(run, "  %-14s %g significant", "digits", c->digits);
+    if (c->asymmetry > 0.0)
+        cli_say(run, "  %-14s %.1e of the largest entry, averaged away",
+                "asymmetry", c->asymmetry);
     component_ports(run, keys, c);
     io(run, keys, &c->io);
     set_text(keys, "kind", "component");

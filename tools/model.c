@@ -82,7 +82,8 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
                  "'%s' holds %s, not %s", path, kinds[k].noun, list);
     RITZ_TRY(kinds[k].read(path, out));
     out->kind = kinds[k].kind;
-    if (out->kind == MODEL_COMPONENT && out->component.asymmetry > 0.0)
+    if (out->kind == MODEL_COMPONENT &&
+        out->component.asymmetry > MODEL_ROUNDING)
         cli_warn(run,
                  "'%s': unsymmetric by %.1e of its largest entry, "
                  "averaged away",

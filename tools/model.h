@@ -8,6 +8,9 @@
 #include <ritz/scene.h>
 #include <ritz/verify.h>
 
+/* Up to here two triangles differ by rounding, which is no cause to warn. */
+#define MODEL_ROUNDING 1e-13
+
 typedef enum model_kind {
     MODEL_COMPONENT = 1,
     MODEL_BASIS = 2,

@@ -10,7 +10,7 @@ typedef struct wish {
     double from_hz, to_hz, up_to_hz;
     int64_t points;
     bool log, no_refine;
-    const char *method, *damping, *at;
+    const char *method, *damping, *at, *points_of;
 } wish;
 
 /*
@@ -42,6 +42,24 @@ static ritz_status place(const model *m, const wish *asked, ritz_grid *out)
                        .count = asked->points,
                        .log = asked->log,
                        .refine = !asked->no_refine};
+done:
+    return status;
+}
+
+/* The points of another response, which can then be subtracted. */
+static ritz_status borrow(cli_run *run, const wish *asked, model *other,
+                          ritz_grid *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_response *r = &other->response;
+
+    RITZ_TRY(model_read(run, asked->points_of, MODEL_RESPONSE, other));
+    RITZ_FAIL_IF(r->count < 1, RITZ_ERR_ARGUMENT, "'%s' has no points",
+                 asked->points_of);
+    *out = (ritz_grid){.from_hz = r->hertz[0],
+                       .to_hz = r->hertz[r->count - 1],
+                       .count = r->count,
+                       .hertz = r->hertz};
 done:
     return status;
 }
@@ -109,6 +127,7 @@ static ritz_status frf(cli_run *run, const wish *asked)
     ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     model m = {0};
+    model other = {0};
     ritz_damping damping = {0};
     ritz_grid grid = {0};
     ritz_response response = {0};
@@ -123,7 +142,10 @@ static ritz_status frf(cli_run *run, const wish *asked)
         RITZ_ERR_ARGUMENT,
         "'%s' is small and dense: --method direct is for components", path);
     RITZ_TRY(model_damping(&m, asked->damping, &damping));
-    RITZ_TRY_IN(path, place(&m, asked, &grid));
+    if (asked->points_of)
+        RITZ_TRY(borrow(run, asked, &other, &grid));
+    else
+        RITZ_TRY_IN(path, place(&m, asked, &grid));
     io = m.kind == MODEL_COMPONENT ? &m.component.io : model_look(&m).io;
     RITZ_FAIL_IF(io->num_inputs == 0 || io->num_outputs == 0, RITZ_ERR_ARGUMENT,
                  "'%s' has no %s, it responds to nothing", path,
@@ -135,6 +157,7 @@ static ritz_status frf(cli_run *run, const wish *asked)
 done:
     ritz_response_free(&response);
     model_free(&m);
+    model_free(&other);
     return status;
 }
 
@@ -159,6 +182,8 @@ int main(int argc, char **argv)
          .help = "evenly spaced in the logarithm of frequency"},
         {CLI_FLAG(&asked.no_refine), .name = "no-refine",
          .help = "add no points at and around resonances"},
+        {CLI_TEXT(&asked.points_of), .name = "points-of", .argument = "FILE",
+         .help = "the points of another response instead"},
         {CLI_TEXT(&asked.method), .name = "method", .argument = "NAME",
          .help = "modal, or direct: a factor at each point (components)"},
         {CLI_TEXT(&asked.damping), .name = "damping", .argument = "TEXT",

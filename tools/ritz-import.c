@@ -100,7 +100,7 @@ static void report(cli_run *run, const ritz_component *component,
                 "%lld rows have mass but no stiffness, kept: they move "
                 "freely",
                 (long long)done->num_floating);
-    if (component->asymmetry > 0.0)
+    if (component->asymmetry > MODEL_ROUNDING)
         cli_warn(run, "unsymmetric by %.1e of the largest entry, averaged away",
                  component->asymmetry);
     cli_report_text(run, "map", done->map);

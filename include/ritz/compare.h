@@ -13,16 +13,17 @@ typedef struct ritz_compare_row {
     double *angle_deg; /* one for each hinge */
     bool listed;       /* false: between listed angles, for checking only */
     int64_t num_rigid, num_flexible; /* of the stage-1 system */
-    int64_t num_kept;       /* flexible modes chosen here; 0 where not listed */
-    int64_t *kept;          /* num_kept indices into the flexible modes */
-    int64_t order;          /* of the stage-2 system */
-    double frequency_error; /* largest relative, of the kept modes (listed) or
-                               of the modes in the band (between) */
-    double allowed;         /* c eps lambda_max / lambda_k, of that mode */
+    int64_t num_kept; /* flexible modes that matter: listed, they are kept;
+                               between, they would have been */
+    int64_t *kept;    /* num_kept indices into the flexible modes */
+    int64_t order;    /* of the stage-2 system */
+    double frequency_error; /* worst relative, of those modes */
+    double allowed;         /* what rounding allows it, c eps lambda_max /
+                               lambda_k with c = 20 e; NaN between */
     double rigid_error;     /* largest |omega| of a rigid mode of stage 2, Hz */
     double gain_error;      /* relative, of the flexible static gain */
     double response_error;  /* relative to the largest |H|, in the band */
-    double mac;             /* smallest, of kept modes */
+    double mac;             /* smallest, of those modes */
 } ritz_compare_row;
 
 typedef struct ritz_comparison {

@@ -39,6 +39,17 @@ enum { RITZ_DOF_NAME_SIZE = 40 };
 /** "grid 101 T3", "grid 101 R1", "point 2001"; returns @p text. */
 const char *ritz_dof_name(ritz_dof dof, char text[RITZ_DOF_NAME_SIZE]);
 
+/** Order of two ritz_dof, for qsort and bsearch: by grid, then direction. */
+int ritz_dof_compare(const void *left, const void *right);
+
+/**
+ * Sort a list and keep each dof once.
+ *
+ * @return how many are left
+ * @cost   O(n log n)
+ */
+int64_t ritz_dof_distinct(int64_t count, ritz_dof *dof);
+
 void ritz_dofs_free(ritz_dofs *set);
 
 #endif

@@ -43,6 +43,26 @@ typedef struct ritz_inertia {
     bool known;
 } ritz_inertia;
 
+/*
+ * What the inertia of the body in a moving frame needs beyond M_r, in terms of
+ * no code in particular. R (n x 6) holds unit rigid motions about the basic
+ * origin; T_b (g x r) the translations of the g grids along basic axis b; X_b
+ * (g) their positions; m (g x g) is the nodal mass, a third of the trace of
+ * each 3 x 3 block of M that joins translations.
+ *
+ * The first two are of all of M. The others are exact where those blocks are
+ * multiples of I3, as of solids and of lumped masses.
+ */
+typedef struct ritz_invariants {
+    double rigid[36];    /* R'MR, symmetric */
+    ritz_dense momentum; /* 6 x r, R'MT; {0}: none of this is known */
+    ritz_dense position; /* 3 x 3r, (a, b r + k) is X_a' m T_b(:,k) */
+    ritz_dense product;  /* 3r x 3r, (a r + j, b r + k) T_a(:,j)' m T_b(:,k) */
+} ritz_invariants;
+
+/* Nine r x r matrices: of more columns than this they are not kept. */
+enum { RITZ_INVARIANT_COLUMNS = 400 };
+
 typedef struct ritz_reduced {
     ritz_dense K, M, D; /* r x r; D {0}: none */
     ritz_columns columns;
@@ -51,6 +71,7 @@ typedef struct ritz_reduced {
     ritz_port_map *port;
     ritz_io io; /* for r coordinates */
     ritz_inertia inertia;
+    ritz_invariants invariants;
     ritz_dense T;                 /* n x r; {0} without basis */
     int64_t num_dofs;             /* n, of the full component */
     ritz_dof *dof;                /* n; NULL without basis */
@@ -85,10 +106,25 @@ const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
 /** Mass, centre and inertia of a component by geometry: R'MR. */
 ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out);
 
+/**
+ * Invariants of a component that moves by @p T; none, which is no failure, if
+ * no grid has a position or there are more than RITZ_INVARIANT_COLUMNS.
+ *
+ * @param[in] T  n x r
+ * @cost   O(r nnz + 4 n r^2), as much memory as T
+ */
+ritz_status ritz_invariants_of(const ritz_component *component,
+                               const ritz_dense *T, ritz_invariants *out);
+
+/** Those of T V, with V r x s; none of none. */
+ritz_status ritz_invariants_project(const ritz_invariants *invariants,
+                                    const ritz_dense *V, ritz_invariants *out);
+
 /** Append a measure; @p where may be NULL. */
 ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
                               double value, double limit, const char *where);
 
+void ritz_invariants_free(ritz_invariants *invariants);
 void ritz_measures_free(ritz_measures *measures);
 void ritz_port_map_free(ritz_port_map *port);
 void ritz_reduced_free(ritz_reduced *reduced);

@@ -27,6 +27,7 @@ typedef struct ritz_grid {
     int64_t count;         /* evenly spaced in frequency, at least 2 */
     bool log;              /* evenly spaced in its logarithm; from > 0 */
     bool refine;           /* and at, and around, every resonance inside */
+    const double *hertz;   /* count points instead of all that, ascending */
 } ritz_grid;
 
 /**

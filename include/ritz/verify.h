@@ -6,6 +6,8 @@
 #include <ritz/response.h>
 #include <ritz/system.h>
 
+#include <math.h>
+
 /* What is compared, and what it is held to; NaN limits: only measured. */
 typedef struct ritz_verify_request {
     double band_hz[2];      /* [0, 0]: up to the highest kept mode below half
@@ -20,8 +22,9 @@ typedef struct ritz_verify_request {
 
 #define RITZ_VERIFY_NONE                                                       \
     {                                                                          \
-        .limit_frequency = NAN, .limit_mac = NAN, .limit_damping = NAN,        \
-        .limit_response = NAN, .limit_gain = NAN                               \
+        .limit_frequency = (double)NAN, .limit_mac = (double)NAN,              \
+        .limit_damping = (double)NAN, .limit_response = (double)NAN,           \
+        .limit_gain = (double)NAN                                              \
     }
 
 /** A full component and its reduction. */

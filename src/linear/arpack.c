@@ -41,13 +41,14 @@ static double noise(uint64_t *state)
     return (double)(int64_t)*state / (double)INT64_MAX;
 }
 
-static ritz_status multiply(const ritz_sparse *M, double *x, double *y)
+/* y := M X, X a column, which y may be. */
+static ritz_status multiply(const ritz_sparse *M, const ritz_dense *X,
+                            double *y)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense X = {M->ncol, 1, x};
     ritz_dense Y = {0};
 
-    RITZ_TRY(ritz_sparse_mul(M, &X, &Y));
+    RITZ_TRY(ritz_sparse_mul(M, X, &Y));
     memcpy(y, Y.val, (size_t)M->nrow * sizeof *y);
 done:
     ritz_dense_free(&Y);
@@ -92,7 +93,7 @@ static ritz_status allocate(const ritz_shifted *S, int64_t k, lanczos *L)
     RITZ_TRY(ritz_dense_new(n, ncv, &L->V));
     for (int64_t i = 0; i < n; i++)
         L->resid[i] = noise(&seed);
-    RITZ_TRY(multiply(S->M, L->resid, L->resid));
+    RITZ_TRY(multiply(S->M, &(ritz_dense){n, 1, L->resid}, L->resid));
     RITZ_TRY(solve(S, L->resid, L->resid));
 done:
     return status;
@@ -116,23 +117,23 @@ static ritz_status iterate(const ritz_shifted *S, lanczos *L)
     int64_t solves = 0;
 
     for (;;) {
-        double *x = NULL;
+        ritz_dense X = {L->n, 1, NULL};
         double *y = NULL;
 
         dsaupd_c(&ido, "G", L->n, "LM", L->nev, tolerance, L->resid, L->ncv,
                  L->V.val, L->n, L->iparam, L->ipntr, L->workd, L->workl,
                  L->lworkl, &L->info);
-        x = L->workd + L->ipntr[0] - 1;
+        X.val = L->workd + L->ipntr[0] - 1;
         y = L->workd + L->ipntr[1] - 1;
         if (ido == 2) {
-            RITZ_TRY(multiply(S->M, x, y));
+            RITZ_TRY(multiply(S->M, &X, y));
             continue;
         }
         if (ido != 1 && ido != -1)
             break;
         ritz_monitor_step("eigenvectors", ++solves, 0);
         if (ido == -1)
-            RITZ_TRY(multiply(S->M, x, y));
+            RITZ_TRY(multiply(S->M, &X, y));
         RITZ_TRY(solve(S, ido == 1 ? L->workd + L->ipntr[2] - 1 : y, y));
     }
 done:

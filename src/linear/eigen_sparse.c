@@ -386,14 +386,17 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     ritz_status status = RITZ_OK;
     ritz_pairs P = {0};
     ritz_dense K_d = {0}, M_d = {0};
+    double limit = 0.0;
     int64_t end = 0;
 
     RITZ_TRY(ritz_sparse_dense(K, &K_d));
     RITZ_TRY(ritz_sparse_dense(M, &M_d));
     RITZ_TRY(ritz_eigen_dense(&K_d, &M_d, &P));
-    end = wanted(&P, span, ritz_eigen_lambda(span->up_to_hz) * (1.0 + 1e-8));
-    if (end < P.Phi.ncol)
-        P.proven_to = between(&P, end, lowest_part);
+    if (span->modes < 0)
+        limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + 1e-8);
+    end = wanted(&P, span, limit);
+    if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
+        P.proven_to = fmax(limit, between(&P, end, lowest_part));
     truncate(&P, end);
     *out = P;
     P = (ritz_pairs){0};

@@ -18,7 +18,7 @@ struct ritz_zldl {
     ritz_mumps_pattern pattern; /* borrowed by MUMPS, as val is */
     double _Complex *val;
     int64_t count;
-    const ritz_sparse **A;
+    ritz_sparse *A; /* borrowed, all but the array */
     int64_t *place; /* of each row among the entries of one column */
 };
 
@@ -82,7 +82,7 @@ ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
     RITZ_NEW(F->place, F->pattern.n);
     RITZ_NEW(F->A, count);
     for (int64_t k = 0; k < count; k++)
-        F->A[k] = A[k];
+        F->A[k] = *A[k];
     F->count = count;
     if (F->pattern.n > 0)
         RITZ_TRY(analyse(F));
@@ -118,7 +118,7 @@ ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
         RITZ_FAIL_IF(
             !isfinite(creal(c[k])) || !isfinite(cimag(c[k])), RITZ_ERR_ARGUMENT,
             "coefficient %" PRId64 " of the matrices is not finite", k + 1);
-        add(F->A[k], c[k], F);
+        add(&F->A[k], c[k], F);
     }
     if (F->pattern.n > 0) {
         RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));

@@ -65,16 +65,6 @@ done:
     return status;
 }
 
-static int compare_dofs(const void *left, const void *right)
-{
-    const ritz_dof *a = left;
-    const ritz_dof *b = right;
-
-    if (a->grid != b->grid)
-        return a->grid < b->grid ? -1 : 1;
-    return (a->component > b->component) - (a->component < b->component);
-}
-
 static ritz_status check_dofs(const ritz_component *component)
 {
     ritz_status status = RITZ_OK;
@@ -93,9 +83,9 @@ static ritz_status check_dofs(const ritz_component *component)
                      ", which is not among 0 to 6",
                      k + 1, sorted[k].component);
     }
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_dofs);
+    qsort(sorted, (size_t)n, sizeof *sorted, ritz_dof_compare);
     for (int64_t k = 1; k < n; k++)
-        RITZ_FAIL_IF(compare_dofs(&sorted[k - 1], &sorted[k]) == 0,
+        RITZ_FAIL_IF(ritz_dof_compare(&sorted[k - 1], &sorted[k]) == 0,
                      RITZ_ERR_FORMAT, "%s has two rows",
                      ritz_dof_name(sorted[k], name));
 done:

@@ -86,10 +86,41 @@ done:
     return ritz_context(status, "ports");
 }
 
-static ritz_status write_inertia(hid_t file, const ritz_inertia *inertia)
+static ritz_status write_invariants(hid_t group, const ritz_invariants *of)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!of->momentum.val)
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_write(group, "rigid", H5T_IEEE_F64LE, ritz_h5_table(6, 6),
+                           of->rigid));
+    RITZ_TRY(ritz_h5_write_dense(group, "momentum", &of->momentum));
+    RITZ_TRY(ritz_h5_write_dense(group, "position", &of->position));
+    RITZ_TRY(ritz_h5_write_dense(group, "product", &of->product));
+done:
+    return status;
+}
+
+static ritz_status read_invariants(hid_t group, int64_t r, ritz_invariants *of)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!ritz_h5_has(group, "momentum"))
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_read_real(group, "rigid", ritz_h5_table(6, 6), false,
+                               of->rigid));
+    RITZ_TRY(ritz_h5_read_dense(group, "momentum", 6, r, &of->momentum));
+    RITZ_TRY(ritz_h5_read_dense(group, "position", 3, 3 * r, &of->position));
+    RITZ_TRY(ritz_h5_read_dense(group, "product", 3 * r, 3 * r, &of->product));
+done:
+    return status;
+}
+
+static ritz_status write_inertia(hid_t file, const ritz_reduced *reduced)
 {
     ritz_status status = RITZ_OK;
     hid_t group = 0;
+    const ritz_inertia *inertia = &reduced->inertia;
 
     if (!inertia->known)
         return RITZ_OK;
@@ -100,15 +131,17 @@ static ritz_status write_inertia(hid_t file, const ritz_inertia *inertia)
                            inertia->centre));
     RITZ_TRY(ritz_h5_write(group, "tensor", H5T_IEEE_F64LE, ritz_h5_table(3, 3),
                            inertia->tensor));
+    RITZ_TRY(write_invariants(group, &reduced->invariants));
 done:
     ritz_h5_close(group);
     return ritz_context(status, "inertia");
 }
 
-static ritz_status read_inertia(hid_t file, ritz_inertia *inertia)
+static ritz_status read_inertia(hid_t file, ritz_reduced *reduced)
 {
     ritz_status status = RITZ_OK;
     hid_t group = 0;
+    ritz_inertia *inertia = &reduced->inertia;
 
     if (!ritz_h5_has(file, "inertia"))
         return RITZ_OK;
@@ -119,6 +152,7 @@ static ritz_status read_inertia(hid_t file, ritz_inertia *inertia)
                                inertia->centre));
     RITZ_TRY(ritz_h5_read_real(group, "tensor", ritz_h5_table(3, 3), false,
                                inertia->tensor));
+    RITZ_TRY(read_invariants(group, reduced->K.ncol, &reduced->invariants));
     inertia->known = true;
 done:
     ritz_h5_close(group);
@@ -165,7 +199,7 @@ static ritz_status read_all(hid_t file, ritz_reduced *reduced)
         ritz_part_read_columns(file, reduced->num_dofs, r, &reduced->columns));
     RITZ_TRY(read_ports(file, reduced));
     RITZ_TRY(ritz_part_read_io(file, r, &reduced->io));
-    RITZ_TRY(read_inertia(file, &reduced->inertia));
+    RITZ_TRY(read_inertia(file, reduced));
     RITZ_TRY(ritz_part_read_measures(file, "estimates", &reduced->estimates));
     RITZ_TRY(ritz_part_read_measures(file, "errors", &reduced->errors));
 done:
@@ -205,7 +239,7 @@ static ritz_status write_all(hid_t file, const ritz_reduced *reduced)
     RITZ_TRY(ritz_part_write_columns(file, &reduced->columns));
     RITZ_TRY(write_ports(file, reduced));
     RITZ_TRY(ritz_part_write_io(file, &reduced->io));
-    RITZ_TRY(write_inertia(file, &reduced->inertia));
+    RITZ_TRY(write_inertia(file, reduced));
     RITZ_TRY(ritz_part_write_measures(file, "estimates", &reduced->estimates));
     RITZ_TRY(ritz_part_write_measures(file, "errors", &reduced->errors));
 done:

@@ -62,6 +62,28 @@ const char *ritz_dof_name(ritz_dof dof, char text[RITZ_DOF_NAME_SIZE])
     return text;
 }
 
+int ritz_dof_compare(const void *left, const void *right)
+{
+    const ritz_dof *a = left;
+    const ritz_dof *b = right;
+
+    if (a->grid != b->grid)
+        return a->grid < b->grid ? -1 : 1;
+    return (a->component > b->component) - (a->component < b->component);
+}
+
+int64_t ritz_dof_distinct(int64_t count, ritz_dof *dof)
+{
+    int64_t kept = 0;
+
+    if (count > 1)
+        qsort(dof, (size_t)count, sizeof *dof, ritz_dof_compare);
+    for (int64_t k = 0; k < count; k++)
+        if (kept == 0 || ritz_dof_compare(&dof[kept - 1], &dof[k]) != 0)
+            dof[kept++] = dof[k];
+    return kept;
+}
+
 void ritz_dofs_free(ritz_dofs *set)
 {
     free(set->at);

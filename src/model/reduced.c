@@ -131,6 +131,7 @@ static ritz_status keep_names(const ritz_component *component,
     RITZ_TRY(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
     RITZ_TRY(copy_grids(&component->grids, &reduced->grids));
     RITZ_TRY(ritz_inertia_of(component, &reduced->inertia));
+    RITZ_TRY(ritz_invariants_of(component, &basis->T, &reduced->invariants));
 done:
     return status;
 }
@@ -207,6 +208,8 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         RITZ_TRY(ritz_dense_congruence(&reduced->D, V, &second.D));
     RITZ_TRY(project_ports(reduced, V, &second));
     RITZ_TRY(ritz_io_project(&reduced->io, V, &second.io));
+    RITZ_TRY(
+        ritz_invariants_project(&reduced->invariants, V, &second.invariants));
     if (reduced->T.val) {
         RITZ_TRY(ritz_dense_mul(&reduced->T, V, &second.T));
         RITZ_TRY(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
@@ -255,6 +258,7 @@ void ritz_reduced_free(ritz_reduced *reduced)
         ritz_port_map_free(&reduced->port[k]);
     free(reduced->port);
     ritz_io_free(&reduced->io);
+    ritz_invariants_free(&reduced->invariants);
     ritz_dense_free(&reduced->T);
     free(reduced->dof);
     ritz_grids_free(&reduced->grids);

@@ -17,19 +17,22 @@ const ritz_ranker *const ritz_rankers[] = {
     NULL,
 };
 
-enum { NUM_RANKERS = sizeof ritz_rankers / sizeof *ritz_rankers - 1 };
+enum { MOST_RANKERS = 32 };
 
 const ritz_ranker *ritz_ranker_find(const char *name)
 {
-    char names[NUM_RANKERS][RITZ_NAME_SIZE];
+    char names[MOST_RANKERS][RITZ_NAME_SIZE];
     const char *near = NULL;
+    int64_t count = 0;
 
-    for (int k = 0; k < NUM_RANKERS; k++) {
-        if (strcmp(ritz_rankers[k]->name, name) == 0)
-            return ritz_rankers[k];
-        (void)snprintf(names[k], RITZ_NAME_SIZE, "%s", ritz_rankers[k]->name);
+    for (; count < MOST_RANKERS && ritz_rankers[count]; count++) {
+        const char *known = ritz_rankers[count]->name;
+
+        if (strcmp(known, name) == 0)
+            return ritz_rankers[count];
+        (void)snprintf(names[count], RITZ_NAME_SIZE, "%s", known);
     }
-    near = ritz_text_nearest(name, NUM_RANKERS, names[0], RITZ_NAME_SIZE);
+    near = ritz_text_nearest(name, count, names[0], RITZ_NAME_SIZE);
     ritz_record("there is no ranking '%s'%s%s%s", name,
                 near ? ", did you mean '" : "", near ? near : "",
                 near ? "'?" : "");

@@ -19,6 +19,7 @@
 #include <ritz/monitor.h>
 #include <ritz/synthesis.h>
 
+#include <cblas.h>
 #include <lapacke.h>
 
 #include <inttypes.h>
@@ -123,7 +124,7 @@ static ritz_status list_all(const ritz_stage *stage, const double *angle_deg,
     *count = 0;
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
-        const ritz_port_map *port[2];
+        const ritz_port_map *port[2] = {NULL, NULL};
         ritz_joint_end end[2];
         bool turns = joint->type == RITZ_JOINT_HINGE;
 
@@ -154,7 +155,7 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
     RITZ_TRY(list_all(stage, angle_deg, list, &count));
     RITZ_TRY(ritz_dense_new(count, stage->num_coordinates, &C));
     for (int64_t j = 0; j < scene->num_joints; j++) {
-        const ritz_port_map *port[2];
+        const ritz_port_map *port[2] = {NULL, NULL};
 
         RITZ_TRY(find_ports(stage, &scene->joint[j], port));
         for (int64_t k = 0; k < list[j].count; k++)
@@ -303,6 +304,50 @@ done:
     return status;
 }
 
+/* X = sum_k P_k' A_k P_k of what the bodies have. */
+static ritz_status project_again(const ritz_stage *stage, const ritz_dense *P,
+                                 ritz_dense *K, ritz_dense *M)
+{
+    ritz_dense D = {0};
+    ritz_status status = project_all(stage, P, K, M, &D);
+
+    ritz_dense_free(&D);
+    return status;
+}
+
+/*
+ * The eigensolver leaves rounding of the highest modes, eps lambda_max /
+ * lambda_f, of each flexible mode in the rigid ones. Projected once more, K and
+ * M show it, and to first order
+ *
+ *     Phi_r <- Phi_r - Phi_f Lambda_f^-1 K_fr,
+ *     Phi_f <- Phi_f - Phi_r M_rf
+ */
+static ritz_status refine_rigid(const ritz_stage *stage, int64_t r,
+                                const double *lambda, ritz_dense *P)
+{
+    ritz_status status = RITZ_OK;
+    int64_t e = P->ncol;
+    ritz_dense K = {0}, M = {0};
+
+    RITZ_TRY(project_again(stage, P, &K, &M));
+    for (int64_t j = 0; j < r; j++)
+        for (int64_t f = r; f < e; f++)
+            cblas_daxpy((int)P->nrow, -ritz_dense_col(&K, j)[f] / lambda[f],
+                        ritz_dense_col(P, f), 1, ritz_dense_col(P, j), 1);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    RITZ_TRY(project_again(stage, P, &K, &M));
+    for (int64_t f = r; f < e; f++)
+        for (int64_t j = 0; j < r; j++)
+            cblas_daxpy((int)P->nrow, -ritz_dense_col(&M, f)[j],
+                        ritz_dense_col(P, j), 1, ritz_dense_col(P, f), 1);
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    return status;
+}
+
 /* The system in coordinates P becomes that in its modes; P becomes P Phi. */
 static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
                               ritz_configuration *c)
@@ -326,6 +371,7 @@ static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
         ritz_dense_col(&c->M, j)[j] = 1.0;
     }
     c->num_rigid = pairs.num_rigid;
+    RITZ_TRY(refine_rigid(stage, c->num_rigid, c->lambda, &Q));
     ritz_dense_free(P);
     *P = Q;
     Q = (ritz_dense){0};

@@ -122,8 +122,26 @@ done:
     return status;
 }
 
-/* Errors at a row; between angles both systems are made for it. */
-static ritz_status measure(const ritz_stage *stage, int64_t k,
+/* Choose the modes that matter at every listed configuration. */
+static ritz_status choose(const ritz_stage *stage, double *least,
+                          ritz_comparison *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_system *system = &out->first_system;
+
+    RITZ_TRY(ritz_compare_threshold(stage->scene, system, least));
+    for (int64_t k = 0; k < system->num_configurations; k++)
+        RITZ_TRY(ritz_compare_select(stage->scene, &system->configuration[k],
+                                     *least, &out->row[k]));
+done:
+    return status;
+}
+
+/*
+ * Errors at a row. Between angles both systems are made for it, and the modes
+ * that would have been chosen there are compared.
+ */
+static ritz_status measure(const ritz_stage *stage, int64_t k, double least,
                            ritz_comparison *out)
 {
     ritz_status status = RITZ_OK;
@@ -138,6 +156,7 @@ static ritz_status measure(const ritz_stage *stage, int64_t k,
     }
     RITZ_TRY(ritz_stage_assemble(stage, row->angle_deg, &one));
     RITZ_TRY(ritz_stage_assemble(&out->second, row->angle_deg, &two));
+    RITZ_TRY(ritz_compare_select(stage->scene, &one, least, row));
     RITZ_TRY(ritz_compare_measure(stage, out->V, &one, &two, row));
 done:
     ritz_configuration_free(&one);
@@ -177,13 +196,13 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
 {
     ritz_status status = RITZ_OK;
     ritz_comparison c = {0};
+    double least = 0.0;
 
     RITZ_FAIL_IF(stage->scene->num_configurations < 1, RITZ_ERR_ARGUMENT,
                  "the scene has no configuration");
     RITZ_TRY(list_rows(stage->scene, &c));
     RITZ_TRY_IN("stage 1", ritz_assemble(stage, NULL, &c.first_system));
-    RITZ_TRY_IN("selection",
-                ritz_compare_select(stage->scene, &c.first_system, c.row));
+    RITZ_TRY_IN("selection", choose(stage, &least, &c));
     c.num_bodies = stage->count;
     RITZ_NEW(c.V, stage->count);
     RITZ_TRY_IN("composite modes",
@@ -193,7 +212,7 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
     RITZ_TRY_IN("stage 2", ritz_assemble(&c.second, NULL, &c.second_system));
     for (int64_t k = 0; k < c.num_rows; k++) {
         ritz_monitor_step("errors", k, c.num_rows);
-        RITZ_TRY_IN("errors", measure(stage, k, &c));
+        RITZ_TRY_IN("errors", measure(stage, k, least, &c));
     }
     RITZ_TRY(record(&c));
     *out = c;

@@ -67,21 +67,11 @@ static int64_t find_partner(const ritz_configuration *second,
     return best;
 }
 
-/* Modes that are compared: the kept ones, or between angles those in band. */
-static bool compares(const ritz_compare_row *row, const ritz_scene *scene,
-                     const ritz_configuration *first, int64_t k)
-{
-    if (!row->listed)
-        return first->lambda[k] <= ritz_eigen_lambda(scene->band_hz[1]);
-    for (int64_t j = 0; j < row->num_kept; j++)
-        if (first->num_rigid + row->kept[j] == k)
-            return true;
-    return false;
-}
-
-/* Worst frequency against what rounding allows it, and smallest MAC. */
-static void measure_modes(const ritz_scene *scene,
-                          const ritz_configuration *first,
+/*
+ * Of the modes that matter the smallest MAC and the worst frequency: where
+ * they were kept, the worst against what rounding allows it.
+ */
+static void measure_modes(const ritz_configuration *first,
                           const ritz_configuration *second, const ritz_dense *X,
                           ritz_compare_row *row)
 {
@@ -90,12 +80,13 @@ static void measure_modes(const ritz_scene *scene,
     double worst = -1.0;
 
     row->mac = 1.0;
-    for (int64_t k = first->num_rigid; k < e; k++) {
+    row->allowed = NAN;
+    for (int64_t i = 0; i < row->num_kept; i++) {
+        int64_t k = first->num_rigid + row->kept[i];
         double mac = 0.0, error = 0.0, allowed = 0.0;
         int64_t j = 0;
 
-        if (!compares(row, scene, first, k) ||
-            second->K.ncol <= second->num_rigid)
+        if (second->K.ncol <= second->num_rigid)
             continue;
         j = find_partner(second, X, k, &mac);
         error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
@@ -104,7 +95,7 @@ static void measure_modes(const ritz_scene *scene,
         if (error / (row->listed ? allowed : 1.0) > worst) {
             worst = error / (row->listed ? allowed : 1.0);
             row->frequency_error = error;
-            row->allowed = allowed;
+            row->allowed = row->listed ? allowed : nan("");
         }
     }
 }
@@ -201,7 +192,7 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     row->order = second->K.ncol;
     row->gain_error = row->response_error = NAN;
     RITZ_TRY(correlate(stage, V, first, second, &X));
-    measure_modes(scene, first, second, &X, row);
+    measure_modes(first, second, &X, row);
     measure_rigid(second, row);
     if (driven)
         RITZ_TRY(measure_gain(first, second, row));

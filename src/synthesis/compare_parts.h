@@ -5,16 +5,19 @@
 #include <ritz/compare.h>
 
 /**
- * Choose the modes that matter at each listed configuration: those whose value
- * is at least the scene's tolerance times the largest over all configurations.
- * Without inputs and outputs, those in the band.
+ * The least value of a mode that matters: the scene's tolerance times the
+ * largest over all listed configurations. Without inputs and outputs modes
+ * matter by the band, and this is not used.
  *
- * @param[in]     system  stage one, at all listed configurations
- * @param[in,out] row     one for each; num_kept and kept are filled in
+ * @param[in] system  stage one, at all listed configurations
  */
+ritz_status ritz_compare_threshold(const ritz_scene *scene,
+                                   const ritz_system *system, double *least);
+
+/** Choose the modes of one configuration that matter: num_kept and kept. */
 ritz_status ritz_compare_select(const ritz_scene *scene,
-                                const ritz_system *system,
-                                ritz_compare_row *row);
+                                const ritz_configuration *configuration,
+                                double least, ritz_compare_row *row);
 
 /**
  * The composite mode set on each body: kept modes and, if the scene asks,

@@ -36,76 +36,57 @@ done:
     return ritz_context(status, c->at);
 }
 
-/* Keep the modes whose value reaches `least`. */
-static ritz_status keep(int64_t count, const double *value, double least,
-                        ritz_compare_row *row)
+static bool is_ranked(const ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(row->kept, count);
-    for (int64_t k = 0; k < count; k++)
-        if (value[k] >= least)
-            row->kept[row->num_kept++] = k;
-done:
-    return status;
+    return scene->num_inputs > 0 && scene->num_outputs > 0;
 }
 
-static ritz_status select_by_rank(const ritz_scene *scene,
-                                  const ritz_system *system,
-                                  ritz_compare_row *row)
+ritz_status ritz_compare_threshold(const ritz_scene *scene,
+                                   const ritz_system *system, double *least)
 {
     ritz_status status = RITZ_OK;
-    int64_t count = system->num_configurations;
-    ritz_ranking *ranking = NULL;
+    ritz_ranking ranking = {0};
     double largest = 0.0;
 
-    RITZ_NEW(ranking, count);
-    for (int64_t k = 0; k < count; k++) {
-        RITZ_TRY(rank_one(scene, &system->configuration[k], &ranking[k]));
-        for (int64_t j = 0; j < ranking[k].count; j++)
-            largest = fmax(largest, ranking[k].value[j]);
+    *least = 0.0;
+    if (!is_ranked(scene)) {
+        RITZ_FAIL_IF(scene->band_hz[1] <= 0.0, RITZ_ERR_ARGUMENT,
+                     "the scene has neither inputs and outputs to rank modes "
+                     "by nor a band to keep");
+        return RITZ_OK;
+    }
+    for (int64_t k = 0; k < system->num_configurations; k++) {
+        RITZ_TRY(rank_one(scene, &system->configuration[k], &ranking));
+        for (int64_t j = 0; j < ranking.count; j++)
+            largest = fmax(largest, ranking.value[j]);
+        ritz_ranking_free(&ranking);
     }
     RITZ_FAIL_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
                  "no flexible mode answers any input at any output, so none "
                  "can be chosen");
-    for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(keep(ranking[k].count, ranking[k].value,
-                      scene->select_tolerance * largest, &row[k]));
+    *least = scene->select_tolerance * largest;
 done:
-    for (int64_t k = 0; ranking && k < count; k++)
-        ritz_ranking_free(&ranking[k]);
-    free(ranking);
-    return status;
-}
-
-static ritz_status select_by_band(const ritz_scene *scene,
-                                  const ritz_system *system,
-                                  ritz_compare_row *row)
-{
-    ritz_status status = RITZ_OK;
-    double highest = ritz_eigen_lambda(scene->band_hz[1]);
-
-    RITZ_FAIL_IF(scene->band_hz[1] <= 0.0, RITZ_ERR_ARGUMENT,
-                 "the scene has neither inputs and outputs to rank modes by "
-                 "nor a band to keep");
-    for (int64_t k = 0; k < system->num_configurations; k++) {
-        const ritz_configuration *c = &system->configuration[k];
-
-        RITZ_NEW(row[k].kept, c->K.ncol);
-        for (int64_t j = c->num_rigid; j < c->K.ncol; j++)
-            if (c->lambda[j] <= highest)
-                row[k].kept[row[k].num_kept++] = j - c->num_rigid;
-    }
-done:
+    ritz_ranking_free(&ranking);
     return status;
 }
 
 ritz_status ritz_compare_select(const ritz_scene *scene,
-                                const ritz_system *system,
+                                const ritz_configuration *c, double least,
                                 ritz_compare_row *row)
 {
-    bool ranked = scene->num_inputs > 0 && scene->num_outputs > 0;
+    ritz_status status = RITZ_OK;
+    int64_t flexible = c->K.ncol - c->num_rigid;
+    double highest = ritz_eigen_lambda(scene->band_hz[1]);
+    ritz_ranking ranking = {0};
 
-    return ranked ? select_by_rank(scene, system, row)
-                  : select_by_band(scene, system, row);
+    if (is_ranked(scene))
+        RITZ_TRY(rank_one(scene, c, &ranking));
+    RITZ_NEW(row->kept, flexible);
+    for (int64_t k = 0; k < flexible; k++)
+        if (ranking.value ? ranking.value[k] >= least
+                          : c->lambda[c->num_rigid + k] <= highest)
+            row->kept[row->num_kept++] = k;
+done:
+    ritz_ranking_free(&ranking);
+    return status;
 }

@@ -2,14 +2,18 @@
  * The composite mode set, projected on each body. At a configuration the
  * coordinates of body c are q_c = P_c x with x modal, so that its columns are
  *
- *     P_c [Phi_r, Phi_k]                 rigid and kept modes
- *     P_c Phi_t Lambda_t^-1 Phi_t' B     what the truncated ones answer to each
- *                                        input statically [LeeTsuha1992, eq. 37]
+ *     P_c Phi_r                        rigid modes
+ *     P_c Phi_k                        kept modes
+ *     P_c Phi_f Lambda_f^-1 Phi_f' B   what all flexible modes answer to each
+ *                                      input statically [LeeTsuha1992, eq. 37]
  *
- * over all configurations. With M_c = L L' the singular value decomposition of
- * L' W = U S V' tells which directions are independent: V_c = L'^-1 U_1 spans
- * what W spans, to the tolerance, and V_c' M_c V_c = I. Static corrections are
- * scaled to unit mass of the system, as modes are.
+ * over all configurations. The static answer of all flexible modes spans, with
+ * the kept ones, what that of the truncated ones does. With M_c = L L' and
+ * Y = L' W, columns are taken in that order of right: rigid modes and static
+ * answers whole, so that no tolerance costs rigidity or static gain; then what
+ * is left of the kept modes, whose singular values below the scene's tolerance
+ * are dropped. V_c = L'^-1 U. Static answers are scaled to unit mass of the
+ * system, as modes are.
  */
 #include "base/alloc.h"
 #include "synthesis/compare_parts.h"
@@ -21,16 +25,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Modal coordinates of the static correction of input j, of unit norm. */
-static bool correct(const ritz_configuration *c, const bool *kept, int64_t j,
-                    double *x)
+/* Below this, relative to the largest, a direction is rounding. */
+static const double tightest = 1e-12;
+
+/* What all configurations give to one body, r_c rows. */
+enum { RIGID, STATIC, KEPT, GROUPS };
+
+typedef struct columns {
+    ritz_dense group[GROUPS];
+} columns;
+
+/* Modal coordinates of the static answer to input j, of unit norm. */
+static bool answer(const ritz_configuration *c, int64_t j, double *x)
 {
     double norm = 0.0;
 
-    for (int64_t k = 0; k < c->K.ncol; k++) {
-        bool truncated = k >= c->num_rigid && !kept[k];
-
-        x[k] = truncated ? ritz_dense_col(&c->io.B, j)[k] / c->lambda[k] : 0.0;
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++) {
+        x[k] = ritz_dense_col(&c->io.B, j)[k] / c->lambda[k];
         norm += x[k] * x[k];
     }
     for (int64_t k = 0; k < c->K.ncol && norm > 0.0; k++)
@@ -38,56 +49,56 @@ static bool correct(const ritz_configuration *c, const bool *kept, int64_t j,
     return norm > 0.0;
 }
 
-/* X, e x m: modal coordinates of all vectors that a configuration gives. */
+/* Modal coordinates of what a configuration gives to one group. */
 static ritz_status choose(const ritz_configuration *c,
-                          const ritz_compare_row *row, ritz_augment augment,
-                          ritz_dense *out)
+                          const ritz_compare_row *row, int group,
+                          ritz_augment augment, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    int64_t e = c->K.ncol;
-    int64_t most = c->num_rigid + row->num_kept + c->io.num_inputs;
+    const int64_t most[GROUPS] = {
+        [RIGID] = c->num_rigid,
+        [STATIC] = augment == RITZ_AUGMENT_SYSTEM ? c->io.num_inputs : 0,
+        [KEPT] = row->num_kept,
+    };
     ritz_dense X = {0};
-    bool *kept = NULL;
     int64_t m = 0;
 
-    RITZ_NEW(kept, e);
-    RITZ_TRY(ritz_dense_new(e, most, &X));
-    for (int64_t k = 0; k < c->num_rigid; k++)
-        ritz_dense_col(&X, m++)[k] = 1.0;
-    for (int64_t k = 0; k < row->num_kept; k++) {
-        kept[c->num_rigid + row->kept[k]] = true;
-        ritz_dense_col(&X, m++)[c->num_rigid + row->kept[k]] = 1.0;
+    RITZ_TRY(ritz_dense_new(c->K.ncol, most[group], &X));
+    for (int64_t k = 0; k < most[group]; k++) {
+        int64_t mode = group == RIGID ? k : c->num_rigid;
+
+        if (group == STATIC) {
+            m += answer(c, k, ritz_dense_col(&X, m));
+            continue;
+        }
+        ritz_dense_col(&X, m++)[group == KEPT ? mode + row->kept[k] : mode] =
+            1.0;
     }
-    for (int64_t j = 0; augment == RITZ_AUGMENT_SYSTEM && j < c->io.num_inputs;
-         j++)
-        m += correct(c, kept, j, ritz_dense_col(&X, m));
     RITZ_TRY(ritz_dense_columns(&X, 0, m, out));
 done:
-    free(kept);
     ritz_dense_free(&X);
     return status;
 }
 
-/* W = [W, P X]. */
-static ritz_status append(const ritz_dense *P, const ritz_dense *X,
-                          ritz_dense *W)
+/* W = [W, more]; `more` is freed. */
+static ritz_status append(ritz_dense *more, ritz_dense *W)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense more = {0}, both = {0};
+    int64_t n = more->nrow;
     int64_t before = W->val ? W->ncol : 0;
+    ritz_dense both = {0};
 
-    RITZ_TRY(ritz_dense_mul(P, X, &more));
-    RITZ_TRY(ritz_dense_new(P->nrow, before + more.ncol, &both));
-    if (before > 0)
-        memcpy(both.val, W->val, (size_t)(P->nrow * before) * sizeof *both.val);
-    if (P->nrow * more.ncol > 0)
-        memcpy(ritz_dense_col(&both, before), more.val,
-               (size_t)(P->nrow * more.ncol) * sizeof *both.val);
+    RITZ_TRY(ritz_dense_new(n, before + more->ncol, &both));
+    if (n * before > 0)
+        memcpy(both.val, W->val, (size_t)(n * before) * sizeof *both.val);
+    if (n * more->ncol > 0)
+        memcpy(ritz_dense_col(&both, before), more->val,
+               (size_t)(n * more->ncol) * sizeof *both.val);
     ritz_dense_free(W);
     *W = both;
     both = (ritz_dense){0};
 done:
-    ritz_dense_free(&more);
+    ritz_dense_free(more);
     ritz_dense_free(&both);
     return status;
 }
@@ -125,40 +136,76 @@ done:
     return status;
 }
 
-/* U of L' W = U S V', and how many singular values exceed the tolerance. */
-static ritz_status decompose(const ritz_dense *L, const double *scale,
-                             const ritz_dense *W, double tolerance,
-                             ritz_dense *U, int64_t *rank)
+/* Y = L' W, W in scaled coordinates. */
+static ritz_status transform(const ritz_dense *L, const double *scale,
+                             const ritz_dense *W, ritz_dense *Y)
 {
     ritz_status status = RITZ_OK;
-    int r = (int)W->nrow;
-    int m = (int)W->ncol;
+
+    RITZ_TRY(ritz_dense_copy(W, Y));
+    for (int64_t j = 0; j < Y->ncol; j++)
+        for (int64_t i = 0; i < Y->nrow; i++)
+            ritz_dense_col(Y, j)[i] /= scale[i];
+    if (Y->nrow * Y->ncol > 0)
+        cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
+                    CblasNonUnit, (int)Y->nrow, (int)Y->ncol, 1.0, L->val,
+                    (int)Y->nrow, Y->val, (int)Y->nrow);
+done:
+    return status;
+}
+
+/*
+ * Orthonormal directions of Y (destroyed) whose singular values exceed the
+ * tolerance times *largest, which grows to the largest there is.
+ */
+static ritz_status span(ritz_dense *Y, double tolerance, double *largest,
+                        ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int r = (int)Y->nrow;
+    int m = (int)Y->ncol;
     int least = r < m ? r : m;
-    ritz_dense X = {0};
+    int rank = 0;
+    ritz_dense U = {0};
     double *sigma = NULL, *work = NULL;
 
-    *rank = 0;
     RITZ_NEW(sigma, least);
     RITZ_NEW(work, least);
-    RITZ_TRY(ritz_dense_copy(W, &X));
-    RITZ_TRY(ritz_dense_new(r, least, U));
-    if (least == 0)
-        goto done;
-    for (int64_t j = 0; j < m; j++)
-        for (int64_t i = 0; i < r; i++)
-            ritz_dense_col(&X, j)[i] /= scale[i];
-    cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit,
-                r, m, 1.0, L->val, r, X.val, r);
-    RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'N', r, m, X.val, r,
-                                sigma, U->val, r, NULL, 1, work) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "singular values of the composite set do not converge");
-    while (*rank < least && sigma[*rank] > tolerance * sigma[0])
-        (*rank)++;
+    RITZ_TRY(ritz_dense_new(r, least, &U));
+    if (least > 0) {
+        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'N', r, m, Y->val, r,
+                                    sigma, U.val, r, NULL, 1, work) != 0,
+                     RITZ_ERR_CONVERGENCE,
+                     "singular values of the composite set do not converge");
+        *largest = fmax(*largest, sigma[0]);
+    }
+    while (rank < least && sigma[rank] > tolerance * *largest)
+        rank++;
+    RITZ_TRY(ritz_dense_columns(&U, 0, rank, out));
 done:
     free(sigma);
     free(work);
-    ritz_dense_free(&X);
+    ritz_dense_free(&U);
+    return status;
+}
+
+/* Y := Y - U U' Y, twice, for once leaves rounding behind. */
+static ritz_status take_out(const ritz_dense *U, ritz_dense *Y)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense share = {0}, gone = {0};
+
+    for (int pass = 0; pass < 2; pass++) {
+        RITZ_TRY(ritz_dense_mul_tn(U, Y, &share));
+        RITZ_TRY(ritz_dense_mul(U, &share, &gone));
+        for (int64_t k = 0; k < Y->nrow * Y->ncol; k++)
+            Y->val[k] -= gone.val[k];
+        ritz_dense_free(&share);
+        ritz_dense_free(&gone);
+    }
+done:
+    ritz_dense_free(&share);
+    ritz_dense_free(&gone);
     return status;
 }
 
@@ -173,30 +220,55 @@ done:
     return status;
 }
 
-/* V of one body from the columns W that all configurations gave it. */
+/* U: the groups in turn, each without what those before it span. */
+static ritz_status choose_directions(const ritz_dense *L, const double *scale,
+                                     const columns *of, double tolerance,
+                                     ritz_dense *U)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Y = {0}, more = {0};
+    double largest = 0.0;
+
+    RITZ_TRY(ritz_dense_new(L->nrow, 0, U));
+    for (int g = 0; g < GROUPS; g++) {
+        double least = g == KEPT ? fmax(tolerance, tightest) : tightest;
+
+        RITZ_TRY(transform(L, scale, &of->group[g], &Y));
+        RITZ_TRY(take_out(U, &Y));
+        RITZ_TRY(span(&Y, least, &largest, &more));
+        RITZ_TRY(append(&more, U));
+        ritz_dense_free(&Y);
+    }
+done:
+    ritz_dense_free(&Y);
+    ritz_dense_free(&more);
+    return status;
+}
+
+/* V of one body from the columns that all configurations gave it. */
 static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
-                                  const ritz_dense *W, double tolerance,
+                                  const columns *of, double tolerance,
                                   ritz_dense *V)
 {
     ritz_status status = RITZ_OK;
-    int64_t r = W->nrow;
-    int64_t rank = 0;
+    int64_t r = body->M.ncol;
     ritz_dense L = {0}, U = {0};
 
     RITZ_TRY(factor(body, scale, &L));
-    RITZ_TRY(decompose(&L, scale, W, tolerance, &U, &rank));
-    if (rank == r) { /* nothing to remove: leave the body as it is */
+    RITZ_TRY(choose_directions(&L, scale, of, tolerance, &U));
+    if (U.ncol == r) { /* nothing to remove: leave the body as it is */
         RITZ_TRY(identity(r, V));
         goto done;
     }
-    RITZ_TRY(ritz_dense_columns(&U, 0, rank, V));
-    if (rank > 0)
+    if (U.ncol > 0)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
-                    CblasNonUnit, (int)r, (int)rank, 1.0, L.val, (int)r, V->val,
-                    (int)r);
-    for (int64_t j = 0; j < rank; j++)
+                    CblasNonUnit, (int)r, (int)U.ncol, 1.0, L.val, (int)r,
+                    U.val, (int)r);
+    for (int64_t j = 0; j < U.ncol; j++)
         for (int64_t i = 0; i < r; i++)
-            ritz_dense_col(V, j)[i] *= scale[i];
+            ritz_dense_col(&U, j)[i] *= scale[i];
+    *V = U;
+    U = (ritz_dense){0};
 done:
     ritz_dense_free(&L);
     ritz_dense_free(&U);
@@ -212,6 +284,29 @@ static bool counts(const ritz_scene *scene, int64_t k)
     return scene->num_reference == 0;
 }
 
+/* Append what one configuration gives to every body; count its vectors. */
+static ritz_status collect(const ritz_stage *stage, const ritz_configuration *c,
+                           const ritz_compare_row *row, columns *of,
+                           int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0}, more = {0};
+
+    for (int g = 0; g < GROUPS; g++) {
+        RITZ_TRY(choose(c, row, g, stage->scene->augment, &X));
+        *count += X.ncol;
+        for (int64_t b = 0; b < stage->count; b++) {
+            RITZ_TRY(ritz_dense_mul(&c->P[b], &X, &more));
+            RITZ_TRY(append(&more, &of[b].group[g]));
+        }
+        ritz_dense_free(&X);
+    }
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&more);
+    return status;
+}
+
 ritz_status ritz_compare_composite(const ritz_stage *stage,
                                    const ritz_system *system,
                                    const ritz_compare_row *row, ritz_dense *V,
@@ -219,33 +314,26 @@ ritz_status ritz_compare_composite(const ritz_stage *stage,
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    ritz_dense *W = NULL;
-    ritz_dense X = {0};
+    columns *of = NULL;
     double *scale = NULL;
 
     *count = 0;
-    RITZ_NEW(W, stage->count);
+    RITZ_NEW(of, stage->count);
     RITZ_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
-    for (int64_t k = 0; k < system->num_configurations; k++) {
-        if (!counts(scene, k))
-            continue;
-        RITZ_TRY(
-            choose(&system->configuration[k], &row[k], scene->augment, &X));
-        for (int64_t c = 0; c < stage->count; c++)
-            RITZ_TRY(append(&system->configuration[k].P[c], &X, &W[c]));
-        *count += X.ncol;
-        ritz_dense_free(&X);
-    }
+    for (int64_t k = 0; k < system->num_configurations; k++)
+        if (counts(scene, k))
+            RITZ_TRY(
+                collect(stage, &system->configuration[k], &row[k], of, count));
     for (int64_t c = 0; c < stage->count; c++)
         RITZ_TRY_IN(scene->component[c].name,
                     orthonormalise(&stage->body[c], scale + stage->first[c],
-                                   &W[c], scene->composite_tolerance, &V[c]));
+                                   &of[c], scene->composite_tolerance, &V[c]));
 done:
-    for (int64_t c = 0; W && c < stage->count; c++)
-        ritz_dense_free(&W[c]);
-    free(W);
+    for (int64_t c = 0; of && c < stage->count; c++)
+        for (int g = 0; g < GROUPS; g++)
+            ritz_dense_free(&of[c].group[g]);
+    free(of);
     free(scale);
-    ritz_dense_free(&X);
     return status;
 }

@@ -110,6 +110,20 @@ done:
     return status;
 }
 
+static ritz_status load_body(const char *model, ritz_component *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_summary summary = {0};
+
+    RITZ_TRY(ritz_container_summary(model, &summary));
+    RITZ_FAIL_IF(strcmp(summary.kind, "reduced") == 0, RITZ_ERR_ARGUMENT,
+                 "'%s' is reduced already, its full model is wanted", model);
+    RITZ_TRY(ritz_container_read_component(model, out));
+done:
+    ritz_summary_free(&summary);
+    return status;
+}
+
 static ritz_status load(const ritz_scene *scene, parts *p)
 {
     ritz_status status = RITZ_OK;
@@ -122,8 +136,7 @@ static ritz_status load(const ritz_scene *scene, parts *p)
         p->count++;
         p->first[k] = p->num_dofs;
         RITZ_TRY_IN(scene->component[k].name,
-                    ritz_container_read_component(scene->component[k].model,
-                                                  &p->body[k]));
+                    load_body(scene->component[k].model, &p->body[k]));
         p->num_dofs += p->body[k].num_dofs;
         RITZ_TRY(ritz_component_attached(&p->body[k], NULL, &p->held[k]));
     }

@@ -3,9 +3,10 @@
  *
  * A relative error u of the entries of K, or of r, leaves in row i at most
  * u sum_j |K_ij| |r_j|: with u = 1024 eps for elements computed in double
- * precision (a commercial code left 290 eps in a solid, measured), 2^-24 for positions and frames kept in single precision or as eight letters
- * of a card, half a unit of the last digit for a source of few digits. Beyond
- * that, something holds the body.
+ * precision (a commercial code left 290 eps in a solid, measured), 2^-24 for
+ * positions and frames kept in single precision or as eight letters of a card,
+ * half a unit of the last digit for a source of few digits. Beyond that,
+ * something holds the body.
  */
 #include "verify/audit_parts.h"
 

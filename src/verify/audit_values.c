@@ -35,13 +35,13 @@ static ritz_status check_finite(ritz_auditor *it, bool *usable)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    const ritz_sparse *const all[] = {&c->K, &c->M, &c->D, &c->K4};
+    const ritz_sparse *const all[4] = {&c->K, &c->M, &c->D, &c->K4};
     bool *flag = NULL;
     char where[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
     RITZ_NEW(flag, c->num_dofs);
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    for (int k = 0; k < 4; k++)
         count += count_infinite(all[k], flag);
     ritz_auditor_where(it, flag, where);
     *usable = count == 0;
@@ -58,11 +58,11 @@ done:
 static void check_symmetry(ritz_auditor *it)
 {
     const ritz_component *c = it->component;
-    const ritz_sparse *const all[] = {&c->K, &c->M, &c->D, &c->K4};
+    const ritz_sparse *const all[4] = {&c->K, &c->M, &c->D, &c->K4};
     double now = 0.0;
     double found = 0.0;
 
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    for (int k = 0; k < 4; k++)
         if (all[k]->colptr)
             now = fmax(now, ritz_sparse_asymmetry(all[k]));
     found = fmax(now, c->asymmetry);

@@ -20,10 +20,29 @@ enum { BESIDE = sizeof beside / sizeof *beside, AROUND = 2 * BESIDE + 1 };
 static const double same = 1e-13;
 static const int64_t most_points = 100000000;
 
+/* Points that are given ascend, and none is negative. */
+static ritz_status check_points(const ritz_grid *grid)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(grid->count < 1, RITZ_ERR_ARGUMENT,
+                 "a response needs at least one frequency");
+    for (int64_t k = 0; k < grid->count; k++)
+        RITZ_FAIL_IF(!isfinite(grid->hertz[k]) || grid->hertz[k] < 0.0 ||
+                         (k > 0 && grid->hertz[k] <= grid->hertz[k - 1]),
+                     RITZ_ERR_ARGUMENT,
+                     "frequencies do not ascend from 0 Hz at %g",
+                     grid->hertz[k]);
+done:
+    return status;
+}
+
 ritz_status ritz_grid_check(const ritz_grid *grid)
 {
     ritz_status status = RITZ_OK;
 
+    if (grid->hertz)
+        return check_points(grid);
     RITZ_FAIL_IF(!isfinite(grid->from_hz) || !isfinite(grid->to_hz) ||
                      grid->from_hz < 0.0 || grid->from_hz >= grid->to_hz,
                  RITZ_ERR_ARGUMENT, "a response from %g to %g Hz has no range",
@@ -42,6 +61,8 @@ static double even_point(const ritz_grid *grid, int64_t k)
 {
     double t = (double)k / (double)(grid->count - 1);
 
+    if (grid->hertz)
+        return grid->hertz[k];
     if (k == 0)
         return grid->from_hz;
     if (k == grid->count - 1)
@@ -95,7 +116,7 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
     RITZ_NEW(f, grid->count + (grid->refine ? num_modes * AROUND : 0));
     for (n = 0; n < grid->count; n++)
         f[n] = even_point(grid, n);
-    for (int64_t k = 0; grid->refine && k < num_modes; k++) {
+    for (int64_t k = 0; grid->refine && !grid->hertz && k < num_modes; k++) {
         if (!(omega[k] > 0.0 && zeta[k] > 0.0)) /* no width to resolve */
             continue;
         around(omega[k], zeta[k], extra);
@@ -103,7 +124,7 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
             if (extra[a] >= grid->from_hz && extra[a] <= grid->to_hz)
                 f[n++] = extra[a];
     }
-    *count = distinct(n, f);
+    *count = grid->hertz ? n : distinct(n, f);
     *out = f;
     f = NULL;
 done:

@@ -373,6 +373,24 @@ END
     report $verdict "SIG$signal ends a tool, and the status tells"
 done
 
+# Told to stop while it writes: tried until the signal meets a draft.
+/usr/bin/python3 - >log 2>&1 <<'END' && verdict=yes || verdict=no
+import glob, signal, subprocess, sys
+for attempt in range(50):
+    run = subprocess.Popen(["ritz-import", "-q", "--stiffness", "big.k.mtx",
+                            "--mass", "big.m.mtx", "--dofs", "big.dofs",
+                            "-o", "big.out"])
+    while run.poll() is None and not glob.glob("big.out.*.part"):
+        pass
+    run.send_signal(signal.SIGTERM)
+    if run.wait(30) == -signal.SIGTERM:
+        break
+left = glob.glob("big.out*")
+sys.exit(0 if run.returncode == -signal.SIGTERM and not left
+         else f"ended with {run.returncode}, left {left}")
+END
+report $verdict 'a tool that is stopped while it writes leaves no file'
+
 # --- the demo's model --------------------------------------------------------------
 
 rotor=${RITZ_DATA:-none}/dualspin/rotor.op4

@@ -83,7 +83,7 @@ static ritz_component lattice(int parts)
     c.grids.axes = ritz_zalloc(9, sizeof *c.grids.axes);
     assert_ok(ritz_dense_new(ROWS, ROWS, &K));
     assert_ok(ritz_dense_new(ROWS, ROWS, &M));
-    for (int i = 0; i < 3; i++)
+    for (int64_t i = 0; i < 3; i++)
         c.grids.axes[4 * i] = 1.0;
     for (int g = 0; g < GRIDS; g++) {
         c.grids.id[g] = 11 + g;
@@ -128,7 +128,7 @@ static void add_port(ritz_component *c, const char *name, int64_t count,
     port->dofs.at = ritz_zalloc(count, sizeof *port->dofs.at);
     port->dofs.count = count;
     memcpy(port->dofs.at, row, (size_t)count * sizeof *row);
-    for (int i = 0; i < 3; i++)
+    for (int64_t i = 0; i < 3; i++)
         port->axes[4 * i] = 1.0;
 }
 
@@ -272,7 +272,7 @@ static void a_wrong_position_is_noticed(void **state)
     ritz_component c = lattice(1);
 
     (void)state;
-    c.grids.position[3 * 4] = 2.5;
+    c.grids.position[12] = 2.5;
     expect(&c, "rigid-modes-eigenvectors", RITZ_PASS, 6.0, "");
     expect(&c, "rigid-modes-agree", RITZ_WARN, nan(""), "");
     expect(&c, "grounding-rotation", RITZ_WARN, nan(""), "grid");
@@ -420,7 +420,7 @@ static void round_to(ritz_sparse *A, int digits)
 {
     char text[40];
 
-    for (int64_t p = 0; p < A->colptr[A->ncol]; p++) {
+    for (int64_t p = 0; A->colptr && p < A->colptr[A->ncol]; p++) {
         snprintf(text, sizeof text, "%.*e", digits - 1, A->val[p]);
         A->val[p] = strtod(text, NULL);
     }

@@ -166,35 +166,36 @@ static double rounding(int64_t n, double lambda_max)
     return 10.0 * sqrt((double)n) * DBL_EPSILON * lambda_max;
 }
 
+/* Twelve flexible modes of one bar, and its rigid one if it is free. */
+static void check_bar(int64_t n, int64_t clamped, const char *engine)
+{
+    double bound = rounding(n, 12.0 * (double)n * (double)n);
+    pencil p = bars(1, n, clamped);
+    ritz_pairs P = {0};
+
+    assert_ok(ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = 12}, &P));
+    assert_string_equal(P.engine, engine);
+    assert_int_equal(P.num_rigid, 1 - clamped);
+    assert_int_equal(P.Phi.ncol, 13 - clamped);
+    for (int64_t k = 0; k < P.Phi.ncol; k++) {
+        assert_near(P.lambda[k], bar_eigenvalue(n, k + clamped), bound);
+        assert_near(P.residual[k], 0.0, 1e-13); /* measured */
+    }
+    assert_true(P.proven_to > P.lambda[P.Phi.ncol - 1]);
+    assert_true(P.proven_to < bar_eigenvalue(n, 13));
+    assert_orthonormal(&P, &p.M, 1e-12); /* measured: 1e-14 */
+    ritz_pairs_free(&P);
+    release(&p);
+}
+
 /* 300 elements go to LAPACK, 2000 to ARPACK. */
 static void bars_have_the_modes_of_their_mesh(void **state)
 {
-    const int64_t elements[] = {300, 2000};
-    const char *engine[] = {"dense LAPACK", "ARPACK"};
-
     (void)state;
-    for (size_t e = 0; e < 2; e++)
-        for (int64_t clamped = 0; clamped < 2; clamped++) {
-            int64_t n = elements[e];
-            double bound = rounding(n, 12.0 * (double)n * (double)n);
-            pencil p = bars(1, n, clamped);
-            ritz_pairs P = {0};
-
-            assert_ok(
-                ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = 12}, &P));
-            assert_string_equal(P.engine, engine[e]);
-            assert_int_equal(P.num_rigid, 1 - clamped);
-            assert_int_equal(P.Phi.ncol, 13 - clamped);
-            for (int64_t k = 0; k < P.Phi.ncol; k++) {
-                assert_near(P.lambda[k], bar_eigenvalue(n, k + clamped), bound);
-                assert_near(P.residual[k], 0.0, 1e-13); /* measured */
-            }
-            assert_true(P.proven_to > P.lambda[P.Phi.ncol - 1]);
-            assert_true(P.proven_to < bar_eigenvalue(n, 13));
-            assert_orthonormal(&P, &p.M, 1e-12); /* measured: 1e-14 */
-            ritz_pairs_free(&P);
-            release(&p);
-        }
+    for (int64_t clamped = 0; clamped < 2; clamped++) {
+        check_bar(300, clamped, "dense LAPACK");
+        check_bar(2000, clamped, "ARPACK");
+    }
 }
 
 /* lambda_2 = lambda_3 by symmetry: three asked are three, two are three too. */
@@ -307,34 +308,32 @@ static pencil half_heavy(int64_t n)
     return finish(&l, n);
 }
 
+/* The lowest `modes`, or all there are. */
+static void check_half_heavy(int64_t n, int64_t modes, const char *engine)
+{
+    int64_t all = (n - 1) / 2;
+    pencil p = half_heavy(n);
+    ritz_pairs P = {0};
+
+    assert_ok(ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = modes}, &P));
+    assert_string_equal(P.engine, engine);
+    assert_int_equal(P.Phi.ncol, modes < all ? modes : all);
+    for (int64_t k = 0; k < P.Phi.ncol; k++) {
+        double x = sin((double)(k + 1) * pi / (double)(n + 1));
+
+        assert_near(P.lambda[k], 2.0 * x * x, rounding(n, 4.0));
+    }
+    assert_orthonormal(&P, &p.M, 1e-11); /* measured: 1e-13 */
+    ritz_pairs_free(&P);
+    release(&p);
+}
+
 static void joints_without_mass_have_no_modes(void **state)
 {
-    const int64_t size[] = {101, 801, 2001}; /* dense, condensed, ARPACK */
-    const char *engine[] = {"dense LAPACK", "condensed LAPACK", "ARPACK"};
-
     (void)state;
-    for (size_t s = 0; s < 3; s++) {
-        int64_t n = size[s];
-        int64_t modes = s < 2 ? n : 30;
-        int64_t all = (n - 1) / 2;
-        pencil p = half_heavy(n);
-        ritz_pairs P = {0};
-
-        if (s == 1)
-            modes = n / 4;
-        assert_ok(
-            ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = modes}, &P));
-        assert_string_equal(P.engine, engine[s]);
-        assert_int_equal(P.Phi.ncol, modes < all ? modes : all);
-        for (int64_t k = 0; k < P.Phi.ncol; k++) {
-            double x = sin((double)(k + 1) * pi / (double)(n + 1));
-
-            assert_near(P.lambda[k], 2.0 * x * x, rounding(n, 4.0));
-        }
-        assert_orthonormal(&P, &p.M, 1e-11); /* measured: 1e-13 */
-        ritz_pairs_free(&P);
-        release(&p);
-    }
+    check_half_heavy(101, 101, "dense LAPACK");
+    check_half_heavy(801, 200, "condensed LAPACK");
+    check_half_heavy(2001, 30, "ARPACK");
 }
 
 /* One mass of 1 at the end of 700 massless springs: lambda = 1 / 700. */
@@ -363,7 +362,7 @@ static void a_single_mass_has_a_single_mode(void **state)
 /* Stiffness as a file of ten digits holds it: the rigid mode is not lost. */
 static void ten_digits_keep_the_rigid_modes(void **state)
 {
-    const int64_t elements[] = {7 * 41, 7 * 143};
+    const int64_t elements[] = {287, 1001};
 
     (void)state;
     for (size_t e = 0; e < 2; e++) {

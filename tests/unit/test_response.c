@@ -406,20 +406,20 @@ static ritz_status respond_once(const ritz_component *beam)
 {
     const ritz_grid grid = {0.01, 0.05, 2, false, false};
     ritz_status status = RITZ_OK;
-    ritz_response modal = {0};
-    ritz_response direct = {0};
+    ritz_response r = {0};
 
-    RITZ_TRY(ritz_response_modal(beam, &light, 0, &grid, &modal));
-    RITZ_TRY(ritz_response_direct(beam, &light, 0, &grid, &direct));
+    if (beam->D.colptr)
+        RITZ_TRY(ritz_response_direct(beam, &light, 0, &grid, &r));
+    else
+        RITZ_TRY(ritz_response_modal(beam, &light, 0, &grid, &r));
 done:
-    ritz_response_free(&modal);
-    ritz_response_free(&direct);
+    ritz_response_free(&r);
     return status;
 }
 
 static void responses_survive_every_allocation(void **state)
 {
-    const int64_t row = 4;
+    const int64_t row = 1;
     ritz_component beam = {0};
 
     (void)state;

@@ -262,10 +262,13 @@ done:
 
 static void verifying_survives_every_allocation(void **state)
 {
+    const int64_t row = 1;
     pair p = {0};
 
     (void)state;
-    open_beam(true, &p.beam);
+    assert_ok(
+        frame_component(2, 0.5, &frame_mcdaniel, true, false, 1, &p.beam));
+    assert_ok(frame_io(&p.beam, 1, &row, 1, &row));
     truncate_beam(&p.beam, 4, &p.basis);
     assert_ok(ritz_reduce(&p.beam, &p.basis, &p.reduced));
     assert_survives_every_allocation(verify_once(&p));

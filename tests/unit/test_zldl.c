@@ -43,19 +43,22 @@ static void each_shift_solves_its_own_system(void **state)
 
     assert_ok(ritz_zldl_new(2, A, &F));
     for (int s = 0; s < 5; s++) {
-        const double _Complex c[] = {1.0 + 0.05 * (double)s * CMPLX(0.0, 1.0),
+        const double _Complex c[] = {1.0 + 0.05 * (double)s *
+                                               (double _Complex)_Complex_I,
                                      -0.3 * (double)s};
         const double _Complex a = 2.0 * c[0] + c[1];
         const double _Complex b = -c[0];
         const double _Complex d = c[0] + c[1];
         const double _Complex det = a * d - b * b;
-        double _Complex x[] = {1.0, CMPLX(0.0, 1.0), 0.0, 1.0};
+        double _Complex x[] = {1.0, (double _Complex)_Complex_I, 0.0, 1.0};
         double bound = 64.0 * DBL_EPSILON / cabs(det) / cabs(det) * 9.0;
 
         assert_ok(ritz_zldl_factor(F, c));
         assert_ok(ritz_zldl_solve(F, 2, x));
-        assert_near(cabs(x[0] - (d - b * CMPLX(0.0, 1.0)) / det), 0.0, bound);
-        assert_near(cabs(x[1] - (a * CMPLX(0.0, 1.0) - b) / det), 0.0, bound);
+        assert_near(cabs(x[0] - (d - b * (double _Complex)_Complex_I) / det),
+                    0.0, bound);
+        assert_near(cabs(x[1] - (a * (double _Complex)_Complex_I - b) / det),
+                    0.0, bound);
         assert_near(cabs(x[2] + b / det), 0.0, bound);
         assert_near(cabs(x[3] - a / det), 0.0, bound);
     }
@@ -77,7 +80,7 @@ static void undamped_resonance_is_refused(void **state)
                  "the matrix is singular");
     assert_fails(ritz_zldl_solve(F, 1, x), RITZ_ERR_ARGUMENT,
                  "needs a factor first");
-    c[0] += 0.01 * CMPLX(0.0, 1.0);
+    c[0] += 0.01 * (double _Complex)_Complex_I;
     assert_ok(ritz_zldl_factor(F, c));
     c[0] = nan("");
     assert_fails(ritz_zldl_factor(F, c), RITZ_ERR_ARGUMENT,

@@ -1,0 +1,156 @@
+/*
+ * INCLUDE: the file goes on top of those that are being gone through. Its name
+ * is relative to the folder of the file that names it.
+ */
+#include "formats/cards_parts.h"
+
+#include "base/alloc.h"
+
+#include <ritz/text.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+
+enum { MOST_FILES = 10000 };
+
+/* The name in 'quotes', perhaps over several lines, or the rest of the line. */
+static ritz_status include_name(ritz_lines *text, const char *at, char *name,
+                                size_t size)
+{
+    ritz_status status = RITZ_OK;
+    const char *end = text->line_end;
+    size_t used = 0;
+    char quote = '\0';
+
+    while (at < end && (ritz_card_is_blank(*at) || *at == '='))
+        at++;
+    if (at < end && (*at == '\'' || *at == '"'))
+        quote = *at++;
+    for (;;) {
+        const char *stop = NULL;
+        int64_t length = end - at;
+
+        if (quote)
+            stop = memchr(at, quote, (size_t)length);
+        else
+            ritz_card_uncomment(at, &length);
+        if (stop)
+            length = stop - at;
+        ritz_card_trim(&at, &length);
+        RITZ_FAIL_IF(used + (size_t)length >= size, RITZ_ERR_FORMAT,
+                     "the name that INCLUDE gives is too long");
+        memcpy(name + used, at, (size_t)length);
+        used += (size_t)length;
+        if (stop || !quote)
+            break;
+        RITZ_FAIL_IF(!ritz_lines_next(text), RITZ_ERR_FORMAT,
+                     "the quote of INCLUDE is not closed");
+        at = text->line;
+        end = text->line_end;
+    }
+    name[used] = '\0';
+    RITZ_FAIL_IF(used == 0, RITZ_ERR_FORMAT, "INCLUDE names no file");
+done:
+    return status;
+}
+
+/* folder/name, or name alone if it begins at the root. */
+static ritz_status join_path(const char *folder, const char *name, char **out)
+{
+    ritz_status status = RITZ_OK;
+    size_t length = strlen(folder) + strlen(name) + 2;
+    char *path = NULL;
+
+    RITZ_NEW(path, (int64_t)length);
+    if (*name == '/' || !*folder || strcmp(folder, ".") == 0)
+        snprintf(path, length, "%s", name);
+    else
+        snprintf(path, length, "%s/%s", folder, name);
+    *out = path;
+done:
+    return status;
+}
+
+ritz_status ritz_deck_folder(const char *path, char **out)
+{
+    ritz_status status = RITZ_OK;
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) : 1;
+    char *folder = NULL;
+
+    if (slash == path)
+        length = 1; /* the root */
+    RITZ_NEW(folder, (int64_t)length + 1);
+    memcpy(folder, slash ? path : ".", length);
+    *out = folder;
+done:
+    return status;
+}
+
+static const char *path_of(const ritz_scanner *scan, int level)
+{
+    return scan->deck->file[scan->open[level].file].path;
+}
+
+/* Go on with a file before the one that includes it; takes `bytes`. */
+static ritz_status open_file(ritz_scanner *scan, const char *path, char *bytes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_source new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
+                       .file = scan->deck->num_files};
+
+    status = ritz_deck_add_file(scan->deck, path, bytes);
+    if (status != RITZ_OK)
+        free(bytes);
+    RITZ_TRY(status);
+    RITZ_TRY(ritz_deck_skip_control(path, &new.text, scan->deck));
+    RITZ_TRY(ritz_deck_folder(path, &new.folder));
+    scan->open[scan->depth++] = new;
+done:
+    return status;
+}
+
+static ritz_status include(ritz_scanner *scan, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    char *bytes = NULL;
+
+    for (int k = 0; k < scan->depth; k++)
+        RITZ_FAIL_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
+                     RITZ_ERR_FORMAT, "'%s' includes itself", path);
+    RITZ_FAIL_IF(scan->depth > RITZ_DECK_DEEPEST, RITZ_ERR_FORMAT,
+                 "INCLUDE is more than %d files deep", RITZ_DECK_DEEPEST);
+    RITZ_FAIL_IF(scan->deck->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
+                 "INCLUDE reads more than %d files", MOST_FILES);
+    RITZ_TRY(ritz_text_read(path, &bytes));
+    RITZ_TRY(open_file(scan, path, bytes));
+done:
+    return status;
+}
+
+ritz_status ritz_scanner_include(ritz_scanner *scan, const char *rest)
+{
+    enum { LONGEST = 4096 };
+    ritz_status status = RITZ_OK;
+    ritz_source *top = &scan->open[scan->depth - 1];
+    const char *including = path_of(scan, scan->depth - 1);
+    int64_t number = top->text.number;
+    char name[LONGEST];
+    char where[LONGEST + 40] = "";
+    char *path = NULL;
+
+    if (including)
+        snprintf(where, sizeof where, "'%s', line %" PRId64, including, number);
+    else
+        snprintf(where, sizeof where, "line %" PRId64, number);
+    RITZ_TRY_IN(where, include_name(&top->text, rest, name, sizeof name));
+    if (!top->folder) {
+        scan->deck->num_skipped++;
+        goto done;
+    }
+    RITZ_TRY(join_path(top->folder, name, &path));
+    RITZ_TRY_IN(where, include(scan, path));
+done:
+    free(path);
+    return status;
+}
