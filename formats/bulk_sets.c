@@ -9,6 +9,7 @@
 #include "formats/bulk_parts.h"
 
 #include "base/alloc.h"
+#include "base/search.h"
 
 #include <inttypes.h>
 
@@ -137,29 +138,6 @@ done:
     return status;
 }
 
-/* First of ascending ids that is not below `id`. */
-static int64_t lower_bound(int64_t count, const int64_t *ids, int64_t id)
-{
-    int64_t low = 0;
-
-    while (low < count) {
-        int64_t middle = low + (count - low) / 2;
-
-        if (ids[middle] < id)
-            low = middle + 1;
-        else
-            count = middle;
-    }
-    return low;
-}
-
-static bool holds(int64_t count, const int64_t *ids, int64_t id)
-{
-    int64_t k = lower_bound(count, ids, id);
-
-    return k < count && ids[k] == id;
-}
-
 static bool has(const ritz_bulk_range *range, int64_t c)
 {
     return (((unsigned)range->mask >> (unsigned)c) & 1U) != 0;
@@ -171,8 +149,8 @@ static ritz_status add_named(const ritz_bulk_cards *all,
                              dofs *list)
 {
     ritz_status status = RITZ_OK;
-    bool point = holds(built->num_points, built->point, one->from);
-    bool grid = holds(built->grids.count, built->grids.id, one->from);
+    bool point = ritz_search(built->num_points, built->point, one->from) >= 0;
+    bool grid = ritz_grids_find(&built->grids, one->from) >= 0;
 
     if (point && (one->mask & ~3U))
         RITZ_TRY(ritz_deck_refuse(&all->deck, one->line,
@@ -197,7 +175,7 @@ static ritz_status add_existing(int64_t num_ids, const int64_t *ids, int64_t c,
     ritz_status status = RITZ_OK;
 
     for (int64_t k = 0; k < count; k++)
-        for (int64_t at = lower_bound(num_ids, ids, range[k].from);
+        for (int64_t at = ritz_lower_bound(num_ids, ids, range[k].from);
              at < num_ids && ids[at] <= range[k].to; at++)
             RITZ_TRY(add_dof(list, ids[at], c));
 done:

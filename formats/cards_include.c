@@ -135,7 +135,7 @@ ritz_status ritz_scanner_include(ritz_scanner *scan, const char *rest)
     ritz_source *top = &scan->open[scan->depth - 1];
     const char *including = path_of(scan, scan->depth - 1);
     int64_t number = top->text.number;
-    char name[LONGEST];
+    char name[LONGEST] = "";
     char where[LONGEST + 40] = "";
     char *path = NULL;
 

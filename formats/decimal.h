@@ -24,4 +24,11 @@ bool ritz_decimal_scan_whole(const char **at, const char *end, int64_t *out);
 /** Move over blanks and tabs; NUL is a blank too, as old files pad so. */
 const char *ritz_decimal_skip(const char *at, const char *end);
 
+/** Whether @p at is neither the end nor a blank: a word goes on. */
+bool ritz_decimal_is_inside(const char *at, const char *end);
+
+/** @p count whole numbers and nothing else, apart by blanks. */
+bool ritz_decimal_scan_row(const char *at, const char *end, int64_t count,
+                           int64_t *out);
+
 #endif

@@ -15,4 +15,10 @@ typedef struct ritz_lines {
 /** Take the next line. @return false at the end of the text */
 bool ritz_lines_next(ritz_lines *text);
 
+/** Letters of a text that a message quotes: all, but at most 79. */
+static inline int ritz_lines_quoted(const char *text, const char *end)
+{
+    return end - text < 80 ? (int)(end - text) : 79;
+}
+
 #endif

@@ -5,12 +5,12 @@
  * so and its triangles agree in every bit; else nothing would bring the
  * difference back. It is an array if all its entries are stored.
  */
+#include "base/search.h"
 #include "formats/sink.h"
 
 #include <ritz/foreign.h>
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,18 +23,10 @@ typedef struct job {
 /* Place of A(i,j) among the entries; -1 if nothing is stored there. */
 static int64_t find(const ritz_sparse *A, int64_t i, int64_t j)
 {
-    int64_t low = A->colptr[j];
-    int64_t high = A->colptr[j + 1];
+    int64_t p = A->colptr[j];
+    int64_t k = ritz_search(A->colptr[j + 1] - p, A->rowind + p, i);
 
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (A->rowind[middle] < i)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < A->colptr[j + 1] && A->rowind[low] == i ? low : -1;
+    return k < 0 ? -1 : p + k;
 }
 
 /* Whether A(j,i) is stored and the same for each A(i,j). */
@@ -74,16 +66,10 @@ static ritz_status write_market(FILE *file, const void *what)
     bool array = A->ncol > 0 && nnz % A->ncol == 0 && nnz / A->ncol == A->nrow;
     int64_t count = 0;
 
+    RITZ_TRY(ritz_sink_check(m));
     for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            RITZ_FAIL_IF(!isfinite(A->val[p]) ||
-                             (m->imaginary && !isfinite(m->imaginary[p])),
-                         RITZ_ERR_ARGUMENT,
-                         "row %" PRId64 " of column %" PRId64
-                         " of '%s' is not finite",
-                         A->rowind[p] + 1, j + 1, m->name);
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             count += !symmetric || A->rowind[p] >= j;
-        }
     fprintf(file, "%%%%MatrixMarket matrix %s %s %s\n",
             array ? "array" : "coordinate", m->imaginary ? "complex" : "real",
             symmetric ? "symmetric" : "general");

@@ -10,19 +10,16 @@
  *
  * Headers do not always tell which (a bigmat of few rows may be unmarked), so
  * that one is taken by which the strings of a column add up to its word count.
- *
- * FORM: 3 with one row or column is a diagonal; 6 symmetric, both triangles
- * stored, a file with one only is completed; 8 without entries the identity.
  */
 #include "formats/output4.h"
 
 #include "base/alloc.h"
+#include "formats/room.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { DIAGONAL = 3, SYMMETRIC = 6, IDENTITY = 8 };
 enum { WORDS, VALUES, BIGMAT };
 
 int64_t ritz_output4_integers(int64_t rule)
@@ -210,135 +207,13 @@ ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row)
                      row + 1, build->column + 1, build->header.name);
 }
 
-/* Whether entries lie beside the diagonal, and all on the same side of it. */
-static bool is_triangle(const ritz_sparse *A)
-{
-    bool above = false;
-    bool below = false;
-
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            above = above || A->rowind[p] < j;
-            below = below || A->rowind[p] > j;
-        }
-    return above != below;
-}
-
-/* m := entries (row, col) with its values and those of its imaginary part. */
-static ritz_status replace(ritz_matrix *m, int64_t n, int64_t count,
-                           const int64_t *row, const int64_t *col,
-                           const double *re, const double *im)
-{
-    ritz_status status = RITZ_OK;
-    ritz_sparse real = {0};
-    ritz_sparse imaginary = {0};
-
-    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, re, &real));
-    if (m->imaginary) {
-        RITZ_TRY(
-            ritz_sparse_from_triplets(n, n, count, row, col, im, &imaginary));
-        free(m->imaginary);
-        m->imaginary = imaginary.val;
-        imaginary.val = NULL;
-    }
-    ritz_sparse_free(&m->A);
-    m->A = real;
-    real = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&real);
-    ritz_sparse_free(&imaginary);
-    return status;
-}
-
-/* Which matrix an entry of the file stands for. */
-typedef enum shape { MIRRORED, ON_DIAGONAL, UNIT } shape;
-
-/* m := the n x n matrix that its entries are a shorthand of. */
-static ritz_status expand(ritz_matrix *m, shape as, int64_t n)
-{
-    ritz_status status = RITZ_OK;
-    int64_t nnz = m->A.colptr[m->A.ncol];
-    int64_t most = as == UNIT ? n : 2 * nnz;
-    int64_t count = 0;
-    int64_t *row = NULL;
-    int64_t *col = NULL;
-    double *re = NULL;
-    double *im = NULL;
-
-    RITZ_NEW(row, most);
-    RITZ_NEW(col, most);
-    RITZ_NEW(re, most);
-    RITZ_NEW(im, most);
-    for (; as == UNIT && count < n; count++) {
-        row[count] = col[count] = count;
-        re[count] = 1.0;
-    }
-    for (int64_t j = 0; as != UNIT && j < m->A.ncol; j++)
-        for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++) {
-            int64_t i = m->A.rowind[p];
-            int64_t at = m->A.ncol == 1 ? i : j;
-
-            for (int turn = 0; turn < (as == MIRRORED && i != j ? 2 : 1);
-                 turn++) {
-                row[count] = as == ON_DIAGONAL ? at : (turn ? j : i);
-                col[count] = as == ON_DIAGONAL ? at : (turn ? i : j);
-                re[count] = m->A.val[p];
-                im[count++] = m->imaginary ? m->imaginary[p] : 0.0;
-            }
-        }
-    RITZ_TRY(replace(m, n, count, row, col, re, im));
-done:
-    free(row);
-    free(col);
-    free(re);
-    free(im);
-    return status;
-}
-
-/* Give the matrix the meaning that FORM says. */
-static ritz_status obey_form(ritz_output4_list *list, ritz_output4_build *build)
-{
-    ritz_status status = RITZ_OK;
-    ritz_matrix *m = &build->matrix;
-    int64_t nrow = m->A.nrow;
-    int64_t ncol = m->A.ncol;
-    int64_t n = nrow > ncol ? nrow : ncol;
-    int64_t form = build->header.form;
-    bool vector = form == DIAGONAL && (nrow == 1 || ncol == 1) && n > 1;
-    bool unit = form == IDENTITY && nrow == ncol && build->nnz == 0;
-
-    RITZ_FAIL_IF((vector || unit) && n > list->columns, RITZ_ERR_FORMAT,
-                 "'%s' is said to be a diagonal of %" PRId64
-                 " rows, far more than its file can fill",
-                 build->header.name, n);
-    if (vector || unit) {
-        list->columns -= n;
-        RITZ_TRY(expand(m, unit ? UNIT : ON_DIAGONAL, n));
-    }
-    if (form == SYMMETRIC && nrow == ncol && is_triangle(&m->A))
-        RITZ_TRY(expand(m, MIRRORED, n));
-    m->symmetric = m->A.nrow == m->A.ncol &&
-                   (form == SYMMETRIC || form == DIAGONAL || form == IDENTITY);
-done:
-    return status;
-}
-
 ritz_status ritz_output4_end(ritz_output4_list *list, ritz_output4_build *build)
 {
     ritz_status status = RITZ_OK;
-    ritz_matrix *more = NULL;
-    int64_t count = list->all.count;
 
     RITZ_TRY(close_columns(build, build->header.ncol));
-    RITZ_TRY(obey_form(list, build));
-    if (count == list->room) {
-        RITZ_NEW(more, 2 * count + 4);
-        if (count > 0)
-            memcpy(more, list->all.matrix, (size_t)count * sizeof *more);
-        free(list->all.matrix);
-        list->all.matrix = more;
-        list->room = 2 * count + 4;
-    }
+    RITZ_TRY(ritz_output4_obey(list, build));
+    RITZ_ROOM(list->all.matrix, list->all.count, list->room);
     list->all.matrix[list->all.count++] = build->matrix;
     build->matrix = (ritz_matrix){0};
 done:

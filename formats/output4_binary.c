@@ -4,41 +4,15 @@
  *     NCOL NROW FORM TYPE NAME(2 words)    24 bytes, or 48 of 8-byte integers
  *     ICOL IROW NW data                    IROW = 0: data are strings
  *
- * Byte order and size of integers follow from the first length. Data fill their
- * record: where NW disagrees the record is right. Lengths are integers of 4
- * bytes, of 8 by some compilers; records of no bytes may stand between others.
+ * Data fill their record: where NW disagrees the record is right.
  */
-#include "formats/output4.h"
+#include "formats/output4_binary.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The file and how its bytes are meant. */
-typedef struct binary {
-    const unsigned char *begin, *at, *end;
-    bool big_endian;
-    int64_t mark;    /* bytes of a record's length */
-    int64_t integer; /* bytes of an integer, the size of a word too */
-    int64_t real;    /* bytes of a number in this matrix */
-} binary;
-
-typedef struct record {
-    const unsigned char *at;
-    int64_t size;
-} record;
-
-/* `size` bytes as an unsigned number. */
-static uint64_t load(const unsigned char *at, int64_t size, bool big_endian)
-{
-    uint64_t value = 0;
-
-    for (int64_t k = 0; k < size; k++)
-        value = value << 8 | at[big_endian ? k : size - 1 - k];
-    return value;
-}
-
-/* The same of 8 bytes in a form that compiles to one instruction. */
+/* 8 bytes as an unsigned number, in a form that compiles to one instruction. */
 static uint64_t load_8(const unsigned char *at, bool big_endian)
 {
     uint64_t up = (uint64_t)at[0] | (uint64_t)at[1] << 8 |
@@ -46,18 +20,10 @@ static uint64_t load_8(const unsigned char *at, bool big_endian)
                   (uint64_t)at[4] << 32 | (uint64_t)at[5] << 40 |
                   (uint64_t)at[6] << 48 | (uint64_t)at[7] << 56;
 
-    return big_endian ? load(at, 8, true) : up;
+    return big_endian ? ritz_binary_load(at, 8, true) : up;
 }
 
-static int64_t load_integer(const binary *b, const unsigned char *at,
-                            int64_t size)
-{
-    uint64_t bits = load(at, size, b->big_endian);
-
-    return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
-}
-
-static double load_real(const binary *b, const unsigned char *at)
+static double load_real(const ritz_binary *b, const unsigned char *at)
 {
     double wide = 0.0;
     float narrow = 0.0F;
@@ -65,7 +31,7 @@ static double load_real(const binary *b, const unsigned char *at)
     uint32_t half = 0;
 
     if (b->real == 4) {
-        half = (uint32_t)load(at, 4, b->big_endian);
+        half = (uint32_t)ritz_binary_load(at, 4, b->big_endian);
         memcpy(&narrow, &half, sizeof narrow);
         return (double)narrow;
     }
@@ -74,112 +40,7 @@ static double load_real(const binary *b, const unsigned char *at)
     return wide;
 }
 
-/* How the file is spelled, from the length of its first record. */
-static bool find_spelling(const char *bytes, int64_t size, binary *out)
-{
-    const void *start = bytes;
-    binary b = {.begin = start};
-
-    b.at = b.begin;
-    b.end = b.begin + size;
-    for (int k = 0; k < 8 && size >= 4; k++) {
-        int64_t length = 0;
-
-        b.big_endian = k & 1;
-        b.integer = k & 2 ? 8 : 4;
-        b.mark = k & 4 ? 4 : 8;
-        length = 6 * b.integer;
-        if (size < b.mark ||
-            load(b.at, b.mark, b.big_endian) != (uint64_t)length)
-            continue;
-        *out = b;
-        return true;
-    }
-    return false;
-}
-
-/* Take a record that is not empty; its size is -1 at the end of the file. */
-static ritz_status take_record(binary *b, record *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t size = 0;
-
-    while (size == 0) {
-        int64_t left = b->end - b->at;
-
-        *out = (record){.size = -1};
-        if (left == 0)
-            goto done;
-        RITZ_FAIL_IF(left < 2 * b->mark, RITZ_ERR_FORMAT,
-                     "byte %td: %" PRId64 " bytes are left, too few for "
-                     "a record",
-                     b->at - b->begin, left);
-        size = load_integer(b, b->at, b->mark);
-        RITZ_FAIL_IF(size < 0 || size > left - 2 * b->mark, RITZ_ERR_FORMAT,
-                     "byte %td: a record of %" PRId64
-                     " bytes begins, but %" PRId64 " are left",
-                     b->at - b->begin, size, left - b->mark);
-        *out = (record){b->at + b->mark, size};
-        b->at += size + 2 * b->mark;
-        RITZ_FAIL_IF(
-            load_integer(b, b->at - b->mark, b->mark) != size, RITZ_ERR_FORMAT,
-            "byte %td: a record of %" PRId64 " bytes ends with another length",
-            b->at - b->mark - b->begin, size);
-    }
-done:
-    return status;
-}
-
-static ritz_status read_header(const binary *b, const record *from,
-                               ritz_output4_header *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_output4_header h = {0};
-    int64_t n[4] = {0};
-    const void *name = from->at + 4 * b->integer;
-
-    for (int64_t k = 0; k < 4 && from->size == 6 * b->integer; k++)
-        n[k] = load_integer(b, from->at + k * b->integer, b->integer);
-    RITZ_FAIL_IF(n[3] < 1 || n[3] > 4 || n[0] < 0 || n[1] == INT64_MIN,
-                 RITZ_ERR_FORMAT,
-                 "byte %td: a record of %" PRId64 " bytes begins no matrix",
-                 from->at - b->begin, from->size);
-    h.ncol = n[0];
-    h.nrow = n[1] < 0 ? -n[1] : n[1];
-    h.bigmat = n[1] < 0 || n[1] >= 65536;
-    h.form = n[2];
-    h.type = n[3];
-    ritz_output4_name(name, 2 * b->integer, h.name);
-    *out = h;
-done:
-    return status;
-}
-
-/* Numbers in a matrix's columns, at most: what to make room for. */
-static int64_t count_numbers(const binary *b, int64_t ncol)
-{
-    binary ahead = *b;
-    int64_t count = 0;
-
-    for (;;) {
-        int64_t left = ahead.end - ahead.at;
-        int64_t size = 0;
-
-        if (left < 2 * b->mark)
-            return count;
-        size = load_integer(b, ahead.at, b->mark);
-        if (size < 0 || size > left - 2 * b->mark)
-            return count;
-        if (size >= b->integer &&
-            load_integer(b, ahead.at + b->mark, b->integer) > ncol)
-            return count;
-        if (size > 3 * b->integer)
-            count += (size - 3 * b->integer) / b->real;
-        ahead.at += size + 2 * b->mark;
-    }
-}
-
-static ritz_status read_numbers(const binary *b, ritz_output4_build *build,
+static ritz_status read_numbers(const ritz_binary *b, ritz_output4_build *build,
                                 const unsigned char *at, int64_t row,
                                 int64_t reals)
 {
@@ -202,8 +63,8 @@ done:
 }
 
 /* The strings that fill `data`, by one reading of their headers. */
-static ritz_status read_strings(const binary *b, ritz_output4_build *build,
-                                int64_t rule, const record *data)
+static ritz_status read_strings(const ritz_binary *b, ritz_output4_build *build,
+                                int64_t rule, const ritz_binary_record *data)
 {
     ritz_status status = RITZ_OK;
     int64_t words = data->size / b->integer;
@@ -215,7 +76,7 @@ static ritz_status read_strings(const binary *b, ritz_output4_build *build,
         int64_t n[2] = {0};
 
         for (int64_t k = 0; k < integers && k < left; k++)
-            n[k] = load_integer(b, at + k * b->integer, b->integer);
+            n[k] = ritz_binary_integer(b, at + k * b->integer, b->integer);
         RITZ_FAIL_IF(!ritz_output4_decode(build, rule, b->real / b->integer, n,
                                           left, &string),
                      RITZ_ERR_FORMAT,
@@ -233,8 +94,8 @@ done:
 }
 
 /* The reading whose strings add up; if none, the first says what is wrong. */
-static ritz_status read_sparse(const binary *b, ritz_output4_build *build,
-                               const record *data)
+static ritz_status read_sparse(const ritz_binary *b, ritz_output4_build *build,
+                               const ritz_binary_record *data)
 {
     ritz_status status = RITZ_OK;
 
@@ -254,8 +115,9 @@ static ritz_status read_sparse(const binary *b, ritz_output4_build *build,
 }
 
 /* A dense column; NW may count words or numbers, but must fit the record. */
-static ritz_status read_dense(const binary *b, ritz_output4_build *build,
-                              const record *data, int64_t row, int64_t words)
+static ritz_status read_dense(const ritz_binary *b, ritz_output4_build *build,
+                              const ritz_binary_record *data, int64_t row,
+                              int64_t words)
 {
     ritz_status status = RITZ_OK;
     int64_t reals = data->size / b->real;
@@ -274,14 +136,15 @@ done:
 }
 
 /* One record after the header; `last` if it ends the matrix. */
-static ritz_status read_column(binary *b, ritz_output4_build *build, bool *last)
+static ritz_status read_column(ritz_binary *b, ritz_output4_build *build,
+                               bool *last)
 {
     ritz_status status = RITZ_OK;
-    record column = {0};
-    record data = {0};
+    ritz_binary_record column = {0};
+    ritz_binary_record data = {0};
     int64_t n[3] = {0};
 
-    RITZ_TRY(take_record(b, &column));
+    RITZ_TRY(ritz_binary_take(b, &column));
     RITZ_FAIL_IF(column.size < 0, RITZ_ERR_FORMAT,
                  "'%s' ends after column %" PRId64 " of %" PRId64,
                  build->header.name, build->column + 1, build->header.ncol);
@@ -289,7 +152,7 @@ static ritz_status read_column(binary *b, ritz_output4_build *build, bool *last)
                  "byte %td: a record of %" PRId64 " bytes is no column of '%s'",
                  column.at - b->begin, column.size, build->header.name);
     for (int64_t k = 0; k < 3; k++)
-        n[k] = load_integer(b, column.at + k * b->integer, b->integer);
+        n[k] = ritz_binary_integer(b, column.at + k * b->integer, b->integer);
     data.at = column.at + 3 * b->integer;
     data.size = column.size - 3 * b->integer;
     *last = n[0] == build->header.ncol + 1;
@@ -310,7 +173,7 @@ done:
     return status;
 }
 
-static ritz_status read_matrix(binary *b, const record *first,
+static ritz_status read_matrix(ritz_binary *b, const ritz_binary_record *first,
                                ritz_output4_list *list)
 {
     ritz_status status = RITZ_OK;
@@ -318,11 +181,12 @@ static ritz_status read_matrix(binary *b, const record *first,
     ritz_output4_build build = {0};
     bool last = false;
 
-    RITZ_TRY(read_header(b, first, &header));
+    RITZ_TRY(ritz_binary_header(b, first, &header));
     b->real = header.type % 2 == 1 && b->integer == 4 ? 4 : 8;
-    RITZ_TRY(ritz_output4_begin(
-        list, &header,
-        count_numbers(b, header.ncol) / (header.type > 2 ? 2 : 1), &build));
+    RITZ_TRY(ritz_output4_begin(list, &header,
+                                ritz_binary_numbers(b, header.ncol) /
+                                    (header.type > 2 ? 2 : 1),
+                                &build));
     while (!last)
         RITZ_TRY(read_column(b, &build, &last));
     build.matrix.digits = b->real == 4 ? 7 : 17;
@@ -340,21 +204,21 @@ done:
 
 bool ritz_output4_is_binary(const char *bytes, int64_t size)
 {
-    binary b = {0};
+    ritz_binary b = {0};
 
-    return find_spelling(bytes, size, &b);
+    return ritz_binary_spelling(bytes, size, &b);
 }
 
 ritz_status ritz_output4_read_binary(const char *bytes, int64_t size,
                                      ritz_output4_list *list)
 {
     ritz_status status = RITZ_OK;
-    binary b = {0};
-    record first = {0};
+    ritz_binary b = {0};
+    ritz_binary_record first = {0};
 
-    (void)find_spelling(bytes, size, &b);
+    (void)ritz_binary_spelling(bytes, size, &b);
     for (;;) {
-        RITZ_TRY(take_record(&b, &first));
+        RITZ_TRY(ritz_binary_take(&b, &first));
         if (first.size < 0)
             goto done;
         RITZ_TRY(read_matrix(&b, &first, list));

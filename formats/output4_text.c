@@ -10,212 +10,37 @@
  * one. A column numbered NCOL + 1 ends the matrix. Integers are taken as words
  * where there are as many as expected, else as fields of 8 or 16.
  */
+#include "formats/output4_text.h"
+
 #include "formats/decimal.h"
-#include "formats/output4.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
-
-/* The file, and the line that was taken last. */
-typedef struct text {
-    const char *begin, *at, *end;
-    const char *line, *line_end;
-    int64_t per_line, width, digits; /* of nEw.d */
-    char format[24];                 /* the same as written */
-} text;
-
-/* Take a line; false at the end of the file. */
-static bool take_line(text *t)
-{
-    const char *stop = NULL;
-
-    if (t->at >= t->end)
-        return false;
-    stop = memchr(t->at, '\n', (size_t)(t->end - t->at));
-    t->line = t->at;
-    t->line_end = stop ? stop : t->end;
-    t->at = stop ? stop + 1 : t->end;
-    if (t->line_end > t->line && t->line_end[-1] == '\r')
-        t->line_end--;
-    return true;
-}
-
-/* Number of the line that was taken last, from 1. */
-static int64_t line_number(const text *t)
-{
-    int64_t number = 1;
-
-    for (const char *c = t->begin; c < t->line; c++)
-        number += *c == '\n';
-    return number;
-}
-
-/* `count` integers and nothing else, apart by blanks. */
-static bool read_words(const text *t, int64_t count, int64_t *out)
-{
-    const char *at = ritz_decimal_skip(t->line, t->line_end);
-
-    for (int64_t k = 0; k < count; k++) {
-        if (!ritz_decimal_scan_whole(&at, t->line_end, &out[k]))
-            return false;
-        if (at < t->line_end && at == ritz_decimal_skip(at, t->line_end))
-            return false;
-        at = ritz_decimal_skip(at, t->line_end);
-    }
-    return at == t->line_end;
-}
-
-/* `count` integers in fields of some width, the line blank behind them. */
-static bool read_fields(const char *at, const char *end, const int64_t *width,
-                        int64_t count, int64_t *out)
-{
-    for (int64_t k = 0; k < count; k++) {
-        const char *stop = end - at > width[k] ? at + width[k] : end;
-
-        at = ritz_decimal_skip(at, stop);
-        if (!ritz_decimal_scan_whole(&at, stop, &out[k]) ||
-            ritz_decimal_skip(at, stop) != stop)
-            return false;
-        at = stop;
-    }
-    return true;
-}
-
-static bool read_integers(const text *t, int64_t count, int64_t *out)
-{
-    static const int64_t widths[2][3] = {{8, 8, 8}, {16, 16, 16}};
-
-    if (read_words(t, count, out))
-        return true;
-    for (int k = 0; k < 2; k++)
-        if (t->line_end - t->line == widths[k][0] * count &&
-            read_fields(t->line, t->line_end, widths[k], count, out))
-            return true;
-    return false;
-}
-
-/* A whole number of at most 3 digits that must be followed by something. */
-static bool small_number(const char **at, const char *end, int64_t *out)
-{
-    const char *start = *at;
-
-    return *at < end && **at >= '0' && **at <= '9' &&
-           ritz_decimal_scan_whole(at, end, out) && *at - start <= 3;
-}
-
-/* "1P,3E23.16" or "5E16.9" at `at`, up to a blank, '|' or the end. */
-static bool read_format(const char *at, const char *end, text *t)
-{
-    const char *start = at;
-    bool scaled = end - at > 3 && at[0] == '1' && (at[1] | 32) == 'p';
-    int64_t decimals = 0;
-
-    if (scaled)
-        at += at[2] == ',' ? 3 : 2;
-    if (!small_number(&at, end, &t->per_line) || at == end ||
-        ((*at | 32) != 'e' && (*at | 32) != 'd'))
-        return false;
-    at++;
-    if (!small_number(&at, end, &t->width) || at == end || *at++ != '.' ||
-        !small_number(&at, end, &decimals))
-        return false;
-    if (at < end && *at != ' ' && *at != '|' && *at != '\0')
-        return false;
-    if (t->per_line < 1 || t->width < 3 || decimals >= t->width)
-        return false;
-    t->digits = decimals + scaled;
-    snprintf(t->format, sizeof t->format, "%.*s", (int)(at - start), start);
-    return true;
-}
-
-/* Name and format behind the four integers of a header. */
-static bool read_label(const char *at, const char *end, text *t,
-                       char name[RITZ_NAME_SIZE])
-{
-    const char *name_end = end - at > 8 ? at + 8 : end;
-    bool found = false;
-
-    for (const char *c = name_end; c < end && !found; c++)
-        found = read_format(c, end, t);
-    if (!found && ritz_decimal_skip(name_end, end) != end)
-        return false;
-    for (const char *c = at; c < name_end && !found; c++) {
-        found = read_format(c, end, t); /* a short name without padding */
-        if (found)
-            name_end = c;
-    }
-    if (!found) {
-        static const char usual[] = "5E16.9";
-
-        /* without 1P the point is in front of all digits, but not here */
-        found = read_format(usual, usual + strlen(usual), t);
-        t->digits++;
-    }
-    if (t->digits > 17)
-        t->digits = 17;
-    if (t->digits < 1)
-        t->digits = 1;
-    ritz_output4_name(at, name_end - at, name);
-    return found;
-}
-
-/* The line as a header of a matrix. */
-static bool read_header(text *t, ritz_output4_header *out)
-{
-    static const int64_t widths[2][4] = {{8, 8, 8, 8}, {16, 16, 8, 8}};
-    static const int64_t total[2] = {32, 48};
-    int64_t n[4] = {0};
-
-    for (int k = 0; k < 2; k++) {
-        ritz_output4_header h = {0};
-
-        if (t->line_end - t->line < total[k] ||
-            !read_fields(t->line, t->line + total[k], widths[k], 4, n) ||
-            !read_label(t->line + total[k], t->line_end, t, h.name))
-            continue;
-        h.ncol = n[0];
-        h.nrow = n[1] < 0 ? -n[1] : n[1];
-        h.bigmat = n[1] < 0 || n[1] >= 65536;
-        h.form = n[2];
-        h.type = n[3];
-        *out = h;
-        return h.ncol >= 0 && h.type >= 1 && h.type <= 4;
-    }
-    return false;
-}
-
-/* Take lines until one is not blank. */
-static bool take_filled_line(text *t)
-{
-    while (take_line(t))
-        if (ritz_decimal_skip(t->line, t->line_end) != t->line_end)
-            return true;
-    return false;
-}
 
 /* One number of the line, `k` fields from its left. */
-static ritz_status read_number(const text *t, const ritz_output4_build *build,
-                               int64_t k, double *out)
+static ritz_status read_number(const ritz_output4_text *t,
+                               const ritz_output4_build *build, int64_t k,
+                               double *out)
 {
     ritz_status status = RITZ_OK;
     ritz_decimal number = {0};
-    const char *left = t->line + k * t->width;
+    const char *left = t->lines.line + k * t->width;
     const char *end = NULL;
     const char *at = left;
 
-    RITZ_FAIL_IF(left >= t->line_end, RITZ_ERR_FORMAT,
+    RITZ_FAIL_IF(left >= t->lines.line_end, RITZ_ERR_FORMAT,
                  "line %" PRId64 ": column %" PRId64
                  " of '%s' wants more numbers than the %" PRId64 " here",
-                 line_number(t), build->column + 1, build->header.name, k);
-    end = t->line_end - left > t->width ? left + t->width : t->line_end;
+                 t->lines.number, build->column + 1, build->header.name, k);
+    end = t->lines.line_end - left > t->width ? left + t->width
+                                              : t->lines.line_end;
     at = ritz_decimal_skip(at, end);
     RITZ_FAIL_IF(!ritz_decimal_scan(&at, end, &number) ||
                      ritz_decimal_skip(at, end) != end,
                  RITZ_ERR_FORMAT,
                  "line %" PRId64 ": '%.*s' in column %" PRId64
                  " of '%s' is not a number",
-                 line_number(t), (int)(end - left), left, build->column + 1,
+                 t->lines.number, (int)(end - left), left, build->column + 1,
                  build->header.name);
     *out = number.value;
 done:
@@ -223,14 +48,14 @@ done:
 }
 
 /* `reals` numbers, n to a line, as values from row `row`. */
-static ritz_status read_numbers(text *t, ritz_output4_build *build, int64_t row,
-                                int64_t reals)
+static ritz_status read_numbers(ritz_output4_text *t, ritz_output4_build *build,
+                                int64_t row, int64_t reals)
 {
     ritz_status status = RITZ_OK;
     double number[2] = {0.0, 0.0};
     int64_t held = 0;
 
-    RITZ_FAIL_IF(reals / 2 > t->end - t->at, RITZ_ERR_FORMAT,
+    RITZ_FAIL_IF(reals / 2 > t->lines.end - t->lines.at, RITZ_ERR_FORMAT,
                  "column %" PRId64 " of '%s' wants %" PRId64
                  " numbers, more than are left in the file",
                  build->column + 1, build->header.name, reals);
@@ -239,7 +64,7 @@ static ritz_status read_numbers(text *t, ritz_output4_build *build, int64_t row,
         int64_t here =
             reals - done_ < t->per_line ? reals - done_ : t->per_line;
 
-        RITZ_FAIL_IF(!take_line(t), RITZ_ERR_FORMAT,
+        RITZ_FAIL_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
                      "column %" PRId64 " of '%s' ends after %" PRId64
                      " of %" PRId64 " numbers",
                      build->column + 1, build->header.name, done_, reals);
@@ -252,14 +77,14 @@ static ritz_status read_numbers(text *t, ritz_output4_build *build, int64_t row,
             ritz_output4_put(build, row++, number[0], number[1]);
             held = 0;
         }
-        RITZ_FAIL_IF(t->line_end - t->line > here * t->width &&
-                         ritz_decimal_skip(t->line + here * t->width,
-                                           t->line_end) != t->line_end,
-                     RITZ_ERR_FORMAT,
-                     "line %" PRId64 ": column %" PRId64
-                     " of '%s' wants no more than %" PRId64 " numbers here",
-                     line_number(t), build->column + 1, build->header.name,
-                     here);
+        RITZ_FAIL_IF(
+            t->lines.line_end - t->lines.line > here * t->width &&
+                ritz_decimal_skip(t->lines.line + here * t->width,
+                                  t->lines.line_end) != t->lines.line_end,
+            RITZ_ERR_FORMAT,
+            "line %" PRId64 ": column %" PRId64
+            " of '%s' wants no more than %" PRId64 " numbers here",
+            t->lines.number, build->column + 1, build->header.name, here);
         done_ += here;
     }
 done:
@@ -267,7 +92,7 @@ done:
 }
 
 /* The strings of one column by one reading of their headers. */
-static ritz_status read_strings(text *t, ritz_output4_build *build,
+static ritz_status read_strings(ritz_output4_text *t, ritz_output4_build *build,
                                 int64_t rule, int64_t wide, int64_t words)
 {
     ritz_status status = RITZ_OK;
@@ -276,20 +101,22 @@ static ritz_status read_strings(text *t, ritz_output4_build *build,
         ritz_output4_string string = {0};
         int64_t integers[2] = {0};
 
-        RITZ_FAIL_IF(!take_line(t), RITZ_ERR_FORMAT,
+        RITZ_FAIL_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
                      "column %" PRId64 " of '%s' ends after %" PRId64
                      " of %" PRId64 " words",
                      build->column + 1, build->header.name, words - left,
                      words);
-        RITZ_FAIL_IF(!read_integers(t, ritz_output4_integers(rule), integers) ||
-                         !ritz_output4_decode(build, rule, wide, integers, left,
-                                              &string),
-                     RITZ_ERR_FORMAT,
-                     "line %" PRId64
-                     ": '%.*s' begins no string of column %" PRId64
-                     " of '%s', of which %" PRId64 " words are to come",
-                     line_number(t), (int)(t->line_end - t->line) % 80, t->line,
-                     build->column + 1, build->header.name, left);
+        RITZ_FAIL_IF(
+            !ritz_output4_take_integers(t, ritz_output4_integers(rule),
+                                        integers) ||
+                !ritz_output4_decode(build, rule, wide, integers, left,
+                                     &string),
+            RITZ_ERR_FORMAT,
+            "line %" PRId64 ": '%.*s' begins no string of column %" PRId64
+            " of '%s', of which %" PRId64 " words are to come",
+            t->lines.number,
+            ritz_lines_quoted(t->lines.line, t->lines.line_end), t->lines.line,
+            build->column + 1, build->header.name, left);
         RITZ_TRY(read_numbers(t, build, string.row, string.reals));
         left -= string.words;
     }
@@ -302,11 +129,11 @@ done:
  * a double, so that is tried too; if none fits, the first one says what is
  * wrong.
  */
-static ritz_status read_sparse(text *t, ritz_output4_build *build,
+static ritz_status read_sparse(ritz_output4_text *t, ritz_output4_build *build,
                                int64_t words)
 {
     ritz_status status = RITZ_OK;
-    text start = *t;
+    ritz_output4_text start = *t;
     int64_t most = build->header.type % 2 == 0 ? 2 : 1;
     int64_t wide = build->wide > 0 ? build->wide : most;
 
@@ -334,20 +161,21 @@ static ritz_status read_sparse(text *t, ritz_output4_build *build,
  * What stands behind column NCOL + 1: numbers that nobody needs. NW may count
  * them or their words, so that after the first line a header may come.
  */
-static ritz_status skip_last(text *t, const ritz_output4_build *build,
-                             int64_t count)
+static ritz_status skip_last(ritz_output4_text *t,
+                             const ritz_output4_build *build, int64_t count)
 {
     ritz_status status = RITZ_OK;
     ritz_output4_header header = {0};
     double number = 0.0;
 
-    RITZ_FAIL_IF(!take_line(t), RITZ_ERR_FORMAT,
+    RITZ_FAIL_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
                  "the record that ends '%s' is cut short", build->header.name);
     RITZ_TRY(read_number(t, build, 0, &number));
     for (int64_t k = t->per_line; k < count; k += t->per_line) {
-        text ahead = *t;
+        ritz_output4_text ahead = *t;
 
-        if (!take_filled_line(&ahead) || read_header(&ahead, &header))
+        if (!ritz_output4_take_filled_line(&ahead) ||
+            ritz_output4_take_header(&ahead, &header))
             goto done;
         *t = ahead;
     }
@@ -356,16 +184,18 @@ done:
 }
 
 /* The column whose first line was taken; `last` if it ends the matrix. */
-static ritz_status read_column(text *t, ritz_output4_build *build, bool *last)
+static ritz_status read_column(ritz_output4_text *t, ritz_output4_build *build,
+                               bool *last)
 {
     ritz_status status = RITZ_OK;
     int64_t n[3] = {0};
     int64_t after = build->header.ncol + 1;
 
     RITZ_FAIL_IF(
-        !read_integers(t, 3, n) || n[1] < 0 || n[2] < 1, RITZ_ERR_FORMAT,
-        "line %" PRId64 ": '%.*s' begins no column of '%s'", line_number(t),
-        (int)(t->line_end - t->line) % 80, t->line, build->header.name);
+        !ritz_output4_take_integers(t, 3, n) || n[1] < 0 || n[2] < 1,
+        RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' begins no column of '%s'",
+        t->lines.number, ritz_lines_quoted(t->lines.line, t->lines.line_end),
+        t->lines.line, build->header.name);
     *last = n[0] == after;
     if (*last) {
         RITZ_TRY(skip_last(t, build, n[2]));
@@ -384,18 +214,19 @@ done:
     return status;
 }
 
-static ritz_status read_matrix(text *t, ritz_output4_list *list)
+static ritz_status read_matrix(ritz_output4_text *t, ritz_output4_list *list)
 {
     ritz_status status = RITZ_OK;
     ritz_output4_header header = {0};
     ritz_output4_build build = {0};
 
-    RITZ_FAIL_IF(!read_header(t, &header), RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": '%.*s' begins no matrix", line_number(t),
-                 (int)(t->line_end - t->line) % 80, t->line);
+    RITZ_FAIL_IF(!ritz_output4_take_header(t, &header), RITZ_ERR_FORMAT,
+                 "line %" PRId64 ": '%.*s' begins no matrix", t->lines.number,
+                 ritz_lines_quoted(t->lines.line, t->lines.line_end),
+                 t->lines.line);
     RITZ_TRY(ritz_output4_begin(list, &header, 0, &build));
     for (bool last = false; !last;) {
-        RITZ_FAIL_IF(!take_filled_line(t), RITZ_ERR_FORMAT,
+        RITZ_FAIL_IF(!ritz_output4_take_filled_line(t), RITZ_ERR_FORMAT,
                      "'%s' ends after column %" PRId64 " of %" PRId64,
                      header.name, build.column + 1, header.ncol);
         RITZ_TRY(read_column(t, &build, &last));
@@ -415,19 +246,20 @@ done:
 
 bool ritz_output4_is_text(const char *bytes, int64_t size)
 {
-    text t = {.begin = bytes, .at = bytes, .end = bytes + size};
+    ritz_output4_text t = {.lines = {.at = bytes, .end = bytes + size}};
     ritz_output4_header header = {0};
 
-    return take_filled_line(&t) && read_header(&t, &header);
+    return ritz_output4_take_filled_line(&t) &&
+           ritz_output4_take_header(&t, &header);
 }
 
 ritz_status ritz_output4_read_text(const char *bytes, int64_t size,
                                    ritz_output4_list *list)
 {
     ritz_status status = RITZ_OK;
-    text t = {.begin = bytes, .at = bytes, .end = bytes + size};
+    ritz_output4_text t = {.lines = {.at = bytes, .end = bytes + size}};
 
-    while (take_filled_line(&t))
+    while (ritz_output4_take_filled_line(&t))
         RITZ_TRY(read_matrix(&t, list));
 done:
     return status;

@@ -5,6 +5,7 @@
  * exponent has three digits, as many numbers as fit 80 letters. Sparse is
  * bigmat: it has no limit of rows. Binary has 4-byte integers in native order.
  */
+#include "formats/output4_put.h"
 #include "formats/sink.h"
 
 #include <ritz/foreign.h>
@@ -12,109 +13,19 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-enum {
-    MOST_8 = 99999999, /* in eight letters */
-    MOST_RECORD = 0x7fffffff,
-    LINE = 80,
-};
+enum { MOST_RECORD = 0x7fffffff };
 
-/* One file, and while it is written, one of its matrices. */
+/* All that one file gets. */
 typedef struct job {
     int64_t count;
     const ritz_matrix *matrix;
     ritz_output4_style style;
 } job;
 
-typedef struct writer {
-    FILE *file;
-    const ritz_matrix *matrix;
-    ritz_output4_style style;
-    int64_t numbers; /* per value: 1 real, 2 complex */
-    int width;       /* of a number in text */
-    int integer;     /* of an integer */
-    int64_t placed;  /* numbers on the present line */
-} writer;
-
 static bool is_zero(const ritz_matrix *m, int64_t p)
 {
     return m->A.val[p] == 0.0 && (!m->imaginary || m->imaginary[p] == 0.0);
-}
-
-/* Up to 8 letters, digits and '_', capitals, a letter first. */
-static void write_name(const char *name, char out[9])
-{
-    size_t used = 0;
-
-    memset(out, 0, 9);
-    for (; *name && used < 8; name++) {
-        char c = *name;
-        bool digit = c >= '0' && c <= '9';
-
-        if (c >= 'a' && c <= 'z')
-            c = (char)(c - 'a' + 'A');
-        if (!digit && (c < 'A' || c > 'Z'))
-            c = '_';
-        if (used == 0 && (digit || c == '_'))
-            out[used++] = 'M';
-        out[used++] = c;
-    }
-    if (used == 0)
-        out[used++] = 'M';
-    memset(out + used, ' ', 8 - used);
-}
-
-static void put_integers(const writer *w, int64_t count, const int64_t *n)
-{
-    for (int64_t k = 0; k < count; k++) {
-        int32_t narrow = (int32_t)n[k];
-
-        if (w->style.text)
-            fprintf(w->file, "%*" PRId64, w->integer, n[k]);
-        else
-            fwrite(&narrow, sizeof narrow, 1, w->file);
-    }
-    if (w->style.text)
-        fputc('\n', w->file);
-}
-
-static void put_number(writer *w, double number)
-{
-    if (!w->style.text) {
-        fwrite(&number, sizeof number, 1, w->file);
-        return;
-    }
-    fprintf(w->file, "%#*.*E", w->width, (int)w->style.digits - 1, number);
-    w->placed++;
-    if (w->placed == LINE / w->width) {
-        fputc('\n', w->file);
-        w->placed = 0;
-    }
-}
-
-/* The value of entry `p`, or zero if it is -1. */
-static void put_value(writer *w, int64_t p)
-{
-    put_number(w, p < 0 ? 0.0 : w->matrix->A.val[p]);
-    if (w->numbers == 2)
-        put_number(w, p < 0 ? 0.0 : w->matrix->imaginary[p]);
-}
-
-static void end_line(writer *w)
-{
-    if (w->style.text && w->placed > 0)
-        fputc('\n', w->file);
-    w->placed = 0;
-}
-
-/* The length in front of and behind a record of binary. */
-static void put_mark(const writer *w, int64_t bytes)
-{
-    int32_t mark = (int32_t)bytes;
-
-    if (!w->style.text)
-        fwrite(&mark, sizeof mark, 1, w->file);
 }
 
 /* First entry from `p` that is not zero; `end` if there is none. */
@@ -137,8 +48,8 @@ static int64_t end_of_run(const ritz_matrix *m, int64_t p, int64_t end)
 }
 
 /* Words in front of the data of a record: ICOL, IROW, NW; 4 bytes each. */
-static ritz_status begin_column(const writer *w, int64_t j, int64_t row,
-                                int64_t words)
+static ritz_status begin_column(const ritz_output4_writer *w, int64_t j,
+                                int64_t row, int64_t words)
 {
     ritz_status status = RITZ_OK;
 
@@ -146,13 +57,14 @@ static ritz_status begin_column(const writer *w, int64_t j, int64_t row,
                  RITZ_ERR_ARGUMENT,
                  "column %" PRId64 " of '%s' is too long for a record of 2 GiB",
                  j + 1, w->matrix->name);
-    put_mark(w, 4 * (words + 3));
-    put_integers(w, 3, (const int64_t[]){j + 1, row, words});
+    ritz_output4_put_mark(w, 4 * (words + 3));
+    ritz_output4_put_integers(w, 3, (const int64_t[]){j + 1, row, words});
 done:
     return status;
 }
 
-static ritz_status write_dense(writer *w, int64_t j, int64_t begin, int64_t end)
+static ritz_status write_dense(ritz_output4_writer *w, int64_t j, int64_t begin,
+                               int64_t end)
 {
     ritz_status status = RITZ_OK;
     const ritz_sparse *A = &w->matrix->A;
@@ -167,15 +79,15 @@ static ritz_status write_dense(writer *w, int64_t j, int64_t begin, int64_t end)
     words = rows * w->numbers * (w->style.text ? 1 : 2);
     RITZ_TRY(begin_column(w, j, first + 1, words));
     for (int64_t i = first; i < first + rows; i++)
-        put_value(w, A->rowind[p] == i ? p++ : -1);
-    end_line(w);
-    put_mark(w, 4 * (words + 3));
+        ritz_output4_put_value(w, A->rowind[p] == i ? p++ : -1);
+    ritz_output4_end_line(w);
+    ritz_output4_put_mark(w, 4 * (words + 3));
 done:
     return status;
 }
 
-static ritz_status write_sparse(writer *w, int64_t j, int64_t begin,
-                                int64_t end)
+static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
+                                int64_t begin, int64_t end)
 {
     ritz_status status = RITZ_OK;
     const ritz_matrix *m = w->matrix;
@@ -188,41 +100,17 @@ static ritz_status write_sparse(writer *w, int64_t j, int64_t begin,
     RITZ_TRY(begin_column(w, j, 0, words));
     for (int64_t p = begin, q = 0; p < end; p = next_entry(m, q, end)) {
         q = end_of_run(m, p, end);
-        put_integers(w, 2,
-                     (const int64_t[]){2 * w->numbers * (q - p) + 1,
-                                       m->A.rowind[p] + 1});
+        ritz_output4_put_integers(
+            w, 2,
+            (const int64_t[]){2 * w->numbers * (q - p) + 1,
+                              m->A.rowind[p] + 1});
         for (int64_t k = p; k < q; k++)
-            put_value(w, k);
-        end_line(w);
+            ritz_output4_put_value(w, k);
+        ritz_output4_end_line(w);
     }
-    put_mark(w, 4 * (words + 3));
+    ritz_output4_put_mark(w, 4 * (words + 3));
 done:
     return status;
-}
-
-static void write_header(const writer *w)
-{
-    const ritz_matrix *m = w->matrix;
-    int64_t nrow = w->style.sparse ? -m->A.nrow : m->A.nrow;
-    int64_t square = m->A.nrow == m->A.ncol ? 1 : 2;
-    int64_t n[4] = {m->A.ncol, nrow, square, 2 * w->numbers};
-    bool wide = n[0] > MOST_8 || nrow > MOST_8 || nrow < -MOST_8 / 10;
-    char name[9];
-
-    if (m->symmetric && square == 1)
-        n[2] = 6;
-    write_name(m->name, name);
-    put_mark(w, 24);
-    if (w->style.text) {
-        fprintf(w->file, "%*" PRId64 "%*" PRId64 "%8" PRId64 "%8" PRId64 "%s",
-                wide ? 16 : 8, n[0], wide ? 16 : 8, n[1], n[2], n[3], name);
-        fprintf(w->file, "1P,%dE%d.%d%s\n", LINE / w->width, w->width,
-                (int)w->style.digits - 1, wide ? "|I16" : "");
-    } else {
-        put_integers(w, 4, n);
-        fwrite(name, 1, 8, w->file);
-    }
-    put_mark(w, 24);
 }
 
 /* What cannot be written is refused before anything is. */
@@ -236,14 +124,7 @@ static ritz_status check(const ritz_matrix *m, const ritz_output4_style *style)
                  "'%s' is %" PRId64 " x %" PRId64
                  ", too large for 4-byte integers",
                  m->name, m->A.nrow, m->A.ncol);
-    for (int64_t j = 0; j < m->A.ncol; j++)
-        for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++)
-            RITZ_FAIL_IF(!isfinite(m->A.val[p]) ||
-                             (m->imaginary && !isfinite(m->imaginary[p])),
-                         RITZ_ERR_ARGUMENT,
-                         "row %" PRId64 " of column %" PRId64
-                         " of '%s' is not finite",
-                         m->A.rowind[p] + 1, j + 1, m->name);
+    RITZ_TRY(ritz_sink_check(m));
 done:
     return status;
 }
@@ -269,14 +150,15 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
                                 const ritz_output4_style *style)
 {
     ritz_status status = RITZ_OK;
-    writer w = {.file = file, .matrix = m, .style = *style};
+    ritz_output4_writer w = {.file = file, .matrix = m, .style = *style};
     int64_t last = m->A.ncol;
 
     RITZ_TRY(check(m, style));
     w.numbers = m->imaginary ? 2 : 1;
     w.width = number_width(m, style->digits);
-    w.integer = last >= MOST_8 || m->A.nrow > MOST_8 ? 16 : 8;
-    write_header(&w);
+    w.integer =
+        last >= RITZ_OUTPUT4_MOST_8 || m->A.nrow > RITZ_OUTPUT4_MOST_8 ? 16 : 8;
+    ritz_output4_put_header(&w);
     for (int64_t j = 0; j < last; j++) {
         int64_t end = m->A.colptr[j + 1];
         int64_t begin = next_entry(m, m->A.colptr[j], end);
@@ -287,9 +169,9 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
             RITZ_TRY(write_dense(&w, j, begin, end));
     }
     RITZ_TRY(begin_column(&w, last, 1, style->text ? 1 : 2));
-    put_number(&w, sqrt(2.0));
-    end_line(&w);
-    put_mark(&w, 20);
+    ritz_output4_put_number(&w, sqrt(2.0));
+    ritz_output4_end_line(&w);
+    ritz_output4_put_mark(&w, 20);
 done:
     return status;
 }

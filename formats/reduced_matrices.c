@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,7 +46,7 @@ static ritz_status fill(const entry *e, const ritz_dense *A, ritz_matrix *out)
         }
         out->A.colptr[j + 1] = at;
     }
-    strcpy(out->name, e->name);
+    snprintf(out->name, sizeof out->name, "%s", e->name);
     out->symmetric = e->symmetric;
     out->digits = 17;
 done:

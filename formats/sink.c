@@ -3,6 +3,8 @@
 #include "base/draft.h"
 
 #include <errno.h>
+#include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 ritz_status ritz_sink_write(const char *path,
@@ -29,5 +31,21 @@ done:
     if (file)
         fclose(file);
     ritz_draft_free(&draft);
+    return status;
+}
+
+ritz_status ritz_sink_check(const ritz_matrix *m)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t j = 0; j < m->A.ncol; j++)
+        for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++)
+            RITZ_FAIL_IF(!isfinite(m->A.val[p]) ||
+                             (m->imaginary && !isfinite(m->imaginary[p])),
+                         RITZ_ERR_ARGUMENT,
+                         "row %" PRId64 " of column %" PRId64
+                         " of '%s' is not finite",
+                         m->A.rowind[p] + 1, j + 1, m->name);
+done:
     return status;
 }

@@ -2,7 +2,7 @@
 #ifndef RITZ_FORMATS_SINK_H
 #define RITZ_FORMATS_SINK_H
 
-#include <ritz/status.h>
+#include <ritz/foreign.h>
 
 #include <stdio.h>
 
@@ -14,5 +14,8 @@
 ritz_status ritz_sink_write(const char *path,
                             ritz_status (*write)(FILE *file, const void *what),
                             const void *what);
+
+/** Refuse a matrix that holds a value that is not finite, naming it. */
+ritz_status ritz_sink_check(const ritz_matrix *m);
 
 #endif

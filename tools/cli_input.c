@@ -3,13 +3,18 @@
 
 #include <ritz/text.h>
 
+#include <cblas.h>
+
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Bytes of input above which work takes longer than starting once more: a
- * start is 15 ms, and so is the factor of a matrix of this size (measured). */
+/*
+ * Bytes of input from which more threads than one are worth their price. Below
+ * it threads that wait for each other cost more than they bring: ten times the
+ * whole run where other work keeps the cores busy (measured on data/dualspin).
+ */
 enum { LARGE = 1 << 20 };
 
 /*
@@ -27,6 +32,8 @@ static void limit_threads(cli_run *run, const struct stat *file)
 
     run->piped = run->piped || !S_ISREG(file->st_mode);
     run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
+    openblas_set_num_threads(
+        run->bytes < LARGE ? 1 : (int)sysconf(_SC_NPROCESSORS_ONLN));
     if (!run->program->threads || run->bytes < LARGE || run->piped ||
         json_array_size(run->warnings) > 0 || getenv("OMP_THREAD_LIMIT"))
         return;
@@ -36,7 +43,8 @@ static void limit_threads(cli_run *run, const struct stat *file)
     self[length] = '\0';
     snprintf(cores, sizeof cores, "%ld", sysconf(_SC_NPROCESSORS_ONLN));
     if (setenv("OMP_THREAD_LIMIT", cores, 1) == 0 &&
-        setenv("OMP_NUM_THREADS", cores, 0) == 0)
+        setenv("OMP_NUM_THREADS", cores, 0) == 0 &&
+        setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
         execv(self, run->argv);
 }
 

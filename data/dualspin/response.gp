@@ -1,5 +1,5 @@
 # Responses of the gyroscope to the bearing torque, full model and reduced, and
-# the error below: gnuplot -e "angles='60 180 300'; out='overview.svg'" FILE
+# the error below: gnuplot -e "angles='60 180 300'; order='46'; out='overview.svg'" FILE
 #
 # Columns of the data: hertz, magnitude and phase in degrees, first of the full
 # model, then of the reduced one at the same frequencies.
@@ -36,7 +36,7 @@ do for [k = 1:n] {
     set yrange [S_min * 0.3:S_max * 3]
     plot files(a) \
         using 1:2 with lines lw 5 lc rgb "#9ecae1" title "full model, 296 dofs", \
-        "" using 1:5 with lines lw 1.4 lc rgb "#b2182b" title "reduced"
+        "" using 1:5 with lines lw 1.4 lc rgb "#b2182b" title sprintf("reduced, %s dofs", order)
     unset label 1
 
     set tmargin at screen 0.36

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Move `used` bytes into a block of `size`, the rest of it zero. */
 static ritz_status grow(char **text, int64_t used, int64_t size)
@@ -23,8 +24,23 @@ done:
     return status;
 }
 
+/* What a regular file says it holds; 0 for a pipe, and where nothing is said. */
+static int64_t stated_size(FILE *file)
+{
+    struct stat about;
+
+    if (fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode))
+        return 0;
+    return about.st_size < INT64_MAX / 4 ? about.st_size : INT64_MAX / 4;
+}
+
+/*
+ * The size that is stated is a first guess, good for reading at once; a byte
+ * more than that is asked for, and doubled blocks follow if it comes.
+ */
 ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
 {
+    enum { SMALLEST = 4096 };
     ritz_status status = RITZ_OK;
     char *bytes = NULL;
     int64_t used = 0;
@@ -34,7 +50,8 @@ ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
     RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
                  strerror(errno));
     while (used == room) { /* full: there may be more */
-        room = room > 0 ? 2 * room : 4096;
+        room = room > 0 ? 2 * room : stated_size(file) + 1;
+        room = room < SMALLEST ? SMALLEST : room;
         RITZ_TRY(grow(&bytes, used, room + 1));
         used += (int64_t)fread(bytes + used, 1, (size_t)(room - used), file);
     }

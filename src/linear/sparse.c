@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/search.h"
 
 #include <ritz/sparse.h>
 
@@ -282,21 +283,13 @@ done:
     return status;
 }
 
-/* A(i,j), 0 where nothing is stored: binary search in column j. */
+/* A(i,j), 0 where nothing is stored. */
 static double entry(const ritz_sparse *A, int64_t i, int64_t j)
 {
-    int64_t low = A->colptr[j];
-    int64_t high = A->colptr[j + 1];
+    int64_t p = A->colptr[j];
+    int64_t k = ritz_search(A->colptr[j + 1] - p, A->rowind + p, i);
 
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (A->rowind[middle] < i)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < A->colptr[j + 1] && A->rowind[low] == i ? A->val[low] : 0.0;
+    return k < 0 ? 0.0 : A->val[p + k];
 }
 
 double ritz_sparse_max(const ritz_sparse *A)

@@ -1,5 +1,6 @@
 /* Where grids are, along which axes they move, and rigid-body geometry. */
 #include "base/alloc.h"
+#include "base/search.h"
 
 #include <ritz/component.h>
 
@@ -10,18 +11,7 @@
 
 int64_t ritz_grids_find(const ritz_grids *grids, int64_t id)
 {
-    int64_t low = 0;
-    int64_t high = grids->count;
-
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (grids->id[middle] < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < grids->count && grids->id[low] == id ? low : -1;
+    return ritz_search(grids->count, grids->id, id);
 }
 
 /* Displacement axes of a grid, row by row; the basic ones if it has none. */

@@ -32,8 +32,8 @@ static double common(const ritz_nodes *nodes, int64_t i, int64_t j)
     const double *b = ritz_nodes_axes(nodes, j);
     double sum = 0.0;
 
-    for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++)
+    for (int64_t p = 0; p < 3; p++)
+        for (int64_t q = 0; q < 3; q++)
             if (nodes->row[3 * i + p] >= 0 && nodes->row[3 * j + q] >= 0) {
                 double cosine = dot(a + 3 * p, b + 3 * q);
 

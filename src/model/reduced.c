@@ -2,6 +2,8 @@
 
 #include <ritz/reduced.h>
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,43 @@ static ritz_status project_sparse(const ritz_sparse *A, const ritz_dense *T,
     ritz_dense_symmetrise(out);
 done:
     ritz_dense_free(&AT);
+    return status;
+}
+
+/*
+ * Rigid-body motions cost no energy: what T'KT shows for them is rounding of
+ * |T|'|K||T|, and is taken for the zero that it stands for. Left as it is, it
+ * would mix flexible motion into the rigid modes of every system assembled from
+ * this body.
+ */
+static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
+                                ritz_dense *Kr)
+{
+    const double rounding = 64.0 * DBL_EPSILON;
+    ritz_status status = RITZ_OK;
+    const ritz_dense *T = &basis->T;
+    double *energy = NULL;
+
+    RITZ_NEW(energy, T->nrow);
+    for (int64_t j = 0; j < T->ncol; j++) {
+        if (basis->columns.kind[j] != RITZ_COLUMN_RIGID)
+            continue;
+        memset(energy, 0, (size_t)T->nrow * sizeof *energy);
+        for (int64_t c = 0; c < K->ncol; c++)
+            for (int64_t p = K->colptr[c]; p < K->colptr[c + 1]; p++)
+                energy[K->rowind[p]] +=
+                    fabs(K->val[p] * ritz_dense_col(T, j)[c]);
+        for (int64_t i = 0; i < T->ncol; i++) {
+            double most = 0.0;
+
+            for (int64_t k = 0; k < T->nrow; k++)
+                most += fabs(ritz_dense_col(T, i)[k]) * energy[k];
+            if (fabs(ritz_dense_col(Kr, j)[i]) <= rounding * most)
+                ritz_dense_col(Kr, j)[i] = ritz_dense_col(Kr, i)[j] = 0.0;
+        }
+    }
+done:
+    free(energy);
     return status;
 }
 
@@ -151,6 +190,7 @@ ritz_status ritz_reduce(const ritz_component *component,
                  "give it as a modal ratio");
     RITZ_TRY(keep_names(component, basis, &reduced));
     RITZ_TRY(project_sparse(&component->K, T, &reduced.K));
+    RITZ_TRY(settle_rigid(&component->K, basis, &reduced.K));
     RITZ_TRY(project_sparse(&component->M, T, &reduced.M));
     if (component->D.colptr)
         RITZ_TRY(project_sparse(&component->D, T, &reduced.D));

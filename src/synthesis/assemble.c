@@ -19,7 +19,6 @@
 #include <ritz/monitor.h>
 #include <ritz/synthesis.h>
 
-#include <cblas.h>
 #include <lapacke.h>
 
 #include <inttypes.h>
@@ -304,7 +303,7 @@ done:
     return status;
 }
 
-/* X = sum_k P_k' A_k P_k of what the bodies have. */
+/* sum_k P_k' A_k P_k of stiffness and mass. */
 static ritz_status project_again(const ritz_stage *stage, const ritz_dense *P,
                                  ritz_dense *K, ritz_dense *M)
 {
@@ -315,36 +314,57 @@ static ritz_status project_again(const ritz_stage *stage, const ritz_dense *P,
     return status;
 }
 
+/* Whether modes i and j lie apart; rigid ones do not, nor do clusters. */
+static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
+{
+    const double cluster = 1e-6;
+
+    return (i >= rigid || j >= rigid) &&
+           fabs(lambda[i] - lambda[j]) >
+               cluster * fmax(fabs(lambda[i]), fabs(lambda[j]));
+}
+
 /*
- * The eigensolver leaves rounding of the highest modes, eps lambda_max /
- * lambda_f, of each flexible mode in the rigid ones. Projected once more, K and
- * M show it, and to first order
+ * The eigensolver errs by eps lambda_max in every mode, which is much for the
+ * low ones and mixes flexible motion into the rigid ones. In modal coordinates
+ * K and M can be had again, each entry to its own rounding; what they lack of
+ * diag(lambda) and I corrects P to first order, P <- P (I + E):
  *
- *     Phi_r <- Phi_r - Phi_f Lambda_f^-1 K_fr,
- *     Phi_f <- Phi_f - Phi_r M_rf
+ *     E_ij = (K_ij - lambda_j M_ij) / (lambda_j - lambda_i),  modes apart,
+ *     E_ij = -M_ij / 2 within a cluster,  E_jj = (1 - M_jj) / 2
+ *
+ * [OgitaAishima2018]. On return lambda holds the Rayleigh quotients.
  */
-static ritz_status refine_rigid(const ritz_stage *stage, int64_t r,
-                                const double *lambda, ritz_dense *P)
+static ritz_status refine(const ritz_stage *stage, int64_t rigid,
+                          double *lambda, ritz_dense *P)
 {
     ritz_status status = RITZ_OK;
     int64_t e = P->ncol;
-    ritz_dense K = {0}, M = {0};
+    ritz_dense K = {0}, M = {0}, E = {0}, correction = {0};
 
     RITZ_TRY(project_again(stage, P, &K, &M));
-    for (int64_t j = 0; j < r; j++)
-        for (int64_t f = r; f < e; f++)
-            cblas_daxpy((int)P->nrow, -ritz_dense_col(&K, j)[f] / lambda[f],
-                        ritz_dense_col(P, f), 1, ritz_dense_col(P, j), 1);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    RITZ_TRY(project_again(stage, P, &K, &M));
-    for (int64_t f = r; f < e; f++)
-        for (int64_t j = 0; j < r; j++)
-            cblas_daxpy((int)P->nrow, -ritz_dense_col(&M, f)[j],
-                        ritz_dense_col(P, j), 1, ritz_dense_col(P, f), 1);
+    RITZ_TRY(ritz_dense_new(e, e, &E));
+    for (int64_t j = 0; j < e; j++)
+        lambda[j] = ritz_dense_col(&K, j)[j] / ritz_dense_col(&M, j)[j];
+    for (int64_t j = 0; j < e; j++)
+        for (int64_t i = 0; i < e; i++) {
+            double k = ritz_dense_col(&K, j)[i];
+            double m = ritz_dense_col(&M, j)[i];
+
+            ritz_dense_col(&E, j)[i] =
+                i == j ? 0.5 * (1.0 - m)
+                : lie_apart(lambda, rigid, i, j)
+                    ? (k - lambda[j] * m) / (lambda[j] - lambda[i])
+                    : -0.5 * m;
+        }
+    RITZ_TRY(ritz_dense_mul(P, &E, &correction));
+    for (int64_t k = 0; k < P->nrow * e; k++)
+        P->val[k] += correction.val[k];
 done:
     ritz_dense_free(&K);
     ritz_dense_free(&M);
+    ritz_dense_free(&E);
+    ritz_dense_free(&correction);
     return status;
 }
 
@@ -361,6 +381,8 @@ static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
     RITZ_TRY_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
     e = pairs.Phi.ncol;
     RITZ_TRY(ritz_dense_mul(P, &pairs.Phi, &Q));
+    for (int pass = 0; pass < 2; pass++)
+        RITZ_TRY(refine(stage, pairs.num_rigid, pairs.lambda, &Q));
     if (D.val)
         RITZ_TRY(ritz_dense_congruence(&D, &pairs.Phi, &c->D));
     RITZ_TRY(ritz_dense_new(e, e, &c->K));
@@ -371,7 +393,6 @@ static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
         ritz_dense_col(&c->M, j)[j] = 1.0;
     }
     c->num_rigid = pairs.num_rigid;
-    RITZ_TRY(refine_rigid(stage, c->num_rigid, c->lambda, &Q));
     ritz_dense_free(P);
     *P = Q;
     Q = (ritz_dense){0};

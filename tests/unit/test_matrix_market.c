@@ -263,6 +263,11 @@ static const char *const samples[] = {
     REAL "symmetric\r\n3 3 4\r\n1 2 3.5e+2\r\n2 1 3.5E2\r\n3 3 1\r\n1 1 7",
     "%%MatrixMarket matrix array real general\n% c\n2 3\n1\n2\n3\n4\n5\n6\n",
     "%%MatrixMarket matrix coordinate pattern symmetric\n3 3 2\n3 1\n2 2\n",
+    CPLX "general\n2 3 3\n1 1 1.5 -2\n2 3 0 1e-3\n1 2 -1 0\n",
+    REAL "skew-symmetric\n% c\n\n4 4 3\n2 1 1.\n4 3 -2D0\n3 1 .25\n",
+    "%%MatrixMarket matrix coordinate integer general\n2 2 2\n1 2 7\n2 2 9\n",
+    "%%MatrixMarket matrix array complex hermitian\n2 2\n1 0\n2 3\n4 0\n",
+    "%%MatrixMarket matrix array integer skew-symmetric\n3 3\n1 2\n3\n",
 };
 
 static void damaged_files_are_answered(void **state)

@@ -645,6 +645,66 @@ static void damaged_third_party_files_are_answered(void **state)
     }
 }
 
+/* Every length of the first headers and columns, then some along the file. */
+static void assert_many_cuts_are_answered(const char *bytes, int64_t size)
+{
+    for (int64_t cut = 0; cut < 600; cut++)
+        assert_answered(bytes, cut);
+    for (int64_t k = 0; k < 200; k++)
+        assert_answered(bytes, k * (size / 200) + k % 9);
+    for (int64_t cut = size - 40; cut < size; cut++)
+        assert_answered(bytes, cut);
+}
+
+/* A word of four bytes becomes one that lengths and places rarely are. */
+static void assert_odd_words_are_answered(const char *bytes, int64_t size)
+{
+    static const uint32_t words[] = {
+        0, 1, 0xffffffffU, 0x7fffffffU, 0x80000000U, 65536, 24, 0x01000000U};
+    char *damaged = malloc((size_t)size);
+    uint64_t seed = 4321;
+
+    for (int k = 0; k < 500; k++) {
+        int64_t within = k % 2 ? size : 1000; /* all, or where headers are */
+        int64_t place = 0;
+
+        seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
+        place = (int64_t)(seed >> 33) % (within / 4) * 4;
+        memcpy(damaged, bytes, (size_t)size);
+        memcpy(damaged + place, &words[k % 8], sizeof *words);
+        assert_answered(damaged, size);
+    }
+    free(damaged);
+}
+
+/* Binary of NASTRAN-95, dense and in strings, and of MYSTRAN. */
+static void damaged_files_of_public_solvers_are_answered(void **state)
+{
+    static const char *const files[] = {
+        "public_solvers/nastran95_inboard.op4",
+        "public_solvers/nastran95_inboard_dense.op4",
+        "public_solvers/nastran95_outboard.op4",
+        "public_solvers/mystran_inboard.op4",
+        "public_solvers/mystran_outboard_cb.op4",
+    };
+    char path[PATH_SIZE];
+    (void)state;
+
+    if (!external("", path))
+        skip();
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+        char *bytes = NULL;
+        int64_t size = 0;
+
+        external(files[k], path);
+        assert_ok(ritz_bytes_read(path, &size, &bytes));
+        assert_many_cuts_are_answered(bytes, size);
+        assert_corruption_is_answered(bytes, size);
+        assert_odd_words_are_answered(bytes, size);
+        free(bytes);
+    }
+}
+
 static ritz_status read_and_drop(const char *bytes, int64_t size)
 {
     ritz_matrices all = {0};
@@ -725,6 +785,7 @@ int main(void)
         cmocka_unit_test(all_third_party_files_are_read),
         cmocka_unit_test(damaged_text_is_answered),
         cmocka_unit_test(damaged_third_party_files_are_answered),
+        cmocka_unit_test(damaged_files_of_public_solvers_are_answered),
         cmocka_unit_test(every_allocation_may_fail),
     };
 

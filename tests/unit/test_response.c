@@ -33,7 +33,7 @@ done:
 /* H = 1 / (w_0^2 - w^2 + 2 i zeta w_0 w); i w H; -w^2 H. */
 static void one_dof_answers_as_the_textbook_says(void **state)
 {
-    const ritz_grid grid = {0.0, 3.0, 61, false, true};
+    const ritz_grid grid = {0.0, 3.0, 61, false, true, NULL};
     ritz_dense K = {0};
     ritz_dense M = {0};
     ritz_io io = {0};
@@ -66,7 +66,7 @@ static void one_dof_answers_as_the_textbook_says(void **state)
 /* |H| at its peak is 1 / (2 zeta sqrt(1 - zeta^2) w_0^2). */
 static void a_peak_at_a_ratio_of_1e_4_is_not_missed(void **state)
 {
-    const ritz_grid grid = {0.1, 3.0, 20, true, true};
+    const ritz_grid grid = {0.1, 3.0, 20, true, true, NULL};
     const ritz_damping faint = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
     ritz_dense K = {0};
     ritz_dense M = {0};
@@ -89,7 +89,7 @@ static void a_peak_at_a_ratio_of_1e_4_is_not_missed(void **state)
 
 static void a_grid_ascends_and_stays_in_its_range(void **state)
 {
-    const ritz_grid grid = {1.0, 100.0, 3, true, true};
+    const ritz_grid grid = {1.0, 100.0, 3, true, true, NULL};
     const double omega[] = {2.0 * pi * 10.0, 2.0 * pi * 99.9, 2.0 * pi, 0.0};
     const double zeta[] = {0.01, 0.01, 0.0, 0.5};
     int64_t count = 0;
@@ -170,7 +170,7 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
 {
     const ritz_damping rayleigh = {
         .kind = RITZ_DAMPING_RAYLEIGH, .a = 0.002, .b = 0.003};
-    const ritz_grid grid = {0.005, 0.6, 10, false, true};
+    const ritz_grid grid = {0.005, 0.6, 10, false, true, NULL};
 
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
@@ -201,7 +201,7 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
 /* Ratios on modes to twice the band, the rest by series or by factor. */
 static void direct_and_modal_agree_with_ratios(void **state)
 {
-    const ritz_grid grid = {0.001, 0.3, 8, false, true};
+    const ritz_grid grid = {0.001, 0.3, 8, false, true, NULL};
 
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
@@ -237,7 +237,7 @@ static void add_dampers(ritz_component *beam, double d, double k4)
 /* Z + M Phi E Phi'M where all modes have the ratio, is what is solved. */
 static void dampers_and_ratios_act_together_exactly(void **state)
 {
-    const ritz_grid grid = {0.01, 0.3, 12, false, false};
+    const ritz_grid grid = {0.01, 0.3, 12, false, false, NULL};
     ritz_component beam = {0};
     ritz_response direct = {0};
     ritz_response modal = {0};
@@ -259,7 +259,7 @@ static void dampers_and_ratios_act_together_exactly(void **state)
 /* D and K4 alone: the dense complex system solved by LAPACK. */
 static void dampers_alone_are_what_the_dense_system_says(void **state)
 {
-    const ritz_grid grid = {0.01, 0.3, 12, false, false};
+    const ritz_grid grid = {0.01, 0.3, 12, false, false, NULL};
     ritz_component beam = {0};
     ritz_response direct = {0};
 
@@ -291,8 +291,8 @@ static void rigid_motion_answers_with_its_mass(void **state)
     double m[] = {2.0, 0.0, 0.0, 2.0};
     const ritz_dense K = {2, 2, k};
     const ritz_dense M = {2, 2, m};
-    const ritz_grid low = {1e-5, 2e-5, 2, false, false};
-    const ritz_grid zero = {0.0, 0.1, 3, false, false};
+    const ritz_grid low = {1e-5, 2e-5, 2, false, false, NULL};
+    const ritz_grid zero = {0.0, 0.1, 3, false, false, NULL};
     double w = 2.0 * pi * 1e-5;
     ritz_io io = {0};
     ritz_response r = {0};
@@ -331,7 +331,7 @@ static void damping_that_couples_modes_is_solved_for(void **state)
     const ritz_dense K = {2, 2, k};
     const ritz_dense M = {2, 2, m};
     const ritz_dense D = {2, 2, d};
-    const ritz_grid grid = {0.05, 0.4, 15, false, true};
+    const ritz_grid grid = {0.05, 0.4, 15, false, true, NULL};
     ritz_io io = {0};
     ritz_response r = {0};
 
@@ -353,7 +353,7 @@ static void damping_that_couples_modes_is_solved_for(void **state)
 
 static void an_undamped_pole_is_refused_by_its_frequency(void **state)
 {
-    const ritz_grid grid = {0.5, 1.5, 3, false, false};
+    const ritz_grid grid = {0.5, 1.5, 3, false, false, NULL};
     ritz_dense K = {0};
     ritz_dense M = {0};
     ritz_io io = {0};
@@ -374,12 +374,12 @@ static void a_range_that_is_none_is_refused(void **state)
         ritz_grid grid;
         const char *words;
     } bad[] = {
-        {{1.0, 1.0, 3, false, false}, "no range"},
-        {{-1.0, 1.0, 3, false, false}, "no range"},
-        {{0.0, HUGE_VAL, 3, false, false}, "no range"},
-        {{0.0, 1.0, 1, false, false}, "at least two"},
-        {{0.0, 1.0, 3, true, false}, "cannot begin at 0"},
-        {{0.0, 1.0, INT64_MAX, false, true}, "too many"},
+        {{1.0, 1.0, 3, false, false, NULL}, "no range"},
+        {{-1.0, 1.0, 3, false, false, NULL}, "no range"},
+        {{0.0, HUGE_VAL, 3, false, false, NULL}, "no range"},
+        {{0.0, 1.0, 1, false, false, NULL}, "at least two"},
+        {{0.0, 1.0, 3, true, false, NULL}, "cannot begin at 0"},
+        {{0.0, 1.0, INT64_MAX, false, true, NULL}, "too many"},
     };
     ritz_component beam = {0};
     ritz_response r = {0};
@@ -391,20 +391,20 @@ static void a_range_that_is_none_is_refused(void **state)
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         assert_fails(ritz_grid_points(&bad[k].grid, 0, NULL, NULL, &count, &f),
                      RITZ_ERR_ARGUMENT, bad[k].words);
-    assert_fails(ritz_response_modal(&beam, &light, 0.5,
-                                     &(ritz_grid){0.1, 1.0, 3, false, false},
-                                     &r),
-                 RITZ_ERR_ARGUMENT, "cannot give a response up to 1 Hz");
-    assert_fails(ritz_response_direct(&beam, &light, 0,
-                                      &(ritz_grid){0.0, 0.1, 3, false, false},
-                                      &r),
-                 RITZ_ERR_SINGULAR, "rigid-body motion");
+    assert_fails(
+        ritz_response_modal(&beam, &light, 0.5,
+                            &(ritz_grid){0.1, 1.0, 3, false, false, NULL}, &r),
+        RITZ_ERR_ARGUMENT, "cannot give a response up to 1 Hz");
+    assert_fails(
+        ritz_response_direct(&beam, &light, 0,
+                             &(ritz_grid){0.0, 0.1, 3, false, false, NULL}, &r),
+        RITZ_ERR_SINGULAR, "rigid-body motion");
     ritz_component_free(&beam);
 }
 
 static ritz_status respond_once(const ritz_component *beam)
 {
-    const ritz_grid grid = {0.01, 0.05, 2, false, false};
+    const ritz_grid grid = {0.01, 0.05, 2, false, false, NULL};
     ritz_status status = RITZ_OK;
     ritz_response r = {0};
 

@@ -101,7 +101,7 @@ static ritz_status make_body(const tip_body *tip, ritz_component *out)
     body.grids.count = body.grids.num_frames = 1;
     body.grids.id[0] = TIP;
     body.grids.position[0] = 1.0;
-    for (int k = 0; k < 3; k++)
+    for (int64_t k = 0; k < 3; k++)
         body.grids.axes[4 * k] = 1.0;
     RITZ_TRY(ritz_component_settle(&body, false));
     RITZ_TRY(add_port(&body, "root", TIP));
@@ -333,6 +333,23 @@ static void all_modes_kept_lose_nothing(void **state)
     ritz_configuration_free(&full);
 }
 
+/* From above the mesh, not above the basis before, and as far as measured. */
+static void come_down(const ritz_configuration *full,
+                      const ritz_configuration *c, const double *left,
+                      double before[static 3])
+{
+    for (int k = 0; k < 3; k++) {
+        const double mesh = beta_of(full, k);
+        const double slack = mesh * rounding(full, k);
+
+        assert_true(beta_of(c, k) >= mesh - slack);
+        assert_true(beta_of(c, k) <= before[k] + slack);
+        if (left)
+            assert_near(beta_of(c, k), mesh, 1.1 * mesh * left[k] + slack);
+        before[k] = beta_of(c, k);
+    }
+}
+
 /*
  * Each further mode widens the subspace, so no frequency rises; none falls
  * below that of the mesh. What four modes leave of beta_1 to beta_3, relative,
@@ -352,7 +369,7 @@ static void few_modes_come_down_to_the_mesh(void **state)
     (void)state;
     join(8, &storch, &unreduced, &full);
     for (int w = 0; w < 2; w++) {
-        double before[3] = {INFINITY, INFINITY, INFINITY};
+        double before[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
 
         for (int64_t modes = 1; modes <= 6; modes++) {
             reduction way = list[w].way;
@@ -361,17 +378,7 @@ static void few_modes_come_down_to_the_mesh(void **state)
             way.modes = modes;
             join(8, &storch, &way, &c);
             assert_int_equal(c.K.ncol, modes + 6);
-            for (int k = 0; k < 3; k++) {
-                const double mesh = beta_of(&full, k);
-                const double slack = mesh * rounding(&full, k);
-
-                assert_true(beta_of(&c, k) >= mesh - slack);
-                assert_true(beta_of(&c, k) <= before[k] + slack);
-                if (modes == 4)
-                    assert_near(beta_of(&c, k), mesh,
-                                1.1 * mesh * list[w].left[k] + slack);
-                before[k] = beta_of(&c, k);
-            }
+            come_down(&full, &c, modes == 4 ? list[w].left : NULL, before);
             ritz_configuration_free(&c);
         }
     }
