@@ -33,8 +33,13 @@ static inline uint64_t ritz_binary_load(const unsigned char *at, int64_t size,
 }
 
 /** @p size bytes, 4 or 8, as an integer. */
-int64_t ritz_binary_integer(const ritz_binary *b, const unsigned char *at,
-                            int64_t size);
+static inline int64_t ritz_binary_integer(const ritz_binary *b,
+                                          const unsigned char *at, int64_t size)
+{
+    uint64_t bits = ritz_binary_load(at, size, b->big_endian);
+
+    return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
+}
 
 /** Take a record that is not empty; its size is -1 at the end of the file. */
 ritz_status ritz_binary_take(ritz_binary *b, ritz_binary_record *out);

@@ -8,14 +8,6 @@
 
 #include <inttypes.h>
 
-int64_t ritz_binary_integer(const ritz_binary *b, const unsigned char *at,
-                            int64_t size)
-{
-    uint64_t bits = ritz_binary_load(at, size, b->big_endian);
-
-    return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
-}
-
 bool ritz_binary_spelling(const char *bytes, int64_t size, ritz_binary *out)
 {
     const void *start = bytes;

@@ -5,245 +5,17 @@
  *
  *     M_e = P'MP,   K_e = P'KP,   e = Q - rank(C)
  *
- * The rank is what counts: a row of C that is rounding and no constraint would
- * give a wrong system [McDaniel2000, table 3.3]. Coordinates are scaled to unit
- * mass and the rows of one joint and kind by the largest among them, so that
- * rounding stays small beside constraints; C' = Q_1 R and a singular value
- * decomposition of the small R then show what is which. The system's modes
- * Phi_e are put into P, so that its coordinates are modal.
+ * The system's modes Phi_e are put into P, so that its coordinates are modal.
  */
 #include "base/alloc.h"
-#include "synthesis/joints.h"
+#include "synthesis/null_space.h"
 
 #include <ritz/eigen.h>
-#include <ritz/monitor.h>
 #include <ritz/synthesis.h>
 
-#include <lapacke.h>
-
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Singular values below this, relative to the largest, are rounding. */
-static const double rank_tolerance = 1e-9;
-
-static ritz_joint_end describe_end(const ritz_stage *stage,
-                                   const ritz_scene_place *place,
-                                   const ritz_port_map *port)
-{
-    return (ritz_joint_end){
-        .component = stage->scene->component[place->component].name,
-        .port = port->name,
-        .origin = port->origin,
-        .count = port->count,
-        .dof = port->dof,
-        .position = port->position,
-    };
-}
-
-/* The ports that a joint holds. */
-static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
-                              const ritz_port_map *port[2])
-{
-    for (int k = 0; k < 2; k++) {
-        port[k] = ritz_reduced_port(&stage->body[joint->between[k].component],
-                                    joint->between[k].port);
-        if (!port[k]) {
-            char what[RITZ_NAME_SIZE + 60];
-
-            snprintf(what, sizeof what, "scene, line %" PRId64 ": joint '%s'",
-                     joint->line, joint->name);
-            return ritz_context(RITZ_ERR_ARGUMENT, what);
-        }
-    }
-    return RITZ_OK;
-}
-
-/* Row of C, in scaled coordinates: ends of opposite sign. */
-static void fill_row(const ritz_stage *stage, const ritz_joint *joint,
-                     const ritz_port_map *const port[2],
-                     const ritz_constraint *c, const double *scale, int64_t row,
-                     ritz_dense *C)
-{
-    for (int end = 0; end < 2; end++) {
-        int64_t first = stage->first[joint->between[end].component];
-        const ritz_dense *map = &port[end]->map;
-
-        for (int64_t j = 0; j < map->ncol; j++) {
-            double sum = 0.0;
-
-            for (int64_t k = 0; k < c->num_terms[end]; k++)
-                sum +=
-                    c->factor[end][k] * ritz_dense_col(map, j)[c->row[end][k]];
-            ritz_dense_col(C, first + j)[row] +=
-                (end == 0 ? sum : -sum) * scale[first + j];
-        }
-    }
-}
-
-static double row_norm(const ritz_dense *C, int64_t row)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < C->ncol; j++) {
-        double x = ritz_dense_col(C, j)[row];
-
-        sum += x * x;
-    }
-    return sqrt(sum);
-}
-
-/* Divide the rows of each kind by the largest norm among them. */
-static void level(const ritz_constraints *list, int64_t first, ritz_dense *C)
-{
-    double most[2] = {0.0, 0.0};
-
-    for (int64_t k = 0; k < list->count; k++) {
-        int kind = list->item[k].rotation;
-
-        most[kind] = fmax(most[kind], row_norm(C, first + k));
-    }
-    for (int64_t k = 0; k < list->count; k++)
-        for (int64_t j = 0; j < C->ncol; j++)
-            if (most[list->item[k].rotation] > 0.0)
-                ritz_dense_col(C, j)[first + k] /= most[list->item[k].rotation];
-}
-
-/* The constraints of every joint, and how many there are. */
-static ritz_status list_all(const ritz_stage *stage, const double *angle_deg,
-                            ritz_constraints *list, int64_t *count)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_scene *scene = stage->scene;
-    int64_t hinge = 0;
-
-    *count = 0;
-    for (int64_t j = 0; j < scene->num_joints; j++) {
-        const ritz_joint *joint = &scene->joint[j];
-        const ritz_port_map *port[2] = {NULL, NULL};
-        ritz_joint_end end[2];
-        bool turns = joint->type == RITZ_JOINT_HINGE;
-
-        RITZ_TRY(find_ports(stage, joint, port));
-        for (int k = 0; k < 2; k++)
-            end[k] = describe_end(stage, &joint->between[k], port[k]);
-        RITZ_TRY(ritz_joint_constrain(
-            joint, end, turns ? angle_deg[hinge] : 0.0, &list[j]));
-        hinge += turns;
-        *count += list[j].count;
-    }
-done:
-    return status;
-}
-
-ritz_status ritz_stage_constraints(const ritz_stage *stage,
-                                   const double *angle_deg, const double *scale,
-                                   ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_scene *scene = stage->scene;
-    ritz_constraints *list = NULL;
-    ritz_dense C = {0};
-    int64_t count = 0;
-    int64_t first = 0;
-
-    RITZ_NEW(list, scene->num_joints);
-    RITZ_TRY(list_all(stage, angle_deg, list, &count));
-    RITZ_TRY(ritz_dense_new(count, stage->num_coordinates, &C));
-    for (int64_t j = 0; j < scene->num_joints; j++) {
-        const ritz_port_map *port[2] = {NULL, NULL};
-
-        RITZ_TRY(find_ports(stage, &scene->joint[j], port));
-        for (int64_t k = 0; k < list[j].count; k++)
-            fill_row(stage, &scene->joint[j], port, &list[j].item[k], scale,
-                     first + k, &C);
-        level(&list[j], first, &C);
-        first += list[j].count;
-    }
-    *out = C;
-    C = (ritz_dense){0};
-done:
-    for (int64_t j = 0; list && j < scene->num_joints; j++)
-        ritz_constraints_free(&list[j]);
-    free(list);
-    ritz_dense_free(&C);
-    return status;
-}
-
-/* How many singular values are more than rounding. */
-static int64_t count_rank(int64_t count, const double *sigma)
-{
-    int64_t rank = 0;
-
-    while (rank < count && sigma[rank] > rank_tolerance * sigma[0])
-        rank++;
-    return rank;
-}
-
-/*
- * N = Q_1 [U_2, 0; 0, I] with C' = Q_1 [R; 0], R = U S W', U_2 the left vectors
- * of no singular value: orthonormal, spans the null space of C.
- */
-static ritz_status find_null_space(const ritz_dense *C, int64_t *rank,
-                                   ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t n = C->ncol;
-    int64_t c = C->nrow < n ? C->nrow : n;
-    ritz_dense F = {0}, R = {0}, U = {0}, N = {0};
-    double *tau = NULL, *sigma = NULL, *work = NULL;
-
-    RITZ_NEW(tau, c);
-    RITZ_NEW(sigma, c);
-    RITZ_NEW(work, c);
-    RITZ_TRY(ritz_dense_new(n, C->nrow, &F));
-    RITZ_TRY(ritz_dense_new(c, C->nrow, &R));
-    RITZ_TRY(ritz_dense_new(c, c, &U));
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < C->nrow; i++)
-            ritz_dense_col(&F, i)[j] = ritz_dense_col(C, j)[i];
-    *rank = 0;
-    if (c > 0) {
-        RITZ_FAIL_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)n, (int)C->nrow,
-                                    F.val, (int)n, tau) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
-        for (int64_t j = 0; j < C->nrow; j++)
-            for (int64_t i = 0; i <= j && i < c; i++)
-                ritz_dense_col(&R, j)[i] = ritz_dense_col(&F, j)[i];
-        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', (int)c,
-                                    (int)C->nrow, R.val, (int)c, sigma, U.val,
-                                    (int)c, NULL, 1, work) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "singular values of the constraints do not converge");
-        *rank = count_rank(c, sigma);
-    }
-    RITZ_TRY(ritz_dense_new(n, n - *rank, &N));
-    for (int64_t j = *rank; j < n; j++)
-        if (j < c)
-            memcpy(ritz_dense_col(&N, j - *rank), ritz_dense_col(&U, j),
-                   (size_t)c * sizeof *N.val);
-        else
-            ritz_dense_col(&N, j - *rank)[j] = 1.0;
-    if (c > 0 && N.ncol > 0)
-        RITZ_FAIL_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', (int)n,
-                                    (int)N.ncol, (int)c, F.val, (int)n, tau,
-                                    N.val, (int)n) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
-    *out = N;
-    N = (ritz_dense){0};
-done:
-    free(tau);
-    free(sigma);
-    free(work);
-    ritz_dense_free(&F);
-    ritz_dense_free(&R);
-    ritz_dense_free(&U);
-    ritz_dense_free(&N);
-    return status;
-}
 
 /* Rows first..first+count-1 of P. */
 static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
@@ -445,7 +217,7 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage,
     RITZ_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
     RITZ_TRY(ritz_stage_constraints(stage, angle_deg, scale, &C));
-    RITZ_TRY(find_null_space(&C, &c.rank, &P));
+    RITZ_TRY(ritz_null_space(&C, &c.rank, &P));
     for (int64_t j = 0; j < P.ncol; j++)
         for (int64_t i = 0; i < P.nrow; i++)
             ritz_dense_col(&P, j)[i] *= scale[i];

@@ -8,10 +8,10 @@
  * and T is the identity but for the rows of the slaves, so K stays sparse.
  */
 #include "base/alloc.h"
+#include "synthesis/eliminate.h"
+#include "synthesis/held.h"
 #include "synthesis/placement.h"
 
-#include <ritz/container.h>
-#include <ritz/monitor.h>
 #include <ritz/synthesis.h>
 
 #include <inttypes.h>
@@ -20,212 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pivot_tolerance = 1e-9; /* of rows of largest norm 1 */
-
-/* The bodies, and the dofs at which they may meet. */
-typedef struct parts {
-    const ritz_scene *scene;
-    int64_t count;
-    ritz_component *body;
-    ritz_dofs *held;  /* dofs of all ports of each body */
-    int64_t *first;   /* of each body's dofs among all N */
-    int64_t num_dofs; /* N */
-    ritz_stage stage; /* whose coordinates are the held dofs */
-    int64_t *row;     /* of each such coordinate among all N */
-} parts;
-
-static void free_parts(parts *p)
-{
-    for (int64_t k = 0; k < p->count; k++) {
-        if (p->body)
-            ritz_component_free(&p->body[k]);
-        if (p->held)
-            ritz_dofs_free(&p->held[k]);
-    }
-    free(p->body);
-    free(p->held);
-    free(p->first);
-    free(p->row);
-    ritz_stage_free(&p->stage);
-}
-
-/* Where held dof `dof` of a body comes among those held. */
-static int64_t find_held(const ritz_dofs *held, int64_t dof)
-{
-    int64_t k = 0;
-
-    while (held->at[k] != dof)
-        k++;
-    return k;
-}
-
-/* A port's rows from the held dofs alone. */
-static ritz_status hold_port(const ritz_component *component,
-                             const ritz_port *port, const ritz_dofs *held,
-                             ritz_port_map *map)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense turn = {0};
-
-    memcpy(map->name, port->name, sizeof map->name);
-    memcpy(map->origin, port->origin, sizeof map->origin);
-    map->count = port->dofs.count;
-    RITZ_TRY(ritz_port_turn(component, port, &turn, &map->dof));
-    RITZ_NEW(map->position, 3 * map->count);
-    for (int64_t i = 0; i < map->count; i++) {
-        int64_t k = ritz_grids_find(&component->grids, map->dof[i].grid);
-
-        if (k >= 0)
-            memcpy(map->position + 3 * i, component->grids.position + 3 * k,
-                   3 * sizeof *map->position);
-    }
-    RITZ_TRY(ritz_dense_new(map->count, held->count, &map->map));
-    for (int64_t j = 0; j < map->count; j++)
-        memcpy(ritz_dense_col(&map->map, find_held(held, port->dofs.at[j])),
-               ritz_dense_col(&turn, j), (size_t)map->count * sizeof *turn.val);
-done:
-    ritz_dense_free(&turn);
-    return status;
-}
-
-/* A body of which only the held dofs are seen. */
-static ritz_status hold_body(const ritz_component *component,
-                             const ritz_dofs *held, ritz_reduced *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_reduced body = {.num_dofs = component->num_dofs};
-
-    RITZ_TRY(ritz_dense_new(held->count, held->count, &body.K));
-    RITZ_TRY(ritz_dense_new(held->count, held->count, &body.M));
-    RITZ_NEW(body.port, component->num_ports);
-    for (int64_t k = 0; k < component->num_ports; k++) {
-        body.num_ports++;
-        RITZ_TRY(
-            hold_port(component, &component->port[k], held, &body.port[k]));
-    }
-    *out = body;
-    body = (ritz_reduced){0};
-done:
-    ritz_reduced_free(&body);
-    return status;
-}
-
-static ritz_status load_body(const char *model, ritz_component *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_summary summary = {0};
-
-    RITZ_TRY(ritz_container_summary(model, &summary));
-    RITZ_FAIL_IF(strcmp(summary.kind, "reduced") == 0, RITZ_ERR_ARGUMENT,
-                 "'%s' is reduced already, its full model is wanted", model);
-    RITZ_TRY(ritz_container_read_component(model, out));
-done:
-    ritz_summary_free(&summary);
-    return status;
-}
-
-static ritz_status load(const ritz_scene *scene, parts *p)
-{
-    ritz_status status = RITZ_OK;
-
-    p->scene = scene;
-    RITZ_NEW(p->body, scene->num_components);
-    RITZ_NEW(p->held, scene->num_components);
-    RITZ_NEW(p->first, scene->num_components);
-    for (int64_t k = 0; k < scene->num_components; k++) {
-        p->count++;
-        p->first[k] = p->num_dofs;
-        RITZ_TRY_IN(scene->component[k].name,
-                    load_body(scene->component[k].model, &p->body[k]));
-        p->num_dofs += p->body[k].num_dofs;
-        RITZ_TRY(ritz_component_attached(&p->body[k], NULL, &p->held[k]));
-    }
-done:
-    return status;
-}
-
-/* The stage of held dofs, and where its coordinates are among all. */
-static ritz_status hold(parts *p)
-{
-    ritz_status status = RITZ_OK;
-    ritz_reduced *body = NULL;
-
-    RITZ_NEW(body, p->count);
-    for (int64_t k = 0; k < p->count; k++)
-        RITZ_TRY_IN(p->scene->component[k].name,
-                    hold_body(&p->body[k], &p->held[k], &body[k]));
-    RITZ_TRY(ritz_stage_from(p->scene, body, &p->stage));
-    RITZ_NEW(p->row, p->stage.num_coordinates);
-    for (int64_t k = 0; k < p->count; k++)
-        for (int64_t j = 0; j < p->held[k].count; j++)
-            p->row[p->stage.first[k] + j] = p->first[k] + p->held[k].at[j];
-done:
-    for (int64_t k = 0; body && k < p->count; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    return status;
-}
-
-/* Row and column of the largest entry left; later columns win ties. */
-static double find_pivot(const ritz_dense *C, int64_t from,
-                         const int64_t *pivot_of, int64_t *row, int64_t *col)
-{
-    double best = 0.0;
-
-    for (int64_t j = C->ncol - 1; j >= 0; j--)
-        for (int64_t i = from; i < C->nrow && pivot_of[j] < 0; i++)
-            if (fabs(ritz_dense_col(C, j)[i]) > best) {
-                best = fabs(ritz_dense_col(C, j)[i]);
-                *row = i;
-                *col = j;
-            }
-    return best;
-}
-
-static void swap_rows(ritz_dense *C, int64_t a, int64_t b)
-{
-    for (int64_t j = 0; j < C->ncol; j++) {
-        double *column = ritz_dense_col(C, j);
-        double kept = column[a];
-
-        column[a] = column[b];
-        column[b] = kept;
-    }
-}
-
-/*
- * Reduce C to rows with a unit slave each: pivot_of[j] is the row in which
- * column j is the slave, -1 for masters.
- */
-static void eliminate(ritz_dense *C, int64_t *pivot_of)
-{
-    int64_t row = 0;
-    int64_t col = 0;
-
-    for (int64_t j = 0; j < C->ncol; j++)
-        pivot_of[j] = -1;
-    for (int64_t k = 0; k < C->nrow; k++) {
-        if (find_pivot(C, k, pivot_of, &row, &col) <= pivot_tolerance)
-            return;
-        swap_rows(C, k, row);
-        pivot_of[col] = k;
-        for (int64_t j = 0; j < C->ncol; j++) {
-            double *column = ritz_dense_col(C, j);
-
-            if (j == col)
-                continue;
-            column[k] /= ritz_dense_col(C, col)[k];
-            for (int64_t i = 0; i < C->nrow; i++)
-                if (i != k)
-                    column[i] -= ritz_dense_col(C, col)[i] * column[k];
-        }
-        memset(ritz_dense_col(C, col), 0, (size_t)C->nrow * sizeof *C->val);
-        ritz_dense_col(C, col)[k] = 1.0;
-    }
-}
-
 /* T from the reduced constraints; master[j] is the dof of its column j. */
-static ritz_status make_basis(const parts *p, const ritz_dense *C,
+static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
                               const int64_t *pivot_of, int64_t *master,
                               ritz_sparse *T)
 {
@@ -277,7 +73,7 @@ static const ritz_sparse *matrix_of(const ritz_component *body, size_t offset)
 }
 
 /* diag(A_1, A_2, ...), bodies without one giving nothing; {0} if none has. */
-static ritz_status stack(const parts *p, size_t offset, ritz_sparse *out)
+static ritz_status stack(const ritz_held *p, size_t offset, ritz_sparse *out)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse A = {0};
@@ -312,7 +108,7 @@ done:
     return status;
 }
 
-static ritz_status project_matrices(const parts *p, const ritz_sparse *T,
+static ritz_status project_matrices(const ritz_held *p, const ritz_sparse *T,
                                     ritz_component *system)
 {
     static const size_t offsets[] = {
@@ -336,7 +132,7 @@ done:
 }
 
 /* Scatter held coordinates to all dofs, then to masters: B = T' B. */
-static ritz_status project_io(const parts *p, const ritz_sparse *T,
+static ritz_status project_io(const ritz_held *p, const ritz_sparse *T,
                               ritz_io *out)
 {
     ritz_status status = RITZ_OK;
@@ -361,7 +157,7 @@ done:
 }
 
 /* Names of the masters; grids of all bodies where the angles put them. */
-static ritz_status name_dofs(const parts *p, const double *angle_deg,
+static ritz_status name_dofs(const ritz_held *p, const double *angle_deg,
                              const int64_t *master, ritz_component *system)
 {
     ritz_status status = RITZ_OK;
@@ -387,21 +183,20 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
 {
     ritz_status status = RITZ_OK;
     ritz_component system = {0};
-    parts p = {0};
+    ritz_held p = {0};
     ritz_dense C = {0};
     ritz_sparse T = {0};
     double *scale = NULL;
     int64_t *pivot_of = NULL, *master = NULL;
 
-    RITZ_TRY(load(scene, &p));
-    RITZ_TRY(hold(&p));
+    RITZ_TRY(ritz_held_load(scene, &p));
     RITZ_NEW(scale, p.stage.num_coordinates);
     for (int64_t j = 0; j < p.stage.num_coordinates; j++)
         scale[j] = 1.0;
     RITZ_TRY(ritz_stage_constraints(&p.stage, angle_deg, scale, &C));
     RITZ_NEW(pivot_of, C.ncol);
     RITZ_NEW(master, p.num_dofs);
-    eliminate(&C, pivot_of);
+    ritz_eliminate(&C, pivot_of);
     RITZ_TRY(make_basis(&p, &C, pivot_of, master, &T));
     system.num_dofs = T.ncol;
     RITZ_TRY(project_matrices(&p, &T, &system));
@@ -418,7 +213,7 @@ done:
     free(master);
     ritz_dense_free(&C);
     ritz_sparse_free(&T);
-    free_parts(&p);
+    ritz_held_free(&p);
     ritz_component_free(&system);
     return status;
 }

@@ -100,7 +100,7 @@ static void mystran_reduces_to_the_same_matrices(void **state)
     ritz_component component = {0};
     ritz_reduced ours = {0};
     ritz_dense K = {0}, M = {0}, T = {0}, G = {0}, MT = {0};
-    double s[40], off[40];
+    double s[40] = {0}, off[40] = {0};
 
     (void)state;
     if (!solvers_import(&solvers_mystran[1], &component)) {

@@ -1,0 +1,30 @@
+/* Independent directions in the mass inner product of a body. */
+#ifndef RITZ_SYNTHESIS_DIRECTIONS_H
+#define RITZ_SYNTHESIS_DIRECTIONS_H
+
+#include <ritz/reduced.h>
+
+/**
+ * Lower Cholesky factor of the mass, in coordinates scaled to unit diagonal;
+ * of mass and stiffness where mass alone is singular.
+ *
+ * @return RITZ_ERR_SINGULAR if neither is definite
+ */
+ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
+                             ritz_dense *L);
+
+/** Y = L' W, W brought to scaled coordinates: M-products become plain ones. */
+ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
+                                const ritz_dense *W, ritz_dense *Y);
+
+/**
+ * Orthonormal directions of Y (destroyed) whose singular values exceed
+ * @p tolerance times *largest, which grows to the largest there is.
+ */
+ritz_status ritz_span(ritz_dense *Y, double tolerance, double *largest,
+                      ritz_dense *out);
+
+/** Y := Y - U U' Y with orthonormal U, twice, for once leaves rounding. */
+ritz_status ritz_take_out(const ritz_dense *U, ritz_dense *Y);
+
+#endif
