@@ -112,8 +112,8 @@ static void a_file_cut_or_corrupted_anywhere_is_answered(void **state)
                 seed =
                     seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
                 bytes[(seed >> 33) % size] =
-                    k % 2 ? (char)(seed >> 20)
-                          : "0123456789 #-\t.\n"[seed >> 60];
+                    (char)(k % 2 ? (int)(seed >> 20 & 0xff)
+                                 : "0123456789 #-\t.\n"[seed >> 60]);
             }
             assert_answered(bytes, size);
         }

@@ -289,8 +289,8 @@ static void damaged_files_are_answered(void **state)
                 seed =
                     seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
                 bytes[(seed >> 33) % size] =
-                    n % 2 ? (char)(seed >> 20)
-                          : "0123456789 -+.e\n"[seed >> 60];
+                    (char)(n % 2 ? (int)(seed >> 20 & 0xff)
+                                 : "0123456789 -+.e\n"[seed >> 60]);
             }
             ritz_record("%s", "");
             status = ritz_foreign_parse(bytes, (int64_t)length, &all);

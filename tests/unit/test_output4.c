@@ -594,7 +594,8 @@ static void assert_corruption_is_answered(const char *bytes, int64_t size)
         for (int n = 0; n <= k % 8; n++) {
             seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
             damaged[(seed >> 33) % (uint64_t)size] =
-                k % 2 ? (char)(seed >> 20) : "0123456789 -+.E\n"[seed >> 60];
+                (char)(k % 2 ? (int)(seed >> 20 & 0xff)
+                             : "0123456789 -+.E\n"[seed >> 60]);
         }
         assert_answered(damaged, size);
     }
