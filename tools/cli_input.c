@@ -18,6 +18,26 @@
 enum { LARGE = 1 << 20 };
 
 /*
+ * As many threads as there are cores, or as the environment allows: a BLAS that
+ * counts on more than OpenMP may start waits for them for ever.
+ */
+static int allowed_threads(void)
+{
+    static const char *const limits[] = {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT"};
+    int64_t threads = sysconf(_SC_NPROCESSORS_ONLN);
+
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
+        const char *text = getenv(limits[k]);
+        int64_t limit = 0;
+
+        if (text && ritz_text_whole(text, &limit) && limit > 0 &&
+            limit < threads)
+            threads = limit;
+    }
+    return threads > 0 ? (int)threads : 1;
+}
+
+/*
  * Start once more with a limit of threads, where there is none and the inputs
  * are large. The limit is heeded only if it stands when a process starts;
  * without it CHOLMOD's own threads crowd out those of the BLAS. If that cannot
@@ -32,8 +52,7 @@ static void limit_threads(cli_run *run, const struct stat *file)
 
     run->piped = run->piped || !S_ISREG(file->st_mode);
     run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
-    openblas_set_num_threads(
-        run->bytes < LARGE ? 1 : (int)sysconf(_SC_NPROCESSORS_ONLN));
+    openblas_set_num_threads(run->bytes < LARGE ? 1 : allowed_threads());
     if (!run->program->threads || run->bytes < LARGE || run->piped ||
         json_array_size(run->warnings) > 0 || getenv("OMP_THREAD_LIMIT"))
         return;

@@ -23,40 +23,57 @@ done:
     return status;
 }
 
+/* |A| entry by entry. */
+static ritz_status absolute(const ritz_dense *A, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_copy(A, out));
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        out->val[k] = fabs(out->val[k]);
+done:
+    return status;
+}
+
+/* Columns that may be rigid-body motion, or be so together. */
+static bool may_be_rigid(ritz_column_kind kind)
+{
+    return kind == RITZ_COLUMN_RIGID || kind == RITZ_COLUMN_CONSTRAINT;
+}
+
 /*
  * Rigid-body motions cost no energy: what T'KT shows for them is rounding of
  * |T|'|K||T|, and is taken for the zero that it stands for. Left as it is, it
- * would mix flexible motion into the rigid modes of every system assembled from
- * this body.
+ * would be all the stiffness that a statically determinate interface has, and
+ * mix flexible motion into the rigid modes of every system with this body.
  */
 static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)
 {
     const double rounding = 64.0 * DBL_EPSILON;
     ritz_status status = RITZ_OK;
-    const ritz_dense *T = &basis->T;
-    double *energy = NULL;
+    ritz_sparse size = {0};
+    ritz_dense T = {0}, KT = {0}, most = {0};
 
-    RITZ_NEW(energy, T->nrow);
-    for (int64_t j = 0; j < T->ncol; j++) {
-        if (basis->columns.kind[j] != RITZ_COLUMN_RIGID)
-            continue;
-        memset(energy, 0, (size_t)T->nrow * sizeof *energy);
-        for (int64_t c = 0; c < K->ncol; c++)
-            for (int64_t p = K->colptr[c]; p < K->colptr[c + 1]; p++)
-                energy[K->rowind[p]] +=
-                    fabs(K->val[p] * ritz_dense_col(T, j)[c]);
-        for (int64_t i = 0; i < T->ncol; i++) {
-            double most = 0.0;
-
-            for (int64_t k = 0; k < T->nrow; k++)
-                most += fabs(ritz_dense_col(T, i)[k]) * energy[k];
-            if (fabs(ritz_dense_col(Kr, j)[i]) <= rounding * most)
-                ritz_dense_col(Kr, j)[i] = ritz_dense_col(Kr, i)[j] = 0.0;
-        }
-    }
+    RITZ_TRY(ritz_sparse_copy(K, &size));
+    for (int64_t k = 0; k < K->colptr[K->ncol]; k++)
+        size.val[k] = fabs(size.val[k]);
+    RITZ_TRY(absolute(&basis->T, &T));
+    RITZ_TRY(ritz_sparse_mul(&size, &T, &KT));
+    RITZ_TRY(ritz_dense_mul_tn(&T, &KT, &most));
+    for (int64_t j = 0; j < Kr->ncol; j++)
+        for (int64_t i = 0; i < Kr->nrow; i++)
+            if ((may_be_rigid(basis->columns.kind[i]) ||
+                 may_be_rigid(basis->columns.kind[j])) &&
+                fabs(ritz_dense_col(Kr, j)[i]) <=
+                    rounding * ritz_dense_col(&most, j)[i])
+                ritz_dense_col(Kr, j)[i] = 0.0;
+    ritz_dense_symmetrise(Kr);
 done:
-    free(energy);
+    ritz_sparse_free(&size);
+    ritz_dense_free(&T);
+    ritz_dense_free(&KT);
+    ritz_dense_free(&most);
     return status;
 }
 

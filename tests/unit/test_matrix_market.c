@@ -149,6 +149,23 @@ static void what_is_wrong_is_said_with_its_line(void **state)
 }
 
 /* Two mirrored pairs that agree, one after the other. */
+/* At 80 letters, a round number of them, as at any other length. */
+static void a_long_line_is_quoted_by_its_first_79_letters(void **state)
+{
+    (void)state;
+    for (int length = 78; length <= 160; length++) {
+        ritz_matrices all = {0};
+        char line[161] = "";
+        char text[300];
+        char quoted[120];
+
+        memset(line, 'x', (size_t)length);
+        snprintf(text, sizeof text, "%sgeneral\n%s\n", REAL, line);
+        snprintf(quoted, sizeof quoted, "line 2: '%.79s' is not a size", line);
+        assert_fails(parse(text, &all), RITZ_ERR_FORMAT, quoted);
+    }
+}
+
 static void both_triangles_are_taken_once(void **state)
 {
     ritz_matrices all = {0};
@@ -332,6 +349,7 @@ int main(void)
         cmocka_unit_test(every_kind_is_read),
         cmocka_unit_test(digits_are_those_of_the_longest_number),
         cmocka_unit_test(what_is_wrong_is_said_with_its_line),
+        cmocka_unit_test(a_long_line_is_quoted_by_its_first_79_letters),
         cmocka_unit_test(both_triangles_are_taken_once),
         cmocka_unit_test(what_is_written_is_read_to_the_same_bits),
         cmocka_unit_test(a_matrix_that_is_not_finite_leaves_no_file),
