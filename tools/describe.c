@@ -268,10 +268,13 @@ static void hertz_lines(const cli_run *run, const char *title, int64_t rigid,
 static void measures(const cli_run *run, json_t *keys, const char *key,
                      const ritz_measures *m)
 {
-    json_object_set_new(keys, key, model_measures_json(m));
+    const char *known =
+        strcmp(key, "estimates") == 0 ? "estimated" : "measured";
+
+    json_object_set_new(keys, key, model_measures_json(m, known));
     if (m->count > 0) {
         cli_say(run, "  %s:", key);
-        model_say_measures(run, m);
+        model_say_measures(run, m, known);
     }
 }
 

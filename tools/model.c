@@ -176,29 +176,30 @@ ritz_status model_hertz_at(const ritz_configuration *at, double **out)
     return RITZ_OK;
 }
 
-static const char *verdict(const ritz_measure *m)
+static const char *verdict(const ritz_measure *m, const char *known)
 {
     if (isnan(m->limit))
-        return "measured";
-    return ritz_measure_holds(m) ? "pass" : "FAIL";
+        return known;
+    return ritz_measure_holds(m) ? "pass" : "fail";
 }
 
-void model_say_measures(const cli_run *run, const ritz_measures *measures)
+void model_say_measures(const cli_run *run, const ritz_measures *measures,
+                        const char *known)
 {
     char limit[32];
 
-    cli_say(run, "%-28s %12s %12s  %-8s  %s", "measure", "value", "limit",
+    cli_say(run, "%-28s %12s %12s  %-9s  %s", "measure", "value", "limit",
             "verdict", "where");
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
         snprintf(limit, sizeof limit, isnan(m->limit) ? "-" : "%.4g", m->limit);
-        cli_say(run, "%-28s %12.4e %12s  %-8s  %s", m->name, m->value, limit,
-                verdict(m), m->where);
+        cli_say(run, "%-28s %12.4e %12s  %-9s  %s", m->name, m->value, limit,
+                verdict(m, known), m->where);
     }
 }
 
-json_t *model_measures_json(const ritz_measures *measures)
+json_t *model_measures_json(const ritz_measures *measures, const char *known)
 {
     json_t *array = json_array();
 
@@ -209,9 +210,7 @@ json_t *model_measures_json(const ritz_measures *measures)
         json_object_set_new(item, "name", cli_string(m->name));
         json_object_set_new(item, "value", cli_real(m->value));
         json_object_set_new(item, "limit", cli_real(m->limit));
-        json_object_set_new(
-            item, "verdict",
-            json_string(ritz_measure_holds(m) ? "pass" : "fail"));
+        json_object_set_new(item, "verdict", json_string(verdict(m, known)));
         json_object_set_new(item, "where", cli_string(m->where));
         json_array_append_new(array, item);
     }

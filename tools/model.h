@@ -67,9 +67,14 @@ ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
 /** Frequencies of a configuration, Hz, rigid modes as 0; caller frees. */
 ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 
-/** Table of measures; and as array in JSON, with verdicts. */
-void model_say_measures(const cli_run *run, const ritz_measures *measures);
-json_t *model_measures_json(const ritz_measures *measures);
+/**
+ * Table of measures; and as array in JSON, with verdicts.
+ *
+ * @param[in] known  the word for those without a limit: "measured", "estimated"
+ */
+void model_say_measures(const cli_run *run, const ritz_measures *measures,
+                        const char *known);
+json_t *model_measures_json(const ritz_measures *measures, const char *known);
 
 /** Frequencies as JSON array. */
 json_t *model_reals_json(int64_t count, const double *values);

@@ -51,6 +51,8 @@ static void report(cli_run *run, const ritz_basis *basis)
                 worst);
         cli_record_error(run, "residual", worst);
     }
+    if (basis->remark[0])
+        cli_warn(run, "%s", basis->remark);
     cli_report_int(run, "vectors", c->count);
     cli_record(run, basis->origin.method, c->count);
 }

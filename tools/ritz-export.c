@@ -40,7 +40,8 @@ static ritz_status vouch(cli_run *run, const ritz_reduced *reduced, bool force)
         reduced->errors.count > 0 ? &reduced->errors : &reduced->estimates;
 
     cli_report_text(run, "errors_rest_on", rests);
-    json_object_set_new(run->report, "errors", model_measures_json(known));
+    json_object_set_new(run->report, "errors",
+                        model_measures_json(known, rests));
     RITZ_FAIL_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
                  "'%s' carries neither estimated nor measured errors: run "
                  "ritz-verify, or export it all the same with --force",
@@ -51,9 +52,9 @@ static ritz_status vouch(cli_run *run, const ritz_reduced *reduced, bool force)
         return RITZ_OK;
     }
     cli_say(run, "errors %s by %s:", rests,
-            reduced->errors.count > 0 ? "ritz-verify against the full model"
+            reduced->errors.count > 0 ? "ritz-verify or ritz-compare"
                                       : "ritz-reduce, not verified");
-    model_say_measures(run, known);
+    model_say_measures(run, known, rests);
     for (int64_t k = 0; k < known->count; k++) {
         cli_record_error(run, known->item[k].name, known->item[k].value);
         if (!ritz_measure_holds(&known->item[k]))

@@ -68,7 +68,7 @@ static ritz_status respond(const model *m, const wish *asked,
                            const ritz_damping *damping, const ritz_grid *grid,
                            ritz_response *out)
 {
-    double up_to = isnan(asked->up_to_hz) ? 2.0 * grid->to_hz : asked->up_to_hz;
+    double up_to = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz;
     model_view view = model_look(m);
 
     if (m->kind != MODEL_COMPONENT)
@@ -191,7 +191,7 @@ int main(int argc, char **argv)
                  "B\" [the model's]"},
         {CLI_REAL(&asked.up_to_hz), .name = "up-to-hz", .argument = "F",
          .min = 1e-9, .max = 1e9,
-         .help = "modes of a component up to this one [twice the end]"},
+         .help = "modes of a component up to this one [three times the end]"},
         {CLI_TEXT(&asked.at), .name = "at",
          .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
          .help = "which configuration of a system, degrees"},

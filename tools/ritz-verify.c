@@ -52,12 +52,15 @@ static ritz_status judge(cli_run *run, const ritz_measures *measures)
     ritz_status status = RITZ_OK;
     const ritz_measure *first = NULL;
     int64_t failed = 0;
+    int64_t asked = 0;
 
-    model_say_measures(run, measures);
-    json_object_set_new(run->report, "measures", model_measures_json(measures));
+    model_say_measures(run, measures, "measured");
+    json_object_set_new(run->report, "measures",
+                        model_measures_json(measures, "measured"));
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
+        asked += !isnan(m->limit);
         if (ritz_measure_holds(m))
             continue;
         first = first ? first : m;
@@ -66,7 +69,7 @@ static ritz_status judge(cli_run *run, const ritz_measures *measures)
     RITZ_FAIL_IF(first, RITZ_ERR_CONVERGENCE,
                  "'%s': %lld of %lld limits not met, first '%s', %.3e where "
                  "%.3e is asked",
-                 run->operand[1], (long long)failed, (long long)measures->count,
+                 run->operand[1], (long long)failed, (long long)asked,
                  first->name, first->value, first->limit);
 done:
     return status;

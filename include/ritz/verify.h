@@ -10,8 +10,8 @@
 
 /* What is compared, and what it is held to; NaN limits: only measured. */
 typedef struct ritz_verify_request {
-    double band_hz[2];      /* [0, 0]: up to the highest kept mode below half
-                               of the reduced model's */
+    double band_hz[2];      /* [0, 0]: up to half the highest frequency of the
+                               basis, or of the reduced model */
     ritz_damping damping;   /* of the responses */
     double limit_frequency; /* relative */
     double limit_mac;       /* smallest */

@@ -79,8 +79,7 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
         snprintf(name, size, "%s.%ld-%d.part", path, (long)getpid(), k);
         file = create(name, &enlisted);
         RITZ_FAIL_IF(file < 0 && (errno != EEXIST || k == 999999),
-                     RITZ_ERR_FILE, "cannot create '%s': %s", name,
-                     strerror(errno));
+                     RITZ_ERR_FILE, "cannot be created: %s", strerror(errno));
     }
     RITZ_FAIL_IF(!enlisted, RITZ_ERR_ARGUMENT,
                  "more than %d files are being written", RITZ_MAX_DRAFTS);
@@ -98,7 +97,7 @@ ritz_status ritz_draft_publish(ritz_draft *draft)
     ritz_status status = RITZ_OK;
 
     RITZ_FAIL_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
-                 "cannot rename '%s': %s", draft->name, strerror(errno));
+                 "cannot replace '%s': %s", draft->path, strerror(errno));
     strike(draft->name);
     free(draft->name);
     *draft = (ritz_draft){0};

@@ -177,16 +177,48 @@ static ritz_status record(ritz_comparison *out)
         RITZ_TRY(ritz_measures_add(errors, "stage1-frequency-relative",
                                    row->frequency_error, row->allowed,
                                    against));
-        RITZ_TRY(
-            ritz_measures_add(errors, "stage1-mac", row->mac, NAN, against));
+        RITZ_TRY(ritz_measures_add(errors, "stage1-mac", row->mac, (double)NAN,
+                                   against));
         RITZ_TRY(ritz_measures_add(errors, "stage1-rigid-hertz",
-                                   row->rigid_error, NAN, ""));
+                                   row->rigid_error, (double)NAN, ""));
         if (!isnan(row->gain_error))
             RITZ_TRY(ritz_measures_add(errors, "stage1-static-gain-relative",
-                                       row->gain_error, NAN, ""));
+                                       row->gain_error, (double)NAN, ""));
         if (!isnan(row->response_error))
             RITZ_TRY(ritz_measures_add(errors, "stage1-response-relative",
-                                       row->response_error, NAN, ""));
+                                       row->response_error, (double)NAN, ""));
+    }
+done:
+    return status;
+}
+
+/* The worst of all listed configurations, into the file of every body. */
+static ritz_status record_bodies(ritz_comparison *out)
+{
+    ritz_status status = RITZ_OK;
+    const char *against = "worst listed angle, against stage 1";
+    ritz_compare_row worst = {0};
+
+    for (int64_t k = 0; k < out->num_rows; k++) {
+        const ritz_compare_row *row = &out->row[k];
+
+        if (!row->listed)
+            continue;
+        worst.frequency_error =
+            fmax(worst.frequency_error, row->frequency_error);
+        worst.gain_error = fmax(worst.gain_error, row->gain_error);
+        worst.response_error = fmax(worst.response_error, row->response_error);
+    }
+    for (int64_t c = 0; c < out->second.count; c++) {
+        ritz_measures *errors = &out->second.body[c].errors;
+
+        RITZ_TRY(ritz_measures_add(errors, "stage1-frequency-relative",
+                                   worst.frequency_error, (double)NAN,
+                                   against));
+        RITZ_TRY(ritz_measures_add(errors, "stage1-static-gain-relative",
+                                   worst.gain_error, (double)NAN, against));
+        RITZ_TRY(ritz_measures_add(errors, "stage1-response-relative",
+                                   worst.response_error, (double)NAN, against));
     }
 done:
     return status;
@@ -215,6 +247,7 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
         RITZ_TRY_IN("errors", measure(stage, k, least, &c));
     }
     RITZ_TRY(record(&c));
+    RITZ_TRY(record_bodies(&c));
     *out = c;
     c = (ritz_comparison){0};
 done:

@@ -41,18 +41,32 @@ done:
     return status;
 }
 
-/* Up to the highest mode below half of the reduced model's highest. */
-static void choose_band(const ritz_poles *reduced,
+/*
+ * The highest frequency that a reduced model answers for: of the modes that its
+ * basis was made with, or else the highest of its own.
+ */
+static double highest_hertz(const ritz_poles *reduced,
+                            const ritz_columns *columns)
+{
+    double highest = 0.0;
+
+    for (int64_t k = 0; columns && k < columns->count; k++)
+        if (isfinite(columns->hertz[k]))
+            highest = fmax(highest, columns->hertz[k]);
+    if (highest == 0.0 && reduced->count > 0)
+        highest = ritz_eigen_hertz(reduced->lambda[reduced->count - 1]);
+    return highest;
+}
+
+/* Up to the highest mode below half of the highest frequency. */
+static void choose_band(const ritz_poles *reduced, double highest,
                         const ritz_verify_request *request, double band[2])
 {
-    int64_t r = reduced->count;
-    double highest = r > 0 ? ritz_eigen_hertz(reduced->lambda[r - 1]) : 0.0;
-
     band[0] = request->band_hz[0];
     band[1] = request->band_hz[1];
     if (band[1] > 0.0)
         return;
-    for (int64_t k = reduced->num_rigid; k < r; k++) {
+    for (int64_t k = reduced->num_rigid; k < reduced->count; k++) {
         double hertz = ritz_eigen_hertz(reduced->lambda[k]);
 
         if (k == reduced->num_rigid || hertz <= 0.5 * highest)
@@ -208,7 +222,9 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
     RITZ_TRY(choose_damping(full, reduced->damping, request, &sides));
     RITZ_TRY(open_reduced(&reduced->K, &reduced->M, &reduced->D, &reduced->io,
                           &sides));
-    choose_band(&sides.reduced, request, sides.band_hz);
+    choose_band(&sides.reduced,
+                highest_hertz(&sides.reduced, &reduced->columns), request,
+                sides.band_hz);
     RITZ_TRY(measure(full, &reduced->T, request, &sides, out));
 done:
     ritz_sides_free(&sides);
@@ -227,7 +243,8 @@ ritz_status ritz_verify_system(const ritz_component *full,
     RITZ_TRY(choose_damping(full, "", request, &sides));
     RITZ_TRY(open_reduced(&reduced->K, &reduced->M, &reduced->D, &reduced->io,
                           &sides));
-    choose_band(&sides.reduced, request, sides.band_hz);
+    choose_band(&sides.reduced, highest_hertz(&sides.reduced, NULL), request,
+                sides.band_hz);
     sides.outputs = true;
     RITZ_TRY(measure(full, NULL, request, &sides, out));
 done:
