@@ -79,7 +79,8 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
         snprintf(name, size, "%s.%ld-%d.part", path, (long)getpid(), k);
         file = create(name, &enlisted);
         RITZ_FAIL_IF(file < 0 && (errno != EEXIST || k == 999999),
-                     RITZ_ERR_FILE, "cannot be created: %s", strerror(errno));
+                     RITZ_ERR_FILE, "cannot create '%s': %s", path,
+                     strerror(errno));
     }
     RITZ_FAIL_IF(!enlisted, RITZ_ERR_ARGUMENT,
                  "more than %d files are being written", RITZ_MAX_DRAFTS);

@@ -43,6 +43,12 @@ enum { MOST_SWEEPS = 60 };
  */
 static const double unsettled = 1e-5;
 
+/*
+ * A residual mode this small beside what the dof answers to A, rigid motion
+ * included, is the rounding of G: the dof belongs to a body that is rigid.
+ */
+static const double rounding = 1e-11;
+
 /* X := X - Y (Y' M X), or its transpose's counterpart on forces. */
 static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
                             ritz_dense *X)
@@ -69,24 +75,35 @@ static ritz_status shift(const ritz_sparse *K, const ritz_sparse *M, double s,
 
 /*
  * A shift below the first flexible mode contracts at once and is as definite
- * as can be; without a kept flexible mode, the one the modes were found with,
- * or one of the scale of the matrices.
+ * as can be. If that mode is not kept, it is found for this; if there is none,
+ * the shift is of the scale of the matrices.
  */
-static double choose_shift(const ritz_component *component,
-                           const ritz_pairs *modes)
+static ritz_status choose_shift(const ritz_component *component,
+                                const ritz_pairs *modes, double *out)
 {
-    int64_t r = modes->num_rigid;
+    ritz_status status = RITZ_OK;
+    const ritz_span one = {.modes = 1};
     double K = ritz_sparse_max(&component->K);
     double M = ritz_sparse_max(&component->M);
+    ritz_pairs first = {0};
+    const ritz_pairs *known = modes;
 
-    if (modes->Phi.ncol > r && modes->lambda[r] > 0.0)
-        return 1e-2 * modes->lambda[r];
-    if (modes->sigma != 0.0)
-        return fabs(modes->sigma);
-    return K > 0.0 ? 1e-6 * K / M : 1.0;
+    if (modes->Phi.ncol == modes->num_rigid) {
+        RITZ_TRY_IN(
+            "first flexible mode",
+            ritz_eigen_sparse(&component->K, &component->M, &one, &first));
+        known = &first;
+    }
+    if (known->Phi.ncol > known->num_rigid)
+        *out = 1e-2 * known->lambda[known->num_rigid];
+    else
+        *out = K > 0.0 && M > 0.0 ? 1e-6 * K / M : 1.0;
+done:
+    ritz_pairs_free(&first);
+    return status;
 }
 
-/* What the kept modes answer to attached dof j, at most. */
+/* What the kept flexible modes answer to an attached dof, at most. */
 static double largest_answer(const ritz_pairs *modes, int64_t row)
 {
     double most = 0.0;
@@ -155,13 +172,46 @@ done:
     return status;
 }
 
+/*
+ * What each attached dof itself answers to A, and the size below which its
+ * column is rounding.
+ */
+static ritz_status find_scales(const ritz_request *request,
+                               const ritz_pairs *modes, ritz_factor *A,
+                               double *own, double *least)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *a = &request->attached;
+    ritz_dense X = {0};
+
+    RITZ_TRY(ritz_dense_new(request->component->num_dofs, a->count, &X));
+    for (int64_t j = 0; j < a->count; j++)
+        ritz_dense_col(&X, j)[a->at[j]] = 1.0;
+    RITZ_TRY(ritz_factor_solve(A, &X));
+    for (int64_t j = 0; j < a->count; j++) {
+        const double *x = ritz_dense_col(&X, j);
+        double size = 0.0;
+
+        for (int64_t i = 0; i < X.nrow; i++)
+            size = fmax(size, fabs(x[i]));
+        own[j] = x[a->at[j]];
+        least[j] = fmax(request->tolerance * largest_answer(modes, a->at[j]),
+                        rounding * size);
+    }
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* Psi, and what each attached dof itself answers to A. */
 static ritz_status find_residual(const ritz_request *request,
-                                 const ritz_pairs *modes, ritz_dense *Psi)
+                                 const ritz_pairs *modes, ritz_dense *Psi,
+                                 double *answer)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
-    const double s = choose_shift(component, modes);
     const double settled = 1e-14 * sqrt((double)component->num_dofs);
+    double s = 0.0;
     double change = 1.0, best = INFINITY;
     ritz_sparse A = {0};
     ritz_factor *L = NULL;
@@ -169,13 +219,12 @@ static ritz_status find_residual(const ritz_request *request,
     double *least = NULL;
 
     RITZ_NEW(least, request->attached.count);
-    for (int64_t j = 0; j < request->attached.count; j++)
-        least[j] =
-            request->tolerance * largest_answer(modes, request->attached.at[j]);
-    RITZ_TRY(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
-    RITZ_TRY(find_load(request, &modes->Phi, &MPhi, &G));
+    RITZ_TRY(choose_shift(component, modes, &s));
     RITZ_TRY(shift(&component->K, &component->M, s, &A));
     RITZ_TRY_IN("shifted stiffness", ritz_factor_spd(&A, &L));
+    RITZ_TRY(find_scales(request, modes, L, answer, least));
+    RITZ_TRY(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
+    RITZ_TRY(find_load(request, &modes->Phi, &MPhi, &G));
     RITZ_TRY(ritz_dense_new(G.nrow, G.ncol, Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
         RITZ_TRY(sweep(L, &component->M, s, &G, least, Psi, &change));
@@ -242,7 +291,7 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 
 /* Which residual modes are more than rounding and independent. */
 static ritz_status sift(const ritz_request *request, const ritz_pairs *modes,
-                        const ritz_dense *Psi, bool *keep)
+                        const ritz_dense *Psi, const double *answer, bool *keep)
 {
     ritz_status status = RITZ_OK;
     const ritz_dofs *a = &request->attached;
@@ -255,8 +304,8 @@ static ritz_status sift(const ritz_request *request, const ritz_pairs *modes,
         double own = ritz_dense_col(Psi, j)[a->at[j]];
         double all = own + kept_flexibility(modes, a->at[j]);
 
-        scale[j] =
-            own > request->tolerance * all && own > 0.0 ? 1.0 / sqrt(own) : 0.0;
+        if (own > request->tolerance * all && own > rounding * answer[j])
+            scale[j] = 1.0 / sqrt(own);
     }
     for (int64_t j = 0; j < a->count; j++)
         for (int64_t i = 0; i < a->count; i++)
@@ -333,11 +382,13 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     ritz_dense Psi = {0};
     ritz_dofs rest = {0};
     bool *keep = NULL;
+    double *answer = NULL;
 
     /* refuses attached dofs that are out of range or repeated */
     RITZ_TRY(
         ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
     RITZ_NEW(keep, request->attached.count);
+    RITZ_NEW(answer, request->attached.count);
     RITZ_TRY_IN("free-interface modes",
                 ritz_eigen_sparse(&component->K, &component->M, &span, &modes));
     RITZ_FAIL_IF(modes.Phi.ncol > 0 && modes.num_rigid == 0 &&
@@ -346,8 +397,8 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
                  "K is not positive semidefinite: an eigenvalue is %.3g",
                  modes.lambda[0]);
     if (request->attached.count > 0) {
-        RITZ_TRY(find_residual(request, &modes, &Psi));
-        RITZ_TRY(sift(request, &modes, &Psi, keep));
+        RITZ_TRY(find_residual(request, &modes, &Psi, answer));
+        RITZ_TRY(sift(request, &modes, &Psi, answer, keep));
     }
     RITZ_TRY(join(request, &modes, &Psi, keep, out));
 done:
@@ -355,6 +406,7 @@ done:
     ritz_dense_free(&Psi);
     ritz_dofs_free(&rest);
     free(keep);
+    free(answer);
     return status;
 }
 

@@ -72,6 +72,8 @@ static void choose_band(const ritz_poles *reduced, double highest,
         if (k == reduced->num_rigid || hertz <= 0.5 * highest)
             band[1] = hertz;
     }
+    if (band[1] == 0.0)
+        band[1] = fmax(1.0, 2.0 * band[0]); /* rigid bodies: any will do */
 }
 
 static ritz_status check(const ritz_component *full, const ritz_io *io,
