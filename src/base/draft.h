@@ -12,8 +12,8 @@
 enum { RITZ_MAX_DRAFTS = 16 };
 
 typedef struct ritz_draft {
-    const char *path; /* where it will appear; borrowed */
-    char *name;       /* where it is written meanwhile */
+    char *path; /* where it will appear, which is what a link names */
+    char *name; /* where it is written meanwhile */
 } ritz_draft;
 
 /**

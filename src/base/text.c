@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/letter.h"
 
 #include <ritz/text.h>
 
@@ -194,6 +195,9 @@ ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
                      RITZ_ERR_ARGUMENT,
                      "'%s' holds '/' or a control character, a name cannot",
                      name);
+    for (const char *c = name; *c; c += ritz_letter_length(c))
+        RITZ_FAIL_IF(ritz_letter_length(c) == 0, RITZ_ERR_ARGUMENT,
+                     "'%s' is not UTF-8, a name must be", name);
     RITZ_FAIL_IF(strcmp(name, ".") == 0 || strcmp(name, "..") == 0,
                  RITZ_ERR_ARGUMENT, "'%s' cannot be a name", name);
     memcpy(out, name, length + 1);
