@@ -146,7 +146,8 @@ static ritz_status publish(const char *path, const ritz_reduced *reduced,
     RITZ_TRY(write_file(file, reduced, b));
     closed = H5Fclose(file); /* what HDF5 held back may not fit */
     file = 0;
-    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE, "cannot finish '%s'", draft.name);
+    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
+                 "'%s' cannot be written to its end, is the disk full?", path);
     RITZ_TRY(ritz_draft_publish(&draft));
 done:
     ritz_h5_close(file);

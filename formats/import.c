@@ -2,6 +2,7 @@
 #include "formats/import.h"
 
 #include "base/alloc.h"
+#include "base/letter.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -102,6 +103,22 @@ static double source_digits(const ritz_parts *parts)
     return parts->count > 0 ? (double)parts->part[0].matrix.digits : 0.0;
 }
 
+/* A label, in which '/' divides: "N/mm". */
+static ritz_status take_units(const char *text, char out[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(strlen(text) >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                 "'%.40s...' is longer than %d letters", text,
+                 RITZ_NAME_SIZE - 1);
+    for (const char *c = text; *c; c += ritz_letter_length(c))
+        RITZ_FAIL_IF(ritz_letter_length(c) == 0, RITZ_ERR_ARGUMENT,
+                     "'%s' is not one line of UTF-8", text);
+    memcpy(out, text, strlen(text) + 1);
+done:
+    return status;
+}
+
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
                                   ritz_parts *parts, ritz_component *component,
@@ -117,7 +134,7 @@ static ritz_status make_component(const ritz_import_request *request,
     RITZ_TRY(ritz_parts_settle(parts, &bulk, &names, component, report));
     component->digits = source_digits(parts);
     if (request->units)
-        RITZ_TRY_IN("units", ritz_name_copy(request->units, component->units));
+        RITZ_TRY_IN("--units", take_units(request->units, component->units));
 done:
     ritz_bulk_free(&bulk);
     ritz_names_free(&names);

@@ -189,6 +189,8 @@ static ritz_status fill(const char *text, draft *it)
 
     RITZ_TRY(
         ritz_import_split(text, "NAME=GRIDS[:COMPS]", it->port.name, &grids));
+    RITZ_FAIL_IF(strchr(it->port.name, ','), RITZ_ERR_ARGUMENT,
+                 "'%s' holds ',', the name of a port cannot", it->port.name);
     colon = strchr(grids, ':');
     end = colon ? colon : grids + strlen(grids);
     if (colon)

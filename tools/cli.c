@@ -5,6 +5,7 @@
 #include <ritz/text.h>
 #include <ritz/version.h>
 
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -351,10 +352,26 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/*
+ * A descriptor of a standard stream that came closed must not be given to the
+ * next file that is opened. What is then printed still fails, and is reported.
+ */
+static void occupy_streams(void)
+{
+    int file = -1;
+
+    do
+        file = open("/dev/null", O_RDONLY);
+    while (file >= 0 && file <= STDERR_FILENO);
+    if (file >= 0)
+        close(file);
+}
+
 void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
 {
     cli_option all[MAX_OPTIONS] = {{0}};
 
+    occupy_streams();
     *run = (cli_run){
         .program = program,
         .argv = argv,

@@ -221,6 +221,18 @@ done:
     return status;
 }
 
+/* Of two failures the first is told, and the second only if there is none. */
+static ritz_status keep_record(cli_run *run, ritz_status outcome)
+{
+    char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());
+    ritz_status recorded = append_line(run, outcome);
+
+    if (first)
+        ritz_record("%s", first);
+    free(first);
+    return outcome == RITZ_OK ? recorded : outcome;
+}
+
 static void free_run(cli_run *run)
 {
     for (int64_t k = 0; k < run->num_inputs; k++)
@@ -240,14 +252,12 @@ int cli_finish(cli_run *run, ritz_status status)
     bool worked = run->began > 0.0; /* not --help or the like */
 
     cli_watch_clear();
+    if (run->record && worked)
+        status = keep_record(run, status);
     if (status != RITZ_OK)
         fprintf(stderr, "%s: %s\n", name, ritz_error_message());
     if (run->json && worked)
         print_report(run, status);
-    if (run->record && worked && append_line(run, status) != RITZ_OK) {
-        fprintf(stderr, "%s: %s\n", name, ritz_error_message());
-        status = RITZ_ERR_FILE;
-    }
     free_run(run);
     if (ferror(stdout) || fclose(stdout) != 0) {
         fprintf(stderr, "%s: cannot write to standard output: %s\n", name,

@@ -35,6 +35,7 @@ void cli_watch_signals(void)
     struct sigaction action = {.sa_handler = end};
 
     sigemptyset(&action.sa_mask);
+    signal(SIGXFSZ, SIG_IGN); /* a write past a limit fails, and is reported */
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         if (sigaction(numbers[k], NULL, &before) == 0 &&
             before.sa_handler != SIG_IGN) /* as nohup leaves it */

@@ -201,8 +201,9 @@ static void columns(const cli_run *run, json_t *keys, const ritz_columns *c)
 
 static void origin(const cli_run *run, json_t *keys, const ritz_origin *o)
 {
-    cli_say(run, "  %-14s %s (%s) [%s], %s", "method", o->method,
-            *o->options ? o->options : "no options", o->reference, o->engine);
+    cli_say(run, "  %-14s %s (%s) [%s]%s%s", "method", o->method,
+            *o->options ? o->options : "no options", o->reference,
+            *o->engine ? ", " : "", o->engine);
     set_text(keys, "method", o->method);
     set_text(keys, "options", o->options);
     set_text(keys, "engine", o->engine);

@@ -54,8 +54,8 @@ void ritz_stage_scale(const ritz_stage *stage, double *scale);
  * @param[in] scale      Q, as ritz_stage_scale gives it
  */
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
-                                   const double *angle_deg,
-                                   const double *scale, ritz_dense *out);
+                                   const double *angle_deg, const double *scale,
+                                   ritz_dense *out);
 
 /**
  * The system at some angles: null space P of the constraints, their rank by

@@ -1,3 +1,5 @@
+#define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): realpath */
+
 #include "base/draft.h"
 
 #include "base/alloc.h"
@@ -63,10 +65,27 @@ static int create(const char *name, bool *enlisted)
     return file;
 }
 
+/* Where a link leads, so that it stays one; else the path itself. */
+static ritz_status follow(const char *path, char **out)
+{
+    ritz_status status = RITZ_OK;
+    char *real = realpath(path, NULL);
+    const char *target = real ? real : path;
+    char *copy = NULL;
+
+    RITZ_NEW(copy, (int64_t)strlen(target) + 1);
+    memcpy(copy, target, strlen(target));
+    *out = copy;
+done:
+    free(real);
+    return status;
+}
+
 ritz_status ritz_draft_new(const char *path, ritz_draft *out)
 {
     ritz_status status = RITZ_OK;
-    size_t size = strlen(path) + sizeof ".4294967295-999999.part";
+    size_t size = sizeof ".4294967295-999999.part";
+    char *target = NULL;
     char *name = NULL;
     struct stat there;
     bool enlisted = false;
@@ -74,9 +93,11 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
 
     RITZ_FAIL_IF(stat(path, &there) == 0 && !S_ISREG(there.st_mode),
                  RITZ_ERR_FILE, "not a regular file");
+    RITZ_TRY(follow(path, &target));
+    size += strlen(target);
     RITZ_NEW(name, (int64_t)size);
     for (int k = 0; file < 0; k++) {
-        snprintf(name, size, "%s.%ld-%d.part", path, (long)getpid(), k);
+        snprintf(name, size, "%s.%ld-%d.part", target, (long)getpid(), k);
         file = create(name, &enlisted);
         RITZ_FAIL_IF(file < 0 && (errno != EEXIST || k == 999999),
                      RITZ_ERR_FILE, "cannot create '%s': %s", path,
@@ -84,11 +105,13 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
     }
     RITZ_FAIL_IF(!enlisted, RITZ_ERR_ARGUMENT,
                  "more than %d files are being written", RITZ_MAX_DRAFTS);
-    *out = (ritz_draft){path, name};
+    *out = (ritz_draft){target, name};
+    target = NULL;
     name = NULL;
 done:
     if (file >= 0)
         close(file);
+    free(target);
     free(name);
     return status;
 }
@@ -101,6 +124,7 @@ ritz_status ritz_draft_publish(ritz_draft *draft)
                  "cannot replace '%s': %s", draft->path, strerror(errno));
     strike(draft->name);
     free(draft->name);
+    free(draft->path);
     *draft = (ritz_draft){0};
 done:
     return status;
@@ -113,6 +137,7 @@ void ritz_draft_free(ritz_draft *draft)
         strike(draft->name);
     }
     free(draft->name);
+    free(draft->path);
     *draft = (ritz_draft){0};
 }
 

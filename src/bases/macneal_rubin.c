@@ -212,7 +212,7 @@ static ritz_status find_residual(const ritz_request *request,
     const ritz_component *component = request->component;
     const double settled = 1e-14 * sqrt((double)component->num_dofs);
     double s = 0.0;
-    double change = 1.0, best = INFINITY;
+    double change = 1.0, best = HUGE_VAL;
     ritz_sparse A = {0};
     ritz_factor *L = NULL;
     ritz_dense MPhi = {0}, G = {0};

@@ -59,8 +59,8 @@ ritz_status ritz_writer_finish(ritz_writer *writer)
     herr_t closed = H5Fclose(writer->file);
 
     writer->file = 0;
-    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE, "cannot finish '%s'",
-                 writer->draft.name);
+    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
+                 "cannot be written to its end, is the disk full?");
     RITZ_TRY(ritz_draft_publish(&writer->draft));
 done:
     return status;
@@ -118,7 +118,7 @@ bool ritz_container_is(const char *path)
     hid_t file = -1;
     bool is = false;
 
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    ritz_h5_begin();
     if (stat(path, &there) == 0 && S_ISREG(there.st_mode))
         file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     is = file >= 0 && H5Aexists(file, "ritz_kind") > 0;

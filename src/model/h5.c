@@ -11,12 +11,22 @@
 
 enum { MANY_ATTRIBUTES = 64 }; /* that an object header holds */
 
+/*
+ * A file that could not be closed, as where the disk is full, stays open inside
+ * HDF5, which would try again on exit and crash. All others are closed by us.
+ */
+void ritz_h5_begin(void)
+{
+    (void)H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
 ritz_status ritz_h5_open(const char *path, hid_t *out)
 {
     ritz_status status = RITZ_OK;
     struct stat there;
 
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    ritz_h5_begin();
     RITZ_FAIL_IF(stat(path, &there) != 0 || access(path, R_OK) != 0,
                  RITZ_ERR_FILE, "%s", strerror(errno));
     RITZ_FAIL_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE, "not a regular file");
@@ -39,10 +49,12 @@ static hid_t plan_object(hid_t kind)
 ritz_status ritz_h5_create(const char *path, hid_t *out)
 {
     ritz_status status = RITZ_OK;
-    hid_t plan = plan_object(H5P_FILE_CREATE);
-    hid_t bounds = H5Pcreate(H5P_FILE_ACCESS);
+    hid_t plan = 0;
+    hid_t bounds = 0;
 
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    ritz_h5_begin();
+    plan = plan_object(H5P_FILE_CREATE);
+    bounds = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
     *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
     RITZ_FAIL_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);

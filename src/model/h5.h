@@ -45,6 +45,9 @@ ritz_h5_shape ritz_h5_stack(int64_t n, int64_t m, int64_t k);
 /** Number of values, @p most + 1 if it is larger. */
 hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most);
 
+/** Before HDF5 is first used: its messages are silenced, and its exit. */
+void ritz_h5_begin(void);
+
 /** Open to read. HDF5's own messages are silenced from here on. */
 ritz_status ritz_h5_open(const char *path, hid_t *out);
 

@@ -64,7 +64,7 @@ static ritz_status read_wanted(const ritz_system *system, const char *at,
     RITZ_FAIL_IF(system->num_hinges > MAX_HINGES, RITZ_ERR_ARGUMENT,
                  "more than %d hinges", MAX_HINGES);
     for (int64_t k = 0; k < MAX_HINGES; k++)
-        wanted[k] = NAN;
+        wanted[k] = nan("");
     while (at && *at) {
         size_t length = strcspn(at, ",");
 

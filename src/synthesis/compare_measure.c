@@ -80,7 +80,7 @@ static void measure_modes(const ritz_configuration *first,
     double worst = -1.0;
 
     row->mac = 1.0;
-    row->allowed = NAN;
+    row->allowed = nan("");
     for (int64_t i = 0; i < row->num_kept; i++) {
         int64_t k = first->num_rigid + row->kept[i];
         double mac = 0.0, error = 0.0, allowed = 0.0;
@@ -190,7 +190,7 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     row->num_rigid = first->num_rigid;
     row->num_flexible = first->K.ncol - first->num_rigid;
     row->order = second->K.ncol;
-    row->gain_error = row->response_error = NAN;
+    row->gain_error = row->response_error = nan("");
     RITZ_TRY(correlate(stage, V, first, second, &X));
     measure_modes(first, second, &X, row);
     measure_rigid(second, row);

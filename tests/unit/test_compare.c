@@ -92,7 +92,7 @@ static void kept_frequencies_are_found_in_the_second_system(void **state)
 
         for (int64_t j = 0; j < f->c.row[k].num_kept; j++) {
             double lambda = one->lambda[one->num_rigid + f->c.row[k].kept[j]];
-            double nearest = INFINITY;
+            double nearest = HUGE_VAL;
 
             for (int64_t i = two->num_rigid; i < two->K.ncol; i++)
                 nearest = fmin(nearest, fabs(two->lambda[i] / lambda - 1.0));

@@ -91,6 +91,26 @@ static void devices_and_folders_stay(void **state)
     assert_null(draft.name);
 }
 
+static void a_link_stays_and_what_it_names_is_replaced(void **state)
+{
+    static const char other[] = "test_draft.link";
+    ritz_draft draft = {0};
+    struct stat there = {0};
+
+    (void)state;
+    put(path, 'x');
+    remove(other);
+    assert_int_equal(symlink(path, other), 0);
+    assert_ok(ritz_draft_new(other, &draft));
+    put(draft.name, '1');
+    assert_ok(ritz_draft_publish(&draft));
+    assert_int_equal(lstat(other, &there), 0);
+    assert_true(S_ISLNK(there.st_mode));
+    assert_int_equal(get(path), '1');
+    remove(other);
+    remove(path);
+}
+
 /* What a signal handler calls; the drafts are then freed as ever. */
 static void unfinished_drafts_are_discarded_at_once(void **state)
 {
@@ -136,6 +156,7 @@ int main(void)
         cmocka_unit_test(what_is_not_published_is_removed),
         cmocka_unit_test(permissions_are_those_of_any_new_file),
         cmocka_unit_test(devices_and_folders_stay),
+        cmocka_unit_test(a_link_stays_and_what_it_names_is_replaced),
         cmocka_unit_test(unfinished_drafts_are_discarded_at_once),
         cmocka_unit_test(no_more_drafts_than_can_be_discarded),
     };
