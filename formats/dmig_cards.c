@@ -12,6 +12,11 @@ static int compare_names(const void *a, const void *b)
     return strcmp(left->name, right->name);
 }
 
+static char upper(char letter)
+{
+    return (char)toupper((unsigned char)letter);
+}
+
 static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
 {
     const char *name = ritz_card_text(card, 0);
@@ -22,7 +27,7 @@ static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
     for (; name[k]; k++) {
         if (iscntrl((unsigned char)name[k]) || name[k] == '/')
             return ritz_card_refuse(card, 0, "the name of a matrix");
-        out[k] = (char)toupper((unsigned char)name[k]);
+        out[k] = upper(name[k]);
     }
     out[k] = '\0';
     return RITZ_OK;

@@ -1,4 +1,4 @@
-#define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier): realpath */
+#define _XOPEN_SOURCE 700 /* NOLINT: realpath is declared only so */
 
 #include "base/draft.h"
 
@@ -74,7 +74,7 @@ static ritz_status follow(const char *path, char **out)
     char *copy = NULL;
 
     RITZ_NEW(copy, (int64_t)strlen(target) + 1);
-    memcpy(copy, target, strlen(target));
+    memcpy(copy, target, strlen(target) + 1);
     *out = copy;
 done:
     free(real);

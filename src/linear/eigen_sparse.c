@@ -64,7 +64,7 @@ static int64_t wanted(const ritz_pairs *P, const ritz_span *span, double limit)
     int64_t count = P->Phi.ncol;
 
     if (span->modes < 0)
-        for (end = 0; end < count && P->lambda[end] <= limit;)
+        for (end = P->num_rigid; end < count && P->lambda[end] <= limit;)
             end++;
     end = end < count ? end : count;
     while (end > 0 && end < count &&

@@ -5,6 +5,7 @@
  */
 #include "base/alloc.h"
 #include "synthesis/joints.h"
+#include "synthesis/placement.h"
 
 #include <ritz/synthesis.h>
 
@@ -134,6 +135,7 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
     int64_t first = 0;
 
     RITZ_NEW(list, scene->num_joints);
+    RITZ_TRY(ritz_place_check(stage, angle_deg));
     RITZ_TRY(list_all(stage, angle_deg, list, &count));
     RITZ_TRY(ritz_dense_new(count, stage->num_coordinates, &C));
     for (int64_t j = 0; j < scene->num_joints; j++) {

@@ -21,6 +21,6 @@ typedef struct ritz_held {
 /** Load the full models and find where they are held. */
 ritz_status ritz_held_load(const ritz_scene *scene, ritz_held *out);
 
-void ritz_held_free(ritz_held *held);
+void ritz_held_free(ritz_held *p);
 
 #endif

@@ -8,8 +8,13 @@
 #include "base/alloc.h"
 #include "synthesis/joints.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Angles and positions of a loop are written with so many digits. */
+static const double closure = 1e-4;
 
 /* x_system = R x + t. */
 typedef struct placement {
@@ -110,6 +115,91 @@ static void place_all(const ritz_stage *stage, const double *angle_deg,
         while (spread(stage, angle_deg, place))
             ;
     }
+}
+
+static double length(const double *x)
+{
+    return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+/* How badly a loop closes: apart, beside the size of bodies there; turned. */
+typedef struct misfit {
+    double gap, size, turn;
+} misfit;
+
+/* Where the joint puts the second body against where it stands. */
+static misfit measure_joint(const placement *a, const placement *b,
+                            const double *R, const double *near,
+                            const double *far)
+{
+    misfit found = {0.0, length(near) + length(far) + length(b->t), 0.0};
+    placement due = {0};
+    double here[3], there[3];
+
+    follow(a, R, near, far, &due);
+    apply(due.R, far, here);
+    apply(b->R, far, there);
+    for (int i = 0; i < 3; i++)
+        here[i] += due.t[i] - there[i] - b->t[i];
+    found.gap = length(here);
+    for (int i = 0; i < 9; i++)
+        found.turn = fmax(found.turn, fabs(due.R[i] - b->R[i]));
+    return found;
+}
+
+static ritz_status check_joint(const ritz_stage *stage, const placement *place,
+                               const ritz_joint *joint, double angle_deg)
+{
+    ritz_status status = RITZ_OK;
+    int64_t a = joint->between[0].component;
+    int64_t b = joint->between[1].component;
+    const ritz_port_map *near =
+        ritz_reduced_port(&stage->body[a], joint->between[0].port);
+    const ritz_port_map *far =
+        ritz_reduced_port(&stage->body[b], joint->between[1].port);
+    double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    misfit found = {0};
+
+    if (!near || !far)
+        return RITZ_OK; /* refused where the joint is made */
+    if (joint->type == RITZ_JOINT_HINGE)
+        ritz_joint_rotation(joint->axis, angle_deg, R);
+    found = measure_joint(&place[a], &place[b], R, near->origin, far->origin);
+    RITZ_FAIL_IF(found.gap > closure * found.size, RITZ_ERR_ARGUMENT,
+                 "scene, line %" PRId64 ": joint '%s' closes a loop of joints "
+                 "that does not meet: '%s/%s' and '%s/%s' stand %.3g apart",
+                 joint->line, joint->name, stage->scene->component[a].name,
+                 near->name, stage->scene->component[b].name, far->name,
+                 found.gap);
+    RITZ_FAIL_IF(found.turn > closure, RITZ_ERR_ARGUMENT,
+                 "scene, line %" PRId64 ": joint '%s' closes a loop of joints "
+                 "whose angles do not agree: '%s' is turned otherwise against "
+                 "'%s' by the other joints",
+                 joint->line, joint->name, stage->scene->component[b].name,
+                 stage->scene->component[a].name);
+done:
+    return status;
+}
+
+ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    placement *place = NULL;
+    int64_t hinge = 0;
+
+    RITZ_NEW(place, stage->count);
+    place_all(stage, angle_deg, place);
+    for (int64_t j = 0; j < scene->num_joints; j++) {
+        bool turns = scene->joint[j].type == RITZ_JOINT_HINGE;
+
+        RITZ_TRY(check_joint(stage, place, &scene->joint[j],
+                             turns ? angle_deg[hinge] : 0.0));
+        hinge += turns;
+    }
+done:
+    free(place);
+    return status;
 }
 
 /* Numbers stay where ranges do not overlap; else body k adds k 10^p. */

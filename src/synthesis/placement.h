@@ -5,6 +5,14 @@
 #include <ritz/synthesis.h>
 
 /**
+ * Refuse joints that form a loop which does not close at these angles: bodies
+ * that one way around puts elsewhere than the other.
+ *
+ * @return RITZ_ERR_ARGUMENT naming the joint that closes it, and how far from
+ */
+ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg);
+
+/**
  * Grids of all bodies in the basic frame of the first (of each tree of joints).
  *
  * @param[in]  stage  of the same bodies: its ports have the joints' origins

@@ -128,70 +128,66 @@ done:
     return at_line(status, item->line, "component", item->name);
 }
 
-/* The port row that an input or output of the scene stands for. */
-static ritz_status find_row(const ritz_scene_io *io, const ritz_reduced *body,
-                            const ritz_port_map **port, int64_t *row)
+/*
+ * The port whose row an input or output of the scene stands for; NULL and a
+ * sentence if there is none, or more than one.
+ */
+static const ritz_port_map *find_row(const ritz_scene_io *io,
+                                     const ritz_reduced *body, int64_t *row)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_port_map *found = ritz_reduced_port(body, io->at.port);
+    const ritz_port_map *port = ritz_reduced_port(body, io->at.port);
     int64_t matches = 0;
 
-    if (!found)
-        return RITZ_ERR_ARGUMENT;
-    for (int64_t k = 0; k < found->count; k++)
-        if (found->dof[k].component == io->component &&
-            (io->grid == 0 || found->dof[k].grid == io->grid)) {
+    for (int64_t k = 0; port && k < port->count; k++)
+        if (port->dof[k].component == io->component &&
+            (io->grid == 0 || port->dof[k].grid == io->grid)) {
             *row = k;
             matches++;
         }
-    RITZ_FAIL_IF(matches == 0, RITZ_ERR_ARGUMENT,
-                 "port '%s' has no direction %" PRId64 "%s", found->name,
-                 io->component, io->grid ? " at that grid" : "");
-    RITZ_FAIL_IF(matches > 1, RITZ_ERR_ARGUMENT,
-                 "port '%s' has %" PRId64 " grids with direction %" PRId64
-                 ": name one with 'grid'",
-                 found->name, matches, io->component);
-    *port = found;
-done:
-    return status;
+    if (!port || matches == 1)
+        return port;
+    if (matches == 0)
+        ritz_record("port '%s' has no direction %" PRId64 "%s", port->name,
+                    io->component, io->grid ? " at that grid" : "");
+    else
+        ritz_record("port '%s' has %" PRId64 " grids with direction %" PRId64
+                    ": name one with 'grid'",
+                    port->name, matches, io->component);
+    return NULL;
 }
 
 static ritz_status set_input(ritz_stage *stage, int64_t j)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene_io *input = &stage->scene->input[j];
     int64_t k = input->at.component;
-    const ritz_port_map *port = NULL;
     int64_t row = 0;
+    const ritz_port_map *port = find_row(input, &stage->body[k], &row);
 
-    RITZ_TRY(at_line(find_row(input, &stage->body[k], &port, &row), input->line,
-                     "input", input->name));
+    if (!port)
+        return at_line(RITZ_ERR_ARGUMENT, input->line, "input", input->name);
     memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
     for (int64_t i = 0; i < port->map.ncol; i++)
         ritz_dense_col(&stage->io.B, j)[stage->first[k] + i] =
             input->scale * ritz_dense_col(&port->map, i)[row];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status set_output(ritz_stage *stage, int64_t j)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene_io *output = &stage->scene->output[j];
     ritz_dense *const into[] = {&stage->io.C, &stage->io.Cv, &stage->io.Ca};
     int64_t k = output->at.component;
-    const ritz_port_map *port = NULL;
     int64_t row = 0;
+    const ritz_port_map *port = find_row(output, &stage->body[k], &row);
 
-    RITZ_TRY(at_line(find_row(output, &stage->body[k], &port, &row),
-                     output->line, "output", output->name));
+    if (!port)
+        return at_line(RITZ_ERR_ARGUMENT, output->line, "output", output->name);
     memcpy(stage->io.output[j], output->name, RITZ_NAME_SIZE);
     stage->io.limit[j] = output->limit;
     for (int64_t i = 0; i < port->map.ncol; i++)
         ritz_dense_col(into[output->derivative], stage->first[k] + i)[j] =
             ritz_dense_col(&port->map, i)[row];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Count coordinates and set up the scene's inputs and outputs. */
