@@ -122,6 +122,32 @@ static void a_file_cut_short_is_refused(void **state)
     }
 }
 
+/* The smallest of them, cut at every byte. */
+static void a_small_file_cut_at_any_byte_is_refused(void **state)
+{
+    static unsigned char whole[MOST];
+    size_t least = MOST;
+    int smallest = 0;
+
+    (void)state;
+    for (int k = 0; k < SAMPLE_KINDS; k++) {
+        size_t size = 0;
+
+        assert_ok(sample_kinds[k].make(path, &stamp));
+        size = load(path, whole);
+        if (size < least) {
+            least = size;
+            smallest = k;
+        }
+    }
+    assert_ok(sample_kinds[smallest].make(path, &stamp));
+    assert_int_equal(load(path, whole), least);
+    for (size_t n = 0; n < least; n++) {
+        store(whole, n);
+        assert_true(is_found(&sample_kinds[smallest], whole, least));
+    }
+}
+
 enum { NOTHING, REAL, WHOLE };
 
 #define HUGE_LENGTH ((hsize_t)1 << 37)
@@ -448,6 +474,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damage_is_found_or_harmless),
         cmocka_unit_test(a_file_cut_short_is_refused),
+        cmocka_unit_test(a_small_file_cut_at_any_byte_is_refused),
         cmocka_unit_test(what_does_not_fit_is_refused_with_its_sentence),
         cmocka_unit_test(links_to_elsewhere_are_not_followed),
         cmocka_unit_test(other_files_are_refused),
