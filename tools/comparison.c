@@ -338,13 +338,16 @@ ritz_status comparison_say(cli_run *run, const ritz_stage *first,
                            const ritz_comparison *c)
 {
     const ritz_scene *scene = first->scene;
+    char band[64] = "no band";
 
+    if (scene->band_hz[1] > 0.0)
+        snprintf(band, sizeof band, "band %g to %g Hz", scene->band_hz[0],
+                 scene->band_hz[1]);
     cli_say(run,
-            "Two-stage reduction of '%s', %lld configurations, band %g to "
-            "%g Hz [LeeTsuha1992]\n",
+            "Two-stage reduction of '%s', %lld configurations, %s "
+            "[LeeTsuha1992]\n",
             *scene->name ? scene->name : run->operand[0],
-            (long long)scene->num_configurations, scene->band_hz[0],
-            scene->band_hz[1]);
+            (long long)scene->num_configurations, band);
     say_orders(run, first, &c->second);
     cli_say(run, "%s", "");
     say_composite(run, first, c);

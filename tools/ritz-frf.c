@@ -150,6 +150,12 @@ static ritz_status frf(cli_run *run, const wish *asked)
     RITZ_FAIL_IF(io->num_inputs == 0 || io->num_outputs == 0, RITZ_ERR_ARGUMENT,
                  "'%s' has no %s, it responds to nothing", path,
                  io->num_inputs == 0 ? "inputs" : "outputs");
+    if (m.kind == MODEL_COMPONENT && strcmp(asked->method, "modal") == 0 &&
+        (m.component.D.colptr || m.component.K4.colptr))
+        cli_warn(run,
+                 "the damping matrices of '%s' act on the modes that are "
+                 "summed alone, --method direct leaves out nothing",
+                 path);
     RITZ_TRY_IN(path, respond(&m, asked, &damping, &grid, &response));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_response(run->output, &response, &stamp));

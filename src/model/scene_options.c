@@ -1,6 +1,8 @@
 /* What a scene says once: band, damping, selection, augmentation. */
 #include "model/scene_parts.h"
 
+#include <ritz/ranking.h>
+
 #include <inttypes.h>
 
 ritz_status ritz_scene_band(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -91,8 +93,20 @@ done:
     return status;
 }
 
+static ritz_status take_ranking(const ritz_yaml *yaml, const yaml_node_t *node,
+                                void *field)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_yaml_name(yaml, node, field));
+    if (!ritz_ranker_find((const char *)field))
+        status = ritz_yaml_at(yaml, node, RITZ_ERR_ARGUMENT);
+done:
+    return status;
+}
+
 static const ritz_yaml_key select_keys[] = {
-    {"by", false, ritz_yaml_name, offsetof(ritz_scene, select_by)},
+    {"by", false, take_ranking, offsetof(ritz_scene, select_by)},
     {"tolerance", false, ritz_yaml_fraction,
      offsetof(ritz_scene, select_tolerance)},
 };

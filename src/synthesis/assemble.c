@@ -75,17 +75,6 @@ done:
     return status;
 }
 
-/* sum_k P_k' A_k P_k of stiffness and mass. */
-static ritz_status project_again(const ritz_stage *stage, const ritz_dense *P,
-                                 ritz_dense *K, ritz_dense *M)
-{
-    ritz_dense D = {0};
-    ritz_status status = project_all(stage, P, K, M, &D);
-
-    ritz_dense_free(&D);
-    return status;
-}
-
 /* Whether modes i and j lie apart; rigid ones do not, nor do clusters. */
 static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
 {
@@ -112,9 +101,9 @@ static ritz_status refine(const ritz_stage *stage, int64_t rigid,
 {
     ritz_status status = RITZ_OK;
     int64_t e = P->ncol;
-    ritz_dense K = {0}, M = {0}, E = {0}, correction = {0};
+    ritz_dense K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
 
-    RITZ_TRY(project_again(stage, P, &K, &M));
+    RITZ_TRY(project_all(stage, P, &K, &M, &D));
     RITZ_TRY(ritz_dense_new(e, e, &E));
     for (int64_t j = 0; j < e; j++)
         lambda[j] = ritz_dense_col(&K, j)[j] / ritz_dense_col(&M, j)[j];
@@ -135,6 +124,7 @@ static ritz_status refine(const ritz_stage *stage, int64_t rigid,
 done:
     ritz_dense_free(&K);
     ritz_dense_free(&M);
+    ritz_dense_free(&D);
     ritz_dense_free(&E);
     ritz_dense_free(&correction);
     return status;
@@ -155,8 +145,10 @@ static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
     RITZ_TRY(ritz_dense_mul(P, &pairs.Phi, &Q));
     for (int pass = 0; pass < 2; pass++)
         RITZ_TRY(refine(stage, pairs.num_rigid, pairs.lambda, &Q));
-    if (D.val)
-        RITZ_TRY(ritz_dense_congruence(&D, &pairs.Phi, &c->D));
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&D);
+    RITZ_TRY(project_all(stage, &Q, &K, &M, &c->D));
     RITZ_TRY(ritz_dense_new(e, e, &c->K));
     RITZ_TRY(ritz_dense_new(e, e, &c->M));
     RITZ_NEW(c->lambda, e);

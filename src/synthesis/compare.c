@@ -192,33 +192,40 @@ done:
     return status;
 }
 
-/* The worst of all listed configurations, into the file of every body. */
+/* Add the worst of a measure, if any configuration had it. */
+static ritz_status record_worst(const char *name, double worst,
+                                ritz_measures *errors)
+{
+    if (isnan(worst))
+        return RITZ_OK;
+    return ritz_measures_add(errors, name, worst, (double)NAN,
+                             "worst listed angle, against stage 1");
+}
+
+/*
+ * The worst of all listed configurations, into the file of every body. What no
+ * configuration measured is NaN, and stays so: fmax passes NaN over.
+ */
 static ritz_status record_bodies(ritz_comparison *out)
 {
     ritz_status status = RITZ_OK;
-    const char *against = "worst listed angle, against stage 1";
-    ritz_compare_row worst = {0};
+    double frequency = nan(""), gain = nan(""), response = nan("");
 
     for (int64_t k = 0; k < out->num_rows; k++) {
         const ritz_compare_row *row = &out->row[k];
 
         if (!row->listed)
             continue;
-        worst.frequency_error =
-            fmax(worst.frequency_error, row->frequency_error);
-        worst.gain_error = fmax(worst.gain_error, row->gain_error);
-        worst.response_error = fmax(worst.response_error, row->response_error);
+        frequency = fmax(frequency, row->frequency_error);
+        gain = fmax(gain, row->gain_error);
+        response = fmax(response, row->response_error);
     }
     for (int64_t c = 0; c < out->second.count; c++) {
         ritz_measures *errors = &out->second.body[c].errors;
 
-        RITZ_TRY(ritz_measures_add(errors, "stage1-frequency-relative",
-                                   worst.frequency_error, (double)NAN,
-                                   against));
-        RITZ_TRY(ritz_measures_add(errors, "stage1-static-gain-relative",
-                                   worst.gain_error, (double)NAN, against));
-        RITZ_TRY(ritz_measures_add(errors, "stage1-response-relative",
-                                   worst.response_error, (double)NAN, against));
+        RITZ_TRY(record_worst("stage1-frequency-relative", frequency, errors));
+        RITZ_TRY(record_worst("stage1-static-gain-relative", gain, errors));
+        RITZ_TRY(record_worst("stage1-response-relative", response, errors));
     }
 done:
     return status;

@@ -68,8 +68,9 @@ static int64_t find_partner(const ritz_configuration *second,
 }
 
 /*
- * Of the modes that matter the smallest MAC and the worst frequency: where
- * they were kept, the worst against what rounding allows it.
+ * Of the modes that matter the smallest MAC and the largest error in frequency.
+ * Where they were kept, a mode beyond what rounding allows it comes before any
+ * that is within, lest a larger error that is allowed hide it.
  */
 static void measure_modes(const ritz_configuration *first,
                           const ritz_configuration *second, const ritz_dense *X,
@@ -77,13 +78,14 @@ static void measure_modes(const ritz_configuration *first,
 {
     int64_t e = first->K.ncol;
     double c = rounding * (double)e;
-    double worst = -1.0;
+    bool any = false, broken = false;
 
     row->mac = 1.0;
     row->allowed = nan("");
     for (int64_t i = 0; i < row->num_kept; i++) {
         int64_t k = first->num_rigid + row->kept[i];
         double mac = 0.0, error = 0.0, allowed = 0.0;
+        bool beyond = false;
         int64_t j = 0;
 
         if (second->K.ncol <= second->num_rigid)
@@ -92,8 +94,11 @@ static void measure_modes(const ritz_configuration *first,
         error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
         allowed = c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k];
         row->mac = fmin(row->mac, mac);
-        if (error / (row->listed ? allowed : 1.0) > worst) {
-            worst = error / (row->listed ? allowed : 1.0);
+        beyond = row->listed && error > allowed;
+        if (!any || beyond > broken ||
+            (beyond == broken && error > row->frequency_error)) {
+            any = true;
+            broken = beyond;
             row->frequency_error = error;
             row->allowed = row->listed ? allowed : nan("");
         }

@@ -25,11 +25,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Below this, relative to the largest, a direction is rounding. */
-static const double tightest = 1e-12;
-
 /* What all configurations give to one body, r_c rows. */
 enum { RIGID, STATIC, KEPT, GROUPS };
+
+/*
+ * Below this, relative to the largest, a direction is rounding. Rigid modes
+ * hold flexible motion of eps |P|'|K||P| / lambda, 1e-11 measured on frames of
+ * bars, while the least rigid motion of a body is of the order of its size over
+ * its distance from the centre of the system.
+ */
+static const double tightest[GROUPS] = {1e-9, 1e-12, 1e-12};
 
 typedef struct columns {
     ritz_dense group[GROUPS];
@@ -125,7 +130,7 @@ static ritz_status choose_directions(const ritz_dense *L, const double *scale,
 
     RITZ_TRY(ritz_dense_new(L->nrow, 0, U));
     for (int g = 0; g < GROUPS; g++) {
-        double least = g == KEPT ? fmax(tolerance, tightest) : tightest;
+        double least = g == KEPT ? fmax(tolerance, tightest[g]) : tightest[g];
 
         RITZ_TRY(ritz_mass_transform(L, scale, &of->group[g], &Y));
         RITZ_TRY(ritz_take_out(U, &Y));

@@ -178,6 +178,19 @@ done:
     return status;
 }
 
+static ritz_status check_units(const ritz_scene *scene, const ritz_held *p)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 1; k < p->count; k++)
+        RITZ_FAIL_IF(
+            strcmp(p->body[k].units, p->body[0].units) != 0, RITZ_ERR_ARGUMENT,
+            "'%s' is in units '%s' and '%s' in '%s'", scene->component[0].name,
+            p->body[0].units, scene->component[k].name, p->body[k].units);
+done:
+    return status;
+}
+
 ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
                                ritz_component *out)
 {
@@ -190,6 +203,7 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
     int64_t *pivot_of = NULL, *master = NULL;
 
     RITZ_TRY(ritz_held_load(scene, &p));
+    RITZ_TRY(check_units(scene, &p));
     RITZ_NEW(scale, p.stage.num_coordinates);
     for (int64_t j = 0; j < p.stage.num_coordinates; j++)
         scale[j] = 1.0;

@@ -28,8 +28,8 @@ static ritz_status label(const ritz_stage *stage, ritz_system *system)
         system->order_full[k] = stage->body[k].num_dofs;
         RITZ_FAIL_IF(
             strcmp(stage->body[k].units, system->units) != 0, RITZ_ERR_ARGUMENT,
-            "'%s' is in units '%s' and '%s' in '%s'", scene->component[k].name,
-            stage->body[k].units, scene->component[0].name, system->units);
+            "'%s' is in units '%s' and '%s' in '%s'", scene->component[0].name,
+            system->units, scene->component[k].name, stage->body[k].units);
     }
     RITZ_NEW(system->hinge, scene->num_hinges);
     system->num_hinges = scene->num_hinges;

@@ -295,6 +295,39 @@ expect 2 "no ranking 'gregori', is 'gregory' meant?" \
 expect 1 'clock=0' ritz-rank system.h5
 expect 1 'a reduced component or a system' ritz-rank bar.h5
 
+sed 's/by: hankel/by: hankle/' scene.yaml >by.yaml
+expect 1 "by.yaml:11:14: there is no ranking 'hankle', did you mean 'hankel'" \
+    ritz-compare by.yaml -o x.h5
+
+expect 0 '' ritz-import --stiffness b.k.mtx --mass one.m.mtx --bulk pair.bdf \
+    --port near=1 --port far=2 --units 'kg mm s' -o mm.h5
+sed 's/b.h5/mm.h5/' scene.yaml >mm.yaml
+for full in '' --full; do
+    # shellcheck disable=SC2086 # a word or none
+    expect 1 "'b' in 'kg mm s'" ritz-assemble $full --at clock=0 mm.yaml -o x.h5
+done
+
+# Joints in a loop must meet, and agree.
+printf 'GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\n' >long.bdf
+expect 0 '' ritz-import --stiffness a.k.mtx --mass one.m.mtx --bulk long.bdf \
+    --port near=1 --port far=2 -o long.h5
+loop() {
+    cat <<END
+scene: a loop
+components: {a: {model: a.h5, basis: craig-bampton, modes: 6}, b: {model: $1.h5, basis: craig-bampton, modes: 6}}
+joints:
+  - {name: first, between: [a/far, b/near], type: hinge, axis: [0, 0, 1], angles_deg: [90]}
+  - {name: second, between: [a/near, b/far], type: hinge, axis: [0, 0, 1], angles_deg: [$2]}
+END
+}
+loop b 90 >loop.yaml
+expect 0 'system' ritz-assemble loop.yaml -o loop.h5
+loop b 60 >loop.yaml
+expect 1 "'second' closes a loop of joints whose angles do not agree" \
+    ritz-assemble loop.yaml -o x.h5
+loop long 90 >loop.yaml
+expect 1 "'a/near' and 'b/far' stand 1 apart" ritz-assemble loop.yaml -o x.h5
+
 # --- responses, export ------------------------------------------------------------
 
 expect 0 'modal response' ritz-frf system.h5 --at clock=90 -o h.h5
@@ -354,6 +387,31 @@ expect 1 'cannot open' ritz-info bar.h5 --record none/runs.jsonl
 ritz-basis guyan bar.h5 -q -o p1.h5 >log 2>&1
 [ ! -s log ] && report yes '--quiet says nothing' || report no '--quiet'
 
+json 1 ritz-info bar.h5 --record none/runs.jsonl
+holds '  says that the record failed' '"none/runs.jsonl" in j["error"]'
+expect 1 'none.h5' ritz-info none.h5 --record none/runs.jsonl
+expect 0 '' sh -c 'ritz-basis guyan bar.h5 -q -o p1.h5 >&-'
+expect 1 'cannot write to standard output' \
+    sh -c 'ritz-basis guyan bar.h5 -o p1.h5 >&-'
+expect 1 'is the disk full?' \
+    sh -c 'ulimit -f 2; ritz-basis craig-bampton --modes 9 bar.h5 -o x.h5'
+expect 0 'units          N/mm' sh -c 'ritz-import -q --mass bar.m.mtx --dofs bar.dofs \
+    --units N/mm -o p1.h5 && ritz-info p1.h5'
+expect 1 'the name of a port cannot' ritz-import --mass bar.m.mtx \
+    --dofs bar.dofs --port a,b=1:1 -o x.h5
+expect 1 'is not UTF-8' ritz-import --mass bar.m.mtx \
+    --dofs bar.dofs --port "$(printf 'a\377')=1:1" -o x.h5
+expect 0 'a mass alone' sh -c 'ritz-import -q --mass bar.m.mtx \
+    --dofs bar.dofs --port near=1:1 -o mass.h5 &&
+    ritz-basis -q macneal-rubin --modes 2 mass.h5 -o mass-basis.h5 &&
+    ritz-reduce -q mass.h5 mass-basis.h5 -o mass-red.h5 &&
+    ritz-verify -q mass.h5 mass-red.h5 -o mass-ver.h5 && echo a mass alone'
+ln -s p1.h5 link.h5
+ritz-basis guyan bar.h5 -q -o link.h5
+ritz-basis guyan bar.h5 -q -o link.h5
+[ -L link.h5 ] && verdict=yes || verdict=no
+report $verdict 'an output that is a link stays one'
+
 # A large bar keeps the tool busy until it is told to stop.
 bar 60000 K >big.k.mtx
 bar 60000 M >big.m.mtx
@@ -396,6 +454,12 @@ report $verdict 'a tool that is stopped while it writes leaves no file'
 rotor=${RITZ_DATA:-none}/dualspin/rotor.op4
 if [ -f "$rotor" ]; then
     expect 0 'OUTPUT4' ritz-info "$rotor"
+    stator=$RITZ_DATA/dualspin/stator
+    ritz-import -q --stiffness "$stator.op4:KGG" --mass "$stator.op4:MGG" \
+        --bulk "$stator.bdf" --port bearing=1 -o stator.h5
+    # far below what rounding makes of rigid modes
+    expect 0 '6 rigid, 6 residual' \
+        ritz-basis macneal-rubin --up-to-hz 1e-8 stator.h5 -o stator-basis.h5
 else
     printf 'ok %d - dualspin # SKIP no data in %s\n' $((count += 1)) "$rotor"
 fi

@@ -6,6 +6,7 @@
 #include <ritz/compare.h>
 #include <ritz/eigen.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -220,6 +221,61 @@ static void a_looser_tolerance_gives_smaller_bodies(void **state)
     ritz_comparison_free(&c);
 }
 
+/* Largest error of a kept mode against the nearest mode of stage two. */
+static double largest_error(const ritz_comparison *c, int64_t k)
+{
+    const ritz_configuration *one = &c->first_system.configuration[k];
+    const ritz_configuration *two = &c->second_system.configuration[k];
+    double largest = 0.0;
+
+    for (int64_t i = 0; i < c->row[k].num_kept; i++) {
+        double lambda = one->lambda[one->num_rigid + c->row[k].kept[i]];
+        double least = HUGE_VAL;
+
+        for (int64_t j = two->num_rigid; j < two->K.ncol; j++)
+            least = fmin(least, fabs(sqrt(two->lambda[j] / lambda) - 1.0));
+        largest = fmax(largest, least);
+    }
+    return largest;
+}
+
+/* Blurred modes, all beyond rounding: no worse one stands behind the figure. */
+static void the_frequency_error_is_the_largest(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison c = {0};
+    double tolerance = f->scene.composite_tolerance;
+
+    skip_without_data();
+    f->scene.composite_tolerance = 1e-3;
+    assert_ok(ritz_compare(&f->stage, &c));
+    f->scene.composite_tolerance = tolerance;
+    for (int64_t k = 0; k < 6; k++)
+        assert_near(c.row[k].frequency_error, largest_error(&c, k), 1e-12);
+    ritz_comparison_free(&c);
+}
+
+/* No input: neither gain nor response, and no zero that stands for them. */
+static void what_was_not_measured_is_not_recorded(void **state)
+{
+    fixture *f = *state;
+    ritz_comparison c = {0};
+    int64_t inputs = f->scene.num_inputs;
+
+    skip_without_data();
+    assert_int_equal(f->c.second.body[0].errors.count, 3);
+    f->scene.num_inputs = 0;
+    assert_ok(ritz_compare(&f->stage, &c));
+    f->scene.num_inputs = inputs;
+    for (int64_t k = 0; k < c.second.count; k++) {
+        const ritz_measures *errors = &c.second.body[k].errors;
+
+        assert_int_equal(errors->count, 1);
+        assert_string_equal(errors->item[0].name, "stage1-frequency-relative");
+    }
+    ritz_comparison_free(&c);
+}
+
 /* Ranking needs damping; none in scene or matrices is refused in words. */
 static void a_ranking_without_damping_is_refused(void **state)
 {
@@ -252,6 +308,8 @@ int main(void)
         cmocka_unit_test(a_reference_angle_is_exact_there_alone),
         cmocka_unit_test(keeping_everything_removes_nothing),
         cmocka_unit_test(a_looser_tolerance_gives_smaller_bodies),
+        cmocka_unit_test(the_frequency_error_is_the_largest),
+        cmocka_unit_test(what_was_not_measured_is_not_recorded),
         cmocka_unit_test(a_ranking_without_damping_is_refused),
     };
 

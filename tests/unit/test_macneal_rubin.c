@@ -251,6 +251,43 @@ static void a_rigid_body_keeps_its_mass(void **state)
     ritz_component_free(&mass);
 }
 
+/*
+ * Masses of 1 on springs 1 and 1e9, and a mass that nothing holds. With no
+ * flexible mode kept, the residual of the first mass is all of its flexibility:
+ * it moves against a body of 2, (2/3)^2 / 1 beside what 1e9 adds, below 1e-9.
+ * Rounding is eps 1e9, the ratio of the eigenvalues; 4 for the sums.
+ */
+static void without_flexible_modes_the_residual_is_all_flexibility(void **state)
+{
+    static const int64_t row[] = {0, 1, 0, 1, 1, 2, 1, 2};
+    static const int64_t col[] = {0, 0, 1, 1, 2, 1, 1, 2};
+    static const double k[] = {1, -1, -1, 1, -1e9, -1e9, 1e9, 1e9};
+    static const int64_t all[] = {0, 1, 2, 3};
+    static const double one[] = {1, 1, 1, 1};
+    static int64_t ends[] = {0, 3};
+    ritz_request request = ((fixture *)*state)->request;
+    ritz_component chain = {.num_dofs = 4};
+    ritz_basis basis = {0};
+
+    assert_non_null(chain.dof = calloc(4, sizeof *chain.dof));
+    for (int64_t i = 0; i < 4; i++)
+        chain.dof[i] = (ritz_dof){i + 1, 1};
+    assert_ok(ritz_sparse_from_triplets(4, 4, 8, row, col, k, &chain.K));
+    assert_ok(ritz_sparse_from_triplets(4, 4, 4, all, all, one, &chain.M));
+    assert_ok(ritz_component_settle(&chain, false));
+    request.component = &chain;
+    request.modes = 0;
+    request.attached = (ritz_dofs){2, ends};
+    assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
+    assert_int_equal(basis.T.ncol, 3);
+    assert_int_equal(basis.columns.kind[2], RITZ_COLUMN_RESIDUAL);
+    assert_int_equal(basis.columns.dof[2], 0);
+    assert_near(ritz_dense_col(&basis.T, 2)[0], 4.0 / 9.0,
+                1e-9 + 4 * DBL_EPSILON * 1e9);
+    ritz_basis_free(&basis);
+    ritz_component_free(&chain);
+}
+
 static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
@@ -272,6 +309,8 @@ int main(void)
         cmocka_unit_test(dependent_residual_modes_are_left_out),
         cmocka_unit_test(a_dof_attached_twice_is_refused),
         cmocka_unit_test(a_rigid_body_keeps_its_mass),
+        cmocka_unit_test(
+            without_flexible_modes_the_residual_is_all_flexibility),
         cmocka_unit_test(no_allocation_failure_leaks),
     };
 
