@@ -35,7 +35,7 @@ static void multiply(const double *A, const double *B, double *C)
 
 static void apply(const double *R, const double *x, double *y)
 {
-    for (int i = 0; i < 3; i++)
+    for (int64_t i = 0; i < 3; i++)
         y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
 }
 
@@ -236,13 +236,13 @@ static void append(const ritz_grids *from, const placement *place, int64_t add,
         double *x = to->position + 3 * to->count;
 
         apply(place->R, from->position + 3 * i, x);
-        for (int k = 0; k < 3; k++)
+        for (int64_t k = 0; k < 3; k++)
             x[k] += place->t[k];
         to->id[to->count] = from->id[i] + add;
         to->frame[to->count++] = to->num_frames + from->frame[i];
     }
     for (int64_t f = 0; f < from->num_frames; f++)
-        for (int k = 0; k < 3; k++)
+        for (int64_t k = 0; k < 3; k++)
             apply(place->R, from->axes + 9 * f + 3 * k,
                   to->axes + 9 * (to->num_frames + f) + 3 * k);
     to->num_frames += from->num_frames;
@@ -317,7 +317,7 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *angle_deg,
     place_all(stage, angle_deg, place);
     renumber(count, body, add);
     all.num_frames = 1;
-    for (int k = 0; k < 3; k++)
+    for (int64_t k = 0; k < 3; k++)
         all.axes[4 * k] = 1.0;
     for (int64_t k = 0; k < count; k++)
         append(&body[k].grids, &place[k], add[k], &all);
