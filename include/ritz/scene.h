@@ -60,6 +60,7 @@ typedef enum ritz_augment {
 } ritz_augment;
 
 typedef struct ritz_scene {
+    char *path; /* of the file, for messages */
     char name[RITZ_NAME_SIZE];
     int64_t num_components;
     ritz_scene_component *component;
@@ -107,6 +108,16 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
  */
 ritz_status ritz_scene_angles(const ritz_scene *scene, const char *at,
                               double *angle_deg);
+
+/**
+ * Put "scene.yaml:12:9: input 'torque': " before the sentence of a failure that
+ * showed only once models were loaded; return @p status.
+ *
+ * @param[in] kind,name  "input" and "torque"
+ */
+ritz_status ritz_scene_context(const ritz_scene *scene, ritz_status status,
+                               int64_t line, int64_t column, const char *kind,
+                               const char *name);
 
 void ritz_scene_free(ritz_scene *scene);
 

@@ -6,6 +6,8 @@
 
 #include "base/alloc.h"
 
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,6 +64,8 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
                         .select_tolerance = 1e-3,
                         .composite_tolerance = 1e-12};
 
+    RITZ_NEW(scene.path, (int64_t)strlen(path) + 1);
+    memcpy(scene.path, path, strlen(path));
     RITZ_TRY(ritz_yaml_load(path, text, &yaml));
     RITZ_TRY(ritz_yaml_mapping(&yaml, ritz_yaml_root(&yaml), NUM_KEYS, keys,
                                &scene, value));
@@ -113,6 +117,17 @@ done:
     return status;
 }
 
+ritz_status ritz_scene_context(const ritz_scene *scene, ritz_status status,
+                               int64_t line, int64_t column, const char *kind,
+                               const char *name)
+{
+    char what[512];
+
+    snprintf(what, sizeof what, "%s:%" PRId64 ":%" PRId64 ": %s '%s'",
+             scene->path, line, column, kind, name);
+    return ritz_context(status, what);
+}
+
 void ritz_scene_free(ritz_scene *scene)
 {
     for (int64_t k = 0; k < scene->num_components; k++) {
@@ -121,6 +136,7 @@ void ritz_scene_free(ritz_scene *scene)
     }
     for (int64_t k = 0; k < scene->num_joints; k++)
         free(scene->joint[k].angle_deg);
+    free(scene->path);
     free(scene->component);
     free(scene->joint);
     free(scene->hinge);

@@ -35,13 +35,10 @@ static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
     for (int k = 0; k < 2; k++) {
         port[k] = ritz_reduced_port(&stage->body[joint->between[k].component],
                                     joint->between[k].port);
-        if (!port[k]) {
-            char what[RITZ_NAME_SIZE + 60];
-
-            snprintf(what, sizeof what, "scene, line %" PRId64 ": joint '%s'",
-                     joint->line, joint->name);
-            return ritz_context(RITZ_ERR_ARGUMENT, what);
-        }
+        if (!port[k])
+            return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT,
+                                      joint->line, joint->column, "joint",
+                                      joint->name);
     }
     return RITZ_OK;
 }

@@ -166,19 +166,18 @@ static ritz_status check_joint(const ritz_stage *stage, const placement *place,
         ritz_joint_rotation(joint->axis, angle_deg, R);
     found = measure_joint(&place[a], &place[b], R, near->origin, far->origin);
     RITZ_FAIL_IF(found.gap > closure * found.size, RITZ_ERR_ARGUMENT,
-                 "scene, line %" PRId64 ": joint '%s' closes a loop of joints "
-                 "that does not meet: '%s/%s' and '%s/%s' stand %.3g apart",
-                 joint->line, joint->name, stage->scene->component[a].name,
-                 near->name, stage->scene->component[b].name, far->name,
-                 found.gap);
+                 "closes a loop of joints that does not meet: '%s/%s' and "
+                 "'%s/%s' stand %.3g apart",
+                 stage->scene->component[a].name, near->name,
+                 stage->scene->component[b].name, far->name, found.gap);
     RITZ_FAIL_IF(found.turn > closure, RITZ_ERR_ARGUMENT,
-                 "scene, line %" PRId64 ": joint '%s' closes a loop of joints "
-                 "whose angles do not agree: '%s' is turned otherwise against "
-                 "'%s' by the other joints",
-                 joint->line, joint->name, stage->scene->component[b].name,
+                 "closes a loop of joints whose angles do not agree: '%s' is "
+                 "turned otherwise against '%s' by the other joints",
+                 stage->scene->component[b].name,
                  stage->scene->component[a].name);
 done:
-    return status;
+    return ritz_scene_context(stage->scene, status, joint->line, joint->column,
+                              "joint", joint->name);
 }
 
 ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg)

@@ -12,19 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WHAT_SIZE = 2 * RITZ_NAME_SIZE };
-
-/* "line 12: component 'rotor'": where in the scene a refusal comes from. */
-static ritz_status at_line(ritz_status status, int64_t line, const char *kind,
-                           const char *name)
-{
-    char what[WHAT_SIZE + 32];
-
-    snprintf(what, sizeof what, "scene, line %" PRId64 ": %s '%s'", line, kind,
-             name);
-    return ritz_context(status, what);
-}
-
 /* Append a port's name to a list with commas, once. */
 static ritz_status append_port(char **list, const char *port)
 {
@@ -102,6 +89,41 @@ done:
     return status;
 }
 
+static ritz_status check_io(const ritz_scene *scene, int64_t k,
+                            const ritz_component *component, int64_t count,
+                            const ritz_scene_io *io, const char *kind)
+{
+    for (int64_t j = 0; j < count; j++)
+        if (io[j].at.component == k &&
+            !ritz_component_port(component, io[j].at.port))
+            return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, io[j].line,
+                                      io[j].column, kind, io[j].name);
+    return RITZ_OK;
+}
+
+/* The ports that joints, inputs and outputs name are there: said where not. */
+static ritz_status check_ports(const ritz_scene *scene, int64_t k,
+                               const ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t j = 0; j < scene->num_joints; j++) {
+        const ritz_joint *joint = &scene->joint[j];
+
+        for (int end = 0; end < 2; end++)
+            if (joint->between[end].component == k &&
+                !ritz_component_port(component, joint->between[end].port))
+                return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, joint->line,
+                                          joint->column, "joint", joint->name);
+    }
+    RITZ_TRY(check_io(scene, k, component, scene->num_inputs, scene->input,
+                      "input"));
+    RITZ_TRY(check_io(scene, k, component, scene->num_outputs, scene->output,
+                      "output"));
+done:
+    return status;
+}
+
 static ritz_status load_body(const ritz_scene *scene, int64_t k,
                              ritz_reduced *out)
 {
@@ -109,6 +131,7 @@ static ritz_status load_body(const ritz_scene *scene, int64_t k,
     const ritz_scene_component *item = &scene->component[k];
     ritz_summary summary = {0};
     ritz_component component = {0};
+    bool known = false;
 
     RITZ_TRY(ritz_container_summary(item->model, &summary));
     if (strcmp(summary.kind, "reduced") == 0) {
@@ -121,11 +144,18 @@ static ritz_status load_body(const ritz_scene *scene, int64_t k,
     RITZ_FAIL_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
                  "'%s' is a full model, so a basis is due", item->model);
     RITZ_TRY(ritz_container_read_component(item->model, &component));
+    status = check_ports(scene, k, &component);
+    if (status != RITZ_OK) {
+        known = true; /* said where the port is named */
+        goto done;
+    }
     RITZ_TRY(reduce_body(scene, k, &component, out));
 done:
     ritz_summary_free(&summary);
     ritz_component_free(&component);
-    return at_line(status, item->line, "component", item->name);
+    return known ? status
+                 : ritz_scene_context(scene, status, item->line, item->column,
+                                      "component", item->name);
 }
 
 /*
@@ -164,7 +194,8 @@ static ritz_status set_input(ritz_stage *stage, int64_t j)
     const ritz_port_map *port = find_row(input, &stage->body[k], &row);
 
     if (!port)
-        return at_line(RITZ_ERR_ARGUMENT, input->line, "input", input->name);
+        return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT, input->line,
+                                  input->column, "input", input->name);
     memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
     for (int64_t i = 0; i < port->map.ncol; i++)
         ritz_dense_col(&stage->io.B, j)[stage->first[k] + i] =
@@ -181,7 +212,8 @@ static ritz_status set_output(ritz_stage *stage, int64_t j)
     const ritz_port_map *port = find_row(output, &stage->body[k], &row);
 
     if (!port)
-        return at_line(RITZ_ERR_ARGUMENT, output->line, "output", output->name);
+        return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT, output->line,
+                                  output->column, "output", output->name);
     memcpy(stage->io.output[j], output->name, RITZ_NAME_SIZE);
     stage->io.limit[j] = output->limit;
     for (int64_t i = 0; i < port->map.ncol; i++)

@@ -323,7 +323,7 @@ END
 loop b 90 >loop.yaml
 expect 0 'system' ritz-assemble loop.yaml -o loop.h5
 loop b 60 >loop.yaml
-expect 1 "'second' closes a loop of joints whose angles do not agree" \
+expect 1 "'second': closes a loop of joints whose angles do not agree" \
     ritz-assemble loop.yaml -o x.h5
 loop long 90 >loop.yaml
 expect 1 "'a/near' and 'b/far' stand 1 apart" ritz-assemble loop.yaml -o x.h5
