@@ -24,6 +24,26 @@ const ritz_exporter *ritz_exporter_find(const char *name)
     return NULL;
 }
 
+ritz_status ritz_export_check(const ritz_exporter *exporter,
+                              const ritz_export_request *request)
+{
+    ritz_status status = RITZ_OK;
+    bool styled = request->text || request->dense || request->digits > 0;
+
+    RITZ_FAIL_IF(request->matrices && !(exporter->uses & RITZ_EXPORT_MATRICES),
+                 RITZ_ERR_ARGUMENT, "%s has no matrices to choose",
+                 exporter->name);
+    RITZ_FAIL_IF(request->matrices && !*request->matrices, RITZ_ERR_ARGUMENT,
+                 "no matrix is named");
+    RITZ_FAIL_IF(styled && !(exporter->uses & RITZ_EXPORT_STYLE),
+                 RITZ_ERR_ARGUMENT,
+                 "%s has one way of writing, without text, "
+                 "dense or digits",
+                 exporter->name);
+done:
+    return status;
+}
+
 ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
 {
     ritz_status status = RITZ_OK;

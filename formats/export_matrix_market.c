@@ -33,5 +33,6 @@ const ritz_exporter ritz_exporter_matrix_market = {
     .summary = "one matrix as Matrix Market text (--matrix, K by default)",
     .reference = "BoisvertPozoRemington1996",
     .kind = "reduced",
+    .uses = RITZ_EXPORT_MATRICES,
     .write_reduced = write,
 };

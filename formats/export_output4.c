@@ -35,5 +35,6 @@ const ritz_exporter ritz_exporter_output4 = {
     .summary = "NASTRAN OUTPUT4 matrices, binary or text",
     .reference = "MSC2014",
     .kind = "reduced",
+    .uses = RITZ_EXPORT_MATRICES | RITZ_EXPORT_STYLE,
     .write_reduced = write,
 };

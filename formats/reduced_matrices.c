@@ -78,6 +78,9 @@ ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
                      "there is no matrix '%.*s', there are K, M, D, T, B, C, "
                      "Cv and Ca",
                      (int)length, at);
+        for (int64_t k = 0; k < list.count; k++)
+            RITZ_FAIL_IF(strcmp(list.matrix[k].name, e->name) == 0,
+                         RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
         RITZ_FAIL_IF(!dense_of(reduced, e)->val, RITZ_ERR_ARGUMENT,
                      "this reduced component has no '%s'", e->name);
         RITZ_TRY(fill(e, dense_of(reduced, e), &list.matrix[list.count]));

@@ -135,6 +135,8 @@ int main(int argc, char **argv)
     if (!to)
         cli_refuse(&program, "no format, name it with --to; --list shows all");
     exporter = find(&program, to);
+    if (ritz_export_check(exporter, &request) != RITZ_OK)
+        cli_refuse(&program, "%s", ritz_error_message());
     request.output = run.output;
     return cli_finish(&run, export(&run, exporter, &request, force));
 }

@@ -19,11 +19,15 @@ typedef struct ritz_export_report {
     char (*line)[256];
 } ritz_export_report;
 
+/* Which fields of a request an exporter heeds; others must be left alone. */
+enum { RITZ_EXPORT_MATRICES = 1, RITZ_EXPORT_STYLE = 2 };
+
 typedef struct ritz_exporter {
     const char *name;
     const char *summary;
     const char *reference;
     const char *kind; /* of container it takes: "reduced", "response" */
+    int uses;         /* RITZ_EXPORT_... */
     ritz_status (*write_reduced)(const ritz_reduced *reduced,
                                  const ritz_export_request *request,
                                  ritz_export_report *report);
@@ -40,6 +44,10 @@ extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_tsv;
 
 const ritz_exporter *ritz_exporter_find(const char *name);
+
+/** @return RITZ_ERR_ARGUMENT if something is asked that the format has not */
+ritz_status ritz_export_check(const ritz_exporter *exporter,
+                              const ritz_export_request *request);
 
 [[gnu::format(printf, 2, 3)]] ritz_status
 ritz_export_say(ritz_export_report *report, const char *format, ...);

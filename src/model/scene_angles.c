@@ -88,7 +88,7 @@ static ritz_status set_part(const ritz_scene *scene, const char *part,
     memcpy(text, part, length < sizeof text ? length : sizeof text - 1);
     equals = strchr(text, '=');
     RITZ_FAIL_IF(length >= sizeof text || !equals || equals == text,
-                 RITZ_ERR_ARGUMENT, "'%s' is not HINGE=DEGREES",
+                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=ANGLE",
                  ritz_text_short(text, cut));
     *equals = '\0';
     RITZ_FAIL_IF(!ritz_text_real(equals + 1, &angle), RITZ_ERR_ARGUMENT,

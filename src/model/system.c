@@ -35,6 +35,8 @@ static ritz_status read_part(const ritz_system *system, const char *part,
     for (int64_t k = 0; k < system->num_hinges; k++)
         if (strlen(system->hinge[k]) == length &&
             strncmp(system->hinge[k], part, length) == 0) {
+            RITZ_FAIL_IF(!isnan(wanted[k]), RITZ_ERR_ARGUMENT,
+                         "hinge '%s' is named twice", system->hinge[k]);
             wanted[k] = angle;
             return RITZ_OK;
         }
@@ -73,6 +75,8 @@ static ritz_status read_wanted(const ritz_system *system, const char *at,
         memcpy(part, at, length);
         part[length] = '\0';
         RITZ_TRY(read_part(system, part, wanted));
+        RITZ_FAIL_IF(strcmp(at + length, ",") == 0, RITZ_ERR_ARGUMENT,
+                     "nothing follows the last ',' of '%s'", at);
         at += length + (at[length] != '\0');
     }
 done:

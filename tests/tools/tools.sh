@@ -349,6 +349,11 @@ expect 0 '' ritz-export h.h5 --to tsv -o h.tsv
 expect 1 'not a response' ritz-export red.h5 --to tsv -o x.tsv
 expect 2 "no format 'outptu4', is 'output4' meant?" \
     ritz-export red.h5 --to outptu4 -o x
+expect 2 'exudyn has no matrices to choose' \
+    ritz-export red.h5 --to exudyn --matrix K -o x
+expect 2 'tsv has one way of writing' ritz-export h.h5 --to tsv --digits 5 -o x
+expect 1 "'K' is named twice" \
+    ritz-export red.h5 --to output4 --matrix K,K --force -o x
 expect 2 'name it with --to' ritz-export red.h5 -o x
 /usr/bin/python3 - <<'END'
 import h5py, shutil

@@ -50,7 +50,7 @@ static void two_writers_do_not_meet(void **state)
 static void what_is_not_published_is_removed(void **state)
 {
     ritz_draft draft = {0};
-    char name[64];
+    char name[4096];
 
     (void)state;
     put(path, 'x');
