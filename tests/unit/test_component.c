@@ -9,6 +9,7 @@
 #include <ritz/reduced.h>
 
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { GRIDS = 2, DOFS = 6 * GRIDS };
@@ -229,8 +230,8 @@ static void mass_properties_are_those_of_two_points(void **state)
 
 static void fill_io(ritz_io *io, const char *name, double value)
 {
-    strcpy(io->input[0], name);
-    strcpy(io->output[0], name);
+    snprintf(io->input[0], RITZ_NAME_SIZE, "%s", name);
+    snprintf(io->output[0], RITZ_NAME_SIZE, "%s", name);
     io->limit[0] = value;
     for (int64_t i = 0; i < io->B.nrow; i++) {
         io->B.val[i] = value + (double)i;

@@ -352,7 +352,7 @@ static void make(bool complex, bool extreme, ritz_matrix *out)
         }
     }
     out->A.colptr[N] = p;
-    strcpy(out->name, complex ? "cplx" : "kreal");
+    snprintf(out->name, sizeof out->name, "%s", complex ? "cplx" : "kreal");
     out->imaginary = complex ? imaginary : NULL;
     if (!complex)
         free(imaginary);
