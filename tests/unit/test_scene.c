@@ -280,9 +280,9 @@ static void bad_angles_are_refused_and_nothing_is_written(void **state)
     } cases[] = {
         {"", "hinge 'p' has several angles and none is given here"},
         {"p=1", "hinge 'q' has several angles and none is given here"},
-        {"p", "'p' is not HINGE=DEGREES"},
-        {"=1", "'=1' is not HINGE=DEGREES"},
-        {"p=1,", "'' is not HINGE=DEGREES"},
+        {"p", "'p' is not JOINT=ANGLE"},
+        {"=1", "'=1' is not JOINT=ANGLE"},
+        {"p=1,", "'' is not JOINT=ANGLE"},
         {"p=", "'' of hinge 'p' is not a finite number"},
         {"p=60deg", "'60deg' of hinge 'p' is not a finite number"},
         {"p=nan", "'nan' of hinge 'p' is not a finite number"},
