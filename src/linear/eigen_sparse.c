@@ -38,6 +38,7 @@ enum {
 static const double same_cluster = 1e-6; /* relative */
 static const double lowest_part = 0.3;   /* of a gap, where modes are counted */
 static const double first_shift = 1e-5;  /* of the median of K_jj / M_jj */
+static const double blurred = 1e3;       /* -sigma over the first flexible */
 
 typedef struct search {
     const ritz_span *span;
@@ -178,14 +179,19 @@ done:
     return status;
 }
 
-/* Sigma far beyond the first flexible mode blurs it: come closer, if may be. */
+/*
+ * Sigma far beyond the first flexible mode blurs it: come closer, if may be. Up
+ * to `blurred` times beyond it Lanczos still tells modes apart at its tolerance,
+ * and to begin anew would cost as much again as it has (measured: half of all
+ * solves).
+ */
 static ritz_status come_closer(search *s, bool *moved)
 {
     ritz_status status = RITZ_OK;
     const ritz_pairs *P = &s->found;
     double first = P->num_rigid < P->Phi.ncol ? P->lambda[P->num_rigid] : 0.0;
 
-    *moved = first > 0.0 && s->S.sigma < -10.0 * first && first > s->broken;
+    *moved = first > 0.0 && s->S.sigma < -blurred * first && first > s->broken;
     if (*moved)
         RITZ_TRY(shift_near(s, -first));
 done:
