@@ -44,7 +44,7 @@ typedef struct ritz_ranker {
     const char *name;
     const char *summary;
     const char *reference;
-    /** Value of each mode, clusters not yet joined. */
+    /** Value of each mode; those of a cluster get that of the whole cluster. */
     ritz_status (*rank)(const ritz_modal *modal, double *value);
 } ritz_ranker;
 
