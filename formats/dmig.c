@@ -10,8 +10,8 @@
  * degrees. Square ones have a row for every dof that occurs as row or column,
  * ascending; rectangular ones have the rows and the columns that occur.
  *
- * INCLUDE is not followed, as the matrix' text alone is given here: a matrix
- * whose columns would have to come from elsewhere is refused.
+ * INCLUDE is followed where the file's folder is known; where it is not, a
+ * matrix whose columns would have to come from elsewhere is refused.
  *
  * [Nastran1986], entry DMIG.
  */
@@ -101,22 +101,23 @@ static ritz_status check_terms(const ritz_dmig_cards *all)
     }
     for (int64_t k = 0; k < all->num_headers; k++)
         if (all->header[k].count == 0 && all->deck.num_skipped > 0)
-            RITZ_TRY(ritz_deck_refuse(&all->deck, all->header[k].line,
-                                      "DMIG '%s' has no columns here, and "
-                                      "INCLUDE is not followed for matrices",
-                                      all->header[k].name));
+            RITZ_TRY(
+                ritz_deck_refuse(&all->deck, all->header[k].line,
+                                 "DMIG '%s' has no columns here, and "
+                                 "INCLUDE is not followed without a folder",
+                                 all->header[k].name));
 done:
     return status;
 }
 
 static ritz_status read_dmig(const char *bytes, int64_t size,
-                             ritz_matrices *out)
+                             const char *folder, ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dmig_cards all = {0};
     ritz_matrices new = {0};
 
-    RITZ_TRY(ritz_deck_parse(NULL, bytes, size, NULL, &all.deck));
+    RITZ_TRY(ritz_deck_parse(NULL, bytes, size, folder, &all.deck));
     RITZ_TRY(ritz_dmig_take(&all));
     RITZ_FAIL_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                  "there is no DMIG card in the bulk data");

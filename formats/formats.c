@@ -1,5 +1,6 @@
 /* The table of foreign formats, and what a user may ask of a file. */
 #include "base/alloc.h"
+#include "formats/cards.h"
 
 #include <ritz/foreign.h>
 
@@ -43,8 +44,8 @@ static void list_formats(char *text, size_t size)
                                  k > 0 ? ", " : "", ritz_formats[k]->name);
 }
 
-ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
-                               ritz_matrices *out)
+static ritz_status parse(const char *bytes, int64_t size, const char *folder,
+                         ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_format *format = NULL;
@@ -57,7 +58,7 @@ ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
     list_formats(known, sizeof known);
     RITZ_FAIL_IF(!format, RITZ_ERR_FORMAT,
                  "holds no matrix in a format that is known: %s", known);
-    RITZ_TRY(format->read(bytes, size, out));
+    RITZ_TRY(format->read(bytes, size, folder, out));
     snprintf(out->format, sizeof out->format, "%s", format->name);
 done:
     return status;
@@ -77,18 +78,27 @@ static void quote(const char *path, char out[QUOTED])
         snprintf(out, QUOTED, "'...%s'", path + length - most);
 }
 
+ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
+                               ritz_matrices *out)
+{
+    return parse(bytes, size, NULL, out);
+}
+
 ritz_status ritz_foreign_read(const char *path, ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
     char what[QUOTED];
     char *bytes = NULL;
+    char *folder = NULL;
     int64_t size = 0;
 
     RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
+    RITZ_TRY(ritz_deck_folder(path, &folder));
     quote(path, what);
-    RITZ_TRY_IN(what, ritz_foreign_parse(bytes, size, out));
+    RITZ_TRY_IN(what, parse(bytes, size, folder, out));
 done:
     free(bytes);
+    free(folder);
     return status;
 }
 

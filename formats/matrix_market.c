@@ -151,12 +151,14 @@ static bool recognise(const char *bytes, int64_t size)
     return take_word(&at, bytes + size, banner) == 0;
 }
 
-static ritz_status read_all(const char *bytes, int64_t size, ritz_matrices *out)
+static ritz_status read_all(const char *bytes, int64_t size, const char *folder,
+                            ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
     ritz_market m = {.text = {.at = bytes, .end = bytes + size}};
     ritz_matrix *matrix = NULL;
 
+    (void)folder; /* the format includes no other file */
     RITZ_TRY(read_banner(&m));
     RITZ_TRY(read_size(&m));
     RITZ_TRY(ritz_market_read_entries(&m));

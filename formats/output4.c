@@ -237,11 +237,13 @@ static bool recognise(const char *bytes, int64_t size)
            ritz_output4_is_text(bytes, size);
 }
 
-static ritz_status read_all(const char *bytes, int64_t size, ritz_matrices *out)
+static ritz_status read_all(const char *bytes, int64_t size, const char *folder,
+                            ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
     ritz_output4_list list = {.columns = RITZ_OUTPUT4_NULL_COLUMNS + size};
 
+    (void)folder; /* the format includes no other file */
     if (ritz_output4_is_binary(bytes, size))
         RITZ_TRY(ritz_output4_read_binary(bytes, size, &list));
     else

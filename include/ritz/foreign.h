@@ -34,8 +34,12 @@ typedef struct ritz_format {
     const char *reference; /* key in docs/references.bib */
     /** Whether these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
-    /** All matrices; @return RITZ_ERR_FORMAT naming line or byte. */
-    ritz_status (*read)(const char *bytes, int64_t size, ritz_matrices *out);
+    /**
+     * All matrices; files that they include are looked for in @p folder, NULL:
+     * those are not followed. @return RITZ_ERR_FORMAT naming line or byte
+     */
+    ritz_status (*read)(const char *bytes, int64_t size, const char *folder,
+                        ritz_matrices *out);
 } ritz_format;
 
 /** All formats of matrices, ended by NULL. */

@@ -9,7 +9,7 @@
 
 static ritz_status parse(const char *text, ritz_matrices *out)
 {
-    return ritz_format_dmig.read(text, (int64_t)strlen(text), out);
+    return ritz_format_dmig.read(text, (int64_t)strlen(text), NULL, out);
 }
 
 /* A(i,j), 0 where nothing is stored. */
@@ -184,7 +184,7 @@ static void try_bytes(const char *bytes, int64_t size)
     assert_non_null(copy);
     memcpy(copy, bytes, (size_t)size);
     (void)ritz_format_dmig.recognise(copy, size);
-    if (ritz_format_dmig.read(copy, size, &all) == RITZ_OK)
+    if (ritz_format_dmig.read(copy, size, NULL, &all) == RITZ_OK)
         ritz_matrices_free(&all);
     else
         assert_null(all.matrix);
@@ -326,6 +326,39 @@ static void forms_and_types_of_others_are_read(void **state)
     ritz_matrices_free(&all);
 }
 
+static void put(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Columns in an included file are columns of the matrix. */
+static void included_columns_are_read(void **state)
+{
+    char folder[] = "/tmp/ritz-dmig-XXXXXX";
+    char deck[64], part[64];
+    ritz_matrices all = {0};
+
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(deck, sizeof deck, "%s/deck.bdf", folder);
+    snprintf(part, sizeof part, "%s/part.pch", folder);
+    put(deck, "DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,4.0\nINCLUDE 'part.pch'\n");
+    put(part, "DMIG,K,2,1,,2,1,9.0\n");
+    assert_ok(ritz_foreign_read(deck, &all));
+    assert_int_equal(all.count, 1);
+    assert_int_equal(all.matrix[0].A.ncol, 2);
+    assert_near(all.matrix[0].A.val[1], 9.0, 0.0);
+    ritz_matrices_free(&all);
+    remove(part);
+    assert_fails(ritz_foreign_read(deck, &all), RITZ_ERR_FILE, "part.pch");
+    remove(deck);
+    remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -338,6 +371,7 @@ int main(void)
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(a_punched_model_has_its_published_frequencies),
         cmocka_unit_test(forms_and_types_of_others_are_read),
+        cmocka_unit_test(included_columns_are_read),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
