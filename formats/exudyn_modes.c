@@ -82,8 +82,8 @@ static int64_t orthonormalise(ritz_dense *R)
 
 /*
  * Motions T Z are those of a rigid body. The allowance of 1e-3 lies between
- * what matrices of six digits do to a rigid mode (1e-5, measured) and the order
- * of 1 by which a loose part differs.
+ * what matrices of six digits may do to a rigid mode (1e-5, a judgement) and
+ * the order of 1 by which a loose part differs.
  */
 static ritz_status demand_rigid(const ritz_reduced *reduced,
                                 const ritz_dense *Z)
