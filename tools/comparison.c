@@ -102,10 +102,10 @@ static void name_row(const ritz_stage *stage, const ritz_comparison *c,
     const ritz_system *system = &c->second_system;
 
     snprintf(out, RITZ_NAME_SIZE, "as joined");
-    if (stage->scene->num_hinges > 0)
-        ritz_configuration_name(system->num_hinges,
-                                (const char(*)[RITZ_NAME_SIZE])system->hinge,
-                                row->angle_deg, out);
+    if (stage->scene->num_sweeps > 0)
+        ritz_configuration_name(system->num_sweeps,
+                                (const char(*)[RITZ_NAME_SIZE])system->sweep,
+                                row->setting, out);
 }
 
 static json_t *row_json(const ritz_compare_row *row, const char *at)

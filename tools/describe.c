@@ -360,7 +360,7 @@ ritz_status describe_system(const cli_run *run, json_t *keys,
     set_text(keys, "name", s->name);
     set_text(keys, "units", s->units);
     set_text(keys, "damping", s->damping);
-    json_object_set_new(keys, "hinges", names_json(s->num_hinges, s->hinge));
+    json_object_set_new(keys, "sweeps", names_json(s->num_sweeps, s->sweep));
     json_object_set_new(keys, "ports", json_array());
     json_object_set_new(keys, "configurations", json_array());
     json_object_set_new(keys, "components", components);

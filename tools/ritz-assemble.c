@@ -32,19 +32,18 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
     ritz_status status = RITZ_OK;
     ritz_component full = {0};
     ritz_stamp stamp = {0};
-    double *angle_deg =
-        calloc((size_t)scene->num_hinges + 1, sizeof *angle_deg);
+    double *setting = calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
 
-    RITZ_FAIL_IF(!angle_deg, RITZ_ERR_MEMORY, "no memory for angles");
-    RITZ_TRY(ritz_scene_angles(scene, at ? at : "", angle_deg));
-    RITZ_TRY(ritz_assemble_full(scene, angle_deg, &full));
+    RITZ_FAIL_IF(!setting, RITZ_ERR_MEMORY, "no memory for angles");
+    RITZ_TRY(ritz_scene_angles(scene, at ? at : "", setting));
+    RITZ_TRY(ritz_assemble_full(scene, setting, &full));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_component(run->output, &full, &stamp));
     cli_say(run, "%s:", run->output);
     describe_component(run, run->report, &full);
     cli_record(run, "full", full.num_dofs);
 done:
-    free(angle_deg);
+    free(setting);
     ritz_component_free(&full);
     return status;
 }

@@ -4,8 +4,9 @@
 #include <ritz/method.h>
 
 #include <math.h>
+#include <string.h>
 
-enum { MAX_METHODS = 64 };
+enum { MAX_METHODS = 64, MAX_WORDS = 15, MAX_NAME = 32 };
 
 static void list_methods(void)
 {
@@ -84,13 +85,43 @@ done:
     return status;
 }
 
+/* What was asked by words, into the request. */
+static void take_choice(const cli_program *program, const char *const *text,
+                        ritz_request *request)
+{
+    for (int k = 0; ritz_choice_words[k].key; k++)
+        if (text[k] && ritz_choice_take(&ritz_choice_words[k], text[k],
+                                        &request->choice) != RITZ_OK)
+            cli_refuse(program, "%s", ritz_error_message());
+}
+
+/* An option for every word of a choice: shift_hz becomes --shift-hz. */
+static void add_words(const char **text, char (*name)[MAX_NAME],
+                      cli_option *options)
+{
+    for (int k = 0; ritz_choice_words[k].key && k < MAX_WORDS; k++) {
+        const ritz_choice_word *word = &ritz_choice_words[k];
+
+        for (int i = 0; word->key[i] && i < MAX_NAME - 1; i++)
+            name[k][i] = word->key[i];
+        for (char *at = strchr(name[k], '_'); at; at = strchr(at, '_'))
+            *at = '-';
+        options[k] =
+            (cli_option){CLI_TEXT(&text[k]), .name = name[k],
+                         .argument = word->argument, .help = word->help};
+    }
+}
+
 int main(int argc, char **argv)
 {
+    enum { NUM_OWN = 5 };
     const char *ports = NULL;
+    const char *text[MAX_WORDS] = {0};
+    char name[MAX_WORDS][MAX_NAME] = {0};
     ritz_request request = RITZ_REQUEST_NONE;
-    const cli_option options[] = {
+    cli_option options[NUM_OWN + MAX_WORDS + 1] = {
         {CLI_INT(&request.modes), .name = "modes", .argument = "N", .min = 0,
-         .max = 100000, .help = "how many flexible modes, or"},
+         .max = 100000, .help = "how many flexible vectors, or"},
         {CLI_REAL(&request.up_to_hz), .name = "up-to-hz", .argument = "F",
          .min = 1e-9, .max = 1e9, .help = "every mode up to this frequency"},
         {CLI_TEXT(&ports), .name = "attach", .argument = "PORT[,PORT]",
@@ -100,7 +131,6 @@ int main(int argc, char **argv)
          .help = "relative, below which a column depends on others"},
         {CLI_ACTION(list_methods), .name = "list",
          .help = "list methods and their papers"},
-        {0},
     };
     const cli_program program = {
         .name = "ritz-basis",
@@ -117,6 +147,7 @@ int main(int argc, char **argv)
     const ritz_method *method = NULL;
     cli_run run;
 
+    add_words(text, name, options + NUM_OWN);
     cli_parse(&program, argc, argv, &run);
     method = find(&program, run.operand[0]);
     if (ports && !(method->uses & RITZ_USES_ATTACHED))
@@ -124,6 +155,7 @@ int main(int argc, char **argv)
                    "%s keeps no attached dofs, --attach is not for "
                    "it",
                    method->name);
+    take_choice(&program, text, &request);
     if (ritz_request_check(method, &request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     return cli_finish(&run, make(&run, method, ports, &request));

@@ -14,6 +14,13 @@ typedef enum ritz_column_kind {
     RITZ_COLUMN_NORMAL,     /* eigenvector, interface clamped or free */
     RITZ_COLUMN_RESIDUAL,   /* answers a unit force, less what is kept */
     RITZ_COLUMN_SYSTEM,     /* part of system modes, from the second stage */
+    RITZ_COLUMN_KRYLOV, /* of a block Krylov sequence, any expansion point */
+    RITZ_COLUMN_STATIC, /* static Ritz vector: answers a load */
+    RITZ_COLUMN_ATTACHMENT, /* inertia-relief attachment mode */
+    RITZ_COLUMN_INTERFACE,  /* characteristic constraint mode */
+    RITZ_COLUMN_MASSLESS,   /* residual flexibility, its mass left out */
+    RITZ_COLUMN_FORCE,      /* residual flexibility of a dual interface force */
+    RITZ_COLUMN_STATE,      /* of a first-order basis */
 } ritz_column_kind;
 
 /* What each of r columns is. */

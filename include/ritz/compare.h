@@ -10,8 +10,8 @@
 
 /* What stage two did at one configuration. */
 typedef struct ritz_compare_row {
-    double *angle_deg; /* one for each hinge */
-    bool listed;       /* false: between listed angles, for checking only */
+    double *setting; /* one for each hinge */
+    bool listed;     /* false: between listed angles, for checking only */
     int64_t num_rigid, num_flexible; /* of the stage-1 system */
     int64_t num_kept; /* flexible modes that matter: listed, they are kept;
                                between, they would have been */

@@ -10,6 +10,7 @@
 #ifndef RITZ_COMPONENT_H
 #define RITZ_COMPONENT_H
 
+#include <ritz/dampers.h>
 #include <ritz/dofs.h>
 #include <ritz/io.h>
 #include <ritz/sparse.h>
@@ -53,6 +54,7 @@ typedef struct ritz_component {
     int64_t num_ports;
     ritz_port *port;
     ritz_io io;                   /* for n coordinates */
+    ritz_dampers dampers;         /* beside K and D, which hold none of them */
     char damping[RITZ_NAME_SIZE]; /* as ritz_damping_parse reads; "" none */
     char units[RITZ_NAME_SIZE];   /* "kg m s" */
     double asymmetry; /* relative, that was found and averaged away */

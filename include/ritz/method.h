@@ -3,7 +3,13 @@
 #define RITZ_METHOD_H
 
 #include <ritz/basis.h>
+#include <ritz/choice.h>
 #include <ritz/component.h>
+
+/* What hangs on the attached dofs while modes are found, of their order. */
+typedef struct ritz_neighbour {
+    ritz_dense K, M; /* attached x attached, condensed [N/m], [kg]; {0}: none */
+} ritz_neighbour;
 
 /*
  * What is asked of a method. A method that needs more gets a field here, which
@@ -15,10 +21,9 @@ typedef struct ritz_request {
     int64_t modes;      /* how many flexible ones; -1: as up_to_hz says */
     double up_to_hz;    /* every mode up to this frequency; 0: modes decides */
     double tolerance;   /* relative, below which a column is dependent */
+    ritz_choice choice; /* shifts, loads, inner product and so on */
+    const ritz_neighbour *neighbour; /* loaded interface; NULL: none */
 } ritz_request;
-
-/* Which fields of a request a method heeds; the others must be left alone. */
-enum { RITZ_USES_MODES = 1, RITZ_USES_ATTACHED = 2 };
 
 /* A request that asks for nothing yet. */
 #define RITZ_REQUEST_NONE                                                      \

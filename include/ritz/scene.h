@@ -6,6 +6,7 @@
 #ifndef RITZ_SCENE_H
 #define RITZ_SCENE_H
 
+#include <ritz/choice.h>
 #include <ritz/damping.h>
 #include <ritz/dofs.h>
 #include <ritz/text.h>
@@ -17,6 +18,7 @@ typedef struct ritz_scene_component {
     int64_t modes;              /* -1: none given */
     double up_to_hz;            /* 0: none given */
     char *attach; /* ports with commas between; NULL: those of the scene */
+    ritz_choice choice;   /* what the basis is told beside that */
     int64_t line, column; /* where it stands, for later refusals */
 } ritz_scene_component;
 
@@ -36,9 +38,9 @@ typedef struct ritz_joint {
     ritz_joint_type type;
     ritz_scene_place between[2];
     double axis[3]; /* unit, basic frame of the first body; hinge only */
-    int64_t num_angles;
-    double *angle_deg; /* hinge: at least one, [0] if the scene gives none */
-    double tolerance;  /* of positions of paired grids, absolute; 0: default */
+    int64_t num_settings;
+    double *setting;  /* hinge: at least one, [0] if the scene gives none */
+    double tolerance; /* of positions of paired grids, absolute; 0: default */
     int64_t line, column;
 } ritz_joint;
 
@@ -66,10 +68,10 @@ typedef struct ritz_scene {
     ritz_scene_component *component;
     int64_t num_joints;
     ritz_joint *joint;
-    int64_t num_hinges; /* hinge k of the scene is joint hinge[k] */
-    int64_t *hinge;
+    int64_t num_sweeps; /* setting k of a configuration is of joint sweep[k] */
+    int64_t *sweep;
     int64_t num_configurations; /* every combination if the scene lists none */
-    double *angle_deg; /* num_configurations x num_hinges, row by row */
+    double *setting; /* num_configurations x num_sweeps, row by row */
     int64_t num_inputs;
     ritz_scene_io *input;
     int64_t num_outputs;
@@ -103,11 +105,11 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
  * Rows of angles for "clock=60,cone=0" (--at): hinges not named take their
  * only angle. Angles need not be in the scene's lists.
  *
- * @param[out] angle_deg  num_hinges
+ * @param[out] setting  num_sweeps
  * @return RITZ_ERR_ARGUMENT
  */
 ritz_status ritz_scene_angles(const ritz_scene *scene, const char *at,
-                              double *angle_deg);
+                              double *setting);
 
 /**
  * Put "scene.yaml:12:9: input 'torque': " before the sentence of a failure that

@@ -50,11 +50,11 @@ void ritz_stage_scale(const ritz_stage *stage, double *scale);
  * (translations, rotations) are divided by the largest norm among them, so that
  * singular values tell rank apart from rounding.
  *
- * @param[in] angle_deg  one for each hinge of the scene
+ * @param[in] setting  one for each hinge of the scene
  * @param[in] scale      Q, as ritz_stage_scale gives it
  */
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
-                                   const double *angle_deg, const double *scale,
+                                   const double *setting, const double *scale,
                                    ritz_dense *out);
 
 /**
@@ -63,8 +63,7 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
  *
  * @cost O(Q^2 c + e^3)
  */
-ritz_status ritz_stage_assemble(const ritz_stage *stage,
-                                const double *angle_deg,
+ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
                                 ritz_configuration *out);
 
 /** The system at every configuration of the scene, or at @p at alone. */
@@ -81,7 +80,7 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
  *
  * @return RITZ_ERR_ARGUMENT if a model is reduced already
  */
-ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
+ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
                                ritz_component *out);
 
 void ritz_stage_free(ritz_stage *stage);

@@ -13,8 +13,8 @@
 
 typedef struct ritz_configuration {
     char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
-    int64_t num_angles;
-    double *angle_deg;  /* one for each hinge of the scene, in its order */
+    int64_t num_settings;
+    double *setting;    /* one for each hinge of the scene, in its order */
     int64_t rank;       /* of the constraints */
     ritz_dense K, M, D; /* e x e; D {0}: none beside the damping below */
     double *lambda;     /* e, ascending  [rad^2/s^2] */
@@ -31,8 +31,8 @@ typedef struct ritz_system {
     char (*component)[RITZ_NAME_SIZE];
     int64_t *order;      /* r_c of each */
     int64_t *order_full; /* n of each full component */
-    int64_t num_hinges;
-    char (*hinge)[RITZ_NAME_SIZE];
+    int64_t num_sweeps;
+    char (*sweep)[RITZ_NAME_SIZE];
     int64_t num_configurations;
     ritz_configuration *configuration;
     double band_hz[2];
@@ -51,8 +51,8 @@ ritz_status ritz_system_find(const ritz_system *system, const char *at,
                              const ritz_configuration **out);
 
 /** "clock=60,cone=0" from names and angles. */
-void ritz_configuration_name(int64_t count, const char (*hinge)[RITZ_NAME_SIZE],
-                             const double *angle_deg, char out[RITZ_NAME_SIZE]);
+void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
+                             const double *setting, char out[RITZ_NAME_SIZE]);
 
 void ritz_configuration_free(ritz_configuration *configuration);
 void ritz_system_free(ritz_system *system);

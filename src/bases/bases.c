@@ -45,6 +45,10 @@ ritz_status ritz_request_check(const ritz_method *method,
     else
         RITZ_FAIL_IF(by_number || by_frequency, RITZ_ERR_ARGUMENT,
                      "%s has no modes to choose", method->name);
+    for (const ritz_choice_word *word = ritz_choice_words; word->key; word++)
+        RITZ_FAIL_IF(request->choice.given & word->uses & ~method->uses,
+                     RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",
+                     method->name, word->key);
 done:
     return status;
 }
@@ -60,6 +64,7 @@ static void sign(const ritz_method *method, const ritz_request *request,
     else if (request->up_to_hz > 0.0)
         snprintf(origin->options, RITZ_NAME_SIZE, "up-to-hz %.17g",
                  request->up_to_hz);
+    ritz_choice_print(&request->choice, RITZ_NAME_SIZE, origin->options);
 }
 
 ritz_status ritz_basis_make(const ritz_method *method,

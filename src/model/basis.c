@@ -7,9 +7,18 @@
 #include <string.h>
 
 static const char *const names[] = {
-    [RITZ_COLUMN_RIGID] = "rigid",   [RITZ_COLUMN_CONSTRAINT] = "constraint",
-    [RITZ_COLUMN_NORMAL] = "normal", [RITZ_COLUMN_RESIDUAL] = "residual",
+    [RITZ_COLUMN_RIGID] = "rigid",
+    [RITZ_COLUMN_CONSTRAINT] = "constraint",
+    [RITZ_COLUMN_NORMAL] = "normal",
+    [RITZ_COLUMN_RESIDUAL] = "residual",
     [RITZ_COLUMN_SYSTEM] = "system",
+    [RITZ_COLUMN_KRYLOV] = "krylov",
+    [RITZ_COLUMN_STATIC] = "static",
+    [RITZ_COLUMN_ATTACHMENT] = "attachment",
+    [RITZ_COLUMN_INTERFACE] = "interface",
+    [RITZ_COLUMN_MASSLESS] = "massless",
+    [RITZ_COLUMN_FORCE] = "force",
+    [RITZ_COLUMN_STATE] = "state",
 };
 
 ritz_status ritz_columns_new(int64_t r, ritz_columns *out)

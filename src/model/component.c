@@ -256,5 +256,6 @@ void ritz_component_free(ritz_component *component)
         ritz_dofs_free(&component->port[k].dofs);
     free(component->port);
     ritz_io_free(&component->io);
+    ritz_dampers_free(&component->dampers);
     *component = (ritz_component){0};
 }

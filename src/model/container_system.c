@@ -128,8 +128,8 @@ static ritz_status write_configuration(hid_t at, const ritz_system *system,
     RITZ_TRY(ritz_part_set_members(at, configuration_members, c));
     RITZ_TRY(ritz_part_set_whole(at, "rank", c->rank));
     RITZ_TRY(ritz_part_set_whole(at, "num_rigid", c->num_rigid));
-    RITZ_TRY(ritz_h5_write(at, "angles_deg", H5T_IEEE_F64LE,
-                           ritz_h5_vector(c->num_angles), c->angle_deg));
+    RITZ_TRY(ritz_h5_write(at, "settings", H5T_IEEE_F64LE,
+                           ritz_h5_vector(c->num_settings), c->setting));
     RITZ_TRY(ritz_h5_write_dense(at, "K", &c->K));
     RITZ_TRY(ritz_h5_write_dense(at, "M", &c->M));
     RITZ_TRY(ritz_part_write_dense(at, "D", &c->D));
@@ -156,10 +156,10 @@ static ritz_status read_configuration(hid_t at, const ritz_system *system,
     RITZ_TRY(ritz_part_read_dense(at, "D", e, e, &c->D));
     RITZ_TRY(ritz_part_get_size(at, "rank", 0, INT64_MAX, &c->rank));
     RITZ_TRY(ritz_part_get_size(at, "num_rigid", 0, e, &c->num_rigid));
-    RITZ_NEW(c->angle_deg, system->num_hinges);
-    c->num_angles = system->num_hinges;
-    RITZ_TRY(ritz_h5_read_real(at, "angles_deg", ritz_h5_vector(c->num_angles),
-                               false, c->angle_deg));
+    RITZ_NEW(c->setting, system->num_sweeps);
+    c->num_settings = system->num_sweeps;
+    RITZ_TRY(ritz_h5_read_real(at, "settings", ritz_h5_vector(c->num_settings),
+                               false, c->setting));
     RITZ_NEW(c->lambda, e);
     RITZ_TRY(
         ritz_h5_read_real(at, "lambda", ritz_h5_vector(e), false, c->lambda));
@@ -235,10 +235,10 @@ static ritz_status read_all(hid_t file, ritz_system *system)
         ritz_h5_get_text(file, "units", sizeof system->units, system->units));
     RITZ_TRY(ritz_part_get_members(file, members, system));
     RITZ_TRY(ritz_part_get_real(file, "band_hz", false, 2, system->band_hz));
-    RITZ_TRY(ritz_h5_count(file, "hinges", &system->num_hinges));
-    RITZ_NEW(system->hinge, system->num_hinges);
-    RITZ_TRY(ritz_part_read_names(file, "hinges", system->num_hinges,
-                                  system->hinge));
+    RITZ_TRY(ritz_h5_count(file, "sweeps", &system->num_sweeps));
+    RITZ_NEW(system->sweep, system->num_sweeps);
+    RITZ_TRY(ritz_part_read_names(file, "sweeps", system->num_sweeps,
+                                  system->sweep));
     RITZ_TRY(read_blocks(file, system));
     RITZ_TRY(read_configurations(file, system));
 done:
@@ -273,8 +273,8 @@ ritz_status ritz_container_write_system(const char *path,
     file = writer.file;
     RITZ_TRY(ritz_part_set_members(file, members, system));
     RITZ_TRY(ritz_part_set_real(file, "band_hz", 2, system->band_hz));
-    RITZ_TRY(ritz_part_write_names(file, "hinges", system->num_hinges,
-                                   system->hinge));
+    RITZ_TRY(ritz_part_write_names(file, "sweeps", system->num_sweeps,
+                                   system->sweep));
     RITZ_TRY(write_blocks(file, system));
     RITZ_TRY(write_configurations(file, system));
     RITZ_TRY(ritz_writer_finish(&writer));

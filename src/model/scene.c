@@ -135,12 +135,12 @@ void ritz_scene_free(ritz_scene *scene)
         free(scene->component[k].attach);
     }
     for (int64_t k = 0; k < scene->num_joints; k++)
-        free(scene->joint[k].angle_deg);
+        free(scene->joint[k].setting);
     free(scene->path);
     free(scene->component);
     free(scene->joint);
-    free(scene->hinge);
-    free(scene->angle_deg);
+    free(scene->sweep);
+    free(scene->setting);
     free(scene->input);
     free(scene->output);
     free(scene->reference);

@@ -9,12 +9,12 @@
 
 void ritz_scene_row_clear(const ritz_scene *scene, double *row)
 {
-    for (int64_t k = 0; k < scene->num_hinges; k++)
+    for (int64_t k = 0; k < scene->num_sweeps; k++)
         row[k] = (double)NAN;
 }
 
 ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *joint,
-                               double angle_deg, double *row)
+                               double setting, double *row)
 {
     ritz_status status = RITZ_OK;
     ritz_names joints = {"hinge", scene->num_joints, scene->joint->name,
@@ -25,11 +25,11 @@ ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *joint,
     RITZ_TRY(ritz_words_find(&joints, joint, &at));
     RITZ_FAIL_IF(scene->joint[at].type != RITZ_JOINT_HINGE, RITZ_ERR_ARGUMENT,
                  "'%s' is a fixed joint, it has no angle", joint);
-    while (scene->hinge[k] != at)
+    while (scene->sweep[k] != at)
         k++;
     RITZ_FAIL_IF(!isnan(row[k]), RITZ_ERR_ARGUMENT, "hinge '%s' is given twice",
                  joint);
-    row[k] = angle_deg;
+    row[k] = setting;
 done:
     return status;
 }
@@ -38,14 +38,15 @@ ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row)
 {
     ritz_status status = RITZ_OK;
 
-    for (int64_t k = 0; k < scene->num_hinges; k++) {
-        const ritz_joint *joint = &scene->joint[scene->hinge[k]];
+    for (int64_t k = 0; k < scene->num_sweeps; k++) {
+        const ritz_joint *joint = &scene->joint[scene->sweep[k]];
 
-        RITZ_FAIL_IF(isnan(row[k]) && joint->num_angles > 1, RITZ_ERR_ARGUMENT,
+        RITZ_FAIL_IF(isnan(row[k]) && joint->num_settings > 1,
+                     RITZ_ERR_ARGUMENT,
                      "hinge '%s' has several angles and none is given here",
                      joint->name);
         if (isnan(row[k]))
-            row[k] = joint->angle_deg[0];
+            row[k] = joint->setting[0];
     }
 done:
     return status;
@@ -100,12 +101,12 @@ done:
 }
 
 ritz_status ritz_scene_angles(const ritz_scene *scene, const char *at,
-                              double *angle_deg)
+                              double *setting)
 {
     ritz_status status = RITZ_OK;
     double *row = NULL;
 
-    RITZ_NEW(row, scene->num_hinges);
+    RITZ_NEW(row, scene->num_sweeps);
     ritz_scene_row_clear(scene, row);
     for (const char *part = *at ? at : NULL; part;) {
         size_t length = strcspn(part, ",");
@@ -114,8 +115,8 @@ ritz_status ritz_scene_angles(const ritz_scene *scene, const char *at,
         part = part[length] ? part + length + 1 : NULL;
     }
     RITZ_TRY(ritz_scene_row_fill(scene, row));
-    if (scene->num_hinges > 0)
-        memcpy(angle_deg, row, (size_t)scene->num_hinges * sizeof *row);
+    if (scene->num_sweeps > 0)
+        memcpy(setting, row, (size_t)scene->num_sweeps * sizeof *row);
 done:
     free(row);
     return status;

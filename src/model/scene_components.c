@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,7 +85,7 @@ done:
     return status;
 }
 
-enum { MODEL, BASIS, MODES, UP_TO, ATTACH, NUM_KEYS };
+enum { MODEL, BASIS, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
     [MODEL] = {"model", true, ritz_yaml_copy,
@@ -99,24 +100,73 @@ static const ritz_yaml_key keys[NUM_KEYS] = {
                 offsetof(ritz_scene_component, attach)},
 };
 
+/* [0, 5] is taken as "0,5", a scalar as it is. */
+static ritz_status take_choice(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const ritz_choice_word *word,
+                               ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    bool scalar = node->type == YAML_SCALAR_NODE;
+    char text[1024] = "";
+    int64_t count = 1;
+    size_t used = 0;
+
+    if (!scalar)
+        RITZ_TRY(ritz_scene_count(yaml, node, &count));
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *item = scalar ? node : ritz_yaml_item(yaml, node, k);
+        const char *part = NULL;
+
+        RITZ_TRY(ritz_yaml_text(yaml, item, &part));
+        RITZ_REFUSE_IF(used + strlen(part) + 2 > sizeof text, yaml, item,
+                       "the list of '%s' is too long", word->key);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s",
+                                 k > 0 ? "," : "", part);
+    }
+    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_choice_take(word, text, choice)));
+done:
+    return status;
+}
+
+/* The keys above, then the words of a choice. */
+static int64_t list_keys(ritz_yaml_key all[MOST_KEYS])
+{
+    int64_t count = NUM_KEYS;
+
+    memcpy(all, keys, sizeof keys);
+    for (const ritz_choice_word *word = ritz_choice_words; word->key; word++) {
+        all[count] = (ritz_yaml_key){0};
+        snprintf(all[count].name, sizeof all[count].name, "%s", word->key);
+        count++;
+    }
+    return count;
+}
+
 static ritz_status read_component(const ritz_yaml *yaml,
                                   const yaml_node_t *word,
                                   const yaml_node_t *node,
                                   ritz_scene_component *out)
 {
     ritz_status status = RITZ_OK;
-    const yaml_node_t *value[NUM_KEYS];
+    const yaml_node_t *value[MOST_KEYS];
+    ritz_yaml_key all[MOST_KEYS];
+    int64_t count = list_keys(all);
 
     out->modes = -1;
     out->line = (int64_t)word->start_mark.line + 1;
     out->column = (int64_t)word->start_mark.column + 1;
-    RITZ_TRY(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, out, value));
+    RITZ_TRY(ritz_yaml_mapping(yaml, node, count, all, out, value));
     RITZ_REFUSE_IF(value[MODES] && value[UP_TO], yaml, value[UP_TO],
                    "'modes' and 'up_to_hz' are both given, one decides");
-    for (int k = MODES; k < NUM_KEYS; k++)
+    for (int64_t k = MODES; k < count; k++)
         RITZ_REFUSE_IF(value[k] && !value[BASIS], yaml, value[k],
                        "'%s' says how to reduce, which needs a 'basis' too",
-                       keys[k].name);
+                       all[k].name);
+    for (int64_t k = NUM_KEYS; k < count; k++)
+        if (value[k])
+            RITZ_TRY(take_choice(yaml, value[k],
+                                 &ritz_choice_words[k - NUM_KEYS],
+                                 &out->choice));
 done:
     return status;
 }

@@ -59,16 +59,16 @@ static ritz_status make_room(const ritz_yaml *yaml, const yaml_node_t *node,
                              double count, ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
-    int64_t n = scene->num_hinges;
+    int64_t n = scene->num_sweeps;
 
     RITZ_REFUSE_IF(count > RITZ_MOST_CONFIGURATIONS ||
-                       count * (double)n > RITZ_MOST_ANGLES,
+                       count * (double)n > RITZ_MOST_SETTINGS,
                    yaml, node,
                    "%.6g configurations of %" PRId64
                    " hinges are too many: list those wanted under "
                    "'configurations'",
                    count, n);
-    RITZ_NEW(scene->angle_deg, (int64_t)count * n);
+    RITZ_NEW(scene->setting, (int64_t)count * n);
     scene->num_configurations = (int64_t)count;
 done:
     return status;
@@ -78,21 +78,21 @@ done:
 static ritz_status combine(const ritz_yaml *yaml, ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
-    int64_t n = scene->num_hinges;
+    int64_t n = scene->num_sweeps;
     double count = 1.0;
 
     for (int64_t k = 0; k < n; k++)
-        count *= (double)scene->joint[scene->hinge[k]].num_angles;
+        count *= (double)scene->joint[scene->sweep[k]].num_settings;
     RITZ_TRY(make_room(yaml, ritz_yaml_root(yaml), count, scene));
     for (int64_t c = 0; c < scene->num_configurations; c++) {
         int64_t rest = c;
 
         for (int64_t k = n - 1; k >= 0; k--) {
-            const ritz_joint *joint = &scene->joint[scene->hinge[k]];
+            const ritz_joint *joint = &scene->joint[scene->sweep[k]];
 
-            scene->angle_deg[c * n + k] =
-                joint->angle_deg[rest % joint->num_angles];
-            rest /= joint->num_angles;
+            scene->setting[c * n + k] =
+                joint->setting[rest % joint->num_settings];
+            rest /= joint->num_settings;
         }
     }
 done:
@@ -104,7 +104,7 @@ ritz_status ritz_scene_configurations(const ritz_yaml *yaml,
                                       ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
-    int64_t n = scene->num_hinges;
+    int64_t n = scene->num_sweeps;
     int64_t count = 0;
     int64_t again = -1;
 
@@ -117,8 +117,8 @@ ritz_status ritz_scene_configurations(const ritz_yaml *yaml,
     RITZ_TRY(make_room(yaml, node, (double)count, scene));
     for (int64_t c = 0; c < count; c++)
         RITZ_TRY(ritz_scene_row_read(yaml, ritz_yaml_item(yaml, node, c), scene,
-                                     scene->angle_deg + c * n));
-    RITZ_TRY(ritz_rows_repeated(count, n, scene->angle_deg, &again));
+                                     scene->setting + c * n));
+    RITZ_TRY(ritz_rows_repeated(count, n, scene->setting, &again));
     RITZ_REFUSE_IF(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
                    "this configuration is listed before");
 done:
@@ -139,12 +139,12 @@ static ritz_status find_reference(const ritz_yaml *yaml,
                                   ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
-    int64_t n = scene->num_hinges;
+    int64_t n = scene->num_sweeps;
     int64_t c = 0;
 
     RITZ_TRY(ritz_scene_row_read(yaml, node, scene, row));
     while (c < scene->num_configurations &&
-           !rows_agree(n, row, scene->angle_deg + c * n))
+           !rows_agree(n, row, scene->setting + c * n))
         c++;
     RITZ_REFUSE_IF(c == scene->num_configurations, yaml, node,
                    "this is none of the scene's configurations");
@@ -167,7 +167,7 @@ static ritz_status read_reference(const ritz_yaml *yaml,
     RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_REFERENCES, yaml, node,
                    "1 to %d references can be listed, not %" PRId64,
                    RITZ_MOST_REFERENCES, count);
-    RITZ_NEW(row, scene->num_hinges);
+    RITZ_NEW(row, scene->num_sweeps);
     RITZ_NEW(scene->reference, count);
     for (int64_t k = 0; k < count; k++)
         RITZ_TRY(

@@ -110,13 +110,13 @@ static ritz_status read_angles(const ritz_yaml *yaml, const yaml_node_t *node,
     RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_CONFIGURATIONS, yaml, node,
                    "a hinge has 1 to %d angles, not %" PRId64,
                    RITZ_MOST_CONFIGURATIONS, count);
-    RITZ_NEW(joint->angle_deg, count);
-    joint->num_angles = count;
+    RITZ_NEW(joint->setting, count);
+    joint->num_settings = count;
     if (node)
-        RITZ_TRY(ritz_yaml_reals(yaml, node, count, joint->angle_deg));
-    RITZ_TRY(ritz_rows_repeated(count, 1, joint->angle_deg, &again));
+        RITZ_TRY(ritz_yaml_reals(yaml, node, count, joint->setting));
+    RITZ_TRY(ritz_rows_repeated(count, 1, joint->setting, &again));
     RITZ_REFUSE_IF(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
-                   "angle %g is listed twice", joint->angle_deg[again]);
+                   "angle %g is listed twice", joint->setting[again]);
 done:
     return status;
 }
@@ -168,13 +168,13 @@ static ritz_status find_hinges(const ritz_yaml *yaml, const yaml_node_t *node,
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_NEW(scene->hinge, scene->num_joints);
+    RITZ_NEW(scene->sweep, scene->num_joints);
     for (int64_t k = 0; k < scene->num_joints; k++)
         if (scene->joint[k].type == RITZ_JOINT_HINGE)
-            scene->hinge[scene->num_hinges++] = k;
-    RITZ_REFUSE_IF(scene->num_hinges > RITZ_MOST_HINGES, yaml, node,
+            scene->sweep[scene->num_sweeps++] = k;
+    RITZ_REFUSE_IF(scene->num_sweeps > RITZ_MOST_SWEEPS, yaml, node,
                    "%" PRId64 " hinges are too many, %d can be",
-                   scene->num_hinges, RITZ_MOST_HINGES);
+                   scene->num_sweeps, RITZ_MOST_SWEEPS);
 done:
     return status;
 }

@@ -8,8 +8,8 @@
 
 enum {
     RITZ_MOST_PARTS = 10000,           /* components, joints, inputs, outputs */
-    RITZ_MOST_HINGES = 1000,           /* as looked up for every angle */
-    RITZ_MOST_ANGLES = 1000000,        /* configurations times hinges */
+    RITZ_MOST_SWEEPS = 1000,           /* as looked up for every angle */
+    RITZ_MOST_SETTINGS = 1000000,      /* configurations times hinges */
     RITZ_MOST_CONFIGURATIONS = 100000, /* given or combined */
     RITZ_MOST_REFERENCES = 1000,       /* each sought among all of those */
 };
@@ -52,7 +52,7 @@ void ritz_scene_row_clear(const ritz_scene *scene, double *row);
  * @return RITZ_ERR_ARGUMENT if @p joint is no hinge or has its angle
  */
 ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *joint,
-                               double angle_deg, double *row);
+                               double setting, double *row);
 
 /** Hinges without an angle get their only one; RITZ_ERR_ARGUMENT if it is not.
  */

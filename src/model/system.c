@@ -8,15 +8,15 @@
 
 static const double same_angle = 1e-9; /* degrees */
 
-void ritz_configuration_name(int64_t count, const char (*hinge)[RITZ_NAME_SIZE],
-                             const double *angle_deg, char out[RITZ_NAME_SIZE])
+void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
+                             const double *setting, char out[RITZ_NAME_SIZE])
 {
     size_t used = 0;
 
     out[0] = '\0';
     for (int64_t k = 0; k < count && used < RITZ_NAME_SIZE; k++)
         used += (size_t)snprintf(out + used, RITZ_NAME_SIZE - used, "%s%s=%.9g",
-                                 k > 0 ? "," : "", hinge[k], angle_deg[k]);
+                                 k > 0 ? "," : "", sweep[k], setting[k]);
     if (count == 0)
         snprintf(out, RITZ_NAME_SIZE, "fixed");
 }
@@ -32,11 +32,11 @@ static ritz_status read_part(const ritz_system *system, const char *part,
 
     RITZ_FAIL_IF(!equals || !ritz_text_real(equals + 1, &angle),
                  RITZ_ERR_ARGUMENT, "'%s' is not JOINT=ANGLE", part);
-    for (int64_t k = 0; k < system->num_hinges; k++)
-        if (strlen(system->hinge[k]) == length &&
-            strncmp(system->hinge[k], part, length) == 0) {
+    for (int64_t k = 0; k < system->num_sweeps; k++)
+        if (strlen(system->sweep[k]) == length &&
+            strncmp(system->sweep[k], part, length) == 0) {
             RITZ_FAIL_IF(!isnan(wanted[k]), RITZ_ERR_ARGUMENT,
-                         "hinge '%s' is named twice", system->hinge[k]);
+                         "hinge '%s' is named twice", system->sweep[k]);
             wanted[k] = angle;
             return RITZ_OK;
         }
@@ -48,24 +48,24 @@ done:
 
 static bool matches(const ritz_configuration *c, const double *wanted)
 {
-    for (int64_t k = 0; k < c->num_angles; k++)
-        if (!isnan(wanted[k]) && fabs(c->angle_deg[k] - wanted[k]) > same_angle)
+    for (int64_t k = 0; k < c->num_settings; k++)
+        if (!isnan(wanted[k]) && fabs(c->setting[k] - wanted[k]) > same_angle)
             return false;
     return true;
 }
 
-enum { MAX_HINGES = 16 };
+enum { MAX_SWEEPS = 16 };
 
 /* What is asked of each hinge, NaN where nothing is. */
 static ritz_status read_wanted(const ritz_system *system, const char *at,
-                               double wanted[MAX_HINGES])
+                               double wanted[MAX_SWEEPS])
 {
     ritz_status status = RITZ_OK;
     char part[2 * RITZ_NAME_SIZE];
 
-    RITZ_FAIL_IF(system->num_hinges > MAX_HINGES, RITZ_ERR_ARGUMENT,
-                 "more than %d hinges", MAX_HINGES);
-    for (int64_t k = 0; k < MAX_HINGES; k++)
+    RITZ_FAIL_IF(system->num_sweeps > MAX_SWEEPS, RITZ_ERR_ARGUMENT,
+                 "more than %d hinges", MAX_SWEEPS);
+    for (int64_t k = 0; k < MAX_SWEEPS; k++)
         wanted[k] = nan("");
     while (at && *at) {
         size_t length = strcspn(at, ",");
@@ -88,7 +88,7 @@ ritz_status ritz_system_find(const ritz_system *system, const char *at,
 {
     ritz_status status = RITZ_OK;
     const ritz_configuration *found = NULL;
-    double wanted[MAX_HINGES];
+    double wanted[MAX_SWEEPS];
 
     RITZ_FAIL_IF(system->num_configurations < 1, RITZ_ERR_ARGUMENT,
                  "the system has no configuration");
@@ -120,7 +120,7 @@ void ritz_configuration_free(ritz_configuration *configuration)
     for (int64_t k = 0; k < configuration->num_blocks; k++)
         ritz_dense_free(&configuration->P[k]);
     free(configuration->P);
-    free(configuration->angle_deg);
+    free(configuration->setting);
     free(configuration->lambda);
     ritz_dense_free(&configuration->K);
     ritz_dense_free(&configuration->M);
@@ -138,6 +138,6 @@ void ritz_system_free(ritz_system *system)
     free(system->component);
     free(system->order);
     free(system->order_full);
-    free(system->hinge);
+    free(system->sweep);
     *system = (ritz_system){0};
 }

@@ -170,21 +170,21 @@ done:
 }
 
 /* Name, angles, blocks and io of a configuration with modal P. */
-static ritz_status finish(const ritz_stage *stage, const double *angle_deg,
+static ritz_status finish(const ritz_stage *stage, const double *setting,
                           const ritz_dense *P, ritz_configuration *c)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
     char(*hinge)[RITZ_NAME_SIZE] = NULL;
 
-    RITZ_NEW(hinge, scene->num_hinges);
-    RITZ_NEW(c->angle_deg, scene->num_hinges);
-    c->num_angles = scene->num_hinges;
-    for (int64_t k = 0; k < scene->num_hinges; k++) {
-        memcpy(hinge[k], scene->joint[scene->hinge[k]].name, RITZ_NAME_SIZE);
-        c->angle_deg[k] = angle_deg[k];
+    RITZ_NEW(hinge, scene->num_sweeps);
+    RITZ_NEW(c->setting, scene->num_sweeps);
+    c->num_settings = scene->num_sweeps;
+    for (int64_t k = 0; k < scene->num_sweeps; k++) {
+        memcpy(hinge[k], scene->joint[scene->sweep[k]].name, RITZ_NAME_SIZE);
+        c->setting[k] = setting[k];
     }
-    ritz_configuration_name(scene->num_hinges, hinge, angle_deg, c->at);
+    ritz_configuration_name(scene->num_sweeps, hinge, setting, c->at);
     RITZ_NEW(c->P, stage->count);
     for (int64_t k = 0; k < stage->count; k++) {
         c->num_blocks++;
@@ -197,8 +197,7 @@ done:
     return status;
 }
 
-ritz_status ritz_stage_assemble(const ritz_stage *stage,
-                                const double *angle_deg,
+ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
                                 ritz_configuration *out)
 {
     ritz_status status = RITZ_OK;
@@ -208,13 +207,13 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage,
 
     RITZ_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
-    RITZ_TRY(ritz_stage_constraints(stage, angle_deg, scale, &C));
+    RITZ_TRY(ritz_stage_constraints(stage, setting, scale, &C));
     RITZ_TRY(ritz_null_space(&C, &c.rank, &P));
     for (int64_t j = 0; j < P.ncol; j++)
         for (int64_t i = 0; i < P.nrow; i++)
             ritz_dense_col(&P, j)[i] *= scale[i];
     RITZ_TRY(make_modal(stage, &P, &c));
-    RITZ_TRY(finish(stage, angle_deg, &P, &c));
+    RITZ_TRY(finish(stage, setting, &P, &c));
     *out = c;
     c = (ritz_configuration){0};
 done:

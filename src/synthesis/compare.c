@@ -40,10 +40,10 @@ static ritz_status add_between(const ritz_scene *scene, const double *from,
     ritz_compare_row *row = &out->row[out->num_rows];
 
     out->num_rows++;
-    RITZ_NEW(row->angle_deg, scene->num_hinges);
-    memcpy(row->angle_deg, from,
-           (size_t)scene->num_hinges * sizeof *row->angle_deg);
-    row->angle_deg[hinge] = 0.5 * (from[hinge] + to);
+    RITZ_NEW(row->setting, scene->num_sweeps);
+    memcpy(row->setting, from,
+           (size_t)scene->num_sweeps * sizeof *row->setting);
+    row->setting[hinge] = 0.5 * (from[hinge] + to);
 done:
     return status;
 }
@@ -55,14 +55,14 @@ done:
 static ritz_status list_between(const ritz_scene *scene, ritz_comparison *out)
 {
     ritz_status status = RITZ_OK;
-    int64_t h = scene->num_hinges;
+    int64_t h = scene->num_sweeps;
     int64_t count = scene->num_configurations;
-    const double *first = scene->angle_deg;
-    const double *last = scene->angle_deg + (count - 1) * h;
+    const double *first = scene->setting;
+    const double *last = scene->setting + (count - 1) * h;
     int64_t hinge = -1;
 
     for (int64_t k = 0; k + 1 < count; k++) {
-        const double *a = scene->angle_deg + k * h;
+        const double *a = scene->setting + k * h;
 
         hinge = differs_by(h, a, a + h);
         if (hinge >= 0)
@@ -82,17 +82,17 @@ done:
 static ritz_status list_rows(const ritz_scene *scene, ritz_comparison *out)
 {
     ritz_status status = RITZ_OK;
-    int64_t h = scene->num_hinges;
+    int64_t h = scene->num_sweeps;
 
     RITZ_NEW(out->row, 2 * scene->num_configurations);
     for (int64_t k = 0; k < scene->num_configurations; k++) {
         ritz_compare_row *row = &out->row[out->num_rows++];
 
         row->listed = true;
-        RITZ_NEW(row->angle_deg, h);
+        RITZ_NEW(row->setting, h);
         if (h > 0)
-            memcpy(row->angle_deg, scene->angle_deg + k * h,
-                   (size_t)h * sizeof *row->angle_deg);
+            memcpy(row->setting, scene->setting + k * h,
+                   (size_t)h * sizeof *row->setting);
     }
     RITZ_TRY(list_between(scene, out));
 done:
@@ -154,8 +154,8 @@ static ritz_status measure(const ritz_stage *stage, int64_t k, double least,
             &out->second_system.configuration[k], row);
         goto done;
     }
-    RITZ_TRY(ritz_stage_assemble(stage, row->angle_deg, &one));
-    RITZ_TRY(ritz_stage_assemble(&out->second, row->angle_deg, &two));
+    RITZ_TRY(ritz_stage_assemble(stage, row->setting, &one));
+    RITZ_TRY(ritz_stage_assemble(&out->second, row->setting, &two));
     RITZ_TRY(ritz_compare_select(stage->scene, &one, least, row));
     RITZ_TRY(ritz_compare_measure(stage, out->V, &one, &two, row));
 done:
@@ -265,7 +265,7 @@ done:
 void ritz_comparison_free(ritz_comparison *comparison)
 {
     for (int64_t k = 0; comparison->row && k < comparison->num_rows; k++) {
-        free(comparison->row[k].angle_deg);
+        free(comparison->row[k].setting);
         free(comparison->row[k].kept);
     }
     for (int64_t k = 0; comparison->V && k < comparison->num_bodies; k++)

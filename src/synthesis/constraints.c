@@ -94,7 +94,7 @@ static void level(const ritz_constraints *list, int64_t first, ritz_dense *C)
 }
 
 /* The constraints of every joint, and how many there are. */
-static ritz_status list_all(const ritz_stage *stage, const double *angle_deg,
+static ritz_status list_all(const ritz_stage *stage, const double *setting,
                             ritz_constraints *list, int64_t *count)
 {
     ritz_status status = RITZ_OK;
@@ -111,8 +111,8 @@ static ritz_status list_all(const ritz_stage *stage, const double *angle_deg,
         RITZ_TRY(find_ports(stage, joint, port));
         for (int k = 0; k < 2; k++)
             end[k] = describe_end(stage, &joint->between[k], port[k]);
-        RITZ_TRY(ritz_joint_constrain(
-            joint, end, turns ? angle_deg[hinge] : 0.0, &list[j]));
+        RITZ_TRY(ritz_joint_constrain(joint, end, turns ? setting[hinge] : 0.0,
+                                      &list[j]));
         hinge += turns;
         *count += list[j].count;
     }
@@ -121,7 +121,7 @@ done:
 }
 
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
-                                   const double *angle_deg, const double *scale,
+                                   const double *setting, const double *scale,
                                    ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
@@ -132,8 +132,8 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
     int64_t first = 0;
 
     RITZ_NEW(list, scene->num_joints);
-    RITZ_TRY(ritz_place_check(stage, angle_deg));
-    RITZ_TRY(list_all(stage, angle_deg, list, &count));
+    RITZ_TRY(ritz_place_check(stage, setting));
+    RITZ_TRY(list_all(stage, setting, list, &count));
     RITZ_TRY(ritz_dense_new(count, stage->num_coordinates, &C));
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_port_map *port[2] = {NULL, NULL};

@@ -157,14 +157,14 @@ done:
 }
 
 /* Names of the masters; grids of all bodies where the angles put them. */
-static ritz_status name_dofs(const ritz_held *p, const double *angle_deg,
+static ritz_status name_dofs(const ritz_held *p, const double *setting,
                              const int64_t *master, ritz_component *system)
 {
     ritz_status status = RITZ_OK;
     int64_t *add = NULL;
 
     RITZ_NEW(add, p->count);
-    RITZ_TRY(ritz_place_grids(&p->stage, angle_deg, p->count, p->body, add,
+    RITZ_TRY(ritz_place_grids(&p->stage, setting, p->count, p->body, add,
                               &system->grids));
     RITZ_NEW(system->dof, system->num_dofs);
     for (int64_t j = 0, k = 0; j < system->num_dofs; j++) {
@@ -191,7 +191,7 @@ done:
     return status;
 }
 
-ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
+ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
                                ritz_component *out)
 {
     ritz_status status = RITZ_OK;
@@ -207,7 +207,7 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
     RITZ_NEW(scale, p.stage.num_coordinates);
     for (int64_t j = 0; j < p.stage.num_coordinates; j++)
         scale[j] = 1.0;
-    RITZ_TRY(ritz_stage_constraints(&p.stage, angle_deg, scale, &C));
+    RITZ_TRY(ritz_stage_constraints(&p.stage, setting, scale, &C));
     RITZ_NEW(pivot_of, C.ncol);
     RITZ_NEW(master, p.num_dofs);
     ritz_eliminate(&C, pivot_of);
@@ -215,7 +215,7 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *angle_deg,
     system.num_dofs = T.ncol;
     RITZ_TRY(project_matrices(&p, &T, &system));
     RITZ_TRY(project_io(&p, &T, &system.io));
-    RITZ_TRY(name_dofs(&p, angle_deg, master, &system));
+    RITZ_TRY(name_dofs(&p, setting, master, &system));
     ritz_damping_print(&scene->damping, system.damping);
     memcpy(system.units, p.body[0].units, sizeof system.units);
     RITZ_TRY(ritz_component_settle(&system, false));

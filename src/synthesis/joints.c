@@ -16,19 +16,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-void ritz_joint_rotation(const double axis[static 3], double angle_deg,
+void ritz_joint_rotation(const double axis[static 3], double setting,
                          double R[static 9])
 {
     const double pi = 3.14159265358979323846;
     /* quarter turns are exact, so that 90 degrees swaps axes and no more */
-    double quarter = fmod(angle_deg, 90.0) == 0.0
-                         ? fmod(fmod(angle_deg / 90.0, 4.0) + 4.0, 4.0)
+    double quarter = fmod(setting, 90.0) == 0.0
+                         ? fmod(fmod(setting / 90.0, 4.0) + 4.0, 4.0)
                          : -1.0;
     static const double sines[] = {0.0, 1.0, 0.0, -1.0, 0.0};
-    double s =
-        quarter >= 0.0 ? sines[(int)quarter] : sin(angle_deg * pi / 180.0);
+    double s = quarter >= 0.0 ? sines[(int)quarter] : sin(setting * pi / 180.0);
     double c =
-        quarter >= 0.0 ? sines[(int)quarter + 1] : cos(angle_deg * pi / 180.0);
+        quarter >= 0.0 ? sines[(int)quarter + 1] : cos(setting * pi / 180.0);
     const double skew[9] = {0.0,      -axis[2], axis[1], axis[2], 0.0,
                             -axis[0], -axis[1], axis[0], 0.0};
 
@@ -220,7 +219,7 @@ static ritz_constraint project(const double e[static 3],
 
 static ritz_status constrain_hinge(const ritz_joint *joint,
                                    const ritz_joint_end end[static 2],
-                                   double angle_deg, ritz_constraints *list)
+                                   double setting, ritz_constraints *list)
 {
     ritz_status status = RITZ_OK;
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -230,7 +229,7 @@ static ritz_status constrain_hinge(const ritz_joint *joint,
 
     RITZ_TRY(find_six(&end[0], row[0]));
     RITZ_TRY(find_six(&end[1], row[1]));
-    ritz_joint_rotation(joint->axis, angle_deg, R);
+    ritz_joint_rotation(joint->axis, setting, R);
     find_normals(joint->axis, e);
     for (int i = 0; i < 3; i++)
         list->item[list->count++] = project(unit[i], R, row, 0);
@@ -242,7 +241,7 @@ done:
 
 ritz_status ritz_joint_constrain(const ritz_joint *joint,
                                  const ritz_joint_end end[static 2],
-                                 double angle_deg, ritz_constraints *out)
+                                 double setting, ritz_constraints *out)
 {
     ritz_status status = RITZ_OK;
     ritz_constraints list = {0};
@@ -253,7 +252,7 @@ ritz_status ritz_joint_constrain(const ritz_joint *joint,
         RITZ_TRY(constrain_fixed(joint, end, &list));
         break;
     case RITZ_JOINT_HINGE:
-        RITZ_TRY(constrain_hinge(joint, end, angle_deg, &list));
+        RITZ_TRY(constrain_hinge(joint, end, setting, &list));
         break;
     }
     RITZ_FAIL_IF(list.count == 0, RITZ_ERR_ARGUMENT,

@@ -30,16 +30,16 @@ typedef struct ritz_constraints {
 /**
  * The constraints of a joint.
  *
- * @param[in] angle_deg  of a hinge
+ * @param[in] setting  of a hinge
  * @return RITZ_ERR_ARGUMENT if the ports do not fit: grids without a partner
  *         within the tolerance, a hinge on other than one six-dof grid
  */
 ritz_status ritz_joint_constrain(const ritz_joint *joint,
                                  const ritz_joint_end end[static 2],
-                                 double angle_deg, ritz_constraints *out);
+                                 double setting, ritz_constraints *out);
 
-/** Rotation by @p angle_deg about a unit axis, row by row. */
-void ritz_joint_rotation(const double axis[static 3], double angle_deg,
+/** Rotation by @p setting about a unit axis, row by row. */
+void ritz_joint_rotation(const double axis[static 3], double setting,
                          double R[static 9]);
 
 void ritz_constraints_free(ritz_constraints *constraints);

@@ -70,7 +70,7 @@ static void transpose(double *R)
 }
 
 /* Go once through the joints; whether a body found its place. */
-static bool spread(const ritz_stage *stage, const double *angle_deg,
+static bool spread(const ritz_stage *stage, const double *setting,
                    placement *place)
 {
     static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -90,7 +90,7 @@ static bool spread(const ritz_stage *stage, const double *angle_deg,
 
         memcpy(R, unit, sizeof R);
         if (joint->type == RITZ_JOINT_HINGE)
-            ritz_joint_rotation(joint->axis, angle_deg[hinge++], R);
+            ritz_joint_rotation(joint->axis, setting[hinge++], R);
         if (!port_a || !port_b || place[a].known == place[b].known)
             continue;
         if (place[a].known) {
@@ -105,14 +105,14 @@ static bool spread(const ritz_stage *stage, const double *angle_deg,
 }
 
 /* Every body, those that nothing holds staying where they are. */
-static void place_all(const ritz_stage *stage, const double *angle_deg,
+static void place_all(const ritz_stage *stage, const double *setting,
                       placement *place)
 {
     for (int64_t k = 0; k < stage->count; k++) {
         if (place[k].known)
             continue;
         place[k] = (placement){true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}};
-        while (spread(stage, angle_deg, place))
+        while (spread(stage, setting, place))
             ;
     }
 }
@@ -148,7 +148,7 @@ static misfit measure_joint(const placement *a, const placement *b,
 }
 
 static ritz_status check_joint(const ritz_stage *stage, const placement *place,
-                               const ritz_joint *joint, double angle_deg)
+                               const ritz_joint *joint, double setting)
 {
     ritz_status status = RITZ_OK;
     int64_t a = joint->between[0].component;
@@ -163,7 +163,7 @@ static ritz_status check_joint(const ritz_stage *stage, const placement *place,
     if (!near || !far)
         return RITZ_OK; /* refused where the joint is made */
     if (joint->type == RITZ_JOINT_HINGE)
-        ritz_joint_rotation(joint->axis, angle_deg, R);
+        ritz_joint_rotation(joint->axis, setting, R);
     found = measure_joint(&place[a], &place[b], R, near->origin, far->origin);
     RITZ_FAIL_IF(found.gap > closure * found.size, RITZ_ERR_ARGUMENT,
                  "closes a loop of joints that does not meet: '%s/%s' and "
@@ -180,7 +180,7 @@ done:
                               "joint", joint->name);
 }
 
-ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg)
+ritz_status ritz_place_check(const ritz_stage *stage, const double *setting)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
@@ -188,12 +188,12 @@ ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg)
     int64_t hinge = 0;
 
     RITZ_NEW(place, stage->count);
-    place_all(stage, angle_deg, place);
+    place_all(stage, setting, place);
     for (int64_t j = 0; j < scene->num_joints; j++) {
         bool turns = scene->joint[j].type == RITZ_JOINT_HINGE;
 
         RITZ_TRY(check_joint(stage, place, &scene->joint[j],
-                             turns ? angle_deg[hinge] : 0.0));
+                             turns ? setting[hinge] : 0.0));
         hinge += turns;
     }
 done:
@@ -294,7 +294,7 @@ done:
     return status;
 }
 
-ritz_status ritz_place_grids(const ritz_stage *stage, const double *angle_deg,
+ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t count, const ritz_component *body,
                              int64_t *add, ritz_grids *out)
 {
@@ -313,7 +313,7 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *angle_deg,
     RITZ_NEW(all.position, 3 * grids);
     RITZ_NEW(all.frame, grids);
     RITZ_NEW(all.axes, 9 * frames);
-    place_all(stage, angle_deg, place);
+    place_all(stage, setting, place);
     renumber(count, body, add);
     all.num_frames = 1;
     for (int64_t k = 0; k < 3; k++)

@@ -10,7 +10,7 @@
  *
  * @return RITZ_ERR_ARGUMENT naming the joint that closes it, and how far from
  */
-ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg);
+ritz_status ritz_place_check(const ritz_stage *stage, const double *setting);
 
 /**
  * Grids of all bodies in the basic frame of the first (of each tree of joints).
@@ -19,7 +19,7 @@ ritz_status ritz_place_check(const ritz_stage *stage, const double *angle_deg);
  * @param[out] add    count, what to add to the grid numbers of each body so
  *                    that no two are the same
  */
-ritz_status ritz_place_grids(const ritz_stage *stage, const double *angle_deg,
+ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t count, const ritz_component *body,
                              int64_t *add, ritz_grids *out);
 

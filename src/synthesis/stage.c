@@ -76,6 +76,7 @@ static ritz_status reduce_body(const ritz_scene *scene, int64_t k,
     request.component = component;
     request.modes = item->modes;
     request.up_to_hz = item->up_to_hz;
+    request.choice = item->choice;
     if (!item->attach)
         RITZ_TRY(used_ports(scene, k, &ports));
     RITZ_TRY(ritz_component_attached(

@@ -31,10 +31,10 @@ static ritz_status label(const ritz_stage *stage, ritz_system *system)
             "'%s' is in units '%s' and '%s' in '%s'", scene->component[0].name,
             system->units, scene->component[k].name, stage->body[k].units);
     }
-    RITZ_NEW(system->hinge, scene->num_hinges);
-    system->num_hinges = scene->num_hinges;
-    for (int64_t k = 0; k < scene->num_hinges; k++)
-        memcpy(system->hinge[k], scene->joint[scene->hinge[k]].name,
+    RITZ_NEW(system->sweep, scene->num_sweeps);
+    system->num_sweeps = scene->num_sweeps;
+    for (int64_t k = 0; k < scene->num_sweeps; k++)
+        memcpy(system->sweep[k], scene->joint[scene->sweep[k]].name,
                RITZ_NAME_SIZE);
 done:
     return status;
@@ -47,26 +47,26 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
     const ritz_scene *scene = stage->scene;
     int64_t count = at ? 1 : scene->num_configurations;
     ritz_system system = {0};
-    double *angle_deg = NULL;
+    double *setting = NULL;
 
-    RITZ_NEW(angle_deg, scene->num_hinges);
+    RITZ_NEW(setting, scene->num_sweeps);
     RITZ_TRY(label(stage, &system));
     RITZ_NEW(system.configuration, count);
     for (int64_t k = 0; k < count; k++) {
-        const double *row = angle_deg;
+        const double *row = setting;
 
         ritz_monitor_step("configuration", k, count);
         if (at)
-            RITZ_TRY(ritz_scene_angles(scene, at, angle_deg));
+            RITZ_TRY(ritz_scene_angles(scene, at, setting));
         else
-            row = scene->angle_deg + k * scene->num_hinges;
+            row = scene->setting + k * scene->num_sweeps;
         RITZ_TRY(ritz_stage_assemble(stage, row, &system.configuration[k]));
         system.num_configurations++;
     }
     *out = system;
     system = (ritz_system){0};
 done:
-    free(angle_deg);
+    free(setting);
     ritz_system_free(&system);
     return status;
 }

@@ -179,7 +179,7 @@ def system(file):
     for at in file["configurations"].values():
         e = at["K"].shape[0]
         assert at["M"].shape == (e, e) and at["lambda"].shape == (e,)
-        assert at["angles_deg"].shape == file["hinges"].shape
+        assert at["settings"].shape == file["sweeps"].shape
         assert 0 <= at.attrs["num_rigid"] <= e
         assert set(at["blocks"]) == set(file["blocks"])
         for name, P in at["blocks"].items():

@@ -273,11 +273,11 @@ static ritz_status sample_configuration(bool full, int64_t k,
     out->num_blocks = 2;
     RITZ_TRY(filled(5, e, 3.0, &out->P[0]));
     RITZ_TRY(filled(7, e, 4.0, &out->P[1]));
-    RITZ_NEW(out->angle_deg, 2);
+    RITZ_NEW(out->setting, 2);
     if (!full)
         goto done;
-    out->num_angles = 2;
-    out->angle_deg[0] = 60.0 * (double)k;
+    out->num_settings = 2;
+    out->setting[0] = 60.0 * (double)k;
     RITZ_TRY(filled(e, e, 5.0, &out->D));
     RITZ_TRY(sample_io(e, &out->io));
     RITZ_TRY(sample_measures(&out->errors));
@@ -290,7 +290,7 @@ ritz_status sample_system(bool full, ritz_system *out)
     ritz_status status = RITZ_OK;
     ritz_system system = {.name = "dual-spin spacecraft, cruise",
                           .num_components = 2,
-                          .num_hinges = full ? 2 : 0,
+                          .num_sweeps = full ? 2 : 0,
                           .band_hz = {0.0, 10.0},
                           .damping = "bands 0 5 0.002 5 20 0.005",
                           .units = "kg m s"};
@@ -299,11 +299,11 @@ ritz_status sample_system(bool full, ritz_system *out)
     RITZ_NEW(system.component, 2);
     RITZ_NEW(system.order, 2);
     RITZ_NEW(system.order_full, 2);
-    RITZ_NEW(system.hinge, 2);
+    RITZ_NEW(system.sweep, 2);
     snprintf(system.component[0], RITZ_NAME_SIZE, "stator");
     snprintf(system.component[1], RITZ_NAME_SIZE, "rotor");
-    snprintf(system.hinge[0], RITZ_NAME_SIZE, "clock");
-    snprintf(system.hinge[1], RITZ_NAME_SIZE, "cone");
+    snprintf(system.sweep[0], RITZ_NAME_SIZE, "clock");
+    snprintf(system.sweep[1], RITZ_NAME_SIZE, "cone");
     system.order[0] = 5;
     system.order[1] = 7;
     system.order_full[0] = 3000;

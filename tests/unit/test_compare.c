@@ -143,8 +143,8 @@ static void errors_are_known_between_angles_too(void **state)
 
     skip_without_data();
     assert_int_equal(f->c.num_rows, 12);
-    assert_near(f->c.row[6].angle_deg[0], 30.0, 1e-12);
-    assert_near(f->c.row[11].angle_deg[0], 330.0, 1e-12);
+    assert_near(f->c.row[6].setting[0], 30.0, 1e-12);
+    assert_near(f->c.row[11].setting[0], 330.0, 1e-12);
     for (int64_t k = 6; k < 12; k++) {
         assert_false(f->c.row[k].listed);
         assert_true(isnan(f->c.row[k].allowed));

@@ -268,8 +268,8 @@ static void same_configuration(const ritz_configuration *a,
                                const ritz_configuration *b)
 {
     assert_string_equal(a->at, b->at);
-    assert_int_equal(a->num_angles, b->num_angles);
-    assert_same(a->angle_deg, b->angle_deg, a->num_angles, 8);
+    assert_int_equal(a->num_settings, b->num_settings);
+    assert_same(a->setting, b->setting, a->num_settings, 8);
     assert_int_equal(a->rank, b->rank);
     assert_int_equal(a->num_rigid, b->num_rigid);
     same_dense(&a->K, &b->K);
@@ -295,8 +295,8 @@ static void compare_systems(bool full)
     assert_same(a.component, b.component, a.num_components, RITZ_NAME_SIZE);
     assert_same(a.order, b.order, a.num_components, 8);
     assert_same(a.order_full, b.order_full, a.num_components, 8);
-    assert_int_equal(a.num_hinges, b.num_hinges);
-    assert_same(a.hinge, b.hinge, a.num_hinges, RITZ_NAME_SIZE);
+    assert_int_equal(a.num_sweeps, b.num_sweeps);
+    assert_same(a.sweep, b.sweep, a.num_sweeps, RITZ_NAME_SIZE);
     assert_int_equal(a.num_configurations, b.num_configurations);
     for (int64_t k = 0; k < a.num_configurations; k++) {
         same_configuration(&a.configuration[k], &b.configuration[k]);

@@ -90,15 +90,15 @@ static void joints_of_the_example_are_read(void **state)
     assert_int_equal(scene.joint[1].between[1].component, 2);
     assert_string_equal(scene.joint[1].between[1].port, "scan");
     assert_near(scene.joint[1].axis[1], 1.0, 0.0);
-    assert_int_equal(scene.joint[0].num_angles, 6);
-    assert_near(scene.joint[0].angle_deg[5], 300.0, 0.0);
+    assert_int_equal(scene.joint[0].num_settings, 6);
+    assert_near(scene.joint[0].setting[5], 300.0, 0.0);
     assert_int_equal(scene.joint[1].line, 8);
     assert_int_equal(scene.joint[1].column, 5);
-    assert_int_equal(scene.num_hinges, 2);
+    assert_int_equal(scene.num_sweeps, 2);
     assert_int_equal(scene.num_configurations, 2);
-    assert_near(scene.angle_deg[0], 0.0, 0.0);
-    assert_near(scene.angle_deg[2], 60.0, 0.0);
-    assert_near(scene.angle_deg[3], 0.0, 0.0);
+    assert_near(scene.setting[0], 0.0, 0.0);
+    assert_near(scene.setting[2], 60.0, 0.0);
+    assert_near(scene.setting[3], 0.0, 0.0);
     ritz_scene_free(&scene);
 }
 
@@ -155,10 +155,10 @@ static void angles_combine_with_the_last_hinge_fastest(void **state)
 
     (void)state;
     assert_int_equal(scene.num_joints, 3);
-    assert_int_equal(scene.num_hinges, 2);
-    assert_int_equal(scene.hinge[1], 1);
+    assert_int_equal(scene.num_sweeps, 2);
+    assert_int_equal(scene.sweep[1], 1);
     assert_int_equal(scene.num_configurations, 6);
-    assert_memory_equal(scene.angle_deg, expected, sizeof expected);
+    assert_memory_equal(scene.setting, expected, sizeof expected);
     ritz_scene_free(&scene);
 }
 
@@ -181,8 +181,8 @@ static void an_axis_gets_length_one(void **state)
         assert_near(scene.joint[0].axis[0], 0.6, 4e-16); /* 4 roundings */
         assert_near(scene.joint[0].axis[1], 0.8, 4e-16);
         assert_near(scene.joint[0].axis[2], 0.0, 0.0);
-        assert_int_equal(scene.joint[0].num_angles, 1);
-        assert_near(scene.joint[0].angle_deg[0], 0.0, 0.0);
+        assert_int_equal(scene.joint[0].num_settings, 1);
+        assert_near(scene.joint[0].setting[0], 0.0, 0.0);
         ritz_scene_free(&scene);
     }
 }
@@ -365,7 +365,8 @@ static void bad_keys_are_refused(void **state)
          "s:2:18: unknown key 'modez', is 'model' meant?"},
         {"scene: a\ncomponents: {a: {model: m, q: 2}}\n",
          "s:2:28: unknown key 'q', there is model, basis, modes, up_to_hz, "
-         "attach"},
+         "attach, shift_hz, loads, inner, interface_modes, gramian, operator, "
+         "damping"},
         {"scene: a\ncomponent: {a: {model: m}}\n",
          "s:2:1: unknown key 'component', is 'components' meant?"},
         {"scene: a\nscene: b\n", "s:2:1: key 'scene' is given twice"},

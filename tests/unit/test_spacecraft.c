@@ -111,13 +111,13 @@ static bool store_spacecraft(void)
     return true;
 }
 
-static void assemble(const char *text, const double *angle_deg,
+static void assemble(const char *text, const double *setting,
                      ritz_component *out)
 {
     ritz_scene scene = {0};
 
     folder_parse(text, &scene);
-    assert_ok(ritz_assemble_full(&scene, angle_deg, out));
+    assert_ok(ritz_assemble_full(&scene, setting, out));
     ritz_scene_free(&scene);
 }
 

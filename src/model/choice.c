@@ -1,0 +1,216 @@
+/* The words of a choice: each one's text is parsed here and nowhere else. */
+#include <ritz/choice.h>
+
+#include "model/names.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The next of some words with commas between them; NULL past the last. */
+static const char *next_word(const char *text, char word[RITZ_SHORT_SIZE])
+{
+    size_t length = strcspn(text, ",");
+    size_t kept = length < RITZ_SHORT_SIZE ? length : RITZ_SHORT_SIZE - 1;
+
+    memcpy(word, text, kept);
+    word[kept] = '\0';
+    return text[length] ? text + length + 1 : NULL;
+}
+
+/* Which of some words a text is. */
+static ritz_status take_word(const char *what, const char *text, int64_t count,
+                             const char (*words)[16], int64_t *out)
+{
+    const ritz_names names = {what, count, words[0], sizeof *words};
+
+    return ritz_words_find(&names, text, out);
+}
+
+static ritz_status take_shifts(const char *text, ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    char word[RITZ_SHORT_SIZE];
+    int64_t count = 0;
+
+    for (const char *at = text; at;) {
+        double hertz = 0.0;
+
+        at = next_word(at, word);
+        RITZ_FAIL_IF(
+            !ritz_text_real(word, &hertz) || hertz < 0.0, RITZ_ERR_ARGUMENT,
+            "expansion point '%s' is not a frequency of 0 Hz or above", word);
+        RITZ_FAIL_IF(count == RITZ_MOST_SHIFTS, RITZ_ERR_ARGUMENT,
+                     "there can be %d expansion points, not more",
+                     RITZ_MOST_SHIFTS);
+        for (int64_t k = 0; k < count; k++)
+            RITZ_FAIL_IF(choice->shift_hz[k] == hertz, RITZ_ERR_ARGUMENT,
+                         "expansion point %g Hz is given twice", hertz);
+        choice->shift_hz[count++] = hertz;
+    }
+    choice->num_shifts = count;
+done:
+    return status;
+}
+
+static const char loads[][16] = {"attached", "inputs", "outputs", "dampers"};
+
+static ritz_status take_loads(const char *text, ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    char word[RITZ_SHORT_SIZE];
+    int64_t at = 0;
+    int sum = 0;
+
+    for (const char *rest = text; rest;) {
+        rest = next_word(rest, word);
+        RITZ_TRY(
+            take_word("load", word, sizeof loads / sizeof *loads, loads, &at));
+        sum |= 1 << at;
+    }
+    choice->loads = sum;
+done:
+    return status;
+}
+
+static ritz_status take_inner(const char *text, ritz_choice *choice)
+{
+    static const char words[][16] = {
+        [RITZ_INNER_STIFFNESS] = "stiffness",
+        [RITZ_INNER_MASS] = "mass",
+    };
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_TRY(take_word("inner product", text, 2, words, &at));
+    choice->inner = (ritz_inner)at;
+done:
+    return status;
+}
+
+static ritz_status take_interface_modes(const char *text, ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    char cut[RITZ_SHORT_SIZE];
+    int64_t count = 0;
+
+    RITZ_FAIL_IF(!ritz_text_whole(text, &count) || count < 1, RITZ_ERR_ARGUMENT,
+                 "'%s' is no number of interface modes, 1 or more",
+                 ritz_text_short(text, cut));
+    choice->interface_modes = count;
+done:
+    return status;
+}
+
+static ritz_status take_gramian(const char *text, ritz_choice *choice)
+{
+    static const char words[][16] = {
+        [RITZ_GRAMIAN_INPUTS] = "inputs",
+        [RITZ_GRAMIAN_OUTPUTS] = "outputs",
+    };
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_TRY(take_word("Gramian", text, 2, words, &at));
+    choice->gramian = (ritz_gramian)at;
+done:
+    return status;
+}
+
+static ritz_status take_operator(const char *text, ritz_choice *choice)
+{
+    static const char words[][16] = {"state", "inverse"};
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_TRY(take_word("operator", text, 2, words, &at));
+    choice->inverse = at == 1;
+done:
+    return status;
+}
+
+static ritz_status take_damping(const char *text, ritz_choice *choice)
+{
+    return ritz_damping_parse(text, &choice->damping);
+}
+
+const ritz_choice_word ritz_choice_words[] = {
+    {"shift_hz", "F[,F]", "expansion points of Krylov vectors [0]",
+     RITZ_USES_SHIFTS, take_shifts},
+    {"loads", "WORD[,WORD]",
+     "forces that vectors answer: attached, inputs, outputs, dampers",
+     RITZ_USES_LOADS, take_loads},
+    {"inner", "WORD", "inner product of Krylov vectors: stiffness or mass",
+     RITZ_USES_INNER, take_inner},
+    {"interface_modes", "N",
+     "replace attached dofs by N characteristic constraint modes",
+     RITZ_USES_INTERFACE, take_interface_modes},
+    {"gramian", "WORD", "whose Gramian Lanczos works in: inputs or outputs",
+     RITZ_USES_GRAMIAN, take_gramian},
+    {"operator", "WORD", "Lanczos on the matrix of states: state or inverse",
+     RITZ_USES_OPERATOR, take_operator},
+    {"damping", "TEXT", "'modal 0.01', instead of the component's own",
+     RITZ_USES_DAMPING, take_damping},
+    {0},
+};
+
+ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
+                             ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(word->take(text, choice));
+    choice->given |= word->uses;
+done:
+    return status;
+}
+
+/* Append to what stands in out. */
+static void append(int64_t size, char *out, const char *text)
+{
+    size_t used = strlen(out);
+
+    snprintf(out + used, (size_t)size - used, "%s%s", used > 0 ? " " : "",
+             text);
+}
+
+void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
+{
+    char text[RITZ_NAME_SIZE] = "";
+
+    for (int64_t k = 0; k < choice->num_shifts; k++) {
+        snprintf(text, sizeof text, k == 0 ? "shift-hz %.17g" : ",%.17g",
+                 choice->shift_hz[k]);
+        if (k == 0)
+            append(size, out, text);
+        else
+            snprintf(out + strlen(out), (size_t)size - strlen(out), "%s", text);
+    }
+    for (size_t k = 0; k < sizeof loads / sizeof *loads; k++)
+        if (choice->loads & (1 << k)) {
+            snprintf(text, sizeof text, "load %s", loads[k]);
+            append(size, out, text);
+        }
+    if (choice->given & RITZ_USES_INNER)
+        append(size, out,
+               choice->inner == RITZ_INNER_MASS ? "inner mass"
+                                                : "inner stiffness");
+    if (choice->given & RITZ_USES_INTERFACE) {
+        snprintf(text, sizeof text, "interface-modes %" PRId64,
+                 choice->interface_modes);
+        append(size, out, text);
+    }
+    if (choice->given & RITZ_USES_GRAMIAN)
+        append(size, out,
+               choice->gramian == RITZ_GRAMIAN_INPUTS ? "gramian inputs"
+                                                      : "gramian outputs");
+    if (choice->given & RITZ_USES_OPERATOR)
+        append(size, out,
+               choice->inverse ? "operator inverse" : "operator state");
+    if (choice->given & RITZ_USES_DAMPING) {
+        char damping[RITZ_NAME_SIZE];
+
+        ritz_damping_print(&choice->damping, damping);
+        append(size, out, damping);
+    }
+}
