@@ -1,0 +1,70 @@
+# What test scripts of the tools share; sourced with FOLDER-OF-THE-TOOLS as $1.
+# They then stand in an empty folder that goes away, the tools in the path.
+# shellcheck shell=sh
+set -eu
+bin=$(cd "$1" && pwd)
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir"
+PATH=$bin:$PATH
+count=0
+
+# report NUMBER-IS-OK NAME: one TAP line; the log explains a failure.
+report() {
+    count=$((count + 1))
+    if [ "$1" = yes ]; then
+        printf 'ok %d - %s\n' "$count" "$2"
+        return
+    fi
+    printf 'not ok %d - %s\n' "$count" "$2"
+    sed 's/^/# /' log
+    exit 1
+}
+
+# expect STATUS WORDS COMMAND...: the command exits so and says so.
+expect() {
+    want=$1 words=$2 got=0
+    shift 2
+    "$@" >log 2>&1 || got=$?
+    if [ "$got" = "$want" ] && { cat log; echo; } | grep -qF -e "$words"; then
+        report yes "$*"
+    else
+        echo "exit $got, not $want, or no '$words' above" >>log
+        report no "$*"
+    fi
+}
+
+# holds NAME PYTHON: the expression is true of j, the JSON object in log.json.
+holds() {
+    if /usr/bin/python3 - "$2" >log 2>&1 <<'END'; then
+import json, math, sys
+j = json.load(open("log.json"))
+def near(a, b, tolerance):
+    return len(a) == len(b) and all(
+        abs(x - y) <= tolerance * max(abs(y), 1.0) for x, y in zip(a, b))
+sys.exit(0 if eval(f"({sys.argv[1]})") else f"{sys.argv[1]} fails of {j}")
+END
+        report yes "$1"
+    else
+        report no "$1"
+    fi
+}
+
+# json STATUS COMMAND...: --json gives one object, whatever the status.
+json() {
+    want=$1 got=0
+    shift
+    "$@" --json >log.json 2>log || got=$?
+    [ "$got" = "$want" ] || echo "exit $got, not $want" >>log
+    [ "$got" = "$want" ] && verdict=yes || verdict=no
+    report "$verdict" "$* --json"
+    holds "  is one object with the keys of every tool" \
+        'all(k in j for k in ("tool", "version", "ok", "output", "warnings"))
+         and j["ok"] == ('"$want"' == 0)'
+}
+
+# same NAME FILE FILE: byte for byte.
+# Not in the log, which may be one of them.
+same() {
+    cmp "$2" "$3" >differ 2>&1 && report yes "$1" || report no "$1"
+}
