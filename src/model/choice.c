@@ -176,7 +176,7 @@ static void append(int64_t size, char *out, const char *text)
 
 void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
 {
-    char text[RITZ_NAME_SIZE] = "";
+    char text[2 * RITZ_NAME_SIZE] = "";
 
     for (int64_t k = 0; k < choice->num_shifts; k++) {
         snprintf(text, sizeof text, k == 0 ? "shift-hz %.17g" : ",%.17g",

@@ -1,0 +1,104 @@
+/* ritz-claims - hold published numbers against what the tools answer. */
+#include "claims.h"
+
+#include <errno.h>
+#include <ftw.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int remove_one(const char *path, const struct stat *what, int kind,
+                      struct FTW *where)
+{
+    (void)what;
+    (void)kind;
+    (void)where;
+    return remove(path);
+}
+
+/* The folder of this program, where the other tools are. */
+static ritz_status find_tools(claims_state *state)
+{
+    ritz_status status = RITZ_OK;
+    ssize_t length = readlink("/proc/self/exe", state->bin, PATH_MAX - 1);
+    char *slash = NULL;
+
+    state->bin[length > 0 ? length : 0] = '\0';
+    slash = strrchr(state->bin, '/');
+    RITZ_FAIL_IF(!slash, RITZ_ERR_FILE, "the folder of the tools is unknown");
+    *slash = '\0';
+done:
+    return status;
+}
+
+/* An empty folder in which commands run; a data folder that moves with them. */
+static ritz_status prepare(claims_state *state, const char *data)
+{
+    ritz_status status = RITZ_OK;
+    const char *parent = getenv("TMPDIR");
+
+    RITZ_TRY(find_tools(state));
+    if (data && !realpath(data, state->data))
+        snprintf(state->data, sizeof state->data, "%s", data);
+    snprintf(state->folder, sizeof state->folder, "%s/ritz-claims-XXXXXX",
+             parent && *parent ? parent : "/tmp");
+    if (!mkdtemp(state->folder)) {
+        ritz_record("cannot make a folder '%s': %s", state->folder,
+                    strerror(errno));
+        state->folder[0] = '\0';
+        status = RITZ_ERR_FILE;
+    }
+done:
+    return status;
+}
+
+static ritz_status run_files(cli_run *run, const char *data)
+{
+    ritz_status status = RITZ_OK;
+    claims_state state = {.run = run, .list = json_array()};
+
+    RITZ_TRY(prepare(&state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
+    for (int k = 0; k < run->num_operands; k++) {
+        RITZ_TRY(cli_input(run, run->operand[k]));
+        RITZ_TRY(claims_file(&state, run->operand[k]));
+    }
+    cli_say(run, "1..%" PRId64, state.holds + state.fails + state.skipped);
+    RITZ_FAIL_IF(state.fails > 0, RITZ_ERR_CONVERGENCE,
+                 "%" PRId64 " of %" PRId64 " claims do not hold", state.fails,
+                 state.holds + state.fails);
+done:
+    if (state.folder[0])
+        nftw(state.folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+    json_decref(state.answer);
+    json_object_set_new(run->report, "claims", state.list);
+    cli_report_int(run, "holds", state.holds);
+    cli_report_int(run, "fails", state.fails);
+    cli_report_int(run, "skipped", state.skipped);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const char *data = NULL;
+    const cli_option options[] = {
+        {CLI_TEXT(&data), .name = "data", .argument = "FOLDER",
+         .help = "files of others, $DATA in claims [RITZ_EXTERNAL_DATA]"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-claims",
+        .operands = {{"FILE", "claims, each a number with its source", true}},
+        .summary = "Run commands and hold their answers against published "
+                   "numbers, each with its tolerance\nand its source. A line "
+                   "for each; status 1 if one does not hold.",
+        .example = "ritz-claims tests/claims/*.claims",
+        .options = options,
+        .output = "nothing: what is claimed is said, not written",
+        .output_optional = true,
+    };
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    return cli_finish(&run, run_files(&run, data));
+}
