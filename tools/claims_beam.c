@@ -72,7 +72,9 @@ done:
 
 static ritz_status read_beam(const claims_line *line, beam *b)
 {
+    static const char *const ends[] = {"none", "left", "right", "both"};
     ritz_status status = RITZ_OK;
+    bool known = false;
 
     RITZ_FAIL_IF(line->count < 2 || strchr(line->word[1], '/') ||
                      line->count % 2 != 0,
@@ -81,6 +83,16 @@ static ritz_status read_beam(const claims_line *line, beam *b)
         RITZ_TRY(take_option(line->word[k], line->word[k + 1], b));
     RITZ_FAIL_IF(b->elements < 1 || b->elements > 100000, RITZ_ERR_FORMAT,
                  "a beam has 1 to 100000 elements");
+    RITZ_FAIL_IF(!b->directions[0] ||
+                     strspn(b->directions, "126") != strlen(b->directions) ||
+                     strlen(b->directions) > NODE,
+                 RITZ_ERR_FORMAT, "directions are some of 126, not '%.40s'",
+                 b->directions);
+    for (size_t k = 0; k < sizeof ends / sizeof *ends; k++)
+        known = known || strcmp(b->clamp, ends[k]) == 0;
+    RITZ_FAIL_IF(!known, RITZ_ERR_FORMAT,
+                 "a beam is clamped none, left, right or both, not '%.40s'",
+                 b->clamp);
 done:
     return status;
 }

@@ -20,10 +20,13 @@ static const char *replace(const claims_state *state, const char *text,
     return NULL;
 }
 
-/* One word from `text` to `out`; what follows it, or NULL: never closed. */
+/*
+ * One word from `text` to `out`; what follows it, or NULL: never closed. A
+ * quote within a word is a letter.
+ */
 static const char *take(const claims_state *state, const char *text, char *out)
 {
-    char quote = '\0';
+    char quote = strchr("\"'", *text) ? *text++ : '\0';
 
     for (; *text && (quote || !strchr(" \t", *text)); text++) {
         size_t length = 0;
@@ -33,8 +36,9 @@ static const char *take(const claims_state *state, const char *text, char *out)
             strcpy(out, value);
             out += strlen(value);
             text += length - 1;
-        } else if (quote ? *text == quote : strchr("\"'", *text) != NULL) {
-            quote = quote ? '\0' : *text;
+        } else if (quote && *text == quote) {
+            *out = '\0';
+            return text + 1;
         } else {
             *out++ = *text;
         }

@@ -25,6 +25,7 @@ static const struct verb {
     {"frf", "frequency response of a component, reduced component or system"},
     {"verify", "full against reduced: every error, pass or fail"},
     {"export", "reduced component or response -> file of a simulator"},
+    {"claims", "published numbers held against what the tools answer"},
 };
 
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
