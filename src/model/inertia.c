@@ -39,6 +39,32 @@ static double mean_mass(const ritz_dense *A)
     return count > 0 ? sum / count : 0.0;
 }
 
+/*
+ * c_i is seen by two translations, j and k; where only one of them is in the
+ * model, as in a plane one, that one alone tells.
+ */
+static double centre(const ritz_dense *A, double m, int i)
+{
+    int j = (i + 1) % 3;
+    int k = (i + 2) % 3;
+    bool see_j = ritz_dense_col(A, j)[j] > 0.0;
+    bool see_k = ritz_dense_col(A, k)[k] > 0.0;
+    double sum = (see_j ? ritz_dense_col(A, 3 + k)[j] : 0.0) -
+                 (see_k ? ritz_dense_col(A, 3 + j)[k] : 0.0);
+
+    return see_j || see_k ? sum / (m * (see_j + see_k)) : 0.0;
+}
+
+/* Whether the model moves as an inertia about i and j needs it to. */
+static bool is_seen(const ritz_dense *A, int i, int j)
+{
+    for (int k = 0; k < 3; k++)
+        if (k != i && k != j && !(ritz_dense_col(A, k)[k] > 0.0))
+            return false;
+    return true;
+}
+
+/* Inertias that the model's translations cannot show are left at zero. */
 static void read_off(const ritz_dense *A, ritz_inertia *inertia)
 {
     double m = mean_mass(A);
@@ -46,20 +72,19 @@ static void read_off(const ritz_dense *A, ritz_inertia *inertia)
     double square = 0.0;
 
     inertia->mass = m;
-    for (int i = 0; i < 3 && m > 0.0; i++) {
-        int j = (i + 1) % 3;
-        int k = (i + 2) % 3;
-
-        c[i] = (ritz_dense_col(A, 3 + k)[j] - ritz_dense_col(A, 3 + j)[k]) /
-               (2.0 * m);
+    inertia->known = m > 0.0;
+    if (!inertia->known)
+        return;
+    for (int i = 0; i < 3; i++) {
+        c[i] = centre(A, m, i);
         square += c[i] * c[i];
     }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            inertia->tensor[3 * i + j] =
-                ritz_dense_col(A, 3 + j)[3 + i] -
-                m * ((i == j ? square : 0.0) - c[i] * c[j]);
-    inertia->known = m > 0.0;
+            if (is_seen(A, i, j))
+                inertia->tensor[3 * i + j] =
+                    ritz_dense_col(A, 3 + j)[3 + i] -
+                    m * ((i == j ? square : 0.0) - c[i] * c[j]);
 }
 
 ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)

@@ -1,6 +1,8 @@
 /* Components: what is refused, frames, rigid geometry, mass, reduction. */
 #include "testing.h"
 
+#include "frame.h"
+
 #include "bar.h"
 #include "project.h"
 #include "scenes.h"
@@ -228,6 +230,25 @@ static void mass_properties_are_those_of_two_points(void **state)
     ritz_component_free(&c);
 }
 
+/* A beam of 20 kg and 2 m in the plane: J_zz = m L^2 / 12, nothing else seen. */
+static void a_plane_model_shows_its_inertia_in_the_plane(void **state)
+{
+    ritz_component c = {0};
+    ritz_inertia inertia = {0};
+
+    (void)state;
+    assert_ok(frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &c));
+    assert_ok(ritz_inertia_of(&c, &inertia));
+    assert_near(inertia.mass, 20.0, 1e-13);
+    assert_near(inertia.centre[0], 1.0, 1e-14);
+    assert_near(inertia.centre[1], 0.0, 1e-14);
+    /* J_o of 27 cancels to this: 100 eps of it */
+    assert_near(inertia.tensor[8], 20.0 / 3.0, 1e-12);
+    for (int k = 0; k < 8; k++)
+        assert_near(inertia.tensor[k], 0.0, 1e-12);
+    ritz_component_free(&c);
+}
+
 static void fill_io(ritz_io *io, const char *name, double value)
 {
     snprintf(io->input[0], RITZ_NAME_SIZE, "%s", name);
@@ -367,6 +388,7 @@ int main(void)
         cmocka_unit_test(a_port_is_turned_into_basic_axes),
         cmocka_unit_test(rigid_geometry_follows_its_formula),
         cmocka_unit_test(mass_properties_are_those_of_two_points),
+        cmocka_unit_test(a_plane_model_shows_its_inertia_in_the_plane),
         cmocka_unit_test(inputs_and_outputs_are_joined_and_projected),
         cmocka_unit_test(rigid_motion_costs_exactly_nothing),
         cmocka_unit_test(projecting_twice_is_projecting_by_the_product),
