@@ -24,11 +24,11 @@ static void print_rows(FILE *file, const ritz_response *response)
     int64_t size = response->num_outputs * response->num_inputs;
 
     for (int64_t k = 0; k < response->count; k++) {
-        fprintf(file, "%.10g", response->hertz[k]);
+        fprintf(file, "%.15g", response->hertz[k]);
         for (int64_t i = 0; i < size; i++) {
             double _Complex h = response->H[k * size + i];
 
-            fprintf(file, "\t%.10e\t%.6f", cabs(h), carg(h) * degree);
+            fprintf(file, "\t%.15e\t%.12f", cabs(h), carg(h) * degree);
         }
         fputc('\n', file);
     }
