@@ -20,12 +20,13 @@
 #include <ritz/factor.h>
 #include <ritz/verify.h>
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_LISTED = 100, MOST_SHIFTS = 6 };
+enum { MOST_LISTED = 100, MOST_SHIFTS = 16 };
 /* Of the first flexible eigenvalue: the smaller, the tighter. */
 static const double shift = 1e-2;
 /* A bound that leaves no digit. */
@@ -190,7 +191,9 @@ ritz_status ritz_estimate(const ritz_component *component,
     part.ncol = count_trusted(&pairs, trusted_hertz(basis, &pairs));
     if (part.ncol > 0) {
         part.val = ritz_dense_col(&pairs.Phi, pairs.num_rigid);
-        sigma = -shift * pairs.lambda[pairs.num_rigid];
+        /* a rigid motion that the basis holds badly may count as flexible */
+        sigma = -shift * fmax(pairs.lambda[pairs.num_rigid],
+                              DBL_EPSILON * pairs.lambda[pairs.Phi.ncol - 1]);
         RITZ_NEW(eps, part.ncol);
         RITZ_TRY(ritz_dense_mul(&basis->T, &part, &X));
         RITZ_TRY(measure(component, &X, pairs.lambda + pairs.num_rigid, &sigma,
