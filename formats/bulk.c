@@ -28,7 +28,7 @@ int ritz_bulk_compare_ids(const void *left, const void *right)
     return (*a > *b) - (*a < *b);
 }
 
-static bool selects(const ritz_deck *deck, int64_t which, int64_t set)
+bool ritz_bulk_selects(const ritz_deck *deck, int64_t which, int64_t set)
 {
     return deck->num_selected[which] == 0 ||
            bsearch(&set, deck->selected[which],
@@ -52,7 +52,8 @@ static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
     RITZ_NEW(list, given + all->num_sums);
     memcpy(list, deck->selected[which], (size_t)given * sizeof *list);
     for (int64_t k = 0; k < all->num_sums; k++)
-        if (all->sum[k].which == which && selects(deck, which, all->sum[k].set))
+        if (all->sum[k].which == which &&
+            ritz_bulk_selects(deck, which, all->sum[k].set))
             list[count++] = all->sum[k].member;
     qsort(list, (size_t)count, sizeof *list, ritz_bulk_compare_ids);
     free(deck->selected[which]);
@@ -62,16 +63,33 @@ done:
     return status;
 }
 
+/* What is said of an SPC with a motion, once matrices are to obey it. */
+static ritz_status note_imposed(const ritz_deck *deck,
+                                const ritz_bulk_range *range, ritz_bulk *out)
+{
+    /* the sentence is kept, the failure is not one yet */
+    (void)ritz_deck_refuse(deck, range->line,
+                           "SPC %" PRId64 " moves '%" PRId64 "' by what is not "
+                           "zero: imposed motion is no part of a component, "
+                           "use a port and an input",
+                           range->set, range->from);
+    return ritz_bulk_keep_sentence(&out->imposed);
+}
+
 /* Keep the SPC cards that act, and add what GRID cards hold fixed. */
-static ritz_status settle_fixed(ritz_bulk_cards *all)
+static ritz_status settle_fixed(ritz_bulk_cards *all, ritz_bulk *out)
 {
     ritz_status status = RITZ_OK;
     ritz_bulk_ranges *spc = &all->ranges[RITZ_BULK_SPC];
     int64_t kept = 0;
 
-    for (int64_t k = 0; k < spc->count; k++)
-        if (selects(&all->deck, RITZ_SELECT_SPC, spc->range[k].set))
-            spc->range[kept++] = spc->range[k];
+    for (int64_t k = 0; k < spc->count; k++) {
+        if (!ritz_bulk_selects(&all->deck, RITZ_SELECT_SPC, spc->range[k].set))
+            continue;
+        if (spc->range[k].imposed && !out->imposed)
+            RITZ_TRY(note_imposed(&all->deck, &spc->range[k], out));
+        spc->range[kept++] = spc->range[k];
+    }
     spc->count = kept;
     for (int64_t k = 0; k < all->num_grids; k++) {
         const ritz_bulk_grid *grid = &all->grid[k];
@@ -94,7 +112,8 @@ static ritz_status name_constraints(const ritz_bulk_cards *all, ritz_bulk *out)
     for (int64_t k = 0; k < all->num_constraints; k++) {
         const ritz_bulk_constraint *one = &all->constraint[k];
 
-        if (one->is_set && !selects(&all->deck, RITZ_SELECT_MPC, one->id))
+        if (one->is_set &&
+            !ritz_bulk_selects(&all->deck, RITZ_SELECT_MPC, one->id))
             continue;
         snprintf(out->constraint[out->num_constraints++],
                  sizeof *out->constraint, "%s %" PRId64, one->name, one->id);
@@ -127,13 +146,14 @@ static ritz_status build(ritz_bulk_cards *all, ritz_bulk *out)
     RITZ_TRY(ritz_bulk_list_points(all, out));
     RITZ_TRY(complete_selection(all, RITZ_SELECT_SPC));
     RITZ_TRY(complete_selection(all, RITZ_SELECT_MPC));
-    RITZ_TRY(settle_fixed(all));
+    RITZ_TRY(settle_fixed(all, out));
     RITZ_TRY(ritz_bulk_list_set(all, &all->ranges[RITZ_BULK_SPC], out,
                                 &out->num_fixed, &out->fixed));
     for (int k = 0; k < 3; k++)
         RITZ_TRY(ritz_bulk_list_set(all, &all->ranges[k], out,
                                     &out->num_sets[k], &out->set[k]));
     RITZ_TRY(name_constraints(all, out));
+    RITZ_TRY(ritz_bulk_list_equations(all, out));
 done:
     return status;
 }
@@ -183,5 +203,7 @@ void ritz_bulk_free(ritz_bulk *bulk)
     for (int k = 0; k < 3; k++)
         free(bulk->set[k]);
     free(bulk->constraint);
+    ritz_equations_free(&bulk->equations);
+    free(bulk->imposed);
     *bulk = (ritz_bulk){0};
 }

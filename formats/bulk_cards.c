@@ -36,7 +36,7 @@ static ritz_status take_by_points(ritz_bulk_cards *all, const ritz_card *card,
     return ritz_bulk_take_frame(all, card, how, false);
 }
 
-static bool is_word(const char *text, const char *word)
+bool ritz_bulk_is_word(const char *text, const char *word)
 {
     for (; *text && *word; text++, word++)
         if (*text != *word && *text - 'a' + 'A' != *word)
@@ -53,14 +53,15 @@ static ritz_status take_list(const ritz_card *card, int64_t k,
     for (; k < card->count; k++) {
         if (!*ritz_card_text(card, k))
             continue;
-        range.each = !is_word(ritz_card_text(card, k), "ALL");
+        range.each = !ritz_bulk_is_word(ritz_card_text(card, k), "ALL");
         range.from = 1;
         range.to = INT64_MAX - 1;
         if (range.each) {
             RITZ_TRY(ritz_card_id(card, k, &range.from));
             range.to = range.from;
         }
-        if (range.each && is_word(ritz_card_text(card, k + 1), "THRU")) {
+        if (range.each &&
+            ritz_bulk_is_word(ritz_card_text(card, k + 1), "THRU")) {
             range.each = false;
             k += 2;
             RITZ_TRY(ritz_card_id(card, k, &range.to));
@@ -79,7 +80,7 @@ static ritz_status take_points(ritz_bulk_cards *all, const ritz_card *card,
 {
     (void)how;
     for (int64_t k = 0; k < card->count; k++)
-        if (is_word(ritz_card_text(card, k), "ALL"))
+        if (ritz_bulk_is_word(ritz_card_text(card, k), "ALL"))
             return ritz_card_refuse(card, k, "a positive whole number");
     return take_list(card, 0,
                      (ritz_bulk_range){.line = card->entry->line, .mask = 1},
@@ -122,6 +123,7 @@ static ritz_status take_pairs(ritz_bulk_cards *all, const ritz_card *card,
     ritz_bulk_range range = {.line = card->entry->line, .each = true};
     int64_t width = how == RITZ_BULK_SPC ? 3 : 2;
     int64_t first = 0;
+    double motion = 0.0;
 
     RITZ_TRY(take_sid(card, how, &first, &range.set));
     for (int64_t k = first; k < card->count; k += width) {
@@ -130,6 +132,9 @@ static ritz_status take_pairs(ritz_bulk_cards *all, const ritz_card *card,
         RITZ_TRY(ritz_card_id(card, k, &range.from));
         range.to = range.from;
         RITZ_TRY(take_directions(card, k + 1, &range.mask));
+        if (how == RITZ_BULK_SPC)
+            RITZ_TRY(ritz_card_real(card, k + 2, 0.0, &motion));
+        range.imposed = motion != 0.0;
         RITZ_TRY(ritz_bulk_add_range(&all->ranges[how], range));
     }
 done:
@@ -174,7 +179,8 @@ static ritz_status take_constraint(ritz_bulk_cards *all, const ritz_card *card,
                                    int32_t how)
 {
     ritz_status status = RITZ_OK;
-    ritz_bulk_constraint new = {.is_set = how};
+    ritz_bulk_constraint new = {.is_set = how,
+                                .entry = card->entry - all->deck.entry};
 
     RITZ_TRY(ritz_card_id(card, 0, &new.id));
     memcpy(new.name, card->entry->name, sizeof new.name);

@@ -3,6 +3,7 @@
 #define RITZ_FORMATS_BULK_PARTS_H
 
 #include "formats/cards.h"
+#include "formats/ties.h"
 
 #include <ritz/bulk.h>
 
@@ -37,6 +38,7 @@ typedef struct ritz_bulk_range {
     int64_t set;  /* SPC set, 0 where there are none */
     int64_t line; /* in the deck */
     uint8_t mask; /* bit c: direction c; bit 0: scalar points */
+    bool imposed; /* SPC: a motion that is not zero */
     bool each;    /* explicitly named: THRU covers what there is */
 } ritz_bulk_range;
 
@@ -55,7 +57,8 @@ typedef struct ritz_bulk_sum {
 typedef struct ritz_bulk_constraint {
     char name[RITZ_CARD_NAME_SIZE];
     int64_t id;
-    bool is_set; /* MPC: acts if the case control selects it */
+    bool is_set;   /* MPC: acts if the case control selects it */
+    int64_t entry; /* of the deck */
 } ritz_bulk_constraint;
 
 enum { RITZ_BULK_SPC = 3, RITZ_BULK_SETS = 4 }; /* after RITZ_SET_A, B, Q */
@@ -117,6 +120,9 @@ void ritz_bulk_axes(const ritz_bulk_frame *frame,
 /** Positions and displacement frames of all grids. */
 ritz_status ritz_bulk_place_grids(const ritz_bulk_cards *all, ritz_grids *out);
 
+/** Whether a field is @p word, which is in capitals. */
+bool ritz_bulk_is_word(const char *text, const char *word);
+
 /** Directions "123" as digits; @return false if they are not distinct 0-6 */
 bool ritz_bulk_mask(int64_t digits, uint8_t *out);
 
@@ -135,5 +141,55 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_bulk_ranges *list,
                                const ritz_bulk *built, int64_t *count,
                                ritz_dof **out);
+
+/** Copy the sentence of the latest failure. */
+ritz_status ritz_bulk_keep_sentence(char **out);
+
+/** Whether a set of SPC or MPC cards acts. */
+bool ritz_bulk_selects(const ritz_deck *deck, int64_t which, int64_t set);
+
+/**
+ * The equations of all constraint elements that act.
+ *
+ * @param[in,out] built  its grids and points are there already
+ */
+ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
+                                     ritz_bulk *built);
+
+/* A constraint element as it becomes equations. */
+typedef struct ritz_bulk_tying {
+    const ritz_bulk_cards *all;
+    const ritz_bulk *built;
+    const ritz_card *card;
+    const char *name; /* "RBE2 600" */
+    ritz_equations *out;
+} ritz_bulk_tying;
+
+/** Fail with file, line and the name of the element before the sentence. */
+[[gnu::format(printf, 2, 3)]] ritz_status
+ritz_bulk_tying_refuse(const ritz_bulk_tying *it, const char *format, ...);
+
+/** The grid that field @p k names, as index; it must have a position. */
+ritz_status ritz_bulk_tying_grid(const ritz_bulk_tying *it, int64_t k,
+                                 int64_t *out);
+
+/** Directions that field @p k lists; 0 of a blank or 0. */
+ritz_status ritz_bulk_tying_mask(const ritz_bulk_tying *it, int64_t k,
+                                 uint8_t *out);
+
+/** Whether field @p k holds a number with a point. */
+bool ritz_bulk_tying_is_real(const ritz_bulk_tying *it, int64_t k);
+
+/** Pairs of grid and directions behind UM, to the end or a thermal field. */
+ritz_status ritz_bulk_tying_pairs(const ritz_bulk_tying *it, int64_t k,
+                                  ritz_ties *out);
+
+/** The elements that are understood. */
+ritz_status ritz_bulk_tie_mpc(const ritz_bulk_tying *it);
+ritz_status ritz_bulk_tie_rbar(const ritz_bulk_tying *it);
+ritz_status ritz_bulk_tie_rbe1(const ritz_bulk_tying *it);
+ritz_status ritz_bulk_tie_rbe2(const ritz_bulk_tying *it);
+ritz_status ritz_bulk_tie_rbe3(const ritz_bulk_tying *it);
+ritz_status ritz_bulk_tie_rtrplt(const ritz_bulk_tying *it);
 
 #endif

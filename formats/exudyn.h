@@ -45,6 +45,9 @@ void exudyn_terms_free(exudyn_terms *terms);
 
 /* All that the file holds. */
 typedef struct exudyn_body {
+    int64_t num_dofs; /* of the component, and recovered ones behind them */
+    ritz_dof *dof;
+    ritz_dense T;         /* their motion */
     ritz_nodes nodes;     /* grids borrowed from the reduced component */
     double *xRef;         /* 3 a node */
     ritz_dense modeBasis; /* 3 rows a node, along basic axes */

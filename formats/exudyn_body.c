@@ -10,6 +10,8 @@
 void exudyn_body_free(exudyn_body *b)
 {
     ritz_nodes_free(&b->nodes);
+    free(b->dof);
+    ritz_dense_free(&b->T);
     free(b->xRef);
     ritz_dense_free(&b->modeBasis);
     exudyn_modes_free(&b->modes);
@@ -76,17 +78,50 @@ done:
     return status;
 }
 
-static int64_t count_rotating(const ritz_reduced *reduced)
+/*
+ * A grid that is only recovered may lack a translation, of which nothing is
+ * known: it is left out.
+ */
+static void leave_partial(int64_t num_rows, ritz_nodes *nodes)
 {
-    int64_t count = 0;
-    int64_t last = -1;
+    int64_t kept = 0;
 
-    for (int64_t i = 0; i < reduced->num_dofs; i++)
-        if (reduced->dof[i].component > 3 && reduced->dof[i].grid != last) {
-            last = reduced->dof[i].grid;
-            count++;
+    for (int64_t k = 0; k < nodes->count; k++) {
+        const int64_t *row = nodes->row + 3 * k;
+        bool own = false;
+        bool all = true;
+
+        for (int p = 0; p < 3; p++) {
+            own = own || (row[p] >= 0 && row[p] < num_rows);
+            all = all && row[p] >= 0;
         }
-    return count;
+        if (!own && !all)
+            continue;
+        memmove(nodes->row + 3 * kept, row, 3 * sizeof *row);
+        nodes->grid[kept++] = nodes->grid[k];
+    }
+    nodes->count = kept;
+}
+
+static ritz_status count_rotating(const ritz_grids *grids, exudyn_body *b)
+{
+    ritz_status status = RITZ_OK;
+    bool *turns = NULL;
+
+    RITZ_NEW(turns, grids->count);
+    for (int64_t i = 0; i < b->num_dofs; i++) {
+        int64_t k = b->dof[i].component > 3
+                        ? ritz_grids_find(grids, b->dof[i].grid)
+                        : -1;
+
+        if (k < 0 || turns[k])
+            continue;
+        turns[k] = true;
+        b->num_rotating++;
+    }
+done:
+    free(turns);
+    return status;
 }
 
 static ritz_status place_nodes(exudyn_body *b)
@@ -102,13 +137,13 @@ done:
 }
 
 /* Psi: rows x, y, z of each node. */
-static ritz_status shape_modes(const ritz_reduced *reduced, exudyn_body *b)
+static ritz_status shape_modes(exudyn_body *b)
 {
     ritz_status status = RITZ_OK;
     int64_t n = b->nodes.count;
     ritz_dense Psi = {0}, along = {0};
 
-    RITZ_TRY(ritz_dense_mul(&reduced->T, &b->modes.V, &Psi));
+    RITZ_TRY(ritz_dense_mul(&b->T, &b->modes.V, &Psi));
     RITZ_TRY(ritz_dense_new(3 * n, Psi.ncol, &b->modeBasis));
     for (int a = 0; a < 3; a++) {
         ritz_dense_free(&along);
@@ -130,14 +165,17 @@ ritz_status exudyn_body_of(const ritz_reduced *reduced, exudyn_body *out)
     exudyn_body b = {0};
 
     RITZ_TRY(check_parts(reduced));
+    b.num_dofs = reduced->num_dofs + reduced->recovery.count;
+    RITZ_TRY(ritz_recovery_extend(&reduced->recovery, reduced->num_dofs,
+                                  reduced->dof, &reduced->T, &b.dof, &b.T));
     RITZ_TRY(check_rows(reduced));
-    b.num_rotating = count_rotating(reduced);
-    RITZ_TRY(ritz_nodes_of(reduced->num_dofs, reduced->dof, &reduced->grids,
-                           &b.nodes));
+    RITZ_TRY(count_rotating(&reduced->grids, &b));
+    RITZ_TRY(ritz_nodes_of(b.num_dofs, b.dof, &reduced->grids, &b.nodes));
+    leave_partial(reduced->num_dofs, &b.nodes);
     RITZ_TRY(check_nodes(&b.nodes));
     RITZ_TRY(exudyn_modes_of(reduced, &b.modes));
     RITZ_TRY(place_nodes(&b));
-    RITZ_TRY(shape_modes(reduced, &b));
+    RITZ_TRY(shape_modes(&b));
     RITZ_TRY(ritz_invariants_project(&reduced->invariants, &b.modes.V,
                                      &b.invariants));
     RITZ_TRY(exudyn_terms_of(&b.invariants, &reduced->inertia, &b.terms));
@@ -198,7 +236,7 @@ static ritz_status say_losses(const ritz_reduced *reduced, const exudyn_body *b,
                                  "mass differs by direction, %.6g %.6g %.6g: "
                                  "are dofs fixed? Their mean is taken",
                                  rigid[0], rigid[7], rigid[14]));
-    if (reduced->D.val || reduced->damping[0])
+    if (reduced->D.val || reduced->K4.val || reduced->damping[0])
         RITZ_TRY(ritz_export_say(report, "damping left out: the file has no "
                                          "place for it"));
 done:

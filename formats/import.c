@@ -119,40 +119,93 @@ done:
     return status;
 }
 
+/* Grids of rows and of recovered dofs are placed. */
+static ritz_status place_grids(const ritz_bulk *bulk, const ritz_names *kept,
+                               ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_recovery *recovery = &component->recovery;
+    ritz_names all = {.count = kept->count + recovery->count};
+
+    RITZ_TRY(ritz_recovery_extend(recovery, kept->count, kept->dof, NULL,
+                                  &all.dof, NULL));
+    RITZ_TRY(ritz_import_place(bulk, &all, component));
+done:
+    ritz_names_free(&all);
+    return status;
+}
+
+/* Rows, with the dofs eliminated that constraints make depend on others. */
+static ritz_status settle_rows(const ritz_import_request *request,
+                               ritz_parts *parts, ritz_bulk *bulk,
+                               ritz_names *names, ritz_component *component,
+                               ritz_import_report *report)
+{
+    ritz_status status = RITZ_OK;
+    ritz_names kept = {0};
+    ritz_tying tying = {0};
+
+    RITZ_TRY(
+        ritz_tying_new(request, bulk, parts, names, component, report, &tying));
+    RITZ_TRY(ritz_tying_apply(&tying, parts, &kept, report));
+    RITZ_TRY(ritz_parts_settle(parts, bulk, &kept, component, report));
+    RITZ_TRY(ritz_tying_recover(&tying, component, report));
+    RITZ_TRY(place_grids(bulk, &kept, component));
+done:
+    ritz_names_free(&kept);
+    ritz_tying_free(&tying);
+    return status;
+}
+
+static bool has_ties(const ritz_import_request *request, const ritz_bulk *bulk)
+{
+    return bulk->num_constraints > 0 || request->num_rigid_ports > 0 ||
+           request->num_averaged_ports > 0;
+}
+
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
-                                  ritz_parts *parts, ritz_component *component,
+                                  ritz_parts *parts, ritz_bulk *bulk,
+                                  ritz_component *component,
                                   ritz_import_report *report)
 {
     ritz_status status = RITZ_OK;
-    ritz_bulk bulk = {0};
     ritz_names names = {0};
 
     if (request->bulk)
-        RITZ_TRY(ritz_bulk_read(request->bulk, &bulk));
-    RITZ_TRY(ritz_names_find(request, &bulk, parts, &names));
-    RITZ_TRY(ritz_parts_settle(parts, &bulk, &names, component, report));
+        RITZ_TRY(ritz_bulk_read(request->bulk, bulk));
+    RITZ_FAIL_IF(bulk->imposed, RITZ_ERR_FORMAT, "%s", bulk->imposed);
+    RITZ_TRY(ritz_names_find(request, bulk, parts, &names));
+    if (has_ties(request, bulk)) {
+        RITZ_TRY(settle_rows(request, parts, bulk, &names, component, report));
+    } else {
+        RITZ_TRY(ritz_parts_settle(parts, bulk, &names, component, report));
+        RITZ_TRY(place_grids(bulk, &names, component));
+    }
     component->digits = source_digits(parts);
     if (request->units)
         RITZ_TRY_IN("--units", take_units(request->units, component->units));
 done:
-    ritz_bulk_free(&bulk);
     ritz_names_free(&names);
     return status;
 }
 
 /* Ports, inputs and outputs find their rows by name. */
 static ritz_status attach(const ritz_import_request *request,
+                          const ritz_bulk *bulk,
+                          const ritz_import_report *report,
                           ritz_component *component)
 {
     ritz_status status = RITZ_OK;
-    ritz_roster roster = {0};
+    ritz_extended extended = {0};
 
-    RITZ_TRY(ritz_roster_new(component->num_dofs, component->dof, &roster));
-    RITZ_TRY_IN("port", ritz_import_ports(request, &roster, component));
-    RITZ_TRY(ritz_import_io(request, &roster, component));
+    RITZ_TRY(ritz_extended_new(component, &bulk->equations, &extended));
+    RITZ_TRY_IN("port",
+                ritz_import_ports(request, report, &extended, component));
+    RITZ_TRY(ritz_import_io(request, &extended, component));
+    RITZ_TRY_IN("damper", ritz_import_dampers(request, &extended, component));
 done:
-    ritz_roster_free(&roster);
+    ritz_extended_free(&extended);
     return status;
 }
 
@@ -163,13 +216,14 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     ritz_component component = {0};
     ritz_import_report done_what = {0};
     ritz_parts parts = {0};
+    ritz_bulk bulk = {0};
     char **specs = NULL; /* of loads, cut before '@' */
 
     RITZ_NEW(specs, request->num_loads);
     RITZ_TRY(take_parts(request, &component, specs, &parts));
-    RITZ_TRY(make_component(request, &parts, &component, &done_what));
+    RITZ_TRY(make_component(request, &parts, &bulk, &component, &done_what));
     ritz_parts_free(&parts); /* the larger half of the memory, done with */
-    RITZ_TRY(attach(request, &component));
+    RITZ_TRY(attach(request, &bulk, &done_what, &component));
     RITZ_TRY(ritz_component_settle(&component, request->symmetrise));
     *out = component;
     component = (ritz_component){0};
@@ -180,6 +234,7 @@ done:
         free(specs[k]);
     free(specs);
     ritz_parts_free(&parts);
+    ritz_bulk_free(&bulk);
     ritz_component_free(&component);
     ritz_import_report_free(&done_what);
     return status;
@@ -189,5 +244,8 @@ void ritz_import_report_free(ritz_import_report *report)
 {
     free(report->removed);
     free(report->fixed);
+    free(report->constraint);
+    free(report->unknown);
+    free(report->grid);
     *report = (ritz_import_report){0};
 }

@@ -28,6 +28,7 @@ typedef struct ritz_names {
     int64_t count;
     ritz_dof *dof;
     char map[RITZ_NAME_SIZE]; /* where they come from */
+    bool whole; /* all that the deck has, and so its dependent dofs too */
 } ritz_names;
 
 /* Rows by name: sorted, so that a name is found in O(log n). */
@@ -68,22 +69,116 @@ ritz_status ritz_names_of_deck(const ritz_bulk *bulk, int64_t n,
 ritz_status ritz_names_of_file(const char *path, ritz_names *out);
 void ritz_names_free(ritz_names *names);
 
-/** Put the parts into the component, rows empty in K and M left out. */
+/** Rows that have an entry other than zero. */
+void ritz_part_mark(const ritz_part *part, bool *taken);
+
+/** Put the parts into the component but for its grids, rows empty in K and M left out. */
 ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_bulk *bulk,
                               const ritz_names *names,
                               ritz_component *component,
                               ritz_import_report *report);
 void ritz_parts_free(ritz_parts *parts);
 
-/** Ports as the request states them. */
+/** Positions and frames of the grids that are named; the origin for a single
+ * grid without a deck. */
+ritz_status ritz_import_place(const ritz_bulk *bulk, const ritz_names *names,
+                              ritz_component *component);
+
+/* Constraints between the rows, and what becomes of the dofs by them. */
+typedef struct ritz_tying {
+    const ritz_bulk *bulk;
+    ritz_names names;    /* all rows of the matrices and dofs of equations */
+    bool *fixed;         /* of each: u = 0 */
+    bool *alive;         /* has stiffness or mass of its own */
+    bool *outside;       /* is no row, as matrices are without dependents */
+    bool acts;           /* matrices have dependent dofs of the deck */
+    ritz_elimination by; /* the equations of bulk solved */
+} ritz_tying;
+
+/**
+ * Find what constraints do to the rows; add the grids, dofs and equations of
+ * rigid and averaged ports to the deck.
+ *
+ * @param[in,out] bulk   borrowed by @p out
+ * @param[in,out] names  moved into @p out; those of parts are placed anew
+ */
+ritz_status ritz_tying_new(const ritz_import_request *request, ritz_bulk *bulk,
+                           ritz_parts *parts, ritz_names *names,
+                           const ritz_component *component,
+                           ritz_import_report *report, ritz_tying *out);
+
+/** Solve the equations of the deck and of the ports so far. */
+ritz_status ritz_tying_solve(ritz_tying *tying);
+
+/** Add dofs to the names, neither fixed nor alive nor outside. */
+ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
+                              ritz_tying *tying);
+
+/** Tie the ports to grids of their own. */
+ritz_status ritz_tying_ports(const ritz_import_request *request,
+                             ritz_bulk *bulk, ritz_tying *tying,
+                             ritz_import_report *report);
+
+/**
+ * Eliminate: A_nn = G'AG of every part.
+ *
+ * @param[out] kept  names of the rows that stay
+ */
+ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
+                             ritz_names *kept, ritz_import_report *report);
+
+/** What dofs that are gone follow from, among the rows of the component. */
+ritz_status ritz_tying_recover(const ritz_tying *tying,
+                               ritz_component *component,
+                               ritz_import_report *report);
+void ritz_tying_free(ritz_tying *tying);
+
+/*
+ * A component whose recovered dofs stand behind its rows, for what names dofs;
+ * and how these follow: column k of `from` for dof num_rows + k.
+ */
+typedef struct ritz_extended {
+    ritz_component view; /* dof is owned, the rest borrowed */
+    ritz_roster roster;
+    int64_t num_rows;
+    ritz_sparse from;
+    const ritz_equations *equations; /* for messages; NULL: there are none */
+} ritz_extended;
+
+ritz_status ritz_extended_new(const ritz_component *component,
+                              const ritz_equations *equations,
+                              ritz_extended *out);
+void ritz_extended_free(ritz_extended *extended);
+
+/**
+ * One port; its dofs are rows of @p extended, and no recovered ones.
+ *
+ * @param[in] whole  a grid with axes of its own must bring all translations or
+ *                   none, and the same of rotations
+ */
+ritz_status ritz_import_port(const char *text, bool whole,
+                             const ritz_extended *extended, ritz_port *out);
+
+/** Ports as the request states them, and those of grids made for ports. */
 ritz_status ritz_import_ports(const ritz_import_request *request,
-                              const ritz_roster *roster,
+                              const ritz_import_report *report,
+                              const ritz_extended *extended,
                               ritz_component *component);
 
 /** Inputs and outputs as the request states them. */
 ritz_status ritz_import_io(const ritz_import_request *request,
-                           const ritz_roster *roster,
+                           const ritz_extended *extended,
                            ritz_component *component);
+
+/** Dampers as the request states them. */
+ritz_status ritz_import_dampers(const ritz_import_request *request,
+                                const ritz_extended *extended,
+                                ritz_component *component);
+
+/** Add @p scale times the row vector of "GRID:COMP", of so many letters. */
+ritz_status ritz_import_aim(const char *text, size_t length,
+                            const ritz_extended *extended, double scale,
+                            double *into);
 
 /**
  * Take "NAME=REST" apart.

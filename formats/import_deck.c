@@ -1,9 +1,10 @@
 /*
  * Names that a deck or a file of names has for the rows of a matrix.
  *
- * A deck explains three sizes: all its grids with six rows each and its scalar
+ * A deck explains these sizes: all its grids with six rows each and its scalar
  * points with one, in ascending order of id; the same without what its SPCs
- * and GRID field 8 fix; its a-set, the union of ASET, BSET and QSET.
+ * and GRID field 8 fix, without what its constraint elements make depend on
+ * others, or without both; its a-set, the union of ASET, BSET and QSET.
  */
 #include "formats/import.h"
 
@@ -36,24 +37,61 @@ static ritz_status list_all(const ritz_bulk *bulk, ritz_names *out)
         g++;
     }
     snprintf(out->map, sizeof out->map, "grids ascending");
+    out->whole = true;
 done:
     return status;
 }
 
-static ritz_status list_free(const ritz_bulk *bulk, ritz_names *out)
+/* Dofs that constraint elements eliminate, sorted. */
+static ritz_status list_dependents(const ritz_bulk *bulk, ritz_dof **out)
 {
     ritz_status status = RITZ_OK;
+    const ritz_equations *equations = &bulk->equations;
+
+    RITZ_NEW(*out, equations->count);
+    for (int64_t k = 0; k < equations->count; k++)
+        (*out)[k] = equations->dependent[k];
+    qsort(*out, (size_t)equations->count, sizeof **out, ritz_dof_compare);
+done:
+    return status;
+}
+
+static bool is_in(ritz_dof dof, int64_t count, const ritz_dof *sorted)
+{
+    return count > 0 && bsearch(&dof, sorted, (size_t)count, sizeof *sorted,
+                                ritz_dof_compare);
+}
+
+/* All but those of a sorted list. */
+static void leave_out(int64_t count, const ritz_dof *sorted, ritz_names *names)
+{
     int64_t kept = 0;
 
+    for (int64_t k = 0; k < names->count; k++)
+        if (!is_in(names->dof[k], count, sorted))
+            names->dof[kept++] = names->dof[k];
+    names->count = kept;
+}
+
+static ritz_status list_less(const ritz_bulk *bulk, bool fixed, bool dependents,
+                             ritz_names *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dof *tied = NULL;
+
     RITZ_TRY(list_all(bulk, out));
-    for (int64_t k = 0; k < out->count; k++)
-        if (bulk->num_fixed == 0 ||
-            !bsearch(&out->dof[k], bulk->fixed, (size_t)bulk->num_fixed,
-                     sizeof *bulk->fixed, ritz_dof_compare))
-            out->dof[kept++] = out->dof[k];
-    out->count = kept;
-    snprintf(out->map, sizeof out->map, "grids less SPCs");
+    out->whole = !dependents;
+    if (fixed)
+        leave_out(bulk->num_fixed, bulk->fixed, out);
+    if (dependents) {
+        RITZ_TRY(list_dependents(bulk, &tied));
+        leave_out(bulk->equations.count, tied, out);
+    }
+    snprintf(out->map, sizeof out->map, "grids less %s%s%s",
+             fixed ? "SPCs" : "", fixed && dependents ? " and " : "",
+             dependents ? "dependents" : "");
 done:
+    free(tied);
     return status;
 }
 
@@ -82,7 +120,12 @@ static bool same_names(const ritz_names *a, const ritz_names *b)
             memcmp(a->dof, b->dof, (size_t)a->count * sizeof *a->dof) == 0);
 }
 
-enum { ALL, SETS, FREE, KINDS };
+enum { ALL, SETS, FREE, LESS, LEAST, KINDS };
+
+/* What each list is called beside its size. */
+static const char *const WORDS[KINDS] = {"", "a-set", "grids less SPCs",
+                                         "grids less dependents",
+                                         "grids less SPCs and dependents"};
 
 /* "156 (26 grids)"; sizes that say nothing new are left out. */
 static void explain(const ritz_bulk *bulk, const ritz_names *list, size_t size,
@@ -95,55 +138,41 @@ static void explain(const ritz_bulk *bulk, const ritz_names *list, size_t size,
         used += snprintf(text + used, size - (size_t)used,
                          ", %" PRId64 " points", bulk->num_points);
     used += snprintf(text + used, size - (size_t)used, ")");
-    if (list[SETS].count > 0)
-        used += snprintf(text + used, size - (size_t)used,
-                         " or %" PRId64 " (a-set)", list[SETS].count);
-    if (list[FREE].count != list[ALL].count)
-        snprintf(text + used, size - (size_t)used,
-                 " or %" PRId64 " (grids less SPCs)", list[FREE].count);
-}
+    for (int k = SETS; k < KINDS; k++) {
+        bool news = list[k].count > 0;
 
-/* Matrices of all grids still hold what rigid elements would eliminate. */
-static ritz_status refuse_constraints(const ritz_bulk *bulk)
-{
-    char rest[32] = "";
-
-    if (bulk->num_constraints == 0)
-        return RITZ_OK;
-    if (bulk->num_constraints > 1)
-        snprintf(rest, sizeof rest, " and %" PRId64 " more",
-                 bulk->num_constraints - 1);
-    return ritz_fail(RITZ_ERR_FORMAT,
-                     "the deck holds '%s'%s: dofs would have to be eliminated "
-                     "from the matrices, which is not offered; give matrices "
-                     "of the a-set",
-                     bulk->constraint[0], rest);
+        for (int j = 0; j < k; j++)
+            news = news && list[j].count != list[k].count;
+        if (news)
+            used += snprintf(text + used, size - (size_t)used,
+                             " or %" PRId64 " (%s)", list[k].count, WORDS[k]);
+    }
 }
 
 static ritz_status choose(const ritz_bulk *bulk, int64_t n, const char *spec,
                           const ritz_names *list, int *chosen)
 {
     ritz_status status = RITZ_OK;
-    char sizes[160];
+    char sizes[320];
 
     *chosen = -1;
-    for (int k = 0; k < KINDS && *chosen < 0; k++)
-        if (list[k].count == n && n > 0)
+    for (int k = 0; k < KINDS && *chosen != ALL; k++) {
+        if (list[k].count != n || n == 0)
+            continue;
+        RITZ_FAIL_IF(*chosen >= 0 && !same_names(&list[*chosen], &list[k]),
+                     RITZ_ERR_FORMAT,
+                     "'%s' has %" PRId64 " rows, as the deck's %s has and its "
+                     "%s have: --dofs must say which",
+                     spec, n, WORDS[*chosen], WORDS[k]);
+        if (*chosen < 0)
             *chosen = k;
+    }
     if (*chosen < 0) {
         explain(bulk, list, sizeof sizes, sizes);
         RITZ_FAIL_IF(true, RITZ_ERR_FORMAT,
                      "'%s' has %" PRId64 " rows; the deck explains %s", spec, n,
                      sizes);
     }
-    RITZ_FAIL_IF(*chosen == SETS && list[FREE].count == n &&
-                     !same_names(&list[SETS], &list[FREE]),
-                 RITZ_ERR_FORMAT,
-                 "'%s' has %" PRId64 " rows, as the deck's a-set has and its "
-                 "grids less SPCs have: --dofs must say which",
-                 spec, n);
-    if (*chosen != SETS)
-        RITZ_TRY(refuse_constraints(bulk));
 done:
     return status;
 }
@@ -157,7 +186,9 @@ ritz_status ritz_names_of_deck(const ritz_bulk *bulk, int64_t n,
 
     RITZ_TRY(list_all(bulk, &list[ALL]));
     RITZ_TRY(list_sets(bulk, &list[SETS]));
-    RITZ_TRY(list_free(bulk, &list[FREE]));
+    RITZ_TRY(list_less(bulk, true, false, &list[FREE]));
+    RITZ_TRY(list_less(bulk, false, true, &list[LESS]));
+    RITZ_TRY(list_less(bulk, true, true, &list[LEAST]));
     RITZ_TRY(choose(bulk, n, spec, list, &chosen));
     *out = list[chosen];
     list[chosen] = (ritz_names){0};

@@ -4,6 +4,7 @@
  *
  * With u_b = t' u the displacement of a grid along a basic axis, a force along
  * it is the row vector t in B, as it does the work t' u; an output is t in C.
+ * Of dofs that constraints eliminated, u = G u_n, these are G' t and t' G.
  */
 #include "formats/import.h"
 
@@ -13,17 +14,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A direction of a grid along a basic axis, in terms of rows. */
+/* A direction of a grid along a basic axis, in terms of dofs. */
 typedef struct aim {
     int64_t count;
     int64_t row[3];
     double share[3];
 } aim;
 
-static ritz_status take_aim(const ritz_component *component,
-                            const ritz_roster *roster, ritz_dof dof, aim *out)
+static ritz_status take_aim(const ritz_extended *extended, ritz_dof dof,
+                            aim *out)
 {
     ritz_status status = RITZ_OK;
+    const ritz_roster *roster = &extended->roster;
     ritz_port port = {.name = ""};
     int64_t rows[3];
     int64_t first = dof.component > 3 ? 4 : 1;
@@ -45,7 +47,7 @@ static ritz_status take_aim(const ritz_component *component,
         status = ritz_roster_miss(roster, dof);
         goto done;
     }
-    RITZ_TRY(ritz_port_turn(component, &port, &turn, &label));
+    RITZ_TRY(ritz_port_turn(&extended->view, &port, &turn, &label));
     *out = (aim){0};
     for (int64_t k = 0; k < port.dofs.count; k++)
         for (int64_t j = 0;
@@ -59,6 +61,27 @@ done:
     ritz_dense_free(&turn);
     free(label);
     return status;
+}
+
+/*
+ * Add scale t to a column of B (stride 1) or a row of C (stride the number of
+ * outputs); a dof that follows, u = G u_n, puts G' there.
+ */
+static void add_aim(const ritz_extended *extended, const aim *to, double scale,
+                    int64_t stride, double *into)
+{
+    const ritz_sparse *from = &extended->from;
+
+    for (int64_t i = 0; i < to->count; i++) {
+        int64_t k = to->row[i] - extended->num_rows;
+
+        if (k < 0)
+            into[stride * to->row[i]] += scale * to->share[i];
+        for (int64_t p = k < 0 ? 0 : from->colptr[k];
+             k >= 0 && p < from->colptr[k + 1]; p++)
+            into[stride * from->rowind[p]] +=
+                scale * to->share[i] * from->val[p];
+    }
 }
 
 /* "GRID:COMP" of `length` letters. */
@@ -104,9 +127,8 @@ done:
     return status;
 }
 
-static ritz_status make_input(const char *text, const ritz_roster *roster,
-                              const ritz_component *component, int64_t k,
-                              ritz_io *io)
+static ritz_status make_input(const char *text, const ritz_extended *extended,
+                              int64_t k, ritz_io *io)
 {
     ritz_status status = RITZ_OK;
     const char *rest = NULL;
@@ -120,9 +142,8 @@ static ritz_status make_input(const char *text, const ritz_roster *roster,
     length = strlen(rest);
     RITZ_TRY(take_number(rest, '*', &length, &scale));
     RITZ_TRY(take_dof(rest, length, &dof));
-    RITZ_TRY(take_aim(component, roster, dof, &to));
-    for (int64_t i = 0; i < to.count; i++)
-        ritz_dense_col(&io->B, k)[to.row[i]] = scale * to.share[i];
+    RITZ_TRY(take_aim(extended, dof, &to));
+    add_aim(extended, &to, scale, 1, ritz_dense_col(&io->B, k));
 done:
     return status;
 }
@@ -155,9 +176,8 @@ static ritz_status take_quantity(const char *text, size_t *length, ritz_io *io,
                      (int)left, slash + 1);
 }
 
-static ritz_status make_output(const char *text, const ritz_roster *roster,
-                               const ritz_component *component, int64_t k,
-                               ritz_io *io)
+static ritz_status make_output(const char *text, const ritz_extended *extended,
+                               int64_t k, ritz_io *io)
 {
     ritz_status status = RITZ_OK;
     const char *rest = NULL;
@@ -174,9 +194,23 @@ static ritz_status make_output(const char *text, const ritz_roster *roster,
                  "a limit is positive, '%g' is not", io->limit[k]);
     RITZ_TRY(take_quantity(rest, &length, io, &C));
     RITZ_TRY(take_dof(rest, length, &dof));
-    RITZ_TRY(take_aim(component, roster, dof, &to));
-    for (int64_t i = 0; i < to.count; i++)
-        ritz_dense_col(C, to.row[i])[k] = to.share[i];
+    RITZ_TRY(take_aim(extended, dof, &to));
+    add_aim(extended, &to, 1.0, C->nrow, C->val + k);
+done:
+    return status;
+}
+
+ritz_status ritz_import_aim(const char *text, size_t length,
+                            const ritz_extended *extended, double scale,
+                            double *into)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dof dof = {0};
+    aim to = {0};
+
+    RITZ_TRY(take_dof(text, length, &dof));
+    RITZ_TRY(take_aim(extended, dof, &to));
+    add_aim(extended, &to, scale, 1, into);
 done:
     return status;
 }
@@ -192,7 +226,8 @@ static ritz_status check_new(const char (*name)[RITZ_NAME_SIZE], int64_t k,
 }
 
 ritz_status ritz_import_io(const ritz_import_request *request,
-                           const ritz_roster *roster, ritz_component *component)
+                           const ritz_extended *extended,
+                           ritz_component *component)
 {
     ritz_status status = RITZ_OK;
     ritz_io *io = &component->io;
@@ -201,13 +236,13 @@ ritz_status ritz_import_io(const ritz_import_request *request,
                          request->num_outputs, io));
     for (int64_t k = 0; k < request->num_inputs; k++) {
         RITZ_TRY_IN(request->input[k],
-                    make_input(request->input[k], roster, component, k, io));
+                    make_input(request->input[k], extended, k, io));
         RITZ_TRY(
             check_new((const char(*)[RITZ_NAME_SIZE])io->input, k, "inputs"));
     }
     for (int64_t k = 0; k < request->num_outputs; k++) {
         RITZ_TRY_IN(request->output[k],
-                    make_output(request->output[k], roster, component, k, io));
+                    make_output(request->output[k], extended, k, io));
         RITZ_TRY(
             check_new((const char(*)[RITZ_NAME_SIZE])io->output, k, "outputs"));
     }

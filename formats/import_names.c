@@ -112,19 +112,6 @@ done:
     return status;
 }
 
-/* Rigid elements eliminate dofs that matrices of this size still have. */
-static ritz_status check_constraints(const ritz_bulk *bulk, int64_t n)
-{
-    if (bulk->num_constraints > 0 &&
-        n >= 6 * bulk->grids.count + bulk->num_points)
-        return ritz_fail(RITZ_ERR_FORMAT,
-                         "the deck holds '%s' and the matrices have rows for "
-                         "all of its dofs: some would have to be eliminated, "
-                         "which is not offered",
-                         bulk->constraint[0]);
-    return RITZ_OK;
-}
-
 static ritz_status choose_names(const ritz_import_request *request,
                                 const ritz_bulk *bulk, ritz_parts *parts,
                                 ritz_names *out)
@@ -142,7 +129,7 @@ static ritz_status choose_names(const ritz_import_request *request,
     else
         RITZ_TRY(number_grids(n, unnamed->spec, out));
     if (request->bulk && (request->dofs || !unnamed))
-        RITZ_TRY(check_constraints(bulk, out->count));
+        out->whole = out->count >= 6 * bulk->grids.count + bulk->num_points;
 done:
     return status;
 }

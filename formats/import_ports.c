@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,8 +29,8 @@ done:
 
 /* One port as it is put together. */
 typedef struct draft {
-    const ritz_roster *roster;
-    ritz_component *component;
+    const ritz_extended *extended;
+    bool whole;   /* grids bring all of their translations and rotations */
     bool want[7]; /* directions; none: every dof of a grid */
     bool choosy;
     bool *taken; /* rows that the port has already */
@@ -60,13 +61,43 @@ done:
     return status;
 }
 
+/* A dof that follows others cannot be held: say what it follows. */
+static ritz_status refuse_dependent(const ritz_extended *extended, ritz_dof dof)
+{
+    const ritz_equations *eq = extended->equations;
+    int64_t e = eq ? ritz_equations_find(eq, dof) : -1;
+    char name[RITZ_DOF_NAME_SIZE];
+    char cited[RITZ_CITATION_SIZE] = "others";
+    char grids[120] = "";
+    int used = 0;
+    int64_t last = -1;
+
+    for (int64_t k = e < 0 ? 0 : eq->first[e];
+         e >= 0 && k < eq->first[e + 1] && used < 60; k++) {
+        if (eq->dof[k].grid == last)
+            continue;
+        last = eq->dof[k].grid;
+        used += snprintf(grids + used, sizeof grids - (size_t)used,
+                         "%s%" PRId64, used > 0 ? ", " : "", last);
+    }
+    if (e >= 0)
+        ritz_equations_cite(eq, eq->source[e], cited);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "'%s' depends on %s and cannot be attached: attach what "
+                     "it follows, grid %s%s",
+                     ritz_dof_name(dof, name), cited, grids,
+                     used >= 60 ? ", ..." : "");
+}
+
 static ritz_status add_row(int64_t row, draft *it)
 {
-    ritz_dof dof = it->component->dof[row];
+    ritz_dof dof = it->extended->view.dof[row];
 
     if (it->taken[row])
         return ritz_fail(RITZ_ERR_ARGUMENT, "'%" PRId64 "' is listed twice",
                          dof.grid);
+    if (row >= it->extended->num_rows)
+        return refuse_dependent(it->extended, dof);
     it->taken[row] = true;
     it->port.dofs.at[it->port.dofs.count++] = row;
     return RITZ_OK;
@@ -75,7 +106,7 @@ static ritz_status add_row(int64_t row, draft *it)
 /* A part of the origin, the mean of the positions. */
 static void add_position(int64_t grid, draft *it)
 {
-    const ritz_grids *grids = &it->component->grids;
+    const ritz_grids *grids = &it->extended->view.grids;
     int64_t k = ritz_grids_find(grids, grid);
 
     if (k < 0)
@@ -96,7 +127,7 @@ static ritz_status check_turn(int64_t first, const draft *it)
     ritz_dense turn = {0};
 
     memcpy(alone.name, it->port.name, sizeof alone.name);
-    RITZ_TRY(ritz_port_turn(it->component, &alone, &turn, NULL));
+    RITZ_TRY(ritz_port_turn(&it->extended->view, &alone, &turn, NULL));
 done:
     ritz_dense_free(&turn);
     return status;
@@ -105,7 +136,7 @@ done:
 static ritz_status add_grid(int64_t grid, draft *it)
 {
     ritz_status status = RITZ_OK;
-    const ritz_roster *roster = it->roster;
+    const ritz_roster *roster = &it->extended->roster;
     int64_t before = it->port.dofs.count;
 
     for (int64_t c = 0; c <= 6; c++) {
@@ -124,7 +155,8 @@ static ritz_status add_grid(int64_t grid, draft *it)
         status = ritz_roster_miss(roster, (ritz_dof){grid, 1});
         goto done;
     }
-    RITZ_TRY(check_turn(before, it));
+    if (it->whole)
+        RITZ_TRY(check_turn(before, it));
     add_position(grid, it);
 done:
     return status;
@@ -134,7 +166,7 @@ done:
 static ritz_status add_range(int64_t from, int64_t to, draft *it)
 {
     ritz_status status = RITZ_OK;
-    const ritz_roster *roster = it->roster;
+    const ritz_roster *roster = &it->extended->roster;
     int64_t before = it->port.dofs.count;
     int64_t last = from - 1;
 
@@ -220,14 +252,14 @@ static ritz_status shorten(ritz_dofs *dofs)
     return status;
 }
 
-static ritz_status make_port(const char *text, const ritz_roster *roster,
-                             ritz_component *component, ritz_port *out)
+ritz_status ritz_import_port(const char *text, bool whole,
+                             const ritz_extended *extended, ritz_port *out)
 {
     ritz_status status = RITZ_OK;
-    draft it = {.roster = roster, .component = component};
+    draft it = {.extended = extended, .whole = whole};
 
-    RITZ_NEW(it.taken, component->num_dofs);
-    RITZ_NEW(it.port.dofs.at, component->num_dofs);
+    RITZ_NEW(it.taken, extended->view.num_dofs);
+    RITZ_NEW(it.port.dofs.at, extended->view.num_dofs);
     RITZ_TRY(fill(text, &it));
     RITZ_TRY(shorten(&it.port.dofs));
     *out = it.port;
@@ -238,23 +270,51 @@ done:
     return status;
 }
 
+/* The six dofs of a grid that was made for a port. */
+static ritz_status make_tied(const ritz_import_grid *grid,
+                             const ritz_extended *extended, ritz_port *out)
+{
+    ritz_status status = RITZ_OK;
+    char text[RITZ_NAME_SIZE + 32];
+
+    snprintf(text, sizeof text, "%s=%" PRId64 ":123456", grid->port, grid->id);
+    RITZ_TRY(ritz_import_port(text, true, extended, out));
+done:
+    return status;
+}
+
+static ritz_status add_port(ritz_port *port, ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = component->num_ports;
+
+    component->port[component->num_ports++] = *port;
+    for (int64_t j = 0; j < count; j++)
+        RITZ_FAIL_IF(strcmp(component->port[j].name, port->name) == 0,
+                     RITZ_ERR_ARGUMENT, "there are two ports '%s'", port->name);
+done:
+    *port = (ritz_port){0};
+    return status;
+}
+
 ritz_status ritz_import_ports(const ritz_import_request *request,
-                              const ritz_roster *roster,
+                              const ritz_import_report *report,
+                              const ritz_extended *extended,
                               ritz_component *component)
 {
     ritz_status status = RITZ_OK;
+    ritz_port port = {0};
 
-    RITZ_NEW(component->port, request->num_ports);
+    RITZ_NEW(component->port, request->num_ports + report->num_grids);
     for (int64_t k = 0; k < request->num_ports; k++) {
-        ritz_port *port = &component->port[k];
-
         RITZ_TRY_IN(request->port[k],
-                    make_port(request->port[k], roster, component, port));
-        component->num_ports++;
-        for (int64_t j = 0; j < k; j++)
-            RITZ_FAIL_IF(strcmp(component->port[j].name, port->name) == 0,
-                         RITZ_ERR_ARGUMENT, "there are two ports '%s'",
-                         port->name);
+                    ritz_import_port(request->port[k], true, extended, &port));
+        RITZ_TRY(add_port(&port, component));
+    }
+    for (int64_t k = 0; k < report->num_grids; k++) {
+        RITZ_TRY_IN(report->grid[k].port,
+                    make_tied(&report->grid[k], extended, &port));
+        RITZ_TRY(add_port(&port, component));
     }
 done:
     return status;

@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Rows of the component-to-be where a matrix has an entry that is not zero. */
-static void mark(const ritz_part *part, bool *taken)
+void ritz_part_mark(const ritz_part *part, bool *taken)
 {
     const ritz_sparse *A = &part->matrix.A;
 
@@ -76,11 +76,11 @@ static ritz_status find_presence(const ritz_parts *parts, const ritz_bulk *bulk,
         const ritz_part *part = &parts->part[k];
 
         if (part->becomes == &component->K)
-            mark(part, at->K);
+            ritz_part_mark(part, at->K);
         else if (part->becomes == &component->M)
-            mark(part, at->M);
+            ritz_part_mark(part, at->M);
         else
-            mark(part, at->other);
+            ritz_part_mark(part, at->other);
     }
     for (int64_t k = 0; bulk->num_fixed > 0 && k < names->count; k++)
         at->fixed[k] =
@@ -183,16 +183,16 @@ done:
     return status;
 }
 
-static ritz_status place_grids(const ritz_bulk *bulk, const ritz_names *names,
-                               ritz_grids *out)
+ritz_status ritz_import_place(const ritz_bulk *bulk, const ritz_names *names,
+                              ritz_component *component)
 {
     ritz_status status = RITZ_OK;
     ritz_roster roster = {0};
 
     if (bulk->grids.count == 0)
-        return place_alone(names, out);
+        return place_alone(names, &component->grids);
     RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
-    RITZ_TRY(keep_grids(&bulk->grids, &roster, out));
+    RITZ_TRY(keep_grids(&bulk->grids, &roster, &component->grids));
 done:
     ritz_roster_free(&roster);
     return status;
@@ -219,7 +219,6 @@ ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_bulk *bulk,
     for (int64_t k = 0; k < parts->count; k++)
         RITZ_TRY(scatter(&parts->part[k], stays, component->num_dofs,
                          parts->part[k].becomes));
-    RITZ_TRY(place_grids(bulk, names, &component->grids));
     memcpy(report->map, names->map, sizeof report->map);
 done:
     free(stays);

@@ -9,27 +9,42 @@
 
 typedef struct entry {
     const char *name;
-    size_t offset; /* of the dense matrix in ritz_reduced */
-    bool symmetric;
+    size_t offset;  /* of the dense matrix in its object */
+    bool symmetric; /* if its values are: a gyroscopic D is not */
 } entry;
 
-static const entry entries[] = {
+/* Matrices of one kind of object; the table ends in one without a name. */
+typedef struct matrix_kind {
+    const entry *entry;
+    const char *noun;
+    const char *all; /* "K, M and D" */
+} matrix_kind;
+
+static const entry of_states[] = {
+    {"A", offsetof(ritz_state_space, A), false},
+    {"B", offsetof(ritz_state_space, B), false},
+    {"C", offsetof(ritz_state_space, C), false},
+    {"D", offsetof(ritz_state_space, D), false},
+    {"E", offsetof(ritz_state_space, E), false},
+    {0},
+};
+
+static const entry of_reduced[] = {
     {"K", offsetof(ritz_reduced, K), true},
     {"M", offsetof(ritz_reduced, M), true},
     {"D", offsetof(ritz_reduced, D), true},
+    {"K4", offsetof(ritz_reduced, K4), true},
     {"T", offsetof(ritz_reduced, T), false},
     {"B", offsetof(ritz_reduced, io.B), false},
     {"C", offsetof(ritz_reduced, io.C), false},
     {"Cv", offsetof(ritz_reduced, io.Cv), false},
     {"Ca", offsetof(ritz_reduced, io.Ca), false},
+    {0},
 };
 
-enum { COUNT = sizeof entries / sizeof *entries };
-
-static const ritz_dense *dense_of(const ritz_reduced *reduced, const entry *e)
+static const ritz_dense *dense_of(const void *object, const entry *e)
 {
-    return (const ritz_dense *)(const void *)((const char *)reduced +
-                                              e->offset);
+    return (const ritz_dense *)(const void *)((const char *)object + e->offset);
 }
 
 /* Every entry stored, zeros too. */
@@ -47,43 +62,42 @@ static ritz_status fill(const entry *e, const ritz_dense *A, ritz_matrix *out)
         out->A.colptr[j + 1] = at;
     }
     snprintf(out->name, sizeof out->name, "%s", e->name);
-    out->symmetric = e->symmetric;
+    out->symmetric = e->symmetric && ritz_dense_asymmetry(A) == 0.0;
     out->digits = 17;
 done:
     return status;
 }
 
-static const entry *find(const char *name, size_t length)
+static const entry *find(const entry *among, const char *name, size_t length)
 {
-    for (int k = 0; k < COUNT; k++)
-        if (strlen(entries[k].name) == length &&
-            strncmp(entries[k].name, name, length) == 0)
-            return &entries[k];
+    for (; among->name; among++)
+        if (strlen(among->name) == length &&
+            strncmp(among->name, name, length) == 0)
+            return among;
     return NULL;
 }
 
-ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
-                                  const char *names, ritz_matrices *out)
+/* The matrices that `at` lists, with commas between. */
+static ritz_status list_matrices(const matrix_kind *kind, const void *object,
+                                 const char *at, ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
     ritz_matrices list = {0};
-    const char *at = names ? names : reduced->D.val ? "K,M,D" : "K,M";
 
     RITZ_NEW(list.matrix, (int64_t)strlen(at) + 1);
     while (*at) {
         size_t length = strcspn(at, ",");
-        const entry *e = find(at, length);
+        const entry *e = find(kind->entry, at, length);
 
         RITZ_FAIL_IF(!e, RITZ_ERR_ARGUMENT,
-                     "there is no matrix '%.*s', there are K, M, D, T, B, C, "
-                     "Cv and Ca",
-                     (int)length, at);
+                     "there is no matrix '%.*s', there are %s", (int)length, at,
+                     kind->all);
         for (int64_t k = 0; k < list.count; k++)
             RITZ_FAIL_IF(strcmp(list.matrix[k].name, e->name) == 0,
                          RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
-        RITZ_FAIL_IF(!dense_of(reduced, e)->val, RITZ_ERR_ARGUMENT,
-                     "this reduced component has no '%s'", e->name);
-        RITZ_TRY(fill(e, dense_of(reduced, e), &list.matrix[list.count]));
+        RITZ_FAIL_IF(!dense_of(object, e)->val, RITZ_ERR_ARGUMENT,
+                     "this %s has no '%s'", kind->noun, e->name);
+        RITZ_TRY(fill(e, dense_of(object, e), &list.matrix[list.count]));
         list.count++;
         at += length + (at[length] != '\0');
     }
@@ -92,4 +106,28 @@ ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
 done:
     ritz_matrices_free(&list);
     return status;
+}
+
+ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
+                                  const char *names, ritz_matrices *out)
+{
+    static const matrix_kind kind = {of_reduced, "reduced component",
+                                     "K, M, D, K4, T, B, C, Cv and Ca"};
+    char all[16] = "K,M";
+
+    if (reduced->D.val)
+        strcat(all, ",D");
+    if (reduced->K4.val)
+        strcat(all, ",K4");
+    return list_matrices(&kind, reduced, names ? names : all, out);
+}
+
+ritz_status ritz_state_matrices(const ritz_state_space *model,
+                                const char *names, ritz_matrices *out)
+{
+    static const matrix_kind kind = {of_states, "state space",
+                                     "A, B, C, D and E"};
+    const char *all = model->E.val ? "A,B,C,D,E" : "A,B,C,D";
+
+    return list_matrices(&kind, model, names ? names : all, out);
 }

@@ -1,35 +1,13 @@
 /*
- * The report of ritz-compare: what was reduced, how far, how wrong it is.
- *
- * Its last table is Table 1 of [LeeTsuha1992], a column for each reduced
- * component and one for each configuration; a dagger stands at modes of the
- * system that were kept and are those of the first stage.
+ * The report of ritz-compare: what was reduced, how far, how wrong it is. Its
+ * tables of choices are in comparison_choices.c, that of modes in
+ * comparison_modes.c.
  */
 #include "comparison.h"
 
-#include <ritz/eigen.h>
-
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Flexible frequencies of a column of the last table, and which are kept. */
-typedef struct column {
-    char title[RITZ_NAME_SIZE];
-    int64_t count;
-    double *hertz;
-    bool *kept;
-} column;
-
-static void free_columns(int64_t count, column *columns)
-{
-    for (int64_t k = 0; columns && k < count; k++) {
-        free(columns[k].hertz);
-        free(columns[k].kept);
-    }
-    free(columns);
-}
 
 static int64_t order_of(const ritz_reduced *body)
 {
@@ -68,23 +46,57 @@ static void say_orders(cli_run *run, const ritz_stage *first,
     cli_record(run, "compare", sum[2]);
 }
 
+/* What the composite set is made from. */
+static void describe_choice(const ritz_scene *scene, char out[160])
+{
+    const size_t size = 160;
+    bool ranked = scene->num_inputs > 0 && scene->num_outputs > 0;
+
+    switch (scene->select) {
+    case RITZ_SELECT_LISTED:
+        snprintf(out, size, "modes by a list of %lld",
+                 (long long)scene->num_select_modes);
+        break;
+    case RITZ_SELECT_KRYLOV:
+        snprintf(out, size, "up to %lld Krylov vectors from %s at each",
+                 (long long)scene->select_vectors,
+                 scene->select_outputs ? "inputs and outputs" : "inputs");
+        break;
+    case RITZ_SELECT_RANKED:
+        if (ranked) {
+            snprintf(out, size, "modes by %s above %g of the largest value",
+                     *scene->select_by ? scene->select_by : "hankel",
+                     scene->select_tolerance);
+            break;
+        }
+        [[fallthrough]];
+    case RITZ_SELECT_BAND:
+        snprintf(out, size, "modes in the band");
+        break;
+    }
+}
+
 static void say_composite(cli_run *run, const ritz_stage *first,
                           const ritz_comparison *c)
 {
     const ritz_scene *scene = first->scene;
-    const char *rank = *scene->select_by ? scene->select_by : "hankel";
     int64_t count = scene->num_reference > 0 ? scene->num_reference
                                              : scene->num_configurations;
+    int64_t completed = 0;
+    char choice[160];
 
-    cli_say(run,
-            "Composite mode set: %lld vectors from %lld configurations, "
-            "modes by %s above %g of the",
-            (long long)c->composite, (long long)count, rank,
-            scene->select_tolerance);
-    cli_say(run,
-            "largest value, vectors dependent within %g removed on each "
-            "component.",
+    describe_choice(scene, choice);
+    for (int64_t k = 0; k < c->num_rows; k++)
+        completed += c->row[k].listed ? c->row[k].num_completed : 0;
+    cli_say(run, "Composite set: %lld vectors from %lld configurations, %s,",
+            (long long)c->composite, (long long)count, choice);
+    cli_say(run, "vectors dependent within %g removed on each component.",
             scene->composite_tolerance);
+    if (completed > 0)
+        cli_say(run,
+                "%lld modes are kept beside those chosen, as a cluster is "
+                "never split.",
+                (long long)completed);
     if (!c->removed)
         cli_warn(run, "stage two removed nothing: every component kept its "
                       "order; choose fewer modes (select: tolerance) or a "
@@ -94,10 +106,11 @@ static void say_composite(cli_run *run, const ritz_stage *first,
                      "large as those of stage 1.");
     json_object_set_new(run->report, "removed", json_boolean(c->removed));
     cli_report_int(run, "composite", c->composite);
+    cli_report_int(run, "completed", completed);
 }
 
-static void name_row(const ritz_stage *stage, const ritz_comparison *c,
-                     const ritz_compare_row *row, char out[RITZ_NAME_SIZE])
+void comparison_name_row(const ritz_stage *stage, const ritz_comparison *c,
+                         const ritz_compare_row *row, char out[RITZ_NAME_SIZE])
 {
     const ritz_system *system = &c->second_system;
 
@@ -119,22 +132,83 @@ static json_t *row_json(const ritz_compare_row *row, const char *at)
     json_object_set_new(errors, "gain", cli_real(row->gain_error));
     json_object_set_new(errors, "response", cli_real(row->response_error));
     json_object_set_new(errors, "mac", cli_real(row->mac));
+    json_object_set_new(errors, "moments", cli_real(row->moment_error));
     json_object_set_new(item, "at", cli_string(at));
     json_object_set_new(item, "listed", json_boolean(row->listed));
     json_object_set_new(item, "rigid", json_integer(row->num_rigid));
     json_object_set_new(item, "flexible", json_integer(row->num_flexible));
     json_object_set_new(item, "dofs", json_integer(row->order));
+    json_object_set_new(item, "vectors", json_integer(row->num_vectors));
+    json_object_set_new(item, "moments", json_integer(row->num_moments));
     json_object_set_new(item, "errors", errors);
     return item;
 }
 
-/* One row for each configuration; the listed ones are numbered. */
+/* "1.0e-03", or "-" where there is none. */
+static const char *print_error(double error, char out[16])
+{
+    snprintf(out, 16, isnan(error) ? "-" : "%.1e", error);
+    return out;
+}
+
+/* One row of the table; listed ones are numbered. */
+static void say_row(cli_run *run, const ritz_compare_row *row, int64_t number,
+                    const char *at)
+{
+    char first[24] = "*";
+    char chosen[24];
+    char text[6][16];
+    int64_t kept = row->num_vectors > 0 ? row->num_vectors : row->num_kept;
+
+    if (row->listed)
+        snprintf(first, sizeof first, "%lld", (long long)number);
+    snprintf(chosen, sizeof chosen, row->listed ? "%lld" : "(%lld)",
+             (long long)kept);
+    cli_say(run, "%3s  %-28s %5lld %4lld %4s %5lld %9s %9s %9s %9s %9s %9s",
+            first, at, (long long)row->num_rigid, (long long)row->num_flexible,
+            chosen, (long long)row->order,
+            print_error(row->frequency_error, text[0]),
+            print_error(row->allowed, text[1]),
+            print_error(row->rigid_error, text[2]),
+            print_error(row->gain_error, text[3]),
+            print_error(row->response_error, text[4]),
+            print_error(isnan(row->mac) ? row->mac : fmax(1.0 - row->mac, 0.0),
+                        text[5]));
+}
+
+static void say_legend(cli_run *run, const ritz_comparison *c)
+{
+    bool between = c->num_rows > c->first_system.num_configurations;
+    int64_t moments = c->row[0].num_moments;
+    double worst = nan("");
+
+    for (int64_t k = 0; k < c->num_rows; k++)
+        if (c->row[k].listed) {
+            worst = fmax(worst, c->row[k].moment_error);
+            moments = c->row[k].num_moments < moments ? c->row[k].num_moments
+                                                      : moments;
+        }
+    cli_say(run,
+            "  rigid, flex, kept: modes of stage 1%s; order: of the "
+            "stage-2 system; frequency of kept modes (and what",
+            moments > 0 ? ", kept: Krylov vectors" : "");
+    cli_say(run, "  rounding allows it), flexible static gain, response in the "
+                 "band: largest relative errors");
+    if (between)
+        cli_say(run, "  * between listed angles: errors of the modes (so many) "
+                     "that would have been kept there");
+    if (moments > 0)
+        cli_say(run,
+                "  the first %lld moments C (K^-1 M)^i K^-1 B are kept, of the "
+                "flexible part: worst relative error %.1e",
+                (long long)moments, worst);
+}
+
 static void say_rows(cli_run *run, const ritz_stage *stage,
                      const ritz_comparison *c)
 {
     json_t *array = json_array();
     json_t *kept = json_array();
-    int64_t between = 0;
     double worst = 0.0;
 
     cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "#",
@@ -144,26 +218,9 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
         const ritz_compare_row *row = &c->row[k];
         json_t *modes = json_array();
         char at[RITZ_NAME_SIZE];
-        char number[24] = "*";
-        char chosen[24];
-        char allowed[24] = "-";
 
-        name_row(stage, c, row, at);
-        if (row->listed) {
-            snprintf(number, sizeof number, "%lld", (long long)k + 1);
-            snprintf(allowed, sizeof allowed, "%.1e", row->allowed);
-        }
-        snprintf(chosen, sizeof chosen, row->listed ? "%lld" : "(%lld)",
-                 (long long)row->num_kept);
-        between += !row->listed;
-        cli_say(run,
-                "%3s  %-28s %5lld %4lld %4s %5lld %9.1e %9s %9.1e %9.1e %9.1e "
-                "%9.1e",
-                number, at, (long long)row->num_rigid,
-                (long long)row->num_flexible, chosen, (long long)row->order,
-                row->frequency_error, allowed, row->rigid_error,
-                row->gain_error, row->response_error,
-                fmax(1.0 - row->mac, 0.0));
+        comparison_name_row(stage, c, row, at);
+        say_row(run, row, k + 1, at);
         json_array_append_new(array, row_json(row, at));
         for (int64_t i = 0; row->listed && i < row->num_kept; i++)
             json_array_append_new(modes, json_integer(row->kept[i] + 1));
@@ -173,165 +230,10 @@ static void say_rows(cli_run *run, const ritz_stage *stage,
         if (row->response_error > worst)
             worst = row->response_error;
     }
-    cli_say(run, "  rigid, flex, kept: modes of stage 1; order: of the stage-2 "
-                 "system; frequency of kept modes (and what");
-    cli_say(run, "  rounding allows it), flexible static gain, response in the "
-                 "band: largest relative errors");
-    if (between > 0)
-        cli_say(run, "  * between listed angles: errors of the modes (so many) "
-                     "that would have been kept there");
+    say_legend(run, c);
     json_object_set_new(run->report, "configurations", array);
     json_object_set_new(run->report, "kept", kept);
     cli_record_error(run, "response", worst);
-}
-
-/*
- * The stage-2 mode nearest to each kept mode of stage 1 is marked if it is as
- * near as rounding allows: eps lambda_max / lambda_k, times 1000 for the two
- * projections and eigenproblems between them, or 1e-9.
- */
-static void mark_kept(const ritz_compare_row *row,
-                      const ritz_configuration *first,
-                      const ritz_configuration *second, column *out)
-{
-    double highest = first->lambda[first->K.nrow - 1];
-
-    for (int64_t i = 0; i < row->num_kept; i++) {
-        double asked = first->lambda[first->num_rigid + row->kept[i]];
-        double best = (double)INFINITY;
-        int64_t at = -1;
-
-        for (int64_t k = 0; k < out->count; k++) {
-            double apart =
-                fabs(second->lambda[second->num_rigid + k] - asked) / asked;
-
-            if (apart < best && !out->kept[k]) {
-                best = apart;
-                at = k;
-            }
-        }
-        if (at >= 0 && best <= fmax(1e-9, 1e3 * DBL_EPSILON * highest / asked))
-            out->kept[at] = true;
-    }
-}
-
-static ritz_status new_column(const char *title, int64_t count, column *out)
-{
-    ritz_status status = RITZ_OK;
-
-    out->hertz = calloc((size_t)count + 1, sizeof *out->hertz);
-    out->kept = calloc((size_t)count + 1, sizeof *out->kept);
-    RITZ_FAIL_IF(!out->hertz || !out->kept, RITZ_ERR_MEMORY,
-                 "no memory for the report");
-    out->count = count;
-    snprintf(out->title, sizeof out->title, "%s", title);
-done:
-    return status;
-}
-
-static ritz_status body_column(const char *name, const ritz_reduced *body,
-                               column *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t rigid = 0;
-    int64_t count = 0;
-    double *hertz = NULL;
-
-    RITZ_TRY(model_hertz(&body->K, &body->M, &rigid, &count, &hertz));
-    RITZ_TRY(new_column(name, count - rigid, out));
-    for (int64_t k = 0; k < count - rigid; k++)
-        out->hertz[k] = hertz[rigid + k];
-done:
-    free(hertz);
-    return status;
-}
-
-static ritz_status system_column(int64_t number, const ritz_comparison *c,
-                                 column *out)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_configuration *first = &c->first_system.configuration[number];
-    const ritz_configuration *second = &c->second_system.configuration[number];
-    char title[32];
-
-    snprintf(title, sizeof title, "#%lld", (long long)number + 1);
-    RITZ_TRY(new_column(title, second->K.nrow - second->num_rigid, out));
-    for (int64_t k = 0; k < out->count; k++)
-        out->hertz[k] = ritz_eigen_hertz(second->lambda[second->num_rigid + k]);
-    mark_kept(&c->row[number], first, second, out);
-done:
-    return status;
-}
-
-static void say_column_line(cli_run *run, int64_t mode, int64_t count,
-                            const column *columns)
-{
-    enum { WIDTH = 13, MOST = 512 };
-    char line[MOST] = "";
-    size_t used = 0;
-
-    for (int64_t k = 0; k < count && used + WIDTH + WIDTH < MOST; k++) {
-        const column *c = &columns[k];
-
-        if (mode < 0)
-            used += (size_t)snprintf(line + used, MOST - used, " %10.10s  ",
-                                     c->title);
-        else if (mode < c->count)
-            used += (size_t)snprintf(line + used, MOST - used, " %10.5f%s",
-                                     c->hertz[mode],
-                                     c->kept[mode] ? " \u2020" : "  ");
-        else
-            used += (size_t)snprintf(line + used, MOST - used, "%13s", "");
-    }
-    while (used > 0 && line[used - 1] == ' ')
-        line[--used] = '\0';
-    if (mode < 0)
-        cli_say(run, "%5s%s", "mode", line);
-    else
-        cli_say(run, "%5lld%s", (long long)mode + 1, line);
-}
-
-static ritz_status say_frequencies(cli_run *run, const ritz_comparison *c)
-{
-    enum { MOST_SYSTEMS = 12 };
-    ritz_status status = RITZ_OK;
-    const ritz_stage *stage = &c->second;
-    json_t *rows = json_object_get(run->report, "configurations");
-    int64_t systems = c->second_system.num_configurations;
-    int64_t shown = systems < MOST_SYSTEMS ? systems : MOST_SYSTEMS;
-    int64_t count = stage->count + systems;
-    int64_t longest = 0;
-    column *columns = calloc((size_t)count + 1, sizeof *columns);
-
-    RITZ_FAIL_IF(!columns, RITZ_ERR_MEMORY, "no memory for the report");
-    for (int64_t k = 0; k < stage->count; k++)
-        RITZ_TRY(body_column(stage->scene->component[k].name, &stage->body[k],
-                             &columns[k]));
-    for (int64_t k = 0; k < systems; k++) {
-        const ritz_configuration *at = &c->second_system.configuration[k];
-        double *hertz = NULL;
-
-        RITZ_TRY(system_column(k, c, &columns[stage->count + k]));
-        RITZ_TRY(model_hertz_at(at, &hertz));
-        json_object_set_new(json_array_get(rows, (size_t)k), "frequencies_hz",
-                            model_reals_json(at->K.nrow, hertz));
-        free(hertz);
-    }
-    for (int64_t k = 0; k < stage->count + shown; k++)
-        longest = columns[k].count > longest ? columns[k].count : longest;
-    cli_say(run, "Flexible modes after stage 2, Hz: of each component by "
-                 "itself, and of the system at each configuration");
-    say_column_line(run, -1, stage->count + shown, columns);
-    for (int64_t mode = 0; mode < longest; mode++)
-        say_column_line(run, mode, stage->count + shown, columns);
-    cli_say(run, "  \u2020 a mode of the stage-1 system that was kept, and is "
-                 "there exactly");
-    if (shown < systems)
-        cli_say(run, "  %lld more configurations are in the output",
-                (long long)systems - (long long)shown);
-done:
-    free_columns(count, columns);
-    return status;
 }
 
 ritz_status comparison_say(cli_run *run, const ritz_stage *first,
@@ -351,8 +253,11 @@ ritz_status comparison_say(cli_run *run, const ritz_stage *first,
     say_orders(run, first, &c->second);
     cli_say(run, "%s", "");
     say_composite(run, first, c);
+    comparison_say_candidates(run, first, c);
     cli_say(run, "\nErrors of the stage-2 system against the stage-1 system");
     say_rows(run, first, c);
+    comparison_say_suggestion(run, first, c);
+    comparison_say_strays(run, first, c);
     cli_say(run, "%s", "");
-    return say_frequencies(run, c);
+    return comparison_say_frequencies(run, c);
 }

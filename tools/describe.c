@@ -143,6 +143,7 @@ void describe_component(const cli_run *run, json_t *keys,
     matrix(run, sums, "K", &c->K);
     matrix(run, sums, "M", &c->M);
     matrix(run, sums, "D", &c->D);
+    describe_skew(run, keys, c->D.colptr ? ritz_sparse_skew(&c->D) : 0.0);
     matrix(run, sums, "K4", &c->K4);
     for (int64_t k = 0; k < c->num_loads; k++) {
         char name[RITZ_NAME_SIZE + 4];
@@ -150,8 +151,9 @@ void describe_component(const cli_run *run, json_t *keys,
         snprintf(name, sizeof name, "KG/%s", c->load[k].name);
         matrix(run, sums, name, &c->load[k].KG);
     }
-    if (*c->damping)
-        cli_say(run, "  %-14s %s", "damping", c->damping);
+    describe_damping(run, keys, c->damping);
+    describe_dampers(run, keys, &c->dampers);
+    describe_recovery(run, keys, &c->recovery);
     if (c->digits > 0.0)
         cli_say(run, "  %-14s %g significant", "digits", c->digits);
     if (c->asymmetry > 0.0)
@@ -170,7 +172,7 @@ void describe_component(const cli_run *run, json_t *keys,
 }
 
 /* "12 constraint, 8 normal"; and the same as an object. */
-static void columns(const cli_run *run, json_t *keys, const ritz_columns *c)
+void describe_columns(const cli_run *run, json_t *keys, const ritz_columns *c)
 {
     json_t *kinds = json_object();
     char text[160] = "";
@@ -179,7 +181,7 @@ static void columns(const cli_run *run, json_t *keys, const ritz_columns *c)
     double low = 0.0;
     double high = 0.0;
 
-    for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_SYSTEM; kind++) {
+    for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_STATE; kind++) {
         const char *name = ritz_column_name((ritz_column_kind)kind);
         int64_t count = 0;
 
@@ -199,7 +201,7 @@ static void columns(const cli_run *run, json_t *keys, const ritz_columns *c)
     json_object_set_new(keys, "columns", kinds);
 }
 
-static void origin(const cli_run *run, json_t *keys, const ritz_origin *o)
+void describe_origin(const cli_run *run, json_t *keys, const ritz_origin *o)
 {
     cli_say(run, "  %-14s %s (%s) [%s]%s%s", "method", o->method,
             *o->options ? o->options : "no options", o->reference,
@@ -214,11 +216,15 @@ void describe_basis(const cli_run *run, json_t *keys, const ritz_basis *b)
     json_t *sums = json_object();
     json_t *hertz = json_array();
 
-    cli_say(run, "  %-14s basis of %lld columns for %lld dofs", "kind",
-            (long long)b->T.ncol, (long long)b->T.nrow);
-    origin(run, keys, &b->origin);
-    columns(run, keys, &b->columns);
+    cli_say(run, "  %-14s basis of %lld columns for %lld %s", "kind",
+            (long long)b->T.ncol, (long long)b->T.nrow,
+            b->states ? "states" : "dofs");
+    describe_origin(run, keys, &b->origin);
+    describe_columns(run, keys, &b->columns);
     dense(run, sums, "T", &b->T);
+    dense(run, sums, "W", &b->W);
+    if (*b->damping)
+        describe_damping(run, keys, b->damping);
     for (int64_t k = 0; k < b->columns.count; k++)
         if (!isnan(b->columns.hertz[k]))
             json_array_append_new(hertz, cli_real(b->columns.hertz[k]));
@@ -266,8 +272,8 @@ static void hertz_lines(const cli_run *run, const char *title, int64_t rigid,
     }
 }
 
-static void measures(const cli_run *run, json_t *keys, const char *key,
-                     const ritz_measures *m)
+void describe_measures(const cli_run *run, json_t *keys, const char *key,
+                       const ritz_measures *m)
 {
     const char *known =
         strcmp(key, "estimates") == 0 ? "estimated" : "measured";
@@ -294,15 +300,18 @@ ritz_status describe_reduced(const cli_run *run, json_t *keys,
     cli_say(run, "  %-14s reduced component, %lld coordinates for %lld dofs",
             "kind", (long long)r->K.nrow, (long long)r->num_dofs);
     cli_say(run, "  %-14s %s", "units", *r->units ? r->units : "not stated");
-    origin(run, keys, &r->origin);
-    columns(run, keys, &r->columns);
+    describe_origin(run, keys, &r->origin);
+    describe_columns(run, keys, &r->columns);
     hertz_lines(run, "frequencies", rigid, count, hertz);
     dense(run, sums, "K", &r->K);
     dense(run, sums, "M", &r->M);
     dense(run, sums, "D", &r->D);
+    describe_skew(run, keys, describe_skew_dense(&r->D));
+    dense(run, sums, "K4", &r->K4);
     dense(run, sums, "T", &r->T);
-    if (*r->damping)
-        cli_say(run, "  %-14s %s", "damping", r->damping);
+    describe_damping(run, keys, r->damping);
+    describe_dampers(run, keys, &r->dampers);
+    describe_recovery(run, keys, &r->recovery);
     describe_inertia(run, keys, &r->inertia);
     start_ports(keys);
     for (int64_t k = 0; k < r->num_ports; k++)
@@ -313,8 +322,8 @@ ritz_status describe_reduced(const cli_run *run, json_t *keys,
     set_int(keys, "dofs_full", r->num_dofs);
     set_text(keys, "units", r->units);
     json_object_set_new(keys, "frequencies_hz", model_reals_json(count, hertz));
-    measures(run, keys, "estimates", &r->estimates);
-    measures(run, keys, "errors", &r->errors);
+    describe_measures(run, keys, "estimates", &r->estimates);
+    describe_measures(run, keys, "errors", &r->errors);
 done:
     free(hertz);
     return status;
@@ -336,7 +345,7 @@ static ritz_status configuration(const cli_run *run, json_t *keys,
     set_int(item, "rank", c->rank);
     json_object_set_new(item, "frequencies_hz",
                         model_reals_json(c->K.nrow, hertz));
-    measures(run, item, "errors", &c->errors);
+    describe_measures(run, item, "errors", &c->errors);
     if (!json_object_get(keys, "frequencies_hz")) { /* the first one's */
         set_int(keys, "dofs", c->K.nrow);
         set_int(keys, "modes", c->K.nrow - c->num_rigid);
@@ -359,7 +368,6 @@ ritz_status describe_system(const cli_run *run, json_t *keys,
     set_text(keys, "kind", "system");
     set_text(keys, "name", s->name);
     set_text(keys, "units", s->units);
-    set_text(keys, "damping", s->damping);
     json_object_set_new(keys, "sweeps", names_json(s->num_sweeps, s->sweep));
     json_object_set_new(keys, "ports", json_array());
     json_object_set_new(keys, "configurations", json_array());
@@ -382,8 +390,9 @@ ritz_status describe_system(const cli_run *run, json_t *keys,
     if (s->band_hz[1] > 0.0)
         cli_say(run, "  %-14s %g to %g Hz", "band", s->band_hz[0],
                 s->band_hz[1]);
-    if (*s->damping)
-        cli_say(run, "  %-14s %s", "damping", s->damping);
+    describe_damping(run, keys, s->damping);
+    if (s->num_configurations > 0)
+        describe_dampers(run, keys, &s->configuration[0].dampers);
     for (int64_t k = 0; k < s->num_configurations; k++) {
         const ritz_configuration *c = &s->configuration[k];
         char name[2][RITZ_NAME_SIZE + 4];

@@ -19,9 +19,32 @@ void describe_response(const cli_run *run, json_t *keys,
                        const ritz_response *response);
 void describe_ranking(const cli_run *run, json_t *keys,
                       const ritz_ranking *ranking);
+ritz_status describe_states(const cli_run *run, json_t *keys,
+                            const ritz_state_space *states);
 void describe_matrices(const cli_run *run, json_t *keys,
                        const ritz_matrices *matrices);
 void describe_bulk(const cli_run *run, json_t *keys, const ritz_bulk *bulk);
+
+/** Text form of a damping, and of a fit what it came to. */
+void describe_damping(const cli_run *run, json_t *keys, const char *text);
+void describe_dampers(const cli_run *run, json_t *keys,
+                      const ritz_dampers *dampers);
+
+/** Dofs that constraints eliminated. */
+void describe_recovery(const cli_run *run, json_t *keys,
+                       const ritz_recovery *recovery);
+
+/** Share of D that is antisymmetric, in the Frobenius norm; and of a dense D. */
+void describe_skew(const cli_run *run, json_t *keys, double share);
+double describe_skew_dense(const ritz_dense *D);
+
+/** How a basis was made; kinds of its columns; a group of measures. */
+void describe_origin(const cli_run *run, json_t *keys,
+                     const ritz_origin *origin);
+void describe_columns(const cli_run *run, json_t *keys,
+                      const ritz_columns *columns);
+void describe_measures(const cli_run *run, json_t *keys, const char *key,
+                       const ritz_measures *measures);
 
 /** Best first: mode, frequency, damping, value, share. */
 void describe_order(const cli_run *run, const ritz_ranking *ranking);

@@ -100,4 +100,10 @@ void describe_bulk(const cli_run *run, json_t *keys, const ritz_bulk *b)
         cli_say(run, "  %-14s and %lld more", "",
                 (long long)(b->num_constraints - 10));
     json_object_set_new(keys, "constraints", constraints);
+    if (b->num_constraints > 0)
+        cli_say(run, "  %-14s %lld dofs, by these", "dependent",
+                (long long)b->equations.count);
+    if (b->equations.refused)
+        cli_say(run, "  %-14s %s", "", b->equations.refused);
+    set_int(keys, "dependent", b->equations.count);
 }

@@ -36,6 +36,11 @@ static ritz_status read_ranking(const char *path, model *out)
     return ritz_container_read_ranking(path, &out->ranking);
 }
 
+static ritz_status read_states(const char *path, model *out)
+{
+    return ritz_container_read_state_space(path, &out->states);
+}
+
 static const struct kind {
     const char *name; /* in files */
     const char *noun; /* in sentences */
@@ -48,6 +53,7 @@ static const struct kind {
     {"system", "a system", MODEL_SYSTEM, read_system},
     {"response", "a response", MODEL_RESPONSE, read_response},
     {"ranking", "a ranking", MODEL_RANKING, read_ranking},
+    {"state-space", "a state space", MODEL_STATES, read_states},
 };
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
@@ -129,9 +135,10 @@ model_view model_look(const model *m)
     const ritz_reduced *r = &m->reduced;
 
     if (m->at)
-        return (model_view){&m->at->K, &m->at->M, &m->at->D, &m->at->io,
-                            m->system.damping};
-    return (model_view){&r->K, &r->M, &r->D, &r->io, r->damping};
+        return (model_view){
+            {&m->at->K, &m->at->M, &m->at->D, &m->at->K4, &m->at->io},
+            m->system.damping};
+    return (model_view){{&r->K, &r->M, &r->D, &r->K4, &r->io}, r->damping};
 }
 
 ritz_status model_damping(const model *m, const char *asked, ritz_damping *out)
@@ -250,5 +257,6 @@ void model_free(model *m)
     ritz_system_free(&m->system);
     ritz_response_free(&m->response);
     ritz_ranking_free(&m->ranking);
+    ritz_state_space_free(&m->states);
     *m = (model){0};
 }

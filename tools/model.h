@@ -18,7 +18,8 @@ typedef enum model_kind {
     MODEL_SYSTEM = 8,
     MODEL_RESPONSE = 16,
     MODEL_RANKING = 32,
-    MODEL_ANY = 63,
+    MODEL_STATES = 64,
+    MODEL_ANY = 127,
 } model_kind;
 
 /* A container that was read: the object that `kind` names, others empty. */
@@ -30,13 +31,13 @@ typedef struct model {
     ritz_system system;
     ritz_response response;
     ritz_ranking ranking;
+    ritz_state_space states;
     ritz_configuration *at; /* of a system, once model_at has chosen */
 } model;
 
 /* The small matrices of a reduced component or of a system as it stands. */
 typedef struct model_view {
-    const ritz_dense *K, *M, *D;
-    const ritz_io *io;
+    ritz_second_order matrices;
     const char *damping; /* of the model; "" none */
 } model_view;
 

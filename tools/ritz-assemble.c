@@ -1,12 +1,13 @@
 /* ritz-assemble - the components of a scene joined at its configurations. */
 #include "describe.h"
+#include "tracks.h"
 
 #include <ritz/synthesis.h>
 
 #include <stdlib.h>
 
 static ritz_status system_of(cli_run *run, const ritz_scene *scene,
-                             const char *at)
+                             const char *at, const char *tracks)
 {
     ritz_status status = RITZ_OK;
     ritz_stage stage = {0};
@@ -19,6 +20,7 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
     RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
     cli_say(run, "%s:", run->output);
     RITZ_TRY(describe_system(run, run->report, &system));
+    RITZ_TRY(tracks_report(run, &stage, &system, tracks));
     cli_record(run, "assemble", system.configuration[0].K.nrow);
 done:
     ritz_system_free(&system);
@@ -34,8 +36,8 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
     ritz_stamp stamp = {0};
     double *setting = calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
 
-    RITZ_FAIL_IF(!setting, RITZ_ERR_MEMORY, "no memory for angles");
-    RITZ_TRY(ritz_scene_angles(scene, at ? at : "", setting));
+    RITZ_FAIL_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
+    RITZ_TRY(ritz_scene_settings(scene, at ? at : "", setting));
     RITZ_TRY(ritz_assemble_full(scene, setting, &full));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_component(run->output, &full, &stamp));
@@ -48,13 +50,15 @@ done:
     return status;
 }
 
-static ritz_status assemble(cli_run *run, const char *at, bool full)
+static ritz_status assemble(cli_run *run, const char *at, bool full,
+                            const char *tracks)
 {
     ritz_status status = RITZ_OK;
     ritz_scene scene = {0};
 
     RITZ_TRY(model_scene(run, run->operand[0], &scene));
-    RITZ_TRY(full ? full_of(run, &scene, at) : system_of(run, &scene, at));
+    RITZ_TRY(full ? full_of(run, &scene, at)
+                  : system_of(run, &scene, at, tracks));
 done:
     ritz_scene_free(&scene);
     return status;
@@ -63,12 +67,17 @@ done:
 int main(int argc, char **argv)
 {
     const char *at = NULL;
+    const char *tracks = NULL;
     bool full = false;
     const cli_option options[] = {
-        {CLI_TEXT(&at), .name = "at", .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
-         .help = "one configuration, degrees [all of the scene's]"},
+        {CLI_TEXT(&at), .name = "at",
+         .argument = "JOINT=SETTING[,JOINT=SETTING]",
+         .help = "one configuration, degrees and lengths [all of the scene's]"},
         {CLI_FLAG(&full), .name = "full",
          .help = "reduce nothing: one component with the dofs of all"},
+        {CLI_TEXT(&tracks), .name = "tracks", .argument = "FILE",
+         .help = "write which mode is which at every configuration, as a table "
+                 "with tabs"},
         {0},
     };
     const cli_program program = {
@@ -84,5 +93,8 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    return cli_finish(&run, assemble(&run, at, full));
+    if (full && tracks)
+        cli_refuse(&program, "--full makes one component, whose modes are not "
+                             "followed by --tracks");
+    return cli_finish(&run, assemble(&run, at, full, tracks));
 }

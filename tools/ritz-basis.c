@@ -1,5 +1,6 @@
 /* ritz-basis - find the subspace in which a component is reduced. */
 #include "describe.h"
+#include "neighbours.h"
 
 #include <ritz/method.h>
 
@@ -10,9 +11,20 @@ enum { MAX_METHODS = 64, MAX_WORDS = 15, MAX_NAME = 32 };
 
 static void list_methods(void)
 {
-    for (const ritz_method *const *m = ritz_methods; *m; m++)
-        printf("%-16s %-56s [%s]\n", (*m)->name, (*m)->summary,
-               (*m)->reference);
+    for (const ritz_method *const *m = ritz_methods; *m; m++) {
+        const struct {
+            const char *word, *text;
+        } lines[] = {{"when", (*m)->when},
+                     {"cost", (*m)->cost},
+                     {"holds", (*m)->holds},
+                     {"fails", (*m)->fails}};
+
+        printf("%s%-18s %s [%s]\n", m > ritz_methods ? "\n" : "", (*m)->name,
+               (*m)->summary, (*m)->reference);
+        for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
+            if (lines[k].text)
+                printf("  %-6s %s\n", lines[k].word, lines[k].text);
+    }
 }
 
 static const ritz_method *find(const cli_program *program, const char *word)
@@ -52,17 +64,21 @@ static void report(cli_run *run, const ritz_basis *basis)
                 worst);
         cli_record_error(run, "residual", worst);
     }
-    if (basis->remark[0])
-        cli_warn(run, "%s", basis->remark);
+    if (basis->remark[0]) {
+        cli_say(run, "  %-14s %s", "note", basis->remark);
+        cli_report_text(run, "note", basis->remark);
+    }
     cli_report_int(run, "vectors", c->count);
     cli_record(run, basis->origin.method, c->count);
 }
 
 static ritz_status make(cli_run *run, const ritz_method *method,
-                        const char *ports, ritz_request *request)
+                        const char *ports, const cli_list *neighbours,
+                        ritz_request *request)
 {
     ritz_status status = RITZ_OK;
     model m = {0};
+    ritz_neighbour neighbour = {0};
     ritz_basis basis = {0};
     ritz_stamp stamp = {0};
 
@@ -73,6 +89,11 @@ static ritz_status make(cli_run *run, const ritz_method *method,
         RITZ_TRY_IN(
             run->operand[1],
             ritz_component_attached(&m.component, ports, &request->attached));
+    if (neighbours->count > 0) {
+        RITZ_TRY(neighbours_read(run, neighbours, &m.component,
+                                 &request->attached, &neighbour));
+        request->neighbour = &neighbour;
+    }
     RITZ_TRY_IN(run->operand[1], ritz_basis_make(method, request, &basis));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_basis(run->output, &basis, m.component.units,
@@ -80,6 +101,7 @@ static ritz_status make(cli_run *run, const ritz_method *method,
     report(run, &basis);
 done:
     ritz_dofs_free(&request->attached);
+    ritz_neighbour_free(&neighbour);
     ritz_basis_free(&basis);
     model_free(&m);
     return status;
@@ -114,14 +136,16 @@ static void add_words(const char **text, char (*name)[MAX_NAME],
 
 int main(int argc, char **argv)
 {
-    enum { NUM_OWN = 5 };
+    enum { NUM_OWN = 6 };
     const char *ports = NULL;
     const char *text[MAX_WORDS] = {0};
     char name[MAX_WORDS][MAX_NAME] = {0};
     ritz_request request = RITZ_REQUEST_NONE;
+    cli_list neighbours = {0};
     cli_option options[NUM_OWN + MAX_WORDS + 1] = {
         {CLI_INT(&request.modes), .name = "modes", .argument = "N", .min = 0,
-         .max = 100000, .help = "how many flexible vectors, or"},
+         .max = 100000,
+         .help = "how many flexible vectors (Lanczos: states), or"},
         {CLI_REAL(&request.up_to_hz), .name = "up-to-hz", .argument = "F",
          .min = 1e-9, .max = 1e9, .help = "every mode up to this frequency"},
         {CLI_TEXT(&ports), .name = "attach", .argument = "PORT[,PORT]",
@@ -129,6 +153,9 @@ int main(int argc, char **argv)
         {CLI_REAL(&request.tolerance), .name = "tolerance", .argument = "X",
          .min = 1e-15, .max = 1e-2,
          .help = "relative, below which a column depends on others"},
+        {CLI_LIST(&neighbours), .name = "neighbour",
+         .argument = "PORT=FILE:PORT",
+         .help = "hang this component on a port; may be repeated"},
         {CLI_ACTION(list_methods), .name = "list",
          .help = "list methods and their papers"},
     };
@@ -155,8 +182,11 @@ int main(int argc, char **argv)
                    "%s keeps no attached dofs, --attach is not for "
                    "it",
                    method->name);
+    if (neighbours.count > 0 && !(method->uses & RITZ_USES_NEIGHBOUR))
+        cli_refuse(&program, "%s loads nothing, --neighbour is not for it",
+                   method->name);
     take_choice(&program, text, &request);
     if (ritz_request_check(method, &request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
-    return cli_finish(&run, make(&run, method, ports, &request));
+    return cli_finish(&run, make(&run, method, ports, &neighbours, &request));
 }

@@ -1,7 +1,10 @@
 /* ritz-compare - two-stage reduction of a scene over all configurations. */
 #include "comparison.h"
+#include "tracks.h"
 
 #include <string.h>
+
+enum { MOST_TOLERANCES = 64 };
 
 /* PREFIX and the component's name, of each body of the second stage. */
 static ritz_status write_bodies(cli_run *run, const char *prefix,
@@ -28,7 +31,59 @@ done:
     return status;
 }
 
-static ritz_status compare(cli_run *run, const char *prefix, const char *report)
+/* What the command line asks beside the scene. */
+typedef struct asked {
+    const char *prefix, *report, *tracks, *extraneous, *tolerance_table;
+    int64_t num_tolerances;
+    double tolerance[MOST_TOLERANCES];
+} asked;
+
+/* "1e-12,1e-6" */
+static void read_tolerances(const cli_program *program, const char *text,
+                            asked *a)
+{
+    char word[64];
+
+    for (const char *at = text; at;) {
+        size_t length = strcspn(at, ",");
+        double *into = &a->tolerance[a->num_tolerances];
+
+        if (a->num_tolerances == MOST_TOLERANCES)
+            cli_refuse(program, "--tolerances takes %d numbers, not more",
+                       (int)MOST_TOLERANCES);
+        snprintf(word, sizeof word, "%.*s", (int)(length < 63 ? length : 63),
+                 at);
+        if (!ritz_text_real(word, into) || !(*into > 0.0 && *into < 1.0))
+            cli_refuse(program,
+                       "--tolerances takes numbers between 0 and 1, not '%s'",
+                       word);
+        a->num_tolerances++;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+}
+
+/* The chart of the composite tolerance. */
+static ritz_status chart(cli_run *run, const asked *a, const ritz_stage *stage,
+                         const ritz_comparison *comparison)
+{
+    ritz_status status = RITZ_OK;
+    ritz_tolerance_row *rows = NULL;
+
+    if (a->num_tolerances == 0)
+        return RITZ_OK;
+    RITZ_TRY_IN("tolerances",
+                ritz_compare_tolerances(stage, comparison, a->num_tolerances,
+                                        a->tolerance, &rows));
+    comparison_say_tolerances(run, stage, a->num_tolerances, rows);
+    if (a->tolerance_table)
+        RITZ_TRY(comparison_write_tolerances(a->tolerance_table, stage,
+                                             a->num_tolerances, rows));
+done:
+    ritz_tolerances_free(a->num_tolerances, &rows);
+    return status;
+}
+
+static ritz_status compare(cli_run *run, const asked *a)
 {
     ritz_status status = RITZ_OK;
     ritz_scene scene = {0};
@@ -37,15 +92,20 @@ static ritz_status compare(cli_run *run, const char *prefix, const char *report)
     ritz_stamp stamp = {0};
 
     RITZ_TRY(model_scene(run, run->operand[0], &scene));
+    if (a->extraneous)
+        RITZ_TRY_IN("--extraneous",
+                    ritz_scene_set_extraneous(&scene, a->extraneous));
     RITZ_TRY(ritz_stage_new(&scene, &stage));
     RITZ_TRY(ritz_compare(&stage, &comparison));
-    RITZ_TRY(write_bodies(run, prefix, &comparison));
+    RITZ_TRY(write_bodies(run, a->prefix, &comparison));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_system(run->output, &comparison.second_system,
                                          &stamp));
     RITZ_TRY(comparison_say(run, &stage, &comparison));
-    if (report)
-        RITZ_TRY(cli_save(run, report));
+    RITZ_TRY(tracks_report(run, &stage, &comparison.first_system, a->tracks));
+    RITZ_TRY(chart(run, a, &stage, &comparison));
+    if (a->report)
+        RITZ_TRY(cli_save(run, a->report));
 done:
     ritz_comparison_free(&comparison);
     ritz_stage_free(&stage);
@@ -55,13 +115,25 @@ done:
 
 int main(int argc, char **argv)
 {
-    const char *prefix = NULL;
-    const char *report = NULL;
+    asked a = {0};
+    const char *tolerances = NULL;
     const cli_option options[] = {
-        {CLI_TEXT(&prefix), .name = "components", .argument = "PREFIX",
+        {CLI_TEXT(&a.prefix), .name = "components", .argument = "PREFIX",
          .help = "write the reduced components too, as PREFIXname.h5"},
-        {CLI_TEXT(&report), .name = "report", .argument = "FILE",
+        {CLI_TEXT(&a.report), .name = "report", .argument = "FILE",
          .help = "write the report there too"},
+        {CLI_TEXT(&a.extraneous), .name = "extraneous", .argument = "WORD",
+         .help = "modes of the system that stand for no kept one: keep, "
+                 "remove, out-of-band [the scene's]"},
+        {CLI_TEXT(&a.tracks), .name = "tracks", .argument = "FILE",
+         .help = "write which mode of stage 1 is which at every "
+                 "configuration, as a table with tabs"},
+        {CLI_TEXT(&tolerances), .name = "tolerances", .argument = "X[,X]",
+         .help = "chart composite tolerances against orders and errors"},
+        {CLI_TEXT(&a.tolerance_table), .name = "tolerance-table",
+         .argument = "FILE",
+         .help = "write that chart as a table with tabs [tolerances 1e-12 to "
+                 "1e-2]"},
         {0},
     };
     const cli_program program = {
@@ -80,5 +152,9 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    return cli_finish(&run, compare(&run, prefix, report));
+    if (a.tolerance_table && !tolerances)
+        tolerances = "1e-12,1e-10,1e-8,1e-6,1e-5,1e-4,1e-3,1e-2";
+    if (tolerances)
+        read_tolerances(&program, tolerances, &a);
+    return cli_finish(&run, compare(&run, &a));
 }

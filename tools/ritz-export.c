@@ -1,7 +1,8 @@
-/* ritz-export - a reduced component or a response as a file of others. */
-#include "model.h"
+/* ritz-export - a reduced model or a response as a file of others. */
+#include "dampers.h"
 
 #include <ritz/export.h>
+#include <ritz/probe.h>
 
 #include <string.h>
 
@@ -64,12 +65,109 @@ done:
     return status;
 }
 
+/* No simulator is handed a model that grows by itself, or one of a method that
+   promises nothing, unless it is wanted. */
+static ritz_status check_stability(cli_run *run, const ritz_probe *probe,
+                                   const char *method, bool force)
+{
+    static const char unproven[] = "lanczos-two-sided";
+    ritz_status status = RITZ_OK;
+    const char *verdict = ritz_stability_name(probe->verdict);
+    char text[2 * RITZ_NAME_SIZE];
+
+    ritz_probe_print(probe, text);
+    cli_report_text(run, "stability", verdict);
+    RITZ_FAIL_IF(probe->verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
+                 "'%s' is unstable: %s; export it all the same with --force",
+                 run->operand[0], text);
+    RITZ_FAIL_IF(strcmp(method, unproven) == 0 && !force, RITZ_ERR_ARGUMENT,
+                 "'%s' was made by %s, which promises no stability (now %s: "
+                 "%s); export it all the same with --force",
+                 run->operand[0], method, verdict, text);
+    if (probe->verdict == RITZ_UNSTABLE)
+        cli_warn(run, "'%s' is unstable: %s", run->operand[0], text);
+    cli_say(run, "%s: %s", verdict, text);
+done:
+    return status;
+}
+
+/* Other codes join bodies by displacements, as which force columns are those
+   of macneal-rubin. */
+static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
+                                bool force)
+{
+    static const char sentence[] =
+        "'%s' has columns for a joint by forces, which no other code makes of "
+        "them: export the same made by macneal-rubin";
+    ritz_status status = RITZ_OK;
+    bool any = false;
+
+    for (int64_t k = 0; k < columns->count; k++)
+        any = any || columns->kind[k] == RITZ_COLUMN_FORCE;
+    RITZ_FAIL_IF(any && !force, RITZ_ERR_ARGUMENT, sentence, run->operand[0]);
+    if (any)
+        cli_warn(run, sentence, run->operand[0]);
+done:
+    return status;
+}
+
+static ritz_status export_reduced(cli_run *run, model *m,
+                                  const ritz_exporter *exporter,
+                                  const ritz_export_request *request,
+                                  bool force, ritz_export_report *done)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probe probe = {0};
+
+    RITZ_TRY(vouch(run, &m->reduced, force));
+    RITZ_TRY(check_forces(run, &m->reduced.columns, force));
+    RITZ_TRY_IN(run->operand[0], ritz_probe_reduced(&m->reduced, &probe));
+    RITZ_TRY(check_stability(run, &probe, m->reduced.origin.method, force));
+    RITZ_TRY(exporter->write_reduced(&m->reduced, request, done));
+done:
+    return status;
+}
+
+static ritz_status export_states(cli_run *run, model *m,
+                                 const ritz_exporter *exporter,
+                                 const ritz_export_request *request, bool force,
+                                 ritz_export_report *done)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probe probe = {0};
+
+    cli_record(run, exporter->name, m->states.A.nrow);
+    RITZ_TRY_IN(run->operand[0], ritz_probe_states(&m->states, &probe));
+    RITZ_TRY(check_stability(run, &probe, m->states.origin.method, force));
+    cli_warn(run, "nothing is known of the errors of '%s' but its stability",
+             run->operand[0]);
+    RITZ_TRY(exporter->write_states(&m->states, request, done));
+done:
+    return status;
+}
+
+/* What an exporter takes: kinds of model, summed. */
+static int kinds_of(const ritz_exporter *exporter)
+{
+    if (strcmp(exporter->kind, "response") == 0)
+        return MODEL_RESPONSE;
+    return MODEL_REDUCED | (exporter->write_states ? MODEL_STATES : 0);
+}
+
+/* The file of another code has them in K and D, and not apart. */
+static void say_dampers(const cli_run *run, const ritz_dampers *dampers)
+{
+    for (int64_t j = 0; j < dampers->count; j++)
+        cli_say(run, "damper '%s' installed: c = %g, k = %g", dampers->name[j],
+                dampers->c[j], dampers->k[j]);
+}
+
 static ritz_status export(cli_run *run, const ritz_exporter *exporter,
-                          const ritz_export_request *request, bool force)
+                          const ritz_export_request *request,
+                          const cli_list *damper, bool force)
 {
     ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
-    bool takes_response = strcmp(exporter->kind, "response") == 0;
     model m = {0};
     ritz_export_report done = {0};
     json_t *said = json_array();
@@ -77,14 +175,16 @@ static ritz_status export(cli_run *run, const ritz_exporter *exporter,
     json_object_set_new(run->report, "said", said);
     cli_report_text(run, "format", exporter->name);
     cli_record(run, exporter->name, -1);
-    RITZ_TRY(model_read(run, path,
-                        takes_response ? MODEL_RESPONSE : MODEL_REDUCED, &m));
-    if (takes_response) {
+    RITZ_TRY(model_read(run, path, kinds_of(exporter), &m));
+    if (m.kind == MODEL_RESPONSE) {
         RITZ_TRY(exporter->write_response(&m.response, request, &done));
+    } else if (m.kind == MODEL_STATES) {
+        RITZ_TRY(export_states(run, &m, exporter, request, force, &done));
     } else {
         cli_record(run, exporter->name, m.reduced.K.nrow);
-        RITZ_TRY(vouch(run, &m.reduced, force));
-        RITZ_TRY(exporter->write_reduced(&m.reduced, request, &done));
+        RITZ_TRY_IN(path, dampers_install(&m, damper));
+        say_dampers(run, &m.reduced.dampers);
+        RITZ_TRY(export_reduced(run, &m, exporter, request, force, &done));
     }
     cli_say(run, "%s: %s", run->output, exporter->summary);
     for (int64_t k = 0; k < done.count; k++) {
@@ -101,6 +201,7 @@ int main(int argc, char **argv)
 {
     const char *to = NULL;
     bool force = false;
+    cli_list damper = {0};
     ritz_export_request request = {0};
     const cli_option options[] = {
         {CLI_TEXT(&to), .name = "to", .argument = "FORMAT",
@@ -113,17 +214,20 @@ int main(int argc, char **argv)
          .help = "every entry, zeros too (output4)"},
         {CLI_INT(&request.digits), .name = "digits", .argument = "N", .min = 1,
          .max = 17, .help = "significant, of text; 17 if not given"},
+        DAMPERS_OPTION(&damper),
         {CLI_FLAG(&force), .name = "force",
-         .help = "even if nothing is known of the errors"},
+         .help = "even if nothing is known of the errors, or if unstable"},
         {CLI_ACTION(list_formats), .name = "list",
          .help = "list formats and what they take"},
         {0},
     };
     const cli_program program = {
         .name = "ritz-export",
-        .operands = {{"FILE", "a reduced component or a response", false}},
+        .operands = {{"FILE", "a reduced component, state space or response",
+                      false}},
         .summary = "Write a reduced component for a simulator, or a response "
-                   "as a table, and say what\nis known of its errors.",
+                   "as a table, and say what\nis known of its errors and "
+                   "whether it is stable.",
         .example = "ritz-export blade-verified.h5 --to exudyn -o blade.hdf5",
         .options = options,
         .output = "the file in that format",
@@ -138,5 +242,5 @@ int main(int argc, char **argv)
     if (ritz_export_check(exporter, &request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     request.output = run.output;
-    return cli_finish(&run, export(&run, exporter, &request, force));
+    return cli_finish(&run, export(&run, exporter, &request, &damper, force));
 }

@@ -1,5 +1,5 @@
 /* ritz-frf - frequency response from inputs to outputs. */
-#include "model.h"
+#include "dampers.h"
 
 #include <complex.h>
 #include <math.h>
@@ -11,6 +11,7 @@ typedef struct wish {
     int64_t points;
     bool log, no_refine;
     const char *method, *damping, *at, *points_of;
+    cli_list damper;
 } wish;
 
 /*
@@ -64,16 +65,31 @@ done:
     return status;
 }
 
+/* A model of states brings its damping in A. */
+static ritz_status respond_states(const model *m, const wish *asked,
+                                  const ritz_grid *grid, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(asked->damping, RITZ_ERR_ARGUMENT,
+                 "a state space is damped as it was made: --damping is for "
+                 "ritz-basis");
+    RITZ_TRY(ritz_response_states(&m->states, grid, out));
+done:
+    return status;
+}
+
 static ritz_status respond(const model *m, const wish *asked,
                            const ritz_damping *damping, const ritz_grid *grid,
                            ritz_response *out)
 {
     double up_to = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz;
-    model_view view = model_look(m);
+    ritz_second_order view = model_look(m).matrices;
 
+    if (m->kind == MODEL_STATES)
+        return respond_states(m, asked, grid, out);
     if (m->kind != MODEL_COMPONENT)
-        return ritz_response_dense(view.K, view.M, view.D, view.io, damping,
-                                   grid, out);
+        return ritz_response_second_order(&view, damping, grid, out);
     if (strcmp(asked->method, "direct") == 0)
         return ritz_response_direct(&m->component, damping, up_to, grid, out);
     return ritz_response_modal(&m->component, damping, up_to, grid, out);
@@ -122,6 +138,16 @@ static void report(cli_run *run, const ritz_response *r)
     cli_record(run, r->method, r->count);
 }
 
+/* What drives it and is seen of it; of states the numbers alone. */
+static ritz_io io_of(const model *m)
+{
+    if (m->kind == MODEL_STATES)
+        return (ritz_io){.num_inputs = m->states.num_inputs,
+                         .num_outputs = m->states.num_outputs};
+    return m->kind == MODEL_COMPONENT ? m->component.io
+                                      : *model_look(m).matrices.io;
+}
+
 static ritz_status frf(cli_run *run, const wish *asked)
 {
     ritz_status status = RITZ_OK;
@@ -132,24 +158,26 @@ static ritz_status frf(cli_run *run, const wish *asked)
     ritz_grid grid = {0};
     ritz_response response = {0};
     ritz_stamp stamp = {0};
-    const ritz_io *io = NULL;
+    ritz_io ends = {0}; /* borrowed */
 
-    RITZ_TRY(model_read(run, path,
-                        MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM, &m));
+    RITZ_TRY(model_read(
+        run, path,
+        MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &m));
     RITZ_TRY(model_at(&m, path, asked->at));
     RITZ_FAIL_IF(
         m.kind != MODEL_COMPONENT && strcmp(asked->method, "direct") == 0,
         RITZ_ERR_ARGUMENT,
         "'%s' is small and dense: --method direct is for components", path);
+    RITZ_TRY_IN(path, dampers_install(&m, &asked->damper));
     RITZ_TRY(model_damping(&m, asked->damping, &damping));
     if (asked->points_of)
         RITZ_TRY(borrow(run, asked, &other, &grid));
     else
         RITZ_TRY_IN(path, place(&m, asked, &grid));
-    io = m.kind == MODEL_COMPONENT ? &m.component.io : model_look(&m).io;
-    RITZ_FAIL_IF(io->num_inputs == 0 || io->num_outputs == 0, RITZ_ERR_ARGUMENT,
-                 "'%s' has no %s, it responds to nothing", path,
-                 io->num_inputs == 0 ? "inputs" : "outputs");
+    ends = io_of(&m);
+    RITZ_FAIL_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
+                 RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
+                 path, ends.num_inputs == 0 ? "inputs" : "outputs");
     if (m.kind == MODEL_COMPONENT && strcmp(asked->method, "modal") == 0 &&
         (m.component.D.colptr || m.component.K4.colptr))
         cli_warn(run,
@@ -192,20 +220,20 @@ int main(int argc, char **argv)
          .help = "the points of another response instead"},
         {CLI_TEXT(&asked.method), .name = "method", .argument = "NAME",
          .help = "modal, or direct: a factor at each point (components)"},
-        {CLI_TEXT(&asked.damping), .name = "damping", .argument = "TEXT",
-         .help = "\"modal ZETA\", \"bands F F ZETA ...\" (Hz) or \"rayleigh A "
-                 "B\" [the model's]"},
+        DAMPING_OPTION(&asked.damping),
+        DAMPERS_OPTION(&asked.damper),
         {CLI_REAL(&asked.up_to_hz), .name = "up-to-hz", .argument = "F",
          .min = 1e-9, .max = 1e9,
          .help = "modes of a component up to this one [three times the end]"},
         {CLI_TEXT(&asked.at), .name = "at",
-         .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
-         .help = "which configuration of a system, degrees"},
+         .argument = "JOINT=SETTING[,JOINT=SETTING]",
+         .help = "which configuration of a system, degrees and lengths"},
         {0},
     };
     const cli_program program = {
         .name = "ritz-frf",
-        .operands = {{"FILE", "a component, reduced component or system",
+        .operands = {{"FILE",
+                      "a component, reduced component, system or state space",
                       false}},
         .summary = "Frequency response from every input to every output.",
         .example = "ritz-frf system.h5 --at clock=60,cone=0 --to-hz 10 "

@@ -9,7 +9,7 @@
 
 /* The options that may be repeated. */
 typedef struct repeated {
-    cli_list load, port, input, output;
+    cli_list load, port, rigid, averaged, input, output, damper;
 } repeated;
 
 /* Remember the file of "FILE[:NAME[#K]]"; NULL: none was given. */
@@ -85,6 +85,52 @@ static void report_removed(cli_run *run, const ritz_import_report *report)
                 report->num_removed > SHOWN ? ", ..." : "");
 }
 
+/* "RBE2 600, MPC 12, ..." */
+static void list_constraints(cli_run *run, const ritz_import_report *report,
+                             size_t size, char *text)
+{
+    enum { SHOWN = 6 };
+    json_t *all = json_array();
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (int64_t k = 0; k < report->num_constraints; k++) {
+        json_array_append_new(all, cli_string(report->constraint[k]));
+        if (k < SHOWN)
+            used += (size_t)snprintf(text + used, size - used, "%s%s",
+                                     k > 0 ? ", " : "", report->constraint[k]);
+    }
+    if (report->num_constraints > SHOWN)
+        snprintf(text + used, size - used, ", ...");
+    json_object_set_new(run->report, "constraints", all);
+}
+
+/* What depends on what, by elements of the deck and by grids of ports. */
+static void report_constraints(cli_run *run, const ritz_import_report *report)
+{
+    char text[512];
+
+    list_constraints(run, report, sizeof text, text);
+    if (report->num_eliminated > 0)
+        cli_say(run, "%lld rows eliminated, of dofs that depend on others%s%s",
+                (long long)report->num_eliminated, *text ? ": " : "", text);
+    else if (report->num_recovered > 0 && *text)
+        cli_say(run, "the matrices are without what depends by %s", text);
+    if (report->num_lost > 0)
+        cli_say(run,
+                "%lld dofs are not recovered: they depend on dofs that the "
+                "matrices have not",
+                (long long)report->num_lost);
+    if (report->unknown)
+        cli_warn(run, "nothing is recovered: %s", report->unknown);
+    for (int64_t k = 0; k < report->num_grids; k++)
+        cli_say(run, "port '%s' is the new grid %lld, tied to %lld dofs",
+                report->grid[k].port, (long long)report->grid[k].id,
+                (long long)report->grid[k].num_tied);
+    cli_report_int(run, "eliminated", report->num_eliminated);
+    cli_report_int(run, "not_recovered", report->num_lost);
+}
+
 static void report(cli_run *run, const ritz_component *component,
                    const ritz_import_report *done)
 {
@@ -92,6 +138,7 @@ static void report(cli_run *run, const ritz_component *component,
     describe_component(run, run->report, component);
     cli_say(run, "  rows named by  %s", done->map);
     report_removed(run, done);
+    report_constraints(run, done);
     if (done->num_massless > 0)
         cli_say(run, "%lld rows have stiffness but no mass, kept",
                 (long long)done->num_massless);
@@ -127,6 +174,25 @@ done:
     return status;
 }
 
+/* Lists of options as the request has them. */
+static void take_lists(const repeated *lists, ritz_import_request *request)
+{
+    request->num_loads = lists->load.count;
+    request->load = lists->load.text;
+    request->num_ports = lists->port.count;
+    request->port = lists->port.text;
+    request->num_rigid_ports = lists->rigid.count;
+    request->rigid_port = lists->rigid.text;
+    request->num_averaged_ports = lists->averaged.count;
+    request->averaged_port = lists->averaged.text;
+    request->num_inputs = lists->input.count;
+    request->input = lists->input.text;
+    request->num_outputs = lists->output.count;
+    request->output = lists->output.text;
+    request->num_dampers = lists->damper.count;
+    request->damper = lists->damper.text;
+}
+
 int main(int argc, char **argv)
 {
     repeated lists = {0};
@@ -149,12 +215,21 @@ int main(int argc, char **argv)
         {CLI_LIST(&lists.port), .name = "port",
          .argument = "NAME=GRIDS[:COMPS]",
          .help = "dofs by which other bodies hold this one"},
+        {CLI_LIST(&lists.rigid), .name = "rigid-port",
+         .argument = "NAME=GRIDS[:COMPS]",
+         .help = "port of a new grid amid these, which they follow rigidly"},
+        {CLI_LIST(&lists.averaged), .name = "averaged-port",
+         .argument = "NAME=GRIDS[:COMPS]",
+         .help = "port of a new grid that is the average of these"},
         {CLI_LIST(&lists.input), .name = "input",
          .argument = "NAME=GRID:COMP[*SCALE]",
          .help = "force (COMP 1-3) or moment (4-6)"},
         {CLI_LIST(&lists.output), .name = "output-at",
          .argument = "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
          .help = "displacement, velocity or acceleration that matters"},
+        {CLI_LIST(&lists.damper), .name = "damper",
+         .argument = "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
+         .help = "damper C, and spring K, from a dof to another or to ground"},
         {CLI_TEXT(&request.units), .name = "units", .argument = "LABELS",
          .help = "\"kg m s\": kept and shown, nothing is converted"},
         {CLI_FLAG(&request.symmetrise), .name = "symmetrise",
@@ -177,13 +252,6 @@ int main(int argc, char **argv)
     if (!request.stiffness && !request.mass)
         cli_refuse(&program, "nothing to import: name --stiffness, --mass or "
                              "both");
-    request.num_loads = lists.load.count;
-    request.load = lists.load.text;
-    request.num_ports = lists.port.count;
-    request.port = lists.port.text;
-    request.num_inputs = lists.input.count;
-    request.input = lists.input.text;
-    request.num_outputs = lists.output.count;
-    request.output = lists.output.text;
+    take_lists(&lists, &request);
     return cli_finish(&run, import(&run, &request));
 }

@@ -23,6 +23,8 @@ static ritz_status describe(const cli_run *run, json_t *keys, const model *m)
     case MODEL_RANKING:
         describe_ranking(run, keys, &m->ranking);
         return RITZ_OK;
+    case MODEL_STATES:
+        return describe_states(run, keys, &m->states);
     case MODEL_ANY:
         break;
     }

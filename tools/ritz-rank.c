@@ -1,4 +1,5 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
+#include "dampers.h"
 #include "describe.h"
 
 #include <math.h>
@@ -34,7 +35,7 @@ static const ritz_ranker *find(const cli_program *program, const char *word)
 static void report(cli_run *run, const ritz_ranking *r,
                    const ritz_damping *damping)
 {
-    char text[RITZ_NAME_SIZE];
+    char text[RITZ_DAMPING_SIZE];
     json_t *order = json_array();
 
     ritz_damping_print(damping, text);
@@ -73,7 +74,7 @@ static ritz_status rank(cli_run *run, const ritz_ranker *ranker, const char *at,
     ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     model m = {0};
-    model_view view = {0};
+    ritz_second_order view = {0};
     ritz_damping damping = {0};
     ritz_modal modal = {0};
     ritz_ranking ranking = {0};
@@ -82,7 +83,12 @@ static ritz_status rank(cli_run *run, const ritz_ranker *ranker, const char *at,
     RITZ_TRY(model_read(run, path, MODEL_REDUCED | MODEL_SYSTEM, &m));
     RITZ_TRY(model_at(&m, path, at));
     RITZ_TRY(model_damping(&m, asked, &damping));
-    view = model_look(&m);
+    RITZ_TRY_IN(path, dampers_install(&m, NULL));
+    view = model_look(&m).matrices;
+    if (view.K4->val)
+        cli_warn(run,
+                 "the structural damping of '%s' is left out of its ranking",
+                 path);
     RITZ_FAIL_IF(view.io->num_inputs == 0 || view.io->num_outputs == 0,
                  RITZ_ERR_ARGUMENT, "'%s' has no %s: nothing to rank by", path,
                  view.io->num_inputs == 0 ? "inputs" : "outputs");
@@ -108,11 +114,10 @@ int main(int argc, char **argv)
     const cli_option options[] = {
         {CLI_TEXT(&by), .name = "by", .argument = "NAME",
          .help = "ranking, one of those that --list shows"},
-        {CLI_TEXT(&at), .name = "at", .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
-         .help = "which configuration of a system, degrees"},
-        {CLI_TEXT(&damping), .name = "damping", .argument = "TEXT",
-         .help = "\"modal ZETA\", \"bands F F ZETA ...\" (Hz) or \"rayleigh A "
-                 "B\" [the model's]"},
+        {CLI_TEXT(&at), .name = "at",
+         .argument = "JOINT=SETTING[,JOINT=SETTING]",
+         .help = "which configuration of a system, degrees and lengths"},
+        DAMPING_OPTION(&damping),
         {CLI_ACTION(list_rankers), .name = "list",
          .help = "list rankings and their papers"},
         {0},

@@ -1,6 +1,8 @@
 /* ritz-reduce - a component in the subspace of a basis, with estimates. */
 #include "describe.h"
 
+#include <ritz/probe.h>
+
 #include <stdlib.h>
 
 /* Without T nobody can recover the full mesh, but the file is small. */
@@ -8,6 +10,7 @@ static void drop_basis(ritz_reduced *reduced)
 {
     ritz_dense_free(&reduced->T);
     ritz_grids_free(&reduced->grids);
+    ritz_recovery_free(&reduced->recovery);
     free(reduced->dof);
     reduced->dof = NULL;
 }
@@ -30,24 +33,16 @@ done:
     return status;
 }
 
-static ritz_status reduce(cli_run *run, bool without_basis)
+static ritz_status to_matrices(cli_run *run, const ritz_component *full,
+                               const ritz_basis *basis, bool without_basis)
 {
     ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
-    model full = {0};
-    model basis = {0};
     ritz_reduced reduced = {0};
     ritz_stamp stamp = {0};
 
-    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
-    RITZ_TRY(model_read(run, what, MODEL_BASIS, &basis));
-    RITZ_FAIL_IF(basis.basis.T.nrow != full.component.num_dofs,
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is a basis for %lld dofs, '%s' has %lld", what,
-                 (long long)basis.basis.T.nrow, run->operand[0],
-                 (long long)full.component.num_dofs);
-    RITZ_TRY_IN(what, ritz_reduce(&full.component, &basis.basis, &reduced));
-    RITZ_TRY_IN(what, ritz_estimate(&full.component, &basis.basis, &reduced));
+    RITZ_TRY_IN(what, ritz_reduce(full, basis, &reduced));
+    RITZ_TRY_IN(what, ritz_estimate(full, basis, &reduced));
     if (without_basis)
         drop_basis(&reduced);
     stamp = cli_stamp(run);
@@ -55,6 +50,63 @@ static ritz_status reduce(cli_run *run, bool without_basis)
     RITZ_TRY(report(run, &reduced));
 done:
     ritz_reduced_free(&reduced);
+    return status;
+}
+
+/* States have no bounds yet: what is known of them is whether they are stable.
+ */
+static ritz_status to_states(cli_run *run, const ritz_component *full,
+                             const ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    const char *what = run->operand[1];
+    ritz_damping damping = {0};
+    ritz_state_space states = {0};
+    ritz_probe probe = {0};
+    ritz_stamp stamp = {0};
+    char text[2 * RITZ_NAME_SIZE];
+
+    RITZ_TRY_IN(what, ritz_damping_parse(basis->damping, &damping));
+    RITZ_TRY_IN(what, ritz_reduce_states(full, &damping, basis, &states));
+    RITZ_TRY_IN(what, ritz_probe_states(&states, &probe));
+    RITZ_TRY(ritz_probe_record(&probe, &states.estimates));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_state_space(run->output, &states, &stamp));
+    cli_say(run, "%s:", run->output);
+    RITZ_TRY(describe_states(run, run->report, &states));
+    cli_report_int(run, "vectors", states.columns.count);
+    cli_record(run, states.origin.method, states.A.nrow);
+    cli_record_error(run, states.estimates.item[0].name,
+                     states.estimates.item[0].value);
+    ritz_probe_print(&probe, text);
+    if (probe.verdict == RITZ_UNSTABLE)
+        cli_warn(run, "'%s' is unstable: %s", run->output, text);
+done:
+    ritz_state_space_free(&states);
+    return status;
+}
+
+static ritz_status reduce(cli_run *run, bool without_basis)
+{
+    ritz_status status = RITZ_OK;
+    const char *what = run->operand[1];
+    model full = {0};
+    model basis = {0};
+    int64_t rows = 0;
+
+    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
+    RITZ_TRY(model_read(run, what, MODEL_BASIS, &basis));
+    rows = basis.basis.T.nrow / (basis.basis.states ? 2 : 1);
+    RITZ_FAIL_IF(rows != full.component.num_dofs, RITZ_ERR_ARGUMENT,
+                 "'%s' is a basis for %lld dofs, '%s' has %lld", what,
+                 (long long)rows, run->operand[0],
+                 (long long)full.component.num_dofs);
+    if (basis.basis.states)
+        RITZ_TRY(to_states(run, &full.component, &basis.basis));
+    else
+        RITZ_TRY(
+            to_matrices(run, &full.component, &basis.basis, without_basis));
+done:
     model_free(&basis);
     model_free(&full);
     return status;
@@ -76,7 +128,7 @@ int main(int argc, char **argv)
                    "state its mass properties.",
         .example = "ritz-reduce blade.h5 basis.h5 -o blade-reduced.h5",
         .options = options,
-        .output = "the reduced component",
+        .output = "the reduced component; the state space, of states",
         .threads = true,
     };
     cli_run run;

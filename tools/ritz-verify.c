@@ -1,11 +1,12 @@
 /* ritz-verify - full against reduced: every error, pass or fail. */
-#include "model.h"
+#include "dampers.h"
 
 #include <math.h>
 
 typedef struct wish {
     ritz_verify_request verify;
     const char *damping, *at;
+    cli_list damper;
 } wish;
 
 /* Where the errors of what is verified stand. */
@@ -80,6 +81,7 @@ static ritz_status verify(cli_run *run, wish *asked)
     ritz_status status = RITZ_OK;
     model full = {0};
     model reduced = {0};
+    dampers_bare bare = {0};
     const char *own = asked->damping;
 
     RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
@@ -92,11 +94,17 @@ static ritz_status verify(cli_run *run, wish *asked)
         asked->verify.band_hz[1] = reduced.system.band_hz[1];
     }
     cli_record(run, reduced.at ? "system" : reduced.reduced.origin.method,
-               model_look(&reduced).K->nrow);
+               model_look(&reduced).matrices.K->nrow);
+    RITZ_TRY_IN(run->operand[0], dampers_install(&full, &asked->damper));
+    RITZ_TRY_IN(run->operand[1], dampers_tune(&reduced, &asked->damper));
+    RITZ_TRY(dampers_keep(&reduced, &bare));
+    RITZ_TRY(dampers_install(&reduced, NULL));
     RITZ_TRY_IN(run->operand[1], measure(run, &full, &reduced, &asked->verify));
+    dampers_restore(&reduced, &bare);
     RITZ_TRY(write(run, &reduced)); /* limits met or not: it says which */
     RITZ_TRY(judge(run, place_of(&reduced)));
 done:
+    dampers_bare_free(&bare);
     model_free(&reduced);
     model_free(&full);
     return status;
@@ -114,13 +122,12 @@ int main(int argc, char **argv)
     ritz_verify_request *v = &asked.verify;
     const cli_option options[] = {
         {CLI_TEXT(&asked.at), .name = "at",
-         .argument = "JOINT=ANGLE[,JOINT=ANGLE]",
-         .help = "which configuration of a system, degrees"},
+         .argument = "JOINT=SETTING[,JOINT=SETTING]",
+         .help = "which configuration of a system, degrees and lengths"},
         {CLI_TEXT(&band), .name = "band-hz", .argument = "F,F",
          .help = "where it matters [the system's; else what is reliable]"},
-        {CLI_TEXT(&asked.damping), .name = "damping", .argument = "TEXT",
-         .help = "\"modal ZETA\", \"bands F F ZETA ...\" (Hz) or \"rayleigh A "
-                 "B\" [the model's]"},
+        DAMPING_OPTION(&asked.damping),
+        DAMPERS_OPTION(&asked.damper),
         {CLI_REAL(&v->limit_frequency), .name = "limit-frequency",
          .argument = "X", .min = 0.0, .max = 1e9,
          .help = "relative error of frequencies"},

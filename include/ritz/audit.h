@@ -21,6 +21,7 @@
  *     mass-translations         the same along all axes
  *     mass-coupling             none about the mass centre (if there is mass)
  *     inertia-tensor            that of a body   (if positions, all motions)
+ *     rayleigh                  D = a M + b K?             (if there is D)
  *     port-dofs                 six or more                (if ports)
  *     port-collinear            no rotation is left loose  (if ports)
  *     port-dependent            no dof in two ports        (if ports)

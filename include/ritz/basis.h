@@ -1,7 +1,11 @@
-/* A basis: the subspace u = T q in which a component is reduced. */
+/*
+ * A basis: the subspace in which a component is reduced, u = T q or, of states,
+ * [u; u'] = T z.
+ */
 #ifndef RITZ_BASIS_H
 #define RITZ_BASIS_H
 
+#include <ritz/damping.h>
 #include <ritz/dense.h>
 #include <ritz/text.h>
 
@@ -40,9 +44,17 @@ typedef struct ritz_origin {
     char engine[RITZ_NAME_SIZE];    /* "dense LAPACK", "CHOLMOD + ARPACK" */
 } ritz_origin;
 
-/* T, n x r, and of each of its columns what it is. */
+/*
+ * T, n x r, and of each of its columns what it is. Of states T has 2n rows, n
+ * displacements and then n velocities, and there may be left vectors W: see
+ * ritz_reduce_states.
+ */
 typedef struct ritz_basis {
     ritz_dense T;
+    ritz_dense W; /* of states, as T; {0}: T itself */
+    bool states;
+    char damping[RITZ_DAMPING_SIZE]; /* of states: what they were made with,
+                                        as ritz_damping_parse reads */
     ritz_columns columns;
     ritz_origin origin;
     char remark[4 * RITZ_NAME_SIZE]; /* what a user should know; not stored */

@@ -1,11 +1,12 @@
 /*
  * NASTRAN bulk data: the geometry and the sets that a deck states, nothing of
- * its elements but those that would eliminate dofs.
+ * its elements but those that eliminate dofs.
  */
 #ifndef RITZ_BULK_H
 #define RITZ_BULK_H
 
 #include <ritz/component.h>
+#include <ritz/equations.h>
 
 typedef struct ritz_bulk {
     ritz_grids grids; /* positions in the basic frame, displacement frames */
@@ -18,10 +19,12 @@ typedef struct ritz_bulk {
     int64_t num_sets[3];
     ritz_dof *set[3]; /* ASET1/ASET, BSET1/BSET, QSET1/QSET, sorted */
     int64_t num_constraints;
-    char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600": elements that would have
-                                           to be eliminated from matrices, and
-                                           MPC sets that act: selected as SPC
-                                           sets are */
+    char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600": elements that eliminate
+                                           dofs, and MPC sets that act: selected
+                                           as SPC sets are */
+    ritz_equations equations;           /* what these state; `refused` says why
+                                           it is not all of that */
+    char *imposed; /* of an SPC that acts and moves its dof; NULL: none does */
 } ritz_bulk;
 
 enum { RITZ_SET_A, RITZ_SET_B, RITZ_SET_Q };
@@ -29,7 +32,9 @@ enum { RITZ_SET_A, RITZ_SET_B, RITZ_SET_Q };
 /**
  * Read a deck or a bulk data file: small, large and free field, continuations,
  * INCLUDE (relative to the including file), comments. Executive and case
- * control are skipped. Cards that do not concern geometry are passed over.
+ * control are skipped. Cards that do not concern geometry are passed over. A
+ * constraint element that is not understood is no failure here, but in
+ * equations.refused: matrices may have been made without its dofs.
  *
  * @return RITZ_ERR_FORMAT with file and line, and what is wrong with the card
  */

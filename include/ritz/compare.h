@@ -1,6 +1,7 @@
 /*
  * COMPARE: component modes projection and assembly model reduction over all
- * configurations of an articulated system [LeeTsuha1992].
+ * configurations of an articulated system [LeeTsuha1992], and its relatives:
+ * P&A (no augmentation), EP&A and Krylov P&A [McDaniel2000, chapter 3].
  */
 #ifndef RITZ_COMPARE_H
 #define RITZ_COMPARE_H
@@ -8,23 +9,65 @@
 #include <ritz/ranking.h>
 #include <ritz/synthesis.h>
 
+/* A flexible mode of the second system that stands for no kept mode. */
+typedef struct ritz_stray {
+    int64_t mode; /* flexible mode of stage 2, as assembled */
+    double hertz;
+    int64_t like; /* flexible mode of stage 1 that it is most like; -1: none */
+    double mac;   /* how like */
+    bool removed; /* from the second system; the bodies still contain it */
+} ritz_stray;
+
 /* What stage two did at one configuration. */
 typedef struct ritz_compare_row {
-    double *setting; /* one for each hinge */
+    double *setting; /* one for each sweep */
     bool listed;     /* false: between listed angles, for checking only */
     int64_t num_rigid, num_flexible; /* of the stage-1 system */
     int64_t num_kept; /* flexible modes that matter: listed, they are kept;
                                between, they would have been */
-    int64_t *kept;    /* num_kept indices into the flexible modes */
-    int64_t order;    /* of the stage-2 system */
-    double frequency_error; /* worst relative, of those modes */
+    int64_t *kept;    /* num_kept indices into the flexible modes, ascending */
+    int64_t num_completed; /* of those, kept only as a cluster is never split */
+    int64_t num_vectors;   /* Krylov vectors in their place */
+    int64_t order;         /* of the stage-2 system, strays removed */
+    double frequency_error; /* worst relative, of those modes; NaN: no mode */
     double allowed;         /* what rounding allows it, c eps lambda_max /
                                lambda_k with c = 20 e; NaN between */
     double rigid_error;     /* largest |omega| of a rigid mode of stage 2, Hz */
     double gain_error;      /* relative, of the flexible static gain */
     double response_error;  /* relative to the largest |H|, in the band */
-    double mac;             /* smallest, of those modes */
+    double mac;             /* smallest, of those modes; NaN: no mode */
+    int64_t num_moments;    /* Krylov: the first of them are kept, */
+    double moment_error;    /* and this is the worst, relative; NaN: none */
+    int64_t num_strays;
+    ritz_stray *stray;
 } ritz_compare_row;
+
+/* Static corrections for one set of forces, and what they are worth. */
+typedef struct ritz_candidate {
+    ritz_augment level;
+    int attached;              /* sum of RITZ_ATTACHED_... */
+    bool inputs_too;           /* and those that the scene names alone */
+    char name[RITZ_NAME_SIZE]; /* "inputs, interface" */
+    int64_t *order;            /* of each body */
+    int64_t total;             /* of all bodies */
+    int64_t largest;           /* order of a system, at any configuration */
+    double gain_listed, gain_between; /* worst relative errors; NaN: none */
+    double deviation; /* of the largest singular value of H(i w), relative, the
+                         worst over the band at all listed configurations; NaN
+                         where there is no response */
+    double hertz;     /* where */
+    char at[RITZ_NAME_SIZE]; /* and at which configuration */
+    bool chosen;
+} ritz_candidate;
+
+/* What errors between listed angles there are, and whether one is to be added:
+ * if it is above 1e-3 and ten times the worst of its kind at listed ones. */
+typedef struct ritz_suggestion {
+    int64_t row; /* between listed angles, with the worst error; -1: none */
+    const char *measure;  /* "response", "frequency" or "gain" */
+    double error, listed; /* there, and worst at listed configurations */
+    bool worth;           /* add it */
+} ritz_suggestion;
 
 typedef struct ritz_comparison {
     ritz_stage second;                       /* bodies after stage two */
@@ -32,14 +75,41 @@ typedef struct ritz_comparison {
     int64_t num_rows;
     ritz_compare_row *row; /* listed ones first, then those between */
     int64_t num_bodies;
-    int64_t composite; /* vectors before dependent ones were removed */
-    bool removed;      /* whether stage two removed anything at all */
-    ritz_dense *V;     /* num_bodies, r_c x s_c */
+    int64_t composite;      /* vectors before dependent ones were removed */
+    bool removed;           /* whether stage two removed anything at all */
+    ritz_dense *V;          /* num_bodies, r_c x s_c */
+    int64_t num_candidates; /* where components are augmented, or by choice */
+    ritz_candidate *candidate;
+    ritz_suggestion suggestion;
 } ritz_comparison;
 
 /** Both stages. @cost an eigenproblem of the stage-1 order a configuration */
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out);
 
+/* The second stage at one composite tolerance. */
+typedef struct ritz_tolerance_row {
+    double tolerance;
+    int64_t *order;  /* of each body */
+    int64_t total;   /* of all bodies */
+    int64_t largest; /* order of a system, at any configuration */
+    bool removed;    /* whether stage two removed anything */
+    double frequency_error, gain_error, response_error; /* worst over all
+                                                          listed; NaN: none */
+} ritz_tolerance_row;
+
+/**
+ * What the composite tolerance trades: orders and worst errors at each of
+ * @p count tolerances, everything else as the scene says.
+ *
+ * @param[out] out  count rows, to be freed by ritz_tolerances_free
+ * @return RITZ_ERR_ARGUMENT if a tolerance is not between 0 and 1
+ */
+ritz_status ritz_compare_tolerances(const ritz_stage *stage,
+                                    const ritz_comparison *comparison,
+                                    int64_t count, const double *tolerance,
+                                    ritz_tolerance_row **out);
+
+void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows);
 void ritz_comparison_free(ritz_comparison *comparison);
 
 #endif

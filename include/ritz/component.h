@@ -11,7 +11,9 @@
 #define RITZ_COMPONENT_H
 
 #include <ritz/dampers.h>
+#include <ritz/damping.h>
 #include <ritz/dofs.h>
+#include <ritz/equations.h>
 #include <ritz/io.h>
 #include <ritz/sparse.h>
 #include <ritz/text.h>
@@ -47,16 +49,17 @@ typedef struct ritz_component {
     int64_t num_dofs;  /* n */
     ritz_dof *dof;     /* n, what each row is */
     ritz_sparse K, M;  /* n x n, symmetric; K has no entries if rigid */
-    ritz_sparse D, K4; /* n x n; {0}: there is none */
+    ritz_sparse D, K4; /* n x n; {0}: there is none. D may be unsymmetric */
     int64_t num_loads;
     ritz_load *load;
     ritz_grids grids;
     int64_t num_ports;
     ritz_port *port;
-    ritz_io io;                   /* for n coordinates */
-    ritz_dampers dampers;         /* beside K and D, which hold none of them */
-    char damping[RITZ_NAME_SIZE]; /* as ritz_damping_parse reads; "" none */
-    char units[RITZ_NAME_SIZE];   /* "kg m s" */
+    ritz_io io;             /* for n coordinates */
+    ritz_recovery recovery; /* dofs that constraints eliminated */
+    ritz_dampers dampers;   /* beside K and D, which hold none of them */
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
+    char units[RITZ_NAME_SIZE];      /* "kg m s" */
     double asymmetry; /* relative, that was found and averaged away */
     double digits;    /* significant digits of the source; 0 if not known */
 } ritz_component;
@@ -64,7 +67,8 @@ typedef struct ritz_component {
 /**
  * Make what was read into a component: all sizes agree, ports lie in it, dofs
  * are distinct, values are finite, and an asymmetry up to 1e-6 of a matrix'
- * largest entry is averaged away (any asymmetry if @p symmetrise).
+ * largest entry is averaged away (any asymmetry if @p symmetrise). More is
+ * refused, but kept in D, where it is a gyroscopic or circulatory part.
  *
  * Missing parts are completed: K with no entries, an empty io.
  *
@@ -72,6 +76,9 @@ typedef struct ritz_component {
  * @return RITZ_ERR_FORMAT if it is no component, or is less symmetric
  */
 ritz_status ritz_component_settle(ritz_component *component, bool symmetrise);
+
+/** Add the component's dampers to its D and K: see ritz_dampers_install. */
+ritz_status ritz_component_install(ritz_component *component);
 
 /**
  * The dofs of some ports, each once, in the order of the ports.

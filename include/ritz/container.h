@@ -15,6 +15,7 @@
 #include <ritz/ranking.h>
 #include <ritz/reduced.h>
 #include <ritz/response.h>
+#include <ritz/state_space.h>
 #include <ritz/system.h>
 
 /* What every file says about how it was made. */
@@ -63,6 +64,11 @@ ritz_status ritz_container_read_response(const char *path, ritz_response *out);
 ritz_status ritz_container_write_response(const char *path,
                                           const ritz_response *response,
                                           const ritz_stamp *stamp);
+ritz_status ritz_container_read_state_space(const char *path,
+                                            ritz_state_space *out);
+ritz_status ritz_container_write_state_space(const char *path,
+                                             const ritz_state_space *model,
+                                             const ritz_stamp *stamp);
 ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out);
 ritz_status ritz_container_write_ranking(const char *path,
                                          const ritz_ranking *ranking,

@@ -31,9 +31,20 @@ ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out);
 /** A := (A + A') / 2, exactly symmetric; A must be square. */
 void ritz_dense_symmetrise(ritz_dense *A);
 
+/** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, of a square matrix. */
+double ritz_dense_asymmetry(const ritz_dense *A);
+
 /** B'AB of a square A, made exactly symmetric. The caller frees @p out. */
 ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
                                   ritz_dense *out);
+
+/** B'AB of a square A, exactly symmetric only if A is: of damping matrices. */
+ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
+                               ritz_dense *out);
+
+/** [A B]; both have as many rows, or B has no columns. */
+ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
+                              ritz_dense *out);
 
 /** Columns j0..j0+count-1 as a matrix of their own. */
 ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,

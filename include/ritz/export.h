@@ -4,6 +4,7 @@
 
 #include <ritz/reduced.h>
 #include <ritz/response.h>
+#include <ritz/state_space.h>
 
 /* What may be asked of an exporter; zero where not given. */
 typedef struct ritz_export_request {
@@ -34,6 +35,10 @@ typedef struct ritz_exporter {
     ritz_status (*write_response)(const ritz_response *response,
                                   const ritz_export_request *request,
                                   ritz_export_report *report);
+    /** Beside its kind; NULL: it takes none. */
+    ritz_status (*write_states)(const ritz_state_space *model,
+                                const ritz_export_request *request,
+                                ritz_export_report *report);
 } ritz_exporter;
 
 /** All exporters, ended by NULL. */

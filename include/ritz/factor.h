@@ -47,14 +47,15 @@ ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X);
 void ritz_ldl_free(ritz_ldl **F);
 
 /*
- * Complex symmetric family Z(s) = sum_k c_k A_k over one pattern, factored by
- * sequential MUMPS: the analysis is done once, each shift costs a numeric
- * factor.
+ * Complex family Z(s) = sum_k c_k A_k over one pattern, factored by sequential
+ * MUMPS: the analysis is done once, each shift costs a numeric factor. It is
+ * L D L' of the lower triangles if all A_k are exactly symmetric, L U of the
+ * whole if one is not (gyroscopic damping), at about twice the cost.
  */
 typedef struct ritz_zldl ritz_zldl;
 
 /**
- * @param[in] count  how many matrices, all n x n symmetric, borrowed until free
+ * @param[in] count  how many matrices, all n x n, borrowed until free
  */
 ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
                           ritz_zldl **out);

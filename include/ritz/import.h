@@ -13,13 +13,25 @@ typedef struct ritz_import_request {
     const char *dofs; /* file of `GRID COMP` rows */
     int64_t num_ports;
     const char *const *port; /* "NAME=GRIDS[:COMPS]" */
+    int64_t num_rigid_ports, num_averaged_ports;
+    const char *const *rigid_port; /* "NAME=GRIDS[:COMPS]": a new grid that */
+    const char *const *averaged_port; /* these follow, or that follows them */
     int64_t num_inputs;
     const char *const *input; /* "NAME=GRID:COMP[*SCALE]" */
     int64_t num_outputs;
     const char *const *output; /* "NAME=GRID:COMP[/vel|/acc][@LIMIT]" */
+    int64_t num_dampers;
+    const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
     bool symmetrise;
 } ritz_import_request;
+
+/* A grid that was made for a port. */
+typedef struct ritz_import_grid {
+    char port[RITZ_NAME_SIZE];
+    int64_t id;
+    int64_t num_tied; /* dofs that it is tied to */
+} ritz_import_grid;
 
 /* What was done that a user should know. */
 typedef struct ritz_import_report {
@@ -31,7 +43,16 @@ typedef struct ritz_import_report {
     int64_t num_floating;     /* rows empty in K only: kept */
     char map[RITZ_NAME_SIZE]; /* where the dofs come from: "file", "--dofs",
                                  "grids ascending", "A-set",
-                                 "grids less SPCs" */
+                                 "grids less SPCs", "grids less dependents",
+                                 "grids less SPCs and dependents" */
+    int64_t num_constraints;  /* elements that make dofs depend on others */
+    char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600" */
+    int64_t num_eliminated; /* dofs that depend, of rows in the matrices */
+    int64_t num_recovered;  /* that follow from the component's dofs */
+    int64_t num_lost;       /* that follow from dofs that it has not */
+    char *unknown; /* why constraints are not recovered from; NULL: they are */
+    int64_t num_grids;
+    ritz_import_grid *grid; /* made for ports */
 } ritz_import_report;
 
 /**
@@ -45,16 +66,22 @@ typedef struct ritz_import_report {
  * that name their rows may hold different ones: the component has all of them.
  *
  * Whatever names them, rows that the deck fixes (ritz_bulk.fixed) are taken
- * out. Constraint elements are accepted only with matrices smaller than all of
- * the deck's dofs, by its a-set, --dofs or the map in the file: there they
- * have been eliminated already.
+ * out. Constraint elements (ritz_bulk.equations) are applied if the matrices
+ * have rows of their dependent dofs, u = G u_n and K_nn = G'KG; otherwise they
+ * have been eliminated already. In both cases the dependent dofs go to the
+ * component's recovery.
+ *
+ * A rigid port and an averaged one make a grid of six dofs at the mean position
+ * of theirs, along basic axes. The dofs of a rigid port follow it as a rigid
+ * body. An averaged port is their average without weights, and to keep it six
+ * of them depend on it and the others.
  *
  * Inputs and outputs act along basic axes. Positions are known from the deck
  * alone, but a single grid without a deck lies at the origin.
  *
- * @return RITZ_ERR_ARGUMENT, RITZ_ERR_FORMAT, RITZ_ERR_FILE; a deck whose MPC
- *         or rigid elements eliminate dofs that the matrices still have is
- *         refused by name
+ * @return RITZ_ERR_ARGUMENT, RITZ_ERR_FORMAT, RITZ_ERR_FILE; a constraint
+ *         element that is not understood, or contradicts another, an SPC or the
+ *         a-set, is refused by name if the matrices have its dofs
  */
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
                         ritz_import_report *report);

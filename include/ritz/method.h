@@ -35,7 +35,10 @@ typedef struct ritz_method {
     const char *name;      /* as typed on the command line */
     const char *summary;   /* one line for --list */
     const char *reference; /* key in docs/references.bib */
-    int uses;              /* RITZ_USES_... */
+    /* what a newcomer chooses by, a line of --list each: for which components,
+       at what cost, what is guaranteed, where it fails */
+    const char *when, *cost, *holds, *fails;
+    int uses; /* RITZ_USES_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
     ritz_status (*make)(const ritz_request *request, ritz_basis *out);
 } ritz_method;
@@ -44,10 +47,25 @@ typedef struct ritz_method {
 extern const ritz_method *const ritz_methods[];
 
 extern const ritz_method ritz_method_craig_bampton;
+extern const ritz_method ritz_method_dual_craig_bampton;
 extern const ritz_method ritz_method_full;
 extern const ritz_method ritz_method_guyan;
+extern const ritz_method ritz_method_inertia_relief;
+extern const ritz_method ritz_method_irs;
+extern const ritz_method ritz_method_krylov;
+extern const ritz_method ritz_method_krylov_cms_fixed;
+extern const ritz_method ritz_method_krylov_cms_free;
+extern const ritz_method ritz_method_krylov_damped;
+extern const ritz_method ritz_method_lanczos_one_sided;
+extern const ritz_method ritz_method_lanczos_two_sided;
+extern const ritz_method ritz_method_loaded_interface;
+extern const ritz_method ritz_method_macneal;
 extern const ritz_method ritz_method_macneal_rubin;
+extern const ritz_method ritz_method_normal_modes;
 extern const ritz_method ritz_method_rigid;
+extern const ritz_method ritz_method_rubin;
+extern const ritz_method ritz_method_serep;
+extern const ritz_method ritz_method_tangential;
 
 /** Method called @p name; NULL and a sentence with the nearest if none. */
 const ritz_method *ritz_method_find(const char *name);

@@ -1,5 +1,6 @@
 /*
- * A reduced component: M q'' + D q' + K q = B f, u = T q, small and dense.
+ * A reduced component: M q'' + D q' + (K + i K4) q = B f, u = T q, small and
+ * dense.
  *
  * It carries all that assembly and export need without the full matrices:
  * where its ports are and how they move with q, inputs and outputs, mass
@@ -51,7 +52,8 @@ typedef struct ritz_inertia {
  * each 3 x 3 block of M that joins translations.
  *
  * The first two are of all of M. The others are exact where those blocks are
- * multiples of I3, as of solids and of lumped masses.
+ * multiples of I3, as of solids and of lumped masses, and where no constraint
+ * has moved mass to the rotations of what its dofs follow.
  */
 typedef struct ritz_invariants {
     double rigid[36];    /* R'MR, symmetric */
@@ -64,7 +66,8 @@ typedef struct ritz_invariants {
 enum { RITZ_INVARIANT_COLUMNS = 400 };
 
 typedef struct ritz_reduced {
-    ritz_dense K, M, D; /* r x r; D {0}: none */
+    ritz_dense K, M, D, K4; /* r x r; D, K4 {0}: none. D may be unsymmetric */
+    ritz_dampers dampers;   /* as of a component, for r coordinates */
     ritz_columns columns;
     ritz_origin origin;
     int64_t num_ports;
@@ -72,18 +75,22 @@ typedef struct ritz_reduced {
     ritz_io io; /* for r coordinates */
     ritz_inertia inertia;
     ritz_invariants invariants;
-    ritz_dense T;                 /* n x r; {0} without basis */
-    int64_t num_dofs;             /* n, of the full component */
-    ritz_dof *dof;                /* n; NULL without basis */
-    ritz_grids grids;             /* of the full component; {0} without basis */
-    char damping[RITZ_NAME_SIZE]; /* as ritz_damping_parse reads; "" none */
-    ritz_measures estimates;      /* by ritz-reduce */
-    ritz_measures errors;         /* by ritz-verify */
+    ritz_dense T;           /* n x r; {0} without basis */
+    int64_t num_dofs;       /* n, of the full component */
+    ritz_dof *dof;          /* n; NULL without basis */
+    ritz_grids grids;       /* of the full component; {0} without basis */
+    ritz_recovery recovery; /* the same, from its n dofs */
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
+    ritz_measures estimates;         /* by ritz-reduce */
+    ritz_measures errors;            /* by ritz-verify */
     char units[RITZ_NAME_SIZE];
 } ritz_reduced;
 
 /**
  * Project a component on a basis: K_r = T'KT and so on, all ports and io.
+ *
+ * Columns of kind massless have no mass, no damping and no part in the
+ * invariants: their rows and columns of M and D are zero.
  *
  * @param[in] T  n x r, columns independent
  * @return RITZ_ERR_ARGUMENT if the sizes disagree
@@ -98,6 +105,9 @@ ritz_status ritz_reduce(const ritz_component *component,
  */
 ritz_status ritz_reduced_project(const ritz_reduced *reduced,
                                  const ritz_dense *V, ritz_reduced *out);
+
+/** Add its dampers to its D and K: see ritz_dampers_install. */
+ritz_status ritz_reduced_install(ritz_reduced *reduced);
 
 /** Port called @p name; NULL and a sentence if there is none. */
 const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,

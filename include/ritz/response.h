@@ -18,7 +18,7 @@ typedef struct ritz_response {
     char (*output)[RITZ_NAME_SIZE];
     double _Complex *H;          /* H[(k * num_outputs + i) * num_inputs + j] */
     char method[RITZ_NAME_SIZE]; /* "modal", "direct" */
-    char damping[RITZ_NAME_SIZE];
+    char damping[RITZ_DAMPING_SIZE];
 } ritz_response;
 
 /* Where a response is wanted. */
@@ -38,6 +38,18 @@ typedef struct ritz_grid {
 ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out);
+
+/* A small dense model, borrowed; D, K4 NULL or {0}: there is none. */
+typedef struct ritz_second_order {
+    const ritz_dense *K, *M, *D, *K4;
+    const ritz_io *io;
+} ritz_second_order;
+
+/** ritz_response_dense for a model that may have structural damping too. */
+ritz_status ritz_response_second_order(const ritz_second_order *model,
+                                       const ritz_damping *damping,
+                                       const ritz_grid *grid,
+                                       ritz_response *out);
 
 /**
  * Modal: every mode of a small dense model, damping ratios from @p damping and
@@ -63,7 +75,7 @@ ritz_status ritz_response_modal(const ritz_component *component,
                                 const ritz_grid *grid, ritz_response *out);
 
 /**
- * Direct: one complex symmetric factor of K + i K4 + i w D - w^2 M at each
+ * Direct: one complex factor of K + i K4 + i w D - w^2 M at each
  * point. Ratios of @p damping act on the modes up to @p up_to_hz, which are
  * taken out of the load first; what lies above them is then undamped but for
  * D and K4. Rayleigh damping is exact. With D, K4 or Rayleigh damping a free

@@ -28,27 +28,67 @@ typedef struct ritz_scene_place {
     char port[RITZ_NAME_SIZE];
 } ritz_scene_place;
 
+/*
+ * What joins two ports; all but fixed ones hold one six-dof grid on each side.
+ * src/synthesis/joints.c has the equations.
+ */
 typedef enum ritz_joint_type {
-    RITZ_JOINT_FIXED,
-    RITZ_JOINT_HINGE,
+    RITZ_JOINT_FIXED,     /* grids in pairs */
+    RITZ_JOINT_HINGE,     /* turns about one axis */
+    RITZ_JOINT_SLIDER,    /* slides along one axis */
+    RITZ_JOINT_UNIVERSAL, /* turns about two axes, one of each body */
+    RITZ_JOINT_SPHERICAL, /* turns about every axis */
+    RITZ_JOINT_BUSHING,   /* six springs and no constraint */
+    RITZ_JOINT_RIGID,     /* moves as one, at an offset */
 } ritz_joint_type;
+
+typedef enum ritz_freedom_state {
+    RITZ_FREE,
+    RITZ_LOCKED, /* where the setting puts it */
+    RITZ_CAGED,  /* on a spring and a damper, unstressed at the setting */
+} ritz_freedom_state;
+
+/* A relative motion of the second body that the type of a joint leaves. */
+typedef struct ritz_freedom {
+    ritz_freedom_state state;
+    double stiffness, damping; /* caged; force or moment per length or radian */
+} ritz_freedom;
+
+enum { RITZ_MOST_FREEDOMS = 6 };
 
 typedef struct ritz_joint {
     char name[RITZ_NAME_SIZE];
     ritz_joint_type type;
     ritz_scene_place between[2];
-    double axis[3]; /* unit, basic frame of the first body; hinge only */
-    int64_t num_settings;
-    double *setting;  /* hinge: at least one, [0] if the scene gives none */
+    /* unit, basic axes of the first body; [1] of a universal joint: of the
+       second. A bushing's first axis and one in its first plane */
+    double axis[2][3];
+    double offset[3]; /* rigid: second origin from the first, basic axes of the
+                         first body */
+    int64_t num_freedoms;
+    ritz_freedom freedom[RITZ_MOST_FREEDOMS]; /* about first then second axis;
+                        bushing: along its axes, then about them */
+    int64_t num_sweeps, sweep; /* sweep, sweep + 1, ... of the scene are its */
     double tolerance; /* of positions of paired grids, absolute; 0: default */
     int64_t line, column;
 } ritz_joint;
+
+/* What a joint is set to: degrees of rotation, or a position along an axis. */
+typedef struct ritz_sweep {
+    char name[RITZ_NAME_SIZE]; /* the joint's; "wrist.2" for a second axis */
+    int64_t joint;
+    bool turns;      /* degrees, not lengths */
+    int64_t count;   /* at least one, [0] if the scene gives none */
+    double *setting; /* count */
+} ritz_sweep;
 
 typedef struct ritz_scene_io {
     char name[RITZ_NAME_SIZE];
     ritz_scene_place at;
     int64_t component; /* 1-6, about or along the component's basic axes */
-    int64_t grid;      /* of the port; 0: its only one */
+    int64_t num_also, also[5]; /* inputs: further directions, at once */
+    ritz_scene_place against; /* inputs: where it acts reversed; port "" none */
+    int64_t grid;             /* of the port; 0: its only one */
     int64_t
         derivative; /* outputs: 0 displacement, 1 velocity, 2 acceleration */
     double scale;   /* inputs: factor, 1 */
@@ -56,10 +96,35 @@ typedef struct ritz_scene_io {
     int64_t line, column;
 } ritz_scene_io;
 
+/* Which system modes the second stage is made from. */
+typedef enum ritz_selection {
+    RITZ_SELECT_RANKED, /* by select_by; by band where nothing can be ranked */
+    RITZ_SELECT_BAND,   /* every flexible mode in band_hz */
+    RITZ_SELECT_LISTED, /* select_mode, the same at each configuration */
+    RITZ_SELECT_KRYLOV, /* none: Krylov vectors in their place */
+} ritz_selection;
+
+/* At which level static corrections are made. */
 typedef enum ritz_augment {
     RITZ_AUGMENT_NONE,
     RITZ_AUGMENT_SYSTEM,
+    RITZ_AUGMENT_COMPONENT,
 } ritz_augment;
+
+/* The forces that static corrections answer; 0 is what the level implies. */
+enum {
+    RITZ_ATTACHED_INPUTS = 1,
+    RITZ_ATTACHED_INTERFACE = 2, /* each dof of the ports that joints hold */
+    RITZ_ATTACHED_OUTPUTS = 4,   /* what is read gives as many */
+    RITZ_ATTACHED_AUTO = 8,      /* the fewest whose response is near enough */
+};
+
+/* What becomes of modes of the second system that stand for no kept one. */
+typedef enum ritz_extraneous {
+    RITZ_EXTRANEOUS_KEEP,
+    RITZ_EXTRANEOUS_REMOVE,
+    RITZ_EXTRANEOUS_OUT_OF_BAND, /* removed outside band_hz alone */
+} ritz_extraneous;
 
 typedef struct ritz_scene {
     char *path; /* of the file, for messages */
@@ -68,8 +133,8 @@ typedef struct ritz_scene {
     ritz_scene_component *component;
     int64_t num_joints;
     ritz_joint *joint;
-    int64_t num_sweeps; /* setting k of a configuration is of joint sweep[k] */
-    int64_t *sweep;
+    int64_t num_sweeps; /* setting k of a configuration is one of sweep[k] */
+    ritz_sweep *sweep;
     int64_t num_configurations; /* every combination if the scene lists none */
     double *setting; /* num_configurations x num_sweeps, row by row */
     int64_t num_inputs;
@@ -78,12 +143,22 @@ typedef struct ritz_scene {
     ritz_scene_io *output;
     double band_hz[2]; /* [0, 0] if none */
     ritz_damping damping;
+    ritz_selection select;
     char select_by[RITZ_NAME_SIZE]; /* ranking; "hankel" */
     double select_tolerance;        /* 1e-3 */
+    int64_t num_select_modes;       /* listed: flexible modes, from 0 */
+    int64_t *select_mode;           /* ascending */
+    int64_t select_vectors;         /* krylov: so many at a configuration */
+    bool select_outputs;            /* krylov: outputs start the block too */
     double composite_tolerance;     /* of dependent columns, 1e-12 */
     int64_t num_reference; /* composite from these configurations only; */
     int64_t *reference;    /* 0: union over all */
     ritz_augment augment;
+    int attached; /* sum of RITZ_ATTACHED_...; 0: as the level implies */
+    int64_t num_attached_inputs; /* some inputs alone, beside those sets */
+    int64_t *attached_input;
+    double attached_tolerance; /* auto: of the largest singular value, 1e-3 */
+    ritz_extraneous extraneous;
 } ritz_scene;
 
 /**
@@ -102,14 +177,21 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
                              ritz_scene *out);
 
 /**
- * Rows of angles for "clock=60,cone=0" (--at): hinges not named take their
- * only angle. Angles need not be in the scene's lists.
+ * Row of settings for "clock=60,slide=0.5" (--at): sweeps not named take their
+ * only setting. Settings need not be in the scene's lists.
  *
  * @param[out] setting  num_sweeps
  * @return RITZ_ERR_ARGUMENT
  */
-ritz_status ritz_scene_angles(const ritz_scene *scene, const char *at,
-                              double *setting);
+ritz_status ritz_scene_settings(const ritz_scene *scene, const char *at,
+                                double *setting);
+
+/**
+ * What becomes of extraneous modes: "keep", "remove" or "out-of-band".
+ *
+ * @return RITZ_ERR_ARGUMENT if it is none of them, or there is no band
+ */
+ritz_status ritz_scene_set_extraneous(ritz_scene *scene, const char *word);
 
 /**
  * Put "scene.yaml:12:9: input 'torque': " before the sentence of a failure that

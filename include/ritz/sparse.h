@@ -72,7 +72,7 @@ ritz_status ritz_sparse_product(const ritz_sparse *A, const ritz_sparse *B,
 /** The transpose of @p A. */
 ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out);
 
-/** T'AT of a symmetric A, exactly symmetric. */
+/** T'AT, exactly symmetric if A is. */
 ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
                                    ritz_sparse *out);
 
@@ -106,6 +106,9 @@ double ritz_sparse_max(const ritz_sparse *A);
 
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, for a square matrix. */
 double ritz_sparse_asymmetry(const ritz_sparse *A);
+
+/** |A - A'| / (2 |A|) in the Frobenius norm: how much of A is antisymmetric. */
+double ritz_sparse_skew(const ritz_sparse *A);
 
 /** A := (A + A') / 2, exactly symmetric in values and in pattern. */
 ritz_status ritz_sparse_symmetrise(ritz_sparse *A);

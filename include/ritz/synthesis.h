@@ -1,13 +1,15 @@
 /*
  * Synthesis: components joined at a configuration, C(alpha) q = 0.
  *
- * At angle 0 the basic axes of both bodies of a joint are parallel and their
+ * At settings 0 the basic axes of both bodies of a joint are parallel and their
  * port origins coincide; a positive angle turns the second body right-handed
- * about the axis, given in the basic frame of the first.
+ * about the axis, given in the basic frame of the first, and a positive
+ * position moves it along the axis. A setting is degrees or a length.
  */
 #ifndef RITZ_SYNTHESIS_H
 #define RITZ_SYNTHESIS_H
 
+#include <ritz/method.h>
 #include <ritz/reduced.h>
 #include <ritz/scene.h>
 #include <ritz/system.h>
@@ -20,6 +22,8 @@ typedef struct ritz_stage {
     int64_t num_coordinates; /* Q, of all bodies side by side */
     int64_t *first;          /* of each body's coordinates among them */
     ritz_io io;              /* the scene's inputs and outputs, for Q */
+    ritz_dampers
+        dampers; /* "body/name", for Q; the bodies' D and K hold them */
 } ritz_stage;
 
 /**
@@ -35,7 +39,8 @@ ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out);
  * A stage of bodies that are there already, in the order of the scene.
  *
  * @param[in,out] body  scene->num_components, moved into the stage: on success
- *                      left empty, on failure untouched
+ *                      left empty, on failure still the caller's; their
+ *                      dampers are installed
  */
 ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
                             ritz_stage *out);
@@ -44,13 +49,13 @@ ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
 void ritz_stage_scale(const ritz_stage *stage, double *scale);
 
 /**
- * Constraint rows C q = 0 of all joints at some angles, c x Q.
+ * Constraint rows C q = 0 of all that joints lock at some settings, c x Q.
  *
  * Columns are those of scaled coordinates, rows of one joint and kind
  * (translations, rotations) are divided by the largest norm among them, so that
  * singular values tell rank apart from rounding.
  *
- * @param[in] setting  one for each hinge of the scene
+ * @param[in] setting  one for each sweep of the scene
  * @param[in] scale      Q, as ritz_stage_scale gives it
  */
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
@@ -58,7 +63,7 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
                                    ritz_dense *out);
 
 /**
- * The system at some angles: null space P of the constraints, their rank by
+ * The system at some settings: null space P of the constraints, their rank by
  * singular values above 1e-9 of the largest, then its modes as coordinates.
  *
  * @cost O(Q^2 c + e^3)
@@ -71,7 +76,7 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
                           ritz_system *out);
 
 /**
- * The full-order system at some angles as one component: constraints
+ * The full-order system at some settings as one component: constraints
  * eliminated sparsely, dofs of all bodies side by side, in the basic frame of
  * the first body. Grids are renumbered where two bodies use one number: those
  * of body k, from 0, by k times the next power of ten.
@@ -82,6 +87,34 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
  */
 ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
                                ritz_component *out);
+
+/* A component at one side of a joint, and what messages call it. */
+typedef struct ritz_joined {
+    const char *name;
+    const ritz_component *component;
+} ritz_joined;
+
+/** Nothing hangs on @p attached dofs yet. */
+ritz_status ritz_neighbour_new(int64_t attached, ritz_neighbour *out);
+
+/**
+ * Add what the body at the other side of a joint hangs on a component: its mass
+ * and stiffness condensed to its port, as the joint lets the component feel
+ * them. A motion that the joint frees is not loaded.
+ *
+ * @param[in]     setting   of all sweeps of the scene; NULL if it has none
+ * @param[in]     near      which side is the component that is loaded
+ * @param[in]     attached  its dofs, those of the joint's port among them
+ * @param[in,out] sum       attached x attached
+ * @return RITZ_ERR_ARGUMENT if ports do not fit or are not attached,
+ *         RITZ_ERR_SINGULAR if the other body moves while its port is held
+ */
+ritz_status ritz_joint_neighbour(const ritz_joint *joint, const double *setting,
+                                 const ritz_joined side[static 2], int near,
+                                 const ritz_dofs *attached,
+                                 ritz_neighbour *sum);
+
+void ritz_neighbour_free(ritz_neighbour *neighbour);
 
 void ritz_stage_free(ritz_stage *stage);
 

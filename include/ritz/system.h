@@ -14,10 +14,13 @@
 typedef struct ritz_configuration {
     char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
     int64_t num_settings;
-    double *setting;    /* one for each hinge of the scene, in its order */
-    int64_t rank;       /* of the constraints */
-    ritz_dense K, M, D; /* e x e; D {0}: none beside the damping below */
-    double *lambda;     /* e, ascending  [rad^2/s^2] */
+    double *setting;  /* one for each sweep of the scene, in its order */
+    int64_t rank;     /* of the constraints */
+    ritz_dense K, M;  /* e x e */
+    ritz_dense D, K4; /* e x e; {0}: none beside the damping of the system */
+    ritz_dampers dampers; /* of all bodies; K and D hold them */
+    double *lambda; /* e, ascending; by size where a dual assembly has negative
+                       ones  [rad^2/s^2] */
     int64_t num_rigid;
     ritz_io io;           /* for e coordinates */
     int64_t num_blocks;   /* as many as there are components */
@@ -36,13 +39,13 @@ typedef struct ritz_system {
     int64_t num_configurations;
     ritz_configuration *configuration;
     double band_hz[2];
-    char damping[RITZ_NAME_SIZE]; /* as ritz_damping_parse reads */
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads */
     char units[RITZ_NAME_SIZE];
 } ritz_system;
 
 /**
- * The configuration that @p at names: "clock=60,cone=0", angles compared
- * within 1e-9 degrees; hinges that are not named must have one angle only.
+ * The configuration that @p at names: "clock=60,slide=0.5", settings compared
+ * within 1e-9; joints that are not named must have one setting only.
  * NULL @p at: the only configuration.
  *
  * @return RITZ_ERR_ARGUMENT listing what there is
@@ -50,9 +53,15 @@ typedef struct ritz_system {
 ritz_status ritz_system_find(const ritz_system *system, const char *at,
                              const ritz_configuration **out);
 
-/** "clock=60,cone=0" from names and angles. */
+/** "clock=60,slide=0.5" from names and settings. */
 void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
                              const double *setting, char out[RITZ_NAME_SIZE]);
+
+/**
+ * Change K and D to what the dampers are now: see ritz_dampers_install. lambda
+ * stays what it was.
+ */
+ritz_status ritz_configuration_install(ritz_configuration *configuration);
 
 void ritz_configuration_free(ritz_configuration *configuration);
 void ritz_system_free(ritz_system *system);

@@ -27,7 +27,10 @@ typedef struct ritz_verify_request {
         .limit_gain = (double)NAN                                              \
     }
 
-/** A full component and its reduction. */
+/**
+ * A full component and its reduction. Dampers count as far as K and D hold
+ * them: install them first.
+ */
 ritz_status ritz_verify_reduced(const ritz_component *full,
                                 const ritz_reduced *reduced,
                                 const ritz_verify_request *request,

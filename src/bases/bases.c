@@ -7,8 +7,27 @@
 
 /* A new method is a new file that defines one descriptor, and one line here. */
 const ritz_method *const ritz_methods[] = {
-    &ritz_method_craig_bampton, &ritz_method_full,  &ritz_method_guyan,
-    &ritz_method_macneal_rubin, &ritz_method_rigid, NULL,
+    &ritz_method_craig_bampton,
+    &ritz_method_dual_craig_bampton,
+    &ritz_method_full,
+    &ritz_method_guyan,
+    &ritz_method_inertia_relief,
+    &ritz_method_irs,
+    &ritz_method_krylov,
+    &ritz_method_krylov_cms_fixed,
+    &ritz_method_krylov_cms_free,
+    &ritz_method_krylov_damped,
+    &ritz_method_lanczos_one_sided,
+    &ritz_method_lanczos_two_sided,
+    &ritz_method_loaded_interface,
+    &ritz_method_macneal,
+    &ritz_method_macneal_rubin,
+    &ritz_method_normal_modes,
+    &ritz_method_rigid,
+    &ritz_method_rubin,
+    &ritz_method_serep,
+    &ritz_method_tangential,
+    NULL,
 };
 
 enum { MOST = 64 };
@@ -49,6 +68,9 @@ ritz_status ritz_request_check(const ritz_method *method,
         RITZ_FAIL_IF(request->choice.given & word->uses & ~method->uses,
                      RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",
                      method->name, word->key);
+    RITZ_FAIL_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
+                 RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",
+                 method->name);
 done:
     return status;
 }

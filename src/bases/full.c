@@ -29,5 +29,9 @@ const ritz_method ritz_method_full = {
     .name = "full",
     .summary = "every dof kept, for comparison (small components)",
     .reference = "CraigBampton1968",
+    .when = "to compare with, up to some hundred dofs",
+    .cost = "none; everything that follows is dense",
+    .holds = "everything",
+    .fails = "components that are not small",
     .make = make,
 };

@@ -26,6 +26,10 @@ const ritz_method ritz_method_guyan = {
     .name = "guyan",
     .summary = "constraint modes only: static condensation",
     .reference = "Guyan1965",
-    .uses = RITZ_USES_ATTACHED,
+    .when = "a first look; stiff components of little mass of their own",
+    .cost = "a factor of the interior, a solve an attached dof",
+    .holds = "statics of the interface, rigid motion; frequencies from above",
+    .fails = "modes of the interior, which are not there",
+    .uses = RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
     .make = make,
 };

@@ -1,6 +1,6 @@
 /*
- * What the modes that are left out answer to unit forces. With the kept modes
- * Phi, Psi solves
+ * What the modes that are left out answer to forces F. With the kept modes Phi,
+ * Psi solves
  *
  *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
  *
@@ -31,10 +31,16 @@ enum { MOST_SWEEPS = 60 };
 static const double unsettled = 1e-5;
 
 /*
- * A residual mode this small beside what the dof answers to A, rigid motion
- * included, is the rounding of G: the dof belongs to a body that is rigid.
+ * A residual mode this small beside what the load does to A, rigid motion
+ * included, is the rounding of G: the load acts on a body that is rigid.
  */
 static const double rounding = 1e-11;
+
+typedef struct residual_problem {
+    const ritz_request *request;
+    const ritz_pairs *modes;
+    const ritz_dense *F;
+} residual_problem;
 
 /* X := X - Y (Y' M X), or its transpose's counterpart on forces. */
 static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
@@ -90,19 +96,38 @@ done:
     return status;
 }
 
-/* What the kept flexible modes answer to an attached dof, at most. */
-static double largest_answer(const ritz_pairs *modes, int64_t row)
+static double dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
+                  int64_t j)
+{
+    const double *a = ritz_dense_col(A, i);
+    const double *b = ritz_dense_col(B, j);
+    double sum = 0.0;
+
+    for (int64_t k = 0; k < A->nrow; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+/* The largest entry of a column. */
+static double column_size(const ritz_dense *A, int64_t j)
+{
+    double size = 0.0;
+
+    for (int64_t i = 0; i < A->nrow; i++)
+        size = fmax(size, fabs(ritz_dense_col(A, j)[i]));
+    return size;
+}
+
+/* What the kept flexible modes answer to load j, at most. */
+static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
+                             int64_t j)
 {
     double most = 0.0;
 
-    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
-        const double *phi = ritz_dense_col(&modes->Phi, k);
-        double size = 0.0;
-
-        for (int64_t i = 0; i < modes->Phi.nrow; i++)
-            size = fmax(size, fabs(phi[i]));
-        most = fmax(most, size * fabs(phi[row]) / modes->lambda[k]);
-    }
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
+        most =
+            fmax(most, column_size(&modes->Phi, k) *
+                           fabs(dot(&modes->Phi, k, F, j)) / modes->lambda[k]);
     return most;
 }
 
@@ -143,16 +168,13 @@ done:
     return status;
 }
 
-/* Unit forces at the attached dofs, less what the kept modes take up. */
-static ritz_status find_load(const ritz_request *request, const ritz_dense *Phi,
+/* The loads, less what the kept modes take up. */
+static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
                              const ritz_dense *MPhi, ritz_dense *G)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dofs *a = &request->attached;
 
-    RITZ_TRY(ritz_dense_new(request->component->num_dofs, a->count, G));
-    for (int64_t j = 0; j < a->count; j++)
-        ritz_dense_col(G, j)[a->at[j]] = 1.0;
+    RITZ_TRY(ritz_dense_copy(F, G));
     RITZ_TRY(take_out(MPhi, Phi, G));
     RITZ_TRY(take_out(MPhi, Phi, G)); /* twice is enough */
 done:
@@ -160,43 +182,35 @@ done:
 }
 
 /*
- * What each attached dof itself answers to A, and the size below which its
+ * What A answers to each load where it acts, and the size below which its
  * column is rounding.
  */
-static ritz_status find_scales(const ritz_request *request,
-                               const ritz_pairs *modes, ritz_factor *A,
+static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
                                double *own, double *least)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dofs *a = &request->attached;
     ritz_dense X = {0};
 
-    RITZ_TRY(ritz_dense_new(request->component->num_dofs, a->count, &X));
-    for (int64_t j = 0; j < a->count; j++)
-        ritz_dense_col(&X, j)[a->at[j]] = 1.0;
+    RITZ_TRY(ritz_dense_copy(p->F, &X));
     RITZ_TRY(ritz_factor_solve(A, &X));
-    for (int64_t j = 0; j < a->count; j++) {
-        const double *x = ritz_dense_col(&X, j);
-        double size = 0.0;
-
-        for (int64_t i = 0; i < X.nrow; i++)
-            size = fmax(size, fabs(x[i]));
-        own[j] = x[a->at[j]];
-        least[j] = fmax(request->tolerance * largest_answer(modes, a->at[j]),
-                        rounding * size);
+    for (int64_t j = 0; j < X.ncol; j++) {
+        own[j] = dot(p->F, j, &X, j);
+        least[j] =
+            fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
+                 rounding * column_size(&X, j));
     }
 done:
     ritz_dense_free(&X);
     return status;
 }
 
-/* Psi, and what each attached dof itself answers to A. */
-static ritz_status find_residual(const ritz_request *request,
-                                 const ritz_pairs *modes, ritz_dense *Psi,
+/* Psi, and what A answers to each load where it acts. */
+static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
                                  double *answer)
 {
     ritz_status status = RITZ_OK;
-    const ritz_component *component = request->component;
+    const ritz_component *component = p->request->component;
+    const ritz_pairs *modes = p->modes;
     const double settled = 1e-14 * sqrt((double)component->num_dofs);
     double s = 0.0;
     double change = 1.0, best = HUGE_VAL;
@@ -205,13 +219,13 @@ static ritz_status find_residual(const ritz_request *request,
     ritz_dense MPhi = {0}, G = {0};
     double *least = NULL;
 
-    RITZ_NEW(least, request->attached.count);
+    RITZ_NEW(least, p->F->ncol);
     RITZ_TRY(choose_shift(component, modes, &s));
     RITZ_TRY(shift(&component->K, &component->M, s, &A));
     RITZ_TRY_IN("shifted stiffness", ritz_factor_spd(&A, &L));
-    RITZ_TRY(find_scales(request, modes, L, answer, least));
+    RITZ_TRY(find_scales(p, L, answer, least));
     RITZ_TRY(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
-    RITZ_TRY(find_load(request, &modes->Phi, &MPhi, &G));
+    RITZ_TRY(find_load(p->F, &modes->Phi, &MPhi, &G));
     RITZ_TRY(ritz_dense_new(G.nrow, G.ncol, Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
         RITZ_TRY(sweep(L, &component->M, s, &G, least, Psi, &change));
@@ -231,13 +245,14 @@ done:
     return status;
 }
 
-/* Flexibility Phi_f Lambda_f^-1 Phi_f' of the kept modes at dof `row`. */
-static double kept_flexibility(const ritz_pairs *modes, int64_t row)
+/* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes to load j. */
+static double kept_flexibility(const residual_problem *p, int64_t j)
 {
+    const ritz_pairs *modes = p->modes;
     double sum = 0.0;
 
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
-        double x = ritz_dense_col(&modes->Phi, k)[row];
+        double x = dot(&modes->Phi, k, p->F, j);
 
         sum += x * x / modes->lambda[k];
     }
@@ -277,29 +292,28 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 }
 
 /* Which residual modes are more than rounding and independent. */
-static ritz_status sift(const ritz_request *request, const ritz_pairs *modes,
-                        const ritz_dense *Psi, const double *answer, bool *keep)
+static ritz_status sift(const residual_problem *p, const ritz_dense *Psi,
+                        const double *answer, bool *keep)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dofs *a = &request->attached;
+    double tolerance = p->request->tolerance;
     ritz_dense R = {0};
     double *scale = NULL;
 
-    RITZ_NEW(scale, a->count);
-    RITZ_TRY(ritz_dense_new(a->count, a->count, &R));
-    for (int64_t j = 0; j < a->count; j++) {
-        double own = ritz_dense_col(Psi, j)[a->at[j]];
-        double all = own + kept_flexibility(modes, a->at[j]);
+    RITZ_NEW(scale, Psi->ncol);
+    RITZ_TRY(ritz_dense_mul_tn(p->F, Psi, &R));
+    for (int64_t j = 0; j < R.ncol; j++) {
+        double own = ritz_dense_col(&R, j)[j];
+        double all = own + kept_flexibility(p, j);
 
-        if (own > request->tolerance * all && own > rounding * answer[j])
+        if (own > tolerance * all && own > rounding * answer[j])
             scale[j] = 1.0 / sqrt(own);
     }
-    for (int64_t j = 0; j < a->count; j++)
-        for (int64_t i = 0; i < a->count; i++)
-            ritz_dense_col(&R, j)[i] =
-                scale[i] * scale[j] * ritz_dense_col(Psi, j)[a->at[i]];
+    for (int64_t j = 0; j < R.ncol; j++)
+        for (int64_t i = 0; i < R.ncol; i++)
+            ritz_dense_col(&R, j)[i] *= scale[i] * scale[j];
     ritz_dense_symmetrise(&R);
-    choose_columns(&R, request->tolerance, keep);
+    choose_columns(&R, tolerance, keep);
 done:
     free(scale);
     ritz_dense_free(&R);
@@ -307,15 +321,16 @@ done:
 }
 
 ritz_status ritz_residual_modes(const ritz_request *request,
-                                const ritz_pairs *modes, ritz_dense *Psi,
-                                bool *keep)
+                                const ritz_pairs *modes, const ritz_dense *F,
+                                ritz_dense *Psi, bool *keep)
 {
     ritz_status status = RITZ_OK;
+    const residual_problem p = {request, modes, F};
     double *answer = NULL;
 
-    RITZ_NEW(answer, request->attached.count);
-    RITZ_TRY(find_residual(request, modes, Psi, answer));
-    RITZ_TRY(sift(request, modes, Psi, answer, keep));
+    RITZ_NEW(answer, F->ncol);
+    RITZ_TRY(find_residual(&p, Psi, answer));
+    RITZ_TRY(sift(&p, Psi, answer, keep));
 done:
     free(answer);
     return status;

@@ -59,5 +59,9 @@ const ritz_method ritz_method_rigid = {
     .name = "rigid",
     .summary = "rigid-body motions by geometry, no flexibility",
     .reference = "LeeTsuha1992",
+    .when = "bodies much stiffer than all around them",
+    .cost = "a product",
+    .holds = "mass, centre and inertia",
+    .fails = "anything flexible; grids without positions",
     .make = make,
 };

@@ -80,6 +80,22 @@ done:
     return status;
 }
 
+ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
+                              ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t a = A->nrow * A->ncol;
+    int64_t b = B->nrow * B->ncol;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol + B->ncol, out));
+    if (a > 0)
+        memcpy(out->val, A->val, (size_t)a * sizeof *out->val);
+    if (b > 0)
+        memcpy(out->val + a, B->val, (size_t)b * sizeof *out->val);
+done:
+    return status;
+}
+
 ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out)
 {
     return ritz_dense_columns(A, 0, A->ncol, out);
@@ -108,6 +124,32 @@ ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
 done:
     ritz_dense_free(&AB);
     return status;
+}
+
+ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
+                               ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AB = {0};
+
+    RITZ_TRY(ritz_dense_mul(A, B, &AB));
+    RITZ_TRY(ritz_dense_mul_tn(B, &AB, out));
+    if (ritz_dense_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(out);
+done:
+    ritz_dense_free(&AB);
+    return status;
+}
+
+double ritz_dense_asymmetry(const ritz_dense *A)
+{
+    double gap = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < j; i++)
+            gap = fmax(gap,
+                       fabs(ritz_dense_col(A, j)[i] - ritz_dense_col(A, i)[j]));
+    return gap > 0.0 ? gap / ritz_dense_max(A) : 0.0;
 }
 
 double ritz_dense_max(const ritz_dense *A)

@@ -90,7 +90,7 @@ ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
     ritz_ldl *F = NULL;
 
     RITZ_NEW(F, 1);
-    RITZ_TRY(ritz_mumps_unite(1, &A, &F->pattern));
+    RITZ_TRY(ritz_mumps_unite(1, &A, false, &F->pattern));
     RITZ_TRY(copy_values(A, F->pattern.nnz, &F->val));
     if (A->nrow > 0)
         RITZ_TRY(factorise(F));

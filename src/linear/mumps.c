@@ -56,10 +56,10 @@ done:
     return status;
 }
 
-/* Add the lower triangle of column j of A to P; mark[i] is the last column + 1
- * that row i was met in. */
-static ritz_status unite_column(const ritz_sparse *A, int64_t j, int64_t *mark,
-                                ritz_mumps_pattern *P)
+/* Add column j of A to P, unless `whole` without what lies above the diagonal;
+ * mark[i] is the last column + 1 that row i was met in. */
+static ritz_status unite_column(const ritz_sparse *A, int64_t j, bool whole,
+                                int64_t *mark, ritz_mumps_pattern *P)
 {
     ritz_status status = RITZ_OK;
 
@@ -68,7 +68,7 @@ static ritz_status unite_column(const ritz_sparse *A, int64_t j, int64_t *mark,
 
         RITZ_FAIL_IF(!isfinite(A->val[p]), RITZ_ERR_ARGUMENT,
                      "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
-        if (i < j || mark[i] == j + 1)
+        if ((i < j && !whole) || mark[i] == j + 1)
             continue;
         mark[i] = j + 1;
         P->row[P->nnz] = (MUMPS_INT)(i + 1);
@@ -79,7 +79,7 @@ done:
 }
 
 ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
-                             ritz_mumps_pattern *out)
+                             bool whole, ritz_mumps_pattern *out)
 {
     ritz_status status = RITZ_OK;
     ritz_mumps_pattern P = {0};
@@ -93,7 +93,7 @@ ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
     RITZ_NEW(P.col, room);
     for (int64_t j = 0; j < P.n; j++)
         for (int64_t k = 0; k < count; k++)
-            RITZ_TRY(unite_column(A[k], j, mark, &P));
+            RITZ_TRY(unite_column(A[k], j, whole, mark, &P));
     *out = P;
     P = (ritz_mumps_pattern){0};
 done:

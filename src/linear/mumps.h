@@ -10,6 +10,7 @@
 #include <ritz/sparse.h>
 
 #include <mumps_c_types.h>
+#include <stdbool.h>
 
 typedef struct ritz_mumps {
     void *id;               /* the struct of MUMPS */
@@ -21,7 +22,8 @@ typedef struct ritz_mumps {
     int width; /* doubles per number: 1 real, 2 complex */
 } ritz_mumps;
 
-/* Lower triangle as MUMPS reads it: entry k at row[k], col[k], from 1. */
+/* A matrix, or its lower triangle, as MUMPS reads it: entry k at row[k],
+   col[k], from 1. */
 typedef struct ritz_mumps_pattern {
     int64_t n, nnz;
     MUMPS_INT *row, *col;
@@ -37,13 +39,14 @@ enum {
 };
 
 /**
- * Union of the lower triangles of @p count matrices, column by column, rows in
- * the order they are met. The caller frees @p out.
+ * Union of the lower triangles of @p count matrices, or of the @p whole of
+ * them, column by column, rows in the order they are met. The caller frees
+ * @p out.
  *
  * @return RITZ_ERR_ARGUMENT if sizes disagree, or exceed MUMPS's 32 bits
  */
 ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
-                             ritz_mumps_pattern *out);
+                             bool whole, ritz_mumps_pattern *out);
 void ritz_mumps_pattern_free(ritz_mumps_pattern *P);
 
 /** Options of every factor: silent, null pivots found. After START. */

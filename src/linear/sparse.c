@@ -5,6 +5,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -292,6 +293,13 @@ static double entry(const ritz_sparse *A, int64_t i, int64_t j)
     return k < 0 ? 0.0 : A->val[p + k];
 }
 
+static bool stored(const ritz_sparse *A, int64_t i, int64_t j)
+{
+    int64_t p = A->colptr[j];
+
+    return ritz_search(A->colptr[j + 1] - p, A->rowind + p, i) >= 0;
+}
+
 double ritz_sparse_max(const ritz_sparse *A)
 {
     double largest = 0.0;
@@ -312,6 +320,25 @@ double ritz_sparse_asymmetry(const ritz_sparse *A)
             gap = fmax(gap, fabs(A->val[p] - entry(A, j, A->rowind[p])));
         }
     return gap > 0.0 ? gap / largest : 0.0;
+}
+
+double ritz_sparse_skew(const ritz_sparse *A)
+{
+    double all = 0.0;
+    double skew =
+        0.0; /* of A - A', each pair of places counted once or twice */
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            int64_t i = A->rowind[p];
+            double gap = 0.5 * (A->val[p] - entry(A, j, i));
+
+            all = hypot(all, A->val[p]);
+            skew = hypot(skew, gap);
+            if (!stored(A, j, i)) /* the other place is not met */
+                skew = hypot(skew, gap);
+        }
+    return all > 0.0 ? skew / all : 0.0;
 }
 
 ritz_status ritz_sparse_symmetrise(ritz_sparse *A)

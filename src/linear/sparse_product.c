@@ -114,7 +114,8 @@ ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
     RITZ_TRY(ritz_sparse_product(A, T, &AT));
     RITZ_TRY(ritz_sparse_transpose(T, &turned));
     RITZ_TRY(ritz_sparse_product(&turned, &AT, &C));
-    RITZ_TRY(ritz_sparse_symmetrise(&C));
+    if (ritz_sparse_asymmetry(A) == 0.0)
+        RITZ_TRY(ritz_sparse_symmetrise(&C));
     *out = C;
     C = (ritz_sparse){0};
 done:

@@ -1,4 +1,4 @@
-/* sum_k c_k A_k = L D L' by sequential MUMPS, complex: see mumps.h. */
+/* sum_k c_k A_k = L D L', or L U, by sequential MUMPS, complex: see mumps.h. */
 #include "base/alloc.h"
 #include "linear/mumps.h"
 
@@ -15,6 +15,7 @@ struct ritz_zldl {
     ZMUMPS_STRUC_C id;
     bool started;
     bool factored;
+    bool whole;                 /* one of the matrices is not symmetric */
     ritz_mumps_pattern pattern; /* borrowed by MUMPS, as val is */
     double _Complex *val;
     int64_t count;
@@ -55,7 +56,7 @@ static ritz_status analyse(ritz_zldl *F)
     ritz_status status = RITZ_OK;
     ritz_mumps mumps = view(F);
 
-    F->id.sym = 2;
+    F->id.sym = F->whole ? 0 : 2;
     F->id.par = 1;
     RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
     F->started = true;
@@ -77,7 +78,10 @@ ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
     ritz_zldl *F = NULL;
 
     RITZ_NEW(F, 1);
-    RITZ_TRY(ritz_mumps_unite(count, A, &F->pattern));
+    for (int64_t k = 0; k < count; k++)
+        F->whole = F->whole || (A[k]->nrow == A[k]->ncol &&
+                                ritz_sparse_asymmetry(A[k]) > 0.0);
+    RITZ_TRY(ritz_mumps_unite(count, A, F->whole, &F->pattern));
     RITZ_NEW(F->val, F->pattern.nnz);
     RITZ_NEW(F->place, F->pattern.n);
     RITZ_NEW(F->A, count);
@@ -93,7 +97,7 @@ done:
     return status;
 }
 
-/* val += c A, A's lower triangle. */
+/* val += c A, or its lower triangle. */
 static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
 {
     int64_t at = 0;
@@ -102,7 +106,7 @@ static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
         for (; at < F->pattern.nnz && F->pattern.col[at] == j + 1; at++)
             F->place[F->pattern.row[at] - 1] = at;
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-            if (A->rowind[p] >= j)
+            if (F->whole || A->rowind[p] >= j)
                 F->val[F->place[A->rowind[p]]] += c * A->val[p];
     }
 }

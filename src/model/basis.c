@@ -101,6 +101,7 @@ void ritz_columns_free(ritz_columns *columns)
 void ritz_basis_free(ritz_basis *basis)
 {
     ritz_dense_free(&basis->T);
+    ritz_dense_free(&basis->W);
     ritz_columns_free(&basis->columns);
     *basis = (ritz_basis){0};
 }

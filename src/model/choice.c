@@ -208,7 +208,7 @@ void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
         append(size, out,
                choice->inverse ? "operator inverse" : "operator state");
     if (choice->given & RITZ_USES_DAMPING) {
-        char damping[RITZ_NAME_SIZE];
+        char damping[RITZ_DAMPING_SIZE];
 
         ritz_damping_print(&choice->damping, damping);
         append(size, out, damping);

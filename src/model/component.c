@@ -10,17 +10,26 @@
 /* What rounding leaves in superelements as supplied (6e-7 was met). */
 static const double symmetric_within = 1e-6;
 
-static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
-                                 double *worst)
+static ritz_status check_matrix(const ritz_sparse *A, int64_t n)
 {
     ritz_status status = RITZ_OK;
-    double asymmetry = 0.0;
 
     RITZ_FAIL_IF(A->nrow != n || A->ncol != n, RITZ_ERR_FORMAT,
                  "%" PRId64 " x %" PRId64 " where %" PRId64 " x %" PRId64
                  " is due",
                  A->nrow, A->ncol, n, n);
     RITZ_TRY(ritz_sparse_check(A, A->colptr[n]));
+done:
+    return status;
+}
+
+static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
+                                 double *worst)
+{
+    ritz_status status = RITZ_OK;
+    double asymmetry = 0.0;
+
+    RITZ_TRY(check_matrix(A, n));
     asymmetry = ritz_sparse_asymmetry(A);
     RITZ_FAIL_IF(asymmetry > symmetric_within && !symmetrise, RITZ_ERR_FORMAT,
                  "unsymmetric by %.1e of its largest entry, %.0e is let pass "
@@ -42,6 +51,24 @@ static ritz_status settle_optional(ritz_sparse *A, int64_t n, bool complete,
     return complete ? ritz_sparse_new(n, n, 0, A) : RITZ_OK;
 }
 
+/*
+ * D alone may be unsymmetric by more than rounding: a rotor's gyroscopic terms
+ * are, and D is kept as it came then.
+ */
+static ritz_status settle_damping(ritz_sparse *D, int64_t n, bool symmetrise,
+                                  double *worst)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!D->colptr)
+        return RITZ_OK;
+    RITZ_TRY(check_matrix(D, n));
+    if (symmetrise || ritz_sparse_asymmetry(D) <= symmetric_within)
+        RITZ_TRY(settle_matrix(D, n, symmetrise, worst));
+done:
+    return status;
+}
+
 static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
 {
     ritz_status status = RITZ_OK;
@@ -52,8 +79,7 @@ static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
     RITZ_TRY_IN("M", settle_matrix(&component->M, n, symmetrise, &worst));
     RITZ_TRY_IN("K",
                 settle_optional(&component->K, n, true, symmetrise, &worst));
-    RITZ_TRY_IN("D",
-                settle_optional(&component->D, n, false, symmetrise, &worst));
+    RITZ_TRY_IN("D", settle_damping(&component->D, n, symmetrise, &worst));
     RITZ_TRY_IN("K4",
                 settle_optional(&component->K4, n, false, symmetrise, &worst));
     for (int64_t k = 0; k < component->num_loads; k++)
@@ -162,8 +188,17 @@ ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
     RITZ_TRY(check_grids(&component->grids));
     RITZ_TRY(check_ports(component));
     RITZ_TRY(settle_io(component));
+    RITZ_TRY(ritz_recovery_check(&component->recovery, component->num_dofs,
+                                 component->dof));
+    RITZ_TRY(ritz_dampers_check(&component->dampers, component->num_dofs));
 done:
     return status;
+}
+
+ritz_status ritz_component_install(ritz_component *component)
+{
+    return ritz_dampers_install_sparse(&component->dampers, &component->K,
+                                       &component->D);
 }
 
 const ritz_port *ritz_component_port(const ritz_component *component,
@@ -256,6 +291,7 @@ void ritz_component_free(ritz_component *component)
         ritz_dofs_free(&component->port[k].dofs);
     free(component->port);
     ritz_io_free(&component->io);
+    ritz_recovery_free(&component->recovery);
     ritz_dampers_free(&component->dampers);
     *component = (ritz_component){0};
 }

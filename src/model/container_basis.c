@@ -1,6 +1,43 @@
 /* Containers of bases. */
 #include "model/container_parts.h"
 
+#include <inttypes.h>
+
+/* A basis of states says so by its attribute `states`. */
+static ritz_status write_states(hid_t file, const ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!basis->states)
+        return RITZ_OK;
+    RITZ_TRY(ritz_part_set_whole(file, "states", 1));
+    RITZ_TRY(ritz_h5_set_text(file, "damping", basis->damping));
+    RITZ_TRY(ritz_part_write_dense(file, "W", &basis->W));
+done:
+    return status;
+}
+
+static ritz_status read_states(hid_t file, ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *T = &basis->T;
+    int64_t one = 0;
+
+    if (H5Aexists(file, "states") <= 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_part_get_size(file, "states", 1, 1, &one));
+    RITZ_FAIL_IF(T->nrow % 2 != 0, RITZ_ERR_FORMAT,
+                 "'T' has %" PRId64 " rows, of states there are two for each "
+                 "dof",
+                 T->nrow);
+    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof basis->damping,
+                              basis->damping));
+    RITZ_TRY(ritz_part_read_dense(file, "W", T->nrow, T->ncol, &basis->W));
+    basis->states = true;
+done:
+    return status;
+}
+
 ritz_status ritz_container_read_basis(const char *path, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
@@ -10,6 +47,7 @@ ritz_status ritz_container_read_basis(const char *path, ritz_basis *out)
     RITZ_TRY(ritz_part_open(path, "basis", &file));
     RITZ_TRY(ritz_part_get_origin(file, &basis.origin));
     RITZ_TRY(ritz_h5_read_dense(file, "T", -1, -1, &basis.T));
+    RITZ_TRY(read_states(file, &basis));
     RITZ_TRY(ritz_part_read_columns(file, basis.T.nrow, basis.T.ncol,
                                     &basis.columns));
     *out = basis;
@@ -31,6 +69,7 @@ ritz_status ritz_container_write_basis(const char *path,
     RITZ_TRY(ritz_writer_new(path, "basis", units, stamp, &writer));
     RITZ_TRY(ritz_part_set_origin(writer.file, &basis->origin));
     RITZ_TRY(ritz_h5_write_dense(writer.file, "T", &basis->T));
+    RITZ_TRY(write_states(writer.file, basis));
     RITZ_TRY(ritz_part_write_columns(writer.file, &basis->columns));
     RITZ_TRY(ritz_writer_finish(&writer));
 done:

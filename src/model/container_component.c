@@ -8,11 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ritz_text_member members[] = {
-    {"damping", offsetof(ritz_component, damping)},
-    {NULL, 0},
-};
-
 /* A matrix that may be absent: it has no column pointers. */
 static ritz_status write_sparse(hid_t at, const char *name,
                                 const ritz_sparse *A)
@@ -191,7 +186,8 @@ static ritz_status read_all(hid_t file, ritz_component *component)
 
     RITZ_TRY(ritz_h5_get_text(file, "units", sizeof component->units,
                               component->units));
-    RITZ_TRY(ritz_part_get_members(file, members, component));
+    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof component->damping,
+                              component->damping));
     RITZ_TRY(ritz_part_get_real(file, "asymmetry", false, 1, &asymmetry));
     RITZ_TRY(ritz_part_get_real(file, "digits", false, 1, &component->digits));
     RITZ_TRY(ritz_part_read_dofs(file, &component->num_dofs, &component->dof));
@@ -199,6 +195,10 @@ static ritz_status read_all(hid_t file, ritz_component *component)
     RITZ_TRY(ritz_part_read_grids(file, &component->grids));
     RITZ_TRY(read_ports(file, component));
     RITZ_TRY(ritz_part_read_io(file, component->num_dofs, &component->io));
+    RITZ_TRY(ritz_part_read_recovery(file, component->num_dofs, component->dof,
+                                     &component->recovery));
+    RITZ_TRY(
+        ritz_part_read_dampers(file, component->num_dofs, &component->dampers));
     RITZ_TRY(ritz_component_settle(component, false));
     component->asymmetry = fmax(component->asymmetry, asymmetry);
 done:
@@ -232,7 +232,7 @@ ritz_status ritz_container_write_component(const char *path,
     RITZ_TRY(
         ritz_writer_new(path, "component", component->units, stamp, &writer));
     file = writer.file;
-    RITZ_TRY(ritz_part_set_members(file, members, component));
+    RITZ_TRY(ritz_h5_set_text(file, "damping", component->damping));
     RITZ_TRY(ritz_part_set_real(file, "asymmetry", 1, &component->asymmetry));
     RITZ_TRY(ritz_part_set_real(file, "digits", 1, &component->digits));
     RITZ_TRY(write_sparse(file, "K", &component->K));
@@ -244,6 +244,8 @@ ritz_status ritz_container_write_component(const char *path,
     RITZ_TRY(ritz_part_write_grids(file, &component->grids));
     RITZ_TRY(write_ports(file, component));
     RITZ_TRY(ritz_part_write_io(file, &component->io));
+    RITZ_TRY(ritz_part_write_recovery(file, &component->recovery));
+    RITZ_TRY(ritz_part_write_dampers(file, &component->dampers));
     RITZ_TRY(ritz_writer_finish(&writer));
 done:
     ritz_writer_free(&writer);

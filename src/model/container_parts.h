@@ -85,6 +85,15 @@ ritz_status ritz_part_read_grids(hid_t at, ritz_grids *out);
 ritz_status ritz_part_write_io(hid_t at, const ritz_io *io);
 ritz_status ritz_part_read_io(hid_t at, int64_t n, ritz_io *out);
 
+/** Group `dampers` for @p n coordinates; none if empty. */
+ritz_status ritz_part_write_dampers(hid_t at, const ritz_dampers *dampers);
+ritz_status ritz_part_read_dampers(hid_t at, int64_t n, ritz_dampers *out);
+
+/** Group `recovery` for the @p n dofs of a full model; none if empty. */
+ritz_status ritz_part_write_recovery(hid_t at, const ritz_recovery *recovery);
+ritz_status ritz_part_read_recovery(hid_t at, int64_t n, const ritz_dof *dof,
+                                    ritz_recovery *out);
+
 /** Group `columns` and data set `residuals`, for @p n full dofs. */
 ritz_status ritz_part_write_columns(hid_t at, const ritz_columns *columns);
 ritz_status ritz_part_read_columns(hid_t at, int64_t n, int64_t r,

@@ -8,11 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ritz_text_member members[] = {
-    {"damping", offsetof(ritz_reduced, damping)},
-    {NULL, 0},
-};
-
 static ritz_status write_port(hid_t ports, int64_t index,
                               const ritz_port_map *port)
 {
@@ -176,6 +171,8 @@ static ritz_status read_full(hid_t file, ritz_reduced *reduced)
     RITZ_FAIL_IF(count != reduced->num_dofs, RITZ_ERR_FORMAT,
                  "'dofs' names %" PRId64 " rows of %" PRId64, count,
                  reduced->num_dofs);
+    RITZ_TRY(
+        ritz_part_read_recovery(file, count, reduced->dof, &reduced->recovery));
 done:
     return status;
 }
@@ -187,13 +184,16 @@ static ritz_status read_all(hid_t file, ritz_reduced *reduced)
 
     RITZ_TRY(
         ritz_h5_get_text(file, "units", sizeof reduced->units, reduced->units));
-    RITZ_TRY(ritz_part_get_members(file, members, reduced));
+    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof reduced->damping,
+                              reduced->damping));
     RITZ_TRY(ritz_part_get_origin(file, &reduced->origin));
     RITZ_TRY(ritz_h5_read_dense(file, "K", -1, -1, &reduced->K));
     r = reduced->K.ncol;
     RITZ_FAIL_IF(reduced->K.nrow != r, RITZ_ERR_FORMAT, "'K' is not square");
     RITZ_TRY(ritz_h5_read_dense(file, "M", r, r, &reduced->M));
     RITZ_TRY(ritz_part_read_dense(file, "D", r, r, &reduced->D));
+    RITZ_TRY(ritz_part_read_dense(file, "K4", r, r, &reduced->K4));
+    RITZ_TRY(ritz_part_read_dampers(file, r, &reduced->dampers));
     RITZ_TRY(read_full(file, reduced));
     RITZ_TRY(
         ritz_part_read_columns(file, reduced->num_dofs, r, &reduced->columns));
@@ -226,16 +226,19 @@ static ritz_status write_all(hid_t file, const ritz_reduced *reduced)
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_TRY(ritz_part_set_members(file, members, reduced));
+    RITZ_TRY(ritz_h5_set_text(file, "damping", reduced->damping));
     RITZ_TRY(ritz_part_set_origin(file, &reduced->origin));
     RITZ_TRY(ritz_part_set_whole(file, "num_dofs", reduced->num_dofs));
     RITZ_TRY(ritz_h5_write_dense(file, "K", &reduced->K));
     RITZ_TRY(ritz_h5_write_dense(file, "M", &reduced->M));
     RITZ_TRY(ritz_part_write_dense(file, "D", &reduced->D));
+    RITZ_TRY(ritz_part_write_dense(file, "K4", &reduced->K4));
+    RITZ_TRY(ritz_part_write_dampers(file, &reduced->dampers));
     RITZ_TRY(ritz_part_write_dense(file, "T", &reduced->T));
     RITZ_TRY(ritz_part_write_grids(file, &reduced->grids));
     if (reduced->dof)
         RITZ_TRY(ritz_part_write_dofs(file, reduced->num_dofs, reduced->dof));
+    RITZ_TRY(ritz_part_write_recovery(file, &reduced->recovery));
     RITZ_TRY(ritz_part_write_columns(file, &reduced->columns));
     RITZ_TRY(write_ports(file, reduced));
     RITZ_TRY(ritz_part_write_io(file, &reduced->io));

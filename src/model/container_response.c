@@ -8,7 +8,6 @@
 
 static const ritz_text_member members[] = {
     {"method", offsetof(ritz_response, method)},
-    {"damping", offsetof(ritz_response, damping)},
     {NULL, 0},
 };
 
@@ -124,6 +123,8 @@ static ritz_status read_all(hid_t file, ritz_response *response)
     ritz_status status = RITZ_OK;
 
     RITZ_TRY(ritz_part_get_members(file, members, response));
+    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof response->damping,
+                              response->damping));
     RITZ_TRY(ritz_h5_count(file, "hertz", &response->count));
     RITZ_NEW(response->hertz, response->count);
     RITZ_TRY(ritz_h5_read_real(file, "hertz", ritz_h5_vector(response->count),
@@ -168,6 +169,7 @@ ritz_status ritz_container_write_response(const char *path,
     RITZ_TRY(ritz_writer_new(path, "response", "", stamp, &writer));
     file = writer.file;
     RITZ_TRY(ritz_part_set_members(file, members, response));
+    RITZ_TRY(ritz_h5_set_text(file, "damping", response->damping));
     RITZ_TRY(ritz_h5_write(file, "hertz", H5T_IEEE_F64LE,
                            ritz_h5_vector(response->count), response->hertz));
     RITZ_TRY(write_group_names(file, "inputs", response->num_inputs,

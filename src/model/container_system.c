@@ -10,7 +10,6 @@
 
 static const ritz_text_member members[] = {
     {"name", offsetof(ritz_system, name)},
-    {"damping", offsetof(ritz_system, damping)},
     {NULL, 0},
 };
 
@@ -133,6 +132,8 @@ static ritz_status write_configuration(hid_t at, const ritz_system *system,
     RITZ_TRY(ritz_h5_write_dense(at, "K", &c->K));
     RITZ_TRY(ritz_h5_write_dense(at, "M", &c->M));
     RITZ_TRY(ritz_part_write_dense(at, "D", &c->D));
+    RITZ_TRY(ritz_part_write_dense(at, "K4", &c->K4));
+    RITZ_TRY(ritz_part_write_dampers(at, &c->dampers));
     RITZ_TRY(ritz_h5_write(at, "lambda", H5T_IEEE_F64LE,
                            ritz_h5_vector(c->K.ncol), c->lambda));
     RITZ_TRY(ritz_part_write_io(at, &c->io));
@@ -154,6 +155,8 @@ static ritz_status read_configuration(hid_t at, const ritz_system *system,
     RITZ_FAIL_IF(c->K.nrow != e, RITZ_ERR_FORMAT, "'K' is not square");
     RITZ_TRY(ritz_h5_read_dense(at, "M", e, e, &c->M));
     RITZ_TRY(ritz_part_read_dense(at, "D", e, e, &c->D));
+    RITZ_TRY(ritz_part_read_dense(at, "K4", e, e, &c->K4));
+    RITZ_TRY(ritz_part_read_dampers(at, e, &c->dampers));
     RITZ_TRY(ritz_part_get_size(at, "rank", 0, INT64_MAX, &c->rank));
     RITZ_TRY(ritz_part_get_size(at, "num_rigid", 0, e, &c->num_rigid));
     RITZ_NEW(c->setting, system->num_sweeps);
@@ -234,6 +237,8 @@ static ritz_status read_all(hid_t file, ritz_system *system)
     RITZ_TRY(
         ritz_h5_get_text(file, "units", sizeof system->units, system->units));
     RITZ_TRY(ritz_part_get_members(file, members, system));
+    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof system->damping,
+                              system->damping));
     RITZ_TRY(ritz_part_get_real(file, "band_hz", false, 2, system->band_hz));
     RITZ_TRY(ritz_h5_count(file, "sweeps", &system->num_sweeps));
     RITZ_NEW(system->sweep, system->num_sweeps);
@@ -272,6 +277,7 @@ ritz_status ritz_container_write_system(const char *path,
     RITZ_TRY(ritz_writer_new(path, "system", system->units, stamp, &writer));
     file = writer.file;
     RITZ_TRY(ritz_part_set_members(file, members, system));
+    RITZ_TRY(ritz_h5_set_text(file, "damping", system->damping));
     RITZ_TRY(ritz_part_set_real(file, "band_hz", 2, system->band_hz));
     RITZ_TRY(ritz_part_write_names(file, "sweeps", system->num_sweeps,
                                    system->sweep));

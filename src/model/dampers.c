@@ -1,9 +1,15 @@
-#include "base/alloc.h"
-
 #include <ritz/dampers.h>
 
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Entries that b b' of one damper may have in a sparse matrix. */
+static const int64_t most_entries = 1000000;
 
 ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out)
 {
@@ -13,6 +19,8 @@ ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out)
     RITZ_NEW(dampers.name, count);
     RITZ_NEW(dampers.c, count);
     RITZ_NEW(dampers.k, count);
+    RITZ_NEW(dampers.held_c, count);
+    RITZ_NEW(dampers.held_k, count);
     RITZ_TRY(ritz_dense_new(n, count, &dampers.B));
     *out = dampers;
     dampers = (ritz_dampers){0};
@@ -21,19 +29,29 @@ done:
     return status;
 }
 
+/* Names and numbers of `from` in place first and behind. */
+static void put(const ritz_dampers *from, int64_t first, ritz_dampers *to)
+{
+    size_t bytes = (size_t)from->count * sizeof *from->c;
+
+    memcpy(to->name + first, from->name,
+           (size_t)from->count * sizeof *from->name);
+    memcpy(to->c + first, from->c, bytes);
+    memcpy(to->k + first, from->k, bytes);
+    memcpy(to->held_c + first, from->held_c, bytes);
+    memcpy(to->held_k + first, from->held_k, bytes);
+}
+
 ritz_status ritz_dampers_project(const ritz_dampers *dampers,
                                  const ritz_dense *T, ritz_dampers *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dampers projected = {0};
-    size_t count = (size_t)dampers->count;
 
-    if (count == 0)
+    if (dampers->count == 0)
         return RITZ_OK;
     RITZ_TRY(ritz_dampers_new(0, dampers->count, &projected));
-    memcpy(projected.name, dampers->name, count * sizeof *projected.name);
-    memcpy(projected.c, dampers->c, count * sizeof *projected.c);
-    memcpy(projected.k, dampers->k, count * sizeof *projected.k);
+    put(dampers, 0, &projected);
     ritz_dense_free(&projected.B);
     RITZ_TRY(ritz_dense_mul_tn(T, &dampers->B, &projected.B));
     *out = projected;
@@ -43,11 +61,323 @@ done:
     return status;
 }
 
+ritz_status ritz_dampers_copy(const ritz_dampers *dampers, ritz_dampers *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dampers copy = {0};
+
+    if (dampers->count == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dampers_append(dampers, NULL, dampers->B.nrow, 0, &copy));
+    *out = copy;
+    copy = (ritz_dampers){0};
+done:
+    ritz_dampers_free(&copy);
+    return status;
+}
+
+/* "owner/name" */
+static ritz_status own(const char *owner, char name[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+    char whole[2 * RITZ_NAME_SIZE + 2];
+    int length = snprintf(whole, sizeof whole, "%s/%s", owner, name);
+
+    RITZ_FAIL_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                 "the damper '%s' of '%s' gets a name of more than %d letters",
+                 name, owner, RITZ_NAME_SIZE - 1);
+    memcpy(name, whole, (size_t)length + 1);
+done:
+    return status;
+}
+
+ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
+                                int64_t n, int64_t first, ritz_dampers *dampers)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = dampers->count;
+    ritz_dampers all = {0};
+
+    if (more->count == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dampers_new(n, count + more->count, &all));
+    if (count > 0) {
+        put(dampers, 0, &all);
+        memcpy(all.B.val, dampers->B.val,
+               (size_t)(n * count) * sizeof *all.B.val);
+    }
+    put(more, count, &all);
+    for (int64_t k = 0; k < more->count; k++) {
+        if (more->B.nrow > 0)
+            memcpy(ritz_dense_col(&all.B, count + k) + first,
+                   ritz_dense_col(&more->B, k),
+                   (size_t)more->B.nrow * sizeof *all.B.val);
+        if (owner)
+            RITZ_TRY(own(owner, all.name[count + k]));
+    }
+    ritz_dampers_free(dampers);
+    *dampers = all;
+    all = (ritz_dampers){0};
+done:
+    ritz_dampers_free(&all);
+    return status;
+}
+
+ritz_status ritz_dampers_check(const ritz_dampers *dampers, int64_t n)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(dampers->count > 0 && (dampers->B.nrow != n ||
+                                        dampers->B.ncol != dampers->count),
+                 RITZ_ERR_FORMAT,
+                 "influence vectors of dampers are %" PRId64 " x %" PRId64
+                 ", not %" PRId64 " x %" PRId64,
+                 dampers->B.nrow, dampers->B.ncol, n, dampers->count);
+    for (int64_t j = 0; j < dampers->count; j++) {
+        const char *name = dampers->name[j];
+
+        RITZ_FAIL_IF(!name[0], RITZ_ERR_FORMAT,
+                     "damper %" PRId64 " has no name", j + 1);
+        for (int64_t i = 0; i < j; i++)
+            RITZ_FAIL_IF(strcmp(dampers->name[i], name) == 0, RITZ_ERR_FORMAT,
+                         "there are two dampers '%s'", name);
+        RITZ_FAIL_IF(!(dampers->c[j] >= 0.0) || !isfinite(dampers->c[j]) ||
+                         !isfinite(dampers->k[j]),
+                     RITZ_ERR_FORMAT,
+                     "damper '%s' has c = %g and k = %g: c is not negative, "
+                     "and both are finite",
+                     name, dampers->c[j], dampers->k[j]);
+        RITZ_FAIL_IF(
+            !isfinite(dampers->held_c[j]) || !isfinite(dampers->held_k[j]),
+            RITZ_ERR_FORMAT,
+            "what the matrices hold of damper '%s' is not finite", name);
+        for (int64_t i = 0; i < n; i++)
+            RITZ_FAIL_IF(
+                !isfinite(ritz_dense_col(&dampers->B, j)[i]), RITZ_ERR_FORMAT,
+                "the influence vector of damper '%s' is not finite", name);
+    }
+done:
+    return status;
+}
+
+int64_t ritz_dampers_find(const ritz_dampers *dampers, const char *name)
+{
+    const char *near = NULL;
+
+    for (int64_t j = 0; j < dampers->count; j++)
+        if (strcmp(dampers->name[j], name) == 0)
+            return j;
+    if (dampers->count > 0)
+        near = ritz_text_nearest(name, dampers->count, dampers->name[0],
+                                 sizeof *dampers->name);
+    if (near)
+        ritz_record("there is no damper '%s', is '%s' meant?", name, near);
+    else
+        ritz_record("there is no damper '%.63s'%s", name,
+                    dampers->count > 0 ? "" : ", the model has none");
+    return -1;
+}
+
+ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text)
+{
+    ritz_status status = RITZ_OK;
+    const char *equals = strrchr(text, '=');
+    char name[RITZ_NAME_SIZE] = "";
+    char number[RITZ_NAME_SIZE] = "";
+    char *star = NULL;
+    double c = 0.0;
+    double k = 0.0;
+    int64_t j = -1;
+    bool good = equals && equals - text < RITZ_NAME_SIZE &&
+                strlen(equals + 1) < sizeof number;
+
+    if (good) {
+        memcpy(name, text, (size_t)(equals - text));
+        memcpy(number, equals + 1, strlen(equals + 1) + 1);
+        star = strchr(number, '*');
+        if (star)
+            *star++ = '\0';
+        good =
+            ritz_text_real(number, &c) && (!star || ritz_text_real(star, &k));
+    }
+    RITZ_FAIL_IF(!good, RITZ_ERR_ARGUMENT,
+                 "'%.80s' is not of the form NAME=C or NAME=C*K", text);
+    RITZ_FAIL_IF(c < 0.0, RITZ_ERR_ARGUMENT,
+                 "'%.80s': a damper's c is not negative", text);
+    j = ritz_dampers_find(dampers, name);
+    if (j < 0) {
+        status = RITZ_ERR_ARGUMENT;
+        goto done;
+    }
+    dampers->c[j] = c;
+    dampers->k[j] = star ? k : dampers->k[j];
+done:
+    return status;
+}
+
+/* What installing damper j is to add to D, and to K. */
+static double more_c(const ritz_dampers *dampers, int64_t j)
+{
+    return dampers->c[j] - dampers->held_c[j];
+}
+
+static double more_k(const ritz_dampers *dampers, int64_t j)
+{
+    return dampers->k[j] - dampers->held_k[j];
+}
+
+static bool any(const ritz_dampers *dampers,
+                double (*more)(const ritz_dampers *, int64_t))
+{
+    for (int64_t j = 0; j < dampers->count; j++)
+        if (more(dampers, j) != 0.0)
+            return true;
+    return false;
+}
+
+static void settle(ritz_dampers *dampers)
+{
+    for (int64_t j = 0; j < dampers->count; j++) {
+        dampers->held_c[j] = dampers->c[j];
+        dampers->held_k[j] = dampers->k[j];
+    }
+}
+
+/* A += sum more_j b_j b_j', whose two triangles are the same to the bit. */
+static void add(const ritz_dampers *dampers,
+                double (*more)(const ritz_dampers *, int64_t), ritz_dense *A)
+{
+    for (int64_t j = 0; j < dampers->count; j++) {
+        const double *b = ritz_dense_col(&dampers->B, j);
+        double value = more(dampers, j);
+
+        for (int64_t c = 0; value != 0.0 && c < A->ncol; c++)
+            for (int64_t r = 0; r < A->nrow; r++)
+                ritz_dense_col(A, c)[r] += value * (b[r] * b[c]);
+    }
+}
+
+ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
+                                 ritz_dense *D)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = K->nrow;
+
+    RITZ_FAIL_IF(dampers->count > 0 && dampers->B.nrow != n, RITZ_ERR_ARGUMENT,
+                 "dampers of %" PRId64 " coordinates in a model of %" PRId64,
+                 dampers->B.nrow, n);
+    if (any(dampers, more_c) && !D->val)
+        RITZ_TRY(ritz_dense_new(n, n, D));
+    add(dampers, more_c, D);
+    add(dampers, more_k, K);
+    settle(dampers);
+done:
+    return status;
+}
+
+static int64_t count_entries(const ritz_dense *B, int64_t j)
+{
+    int64_t count = 0;
+
+    for (int64_t i = 0; i < B->nrow; i++)
+        count += ritz_dense_col(B, j)[i] != 0.0;
+    return count;
+}
+
+/* sum more_j b_j b_j' of few entries each. */
+static ritz_status outer(const ritz_dampers *dampers,
+                         double (*more)(const ritz_dampers *, int64_t),
+                         ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = dampers->B.nrow;
+    int64_t room = 0;
+    int64_t count = 0;
+    int64_t *row = NULL;
+    int64_t *col = NULL;
+    double *val = NULL;
+
+    for (int64_t j = 0; j < dampers->count; j++) {
+        int64_t m = count_entries(&dampers->B, j);
+
+        RITZ_FAIL_IF(m * m > most_entries, RITZ_ERR_ARGUMENT,
+                     "damper '%s' moves with %" PRId64
+                     " dofs: as a sparse matrix that is too many",
+                     dampers->name[j], m);
+        room += m * m;
+    }
+    RITZ_NEW(row, room);
+    RITZ_NEW(col, room);
+    RITZ_NEW(val, room);
+    for (int64_t j = 0; j < dampers->count; j++) {
+        const double *b = ritz_dense_col(&dampers->B, j);
+
+        for (int64_t c = 0; c < n; c++)
+            for (int64_t r = 0; b[c] != 0.0 && r < n; r++)
+                if (b[r] != 0.0) {
+                    row[count] = r;
+                    col[count] = c;
+                    val[count++] = more(dampers, j) * (b[r] * b[c]);
+                }
+    }
+    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, val, out));
+done:
+    free(row);
+    free(col);
+    free(val);
+    return status;
+}
+
+/* A := A + sum more_j b_j b_j'. */
+static ritz_status add_sparse(const ritz_dampers *dampers,
+                              double (*more)(const ritz_dampers *, int64_t),
+                              ritz_sparse *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse part = {0};
+    ritz_sparse sum = {0};
+
+    if (!any(dampers, more))
+        return RITZ_OK;
+    RITZ_TRY(outer(dampers, more, &part));
+    if (A->colptr) {
+        RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &part, &sum));
+        ritz_sparse_free(A);
+        *A = sum;
+        sum = (ritz_sparse){0};
+    } else {
+        *A = part;
+        part = (ritz_sparse){0};
+    }
+done:
+    ritz_sparse_free(&part);
+    ritz_sparse_free(&sum);
+    return status;
+}
+
+ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
+                                        ritz_sparse *D)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(dampers->count > 0 && dampers->B.nrow != K->nrow,
+                 RITZ_ERR_ARGUMENT,
+                 "dampers of %" PRId64 " coordinates in a model of %" PRId64,
+                 dampers->B.nrow, K->nrow);
+    RITZ_TRY(add_sparse(dampers, more_c, D));
+    RITZ_TRY(add_sparse(dampers, more_k, K));
+    settle(dampers);
+done:
+    return status;
+}
+
 void ritz_dampers_free(ritz_dampers *dampers)
 {
     free(dampers->name);
     free(dampers->c);
     free(dampers->k);
+    free(dampers->held_c);
+    free(dampers->held_k);
     ritz_dense_free(&dampers->B);
     *dampers = (ritz_dampers){0};
 }

@@ -1,13 +1,18 @@
+/* Damping in words, and the ratio it gives a mode. */
 #include <ritz/damping.h>
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Room for the longest text: 8 bands of three numbers of 24 letters. */
-enum { MOST_NUMBERS = 3 * RITZ_MAX_BANDS, NUMBER_SIZE = 32, TEXT_SIZE = 800 };
+/* RITZ_DAMPING_SIZE has room for a word and as many numbers of 24 letters. */
+enum { MOST_NUMBERS = RITZ_MOST_RATIOS, NUMBER_SIZE = 32 };
+static_assert(3 * RITZ_MAX_BANDS <= MOST_NUMBERS, "bands are fewer numbers");
+static_assert(2 * RITZ_MOST_POINTS <= MOST_NUMBERS, "points are fewer numbers");
+static_assert(16 + 25 * MOST_NUMBERS <= RITZ_DAMPING_SIZE, "the text fits");
 
 static const double pi = 3.14159265358979323846;
 
@@ -76,6 +81,45 @@ done:
     return status;
 }
 
+static ritz_status check_modes(const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(damping->count < 1 || damping->count > RITZ_MOST_RATIOS,
+                 RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " ratios of modes are given, 1 to %d can be",
+                 damping->count, RITZ_MOST_RATIOS);
+    for (int64_t k = 0; k < damping->count; k++)
+        RITZ_TRY(check_ratio(damping->ratio[k]));
+done:
+    return status;
+}
+
+static ritz_status check_fit(const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+    bool differ = false;
+
+    RITZ_FAIL_IF(damping->count < 2 || damping->count > RITZ_MOST_POINTS,
+                 RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " points of a fit are given, 2 to %d can be",
+                 damping->count, RITZ_MOST_POINTS);
+    for (int64_t k = 0; k < damping->count; k++) {
+        const double *point = damping->point[k];
+
+        RITZ_FAIL_IF(
+            !(point[0] > 0.0) || !isfinite(point[0]), RITZ_ERR_ARGUMENT,
+            "a damping fit at %g Hz: its frequencies are above 0", point[0]);
+        RITZ_TRY(check_ratio(point[1]));
+        differ = differ || point[0] != damping->point[0][0];
+    }
+    RITZ_FAIL_IF(!differ, RITZ_ERR_ARGUMENT,
+                 "a damping fit needs two different frequencies, all are %g Hz",
+                 damping->point[0][0]);
+done:
+    return status;
+}
+
 /* The numbers behind the word, in the order of the text; how many. */
 static int64_t numbers_of(const ritz_damping *damping,
                           double number[MOST_NUMBERS])
@@ -93,6 +137,12 @@ static int64_t numbers_of(const ritz_damping *damping,
         number[0] = damping->a;
         number[1] = damping->b;
         return 2;
+    case RITZ_DAMPING_MODES:
+        memcpy(number, damping->ratio, sizeof damping->ratio);
+        return damping->count;
+    case RITZ_DAMPING_FIT:
+        memcpy(number, damping->point, sizeof damping->point);
+        return 2 * damping->count;
     }
     return 0;
 }
@@ -117,6 +167,18 @@ static void take_rayleigh(const double *number, int64_t count,
     out->b = number[1];
 }
 
+static void take_modes(const double *number, int64_t count, ritz_damping *out)
+{
+    out->count = count;
+    memcpy(out->ratio, number, (size_t)count * sizeof *number);
+}
+
+static void take_fit(const double *number, int64_t count, ritz_damping *out)
+{
+    out->count = count / 2;
+    memcpy(out->point, number, (size_t)count * sizeof *number);
+}
+
 static void take_nothing(const double *number, int64_t count, ritz_damping *out)
 {
     (void)number;
@@ -134,10 +196,14 @@ static const struct form {
     [RITZ_DAMPING_NONE] = {"", 0, 1, 0, take_nothing, check_none, ""},
     [RITZ_DAMPING_MODAL] = {"modal", 1, 1, 1, take_modal, check_modal,
                             "modal 0.002"},
-    [RITZ_DAMPING_BANDS] = {"bands", 3, 3, MOST_NUMBERS, take_bands,
+    [RITZ_DAMPING_BANDS] = {"bands", 3, 3, 3 * RITZ_MAX_BANDS, take_bands,
                             check_bands, "bands 0 5 0.002 5 20 0.005"},
     [RITZ_DAMPING_RAYLEIGH] = {"rayleigh", 2, 1, 2, take_rayleigh,
                                check_rayleigh, "rayleigh 0.1 2e-5"},
+    [RITZ_DAMPING_MODES] = {"modes", 1, 1, RITZ_MOST_RATIOS, take_modes,
+                            check_modes, "modes 0.01 0.02 0.015"},
+    [RITZ_DAMPING_FIT] = {"fit", 4, 2, 2 * RITZ_MOST_POINTS, take_fit,
+                          check_fit, "fit 1 0.01 10 0.02"},
 };
 
 enum { NUM_FORMS = sizeof forms / sizeof *forms };
@@ -160,7 +226,8 @@ static size_t print_number(double value, char out[NUMBER_SIZE])
     return shortest;
 }
 
-static size_t print(const ritz_damping *damping, char text[TEXT_SIZE])
+void ritz_damping_print(const ritz_damping *damping,
+                        char text[RITZ_DAMPING_SIZE])
 {
     double number[MOST_NUMBERS];
     int64_t count = numbers_of(damping, number);
@@ -171,30 +238,17 @@ static size_t print(const ritz_damping *damping, char text[TEXT_SIZE])
         text[used++] = ' ';
         used += print_number(number[k], text + used);
     }
-    return used;
 }
 
 ritz_status ritz_damping_check(const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
-    char text[TEXT_SIZE];
-
-    RITZ_TRY(forms[damping->kind].check(damping));
-    RITZ_FAIL_IF(print(damping, text) >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
-                 "the damping '%.40s...' takes more than %d letters: give "
-                 "fewer bands or digits",
-                 text, RITZ_NAME_SIZE - 1);
-done:
-    return status;
+    return forms[damping->kind].check(damping);
 }
 
-void ritz_damping_print(const ritz_damping *damping, char text[RITZ_NAME_SIZE])
+bool ritz_damping_is_rayleigh(const ritz_damping *damping)
 {
-    char whole[TEXT_SIZE];
-
-    if (print(damping, whole) >= RITZ_NAME_SIZE)
-        whole[0] = '\0'; /* such a damping does not pass ritz_damping_check */
-    memcpy(text, whole, strlen(whole) + 1);
+    return damping->kind == RITZ_DAMPING_RAYLEIGH ||
+           damping->kind == RITZ_DAMPING_FIT;
 }
 
 /* Cut a text at its spaces; how many words there are, at most `most`. */
@@ -230,7 +284,7 @@ ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
 {
     ritz_status status = RITZ_OK;
     ritz_damping damping = {0};
-    char copy[TEXT_SIZE];
+    char copy[RITZ_DAMPING_SIZE];
     char *word[MOST_NUMBERS + 2] = {0};
     double number[MOST_NUMBERS] = {0};
     int64_t count = 0;
@@ -244,7 +298,8 @@ ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
            strcmp(word[0], forms[kind].name) != 0)
         kind++;
     RITZ_FAIL_IF(kind == NUM_FORMS, RITZ_ERR_ARGUMENT,
-                 "unknown damping '%.40s', there is modal, bands, rayleigh",
+                 "unknown damping '%.40s', there is modal, modes, bands, "
+                 "rayleigh, fit",
                  word[0]);
     if (count > 0) {
         damping.kind = (ritz_damping_kind)kind;
@@ -252,6 +307,8 @@ ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
         forms[kind].take(number, count - 1, &damping);
     }
     RITZ_TRY(ritz_damping_check(&damping));
+    if (damping.kind == RITZ_DAMPING_FIT)
+        ritz_damping_fit(&damping);
     *out = damping;
 done:
     return status;
@@ -273,10 +330,22 @@ double ritz_damping_ratio(const ritz_damping *damping, double omega)
                 return damping->band[k][2];
         break;
     case RITZ_DAMPING_RAYLEIGH:
+    case RITZ_DAMPING_FIT:
         /* phi'(a M + b K)phi = a + b omega^2 = 2 zeta omega */
         if (omega > 0.0)
             return 0.5 * (damping->a / omega + damping->b * omega);
         break;
+    case RITZ_DAMPING_MODES:
+        return damping->ratio[damping->count - 1];
     }
     return 0.0;
+}
+
+double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
+                            double omega)
+{
+    if (damping->kind == RITZ_DAMPING_MODES && mode >= 0 &&
+        mode < damping->count)
+        return damping->ratio[mode];
+    return ritz_damping_ratio(damping, omega);
 }

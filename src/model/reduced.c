@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "model/mass_columns.h"
 
 #include <ritz/reduced.h>
 
@@ -8,16 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* T'AT of a sparse symmetric A, exactly symmetric. */
+/* T'AT of a sparse A, exactly symmetric if A is; {0} of an absent one. */
 static ritz_status project_sparse(const ritz_sparse *A, const ritz_dense *T,
                                   ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AT = {0};
 
+    if (!A->colptr)
+        return RITZ_OK;
     RITZ_TRY(ritz_sparse_mul(A, T, &AT));
     RITZ_TRY(ritz_dense_mul_tn(T, &AT, out));
-    ritz_dense_symmetrise(out);
+    if (ritz_sparse_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(out);
 done:
     ritz_dense_free(&AT);
     return status;
@@ -177,6 +181,7 @@ static ritz_status keep_names(const ritz_component *component,
                               const ritz_basis *basis, ritz_reduced *reduced)
 {
     ritz_status status = RITZ_OK;
+    ritz_dense T = {0};
 
     reduced->origin = basis->origin;
     reduced->num_dofs = component->num_dofs;
@@ -186,9 +191,12 @@ static ritz_status keep_names(const ritz_component *component,
     RITZ_TRY(ritz_dense_copy(&basis->T, &reduced->T));
     RITZ_TRY(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
     RITZ_TRY(copy_grids(&component->grids, &reduced->grids));
+    RITZ_TRY(ritz_recovery_copy(&component->recovery, &reduced->recovery));
     RITZ_TRY(ritz_inertia_of(component, &reduced->inertia));
-    RITZ_TRY(ritz_invariants_of(component, &basis->T, &reduced->invariants));
+    RITZ_TRY(ritz_mass_columns(basis, &T));
+    RITZ_TRY(ritz_invariants_of(component, &T, &reduced->invariants));
 done:
+    ritz_dense_free(&T);
     return status;
 }
 
@@ -199,18 +207,21 @@ ritz_status ritz_reduce(const ritz_component *component,
     const ritz_dense *T = &basis->T;
     ritz_reduced reduced = {0};
 
+    RITZ_FAIL_IF(basis->states, RITZ_ERR_ARGUMENT,
+                 "the basis of '%s' is of states, it makes a state space and "
+                 "no masses and stiffnesses",
+                 basis->origin.method);
     RITZ_FAIL_IF(T->nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
                  "the basis is for %lld dofs, the component has %lld",
                  (long long)T->nrow, (long long)component->num_dofs);
-    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
-                 "structural damping is not carried through a reduction yet, "
-                 "give it as a modal ratio");
     RITZ_TRY(keep_names(component, basis, &reduced));
     RITZ_TRY(project_sparse(&component->K, T, &reduced.K));
     RITZ_TRY(settle_rigid(&component->K, basis, &reduced.K));
     RITZ_TRY(project_sparse(&component->M, T, &reduced.M));
-    if (component->D.colptr)
-        RITZ_TRY(project_sparse(&component->D, T, &reduced.D));
+    RITZ_TRY(project_sparse(&component->D, T, &reduced.D));
+    ritz_mass_settle(component, &basis->columns, &reduced);
+    RITZ_TRY(project_sparse(&component->K4, T, &reduced.K4));
+    RITZ_TRY(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_TRY(map_ports(component, T, &reduced));
     RITZ_TRY(ritz_io_project(&component->io, T, &reduced.io));
     *out = reduced;
@@ -261,8 +272,12 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         second.columns.kind[j] = RITZ_COLUMN_SYSTEM;
     RITZ_TRY(ritz_dense_congruence(&reduced->K, V, &second.K));
     RITZ_TRY(ritz_dense_congruence(&reduced->M, V, &second.M));
+    ritz_mass_settle_again(reduced, &second);
     if (reduced->D.val)
-        RITZ_TRY(ritz_dense_congruence(&reduced->D, V, &second.D));
+        RITZ_TRY(ritz_dense_project(&reduced->D, V, &second.D));
+    if (reduced->K4.val)
+        RITZ_TRY(ritz_dense_congruence(&reduced->K4, V, &second.K4));
+    RITZ_TRY(ritz_dampers_project(&reduced->dampers, V, &second.dampers));
     RITZ_TRY(project_ports(reduced, V, &second));
     RITZ_TRY(ritz_io_project(&reduced->io, V, &second.io));
     RITZ_TRY(
@@ -271,12 +286,18 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         RITZ_TRY(ritz_dense_mul(&reduced->T, V, &second.T));
         RITZ_TRY(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
         RITZ_TRY(copy_grids(&reduced->grids, &second.grids));
+        RITZ_TRY(ritz_recovery_copy(&reduced->recovery, &second.recovery));
     }
     *out = second;
     second = (ritz_reduced){0};
 done:
     ritz_reduced_free(&second);
     return status;
+}
+
+ritz_status ritz_reduced_install(ritz_reduced *reduced)
+{
+    return ritz_dampers_install(&reduced->dampers, &reduced->K, &reduced->D);
 }
 
 const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
@@ -310,6 +331,8 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_dense_free(&reduced->K);
     ritz_dense_free(&reduced->M);
     ritz_dense_free(&reduced->D);
+    ritz_dense_free(&reduced->K4);
+    ritz_dampers_free(&reduced->dampers);
     ritz_columns_free(&reduced->columns);
     for (int64_t k = 0; k < reduced->num_ports; k++)
         ritz_port_map_free(&reduced->port[k]);
@@ -319,6 +342,7 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_dense_free(&reduced->T);
     free(reduced->dof);
     ritz_grids_free(&reduced->grids);
+    ritz_recovery_free(&reduced->recovery);
     ritz_measures_free(&reduced->estimates);
     ritz_measures_free(&reduced->errors);
     *reduced = (ritz_reduced){0};

@@ -23,6 +23,7 @@ enum {
     SELECT,
     COMPOSITE,
     AUGMENT,
+    EXTRANEOUS,
     NUM_KEYS
 };
 
@@ -36,10 +37,10 @@ static const ritz_yaml_key keys[NUM_KEYS] = {
     [BAND] = {"band_hz", false, ritz_scene_band, offsetof(ritz_scene, band_hz)},
     [DAMPING] = {"damping", false, ritz_scene_damping,
                  offsetof(ritz_scene, damping)},
-    [SELECT] = {"select", false, ritz_scene_select, 0},
+    [SELECT] = {"select", false, NULL, 0},
     [COMPOSITE] = {"composite", false, NULL, 0},
-    [AUGMENT] = {"augment", false, ritz_scene_augment,
-                 offsetof(ritz_scene, augment)},
+    [AUGMENT] = {"augment", false, NULL, 0},
+    [EXTRANEOUS] = {"extraneous", false, NULL, 0},
 };
 
 static const struct {
@@ -51,7 +52,10 @@ static const struct {
     {CONFIGURATIONS, ritz_scene_configurations},
     {INPUTS, ritz_scene_inputs},
     {OUTPUTS, ritz_scene_outputs},
+    {SELECT, ritz_scene_select},
     {COMPOSITE, ritz_scene_composite},
+    {AUGMENT, ritz_scene_augment},
+    {EXTRANEOUS, ritz_scene_extraneous},
 };
 
 ritz_status ritz_scene_parse(const char *path, const char *text,
@@ -62,7 +66,8 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
     ritz_yaml yaml = {0};
     ritz_scene scene = {.select_by = "hankel",
                         .select_tolerance = 1e-3,
-                        .composite_tolerance = 1e-12};
+                        .composite_tolerance = 1e-12,
+                        .attached_tolerance = 1e-3};
 
     RITZ_NEW(scene.path, (int64_t)strlen(path) + 1);
     memcpy(scene.path, path, strlen(path));
@@ -134,8 +139,8 @@ void ritz_scene_free(ritz_scene *scene)
         free(scene->component[k].model);
         free(scene->component[k].attach);
     }
-    for (int64_t k = 0; k < scene->num_joints; k++)
-        free(scene->joint[k].setting);
+    for (int64_t k = 0; k < scene->num_sweeps; k++)
+        free(scene->sweep[k].setting);
     free(scene->path);
     free(scene->component);
     free(scene->joint);
@@ -144,5 +149,7 @@ void ritz_scene_free(ritz_scene *scene)
     free(scene->input);
     free(scene->output);
     free(scene->reference);
+    free(scene->select_mode);
+    free(scene->attached_input);
     *scene = (ritz_scene){0};
 }

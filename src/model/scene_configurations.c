@@ -1,4 +1,4 @@
-/* Configurations of a scene: those listed, or every combination of angles. */
+/* Configurations of a scene: those listed, or every combination of settings. */
 #include "model/scene_parts.h"
 
 #include "base/alloc.h"
@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Angles are the same within this; of doubles up to 360 it is 2e4 ulp. */
-static const double same_deg = 1e-9;
+/* Settings are the same within this; of angles up to 360 it is 2e4 ulp. */
+static const double same_setting = 1e-9;
 
 typedef struct sorted_row {
     const double *val;
@@ -65,7 +65,7 @@ static ritz_status make_room(const ritz_yaml *yaml, const yaml_node_t *node,
                        count * (double)n > RITZ_MOST_SETTINGS,
                    yaml, node,
                    "%.6g configurations of %" PRId64
-                   " hinges are too many: list those wanted under "
+                   " settings are too many: list those wanted under "
                    "'configurations'",
                    count, n);
     RITZ_NEW(scene->setting, (int64_t)count * n);
@@ -74,7 +74,7 @@ done:
     return status;
 }
 
-/* Row c counts with one digit for each hinge, the last one fastest. */
+/* Row c counts with one digit for each sweep, the last one fastest. */
 static ritz_status combine(const ritz_yaml *yaml, ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
@@ -82,17 +82,16 @@ static ritz_status combine(const ritz_yaml *yaml, ritz_scene *scene)
     double count = 1.0;
 
     for (int64_t k = 0; k < n; k++)
-        count *= (double)scene->joint[scene->sweep[k]].num_settings;
+        count *= (double)scene->sweep[k].count;
     RITZ_TRY(make_room(yaml, ritz_yaml_root(yaml), count, scene));
     for (int64_t c = 0; c < scene->num_configurations; c++) {
         int64_t rest = c;
 
         for (int64_t k = n - 1; k >= 0; k--) {
-            const ritz_joint *joint = &scene->joint[scene->sweep[k]];
+            const ritz_sweep *sweep = &scene->sweep[k];
 
-            scene->setting[c * n + k] =
-                joint->setting[rest % joint->num_settings];
-            rest /= joint->num_settings;
+            scene->setting[c * n + k] = sweep->setting[rest % sweep->count];
+            rest /= sweep->count;
         }
     }
 done:
@@ -113,7 +112,7 @@ ritz_status ritz_scene_configurations(const ritz_yaml *yaml,
     RITZ_TRY(ritz_yaml_list(yaml, node, &count));
     RITZ_REFUSE_IF(count == 0, yaml, node,
                    "no configuration is listed; without 'configurations' every "
-                   "combination of angles is one");
+                   "combination of settings is one");
     RITZ_TRY(make_room(yaml, node, (double)count, scene));
     for (int64_t c = 0; c < count; c++)
         RITZ_TRY(ritz_scene_row_read(yaml, ritz_yaml_item(yaml, node, c), scene,
@@ -128,7 +127,7 @@ done:
 static bool rows_agree(int64_t n, const double *a, const double *b)
 {
     for (int64_t k = 0; k < n; k++)
-        if (!(fabs(a[k] - b[k]) <= same_deg))
+        if (!(fabs(a[k] - b[k]) <= same_setting))
             return false;
     return true;
 }

@@ -5,6 +5,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 static ritz_status take_component(const ritz_yaml *yaml,
                                   const yaml_node_t *node, void *field)
@@ -18,6 +19,33 @@ static ritz_status take_component(const ritz_yaml *yaml,
                    "4-6, about them",
                    component);
     *(int64_t *)field = component;
+done:
+    return status;
+}
+
+/* One direction, or a list of those in which a force acts at once. */
+static ritz_status take_directions(const ritz_yaml *yaml,
+                                   const yaml_node_t *node, ritz_scene_io *io)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+
+    if (node->type != YAML_SEQUENCE_NODE)
+        return take_component(yaml, node, &io->component);
+    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_IF(count < 1 || count > 6, yaml, node,
+                   "1 to 6 directions can be listed, not %" PRId64, count);
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
+        int64_t *into = k == 0 ? &io->component : &io->also[k - 1];
+
+        RITZ_TRY(take_component(yaml, item, into));
+        for (int64_t j = 0; j < k; j++)
+            RITZ_REFUSE_IF(*into == (j == 0 ? io->component : io->also[j - 1]),
+                           yaml, item, "direction %" PRId64 " is listed before",
+                           *into);
+        io->num_also = k;
+    }
 done:
     return status;
 }
@@ -60,17 +88,17 @@ static ritz_status take_quantity(const ritz_yaml *yaml, const yaml_node_t *node,
 }
 
 enum { NAME, AT, COMPONENT, GRID, NUM_SHARED };
-enum { NUM_INPUT_KEYS = NUM_SHARED + 1, NUM_OUTPUT_KEYS = NUM_SHARED + 2 };
+enum { NUM_INPUT_KEYS = NUM_SHARED + 2, NUM_OUTPUT_KEYS = NUM_SHARED + 2 };
+enum { AGAINST = NUM_SHARED }; /* of an input */
 
 #define SHARED_KEYS                                                            \
     [NAME] = {"name", true, ritz_yaml_name, offsetof(ritz_scene_io, name)},    \
-    [AT] = {"at", true, NULL, 0},                                              \
-    [COMPONENT] = {"component", true, take_component,                          \
-                   offsetof(ritz_scene_io, component)},                        \
+    [AT] = {"at", true, NULL, 0}, [COMPONENT] = {"component", true, NULL, 0},  \
     [GRID] = {"grid", false, take_grid, offsetof(ritz_scene_io, grid)}
 
 static const ritz_yaml_key input_keys[NUM_INPUT_KEYS] = {
     SHARED_KEYS,
+    [AGAINST] = {"against", false, NULL, 0},
     {"scale", false, take_scale, offsetof(ritz_scene_io, scale)},
 };
 
@@ -85,7 +113,29 @@ typedef struct io_side {
     const char *what;
     int64_t count;
     const ritz_yaml_key *keys;
+    bool drives;
 } io_side;
+
+/* Directions and the place of a reaction, which outputs have not. */
+static ritz_status read_force(const ritz_yaml *yaml, const io_side *side,
+                              const yaml_node_t *const *value,
+                              const ritz_scene *scene, ritz_scene_io *io)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!side->drives)
+        return take_component(yaml, value[COMPONENT], &io->component);
+    RITZ_TRY(take_directions(yaml, value[COMPONENT], io));
+    if (!value[AGAINST])
+        return RITZ_OK;
+    RITZ_TRY(ritz_scene_place_read(yaml, value[AGAINST], scene, &io->against));
+    RITZ_REFUSE_IF(io->against.component == io->at.component &&
+                       strcmp(io->against.port, io->at.port) == 0,
+                   yaml, value[AGAINST], "input '%s' acts against itself",
+                   io->name);
+done:
+    return status;
+}
 
 static ritz_status read_list(const ritz_yaml *yaml, const yaml_node_t *list,
                              const io_side *side, const ritz_scene *scene,
@@ -108,6 +158,7 @@ static ritz_status read_list(const ritz_yaml *yaml, const yaml_node_t *list,
                        value[NAME], "%s '%s' is given twice", side->what,
                        io[k].name);
         RITZ_TRY(ritz_scene_place_read(yaml, value[AT], scene, &io[k].at));
+        RITZ_TRY(read_force(yaml, side, value, scene, &io[k]));
     }
 done:
     return status;
@@ -116,7 +167,7 @@ done:
 ritz_status ritz_scene_inputs(const ritz_yaml *yaml, const yaml_node_t *node,
                               ritz_scene *scene)
 {
-    static const io_side inputs = {"input", NUM_INPUT_KEYS, input_keys};
+    static const io_side inputs = {"input", NUM_INPUT_KEYS, input_keys, true};
     ritz_status status = RITZ_OK;
 
     if (node)
@@ -131,7 +182,8 @@ done:
 ritz_status ritz_scene_outputs(const ritz_yaml *yaml, const yaml_node_t *node,
                                ritz_scene *scene)
 {
-    static const io_side outputs = {"output", NUM_OUTPUT_KEYS, output_keys};
+    static const io_side outputs = {"output", NUM_OUTPUT_KEYS, output_keys,
+                                    false};
     ritz_status status = RITZ_OK;
 
     if (node)

@@ -1,24 +1,103 @@
-/* Joints of a scene: fixed ones, and hinges with an axis and angles. */
-#include "model/scene_parts.h"
+/* Joints of a scene: a table says what each type of them takes. */
+#include "model/joint_parts.h"
 
 #include "base/alloc.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char types[][16] = {
-    [RITZ_JOINT_FIXED] = "fixed",
-    [RITZ_JOINT_HINGE] = "hinge",
+enum { /* bits of keys */
+       AXIS = 1 << RITZ_JOINT_KEY_AXIS,
+       AXES = 1 << RITZ_JOINT_KEY_AXES,
+       ANGLES = 1 << RITZ_JOINT_KEY_ANGLES,
+       ANGLES2 = 1 << RITZ_JOINT_KEY_ANGLES2,
+       POSITIONS = 1 << RITZ_JOINT_KEY_POSITIONS,
+       STATE = 1 << RITZ_JOINT_KEY_STATE,
+       STIFFNESS = 1 << RITZ_JOINT_KEY_STIFFNESS,
+       DAMPING = 1 << RITZ_JOINT_KEY_DAMPING,
+       OFFSET = 1 << RITZ_JOINT_KEY_OFFSET,
+       TOLERANCE = 1 << RITZ_JOINT_KEY_TOLERANCE,
+       CAGE = STATE | STIFFNESS | DAMPING,
 };
+
+static const ritz_joint_kind kinds[] = {
+    [RITZ_JOINT_FIXED] =
+        {
+            .name = "fixed",
+            .called = "fixed joint",
+            .keys = TOLERANCE,
+        },
+    [RITZ_JOINT_HINGE] =
+        {
+            .name = "hinge",
+            .called = "hinge",
+            .keys = AXIS | ANGLES | CAGE,
+            .required = AXIS,
+            .freedoms = 1,
+            .sweeps = 1,
+            .sweep_key = {RITZ_JOINT_KEY_ANGLES},
+            .one = true,
+        },
+    [RITZ_JOINT_SLIDER] =
+        {
+            .name = "slider",
+            .called = "slider",
+            .keys = AXIS | POSITIONS | CAGE,
+            .required = AXIS,
+            .freedoms = 1,
+            .sweeps = 1,
+            .sweep_key = {RITZ_JOINT_KEY_POSITIONS},
+            .one = true,
+        },
+    [RITZ_JOINT_UNIVERSAL] =
+        {
+            .name = "universal",
+            .called = "universal joint",
+            .keys = AXES | ANGLES | ANGLES2 | CAGE,
+            .required = AXES,
+            .freedoms = 2,
+            .sweeps = 2,
+            .sweep_key = {RITZ_JOINT_KEY_ANGLES, RITZ_JOINT_KEY_ANGLES2},
+            .one = true,
+            .many = true,
+        },
+    [RITZ_JOINT_SPHERICAL] =
+        {
+            .name = "spherical",
+            .called = "spherical joint",
+            .keys = CAGE,
+            .freedoms = 3,
+            .one = true,
+        },
+    [RITZ_JOINT_BUSHING] =
+        {
+            .name = "bushing",
+            .called = "bushing",
+            .keys = AXES | STIFFNESS | DAMPING | TOLERANCE,
+            .required = STIFFNESS,
+            .freedoms = 6,
+            .many = true,
+        },
+    [RITZ_JOINT_RIGID] =
+        {
+            .name = "rigid",
+            .called = "rigid joint",
+            .keys = OFFSET,
+        },
+};
+
+const ritz_joint_kind *ritz_joint_kind_of(ritz_joint_type type)
+{
+    return &kinds[type];
+}
 
 static ritz_status take_type(const ritz_yaml *yaml, const yaml_node_t *node,
                              void *field)
 {
     ritz_status status = RITZ_OK;
-    ritz_names names = {"joint type", sizeof types / sizeof *types, types[0],
-                        sizeof *types};
+    ritz_names names = {"joint type", sizeof kinds / sizeof *kinds,
+                        kinds[0].name, sizeof *kinds};
     int64_t at = 0;
 
     RITZ_TRY(ritz_yaml_word(yaml, node, &names, &at));
@@ -27,7 +106,7 @@ done:
     return status;
 }
 
-/* Hinges are named in "clock=60,cone=0". */
+/* Joints are named in "clock=60,slide=0.5". */
 static ritz_status take_name(const ritz_yaml *yaml, const yaml_node_t *node,
                              void *field)
 {
@@ -41,38 +120,26 @@ done:
     return status;
 }
 
-/* axis / |axis|, scaled first so that no square leaves the range. */
-static ritz_status take_axis(const ritz_yaml *yaml, const yaml_node_t *node,
-                             void *field)
-{
-    ritz_status status = RITZ_OK;
-    double *axis = (double *)field;
-    double largest = 0.0;
-    double length = 0.0;
-
-    RITZ_TRY(ritz_yaml_reals(yaml, node, 3, axis));
-    for (int i = 0; i < 3; i++)
-        largest = fmax(largest, fabs(axis[i]));
-    RITZ_REFUSE_IF(largest == 0.0, yaml, node, "the axis has no length");
-    for (int i = 0; i < 3; i++)
-        axis[i] /= largest;
-    length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    for (int i = 0; i < 3; i++)
-        axis[i] /= length;
-done:
-    return status;
-}
-
-enum { NAME, BETWEEN, TYPE, AXIS, ANGLES, TOLERANCE, NUM_KEYS };
-
-static const ritz_yaml_key keys[NUM_KEYS] = {
-    [NAME] = {"name", true, take_name, offsetof(ritz_joint, name)},
-    [BETWEEN] = {"between", true, NULL, 0},
-    [TYPE] = {"type", true, take_type, offsetof(ritz_joint, type)},
-    [AXIS] = {"axis", false, take_axis, offsetof(ritz_joint, axis)},
-    [ANGLES] = {"angles_deg", false, NULL, 0},
-    [TOLERANCE] = {"tolerance", false, ritz_yaml_positive,
-                   offsetof(ritz_joint, tolerance)},
+const ritz_yaml_key ritz_joint_keys[RITZ_NUM_JOINT_KEYS] = {
+    [RITZ_JOINT_KEY_NAME] = {"name", true, take_name,
+                             offsetof(ritz_joint, name)},
+    [RITZ_JOINT_KEY_BETWEEN] = {"between", true, NULL, 0},
+    [RITZ_JOINT_KEY_TYPE] = {"type", true, take_type,
+                             offsetof(ritz_joint, type)},
+    [RITZ_JOINT_KEY_AXIS] = {"axis", false, ritz_joint_take_axis,
+                             offsetof(ritz_joint, axis)},
+    [RITZ_JOINT_KEY_AXES] = {"axes", false, ritz_joint_take_axes,
+                             offsetof(ritz_joint, axis)},
+    [RITZ_JOINT_KEY_ANGLES] = {"angles_deg", false, NULL, 0},
+    [RITZ_JOINT_KEY_ANGLES2] = {"angles2_deg", false, NULL, 0},
+    [RITZ_JOINT_KEY_POSITIONS] = {"positions", false, NULL, 0},
+    [RITZ_JOINT_KEY_STATE] = {"state", false, NULL, 0},
+    [RITZ_JOINT_KEY_STIFFNESS] = {"stiffness", false, NULL, 0},
+    [RITZ_JOINT_KEY_DAMPING] = {"damping", false, NULL, 0},
+    [RITZ_JOINT_KEY_OFFSET] = {"offset", false, ritz_joint_take_offset,
+                               offsetof(ritz_joint, offset)},
+    [RITZ_JOINT_KEY_TOLERANCE] = {"tolerance", false, ritz_yaml_positive,
+                                  offsetof(ritz_joint, tolerance)},
 };
 
 static ritz_status read_between(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -97,26 +164,61 @@ done:
     return status;
 }
 
-/* Without a list there is angle 0 alone. */
-static ritz_status read_angles(const ritz_yaml *yaml, const yaml_node_t *node,
-                               ritz_joint *joint)
+/* The settings under one key; without a list there is 0 alone. */
+static ritz_status read_settings(const ritz_yaml *yaml, const yaml_node_t *node,
+                                 const char *called, ritz_sweep *sweep)
 {
     ritz_status status = RITZ_OK;
+    const char *what = sweep->turns ? "angle" : "position";
     int64_t count = 1;
     int64_t again = -1;
 
     if (node)
         RITZ_TRY(ritz_yaml_list(yaml, node, &count));
     RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_CONFIGURATIONS, yaml, node,
-                   "a hinge has 1 to %d angles, not %" PRId64,
-                   RITZ_MOST_CONFIGURATIONS, count);
-    RITZ_NEW(joint->setting, count);
-    joint->num_settings = count;
+                   "a %s has 1 to %d %ss, not %" PRId64, called,
+                   RITZ_MOST_CONFIGURATIONS, what, count);
+    RITZ_NEW(sweep->setting, count);
+    sweep->count = count;
     if (node)
-        RITZ_TRY(ritz_yaml_reals(yaml, node, count, joint->setting));
-    RITZ_TRY(ritz_rows_repeated(count, 1, joint->setting, &again));
+        RITZ_TRY(ritz_yaml_reals(yaml, node, count, sweep->setting));
+    RITZ_TRY(ritz_rows_repeated(count, 1, sweep->setting, &again));
     RITZ_REFUSE_IF(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
-                   "angle %g is listed twice", joint->setting[again]);
+                   "%s %g is listed twice", what, sweep->setting[again]);
+done:
+    return status;
+}
+
+/* What a joint is set to is named after it: "wrist", "wrist.2". */
+static ritz_status read_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const yaml_node_t *const *value,
+                               ritz_joint *joint, ritz_scene *scene)
+{
+    static const char *const endings[] = {"", ".2"};
+    ritz_status status = RITZ_OK;
+    const ritz_joint_kind *kind = &kinds[joint->type];
+
+    joint->sweep = scene->num_sweeps;
+    RITZ_REFUSE_IF(kind->sweeps > 1 &&
+                       strlen(joint->name) + strlen(".2") >= RITZ_NAME_SIZE,
+                   yaml, node,
+                   "'%s' is longer than %zu bytes, the name of a %s cannot "
+                   "be, as '.2' is put behind it",
+                   joint->name, RITZ_NAME_SIZE - sizeof ".2", kind->called);
+    for (int64_t k = 0; k < kind->sweeps && k < 2; k++) {
+        ritz_sweep *sweep = &scene->sweep[scene->num_sweeps++];
+
+        joint->num_sweeps++;
+        *sweep = (ritz_sweep){
+            .joint = joint - scene->joint,
+            .turns = kind->sweep_key[k] != RITZ_JOINT_KEY_POSITIONS,
+        };
+        memcpy(sweep->name, joint->name, sizeof sweep->name);
+        memcpy(sweep->name + strlen(joint->name), endings[k],
+               strlen(endings[k]) + 1);
+        RITZ_TRY(read_settings(yaml, value[kind->sweep_key[k]], kind->called,
+                               sweep));
+    }
 done:
     return status;
 }
@@ -126,55 +228,63 @@ static ritz_status check_keys(const ritz_yaml *yaml, const yaml_node_t *node,
                               const ritz_joint *joint,
                               const yaml_node_t *const *value)
 {
-    static const int others[][2] = {
-        [RITZ_JOINT_FIXED] = {AXIS, ANGLES},
-        [RITZ_JOINT_HINGE] = {TOLERANCE, TOLERANCE},
-    };
     ritz_status status = RITZ_OK;
+    const ritz_joint_kind *kind = &kinds[joint->type];
 
-    for (int k = 0; k < 2; k++) {
-        int other = others[joint->type][k];
-
-        RITZ_REFUSE_IF(value[other], yaml, value[other],
-                       "'%s' does not belong to a %s joint", keys[other].name,
-                       types[joint->type]);
-    }
-    RITZ_REFUSE_IF(joint->type == RITZ_JOINT_HINGE && !value[AXIS], yaml, node,
-                   "hinge '%s' has no axis", joint->name);
+    for (int k = RITZ_JOINT_KEY_TYPE + 1; k < RITZ_NUM_JOINT_KEYS; k++)
+        RITZ_REFUSE_IF(value[k] && !(kind->keys >> k & 1), yaml, value[k],
+                       "'%s' does not belong to a %s", ritz_joint_keys[k].name,
+                       kind->called);
+    for (int k = 0; k < RITZ_NUM_JOINT_KEYS; k++)
+        RITZ_REFUSE_IF(!value[k] && (kind->required >> k & 1), yaml, node,
+                       "%s '%s' has no %s", kind->called, joint->name,
+                       ritz_joint_keys[k].name);
 done:
     return status;
 }
 
 static ritz_status read_joint(const ritz_yaml *yaml, const yaml_node_t *node,
-                              const ritz_scene *scene, ritz_joint *joint)
+                              ritz_scene *scene, ritz_joint *joint)
 {
     ritz_status status = RITZ_OK;
-    const yaml_node_t *value[NUM_KEYS];
+    const yaml_node_t *value[RITZ_NUM_JOINT_KEYS];
 
     joint->line = (int64_t)node->start_mark.line + 1;
     joint->column = (int64_t)node->start_mark.column + 1;
-    RITZ_TRY(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, joint, value));
-    RITZ_TRY(read_between(yaml, value[BETWEEN], scene, joint->between));
+    joint->axis[0][0] = joint->axis[1][1] = 1.0;
+    RITZ_TRY(ritz_yaml_mapping(yaml, node, RITZ_NUM_JOINT_KEYS, ritz_joint_keys,
+                               joint, value));
+    RITZ_TRY(read_between(yaml, value[RITZ_JOINT_KEY_BETWEEN], scene,
+                          joint->between));
     RITZ_TRY(check_keys(yaml, node, joint, value));
-    if (joint->type == RITZ_JOINT_HINGE)
-        RITZ_TRY(read_angles(yaml, value[ANGLES], joint));
+    joint->num_freedoms = kinds[joint->type].freedoms;
+    RITZ_TRY(ritz_joint_read_freedoms(yaml, node, value, joint));
+    RITZ_TRY(read_sweeps(yaml, node, value, joint, scene));
 done:
     return status;
 }
 
-/* hinge[k] of all joints that are hinges, in the order of the scene. */
-static ritz_status find_hinges(const ritz_yaml *yaml, const yaml_node_t *node,
-                               ritz_scene *scene)
+/* No joint is called what a second axis of another is; not too many sweeps. */
+static ritz_status check_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
+                                const ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
+    const ritz_names joints = {"joint", scene->num_joints,
+                               (const char *)scene->joint,
+                               sizeof *scene->joint};
 
-    RITZ_NEW(scene->sweep, scene->num_joints);
-    for (int64_t k = 0; k < scene->num_joints; k++)
-        if (scene->joint[k].type == RITZ_JOINT_HINGE)
-            scene->sweep[scene->num_sweeps++] = k;
     RITZ_REFUSE_IF(scene->num_sweeps > RITZ_MOST_SWEEPS, yaml, node,
-                   "%" PRId64 " hinges are too many, %d can be",
+                   "%" PRId64 " settings of joints are too many, %d can be",
                    scene->num_sweeps, RITZ_MOST_SWEEPS);
+    for (int64_t k = 0; k < scene->num_sweeps; k++) {
+        const ritz_sweep *sweep = &scene->sweep[k];
+        int64_t at = ritz_names_index(&joints, sweep->name);
+
+        RITZ_REFUSE_IF(at >= 0 && at != sweep->joint, yaml,
+                       ritz_yaml_item(yaml, node, at),
+                       "joint '%s' has the name of the second axis of '%s'",
+                       sweep->name, scene->joint[sweep->joint].name);
+    }
 done:
     return status;
 }
@@ -188,6 +298,7 @@ ritz_status ritz_scene_joints(const ritz_yaml *yaml, const yaml_node_t *node,
     if (node)
         RITZ_TRY(ritz_scene_count(yaml, node, &count));
     RITZ_NEW(scene->joint, count);
+    RITZ_NEW(scene->sweep, 2 * count);
     scene->num_joints = count;
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
@@ -198,7 +309,7 @@ ritz_status ritz_scene_joints(const ritz_yaml *yaml, const yaml_node_t *node,
         RITZ_REFUSE_IF(ritz_names_index(&before, joint->name) >= 0, yaml, item,
                        "joint '%s' is given twice", joint->name);
     }
-    RITZ_TRY(find_hinges(yaml, node, scene));
+    RITZ_TRY(check_sweeps(yaml, node, scene));
 done:
     return status;
 }

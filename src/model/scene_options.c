@@ -1,7 +1,5 @@
-/* What a scene says once: band, damping, selection, augmentation. */
+/* What a scene says once of the whole: band and damping. */
 #include "model/scene_parts.h"
-
-#include <ritz/ranking.h>
 
 #include <inttypes.h>
 
@@ -70,10 +68,49 @@ done:
     return status;
 }
 
+static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_status status = RITZ_OK;
+    ritz_damping *damping = (ritz_damping *)field;
+
+    damping->kind = RITZ_DAMPING_MODES;
+    RITZ_TRY(ritz_yaml_list(yaml, node, &damping->count));
+    RITZ_REFUSE_IF(damping->count < 1 || damping->count > RITZ_MOST_RATIOS,
+                   yaml, node,
+                   "1 to %d ratios of modes can be given, not %" PRId64,
+                   RITZ_MOST_RATIOS, damping->count);
+    RITZ_TRY(ritz_yaml_reals(yaml, node, damping->count, damping->ratio));
+    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_damping_check(damping)));
+done:
+    return status;
+}
+
+static ritz_status take_fit(const ritz_yaml *yaml, const yaml_node_t *node,
+                            void *field)
+{
+    ritz_status status = RITZ_OK;
+    ritz_damping *damping = (ritz_damping *)field;
+
+    damping->kind = RITZ_DAMPING_FIT;
+    RITZ_TRY(ritz_yaml_list(yaml, node, &damping->count));
+    RITZ_REFUSE_IF(damping->count < 2 || damping->count > RITZ_MOST_POINTS,
+                   yaml, node,
+                   "2 to %d points of a fit can be given, not %" PRId64,
+                   RITZ_MOST_POINTS, damping->count);
+    for (int64_t k = 0; k < damping->count; k++)
+        RITZ_TRY(ritz_yaml_reals(yaml, ritz_yaml_item(yaml, node, k), 2,
+                                 damping->point[k]));
+    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_damping_check(damping)));
+    ritz_damping_fit(damping);
+done:
+    return status;
+}
+
 static const ritz_yaml_key damping_keys[] = {
-    {"modal", false, take_modal, 0},
-    {"bands", false, take_bands, 0},
-    {"rayleigh", false, take_rayleigh, 0},
+    {"modal", false, take_modal, 0},      {"modes", false, take_modes, 0},
+    {"bands", false, take_bands, 0},      {"rayleigh", false, take_rayleigh, 0},
+    {"rayleigh_fit", false, take_fit, 0},
 };
 
 ritz_status ritz_scene_damping(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -86,58 +123,10 @@ ritz_status ritz_scene_damping(const ritz_yaml *yaml, const yaml_node_t *node,
 
     RITZ_TRY(ritz_yaml_pairs(yaml, node, &count));
     RITZ_REFUSE_IF(count != 1, yaml, node,
-                   "damping is one of modal, bands and rayleigh");
+                   "damping is one of modal, modes, bands, rayleigh and "
+                   "rayleigh_fit");
     RITZ_TRY(
         ritz_yaml_mapping(yaml, node, NUM_KEYS, damping_keys, field, value));
-done:
-    return status;
-}
-
-static ritz_status take_ranking(const ritz_yaml *yaml, const yaml_node_t *node,
-                                void *field)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_yaml_name(yaml, node, field));
-    if (!ritz_ranker_find((const char *)field))
-        status = ritz_yaml_at(yaml, node, RITZ_ERR_ARGUMENT);
-done:
-    return status;
-}
-
-static const ritz_yaml_key select_keys[] = {
-    {"by", false, take_ranking, offsetof(ritz_scene, select_by)},
-    {"tolerance", false, ritz_yaml_fraction,
-     offsetof(ritz_scene, select_tolerance)},
-};
-
-ritz_status ritz_scene_select(const ritz_yaml *yaml, const yaml_node_t *node,
-                              void *field)
-{
-    enum { NUM_KEYS = sizeof select_keys / sizeof *select_keys };
-    const yaml_node_t *value[NUM_KEYS];
-
-    return ritz_yaml_mapping(yaml, node, NUM_KEYS, select_keys, field, value);
-}
-
-ritz_status ritz_scene_augment(const ritz_yaml *yaml, const yaml_node_t *node,
-                               void *field)
-{
-    enum { COMPONENT = 2, NUM_WORDS };
-    static const char words[NUM_WORDS][16] = {
-        [RITZ_AUGMENT_NONE] = "none",
-        [RITZ_AUGMENT_SYSTEM] = "system",
-        [COMPONENT] = "component",
-    };
-    ritz_status status = RITZ_OK;
-    ritz_names names = {"augmentation", NUM_WORDS, words[0], sizeof *words};
-    int64_t at = 0;
-
-    RITZ_TRY(ritz_yaml_word(yaml, node, &names, &at));
-    RITZ_REFUSE_IF(at == COMPONENT, yaml, node,
-                   "augmentation of each component comes with a later release, "
-                   "there is system and none");
-    *(ritz_augment *)field = (ritz_augment)at;
 done:
     return status;
 }

@@ -8,8 +8,8 @@
 
 enum {
     RITZ_MOST_PARTS = 10000,           /* components, joints, inputs, outputs */
-    RITZ_MOST_SWEEPS = 1000,           /* as looked up for every angle */
-    RITZ_MOST_SETTINGS = 1000000,      /* configurations times hinges */
+    RITZ_MOST_SWEEPS = 1000,           /* as looked up for every setting */
+    RITZ_MOST_SETTINGS = 1000000,      /* configurations times sweeps */
     RITZ_MOST_CONFIGURATIONS = 100000, /* given or combined */
     RITZ_MOST_REFERENCES = 1000,       /* each sought among all of those */
 };
@@ -25,13 +25,14 @@ ritz_scene_part ritz_scene_joints;
 ritz_scene_part ritz_scene_configurations;
 ritz_scene_part ritz_scene_inputs;
 ritz_scene_part ritz_scene_outputs;
+ritz_scene_part ritz_scene_select;
 ritz_scene_part ritz_scene_composite;
+ritz_scene_part ritz_scene_augment;
+ritz_scene_part ritz_scene_extraneous;
 
-/* What stands alone; fields band_hz, damping, the scene itself, augment. */
+/* What stands alone; fields band_hz, damping. */
 ritz_yaml_take ritz_scene_band;
 ritz_yaml_take ritz_scene_damping;
-ritz_yaml_take ritz_scene_select;
-ritz_yaml_take ritz_scene_augment;
 
 /** Number of items of a list of parts, refused if it is too long. */
 ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -43,22 +44,23 @@ ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
                                   const ritz_scene *scene,
                                   ritz_scene_place *out);
 
-/** No angle yet for any hinge. */
+/** Nothing set yet of any sweep. */
 void ritz_scene_row_clear(const ritz_scene *scene, double *row);
 
 /**
- * Put an angle in a row, once.
+ * Put a setting in a row, once.
  *
- * @return RITZ_ERR_ARGUMENT if @p joint is no hinge or has its angle
+ * @param[in] name  of the sweep: "clock", "wrist.2"
+ * @return RITZ_ERR_ARGUMENT if there is no such sweep or it has its setting
  */
-ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *joint,
+ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *name,
                                double setting, double *row);
 
-/** Hinges without an angle get their only one; RITZ_ERR_ARGUMENT if it is not.
+/** Sweeps without a setting get their only one; RITZ_ERR_ARGUMENT if it is not.
  */
 ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row);
 
-/** The row of angles of {clock: 60, cone: 0}. */
+/** The row of settings of {clock: 60, slide: 0.5}. */
 ritz_status ritz_scene_row_read(const ritz_yaml *yaml, const yaml_node_t *node,
                                 const ritz_scene *scene, double *row);
 

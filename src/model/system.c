@@ -1,12 +1,14 @@
 #include <ritz/system.h>
 
+#include "base/alloc.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double same_angle = 1e-9; /* degrees */
+static const double same_setting = 1e-9; /* degrees, or lengths */
 
 void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
                              const double *setting, char out[RITZ_NAME_SIZE])
@@ -21,26 +23,26 @@ void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
         snprintf(out, RITZ_NAME_SIZE, "fixed");
 }
 
-/* One part, "clock=60", of a configuration's name: the angle it asks for. */
+/* One part, "clock=60", of a configuration's name: what it asks for. */
 static ritz_status read_part(const ritz_system *system, const char *part,
                              double *wanted)
 {
     ritz_status status = RITZ_OK;
     const char *equals = strchr(part, '=');
     size_t length = equals ? (size_t)(equals - part) : 0;
-    double angle = 0.0;
+    double setting = 0.0;
 
-    RITZ_FAIL_IF(!equals || !ritz_text_real(equals + 1, &angle),
-                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=ANGLE", part);
+    RITZ_FAIL_IF(!equals || !ritz_text_real(equals + 1, &setting),
+                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=SETTING", part);
     for (int64_t k = 0; k < system->num_sweeps; k++)
         if (strlen(system->sweep[k]) == length &&
             strncmp(system->sweep[k], part, length) == 0) {
             RITZ_FAIL_IF(!isnan(wanted[k]), RITZ_ERR_ARGUMENT,
-                         "hinge '%s' is named twice", system->sweep[k]);
-            wanted[k] = angle;
+                         "joint '%s' is named twice", system->sweep[k]);
+            wanted[k] = setting;
             return RITZ_OK;
         }
-    RITZ_FAIL_IF(true, RITZ_ERR_ARGUMENT, "there is no hinge '%.*s'",
+    RITZ_FAIL_IF(true, RITZ_ERR_ARGUMENT, "there is no joint '%.*s' to set",
                  (int)length, part);
 done:
     return status;
@@ -49,29 +51,25 @@ done:
 static bool matches(const ritz_configuration *c, const double *wanted)
 {
     for (int64_t k = 0; k < c->num_settings; k++)
-        if (!isnan(wanted[k]) && fabs(c->setting[k] - wanted[k]) > same_angle)
+        if (!isnan(wanted[k]) && fabs(c->setting[k] - wanted[k]) > same_setting)
             return false;
     return true;
 }
 
-enum { MAX_SWEEPS = 16 };
-
-/* What is asked of each hinge, NaN where nothing is. */
+/* What is asked of each sweep, NaN where nothing is. */
 static ritz_status read_wanted(const ritz_system *system, const char *at,
-                               double wanted[MAX_SWEEPS])
+                               double *wanted)
 {
     ritz_status status = RITZ_OK;
     char part[2 * RITZ_NAME_SIZE];
 
-    RITZ_FAIL_IF(system->num_sweeps > MAX_SWEEPS, RITZ_ERR_ARGUMENT,
-                 "more than %d hinges", MAX_SWEEPS);
-    for (int64_t k = 0; k < MAX_SWEEPS; k++)
+    for (int64_t k = 0; k < system->num_sweeps; k++)
         wanted[k] = nan("");
     while (at && *at) {
         size_t length = strcspn(at, ",");
 
         RITZ_FAIL_IF(length >= sizeof part, RITZ_ERR_ARGUMENT,
-                     "'%.40s...' is not JOINT=ANGLE", at);
+                     "'%.40s...' is not JOINT=SETTING", at);
         memcpy(part, at, length);
         part[length] = '\0';
         RITZ_TRY(read_part(system, part, wanted));
@@ -88,10 +86,11 @@ ritz_status ritz_system_find(const ritz_system *system, const char *at,
 {
     ritz_status status = RITZ_OK;
     const ritz_configuration *found = NULL;
-    double wanted[MAX_SWEEPS];
+    double *wanted = NULL;
 
     RITZ_FAIL_IF(system->num_configurations < 1, RITZ_ERR_ARGUMENT,
                  "the system has no configuration");
+    RITZ_NEW(wanted, system->num_sweeps);
     RITZ_TRY(read_wanted(system, at, wanted));
     for (int64_t k = 0; k < system->num_configurations; k++) {
         const ritz_configuration *c = &system->configuration[k];
@@ -112,7 +111,14 @@ ritz_status ritz_system_find(const ritz_system *system, const char *at,
         system->configuration[system->num_configurations - 1].at);
     *out = found;
 done:
+    free(wanted);
     return status;
+}
+
+ritz_status ritz_configuration_install(ritz_configuration *configuration)
+{
+    return ritz_dampers_install(&configuration->dampers, &configuration->K,
+                                &configuration->D);
 }
 
 void ritz_configuration_free(ritz_configuration *configuration)
@@ -125,6 +131,8 @@ void ritz_configuration_free(ritz_configuration *configuration)
     ritz_dense_free(&configuration->K);
     ritz_dense_free(&configuration->M);
     ritz_dense_free(&configuration->D);
+    ritz_dense_free(&configuration->K4);
+    ritz_dampers_free(&configuration->dampers);
     ritz_io_free(&configuration->io);
     ritz_measures_free(&configuration->errors);
     *configuration = (ritz_configuration){0};

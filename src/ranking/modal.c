@@ -225,7 +225,7 @@ static ritz_status fill(const ritz_pairs *pairs, const double *own,
     for (int64_t k = 0; k < modal->count; k++) {
         int64_t at = pairs->num_rigid + k;
         double w = sqrt(pairs->lambda[at]);
-        double given = damping ? ritz_damping_ratio(damping, w) : 0.0;
+        double given = damping ? ritz_damping_of_mode(damping, k, w) : 0.0;
 
         modal->omega[k] = w;
         modal->zeta[k] = given + own[at] / (2.0 * w);

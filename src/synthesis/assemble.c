@@ -5,10 +5,14 @@
  *
  *     M_e = P'MP,   K_e = P'KP,   e = Q - rank(C)
  *
+ * K and D those of the bodies and of the springs that joints hold.
+ *
  * The system's modes Phi_e are put into P, so that its coordinates are modal.
  */
 #include "base/alloc.h"
+#include "synthesis/dual.h"
 #include "synthesis/null_space.h"
+#include "synthesis/springs.h"
 
 #include <ritz/eigen.h>
 #include <ritz/synthesis.h>
@@ -38,7 +42,7 @@ static ritz_status add_block(const ritz_dense *A, const ritz_dense *P,
     ritz_status status = RITZ_OK;
     ritz_dense part = {0};
 
-    RITZ_TRY(ritz_dense_congruence(A, P, &part));
+    RITZ_TRY(ritz_dense_project(A, P, &part));
     for (int64_t k = 0; k < part.nrow * part.ncol; k++)
         sum->val[k] += part.val[k];
 done:
@@ -46,13 +50,14 @@ done:
     return status;
 }
 
-/* M, K or D of the system, sum over bodies; NULL bodies without D. */
-static ritz_status project_all(const ritz_stage *stage, const ritz_dense *P,
+/* M, K and D of the system, sums over bodies and springs; {0} without D. */
+static ritz_status project_all(const ritz_stage *stage,
+                               const ritz_springs *springs, const ritz_dense *P,
                                ritz_dense *K, ritz_dense *M, ritz_dense *D)
 {
     ritz_status status = RITZ_OK;
     ritz_dense block = {0};
-    bool damped = false;
+    bool damped = ritz_springs_damp(springs);
 
     for (int64_t k = 0; k < stage->count; k++)
         damped = damped || stage->body[k].D.val;
@@ -68,6 +73,30 @@ static ritz_status project_all(const ritz_stage *stage, const ritz_dense *P,
         RITZ_TRY(add_block(&body->M, &block, M));
         if (body->D.val)
             RITZ_TRY(add_block(&body->D, &block, D));
+        ritz_dense_free(&block);
+    }
+    RITZ_TRY(ritz_springs_add(springs, P, K, D));
+done:
+    ritz_dense_free(&block);
+    return status;
+}
+
+/* K4 of the system; none if no body has any. */
+static ritz_status project_structural(const ritz_stage *stage,
+                                      const ritz_dense *P, ritz_dense *K4)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense block = {0};
+
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_dense *own = &stage->body[k].K4;
+
+        if (!own->val)
+            continue;
+        if (!K4->val)
+            RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, K4));
+        RITZ_TRY(take_block(P, stage->first[k], own->ncol, &block));
+        RITZ_TRY(add_block(own, &block, K4));
         ritz_dense_free(&block);
     }
 done:
@@ -96,14 +125,14 @@ static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
  *
  * [OgitaAishima2018]. On return lambda holds the Rayleigh quotients.
  */
-static ritz_status refine(const ritz_stage *stage, int64_t rigid,
-                          double *lambda, ritz_dense *P)
+static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
+                          int64_t rigid, double *lambda, ritz_dense *P)
 {
     ritz_status status = RITZ_OK;
     int64_t e = P->ncol;
     ritz_dense K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
 
-    RITZ_TRY(project_all(stage, P, &K, &M, &D));
+    RITZ_TRY(project_all(stage, springs, P, &K, &M, &D));
     RITZ_TRY(ritz_dense_new(e, e, &E));
     for (int64_t j = 0; j < e; j++)
         lambda[j] = ritz_dense_col(&K, j)[j] / ritz_dense_col(&M, j)[j];
@@ -131,7 +160,8 @@ done:
 }
 
 /* The system in coordinates P becomes that in its modes; P becomes P Phi. */
-static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
+static ritz_status make_modal(const ritz_stage *stage,
+                              const ritz_springs *springs, ritz_dense *P,
                               ritz_configuration *c)
 {
     ritz_status status = RITZ_OK;
@@ -139,16 +169,16 @@ static ritz_status make_modal(const ritz_stage *stage, ritz_dense *P,
     ritz_pairs pairs = {0};
     int64_t e = 0;
 
-    RITZ_TRY(project_all(stage, P, &K, &M, &D));
+    RITZ_TRY(project_all(stage, springs, P, &K, &M, &D));
     RITZ_TRY_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
     e = pairs.Phi.ncol;
     RITZ_TRY(ritz_dense_mul(P, &pairs.Phi, &Q));
     for (int pass = 0; pass < 2; pass++)
-        RITZ_TRY(refine(stage, pairs.num_rigid, pairs.lambda, &Q));
+        RITZ_TRY(refine(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
     ritz_dense_free(&K);
     ritz_dense_free(&M);
     ritz_dense_free(&D);
-    RITZ_TRY(project_all(stage, &Q, &K, &M, &c->D));
+    RITZ_TRY(project_all(stage, springs, &Q, &K, &M, &c->D));
     RITZ_TRY(ritz_dense_new(e, e, &c->K));
     RITZ_TRY(ritz_dense_new(e, e, &c->M));
     RITZ_NEW(c->lambda, e);
@@ -169,22 +199,22 @@ done:
     return status;
 }
 
-/* Name, angles, blocks and io of a configuration with modal P. */
+/* Name, settings, blocks and io of a configuration with modal P. */
 static ritz_status finish(const ritz_stage *stage, const double *setting,
                           const ritz_dense *P, ritz_configuration *c)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    char(*hinge)[RITZ_NAME_SIZE] = NULL;
+    char(*sweep)[RITZ_NAME_SIZE] = NULL;
 
-    RITZ_NEW(hinge, scene->num_sweeps);
+    RITZ_NEW(sweep, scene->num_sweeps);
     RITZ_NEW(c->setting, scene->num_sweeps);
     c->num_settings = scene->num_sweeps;
     for (int64_t k = 0; k < scene->num_sweeps; k++) {
-        memcpy(hinge[k], scene->joint[scene->sweep[k]].name, RITZ_NAME_SIZE);
+        memcpy(sweep[k], scene->sweep[k].name, RITZ_NAME_SIZE);
         c->setting[k] = setting[k];
     }
-    ritz_configuration_name(scene->num_sweeps, hinge, setting, c->at);
+    ritz_configuration_name(scene->num_sweeps, sweep, setting, c->at);
     RITZ_NEW(c->P, stage->count);
     for (int64_t k = 0; k < stage->count; k++) {
         c->num_blocks++;
@@ -192,8 +222,10 @@ static ritz_status finish(const ritz_stage *stage, const double *setting,
             take_block(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
     }
     RITZ_TRY(ritz_io_project(&stage->io, P, &c->io));
+    RITZ_TRY(ritz_dampers_project(&stage->dampers, P, &c->dampers));
+    RITZ_TRY(project_structural(stage, P, &c->K4));
 done:
-    free(hinge);
+    free(sweep);
     return status;
 }
 
@@ -202,22 +234,29 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
 {
     ritz_status status = RITZ_OK;
     ritz_configuration c = {0};
+    ritz_springs springs = {0};
     ritz_dense C = {0}, P = {0};
     double *scale = NULL;
 
     RITZ_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
     RITZ_TRY(ritz_stage_constraints(stage, setting, scale, &C));
-    RITZ_TRY(ritz_null_space(&C, &c.rank, &P));
-    for (int64_t j = 0; j < P.ncol; j++)
-        for (int64_t i = 0; i < P.nrow; i++)
-            ritz_dense_col(&P, j)[i] *= scale[i];
-    RITZ_TRY(make_modal(stage, &P, &c));
+    RITZ_TRY(ritz_stage_springs(stage, setting, &springs));
+    if (ritz_dual_is_due(stage)) {
+        RITZ_TRY(ritz_dual_assemble(stage, &springs, &C, scale, &P, &c));
+    } else {
+        RITZ_TRY(ritz_null_space(&C, &c.rank, &P));
+        for (int64_t j = 0; j < P.ncol; j++)
+            for (int64_t i = 0; i < P.nrow; i++)
+                ritz_dense_col(&P, j)[i] *= scale[i];
+        RITZ_TRY(make_modal(stage, &springs, &P, &c));
+    }
     RITZ_TRY(finish(stage, setting, &P, &c));
     *out = c;
     c = (ritz_configuration){0};
 done:
     free(scale);
+    ritz_springs_free(&springs);
     ritz_dense_free(&C);
     ritz_dense_free(&P);
     ritz_configuration_free(&c);

@@ -6,11 +6,11 @@
  */
 #include "base/alloc.h"
 #include "synthesis/compare_parts.h"
-#include "verify/dense_poles.h"
 
 #include <ritz/eigen.h>
 #include <ritz/verify.h>
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -24,9 +24,10 @@ static const double same_frequency = 1e-6;
  */
 static const double rounding = 20.0; /* c = rounding * e */
 
-static ritz_status correlate(const ritz_stage *stage, const ritz_dense *V,
-                             const ritz_configuration *first,
-                             const ritz_configuration *second, ritz_dense *X)
+ritz_status ritz_compare_correlate(const ritz_stage *stage, const ritz_dense *V,
+                                   const ritz_configuration *first,
+                                   const ritz_configuration *second,
+                                   ritz_dense *X)
 {
     ritz_status status = RITZ_OK;
     ritz_dense VP = {0}, MVP = {0}, part = {0};
@@ -80,8 +81,7 @@ static void measure_modes(const ritz_configuration *first,
     double c = rounding * (double)e;
     bool any = false, broken = false;
 
-    row->mac = 1.0;
-    row->allowed = nan("");
+    row->frequency_error = row->mac = row->allowed = nan("");
     for (int64_t i = 0; i < row->num_kept; i++) {
         int64_t k = first->num_rigid + row->kept[i];
         double mac = 0.0, error = 0.0, allowed = 0.0;
@@ -93,7 +93,7 @@ static void measure_modes(const ritz_configuration *first,
         j = find_partner(second, X, k, &mac);
         error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
         allowed = c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k];
-        row->mac = fmin(row->mac, mac);
+        row->mac = fmin(row->mac, mac); /* which passes NaN over */
         beyond = row->listed && error > allowed;
         if (!any || beyond > broken ||
             (beyond == broken && error > row->frequency_error)) {
@@ -114,33 +114,69 @@ static void measure_rigid(const ritz_configuration *second,
             fmax(row->rigid_error, fabs(ritz_eigen_hertz(second->lambda[j])));
 }
 
-/* Relative to the largest entry of the first. */
-static ritz_status measure_gain(const ritz_configuration *first,
-                                const ritz_configuration *second,
-                                ritz_compare_row *row)
+/* Largest difference of two matrices, relative to the first. */
+static double relative(const ritz_dense *one, const ritz_dense *two)
+{
+    double largest = ritz_dense_max(one);
+    double apart = 0.0;
+
+    for (int64_t k = 0; k < one->nrow * one->ncol; k++)
+        apart = fmax(apart, fabs(two->val[k] - one->val[k]));
+    return largest > 0.0 ? apart / largest : 0.0;
+}
+
+ritz_status ritz_compare_gain(const ritz_configuration *first,
+                              const ritz_configuration *second, double *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense one = {0}, two = {0};
-    double largest = 0.0;
 
     RITZ_TRY(ritz_static_gain(&first->K, &first->M, &first->io, &one));
     RITZ_TRY(ritz_static_gain(&second->K, &second->M, &second->io, &two));
-    largest = ritz_dense_max(&one);
-    for (int64_t k = 0; k < one.nrow * one.ncol; k++)
-        two.val[k] -= one.val[k];
-    row->gain_error = largest > 0.0 ? ritz_dense_max(&two) / largest : 0.0;
+    *out = relative(&one, &two);
 done:
     ritz_dense_free(&one);
     ritz_dense_free(&two);
     return status;
 }
 
-/* Poles of a configuration, damped as the scene says. */
-static ritz_status find_poles(const ritz_scene *scene,
-                              const ritz_configuration *c, ritz_poles *out)
+/* C Lambda^-i-1 B of the flexible part. */
+static ritz_status moment(const ritz_configuration *c, int64_t i,
+                          ritz_dense *out)
 {
-    return ritz_poles_of_dense(&c->K, &c->M, c->D.val ? &c->D : NULL, &c->io,
-                               &scene->damping, out);
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0};
+
+    RITZ_TRY(ritz_dense_copy(&c->io.B, &X));
+    for (int64_t j = 0; j < X.ncol; j++)
+        for (int64_t k = 0; k < X.nrow; k++)
+            ritz_dense_col(&X, j)[k] *=
+                k < c->num_rigid ? 0.0 : pow(c->lambda[k], -1.0 - (double)i);
+    RITZ_TRY(ritz_dense_mul(&c->io.C, &X, out));
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+ritz_status ritz_compare_moments(const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 int64_t count, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense one = {0}, two = {0};
+
+    *out = nan("");
+    for (int64_t i = 0; i < count && first->io.num_outputs > 0; i++) {
+        RITZ_TRY(moment(first, i, &one));
+        RITZ_TRY(moment(second, i, &two));
+        *out = fmax(*out, relative(&one, &two));
+        ritz_dense_free(&one);
+        ritz_dense_free(&two);
+    }
+done:
+    ritz_dense_free(&one);
+    ritz_dense_free(&two);
+    return status;
 }
 
 /* Largest difference over largest magnitude, on the first system's points. */
@@ -150,59 +186,43 @@ static ritz_status measure_response(const ritz_scene *scene,
                                     ritz_compare_row *row)
 {
     ritz_status status = RITZ_OK;
-    const ritz_grid grid = {
-        .from_hz = fmax(scene->band_hz[0], 1e-3 * scene->band_hz[1]),
-        .to_hz = scene->band_hz[1],
-        .count = 200,
-        .refine = true,
-    };
-    ritz_poles one = {0}, two = {0};
-    ritz_response r = {0}, s = {0};
+    ritz_two_responses r = {0};
     double largest = 0.0, gap = 0.0;
-    int64_t size = first->io.num_inputs * first->io.num_outputs;
 
-    RITZ_TRY(find_poles(scene, first, &one));
-    RITZ_TRY(find_poles(scene, second, &two));
-    RITZ_TRY(ritz_response_new(&grid, &one, "modal", &scene->damping, &r));
-    RITZ_TRY(ritz_response_new(&grid, &one, "modal", &scene->damping, &s));
-    for (int64_t k = 0; k < r.count; k++) {
-        RITZ_TRY(ritz_poles_add(&one, r.hertz[k], r.H + k * size));
-        RITZ_TRY(ritz_poles_add(&two, r.hertz[k], s.H + k * size));
-    }
-    for (int64_t k = 0; k < r.count * size; k++) {
-        largest = fmax(largest, cabs(r.H[k]));
-        gap = fmax(gap, cabs(r.H[k] - s.H[k]));
+    RITZ_TRY(ritz_compare_respond(scene, first, second, &r));
+    for (int64_t k = 0; k < r.count * r.num_inputs * r.num_outputs; k++) {
+        largest = fmax(largest, cabs(r.one[k]));
+        gap = fmax(gap, cabs(r.one[k] - r.two[k]));
     }
     row->response_error = largest > 0.0 ? gap / largest : 0.0;
 done:
-    ritz_poles_free(&one);
-    ritz_poles_free(&two);
-    ritz_response_free(&r);
-    ritz_response_free(&s);
+    ritz_two_responses_free(&r);
     return status;
 }
 
 ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  const ritz_configuration *first,
-                                 const ritz_configuration *second,
+                                 ritz_configuration *second,
                                  ritz_compare_row *row)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
     ritz_dense X = {0};
 
     row->num_rigid = first->num_rigid;
     row->num_flexible = first->K.ncol - first->num_rigid;
-    row->order = second->K.ncol;
     row->gain_error = row->response_error = nan("");
-    RITZ_TRY(correlate(stage, V, first, second, &X));
+    RITZ_TRY(ritz_compare_correlate(stage, V, first, second, &X));
     measure_modes(first, second, &X, row);
     measure_rigid(second, row);
-    if (driven)
-        RITZ_TRY(measure_gain(first, second, row));
-    if (driven && scene->band_hz[1] > 0.0 &&
-        scene->damping.kind != RITZ_DAMPING_NONE)
+    RITZ_TRY(ritz_compare_strays(scene, first, second, &X, row));
+    RITZ_TRY(ritz_compare_remove(row, second));
+    row->order = second->K.ncol;
+    if (scene->num_inputs > 0 && scene->num_outputs > 0)
+        RITZ_TRY(ritz_compare_gain(first, second, &row->gain_error));
+    RITZ_TRY(ritz_compare_moments(first, second, row->num_moments,
+                                  &row->moment_error));
+    if (ritz_compare_responds(scene))
         RITZ_TRY(measure_response(scene, first, second, row));
 done:
     ritz_dense_free(&X);

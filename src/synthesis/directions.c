@@ -5,34 +5,79 @@
 #include <cblas.h>
 #include <lapacke.h>
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
+/* Of mass scaled to unit diagonal: below this it counts as singular. */
+static const double well_conditioned = 1e-12;
+
+/*
+ * A time squared that makes stiffness a mass: of the body's own, so that a
+ * motion without mass weighs like the others. Geometric mean of M_jj / K_jj.
+ */
+static double typical(const ritz_reduced *body)
+{
+    double sum = 0.0;
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < body->M.ncol; j++) {
+        double m = ritz_dense_col(&body->M, j)[j];
+        double k = ritz_dense_col(&body->K, j)[j];
+
+        if (m > 0.0 && k > 0.0) {
+            sum += log(m / k);
+            count++;
+        }
+    }
+    return count > 0 ? exp(sum / (double)count) : 1.0;
+}
+
+/* L = lower triangle of S (M + stiffness K) S. */
+static void fill(const ritz_reduced *body, const double *scale,
+                 double stiffness, ritz_dense *L)
+{
+    for (int64_t j = 0; j < L->ncol; j++)
+        for (int64_t i = 0; i < L->nrow; i++)
+            ritz_dense_col(L, j)[i] =
+                i < j ? 0.0
+                      : scale[i] * scale[j] *
+                            (ritz_dense_col(&body->M, j)[i] +
+                             stiffness * ritz_dense_col(&body->K, j)[i]);
+}
+
+/* Factor L in place; false if it is not definite, or conditioned worse. */
+static bool factor(ritz_dense *L, double least)
+{
+    int r = (int)L->ncol;
+    double norm = 0.0, rcond = 1.0;
+
+    if (r == 0)
+        return true;
+    norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', r, L->val, r);
+    if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, L->val, r) != 0)
+        return false;
+    return LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, L->val, r, norm, &rcond) ==
+               0 &&
+           rcond > least;
+}
+
 ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
-                             ritz_dense *L)
+                             ritz_dense *L, bool *mixed)
 {
     ritz_status status = RITZ_OK;
     int64_t r = body->M.ncol;
-    double stiffness = 0.0;
-    double heaviest = ritz_dense_max(&body->M);
-    double stiffest = ritz_dense_max(&body->K);
 
+    *mixed = false;
     RITZ_TRY(ritz_dense_new(r, r, L));
-    for (int attempt = 0; attempt < 2; attempt++) {
-        for (int64_t j = 0; j < r; j++)
-            for (int64_t i = 0; i < r; i++)
-                ritz_dense_col(L, j)[i] =
-                    i < j ? 0.0
-                          : scale[i] * scale[j] *
-                                (ritz_dense_col(&body->M, j)[i] +
-                                 stiffness * ritz_dense_col(&body->K, j)[i]);
-        if (r == 0 ||
-            LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', (int)r, L->val, (int)r) == 0)
-            return RITZ_OK;
-        stiffness = stiffest > 0.0 ? heaviest / stiffest : 0.0;
-    }
-    status = ritz_fail(RITZ_ERR_SINGULAR,
-                       "the reduced mass is not positive definite");
+    fill(body, scale, 0.0, L);
+    if (factor(L, well_conditioned))
+        return RITZ_OK;
+    *mixed = true;
+    fill(body, scale, typical(body), L);
+    RITZ_FAIL_IF(!factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
+                 "a motion has neither mass nor stiffness, or the reduced mass "
+                 "is not positive");
 done:
     return status;
 }
@@ -54,8 +99,8 @@ done:
     return status;
 }
 
-ritz_status ritz_span(ritz_dense *Y, double tolerance, double *largest,
-                      ritz_dense *out)
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int r = (int)Y->nrow;

@@ -4,14 +4,17 @@
 
 #include <ritz/reduced.h>
 
+#include <stdbool.h>
+
 /**
  * Lower Cholesky factor of the mass, in coordinates scaled to unit diagonal;
- * of mass and stiffness where mass alone is singular.
+ * where mass is singular, of mass plus stiffness over a lambda of the body's.
  *
+ * @param[out] mixed  whether stiffness was added
  * @return RITZ_ERR_SINGULAR if neither is definite
  */
 ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
-                             ritz_dense *L);
+                             ritz_dense *L, bool *mixed);
 
 /** Y = L' W, W brought to scaled coordinates: M-products become plain ones. */
 ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
@@ -21,8 +24,8 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
  * Orthonormal directions of Y (destroyed) whose singular values exceed
  * @p tolerance times *largest, which grows to the largest there is.
  */
-ritz_status ritz_span(ritz_dense *Y, double tolerance, double *largest,
-                      ritz_dense *out);
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         ritz_dense *out);
 
 /** Y := Y - U U' Y with orthonormal U, twice, for once leaves rounding. */
 ritz_status ritz_take_out(const ritz_dense *U, ritz_dense *Y);

@@ -11,6 +11,7 @@
 #include "synthesis/eliminate.h"
 #include "synthesis/held.h"
 #include "synthesis/placement.h"
+#include "synthesis/springs.h"
 
 #include <ritz/synthesis.h>
 
@@ -108,25 +109,36 @@ done:
     return status;
 }
 
-static ritz_status project_matrices(const ritz_held *p, const ritz_sparse *T,
+static ritz_status project_matrices(const ritz_held *p, const double *setting,
+                                    const ritz_sparse *T,
                                     ritz_component *system)
 {
-    static const size_t offsets[] = {
-        offsetof(ritz_component, K), offsetof(ritz_component, M),
-        offsetof(ritz_component, D), offsetof(ritz_component, K4)};
+    enum { K, M, D, K4, MATRICES };
+    static const size_t offsets[MATRICES] = {
+        [K] = offsetof(ritz_component, K),
+        [M] = offsetof(ritz_component, M),
+        [D] = offsetof(ritz_component, D),
+        [K4] = offsetof(ritz_component, K4),
+    };
     ritz_status status = RITZ_OK;
+    ritz_springs springs = {0};
     ritz_sparse all = {0};
 
-    for (size_t k = 0; k < sizeof offsets / sizeof *offsets; k++) {
+    RITZ_TRY(ritz_stage_springs(&p->stage, setting, &springs));
+    for (int k = 0; k < MATRICES; k++) {
         ritz_sparse *into =
             (ritz_sparse *)(void *)((char *)system + offsets[k]);
 
         RITZ_TRY(stack(p, offsets[k], &all));
+        if (k == K || k == D)
+            RITZ_TRY(ritz_springs_add_sparse(&springs, k == D, p->num_dofs,
+                                             p->row, &all));
         if (all.colptr)
             RITZ_TRY(ritz_sparse_congruence(&all, T, into));
         ritz_sparse_free(&all);
     }
 done:
+    ritz_springs_free(&springs);
     ritz_sparse_free(&all);
     return status;
 }
@@ -156,9 +168,39 @@ done:
     return status;
 }
 
+/* Influence vectors of all bodies' dampers, scattered and brought to masters. */
+static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
+                                   ritz_dampers *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dampers all = {0};
+    ritz_sparse turned = {0};
+    ritz_dense B = {0};
+
+    for (int64_t k = 0; k < p->count; k++)
+        RITZ_TRY(ritz_dampers_append(&p->body[k].dampers,
+                                     p->scene->component[k].name, p->num_dofs,
+                                     p->first[k], &all));
+    if (all.count == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_sparse_transpose(T, &turned));
+    RITZ_TRY(ritz_sparse_mul(&turned, &all.B, &B));
+    ritz_dense_free(&all.B);
+    all.B = B;
+    B = (ritz_dense){0};
+    *out = all;
+    all = (ritz_dampers){0};
+done:
+    ritz_dampers_free(&all);
+    ritz_sparse_free(&turned);
+    ritz_dense_free(&B);
+    return status;
+}
+
 /* Names of the masters; grids of all bodies where the angles put them. */
 static ritz_status name_dofs(const ritz_held *p, const double *setting,
-                             const int64_t *master, ritz_component *system)
+                             const int64_t *master, const ritz_sparse *T,
+                             ritz_component *system)
 {
     ritz_status status = RITZ_OK;
     int64_t *add = NULL;
@@ -173,6 +215,7 @@ static ritz_status name_dofs(const ritz_held *p, const double *setting,
         system->dof[j] = p->body[k].dof[master[j] - p->first[k]];
         system->dof[j].grid += add[k];
     }
+    RITZ_TRY(ritz_held_recovery(p, add, T, &system->recovery));
 done:
     free(add);
     return status;
@@ -213,9 +256,10 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
     ritz_eliminate(&C, pivot_of);
     RITZ_TRY(make_basis(&p, &C, pivot_of, master, &T));
     system.num_dofs = T.ncol;
-    RITZ_TRY(project_matrices(&p, &T, &system));
+    RITZ_TRY(project_matrices(&p, setting, &T, &system));
     RITZ_TRY(project_io(&p, &T, &system.io));
-    RITZ_TRY(name_dofs(&p, setting, master, &system));
+    RITZ_TRY(project_dampers(&p, &T, &system.dampers));
+    RITZ_TRY(name_dofs(&p, setting, master, &T, &system));
     ritz_damping_print(&scene->damping, system.damping);
     memcpy(system.units, p.body[0].units, sizeof system.units);
     RITZ_TRY(ritz_component_settle(&system, false));

@@ -21,6 +21,15 @@ typedef struct ritz_held {
 /** Load the full models and find where they are held. */
 ritz_status ritz_held_load(const ritz_scene *scene, ritz_held *out);
 
+/**
+ * What the bodies' eliminated dofs follow: diag(G_k) T.
+ *
+ * @param[in] add  by how much the grid numbers of each body grow
+ * @param[in] T    all dofs of all bodies x those of the system
+ */
+ritz_status ritz_held_recovery(const ritz_held *p, const int64_t *add,
+                               const ritz_sparse *T, ritz_recovery *out);
+
 void ritz_held_free(ritz_held *p);
 
 #endif

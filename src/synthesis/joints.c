@@ -1,266 +1,272 @@
 /*
  * What joints demand of the displacements u and rotations theta of two ports,
- * each along the basic axes of its own body. Components of a vector in the
- * second body's axes are turned into the first's by R = R(axis, angle):
+ * each along the basic axes of its own body. At rest a point x_B of the second
+ * body stands at o_A + d + R (x_B - o_B) in the axes of the first, o being the
+ * ports' origins. The two meet where the second body's origin is, to which
+ * either grid has an arm, p_A = o_A + d - x_A and p_B = o_B - x_B, so that
+ * there they part and turn against each other by
  *
- *     fixed:  u_A = u_B,  theta_A = theta_B   for every pair of grids and every
- *             direction that both have; R = I
- *     hinge:  u_A = R u_B,  e_1'(theta_A - R theta_B) = 0,  the same with e_2,
- *             e_1 and e_2 normal to the axis
+ *     delta = R (u_B + theta_B x p_B) - (u_A + theta_A x p_A)
+ *     phi   = R theta_B - theta_A
+ *
+ * A joint is six directions e in the first body's axes, three for e'delta and
+ * three for e'phi, each of them locked, free or caged: on a spring and damper.
+ *
+ *     type        R                   d         left are
+ *     hinge       R(a, angle)         0         a'phi
+ *     slider      I                   s a       a'delta
+ *     universal   R(a, one) R(b, two) 0         g_1'phi, g_2'phi
+ *     spherical   I                   0         phi
+ *     bushing     I                   0         delta and phi, caged
+ *     rigid       I                   offset    none
+ *
+ * In a loop R and d are what the other joints leave (placement.c).
+ *
+ * The axes of a universal joint now point along a and c = R b, as b is fixed in
+ * the second body. n = a x c / |a x c| is the direction about which it locks;
+ * angles q_1, q_2 about a and c, phi = a q_1 + c q_2, are those of the dual
+ * basis, q_k = g_k'phi with g_1 = c x n / a'(c x n), g_2 = n x a / c'(n x a).
  */
 #include "synthesis/joints.h"
+
 #include "base/alloc.h"
+#include "synthesis/turns.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-void ritz_joint_rotation(const double axis[static 3], double setting,
-                         double R[static 9])
+/* Directions e of a joint: three of translation, then three of rotation. */
+typedef void point(const ritz_joint *joint, const ritz_joint_pose *pose,
+                   double e[6][3]);
+
+static void fill_basic(double e[3][3])
 {
-    const double pi = 3.14159265358979323846;
-    /* quarter turns are exact, so that 90 degrees swaps axes and no more */
-    double quarter = fmod(setting, 90.0) == 0.0
-                         ? fmod(fmod(setting / 90.0, 4.0) + 4.0, 4.0)
-                         : -1.0;
-    static const double sines[] = {0.0, 1.0, 0.0, -1.0, 0.0};
-    double s = quarter >= 0.0 ? sines[(int)quarter] : sin(setting * pi / 180.0);
-    double c =
-        quarter >= 0.0 ? sines[(int)quarter + 1] : cos(setting * pi / 180.0);
-    const double skew[9] = {0.0,      -axis[2], axis[1], axis[2], 0.0,
-                            -axis[0], -axis[1], axis[0], 0.0};
-
+    memset(e, 0, 9 * sizeof e[0][0]);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            R[3 * i + j] = (i == j ? c : 0.0) + s * skew[3 * i + j] +
-                           (1.0 - c) * axis[i] * axis[j];
+        e[i][i] = 1.0;
 }
 
-/* Two unit vectors normal to the axis and to each other. */
-static void find_normals(const double axis[static 3], double e[2][3])
+static void point_basic(const ritz_joint *joint, const ritz_joint_pose *pose,
+                        double e[6][3])
 {
-    int least = 0;
-    double length = 0.0;
-    double start[3] = {0.0, 0.0, 0.0};
+    (void)joint;
+    (void)pose;
+    fill_basic(e);
+    fill_basic(e + 3);
+}
 
-    for (int i = 1; i < 3; i++)
-        if (fabs(axis[i]) < fabs(axis[least]))
-            least = i;
-    start[least] = 1.0;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3;
-        int k = (i + 2) % 3;
+static void point_hinge(const ritz_joint *joint, const ritz_joint_pose *pose,
+                        double e[6][3])
+{
+    (void)pose;
+    fill_basic(e);
+    memcpy(e[3], joint->axis[0], sizeof e[3]);
+    ritz_normals(e[3], e + 4);
+}
 
-        e[0][i] = axis[j] * start[k] - axis[k] * start[j];
-        length += e[0][i] * e[0][i];
-    }
+static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
+                         double e[6][3])
+{
+    (void)pose;
+    memcpy(e[0], joint->axis[0], sizeof e[0]);
+    ritz_normals(e[0], e + 1);
+    fill_basic(e + 3);
+}
+
+/* g = v / (a'v) */
+static void make_dual(const double *a, const double *v, double *g)
+{
     for (int i = 0; i < 3; i++)
-        e[0][i] /= sqrt(length);
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3;
-        int k = (i + 2) % 3;
-
-        e[1][i] = axis[j] * e[0][k] - axis[k] * e[0][j];
-    }
+        g[i] = v[i] / ritz_dot(a, v);
 }
 
-/* Row of a direction of the grid that starts at port row `first`; -1 if none. */
-static int64_t find_direction(const ritz_joint_end *end, int64_t first,
-                              int64_t direction)
+static void point_universal(const ritz_joint *joint,
+                            const ritz_joint_pose *pose, double e[6][3])
 {
-    for (int64_t k = first; k < end->count; k++)
-        if (end->dof[k].grid == end->dof[first].grid &&
-            end->dof[k].component == direction)
-            return k;
-    return -1;
+    const double *a = joint->axis[0];
+    double c[3], v[3];
+
+    fill_basic(e);
+    ritz_turn_apply(pose->R, joint->axis[1], c);
+    ritz_cross(a, c, e[5]);
+    ritz_normalise(e[5]);
+    ritz_cross(c, e[5], v);
+    make_dual(a, v, e[3]);
+    ritz_cross(e[5], a, v);
+    make_dual(c, v, e[4]);
 }
 
-/* Rows at which a new grid begins, scalar points left out; how many. */
-static int64_t list_grids(const ritz_joint_end *end, int64_t *first)
+/* The first axis, the second in the plane of both, the third normal to it. */
+static void point_bushing(const ritz_joint *joint, const ritz_joint_pose *pose,
+                          double e[6][3])
 {
-    int64_t count = 0;
+    (void)pose;
+    memcpy(e[0], joint->axis[0], sizeof e[0]);
+    ritz_cross(joint->axis[0], joint->axis[1], e[2]);
+    ritz_normalise(e[2]);
+    ritz_cross(e[2], e[0], e[1]);
+    memcpy(e + 3, e, 3 * sizeof e[0]);
+}
+
+/* Which of the directions are freedoms of the joint: the first of them, ... */
+static const struct {
+    const char *called;
+    point *point;
+    int freedom[6]; /* counted from 1; 0: always locked */
+} kinds[] = {
+    [RITZ_JOINT_FIXED] = {"fixed joint", point_basic, {0}},
+    [RITZ_JOINT_HINGE] = {"hinge", point_hinge, {0, 0, 0, 1, 0, 0}},
+    [RITZ_JOINT_SLIDER] = {"slider", point_slider, {1, 0, 0, 0, 0, 0}},
+    [RITZ_JOINT_UNIVERSAL] = {"universal joint",
+                              point_universal,
+                              {0, 0, 0, 1, 2, 0}},
+    [RITZ_JOINT_SPHERICAL] = {"spherical joint",
+                              point_basic,
+                              {0, 0, 0, 1, 2, 3}},
+    [RITZ_JOINT_BUSHING] = {"bushing", point_bushing, {1, 2, 3, 4, 5, 6}},
+    [RITZ_JOINT_RIGID] = {"rigid joint", point_basic, {0}},
+};
+
+/* Words for what a port lacks to be one six-dof grid. */
+static void list_missing(const ritz_joint_end *end, char text[64])
+{
+    static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (int64_t k = 0; k < 6; k++)
+        if (ritz_joint_direction(end, 0, k + 1) < 0)
+            used += (size_t)snprintf(text + used, 64 - used, "%s%s",
+                                     used > 0 ? ", " : "", words[k]);
+}
+
+/* Port rows of the six directions of a joint's one grid. */
+static ritz_status find_six(const ritz_joint_end *end, const char *called,
+                            int64_t row[static 6])
+{
+    ritz_status status = RITZ_OK;
+    int64_t others = 0;
+    char missing[64];
 
     for (int64_t k = 0; k < end->count; k++)
-        if (end->dof[k].component > 0 &&
-            (k == 0 || end->dof[k].grid != end->dof[k - 1].grid))
-            first[count++] = k;
-    return count;
+        others +=
+            end->dof[k].component < 1 || end->dof[k].grid != end->dof[0].grid;
+    RITZ_FAIL_IF(end->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
+                 "a %s holds one six-dof grid on each side, '%s/%s' has %s",
+                 called, end->component, end->port,
+                 others > 0 ? "more than one grid, or a scalar point"
+                            : "no grid");
+    list_missing(end, missing);
+    RITZ_FAIL_IF(missing[0], RITZ_ERR_ARGUMENT,
+                 "a %s holds one six-dof grid on each side, grid %" PRId64
+                 " of '%s/%s' has no %s",
+                 called, end->dof[0].grid, end->component, end->port, missing);
+    for (int64_t k = 0; k < 6; k++)
+        row[k] = ritz_joint_direction(end, 0, k + 1);
+done:
+    return status;
 }
 
-/* Distance of two grids, each measured from its port's origin. */
-static double part(const ritz_joint_end end[static 2], int64_t a, int64_t b)
+/* sum += v'x, x at three port rows; rows that count nothing are left out. */
+static void add_terms(ritz_relation *r, int end, const int64_t *row,
+                      const double *v)
 {
-    double sum = 0.0;
-
-    for (int i = 0; i < 3; i++) {
-        double d = end[0].position[3 * a + i] - end[0].origin[i] -
-                   (end[1].position[3 * b + i] - end[1].origin[i]);
-
-        sum += d * d;
-    }
-    return sqrt(sum);
-}
-
-/* Largest distance of a port's grids from its origin. */
-static double extent(const ritz_joint_end *end)
-{
-    double most = 0.0;
-
-    for (int64_t k = 0; k < end->count; k++) {
-        double sum = 0.0;
-
-        for (int i = 0; i < 3; i++) {
-            double d = end->position[3 * k + i] - end->origin[i];
-
-            sum += d * d;
+    for (int i = 0; i < 3; i++)
+        if (v[i] != 0.0) {
+            r->row[end][r->num_terms[end]] = row[i];
+            r->factor[end][r->num_terms[end]++] = v[i];
         }
-        most = fmax(most, sqrt(sum));
-    }
-    return most;
 }
 
-/* Six equalities at most, of the directions that both grids have. */
-static void pair_grids(const ritz_joint_end end[static 2], int64_t a, int64_t b,
-                       ritz_constraints *list)
+/*
+ * e'phi = (R'e)'theta_B - e'theta_A; with e'(theta x p) = (p x e)'theta
+ *
+ * e'delta = (R'e)'u_B + (p_B x R'e)'theta_B - e'u_A - (p_A x e)'theta_A
+ */
+static ritz_relation project(const double *e, bool rotation, const double *R,
+                             const double arm[2][3], const int64_t row[2][6])
 {
-    for (int64_t direction = 1; direction <= 6; direction++) {
-        int64_t i = find_direction(&end[0], a, direction);
-        int64_t j = find_direction(&end[1], b, direction);
+    ritz_relation r = {.rotation = rotation};
+    double turned[3], lever[3];
+    const double *const direction[2] = {e, turned};
 
-        if (i >= 0 && j >= 0)
-            list->item[list->count++] = (ritz_constraint){
-                .rotation = direction > 3,
-                .num_terms = {1, 1},
-                .row = {{i}, {j}},
-                .factor = {{1.0}, {1.0}},
-            };
+    ritz_turn_back(R, e, turned);
+    for (int end = 0; end < 2; end++) {
+        add_terms(&r, end, row[end] + (rotation ? 3 : 0), direction[end]);
+        if (rotation)
+            continue;
+        ritz_cross(arm[end], direction[end], lever);
+        add_terms(&r, end, row[end] + 3, lever);
     }
+    return r;
 }
 
-static ritz_status constrain_fixed(const ritz_joint *joint,
-                                   const ritz_joint_end end[static 2],
-                                   ritz_constraints *list)
+/* Arms p from the grids to the place where the bodies meet. */
+static void find_arms(const ritz_joint_end end[static 2],
+                      const ritz_joint_pose *pose, double arm[2][3])
 {
-    ritz_status status = RITZ_OK;
-    double tolerance = joint->tolerance > 0.0 ? joint->tolerance
-                                              : 1e-5 * extent(&end[0]) + 1e-12;
-    int64_t *first[2] = {NULL, NULL};
-    bool *taken = NULL;
-    int64_t count[2];
-
-    for (int k = 0; k < 2; k++) {
-        RITZ_NEW(first[k], end[k].count);
-        count[k] = list_grids(&end[k], first[k]);
-    }
-    RITZ_FAIL_IF(count[0] != count[1], RITZ_ERR_ARGUMENT,
-                 "'%s/%s' has %" PRId64 " grids and '%s/%s' has %" PRId64,
-                 end[0].component, end[0].port, count[0], end[1].component,
-                 end[1].port, count[1]);
-    RITZ_NEW(taken, count[1]);
-    for (int64_t k = 0; k < count[0]; k++) {
-        int64_t near = -1;
-
-        for (int64_t j = 0; j < count[1]; j++)
-            if (!taken[j] &&
-                (near < 0 || part(end, first[0][k], first[1][j]) <
-                                 part(end, first[0][k], first[1][near])))
-                near = j;
-        RITZ_FAIL_IF(
-            part(end, first[0][k], first[1][near]) > tolerance,
-            RITZ_ERR_ARGUMENT,
-            "grid %" PRId64 " of '%s/%s' has no partner: the nearest, grid "
-            "%" PRId64 " of '%s/%s', lies %.3g away, %.3g is let pass",
-            end[0].dof[first[0][k]].grid, end[0].component, end[0].port,
-            end[1].dof[first[1][near]].grid, end[1].component, end[1].port,
-            part(end, first[0][k], first[1][near]), tolerance);
-        taken[near] = true;
-        pair_grids(end, first[0][k], first[1][near], list);
-    }
-done:
-    free(first[0]);
-    free(first[1]);
-    free(taken);
-    return status;
-}
-
-/* Port rows of the six directions of a hinge's one grid. */
-static ritz_status find_six(const ritz_joint_end *end, int64_t row[static 6])
-{
-    ritz_status status = RITZ_OK;
-
-    for (int64_t k = 0; k < 6; k++) {
-        row[k] = end->count > 0 ? find_direction(end, 0, k + 1) : -1;
-        RITZ_FAIL_IF(row[k] < 0 || end->count != 6, RITZ_ERR_ARGUMENT,
-                     "a hinge holds one six-dof grid on each side, '%s/%s' "
-                     "is not that",
-                     end->component, end->port);
-    }
-done:
-    return status;
-}
-
-/* sum_i e_i (v_A - R v_B)_i = 0, v the translations (0) or rotations (3). */
-static ritz_constraint project(const double e[static 3],
-                               const double R[static 9],
-                               const int64_t row[2][6], int first)
-{
-    ritz_constraint c = {.rotation = first == 3, .num_terms = {3, 3}};
-
     for (int i = 0; i < 3; i++) {
-        c.row[0][i] = row[0][first + i];
-        c.row[1][i] = row[1][first + i];
-        c.factor[0][i] = e[i];
-        for (int k = 0; k < 3; k++)
-            c.factor[1][i] += e[k] * R[3 * k + i];
+        arm[0][i] = end[0].origin[i] + pose->d[i] - end[0].position[i];
+        arm[1][i] = end[1].origin[i] - end[1].position[i];
     }
-    return c;
 }
 
-static ritz_status constrain_hinge(const ritz_joint *joint,
-                                   const ritz_joint_end end[static 2],
-                                   double setting, ritz_constraints *list)
+/* The relations of a joint of one grid on each side. */
+static ritz_status relate_six(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose, ritz_relations *list)
 {
     ritz_status status = RITZ_OK;
-    static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    double R[9];
-    double e[2][3];
+    const ritz_freedom locked = {.state = RITZ_LOCKED};
+    double e[6][3], arm[2][3];
     int64_t row[2][6];
 
-    RITZ_TRY(find_six(&end[0], row[0]));
-    RITZ_TRY(find_six(&end[1], row[1]));
-    ritz_joint_rotation(joint->axis, setting, R);
-    find_normals(joint->axis, e);
-    for (int i = 0; i < 3; i++)
-        list->item[list->count++] = project(unit[i], R, row, 0);
-    for (int i = 0; i < 2; i++)
-        list->item[list->count++] = project(e[i], R, row, 3);
+    for (int k = 0; k < 2; k++)
+        RITZ_TRY(find_six(&end[k], kinds[joint->type].called, row[k]));
+    RITZ_FAIL_IF(joint->type == RITZ_JOINT_BUSHING &&
+                     ritz_joint_distance(end, 0, 0) >
+                         ritz_joint_tolerance(joint, &end[0]),
+                 RITZ_ERR_ARGUMENT,
+                 "a bushing lies between grids at one place, those of "
+                 "'%s/%s' and '%s/%s' lie %.3g apart, %.3g is let pass",
+                 end[0].component, end[0].port, end[1].component, end[1].port,
+                 ritz_joint_distance(end, 0, 0),
+                 ritz_joint_tolerance(joint, &end[0]));
+    kinds[joint->type].point(joint, pose, e);
+    find_arms(end, pose, arm);
+    for (int k = 0; k < 6; k++) {
+        int at = kinds[joint->type].freedom[k];
+        ritz_freedom freedom = at > 0 ? joint->freedom[at - 1] : locked;
+
+        if (freedom.state == RITZ_FREE)
+            continue;
+        list->item[list->count] = project(e[k], k >= 3, pose->R, arm, row);
+        list->item[list->count++].freedom = freedom;
+    }
 done:
     return status;
 }
 
-ritz_status ritz_joint_constrain(const ritz_joint *joint,
-                                 const ritz_joint_end end[static 2],
-                                 double setting, ritz_constraints *out)
+ritz_status ritz_joint_relate(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose, ritz_relations *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_constraints list = {0};
+    ritz_relations list = {0};
 
     RITZ_NEW(list.item, end[0].count + 6);
-    switch (joint->type) {
-    case RITZ_JOINT_FIXED:
-        RITZ_TRY(constrain_fixed(joint, end, &list));
-        break;
-    case RITZ_JOINT_HINGE:
-        RITZ_TRY(constrain_hinge(joint, end, setting, &list));
-        break;
-    }
+    if (joint->type == RITZ_JOINT_FIXED)
+        RITZ_TRY(ritz_joint_pair(joint, end, &list));
+    else
+        RITZ_TRY(relate_six(joint, end, pose, &list));
     RITZ_FAIL_IF(list.count == 0, RITZ_ERR_ARGUMENT,
                  "its ports have no direction in common");
     *out = list;
-    list = (ritz_constraints){0};
+    list = (ritz_relations){0};
 done:
-    ritz_constraints_free(&list);
+    ritz_relations_free(&list);
     if (status != RITZ_OK) {
         char what[RITZ_NAME_SIZE + 40];
 
@@ -270,8 +276,8 @@ done:
     return status;
 }
 
-void ritz_constraints_free(ritz_constraints *constraints)
+void ritz_relations_free(ritz_relations *relations)
 {
-    free(constraints->item);
-    *constraints = (ritz_constraints){0};
+    free(relations->item);
+    *relations = (ritz_relations){0};
 }

@@ -1,4 +1,4 @@
-/* Constraint rows of joints: what two port grids have in common. */
+/* What joints say of the motions of two port grids. */
 #ifndef RITZ_SYNTHESIS_JOINTS_H
 #define RITZ_SYNTHESIS_JOINTS_H
 
@@ -14,34 +14,62 @@ typedef struct ritz_joint_end {
     const double *position; /* p x 3, of their grids */
 } ritz_joint_end;
 
-/* One constraint: sum_k a[k] u_A[k] = sum_k b[k] u_B[k] over the port rows. */
-typedef struct ritz_constraint {
-    bool rotation;
-    int64_t num_terms[2];
-    int64_t row[2][3]; /* port rows of either end */
-    double factor[2][3];
-} ritz_constraint;
+/*
+ * Where the second body stands: a point x_B of it is at o_A + d + R (x_B - o_B)
+ * in the basic axes of the first, o being the origins of the ports.
+ */
+typedef struct ritz_joint_pose {
+    double R[9]; /* row by row */
+    double d[3];
+} ritz_joint_pose;
 
-typedef struct ritz_constraints {
+/*
+ * A relative motion, r = sum_k b[k] u_B[k] - sum_k a[k] u_A[k] over the port
+ * rows: nought where locked, on a spring where caged.
+ */
+typedef struct ritz_relation {
+    bool rotation;
+    ritz_freedom freedom;
+    int64_t num_terms[2];
+    int64_t row[2][6]; /* port rows of either end */
+    double factor[2][6];
+} ritz_relation;
+
+typedef struct ritz_relations {
     int64_t count;
-    ritz_constraint *item;
-} ritz_constraints;
+    ritz_relation *item;
+} ritz_relations;
+
+/** The pose that a joint's settings give, @p setting being all of the scene. */
+void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
+                        ritz_joint_pose *out);
 
 /**
- * The constraints of a joint.
+ * The relative motions that a joint locks or holds on springs.
  *
- * @param[in] setting  of a hinge
  * @return RITZ_ERR_ARGUMENT if the ports do not fit: grids without a partner
- *         within the tolerance, a hinge on other than one six-dof grid
+ *         within the tolerance, other than one six-dof grid where one is due
  */
-ritz_status ritz_joint_constrain(const ritz_joint *joint,
-                                 const ritz_joint_end end[static 2],
-                                 double setting, ritz_constraints *out);
+ritz_status ritz_joint_relate(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose, ritz_relations *out);
 
-/** Rotation by @p setting about a unit axis, row by row. */
-void ritz_joint_rotation(const double axis[static 3], double setting,
-                         double R[static 9]);
+/** Those of a fixed joint: grids in pairs; room is that of the first port. */
+ritz_status ritz_joint_pair(const ritz_joint *joint,
+                            const ritz_joint_end end[static 2],
+                            ritz_relations *list);
 
-void ritz_constraints_free(ritz_constraints *constraints);
+/** Row of a direction of the grid that starts at port row @p first, or -1. */
+int64_t ritz_joint_direction(const ritz_joint_end *end, int64_t first,
+                             int64_t direction);
+
+/** Distance of two grids, each measured from its port's origin. */
+double ritz_joint_distance(const ritz_joint_end end[static 2], int64_t a,
+                           int64_t b);
+
+/** What a joint lets pass of that distance. */
+double ritz_joint_tolerance(const ritz_joint *joint, const ritz_joint_end *end);
+
+void ritz_relations_free(ritz_relations *relations);
 
 #endif

@@ -1,12 +1,17 @@
 /*
  * Bodies follow each other through the joints: a point x_B of the second body
- * stands, in the axes of the first, at o_A + R (x_B - o_B), the origins being
- * those of the ports.
+ * stands, in the axes of the first, at o_A + d + R (x_B - o_B), the origins
+ * being those of the ports.
+ *
+ * The joint that closes a loop finds both bodies placed. Its settings are
+ * written with a few digits and fit as well as that; what it states must hold
+ * where the bodies are, lest a gap of rounded digits take a rigid motion from
+ * the system. So it gets R and d of the placements.
  */
 #include "synthesis/placement.h"
 
 #include "base/alloc.h"
-#include "synthesis/joints.h"
+#include "synthesis/turns.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,111 +20,115 @@
 
 /* Angles and positions of a loop are written with so many digits. */
 static const double closure = 1e-4;
+/* Of placements a few bodies apart, each a product of rotations: no gap. */
+static const double rounding = 1e-13;
 
-/* x_system = R x + t. */
-typedef struct placement {
-    bool known;
-    double R[9];
-    double t[3];
-} placement;
+/* What a joint says of its two bodies: x - near of the first is R (x - far). */
+typedef struct link {
+    int64_t body[2];
+    double near[3]; /* o_A + d */
+    double far[3];  /* o_B */
+    const double *R;
+    bool turns_freely;
+} link;
 
-static void multiply(const double *A, const double *B, double *C)
+/* Whether a joint's ports are there; where not, its making refuses it. */
+static bool find_link(const ritz_stage *stage, int64_t j,
+                      const ritz_joint_pose *pose, link *out)
 {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            C[3 * i + j] = 0.0;
-            for (int k = 0; k < 3; k++)
-                C[3 * i + j] += A[3 * i + k] * B[3 * k + j];
-        }
-}
+    const ritz_joint *joint = &stage->scene->joint[j];
+    const ritz_port_map *port[2];
 
-static void apply(const double *R, const double *x, double *y)
-{
-    for (int64_t i = 0; i < 3; i++)
-        y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
+    for (int k = 0; k < 2; k++) {
+        out->body[k] = joint->between[k].component;
+        port[k] = ritz_reduced_port(&stage->body[out->body[k]],
+                                    joint->between[k].port);
+        if (!port[k])
+            return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        out->near[i] = port[0]->origin[i] + pose[j].d[i];
+        out->far[i] = port[1]->origin[i];
+    }
+    out->R = pose[j].R;
+    out->turns_freely = joint->type == RITZ_JOINT_SPHERICAL;
+    return true;
 }
 
 /*
- * With R_A, t_A known: R_B = R_A R and t_B = R_A (o_A - R o_B) + t_A; with the
- * second body known the same holds with R' and the ends exchanged.
+ * With R_A, t_A known: R_B = R_A R and t_B = R_A (o_A + d - R o_B) + t_A; with
+ * the second body known the same holds with R' and the ends exchanged.
  */
-static void follow(const placement *known, const double *R, const double *near,
-                   const double *far, placement *out)
+static void follow(const ritz_placement *known, const double *R,
+                   const double *near, const double *far, ritz_placement *out)
 {
     double turned[3], gap[3];
 
-    multiply(known->R, R, out->R);
-    apply(R, far, turned);
+    ritz_turn_product(known->R, R, out->R);
+    ritz_turn_apply(R, far, turned);
     for (int i = 0; i < 3; i++)
         turned[i] = near[i] - turned[i];
-    apply(known->R, turned, gap);
+    ritz_turn_apply(known->R, turned, gap);
     for (int i = 0; i < 3; i++)
         out->t[i] = gap[i] + known->t[i];
     out->known = true;
 }
 
-static void transpose(double *R)
+static void transpose(const double *R, double *out)
 {
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < i; j++) {
-            double kept = R[3 * i + j];
-
-            R[3 * i + j] = R[3 * j + i];
-            R[3 * j + i] = kept;
-        }
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = R[3 * j + i];
 }
 
-/* Go once through the joints; whether a body found its place. */
-static bool spread(const ritz_stage *stage, const double *setting,
-                   placement *place)
+/*
+ * Go once through the joints; whether a body found its place. With
+ * `turns_freely` one body does, through a joint that cannot turn it.
+ */
+static bool spread(const ritz_stage *stage, const ritz_joint_pose *pose,
+                   bool turns_freely, ritz_placement *place)
 {
-    static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const ritz_scene *scene = stage->scene;
     bool found = false;
-    int64_t hinge = 0;
 
-    for (int64_t j = 0; j < scene->num_joints; j++) {
-        const ritz_joint *joint = &scene->joint[j];
-        int64_t a = joint->between[0].component;
-        int64_t b = joint->between[1].component;
-        const ritz_port_map *port_a =
-            ritz_reduced_port(&stage->body[a], joint->between[0].port);
-        const ritz_port_map *port_b =
-            ritz_reduced_port(&stage->body[b], joint->between[1].port);
-        double R[9];
+    for (int64_t j = 0; j < stage->scene->num_joints; j++) {
+        link at;
+        ritz_placement *a = NULL, *b = NULL;
+        double back[9];
 
-        memcpy(R, unit, sizeof R);
-        if (joint->type == RITZ_JOINT_HINGE)
-            ritz_joint_rotation(joint->axis, setting[hinge++], R);
-        if (!port_a || !port_b || place[a].known == place[b].known)
+        if (!find_link(stage, j, pose, &at) || at.turns_freely != turns_freely)
             continue;
-        if (place[a].known) {
-            follow(&place[a], R, port_a->origin, port_b->origin, &place[b]);
-        } else {
-            transpose(R);
-            follow(&place[b], R, port_b->origin, port_a->origin, &place[a]);
-        }
+        a = &place[at.body[0]];
+        b = &place[at.body[1]];
+        if (a->known == b->known)
+            continue;
+        transpose(at.R, back);
+        if (a->known)
+            follow(a, at.R, at.near, at.far, b);
+        else
+            follow(b, back, at.far, at.near, a);
         found = true;
+        if (turns_freely)
+            return true;
     }
     return found;
 }
 
-/* Every body, those that nothing holds staying where they are. */
-static void place_all(const ritz_stage *stage, const double *setting,
-                      placement *place)
+void ritz_place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
+                       ritz_placement *place)
 {
     for (int64_t k = 0; k < stage->count; k++) {
         if (place[k].known)
             continue;
-        place[k] = (placement){true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}};
-        while (spread(stage, setting, place))
+        place[k] = (ritz_placement){true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}};
+        while (spread(stage, pose, false, place) ||
+               spread(stage, pose, true, place))
             ;
     }
 }
 
 static double length(const double *x)
 {
-    return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    return sqrt(ritz_dot(x, x));
 }
 
 /* How badly a loop closes: apart, beside the size of bodies there; turned. */
@@ -128,17 +137,17 @@ typedef struct misfit {
 } misfit;
 
 /* Where the joint puts the second body against where it stands. */
-static misfit measure_joint(const placement *a, const placement *b,
-                            const double *R, const double *near,
-                            const double *far)
+static misfit measure(const link *at, const ritz_placement *place)
 {
-    misfit found = {0.0, length(near) + length(far) + length(b->t), 0.0};
-    placement due = {0};
+    const ritz_placement *b = &place[at->body[1]];
+    misfit found = {0.0, length(at->near) + length(at->far) + length(b->t),
+                    0.0};
+    ritz_placement due = {0};
     double here[3], there[3];
 
-    follow(a, R, near, far, &due);
-    apply(due.R, far, here);
-    apply(b->R, far, there);
+    follow(&place[at->body[0]], at->R, at->near, at->far, &due);
+    ritz_turn_apply(due.R, at->far, here);
+    ritz_turn_apply(b->R, at->far, there);
     for (int i = 0; i < 3; i++)
         here[i] += due.t[i] - there[i] - b->t[i];
     found.gap = length(here);
@@ -147,184 +156,68 @@ static misfit measure_joint(const placement *a, const placement *b,
     return found;
 }
 
-static ritz_status check_joint(const ritz_stage *stage, const placement *place,
-                               const ritz_joint *joint, double setting)
+/* R = R_A'R_B, d = R_A'(R_B o_B + t_B - t_A) - o_A: what the bodies have. */
+static void take_pose(const link *at, const ritz_placement *place,
+                      ritz_joint_pose *pose)
+{
+    const ritz_placement *a = &place[at->body[0]];
+    const ritz_placement *b = &place[at->body[1]];
+    double there[3], seen[3];
+
+    ritz_turn_apply(b->R, at->far, there);
+    for (int i = 0; i < 3; i++)
+        there[i] += b->t[i] - a->t[i];
+    ritz_turn_back(a->R, there, seen);
+    for (int i = 0; i < 3; i++) /* near is o_A + d of the settings */
+        pose->d[i] += seen[i] - at->near[i];
+    ritz_turn_between(a->R, b->R, pose->R);
+}
+
+static ritz_status close_joint(const ritz_stage *stage, int64_t j,
+                               const link *at, const ritz_placement *place,
+                               ritz_joint_pose *pose)
 {
     ritz_status status = RITZ_OK;
-    int64_t a = joint->between[0].component;
-    int64_t b = joint->between[1].component;
-    const ritz_port_map *near =
-        ritz_reduced_port(&stage->body[a], joint->between[0].port);
-    const ritz_port_map *far =
-        ritz_reduced_port(&stage->body[b], joint->between[1].port);
-    double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    misfit found = {0};
+    const ritz_joint *joint = &stage->scene->joint[j];
+    const ritz_scene_component *component = stage->scene->component;
+    const misfit found = measure(at, place);
 
-    if (!near || !far)
-        return RITZ_OK; /* refused where the joint is made */
-    if (joint->type == RITZ_JOINT_HINGE)
-        ritz_joint_rotation(joint->axis, setting, R);
-    found = measure_joint(&place[a], &place[b], R, near->origin, far->origin);
+    if (found.gap <= rounding * found.size && found.turn <= rounding)
+        return RITZ_OK;
     RITZ_FAIL_IF(found.gap > closure * found.size, RITZ_ERR_ARGUMENT,
                  "closes a loop of joints that does not meet: '%s/%s' and "
                  "'%s/%s' stand %.3g apart",
-                 stage->scene->component[a].name, near->name,
-                 stage->scene->component[b].name, far->name, found.gap);
-    RITZ_FAIL_IF(found.turn > closure, RITZ_ERR_ARGUMENT,
+                 component[at->body[0]].name, joint->between[0].port,
+                 component[at->body[1]].name, joint->between[1].port,
+                 found.gap);
+    RITZ_FAIL_IF(found.turn > closure && !at->turns_freely, RITZ_ERR_ARGUMENT,
                  "closes a loop of joints whose angles do not agree: '%s' is "
                  "turned otherwise against '%s' by the other joints",
-                 stage->scene->component[b].name,
-                 stage->scene->component[a].name);
+                 component[at->body[1]].name, component[at->body[0]].name);
+    take_pose(at, place, pose);
 done:
     return ritz_scene_context(stage->scene, status, joint->line, joint->column,
                               "joint", joint->name);
 }
 
-ritz_status ritz_place_check(const ritz_stage *stage, const double *setting)
+ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
+                              ritz_joint_pose *pose)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    placement *place = NULL;
-    int64_t hinge = 0;
+    ritz_placement *place = NULL;
 
     RITZ_NEW(place, stage->count);
-    place_all(stage, setting, place);
+    for (int64_t j = 0; j < scene->num_joints; j++)
+        ritz_joint_pose_at(&scene->joint[j], setting, &pose[j]);
+    ritz_place_bodies(stage, pose, place);
     for (int64_t j = 0; j < scene->num_joints; j++) {
-        bool turns = scene->joint[j].type == RITZ_JOINT_HINGE;
+        link at;
 
-        RITZ_TRY(check_joint(stage, place, &scene->joint[j],
-                             turns ? setting[hinge] : 0.0));
-        hinge += turns;
+        if (find_link(stage, j, pose, &at))
+            RITZ_TRY(close_joint(stage, j, &at, place, &pose[j]));
     }
 done:
     free(place);
-    return status;
-}
-
-/* Numbers stay where ranges do not overlap; else body k adds k 10^p. */
-static void renumber(int64_t count, const ritz_component *body, int64_t *add)
-{
-    int64_t power = 1;
-    int64_t highest = -1;
-    bool overlap = false;
-
-    for (int64_t k = 0; k < count; k++) {
-        int64_t least = INT64_MAX;
-        int64_t most = -1;
-
-        for (int64_t i = 0; i < body[k].num_dofs; i++) {
-            int64_t grid = body[k].dof[i].grid;
-
-            least = grid < least ? grid : least;
-            most = grid > most ? grid : most;
-        }
-        overlap = overlap || least <= highest;
-        highest = most > highest ? most : highest;
-    }
-    while (highest >= power && power < INT64_MAX / 1000)
-        power *= 10;
-    for (int64_t k = 0; k < count; k++)
-        add[k] = overlap ? k * power : 0;
-}
-
-/* Append the grids of one body. */
-static void append(const ritz_grids *from, const placement *place, int64_t add,
-                   ritz_grids *to)
-{
-    for (int64_t i = 0; i < from->count; i++) {
-        double *x = to->position + 3 * to->count;
-
-        apply(place->R, from->position + 3 * i, x);
-        for (int64_t k = 0; k < 3; k++)
-            x[k] += place->t[k];
-        to->id[to->count] = from->id[i] + add;
-        to->frame[to->count++] = to->num_frames + from->frame[i];
-    }
-    for (int64_t f = 0; f < from->num_frames; f++)
-        for (int64_t k = 0; k < 3; k++)
-            apply(place->R, from->axes + 9 * f + 3 * k,
-                  to->axes + 9 * (to->num_frames + f) + 3 * k);
-    to->num_frames += from->num_frames;
-}
-
-/* One grid of the sorted order. */
-typedef struct entry {
-    int64_t id, at;
-} entry;
-
-static int compare(const void *left, const void *right)
-{
-    const entry *a = left;
-    const entry *b = right;
-
-    return (a->id > b->id) - (a->id < b->id);
-}
-
-/* Put grids in ascending order of number. */
-static ritz_status sort(ritz_grids *grids)
-{
-    ritz_status status = RITZ_OK;
-    size_t n = (size_t)grids->count;
-    entry *order = NULL;
-    double *position = NULL;
-    int64_t *frame = NULL;
-
-    RITZ_NEW(order, grids->count);
-    RITZ_NEW(position, 3 * grids->count);
-    RITZ_NEW(frame, grids->count);
-    for (int64_t k = 0; k < grids->count; k++)
-        order[k] = (entry){grids->id[k], k};
-    qsort(order, n, sizeof *order, compare);
-    for (int64_t k = 0; k < grids->count; k++) {
-        memcpy(position + 3 * k, grids->position + 3 * order[k].at,
-               3 * sizeof *position);
-        frame[k] = grids->frame[order[k].at];
-        grids->id[k] = order[k].id;
-    }
-    free(grids->position);
-    free(grids->frame);
-    grids->position = position;
-    grids->frame = frame;
-    position = NULL;
-    frame = NULL;
-done:
-    free(order);
-    free(position);
-    free(frame);
-    return status;
-}
-
-ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
-                             int64_t count, const ritz_component *body,
-                             int64_t *add, ritz_grids *out)
-{
-    ritz_status status = RITZ_OK;
-    placement *place = NULL;
-    ritz_grids all = {0};
-    int64_t grids = 0;
-    int64_t frames = 1;
-
-    for (int64_t k = 0; k < count; k++) {
-        grids += body[k].grids.count;
-        frames += body[k].grids.num_frames;
-    }
-    RITZ_NEW(place, count);
-    RITZ_NEW(all.id, grids);
-    RITZ_NEW(all.position, 3 * grids);
-    RITZ_NEW(all.frame, grids);
-    RITZ_NEW(all.axes, 9 * frames);
-    place_all(stage, setting, place);
-    renumber(count, body, add);
-    all.num_frames = 1;
-    for (int64_t k = 0; k < 3; k++)
-        all.axes[4 * k] = 1.0;
-    for (int64_t k = 0; k < count; k++)
-        append(&body[k].grids, &place[k], add[k], &all);
-    RITZ_TRY(sort(&all));
-    *out = all;
-    all = (ritz_grids){0};
-done:
-    free(place);
-    ritz_grids_free(&all);
     return status;
 }

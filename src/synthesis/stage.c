@@ -1,5 +1,6 @@
 /* A scene's models, loaded and reduced: the bodies that synthesis joins. */
 #include "base/alloc.h"
+#include "synthesis/neighbour.h"
 
 #include <ritz/container.h>
 #include <ritz/method.h>
@@ -48,8 +49,13 @@ static ritz_status used_ports(const ritz_scene *scene, int64_t k, char **out)
             if (scene->joint[j].between[end].component == k)
                 RITZ_TRY(append_port(&list, scene->joint[j].between[end].port));
     for (int64_t j = 0; j < scene->num_inputs; j++)
-        if (scene->input[j].at.component == k)
-            RITZ_TRY(append_port(&list, scene->input[j].at.port));
+        for (int end = 0; end < 2; end++) {
+            const ritz_scene_place *at =
+                end == 0 ? &scene->input[j].at : &scene->input[j].against;
+
+            if (at->component == k && *at->port)
+                RITZ_TRY(append_port(&list, at->port));
+        }
     *out = list;
     list = NULL;
 done:
@@ -66,6 +72,7 @@ static ritz_status reduce_body(const ritz_scene *scene, int64_t k,
     const ritz_scene_component *item = &scene->component[k];
     ritz_request request = RITZ_REQUEST_NONE;
     const ritz_method *method = ritz_method_find(item->basis);
+    ritz_neighbour neighbour = {0};
     ritz_basis basis = {0};
     char *ports = NULL;
 
@@ -81,10 +88,16 @@ static ritz_status reduce_body(const ritz_scene *scene, int64_t k,
         RITZ_TRY(used_ports(scene, k, &ports));
     RITZ_TRY(ritz_component_attached(
         component, item->attach ? item->attach : ports, &request.attached));
+    if (method->uses & RITZ_USES_NEIGHBOUR) {
+        RITZ_TRY(ritz_scene_neighbour(scene, k, component, &request.attached,
+                                      &neighbour));
+        request.neighbour = &neighbour;
+    }
     RITZ_TRY(ritz_basis_make(method, &request, &basis));
     RITZ_TRY(ritz_reduce(component, &basis, out));
 done:
     ritz_dofs_free(&request.attached);
+    ritz_neighbour_free(&neighbour);
     ritz_basis_free(&basis);
     free(ports);
     return status;
@@ -95,10 +108,14 @@ static ritz_status check_io(const ritz_scene *scene, int64_t k,
                             const ritz_scene_io *io, const char *kind)
 {
     for (int64_t j = 0; j < count; j++)
-        if (io[j].at.component == k &&
-            !ritz_component_port(component, io[j].at.port))
-            return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, io[j].line,
-                                      io[j].column, kind, io[j].name);
+        for (int end = 0; end < 2; end++) {
+            const ritz_scene_place *at = end == 0 ? &io[j].at : &io[j].against;
+
+            if (at->component == k && *at->port &&
+                !ritz_component_port(component, at->port))
+                return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, io[j].line,
+                                          io[j].column, kind, io[j].name);
+        }
     return RITZ_OK;
 }
 
@@ -187,21 +204,45 @@ static const ritz_port_map *find_row(const ritz_scene_io *io,
     return NULL;
 }
 
-static ritz_status set_input(ritz_stage *stage, int64_t j)
+/* Add a force in one direction at one place, `sign` times its scale. */
+static ritz_status add_force(ritz_stage *stage, int64_t j,
+                             const ritz_scene_place *at, int64_t direction,
+                             double sign)
 {
     const ritz_scene_io *input = &stage->scene->input[j];
-    int64_t k = input->at.component;
+    ritz_scene_io one = *input;
+    double *b = ritz_dense_col(&stage->io.B, j) + stage->first[at->component];
+    const ritz_port_map *port = NULL;
     int64_t row = 0;
-    const ritz_port_map *port = find_row(input, &stage->body[k], &row);
 
+    one.at = *at;
+    one.component = direction;
+    if (sign < 0.0)
+        one.grid = 0; /* which is of the port that it acts at */
+    port = find_row(&one, &stage->body[at->component], &row);
     if (!port)
         return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT, input->line,
                                   input->column, "input", input->name);
-    memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
     for (int64_t i = 0; i < port->map.ncol; i++)
-        ritz_dense_col(&stage->io.B, j)[stage->first[k] + i] =
-            input->scale * ritz_dense_col(&port->map, i)[row];
+        b[i] += sign * input->scale * ritz_dense_col(&port->map, i)[row];
     return RITZ_OK;
+}
+
+static ritz_status set_input(ritz_stage *stage, int64_t j)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_io *input = &stage->scene->input[j];
+
+    memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
+    for (int64_t d = 0; d <= input->num_also; d++) {
+        int64_t direction = d == 0 ? input->component : input->also[d - 1];
+
+        RITZ_TRY(add_force(stage, j, &input->at, direction, 1.0));
+        if (*input->against.port)
+            RITZ_TRY(add_force(stage, j, &input->against, direction, -1.0));
+    }
+done:
+    return status;
 }
 
 static ritz_status set_output(ritz_stage *stage, int64_t j)
@@ -223,6 +264,29 @@ static ritz_status set_output(ritz_stage *stage, int64_t j)
     return RITZ_OK;
 }
 
+/*
+ * Bodies meet with their dampers in them; the influence vectors are kept, so
+ * that a system can be retuned. Installing comes last, as what fails before it
+ * leaves the bodies as they were.
+ */
+static ritz_status install(ritz_stage *stage)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < stage->count; k++)
+        RITZ_TRY(ritz_dampers_append(
+            &stage->body[k].dampers, stage->scene->component[k].name,
+            stage->num_coordinates, stage->first[k], &stage->dampers));
+    for (int64_t k = 0; k < stage->count; k++)
+        RITZ_TRY(ritz_reduced_install(&stage->body[k]));
+    for (int64_t j = 0; j < stage->dampers.count; j++) {
+        stage->dampers.held_c[j] = stage->dampers.c[j];
+        stage->dampers.held_k[j] = stage->dampers.k[j];
+    }
+done:
+    return status;
+}
+
 /* Count coordinates and set up the scene's inputs and outputs. */
 static ritz_status complete(ritz_stage *stage)
 {
@@ -240,6 +304,7 @@ static ritz_status complete(ritz_stage *stage)
         RITZ_TRY(set_input(stage, j));
     for (int64_t j = 0; j < scene->num_outputs; j++)
         RITZ_TRY(set_output(stage, j));
+    RITZ_TRY(install(stage));
 done:
     return status;
 }
@@ -277,8 +342,10 @@ ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
     *out = stage;
     stage = (ritz_stage){0};
 done:
-    if (stage.body)
+    if (stage.body && stage.count > 0) { /* given back, dampers in or not */
+        memcpy(body, stage.body, (size_t)stage.count * sizeof *body);
         memset(stage.body, 0, (size_t)stage.count * sizeof *stage.body);
+    }
     ritz_stage_free(&stage);
     return status;
 }
@@ -304,5 +371,6 @@ void ritz_stage_free(ritz_stage *stage)
     free(stage->body);
     free(stage->first);
     ritz_io_free(&stage->io);
+    ritz_dampers_free(&stage->dampers);
     *stage = (ritz_stage){0};
 }

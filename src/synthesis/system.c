@@ -34,8 +34,7 @@ static ritz_status label(const ritz_stage *stage, ritz_system *system)
     RITZ_NEW(system->sweep, scene->num_sweeps);
     system->num_sweeps = scene->num_sweeps;
     for (int64_t k = 0; k < scene->num_sweeps; k++)
-        memcpy(system->sweep[k], scene->joint[scene->sweep[k]].name,
-               RITZ_NAME_SIZE);
+        memcpy(system->sweep[k], scene->sweep[k].name, RITZ_NAME_SIZE);
 done:
     return status;
 }
@@ -57,7 +56,7 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
 
         ritz_monitor_step("configuration", k, count);
         if (at)
-            RITZ_TRY(ritz_scene_angles(scene, at, setting));
+            RITZ_TRY(ritz_scene_settings(scene, at, setting));
         else
             row = scene->setting + k * scene->num_sweeps;
         RITZ_TRY(ritz_stage_assemble(stage, row, &system.configuration[k]));

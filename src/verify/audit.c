@@ -82,7 +82,7 @@ ritz_status ritz_audit_component(const ritz_component *component,
     ritz_status (*const checks[])(ritz_auditor *) = {
         ritz_audit_dofs,   ritz_audit_definite, ritz_audit_geometry,
         ritz_audit_forces, ritz_audit_rigid,    ritz_audit_grounding,
-        ritz_audit_mass,   ritz_audit_ports,
+        ritz_audit_mass,   ritz_audit_damping,  ritz_audit_ports,
     };
 
     RITZ_FAIL_IF(component->num_dofs == 0, RITZ_ERR_ARGUMENT,

@@ -67,6 +67,7 @@ ritz_status ritz_audit_forces(ritz_auditor *it);
 ritz_status ritz_audit_rigid(ritz_auditor *it);
 ritz_status ritz_audit_grounding(ritz_auditor *it);
 ritz_status ritz_audit_mass(ritz_auditor *it);
+ritz_status ritz_audit_damping(ritz_auditor *it);
 ritz_status ritz_audit_ports(ritz_auditor *it);
 
 /** The part of the ports that asks whether their grids lie on one line. */

@@ -30,13 +30,25 @@ static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
     return fabs(reduced - full) / full;
 }
 
+/*
+ * Where D couples modes, undamped partners need not be damped ones: the nearest
+ * pole is. Of a mode that does not oscillate in the full model nothing is said
+ * (NaN); one that does so in it alone is wholly wrong.
+ */
 static double damping_error(const ritz_sides *sides, int64_t k, int64_t r)
 {
-    double full = sides->zeta_full[k];
-    double reduced = sides->zeta_reduced[r];
+    bool coupled = sides->full.coupled || sides->reduced.coupled;
+    double full = sides->damped_full.zeta[k];
+    double reduced = sides->damped_reduced.zeta[r];
 
+    if (coupled && !isnan(full))
+        reduced = ritz_spectrum_ratio(
+            ritz_damped_nearest(&sides->damped_reduced, sides->reduced.count,
+                                sides->damped_full.s[k]));
     if (full == reduced)
         return 0.0;
+    if (!isnan(full) && isnan(reduced))
+        return 1.0;
     return fabs(reduced - full) / fmax(fabs(full), fabs(reduced));
 }
 

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Points before those at the poles are added. */
 enum { EVEN_POINTS = 200 };
@@ -38,7 +39,8 @@ static ritz_status points(const ritz_sides *sides, sweep *s)
 {
     ritz_status status = RITZ_OK;
     const ritz_poles *const side[2] = {&sides->full, &sides->reduced};
-    const double *const zeta[2] = {sides->zeta_full, sides->zeta_reduced};
+    const double *const zeta[2] = {sides->damped_full.zeta,
+                                   sides->damped_reduced.zeta};
     int64_t m = 0;
     double *omega = NULL;
     double *ratio = NULL;
@@ -63,6 +65,39 @@ done:
     return status;
 }
 
+/*
+ * The full model at the points. Modes and the static answer of the rest do not
+ * say what a local damper does, through which the rest moves too: then each
+ * point takes a factor.
+ */
+static ritz_status evaluate_full(const ritz_sides *sides, sweep *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_grid grid = {.from_hz = s->hertz[0],
+                            .to_hz = s->hertz[s->count - 1],
+                            .count = s->count,
+                            .hertz = s->hertz};
+    bool local =
+        sides->full.coupled && sides->full.count < sides->component->num_dofs;
+    ritz_response direct = {0};
+
+    if (local) {
+        RITZ_TRY(ritz_response_direct(sides->component, &sides->damping,
+                                      sides->modes_hz, &grid, &direct));
+        memcpy(s->full, direct.H,
+               (size_t)(s->count * s->values) * sizeof *s->full);
+    }
+    for (int64_t k = 0; !local && k < s->count; k++) {
+        RITZ_TRY(
+            ritz_poles_add(&sides->full, s->hertz[k], s->full + k * s->values));
+        ritz_residual_add(&sides->residual, s->hertz[k],
+                          s->full + k * s->values);
+    }
+done:
+    ritz_response_free(&direct);
+    return status;
+}
+
 static ritz_status evaluate(const ritz_sides *sides, sweep *s)
 {
     ritz_status status = RITZ_OK;
@@ -71,10 +106,8 @@ static ritz_status evaluate(const ritz_sides *sides, sweep *s)
     s->values = values;
     RITZ_NEW(s->full, s->count * values);
     RITZ_NEW(s->reduced, s->count * values);
+    RITZ_TRY_IN("full model", evaluate_full(sides, s));
     for (int64_t k = 0; k < s->count; k++) {
-        RITZ_TRY_IN("full model", ritz_poles_add(&sides->full, s->hertz[k],
-                                                 s->full + k * values));
-        ritz_residual_add(&sides->residual, s->hertz[k], s->full + k * values);
         RITZ_TRY_IN("reduced model",
                     ritz_poles_add(&sides->reduced, s->hertz[k],
                                    s->reduced + k * values));
@@ -87,7 +120,7 @@ done:
 static void say_where(const ritz_sides *sides, double hertz,
                       char where[RITZ_NAME_SIZE])
 {
-    char damping[RITZ_NAME_SIZE] = "";
+    char damping[RITZ_DAMPING_SIZE] = "";
 
     ritz_damping_print(&sides->damping, damping);
     (void)snprintf(where, RITZ_NAME_SIZE, "%.6g Hz%s%.30s%s", hertz,

@@ -9,16 +9,18 @@
 
 typedef struct ritz_sides {
     double band_hz[2];
+    double modes_hz; /* the full model's modes are known up to here */
     ritz_damping damping;
     bool assumed;     /* nobody had said how it is damped */
     bool shapes;      /* MAC is of shapes */
     bool outputs;     /* MAC is of what inputs and outputs see */
     ritz_pairs pairs; /* of the full model, to three times the band */
     ritz_pairs small; /* of the reduced one, all */
+    const ritz_component *component; /* the full model, borrowed */
     ritz_poles full, reduced;
     ritz_residual residual; /* of the full model */
     ritz_dense gain_reduced;
-    double *zeta_full, *zeta_reduced;
+    ritz_damped damped_full, damped_reduced;
     ritz_match match;
 } ritz_sides;
 

@@ -1,285 +1,279 @@
 /*
- * Damped modes of poles that D couples:
- *
- *     s [q; v] = [0 I; -Lambda -D] [q; v]
- *
- * and, as modes that were left out change what a local damper does, on the full
- * matrices by inverse iteration for Z(s) = s^2 M + s D + K:
- *
- *     u = Z(s)^-1 Z'(s) x,    s_new = s - (x^H x) / (x^H u),   x_new = u
- *
- * K4 has no place in a free vibration: its share k4 / lambda of a mode's loss
- * is added as half of it.
+ * Damped modes of poles that D or K4 couples, from the modal matrices; and, as
+ * modes that were left out change what a local damper does, made exact on the
+ * full ones.
  */
 #include "verify/damped.h"
 
 #include "base/alloc.h"
+#include "verify/refine.h"
 
-#include <ritz/factor.h>
 #include <ritz/monitor.h>
 
 #include <complex.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { MOST_STEPS = 12 };
-static const double settled = 1e-12;
+/* The modal matrices as a model. */
+typedef struct modal {
+    ritz_dense K, M, D, K4;
+} modal;
 
-/* One damped pair that is being refined. */
-typedef struct iterate {
-    const ritz_component *component;
-    ritz_zldl *Z;
-    double _Complex s;
-    ritz_dense x; /* n x 2: real and imaginary part */
-} iterate;
-
-/* Eigenvalue and modal shape nearest to mode k, of what dgeev returned. */
-static int64_t nearest(int64_t m, int64_t k, const double *im, const double *V)
+static void modal_free(modal *m)
 {
-    int64_t chosen = -1;
-    double best = 0.0;
-
-    for (int64_t j = 0; j + 1 < 2 * m; j++) {
-        const double *re = V + j * 2 * m;
-        const double *with = re + 2 * m;
-        double all = 0.0;
-        double own = hypot(re[k], with[k]);
-
-        if (!(im[j] > 0.0)) /* the first of a pair */
-            continue;
-        for (int64_t i = 0; i < m; i++)
-            all = hypot(all, hypot(re[i], with[i]));
-        if (own > best * all) {
-            best = own / all;
-            chosen = j;
-        }
-    }
-    return chosen;
+    ritz_dense_free(&m->K);
+    ritz_dense_free(&m->M);
+    ritz_dense_free(&m->D);
+    ritz_dense_free(&m->K4);
 }
 
-/* Eigenpairs of the companion matrix; V 2m x 2m. */
-static ritz_status companion(const ritz_poles *poles, double *re, double *im,
-                             double *V)
+/* Rows and columns of the modes. */
+static ritz_status lead(const ritz_dense *A, int64_t m, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!A->val)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_new(m, m, out));
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
+done:
+    return status;
+}
+
+static ritz_status modal_new(const ritz_poles *poles, modal *out)
 {
     ritz_status status = RITZ_OK;
     int64_t m = poles->count;
-    double *A = NULL;
-    int info = 0;
 
-    RITZ_NEW(A, 4 * m * m);
-    for (int64_t j = 0; j < m; j++) {
-        A[j + (m + j) * 2 * m] = 1.0;
-        A[m + j + j * 2 * m] = -poles->lambda[j];
-        for (int64_t i = 0; i < m; i++)
-            A[m + i + (m + j) * 2 * m] = -ritz_dense_col(&poles->D, j)[i];
+    RITZ_TRY(ritz_dense_new(m, m, &out->K));
+    RITZ_TRY(ritz_dense_new(m, m, &out->M));
+    RITZ_TRY(lead(&poles->D, m, &out->D));
+    RITZ_TRY(lead(&poles->K4, m, &out->K4));
+    for (int64_t k = 0; k < m; k++) {
+        ritz_dense_col(&out->K, k)[k] = poles->lambda[k];
+        ritz_dense_col(&out->M, k)[k] = 1.0;
     }
-    info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', (int)(2 * m), A,
-                         (int)(2 * m), re, im, NULL, 1, V, (int)(2 * m));
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "damped modes were not found");
-done:
-    free(A);
-    return status;
-}
-
-static double norm(const ritz_dense *x)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < x->nrow * x->ncol; i++)
-        sum = hypot(sum, x->val[i]);
-    return sum;
-}
-
-/* u = (2 s M + D) x */
-static ritz_status slope(const iterate *it, double _Complex *u)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense Mx = {0};
-    ritz_dense Dx = {0};
-    int64_t n = it->x.nrow;
-
-    RITZ_TRY(ritz_sparse_mul(&it->component->M, &it->x, &Mx));
-    RITZ_TRY(ritz_sparse_mul(&it->component->D, &it->x, &Dx));
-    for (int64_t i = 0; i < n; i++)
-        u[i] = 2.0 * it->s * ritz_complex(Mx.val[i], Mx.val[n + i]) +
-               ritz_complex(Dx.val[i], Dx.val[n + i]);
-done:
-    ritz_dense_free(&Mx);
-    ritz_dense_free(&Dx);
-    return status;
-}
-
-/* One step; `still` once s does not move. */
-static ritz_status step(iterate *it, double _Complex *u, bool *still)
-{
-    ritz_status status = RITZ_OK;
-    const double _Complex c[3] = {1.0, it->s * it->s, it->s};
-    double size = norm(&it->x);
-    double _Complex xu = 0.0;
-    int64_t n = it->x.nrow;
-
-    for (int64_t i = 0; i < 2 * n; i++)
-        it->x.val[i] /= size;
-    RITZ_TRY(slope(it, u));
-    status = ritz_zldl_factor(it->Z, c);
-    *still = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue */
-    if (*still)
-        return RITZ_OK;
-    RITZ_TRY(status);
-    RITZ_TRY(ritz_zldl_solve(it->Z, 1, u));
-    for (int64_t i = 0; i < n; i++)
-        xu += ritz_complex(it->x.val[i], -it->x.val[n + i]) * u[i];
-    for (int64_t i = 0; i < n; i++) {
-        it->x.val[i] = creal(u[i]);
-        it->x.val[n + i] = cimag(u[i]);
-    }
-    *still = cabs(1.0 / xu) <= settled * cabs(it->s);
-    it->s -= 1.0 / xu;
 done:
     return status;
 }
 
-/* x = Phi q of a modal shape, then steps. */
-static ritz_status refine(iterate *it, const ritz_dense *Phi, const double *q)
+/* How much of the shape of pole j is of mode k; 0 of what does not oscillate.*/
+static double share(const ritz_spectrum *spectrum, int64_t k, int64_t j)
+{
+    if (!(cimag(spectrum->s[j]) > 0.0))
+        return 0.0;
+    return hypot(ritz_dense_col(&spectrum->re, j)[k],
+                 ritz_dense_col(&spectrum->im, j)[k]);
+}
+
+/*
+ * The pole that each flexible mode has become, -1 where it does not oscillate
+ * any more. Each pole is of one mode: the largest share decides, then the
+ * largest of what is left; else an overdamped mode would be given the ratio of
+ * a neighbour.
+ */
+static ritz_status assign(const ritz_poles *poles,
+                          const ritz_spectrum *spectrum, int64_t *of)
 {
     ritz_status status = RITZ_OK;
-    int64_t m = Phi->ncol;
-    ritz_dense shape = {0};
-    double _Complex *u = NULL;
-    bool still = false;
+    bool *taken = NULL;
 
-    RITZ_TRY(ritz_dense_new(m, 2, &shape));
-    RITZ_NEW(u, Phi->nrow);
-    for (int64_t i = 0; i < m; i++) {
-        shape.val[i] = q[i];
-        shape.val[m + i] = q[2 * m + i];
+    RITZ_NEW(taken, spectrum->count);
+    for (int64_t k = 0; k < poles->count; k++)
+        of[k] = -1;
+    for (int64_t t = poles->num_rigid; t < poles->count; t++) {
+        double best = 0.0;
+        int64_t mode = -1, pole = -1;
+
+        for (int64_t j = 0; j < spectrum->count; j++)
+            for (int64_t k = poles->num_rigid; k < poles->count && !taken[j];
+                 k++)
+                if (of[k] < 0 && share(spectrum, k, j) > best) {
+                    best = share(spectrum, k, j);
+                    mode = k;
+                    pole = j;
+                }
+        if (mode < 0)
+            break;
+        of[mode] = pole;
+        taken[pole] = true;
     }
-    RITZ_TRY(ritz_dense_mul(Phi, &shape, &it->x));
-    for (int t = 0; t < MOST_STEPS && !still; t++)
-        RITZ_TRY(step(it, u, &still));
-    RITZ_FAIL_IF(!still, RITZ_ERR_CONVERGENCE,
-                 "the damped mode near %.6g Hz was not found",
-                 ritz_eigen_hertz(cabs(it->s) * cabs(it->s)));
 done:
-    ritz_dense_free(&it->x);
-    ritz_dense_free(&shape);
-    free(u);
+    free(taken);
     return status;
 }
 
 /* What D leaves out: given ratios are in the rates, D's in the matrices. */
-static double given_ratio(const ritz_poles *poles, const ritz_dense *own,
-                          int64_t k)
+static double given_ratio(const ritz_poles *poles, const double *own, int64_t k)
 {
-    return (poles->rate[k] - own->val[k]) / (2.0 * sqrt(poles->lambda[k]));
+    return (poles->rate[k] - own[k]) / (2.0 * sqrt(poles->lambda[k]));
 }
 
-/* Diagonal of Phi'D Phi, m x 1. */
+/* Diagonal of Phi'D Phi; 0 without D. */
 static ritz_status own_rates(const ritz_sparse *D, const ritz_dense *Phi,
-                             ritz_dense *out)
+                             double **out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense DPhi = {0};
+    double *own = NULL;
 
-    RITZ_TRY(ritz_sparse_mul(D, Phi, &DPhi));
-    RITZ_TRY(ritz_dense_new(Phi->ncol, 1, out));
-    for (int64_t k = 0; k < Phi->ncol; k++)
+    RITZ_NEW(own, Phi->ncol);
+    if (D->colptr)
+        RITZ_TRY(ritz_sparse_mul(D, Phi, &DPhi));
+    for (int64_t k = 0; DPhi.val && k < Phi->ncol; k++)
         for (int64_t i = 0; i < Phi->nrow; i++)
-            out->val[k] +=
-                ritz_dense_col(Phi, k)[i] * ritz_dense_col(&DPhi, k)[i];
+            own[k] += ritz_dense_col(Phi, k)[i] * ritz_dense_col(&DPhi, k)[i];
+    *out = own;
+    own = NULL;
 done:
     ritz_dense_free(&DPhi);
+    free(own);
     return status;
 }
 
-/* Modes in the band, on the full matrices, from where the companion put s. */
+/* x = Phi q, n x 2, of modal shape j. */
+static ritz_status shape(const ritz_dense *Phi, const ritz_spectrum *spectrum,
+                         int64_t j, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = Phi->ncol;
+    ritz_dense q = {0};
+
+    RITZ_TRY(ritz_dense_new(m, 2, &q));
+    memcpy(q.val, ritz_dense_col(&spectrum->re, j), (size_t)m * sizeof *q.val);
+    memcpy(q.val + m, ritz_dense_col(&spectrum->im, j),
+           (size_t)m * sizeof *q.val);
+    RITZ_TRY(ritz_dense_mul(Phi, &q, out));
+done:
+    ritz_dense_free(&q);
+    return status;
+}
+
+static bool in_band(const ritz_poles *poles, int64_t k, const double band_hz[2])
+{
+    double hertz = ritz_eigen_hertz(poles->lambda[k]);
+
+    return hertz >= band_hz[0] && hertz <= band_hz[1] * (1.0 + 1e-9);
+}
+
+/* s of ratio zeta and size |s|. */
+static double _Complex pole_of(double size, double zeta)
+{
+    return zeta < 1.0
+               ? ritz_complex(-zeta * size, size * sqrt(1.0 - zeta * zeta))
+               : ritz_complex(nan(""), 0.0);
+}
+
+/* Modes in the band, on the full matrices, from where the modal ones put s. */
 static ritz_status refine_band(const ritz_poles *poles,
                                const ritz_component *component,
                                const ritz_pairs *pairs, const double band_hz[2],
-                               const double *start[3], double *zeta)
+                               const int64_t *of, ritz_damped *damped)
 {
     ritz_status status = RITZ_OK;
-    const ritz_sparse *const A[] = {&component->K, &component->M,
-                                    &component->D};
-    iterate it = {.component = component};
-    ritz_dense own = {0};
-    int64_t m = poles->count;
+    ritz_refiner refiner = {0};
+    ritz_dense x = {0};
+    double *own = NULL;
 
     RITZ_TRY(own_rates(&component->D, &pairs->Phi, &own));
-    RITZ_TRY(ritz_zldl_new(3, A, &it.Z));
-    for (int64_t k = poles->num_rigid; k < m; k++) {
-        double hertz = ritz_eigen_hertz(poles->lambda[k]);
-        int64_t j = nearest(m, k, start[1], start[2]);
+    RITZ_TRY(ritz_refiner_new(component, true, &refiner));
+    for (int64_t k = poles->num_rigid; k < poles->count; k++) {
+        double _Complex s = 0.0;
+        double zeta = 0.0;
 
-        if (j < 0 || hertz < band_hz[0] || hertz > band_hz[1] * (1.0 + 1e-9))
+        if (of[k] < 0 || !in_band(poles, k, band_hz))
             continue;
-        it.s = ritz_complex(start[0][j], start[1][j]);
-        RITZ_TRY(refine(&it, &pairs->Phi, start[2] + j * 2 * m));
-        zeta[k] = -creal(it.s) / cabs(it.s) + given_ratio(poles, &own, k);
-        ritz_monitor_step("damped modes", k + 1, m);
+        s = damped->listing.s[of[k]];
+        RITZ_TRY(shape(&pairs->Phi, &damped->listing, of[k], &x));
+        RITZ_TRY(ritz_refine(&refiner, &x, &s));
+        ritz_dense_free(&x);
+        zeta = ritz_spectrum_ratio(s) + given_ratio(poles, own, k);
+        damped->zeta[k] = zeta;
+        damped->s[k] = pole_of(cabs(s), zeta);
+        ritz_monitor_step("damped modes", k + 1, poles->count);
     }
 done:
-    ritz_zldl_free(&it.Z);
-    ritz_dense_free(&own);
+    ritz_refiner_free(&refiner);
+    ritz_dense_free(&x);
+    free(own);
     return status;
 }
 
-static ritz_status coupled_ratios(const ritz_poles *poles,
-                                  const ritz_component *component,
-                                  const ritz_pairs *pairs,
-                                  const double band_hz[2], double *zeta)
+static ritz_status take_coupled(const ritz_poles *poles,
+                                const ritz_component *component,
+                                const ritz_pairs *pairs,
+                                const double band_hz[2], ritz_damped *damped)
 {
     ritz_status status = RITZ_OK;
-    int64_t m = poles->count;
-    double *re = NULL;
-    double *im = NULL;
-    double *V = NULL;
-    const double *start[3];
+    modal m = {0};
+    const ritz_second_order model = {&m.K, &m.M, &m.D, &m.K4, NULL};
+    int64_t *of = NULL;
 
-    RITZ_NEW(re, 2 * m);
-    RITZ_NEW(im, 2 * m);
-    RITZ_NEW(V, 4 * m * m);
-    RITZ_TRY(companion(poles, re, im, V));
-    for (int64_t k = poles->num_rigid; k < m; k++) {
-        int64_t j = nearest(m, k, im, V);
-
-        zeta[k] = j < 0 ? nan("") : -re[j] / hypot(re[j], im[j]);
+    RITZ_NEW(of, poles->count);
+    RITZ_TRY(modal_new(poles, &m));
+    RITZ_TRY(ritz_spectrum_dense(&model, NULL, &damped->listing));
+    RITZ_TRY(assign(poles, &damped->listing, of));
+    for (int64_t k = poles->num_rigid; k < poles->count; k++) {
+        damped->s[k] =
+            of[k] < 0 ? ritz_complex(nan(""), 0.0) : damped->listing.s[of[k]];
+        damped->zeta[k] =
+            of[k] < 0 ? nan("") : ritz_spectrum_ratio(damped->s[k]);
     }
-    start[0] = re;
-    start[1] = im;
-    start[2] = V;
-    if (component && component->D.colptr && poles->count < component->num_dofs)
-        RITZ_TRY(refine_band(poles, component, pairs, band_hz, start, zeta));
+    if (component && poles->count < component->num_dofs)
+        RITZ_TRY(refine_band(poles, component, pairs, band_hz, of, damped));
 done:
-    free(re);
-    free(im);
-    free(V);
+    modal_free(&m);
+    free(of);
     return status;
 }
 
-ritz_status ritz_damped_ratios(const ritz_poles *poles,
-                               const ritz_component *component,
-                               const ritz_pairs *pairs, const double band_hz[2],
-                               double **out)
+ritz_status ritz_damped_new(const ritz_poles *poles,
+                            const ritz_component *component,
+                            const ritz_pairs *pairs, const double band_hz[2],
+                            ritz_damped *out)
 {
     ritz_status status = RITZ_OK;
+    ritz_damped damped = {0};
     double *omega = NULL;
-    double *zeta = NULL;
 
-    RITZ_TRY(ritz_poles_ratios(poles, &omega, &zeta));
-    if (poles->coupled && poles->D.val) {
-        RITZ_TRY(coupled_ratios(poles, component, pairs, band_hz, zeta));
-        for (int64_t k = poles->num_rigid; poles->K4.val && k < poles->count;
-             k++)
-            zeta[k] +=
-                ritz_dense_col(&poles->K4, k)[k] / (2.0 * poles->lambda[k]);
-    }
-    *out = zeta;
-    zeta = NULL;
+    RITZ_TRY(ritz_poles_ratios(poles, &omega, &damped.zeta));
+    RITZ_NEW(damped.s, poles->count);
+    for (int64_t k = 0; k < poles->count; k++)
+        damped.s[k] = omega[k] > 0.0 ? pole_of(omega[k], damped.zeta[k])
+                                     : ritz_complex(nan(""), 0.0);
+    if (poles->coupled && poles->D.val)
+        RITZ_TRY(take_coupled(poles, component, pairs, band_hz, &damped));
+    *out = damped;
+    damped = (ritz_damped){0};
 done:
     free(omega);
-    free(zeta);
+    ritz_damped_free(&damped);
     return status;
+}
+
+double _Complex ritz_damped_nearest(const ritz_damped *damped, int64_t count,
+                                    double _Complex s)
+{
+    bool listed = damped->listing.count > 0;
+    const double _Complex *all = listed ? damped->listing.s : damped->s;
+    double _Complex best = ritz_complex(nan(""), 0.0);
+    double least = HUGE_VAL;
+
+    for (int64_t k = 0; k < (listed ? damped->listing.count : count); k++)
+        if (cimag(all[k]) > 0.0 && cabs(all[k] - s) < least) {
+            least = cabs(all[k] - s);
+            best = all[k];
+        }
+    return best;
+}
+
+void ritz_damped_free(ritz_damped *damped)
+{
+    free(damped->zeta);
+    free(damped->s);
+    ritz_spectrum_free(&damped->listing);
+    *damped = (ritz_damped){0};
 }

@@ -4,9 +4,7 @@
 
 #include "verify/poles.h"
 
-/** @param[in] D  may be NULL or {0} */
-ritz_status ritz_poles_of_dense(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
+ritz_status ritz_poles_of_dense(const ritz_second_order *model,
                                 const ritz_damping *damping, ritz_poles *out);
 
 #endif

@@ -17,6 +17,9 @@ static const double pole_within = 1e-12;
 /* Of the product of all modes' shares: what is below is not driven and seen. */
 static const double unseen_below = 1e-10;
 
+/* A skew part beyond rounding, of what was projected: gyroscopic damping. */
+static const double symmetric_within = 1e-12;
+
 static bool couples(const ritz_dense *A)
 {
     double largest = 0.0;
@@ -24,12 +27,12 @@ static bool couples(const ritz_dense *A)
     for (int64_t k = 0; k < A->ncol; k++)
         largest = fmax(largest, fabs(ritz_dense_col(A, k)[k]));
     for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < j; i++) {
+        for (int64_t i = 0; i < A->nrow; i++) {
             double own = sqrt(fabs(ritz_dense_col(A, i)[i]) *
                               fabs(ritz_dense_col(A, j)[j]));
 
-            if (!(fabs(ritz_dense_col(A, j)[i]) <=
-                  diagonal_within * own + 1e-15 * largest))
+            if (i != j && !(fabs(ritz_dense_col(A, j)[i]) <=
+                            diagonal_within * own + 1e-15 * largest))
                 return true;
         }
     return false;
@@ -56,6 +59,7 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
         for (int64_t k = 0; k < poles->count; k++)
             poles->rate[k] += ritz_dense_col(D, k)[k];
         poles->coupled = couples(D);
+        poles->skew = ritz_dense_asymmetry(D) > symmetric_within;
         RITZ_TRY(copy(D, &poles->D));
     } else if (has_k4) {
         RITZ_TRY(ritz_dense_new(poles->count, poles->count, &poles->D));
@@ -86,9 +90,10 @@ ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
 
         poles.lambda[k] = w * w;
         if (damping && !rigid)
-            poles.rate[k] = 2.0 * w * ritz_damping_ratio(damping, w);
+            poles.rate[k] =
+                2.0 * w * ritz_damping_of_mode(damping, k - poles.num_rigid, w);
         /* a M + b K damps rigid motion too; a ratio does not */
-        if (damping && rigid && damping->kind == RITZ_DAMPING_RAYLEIGH)
+        if (damping && rigid && ritz_damping_is_rayleigh(damping))
             poles.rate[k] = damping->a;
     }
     RITZ_TRY(add_matrices(D, K4, &poles));
@@ -169,51 +174,91 @@ done:
     return status;
 }
 
-/* Z = Lambda - w^2 I + i (w D + K4), lower triangle and all. */
+/* Z = Lambda - w^2 I + i (w D + K4), both triangles. */
 static void assemble(const ritz_poles *poles, double w, double _Complex *Z)
 {
-    int64_t m = poles->count;
+    int64_t m = poles->count + poles->massless;
 
-    for (int64_t j = 0; j < m; j++)
+    for (int64_t j = 0; j < m; j++) {
+        double own = poles->lambda[j] - (j < poles->count ? w * w : 0.0);
+
         for (int64_t i = 0; i < m; i++) {
             double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, j)[i] : 0.0;
             double d = w * ritz_dense_col(&poles->D, j)[i];
 
-            Z[i + j * m] =
-                ritz_complex(i == j ? poles->lambda[j] - w * w : 0.0, d + k4);
+            Z[i + j * m] = ritz_complex(i == j ? own : 0.0, d + k4);
         }
+    }
+}
+
+/* S Z S and S q, of unit diagonal: w^2 of rigid motion is small beside Lambda
+ * where nothing is wrong. */
+static void equilibrate(int64_t m, int64_t inputs, double _Complex *Z,
+                        double _Complex *q, double *s)
+{
+    for (int64_t j = 0; j < m; j++) {
+        double own = cabs(Z[j + j * m]);
+
+        s[j] = own > 0.0 ? 1.0 / sqrt(own) : 1.0;
+    }
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++)
+            Z[i + j * m] *= s[i] * s[j];
+    for (int64_t j = 0; j < inputs; j++)
+        for (int64_t i = 0; i < m; i++)
+            q[i + j * m] *= s[i];
+}
+
+/* Z := its factors, complex symmetric or not; LAPACK's info. */
+static int factor(bool skew, int m, double _Complex *Z, lapack_int *pivot,
+                  double *rcond)
+{
+    double norm = LAPACKE_zlange(LAPACK_COL_MAJOR, '1', m, m, Z, m);
+    int info = skew ? LAPACKE_zgetrf(LAPACK_COL_MAJOR, m, m, Z, m, pivot)
+                    : LAPACKE_zsytrf(LAPACK_COL_MAJOR, 'L', m, Z, m, pivot);
+
+    if (info != 0)
+        return info;
+    return skew ? LAPACKE_zgecon(LAPACK_COL_MAJOR, '1', m, Z, m, norm, rcond)
+                : LAPACKE_zsycon(LAPACK_COL_MAJOR, 'L', m, Z, m, pivot, norm,
+                                 rcond);
 }
 
 static ritz_status solve_together(const ritz_poles *poles, double hertz,
                                   double _Complex *q)
 {
     ritz_status status = RITZ_OK;
-    int64_t m = poles->count;
+    int64_t m = poles->count + poles->massless;
     int64_t inputs = poles->io.num_inputs;
     double _Complex *Z = NULL;
+    double *s = NULL;
     lapack_int *pivot = NULL;
-    double norm = 0.0;
     double rcond = 0.0;
     int info = 0;
 
     RITZ_NEW(Z, m * m);
+    RITZ_NEW(s, m);
     RITZ_NEW(pivot, m);
     assemble(poles, 2.0 * pi * hertz, Z);
     for (int64_t k = 0; k < m * inputs; k++)
         q[k] = poles->io.B.val[k];
-    norm = LAPACKE_zlansy(LAPACK_COL_MAJOR, '1', 'L', (int)m, Z, (int)m);
-    info = LAPACKE_zsytrf(LAPACK_COL_MAJOR, 'L', (int)m, Z, (int)m, pivot);
-    if (info == 0)
-        info = LAPACKE_zsycon(LAPACK_COL_MAJOR, 'L', (int)m, Z, (int)m, pivot,
-                              norm, &rcond);
+    equilibrate(m, inputs, Z, q, s);
+    info = factor(poles->skew, (int)m, Z, pivot, &rcond);
     RITZ_FAIL_IF(info != 0 || !(rcond > 1e-16), RITZ_ERR_SINGULAR,
                  "the response at %.9g Hz is infinite: an undamped mode, or at "
                  "0 Hz a rigid-body motion",
                  hertz);
-    (void)LAPACKE_zsytrs(LAPACK_COL_MAJOR, 'L', (int)m, (int)inputs, Z, (int)m,
-                         pivot, q, (int)m);
+    if (poles->skew)
+        (void)LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', (int)m, (int)inputs, Z,
+                             (int)m, pivot, q, (int)m);
+    else
+        (void)LAPACKE_zsytrs(LAPACK_COL_MAJOR, 'L', (int)m, (int)inputs, Z,
+                             (int)m, pivot, q, (int)m);
+    for (int64_t k = 0; k < m * inputs; k++)
+        q[k] *= s[k % m];
 done:
     free(Z);
+    free(s);
     free(pivot);
     return status;
 }
@@ -251,6 +296,7 @@ ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
     ritz_response_see(&poles->io, hertz, poles->q, H);
     if (hertz == 0.0 && !poles->coupled)
         add_rigid_acceleration(poles, H);
+    ritz_residual_add(&poles->rest, hertz, H);
 done:
     return status;
 }
@@ -289,5 +335,6 @@ void ritz_poles_free(ritz_poles *poles)
     ritz_dense_free(&poles->D);
     ritz_dense_free(&poles->K4);
     ritz_io_free(&poles->io);
+    ritz_residual_free(&poles->rest);
     *poles = (ritz_poles){0};
 }

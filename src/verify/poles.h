@@ -18,15 +18,30 @@ static inline double _Complex ritz_complex(double re, double im)
     return re + (double _Complex)_Complex_I * im;
 }
 
+/*
+ * What the modes that were left out answer, without damping: with K^+ the
+ * inverse of K where they live, X = sum_j w^(2j) R_j, R_0 = K^+ B and
+ * R_j = K^+ M R_(j-1); of it only what the outputs see.
+ */
+typedef struct ritz_residual {
+    int64_t count, num_outputs, num_inputs;
+    double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
+                            as ritz_dense */
+} ritz_residual;
+
 typedef struct ritz_poles {
     int64_t count;
     int64_t num_rigid;
-    double *lambda;     /* count, 0 where rigid  [rad^2/s^2] */
+    int64_t massless;   /* coordinates behind the modes, without mass, K = I:
+                           what D or K4 acts on of them; then coupled */
+    double *lambda;     /* count, 0 where rigid  [rad^2/s^2]; 1 behind */
     double *rate;       /* count, 2 zeta w of given ratios and D's diagonal */
     bool coupled;       /* D or K4 couple modes: below are what to use */
+    bool skew;          /* D is not symmetric */
     ritz_dense D;       /* count x count, with `rate` on its diagonal, or {0} */
     ritz_dense K4;      /* count x count, or {0} */
     ritz_io io;         /* for the modes */
+    ritz_residual rest; /* what motions without mass answer; {0}: none */
     double _Complex *q; /* count x num_inputs, to work in: one thread */
 } ritz_poles;
 
@@ -38,14 +53,17 @@ ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
 /**
  * Modal coordinates at one frequency.
  *
- * @param[out] q  count x num_inputs, column-major
+ * @param[out] q  count + massless rows, num_inputs columns
  * @return RITZ_ERR_SINGULAR if that is on an undamped pole, or at 0 Hz where
  *         rigid modes are driven and seen
  */
 ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
                              double _Complex *q);
 
-/** Add what the modes answer to H, num_outputs x num_inputs, row by row. */
+/**
+ * Add what the modes, and motions without mass, answer to H, num_outputs x
+ * num_inputs, row by row.
+ */
 ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H);
 
@@ -72,17 +90,6 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
                                     const ritz_damping *damping,
                                     double up_to_hz, ritz_pairs *pairs,
                                     ritz_poles *out);
-
-/*
- * What the modes that were left out answer, without damping: with K^+ the
- * inverse of K where they live, X = sum_j w^(2j) R_j, R_0 = K^+ B and
- * R_j = K^+ M R_(j-1); of it only what the outputs see.
- */
-typedef struct ritz_residual {
-    int64_t count, num_outputs, num_inputs;
-    double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
-                            as ritz_dense */
-} ritz_residual;
 
 /** @param[in] to_hz  where the series is to be good to 1e-12 */
 ritz_status ritz_residual_new(const ritz_component *component,

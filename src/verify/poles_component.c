@@ -11,6 +11,8 @@ static ritz_status project(const ritz_sparse *A, const ritz_dense *Phi,
         return RITZ_OK;
     RITZ_TRY(ritz_sparse_mul(A, Phi, &APhi));
     RITZ_TRY(ritz_dense_mul_tn(Phi, &APhi, out));
+    if (ritz_sparse_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(out);
 done:
     ritz_dense_free(&APhi);
     return status;

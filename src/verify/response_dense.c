@@ -1,40 +1,142 @@
 /* Response of a small dense model, by all its modes. */
 #include "verify/dense_poles.h"
+#include "verify/state.h"
+#include "verify/static_rest.h"
 
 #include <ritz/monitor.h>
 
-ritz_status ritz_poles_of_dense(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
+#include <math.h>
+
+/* Phi'A Phi; {0} of an absent one. */
+static ritz_status project(const ritz_dense *A, const ritz_dense *Phi,
+                           ritz_dense *out)
+{
+    return A && A->val ? ritz_dense_project(A, Phi, out) : RITZ_OK;
+}
+
+/* Far below 0 an eigenvalue is no rounding: -3e-9 of the largest was seen. */
+static ritz_status refuse_unstable(const ritz_pairs *pairs)
+{
+    const double rounding = 1e-6;
+    ritz_status status = RITZ_OK;
+    int64_t m = pairs->Phi.ncol;
+
+    RITZ_FAIL_IF(m > 0 &&
+                     pairs->lambda[0] < -rounding * fabs(pairs->lambda[m - 1]),
+                 RITZ_ERR_ARGUMENT,
+                 "the stiffness has a negative eigenvalue, %.3g where the "
+                 "largest is %.3g: an unstable model has no steady response",
+                 pairs->lambda[0], pairs->lambda[m - 1]);
+done:
+    return status;
+}
+
+/* Whether A moves with any of N, beyond rounding. */
+static ritz_status acts(const ritz_dense *A, const ritz_dense *N, bool *out)
+{
+    const double rounding = 1e-12;
+    ritz_status status = RITZ_OK;
+    ritz_dense AN = {0}, NA = {0};
+
+    if (!A || !A->val || N->ncol == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_mul(A, N, &AN));
+    RITZ_TRY(ritz_dense_mul_tn(A, N, &NA));
+    if (fmax(ritz_dense_max(&AN), ritz_dense_max(&NA)) >
+        rounding * ritz_dense_max(A) * ritz_dense_max(N))
+        *out = true;
+done:
+    ritz_dense_free(&AN);
+    ritz_dense_free(&NA);
+    return status;
+}
+
+/*
+ * Damping of motions without mass couples them with the modes: they are taken
+ * beside them, as X = [Phi N], and their lambda is N'KN = 1.
+ */
+static ritz_status take_massless(const ritz_second_order *model,
+                                 ritz_pairs *pairs, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense N = {0}, X = {0};
+    int64_t m = pairs->Phi.ncol;
+    bool damped = false;
+
+    *count = 0;
+    if (m == pairs->Phi.nrow)
+        return RITZ_OK;
+    RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    RITZ_TRY(acts(model->D, &N, &damped));
+    RITZ_TRY(acts(model->K4, &N, &damped));
+    if (!damped)
+        goto done;
+    RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &X));
+    ritz_dense_free(&pairs->Phi);
+    pairs->Phi = X;
+    *count = N.ncol;
+    for (int64_t j = m; j < X.ncol; j++) /* lambda has room for all rows */
+        pairs->lambda[j] = 1.0;
+done:
+    ritz_dense_free(&N);
+    return status;
+}
+
+/* The last coordinates are no modes: no ratio acts on them. */
+static void mark_massless(int64_t count, const ritz_dense *D,
+                          const ritz_damping *damping, ritz_poles *poles)
+{
+    double b = damping && ritz_damping_is_rayleigh(damping) ? damping->b : 0.0;
+
+    poles->count -= count;
+    poles->massless = count;
+    poles->coupled = poles->coupled || count > 0;
+    for (int64_t j = poles->count; j < poles->count + count; j++) {
+        poles->rate[j] = b + (D->val ? ritz_dense_col(D, j)[j] : 0.0);
+        ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
+    }
+}
+
+ritz_status ritz_poles_of_dense(const ritz_second_order *model,
                                 const ritz_damping *damping, ritz_poles *out)
 {
     ritz_status status = RITZ_OK;
     ritz_pairs pairs = {0};
-    ritz_dense DPhi = {0};
-    ritz_dense d = {0};
+    ritz_dense D = {0};
+    ritz_dense K4 = {0};
+    ritz_residual rest = {0};
+    int64_t massless = 0;
 
-    RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
-    if (D && D->val) {
-        RITZ_TRY_IN("D", ritz_dense_mul(D, &pairs.Phi, &DPhi));
-        RITZ_TRY_IN("D", ritz_dense_mul_tn(&pairs.Phi, &DPhi, &d));
+    RITZ_TRY(ritz_eigen_dense(model->K, model->M, &pairs));
+    RITZ_TRY(refuse_unstable(&pairs));
+    RITZ_TRY(ritz_static_rest(model, &pairs, &rest));
+    RITZ_TRY(take_massless(model, &pairs, &massless));
+    RITZ_TRY_IN("D", project(model->D, &pairs.Phi, &D));
+    RITZ_TRY_IN("K4", project(model->K4, &pairs.Phi, &K4));
+    RITZ_TRY(ritz_poles_new(&pairs, &D, &K4, model->io, damping, out));
+    mark_massless(massless, &D, damping, out);
+    if (massless == 0) {
+        out->rest = rest;
+        rest = (ritz_residual){0};
     }
-    RITZ_TRY(ritz_poles_new(&pairs, &d, NULL, io, damping, out));
 done:
     ritz_pairs_free(&pairs);
-    ritz_dense_free(&DPhi);
-    ritz_dense_free(&d);
+    ritz_dense_free(&D);
+    ritz_dense_free(&K4);
+    ritz_residual_free(&rest);
     return status;
 }
 
-ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
-                                const ritz_damping *damping,
-                                const ritz_grid *grid, ritz_response *out)
+ritz_status ritz_response_second_order(const ritz_second_order *model,
+                                       const ritz_damping *damping,
+                                       const ritz_grid *grid,
+                                       ritz_response *out)
 {
     ritz_status status = RITZ_OK;
     ritz_poles poles = {0};
     ritz_response r = {0};
 
-    RITZ_TRY(ritz_poles_of_dense(K, M, D, io, damping, &poles));
+    RITZ_TRY(ritz_poles_of_dense(model, damping, &poles));
     RITZ_TRY(ritz_response_new(grid, &poles, "modal", damping, &r));
     for (int64_t k = 0; k < r.count; k++) {
         RITZ_TRY(ritz_poles_add(&poles, r.hertz[k],
@@ -47,4 +149,14 @@ done:
     ritz_poles_free(&poles);
     ritz_response_free(&r);
     return status;
+}
+
+ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
+                                const ritz_dense *D, const ritz_io *io,
+                                const ritz_damping *damping,
+                                const ritz_grid *grid, ritz_response *out)
+{
+    const ritz_second_order model = {.K = K, .M = M, .D = D, .io = io};
+
+    return ritz_response_second_order(&model, damping, grid, out);
 }

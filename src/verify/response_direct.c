@@ -59,7 +59,7 @@ static ritz_status start(direct *s)
     const ritz_sparse *A[MOST_MATRICES] = {&c->K, &c->M};
     int64_t count = 2;
     bool matrices = c->D.colptr || c->K4.colptr;
-    ritz_damping_kind kind = s->damping->kind;
+    bool rayleigh = ritz_damping_is_rayleigh(s->damping);
 
     if (c->D.colptr)
         A[count++] = &c->D;
@@ -68,8 +68,8 @@ static ritz_status start(direct *s)
     s->n = c->num_dofs;
     s->m = s->pairs.Phi.ncol;
     s->inputs = c->io.num_inputs;
-    s->ratios = kind == RITZ_DAMPING_MODAL || kind == RITZ_DAMPING_BANDS;
-    s->apart = !matrices && kind != RITZ_DAMPING_RAYLEIGH;
+    s->ratios = !rayleigh && s->damping->kind != RITZ_DAMPING_NONE;
+    s->apart = !matrices && !rayleigh;
     RITZ_NEW(s->X, s->n * (s->inputs + s->m));
     RITZ_TRY(ritz_sparse_mul(&c->M, &s->pairs.Phi, &s->MPhi));
     RITZ_TRY(ritz_zldl_new(count, A, &s->Z));
@@ -94,7 +94,7 @@ static ritz_status factor(direct *s, double w, double w2)
     double _Complex c[MOST_MATRICES];
     int64_t count = 2;
 
-    if (s->damping->kind == RITZ_DAMPING_RAYLEIGH) {
+    if (ritz_damping_is_rayleigh(s->damping)) {
         a = s->damping->a;
         b = s->damping->b;
     }
@@ -176,7 +176,8 @@ static void rates(const direct *s, double w, int64_t columns,
         for (int64_t k = 0; k < s->m; k++) {
             const double *u = ritz_dense_col(&s->MPhi, k);
             double wk = sqrt(s->poles.lambda[k]);
-            double e = 2.0 * wk * ritz_damping_ratio(s->damping, wk);
+            int64_t mode = k - s->poles.num_rigid;
+            double e = 2.0 * wk * ritz_damping_of_mode(s->damping, mode, wk);
             double _Complex sum = 0.0;
 
             for (int64_t i = 0; i < s->n; i++)

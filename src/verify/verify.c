@@ -115,36 +115,35 @@ static ritz_status open_full(const ritz_component *full, ritz_sides *sides)
 {
     ritz_status status = RITZ_OK;
 
+    sides->modes_hz = beyond * sides->band_hz[1];
     RITZ_TRY_IN("full model",
-                ritz_poles_of_component(full, &sides->damping,
-                                        beyond * sides->band_hz[1],
+                ritz_poles_of_component(full, &sides->damping, sides->modes_hz,
                                         &sides->pairs, &sides->full));
     RITZ_TRY_IN("full model",
                 ritz_residual_new(full, &sides->pairs, sides->band_hz[1],
                                   &sides->residual));
     RITZ_TRY_IN("full model",
-                ritz_damped_ratios(&sides->full, full, &sides->pairs,
-                                   sides->band_hz, &sides->zeta_full));
+                ritz_damped_new(&sides->full, full, &sides->pairs,
+                                sides->band_hz, &sides->damped_full));
 done:
     return status;
 }
 
 /* The reduced one's: its basis is dense and its modes are all there. */
-static ritz_status open_reduced(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
+static ritz_status open_reduced(const ritz_second_order *model,
                                 ritz_sides *sides)
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_TRY_IN(
-        "reduced model",
-        ritz_poles_of_dense(K, M, D, io, &sides->damping, &sides->reduced));
-    RITZ_TRY_IN("reduced model", ritz_eigen_dense(K, M, &sides->small));
     RITZ_TRY_IN("reduced model",
-                ritz_damped_ratios(&sides->reduced, NULL, NULL, sides->band_hz,
-                                   &sides->zeta_reduced));
+                ritz_poles_of_dense(model, &sides->damping, &sides->reduced));
     RITZ_TRY_IN("reduced model",
-                ritz_static_gain(K, M, io, &sides->gain_reduced));
+                ritz_eigen_dense(model->K, model->M, &sides->small));
+    RITZ_TRY_IN("reduced model",
+                ritz_damped_new(&sides->reduced, NULL, NULL, sides->band_hz,
+                                &sides->damped_reduced));
+    RITZ_TRY_IN("reduced model", ritz_static_gain(model->K, model->M, model->io,
+                                                  &sides->gain_reduced));
 done:
     return status;
 }
@@ -174,6 +173,7 @@ static ritz_status measure(const ritz_component *full, const ritz_dense *T,
     ritz_dense Q = {0};
     ritz_measures found = {0};
 
+    sides->component = full;
     RITZ_TRY(open_full(full, sides));
     if (T && T->val && T->nrow == full->num_dofs) {
         sides->shapes = true;
@@ -203,8 +203,8 @@ void ritz_sides_free(ritz_sides *sides)
     ritz_residual_free(&sides->residual);
     ritz_dense_free(&sides->gain_reduced);
     ritz_match_free(&sides->match);
-    free(sides->zeta_full);
-    free(sides->zeta_reduced);
+    ritz_damped_free(&sides->damped_full);
+    ritz_damped_free(&sides->damped_reduced);
     *sides = (ritz_sides){0};
 }
 
@@ -214,6 +214,8 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
                                 ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
+    const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
+                                     &reduced->K4, &reduced->io};
     ritz_sides sides = {0};
 
     RITZ_FAIL_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
@@ -222,8 +224,7 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
                  reduced->num_dofs, full->num_dofs);
     RITZ_TRY(check(full, &reduced->io, request));
     RITZ_TRY(choose_damping(full, reduced->damping, request, &sides));
-    RITZ_TRY(open_reduced(&reduced->K, &reduced->M, &reduced->D, &reduced->io,
-                          &sides));
+    RITZ_TRY(open_reduced(&model, &sides));
     choose_band(&sides.reduced,
                 highest_hertz(&sides.reduced, &reduced->columns), request,
                 sides.band_hz);
@@ -239,12 +240,13 @@ ritz_status ritz_verify_system(const ritz_component *full,
                                ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
+    const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
+                                     &reduced->K4, &reduced->io};
     ritz_sides sides = {0};
 
     RITZ_TRY(check(full, &reduced->io, request));
     RITZ_TRY(choose_damping(full, "", request, &sides));
-    RITZ_TRY(open_reduced(&reduced->K, &reduced->M, &reduced->D, &reduced->io,
-                          &sides));
+    RITZ_TRY(open_reduced(&model, &sides));
     choose_band(&sides.reduced, highest_hertz(&sides.reduced, NULL), request,
                 sides.band_hz);
     sides.outputs = true;

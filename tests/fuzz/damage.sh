@@ -49,6 +49,9 @@ ritz-assemble -q scene.yaml -o system.h5
 ritz-assemble -q --full --at cone=0 scene.yaml -o full.h5
 ritz-rank -q --at cone=0 system.h5 -o ranking.h5
 ritz-frf -q --at cone=0 --points 5 --no-refine system.h5 -o response.h5
+ritz-basis -q lanczos-one-sided --modes 6 --damping 'modal 0.01' stator.h5 \
+    -o states.h5
+ritz-reduce -q stator.h5 states.h5 -o space.h5
 ritz-export -q --to output4 reduced.h5 -o binary.op4
 ritz-export -q --to output4 --text reduced.h5 -o text.op4
 ritz-export -q --to matrix-market --matrix K reduced.h5 -o k.mtx
@@ -77,6 +80,7 @@ stator.bdf   ritz-info @
 stator.h5    ritz-info @
 system.h5    ritz-info @
 ranking.h5   ritz-info @
+space.h5     ritz-info @
 stator.op4   ritz-import --stiffness @:KGG --mass @:MGG --bulk stator.bdf --port bearing=1 -o OUT
 stator.bdf   ritz-import --stiffness stator.op4:KGG --mass stator.op4:MGG --bulk @ --port bearing=1 -o OUT
 binary.op4   ritz-import --stiffness @:K --mass @:M -o OUT
@@ -88,6 +92,7 @@ stator.h5    ritz-check @
 stator.h5    ritz-basis craig-bampton --modes 4 @ -o OUT
 basis.h5     ritz-reduce stator.h5 @ -o OUT
 stator.h5    ritz-reduce @ basis.h5 -o OUT
+states.h5    ritz-reduce stator.h5 @ -o OUT
 reduced.h5   ritz-verify --band-hz 0,10 stator.h5 @ -o OUT
 stator.h5    ritz-verify --band-hz 0,10 @ reduced.h5 -o OUT
 scene.yaml   ritz-assemble @ -o OUT
@@ -98,6 +103,8 @@ system.h5    ritz-rank --at cone=0 @ -o OUT
 system.h5    ritz-frf --at cone=0 --points 5 @ -o OUT
 full.h5      ritz-frf --points 5 --to-hz 10 --damping 'modal 0.01' --method direct @ -o OUT
 response.h5  ritz-frf --at cone=0 --points-of @ system.h5 -o OUT
+space.h5     ritz-frf --points 5 --to-hz 10 @ -o OUT
+space.h5     ritz-export --to output4 @ -o OUT
 reduced.h5   ritz-export --to exudyn @ -o OUT
 reduced.h5   ritz-export --to output4 @ -o OUT
 response.h5  ritz-export --to tsv @ -o OUT

@@ -11,7 +11,8 @@ except ImportError as missing:
     print("skipped:", missing)
     sys.exit(77)
 
-KINDS = {"rigid", "constraint", "normal", "residual", "system"}
+KINDS = {"rigid", "constraint", "normal", "residual", "system", "krylov",
+         "static", "attachment", "interface", "massless", "force", "state"}
 
 
 def text(value):
@@ -24,14 +25,14 @@ def texts(values):
     return [text(value) for value in values]
 
 
-def sparse(group, n):
+def sparse(group, n, symmetric=True):
     assert text(group.attrs["format"]) == "csc"
     A = scipy.sparse.csc_matrix(
         (group["data"][:], group["indices"][:], group["indptr"][:]),
         group.attrs["shape"])
     assert A.shape == (n, n) and A.has_sorted_indices
-    # a component is settled: what asymmetry it had is averaged away
-    assert A.nnz == 0 or abs(A - A.T).max() == 0.0
+    # a component is settled: what asymmetry it had is averaged away, but in D
+    assert not symmetric or A.nnz == 0 or abs(A - A.T).max() == 0.0
     return A
 
 
@@ -67,6 +68,17 @@ def check_io(at, n):
         for name in "C", "Cv", "Ca":
             assert at["outputs"][name].shape == (p, n)
         assert at["outputs/limits"].shape == (p,)
+
+
+def check_dampers(at, n):
+    if "dampers" in at:
+        dampers = at["dampers"]
+        count = len(dampers["names"])
+        assert len(set(texts(dampers["names"][:]))) == count > 0
+        for name in "c", "k", "held_c", "held_k":
+            assert dampers[name].shape == (count,)
+        assert (dampers["c"][:] >= 0.0).all()
+        assert dampers["B"].shape == (n, count)
 
 
 def check_dofs(at, n):
@@ -120,7 +132,8 @@ def component(file):
     sparse(file["K"], n)
     for name in "D", "K4":
         if name in file:
-            sparse(file[name], n)
+            sparse(file[name], n, name == "K4")
+    check_dampers(file, n)
     if "KG" in file:
         check_indices(file["KG"])
         for load in file["KG"].values():
@@ -138,14 +151,18 @@ def component(file):
 def basis(file):
     check_columns(file, file["T"].shape[1])
     assert (file["columns/dof"][:] < file["T"].shape[0]).all()
+    assert ("states" in file.attrs) == ("damping" in file.attrs)
+    assert "W" not in file or file["W"].shape == file["T"].shape
 
 
 def reduced(file):
     r = file["K"].shape[0]
     n = file.attrs["num_dofs"]
-    for name in "K", "M", "D":
-        assert name == "D" and name not in file or file[name].shape == (r, r)
+    for name in "K", "M", "D", "K4":
+        assert (name in ("D", "K4") and name not in file
+                or file[name].shape == (r, r))
     check_columns(file, r)
+    check_dampers(file, r)
     if "T" in file:
         assert file["T"].shape == (n, r)
     if "dofs" in file:
@@ -179,6 +196,9 @@ def system(file):
     for at in file["configurations"].values():
         e = at["K"].shape[0]
         assert at["M"].shape == (e, e) and at["lambda"].shape == (e,)
+        for name in "D", "K4":
+            assert name not in at or at[name].shape == (e, e)
+        check_dampers(at, e)
         assert at["settings"].shape == file["sweeps"].shape
         assert 0 <= at.attrs["num_rigid"] <= e
         assert set(at["blocks"]) == set(file["blocks"])
@@ -205,8 +225,23 @@ def ranking(file):
     assert file.attrs["coupling"].shape == ()
 
 
-CHECKS = {check.__name__: check for check in
-          (component, basis, reduced, system, response, ranking)}
+def state_space(file):
+    n = len(file["A"])
+    m = len(file["inputs/names"]) if "inputs" in file else 0
+    p = len(file["outputs/names"]) if "outputs" in file else 0
+    assert file["A"].shape == (n, n)
+    assert file["B"].shape == (n, m)
+    assert file["C"].shape == (p, n)
+    assert file["D"].shape == (p, m)
+    assert "E" not in file or file["E"].shape == (n, n)
+    assert p == 0 or file["outputs/limits"].shape == (p,)
+    check_columns(file, n)
+    check_measures(file, "estimates")
+    assert "damping" in file.attrs
+
+
+CHECKS = {check.__name__.replace("_", "-"): check for check in
+          (component, basis, reduced, system, response, ranking, state_space)}
 
 if len(sys.argv) < 2:
     sys.exit(__doc__)

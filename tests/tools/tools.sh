@@ -59,7 +59,7 @@ END
 
 # --- what every tool has --------------------------------------------------------
 
-tools='import info check basis reduce assemble rank compare frf verify export'
+tools='import info check basis reduce assemble rank compare frf poles verify export'
 expect 0 'frequency response' ritz
 expect 0 'ritz (Ritz) ' ritz --version
 expect 2 "no tool 'chek', is 'check' meant?" ritz chek
@@ -76,7 +76,7 @@ for tool in $tools; do
     expect 1 'cannot write to standard output' \
         sh -c "ritz-$tool --help >/dev/full"
 done
-for tool in check reduce assemble rank compare frf verify; do
+for tool in check reduce assemble rank compare frf poles verify; do
     expect 2 'expected' "ritz-$tool" -o x.h5
 done
 expect 0 'craig-bampton' ritz-basis --list

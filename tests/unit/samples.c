@@ -73,6 +73,46 @@ done:
     return status;
 }
 
+static ritz_status sample_dampers(int64_t n, ritz_dampers *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dampers_new(n, 2, out));
+    snprintf(out->name[0], RITZ_NAME_SIZE, "strut");
+    snprintf(out->name[1], RITZ_NAME_SIZE, "rotor/strut");
+    for (int64_t k = 0; k < 2; k++) {
+        out->c[k] = 150.0 + (double)k;
+        out->k[k] = -200.0 + (double)k;
+        out->held_c[k] = (double)k;
+        out->held_k[k] = -2.0 * (double)k;
+    }
+    fill(&out->B, -5.0);
+done:
+    return status;
+}
+
+/* Four dofs, each of two others. */
+static ritz_status sample_recovery(ritz_recovery *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t row[8];
+    int64_t col[8];
+    double val[8];
+
+    out->count = 4;
+    RITZ_NEW(out->dof, 4);
+    for (int64_t k = 0; k < 8; k++) {
+        out->dof[k / 2] = (ritz_dof){901, 1 + k / 2};
+        row[k] = k / 2;
+        col[k] = 5 * k;
+        val[k] = 0.5 + (double)k;
+    }
+    RITZ_TRY(
+        ritz_sparse_from_triplets(4, SAMPLE_DOFS, 8, row, col, val, &out->G));
+done:
+    return status;
+}
+
 static ritz_status sample_grids(ritz_grids *out)
 {
     static const double turned[9] = {0, 1, 0, -1, 0, 0, 0, 0, 1};
@@ -142,12 +182,17 @@ ritz_status sample_component(bool full, ritz_component *out)
     if (full) {
         RITZ_TRY(chain(2.0, &component.K));
         RITZ_TRY(chain(3.0, &component.D));
+        component.D.val[1] *= 3.0; /* unsymmetric, and kept so */
         RITZ_TRY(chain(4.0, &component.K4));
         RITZ_TRY(sample_loads(&component));
         RITZ_TRY(sample_grids(&component.grids));
         RITZ_TRY(sample_ports(&component));
         RITZ_TRY(sample_io(SAMPLE_DOFS, &component.io));
-        snprintf(component.damping, RITZ_NAME_SIZE, "modal 0.002");
+        RITZ_TRY(sample_dampers(SAMPLE_DOFS, &component.dampers));
+        RITZ_TRY(sample_recovery(&component.recovery));
+        snprintf(component.damping, sizeof component.damping,
+                 "modes 0.01 0.011 0.012 0.013 0.014 0.015 0.016 0.017 0.018 "
+                 "0.019 0.02 0.021 0.022 0.023");
         component.digits = 16.0;
     }
     RITZ_TRY(ritz_component_settle(&component, false));
@@ -185,6 +230,9 @@ ritz_status sample_basis(ritz_basis *out)
     ritz_basis basis = {.origin = origin};
 
     RITZ_TRY(filled(SAMPLE_DOFS, SAMPLE_ORDER, -7.0, &basis.T));
+    RITZ_TRY(filled(SAMPLE_DOFS, SAMPLE_ORDER, 8.0, &basis.W));
+    basis.states = true;
+    snprintf(basis.damping, sizeof basis.damping, "modal 0.02");
     RITZ_TRY(sample_columns(&basis.columns));
     *out = basis;
     basis = (ritz_basis){0};
@@ -237,9 +285,12 @@ ritz_status sample_reduced(bool full, ritz_reduced *out)
     RITZ_TRY(sample_columns(&reduced.columns));
     if (full) {
         RITZ_TRY(filled(r, r, 3.0, &reduced.D));
+        RITZ_TRY(filled(r, r, 9.0, &reduced.K4));
+        RITZ_TRY(sample_dampers(r, &reduced.dampers));
         RITZ_TRY(filled(SAMPLE_DOFS, r, 4.0, &reduced.T));
         RITZ_TRY(label(SAMPLE_DOFS, &reduced.dof));
         RITZ_TRY(sample_grids(&reduced.grids));
+        RITZ_TRY(sample_recovery(&reduced.recovery));
         RITZ_TRY(sample_maps(&reduced));
         RITZ_TRY(sample_io(r, &reduced.io));
         RITZ_TRY(sample_measures(&reduced.estimates));
@@ -279,6 +330,8 @@ static ritz_status sample_configuration(bool full, int64_t k,
     out->num_settings = 2;
     out->setting[0] = 60.0 * (double)k;
     RITZ_TRY(filled(e, e, 5.0, &out->D));
+    RITZ_TRY(filled(e, e, 6.0, &out->K4));
+    RITZ_TRY(sample_dampers(e, &out->dampers));
     RITZ_TRY(sample_io(e, &out->io));
     RITZ_TRY(sample_measures(&out->errors));
 done:
@@ -383,6 +436,40 @@ done:
     return status;
 }
 
+/* E is upper triangular, and so not singular. */
+ritz_status sample_state_space(bool full, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t n = SAMPLE_ORDER;
+    ritz_io io = {0};
+    ritz_state_space model = {0};
+
+    RITZ_TRY(full ? sample_io(n, &io) : ritz_io_new(n, 0, 0, &io));
+    RITZ_TRY(ritz_state_space_new(n, &io, &model));
+    model.origin = origin;
+    snprintf(model.units, sizeof model.units, "kg m s");
+    fill(&model.A, 1.0);
+    fill(&model.B, 2.0);
+    fill(&model.C, -3.0);
+    fill(&model.D, 4.0);
+    if (full) {
+        RITZ_TRY(filled(n, n, 5.0, &model.E));
+        for (int64_t j = 0; j < n; j++)
+            for (int64_t i = j + 1; i < n; i++)
+                ritz_dense_col(&model.E, j)[i] = 0.0;
+        RITZ_TRY(sample_measures(&model.estimates));
+        snprintf(model.damping, sizeof model.damping, "modal 0.02");
+        model.columns.kind[0] = RITZ_COLUMN_RIGID;
+        model.columns.hertz[0] = 0.0;
+    }
+    *out = model;
+    model = (ritz_state_space){0};
+done:
+    ritz_io_free(&io);
+    ritz_state_space_free(&model);
+    return status;
+}
+
 #define WRITE(function, kind, sample)                                          \
     static ritz_status function(const char *path, const ritz_stamp *stamp)     \
     {                                                                          \
@@ -418,11 +505,14 @@ WRITE(make_response, response, sample_response(&object))
 WRITE(bare_response, response, RITZ_OK)
 WRITE(make_ranking, ranking, sample_ranking(&object))
 WRITE(bare_ranking, ranking, RITZ_OK)
+WRITE(make_state_space, state_space, sample_state_space(true, &object))
+WRITE(bare_state_space, state_space, sample_state_space(false, &object))
 COPY(component)
 COPY(reduced)
 COPY(system)
 COPY(response)
 COPY(ranking)
+COPY(state_space)
 
 static ritz_status make_basis(const char *path, const ritz_stamp *stamp)
 {
@@ -469,4 +559,5 @@ const sample_kind sample_kinds[SAMPLE_KINDS] = {
     {"system", make_system, bare_system, copy_system},
     {"response", make_response, bare_response, copy_response},
     {"ranking", make_ranking, bare_ranking, copy_ranking},
+    {"state-space", make_state_space, bare_state_space, copy_state_space},
 };

@@ -20,6 +20,7 @@ ritz_status sample_reduced(bool full, ritz_reduced *out);
 ritz_status sample_system(bool full, ritz_system *out);
 ritz_status sample_response(ritz_response *out);
 ritz_status sample_ranking(ritz_ranking *out);
+ritz_status sample_state_space(bool full, ritz_state_space *out);
 
 /* One kind: write the sample to a file; copy what a file holds to another. */
 typedef struct sample_kind {
@@ -30,7 +31,7 @@ typedef struct sample_kind {
                         const ritz_stamp *stamp);
 } sample_kind;
 
-enum { SAMPLE_KINDS = 6 };
+enum { SAMPLE_KINDS = 7 };
 extern const sample_kind sample_kinds[SAMPLE_KINDS];
 
 #endif

@@ -87,6 +87,25 @@ static void same_io(const ritz_io *a, const ritz_io *b)
     same_dense(&a->Ca, &b->Ca);
 }
 
+static void same_recovery(const ritz_recovery *a, const ritz_recovery *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_same(a->dof, b->dof, a->count, sizeof *a->dof);
+    if (a->count > 0)
+        same_sparse(&a->G, &b->G);
+}
+
+static void same_dampers(const ritz_dampers *a, const ritz_dampers *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_same(a->name, b->name, a->count, sizeof *a->name);
+    assert_same(a->c, b->c, a->count, sizeof *a->c);
+    assert_same(a->k, b->k, a->count, sizeof *a->k);
+    assert_same(a->held_c, b->held_c, a->count, sizeof *a->held_c);
+    assert_same(a->held_k, b->held_k, a->count, sizeof *a->held_k);
+    same_dense(&a->B, &b->B);
+}
+
 static void same_grids(const ritz_grids *a, const ritz_grids *b)
 {
     assert_int_equal(a->count, b->count);
@@ -154,6 +173,8 @@ static void compare_components(bool full)
     same_sparse(&a.M, &b.M);
     same_sparse(&a.D, &b.D);
     same_sparse(&a.K4, &b.K4);
+    same_dampers(&a.dampers, &b.dampers);
+    same_recovery(&a.recovery, &b.recovery);
     assert_int_equal(a.num_loads, b.num_loads);
     for (int64_t k = 0; k < a.num_loads; k++) {
         assert_string_equal(a.load[k].name, b.load[k].name);
@@ -189,6 +210,9 @@ static void a_basis_comes_back(void **state)
     same_dense(&a.T, &b.T);
     same_columns(&a.columns, &b.columns);
     same_origin(&a.origin, &b.origin);
+    same_dense(&a.W, &b.W);
+    assert_true(b.states);
+    assert_string_equal(a.damping, b.damping);
     ritz_basis_free(&a);
     ritz_basis_free(&b);
 }
@@ -221,6 +245,9 @@ static void compare_reduced(bool full)
     same_dense(&a.K, &b.K);
     same_dense(&a.M, &b.M);
     same_dense(&a.D, &b.D);
+    same_dense(&a.K4, &b.K4);
+    same_dampers(&a.dampers, &b.dampers);
+    same_recovery(&a.recovery, &b.recovery);
     same_dense(&a.T, &b.T);
     same_columns(&a.columns, &b.columns);
     same_origin(&a.origin, &b.origin);
@@ -275,6 +302,8 @@ static void same_configuration(const ritz_configuration *a,
     same_dense(&a->K, &b->K);
     same_dense(&a->M, &b->M);
     same_dense(&a->D, &b->D);
+    same_dense(&a->K4, &b->K4);
+    same_dampers(&a->dampers, &b->dampers);
     assert_same(a->lambda, b->lambda, a->K.ncol, 8);
     assert_int_equal(a->num_blocks, b->num_blocks);
     for (int64_t c = 0; c < a->num_blocks; c++)
@@ -337,6 +366,40 @@ static void a_response_comes_back(void **state)
     assert_string_equal(a.damping, b.damping);
     ritz_response_free(&a);
     ritz_response_free(&b);
+}
+
+static void compare_state_spaces(bool full)
+{
+    ritz_state_space a = {0};
+    ritz_state_space b = {0};
+
+    assert_ok(sample_state_space(full, &a));
+    assert_ok(ritz_container_write_state_space(path, &a, &stamp));
+    assert_ok(ritz_container_read_state_space(path, &b));
+    same_dense(&a.A, &b.A);
+    same_dense(&a.B, &b.B);
+    same_dense(&a.C, &b.C);
+    same_dense(&a.D, &b.D);
+    same_dense(&a.E, &b.E);
+    assert_int_equal(a.num_inputs, b.num_inputs);
+    assert_int_equal(a.num_outputs, b.num_outputs);
+    assert_same(a.input, b.input, a.num_inputs, RITZ_NAME_SIZE);
+    assert_same(a.output, b.output, a.num_outputs, RITZ_NAME_SIZE);
+    assert_same(a.limit, b.limit, a.num_outputs, sizeof *a.limit);
+    same_columns(&a.columns, &b.columns);
+    same_origin(&a.origin, &b.origin);
+    same_measures(&a.estimates, &b.estimates);
+    assert_string_equal(a.damping, b.damping);
+    assert_string_equal(a.units, b.units);
+    ritz_state_space_free(&a);
+    ritz_state_space_free(&b);
+}
+
+static void a_state_space_comes_back(void **state)
+{
+    (void)state;
+    compare_state_spaces(true);
+    compare_state_spaces(false);
 }
 
 static void a_ranking_comes_back(void **state)
@@ -518,6 +581,7 @@ int main(void)
         cmocka_unit_test(a_system_comes_back),
         cmocka_unit_test(a_response_comes_back),
         cmocka_unit_test(a_ranking_comes_back),
+        cmocka_unit_test(a_state_space_comes_back),
         cmocka_unit_test(what_is_read_and_written_again_has_the_same_bytes),
         cmocka_unit_test(no_object_has_a_time),
         cmocka_unit_test(no_library_object_stays_open),

@@ -58,10 +58,72 @@ static void rayleigh_damping_follows_its_hyperbola(void **state)
     assert_near(ritz_damping_ratio(&damping, 0.0), 0.0, 0.0);
 }
 
+static void each_mode_has_its_ratio_and_the_last_is_of_all_above(void **state)
+{
+    ritz_damping damping = read("modes 0.01 0.02 0.015");
+    ritz_damping modal = read("modal 0.3");
+
+    (void)state;
+    assert_near(ritz_damping_of_mode(&damping, 0, 5.0), 0.01, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, 1, 5.0), 0.02, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, 2, 5.0), 0.015, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, 900, 5.0), 0.015, 0.0);
+    assert_near(ritz_damping_of_mode(&modal, 900, 5.0), 0.3, 0.0);
+}
+
+/*
+ * Two points are met: with zeta = 1 % at 1 Hz and 2 % at 10 Hz
+ * a / w1 + b w1 = 0.02, a / w2 + b w2 = 0.04, by Cramer's rule.
+ */
+static void two_points_of_a_fit_are_met(void **state)
+{
+    ritz_damping damping = read("fit 1 0.01 10 0.02");
+    double w1 = two_pi;
+    double w2 = 10.0 * two_pi;
+    double det = w2 / w1 - w1 / w2;
+    int64_t at = -1;
+
+    (void)state;
+    /* a dozen operations on numbers that cancel to a hundredth */
+    assert_near(damping.a, (0.02 * w2 - 0.04 * w1) / det, 1e-14);
+    assert_near(damping.b, (0.04 / w1 - 0.02 / w2) / det, 1e-17);
+    assert_near(ritz_damping_misfit(&damping, &at), 0.0, 1e-16);
+    assert_true(ritz_damping_is_rayleigh(&damping));
+    assert_near(ritz_damping_ratio(&damping, w2), 0.02, 1e-16);
+    assert_near(ritz_damping_of_mode(&damping, 3, w1), 0.01, 1e-16);
+}
+
+/*
+ * scipy.optimize.nnls([[1 / (2 w), w / 2]], zeta) of these points, 1.10: the
+ * first is free, the second has b held to 0 and the third a, whose factor is
+ * then sum(w / 2 zeta) / sum(w^2 / 4).
+ */
+static void a_fit_is_least_squares_with_neither_negative(void **state)
+{
+    ritz_damping both = read("fit 1 0.03 3 0.01 10 0.02 30 0.05");
+    ritz_damping falls = read("fit 1 0.1 10 0.002 100 0.0001");
+    ritz_damping rises = read("fit 1 0.0001 10 0.01 100 0.3");
+    double s = 3.14159265358979323846;
+    int64_t at = -1;
+
+    (void)state;
+    assert_near(both.a, 0.341080062305, 1e-12);
+    assert_near(both.b, 0.0005204621426276, 1e-15);
+    assert_near(ritz_damping_misfit(&both, &at), 0.003952669782, 1e-12);
+    assert_int_equal(at, 1);
+    assert_near(falls.b, 0.0, 0.0);
+    assert_true(falls.a > 0.0);
+    assert_near(rises.a, 0.0, 0.0);
+    assert_near(rises.b,
+                (s * 0.0001 + 10 * s * 0.01 + 100 * s * 0.3) /
+                    (s * s * (1.0 + 100.0 + 1e4)),
+                1e-16);
+}
+
 static void no_text_is_no_damping(void **state)
 {
     ritz_damping damping = read("");
-    char text[RITZ_NAME_SIZE] = "x";
+    char text[RITZ_DAMPING_SIZE] = "x";
 
     (void)state;
     assert_int_equal(damping.kind, RITZ_DAMPING_NONE);
@@ -79,13 +141,17 @@ static void printed_text_is_short_and_reads_back(void **state)
         "bands 0 5 0.002 5 20 0.005",
         "rayleigh 0.1 2e-05",
         "bands 0 1 .5 1 2 .5 2 3 .5 3 4 .5 4 5 .5 5 6 .5",
+        "bands 0 1.125 0.001 1.125 2.125 0.002 2.125 3.125 0.003 3.125 4.125 "
+        "0.004",
+        "modes 0.01 0.02 0.015",
+        "fit 1 0.01 10 0.02 100 0.05",
     };
 
     (void)state;
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
         ritz_damping damping = read(texts[k]);
         ritz_damping again = {0};
-        char text[RITZ_NAME_SIZE] = "";
+        char text[RITZ_DAMPING_SIZE] = "";
 
         ritz_damping_print(&damping, text);
         if (!strstr(texts[k], " ."))
@@ -108,7 +174,7 @@ static void bad_damping_is_refused_in_words(void **state)
         {"modal 0", "damping ratio 0 is not above 0"},
         {"modal -0.1", "damping ratio -0.1 is not above 0"},
         {"modal 1", "damping ratio 1 is overdamped, it must stay below 1"},
-        {"nodal 0.1", "unknown damping 'nodal', there is modal, bands, rayl"},
+        {"nodal 0.1", "unknown damping 'nodal', there is modal, modes, bands"},
         {"bands", "with 0 numbers"},
         {"bands 0 5", "with 2 numbers is not such as 'bands 0 5 0.002 5 20"},
         {"bands 0 5 0.1 5", "with 4 numbers"},
@@ -122,9 +188,17 @@ static void bad_damping_is_refused_in_words(void **state)
         {"modal 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 "
          "0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1 0.1",
          "is not such as 'modal 0.002'"},
-        {"bands 0 1.125 0.001 1.125 2.125 0.002 2.125 3.125 0.003 3.125 4.125 "
-         "0.004",
-         "takes more than 63 letters: give fewer bands or digits"},
+        {"modes", "damping 'modes' with 0 numbers is not such as 'modes 0.01"},
+        {"modes 0.01 0", "damping ratio 0 is not above 0"},
+        {"modes 0.01 1.5", "damping ratio 1.5 is overdamped"},
+        {"modes 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 "
+         "1 1 1 1 1 1 1 1 1 1",
+         "with 41 numbers"},
+        {"fit 1 0.01", "damping 'fit' with 2 numbers is not such as 'fit 1"},
+        {"fit 1 0.01 2", "with 3 numbers"},
+        {"fit 1 0.01 1 0.02", "needs two different frequencies, all are 1 Hz"},
+        {"fit 0 0.01 1 0.02", "a damping fit at 0 Hz: its frequencies are"},
+        {"fit 1 0.01 2 0", "damping ratio 0 is not above 0"},
     };
 
     (void)state;
@@ -157,6 +231,9 @@ int main(void)
         cmocka_unit_test(bands_give_their_ratio_and_none_outside),
         cmocka_unit_test(a_shared_edge_belongs_to_the_upper_band),
         cmocka_unit_test(rayleigh_damping_follows_its_hyperbola),
+        cmocka_unit_test(each_mode_has_its_ratio_and_the_last_is_of_all_above),
+        cmocka_unit_test(two_points_of_a_fit_are_met),
+        cmocka_unit_test(a_fit_is_least_squares_with_neither_negative),
         cmocka_unit_test(no_text_is_no_damping),
         cmocka_unit_test(printed_text_is_short_and_reads_back),
         cmocka_unit_test(bad_damping_is_refused_in_words),

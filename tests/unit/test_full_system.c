@@ -83,6 +83,72 @@ static void three_pieces_make_the_cantilever(void **state)
     ritz_component_free(&system);
 }
 
+/* Grid 77 of a piece, twice the first dof and thrice the last. */
+static ritz_status add_recovered(ritz_component *piece)
+{
+    static const int64_t row[] = {0, 0};
+    static const double val[] = {2.0, 3.0};
+    const int64_t col[] = {0, piece->num_dofs - 1};
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(piece->recovery.dof, 1);
+    piece->recovery.dof[0] = (ritz_dof){77, 2};
+    piece->recovery.count = 1;
+    RITZ_TRY(ritz_sparse_from_triplets(1, piece->num_dofs, 2, row, col, val,
+                                       &piece->recovery.G));
+done:
+    return status;
+}
+
+/* Of each body, by the dofs that its own have become in the system. */
+static void what_bodies_recover_the_system_recovers(void **state)
+{
+    ritz_component piece = {0}, system = {0};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        assert_ok(
+            frame_component(1, 0.5, &frame_mcdaniel, false, false, 5, &piece));
+        assert_ok(add_port(&piece, "node5", 5));
+        assert_ok(add_port(&piece, "node6", 6));
+        assert_ok(add_recovered(&piece));
+        folder_store(k == 0 ? "a.h5" : "b.h5", &piece);
+        ritz_component_free(&piece);
+    }
+    assemble("scene: pair\n"
+             "components: {A: {model: a.h5, basis: full},"
+             " B: {model: b.h5, basis: full}}\n"
+             "joints:\n"
+             "  - {name: one, between: [A/node6, B/node5], type: fixed}\n",
+             NULL, &system);
+    assert_int_equal(system.num_dofs, 9);
+    assert_int_equal(system.recovery.count, 2);
+    assert_int_equal(system.recovery.dof[0].grid, 77);
+    assert_int_equal(system.recovery.dof[1].grid, 177); /* B's are moved on */
+    for (int64_t k = 0; k < 2; k++) {
+        ritz_dense row = {0}, e = {0};
+        int64_t first = k == 0
+                            ? ritz_component_row(&system, (ritz_dof){5, 1})
+                            : ritz_component_row(&system, (ritz_dof){105, 1});
+        int64_t shared = ritz_component_row(&system, (ritz_dof){6, 1});
+        int64_t last = k == 0 ? ritz_component_row(&system, (ritz_dof){6, 6})
+                              : ritz_component_row(&system, (ritz_dof){106, 6});
+
+        if (first < 0) /* one of the two that are joined has the row */
+            first = shared;
+        if (last < 0)
+            last = ritz_component_row(&system, (ritz_dof){105, 6});
+        assert_ok(ritz_dense_new(9, 1, &e));
+        e.val[first] = 10.0;
+        e.val[last] = 1.0;
+        assert_ok(ritz_sparse_mul(&system.recovery.G, &e, &row));
+        assert_near(row.val[k], 23.0, 0.0);
+        ritz_dense_free(&e);
+        ritz_dense_free(&row);
+    }
+    ritz_component_free(&system);
+}
+
 /* The rank of the constraints counts, not their number. */
 static void a_joint_stated_twice_binds_once(void **state)
 {
@@ -239,6 +305,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(three_pieces_make_the_cantilever),
+        cmocka_unit_test(what_bodies_recover_the_system_recovers),
         cmocka_unit_test(a_joint_stated_twice_binds_once),
         cmocka_unit_test(a_loop_of_joints_closes),
         cmocka_unit_test(four_grids_pair_by_position),

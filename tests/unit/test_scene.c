@@ -89,9 +89,13 @@ static void joints_of_the_example_are_read(void **state)
     assert_string_equal(scene.joint[0].between[0].port, "bearing");
     assert_int_equal(scene.joint[1].between[1].component, 2);
     assert_string_equal(scene.joint[1].between[1].port, "scan");
-    assert_near(scene.joint[1].axis[1], 1.0, 0.0);
-    assert_int_equal(scene.joint[0].num_settings, 6);
-    assert_near(scene.joint[0].setting[5], 300.0, 0.0);
+    assert_near(scene.joint[1].axis[0][1], 1.0, 0.0);
+    assert_int_equal(scene.joint[0].num_freedoms, 1);
+    assert_int_equal(scene.joint[0].freedom[0].state, RITZ_FREE);
+    assert_string_equal(scene.sweep[0].name, "clock");
+    assert_true(scene.sweep[0].turns);
+    assert_int_equal(scene.sweep[0].count, 6);
+    assert_near(scene.sweep[0].setting[5], 300.0, 0.0);
     assert_int_equal(scene.joint[1].line, 8);
     assert_int_equal(scene.joint[1].column, 5);
     assert_int_equal(scene.num_sweeps, 2);
@@ -141,13 +145,13 @@ static void a_scene_needs_a_name_and_a_component_only(void **state)
     assert_string_equal(scene.select_by, "hankel");
     assert_near(scene.select_tolerance, 1e-3, 0.0);
     assert_int_equal(scene.augment, RITZ_AUGMENT_NONE);
-    assert_ok(ritz_scene_angles(&scene, "", NULL));
+    assert_ok(ritz_scene_settings(&scene, "", NULL));
     ritz_scene_free(&scene);
     assert_null(scene.component);
     ritz_scene_free(&scene);
 }
 
-static void angles_combine_with_the_last_hinge_fastest(void **state)
+static void settings_combine_with_the_last_joint_fastest(void **state)
 {
     static const double expected[6][2] = {{0, 0},  {0, 5},  {0, 7.5},
                                           {10, 0}, {10, 5}, {10, 7.5}};
@@ -156,7 +160,9 @@ static void angles_combine_with_the_last_hinge_fastest(void **state)
     (void)state;
     assert_int_equal(scene.num_joints, 3);
     assert_int_equal(scene.num_sweeps, 2);
-    assert_int_equal(scene.sweep[1], 1);
+    assert_int_equal(scene.sweep[1].joint, 1);
+    assert_int_equal(scene.joint[1].sweep, 1);
+    assert_int_equal(scene.joint[2].num_sweeps, 0);
     assert_int_equal(scene.num_configurations, 6);
     assert_memory_equal(scene.setting, expected, sizeof expected);
     ritz_scene_free(&scene);
@@ -178,11 +184,11 @@ static void an_axis_gets_length_one(void **state)
                        "axis: [%s]}]\n",
                  axes[k]);
         scene = parse(text);
-        assert_near(scene.joint[0].axis[0], 0.6, 4e-16); /* 4 roundings */
-        assert_near(scene.joint[0].axis[1], 0.8, 4e-16);
-        assert_near(scene.joint[0].axis[2], 0.0, 0.0);
-        assert_int_equal(scene.joint[0].num_settings, 1);
-        assert_near(scene.joint[0].setting[0], 0.0, 0.0);
+        assert_near(scene.joint[0].axis[0][0], 0.6, 4e-16); /* 4 roundings */
+        assert_near(scene.joint[0].axis[0][1], 0.8, 4e-16);
+        assert_near(scene.joint[0].axis[0][2], 0.0, 0.0);
+        assert_int_equal(scene.sweep[0].count, 1);
+        assert_near(scene.sweep[0].setting[0], 0.0, 0.0);
         ritz_scene_free(&scene);
     }
 }
@@ -264,10 +270,10 @@ static void angles_are_given_by_name(void **state)
     double angle[2] = {-1.0, -1.0};
 
     (void)state;
-    assert_ok(ritz_scene_angles(&scene, "clock=61.5", angle));
+    assert_ok(ritz_scene_settings(&scene, "clock=61.5", angle));
     assert_near(angle[0], 61.5, 0.0);
     assert_near(angle[1], 0.0, 0.0);
-    assert_ok(ritz_scene_angles(&scene, "cone=-3,clock=1e1", angle));
+    assert_ok(ritz_scene_settings(&scene, "cone=-3,clock=1e1", angle));
     assert_near(angle[0], 10.0, 0.0);
     assert_near(angle[1], -3.0, 0.0);
     ritz_scene_free(&scene);
@@ -278,25 +284,25 @@ static void bad_angles_are_refused_and_nothing_is_written(void **state)
     static const struct {
         const char *at, *words;
     } cases[] = {
-        {"", "hinge 'p' has several angles and none is given here"},
-        {"p=1", "hinge 'q' has several angles and none is given here"},
-        {"p", "'p' is not JOINT=ANGLE"},
-        {"=1", "'=1' is not JOINT=ANGLE"},
-        {"p=1,", "'' is not JOINT=ANGLE"},
-        {"p=", "'' of hinge 'p' is not a finite number"},
-        {"p=60deg", "'60deg' of hinge 'p' is not a finite number"},
-        {"p=nan", "'nan' of hinge 'p' is not a finite number"},
-        {"p=1,p=2", "hinge 'p' is given twice"},
-        {"w=1", "'w' is a fixed joint, it has no angle"},
-        {"pp=1", "unknown hinge 'pp', is 'p' meant?"},
-        {"elbow=1", "unknown hinge 'elbow', there is p, q, w"},
+        {"", "joint 'p' has several settings and none is given here"},
+        {"p=1", "joint 'q' has several settings and none is given here"},
+        {"p", "'p' is not JOINT=SETTING"},
+        {"=1", "'=1' is not JOINT=SETTING"},
+        {"p=1,", "'' is not JOINT=SETTING"},
+        {"p=", "'' of joint 'p' is not a finite number"},
+        {"p=60deg", "'60deg' of joint 'p' is not a finite number"},
+        {"p=nan", "'nan' of joint 'p' is not a finite number"},
+        {"p=1,p=2", "joint 'p' is given twice"},
+        {"w=1", "joint 'w' has nothing to set"},
+        {"pp=1", "unknown joint 'pp', is 'p' meant?"},
+        {"elbow=1", "unknown joint 'elbow', there is p, q"},
     };
     ritz_scene scene = parse(SMALL HINGES);
     double angle[2] = {-1.0, -1.0};
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        assert_int_equal(ritz_scene_angles(&scene, cases[k].at, angle),
+        assert_int_equal(ritz_scene_settings(&scene, cases[k].at, angle),
                          RITZ_ERR_ARGUMENT);
         assert_string_equal(ritz_error_message(), cases[k].words);
         assert_near(angle[0], -1.0, 0.0);
@@ -378,7 +384,7 @@ static void bad_keys_are_refused(void **state)
         {"<<: {a: b}\n",
          "s:1:1: unknown key '<<', there is scene, components, joints, "
          "configurations, inputs, outputs, band_hz, damping, select, "
-         "composite, augment"},
+         "composite, augment, extraneous"},
         {SMALL "joints: [{between: [a/x, b/x], type: fixed}]\n",
          "s:6:10: key 'name' is missing"},
         {SMALL "joints: [{name: p, type: fixed}]\n",
@@ -389,7 +395,7 @@ static void bad_keys_are_refused(void **state)
          "s:6:10: key 'component' is missing"},
         {SMALL "inputs: [{name: u, at: a/x, component: 1, limit: 3}]\n",
          "s:6:43: unknown key 'limit', there is name, at, component, grid, "
-         "scale"},
+         "against, scale"},
         {SMALL "outputs: [{name: u, component: 1}]\n",
          "s:6:11: key 'at' is missing"},
         {SMALL "select: {tolerances: 0.1}\n",
@@ -460,6 +466,20 @@ static void bad_components_are_refused(void **state)
     ASSERT_ALL_REFUSED(cases);
 }
 
+/* Head, then one piece many times over, as text of the caller's. */
+static char *repeat(const char *head, const char *piece, size_t times)
+{
+    size_t length = strlen(piece);
+    char *text = calloc(strlen(head) + times * length + 1, 1);
+    char *end = text + strlen(head);
+
+    assert_non_null(text);
+    memcpy(text, head, strlen(head) + 1);
+    for (size_t k = 0; k < times; k++, end += length)
+        memcpy(end, piece, length + 1);
+    return text;
+}
+
 /* A joint p between two ports, and what else is said of it. */
 #define JOINT(between, rest)                                                   \
     SMALL "joints:\n- {name: p, between: " between ", " rest "}\n"
@@ -486,7 +506,24 @@ static void bad_joints_are_refused(void **state)
         {JOINT("[a/x, b/x]", "type: hing"),
          "s:7:40: unknown joint type 'hing', is 'hinge' meant?"},
         {JOINT("[a/x, b/x]", "type: ball"),
-         "s:7:40: unknown joint type 'ball', there is fixed, hinge"},
+         "s:7:40: unknown joint type 'ball', there is fixed, hinge, slider, "
+         "universal, spherical, bushing, rigid"},
+        {JOINT("[a/x, b/x]", "type: fixed") "- {name: p, between: [a/y, c/y], "
+                                            "type: fixed}\n",
+         "s:8:3: joint 'p' is given twice"},
+        {SMALL "joints: [{name: 'p=1', between: [a/x, b/x], type: fixed}]\n",
+         "s:6:17: 'p=1' holds ',' or '=', the name of a joint cannot"},
+        {SMALL "joints: {name: p}\n",
+         "s:6:9: a list is expected here, not a mapping"},
+    };
+
+    (void)state;
+    ASSERT_ALL_REFUSED(cases);
+}
+
+static void bad_axes_and_angles_are_refused(void **state)
+{
+    static const refusal cases[] = {
         {JOINT("[a/x, b/x]", "type: hinge"), "s:7:3: hinge 'p' has no axis"},
         {JOINT("[a/x, b/x]", "type: hinge, axis: [0, 0, 0]"),
          "s:7:53: the axis has no length"},
@@ -501,7 +538,7 @@ static void bad_joints_are_refused(void **state)
         {JOINT("[a/x, b/x]", "type: fixed, angles_deg: [0]"),
          "s:7:59: 'angles_deg' does not belong to a fixed joint"},
         {JOINT("[a/x, b/x]", "type: hinge, axis: [0, 0, 1], tolerance: 1"),
-         "s:7:75: 'tolerance' does not belong to a hinge joint"},
+         "s:7:75: 'tolerance' does not belong to a hinge"},
         {JOINT("[a/x, b/x]", "type: fixed, tolerance: -1"),
          "s:7:58: -1 is not above 0"},
         {JOINT("[a/x, b/x]", "type: hinge, axis: [0, 0, 1], angles_deg: []"),
@@ -514,17 +551,216 @@ static void bad_joints_are_refused(void **state)
         {JOINT("[a/x, b/x]",
                "type: hinge, axis: [0, 0, 1], angles_deg: [0, -0]"),
          "s:7:80: angle -0 is listed twice"},
-        {JOINT("[a/x, b/x]", "type: fixed") "- {name: p, between: [a/y, c/y], "
-                                            "type: fixed}\n",
-         "s:8:3: joint 'p' is given twice"},
-        {SMALL "joints: [{name: 'p=1', between: [a/x, b/x], type: fixed}]\n",
-         "s:6:17: 'p=1' holds ',' or '=', the name of a joint cannot"},
-        {SMALL "joints: {name: p}\n",
-         "s:6:9: a list is expected here, not a mapping"},
     };
 
     (void)state;
     ASSERT_ALL_REFUSED(cases);
+}
+
+static void keys_that_a_joint_does_not_take_are_refused(void **state)
+{
+    static const struct {
+        const char *type, *key;
+    } cases[] = {
+        {"fixed", "axis: [1, 0, 0]"},
+        {"fixed", "state: free"},
+        {"hinge", "positions: [0]"},
+        {"hinge", "angles2_deg: [0]"},
+        {"hinge", "offset: [0, 0, 1]"},
+        {"slider", "angles_deg: [0]"},
+        {"slider", "axes: [[1, 0, 0], [0, 1, 0]]"},
+        {"universal", "axis: [1, 0, 0]"},
+        {"universal", "positions: [0]"},
+        {"spherical", "axis: [1, 0, 0]"},
+        {"spherical", "angles_deg: [0]"},
+        {"bushing", "state: caged"},
+        {"bushing", "offset: [0, 0, 1]"},
+        {"rigid", "stiffness: 1"},
+        {"rigid", "tolerance: 1"},
+    };
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[400], words[100];
+        ritz_scene scene = {0};
+        const char *type = cases[k].type;
+
+        snprintf(text, sizeof text, JOINT("[a/x, b/x]", "type: %s, %s"), type,
+                 cases[k].key);
+        snprintf(words, sizeof words, "s:7:%zu: '%.*s' does not belong to a %s",
+                 strlen("- {name: p, between: [a/x, b/x], type: , : ") +
+                     strlen(type) + strcspn(cases[k].key, ":") + 1,
+                 (int)strcspn(cases[k].key, ":"), cases[k].key, type);
+        assert_fails(ritz_scene_parse("s", text, &scene), RITZ_ERR_FORMAT,
+                     words);
+    }
+}
+
+static void joints_of_every_type_are_read(void **state)
+{
+    static const char text[] = SMALL
+        "joints:\n"
+        "- {name: s, between: [a/x, b/x], type: slider, axis: [0, 3, 4],\n"
+        "   positions: [0, -0.5], state: caged, stiffness: 8, damping: 2}\n"
+        "- {name: u, between: [a/x, b/x], type: universal, angles2_deg: [5,"
+        " 6],\n   axes: [[0, 0, 2], [0, 3, 0]], state: [locked, caged],"
+        " stiffness: 3}\n"
+        "- {name: v, between: [a/x, b/x], type: universal, angles_deg: [1],\n"
+        "   axes: [[0, 0, 2], [0, 3, 4]], state: caged, damping: [1, 0]}\n"
+        "- {name: h, between: [a/x, b/x], type: hinge, axis: [0, 0, 1],\n"
+        "   state: locked, angles_deg: [7]}\n"
+        "- {name: o, between: [a/x, b/x], type: spherical, state: caged,\n"
+        "   stiffness: 4}\n"
+        "- {name: b, between: [a/x, b/x], type: bushing, tolerance: 0.1,\n"
+        "   stiffness: [1, 2, 3, 4, 0, 6], damping: [0, 0, 0, 0, 5, 0]}\n"
+        "- {name: r, between: [a/x, b/x], type: rigid, offset: [1, -2, 3]}\n";
+    ritz_scene scene = parse(text);
+    static const char *const names[] = {"s", "u", "u.2", "v", "v.2", "h"};
+    double row[6] = {0.0};
+
+    (void)state;
+    assert_int_equal(scene.num_sweeps, 6);
+    for (int k = 0; k < 6; k++) {
+        assert_string_equal(scene.sweep[k].name, names[k]);
+        assert_int_equal(scene.sweep[k].turns, k > 0);
+    }
+    assert_int_equal(scene.num_configurations, 2 * 2);
+    assert_near(scene.sweep[0].setting[1], -0.5, 0.0);
+    assert_near(scene.joint[0].axis[0][2], 0.8, 4e-16); /* 4 roundings */
+    assert_int_equal(scene.joint[0].freedom[0].state, RITZ_CAGED);
+    assert_near(scene.joint[0].freedom[0].stiffness, 8.0, 0.0);
+    assert_near(scene.joint[0].freedom[0].damping, 2.0, 0.0);
+    assert_int_equal(scene.joint[1].num_freedoms, 2);
+    assert_int_equal(scene.joint[1].sweep, 1);
+    assert_int_equal(scene.joint[1].freedom[0].state, RITZ_LOCKED);
+    assert_near(scene.joint[1].freedom[0].stiffness, 0.0, 0.0);
+    assert_near(scene.joint[1].freedom[1].stiffness, 3.0, 0.0);
+    assert_near(scene.joint[2].axis[1][1], 0.6, 4e-16);
+    assert_near(scene.joint[2].freedom[0].damping, 1.0, 0.0);
+    assert_int_equal(scene.joint[3].freedom[0].state, RITZ_LOCKED);
+    assert_int_equal(scene.joint[4].num_freedoms, 3);
+    assert_near(scene.joint[4].freedom[2].stiffness, 4.0, 0.0);
+    assert_int_equal(scene.joint[5].num_freedoms, 6);
+    assert_int_equal(scene.joint[5].freedom[4].state, RITZ_CAGED);
+    assert_near(scene.joint[5].freedom[5].stiffness, 6.0, 0.0);
+    assert_near(scene.joint[5].freedom[4].damping, 5.0, 0.0);
+    assert_near(scene.joint[5].tolerance, 0.1, 0.0);
+    assert_near(scene.joint[6].offset[1], -2.0, 0.0);
+    assert_ok(ritz_scene_settings(&scene, "u.2=6,s=0.25", row));
+    assert_near(row[0], 0.25, 0.0);
+    assert_near(row[2], 6.0, 0.0);
+    assert_near(row[3], 1.0, 0.0);
+    ritz_scene_free(&scene);
+    assert_survives_every_allocation(ritz_scene_parse("s", text, &scene));
+    ritz_scene_free(&scene);
+}
+
+static void bad_freedoms_of_joints_are_refused(void **state)
+{
+    static const refusal cases[] = {
+        {JOINT("[a/x, b/x]", "type: slider"), "s:7:3: slider 'p' has no axis"},
+        {JOINT("[a/x, b/x]", "type: universal"),
+         "s:7:3: universal joint 'p' has no axes"},
+        {JOINT("[a/x, b/x]", "type: bushing"),
+         "s:7:3: bushing 'p' has no stiffness"},
+        {JOINT("[a/x, b/x]", "type: universal, axes: [[1, 0, 0]]"),
+         "s:7:57: 2 axes are expected here, not 1"},
+        {JOINT("[a/x, b/x]", "type: universal, axes: [[1, 0, 0], [0, 0, 0]]"),
+         "s:7:69: the axis has no length"},
+        {JOINT("[a/x, b/x]", "type: universal, axes: [[1, 0, 0], [-2, 0, 0]]"),
+         "s:7:57: the two axes are parallel"},
+        {JOINT("[a/x, b/x]", "type: slider, axis: [1, 0, 0], positions: []"),
+         "s:7:76: a slider has 1 to 100000 positions, not 0"},
+        {JOINT("[a/x, b/x]",
+               "type: slider, axis: [1, 0, 0], positions: [1, 1]"),
+         "s:7:80: position 1 is listed twice"},
+        {JOINT("[a/x, b/x]",
+               "type: slider, axis: [1, 0, 0], positions: [.nan]"),
+         "s:7:77: '.nan' is not a finite number"},
+        {JOINT("[a/x, b/x]", "type: spherical, state: open"),
+         "s:7:58: unknown state 'open', there is free, locked, caged"},
+        {JOINT("[a/x, b/x]", "type: spherical, state: [free, free]"),
+         "s:7:58: a word or number is expected here, not a list"},
+        {JOINT("[a/x, b/x]", "type: universal, axes: [[1, 0, 0], [0, 1, 0]], "
+                             "state: [free]"),
+         "s:7:88: 2 states are expected here, not 1"},
+        {JOINT("[a/x, b/x]", "type: spherical, stiffness: 4"),
+         "s:7:62: 'stiffness' is for a caged spherical joint, 'p' is free"},
+        {JOINT("[a/x, b/x]",
+               "type: hinge, axis: [0, 0, 1], state: locked, damping: 4"),
+         "s:7:88: 'damping' is for a caged hinge, 'p' is locked"},
+        {JOINT("[a/x, b/x]", "type: spherical, state: caged"),
+         "s:7:3: caged spherical joint 'p' has neither stiffness nor damping"},
+        {JOINT("[a/x, b/x]", "type: bushing, stiffness: [0, 0, 0, 0, 0, 0]"),
+         "s:7:3: caged bushing 'p' has neither stiffness nor damping"},
+    };
+
+    (void)state;
+    ASSERT_ALL_REFUSED(cases);
+}
+
+static void bad_stiffnesses_of_joints_are_refused(void **state)
+{
+    static const refusal cases[] = {
+        {JOINT("[a/x, b/x]", "type: spherical, state: caged, stiffness: -4"),
+         "s:7:76: stiffness -4 is negative"},
+        {JOINT("[a/x, b/x]", "type: spherical, state: caged, stiffness: 1, "
+                             "damping: -1.0e-3"),
+         "s:7:88: damping -0.001 is negative"},
+        {JOINT("[a/x, b/x]", "type: spherical, state: caged, stiffness: .inf"),
+         "s:7:76: '.inf' is not a finite number"},
+        {JOINT("[a/x, b/x]", "type: bushing, stiffness: 5"),
+         "s:7:60: a list is expected here, not a word or number"},
+        {JOINT("[a/x, b/x]", "type: bushing, stiffness: [1, 2, 3]"),
+         "s:7:60: 6 numbers are expected here, not 3"},
+        {JOINT("[a/x, b/x]", "type: bushing, stiffness: [1, 2, 3, 4, -5, 6]"),
+         "s:7:73: stiffness -5 is negative"},
+        {JOINT("[a/x, b/x]", "type: universal, axes: [[1, 0, 0], [0, 1, 0]], "
+                             "state: [free, caged], stiffness: [1, 2]"),
+         "s:7:115: stiffness 1 stands for an axis that is free, not caged"},
+        {JOINT("[a/x, b/x]", "type: rigid, offset: [1, 2]"),
+         "s:7:55: 3 numbers are expected here, not 2"},
+        {SMALL "joints:\n"
+               "- {name: u, between: [a/x, b/x], type: universal, axes: "
+               "[[1, 0, 0], [0, 1, 0]]}\n"
+               "- {name: u.2, between: [b/x, c/x], type: fixed}\n",
+         "s:8:3: joint 'u.2' has the name of the second axis of 'u'"},
+        {SMALL "joints: [{name: "
+               "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
+               "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx, "
+               "between: [a/x, b/x], type: universal, axes: [[1, 0, 0], [0, "
+               "1, 0]]}]\n",
+         "s:6:10: "
+         "'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
+         "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx' "
+         "is longer than 61 bytes, the name of a universal joint cannot be, "
+         "as '.2' is put behind it"},
+    };
+
+    (void)state;
+    ASSERT_ALL_REFUSED(cases);
+}
+
+static void too_many_settings_are_refused(void **state)
+{
+    char *text = repeat(SMALL "joints:\n",
+                        "- {name: 0000, between: [a/x, b/x], type: universal, "
+                        "axes: [[1, 0, 0], [0, 1, 0]]}\n",
+                        501);
+    char *name = text;
+    ritz_scene scene = {0};
+
+    (void)state;
+    for (int k = 0; k < 501; k++) { /* names of their own */
+        char number[8];
+
+        name = strstr(name, "name: ") + strlen("name: ");
+        snprintf(number, sizeof number, "%04d", k);
+        memcpy(name, number, 4);
+    }
+    assert_fails(ritz_scene_parse("s", text, &scene), RITZ_ERR_FORMAT,
+                 "s:7:1: 1002 settings of joints are too many, 1000 can be");
+    free(text);
 }
 
 static void bad_configurations_are_refused(void **state)
@@ -532,15 +768,15 @@ static void bad_configurations_are_refused(void **state)
     static const refusal cases[] = {
         {SMALL HINGES "configurations: []\n",
          "s:12:17: no configuration is listed; without 'configurations' every "
-         "combination of angles is one"},
+         "combination of settings is one"},
         {SMALL HINGES "configurations: [{p: 0, pq: 0}]\n",
-         "s:12:25: unknown hinge 'pq', is 'p' meant?"},
+         "s:12:25: unknown joint 'pq', is 'p' meant?"},
         {SMALL HINGES "configurations: [{p: 0}]\n",
-         "s:12:18: hinge 'q' has several angles and none is given here"},
+         "s:12:18: joint 'q' has several settings and none is given here"},
         {SMALL HINGES "configurations: [{p: 0, q: 0, w: 0}]\n",
-         "s:12:31: 'w' is a fixed joint, it has no angle"},
+         "s:12:31: joint 'w' has nothing to set"},
         {SMALL HINGES "configurations: [{p: 0, q: 0, p: 1}]\n",
-         "s:12:31: hinge 'p' is given twice"},
+         "s:12:31: joint 'p' is given twice"},
         {SMALL HINGES "configurations: [{p: 0, q: east}]\n",
          "s:12:28: 'east' is not a finite number"},
         {SMALL HINGES "configurations: [{p: 0, q: 1}, {p: 1, q: 1}, "
@@ -609,9 +845,11 @@ static void bad_options_are_refused(void **state)
         {SMALL "damping: 0.002\n",
          "s:6:10: a mapping is expected here, not a word or number"},
         {SMALL "damping: {}\n",
-         "s:6:10: damping is one of modal, bands and rayleigh"},
+         "s:6:10: damping is one of modal, modes, bands, "
+         "rayleigh and rayleigh_fit"},
         {SMALL "damping: {modal: 0.1, rayleigh: [1, 1]}\n",
-         "s:6:10: damping is one of modal, bands and rayleigh"},
+         "s:6:10: damping is one of modal, modes, bands, "
+         "rayleigh and rayleigh_fit"},
         {SMALL "damping: {model: 0.1}\n",
          "s:6:11: unknown key 'model', is 'modal' meant?"},
         {SMALL "damping: {modal: 0}\n",
@@ -632,27 +870,10 @@ static void bad_options_are_refused(void **state)
          "s:6:9: a mapping is expected here, not a word or number"},
         {SMALL "augment: sistem\n",
          "s:6:10: unknown augmentation 'sistem', is 'system' meant?"},
-        {SMALL "augment: component\n",
-         "s:6:10: augmentation of each component comes with a later release, "
-         "there is system and none"},
     };
 
     (void)state;
     ASSERT_ALL_REFUSED(cases);
-}
-
-/* Head, then one piece many times over, as text of the caller's. */
-static char *repeat(const char *head, const char *piece, size_t times)
-{
-    size_t length = strlen(piece);
-    char *text = calloc(strlen(head) + times * length + 1, 1);
-    char *end = text + strlen(head);
-
-    assert_non_null(text);
-    memcpy(text, head, strlen(head) + 1);
-    for (size_t k = 0; k < times; k++, end += length)
-        memcpy(end, piece, length + 1);
-    return text;
 }
 
 static void hostile_texts_end_soon_and_in_one_sentence(void **state)
@@ -722,9 +943,10 @@ static void too_many_combinations_are_refused(void **state)
             "0], angles_deg: [0, 1]}\n",
             k);
     }
-    assert_fails(ritz_scene_parse("s", text, &scene), RITZ_ERR_FORMAT,
-                 "s:1:1: 262144 configurations of 18 hinges are too many: list "
-                 "those wanted under 'configurations'");
+    assert_fails(
+        ritz_scene_parse("s", text, &scene), RITZ_ERR_FORMAT,
+        "s:1:1: 262144 configurations of 18 settings are too many: list "
+        "those wanted under 'configurations'");
 }
 
 /* What is cut or damaged is read or refused with one line, never anything else.
@@ -833,7 +1055,7 @@ static void every_failing_allocation_is_survived(void **state)
     (void)state;
     assert_survives_every_allocation(ritz_scene_parse("s", text, &scene));
     assert_survives_every_allocation(
-        ritz_scene_angles(&scene, "p=1,q=2", angle));
+        ritz_scene_settings(&scene, "p=1,q=2", angle));
     ritz_scene_free(&scene);
     assert_survives_every_allocation(ritz_scene_parse("s", example, &scene));
     ritz_scene_free(&scene);
@@ -846,7 +1068,7 @@ int main(void)
         cmocka_unit_test(joints_of_the_example_are_read),
         cmocka_unit_test(the_rest_of_the_example_is_read),
         cmocka_unit_test(a_scene_needs_a_name_and_a_component_only),
-        cmocka_unit_test(angles_combine_with_the_last_hinge_fastest),
+        cmocka_unit_test(settings_combine_with_the_last_joint_fastest),
         cmocka_unit_test(an_axis_gets_length_one),
         cmocka_unit_test(all_keys_of_inputs_and_outputs_are_read),
         cmocka_unit_test(dampings_of_every_kind_are_read),
@@ -857,7 +1079,13 @@ int main(void)
         cmocka_unit_test(texts_that_are_no_yaml_are_refused),
         cmocka_unit_test(bad_keys_are_refused),
         cmocka_unit_test(bad_components_are_refused),
+        cmocka_unit_test(joints_of_every_type_are_read),
         cmocka_unit_test(bad_joints_are_refused),
+        cmocka_unit_test(bad_axes_and_angles_are_refused),
+        cmocka_unit_test(keys_that_a_joint_does_not_take_are_refused),
+        cmocka_unit_test(bad_freedoms_of_joints_are_refused),
+        cmocka_unit_test(bad_stiffnesses_of_joints_are_refused),
+        cmocka_unit_test(too_many_settings_are_refused),
         cmocka_unit_test(bad_configurations_are_refused),
         cmocka_unit_test(bad_inputs_and_outputs_are_refused),
         cmocka_unit_test(bad_options_are_refused),

@@ -66,6 +66,35 @@ static void each_shift_solves_its_own_system(void **state)
     assert_null(F);
 }
 
+/* K + s G, G = [0 1; -1 0]: its inverse by Cramer's rule, which one triangle
+ * does not give. */
+static void an_unsymmetric_matrix_is_solved_whole(void **state)
+{
+    static const int64_t row[] = {0, 1}, col[] = {1, 0};
+    static const double skew[] = {1.0, -1.0};
+    const pencil *p = *state;
+    const double _Complex s = 0.5 * (double _Complex)_Complex_I;
+    const double _Complex c[] = {1.0, s};
+    double _Complex x[] = {1.0, 0.0};
+    ritz_sparse G = {0};
+    ritz_dense K = {0};
+    const ritz_sparse *const A[] = {&p->K, &G};
+    ritz_zldl *F = NULL;
+    double _Complex det = 0.0;
+
+    assert_ok(ritz_sparse_from_triplets(2, 2, 2, row, col, skew, &G));
+    assert_ok(ritz_sparse_dense(&p->K, &K));
+    det = K.val[0] * K.val[3] - (K.val[2] + s) * (K.val[1] - s);
+    assert_ok(ritz_zldl_new(2, A, &F));
+    assert_ok(ritz_zldl_factor(F, c));
+    assert_ok(ritz_zldl_solve(F, 1, x));
+    assert_near(cabs(x[0] - K.val[3] / det), 0.0, 1e-15);
+    assert_near(cabs(x[1] + (K.val[1] - s) / det), 0.0, 1e-15);
+    ritz_zldl_free(&F);
+    ritz_dense_free(&K);
+    ritz_sparse_free(&G);
+}
+
 /* lambda = (3 - sqrt 5) / 2 is an eigenvalue; damped, it is none. */
 static void undamped_resonance_is_refused(void **state)
 {
@@ -127,6 +156,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_shift_solves_its_own_system),
+        cmocka_unit_test(an_unsymmetric_matrix_is_solved_whole),
         cmocka_unit_test(undamped_resonance_is_refused),
         cmocka_unit_test(matrices_of_different_size_are_refused),
         cmocka_unit_test(no_allocation_failure_leaks),

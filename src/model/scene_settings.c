@@ -1,4 +1,4 @@
-/* Angles of the hinges: a row holds one for each, NaN while it has none. */
+/* Settings of the joints: a row holds one a sweep, NaN while it has none. */
 #include "model/scene_parts.h"
 
 #include "base/alloc.h"
@@ -10,25 +10,40 @@
 void ritz_scene_row_clear(const ritz_scene *scene, double *row)
 {
     for (int64_t k = 0; k < scene->num_sweeps; k++)
-        row[k] = (double)NAN;
+        row[k] = nan("");
 }
 
-ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *joint,
+/* Index of a sweep; a joint with nothing to set has a sentence of its own. */
+static ritz_status find_sweep(const ritz_scene *scene, const char *name,
+                              int64_t *out)
+{
+    const ritz_names sweeps = {"joint", scene->num_sweeps,
+                               (const char *)scene->sweep,
+                               sizeof *scene->sweep};
+    const ritz_names joints = {"joint", scene->num_joints,
+                               (const char *)scene->joint,
+                               sizeof *scene->joint};
+    ritz_status status = RITZ_OK;
+
+    *out = ritz_names_index(&sweeps, name);
+    if (*out >= 0)
+        return RITZ_OK;
+    RITZ_FAIL_IF(ritz_names_index(&joints, name) >= 0, RITZ_ERR_ARGUMENT,
+                 "joint '%s' has nothing to set", name);
+    RITZ_TRY(ritz_words_find(&sweeps, name, out));
+done:
+    return status;
+}
+
+ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *name,
                                double setting, double *row)
 {
     ritz_status status = RITZ_OK;
-    ritz_names joints = {"hinge", scene->num_joints, scene->joint->name,
-                         sizeof *scene->joint};
-    int64_t at = 0;
     int64_t k = 0;
 
-    RITZ_TRY(ritz_words_find(&joints, joint, &at));
-    RITZ_FAIL_IF(scene->joint[at].type != RITZ_JOINT_HINGE, RITZ_ERR_ARGUMENT,
-                 "'%s' is a fixed joint, it has no angle", joint);
-    while (scene->sweep[k] != at)
-        k++;
-    RITZ_FAIL_IF(!isnan(row[k]), RITZ_ERR_ARGUMENT, "hinge '%s' is given twice",
-                 joint);
+    RITZ_TRY(find_sweep(scene, name, &k));
+    RITZ_FAIL_IF(!isnan(row[k]), RITZ_ERR_ARGUMENT, "joint '%s' is given twice",
+                 name);
     row[k] = setting;
 done:
     return status;
@@ -39,14 +54,13 @@ ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row)
     ritz_status status = RITZ_OK;
 
     for (int64_t k = 0; k < scene->num_sweeps; k++) {
-        const ritz_joint *joint = &scene->joint[scene->sweep[k]];
+        const ritz_sweep *sweep = &scene->sweep[k];
 
-        RITZ_FAIL_IF(isnan(row[k]) && joint->num_settings > 1,
-                     RITZ_ERR_ARGUMENT,
-                     "hinge '%s' has several angles and none is given here",
-                     joint->name);
+        RITZ_FAIL_IF(isnan(row[k]) && sweep->count > 1, RITZ_ERR_ARGUMENT,
+                     "joint '%s' has several settings and none is given here",
+                     sweep->name);
         if (isnan(row[k]))
-            row[k] = joint->setting[0];
+            row[k] = sweep->setting[0];
     }
 done:
     return status;
@@ -62,14 +76,14 @@ ritz_status ritz_scene_row_read(const ritz_yaml *yaml, const yaml_node_t *node,
     RITZ_TRY(ritz_yaml_pairs(yaml, node, &count));
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
-        const char *joint = NULL;
-        double angle = 0.0;
+        const char *name = NULL;
+        double setting = 0.0;
 
-        RITZ_TRY(ritz_yaml_text(yaml, word, &joint));
+        RITZ_TRY(ritz_yaml_text(yaml, word, &name));
         RITZ_TRY(
-            ritz_yaml_real(yaml, ritz_yaml_value_at(yaml, node, k), &angle));
+            ritz_yaml_real(yaml, ritz_yaml_value_at(yaml, node, k), &setting));
         RITZ_TRY(ritz_yaml_at(yaml, word,
-                              ritz_scene_row_set(scene, joint, angle, row)));
+                              ritz_scene_row_set(scene, name, setting, row)));
     }
     RITZ_TRY(ritz_yaml_at(yaml, node, ritz_scene_row_fill(scene, row)));
 done:
@@ -84,24 +98,24 @@ static ritz_status set_part(const ritz_scene *scene, const char *part,
     char text[2 * RITZ_NAME_SIZE] = "";
     char cut[RITZ_SHORT_SIZE];
     char *equals = NULL;
-    double angle = 0.0;
+    double setting = 0.0;
 
     memcpy(text, part, length < sizeof text ? length : sizeof text - 1);
     equals = strchr(text, '=');
     RITZ_FAIL_IF(length >= sizeof text || !equals || equals == text,
-                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=ANGLE",
+                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=SETTING",
                  ritz_text_short(text, cut));
     *equals = '\0';
-    RITZ_FAIL_IF(!ritz_text_real(equals + 1, &angle), RITZ_ERR_ARGUMENT,
-                 "'%s' of hinge '%s' is not a finite number",
+    RITZ_FAIL_IF(!ritz_text_real(equals + 1, &setting), RITZ_ERR_ARGUMENT,
+                 "'%s' of joint '%s' is not a finite number",
                  ritz_text_short(equals + 1, cut), text);
-    RITZ_TRY(ritz_scene_row_set(scene, text, angle, row));
+    RITZ_TRY(ritz_scene_row_set(scene, text, setting, row));
 done:
     return status;
 }
 
-ritz_status ritz_scene_angles(const ritz_scene *scene, const char *at,
-                              double *setting)
+ritz_status ritz_scene_settings(const ritz_scene *scene, const char *at,
+                                double *setting)
 {
     ritz_status status = RITZ_OK;
     double *row = NULL;

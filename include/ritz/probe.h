@@ -1,0 +1,62 @@
+/*
+ * Whether a small model is stable, by its own poles: what export asks before it
+ * hands a model on.
+ */
+#ifndef RITZ_PROBE_H
+#define RITZ_PROBE_H
+
+#include <ritz/reduced.h>
+#include <ritz/state_space.h>
+
+typedef enum ritz_stability {
+    RITZ_STABLE,   /* every pole is left of the axis by more than rounding */
+    RITZ_MARGINAL, /* some are on it: rigid-body motion, or no damping */
+    RITZ_UNSTABLE, /* a pole is right of it, or M or K is not semidefinite */
+} ritz_stability;
+
+typedef struct ritz_probe {
+    ritz_stability verdict;
+    double pole[2];   /* that decided it, real and imaginary part [rad/s] */
+    double radius;    /* largest |pole| [rad/s] */
+    double tolerance; /* of `pole`, of rounding, relative to the radius */
+    int64_t count;    /* of poles; 0: none was looked for */
+    char
+        why[RITZ_NAME_SIZE]; /* of M or K that are amiss; "" if poles decided */
+} ritz_probe;
+
+/**
+ * Poles of A, or of E^-1 A. A pole is on the axis if |Re s| is within
+ * 8 eps |A| / cos, the bound of first order on what rounding does to it, cos
+ * being that between its left and right eigenvectors.
+ */
+ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out);
+
+/**
+ * M x'' + D x' + K x = 0: first M, which must have no negative eigenvalue, then
+ * K, none of a motion that is not rigid, then the poles of the quadratic pencil.
+ *
+ * @param[in] D        may be {0}; need not be symmetric
+ * @param[in] damping  ratios beside D, by modes; NULL: none
+ */
+ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
+                                    const ritz_dense *D,
+                                    const ritz_damping *damping,
+                                    ritz_probe *out);
+
+/** The same with its dampers and its own damping. */
+ritz_status ritz_probe_reduced(const ritz_reduced *reduced, ritz_probe *out);
+
+/** "stable", "marginal" or "unstable". */
+const char *ritz_stability_name(ritz_stability verdict);
+
+/** "pole +0.31 +- 12.4i rad/s (1.97 Hz)", or what is amiss with M or K. */
+void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE]);
+
+/**
+ * Remember it as estimate "growth-relative": Re s over the radius, with the
+ * tolerance as its limit where it is unstable.
+ */
+ritz_status ritz_probe_record(const ritz_probe *probe,
+                              ritz_measures *estimates);
+
+#endif

@@ -1,0 +1,107 @@
+/*
+ * A linear model in first-order form:
+ *
+ *     E x' = A x + B u,    y = C x + D u
+ *
+ * small and dense. Second-order models are brought into it by x = [u; u'].
+ */
+#ifndef RITZ_STATE_SPACE_H
+#define RITZ_STATE_SPACE_H
+
+#include <ritz/basis.h>
+#include <ritz/component.h>
+#include <ritz/damping.h>
+#include <ritz/reduced.h>
+#include <ritz/response.h>
+
+#include <complex.h>
+
+/* Of more dofs than this no dense first-order model is made. */
+enum { RITZ_STATE_DOFS = 1500 };
+
+typedef struct ritz_state_space {
+    ritz_dense A, B, C, D; /* D is always there */
+    ritz_dense E;          /* invertible; {0}: the identity */
+    int64_t num_inputs, num_outputs;
+    char (*input)[RITZ_NAME_SIZE];
+    char (*output)[RITZ_NAME_SIZE];
+    double *limit;        /* num_outputs, largest tolerated |y|; NaN: none */
+    ritz_columns columns; /* what each state is */
+    ritz_origin origin;
+    char
+        damping[RITZ_DAMPING_SIZE]; /* beside matrices, that is in A; "" none */
+    ritz_measures estimates;        /* what the stability probe found */
+    char units[RITZ_NAME_SIZE];
+} ritz_state_space;
+
+/** Zero matrices (E the identity), names and limits taken from @p io. */
+ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
+                                 ritz_state_space *out);
+
+/**
+ * Whether all parts fit each other, values are finite and E, if there is one,
+ * is not singular.
+ *
+ * @return RITZ_ERR_FORMAT with what does not
+ */
+ritz_status ritz_state_space_check(const ritz_state_space *model);
+
+/**
+ * A component with its damping: that of its matrices and dampers, and
+ * @p damping beside them, ratios by all its modes, a M + b K exactly.
+ *
+ * x = [u; u'] where M is definite. Where it is not, x = [q; q'] of the modes
+ * that have mass, and what massless dofs answer at once is in D.
+ *
+ * @return RITZ_ERR_ARGUMENT if there are more than RITZ_STATE_DOFS dofs, if
+ *         there is structural damping, which is of harmonic motion alone, or if
+ *         a massless dof is damped, or driven and seen by its velocity;
+ *         RITZ_ERR_SINGULAR if K + M is
+ * @cost   O(n^3), n dofs
+ */
+ritz_status ritz_state_space_of_component(const ritz_component *component,
+                                          const ritz_damping *damping,
+                                          ritz_state_space *out);
+
+/** The same of a reduced component. */
+ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
+                                        const ritz_damping *damping,
+                                        ritz_state_space *out);
+
+/**
+ * A component in a basis of states: with E = [I 0; 0 M] of its first-order form
+ *
+ *     W'E T x' = W'A T x + W'B u
+ *
+ * solved for x'. Massless dofs answer as above.
+ *
+ * @param[in] basis  of states, W {0}: T itself
+ * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree, or as
+ *         above; RITZ_ERR_SINGULAR if W'E T is
+ */
+ritz_status ritz_reduce_states(const ritz_component *component,
+                               const ritz_damping *damping,
+                               const ritz_basis *basis, ritz_state_space *out);
+
+/**
+ * Poles: eigenvalues of A, or of E^-1 A, by magnitude ascending; of a pair the
+ * one above the axis first. To be freed.
+ *
+ * @return RITZ_ERR_CONVERGENCE
+ */
+ritz_status ritz_state_space_poles(const ritz_state_space *model,
+                                   int64_t *count, double _Complex **out);
+
+/**
+ * Response C (i w E - A)^-1 B + D; a grid that is refined gets points around
+ * every pole.
+ *
+ * @return RITZ_ERR_SINGULAR if a point lies on a pole
+ * @cost   O(n^3), and O(n^2) a point and input
+ */
+ritz_status ritz_response_states(const ritz_state_space *model,
+                                 const ritz_grid *grid, ritz_response *out);
+
+void ritz_state_space_free(ritz_state_space *model);
+
+#endif

@@ -1,0 +1,410 @@
+/*
+ * In coordinates that make T'MT = I and T'KT = Lambda, with what damping says
+ * of each mode on the diagonal of W,
+ *
+ *     (p^2 I + p W + Lambda + i K4) z = 0,    x = T X z.
+ *
+ * Without matrices each mode is by itself; with them poles are eigenvalues of
+ * [0, I; -Lambda - i K4, -W].
+ */
+#include "bases/dominant.h"
+
+#include "base/alloc.h"
+#include "bases/condense.h"
+
+#include <ritz/eigen.h>
+
+#include <complex.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+/* A pole nearer to the real axis than this share of it is real. */
+static const double real_within = 1e-12;
+/* A mode without damping has this ratio, lest its point be a pole. */
+static const double least_decay = 1e-4;
+/* A mode at critical damping has its point at this share of w^2, not at 0. */
+static const double least_square = 1e-2;
+/* What a kind of loads does to a mode, beside the most it does to any: less is
+   rounding. */
+static const double least_share = 1e-12;
+
+typedef struct candidate {
+    double _Complex s;
+    double decay;       /* |Re p| */
+    double value;       /* dominance, of the largest; in single precision, so
+                           that what is equal but for rounding stays so */
+    double _Complex *z; /* m, modal coordinates; borrowed from `vectors` */
+} candidate;
+
+typedef struct model {
+    const ritz_rational *R;
+    ritz_pairs modes; /* of T'KT and T'MT */
+    ritz_dense W, K4;
+    ritz_dense F[RITZ_RATIONAL_GROUPS][3]; /* m x loads, modal */
+    int64_t count;
+    candidate *pole;                       /* at most 2 m */
+    double _Complex *vectors;              /* m for each */
+    double terms[RITZ_RATIONAL_GROUPS][3]; /* largest they might do */
+    double most[RITZ_RATIONAL_GROUPS];     /* largest |F'x|; huge if rounding */
+} model;
+
+static void free_model(model *s)
+{
+    ritz_pairs_free(&s->modes);
+    ritz_dense_free(&s->W);
+    ritz_dense_free(&s->K4);
+    for (int g = 0; g < RITZ_RATIONAL_GROUPS; g++)
+        for (int k = 0; k < 3; k++)
+            ritz_dense_free(&s->F[g][k]);
+    free(s->pole);
+    free(s->vectors);
+}
+
+/* Phi' (T'AT) Phi; zeros if there is no A. */
+static ritz_status in_modes(const ritz_sparse *A, const ritz_dense *T,
+                            const ritz_dense *Phi, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense small = {0};
+
+    if (!A->colptr)
+        return ritz_dense_new(Phi->ncol, Phi->ncol, out);
+    RITZ_TRY(ritz_condense_one(A, T, &small));
+    RITZ_TRY(ritz_dense_congruence(&small, Phi, out));
+done:
+    ritz_dense_free(&small);
+    return status;
+}
+
+/* What damping beside the matrices adds to mode k. */
+static double rate(const ritz_damping *damping, double lambda)
+{
+    double omega = sqrt(fmax(lambda, 0.0));
+
+    if (damping->kind == RITZ_DAMPING_RAYLEIGH)
+        return damping->a + damping->b * lambda;
+    return 2.0 * omega * ritz_damping_ratio(damping, omega);
+}
+
+/* Largest sum_i |F_ij|, times the largest |X_ik|. */
+static double largest_terms(const ritz_dense *F, const ritz_dense *X)
+{
+    double largest = 0.0;
+
+    for (int64_t j = 0; j < F->ncol; j++) {
+        double sum = 0.0;
+
+        for (int64_t i = 0; i < F->nrow; i++)
+            sum += fabs(ritz_dense_col(F, j)[i]);
+        largest = fmax(largest, sum);
+    }
+    return largest * ritz_dense_max(X);
+}
+
+/* What loads do to each mode. */
+static ritz_status see_loads(const ritz_dense *X, model *s)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t g = 0; g < s->R->num_groups; g++)
+        for (int k = 0; k < 3; k++) {
+            const ritz_dense *F = &s->R->group[g].F[k];
+
+            if (!F->val)
+                continue;
+            RITZ_TRY(ritz_dense_mul_tn(X, F, &s->F[g][k]));
+            s->terms[g][k] = largest_terms(F, X);
+        }
+done:
+    return status;
+}
+
+static ritz_status make_model(const ritz_rational *R,
+                              const ritz_damping *damping, const ritz_dense *T,
+                              model *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = R->component;
+    ritz_dense K = {0}, M = {0}, TX = {0};
+
+    s->R = R;
+    RITZ_TRY(ritz_condense_one(&component->K, T, &K));
+    RITZ_TRY(ritz_condense_one(&component->M, T, &M));
+    RITZ_TRY(ritz_eigen_dense(&K, &M, &s->modes));
+    RITZ_TRY(in_modes(&component->D, T, &s->modes.Phi, &s->W));
+    RITZ_TRY(in_modes(&component->K4, T, &s->modes.Phi, &s->K4));
+    for (int64_t k = 0; k < s->W.ncol; k++)
+        ritz_dense_col(&s->W, k)[k] += rate(damping, s->modes.lambda[k]);
+    RITZ_TRY(ritz_dense_mul(T, &s->modes.Phi, &TX));
+    RITZ_TRY(see_loads(&TX, s));
+    RITZ_NEW(s->pole, 2 * s->W.ncol);
+    RITZ_NEW(s->vectors, 2 * s->W.ncol * s->W.ncol);
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&TX);
+    return status;
+}
+
+static candidate *append(model *s, double _Complex point, double decay)
+{
+    candidate *pole = &s->pole[s->count];
+
+    pole->s = point;
+    pole->decay = decay;
+    pole->z = s->vectors + s->count * s->W.ncol;
+    s->count++;
+    return pole;
+}
+
+/* s^2 = -w^2 (1 - zeta) of each mode. */
+static void solve_apart(model *s)
+{
+    for (int64_t k = 0; k < s->W.ncol; k++) {
+        double lambda = s->modes.lambda[k];
+        double zeta = 0.0;
+        double square = 0.0;
+
+        if (lambda <= 0.0)
+            continue; /* rounding of a rigid motion */
+        zeta =
+            fmax(0.5 * ritz_dense_col(&s->W, k)[k] / sqrt(lambda), least_decay);
+        square = copysign(fmax(fabs(zeta - 1.0), least_square), zeta - 1.0);
+        append(s, csqrt(lambda * square), zeta * sqrt(lambda))->z[k] = 1.0;
+    }
+}
+
+/* [0, I; -Lambda - i K4, -W], 2m x 2m. */
+static void fill_states(const model *s, double _Complex *A)
+{
+    int64_t m = s->W.ncol;
+
+    for (int64_t j = 0; j < m; j++) {
+        double _Complex *left = A + j * 2 * m;
+        double _Complex *right = A + (m + j) * 2 * m;
+
+        for (int64_t i = 0; i < m; i++) {
+            double lambda = i == j ? s->modes.lambda[j] : 0.0;
+
+            left[m + i] = -(lambda + (double _Complex)_Complex_I *
+                                         ritz_dense_col(&s->K4, j)[i]);
+            right[m + i] = -ritz_dense_col(&s->W, j)[i];
+        }
+        right[j] = 1.0;
+    }
+}
+
+/* A pole in the upper half plane, real ones among them; z is of length 2m. */
+static void keep(double _Complex p, const double _Complex *z, model *s)
+{
+    double decay = fmax(fabs(creal(p)), least_decay * cabs(p));
+    double omega = cimag(p);
+    double length = 0.0;
+    candidate *pole = NULL;
+
+    if (fabs(omega) <= real_within * cabs(p))
+        omega = 0.0;
+    if (omega < 0.0 || cabs(p) == 0.0)
+        return;
+    pole = append(s, decay + (double _Complex)_Complex_I * omega, decay);
+    for (int64_t i = 0; i < s->W.ncol; i++)
+        length = hypot(length, cabs(z[i]));
+    for (int64_t i = 0; i < s->W.ncol; i++)
+        pole->z[i] = z[i] / length;
+}
+
+static ritz_status solve_together(model *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = s->W.ncol;
+    int n = (int)(2 * m);
+    double _Complex *A = NULL, *p = NULL, *V = NULL;
+
+    RITZ_NEW(A, 4 * m * m);
+    RITZ_NEW(p, 2 * m);
+    RITZ_NEW(V, 4 * m * m);
+    fill_states(s, A);
+    RITZ_FAIL_IF(n > 0 && LAPACKE_zgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, p,
+                                        NULL, 1, V, n) != 0,
+                 RITZ_ERR_CONVERGENCE,
+                 "poles of the reduced component do not converge");
+    for (int64_t k = 0; k < 2 * m; k++)
+        keep(p[k], V + k * 2 * m, s);
+done:
+    free(A);
+    free(p);
+    free(V);
+    return status;
+}
+
+/* b = conj(F(-conj(s))'x) of one kind of loads; returns |b|. */
+static double direct(const model *s, const candidate *pole, int64_t g,
+                     double _Complex *b)
+{
+    double _Complex power = 1.0;
+    double sum = 0.0;
+    int64_t count = s->R->group[g].count;
+
+    for (int64_t j = 0; j < count; j++)
+        b[j] = 0.0;
+    for (int k = 0; k < 3; k++, power *= -conj(pole->s))
+        for (int64_t j = 0; j < s->F[g][k].ncol; j++)
+            for (int64_t i = 0; i < s->W.ncol; i++)
+                b[j] += conj(power * ritz_dense_col(&s->F[g][k], j)[i] *
+                             pole->z[i]);
+    for (int64_t j = 0; j < count; j++)
+        sum += creal(b[j] * conj(b[j]));
+    return sqrt(sum);
+}
+
+/* |x'(2 p M + D) x| in modal coordinates, p = -conj(s). */
+static double scale_of(const model *s, const candidate *pole)
+{
+    double _Complex sum = 0.0;
+
+    for (int64_t j = 0; j < s->W.ncol; j++) {
+        double _Complex row = -2.0 * conj(pole->s) * pole->z[j];
+
+        for (int64_t i = 0; i < s->W.ncol; i++)
+            row += ritz_dense_col(&s->W, j)[i] * pole->z[i];
+        sum += row * pole->z[j];
+    }
+    return cabs(sum);
+}
+
+/* |C x| |x'B| of a pole; where there is only one of them, its square. */
+static double gain(const model *s, const candidate *pole, double _Complex *b)
+{
+    double in = 0.0;
+    double out = 0.0;
+    int64_t outputs = 0;
+
+    for (int64_t g = 0; g < s->R->num_groups; g++) {
+        double share = direct(s, pole, g, b);
+
+        if (!(share > least_share * s->most[g]))
+            share = 0.0;
+        if (s->R->group[g].kind == RITZ_LOADS_OUTPUTS) {
+            out = share;
+            outputs++;
+        } else {
+            in = hypot(in, share);
+        }
+    }
+    if (outputs == 0)
+        out = in;
+    if (outputs == s->R->num_groups)
+        in = out;
+    return in * out;
+}
+
+/* The most that a kind of loads does to a pole. */
+static double find_most(const model *s, int64_t g, double _Complex *b)
+{
+    double most = 0.0;
+    double terms = 0.0;
+
+    for (int64_t k = 0; k < s->count; k++) {
+        double size = cabs(s->pole[k].s);
+
+        most = fmax(most, direct(s, &s->pole[k], g, b));
+        terms = fmax(terms, s->terms[g][0] + size * (s->terms[g][1] +
+                                                     size * s->terms[g][2]));
+    }
+    return most > least_share * terms ? most : HUGE_VAL;
+}
+
+static ritz_status weigh(model *s)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex *b = NULL;
+    double largest = DBL_MIN;
+
+    RITZ_NEW(b, s->R->num_loads);
+    for (int64_t g = 0; g < s->R->num_groups; g++)
+        s->most[g] = find_most(s, g, b);
+    for (int64_t k = 0; k < s->count; k++) {
+        candidate *pole = &s->pole[k];
+
+        pole->value = gain(s, pole, b) / scale_of(s, pole) / sqrt(pole->decay);
+        largest = fmax(largest, pole->value);
+    }
+    for (int64_t k = 0; k < s->count; k++)
+        s->pole[k].value = (double)(float)(s->pole[k].value / largest);
+done:
+    free(b);
+    return status;
+}
+
+/* The most dominant first; of equals the slower, then the one less damped. */
+static int compare(const void *left, const void *right)
+{
+    const candidate *a = left;
+    const candidate *b = right;
+
+    if (a->value != b->value)
+        return a->value > b->value ? -1 : 1;
+    if (cabs(a->s) != cabs(b->s))
+        return cabs(a->s) < cabs(b->s) ? -1 : 1;
+    return (a->decay > b->decay) - (a->decay < b->decay);
+}
+
+/* The probe of a pole and a group: what loads do to it, over its length. */
+static void aim(const model *s, const candidate *pole, int64_t g,
+                ritz_probe *probe)
+{
+    double _Complex *b = probe->b + s->R->group[g].first;
+    double share = direct(s, pole, g, b);
+    bool counts = share > least_share * s->most[g];
+
+    probe->s = pole->s;
+    probe->group = g;
+    for (int64_t j = 0; j < s->R->group[g].count; j++)
+        b[j] = counts ? b[j] / share : 0.0;
+}
+
+static ritz_status list(const model *s, ritz_probes *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probes probes = {0};
+    int64_t poles = 0;
+    int64_t groups = 0;
+    int64_t at = 0;
+
+    while (poles < s->count && s->pole[poles].value > 0.0)
+        poles++;
+    for (int64_t g = 0; g < s->R->num_groups; g++)
+        groups += s->R->group[g].answered;
+    RITZ_TRY(ritz_probes_new(poles * groups, s->R->num_loads, &probes));
+    for (int64_t k = 0; k < poles; k++)
+        for (int64_t g = 0; g < s->R->num_groups; g++)
+            if (s->R->group[g].answered)
+                aim(s, &s->pole[k], g, &probes.item[at++]);
+    *out = probes;
+done:
+    return status;
+}
+
+ritz_status ritz_dominant_probes(const ritz_rational *R,
+                                 const ritz_damping *damping,
+                                 const ritz_dense *T, ritz_probes *out)
+{
+    ritz_status status = RITZ_OK;
+    model s = {0};
+
+    RITZ_TRY(make_model(R, damping, T, &s));
+    if (ritz_rational_damped(R))
+        RITZ_TRY(solve_together(&s));
+    else
+        solve_apart(&s);
+    RITZ_TRY(weigh(&s));
+    if (s.count > 0)
+        qsort(s.pole, (size_t)s.count, sizeof *s.pole, compare);
+    RITZ_TRY(list(&s, out));
+done:
+    free_model(&s);
+    return status;
+}

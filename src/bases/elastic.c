@@ -1,0 +1,280 @@
+/*
+ * A free body answers forces F by rigid motion and by deformation. With the
+ * rigid modes Phi, Phi' M Phi = I, and P = I - M Phi Phi', the deformation is
+ *
+ *     X = P' S P F,    S = | K_ww^-1  0 |  w: all dofs but the support r
+ *                          |    0     0 |  r: as many dofs as rigid modes
+ *
+ * and depends on no choice of r [LeeTsuha1992, eq. 6]: P F is balanced, so the
+ * support carries nothing, and P' takes out the rigid motion that S chose. One
+ * definite factor and one solve a column. Away from 0 Hz, A = K - sigma M keeps
+ * rigid and elastic motion apart by itself; P only clears rounding.
+ *
+ * r is chosen so that Phi at r is far from singular, by the share that each dof
+ * has in the mass of rigid motion: rows of diag(M)^1/2 Phi, the largest first.
+ */
+#include "bases/elastic.h"
+
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double diagonal(const ritz_sparse *A, int64_t j)
+{
+    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+        if (A->rowind[p] == j)
+            return A->val[p];
+    return 0.0;
+}
+
+/* X := X - left (right' X) */
+static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
+                            ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0}, gone = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(right, X, &part));
+    RITZ_TRY(ritz_dense_mul(left, &part, &gone));
+    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
+        X->val[k] -= gone.val[k];
+done:
+    ritz_dense_free(&part);
+    ritz_dense_free(&gone);
+    return status;
+}
+
+/* Row of W, r columns and stored row by row, with the largest square. */
+static int64_t largest_row(int64_t n, int64_t r, const double *W)
+{
+    int64_t best = 0;
+    double most = -1.0;
+
+    for (int64_t i = 0; i < n; i++) {
+        double sum = 0.0;
+
+        for (int64_t k = 0; k < r; k++)
+            sum += W[i * r + k] * W[i * r + k];
+        if (sum > most * (1.0 + 1e-9)) {
+            most = sum;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Rows of W less their part along row `pivot`, which becomes zero. */
+static void deflate(int64_t n, int64_t r, int64_t pivot, double *W)
+{
+    double size = 0.0;
+
+    for (int64_t k = 0; k < r; k++)
+        size += W[pivot * r + k] * W[pivot * r + k];
+    if (!(size > 0.0))
+        return;
+    for (int64_t i = 0; i < n; i++) {
+        double part = 0.0;
+
+        if (i == pivot)
+            continue;
+        for (int64_t k = 0; k < r; k++)
+            part += W[i * r + k] * W[pivot * r + k] / size;
+        for (int64_t k = 0; k < r; k++)
+            W[i * r + k] -= part * W[pivot * r + k];
+    }
+    for (int64_t k = 0; k < r; k++)
+        W[pivot * r + k] = 0.0;
+}
+
+/* As many dofs as there are rigid modes. */
+static ritz_status choose_support(ritz_elastic *E)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = E->Phi.nrow;
+    int64_t r = E->Phi.ncol;
+    double *W = NULL;
+
+    RITZ_NEW(W, n * r);
+    RITZ_NEW(E->held.at, r);
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t k = 0; k < r; k++)
+            W[i * r + k] =
+                sqrt(fabs(diagonal(E->M, i))) * ritz_dense_col(&E->Phi, k)[i];
+    for (; E->held.count < r; E->held.count++) {
+        int64_t pivot = largest_row(n, r, W);
+
+        E->held.at[E->held.count] = pivot;
+        deflate(n, r, pivot, W);
+    }
+    RITZ_TRY(ritz_dofs_complement(&E->held, n, &E->rest));
+done:
+    free(W);
+    return status;
+}
+
+static ritz_status find_rigid(ritz_elastic *E)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span rigid_only = {.modes = 0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY_IN("rigid modes",
+                ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
+    E->Phi = pairs.Phi;
+    E->residual = pairs.residual;
+    pairs.Phi = (ritz_dense){0};
+    pairs.residual = NULL;
+    RITZ_TRY(ritz_sparse_mul(E->M, &E->Phi, &E->MPhi));
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* Why K gave no factor, rigid modes apart. */
+static ritz_status refuse(const ritz_elastic *E)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span one = {.modes = 1};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_eigen_sparse(E->K, E->M, &one, &pairs));
+    RITZ_FAIL_IF(pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0, RITZ_ERR_SINGULAR,
+                 "K is not positive semidefinite: an eigenvalue is %.3g",
+                 pairs.lambda[0]);
+    status = ritz_fail(RITZ_ERR_SINGULAR,
+                       "K is singular, but for no rigid motion that has mass");
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+static ritz_status factor(ritz_elastic *E)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *w = &E->rest;
+    ritz_sparse K_ww = {0};
+
+    if (w->count == 0)
+        goto done;
+    RITZ_TRY(
+        ritz_sparse_extract(E->K, w->count, w->at, w->count, w->at, &K_ww));
+    status = ritz_factor_spd(&K_ww, &E->L);
+    if (status == RITZ_ERR_SINGULAR)
+        status = refuse(E);
+done:
+    ritz_sparse_free(&K_ww);
+    return status;
+}
+
+ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
+                             ritz_elastic *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_elastic E = {.K = K, .M = M};
+
+    RITZ_TRY(find_rigid(&E));
+    RITZ_TRY(choose_support(&E));
+    RITZ_TRY(factor(&E));
+    *out = E;
+    E = (ritz_elastic){0};
+done:
+    ritz_elastic_free(&E);
+    return status;
+}
+
+void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
+                       ritz_factor **L, ritz_elastic *out)
+{
+    *out = (ritz_elastic){.K = K, .M = M, .L = *L};
+    *L = NULL;
+}
+
+ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F)
+{
+    ritz_status status = RITZ_OK;
+
+    if (E->Phi.ncol == 0 || F->ncol == 0)
+        goto done;
+    RITZ_TRY(take_out(&E->MPhi, &E->Phi, F));
+    RITZ_TRY(take_out(&E->MPhi, &E->Phi, F)); /* twice is enough */
+done:
+    return status;
+}
+
+static ritz_status take_out_motion(const ritz_elastic *E, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+
+    if (E->Phi.ncol == 0)
+        goto done;
+    RITZ_TRY(take_out(&E->Phi, &E->MPhi, X));
+    RITZ_TRY(take_out(&E->Phi, &E->MPhi, X));
+done:
+    return status;
+}
+
+/* X := S X. */
+static ritz_status solve_supported(const ritz_elastic *E, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *w = &E->rest;
+    ritz_dense X_w = {0};
+
+    if (E->held.count == 0)
+        return E->L ? ritz_factor_solve(E->L, X) : RITZ_OK;
+    RITZ_TRY(ritz_dense_new(w->count, X->ncol, &X_w));
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < w->count; i++)
+            ritz_dense_col(&X_w, j)[i] = ritz_dense_col(X, j)[w->at[i]];
+    if (E->L)
+        RITZ_TRY(ritz_factor_solve(E->L, &X_w));
+    memset(X->val, 0, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < w->count; i++)
+            ritz_dense_col(X, j)[w->at[i]] = ritz_dense_col(&X_w, j)[i];
+done:
+    ritz_dense_free(&X_w);
+    return status;
+}
+
+ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+
+    if (X->ncol == 0)
+        goto done;
+    RITZ_TRY(ritz_elastic_forces(E, X));
+    RITZ_TRY(solve_supported(E, X));
+    RITZ_TRY(take_out_motion(E, X));
+done:
+    return status;
+}
+
+ritz_status ritz_elastic_answer_at(const ritz_elastic *E, ritz_ldl *A,
+                                   ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+
+    if (X->ncol == 0)
+        goto done;
+    RITZ_TRY(ritz_elastic_forces(E, X));
+    RITZ_TRY(ritz_ldl_solve(A, X));
+    RITZ_TRY(take_out_motion(E, X));
+done:
+    return status;
+}
+
+void ritz_elastic_free(ritz_elastic *E)
+{
+    ritz_dense_free(&E->Phi);
+    ritz_dense_free(&E->MPhi);
+    free(E->residual);
+    ritz_dofs_free(&E->held);
+    ritz_dofs_free(&E->rest);
+    ritz_factor_free(&E->L);
+    *E = (ritz_elastic){0};
+}

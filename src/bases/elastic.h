@@ -1,0 +1,51 @@
+/* What a body, free or held, answers to forces apart from its rigid motion. */
+#ifndef RITZ_BASES_ELASTIC_H
+#define RITZ_BASES_ELASTIC_H
+
+#include <ritz/dofs.h>
+#include <ritz/factor.h>
+#include <ritz/sparse.h>
+
+/* Elastic answer to forces, by one factor at 0 Hz. */
+typedef struct ritz_elastic {
+    const ritz_sparse *K, *M; /* borrowed */
+    ritz_dense Phi;           /* rigid modes, n x r, M-orthonormal */
+    ritz_dense MPhi;          /* M Phi */
+    double *residual;         /* r, of the rigid modes as ritz_pairs has it */
+    ritz_dofs held, rest;     /* a determinate support, and all others */
+    ritz_factor *L;           /* of K at `rest`; NULL where that is nothing */
+} ritz_elastic;
+
+/**
+ * Find the rigid modes and factor what a support of them leaves.
+ *
+ * @return RITZ_ERR_SINGULAR if K has a negative eigenvalue, or K + M is
+ *         singular; RITZ_ERR_CONVERGENCE
+ * @cost   the rigid modes, which an inertia count proves, and a CHOLMOD factor
+ */
+ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
+                             ritz_elastic *out);
+
+/**
+ * The same where K is known to be definite and factored: takes @p L, leaves
+ * NULL.
+ */
+void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
+                       ritz_factor **L, ritz_elastic *out);
+
+/** F := P F, P = I - M Phi Phi': the forces less what moves the body. */
+ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F);
+
+/**
+ * X := P' S P X, S the flexibility on any determinate support: the answer that
+ * is M-orthogonal to rigid motion. Without rigid modes it is K^-1 X.
+ */
+ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X);
+
+/** X := P' A^-1 P X, with a factor of A = K - sigma M. */
+ritz_status ritz_elastic_answer_at(const ritz_elastic *E, ritz_ldl *A,
+                                   ritz_dense *X);
+
+void ritz_elastic_free(ritz_elastic *E);
+
+#endif

@@ -1,0 +1,40 @@
+/* Free-interface modes, and what the rest answers to some loads. */
+#ifndef RITZ_BASES_FREE_MODES_H
+#define RITZ_BASES_FREE_MODES_H
+
+#include <ritz/eigen.h>
+#include <ritz/method.h>
+
+typedef struct ritz_free_set {
+    ritz_pairs modes;  /* that are kept, rigid ones first */
+    int loads;         /* RITZ_LOADS_..., of the columns below */
+    ritz_dense F, Psi; /* n x p, loads and residual modes; {0}: no load */
+    int64_t *dof;      /* p, row of an attached dof, -1 of other loads */
+    bool *keep;        /* p, false: dependent, or nothing beside the modes */
+} ritz_free_set;
+
+/**
+ * The lowest modes as the request says, and residual modes of the loads.
+ *
+ * @param[in] loads  RITZ_LOADS_...; that there is none of them is no failure
+ * @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR, RITZ_ERR_CONVERGENCE
+ */
+ritz_status ritz_free_set_find(const ritz_request *request, int loads,
+                               ritz_free_set *out);
+
+/** T = [rigid, normal, Psi]: its last columns of a kind, those left out named
+ * in the remark. */
+ritz_status ritz_free_set_join(const ritz_request *request,
+                               const ritz_free_set *set, ritz_column_kind kind,
+                               ritz_basis *out);
+
+/** Both: the basis of modes and residual columns of a kind. */
+ritz_status ritz_free_basis(const ritz_request *request, int loads,
+                            ritz_column_kind kind, ritz_basis *out);
+
+/** Columns of Psi that stay. */
+int64_t ritz_free_set_kept(const ritz_free_set *set);
+
+void ritz_free_set_free(ritz_free_set *set);
+
+#endif

@@ -1,0 +1,94 @@
+/* Block Krylov vectors of a structure, about one or several frequencies. */
+#ifndef RITZ_BASES_KRYLOV_BLOCK_H
+#define RITZ_BASES_KRYLOV_BLOCK_H
+
+#include "bases/elastic.h"
+#include "bases/orthonormal.h"
+
+#include <ritz/method.h>
+
+/* Where the response is expanded, and how far its chain of blocks has come. */
+typedef struct ritz_krylov_point {
+    double hertz, sigma;  /* sigma = (2 pi f)^2 */
+    ritz_ldl *A;          /* factor of K - sigma M; NULL at 0 Hz */
+    int64_t first, count; /* the last block: columns of V */
+    int64_t whole;        /* blocks that are complete */
+    bool ended;           /* nothing new came of the last block */
+} ritz_krylov_point;
+
+typedef struct ritz_krylov {
+    const ritz_elastic *body; /* borrowed */
+    ritz_inner inner;
+    int64_t vectors; /* that are wanted beside the seeds */
+    int64_t seeds;   /* columns of V that were put there before */
+    int64_t num_points;
+    ritz_krylov_point point[RITZ_MOST_SHIFTS];
+    ritz_orthonormal set;
+} ritz_krylov;
+
+/* Forces and the size of what they were summed from, which tells rounding. */
+typedef struct ritz_forces {
+    ritz_dense G, size; /* n x p */
+} ritz_forces;
+
+/**
+ * Factors at the points that the request chooses, and an empty set.
+ *
+ * @param[in] body  borrowed until free
+ * @return RITZ_ERR_ARGUMENT if the request is for a frequency;
+ *         RITZ_ERR_SINGULAR if a point is a natural frequency, or M gives no
+ *         inner product
+ */
+ritz_status ritz_krylov_new(const ritz_elastic *body,
+                            const ritz_request *request, ritz_krylov *out);
+
+/**
+ * Answers to the forces F at 0 Hz as first columns of V, beside the vectors
+ * that are asked for.
+ *
+ * @param[out] taken  one for each column: false where it depends on others
+ */
+ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken);
+
+/**
+ * Chains from all forces F about every point in turn until there are as many
+ * vectors as wanted, or no new ones.
+ *
+ * @param[in] seeded  so many of the first columns of F were seeds
+ */
+ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F,
+                            int64_t seeded);
+
+/**
+ * R = P' A^-1 P G of a point. Columns that are rounding come out as zero.
+ */
+ritz_status ritz_krylov_answer(const ritz_krylov *S,
+                               const ritz_krylov_point *point,
+                               const ritz_forces *forces, ritz_dense *R);
+
+/** Size |A| |X| of what A X sums, added to @p size times @p factor. */
+void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
+                      ritz_dense *size);
+
+/** T = [Phi_r, V]: rigid columns, Krylov columns. */
+ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out);
+
+/** Say how many vectors and whole blocks there are, and why not more. */
+void ritz_krylov_say_blocks(const ritz_krylov *S, int64_t asked,
+                            ritz_basis *basis);
+
+/**
+ * Say how orthonormal V is: max |V'WV - I|, and 16 eps max |v|'|W||v|, as near
+ * as products by W can show it.
+ */
+ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S,
+                                        ritz_basis *basis);
+
+/** Append to a remark as far as there is room. */
+[[gnu::format(printf, 2, 3)]] void ritz_krylov_say(ritz_basis *basis,
+                                                   const char *format, ...);
+
+void ritz_forces_free(ritz_forces *forces);
+void ritz_krylov_free(ritz_krylov *S);
+
+#endif

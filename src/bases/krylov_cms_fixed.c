@@ -1,0 +1,149 @@
+/*
+ * Fixed-interface Krylov component modes: constraint modes and block Krylov
+ * vectors of the interior, whose start is the inertia that boundary motion
+ * brings [CraigSuKim1992, sec. 4, eq. 24 and 25],
+ *
+ *     | u_b |   | I    0 | | u_b |   K_ii Psi = -K_ib
+ *     | u_i | = | Psi  V | | q   |   span V = (A_ii^-1 M_ii)^j A_ii^-1 F_i
+ *
+ *     F_i = [M_ib + M_ii Psi, interior rows of other loads]
+ *
+ * with A = K - sigma M. Psi and V are K-orthogonal, so that T'KT is block
+ * diagonal as it is with normal modes; forces on the boundary, and the other
+ * loads, have their first moments kept, the static answer before all.
+ */
+#include "bases/krylov_block.h"
+#include "bases/loads.h"
+#include "bases/partition.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ALL_LOADS = RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
+};
+
+/* M_ib + M_ii Psi. */
+static ritz_status find_coupling(const ritz_partition *s, const ritz_dense *Psi,
+                                 ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *i = &s->i;
+    const ritz_dofs *b = s->b;
+    ritz_sparse M_ib = {0};
+
+    RITZ_TRY(ritz_sparse_extract(&s->component->M, i->count, i->at, b->count,
+                                 b->at, &M_ib));
+    RITZ_TRY(ritz_sparse_mul(&s->M_ii, Psi, out));
+    for (int64_t j = 0; j < M_ib.ncol; j++)
+        for (int64_t p = M_ib.colptr[j]; p < M_ib.colptr[j + 1]; p++)
+            ritz_dense_col(out, j)[M_ib.rowind[p]] += M_ib.val[p];
+done:
+    ritz_sparse_free(&M_ib);
+    return status;
+}
+
+/* F_i: coupling first, if the attached dofs are among the loads. */
+static ritz_status find_loads(const ritz_request *request,
+                              const ritz_partition *s, const ritz_dense *Psi,
+                              ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int loads = request->choice.loads ? request->choice.loads : ALL_LOADS;
+    int others = loads & ~RITZ_LOADS_ATTACHED;
+    int64_t more = ritz_loads_count(request, others);
+    int64_t b = loads & RITZ_LOADS_ATTACHED ? Psi->ncol : 0;
+    ritz_dense coupling = {0}, F = {0};
+    int64_t *dof = NULL;
+
+    if (more > 0 || b == 0) /* refuses none */
+        RITZ_TRY(
+            ritz_loads_collect(request, more > 0 ? others : loads, &F, &dof));
+    RITZ_TRY(ritz_dense_new(s->i.count, b + more, out));
+    if (b > 0) {
+        RITZ_TRY(find_coupling(s, Psi, &coupling));
+        memcpy(out->val, coupling.val,
+               (size_t)(s->i.count * b) * sizeof *out->val);
+    }
+    for (int64_t j = 0; j < more; j++)
+        for (int64_t k = 0; k < s->i.count; k++)
+            ritz_dense_col(out, b + j)[k] = ritz_dense_col(&F, j)[s->i.at[k]];
+done:
+    ritz_dense_free(&coupling);
+    ritz_dense_free(&F);
+    free(dof);
+    return status;
+}
+
+/* [I; Psi], a column for each boundary dof, then [0; V]. */
+static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
+                        const ritz_krylov *S, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *b = s->b;
+    const ritz_dense V = ritz_orthonormal_part(&S->set.V, 0, S->set.count);
+
+    RITZ_FAIL_IF(b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
+                 "the basis would have no vectors");
+    RITZ_TRY(ritz_basis_new(s->component->num_dofs, b->count + V.ncol, out));
+    ritz_partition_scatter(Psi, &s->i, 0, &out->T);
+    ritz_partition_scatter(&V, &s->i, b->count, &out->T);
+    for (int64_t j = 0; j < b->count; j++) {
+        ritz_dense_col(&out->T, j)[b->at[j]] = 1.0;
+        out->columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
+        out->columns.dof[j] = b->at[j];
+    }
+    for (int64_t j = 0; j < V.ncol; j++)
+        out->columns.kind[b->count + j] = RITZ_COLUMN_KRYLOV;
+    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD%s",
+             S->point[S->num_points - 1].A ? " + MUMPS" : "");
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_partition s = {0};
+    ritz_factor *L = NULL;
+    ritz_dense Psi = {0}, F = {0};
+    ritz_elastic interior = {0};
+    ritz_krylov S = {0};
+    ritz_basis basis = {0};
+
+    RITZ_TRY(ritz_partition_new(request, &s));
+    RITZ_TRY(ritz_partition_factor(&s, &L));
+    RITZ_TRY(ritz_partition_constraint_modes(&s, L, &Psi));
+    RITZ_TRY(find_loads(request, &s, &Psi, &F));
+    ritz_elastic_held(&s.K_ii, &s.M_ii, &L, &interior);
+    RITZ_TRY(ritz_krylov_new(&interior, request, &S));
+    RITZ_TRY(ritz_krylov_run(&S, &F, 0));
+    RITZ_TRY(join(&s, &Psi, &S, &basis));
+    ritz_krylov_say_blocks(&S, request->modes, &basis);
+    RITZ_TRY(ritz_krylov_say_orthonormal(&S, &basis));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_krylov_free(&S);
+    ritz_elastic_free(&interior);
+    ritz_factor_free(&L);
+    ritz_partition_free(&s);
+    ritz_dense_free(&Psi);
+    ritz_dense_free(&F);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const ritz_method ritz_method_krylov_cms_fixed = {
+    .name = "krylov-cms-fixed",
+    .summary = "constraint modes and fixed-interface block Krylov vectors",
+    .reference = "CraigSuKim1992",
+    .when = "as craig-bampton, without an eigenvalue problem",
+    .cost = "a factor of the interior, one solve a vector",
+    .holds = "statics and inertia of the interface; frequencies from above",
+    .fails = "upper modes of the band: less exact than with normal modes",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
+            RITZ_USES_LOADS | RITZ_USES_INNER,
+    .make = make,
+};

@@ -1,0 +1,128 @@
+/*
+ * Free-interface Krylov component modes: rigid modes, what the body answers to
+ * unit forces F_a at its attached dofs, and the block Krylov vectors that
+ * follow from them [CraigHale1988; CraigSuKim1992, sec. 4],
+ *
+ *     T = [Phi_r, X_a, V],   X_a = P' S P F_a,
+ *     span [X_a, V] = span of (A^-1 M)^j A^-1 F,   F = [F_a, other loads]
+ *
+ * X_a are the inertia-relief attachment modes; V is K-orthogonal to them. It is
+ * to residual flexibility with free modes [Rubin1975] what fixed-interface
+ * Krylov vectors are to Craig and Bampton. The elastic moments about 0 Hz
+ * between attached dofs are kept, two for each whole block.
+ */
+#include "base/alloc.h"
+#include "bases/krylov_block.h"
+#include "bases/loads.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    OTHER_LOADS = RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
+};
+
+/* Columns of Krylov vectors that stand for seeds become the answers X. */
+static ritz_status put_attachment(const ritz_request *request,
+                                  const ritz_krylov *S, const ritz_dense *F_a,
+                                  const bool *taken, ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *a = &request->attached;
+    ritz_dense X = {0};
+    int64_t at = S->body->Phi.ncol;
+    size_t size = (size_t)F_a->nrow * sizeof *F_a->val;
+
+    RITZ_TRY(ritz_dense_copy(F_a, &X));
+    RITZ_TRY(ritz_elastic_answer(S->body, &X));
+    for (int64_t j = 0; j < a->count; j++) {
+        if (!taken[j])
+            continue;
+        memcpy(ritz_dense_col(&basis->T, at), ritz_dense_col(&X, j), size);
+        basis->columns.kind[at] = RITZ_COLUMN_ATTACHMENT;
+        basis->columns.dof[at++] = a->at[j];
+    }
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* The attached dofs first; nothing else is needed beside them. */
+static ritz_status collect(const ritz_request *request, ritz_dense *F_a,
+                           ritz_dense *F)
+{
+    ritz_status status = RITZ_OK;
+    int others = request->choice.loads
+                     ? request->choice.loads & ~RITZ_LOADS_ATTACHED
+                     : OTHER_LOADS;
+    int loads = RITZ_LOADS_ATTACHED | others;
+    int64_t *dof = NULL;
+
+    RITZ_TRY(ritz_loads_collect(request, loads, F, &dof));
+    RITZ_TRY(ritz_dense_columns(F, 0, request->attached.count, F_a));
+done:
+    free(dof);
+    return status;
+}
+
+static ritz_status join(const ritz_request *request, const ritz_krylov *S,
+                        const ritz_dense *F_a, const bool *taken,
+                        ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_krylov_join(S, out));
+    RITZ_TRY(put_attachment(request, S, F_a, taken, out));
+    if (S->seeds < F_a->ncol)
+        ritz_krylov_say(out,
+                        "%" PRId64 " attachment mode(s) left out, dependent or "
+                        "nothing but rigid; ",
+                        F_a->ncol - S->seeds);
+    ritz_krylov_say_blocks(S, request->modes, out);
+    RITZ_TRY(ritz_krylov_say_orthonormal(S, out));
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    ritz_dense F_a = {0}, F = {0};
+    bool *taken = NULL;
+    ritz_elastic body = {0};
+    ritz_krylov S = {0};
+    ritz_basis basis = {0};
+
+    RITZ_TRY(collect(request, &F_a, &F));
+    RITZ_NEW(taken, F_a.ncol);
+    RITZ_TRY(ritz_elastic_new(&component->K, &component->M, &body));
+    RITZ_TRY(ritz_krylov_new(&body, request, &S));
+    RITZ_TRY(ritz_krylov_seed(&S, &F_a, taken));
+    RITZ_TRY(ritz_krylov_run(&S, &F, F_a.ncol));
+    RITZ_TRY(join(request, &S, &F_a, taken, &basis));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_dense_free(&F_a);
+    ritz_dense_free(&F);
+    free(taken);
+    ritz_krylov_free(&S);
+    ritz_elastic_free(&body);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const ritz_method ritz_method_krylov_cms_free = {
+    .name = "krylov-cms-free",
+    .summary = "rigid, attachment and free-interface block Krylov vectors",
+    .reference = "CraigHale1988",
+    .when = "as macneal-rubin, without flexible eigenvalues",
+    .cost = "a factor, one solve a vector, two an attached dof",
+    .holds = "flexible static gain and moments at the attached dofs",
+    .fails = "upper modes of the band: less exact than with normal modes",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
+            RITZ_USES_LOADS | RITZ_USES_INNER,
+    .make = make,
+};

@@ -1,0 +1,287 @@
+/*
+ * Krylov reduction of a damped structure: the recurrence of its first-order
+ * form for displacement d and velocity v [CraigSuKim1992, sec. 3],
+ *
+ *     d_j+1 = -K^-1 (D d_j + M v_j),   v_j+1 = d_j,   d_1 = K^-1 F,  v_1 = 0
+ *
+ * of which the displacements alone are kept, span V = span of d_1, d_2, ...:
+ * the reduced model stays symmetric and of second order, and keeps as many
+ * moments of C (s^2 M + s D + K)^-1 B about s = 0 as it has whole blocks, twice
+ * as many with both inputs and outputs among the loads. Velocity outputs start
+ * as K^-1 Cv' does; the paper's M^-1 Cv' adds nothing to that, and M may be
+ * singular.
+ *
+ * Raw vectors would align with the slowest mode. States are therefore combined
+ * to be orthonormal; as both halves lie in the span of V, a state is two short
+ * columns of coordinates in V [LuSuBai2016]. Velocities count in units of
+ * omega, of the lowest Rayleigh quotient of the start.
+ *
+ * An unsymmetric D, of gyroscopes, goes with inputs, and D' with outputs: two
+ * chains. Damping that acts on rigid motion couples it to the rest, so that
+ * D Phi_r joins the loads of a free body.
+ */
+#include "bases/krylov_states.h"
+#include "bases/loads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_CHAINS = 2,
+    ALL_LOADS = RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
+};
+
+static const double symmetric_within = 1e-12;
+
+typedef struct recurrence {
+    const ritz_request *request;
+    ritz_sparse K;              /* with the springs of discrete dampers */
+    ritz_sparse D[MOST_CHAINS]; /* D, and D' if that is not the same */
+    ritz_elastic body;
+    ritz_krylov S;
+    int64_t num_chains;
+    ritz_krylov_states chain[MOST_CHAINS];
+} recurrence;
+
+static void free_recurrence(recurrence *r)
+{
+    for (int64_t k = 0; k < MOST_CHAINS; k++) {
+        ritz_krylov_states_free(&r->chain[k]);
+        ritz_sparse_free(&r->D[k]);
+    }
+    ritz_krylov_free(&r->S);
+    ritz_elastic_free(&r->body);
+    ritz_sparse_free(&r->K);
+}
+
+/* D := D + a M + b K */
+static ritz_status add_rayleigh(const ritz_component *component,
+                                const ritz_damping *damping, ritz_sparse *D)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse C = {0}, sum = {0};
+
+    RITZ_TRY(ritz_sparse_add(damping->a, &component->M, damping->b,
+                             &component->K, &C));
+    if (D->colptr)
+        RITZ_TRY(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
+    else {
+        sum = C;
+        C = (ritz_sparse){0};
+    }
+    ritz_sparse_free(D);
+    *D = sum;
+    sum = (ritz_sparse){0};
+done:
+    ritz_sparse_free(&C);
+    ritz_sparse_free(&sum);
+    return status;
+}
+
+/* D as the model has it, with what is stated beside it, and K with springs. */
+static ritz_status collect_matrices(recurrence *r)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = r->request->component;
+    const ritz_choice *choice = &r->request->choice;
+    ritz_damping damping = choice->damping;
+    ritz_dampers dampers = {0};
+
+    if (!(choice->given & RITZ_USES_DAMPING))
+        RITZ_TRY_IN("damping",
+                    ritz_damping_parse(component->damping, &damping));
+    RITZ_FAIL_IF(damping.kind != RITZ_DAMPING_NONE &&
+                     !ritz_damping_is_rayleigh(&damping),
+                 RITZ_ERR_ARGUMENT,
+                 "ratios of modes make no matrix D, which moments need: give "
+                 "rayleigh damping");
+    RITZ_TRY(ritz_sparse_copy(&component->K, &r->K));
+    if (component->D.colptr)
+        RITZ_TRY(ritz_sparse_copy(&component->D, &r->D[0]));
+    if (damping.kind != RITZ_DAMPING_NONE)
+        RITZ_TRY(add_rayleigh(component, &damping, &r->D[0]));
+    if (component->dampers.count > 0) {
+        RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
+        RITZ_TRY(ritz_dampers_install_sparse(&dampers, &r->K, &r->D[0]));
+    }
+done:
+    ritz_dampers_free(&dampers);
+    return status;
+}
+
+/* Columns of A from column `first` on of the forces, |A| of their sizes. */
+static void put_columns(const ritz_dense *A, const ritz_dense *size,
+                        int64_t first, ritz_forces *out)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++) {
+            ritz_dense_col(&out->G, first + j)[i] = ritz_dense_col(A, j)[i];
+            ritz_dense_col(&out->size, first + j)[i] =
+                fabs(ritz_dense_col(size, j)[i]);
+        }
+}
+
+/* Loads of a chain, and what damping makes of rigid motion. */
+static ritz_status collect_loads(const recurrence *r, const ritz_sparse *D,
+                                 int loads, ritz_forces *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *Phi = &r->body.Phi;
+    int64_t n = r->K.nrow;
+    int64_t count = ritz_loads_count(r->request, loads);
+    int64_t more = D ? Phi->ncol : 0;
+    ritz_dense F = {0}, DPhi = {0}, size = {0};
+    int64_t *dof = NULL;
+
+    if (count > 0)
+        RITZ_TRY(ritz_loads_collect(r->request, loads, &F, &dof));
+    RITZ_TRY(ritz_dense_new(n, count + more, &out->G));
+    RITZ_TRY(ritz_dense_new(n, count + more, &out->size));
+    put_columns(&F, &F, 0, out);
+    if (more == 0)
+        goto done;
+    RITZ_TRY(ritz_sparse_mul(D, Phi, &DPhi));
+    RITZ_TRY(ritz_dense_new(n, more, &size));
+    ritz_krylov_size(D, Phi, 1.0, &size);
+    put_columns(&DPhi, &size, count, out);
+done:
+    ritz_dense_free(&F);
+    ritz_dense_free(&DPhi);
+    ritz_dense_free(&size);
+    free(dof);
+    return status;
+}
+
+/* omega^2 = lowest q'Kq / q'Mq of the vectors of the start; 1 without mass. */
+static ritz_status choose_unit(const recurrence *r, double *omega)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense V = ritz_orthonormal_part(&r->S.set.V, 0, r->S.set.count);
+    ritz_dense MV = {0}, KV = {0};
+    double most = 0.0;
+
+    RITZ_TRY(ritz_sparse_mul(&r->request->component->M, &V, &MV));
+    RITZ_TRY(ritz_sparse_mul(&r->K, &V, &KV));
+    for (int64_t j = 0; j < V.ncol; j++) {
+        double m = 0.0;
+        double k = 0.0;
+
+        for (int64_t i = 0; i < V.nrow; i++) {
+            m += ritz_dense_col(&V, j)[i] * ritz_dense_col(&MV, j)[i];
+            k += ritz_dense_col(&V, j)[i] * ritz_dense_col(&KV, j)[i];
+        }
+        if (m > 0.0 && k > 0.0)
+            most = fmax(most, m / k);
+    }
+    *omega = most > 0.0 ? 1.0 / sqrt(most) : 1.0;
+done:
+    ritz_dense_free(&MV);
+    ritz_dense_free(&KV);
+    return status;
+}
+
+static ritz_status start_chain(recurrence *r, int64_t k, const ritz_sparse *D,
+                               int loads)
+{
+    ritz_status status = RITZ_OK;
+    ritz_forces forces = {0};
+
+    RITZ_TRY(collect_loads(r, D, loads, &forces));
+    RITZ_TRY(ritz_krylov_states_start(&r->S, D, &forces, &r->chain[k]));
+    r->num_chains = k + 1;
+done:
+    ritz_forces_free(&forces);
+    return status;
+}
+
+/* Of inputs with D, of outputs with D'; one chain where they are the same. */
+static ritz_status start_chains(recurrence *r, int loads)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_sparse *D = r->D[0].colptr ? &r->D[0] : NULL;
+
+    if (!D || ritz_sparse_asymmetry(D) <= symmetric_within)
+        return start_chain(r, 0, D, loads);
+    RITZ_TRY(ritz_sparse_transpose(D, &r->D[1]));
+    RITZ_TRY(start_chain(r, 0, D, loads & ~RITZ_LOADS_OUTPUTS));
+    RITZ_TRY(start_chain(r, 1, &r->D[1], loads & ~RITZ_LOADS_INPUTS));
+done:
+    return status;
+}
+
+static ritz_status run(recurrence *r, int loads)
+{
+    ritz_status status = RITZ_OK;
+    double omega = 1.0;
+    bool moving = true;
+
+    RITZ_TRY(start_chains(r, loads));
+    RITZ_TRY(choose_unit(r, &omega));
+    while (moving && r->S.set.count < r->S.vectors) {
+        moving = false;
+        for (int64_t k = 0; k < r->num_chains; k++) {
+            ritz_krylov_states *chain = &r->chain[k];
+
+            if (chain->ended || r->S.set.count == r->S.vectors)
+                continue;
+            RITZ_TRY(ritz_krylov_states_advance(&r->S, omega, chain));
+            moving = moving || !chain->ended;
+        }
+    }
+    r->S.point[0].whole = r->chain[0].whole;
+done:
+    return status;
+}
+
+static ritz_status find_basis(recurrence *r, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_request *request = r->request;
+    int loads = request->choice.loads ? request->choice.loads : ALL_LOADS;
+    ritz_dense F = {0};
+    int64_t *dof = NULL;
+
+    RITZ_TRY(ritz_loads_collect(request, loads, &F, &dof)); /* refuses none */
+    RITZ_TRY(collect_matrices(r));
+    RITZ_TRY(ritz_elastic_new(&r->K, &request->component->M, &r->body));
+    RITZ_TRY(ritz_krylov_new(&r->body, request, &r->S));
+    RITZ_TRY(run(r, loads));
+    RITZ_TRY(ritz_krylov_join(&r->S, out));
+    ritz_krylov_say_blocks(&r->S, request->modes, out);
+    if (!r->D[0].colptr)
+        ritz_krylov_say(out, "; there is no damping, krylov does the same");
+    RITZ_TRY(ritz_krylov_say_orthonormal(&r->S, out));
+done:
+    ritz_dense_free(&F);
+    free(dof);
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    recurrence r = {.request = request};
+    ritz_basis basis = {0};
+
+    RITZ_TRY(find_basis(&r, &basis));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    free_recurrence(&r);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const ritz_method ritz_method_krylov_damped = {
+    .name = "krylov-damped",
+    .summary = "rigid modes and block Krylov vectors of the damped structure",
+    .reference = "CraigSuKim1992",
+    .when = "damping that is not small, or that couples modes",
+    .cost = "a factor, one solve a state: up to two a vector",
+    .holds = "moments of the damped model, statics first; symmetry",
+    .fails = "ratios of modes, which are no matrix D: refused",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_INNER | RITZ_USES_DAMPING,
+    .make = make,
+};

@@ -1,0 +1,302 @@
+/*
+ * One-sided Lanczos vectors of x' = A x + B u in the inner product of the
+ * inverse of a Gramian [CraigSuKim1992, section 5]. With
+ *
+ *     A W + W A' + B B' = 0,   Q' W^-1 Q = I,   span Q = [B, A B, A^2 B, ...]
+ *
+ * the reduced A_r = Q' W^-1 A Q is block tridiagonal and skew-symmetric but for
+ * its first block:
+ *
+ *     A_r + A_r' = -B_r B_r'
+ *
+ * so I is its own Gramian and no pole is right of the axis. The factor W = U U'
+ * is found without W, and U = Z Sigma X' says where W is more than rounding:
+ * the vectors are Q = Z Sigma P, Z and Sigma cut to that range, with P
+ * orthonormal for
+ *
+ *     A~ = Sigma^-1 Z'A Z Sigma,   B~ = Sigma^-1 Z'B,   A~ + A~' = -B~ B~'
+ *
+ * On A^-1 it is G = A~^-1 with b = G B~ that is so, G + G' = -b b'; then
+ * A_r = (P'G P)^-1, whose moments about 0 Hz are those of A, not its Markov
+ * parameters. With the observability Gramian everything is done for (A', C').
+ *
+ * What is left of A~ + A~' + B~ B~' is rounding, and is measured: the range is
+ * cut until it is small against the least damping, and vectors whose poles it
+ * could still move across the axis are left out (on A^-1, where an odd number
+ * of them has one pole far out).
+ */
+#include "base/alloc.h"
+#include "bases/gramian_range.h"
+#include "bases/orthonormal.h"
+#include "bases/states.h"
+#include "linear/eigenvalues.h"
+#include "linear/general.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+/* Of the least damping: rounding above this is not small. */
+static const double small = 1e-3;
+/* How much rounding a pole must be left of. */
+static const double safely = 10.0;
+/* Times a pole's first-order bound: nearer to the axis it may be right of it. */
+static const double times = 8.0;
+
+/* A system, or (A', C') of it as (A, B), and what becomes of it. */
+typedef struct one_sided {
+    ritz_dense A, B;
+    double damping; /* least -Re s of A */
+    ritz_gramian_range range;
+    ritz_dense G, b;   /* operator and start, in the range */
+    double rounding;   /* |G + G' + b b'| */
+    ritz_dense P;      /* range x number of vectors */
+    int64_t uncertain; /* vectors left out at the end */
+} one_sided;
+
+static void release(one_sided *s)
+{
+    ritz_dense_free(&s->A);
+    ritz_dense_free(&s->B);
+    ritz_gramian_range_free(&s->range);
+    ritz_dense_free(&s->G);
+    ritz_dense_free(&s->b);
+    ritz_dense_free(&s->P);
+}
+
+static ritz_status start(const ritz_request *request, const ritz_states *states,
+                         one_sided *s)
+{
+    ritz_status status = RITZ_OK;
+    bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
+
+    RITZ_FAIL_IF(
+        (outputs ? states->C.nrow : states->B.ncol) == 0, RITZ_ERR_ARGUMENT,
+        "the component has no %s, and the Gramian of %s is none",
+        outputs ? "outputs" : "inputs", outputs ? "outputs" : "inputs");
+    if (outputs) {
+        RITZ_TRY(ritz_general_transpose(&states->A, &s->A));
+        RITZ_TRY(ritz_general_transpose(&states->C, &s->B));
+    } else {
+        RITZ_TRY(ritz_dense_copy(&states->A, &s->A));
+        RITZ_TRY(ritz_dense_copy(&states->B, &s->B));
+    }
+done:
+    return status;
+}
+
+/* A Gramian is finite if every pole is stable, those of A less the shift. */
+static ritz_status check_poles(const ritz_states *states, one_sided *s)
+{
+    ritz_status status = RITZ_OK;
+    ritz_eigenvalues poles = {0};
+    int64_t k = 0;
+    double growth = 0.0;
+    double rounding = 0.0;
+
+    RITZ_TRY(ritz_eigenvalues_of(&s->A, &poles));
+    k = ritz_eigenvalues_worst(&poles, times);
+    s->damping = -poles.re[k];
+    growth = poles.re[k] + states->alpha;
+    rounding = times * poles.error[k];
+    RITZ_FAIL_IF(s->damping <= rounding &&
+                     (s->damping < -rounding || states->alpha > 0.0),
+                 RITZ_ERR_ARGUMENT,
+                 "a pole grows at %.4g rad/s (%.4g Hz), the Gramian is "
+                 "infinite: shift by more than that",
+                 growth, growth / (2.0 * pi));
+    RITZ_FAIL_IF(s->damping <= rounding, RITZ_ERR_ARGUMENT,
+                 "the Gramian is infinite: motion at %.4g Hz has no damping, "
+                 "give some or a shift above 0 Hz",
+                 hypot(poles.re[k], poles.im[k]) / (2.0 * pi));
+done:
+    ritz_eigenvalues_free(&poles);
+    return status;
+}
+
+/* G and b, where the Gramian is more than rounding. */
+static ritz_status choose_operator(const ritz_request *request, one_sided *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_gramian_range *range = &s->range;
+
+    RITZ_TRY(ritz_gramian_range_new(&s->A, &s->B, request->tolerance,
+                                    small * s->damping, &s->range));
+    RITZ_TRY(ritz_states_operator(&range->A, request->choice.inverse, &s->G));
+    if (request->choice.inverse)
+        RITZ_TRY(ritz_dense_mul(&s->G, &range->B, &s->b));
+    else
+        RITZ_TRY(ritz_dense_copy(&range->B, &s->b));
+    s->rounding = ritz_gramian_defect(&s->G, &s->b);
+done:
+    return status;
+}
+
+/* P, as many columns as asked for or as there are. */
+static ritz_status find_vectors(const ritz_request *request, one_sided *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t first = 0;
+    ritz_orthonormal P = {0};
+    ritz_dense X = {0};
+
+    RITZ_TRY(ritz_orthonormal_new(s->G.nrow, NULL, request->tolerance, &P));
+    RITZ_TRY(ritz_dense_copy(&s->b, &X));
+    do {
+        ritz_dense last = {0};
+
+        first = P.count;
+        RITZ_TRY(ritz_orthonormal_append(&P, &X, request->modes - first, NULL));
+        ritz_dense_free(&X);
+        last = ritz_orthonormal_part(&P.V, first, P.count - first);
+        RITZ_TRY(ritz_dense_mul(&s->G, &last, &X));
+    } while (P.count > first && P.count < request->modes);
+    RITZ_TRY(ritz_dense_columns(&P.V, 0, P.count, &s->P));
+done:
+    ritz_orthonormal_free(&P);
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* P'G P of the first columns. */
+static ritz_status reduce(const one_sided *s, int64_t columns, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense P = {s->P.nrow, columns, s->P.val};
+    ritz_dense GP = {0};
+
+    RITZ_TRY(ritz_dense_mul(&s->G, &P, &GP));
+    RITZ_TRY(ritz_dense_mul_tn(&P, &GP, out));
+done:
+    ritz_dense_free(&GP);
+    return status;
+}
+
+/* Leave out last vectors until rounding decides on no pole. */
+static ritz_status settle(one_sided *s, ritz_dense *Gr)
+{
+    ritz_status status = RITZ_OK;
+    ritz_eigenvalues poles = {0};
+    bool certain = false;
+
+    while (s->P.ncol > 0 && !certain) {
+        int64_t k = 0;
+
+        ritz_dense_free(Gr);
+        ritz_eigenvalues_free(&poles);
+        RITZ_TRY(reduce(s, s->P.ncol, Gr));
+        RITZ_TRY(ritz_eigenvalues_of(Gr, &poles));
+        k = ritz_eigenvalues_worst(&poles, times);
+        certain = poles.re[k] < -times * poles.error[k] &&
+                  poles.re[k] < -safely * s->rounding;
+        if (!certain) {
+            s->P.ncol--;
+            s->uncertain++;
+        }
+    }
+    RITZ_FAIL_IF(s->P.ncol == 0, RITZ_ERR_CONVERGENCE,
+                 "no states are left whose stability rounding leaves alone");
+done:
+    ritz_eigenvalues_free(&poles);
+    return status;
+}
+
+/*
+ * Q = Z Sigma P, and beside it Z Sigma^-1 P; on A^-1 the latter is
+ * Z Sigma^-1 G'P (P'G P)^-T, with which W'A T = (P'G P)^-1.
+ */
+static ritz_status lift(const one_sided *s, bool inverse, const ritz_dense *Gr,
+                        ritz_dense *own, ritz_dense *other)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense GP = {0}, Y = {0};
+
+    RITZ_TRY(ritz_dense_mul(&s->range.Q, &s->P, own));
+    if (!inverse) {
+        RITZ_TRY(ritz_dense_mul(&s->range.V, &s->P, other));
+        goto done;
+    }
+    RITZ_TRY(ritz_dense_mul_tn(&s->P, &s->G, &GP)); /* P'G */
+    RITZ_TRY(ritz_general_solve(Gr, false, &GP));
+    RITZ_TRY(ritz_general_transpose(&GP, &Y));
+    RITZ_TRY(ritz_dense_mul(&s->range.V, &Y, other));
+done:
+    ritz_dense_free(&GP);
+    ritz_dense_free(&Y);
+    return status;
+}
+
+/* What was asked for and is not there, and why. */
+static void remark(const ritz_request *request, const one_sided *s,
+                   ritz_basis *basis)
+{
+    const bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
+    int64_t found = s->P.ncol + s->uncertain;
+    char rounding[RITZ_NAME_SIZE] = "";
+    char uncertain[RITZ_NAME_SIZE] = "";
+
+    if (s->G.nrow < s->range.reached)
+        snprintf(rounding, sizeof rounding,
+                 ", %" PRId64 " of them above rounding", s->G.nrow);
+    if (s->uncertain > 0)
+        snprintf(uncertain, sizeof uncertain,
+                 "; of the last %" PRId64 " rounding would decide",
+                 s->uncertain);
+    if (found < request->modes)
+        snprintf(basis->remark, sizeof basis->remark,
+                 "%" PRId64 " states asked for: the %s %" PRId64 " of %" PRId64
+                 "%s; there are %" PRId64 "%s",
+                 request->modes, outputs ? "outputs see" : "inputs reach",
+                 s->range.reached, s->A.nrow, rounding, s->P.ncol, uncertain);
+    else if (s->uncertain > 0)
+        snprintf(basis->remark, sizeof basis->remark,
+                 "the last %" PRId64 " state(s) left out: rounding would "
+                 "decide on their stability",
+                 s->uncertain);
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    bool inverse = request->choice.inverse;
+    bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
+    ritz_states states = {0};
+    one_sided s = {0};
+    ritz_dense Gr = {0}, own = {0}, other = {0};
+
+    RITZ_TRY(ritz_states_new(request, &states));
+    RITZ_TRY(start(request, &states, &s));
+    RITZ_TRY(check_poles(&states, &s));
+    RITZ_TRY(choose_operator(request, &s));
+    RITZ_TRY(find_vectors(request, &s));
+    RITZ_TRY(settle(&s, &Gr));
+    RITZ_TRY(lift(&s, inverse, &Gr, &own, &other));
+    RITZ_TRY(ritz_states_basis(&states, outputs ? &other : &own,
+                               outputs ? &own : &other, out));
+    snprintf(out->origin.engine, sizeof out->origin.engine,
+             "dense LAPACK + SLICOT");
+    remark(request, &s, out);
+done:
+    ritz_states_free(&states);
+    release(&s);
+    ritz_dense_free(&Gr);
+    ritz_dense_free(&own);
+    ritz_dense_free(&other);
+    return status;
+}
+
+const ritz_method ritz_method_lanczos_one_sided = {
+    .name = "lanczos-one-sided",
+    .summary = "Lanczos vectors of states, stable by construction",
+    .reference = "CraigSuKim1992",
+    .when = "small damped models for control, in states",
+    .cost = "a dense Gramian: O(n^3), 1500 states",
+    .holds = "stability, whatever the order",
+    .fails = "free bodies; what a Gramian does not see",
+    .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_GRAMIAN |
+            RITZ_USES_OPERATOR | RITZ_USES_DAMPING,
+    .make = make,
+};

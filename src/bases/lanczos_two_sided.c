@@ -1,0 +1,334 @@
+/*
+ * Two-sided block Lanczos: right vectors from B and left ones from C',
+ *
+ *     W'V = I,   W'A V block tridiagonal,
+ *
+ * spanning [B, A B, ...] and [C', A'C', ...] [KimCraig1988], [CraigSuKim1992,
+ * section 5]. Of k full blocks on both sides the first 2k Markov parameters are
+ * kept; on A^-1 the first 2k moments about 0 Hz, the reduced model being
+ * (W'A^-1 V)^-1, with left vectors to that end.
+ *
+ * Nothing makes the result stable: that is what this method is kept to show,
+ * and what the probe is for. So that failures are the method's own, vectors are
+ * biorthogonalised against all others, twice.
+ *
+ * A step joins candidates X and Y, orthonormal, by Y'X = L diag(s) R': vectors
+ * are X R s^-1/2 and Y L s^-1/2 where s is above the tolerance. Directions of
+ * either side that find no partner wait for the next block. With none joined
+ * there is no way on: a serious breakdown, unless one side is exhausted.
+ */
+#include "base/alloc.h"
+#include "bases/states.h"
+#include "linear/general.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How a sequence of blocks came to its end. */
+typedef enum ending {
+    COMPLETE,  /* as many vectors as were asked for */
+    EXHAUSTED, /* what inputs reach, or outputs see, is spanned */
+    BREAKDOWN, /* both have more, but orthogonal to each other */
+} ending;
+
+/* One side: vectors so far, and candidates for the next block. */
+typedef struct side {
+    ritz_dense vectors; /* as many columns as are asked for */
+    ritz_dense next;    /* operator times the last block; the start at first */
+    ritz_dense waiting; /* candidates that found no partner */
+} side;
+
+typedef struct two_sided {
+    ritz_dense G; /* A or A^-1 */
+    side right, left;
+    int64_t used; /* columns of both sides' vectors */
+    ending end;
+} two_sided;
+
+static void release(two_sided *t)
+{
+    side *const sides[] = {&t->right, &t->left};
+
+    ritz_dense_free(&t->G);
+    for (int k = 0; k < 2; k++) {
+        ritz_dense_free(&sides[k]->vectors);
+        ritz_dense_free(&sides[k]->next);
+        ritz_dense_free(&sides[k]->waiting);
+    }
+}
+
+/* X := X - V W'X, twice */
+static ritz_status take_out(const ritz_dense *V, const ritz_dense *W,
+                            ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense q = {0}, part = {0};
+
+    for (int pass = 0; pass < 2; pass++) {
+        RITZ_TRY(ritz_dense_mul_tn(W, X, &q));
+        RITZ_TRY(ritz_dense_mul(V, &q, &part));
+        for (int64_t k = 0; k < X->nrow * X->ncol; k++)
+            X->val[k] -= part.val[k];
+        ritz_dense_free(&q);
+        ritz_dense_free(&part);
+    }
+done:
+    ritz_dense_free(&q);
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* All candidates, side by side, each of unit length or zero. */
+static ritz_status gather(const side *s, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *const parts[] = {&s->next, &s->waiting};
+    int64_t at = 0;
+
+    RITZ_TRY(ritz_dense_new(s->next.nrow, s->next.ncol + s->waiting.ncol, out));
+    for (int p = 0; p < 2; p++)
+        for (int64_t j = 0; j < parts[p]->ncol; j++, at++) {
+            const double *x = ritz_dense_col(parts[p], j);
+            double size = 0.0;
+
+            for (int64_t i = 0; i < out->nrow; i++)
+                size = hypot(size, x[i]);
+            for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
+                ritz_dense_col(out, at)[i] = x[i] / size;
+        }
+done:
+    return status;
+}
+
+/* Candidates less what is spanned, orthonormal; dependent ones left out. */
+static ritz_status prepare(const side *own, const side *other, int64_t used,
+                           double tolerance, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense V = {own->vectors.nrow, used, own->vectors.val};
+    const ritz_dense W = {other->vectors.nrow, used, other->vectors.val};
+    ritz_dense X = {0}, U = {0};
+    double *s = NULL;
+    int64_t rank = 0;
+
+    RITZ_TRY(gather(own, &X));
+    RITZ_TRY(take_out(&V, &W, &X));
+    RITZ_TRY(ritz_general_svd(&X, &U, &s, NULL));
+    while (rank < U.ncol && s[rank] > tolerance)
+        rank++;
+    RITZ_TRY(ritz_dense_columns(&U, 0, rank, out));
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&U);
+    free(s);
+    return status;
+}
+
+/* X R s^-1/2 of the first columns become vectors, the others wait. */
+static ritz_status accept(const ritz_dense *X, const ritz_dense *R,
+                          const double *s, int64_t joined, int64_t used,
+                          side *own)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense turned = {0};
+
+    RITZ_TRY(ritz_dense_mul(X, R, &turned));
+    for (int64_t j = 0; j < joined; j++)
+        for (int64_t i = 0; i < turned.nrow; i++)
+            ritz_dense_col(&own->vectors, used + j)[i] =
+                ritz_dense_col(&turned, j)[i] / sqrt(s[j]);
+    ritz_dense_free(&own->waiting);
+    RITZ_TRY(ritz_dense_columns(&turned, joined, turned.ncol - joined,
+                                &own->waiting));
+done:
+    ritz_dense_free(&turned);
+    return status;
+}
+
+/* Join candidates X of the right and Y of the left; none may be joined. */
+static ritz_status join(const ritz_dense *X, const ritz_dense *Y,
+                        double tolerance, two_sided *t, int64_t *joined)
+{
+    ritz_status status = RITZ_OK;
+    int64_t most = t->right.vectors.ncol - t->used;
+    ritz_dense YX = {0}, L = {0}, R = {0};
+    double *s = NULL;
+
+    *joined = 0;
+    RITZ_TRY(ritz_dense_mul_tn(Y, X, &YX));
+    RITZ_TRY(ritz_general_svd(&YX, &L, &s, &R));
+    while (*joined < most && *joined < L.ncol && *joined < R.ncol &&
+           s[*joined] > tolerance)
+        ++*joined;
+    RITZ_TRY(accept(X, &R, s, *joined, t->used, &t->right));
+    RITZ_TRY(accept(Y, &L, s, *joined, t->used, &t->left));
+done:
+    ritz_dense_free(&YX);
+    ritz_dense_free(&L);
+    ritz_dense_free(&R);
+    free(s);
+    return status;
+}
+
+/* G times the last block, on either side. */
+static ritz_status advance(two_sided *t, int64_t joined)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = t->G.nrow;
+    const ritz_dense right = {n, joined,
+                              ritz_dense_col(&t->right.vectors, t->used)};
+    const ritz_dense left = {n, joined,
+                             ritz_dense_col(&t->left.vectors, t->used)};
+
+    ritz_dense_free(&t->right.next);
+    ritz_dense_free(&t->left.next);
+    RITZ_TRY(ritz_dense_mul(&t->G, &right, &t->right.next));
+    RITZ_TRY(ritz_dense_mul_tn(&t->G, &left, &t->left.next));
+    t->used += joined;
+done:
+    return status;
+}
+
+static ritz_status step(double tolerance, two_sided *t, bool *going)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0}, Y = {0};
+    int64_t joined = 0;
+
+    RITZ_TRY(prepare(&t->right, &t->left, t->used, tolerance, &X));
+    RITZ_TRY(prepare(&t->left, &t->right, t->used, tolerance, &Y));
+    *going = X.ncol > 0 && Y.ncol > 0;
+    t->end = EXHAUSTED;
+    if (!*going)
+        goto done;
+    RITZ_TRY(join(&X, &Y, tolerance, t, &joined));
+    RITZ_TRY(advance(t, joined));
+    t->end = joined > 0 ? COMPLETE : BREAKDOWN;
+    *going = joined > 0 && t->used < t->right.vectors.ncol;
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&Y);
+    return status;
+}
+
+/* Right start B, or A^-1 B; left start C'. */
+static ritz_status start(const ritz_request *request, const ritz_states *states,
+                         two_sided *t)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = states->count;
+    int64_t most = request->modes < n ? request->modes : n;
+
+    RITZ_FAIL_IF(states->B.ncol == 0 || states->C.nrow == 0, RITZ_ERR_ARGUMENT,
+                 "the component has no %s, vectors of both sides need some",
+                 states->B.ncol == 0 ? "inputs" : "outputs");
+    RITZ_TRY(ritz_states_operator(&states->A, request->choice.inverse, &t->G));
+    if (request->choice.inverse)
+        RITZ_TRY(ritz_dense_mul(&t->G, &states->B, &t->right.next));
+    else
+        RITZ_TRY(ritz_dense_copy(&states->B, &t->right.next));
+    RITZ_TRY(ritz_general_transpose(&states->C, &t->left.next));
+    RITZ_TRY(ritz_dense_new(n, most, &t->right.vectors));
+    RITZ_TRY(ritz_dense_new(n, most, &t->left.vectors));
+done:
+    return status;
+}
+
+/* Without a first block there is nothing to show. */
+static ritz_status check_start(const ritz_request *request, const two_sided *t)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
+                 "no flexible state is reached by an input and seen by an "
+                 "output");
+    RITZ_FAIL_IF(t->used == 0 && !request->choice.inverse, RITZ_ERR_SINGULAR,
+                 "serious breakdown at the first block: C B is zero, no output "
+                 "moves at once, as those of displacement never do; the "
+                 "inverse operator begins with the static answer");
+    RITZ_FAIL_IF(t->used == 0, RITZ_ERR_SINGULAR,
+                 "serious breakdown at the first block: C A^-1 B is zero, no "
+                 "output has a static answer");
+done:
+    return status;
+}
+
+/* On A^-1: W := G'W (W'G V)^-T, with which W'A V = (W'G V)^-1. */
+static ritz_status invert(two_sided *t)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *V = &t->right.vectors;
+    ritz_dense WG = {0}, Gr = {0}, W = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(&t->left.vectors, &t->G, &WG));
+    RITZ_TRY(ritz_dense_mul(&WG, V, &Gr));
+    status = ritz_general_solve(&Gr, false, &WG);
+    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                 "breakdown: with %" PRId64
+                 " states the reduced A^-1 is singular, ask for another number",
+                 t->used);
+    RITZ_TRY(status);
+    RITZ_TRY(ritz_general_transpose(&WG, &W));
+    ritz_dense_free(&t->left.vectors);
+    t->left.vectors = W;
+    W = (ritz_dense){0};
+done:
+    ritz_dense_free(&WG);
+    ritz_dense_free(&Gr);
+    ritz_dense_free(&W);
+    return status;
+}
+
+static void remark(const ritz_request *request, const two_sided *t,
+                   ritz_basis *basis)
+{
+    if (t->used >= request->modes)
+        return;
+    snprintf(basis->remark, sizeof basis->remark,
+             t->end == BREAKDOWN
+                 ? "%" PRId64 " states asked for: serious breakdown after "
+                   "%" PRId64 ", what is left on both sides is orthogonal"
+                 : "%" PRId64 " states asked for: %" PRId64
+                   " are reached by inputs and seen by outputs",
+             request->modes, t->used);
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_states states = {0};
+    two_sided t = {0};
+    bool going = true;
+
+    RITZ_TRY(ritz_states_new(request, &states));
+    RITZ_TRY(start(request, &states, &t));
+    while (going)
+        RITZ_TRY(step(request->tolerance, &t, &going));
+    RITZ_TRY(check_start(request, &t));
+    t.right.vectors.ncol = t.left.vectors.ncol = t.used;
+    if (request->choice.inverse)
+        RITZ_TRY(invert(&t));
+    RITZ_TRY(
+        ritz_states_basis(&states, &t.right.vectors, &t.left.vectors, out));
+    remark(request, &t, out);
+done:
+    ritz_states_free(&states);
+    release(&t);
+    return status;
+}
+
+const ritz_method ritz_method_lanczos_two_sided = {
+    .name = "lanczos-two-sided",
+    .summary = "left and right Lanczos vectors of states; often unstable",
+    .reference = "KimCraig1988",
+    .when = "to compare with",
+    .cost = "as lanczos-one-sided",
+    .holds = "moments, twice as many as one-sided",
+    .fails = "instability and breakdown, often with outputs elsewhere",
+    .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_OPERATOR |
+            RITZ_USES_DAMPING,
+    .make = make,
+};

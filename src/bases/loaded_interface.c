@@ -1,0 +1,142 @@
+/*
+ * Loaded-interface modes [BenfieldHruda1971]: the lowest modes of the component
+ * while the neighbours' stiffness and mass, condensed to the attached dofs a,
+ * hang on it,
+ *
+ *     (K + E K_n E') Phi = (M + E M_n E') Phi Lambda,   E = I(:, a)
+ *
+ * normalised in the loaded mass. They look as the component does in the system,
+ * so that few are needed; where the condensed neighbour is exact, so are they.
+ */
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+#include <ritz/method.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A + E A_n E'. */
+static ritz_status load(const ritz_sparse *A, const ritz_dense *A_n,
+                        const ritz_dofs *a, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse added = {0};
+    int64_t *row = NULL, *col = NULL;
+    double *val = NULL;
+    int64_t count = 0;
+
+    RITZ_NEW(row, a->count * a->count);
+    RITZ_NEW(col, a->count * a->count);
+    RITZ_NEW(val, a->count * a->count);
+    for (int64_t j = 0; j < a->count; j++)
+        for (int64_t i = 0; i < a->count; i++) {
+            double mean =
+                0.5 * (ritz_dense_col(A_n, j)[i] + ritz_dense_col(A_n, i)[j]);
+
+            if (mean == 0.0)
+                continue;
+            row[count] = a->at[i];
+            col[count] = a->at[j];
+            val[count++] = mean;
+        }
+    RITZ_TRY(ritz_sparse_from_triplets(A->nrow, A->ncol, count, row, col, val,
+                                       &added));
+    RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &added, out));
+done:
+    free(row);
+    free(col);
+    free(val);
+    ritz_sparse_free(&added);
+    return status;
+}
+
+static ritz_status check(const ritz_request *request)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_neighbour *neighbour = request->neighbour;
+    int64_t a = request->attached.count;
+
+    RITZ_FAIL_IF(!neighbour, RITZ_ERR_ARGUMENT,
+                 "it is not said what hangs on the interface: name a neighbour "
+                 "with --neighbour, or a joint in a scene");
+    RITZ_FAIL_IF(a == 0, RITZ_ERR_ARGUMENT,
+                 "nothing is attached, so no neighbour hangs on it: name a "
+                 "port");
+    RITZ_FAIL_IF(neighbour->K.nrow != a || neighbour->K.ncol != a ||
+                     neighbour->M.nrow != a || neighbour->M.ncol != a,
+                 RITZ_ERR_ARGUMENT,
+                 "the neighbour has %" PRId64 " dofs, %" PRId64 " are attached",
+                 neighbour->K.nrow, a);
+done:
+    return status;
+}
+
+static ritz_status copy_modes(const ritz_pairs *pairs, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = pairs->Phi.nrow;
+    int64_t k = pairs->Phi.ncol;
+
+    RITZ_TRY(ritz_basis_new(n, k, out));
+    for (int64_t j = 0; j < k; j++) {
+        bool rigid = j < pairs->num_rigid;
+
+        out->columns.kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
+        out->columns.hertz[j] =
+            rigid ? 0.0 : ritz_eigen_hertz(pairs->lambda[j]);
+        out->columns.residual[j] = pairs->residual[j];
+    }
+    if (n * k > 0)
+        memcpy(out->T.val, pairs->Phi.val,
+               (size_t)(n * k) * sizeof *out->T.val);
+    memcpy(out->origin.engine, pairs->engine, sizeof out->origin.engine);
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    const ritz_span span = {request->modes, request->up_to_hz};
+    ritz_sparse K = {0}, M = {0};
+    ritz_pairs pairs = {0};
+    ritz_dofs rest = {0};
+
+    RITZ_TRY(check(request));
+    RITZ_TRY(
+        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_TRY(
+        load(&component->K, &request->neighbour->K, &request->attached, &K));
+    RITZ_TRY(
+        load(&component->M, &request->neighbour->M, &request->attached, &M));
+    RITZ_TRY_IN("loaded modes", ritz_eigen_sparse(&K, &M, &span, &pairs));
+    RITZ_FAIL_IF(pairs.Phi.ncol > 0 && pairs.num_rigid == 0 &&
+                     pairs.lambda[0] <= 0.0,
+                 RITZ_ERR_SINGULAR,
+                 "K with its neighbour is not positive semidefinite: an "
+                 "eigenvalue is %.3g",
+                 pairs.lambda[0]);
+    RITZ_TRY(copy_modes(&pairs, out));
+done:
+    ritz_sparse_free(&K);
+    ritz_sparse_free(&M);
+    ritz_pairs_free(&pairs);
+    ritz_dofs_free(&rest);
+    return status;
+}
+
+const ritz_method ritz_method_loaded_interface = {
+    .name = "loaded-interface",
+    .summary = "modes with the neighbours' mass and stiffness hung on",
+    .reference = "BenfieldHruda1971",
+    .when = "chains of bodies whose neighbours are known",
+    .cost = "a factor, two solves a mode",
+    .holds = "frequencies from above",
+    .fails = "other neighbours; statics of the interface",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_NEIGHBOUR,
+    .make = make,
+};

@@ -1,0 +1,324 @@
+/*
+ * Block Gram-Schmidt, twice or more, then what is independent within the block:
+ *
+ *     R <- R - V (WV)' R                            (until no R shrinks)
+ *     G = R' W R with columns scaled to one = L L', pivoted, as far as its
+ *     pivots stay strong;   Q = R_pivots L^-T                (twice)
+ *
+ * Columns whose pivot was weak go through all of it again, now against Q too,
+ * until nothing of them is left: each round can tell only what rounding has
+ * not blurred, and the energies of the rounds multiply. W R is made by a
+ * product after every change of R: carried along by the same sums, it drifts
+ * away from R, by the inverse of what is new in a column, at every block.
+ */
+#include "bases/orthonormal.h"
+
+#include "base/alloc.h"
+#include "bases/gram.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PASSES = 8 };
+
+/* Of eps: rounding of each entry of a column after all sums. */
+static const double rounded = 100.0;
+
+/* A block on its way; column j of R was column source[j] of what came in. */
+typedef struct block {
+    ritz_dense R, WR; /* the first R.ncol columns are left */
+    int64_t *source;
+    double *energy; /* of what is left, of the column that came in */
+    double *least;  /* energy that is rounding of the column that came in */
+} block;
+
+ritz_dense ritz_orthonormal_part(const ritz_dense *V, int64_t first,
+                                 int64_t count)
+{
+    return (ritz_dense){V->nrow, count, V->val + first * V->nrow};
+}
+
+static void scale_column(ritz_dense *A, int64_t j, double factor)
+{
+    double *a = ritz_dense_col(A, j);
+
+    for (int64_t i = 0; i < A->nrow; i++)
+        a[i] *= factor;
+}
+
+static void copy_column(ritz_dense *A, int64_t from, int64_t to)
+{
+    if (from != to && A->nrow > 0)
+        memcpy(ritz_dense_col(A, to), ritz_dense_col(A, from),
+               (size_t)A->nrow * sizeof *A->val);
+}
+
+static double dot(const ritz_dense *A, const ritz_dense *B, int64_t j)
+{
+    const double *a = ritz_dense_col(A, j);
+    const double *b = ritz_dense_col(B, j);
+    double sum = 0.0;
+
+    for (int64_t i = 0; i < A->nrow; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* A := A - B H, of what is kept as columns. */
+static void subtract(const ritz_dense *B, const ritz_dense *H, ritz_dense *A)
+{
+    if (A->nrow > 0 && A->ncol > 0 && B->ncol > 0)
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)A->nrow,
+                    (int)A->ncol, (int)B->ncol, -1.0, B->val, (int)B->nrow,
+                    H->val, (int)H->nrow, 1.0, A->val, (int)A->nrow);
+}
+
+/* R := R - V (WV)' R */
+static ritz_status project_out(const ritz_orthonormal *set, block *b)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense V = ritz_orthonormal_part(&set->V, 0, set->count);
+    const ritz_dense WV = ritz_orthonormal_part(&set->WV, 0, set->count);
+    ritz_dense H = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(&WV, &b->R, &H));
+    subtract(&V, &H, &b->R);
+    RITZ_TRY(ritz_gram_weigh(set->W, &b->R, &b->WR));
+done:
+    ritz_dense_free(&H);
+    return status;
+}
+
+/* Whether a column that is not nothing yet has lost half its energy. */
+static bool still_falls(const block *b, const double *before, double tolerance)
+{
+    for (int64_t j = 0; j < b->R.ncol; j++) {
+        double size = dot(&b->R, &b->WR, j);
+        double left = b->energy[j] * size;
+
+        if (size < 0.5 * before[j] && left > tolerance * tolerance &&
+            left > b->least[j])
+            return true;
+    }
+    return false;
+}
+
+/* Until no column shrinks any more: twice, or oftener where W blurs sums. */
+static ritz_status orthogonalise(const ritz_orthonormal *set, block *b)
+{
+    ritz_status status = RITZ_OK;
+    double *before = NULL;
+    bool falls = set->count > 0 && b->R.ncol > 0;
+
+    RITZ_NEW(before, b->R.ncol);
+    for (int pass = 0; pass < MOST_PASSES && falls; pass++) {
+        for (int64_t j = 0; j < b->R.ncol; j++)
+            before[j] = dot(&b->R, &b->WR, j);
+        RITZ_TRY(project_out(set, b));
+        falls = pass == 0 || still_falls(b, before, set->tolerance);
+    }
+done:
+    free(before);
+    return status;
+}
+
+/* Scale what is left to one; columns of which nothing is left are dropped. */
+static void sift(block *b, double tolerance)
+{
+    int64_t kept = 0;
+
+    for (int64_t j = 0; j < b->R.ncol; j++) {
+        double size = dot(&b->R, &b->WR, j);
+        double left = b->energy[j] * size;
+
+        if (!(size > 0.0 && isfinite(size) && left > tolerance * tolerance &&
+              left > b->least[j]))
+            continue;
+        scale_column(&b->R, j, 1.0 / sqrt(size));
+        scale_column(&b->WR, j, 1.0 / sqrt(size));
+        copy_column(&b->R, j, kept);
+        copy_column(&b->WR, j, kept);
+        b->source[kept] = b->source[j];
+        b->least[kept] = b->least[j];
+        b->energy[kept++] = left;
+    }
+    b->R.ncol = b->WR.ncol = kept;
+}
+
+/* |r|' |W| |r| */
+static double largest_energy(const ritz_sparse *W, const double *r, int64_t n)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < n; j++) {
+        if (!W)
+            sum += r[j] * r[j];
+        for (int64_t p = W ? W->colptr[j] : 0; W && p < W->colptr[j + 1]; p++)
+            sum += fabs(r[W->rowind[p]] * W->val[p] * r[j]);
+    }
+    return sum;
+}
+
+/*
+ * What came in, scaled to one; columns of zero are dropped. Entries of r are
+ * known to eps, so that e' W e <= eps^2 |r|' |W| |r| is rounding.
+ */
+static void scale_block(const ritz_sparse *W, block *b)
+{
+    const double eps = rounded * DBL_EPSILON;
+
+    sift(b, 0.0);
+    for (int64_t j = 0; j < b->R.ncol; j++) {
+        b->energy[j] = 1.0;
+        b->least[j] =
+            eps * eps * largest_energy(W, ritz_dense_col(&b->R, j), b->R.nrow);
+    }
+}
+
+/* A with room for `room` columns, of which `count` are kept. */
+static ritz_status widen(ritz_dense *A, int64_t count, int64_t room)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense wide = {0};
+
+    RITZ_TRY(ritz_dense_new(A->nrow, room, &wide));
+    if (A->nrow * count > 0)
+        memcpy(wide.val, A->val, (size_t)(A->nrow * count) * sizeof *wide.val);
+    ritz_dense_free(A);
+    *A = wide;
+done:
+    return status;
+}
+
+static ritz_status reserve(ritz_orthonormal *set, int64_t more)
+{
+    ritz_status status = RITZ_OK;
+    int64_t need = set->count + more;
+    int64_t room = set->count + set->count / 2 + more;
+
+    if (set->V.ncol < need)
+        RITZ_TRY(widen(&set->V, set->count, room));
+    if (set->WV.ncol < need)
+        RITZ_TRY(widen(&set->WV, set->count, room));
+done:
+    return status;
+}
+
+/* Move the strong columns of the block into the set; the others move up. */
+static ritz_status take(ritz_orthonormal *set, block *b, int64_t count,
+                        const int64_t *order, bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Q = {0}, WQ = {0};
+    int64_t kept = 0;
+    size_t size = (size_t)b->R.nrow * sizeof *b->R.val;
+
+    RITZ_TRY(reserve(set, count));
+    Q = ritz_orthonormal_part(&set->V, set->count, count);
+    WQ = ritz_orthonormal_part(&set->WV, set->count, count);
+    for (int64_t k = 0; k < count && size > 0; k++) {
+        memcpy(ritz_dense_col(&Q, k), ritz_dense_col(&b->R, order[k]), size);
+        memcpy(ritz_dense_col(&WQ, k), ritz_dense_col(&b->WR, order[k]), size);
+    }
+    RITZ_TRY(ritz_gram_normalise(set->W, &Q, &WQ));
+    set->count += count;
+    for (int64_t j = 0; j < b->R.ncol; j++) {
+        bool gone = false;
+
+        for (int64_t k = 0; k < count; k++)
+            gone = gone || order[k] == j;
+        if (gone && taken)
+            taken[b->source[j]] = true;
+        if (gone)
+            continue;
+        copy_column(&b->R, j, kept);
+        copy_column(&b->WR, j, kept);
+        b->source[kept] = b->source[j];
+        b->least[kept] = b->least[j];
+        b->energy[kept++] = b->energy[j];
+    }
+    b->R.ncol = b->WR.ncol = kept;
+done:
+    return status;
+}
+
+/* One round: what is left of the block against V, and its strong columns. */
+static ritz_status go_round(ritz_orthonormal *set, block *b, int64_t most,
+                            int64_t *order, bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense G = {0};
+
+    RITZ_TRY(orthogonalise(set, b));
+    sift(b, set->tolerance);
+    if (b->R.ncol == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_mul_tn(&b->R, &b->WR, &G));
+    ritz_dense_symmetrise(&G);
+    RITZ_TRY(take(set, b, ritz_gram_pivots(&G, most, order), order, taken));
+done:
+    ritz_dense_free(&G);
+    return status;
+}
+
+ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
+                                    int64_t most, bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense WR = {0};
+    block b = {.R = *R};
+    int64_t *order = NULL;
+    int64_t before = set->count;
+
+    RITZ_NEW(b.source, R->ncol);
+    RITZ_NEW(b.energy, R->ncol);
+    RITZ_NEW(b.least, R->ncol);
+    RITZ_NEW(order, R->ncol);
+    RITZ_TRY(ritz_dense_new(R->nrow, R->ncol, &WR));
+    RITZ_TRY(ritz_gram_weigh(set->W, R, &WR));
+    b.WR = WR;
+    for (int64_t j = 0; j < R->ncol; j++) {
+        b.source[j] = j;
+        b.energy[j] = 1.0;
+        if (taken)
+            taken[j] = false;
+    }
+    scale_block(set->W, &b);
+    while (b.R.ncol > 0 && set->count - before < most)
+        RITZ_TRY(go_round(set, &b, most - (set->count - before), order, taken));
+    RITZ_TRY(orthogonalise(set, &b));
+    sift(&b, set->tolerance);
+    set->left = b.R.ncol;
+done:
+    ritz_dense_free(&WR);
+    free(b.source);
+    free(b.energy);
+    free(b.least);
+    free(order);
+    return status;
+}
+
+ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
+                                 double tolerance, ritz_orthonormal *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_orthonormal set = {.W = W, .tolerance = tolerance};
+
+    RITZ_TRY(ritz_dense_new(n, 0, &set.V));
+    RITZ_TRY(ritz_dense_new(n, 0, &set.WV));
+    *out = set;
+    set = (ritz_orthonormal){0};
+done:
+    ritz_orthonormal_free(&set);
+    return status;
+}
+
+void ritz_orthonormal_free(ritz_orthonormal *set)
+{
+    ritz_dense_free(&set->V);
+    ritz_dense_free(&set->WV);
+    *set = (ritz_orthonormal){0};
+}

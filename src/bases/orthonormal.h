@@ -1,0 +1,45 @@
+/* Columns V that are orthonormal in a matrix W, and grow block by block. */
+#ifndef RITZ_BASES_ORTHONORMAL_H
+#define RITZ_BASES_ORTHONORMAL_H
+
+#include <ritz/sparse.h>
+
+#include <stdbool.h>
+
+typedef struct ritz_orthonormal {
+    int64_t count;        /* columns that are set; there may be room for more */
+    ritz_dense V, WV;     /* n x room */
+    const ritz_sparse *W; /* borrowed; NULL: the identity */
+    int64_t left;         /* of the last block: new, but more than was wanted */
+    double tolerance;     /* of what is new in a column, relative, in W */
+} ritz_orthonormal;
+
+/**
+ * Nothing yet, for @p n rows.
+ *
+ * @param[in] W  definite on all that is appended; borrowed until free, NULL for
+ *               the identity
+ */
+ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
+                                 double tolerance, ritz_orthonormal *out);
+
+/**
+ * Append what a block adds to V, each column scaled to v'Wv = 1, the most
+ * independent first; what depends on V or on the rest of the block is left out.
+ *
+ * @param[in,out] R      n x p, overwritten
+ * @param[in]     most   append no more columns than this
+ * @param[out]    taken  p, true for columns of R that gave one; NULL: not
+ *                       wanted
+ * @cost   O(n (count + p) p), twice; six products by W
+ */
+ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
+                                    int64_t most, bool *taken);
+
+/** Columns first, ... of V, or of WV, borrowed until the next append. */
+ritz_dense ritz_orthonormal_part(const ritz_dense *V, int64_t first,
+                                 int64_t count);
+
+void ritz_orthonormal_free(ritz_orthonormal *set);
+
+#endif

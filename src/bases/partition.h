@@ -1,0 +1,41 @@
+/* Dofs of a component split into attached ones and the rest. */
+#ifndef RITZ_BASES_PARTITION_H
+#define RITZ_BASES_PARTITION_H
+
+#include <ritz/factor.h>
+#include <ritz/method.h>
+
+/* Boundary b, which other bodies push on, and interior i. */
+typedef struct ritz_partition {
+    const ritz_component *component; /* borrowed */
+    const ritz_dofs *b;              /* borrowed */
+    ritz_dofs i;
+    ritz_sparse K_ii, K_ib, M_ii;
+} ritz_partition;
+
+/** @return RITZ_ERR_ARGUMENT if an attached dof is listed twice */
+ritz_status ritz_partition_new(const ritz_request *request,
+                               ritz_partition *out);
+
+/**
+ * Factor of K_ii; NULL where there is no interior.
+ *
+ * @return RITZ_ERR_SINGULAR, naming dofs that move while b is held
+ */
+ritz_status ritz_partition_factor(const ritz_partition *s, ritz_factor **out);
+
+/**
+ * Psi = -K_ii^-1 K_ib, interior x boundary.
+ *
+ * @param[in] L  of ritz_partition_factor
+ */
+ritz_status ritz_partition_constraint_modes(const ritz_partition *s,
+                                            ritz_factor *L, ritz_dense *Psi);
+
+/** Rows of @p part go to the dofs @p to, its columns from @p first on in T. */
+void ritz_partition_scatter(const ritz_dense *part, const ritz_dofs *to,
+                            int64_t first, ritz_dense *T);
+
+void ritz_partition_free(ritz_partition *s);
+
+#endif

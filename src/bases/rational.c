@@ -1,0 +1,367 @@
+/*
+ * Real bases of complex answers. Z(s) is symmetric, and one analysis of its
+ * pattern serves all points. V = [Re v, Im v] spans v and its conjugate, so
+ * that the projected model answers as the full one does, at s and at its
+ * conjugate, whatever else V holds: v = V y, and V'Z(s) V y = V'F b determines y.
+ */
+#include "bases/rational.h"
+
+#include "base/alloc.h"
+#include "bases/loads.h"
+
+#include <complex.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_zero(const ritz_dense *A)
+{
+    return ritz_dense_max(A) == 0.0;
+}
+
+/* Columns are the rows of C, Cv, Ca, at powers 0, 1, 2 of s. */
+static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
+
+    out->count = io->num_outputs;
+    for (int power = 0; power < 3; power++) {
+        const ritz_dense *C = rows[power];
+
+        if (is_zero(C))
+            continue;
+        RITZ_TRY(ritz_dense_new(C->ncol, C->nrow, &out->F[power]));
+        for (int64_t j = 0; j < C->ncol; j++)
+            for (int64_t i = 0; i < C->nrow; i++)
+                ritz_dense_col(&out->F[power], i)[j] = ritz_dense_col(C, j)[i];
+    }
+done:
+    return status;
+}
+
+static ritz_status read_loads(const ritz_request *request, int kind,
+                              ritz_rational_loads *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *dof = NULL;
+
+    out->kind = kind;
+    if (kind == RITZ_LOADS_OUTPUTS)
+        return read_outputs(&request->component->io, out);
+    RITZ_TRY(ritz_loads_collect(request, kind, &out->F[0], &dof));
+    out->count = out->F[0].ncol;
+done:
+    free(dof);
+    return status;
+}
+
+static ritz_status read_groups(const ritz_request *request, int loads,
+                               ritz_rational *R)
+{
+    static const int kinds[] = {RITZ_LOADS_ATTACHED, RITZ_LOADS_INPUTS,
+                                RITZ_LOADS_OUTPUTS, RITZ_LOADS_DAMPERS};
+    const int read = loads | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
+    ritz_status status = RITZ_OK;
+    bool any = false;
+
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        ritz_rational_loads *group = &R->group[R->num_groups];
+
+        if (!(read & kinds[k]) || ritz_loads_count(request, kinds[k]) == 0)
+            continue;
+        R->num_groups++;
+        group->first = R->num_loads;
+        group->answered = loads & kinds[k];
+        any = any || group->answered;
+        RITZ_TRY(read_loads(request, kinds[k], group));
+        R->num_loads += group->count;
+    }
+    RITZ_FAIL_IF(!any, RITZ_ERR_ARGUMENT,
+                 "there is no load to answer: attach a port, or give the "
+                 "component inputs or outputs");
+done:
+    return status;
+}
+
+/* M and K, then D and K4 where they are. */
+static ritz_status start(ritz_rational *R)
+{
+    const ritz_component *component = R->component;
+    const ritz_sparse *A[4] = {&component->M, &component->K};
+    int64_t count = 2;
+
+    if (component->D.colptr)
+        A[count++] = &component->D;
+    if (component->K4.colptr)
+        A[count++] = &component->K4;
+    return ritz_zldl_new(count, A, &R->Z);
+}
+
+ritz_status ritz_rational_new(const ritz_request *request, int loads,
+                              double scale, ritz_rational *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    ritz_rational R = {.component = component, .tolerance = request->tolerance};
+
+    RITZ_FAIL_IF(component->D.colptr &&
+                     ritz_sparse_asymmetry(&component->D) > 0.0,
+                 RITZ_ERR_ARGUMENT,
+                 "D is not symmetric (gyroscopic?), which one-sided "
+                 "interpolation cannot answer for");
+    RITZ_TRY(read_groups(request, loads, &R));
+    RITZ_TRY(
+        ritz_sparse_add(1.0, &component->M, 1.0 / scale, &component->K, &R.P));
+    RITZ_TRY(start(&R));
+    *out = R;
+    R = (ritz_rational){0};
+done:
+    ritz_rational_free(&R);
+    return status;
+}
+
+bool ritz_rational_damped(const ritz_rational *R)
+{
+    return R->component->D.colptr || R->component->K4.colptr;
+}
+
+/* Z(s), unless it is factored at s already. */
+static ritz_status factor(ritz_rational *R, double _Complex s)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex c[4] = {s * s, 1.0};
+    int count = 2;
+
+    if (R->factored && R->s == s)
+        goto done;
+    R->factored = false;
+    if (R->component->D.colptr)
+        c[count++] = s;
+    if (R->component->K4.colptr)
+        c[count++] = cimag(s) > 0.0 ? (double _Complex)_Complex_I : 0.0;
+    status = ritz_zldl_factor(R->Z, c);
+    if (status == RITZ_ERR_SINGULAR)
+        status = ritz_fail(RITZ_ERR_SINGULAR,
+                           "%g%+gi rad/s is a pole of the component, where "
+                           "nothing can be interpolated",
+                           creal(s), cimag(s));
+    RITZ_TRY(status);
+    R->s = s;
+    R->factored = true;
+done:
+    return status;
+}
+
+/* v += F(s) b of a group. */
+static void load(const ritz_rational_loads *group, const ritz_probe *probe,
+                 double _Complex *v)
+{
+    double _Complex power = 1.0;
+
+    for (int k = 0; k < 3; k++, power *= probe->s)
+        for (int64_t j = 0; j < group->F[k].ncol; j++) {
+            const double *f = ritz_dense_col(&group->F[k], j);
+            double _Complex factor = power * probe->b[group->first + j];
+
+            for (int64_t i = 0; i < group->F[k].nrow; i++)
+                v[i] += factor * f[i];
+        }
+}
+
+static ritz_status answer(ritz_rational *R, const ritz_probe *probe,
+                          double _Complex *v)
+{
+    ritz_status status = RITZ_OK;
+
+    load(&R->group[probe->group], probe, v);
+    RITZ_TRY(factor(R, probe->s));
+    RITZ_TRY(ritz_zldl_solve(R->Z, 1, v));
+done:
+    return status;
+}
+
+static double dot(int64_t n, const double *x, const double *y)
+{
+    double sum = 0.0;
+
+    for (int64_t i = 0; i < n; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
+/* w := w / |w|, and |w| in the inner product P. */
+static ritz_status normalise(const ritz_rational *R, ritz_dense *w,
+                             double *size)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Pw = {0};
+
+    RITZ_TRY(ritz_sparse_mul(&R->P, w, &Pw));
+    *size = sqrt(fmax(dot(w->nrow, w->val, Pw.val), 0.0));
+    for (int64_t i = 0; i<w->nrow && * size> 0.0; i++)
+        w->val[i] /= *size;
+done:
+    ritz_dense_free(&Pw);
+    return status;
+}
+
+/* w := w - Q Q' P w. */
+static ritz_status take_out(const ritz_rational *R, const ritz_dense *Q,
+                            ritz_dense *w)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Pw = {0}, share = {0}, gone = {0};
+
+    RITZ_TRY(ritz_sparse_mul(&R->P, w, &Pw));
+    RITZ_TRY(ritz_dense_mul_tn(Q, &Pw, &share));
+    RITZ_TRY(ritz_dense_mul(Q, &share, &gone));
+    for (int64_t i = 0; i < w->nrow; i++)
+        w->val[i] -= gone.val[i];
+done:
+    ritz_dense_free(&Pw);
+    ritz_dense_free(&share);
+    ritz_dense_free(&gone);
+    return status;
+}
+
+/*
+ * Append what is new in w, scaled so that the answer it is part of has length
+ * one: less than the tolerance of that is nothing. Twice is enough for
+ * orthogonality [GiraudLangouRozloznik2005].
+ */
+static ritz_status append(const ritz_rational *R, ritz_dense *w, ritz_dense *Q)
+{
+    ritz_status status = RITZ_OK;
+    double size = 0.0;
+    double left = 1.0;
+
+    for (int pass = 0; pass < 2 && left > R->tolerance; pass++) {
+        RITZ_TRY(take_out(R, Q, w));
+        RITZ_TRY(normalise(R, w, &size));
+        left *= size;
+    }
+    if (left > R->tolerance)
+        memcpy(ritz_dense_col(Q, Q->ncol++), w->val,
+               (size_t)w->nrow * sizeof *w->val);
+done:
+    return status;
+}
+
+/* Re v and Im v over the length of v; the larger first. */
+static ritz_status split(const ritz_rational *R, const double _Complex *v,
+                         ritz_dense part[2])
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = R->component->num_dofs;
+    double length[2] = {0.0, 0.0};
+    double largest = DBL_MIN;
+    double all = 0.0;
+
+    for (int64_t i = 0; i < n; i++)
+        largest = fmax(largest, cabs(v[i])); /* lest squares overflow */
+    for (int64_t i = 0; i < n; i++) {
+        part[0].val[i] = creal(v[i]) / largest;
+        part[1].val[i] = cimag(v[i]) / largest;
+    }
+    for (int k = 0; k < 2; k++)
+        RITZ_TRY(normalise(R, &part[k], &length[k]));
+    all = fmax(hypot(length[0], length[1]), DBL_MIN);
+    for (int k = 0; k < 2; k++)
+        for (int64_t i = 0; i < n; i++)
+            part[k].val[i] *= length[k] / all;
+    if (length[1] > length[0]) {
+        ritz_dense swap = part[0];
+
+        part[0] = part[1];
+        part[1] = swap;
+    }
+done:
+    return status;
+}
+
+/* Both parts, or none if there may be no room for both. */
+static ritz_status add(ritz_rational *R, const ritz_probe *probe, int64_t room,
+                       ritz_dense *Q)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = R->component->num_dofs;
+    int64_t parts = ritz_rational_damped(R) && cimag(probe->s) > 0.0 ? 2 : 1;
+    double _Complex *v = NULL;
+    ritz_dense part[2] = {{0}};
+
+    if (room < parts)
+        return RITZ_OK;
+    RITZ_NEW(v, n);
+    RITZ_TRY(ritz_dense_new(n, 1, &part[0]));
+    RITZ_TRY(ritz_dense_new(n, 1, &part[1]));
+    RITZ_TRY(answer(R, probe, v));
+    RITZ_TRY(split(R, v, part));
+    for (int64_t k = 0; k < 2 && k < room; k++)
+        RITZ_TRY(append(R, &part[k], Q));
+done:
+    free(v);
+    ritz_dense_free(&part[0]);
+    ritz_dense_free(&part[1]);
+    return status;
+}
+
+ritz_status ritz_rational_span(ritz_rational *R, const ritz_probes *probes,
+                               const ritz_dense *first, int64_t most,
+                               ritz_dense *out, int64_t *gave)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = R->component->num_dofs;
+    int64_t r = first->ncol;
+    ritz_dense Q = {0}, kept = {0};
+
+    RITZ_TRY(ritz_dense_new(n, r + most, &Q));
+    if (r > 0)
+        memcpy(Q.val, first->val, (size_t)(n * r) * sizeof *Q.val);
+    Q.ncol = r;
+    for (int64_t k = 0; k < probes->count; k++) {
+        int64_t before = Q.ncol;
+
+        RITZ_TRY(add(R, &probes->item[k], r + most - before, &Q));
+        gave[k] = Q.ncol - before;
+    }
+    RITZ_TRY(ritz_dense_columns(&Q, 0, Q.ncol, &kept));
+    *out = kept;
+done:
+    ritz_dense_free(&Q);
+    return status;
+}
+
+ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probes probes = {.count = count};
+
+    RITZ_NEW(probes.item, count);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_NEW(probes.item[k].b, width);
+    *out = probes;
+    probes = (ritz_probes){0};
+done:
+    ritz_probes_free(&probes);
+    return status;
+}
+
+void ritz_probes_free(ritz_probes *probes)
+{
+    for (int64_t k = 0; probes->item && k < probes->count; k++)
+        free(probes->item[k].b);
+    free(probes->item);
+    *probes = (ritz_probes){0};
+}
+
+void ritz_rational_free(ritz_rational *R)
+{
+    for (int k = 0; k < RITZ_RATIONAL_GROUPS; k++)
+        for (int power = 0; power < 3; power++)
+            ritz_dense_free(&R->group[k].F[power]);
+    ritz_sparse_free(&R->P);
+    ritz_zldl_free(&R->Z);
+    *R = (ritz_rational){0};
+}

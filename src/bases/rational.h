@@ -1,0 +1,89 @@
+/*
+ * Answers of a component at points of the complex plane,
+ *
+ *     v = Z(s)^-1 F(s) b,    Z(s) = s^2 M + s D + K + i K4,
+ *     F(s) = F_0 + s F_1 + s^2 F_2,
+ *
+ * and the real basis that holds some of them. Only matrices count: damping that
+ * is stated as ratios is not in Z.
+ */
+#ifndef RITZ_BASES_RATIONAL_H
+#define RITZ_BASES_RATIONAL_H
+
+#include <ritz/factor.h>
+#include <ritz/method.h>
+
+enum { RITZ_RATIONAL_GROUPS = 4 };
+
+/* Loads of one kind; powers of s without a load are {0}. */
+typedef struct ritz_rational_loads {
+    int kind;      /* RITZ_LOADS_... */
+    bool answered; /* or only weighed with */
+    int64_t first; /* of all loads, which of them is its first */
+    int64_t count;
+    ritz_dense F[3]; /* n x count */
+} ritz_rational_loads;
+
+/* One answer that is wanted: where, and in which direction of which loads. */
+typedef struct ritz_probe {
+    double _Complex s; /* Im s >= 0; K4 counts above the real axis only */
+    int64_t group;
+    double _Complex *b; /* as many as there are loads of all groups, zero of
+                           others; owned */
+} ritz_probe;
+
+typedef struct ritz_probes {
+    int64_t count;
+    ritz_probe *item;
+} ritz_probes;
+
+typedef struct ritz_rational {
+    const ritz_component *component; /* borrowed */
+    double tolerance;                /* below which a vector is dependent */
+    int64_t num_loads;
+    int64_t num_groups;
+    ritz_rational_loads group[RITZ_RATIONAL_GROUPS];
+    ritz_sparse P; /* inner product M + K / scale */
+    ritz_zldl *Z;
+    double _Complex s; /* at which Z is factored */
+    bool factored;
+} ritz_rational;
+
+/**
+ * Each kind of load is a group. Inputs and outputs are read in any case, to
+ * weigh with.
+ *
+ * @param[in] loads  to be answered, sum of RITZ_LOADS_...
+ * @param[in] scale  an eigenvalue of the component  [rad^2/s^2]
+ * @return RITZ_ERR_ARGUMENT if there is no load, or D is not symmetric
+ */
+ritz_status ritz_rational_new(const ritz_request *request, int loads,
+                              double scale, ritz_rational *out);
+
+/** Whether the component has D or K4, so that answers are complex. */
+bool ritz_rational_damped(const ritz_rational *R);
+
+/**
+ * Real and imaginary parts of the answers to probes, in their order, behind the
+ * columns of @p first, orthonormal in M + K / scale; parts that depend on what
+ * is there are left out.
+ *
+ * A probe whose answer takes more columns than are left is passed over.
+ *
+ * @param[in]  first  n x r, orthonormal in the same product; may have no column
+ * @param[in]  most   columns beside those of @p first
+ * @param[out] gave   probes->count: how many columns the answer gave
+ * @return RITZ_ERR_SINGULAR if a point is a pole
+ * @cost   a complex LDL' factor for each change of s
+ */
+ritz_status ritz_rational_span(ritz_rational *R, const ritz_probes *probes,
+                               const ritz_dense *first, int64_t most,
+                               ritz_dense *out, int64_t *gave);
+
+/** @p count probes, each with a direction of @p width zeros. */
+ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out);
+
+void ritz_probes_free(ritz_probes *probes);
+void ritz_rational_free(ritz_rational *R);
+
+#endif

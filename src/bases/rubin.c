@@ -1,0 +1,213 @@
+/*
+ * Rubin's reduction [Rubin1975]: free-interface modes and residual flexibility
+ * with its inertia, in coordinates that hold the attached displacements u_b as
+ * they are. With Psi and Phi of macneal_rubin.c and Psi_bb = F'Psi
+ *
+ *     u = Phi q + Psi p,   u_b = Phi_b q + Psi_bb p
+ *     T = [G, Phi - G Phi_b],   G = Psi Psi_bb^-1,   u = T [u_b; q]
+ *
+ * It spans what macneal-rubin does. The columns of q vanish at b, so that those
+ * of rigid modes store energy: they are of kind normal like the others.
+ *
+ * Psi_bb has an inverse on independent columns only; the dofs of those that
+ * residual.c sifts out are no coordinates, and the remark names them.
+ */
+#include "base/alloc.h"
+#include "bases/free_modes.h"
+#include "bases/loads.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAMED = 3 };
+
+/* The columns of Psi that stay, and the rows they attach. */
+static ritz_status pick(const ritz_free_set *set, ritz_dense *Psi, int64_t *b)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = set->Psi.nrow;
+    int64_t k = 0;
+
+    RITZ_TRY(ritz_dense_new(n, ritz_free_set_kept(set), Psi));
+    for (int64_t j = 0; j < set->Psi.ncol; j++) {
+        if (!set->keep[j])
+            continue;
+        b[k] = set->dof[j];
+        memcpy(ritz_dense_col(Psi, k++), ritz_dense_col(&set->Psi, j),
+               (size_t)n * sizeof *Psi->val);
+    }
+done:
+    return status;
+}
+
+/* Rows b of A. */
+static ritz_status rows(const ritz_dense *A, int64_t p, const int64_t *b,
+                        ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(p, A->ncol, out));
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[b[i]];
+done:
+    return status;
+}
+
+/* G = Psi Psi_bb^-1, Psi_bb = S L L' S with a unit diagonal within. */
+static ritz_status divide(const int64_t *b, ritz_dense *Psi)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense F = {0};
+    double *scale = NULL;
+    int n = (int)Psi->nrow;
+    int p = (int)Psi->ncol;
+
+    RITZ_NEW(scale, p);
+    RITZ_TRY(rows(Psi, p, b, &F));
+    ritz_dense_symmetrise(&F);
+    for (int64_t j = 0; j < p; j++)
+        scale[j] = 1.0 / sqrt(ritz_dense_col(&F, j)[j]);
+    for (int64_t j = 0; j < p; j++)
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(&F, j)[i] *= scale[i] * scale[j];
+    RITZ_FAIL_IF(LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', p, F.val, p) != 0,
+                 RITZ_ERR_SINGULAR,
+                 "residual flexibility of the attached dofs is singular: "
+                 "keep fewer modes, or a larger --tolerance");
+    for (int64_t j = 0; j < p; j++)
+        cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                n, p, 1.0, F.val, p, Psi->val, n);
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans,
+                CblasNonUnit, n, p, 1.0, F.val, p, Psi->val, n);
+    for (int64_t j = 0; j < p; j++)
+        cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
+done:
+    free(scale);
+    ritz_dense_free(&F);
+    return status;
+}
+
+/* G with ones, and Phi - G Phi_b with zeros, where they are so exactly. */
+static ritz_status shape(const ritz_dense *Phi, const int64_t *b, ritz_dense *G,
+                         ritz_dense *T)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Phi_b = {0};
+    int64_t n = G->nrow;
+    int64_t p = G->ncol;
+    double *rest = ritz_dense_col(T, p);
+
+    RITZ_TRY(rows(Phi, p, b, &Phi_b));
+    for (int64_t j = 0; j < p; j++)
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(G, j)[b[i]] = i == j ? 1.0 : 0.0;
+    memcpy(T->val, G->val, (size_t)(n * p) * sizeof *T->val);
+    if (Phi->ncol > 0) {
+        memcpy(rest, Phi->val, (size_t)(n * Phi->ncol) * sizeof *T->val);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)n,
+                    (int)Phi->ncol, (int)p, -1.0, G->val, (int)n, Phi_b.val,
+                    (int)p, 1.0, rest, (int)n);
+    }
+    for (int64_t j = p; j < T->ncol; j++)
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(T, j)[b[i]] = 0.0;
+done:
+    ritz_dense_free(&Phi_b);
+    return status;
+}
+
+/* "grid 3 T1, grid 7 T1": dofs that are no coordinates. */
+static void remark(const ritz_request *request, const ritz_free_set *set,
+                   ritz_basis *basis)
+{
+    char text[NAMED * (RITZ_LOADS_NAME_SIZE + 2)] = "";
+    char name[RITZ_LOADS_NAME_SIZE];
+    size_t used = 0;
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < set->Psi.ncol; j++) {
+        if (set->keep[j])
+            continue;
+        if (count++ < NAMED)
+            used += (size_t)snprintf(
+                text + used, sizeof text - used, "%s%s", used > 0 ? ", " : "",
+                ritz_loads_name(request, set->loads, j, name));
+    }
+    if (count > 0)
+        snprintf(basis->remark, sizeof basis->remark,
+                 "%" PRId64 " attached dof(s) are no coordinates, %s%s: their "
+                 "residual flexibility depends on others, or is nothing "
+                 "beside the kept modes",
+                 count, text, count > NAMED ? ", ..." : "");
+}
+
+/* [constraint, normal], the modes in the order that they had. */
+static void label(const ritz_free_set *set, const int64_t *b, int64_t p,
+                  ritz_basis *basis)
+{
+    const ritz_pairs *modes = &set->modes;
+    ritz_columns *columns = &basis->columns;
+
+    for (int64_t j = 0; j < p; j++) {
+        columns->kind[j] = RITZ_COLUMN_CONSTRAINT;
+        columns->dof[j] = b[j];
+    }
+    for (int64_t j = 0; j < modes->Phi.ncol; j++) {
+        if (j >= modes->num_rigid) /* the others are no longer rigid */
+            columns->hertz[p + j] = ritz_eigen_hertz(modes->lambda[j]);
+        columns->residual[p + j] = modes->residual[j];
+    }
+    memcpy(basis->origin.engine, modes->engine, sizeof basis->origin.engine);
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_free_set set = {0};
+    ritz_basis basis = {0};
+    ritz_dense G = {0};
+    int64_t *b = NULL;
+
+    RITZ_TRY(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
+    if (ritz_free_set_kept(&set) == 0) { /* then the modes are all there is */
+        RITZ_TRY(ritz_free_set_join(request, &set, RITZ_COLUMN_RESIDUAL, out));
+        remark(request, &set, out);
+        goto done;
+    }
+    RITZ_NEW(b, set.Psi.ncol);
+    RITZ_TRY(pick(&set, &G, b));
+    RITZ_TRY(divide(b, &G));
+    RITZ_TRY(ritz_basis_new(G.nrow, G.ncol + set.modes.Phi.ncol, &basis));
+    RITZ_TRY(shape(&set.modes.Phi, b, &G, &basis.T));
+    label(&set, b, G.ncol, &basis);
+    remark(request, &set, &basis);
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    free(b);
+    ritz_dense_free(&G);
+    ritz_basis_free(&basis);
+    ritz_free_set_free(&set);
+    return status;
+}
+
+const ritz_method ritz_method_rubin = {
+    .name = "rubin",
+    .summary = "attached dofs themselves, free-interface modes within",
+    .reference = "Rubin1975",
+    .when = "as macneal-rubin, for codes that want attached dofs as "
+            "coordinates",
+    .cost = "as macneal-rubin",
+    .holds = "spans what macneal-rubin spans",
+    .fails = "nearly all modes kept: what is left at the interface is rounding",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .make = make,
+};

@@ -1,0 +1,316 @@
+/*
+ * System equivalent reduction expansion process: the lowest modes Phi of the
+ * component, seen through its attached (measured) dofs [OCallahan1989b],
+ *
+ *     T = Phi Phi_a^+,    u = T u_a
+ *
+ * With as many modes m as attached dofs a, T has a column for each of them.
+ * With fewer, T u_a has rank m only, and matrices of order a would be singular:
+ * m dofs s that tell the modes apart best, by a QR factor of Phi_a' with pivots,
+ * are coordinates then, and the others follow from them:
+ *
+ *     T = Phi Phi_s^-1,   span T = span Phi Phi_a^+ = span Phi
+ *
+ * so that every kept frequency and shape is exact: tests/unit/test_serep.c.
+ */
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+#include <ritz/method.h>
+
+#include <lapacke.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Above this, three digits of what is measured are lost, and it is said. */
+static const double poor = 1e3;
+
+/* What is chosen, and how well it tells the modes apart. */
+typedef struct selection {
+    const ritz_request *request;
+    const ritz_pairs *modes;
+    double size[3]; /* of all modes at points, translations, rotations */
+    int64_t *at;    /* m, attached dofs that are coordinates, in their order */
+    double condition;
+    int64_t worst; /* mode that is seen least */
+} selection;
+
+static int64_t kind_of(const ritz_component *component, int64_t row)
+{
+    int64_t direction = component->dof[row].component;
+
+    return direction == 0 ? 0 : direction <= 3 ? 1 : 2;
+}
+
+/* Metres and radians are not of one size: each kind is measured by its own. */
+static void find_sizes(selection *c)
+{
+    const ritz_component *component = c->request->component;
+
+    for (int64_t j = 0; j < c->modes->Phi.ncol; j++)
+        for (int64_t i = 0; i < component->num_dofs; i++) {
+            double *size = &c->size[kind_of(component, i)];
+
+            *size = fmax(*size, fabs(ritz_dense_col(&c->modes->Phi, j)[i]));
+        }
+}
+
+/* 1 / size, of an attached dof. */
+static double weight(const selection *c, int64_t k)
+{
+    const ritz_request *request = c->request;
+    int64_t row = request->attached.at[k];
+    double size = c->size[kind_of(request->component, row)];
+
+    return size > 0.0 ? 1.0 / size : 1.0;
+}
+
+static int compare(const void *left, const void *right)
+{
+    const int64_t *a = left;
+    const int64_t *b = right;
+
+    return (*a > *b) - (*a < *b);
+}
+
+/* The first m pivots of the weighted Phi_a', in the order of attachment. */
+static ritz_status choose(selection *c)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *a = &c->request->attached;
+    int64_t m = c->modes->Phi.ncol;
+    ritz_dense R = {0};
+    double *tau = NULL;
+    int *pivot = NULL;
+
+    RITZ_NEW(tau, m);
+    RITZ_NEW(pivot, a->count);
+    RITZ_NEW(c->at, m);
+    RITZ_TRY(ritz_dense_new(m, a->count, &R));
+    for (int64_t k = 0; k < a->count; k++)
+        for (int64_t j = 0; j < m; j++)
+            ritz_dense_col(&R, k)[j] =
+                weight(c, k) * ritz_dense_col(&c->modes->Phi, j)[a->at[k]];
+    RITZ_FAIL_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)m, (int)a->count, R.val,
+                                (int)m, pivot, tau) != 0,
+                 RITZ_ERR_MEMORY, "no memory to choose among attached dofs");
+    for (int64_t k = 0; k < m; k++)
+        c->at[k] = pivot[k] - 1;
+    qsort(c->at, (size_t)m, sizeof *c->at, compare);
+done:
+    free(tau);
+    free(pivot);
+    ritz_dense_free(&R);
+    return status;
+}
+
+/* U, sigma, V' of the weighted Phi_s, m x m. */
+static ritz_status decompose(const selection *c, ritz_dense *U, double *sigma,
+                             ritz_dense *Vt)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *Phi = &c->modes->Phi;
+    int m = (int)Phi->ncol;
+    ritz_dense A = {0};
+    double *work = NULL;
+
+    RITZ_NEW(work, m);
+    RITZ_TRY(ritz_dense_new(m, m, &A));
+    RITZ_TRY(ritz_dense_new(m, m, U));
+    RITZ_TRY(ritz_dense_new(m, m, Vt));
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t k = 0; k < m; k++)
+            ritz_dense_col(&A, j)[k] =
+                weight(c, c->at[k]) *
+                ritz_dense_col(Phi, j)[c->request->attached.at[c->at[k]]];
+    RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', m, m, A.val, m,
+                                sigma, U->val, m, Vt->val, m, work) != 0,
+                 RITZ_ERR_CONVERGENCE,
+                 "singular values of the measured shapes do not converge");
+done:
+    free(work);
+    ritz_dense_free(&A);
+    return status;
+}
+
+/*
+ * What is measured is of size 1 where it is largest, wherever that is: a mode
+ * that all attached dofs see as rounding is unseen, though each relative to the
+ * other were seen well. The worst mode has most in the last row of V'.
+ */
+static void judge(selection *c, const double *sigma, const ritz_dense *Vt)
+{
+    int64_t last = Vt->nrow - 1;
+
+    c->condition =
+        sigma[last] > 0.0 ? fmax(sigma[0], 1.0) / sigma[last] : HUGE_VAL;
+    for (int64_t j = 0; j < Vt->ncol; j++)
+        if (fabs(ritz_dense_col(Vt, j)[last]) >
+            (1.0 + 1e-9) * fabs(ritz_dense_col(Vt, c->worst)[last]))
+            c->worst = j;
+}
+
+/* "mode 7, 3.41 Hz", rigid ones counted. */
+static void name_worst(const selection *c, char text[static RITZ_NAME_SIZE])
+{
+    const ritz_pairs *modes = c->modes;
+
+    if (c->worst < modes->num_rigid)
+        snprintf(text, RITZ_NAME_SIZE, "a rigid-body motion");
+    else
+        snprintf(text, RITZ_NAME_SIZE, "mode %" PRId64 ", %.6g Hz",
+                 c->worst + 1, ritz_eigen_hertz(modes->lambda[c->worst]));
+}
+
+/* T = Phi V Sigma^-1 U' W, with rows of I at the coordinates themselves. */
+static ritz_status expand(const selection *c, const ritz_dense *U,
+                          const double *sigma, const ritz_dense *Vt,
+                          ritz_dense *T)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = U->ncol;
+    ritz_dense scaled = {0}, inverse = {0};
+
+    RITZ_TRY(ritz_dense_new(m, m, &scaled)); /* Sigma^-1 U' W */
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t k = 0; k < m; k++)
+            ritz_dense_col(&scaled, k)[j] =
+                ritz_dense_col(U, j)[k] * weight(c, c->at[k]) / sigma[j];
+    RITZ_TRY(ritz_dense_mul_tn(Vt, &scaled, &inverse));
+    RITZ_TRY(ritz_dense_mul(&c->modes->Phi, &inverse, T));
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t k = 0; k < m; k++)
+            ritz_dense_col(T, j)[c->request->attached.at[c->at[k]]] =
+                j == k ? 1.0 : 0.0;
+done:
+    ritz_dense_free(&scaled);
+    ritz_dense_free(&inverse);
+    return status;
+}
+
+static ritz_status find(selection *c, ritz_dense *T)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense U = {0}, Vt = {0};
+    double *sigma = NULL;
+    char text[RITZ_NAME_SIZE];
+
+    find_sizes(c);
+    RITZ_TRY(choose(c));
+    RITZ_NEW(sigma, c->modes->Phi.ncol);
+    RITZ_TRY(decompose(c, &U, sigma, &Vt));
+    judge(c, sigma, &Vt);
+    name_worst(c, text);
+    RITZ_FAIL_IF(
+        !(c->condition * c->request->tolerance < 1.0), RITZ_ERR_SINGULAR,
+        "the attached dofs cannot tell the kept modes apart (condition "
+        "%.1e), they see least of %s: attach dofs where it moves, or "
+        "keep fewer modes",
+        c->condition, text);
+    RITZ_TRY(expand(c, &U, sigma, &Vt, T));
+done:
+    free(sigma);
+    ritz_dense_free(&U);
+    ritz_dense_free(&Vt);
+    return status;
+}
+
+/* Which dofs are no coordinates, as far as there is room; what is seen badly.
+ */
+static void remark(const selection *c, ritz_basis *basis)
+{
+    const ritz_dofs *a = &c->request->attached;
+    int64_t m = basis->T.ncol;
+    char *text = basis->remark;
+    const size_t size = sizeof basis->remark;
+    size_t used = 0;
+    char name[RITZ_NAME_SIZE];
+
+    if (c->condition > poor) {
+        name_worst(c, name);
+        used += (size_t)snprintf(text, size,
+                                 "attached dofs see %s badly: condition %.1e%s",
+                                 name, c->condition, m < a->count ? "; " : "");
+    }
+    if (m < a->count)
+        used += (size_t)snprintf(text + used, size - used,
+                                 "%" PRId64 " of %" PRId64 " attached dofs are "
+                                 "coordinates, which are enough:",
+                                 m, a->count);
+    for (int64_t k = 0; k < m && m < a->count && used < size; k++)
+        used += (size_t)snprintf(
+            text + used, size - used, "%s %s", k > 0 ? "," : "",
+            ritz_dof_name(c->request->component->dof[a->at[c->at[k]]], name));
+    if (used >= size)
+        memcpy(text + size - 4, "...", 4);
+}
+
+static ritz_status check(const ritz_request *request, const ritz_pairs *modes)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = modes->Phi.ncol;
+    int64_t a = request->attached.count;
+
+    RITZ_FAIL_IF(m == 0, RITZ_ERR_ARGUMENT,
+                 "no mode is kept: there is no rigid one, ask for flexible "
+                 "ones");
+    RITZ_FAIL_IF(m > a, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " attached dof(s) cannot show %" PRId64
+                 " modes, %" PRId64 " rigid ones among them: attach more or "
+                 "keep fewer",
+                 a, m, modes->num_rigid);
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    const ritz_span span = {request->modes, request->up_to_hz};
+    ritz_pairs modes = {0};
+    selection c = {.request = request, .modes = &modes};
+    ritz_basis basis = {0};
+    ritz_dofs rest = {0};
+
+    RITZ_FAIL_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
+                 "nothing is attached, so nothing is measured: name a port");
+    /* refuses attached dofs that are out of range or repeated */
+    RITZ_TRY(
+        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_TRY_IN("free-interface modes",
+                ritz_eigen_sparse(&component->K, &component->M, &span, &modes));
+    RITZ_TRY(check(request, &modes));
+    RITZ_TRY(ritz_columns_new(modes.Phi.ncol, &basis.columns));
+    RITZ_TRY(find(&c, &basis.T));
+    for (int64_t k = 0; k < basis.T.ncol; k++) {
+        basis.columns.kind[k] = RITZ_COLUMN_CONSTRAINT;
+        basis.columns.dof[k] = request->attached.at[c.at[k]];
+    }
+    remark(&c, &basis);
+    memcpy(basis.origin.engine, modes.engine, sizeof basis.origin.engine);
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_pairs_free(&modes);
+    ritz_dofs_free(&rest);
+    free(c.at);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const ritz_method ritz_method_serep = {
+    .name = "serep",
+    .summary = "modes seen through attached dofs (test-analysis models)",
+    .reference = "OCallahan1989b",
+    .when = "test-analysis models: exact modes on measured dofs",
+    .cost = "a factor, two solves a mode",
+    .holds = "kept frequencies and shapes",
+    .fails = "statics; modes that the measured dofs do not tell apart",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .make = make,
+};

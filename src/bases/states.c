@@ -1,0 +1,270 @@
+#include "bases/states.h"
+
+#include "base/alloc.h"
+#include "linear/general.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static ritz_status check(const ritz_request *request)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                 "states are asked for by their number, not by a frequency");
+    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                 "no states are asked for, one at least is needed");
+    RITZ_FAIL_IF(request->choice.num_shifts > 1, RITZ_ERR_ARGUMENT,
+                 "the states are shifted by one frequency, not by several");
+done:
+    return status;
+}
+
+/* The damping that was asked for, or else the component's own. */
+static ritz_status choose_damping(const ritz_request *request,
+                                  ritz_damping *out)
+{
+    if (request->choice.given & RITZ_USES_DAMPING) {
+        *out = request->choice.damping;
+        return RITZ_OK;
+    }
+    return ritz_context(ritz_damping_parse(request->component->damping, out),
+                        "damping of the component");
+}
+
+/* Rigid modes stand apart if Delta does not join them to flexible ones. */
+static int64_t count_apart(const ritz_first_order *modes)
+{
+    int64_t r = modes->num_rigid;
+
+    for (int64_t j = r; j < modes->count; j++)
+        for (int64_t i = 0; i < r; i++)
+            if (ritz_dense_col(&modes->Delta, j)[i] != 0.0 ||
+                ritz_dense_col(&modes->Delta, i)[j] != 0.0)
+                return 0;
+    return r;
+}
+
+static ritz_status choose_scale(ritz_states *states)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_first_order *modes = &states->modes;
+    int64_t half = modes->count - states->num_apart;
+    double least = 0.0;
+
+    RITZ_NEW(states->scale, half);
+    for (int64_t k = 0; k < half; k++) {
+        double w = sqrt(fabs(modes->lambda[states->num_apart + k]));
+
+        states->scale[k] = w;
+        if (w > 0.0 && (least == 0.0 || w < least))
+            least = w;
+    }
+    for (int64_t k = 0; k < half; k++)
+        if (states->scale[k] == 0.0)
+            states->scale[k] = least > 0.0 ? least : 1.0;
+done:
+    return status;
+}
+
+/* A = [0 S; -Lambda S^-1 -Delta] - alpha I,  B = [0; B],  C = [C S^-1 Cv] */
+static ritz_status fill(ritz_states *states)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_first_order *modes = &states->modes;
+    int64_t r = states->num_apart;
+    int64_t m = modes->count - r;
+
+    states->count = 2 * m;
+    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &states->A));
+    RITZ_TRY(ritz_dense_new(2 * m, modes->B.ncol, &states->B));
+    RITZ_TRY(ritz_dense_new(modes->C.nrow, 2 * m, &states->C));
+    for (int64_t j = 0; j < m; j++) {
+        double *q = ritz_dense_col(&states->A, j);
+        double *v = ritz_dense_col(&states->A, m + j);
+        double s = states->scale[j];
+
+        v[j] = s;
+        q[m + j] = -modes->lambda[r + j] / s;
+        for (int64_t i = 0; i < m; i++)
+            v[m + i] = -ritz_dense_col(&modes->Delta, r + j)[r + i];
+        q[j] -= states->alpha;
+        v[m + j] -= states->alpha;
+        for (int64_t i = 0; i < modes->C.nrow; i++) {
+            ritz_dense_col(&states->C, j)[i] =
+                ritz_dense_col(&modes->C, r + j)[i] / s;
+            ritz_dense_col(&states->C, m + j)[i] =
+                ritz_dense_col(&modes->Cv, r + j)[i];
+        }
+    }
+    for (int64_t j = 0; j < modes->B.ncol; j++)
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(&states->B, j)[m + i] =
+                ritz_dense_col(&modes->B, j)[r + i];
+done:
+    return status;
+}
+
+ritz_status ritz_states_new(const ritz_request *request, ritz_states *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_states states = {0};
+    ritz_structure structure = {0};
+    ritz_damping damping = {0};
+
+    RITZ_TRY(check(request));
+    RITZ_TRY(choose_damping(request, &damping));
+    RITZ_TRY(ritz_structure_of_component(request->component, &structure));
+    RITZ_TRY(ritz_first_order_new(&structure, &request->component->io, &damping,
+                                  &states.modes));
+    ritz_damping_print(&damping, states.damping);
+    if (request->choice.num_shifts > 0)
+        states.alpha = 2.0 * pi * request->choice.shift_hz[0];
+    states.num_apart = count_apart(&states.modes);
+    RITZ_TRY(choose_scale(&states));
+    RITZ_TRY(fill(&states));
+    RITZ_FAIL_IF(states.count == 0, RITZ_ERR_ARGUMENT,
+                 "the component has no flexible states: its rigid modes are "
+                 "all there is");
+    *out = states;
+    states = (ritz_states){0};
+done:
+    ritz_states_free(&states);
+    ritz_structure_free(&structure);
+    return status;
+}
+
+ritz_status ritz_states_operator(const ritz_dense *A, bool inverse,
+                                 ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense G = {0};
+
+    if (!inverse)
+        return ritz_dense_copy(A, out);
+    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &G));
+    for (int64_t k = 0; k < A->nrow; k++)
+        ritz_dense_col(&G, k)[k] = 1.0;
+    status = ritz_general_solve(A, false, &G);
+    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                 "the matrix of states has no inverse: a motion that nothing "
+                 "holds, give a shift above 0 Hz");
+    RITZ_TRY(status);
+    *out = G;
+    G = (ritz_dense){0};
+done:
+    ritz_dense_free(&G);
+    return status;
+}
+
+/* out(first.., column..) = A diag(s) (rows row.. of Z); s NULL: I */
+static ritz_status lift(const ritz_dense *A, const double *s,
+                        const ritz_dense *Z, int64_t row, int64_t first,
+                        int64_t column, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0}, lifted = {0};
+
+    RITZ_TRY(ritz_dense_new(A->ncol, Z->ncol, &part));
+    for (int64_t j = 0; j < Z->ncol; j++)
+        for (int64_t i = 0; i < A->ncol; i++)
+            ritz_dense_col(&part, j)[i] =
+                (s ? s[i] : 1.0) * ritz_dense_col(Z, j)[row + i];
+    RITZ_TRY(ritz_dense_mul(A, &part, &lifted));
+    for (int64_t j = 0; j < Z->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(out, column + j)[first + i] =
+                ritz_dense_col(&lifted, j)[i];
+done:
+    ritz_dense_free(&part);
+    ritz_dense_free(&lifted);
+    return status;
+}
+
+/* T = [Phi 0; 0 Phi], W = [M Phi 0; 0 Phi] of rigid modes. */
+static void put_rigid(const ritz_states *states, ritz_basis *basis)
+{
+    int64_t n = states->modes.num_dofs;
+    int64_t r = states->num_apart;
+
+    for (int64_t j = 0; j < r; j++) {
+        const double *phi = ritz_dense_col(&states->modes.Phi, j);
+        size_t size = (size_t)n * sizeof *phi;
+
+        memcpy(ritz_dense_col(&basis->T, j), phi, size);
+        memcpy(ritz_dense_col(&basis->T, r + j) + n, phi, size);
+        memcpy(ritz_dense_col(&basis->W, j),
+               ritz_dense_col(&states->modes.MPhi, j), size);
+        memcpy(ritz_dense_col(&basis->W, r + j) + n, phi, size);
+        for (int64_t k = j; k < 2 * r; k += r) {
+            basis->columns.kind[k] = RITZ_COLUMN_RIGID;
+            basis->columns.hertz[k] = 0.0;
+        }
+    }
+}
+
+static ritz_status put_states(const ritz_states *states, const ritz_dense *T,
+                              const ritz_dense *W, ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_first_order *modes = &states->modes;
+    int64_t n = modes->num_dofs;
+    int64_t r = states->num_apart;
+    int64_t m = states->count / 2;
+    ritz_dense Phi = {0}, MPhi = {0};
+    double *inverse = NULL;
+
+    RITZ_NEW(inverse, m);
+    for (int64_t k = 0; k < m; k++)
+        inverse[k] = 1.0 / states->scale[k];
+    RITZ_TRY(ritz_dense_columns(&modes->Phi, r, m, &Phi));
+    RITZ_TRY(ritz_dense_columns(&modes->MPhi, r, m, &MPhi));
+    RITZ_TRY(lift(&Phi, inverse, T, 0, 0, 2 * r, &basis->T));
+    RITZ_TRY(lift(&Phi, NULL, T, m, n, 2 * r, &basis->T));
+    RITZ_TRY(lift(&MPhi, states->scale, W, 0, 0, 2 * r, &basis->W));
+    RITZ_TRY(lift(&Phi, NULL, W, m, n, 2 * r, &basis->W));
+done:
+    ritz_dense_free(&Phi);
+    ritz_dense_free(&MPhi);
+    free(inverse);
+    return status;
+}
+
+ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
+                              const ritz_dense *W, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = states->modes.num_dofs;
+    int64_t r = states->num_apart;
+    int64_t k = 2 * r + T->ncol;
+    ritz_basis basis = {0};
+
+    RITZ_TRY(ritz_basis_new(2 * n, k, &basis));
+    RITZ_TRY(ritz_dense_new(2 * n, k, &basis.W));
+    basis.states = true;
+    memcpy(basis.damping, states->damping, sizeof basis.damping);
+    for (int64_t j = 2 * r; j < k; j++)
+        basis.columns.kind[j] = RITZ_COLUMN_STATE;
+    put_rigid(states, &basis);
+    RITZ_TRY(put_states(states, T, W, &basis));
+    snprintf(basis.origin.engine, sizeof basis.origin.engine, "dense LAPACK");
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_basis_free(&basis);
+    return status;
+}
+
+void ritz_states_free(ritz_states *states)
+{
+    ritz_first_order_free(&states->modes);
+    free(states->scale);
+    ritz_dense_free(&states->A);
+    ritz_dense_free(&states->B);
+    ritz_dense_free(&states->C);
+    *states = (ritz_states){0};
+}

@@ -1,0 +1,49 @@
+/* What bases of states share: a component in states that are well scaled. */
+#ifndef RITZ_BASES_STATES_H
+#define RITZ_BASES_STATES_H
+
+#include "model/first_order.h"
+
+#include <ritz/method.h>
+
+/*
+ * z = [S q; q'] of the modes, S = diag(w) where w > 0: A is then near skew, and
+ * a state's size is the root of its energy. Rigid modes that no damping couples
+ * to others stand apart, and are no part of A, B and C.
+ */
+typedef struct ritz_states {
+    ritz_first_order modes;
+    int64_t num_apart; /* rigid modes that stand apart, the first ones */
+    int64_t count;     /* of states in A */
+    double *scale;     /* count / 2 */
+    double alpha;      /* A is less alpha I [rad/s] */
+    ritz_dense A, B, C;
+    char damping[RITZ_DAMPING_SIZE];
+} ritz_states;
+
+/**
+ * @return RITZ_ERR_ARGUMENT if the request is not for a number of states with
+ *         at most one shift, or as ritz_state_space_of_component
+ */
+ritz_status ritz_states_new(const ritz_request *request, ritz_states *out);
+
+/**
+ * A, or A^-1 if @p inverse.
+ *
+ * @return RITZ_ERR_SINGULAR if there is no A^-1
+ */
+ritz_status ritz_states_operator(const ritz_dense *A, bool inverse,
+                                 ritz_dense *out);
+
+/**
+ * Vectors for x = [u; u']: rigid modes that stand apart, positions and then
+ * velocities, before those that @p T and @p W have in z.
+ *
+ * @param[in] T,W  count x k, W'T = I
+ */
+ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
+                              const ritz_dense *W, ritz_basis *out);
+
+void ritz_states_free(ritz_states *states);
+
+#endif

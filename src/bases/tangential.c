@@ -1,0 +1,412 @@
+/*
+ * Tangential interpolation by one projection [GugercinAntoulasBeattie2008],
+ *
+ *     span V = { Re, Im of v_j },   Z(s_j) v_j = F b_j,
+ *     Z(s) = s^2 M + s D + K + i K4,
+ *
+ * F one kind of loads: inputs, say, or what outputs read. The reduced component
+ * answers F b_j as the full one does at s_j, wherever it is read, so that
+ * H_r(s_j) b_j = H(s_j) b_j of inputs and b_j'H_r(s_j) = b_j'H(s_j) of outputs;
+ * V'KV, V'MV and V'DV are as symmetric and definite as K, M and D.
+ *
+ * Points that are best in H2 mirror the poles of the reduced model, and b_j are
+ * its residues. So points are moved to what the poles they gave say, until they
+ * stay (iterative rational Krylov):
+ *
+ * - With D or K4, v_j is complex and costs two vectors, but a reduced component
+ *   of N has N pairs of poles: the more dominant half gives the points,
+ *   s_j = -conj(p_j), which is a choice and no optimum [Wyatt2012].
+ * - With ratios alone, Z has no damping, v_j is real, and every pole has its
+ *   point: beside the resonance, not mirrored, as nothing is damped there.
+ *
+ * The search begins at the most dominant of twice as many modes. Rigid motion,
+ * which has no H2 norm, is kept beside.
+ */
+#include "bases/tangential.h"
+
+#include "base/alloc.h"
+#include "bases/dominant.h"
+#include "bases/loads.h"
+
+#include <ritz/eigen.h>
+
+#include <complex.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_ROUNDS = 50,
+    FREE_ROUNDS = 5, /* after them points follow those of before */
+};
+
+/* Relative change of points: interpolation is exact where they stand, and an
+   optimum is flat. */
+static const double settled = 1e-6;
+
+static const double pi = 3.14159265358979323846;
+
+static const ritz_damping assumed = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
+
+typedef struct search {
+    const ritz_request *request;
+    ritz_damping damping;
+    bool assumed;     /* nobody had said how it is damped */
+    ritz_pairs modes; /* where it begins */
+    ritz_dense rigid;
+    int64_t most; /* vectors beside the rigid ones */
+    ritz_rational R;
+    ritz_dense T;       /* rigid and interpolating */
+    ritz_probes probes; /* those that T answers */
+    int64_t left_out;   /* fixed points' answers without room */
+    int rounds;
+    double change;
+} search;
+
+static void free_search(search *s)
+{
+    ritz_pairs_free(&s->modes);
+    ritz_dense_free(&s->rigid);
+    ritz_rational_free(&s->R);
+    ritz_dense_free(&s->T);
+    ritz_probes_free(&s->probes);
+}
+
+/* The choice's damping, else the component's, else a usual one. */
+static ritz_status choose_damping(search *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = s->request->component;
+    const ritz_choice *choice = &s->request->choice;
+
+    s->damping = choice->damping;
+    if (!(choice->given & RITZ_USES_DAMPING))
+        RITZ_TRY(ritz_damping_parse(component->damping, &s->damping));
+    s->assumed = s->damping.kind == RITZ_DAMPING_NONE && !component->D.colptr &&
+                 !component->K4.colptr && choice->num_shifts == 0;
+    if (s->assumed)
+        s->damping = assumed;
+done:
+    return status;
+}
+
+/* Flexible modes up to the frequency that was asked for. */
+static int64_t count_modes(const ritz_pairs *modes, double up_to_hz)
+{
+    int64_t k = modes->num_rigid;
+
+    while (k < modes->Phi.ncol &&
+           ritz_eigen_hertz(modes->lambda[k]) <= up_to_hz)
+        k++;
+    return k - modes->num_rigid;
+}
+
+/* Rigid modes, and twice as many flexible ones as there shall be vectors. */
+static ritz_status find_modes(search *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_request *request = s->request;
+    const ritz_component *component = request->component;
+    int64_t wanted = request->modes;
+    const ritz_span span = {
+        .modes = wanted > 0   ? 2 * wanted
+                 : wanted < 0 ? -1
+                              : 1,
+        .up_to_hz = 2.0 * request->up_to_hz,
+    };
+    ritz_pairs *modes = &s->modes;
+    int64_t flexible = 0;
+
+    RITZ_TRY_IN("modes to begin with",
+                ritz_eigen_sparse(&component->K, &component->M, &span, modes));
+    RITZ_FAIL_IF(modes->Phi.ncol > 0 && modes->num_rigid == 0 &&
+                     modes->lambda[0] <= 0.0,
+                 RITZ_ERR_SINGULAR,
+                 "K is not positive semidefinite: an eigenvalue is %.3g",
+                 modes->lambda[0]);
+    if (wanted < 0)
+        wanted = count_modes(modes, request->up_to_hz);
+    flexible = component->num_dofs - modes->num_rigid;
+    s->most = wanted < flexible ? wanted : flexible;
+    if (modes->Phi.ncol == modes->num_rigid)
+        s->most = 0;
+    RITZ_FAIL_IF(s->most + modes->num_rigid == 0, RITZ_ERR_ARGUMENT,
+                 "no vector is asked for, and there is no rigid mode");
+    RITZ_TRY(ritz_dense_columns(&modes->Phi, 0, modes->num_rigid, &s->rigid));
+done:
+    return status;
+}
+
+/* Every load that is answered by itself, at every point that was given. */
+static ritz_status list_given(const search *s, ritz_probes *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_choice *choice = &s->request->choice;
+    ritz_probes probes = {0};
+    int64_t loads = 0;
+    int64_t at = 0;
+
+    for (int64_t g = 0; g < s->R.num_groups; g++)
+        loads += s->R.group[g].answered ? s->R.group[g].count : 0;
+    RITZ_TRY(
+        ritz_probes_new(choice->num_shifts * loads, s->R.num_loads, &probes));
+    for (int64_t k = 0; k < choice->num_shifts; k++)
+        for (int64_t g = 0; g < s->R.num_groups; g++) {
+            const ritz_rational_loads *group = &s->R.group[g];
+
+            for (int64_t j = 0; group->answered && j < group->count; j++) {
+                ritz_probe *probe = &probes.item[at++];
+
+                probe->s = (double _Complex)_Complex_I *
+                           (2.0 * pi * choice->shift_hz[k]);
+                probe->group = g;
+                probe->b[group->first + j] = 1.0;
+            }
+        }
+    *out = probes;
+done:
+    return status;
+}
+
+/* T from probes, of which those that gave nothing are dropped. */
+static ritz_status answer(search *s, ritz_probes *probes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense T = {0};
+    int64_t *gave = NULL;
+    int64_t kept = 0;
+
+    RITZ_NEW(gave, probes->count);
+    RITZ_TRY(ritz_rational_span(&s->R, probes, &s->rigid, s->most, &T, gave));
+    for (int64_t k = 0; k < probes->count; k++)
+        if (gave[k] > 0)
+            probes->item[kept++] = probes->item[k];
+        else
+            free(probes->item[k].b);
+    s->left_out = probes->count - kept;
+    probes->count = kept;
+    ritz_probes_free(&s->probes);
+    s->probes = *probes;
+    *probes = (ritz_probes){0};
+    ritz_dense_free(&s->T);
+    s->T = T;
+done:
+    free(gave);
+    return status;
+}
+
+/* Distance of two points, none between groups. */
+static double distance(const ritz_probe *a, const ritz_probe *b)
+{
+    return a->group == b->group ? cabs(a->s - b->s) : HUGE_VAL;
+}
+
+/*
+ * Bring the nearest counterparts of the points of before to the front, one for
+ * each. As long as points are free, only among as many as there were before:
+ * the most dominant. Returns the largest relative change.
+ */
+static double follow(const ritz_probes *before, bool is_free,
+                     ritz_probes *probes)
+{
+    double worst = 0.0;
+
+    if (probes->count < before->count)
+        return HUGE_VAL;
+    for (int64_t k = 0; k < before->count; k++) {
+        const ritz_probe *old = &before->item[k];
+        int64_t among = is_free ? before->count : probes->count;
+        int64_t best = k;
+        ritz_probe found;
+
+        for (int64_t j = k + 1; j < among; j++)
+            if (distance(old, &probes->item[j]) <
+                distance(old, &probes->item[best]))
+                best = j;
+        found = probes->item[best];
+        memmove(probes->item + k + 1, probes->item + k,
+                (size_t)(best - k) * sizeof found);
+        probes->item[k] = found;
+        worst = fmax(worst, distance(old, &found) / cabs(old->s));
+    }
+    return worst;
+}
+
+/* Points to where the poles that they gave say, until they stay. */
+static ritz_status iterate(search *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t r = s->rigid.ncol;
+    ritz_probes probes = {0};
+    ritz_dense V = {0};
+
+    s->change = HUGE_VAL;
+    RITZ_TRY(ritz_dense_columns(&s->modes.Phi, r, s->modes.Phi.ncol - r, &V));
+    for (s->rounds = 0;; s->rounds++) {
+        RITZ_TRY(ritz_dominant_probes(&s->R, &s->damping, &V, &probes));
+        if (s->rounds > 0)
+            s->change = follow(&s->probes, s->rounds <= FREE_ROUNDS, &probes);
+        if (s->change <= settled || s->rounds == MOST_ROUNDS)
+            break;
+        RITZ_TRY(answer(s, &probes));
+        ritz_dense_free(&V);
+        RITZ_TRY(ritz_dense_columns(&s->T, r, s->T.ncol - r, &V));
+    }
+done:
+    ritz_probes_free(&probes);
+    ritz_dense_free(&V);
+    return status;
+}
+
+static ritz_status take_given(search *s)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probes probes = {0};
+
+    for (int64_t k = 0; k < s->request->choice.num_shifts; k++)
+        RITZ_FAIL_IF(s->rigid.ncol > 0 && s->request->choice.shift_hz[k] == 0.0,
+                     RITZ_ERR_ARGUMENT,
+                     "the component can move freely, so that 0 Hz is a pole "
+                     "of it: give an expansion point above 0");
+    RITZ_TRY(list_given(s, &probes));
+    RITZ_TRY(answer(s, &probes));
+done:
+    ritz_probes_free(&probes);
+    return status;
+}
+
+/* Inputs, or outputs, or attached dofs: the first that is there. */
+static int choose_loads(const ritz_request *request)
+{
+    if (ritz_loads_count(request, RITZ_LOADS_INPUTS) > 0)
+        return RITZ_LOADS_INPUTS;
+    if (ritz_loads_count(request, RITZ_LOADS_OUTPUTS) > 0)
+        return RITZ_LOADS_OUTPUTS;
+    return RITZ_LOADS_ATTACHED;
+}
+
+static ritz_status interpolate(search *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_request *request = s->request;
+    int loads = request->choice.loads;
+
+    if (s->most == 0)
+        return ritz_dense_copy(&s->rigid, &s->T);
+    if (loads == 0)
+        loads = choose_loads(request);
+    RITZ_TRY(ritz_rational_new(request, loads,
+                               s->modes.lambda[s->modes.num_rigid], &s->R));
+    RITZ_TRY(request->choice.num_shifts > 0 ? take_given(s) : iterate(s));
+    RITZ_FAIL_IF(s->probes.count == 0 && s->left_out > 0 && s->most == 1,
+                 RITZ_ERR_ARGUMENT,
+                 "one vector cannot hold the real and the imaginary part of an "
+                 "answer: ask for 2 or more");
+    RITZ_FAIL_IF(s->probes.count == 0, RITZ_ERR_ARGUMENT,
+                 "the loads drive no flexible mode, or no output reads one");
+done:
+    return status;
+}
+
+/* How the points were found, and what should be known of them. */
+static void remark(const search *s, ritz_basis *basis)
+{
+    char *text = basis->remark;
+    const size_t size = sizeof basis->remark;
+    int64_t missing = s->most + s->rigid.ncol - basis->T.ncol;
+    int used = 0;
+
+    if (s->most == 0)
+        return;
+    if (s->request->choice.num_shifts > 0)
+        used = snprintf(text, size, "%" PRId64 " answer(s) interpolated",
+                        s->probes.count);
+    else if (s->change <= settled)
+        used =
+            snprintf(text, size, "points settled after %d round(s)", s->rounds);
+    else
+        used = snprintf(text, size,
+                        "points did not settle in %d rounds, the last moved "
+                        "them by %.1e; interpolation is exact where they were",
+                        s->rounds, s->change);
+    if (s->assumed)
+        used += snprintf(text + used, size - (size_t)used,
+                         "; damping modal 0.01 assumed for them");
+    if (s->request->choice.num_shifts > 0 && s->left_out > 0)
+        used += snprintf(text + used, size - (size_t)used,
+                         "; %" PRId64 " more have no room", s->left_out);
+    if (missing > 0)
+        snprintf(text + used, size - (size_t)used,
+                 "; %" PRId64 " vector(s) fewer than asked", missing);
+}
+
+/* Rigid, krylov. */
+static ritz_status describe(const search *s, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_basis basis = {0};
+    ritz_columns *columns = &basis.columns;
+
+    RITZ_TRY(ritz_dense_copy(&s->T, &basis.T));
+    RITZ_TRY(ritz_columns_new(s->T.ncol, columns));
+    for (int64_t j = 0; j < s->T.ncol; j++) {
+        bool rigid = j < s->rigid.ncol;
+
+        columns->kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_KRYLOV;
+        if (rigid) {
+            columns->hertz[j] = 0.0;
+            columns->residual[j] = s->modes.residual[j];
+        }
+    }
+    snprintf(basis.origin.engine, sizeof basis.origin.engine, "MUMPS LDL'");
+    remark(s, &basis);
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_basis_free(&basis);
+    return status;
+}
+
+ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
+                                 ritz_probes *probes)
+{
+    ritz_status status = RITZ_OK;
+    search s = {.request = request};
+    ritz_dofs rest = {0};
+
+    /* refuses attached dofs that are out of range or repeated */
+    RITZ_TRY(ritz_dofs_complement(&request->attached,
+                                  request->component->num_dofs, &rest));
+    RITZ_TRY(choose_damping(&s));
+    RITZ_TRY(find_modes(&s));
+    RITZ_TRY(interpolate(&s));
+    RITZ_TRY(describe(&s, out));
+    if (probes) {
+        *probes = s.probes;
+        s.probes = (ritz_probes){0};
+    }
+done:
+    free_search(&s);
+    ritz_dofs_free(&rest);
+    return status;
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    return ritz_tangential_find(request, out, NULL);
+}
+
+const ritz_method ritz_method_tangential = {
+    .name = "tangential",
+    .summary = "answers at mirrored poles, a search in H2 (second-order IRKA)",
+    .reference = "Wyatt2012",
+    .when = "few inputs and outputs that drive few of many modes",
+    .cost = "a complex factor a point and round, some 2 to 50 rounds",
+    .holds = "the response at its points, in its directions; from above",
+    .fails = "light damping where all modes count: modes are better in H2",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
+            RITZ_USES_LOADS | RITZ_USES_DAMPING,
+    .make = make,
+};

@@ -1,0 +1,41 @@
+/* Dense matrices that need not be symmetric: what LAPACK and SLICOT do. */
+#ifndef RITZ_LINEAR_GENERAL_H
+#define RITZ_LINEAR_GENERAL_H
+
+#include <ritz/dense.h>
+
+#include <stdbool.h>
+
+/**
+ * X := A^-1 X by an LU factor; X := A'^-1 X if @p transposed.
+ *
+ * @return RITZ_ERR_SINGULAR if A is singular to working accuracy
+ */
+ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
+                               ritz_dense *X);
+
+/**
+ * A = U diag(s) V', of min(m, n) values, descending.
+ *
+ * @param[out] U  m x min(m, n), or m x m with @p V
+ * @param[out] s  min(m, n), to be freed
+ * @param[out] V  n x n; NULL: not wanted
+ */
+ritz_status ritz_general_svd(const ritz_dense *A, ritz_dense *U, double **s,
+                             ritz_dense *V);
+
+/**
+ * The factor of a Gramian, which itself is never formed (SLICOT SB03OD, after
+ * [Hammarling1982]):
+ *
+ *     A W + W A' + B B' = 0,   W = U U',   U upper triangular
+ *
+ * @return RITZ_ERR_ARGUMENT if A has an eigenvalue that is not left of the axis
+ */
+ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
+                                 ritz_dense *U);
+
+/** The transpose. */
+ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);
+
+#endif

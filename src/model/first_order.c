@@ -1,0 +1,312 @@
+/*
+ * K Phi = M Phi Lambda, Phi'M Phi = I, of a dense model. Accelerations are
+ * written out, u'' = Phi (B u - Lambda q - Delta q').
+ *
+ * Motion without mass has no modes here. Undamped, it answers at once: with R
+ * the share of those infinite eigenvalues in the flexibility,
+ *
+ *     (K + s M)^-1 = Phi (Lambda + s)^-1 Phi' + R     for every s,
+ *
+ * u = Phi q + R B u, and C R B feeds through. D R must be zero.
+ */
+#include "model/first_order.h"
+
+#include "base/alloc.h"
+#include "linear/general.h"
+
+#include <ritz/eigen.h>
+#include <ritz/state_space.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Of the same product in magnitudes: smaller entries are rounding. */
+static const double rounding = 64.0 * DBL_EPSILON;
+/* What a shifted solve leaves of a share that is zero, relative. */
+static const double unseen = 1e-8;
+
+ritz_status ritz_structure_of_component(const ritz_component *component,
+                                        ritz_structure *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure model = {0};
+    ritz_dampers dampers = {0};
+
+    RITZ_FAIL_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " dofs are too many for dense matrices of states, "
+                 "there can be %d: reduce it by another method first",
+                 component->num_dofs, RITZ_STATE_DOFS);
+    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
+                 "structural damping is of harmonic motion and has no states, "
+                 "give it as a modal ratio");
+    RITZ_TRY(ritz_sparse_dense(&component->K, &model.K));
+    RITZ_TRY(ritz_sparse_dense(&component->M, &model.M));
+    if (component->D.colptr)
+        RITZ_TRY(ritz_sparse_dense(&component->D, &model.D));
+    RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
+    RITZ_TRY(ritz_dampers_install(&dampers, &model.K, &model.D));
+    *out = model;
+    model = (ritz_structure){0};
+done:
+    ritz_dampers_free(&dampers);
+    ritz_structure_free(&model);
+    return status;
+}
+
+ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
+                                      ritz_structure *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure model = {0};
+    ritz_dampers dampers = {0};
+
+    RITZ_FAIL_IF(reduced->K4.val, RITZ_ERR_ARGUMENT,
+                 "structural damping is of harmonic motion and has no states, "
+                 "give it as a modal ratio");
+    RITZ_TRY(ritz_dense_copy(&reduced->K, &model.K));
+    RITZ_TRY(ritz_dense_copy(&reduced->M, &model.M));
+    if (reduced->D.val)
+        RITZ_TRY(ritz_dense_copy(&reduced->D, &model.D));
+    RITZ_TRY(ritz_dampers_copy(&reduced->dampers, &dampers));
+    RITZ_TRY(ritz_dampers_install(&dampers, &model.K, &model.D));
+    *out = model;
+    model = (ritz_structure){0};
+done:
+    ritz_dampers_free(&dampers);
+    ritz_structure_free(&model);
+    return status;
+}
+
+void ritz_structure_free(ritz_structure *model)
+{
+    ritz_dense_free(&model->K);
+    ritz_dense_free(&model->M);
+    ritz_dense_free(&model->D);
+}
+
+static ritz_status magnitudes(const ritz_dense *A, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_copy(A, out));
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        out->val[k] = fabs(out->val[k]);
+done:
+    return status;
+}
+
+/* Phi'D Phi; what of a rigid motion is no more than rounding is zero. */
+static ritz_status project_damping(const ritz_dense *D, ritz_first_order *model)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense DPhi = {0}, size = {0}, shape = {0}, most = {0};
+
+    RITZ_TRY(ritz_dense_mul(D, &model->Phi, &DPhi));
+    RITZ_TRY(ritz_dense_mul_tn(&model->Phi, &DPhi, &model->Delta));
+    ritz_dense_free(&DPhi);
+    RITZ_TRY(magnitudes(D, &size));
+    RITZ_TRY(magnitudes(&model->Phi, &shape));
+    RITZ_TRY(ritz_dense_mul(&size, &shape, &DPhi));
+    RITZ_TRY(ritz_dense_mul_tn(&shape, &DPhi, &most));
+    for (int64_t j = 0; j < model->count; j++)
+        for (int64_t i = 0; i < model->count; i++)
+            if ((i < model->num_rigid || j < model->num_rigid) &&
+                fabs(ritz_dense_col(&model->Delta, j)[i]) <=
+                    rounding * ritz_dense_col(&most, j)[i])
+                ritz_dense_col(&model->Delta, j)[i] = 0.0;
+done:
+    ritz_dense_free(&DPhi);
+    ritz_dense_free(&size);
+    ritz_dense_free(&shape);
+    ritz_dense_free(&most);
+    return status;
+}
+
+/* 2 zeta w, or a + b w^2, which is of rigid motion too. */
+static void add_damping(const ritz_damping *damping, ritz_first_order *model)
+{
+    bool rayleigh = ritz_damping_is_rayleigh(damping);
+
+    for (int64_t k = 0; k < model->count; k++) {
+        double w = sqrt(fmax(model->lambda[k], 0.0));
+        double rate = 0.0;
+
+        if (rayleigh)
+            rate = damping->a + damping->b * model->lambda[k];
+        else if (k >= model->num_rigid)
+            rate = 2.0 * w *
+                   ritz_damping_of_mode(damping, k - model->num_rigid, w);
+        ritz_dense_col(&model->Delta, k)[k] += rate;
+    }
+}
+
+/* R X = (K + s M)^-1 X - Phi (Lambda + s)^-1 Phi'X, and |.| of the first. */
+static ritz_status massless_share(const ritz_structure *model,
+                                  const ritz_first_order *modes,
+                                  const ritz_dense *X, ritz_dense *RX,
+                                  double *size)
+{
+    ritz_status status = RITZ_OK;
+    int64_t r = modes->num_rigid;
+    double s = r < modes->count ? fabs(modes->lambda[r]) : 1.0;
+    ritz_dense A = {0}, Y = {0}, q = {0}, part = {0};
+
+    RITZ_TRY(ritz_dense_copy(&model->K, &A));
+    for (int64_t k = 0; k < A.nrow * A.ncol; k++)
+        A.val[k] += s * model->M.val[k];
+    RITZ_TRY(ritz_dense_copy(X, &Y));
+    RITZ_TRY_IN("motion without mass", ritz_general_solve(&A, false, &Y));
+    *size = ritz_dense_max(&Y);
+    RITZ_TRY(ritz_dense_mul_tn(&modes->Phi, X, &q));
+    for (int64_t j = 0; j < q.ncol; j++)
+        for (int64_t i = 0; i < q.nrow; i++)
+            ritz_dense_col(&q, j)[i] /= modes->lambda[i] + s;
+    RITZ_TRY(ritz_dense_mul(&modes->Phi, &q, &part));
+    for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
+        Y.val[k] -= part.val[k];
+    *RX = Y;
+    Y = (ritz_dense){0};
+done:
+    ritz_dense_free(&A);
+    ritz_dense_free(&Y);
+    ritz_dense_free(&q);
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* Whether outputs see a derivative of what massless dofs answer at once. */
+static ritz_status is_improper(const ritz_dense *C, const ritz_dense *RB,
+                               double size, bool *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense seen = {0};
+
+    RITZ_TRY(ritz_dense_mul(C, RB, &seen));
+    *out = ritz_dense_max(&seen) > unseen * ritz_dense_max(C) * size;
+done:
+    ritz_dense_free(&seen);
+    return status;
+}
+
+/* feed += C R B, once nothing else depends on R. */
+static ritz_status add_massless(const ritz_structure *model, const ritz_io *io,
+                                const ritz_damping *damping,
+                                ritz_first_order *modes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense RB = {0}, RD = {0}, feed = {0};
+    bool damped = ritz_damping_is_rayleigh(damping) && damping->b > 0.0;
+    bool improper[2] = {false, false};
+    double size = 0.0;
+
+    if (model->D.val && !damped) {
+        RITZ_TRY(massless_share(model, modes, &model->D, &RD, &size));
+        damped = ritz_dense_max(&RD) > unseen * size;
+    }
+    RITZ_FAIL_IF(damped, RITZ_ERR_ARGUMENT,
+                 "dofs without mass are damped, and have no state of their "
+                 "own: condense them first");
+    RITZ_TRY(massless_share(model, modes, &io->B, &RB, &size));
+    RITZ_TRY(is_improper(&io->Cv, &RB, size, &improper[0]));
+    RITZ_TRY(is_improper(&io->Ca, &RB, size, &improper[1]));
+    RITZ_FAIL_IF(improper[0] || improper[1], RITZ_ERR_ARGUMENT,
+                 "an output is the %s of a dof without mass that an input "
+                 "drives: no states can give it",
+                 improper[0] ? "velocity" : "acceleration");
+    RITZ_TRY(ritz_dense_mul(&io->C, &RB, &feed));
+    for (int64_t k = 0; k < feed.nrow * feed.ncol; k++)
+        if (fabs(feed.val[k]) > unseen * ritz_dense_max(&io->C) * size)
+            modes->feed.val[k] += feed.val[k];
+done:
+    ritz_dense_free(&RB);
+    ritz_dense_free(&RD);
+    ritz_dense_free(&feed);
+    return status;
+}
+
+/* C - Ca Phi Lambda, Cv - Ca Phi Delta, Ca Phi B. */
+static ritz_status project_io(const ritz_io *io, ritz_first_order *model)
+{
+    ritz_status status = RITZ_OK;
+    ritz_io part = {0};
+    ritz_dense CaDelta = {0};
+
+    RITZ_TRY(ritz_io_project(io, &model->Phi, &part));
+    RITZ_TRY(ritz_dense_mul(&part.Ca, &model->Delta, &CaDelta));
+    RITZ_TRY(ritz_dense_mul(&part.Ca, &part.B, &model->feed));
+    for (int64_t k = 0; k < model->count; k++)
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            double ca = ritz_dense_col(&part.Ca, k)[i];
+
+            ritz_dense_col(&part.C, k)[i] -= ca * model->lambda[k];
+            ritz_dense_col(&part.Cv, k)[i] -= ritz_dense_col(&CaDelta, k)[i];
+        }
+    model->B = part.B;
+    model->C = part.C;
+    model->Cv = part.Cv;
+    part.B = part.C = part.Cv = (ritz_dense){0};
+done:
+    ritz_io_free(&part);
+    ritz_dense_free(&CaDelta);
+    return status;
+}
+
+static ritz_status find_modes(const ritz_structure *model,
+                              ritz_first_order *modes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_eigen_dense(&model->K, &model->M, &pairs));
+    modes->num_dofs = model->K.nrow;
+    modes->count = pairs.Phi.ncol;
+    modes->num_rigid = pairs.num_rigid;
+    modes->Phi = pairs.Phi;
+    modes->lambda = pairs.lambda;
+    pairs.Phi = (ritz_dense){0};
+    pairs.lambda = NULL;
+    for (int64_t k = 0; k < modes->num_rigid; k++)
+        modes->lambda[k] = 0.0;
+    RITZ_TRY(ritz_dense_mul(&model->M, &modes->Phi, &modes->MPhi));
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+ritz_status ritz_first_order_new(const ritz_structure *model, const ritz_io *io,
+                                 const ritz_damping *damping,
+                                 ritz_first_order *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_first_order modes = {0};
+
+    RITZ_TRY(find_modes(model, &modes));
+    if (model->D.val)
+        RITZ_TRY(project_damping(&model->D, &modes));
+    else
+        RITZ_TRY(ritz_dense_new(modes.count, modes.count, &modes.Delta));
+    add_damping(damping, &modes);
+    RITZ_TRY(project_io(io, &modes));
+    if (modes.count < modes.num_dofs && io->num_inputs + io->num_outputs > 0)
+        RITZ_TRY(add_massless(model, io, damping, &modes));
+    *out = modes;
+    modes = (ritz_first_order){0};
+done:
+    ritz_first_order_free(&modes);
+    return status;
+}
+
+void ritz_first_order_free(ritz_first_order *model)
+{
+    ritz_dense_free(&model->Phi);
+    ritz_dense_free(&model->MPhi);
+    free(model->lambda);
+    ritz_dense_free(&model->Delta);
+    ritz_dense_free(&model->B);
+    ritz_dense_free(&model->C);
+    ritz_dense_free(&model->Cv);
+    ritz_dense_free(&model->feed);
+    *model = (ritz_first_order){0};
+}

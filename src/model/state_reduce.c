@@ -1,0 +1,182 @@
+/*
+ * A component in a basis of states, in modal coordinates: with z = [q; q'],
+ * u = Phi q, and of the first-order form
+ *
+ *     [I 0; 0 M] x' = [0 I; -K -D] x + [0; B] u
+ *
+ *     T = [Phi T_q; Phi T_v],   W = [M Phi W_q; Phi W_v],
+ *     W'E T = W_q'T_q + W_v'T_v
+ *     W'A T = W_q'T_v - W_v' (Lambda T_q + Delta T_v),   W'B = W_v' Phi'B
+ *
+ * Differences of large numbers, which K u is for every smooth u, are so taken
+ * once, when the modes are found.
+ */
+#include <ritz/state_space.h>
+
+#include "base/alloc.h"
+#include "linear/general.h"
+#include "model/first_order.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* A'(rows first..first + n - 1 of X) */
+static ritz_status take(const ritz_dense *A, const ritz_dense *X, int64_t first,
+                        ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_new(A->nrow, X->ncol, &part));
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(&part, j)[i] = ritz_dense_col(X, j)[first + i];
+    RITZ_TRY(ritz_dense_mul_tn(A, &part, out));
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* A := A + sign B */
+static void add(double sign, const ritz_dense *B, ritz_dense *A)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        A->val[k] += sign * B->val[k];
+}
+
+/* out = A'B + sign C'D */
+static ritz_status two_products(const ritz_dense *A, const ritz_dense *B,
+                                double sign, const ritz_dense *C,
+                                const ritz_dense *D, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense second = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(A, B, out));
+    RITZ_TRY(ritz_dense_mul_tn(C, D, &second));
+    add(sign, &second, out);
+done:
+    ritz_dense_free(&second);
+    return status;
+}
+
+/* Lambda T_q + Delta T_v */
+static ritz_status restoring(const ritz_first_order *modes,
+                             const ritz_dense *T_q, const ritz_dense *T_v,
+                             ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_mul(&modes->Delta, T_v, out));
+    for (int64_t j = 0; j < T_q->ncol; j++)
+        for (int64_t i = 0; i < T_q->nrow; i++)
+            ritz_dense_col(out, j)[i] +=
+                modes->lambda[i] * ritz_dense_col(T_q, j)[i];
+done:
+    return status;
+}
+
+/* C T_q + Cv T_v, and what feeds through. */
+static ritz_status project_outputs(const ritz_first_order *modes,
+                                   const ritz_dense *T_q, const ritz_dense *T_v,
+                                   ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense C = {0}, rate = {0};
+
+    RITZ_TRY(ritz_dense_mul(&modes->C, T_q, &C));
+    RITZ_TRY(ritz_dense_mul(&modes->Cv, T_v, &rate));
+    add(1.0, &rate, &C);
+    ritz_dense_free(&out->C);
+    out->C = C;
+    C = (ritz_dense){0};
+    add(1.0, &modes->feed, &out->D);
+done:
+    ritz_dense_free(&C);
+    ritz_dense_free(&rate);
+    return status;
+}
+
+static ritz_status project(const ritz_first_order *modes,
+                           const ritz_basis *basis, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = modes->num_dofs;
+    bool own = basis->W.val != NULL;
+    const ritz_dense *W = own ? &basis->W : &basis->T;
+    ritz_dense T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0};
+    ritz_dense F = {0}, E = {0};
+
+    ritz_dense_free(&out->A);
+    ritz_dense_free(&out->B);
+    RITZ_TRY(take(&modes->MPhi, &basis->T, 0, &T_q));
+    RITZ_TRY(take(&modes->MPhi, &basis->T, n, &T_v));
+    RITZ_TRY(take(&modes->Phi, W, 0, &W_q));
+    RITZ_TRY(take(&modes->MPhi, W, n, &W_v));
+    RITZ_TRY(restoring(modes, &T_q, &T_v, &F));
+    RITZ_TRY(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, &E));
+    RITZ_TRY(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
+    RITZ_TRY(ritz_dense_mul_tn(&W_v, &modes->B, &out->B));
+    RITZ_TRY_IN("left against right vectors",
+                ritz_general_solve(&E, false, &out->A));
+    RITZ_TRY(ritz_general_solve(&E, false, &out->B));
+    RITZ_TRY(project_outputs(modes, &T_q, &T_v, out));
+done:
+    ritz_dense_free(&T_q);
+    ritz_dense_free(&T_v);
+    ritz_dense_free(&W_q);
+    ritz_dense_free(&W_v);
+    ritz_dense_free(&F);
+    ritz_dense_free(&E);
+    return status;
+}
+
+static ritz_status check(const ritz_component *component,
+                         const ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *T = &basis->T;
+    const ritz_dense *W = &basis->W;
+
+    RITZ_FAIL_IF(!basis->states, RITZ_ERR_ARGUMENT,
+                 "the basis is of displacements, not of states");
+    RITZ_FAIL_IF(T->nrow != 2 * component->num_dofs, RITZ_ERR_ARGUMENT,
+                 "the basis has %" PRId64
+                 " rows, the component has 2 x %" PRId64 " states",
+                 T->nrow, component->num_dofs);
+    RITZ_FAIL_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
+                 RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
+                 " x %" PRId64 " right ones",
+                 W->nrow, W->ncol, T->nrow, T->ncol);
+done:
+    return status;
+}
+
+ritz_status ritz_reduce_states(const ritz_component *component,
+                               const ritz_damping *damping,
+                               const ritz_basis *basis, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure model = {0};
+    ritz_first_order modes = {0};
+    ritz_state_space reduced = {0};
+
+    RITZ_TRY(check(component, basis));
+    RITZ_TRY(ritz_structure_of_component(component, &model));
+    RITZ_TRY(ritz_first_order_new(&model, &component->io, damping, &modes));
+    RITZ_TRY(ritz_state_space_new(basis->T.ncol, &component->io, &reduced));
+    RITZ_TRY(project(&modes, basis, &reduced));
+    ritz_columns_free(&reduced.columns);
+    RITZ_TRY(ritz_columns_copy(&basis->columns, &reduced.columns));
+    reduced.origin = basis->origin;
+    memcpy(reduced.units, component->units, sizeof reduced.units);
+    ritz_damping_print(damping, reduced.damping);
+    *out = reduced;
+    reduced = (ritz_state_space){0};
+done:
+    ritz_structure_free(&model);
+    ritz_first_order_free(&modes);
+    ritz_state_space_free(&reduced);
+    return status;
+}

@@ -1,0 +1,304 @@
+/*
+ * First-order form of M u'' + D u' + K u = B f, x = [u; u']:
+ *
+ *     A = [0 I; -M^-1 K -M^-1 D],   B = [0; M^-1 B],
+ *     C = [C - Ca M^-1 K, Cv - Ca M^-1 D],   D = Ca M^-1 B
+ *
+ * Damping ratios are M Phi diag(2 zeta w) Phi'M beside D. Where M is singular
+ * x = [q; q'] of the modes with mass, as first_order.c finds them.
+ */
+#include <ritz/state_space.h>
+
+#include "base/alloc.h"
+#include "linear/general.h"
+#include "model/first_order.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static ritz_status copy_names(int64_t count, const char (*from)[RITZ_NAME_SIZE],
+                              char (**out)[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(*out, count);
+    if (count > 0)
+        memcpy(*out, from, (size_t)count * RITZ_NAME_SIZE);
+done:
+    return status;
+}
+
+ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
+                                 ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space model = {.num_inputs = io->num_inputs,
+                              .num_outputs = io->num_outputs};
+
+    RITZ_TRY(ritz_dense_new(states, states, &model.A));
+    RITZ_TRY(ritz_dense_new(states, io->num_inputs, &model.B));
+    RITZ_TRY(ritz_dense_new(io->num_outputs, states, &model.C));
+    RITZ_TRY(ritz_dense_new(io->num_outputs, io->num_inputs, &model.D));
+    RITZ_TRY(copy_names(io->num_inputs, io->input, &model.input));
+    RITZ_TRY(copy_names(io->num_outputs, io->output, &model.output));
+    RITZ_NEW(model.limit, io->num_outputs);
+    for (int64_t k = 0; k < io->num_outputs; k++)
+        model.limit[k] = io->limit[k];
+    RITZ_TRY(ritz_columns_new(states, &model.columns));
+    for (int64_t k = 0; k < states; k++)
+        model.columns.kind[k] = RITZ_COLUMN_STATE;
+    *out = model;
+    model = (ritz_state_space){0};
+done:
+    ritz_state_space_free(&model);
+    return status;
+}
+
+static ritz_status check_matrix(const char *name, const ritz_dense *A,
+                                int64_t nrow, int64_t ncol)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(A->nrow != nrow || A->ncol != ncol, RITZ_ERR_FORMAT,
+                 "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
+                 " x %" PRId64 " is due",
+                 name, A->nrow, A->ncol, nrow, ncol);
+    for (int64_t k = 0; k < nrow * ncol; k++)
+        RITZ_FAIL_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
+                     "'%s' is not finite", name);
+done:
+    return status;
+}
+
+ritz_status ritz_state_space_check(const ritz_state_space *model)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->A.nrow;
+    ritz_dense one = {0};
+
+    RITZ_TRY(check_matrix("A", &model->A, n, n));
+    RITZ_TRY(check_matrix("B", &model->B, n, model->num_inputs));
+    RITZ_TRY(check_matrix("C", &model->C, model->num_outputs, n));
+    RITZ_TRY(
+        check_matrix("D", &model->D, model->num_outputs, model->num_inputs));
+    RITZ_FAIL_IF(model->columns.count != n, RITZ_ERR_FORMAT,
+                 "%" PRId64 " states are described of %" PRId64,
+                 model->columns.count, n);
+    if (model->E.val) {
+        RITZ_TRY(check_matrix("E", &model->E, n, n));
+        RITZ_TRY(ritz_dense_new(n, n > 0, &one));
+        RITZ_FAIL_IF(ritz_general_solve(&model->E, false, &one) ==
+                         RITZ_ERR_SINGULAR,
+                     RITZ_ERR_FORMAT, "'E' is singular");
+    }
+done:
+    ritz_dense_free(&one);
+    return status;
+}
+
+/* D + a M + b K + M Phi diag(2 zeta w) Phi'M. */
+static ritz_status total_damping(const ritz_structure *model, const ritz_io *io,
+                                 const ritz_damping *damping, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->K.nrow;
+    const ritz_structure bare = {model->K, model->M, {0}};
+    ritz_first_order modes = {0};
+    ritz_dense MPhiDelta = {0}, D = {0};
+
+    if (damping->kind != RITZ_DAMPING_NONE &&
+        !ritz_damping_is_rayleigh(damping)) {
+        RITZ_TRY(ritz_first_order_new(&bare, io, damping, &modes));
+        RITZ_TRY(ritz_dense_mul(&modes.MPhi, &modes.Delta, &MPhiDelta));
+        RITZ_TRY(ritz_dense_mul_nt(&MPhiDelta, &modes.MPhi, &D));
+    } else {
+        RITZ_TRY(ritz_dense_new(n, n, &D));
+    }
+    for (int64_t k = 0; k < n * n; k++) {
+        if (ritz_damping_is_rayleigh(damping))
+            D.val[k] +=
+                damping->a * model->M.val[k] + damping->b * model->K.val[k];
+        if (model->D.val)
+            D.val[k] += model->D.val[k];
+    }
+    *out = D;
+    D = (ritz_dense){0};
+done:
+    ritz_first_order_free(&modes);
+    ritz_dense_free(&MPhiDelta);
+    ritz_dense_free(&D);
+    return status;
+}
+
+/* C(:, first..) += sign A B */
+static ritz_status add_product(double sign, const ritz_dense *A,
+                               const ritz_dense *B, int64_t first,
+                               ritz_dense *C)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AB = {0};
+
+    RITZ_TRY(ritz_dense_mul(A, B, &AB));
+    for (int64_t k = 0; k < AB.nrow * AB.ncol; k++)
+        C->val[k + first * C->nrow] += sign * AB.val[k];
+done:
+    ritz_dense_free(&AB);
+    return status;
+}
+
+/* K, D and B are M^-1 K and so on here. */
+static ritz_status fill(const ritz_dense *K, const ritz_dense *D,
+                        const ritz_dense *B, const ritz_io *io,
+                        ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = K->nrow;
+
+    for (int64_t j = 0; j < n; j++) {
+        ritz_dense_col(&out->A, n + j)[j] = 1.0;
+        for (int64_t i = 0; i < n; i++) {
+            ritz_dense_col(&out->A, j)[n + i] = -ritz_dense_col(K, j)[i];
+            ritz_dense_col(&out->A, n + j)[n + i] = -ritz_dense_col(D, j)[i];
+        }
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            ritz_dense_col(&out->C, j)[i] = ritz_dense_col(&io->C, j)[i];
+            ritz_dense_col(&out->C, n + j)[i] = ritz_dense_col(&io->Cv, j)[i];
+        }
+    }
+    for (int64_t j = 0; j < io->num_inputs; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(&out->B, j)[n + i] = ritz_dense_col(B, j)[i];
+    if (ritz_dense_max(&io->Ca) == 0.0)
+        goto done;
+    RITZ_TRY(add_product(-1.0, &io->Ca, K, 0, &out->C));
+    RITZ_TRY(add_product(-1.0, &io->Ca, D, n, &out->C));
+    RITZ_TRY(add_product(1.0, &io->Ca, B, 0, &out->D));
+done:
+    return status;
+}
+
+/* x = [u; u']; RITZ_ERR_SINGULAR if M is. */
+static ritz_status by_dofs(const ritz_structure *model, const ritz_dense *D,
+                           const ritz_io *io, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *const parts[] = {&model->K, D, &io->B};
+    ritz_dense solved[3] = {0};
+    ritz_state_space made = {0};
+
+    for (int k = 0; k < 3; k++) {
+        RITZ_TRY(ritz_dense_copy(parts[k], &solved[k]));
+        RITZ_TRY(ritz_general_solve(&model->M, false, &solved[k]));
+    }
+    RITZ_TRY(ritz_state_space_new(2 * D->nrow, io, &made));
+    RITZ_TRY(fill(&solved[0], &solved[1], &solved[2], io, &made));
+    *out = made;
+    made = (ritz_state_space){0};
+done:
+    for (int k = 0; k < 3; k++)
+        ritz_dense_free(&solved[k]);
+    ritz_state_space_free(&made);
+    return status;
+}
+
+/* x = [q; q'] */
+static ritz_status by_modes(const ritz_structure *model, const ritz_io *io,
+                            const ritz_damping *damping, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_first_order modes = {0};
+    ritz_state_space made = {0};
+    int64_t m = 0;
+
+    RITZ_TRY(ritz_first_order_new(model, io, damping, &modes));
+    m = modes.count;
+    RITZ_TRY(ritz_state_space_new(2 * m, io, &made));
+    for (int64_t j = 0; j < m; j++) {
+        ritz_dense_col(&made.A, m + j)[j] = 1.0;
+        ritz_dense_col(&made.A, j)[m + j] = -modes.lambda[j];
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(&made.A, m + j)[m + i] =
+                -ritz_dense_col(&modes.Delta, j)[i];
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            ritz_dense_col(&made.C, j)[i] = ritz_dense_col(&modes.C, j)[i];
+            ritz_dense_col(&made.C, m + j)[i] = ritz_dense_col(&modes.Cv, j)[i];
+        }
+    }
+    for (int64_t j = 0; j < io->num_inputs; j++)
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(&made.B, j)[m + i] = ritz_dense_col(&modes.B, j)[i];
+    ritz_dense_free(&made.D);
+    made.D = modes.feed;
+    modes.feed = (ritz_dense){0};
+    *out = made;
+    made = (ritz_state_space){0};
+done:
+    ritz_first_order_free(&modes);
+    ritz_state_space_free(&made);
+    return status;
+}
+
+static ritz_status convert(const ritz_structure *model, const ritz_io *io,
+                           const ritz_damping *damping, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense D = {0};
+
+    RITZ_TRY(total_damping(model, io, damping, &D));
+    status = by_dofs(model, &D, io, out);
+    if (status == RITZ_ERR_SINGULAR)
+        RITZ_TRY(by_modes(model, io, damping, out));
+    RITZ_TRY(status);
+    ritz_damping_print(damping, out->damping);
+done:
+    ritz_dense_free(&D);
+    return status;
+}
+
+ritz_status ritz_state_space_of_component(const ritz_component *component,
+                                          const ritz_damping *damping,
+                                          ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure model = {0};
+
+    RITZ_TRY(ritz_structure_of_component(component, &model));
+    RITZ_TRY(convert(&model, &component->io, damping, out));
+    memcpy(out->units, component->units, sizeof out->units);
+done:
+    ritz_structure_free(&model);
+    return status;
+}
+
+ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
+                                        const ritz_damping *damping,
+                                        ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure model = {0};
+
+    RITZ_TRY(ritz_structure_of_reduced(reduced, &model));
+    RITZ_TRY(convert(&model, &reduced->io, damping, out));
+    memcpy(out->units, reduced->units, sizeof out->units);
+    out->origin = reduced->origin;
+done:
+    ritz_structure_free(&model);
+    return status;
+}
+
+void ritz_state_space_free(ritz_state_space *model)
+{
+    ritz_dense_free(&model->A);
+    ritz_dense_free(&model->B);
+    ritz_dense_free(&model->C);
+    ritz_dense_free(&model->D);
+    ritz_dense_free(&model->E);
+    free(model->input);
+    free(model->output);
+    free(model->limit);
+    ritz_columns_free(&model->columns);
+    ritz_measures_free(&model->estimates);
+    *model = (ritz_state_space){0};
+}

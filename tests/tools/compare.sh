@@ -1,0 +1,146 @@
+#!/bin/sh
+# Two-stage reduction as its user meets it: what stage two is made from, what it
+# is augmented by, what becomes of extraneous modes, tracks, tolerances.
+# Usage: compare.sh FOLDER-OF-THE-TOOLS
+here=$(cd "$(dirname "$0")" && pwd)
+data=${RITZ_DATA:-$here/../../data}/dualspin
+. "$here/tap.sh"
+
+# --- the spacecraft, at few angles so as to be quick ---------------------------
+
+for name in rotor stator; do
+    ports='--port bearing=1'
+    [ "$name" = stator ] && ports="$ports --port scan=5"
+    [ "$name" = rotor ] && ports="$ports --port boom=33"
+    # shellcheck disable=SC2086
+    expect 0 '' ritz-import --stiffness "$data/$name.op4:KGG" \
+        --mass "$data/$name.op4:MGG" --bulk "$data/$name.bdf" $ports \
+        --units 'kg m s' -q -o "$name.h5"
+done
+expect 0 '' ritz-import --mass "$data/platform.op4:MGG" \
+    --bulk "$data/platform.bdf" --port scan=1 --units 'kg m s' -q -o platform.h5
+
+# scene NAME KEYS...: a scene of the three, with these keys beside them.
+scene() {
+    file=$1.yaml
+    shift
+    cat >"$file" <<'END'
+scene: two bodies and a platform
+components:
+  rotor: {model: rotor.h5, basis: macneal-rubin, modes: 12}
+  stator: {model: stator.h5, basis: craig-bampton, modes: 4}
+  platform: {model: platform.h5, basis: rigid}
+joints:
+  - {name: clock, between: [rotor/bearing, stator/bearing], type: hinge, axis: [0, 0, 1], angles_deg: [0, 90]}
+  - {name: cone, between: [stator/scan, platform/scan], type: hinge, axis: [0, 1, 0], angles_deg: [0]}
+inputs:
+  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}
+  - {name: thruster, at: rotor/boom, component: [1, 3]}
+outputs:
+  - {name: gyro, at: platform/scan, component: 6}
+  - {name: tip, at: rotor/boom, component: 3}
+band_hz: [0, 2]
+damping: {modal: 0.002}
+END
+    for key in "$@"; do echo "$key" >>"$file"; done
+}
+
+# --- what stage two is made from ------------------------------------------------
+
+scene list 'select: {modes: [1, 2, 4]}'
+expect 0 'modes by a list of 3' ritz-compare list.yaml -o list.h5
+json 0 ritz-compare list.yaml -o list.h5
+holds '  keeps those modes, exact at both angles' \
+    'j["kept"] == [[1, 2, 4], [1, 2, 4]] and all(
+         c["errors"]["frequency"] <= c["errors"]["frequency_allowed"]
+         for c in j["configurations"] if c["listed"])'
+holds '  lists modes that stand for none of them' \
+    'all(c["extraneous"] and not any(e["removed"] for e in c["extraneous"])
+         for c in j["configurations"])'
+scene band 'select: {by: band}'
+expect 0 'modes in the band' ritz-compare band.yaml -o band.h5
+scene krylov 'select: {by: krylov, vectors: 8, start: both}'
+expect 0 'up to 8 Krylov vectors from inputs and outputs at each' \
+    ritz-compare krylov.yaml -o krylov.h5
+json 0 ritz-compare krylov.yaml -o krylov.h5
+holds '  keeps four moments, and no mode' \
+    'all(c["moments"] == 4 and c["errors"]["moments"] < 1e-8 and
+         c["errors"]["frequency"] is None for c in j["configurations"]
+         if c["listed"]) and j["kept"] == [[], []]'
+scene far 'select: {modes: [1, 99]}'
+expect 1 'selection: mode 99 is listed, and there are' \
+    ritz-compare far.yaml -o far.h5
+scene no 'select: {modes: [1], by: band}'
+expect 1 'no.yaml:17:26: modes are chosen by a list or by something, not both' \
+    ritz-compare no.yaml -o no.h5
+
+# --- static corrections ----------------------------------------------------------
+
+scene component 'select: {by: band}' 'augment: component'
+expect 0 '> inputs, interface' ritz-compare component.yaml -o component.h5
+json 0 ritz-compare component.yaml -o component.h5
+holds '  is exact at every angle with all attached, and with fewer is not' \
+    '[max(c["gain_listed"], c["gain_between"]) < 1e-8
+      for c in j["candidates"]] == [False, False, False, True, True]'
+scene auto 'select: {by: band}' \
+    'augment: {level: component, attached: auto, tolerance: 1e-3}'
+json 0 ritz-compare auto.yaml -o auto.h5
+holds '  chooses the smallest set that is near enough' \
+    'min((sum(c["orders"]), c["attached"]) for c in j["candidates"]
+         if c["singular_value"] <= 1e-3)[0] ==
+     [sum(c["orders"]) for c in j["candidates"] if c["chosen"]][0]'
+scene tight 'select: {modes: [1]}' \
+    'augment: {level: system, attached: auto, tolerance: 1e-9}'
+expect 0 'warning: no set of attached dofs brings the largest singular value' \
+    ritz-compare tight.yaml -o tight.h5
+scene one 'select: {modes: [1]}' 'augment: {level: system, attached: [motor]}'
+expect 0 'Composite set: 20 vectors from 2 configurations' \
+    ritz-compare one.yaml -o one.h5
+
+# --- extraneous modes --------------------------------------------------------------
+
+scene remove 'select: {modes: [1, 2, 4]}' 'extraneous: remove'
+expect 0 'were removed; the components still contain them' \
+    ritz-compare remove.yaml --components r- -o remove.h5
+json 0 ritz-info remove.h5
+holds '  leaves eight rigid modes and those that were kept' \
+    'all(len(c["frequencies_hz"]) == 11 for c in j["configurations"])'
+expect 0 'extraneous_removed' ritz-compare list.yaml --extraneous out-of-band \
+    --json -o list.h5
+expect 1 "--extraneous: unknown fate of extraneous modes 'drop'" \
+    ritz-compare list.yaml --extraneous drop -o list.h5
+
+# --- tracks, tolerances --------------------------------------------------------------
+
+expect 0 'Flexible modes over 2 configurations' \
+    ritz-assemble list.yaml --tracks tracks.tsv -o stage1.h5
+json 0 ritz-assemble list.yaml -o stage1.h5
+holds '  says which modes change places, tie, mix or are lost' \
+    'set(j["tracking"]) == {"tracks", "swaps", "near_ties",
+                            "avoided_crossings", "lost"}'
+expect 0 'track	configuration	mode	hertz	mac' head -n 1 tracks.tsv
+expect 2 '--full makes one component' \
+    ritz-assemble list.yaml --full --tracks t.tsv -o full.h5
+expect 0 'Composite tolerance against orders' \
+    ritz-compare component.yaml --tolerances 1e-12,1e-3 \
+    --tolerance-table tolerances.tsv --tracks t.tsv -o component.h5
+expect 0 'tolerance	total	system	removed	frequency	gain	response	rotor' \
+    head -n 1 tolerances.tsv
+expect 0 '3 tolerances.tsv' wc -l tolerances.tsv
+json 0 ritz-compare component.yaml --tolerances 1e-12,1e-3 -o component.h5
+holds '  a looser tolerance costs exactness and never gain' \
+    'j["tolerances"][0]["frequency"] < j["tolerances"][1]["frequency"] and
+     all(t["gain"] < 1e-8 for t in j["tolerances"])'
+expect 2 "--tolerances takes numbers between 0 and 1, not '2'" \
+    ritz-compare list.yaml --tolerances 1e-3,2 -o list.h5
+
+# --- an angle to add -------------------------------------------------------------------
+
+scene wide 'select: {modes: [1, 2, 3, 4, 5]}' 'augment: system' \
+    'composite: {reference: [{clock: 0}]}'
+json 0 ritz-compare wide.yaml -o wide.h5
+holds '  the worst error between listed angles is told' \
+    'j["suggestion"]["at"] == "clock=45,cone=0" and
+     j["suggestion"]["error"] >= 0'
+
+echo "1..$count"

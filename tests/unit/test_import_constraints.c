@@ -1,0 +1,844 @@
+/* Constraints at import: elimination, recovery, ports of grids made for them. */
+#include "testing.h"
+
+#include <ritz/bulk.h>
+#include <ritz/eigen.h>
+#include <ritz/import.h>
+#include <ritz/reduced.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/ritz-tied-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    static const char *const names[] = {"k.mtx", "m.mtx", "deck.bdf", "dofs"};
+    char path[256];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[k]);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+static const char *at(const char *name)
+{
+    static char path[8][256];
+    static int turn = 0;
+
+    turn = (turn + 1) % 8;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static const char *put(const char *name, const char *text)
+{
+    const char *path = at(name);
+    FILE *file = fopen(path, "w");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* A dense symmetric matrix as a file. */
+static const char *put_matrix(const char *name, const ritz_dense *A)
+{
+    const char *path = at(name);
+    FILE *file = fopen(path, "w");
+
+    assert_non_null(file);
+    fprintf(file, "%%%%MatrixMarket matrix array real general\n%lld %lld\n",
+            (long long)A->nrow, (long long)A->ncol);
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        fprintf(file, "%.17g\n", A->val[k]);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+static const char *put_diagonal(const char *name, int n, const double *value)
+{
+    ritz_dense A = {0};
+    const char *path = NULL;
+
+    assert_ok(ritz_dense_new(n, n, &A));
+    for (int k = 0; k < n; k++)
+        A.val[k + k * n] = value[k];
+    path = put_matrix(name, &A);
+    ritz_dense_free(&A);
+    return path;
+}
+
+static double entry(const ritz_sparse *A, int64_t i, int64_t j)
+{
+    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+        if (A->rowind[p] == i)
+            return A->val[p];
+    return 0.0;
+}
+
+static int64_t row(const ritz_component *c, int64_t grid, int64_t direction)
+{
+    return ritz_component_row(c, (ritz_dof){grid, direction});
+}
+
+static void assert_same(const ritz_sparse *A, const ritz_sparse *B,
+                        double bound)
+{
+    assert_int_equal(A->nrow, B->nrow);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            assert_near(entry(A, i, j), entry(B, i, j), bound);
+}
+
+/* ---- an independent elimination ---------------------------------------- */
+
+static const char *shipped(const char *name, size_t size, char *path)
+{
+    const char *data = getenv("RITZ_DATA");
+
+    snprintf(path, size, "%s/tied/%s", data ? data : "", name);
+    return data && access(path, R_OK) == 0 ? path : NULL;
+}
+
+/* data/tied: K and M before, and after elimination by MYSTRAN. */
+static void another_solver_eliminates_to_the_same_matrices(void **state)
+{
+    char path[5][300];
+    ritz_import_request request = {0};
+    ritz_import_report report = {0};
+    ritz_component mine = {0}, theirs = {0};
+
+    (void)state;
+    if (!shipped("kgg.mtx", sizeof path[0], path[0])) {
+        print_message("skipped: no RITZ_DATA\n");
+        skip();
+    }
+    request.stiffness = path[0];
+    request.mass = shipped("mgg.mtx", sizeof path[1], path[1]);
+    request.bulk = shipped("tied.bdf", sizeof path[2], path[2]);
+    assert_ok(ritz_import(&request, &mine, &report));
+    assert_string_equal(report.map, "grids ascending");
+    assert_int_equal(report.num_eliminated, 18);
+    assert_int_equal(report.num_recovered, 18);
+    assert_int_equal(report.num_lost, 0);
+    assert_int_equal(report.num_constraints, 4);
+    assert_string_equal(report.constraint[0], "RBE2 101");
+    assert_string_equal(report.constraint[3], "MPC 9");
+    ritz_import_report_free(&report);
+    /* theirs, by a size that the same deck explains */
+    request.stiffness = shipped("kaa.mtx", sizeof path[3], path[3]);
+    request.mass = shipped("maa.mtx", sizeof path[4], path[4]);
+    assert_ok(ritz_import(&request, &theirs, &report));
+    assert_string_equal(report.map, "grids less SPCs and dependents");
+    assert_int_equal(report.num_eliminated, 0);
+    assert_int_equal(report.num_recovered, 18);
+    /* eps times the entries, up to 1e7 and 9, and the lengths up to 2 */
+    assert_same(&mine.K, &theirs.K, 1e7 * 4.0 * 0x1p-52);
+    assert_same(&mine.M, &theirs.M, 9.0 * 16.0 * 0x1p-52);
+    /* recovered alike from either, as the constraints are the deck's */
+    assert_same(&mine.recovery.G, &theirs.recovery.G, 0.0);
+    assert_int_equal(ritz_grids_find(&theirs.grids, 11) >= 0, 1);
+    ritz_import_report_free(&report);
+    ritz_component_free(&mine);
+    ritz_component_free(&theirs);
+}
+
+static void sizes_of_the_deck_are_told_apart(void **state)
+{
+    char path[300];
+    double ones[60];
+    ritz_import_request request = {0};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    if (!shipped("tied.bdf", sizeof path, path)) {
+        print_message("skipped: no RITZ_DATA\n");
+        skip();
+    }
+    for (int k = 0; k < 60; k++)
+        ones[k] = 1.0;
+    request.bulk = path;
+    request.mass = put_diagonal("m.mtx", 42, ones);
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "has 42 rows, as the deck's grids less SPCs has and its grids "
+                 "less dependents have: --dofs must say which");
+    request.mass = put_diagonal("m.mtx", 41, ones);
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "has 41 rows; the deck explains 60 (10 grids) or 42 (grids "
+                 "less SPCs) or 24 (grids less SPCs and dependents)");
+}
+
+/* ---- closed form ------------------------------------------------------- */
+
+/* Grid 3 at the origin, grid 7 with axes of its own (x to y) at (2, 0, 0). */
+static const char LEVER[] = "CORD2R,4,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n"
+                            "GRID,3\nGRID,7,,2.,0.,0.,4\n"
+                            "RBE2,600,3,123456,7\n";
+
+static void a_mass_on_a_rigid_lever_is_where_it_should_be(void **state)
+{
+    /* 7 has mass 5 and inertia 0.1, 3 has 1, 2, 3, ... on its diagonal */
+    const double k[12] = {10, 20, 30, 40, 50, 60};
+    const double m[12] = {1, 1, 1, 1, 1, 1, 5, 5, 5, 0.1, 0.1, 0.1};
+    const char *const outputs[] = {"tip=7:2@0.5", "spin=7:6/vel"};
+    const char *const inputs[] = {"push=7:2*3", "turn=7:6"};
+    const ritz_import_request request = {.stiffness =
+                                             put_diagonal("k.mtx", 12, k),
+                                         .mass = put_diagonal("m.mtx", 12, m),
+                                         .bulk = put("deck.bdf", LEVER),
+                                         .num_inputs = 2,
+                                         .input = inputs,
+                                         .num_outputs = 2,
+                                         .output = outputs};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+    ritz_inertia inertia = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 6);
+    assert_int_equal(report.num_eliminated, 6);
+    /* parallel axes: 1 + 0.1 + 5 2^2 about y and z, and 5 2 across */
+    assert_near(entry(&c.M, 0, 0), 6.0, 0.0);
+    assert_near(entry(&c.M, 3, 3), 1.1, 0x1p-52);
+    assert_near(entry(&c.M, 5, 5), 21.1, 0x1p-47);
+    assert_near(entry(&c.M, 1, 5), 10.0, 0.0);
+    assert_near(entry(&c.M, 2, 4), -10.0, 0.0);
+    assert_near(entry(&c.K, 5, 5), 60.0, 0.0);
+    assert_ok(ritz_inertia_of(&c, &inertia));
+    assert_near(inertia.mass, 6.0, 0.0);
+    assert_near(inertia.centre[0], 10.0 / 6.0, 1e-15);
+    /* along basic y at 7: u_y + 2 r_z of 3, for forces as for displacements */
+    assert_near(c.io.C.val[2 * row(&c, 3, 2)], 1.0, 0.0);
+    assert_near(c.io.C.val[2 * row(&c, 3, 6)], 2.0, 0.0);
+    assert_near(c.io.Cv.val[1 + 2 * row(&c, 3, 6)], 1.0, 0.0);
+    assert_near(c.io.B.val[row(&c, 3, 2)], 3.0, 0.0);
+    assert_near(c.io.B.val[row(&c, 3, 6)], 6.0, 0.0);
+    assert_near(c.io.B.val[6 + row(&c, 3, 6)], 1.0, 0.0);
+    /* recovered along its own axes: u7_x' = u_y + 2 r_z */
+    assert_int_equal(c.recovery.count, 6);
+    assert_near(entry(&c.recovery.G, 0, row(&c, 3, 2)), 1.0, 0.0);
+    assert_near(entry(&c.recovery.G, 0, row(&c, 3, 6)), 2.0, 0.0);
+    assert_near(entry(&c.recovery.G, 0, row(&c, 3, 1)), 0.0, 0.0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+/* A body without stiffness of its own is carried by what depends on it. */
+static void a_leader_needs_no_rows_of_its_own(void **state)
+{
+    const double m[6] = {5, 5, 5, 1, 1, 1};
+    ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 6, m),
+        .bulk = put("deck.bdf", LEVER),
+        .dofs = put("dofs", "7 1\n7 2\n7 3\n7 4\n7 5\n7 6\n")};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report)); /* 7 goes, 3 comes */
+    assert_int_equal(c.num_dofs, 6);
+    assert_int_equal(c.dof[0].grid, 3);
+    assert_near(entry(&c.M, 5, 5), 21.0, 0.0);
+    assert_int_equal(report.num_eliminated, 6);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    /* rows of 3 alone: it has been done, and 7 is recovered */
+    request.dofs = put("dofs", "3 1\n3 2\n3 3\n3 4\n3 5\n3 6\n");
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_near(entry(&c.M, 5, 5), 1.0, 0.0);
+    assert_int_equal(report.num_eliminated, 0);
+    assert_int_equal(c.recovery.count, 6);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    /* and part of them: what follows the others is not known */
+    request.mass = put_diagonal("m.mtx", 2, m);
+    request.dofs = put("dofs", "3 2\n3 6\n");
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 2);
+    assert_int_equal(report.num_recovered, 2); /* 7.1 and 7.6 */
+    assert_int_equal(report.num_lost, 4);
+    assert_int_equal(c.recovery.dof[0].component, 1);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void what_is_fixed_holds_what_depends_on_it(void **state)
+{
+    const double m[12] = {1, 1, 1, 1, 1, 1, 5, 5, 5, 1, 1, 1};
+    char text[300];
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 12, m)};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    snprintf(text, sizeof text, "%sSPC1,1,12345,3\n", LEVER);
+    request.bulk = put("deck.bdf", text);
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 1);
+    assert_near(entry(&c.M, 0, 0), 22.0, 0.0);
+    assert_int_equal(report.num_fixed, 5);
+    /* 7.1 turns with 2 r_z; 7.2 is held, and recovered as nothing */
+    assert_int_equal(c.recovery.count, 6);
+    assert_near(entry(&c.recovery.G, 0, 0), 2.0, 0.0);
+    assert_near(entry(&c.recovery.G, 1, 0), 0.0, 0.0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+/* ---- refusals ---------------------------------------------------------- */
+
+static void decks_that_contradict_themselves_are_refused(void **state)
+{
+    static const struct {
+        const char *card, *words;
+    } cases[] = {
+        {"SPC1,1,3,7\n", "'grid 7 T3' depends on RBE2 600 ('"},
+        {"SPC1,1,3,7\n", "line 5) and is fixed by the deck: it cannot be both"},
+        {"ASET1,2,7\n", "line 5) and is in the a-set: it cannot be both"},
+        {"MPC,8,7,1,1.0,3,1,-1.0\n", "'grid 7 T1' depends on RBE2 600 ('"},
+        {"MPC,8,7,1,1.0,3,1,-1.0\n", "and on MPC 8 ('"},
+        {"RSPLINE,9,,3,7\n", "RSPLINE 9 is not understood: MPC, RBAR"},
+        {"RSPLINE,9,,3,7\n",
+         "; the matrices still hold its dofs, and matrices of the a-set would "
+         "not"},
+        {"SPC,1,3,3,0.25\n",
+         "SPC 1 moves '3' by what is not zero: imposed motion is no part of a "
+         "component"},
+        {"MPC,8,3,1,1.0,7,2,1.0\n", "leaves 'grid 7 T2' undetermined"},
+    };
+    const double m[12] = {1, 1, 1, 1, 1, 1, 5, 5, 5, 1, 1, 1};
+    char text[300];
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        ritz_import_request request = {.mass = put_diagonal("m.mtx", 12, m)};
+
+        snprintf(text, sizeof text, "%s%s", LEVER, cases[k].card);
+        request.bulk = put("deck.bdf", text);
+        assert_true(ritz_import(&request, &c, &report) != RITZ_OK);
+        if (!strstr(ritz_error_message(), cases[k].words))
+            fail_msg("%s: '%s'", cases[k].card, ritz_error_message());
+    }
+    assert_null(c.dof);
+}
+
+static void what_is_not_understood_matters_only_where_it_acts(void **state)
+{
+    const double m[6] = {1, 1, 1, 1, 1, 1};
+    char text[300];
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 6, m)};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    snprintf(text, sizeof text, "%sRSPLINE,9,,3,7\nASET1,123456,3\n", LEVER);
+    request.bulk = put("deck.bdf", text);
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_string_equal(report.map, "A-set");
+    assert_int_equal(c.recovery.count, 0);
+    assert_int_equal(report.num_constraints, 0);
+    assert_non_null(strstr(report.unknown, "RSPLINE 9 is not understood"));
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void a_dof_that_depends_cannot_be_attached(void **state)
+{
+    static const char *const ports[] = {"a=7", "a=3,7:2", "a=1-9:3"};
+    const double m[12] = {1, 1, 1, 1, 1, 1, 5, 5, 5, 1, 1, 1};
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 12, m),
+                                   .bulk = put("deck.bdf", LEVER),
+                                   .num_ports = 1};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof ports / sizeof *ports; k++) {
+        request.port = &ports[k];
+        assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                     "depends on RBE2 600 ('");
+        assert_non_null(strstr(ritz_error_message(),
+                               "cannot be attached: attach what it follows, "
+                               "grid 3"));
+    }
+}
+
+/* ---- ports of a grid that is made for them ----------------------------- */
+
+enum { CORNERS = 8, SOLID = 3 * CORNERS };
+
+/* A cube of side 2 about (1, 1, 1), grids 1 to 8, 5 to 8 above; grid 6 has
+ * axes of its own. */
+static const char CUBE[] = "CORD2R,4,,0.,0.,0.,0.3,0.1,1.0\n,1.0,0.4,0.\n"
+                           "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\n"
+                           "GRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\n"
+                           "GRID,5,,0.,0.,2.\nGRID,6,,2.,0.,2.,4\n"
+                           "GRID,7,,2.,2.,2.\nGRID,8,,0.,2.,2.\n";
+
+static const double corner[CORNERS][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0},
+                                          {0, 2, 0}, {0, 0, 2}, {2, 0, 2},
+                                          {2, 2, 2}, {0, 2, 2}};
+
+/* Displacement axes of grid 6, from the deck. */
+static void find_axes(double A[9])
+{
+    ritz_bulk bulk = {0};
+    int64_t k = 0;
+
+    assert_ok(ritz_bulk_parse(NULL, CUBE, NULL, &bulk));
+    k = ritz_grids_find(&bulk.grids, 6);
+    memcpy(A, bulk.grids.axes + 9 * bulk.grids.frame[k], 9 * sizeof *A);
+    ritz_bulk_free(&bulk);
+}
+
+/* Springs between all corners, stiffness by the pair; masses 1 to 8. */
+static void fill_cube(ritz_dense *K, ritz_dense *M)
+{
+    double A[9];
+    double turn[CORNERS][9] = {0};
+
+    find_axes(A);
+    for (int g = 0; g < CORNERS; g++)
+        for (int i = 0; i < 9; i++)
+            turn[g][i] = g == 5 ? A[i] : (double)(i % 4 == 0);
+    assert_ok(ritz_dense_new(SOLID, SOLID, K));
+    assert_ok(ritz_dense_new(SOLID, SOLID, M));
+    for (int a = 0; a < CORNERS; a++)
+        for (int b = 0; b < a; b++) {
+            double e[SOLID] = {0};
+            double d[3];
+            double length = 0.0;
+
+            for (int i = 0; i < 3; i++) {
+                d[i] = corner[a][i] - corner[b][i];
+                length += d[i] * d[i];
+            }
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++) {
+                    e[3 * a + i] += turn[a][3 * i + j] * d[j] / sqrt(length);
+                    e[3 * b + i] -= turn[b][3 * i + j] * d[j] / sqrt(length);
+                }
+            for (int j = 0; j < SOLID; j++)
+                for (int i = 0; i < SOLID; i++)
+                    ritz_dense_col(K, j)[i] +=
+                        (100.0 + 10.0 * a + b) * e[i] * e[j];
+        }
+    for (int g = 0; g < CORNERS; g++)
+        for (int k = 3 * g; k < 3 * g + 3; k++)
+            ritz_dense_col(M, k)[k] = 1.0 + g;
+}
+
+/* Import the cube, its rows named by a file: translations only. */
+static ritz_status import_cube(const char *deck_rest, const char *rigid,
+                               const char *averaged, ritz_component *out,
+                               ritz_import_report *report)
+{
+    char text[2000];
+    int used = 0;
+    ritz_dense K = {0}, M = {0};
+    ritz_import_request request = {.num_rigid_ports = rigid != NULL,
+                                   .rigid_port = &rigid,
+                                   .num_averaged_ports = averaged != NULL,
+                                   .averaged_port = &averaged};
+
+    fill_cube(&K, &M);
+    request.stiffness = put_matrix("k.mtx", &K);
+    request.mass = put_matrix("m.mtx", &M);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    for (int k = 0; k < SOLID; k++)
+        used += snprintf(text + used, sizeof text - (size_t)used, "%d %d\n",
+                         k / 3 + 1, k % 3 + 1);
+    request.dofs = put("dofs", text);
+    snprintf(text, sizeof text, "%s%s", CUBE, deck_rest);
+    request.bulk = put("deck.bdf", text);
+    return ritz_import(&request, out, report);
+}
+
+static void assert_same_spectrum(const ritz_component *a,
+                                 const ritz_component *b, double bound)
+{
+    ritz_dense K = {0}, M = {0};
+    ritz_pairs one = {0}, two = {0};
+
+    assert_ok(ritz_sparse_dense(&a->K, &K));
+    assert_ok(ritz_sparse_dense(&a->M, &M));
+    assert_ok(ritz_eigen_dense(&K, &M, &one));
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    assert_ok(ritz_sparse_dense(&b->K, &K));
+    assert_ok(ritz_sparse_dense(&b->M, &M));
+    assert_ok(ritz_eigen_dense(&K, &M, &two));
+    assert_int_equal(one.num_rigid, 6);
+    assert_int_equal(two.num_rigid, 6);
+    assert_int_equal(one.Phi.ncol, two.Phi.ncol);
+    for (int64_t k = 6; k < one.Phi.ncol; k++)
+        assert_near(one.lambda[k], two.lambda[k],
+                    bound * one.lambda[one.Phi.ncol - 1]);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_pairs_free(&one);
+    ritz_pairs_free(&two);
+}
+
+/* K R = 0 with rigid motions by geometry: of rows and of what is recovered. */
+static void assert_rigid_motion(const ritz_component *c)
+{
+    const double origin[3] = {0.3, -0.2, 0.1};
+    ritz_dense R = {0}, KR = {0}, all = {0}, geometry = {0};
+    ritz_dof *names = NULL;
+    ritz_component whole = *c;
+
+    assert_ok(ritz_rigid_geometry(c, origin, &R));
+    assert_ok(ritz_sparse_mul(&c->K, &R, &KR));
+    assert_near(ritz_dense_max(&KR), 0.0,
+                ritz_sparse_max(&c->K) * 64.0 * 0x1p-52);
+    assert_ok(ritz_recovery_extend(&c->recovery, c->num_dofs, c->dof, &R,
+                                   &names, &all));
+    whole.dof = names;
+    whole.num_dofs = all.nrow;
+    assert_ok(ritz_rigid_geometry(&whole, origin, &geometry));
+    for (int64_t k = 0; k < 6 * all.nrow; k++)
+        assert_near(all.val[k], geometry.val[k], 64.0 * 0x1p-52);
+    ritz_dense_free(&R);
+    ritz_dense_free(&KR);
+    ritz_dense_free(&all);
+    ritz_dense_free(&geometry);
+    free(names);
+}
+
+static void a_rigid_port_is_an_rbe2_from_a_grid_amid(void **state)
+{
+    ritz_import_report report = {0};
+    ritz_component port = {0}, element = {0};
+
+    (void)state;
+    assert_ok(import_cube("", "top=5-8", NULL, &port, &report));
+    assert_int_equal(report.num_grids, 1);
+    assert_int_equal(report.grid[0].id, 9);
+    assert_int_equal(report.grid[0].num_tied, 12);
+    assert_int_equal(report.num_eliminated, 12);
+    assert_int_equal(port.num_dofs, 18);
+    assert_int_equal(port.num_ports, 1);
+    assert_string_equal(port.port[0].name, "top");
+    assert_int_equal(port.port[0].dofs.count, 6);
+    assert_near(port.port[0].origin[2], 2.0, 0.0);
+    assert_near(port.port[0].origin[0], 1.0, 0.0);
+    assert_int_equal(port.dof[port.port[0].dofs.at[5]].grid, 9);
+    assert_rigid_motion(&port);
+    ritz_import_report_free(&report);
+    assert_ok(import_cube("GRID,9,,1.,1.,2.\nRBE2,1,9,123,5,6,7,8\n", NULL,
+                          NULL, &element, &report));
+    assert_int_equal(element.num_dofs, 18);
+    assert_same(&port.K, &element.K, 0.0);
+    assert_same(&port.M, &element.M, 0.0);
+    ritz_component_free(&port);
+    ritz_component_free(&element);
+    ritz_import_report_free(&report);
+}
+
+/*
+ * Six new coordinates and six dependent ones: with u = G q square, the spectrum
+ * of (G'KG, G'MG) is that of (K, M). Rounding grows by the condition of G, some
+ * 10, and of the mass, 8.
+ */
+static void an_averaged_port_stiffens_nothing(void **state)
+{
+    ritz_import_report report = {0};
+    ritz_component port = {0}, plain = {0};
+
+    (void)state;
+    assert_ok(import_cube("", NULL, "top=5-8:123", &port, &report));
+    assert_int_equal(report.num_eliminated, 6);
+    assert_int_equal(port.num_dofs, SOLID);
+    assert_int_equal(port.recovery.count, 6);
+    assert_rigid_motion(&port);
+    ritz_import_report_free(&report);
+    assert_ok(import_cube("", NULL, NULL, &plain, &report));
+    assert_same_spectrum(&port, &plain, 1e-13);
+    ritz_component_free(&port);
+    ritz_component_free(&plain);
+    ritz_import_report_free(&report);
+}
+
+/* A force f on the new grid does the work q' f = u' A' f: by B = G' A' f. The
+ * average of corners is their mean, and about z their mean swirl. */
+static void loads_on_an_averaged_port_are_spread(void **state)
+{
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+    ritz_dense T = {0}, all = {0};
+    ritz_dof *names = NULL;
+
+    (void)state;
+    assert_ok(import_cube("", NULL, "foot=1-4", &c, &report));
+    /* u of every corner, by columns of all motions q */
+    assert_ok(ritz_dense_new(c.num_dofs, c.num_dofs, &T));
+    for (int64_t k = 0; k < c.num_dofs; k++)
+        ritz_dense_col(&T, k)[k] = 1.0;
+    assert_ok(
+        ritz_recovery_extend(&c.recovery, c.num_dofs, c.dof, &T, &names, &all));
+    for (int64_t j = 0; j < c.num_dofs; j++) {
+        double mean[3] = {0.0, 0.0, 0.0};
+        double swirl = 0.0;
+        const double *u = ritz_dense_col(&all, j);
+
+        for (int64_t i = 0; i < all.nrow; i++) {
+            int64_t g = names[i].grid;
+
+            if (g > 4)
+                continue;
+            mean[names[i].component - 1] += u[i] / 4.0;
+            /* r_z = sum of d x u / sum of d^2, d^2 = 2 at all four */
+            if (names[i].component == 1)
+                swirl -= (corner[g - 1][1] - 1.0) * u[i] / 8.0;
+            if (names[i].component == 2)
+                swirl += (corner[g - 1][0] - 1.0) * u[i] / 8.0;
+        }
+        for (int64_t i = 0; i < 3; i++)
+            assert_near(mean[i], (double)(j == row(&c, 9, i + 1)), 1e-14);
+        assert_near(swirl, (double)(j == row(&c, 9, 6)), 1e-14);
+    }
+    free(names);
+    ritz_dense_free(&T);
+    ritz_dense_free(&all);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
+static void ports_that_leave_motion_open_are_refused(void **state)
+{
+    static const struct {
+        const char *rest, *grids, *words;
+    } cases[] = {
+        {"", "p=1", "p=1: its dofs leave 3 of six motions open"},
+        {"", "p=1,7",
+         "its dofs leave 1 of six motions open (do its grids lie on a line?)"},
+        {"", "p=1-4:3", "its dofs leave 3 of six motions open"},
+        {"", "p=1-8:4", "there is no 'grid 1 R1' among the dofs"},
+        {"", "p=20", "there is no grid or point '20', the nearest is 8"},
+        {"", "p=1,1", "'1' is listed twice"},
+        {"", "p", "'p' is not of the form NAME=GRIDS[:COMPS]"},
+    };
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        assert_fails(
+            import_cube(cases[k].rest, cases[k].grids, NULL, &c, &report),
+            RITZ_ERR_ARGUMENT, cases[k].words);
+        assert_fails(
+            import_cube(cases[k].rest, NULL, cases[k].grids, &c, &report),
+            RITZ_ERR_ARGUMENT, cases[k].words);
+    }
+    assert_fails(import_cube("SPC1,1,2,5\n", "p=5-8", NULL, &c, &report),
+                 RITZ_ERR_FORMAT,
+                 "'grid 5 T2' depends on rigid port p and is fixed by the "
+                 "deck");
+    assert_fails(import_cube("GRID,9,,1.,1.,2.\nRBE2,1,9,123,5,6,7,8\n",
+                             "p=7,8,3,4", NULL, &c, &report),
+                 RITZ_ERR_FORMAT, "and on rigid port p");
+    assert_fails(import_cube("", "p=1-4", "p=5-8", &c, &report),
+                 RITZ_ERR_ARGUMENT, "there are two ports 'p'");
+    /* all but one dof fixed: the average of what is left */
+    assert_fails(import_cube("SPC1,1,123,1,2,3\n", NULL, "p=1-4", &c, &report),
+                 RITZ_ERR_ARGUMENT, "its dofs leave 3 of six motions open");
+}
+
+static void positions_come_from_a_deck(void **state)
+{
+    const double m[6] = {1, 1, 1, 1, 1, 1};
+    const char *port = "p=1";
+    const ritz_import_request request = {.mass = put_diagonal("m.mtx", 6, m),
+                                         .num_rigid_ports = 1,
+                                         .rigid_port = &port};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                 "positions of its grids are known from a deck alone: --bulk");
+}
+
+/* One grid with six dofs is a body: a port on it changes nothing but names. */
+static void one_grid_of_six_dofs_is_enough(void **state)
+{
+    const double m[6] = {2, 2, 2, 3, 4, 5};
+    const char *port = "p=7";
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 6, m),
+                                   .bulk =
+                                       put("deck.bdf", "GRID,7,,1.,0.,0.\n"),
+                                   .num_rigid_ports = 1,
+                                   .rigid_port = &port};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        assert_ok(ritz_import(&request, &c, &report));
+        assert_int_equal(c.num_dofs, 6);
+        assert_int_equal(c.dof[0].grid, 8);
+        for (int64_t i = 0; i < 6; i++)
+            assert_near(entry(&c.M, i, i), m[i], 8.0 * 0x1p-52);
+        assert_near(entry(&c.M, 0, 4), 0.0, 8.0 * 0x1p-52);
+        ritz_component_free(&c);
+        ritz_import_report_free(&report);
+        request.num_rigid_ports = 0;
+        request.num_averaged_ports = 1;
+        request.averaged_port = &port;
+    }
+}
+
+/* An average over what an RBE2 carries is the body itself: its leader becomes
+ * dependent, and the average of the other side still leaves the spectrum. */
+static void averages_see_through_the_elements_of_the_deck(void **state)
+{
+    static const char REST[] = "GRID,9,,1.,1.,2.\nRBE2,1,9,123,5,6,7,8\n";
+    ritz_import_report report = {0};
+    ritz_component tied = {0}, plain = {0};
+
+    (void)state;
+    assert_ok(import_cube(REST, NULL, "top=5-8", &tied, &report));
+    assert_int_equal(tied.num_dofs, 18);
+    assert_int_equal(tied.dof[17].grid, 10);
+    assert_rigid_motion(&tied);
+    ritz_import_report_free(&report);
+    assert_ok(import_cube(REST, NULL, NULL, &plain, &report));
+    assert_same_spectrum(&tied, &plain, 1e-13);
+    ritz_component_free(&tied);
+    ritz_import_report_free(&report);
+    assert_ok(import_cube(REST, NULL, "mixed=1-8", &tied, &report));
+    assert_rigid_motion(&tied);
+    assert_same_spectrum(&tied, &plain, 1e-13);
+    ritz_component_free(&tied);
+    ritz_component_free(&plain);
+    ritz_import_report_free(&report);
+}
+
+/* Two ports hold 12 coordinates that are not those of corners; a third that
+ * names a corner itself keeps it. */
+static void averaged_ports_may_share_grids(void **state)
+{
+    static const char *const ports[] = {"a=1-6", "b=3-8", "c=1-8"};
+    static const char *const corner_port = "corners=1,4";
+    ritz_import_report report = {0};
+    ritz_component c = {0}, plain = {0};
+    ritz_import_request request = {.num_averaged_ports = 3,
+                                   .averaged_port = ports};
+
+    (void)state;
+    assert_ok(import_cube("", NULL, NULL, &plain, &report));
+    ritz_import_report_free(&report);
+    request.stiffness = at("k.mtx");
+    request.mass = at("m.mtx");
+    request.dofs = at("dofs");
+    request.bulk = at("deck.bdf");
+    /* two of the six means over all corners follow from those of the others,
+     * as singular values of the 18 x 24 matrix of the three show too */
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                 "c=1-8: six of its dofs are to depend on it, and without "
+                 "those that other ports hold 2 motions are left open: name "
+                 "more of them");
+    request.num_averaged_ports = 2;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, SOLID);
+    assert_int_equal(c.recovery.count, 12);
+    assert_int_equal(report.grid[1].id, 10);
+    assert_rigid_motion(&c);
+    assert_same_spectrum(&c, &plain, 1e-12);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    request.num_averaged_ports = 1;
+    request.num_ports = 1;
+    request.port = &corner_port;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.port[0].dofs.count, 6);
+    assert_same_spectrum(&c, &plain, 1e-12);
+    ritz_component_free(&c);
+    ritz_component_free(&plain);
+    ritz_import_report_free(&report);
+}
+
+/* ---- memory ------------------------------------------------------------ */
+
+static const ritz_import_request *everything;
+
+static ritz_status import_everything(void)
+{
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+    ritz_status status = ritz_import(everything, &c, &report);
+
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    return status;
+}
+
+static void importing_survives_every_allocation(void **state)
+{
+    static const char *const rigid = "low=1-3";
+    static const char *const averaged = "top=5-8";
+    static const char *const output = "tip=7:3";
+    const ritz_import_request request = {.stiffness = at("k.mtx"),
+                                         .mass = at("m.mtx"),
+                                         .dofs = at("dofs"),
+                                         .bulk = at("deck.bdf"),
+                                         .num_rigid_ports = 1,
+                                         .rigid_port = &rigid,
+                                         .num_averaged_ports = 1,
+                                         .averaged_port = &averaged,
+                                         .num_outputs = 1,
+                                         .output = &output};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(import_cube("MPC,1,5,1,1.0,5,2,-0.5\n,,6,1,0.5\n", NULL, NULL, &c,
+                          &report));
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+    everything = &request;
+    assert_survives_every_allocation(import_everything());
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(another_solver_eliminates_to_the_same_matrices),
+        cmocka_unit_test(sizes_of_the_deck_are_told_apart),
+        cmocka_unit_test(a_mass_on_a_rigid_lever_is_where_it_should_be),
+        cmocka_unit_test(a_leader_needs_no_rows_of_its_own),
+        cmocka_unit_test(what_is_fixed_holds_what_depends_on_it),
+        cmocka_unit_test(decks_that_contradict_themselves_are_refused),
+        cmocka_unit_test(what_is_not_understood_matters_only_where_it_acts),
+        cmocka_unit_test(a_dof_that_depends_cannot_be_attached),
+        cmocka_unit_test(a_rigid_port_is_an_rbe2_from_a_grid_amid),
+        cmocka_unit_test(an_averaged_port_stiffens_nothing),
+        cmocka_unit_test(loads_on_an_averaged_port_are_spread),
+        cmocka_unit_test(ports_that_leave_motion_open_are_refused),
+        cmocka_unit_test(positions_come_from_a_deck),
+        cmocka_unit_test(one_grid_of_six_dofs_is_enough),
+        cmocka_unit_test(averages_see_through_the_elements_of_the_deck),
+        cmocka_unit_test(averaged_ports_may_share_grids),
+        cmocka_unit_test(importing_survives_every_allocation),
+    };
+
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,402 @@
+#include "testing.h"
+
+#include "frame.h"
+#include "moments.h"
+#include "project.h"
+#include "truss.h"
+
+#include <ritz/eigen.h>
+#include <ritz/method.h>
+
+#include <complex.h>
+#include <float.h>
+#include <lapacke.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { DOFS = 48, LOADS = 3 };
+
+/* Solves of a truss: eps n times the condition of K, 1e5 for 12 bays. */
+static const double solve_error = DOFS * DBL_EPSILON * 1e5;
+
+/* A cantilever truss with dampers that no damping ratio can stand for. */
+typedef struct fixture {
+    ritz_component truss;
+    ritz_request request;
+} fixture;
+
+/* Dashpots c between dofs (b < 0: ground), and g (e_a e_b' - e_b e_a'). */
+static void set_damping(ritz_component *c, int64_t count,
+                        const int64_t (*between)[2], double dashpot,
+                        double gyroscopic)
+{
+    int64_t row[32], col[32];
+    double val[32];
+    int64_t k = 0;
+
+    ritz_sparse_free(&c->D);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t a = between[i][0];
+        int64_t b = between[i][1];
+
+        row[k] = col[k] = a;
+        val[k++] = dashpot;
+        if (b < 0)
+            continue;
+        row[k] = col[k] = b;
+        val[k++] = dashpot;
+        row[k] = a;
+        col[k] = b;
+        val[k++] = gyroscopic - dashpot;
+        row[k] = b;
+        col[k] = a;
+        val[k++] = -gyroscopic - dashpot;
+    }
+    assert_ok(ritz_sparse_from_triplets(c->num_dofs, c->num_dofs, k, row, col,
+                                        val, &c->D));
+}
+
+static const int64_t dashpots[][2] = {{2, 11}, {16, 23}, {47, -1}};
+
+static int set_up(void **state)
+{
+    static fixture f;
+    static const int64_t in[] = {9, 40};
+
+    f = (fixture){.request = RITZ_REQUEST_NONE};
+    assert_ok(truss_component(&truss_cantilever48, &f.truss));
+    assert_ok(frame_io(&f.truss, 2, in, 1, &(int64_t){47}));
+    set_damping(&f.truss, 3, dashpots, 300.0, 0.0);
+    f.request.component = &f.truss;
+    *state = &f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+
+    ritz_component_free(&f->truss);
+    return 0;
+}
+
+static ritz_basis basis_of(ritz_request request, int64_t vectors)
+{
+    ritz_basis basis = {0};
+
+    request.modes = vectors;
+    assert_ok(ritz_basis_make(&ritz_method_krylov_damped, &request, &basis));
+    return basis;
+}
+
+static void check_moments(const fixture *f, const ritz_request *request,
+                          int64_t vectors, int kept)
+{
+    ritz_basis basis = basis_of(*request, vectors);
+    moments_model full = moments_full(request->component);
+    moments_model part = moments_reduced(request->component, &basis.T);
+
+    (void)f;
+    assert_int_equal(basis.T.ncol, vectors);
+    moments_agree(&full, &part, nan(""), kept, solve_error);
+    moments_free(&full);
+    moments_free(&part);
+    ritz_basis_free(&basis);
+}
+
+static void inputs_alone_keep_a_moment_a_block(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+
+    request.choice.loads = RITZ_LOADS_INPUTS;
+    for (int blocks = 1; blocks <= 6; blocks++)
+        check_moments(f, &request, 2 * (int64_t)blocks, blocks);
+}
+
+static void inputs_and_outputs_keep_two(void **state)
+{
+    fixture *f = *state;
+
+    for (int blocks = 1; blocks <= 5; blocks++)
+        check_moments(f, &f->request, LOADS * (int64_t)blocks, 2 * blocks);
+}
+
+/* Blocks of krylov keep what D does not touch: the static gain, and no more. */
+static void undamped_vectors_keep_fewer(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+    ritz_basis basis = {0};
+    moments_model full = moments_full(&f->truss), part = {0};
+
+    request.modes = 2 * LOADS;
+    assert_ok(ritz_basis_make(&ritz_method_krylov, &request, &basis));
+    part = moments_reduced(&f->truss, &basis.T);
+    moments_agree(&full, &part, nan(""), 2, solve_error);
+    assert_true(moments_differ(&full, &part, nan(""), 3) > 1e3 * solve_error);
+    moments_free(&full);
+    moments_free(&part);
+    ritz_basis_free(&basis);
+}
+
+/* Forty vectors of forty-eight: raw ones are one vector after some fifteen. */
+static void long_chains_stay_independent(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+    ritz_basis basis = {0};
+    ritz_dense G = {0};
+
+    request.choice.loads = RITZ_LOADS_OUTPUTS;
+    basis = basis_of(request, 40);
+    G = project(&f->truss.K, &basis.T);
+    assert_int_equal(basis.T.ncol, 40);
+    for (int64_t j = 0; j < 40; j++)
+        ritz_dense_col(&G, j)[j] -= 1.0;
+    assert_near(ritz_dense_max(&G), 0.0, solve_error);
+    ritz_dense_free(&G);
+    ritz_basis_free(&basis);
+}
+
+/* |X - V V'KX| over |X|, entry by entry at most. */
+static double outside(const ritz_sparse *K, const ritz_dense *V,
+                      const ritz_dense *X)
+{
+    ritz_dense KX = {0}, H = {0}, part = {0};
+    double worst = 0.0;
+
+    assert_ok(ritz_sparse_mul(K, X, &KX));
+    assert_ok(ritz_dense_mul_tn(V, &KX, &H));
+    assert_ok(ritz_dense_mul(V, &H, &part));
+    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
+        worst = fmax(worst, fabs(X->val[k] - part.val[k]));
+    ritz_dense_free(&KX);
+    ritz_dense_free(&H);
+    ritz_dense_free(&part);
+    return worst / ritz_dense_max(X);
+}
+
+static void without_damping_the_span_is_that_of_krylov(void **state)
+{
+    fixture *f = *state;
+    ritz_component still = f->truss;
+    ritz_request request = f->request;
+    ritz_basis damped = {0}, undamped = {0};
+
+    still.D = (ritz_sparse){0};
+    request.component = &still;
+    damped = basis_of(request, 4 * LOADS);
+    request.modes = 4 * LOADS;
+    assert_ok(ritz_basis_make(&ritz_method_krylov, &request, &undamped));
+    assert_near(outside(&still.K, &damped.T, &undamped.T), 0.0, solve_error);
+    assert_non_null(strstr(damped.remark, "there is no damping"));
+    ritz_basis_free(&damped);
+    ritz_basis_free(&undamped);
+}
+
+/* Damping by words and by a matrix: one span. */
+static void stated_rayleigh_damping_is_a_matrix(void **state)
+{
+    fixture *f = *state;
+    const double a = 3.0;
+    const double b = 1e-4;
+    ritz_component stated = f->truss, matrix = f->truss;
+    ritz_request request = f->request;
+    ritz_basis by_choice = {0}, by_text = {0}, by_matrix = {0};
+
+    stated.D = matrix.D = (ritz_sparse){0};
+    assert_ok(ritz_sparse_add(a, &f->truss.M, b, &f->truss.K, &matrix.D));
+    request.component = &matrix;
+    by_matrix = basis_of(request, 9);
+    request.component = &stated;
+    (void)snprintf(stated.damping, sizeof stated.damping, "rayleigh 3 1e-4");
+    by_text = basis_of(request, 9);
+    (void)snprintf(stated.damping, sizeof stated.damping, "modal 0.01");
+    request.choice.given = RITZ_USES_DAMPING;
+    request.choice.damping =
+        (ritz_damping){.kind = RITZ_DAMPING_RAYLEIGH, .a = a, .b = b};
+    by_choice = basis_of(request, 9);
+    assert_near(outside(&stated.K, &by_matrix.T, &by_text.T), 0.0, solve_error);
+    assert_near(outside(&stated.K, &by_matrix.T, &by_choice.T), 0.0,
+                solve_error);
+    ritz_basis_free(&by_matrix);
+    ritz_basis_free(&by_text);
+    ritz_basis_free(&by_choice);
+    ritz_sparse_free(&matrix.D);
+}
+
+/* A discrete damper with a spring, kept apart, counts as D and K do. */
+static void discrete_dampers_count(void **state)
+{
+    fixture *f = *state;
+    ritz_component apart = f->truss, within = {0};
+    ritz_request request = f->request;
+    ritz_basis one = {0}, other = {0};
+
+    apart.D = (ritz_sparse){0};
+    assert_ok(ritz_dampers_new(DOFS, 1, &apart.dampers));
+    (void)snprintf(apart.dampers.name[0], RITZ_NAME_SIZE, "strut");
+    apart.dampers.c[0] = 300.0;
+    apart.dampers.k[0] = 1e5;
+    ritz_dense_col(&apart.dampers.B, 0)[47] = 1.0;
+    assert_ok(truss_component(&truss_cantilever48, &within));
+    assert_ok(ritz_dampers_copy(&apart.dampers, &within.dampers));
+    assert_ok(ritz_component_install(&within));
+    ritz_dampers_free(&within.dampers);
+    ritz_io_free(&within.io);
+    within.io = f->truss.io;
+    request.component = &apart;
+    one = basis_of(request, 9);
+    request.component = &within;
+    other = basis_of(request, 9);
+    assert_near(outside(&within.K, &other.T, &one.T), 0.0, solve_error);
+    within.io = (ritz_io){0};
+    ritz_basis_free(&one);
+    ritz_basis_free(&other);
+    ritz_dampers_free(&apart.dampers);
+    ritz_component_free(&within);
+}
+
+/* A gyroscope: D' goes with outputs, and as many moments are kept. */
+static void an_unsymmetric_matrix_keeps_its_moments(void **state)
+{
+    fixture *f = *state;
+    static const int64_t rotor[][2] = {{30, 33}, {20, 27}};
+    ritz_component spun = f->truss;
+    ritz_request request = f->request;
+
+    spun.D = (ritz_sparse){0};
+    set_damping(&spun, 2, rotor, 100.0, 500.0);
+    request.component = &spun;
+    for (int blocks = 1; blocks <= 4; blocks++)
+        check_moments(f, &request, LOADS * (int64_t)blocks, 2 * blocks);
+    ritz_sparse_free(&spun.D);
+}
+
+static void the_mass_inner_product_keeps_them_too(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+
+    request.choice.inner = RITZ_INNER_MASS;
+    check_moments(f, &request, 3 * LOADS, 6);
+}
+
+/* H(s) of a dense model, one output. */
+static double _Complex transfer(const moments_model *m, double _Complex s)
+{
+    int n = (int)m->K.nrow;
+    double _Complex *Z = calloc((size_t)n * (size_t)n, sizeof *Z);
+    double _Complex *x = calloc((size_t)n, sizeof *x);
+    int *pivot = calloc((size_t)n, sizeof *pivot);
+    double _Complex sum = 0.0;
+
+    assert_true(Z && x && pivot);
+    for (int64_t k = 0; k < (int64_t)n * n; k++)
+        Z[k] = m->K.val[k] + s * m->D.val[k] + s * s * m->M.val[k];
+    for (int i = 0; i < n; i++)
+        x[i] = m->B.val[i];
+    assert_int_equal(LAPACKE_zgesv(LAPACK_COL_MAJOR, n, 1, Z, n, pivot, x, n),
+                     0);
+    for (int i = 0; i < n; i++)
+        sum += ritz_dense_col(&m->C, i)[0] * x[i];
+    free(Z);
+    free(x);
+    free(pivot);
+    return sum;
+}
+
+/*
+ * A free truss on two dashpots to ground: D moves the body as a whole. At rest
+ * the dashpots push back as hard as the input does, so that their answers
+ * belong to the first block: three vectors, and a second block of states that
+ * brings dashpots only. Two moments are kept, and the error falls by 2^2 when s
+ * halves; without D Phi_r among the loads it would not fall at all.
+ */
+static void damping_of_rigid_motion_is_answered(void **state)
+{
+    static const int64_t tether[][2] = {{70, -1}, {10, -1}};
+    ritz_component body = {0};
+    ritz_request request = RITZ_REQUEST_NONE;
+    ritz_basis basis = {0};
+    moments_model full = {0}, part = {0};
+    double error[2];
+
+    (void)state;
+    assert_ok(truss_component(&truss_free72, &body));
+    assert_ok(frame_io(&body, 1, &(int64_t){1}, 1, &(int64_t){51}));
+    set_damping(&body, 2, tether, 400.0, 0.0);
+    request.component = &body;
+    request.choice.loads = RITZ_LOADS_INPUTS;
+    basis = basis_of(request, 3);
+    full = moments_full(&body);
+    part = moments_reduced(&body, &basis.T);
+    for (int k = 0; k < 2; k++) {
+        double _Complex s = (k ? 5.0 : 10.0) * (double _Complex)_Complex_I;
+
+        error[k] = cabs(transfer(&full, s) - transfer(&part, s));
+    }
+    assert_int_equal(basis.columns.kind[2], RITZ_COLUMN_RIGID);
+    assert_int_equal(basis.T.ncol, 3 + 3);
+    assert_true(error[1] * 4.0 <= error[0] * 1.1);
+    moments_free(&full);
+    moments_free(&part);
+    ritz_basis_free(&basis);
+    ritz_component_free(&body);
+}
+
+static void requests_that_make_no_sense_are_refused(void **state)
+{
+    fixture *f = *state;
+    ritz_component stated = f->truss;
+    ritz_request request = f->request;
+    ritz_basis none = {0};
+
+    request.modes = 6;
+    request.component = &stated;
+    (void)snprintf(stated.damping, sizeof stated.damping, "modal 0.01");
+    assert_fails(ritz_basis_make(&ritz_method_krylov_damped, &request, &none),
+                 RITZ_ERR_ARGUMENT, "ratios of modes make no matrix D");
+    stated.damping[0] = '\0';
+    request.choice.loads = RITZ_LOADS_DAMPERS;
+    assert_fails(ritz_basis_make(&ritz_method_krylov_damped, &request, &none),
+                 RITZ_ERR_ARGUMENT, "there is no load to answer");
+    request.choice.loads = 0;
+    request.modes = -1;
+    request.up_to_hz = 3.0;
+    assert_fails(ritz_basis_make(&ritz_method_krylov_damped, &request, &none),
+                 RITZ_ERR_ARGUMENT, "ask for a number of them");
+}
+
+static void no_allocation_failure_leaks(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+    ritz_basis basis = {0};
+
+    request.modes = 7;
+    assert_survives_every_allocation(
+        ritz_method_krylov_damped.make(&request, &basis));
+    ritz_basis_free(&basis);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(inputs_alone_keep_a_moment_a_block),
+        cmocka_unit_test(inputs_and_outputs_keep_two),
+        cmocka_unit_test(undamped_vectors_keep_fewer),
+        cmocka_unit_test(long_chains_stay_independent),
+        cmocka_unit_test(without_damping_the_span_is_that_of_krylov),
+        cmocka_unit_test(stated_rayleigh_damping_is_a_matrix),
+        cmocka_unit_test(discrete_dampers_count),
+        cmocka_unit_test(an_unsymmetric_matrix_keeps_its_moments),
+        cmocka_unit_test(the_mass_inner_product_keeps_them_too),
+        cmocka_unit_test(damping_of_rigid_motion_is_answered),
+        cmocka_unit_test(requests_that_make_no_sense_are_refused),
+        cmocka_unit_test(no_allocation_failure_leaks),
+    };
+
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

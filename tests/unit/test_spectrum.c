@@ -1,0 +1,555 @@
+#include "testing.h"
+
+#include "chain.h"
+#include "scenes.h"
+#include "verify/spectrum_parts.h"
+
+#include <complex.h>
+#include <stdlib.h>
+
+static const double eps = 2.2204460492503131e-16;
+
+/* All of a model of two or three coordinates as arrays; NULL: none. */
+static ritz_spectrum poles_of(int64_t n, double *K, double *M, double *D,
+                              double *K4, const char *damping)
+{
+    const ritz_dense A[] = {{n, n, K}, {n, n, M}, {n, n, D}, {n, n, K4}};
+    const ritz_second_order model = {&A[0], &A[1], &A[2], &A[3], NULL};
+    ritz_damping given = {0};
+    ritz_spectrum spectrum = {0};
+
+    assert_ok(ritz_damping_parse(damping, &given));
+    assert_ok(ritz_spectrum_dense(&model, &given, &spectrum));
+    return spectrum;
+}
+
+static void assert_pole(double _Complex s, double real, double imaginary,
+                        double bound)
+{
+    assert_near(creal(s), real, bound);
+    assert_near(cimag(s), imaginary, bound);
+}
+
+/* m = 2, k = 50: w = 5; d = 4: zeta = 0.2, d = 20 critical, d = 52: s = -1 and
+ * -25. */
+static void one_mass_swings_creeps_or_does_neither(void **state)
+{
+    double k = 50.0, m = 2.0, d = 4.0;
+    ritz_spectrum s = poles_of(1, &k, &m, &d, NULL, "");
+
+    (void)state;
+    assert_int_equal(s.count, 1);
+    assert_pole(s.s[0], -1.0, sqrt(24.0), 8.0 * eps);
+    assert_near(ritz_spectrum_ratio(s.s[0]), 0.2, 2.0 * eps);
+    assert_near(s.residual[0], 0.0, 4.0 * eps);
+    ritz_spectrum_free(&s);
+    d = 20.0;
+    s = poles_of(1, &k, &m, &d, NULL, "");
+    assert_int_equal(s.count, 2);
+    /* a double root: rounding of 1 / (2 w) moves it by its square root */
+    assert_pole(s.s[0], -5.0, 0.0, 5.0 * sqrt(8.0 * eps));
+    ritz_spectrum_free(&s);
+    d = 52.0;
+    s = poles_of(1, &k, &m, &d, NULL, "");
+    assert_int_equal(s.count, 2);
+    assert_pole(s.s[0], -1.0, 0.0, 8.0 * eps);
+    assert_pole(s.s[1], -25.0, 0.0, 100.0 * eps);
+    assert_near(ritz_spectrum_ratio(s.s[1]), 1.0, 0.0);
+    ritz_spectrum_free(&s);
+}
+
+/* w = 1 and 3 of their own, 10 eps each. */
+static void ratios_and_rayleigh_act_on_the_modes(void **state)
+{
+    double K[] = {1.0, 0.0, 0.0, 9.0};
+    double M[] = {1.0, 0.0, 0.0, 1.0};
+    ritz_spectrum s = poles_of(2, K, M, NULL, NULL, "modes 0.1 0.3");
+
+    (void)state;
+    assert_pole(s.s[0], -0.1, sqrt(0.99), 10.0 * eps);
+    assert_pole(s.s[1], -0.9, 3.0 * sqrt(0.91), 30.0 * eps);
+    ritz_spectrum_free(&s);
+    s = poles_of(2, K, M, NULL, NULL, "rayleigh 0.1 0.2");
+    assert_near(-2.0 * creal(s.s[0]), 0.1 + 0.2, 10.0 * eps);
+    assert_near(-2.0 * creal(s.s[1]), 0.1 + 0.2 * 9.0, 30.0 * eps);
+    ritz_spectrum_free(&s);
+}
+
+/* s^2 + k (1 + i eta) = 0: s = i w sqrt(1 + i eta), the one of Im s > 0. */
+static void structural_damping_is_a_complex_stiffness(void **state)
+{
+    double k = 9.0, m = 1.0, k4 = 0.9;
+    ritz_spectrum s = poles_of(1, &k, &m, NULL, &k4, "");
+    double _Complex i = (double _Complex)_Complex_I;
+    double _Complex expected = 3.0 * i * csqrt(1.0 + 0.1 * i);
+
+    (void)state;
+    assert_int_equal(s.count, 1);
+    assert_pole(s.s[0], creal(expected), cimag(expected), 20.0 * eps);
+    ritz_spectrum_free(&s);
+}
+
+/*
+ * x'' - g y' + k x = 0, y'' + g x' + k y = 0: with z = x + i y,
+ * s = i (+-g + sqrt(g^2 + 4 k)) / 2, undamped. k = 6, g = 1: 2 and 3.
+ */
+static void a_gyroscopic_pair_splits_and_is_not_damped(void **state)
+{
+    double K[] = {6.0, 0.0, 0.0, 6.0};
+    double M[] = {1.0, 0.0, 0.0, 1.0};
+    double D[] = {0.0, 1.0, -1.0, 0.0};
+    ritz_spectrum s = poles_of(2, K, M, D, NULL, "");
+
+    (void)state;
+    assert_int_equal(s.count, 2);
+    assert_pole(s.s[0], 0.0, 2.0, 30.0 * eps);
+    assert_pole(s.s[1], 0.0, 3.0, 30.0 * eps);
+    ritz_spectrum_free(&s);
+}
+
+/*
+ * A Maxwell element: mass 1 on a spring 1, and over a damper 1 and a spring 2,
+ * between which there is no mass: (s^2 + 1)(2 + s) + 2 s = (s + 1)(s^2 + s + 2).
+ */
+static void a_damper_between_massless_points_creeps(void **state)
+{
+    double K[] = {1.0, 0.0, 0.0, 2.0};
+    double M[] = {1.0, 0.0, 0.0, 0.0};
+    double D[] = {1.0, -1.0, -1.0, 1.0};
+    ritz_spectrum s = poles_of(2, K, M, D, NULL, "");
+
+    (void)state;
+    assert_int_equal(s.count, 2);
+    assert_pole(s.s[0], -1.0, 0.0, 30.0 * eps);
+    assert_pole(s.s[1], -0.5, sqrt(7.0) / 2.0, 30.0 * eps);
+    /* x of the first: (s^2 + s + 1) x = s y, so y = -x */
+    assert_near(ritz_dense_col(&s.re, 0)[0], -ritz_dense_col(&s.re, 0)[1],
+                30.0 * eps);
+    ritz_spectrum_free(&s);
+}
+
+/* Without the damper the massless point is held by its spring, and still. */
+static void massless_points_that_nothing_damps_have_no_pole(void **state)
+{
+    double K[] = {3.0, -2.0, -2.0, 4.0}; /* condensed: 3 - 4 / 4 = 2 */
+    double M[] = {1.0, 0.0, 0.0, 0.0};
+    double D[] = {0.5, 0.0, 0.0, 0.0};
+    ritz_spectrum s = poles_of(2, K, M, D, NULL, "");
+
+    (void)state;
+    assert_int_equal(s.count, 1);
+    assert_pole(s.s[0], -0.25, sqrt(2.0 - 0.0625), 20.0 * eps);
+    ritz_spectrum_free(&s);
+}
+
+/* Masses 1 and 1, k = 8 between them: w = 4; a damper 2 between, or 2 to
+ * ground at each, under which the body creeps at s = -2. */
+static void rigid_motion_is_counted_and_creeps_where_it_is_damped(void **state)
+{
+    double K[] = {8.0, -8.0, -8.0, 8.0};
+    double M[] = {1.0, 0.0, 0.0, 1.0};
+    double inside[] = {2.0, -2.0, -2.0, 2.0};
+    double outside[] = {2.0, 0.0, 0.0, 2.0};
+    double one[] = {2.0, 0.0, 0.0, 0.0};
+    ritz_spectrum s = poles_of(2, K, M, inside, NULL, "");
+
+    (void)state;
+    assert_int_equal(s.num_zero, 2);
+    assert_int_equal(s.count, 1);
+    assert_pole(s.s[0], -2.0, sqrt(12.0), 40.0 * eps);
+    ritz_spectrum_free(&s);
+    s = poles_of(2, K, M, outside, NULL, "");
+    assert_int_equal(s.num_zero, 1);
+    assert_int_equal(s.count, 2);
+    assert_pole(s.s[0], -2.0, 0.0, 40.0 * eps);
+    assert_pole(s.s[1], -1.0, sqrt(15.0), 40.0 * eps);
+    ritz_spectrum_free(&s);
+    /* s^3 + 2 s^2 + 16 s + 16 = 0 at -1.0663536698618 (bisection) */
+    s = poles_of(2, K, M, one, NULL, "");
+    assert_int_equal(s.num_zero, 1);
+    assert_pole(s.s[0], -1.0663536698618, 0.0, 1e-12);
+    ritz_spectrum_free(&s);
+}
+
+static void what_grows_has_a_negative_ratio(void **state)
+{
+    double K[] = {-4.0, 0.0, 0.0, 9.0};
+    double M[] = {1.0, 0.0, 0.0, 1.0};
+    double D[] = {0.0, 0.0, 0.0, -0.6};
+    ritz_spectrum s = poles_of(2, K, M, D, NULL, "");
+
+    (void)state;
+    assert_int_equal(s.count, 3);
+    assert_near(fabs(creal(s.s[0])), 2.0, 10.0 * eps);
+    assert_near(creal(s.s[0]) + creal(s.s[1]), 0.0, 10.0 * eps);
+    assert_near(ritz_spectrum_ratio(s.s[2]), -0.1, 10.0 * eps);
+    ritz_spectrum_free(&s);
+}
+
+static void what_cannot_be_answered_is_refused_in_words(void **state)
+{
+    double K[] = {1.0, 0.0, 0.0, 2.0};
+    double M[] = {1.0, 0.0, 0.0, 0.0};
+    double D[] = {0.0, 1.0, -1.0, 0.0};
+    const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
+    const ritz_second_order skew = {&A[0], &A[1], &A[2], NULL, NULL};
+    const ritz_second_order loss = {&A[0], &A[1], NULL, &A[0], NULL};
+    ritz_spectrum s = {0};
+
+    (void)state;
+    assert_fails(ritz_spectrum_dense(&skew, NULL, &s), RITZ_ERR_ARGUMENT,
+                 "are its gyroscopic terms at massless dofs?");
+    assert_fails(ritz_spectrum_dense(&loss, NULL, &s), RITZ_ERR_ARGUMENT,
+                 "there are motions without mass beside structural damping");
+    K[3] = 0.0;
+    assert_fails(ritz_spectrum_dense(&skew, NULL, &s), RITZ_ERR_SINGULAR,
+                 "neither is the stiffness of the motions without mass");
+}
+
+/* A row of the table of the damper chain: rad/s and percent. */
+typedef struct published {
+    int64_t pole; /* among those that oscillate, 0 the first */
+    double full[2], ritz[2], truncated[2];
+} published;
+
+/* Half a unit of the last digit: six decimals (five above 10), five. */
+static const published table[] = {
+    {0, {1.649553, 1.24409}, {1.649553, 1.24408}, {1.648109, 1.04182}},
+    {1, {5.007665, 2.38032}, {5.007663, 2.38033}, {4.960024, 2.44723}},
+    {2, {8.389993, 2.09051}, {8.389981, 2.09076}, {8.264060, 3.03347}},
+    {3, {11.95587, 3.46340}, {11.95581, 3.46761}, {11.53278, 6.73235}},
+};
+
+enum { ROWS = sizeof table / sizeof *table };
+
+static void assert_row(const ritz_spectrum *s, int64_t pole,
+                       const double expected[2])
+{
+    int64_t j = -1;
+
+    for (int64_t seen = 0; seen <= pole; seen++)
+        do
+            j++;
+        while (!(cimag(s->s[j]) > 0.0));
+    assert_near(cabs(s->s[j]), expected[0],
+                expected[0] > 10.0 ? 5.1e-6 : 5.1e-7);
+    assert_near(100.0 * ritz_spectrum_ratio(s->s[j]), expected[1], 5.1e-6);
+}
+
+/* Kept: 11 modes alone, as from a free-interface method without attachments. */
+static ritz_reduced truncate(const ritz_component *chain)
+{
+    ritz_reduced reduced = {0};
+
+    assert_ok(reduce_with(chain, &ritz_method_macneal_rubin, 11, &reduced));
+    return reduced;
+}
+
+static ritz_reduced with_ritz_vectors(const ritz_component *chain)
+{
+    ritz_request request = RITZ_REQUEST_NONE;
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+
+    request.component = chain;
+    request.modes = 8;
+    request.choice.loads = RITZ_LOADS_DAMPERS;
+    request.choice.given = RITZ_USES_LOADS;
+    assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
+    assert_ok(ritz_reduce(chain, &basis, &reduced));
+    assert_int_equal(reduced.K.ncol, 11);
+    ritz_basis_free(&basis);
+    return reduced;
+}
+
+static ritz_second_order view(const ritz_reduced *r)
+{
+    return (ritz_second_order){&r->K, &r->M, &r->D, &r->K4, &r->io};
+}
+
+static void the_chain_has_its_published_poles(void **state)
+{
+    const ritz_span twenty = {.modes = 20};
+    ritz_component chain = {0};
+    ritz_reduced small[2];
+    ritz_spectrum s[3] = {{0}};
+
+    (void)state;
+    assert_ok(chain_component(30, &chain));
+    small[0] = with_ritz_vectors(&chain);
+    small[1] = truncate(&chain);
+    assert_ok(ritz_component_install(&chain));
+    assert_ok(ritz_spectrum_component(&chain, NULL, &twenty, &s[0]));
+    assert_int_equal(s[0].count, 20);
+    for (int k = 0; k < 2; k++) {
+        ritz_second_order model = view(&small[k]);
+
+        assert_ok(ritz_reduced_install(&small[k]));
+        assert_ok(ritz_spectrum_dense(&model, NULL, &s[1 + k]));
+    }
+    for (int k = 0; k < ROWS; k++) {
+        assert_row(&s[0], table[k].pole, table[k].full);
+        assert_row(&s[1], table[k].pole, table[k].ritz);
+        assert_row(&s[2], table[k].pole, table[k].truncated);
+    }
+    for (int k = 0; k < 3; k++)
+        ritz_spectrum_free(&s[k]);
+    ritz_reduced_free(&small[0]);
+    ritz_reduced_free(&small[1]);
+    ritz_component_free(&chain);
+}
+
+/* The optimum of the truncated model is off by four. */
+static void scans_find_the_published_optima(void **state)
+{
+    static const int64_t all[] = {0, 1, 2};
+    static const double best[2][3] = {{810, 810, 3270}, {260, 260, 970}};
+    static const double zeta[3] = {2.793, 2.793, 10.11}; /* of mode 2, % */
+    ritz_component chain = {0};
+    ritz_reduced small[2];
+
+    (void)state;
+    assert_ok(chain_component(30, &chain));
+    small[0] = with_ritz_vectors(&chain);
+    small[1] = truncate(&chain);
+    assert_ok(ritz_component_install(&chain));
+    for (int k = 0; k < 2; k++)
+        assert_ok(ritz_reduced_install(&small[k]));
+    for (int64_t mode = 0; mode < 2; mode++)
+        for (int k = 0; k < 3; k++) {
+            double c = best[mode][k];
+            const ritz_scan_request request = {3,        all,  c - 60.0,
+                                               c + 60.0, 10.0, mode};
+            ritz_second_order model = view(&small[k > 0 ? k - 1 : 0]);
+            ritz_scan scan = {0};
+
+            assert_ok(k == 0
+                          ? ritz_scan_component(&chain, NULL, &request, &scan)
+                          : ritz_scan_dampers(&model, &small[k - 1].dampers,
+                                              NULL, &request, &scan));
+            assert_int_equal(scan.count, 13);
+            assert_near(scan.c[scan.best], c, 0.0);
+            if (mode == 1)
+                assert_near(100.0 * ritz_spectrum_ratio(scan.s[scan.best]),
+                            zeta[k], k < 2 ? 5.1e-4 : 5.1e-3);
+            ritz_scan_free(&scan);
+        }
+    ritz_reduced_free(&small[0]);
+    ritz_reduced_free(&small[1]);
+    ritz_component_free(&chain);
+}
+
+/* From c = 0 to 150 three real poles come below mode 4, which is then the
+ * seventh. */
+static void a_mode_is_followed_past_poles_that_come_between(void **state)
+{
+    static const int64_t all[] = {0, 1, 2};
+    const ritz_scan_request request = {3, all, 0.0, 150.0, 10.0, 3};
+    ritz_component chain = {0};
+    ritz_scan scan = {0};
+
+    (void)state;
+    assert_ok(chain_component(30, &chain));
+    assert_ok(ritz_component_install(&chain));
+    assert_ok(ritz_scan_component(&chain, NULL, &request, &scan));
+    assert_int_equal(scan.count, 16);
+    assert_near(cabs(scan.s[15]), table[3].full[0], 5.1e-6);
+    assert_near(100.0 * ritz_spectrum_ratio(scan.s[15]), table[3].full[1],
+                5.1e-6);
+    assert_near(creal(scan.s[0]), 0.0, 1e-13); /* undamped to begin with */
+    ritz_scan_free(&scan);
+    ritz_component_free(&chain);
+}
+
+static void bad_scans_are_refused_in_words(void **state)
+{
+    static const int64_t all[] = {0, 1, 2};
+    const struct {
+        ritz_scan_request request;
+        const char *words;
+    } cases[] = {
+        {{3, all, 10.0, 10.0, 1.0, 0}, "a scan from 10 to 10 in steps of 1"},
+        {{3, all, -1.0, 10.0, 1.0, 0}, "a scan from -1 to 10"},
+        {{3, all, 0.0, 10.0, 0.0, 0}, "in steps of 0 has no range"},
+        {{3, all, 0.0, 1e9, 1.0, 0}, "1000000000 steps of a scan are too many"},
+        {{3, all, 0.0, 10.0, 1.0, 30}, "there is no mode 31, 30 poles"},
+    };
+    ritz_component chain = {0};
+
+    (void)state;
+    assert_ok(chain_component(30, &chain));
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        ritz_scan scan = {0};
+
+        assert_fails(
+            ritz_scan_component(&chain, NULL, &cases[k].request, &scan),
+            RITZ_ERR_ARGUMENT, cases[k].words);
+    }
+    ritz_component_free(&chain);
+}
+
+/* The same poles from 28 modes, static answers and inverse iteration as from
+ * all 120 eigenvalues, held to their own rounding. */
+static void a_large_component_has_the_poles_of_its_dense_matrices(void **state)
+{
+    const ritz_span ten = {.modes = 10};
+    ritz_component chain = {0};
+    ritz_dense A[3] = {{0}};
+    const ritz_second_order model = {&A[0], &A[1], &A[2], NULL, NULL};
+    ritz_spectrum whole = {0}, part = {0};
+
+    (void)state;
+    assert_ok(chain_component(60, &chain));
+    assert_ok(ritz_component_install(&chain));
+    assert_ok(ritz_sparse_dense(&chain.K, &A[0]));
+    assert_ok(ritz_sparse_dense(&chain.M, &A[1]));
+    assert_ok(ritz_sparse_dense(&chain.D, &A[2]));
+    assert_ok(ritz_spectrum_dense(&model, NULL, &whole));
+    assert_ok(ritz_spectrum_large(&chain, NULL, &ten, &part));
+    assert_int_equal(part.count, 10);
+    for (int64_t j = 0; j < part.count; j++) {
+        /* n eps |A| of the dense one, its largest |s| being 90 */
+        assert_near(cabs(part.s[j] - whole.s[j]), 0.0, 60 * eps * 90.0);
+        assert_near(part.residual[j], 0.0, 1e-10); /* measured: 1e-12 */
+    }
+    ritz_spectrum_free(&whole);
+    ritz_spectrum_free(&part);
+    for (int k = 0; k < 3; k++)
+        ritz_dense_free(&A[k]);
+    ritz_component_free(&chain);
+}
+
+/* Without D the pole of ratio zeta is known from the undamped frequency; of
+ * Rayleigh damping too; and a free body has two poles at 0. */
+static void a_large_component_heeds_given_damping(void **state)
+{
+    const ritz_span few = {.modes = 4};
+    ritz_damping modal = {0}, rayleigh = {0};
+    ritz_component chain = {0};
+    ritz_pairs pairs = {0};
+    ritz_spectrum s = {0};
+
+    (void)state;
+    assert_ok(ritz_damping_parse("modes 0.01 0.02 0.03", &modal));
+    assert_ok(ritz_damping_parse("rayleigh 0.001 0.02", &rayleigh));
+    assert_ok(chain_component(60, &chain));
+    chain_free(&chain);
+    assert_ok(ritz_eigen_sparse(&chain.K, &chain.M, &few, &pairs));
+    assert_ok(ritz_spectrum_large(&chain, &modal, &few, &s));
+    assert_int_equal(s.num_zero, 2);
+    for (int64_t j = 0; j < 4; j++) {
+        double w = sqrt(pairs.lambda[1 + j]);
+
+        /* both solvers err by eps 1e4 / w in w */
+        assert_near(cabs(s.s[j]), w, 1e-10);
+        assert_near(ritz_spectrum_ratio(s.s[j]),
+                    0.01 * (double)(j < 2 ? j + 1 : 3), 1e-10);
+    }
+    ritz_spectrum_free(&s);
+    assert_ok(ritz_spectrum_large(&chain, &rayleigh, &few, &s));
+    assert_int_equal(s.num_zero, 1);
+    for (int64_t j = 1; j < 4; j++) /* the first is the body's own, -0.001 */
+        assert_near(-2.0 * creal(s.s[j]), 0.001 + 0.02 * pairs.lambda[j],
+                    1e-10);
+    assert_pole(s.s[0], -0.001, 0.0, 1e-10);
+    ritz_spectrum_free(&s);
+    ritz_pairs_free(&pairs);
+    ritz_component_free(&chain);
+}
+
+static ritz_status scan_all(const ritz_component *chain)
+{
+    static const int64_t one[] = {1};
+    const ritz_scan_request request = {1, one, 0.0, 20.0, 10.0, 0};
+    const ritz_span two = {.modes = 2};
+    ritz_status status = RITZ_OK;
+    ritz_scan scan = {0};
+    ritz_spectrum s = {0};
+
+    RITZ_TRY(ritz_scan_component(chain, NULL, &request, &scan));
+    RITZ_TRY(ritz_spectrum_component(chain, NULL, &two, &s));
+done:
+    ritz_scan_free(&scan);
+    ritz_spectrum_free(&s);
+    return status;
+}
+
+static ritz_status spectrum_of_everything(void)
+{
+    double K[] = {3.0, -1.0, 0.0, -1.0, 3.0, 0.0, 0.0, 0.0, 2.0};
+    double M[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0};
+    double D[] = {1.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0};
+    double K4[] = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    double full[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    const ritz_dense A[] = {
+        {3, 3, K}, {3, 3, M}, {3, 3, D}, {3, 3, K4}, {3, 3, full}};
+    const ritz_second_order real = {&A[0], &A[1], &A[2], NULL, NULL};
+    const ritz_second_order complex_ = {&A[0], &A[4], &A[2], &A[3], NULL};
+    ritz_status status = RITZ_OK;
+    ritz_spectrum s = {0};
+
+    RITZ_TRY(ritz_spectrum_dense(&real, NULL, &s));
+    ritz_spectrum_free(&s);
+    RITZ_TRY(ritz_spectrum_dense(&complex_, NULL, &s));
+done:
+    ritz_spectrum_free(&s);
+    return status;
+}
+
+static void no_allocation_is_forgotten(void **state)
+{
+    ritz_component chain = {0};
+
+    (void)state;
+    assert_ok(chain_component(20, &chain));
+    assert_ok(ritz_component_install(&chain));
+    assert_survives_every_allocation(spectrum_of_everything());
+    assert_survives_every_allocation(scan_all(&chain));
+    ritz_component_free(&chain);
+}
+
+static ritz_status large_of(const ritz_component *chain)
+{
+    const ritz_span two = {.modes = 2};
+    ritz_spectrum s = {0};
+    ritz_status status = ritz_spectrum_large(chain, NULL, &two, &s);
+
+    ritz_spectrum_free(&s);
+    return status;
+}
+
+static void no_allocation_of_a_large_one_is_forgotten(void **state)
+{
+    ritz_component chain = {0};
+
+    (void)state;
+    assert_ok(chain_component(20, &chain));
+    assert_ok(ritz_component_install(&chain));
+    assert_survives_every_allocation(large_of(&chain));
+    ritz_component_free(&chain);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_mass_swings_creeps_or_does_neither),
+        cmocka_unit_test(ratios_and_rayleigh_act_on_the_modes),
+        cmocka_unit_test(structural_damping_is_a_complex_stiffness),
+        cmocka_unit_test(a_gyroscopic_pair_splits_and_is_not_damped),
+        cmocka_unit_test(a_damper_between_massless_points_creeps),
+        cmocka_unit_test(massless_points_that_nothing_damps_have_no_pole),
+        cmocka_unit_test(rigid_motion_is_counted_and_creeps_where_it_is_damped),
+        cmocka_unit_test(what_grows_has_a_negative_ratio),
+        cmocka_unit_test(what_cannot_be_answered_is_refused_in_words),
+        cmocka_unit_test(the_chain_has_its_published_poles),
+        cmocka_unit_test(scans_find_the_published_optima),
+        cmocka_unit_test(a_mode_is_followed_past_poles_that_come_between),
+        cmocka_unit_test(bad_scans_are_refused_in_words),
+        cmocka_unit_test(a_large_component_has_the_poles_of_its_dense_matrices),
+        cmocka_unit_test(a_large_component_heeds_given_damping),
+        cmocka_unit_test(no_allocation_is_forgotten),
+        cmocka_unit_test(no_allocation_of_a_large_one_is_forgotten),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,221 @@
+/*
+ * What a comparison advises: which angle to add, and what the composite
+ * tolerance trades.
+ */
+#include "testing.h"
+
+#include "dualspin.h"
+
+#include "synthesis/compare_parts.h"
+
+#include <stdlib.h>
+
+enum { LISTED = 2, ROWS = 4 };
+
+/* Two listed rows and two between, with no error at all. */
+static void make(ritz_compare_row row[ROWS], ritz_comparison *c)
+{
+    for (int k = 0; k < ROWS; k++)
+        row[k] = (ritz_compare_row){
+            .listed = k < LISTED,
+            .gain_error = nan(""),
+            .response_error = 1e-12,
+        };
+    *c = (ritz_comparison){.num_rows = ROWS, .row = row};
+}
+
+static void an_angle_that_stands_out_is_to_be_added(void **state)
+{
+    ritz_compare_row row[ROWS];
+    ritz_comparison c;
+    ritz_suggestion s = {0};
+
+    (void)state;
+    make(row, &c);
+    row[0].response_error = 1e-5;
+    row[3].response_error = 3e-2;
+    ritz_compare_suggest(&c, &s);
+    assert_int_equal(s.row, 3);
+    assert_string_equal(s.measure, "response");
+    assert_true(s.worth);
+    assert_near(s.error, 3e-2, 0.0);
+    assert_near(s.listed, 1e-5, 0.0);
+}
+
+/* Nine times is not ten; 9e-4 is not seen; as large at listed ones: no help. */
+static void an_error_that_does_not_stand_out_asks_for_nothing(void **state)
+{
+    static const double cases[][2] = {
+        {1e-2, 9e-2}, {1e-9, 9e-4}, {0.5, 0.6}, {0.0, 1e-6}};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        ritz_compare_row row[ROWS];
+        ritz_comparison c;
+        ritz_suggestion s = {0};
+
+        make(row, &c);
+        row[1].response_error = cases[k][0];
+        row[2].response_error = cases[k][1];
+        ritz_compare_suggest(&c, &s);
+        assert_int_equal(s.row, 2);
+        assert_false(s.worth);
+    }
+}
+
+/* The gain is worse off than the response: it is the gain that is told. */
+static void the_measure_that_stands_out_most_is_told(void **state)
+{
+    ritz_compare_row row[ROWS];
+    ritz_comparison c;
+    ritz_suggestion s = {0};
+
+    (void)state;
+    make(row, &c);
+    row[2].response_error = 2e-2;
+    row[3].gain_error = 7.7;
+    ritz_compare_suggest(&c, &s);
+    assert_int_equal(s.row, 3);
+    assert_string_equal(s.measure, "gain");
+    assert_true(s.worth);
+}
+
+static void without_rows_between_nothing_is_suggested(void **state)
+{
+    ritz_compare_row row[ROWS];
+    ritz_comparison c;
+    ritz_suggestion s = {0};
+
+    (void)state;
+    make(row, &c);
+    c.num_rows = LISTED;
+    ritz_compare_suggest(&c, &s);
+    assert_int_equal(s.row, -1);
+    assert_false(s.worth);
+}
+
+typedef struct fixture {
+    ritz_scene scene;
+    ritz_stage stage;
+    ritz_comparison c;
+} fixture;
+
+static void skip_without_data(void)
+{
+    if (!dualspin_is_there()) {
+        print_message("skipped: no data, RITZ_DATA is not set\n");
+        skip();
+    }
+}
+
+static void prepare(fixture *f)
+{
+    *f = (fixture){0};
+    assert_ok(dualspin_stage(&f->scene, &f->stage));
+    f->scene.num_configurations = 2; /* 0 and 60 degrees, to be quick */
+    assert_ok(ritz_compare(&f->stage, &f->c));
+}
+
+static void release(fixture *f)
+{
+    ritz_comparison_free(&f->c);
+    ritz_stage_free(&f->stage);
+    ritz_scene_free(&f->scene);
+}
+
+/*
+ * A looser tolerance never makes a body larger; at the scene's own tolerance
+ * the row is the comparison itself; the gain is exact in all of them.
+ */
+static void a_looser_tolerance_trades_exactness_for_size(void **state)
+{
+    ritz_tolerance_row *rows = NULL;
+    fixture f;
+
+    (void)state;
+    skip_without_data();
+    prepare(&f);
+    {
+        const double tolerance[] = {1e-12, f.scene.composite_tolerance, 1e-3};
+
+        assert_ok(ritz_compare_tolerances(&f.stage, &f.c, 3, tolerance, &rows));
+    }
+    assert_int_equal(rows[1].total, f.c.second.num_coordinates);
+    assert_int_equal(rows[1].order[0], f.c.V[0].ncol);
+    assert_int_equal(rows[1].largest,
+                     f.c.second_system.configuration[0].K.ncol);
+    assert_near(rows[1].frequency_error,
+                fmax(f.c.row[0].frequency_error, f.c.row[1].frequency_error),
+                0.0);
+    for (int k = 0; k < 3; k++) {
+        assert_true(rows[k].gain_error < 1e-9);
+        assert_true(rows[k].removed);
+        if (k > 0)
+            assert_true(rows[k].total <= rows[k - 1].total);
+    }
+    assert_true(rows[2].total < rows[0].total);
+    assert_true(rows[2].frequency_error > 1e3 * rows[0].frequency_error);
+    ritz_tolerances_free(3, &rows);
+    release(&f);
+}
+
+static void tolerances_beyond_one_are_refused(void **state)
+{
+    const double tolerance[] = {0.1, 1.0};
+    ritz_tolerance_row *rows = NULL;
+    fixture f;
+
+    (void)state;
+    skip_without_data();
+    prepare(&f);
+    assert_fails(ritz_compare_tolerances(&f.stage, &f.c, 2, tolerance, &rows),
+                 RITZ_ERR_ARGUMENT,
+                 "the composite tolerance 1 is not between 0 and 1");
+    release(&f);
+}
+
+static ritz_status chart_anew(const fixture *f)
+{
+    const double tolerance = 1e-3;
+    ritz_tolerance_row *rows = NULL;
+    ritz_status status =
+        ritz_compare_tolerances(&f->stage, &f->c, 1, &tolerance, &rows);
+
+    ritz_tolerances_free(1, &rows);
+    return status;
+}
+
+/* Every 37th, as a run takes some milliseconds and allocates 2000 times. */
+static void no_allocation_failure_leaks(void **state)
+{
+    ritz_status status = RITZ_ERR_MEMORY;
+    fixture f;
+
+    (void)state;
+    skip_without_data();
+    prepare(&f);
+    f.scene.num_configurations = f.c.first_system.num_configurations = 1;
+    for (int64_t n = 0; status != RITZ_OK; n += 37) {
+        ritz_alloc_budget = n;
+        status = chart_anew(&f);
+        ritz_alloc_budget = -1;
+        assert_true(status == RITZ_OK || status == RITZ_ERR_MEMORY);
+    }
+    f.c.first_system.num_configurations = 2;
+    release(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_angle_that_stands_out_is_to_be_added),
+        cmocka_unit_test(an_error_that_does_not_stand_out_asks_for_nothing),
+        cmocka_unit_test(the_measure_that_stands_out_most_is_told),
+        cmocka_unit_test(without_rows_between_nothing_is_suggested),
+        cmocka_unit_test(a_looser_tolerance_trades_exactness_for_size),
+        cmocka_unit_test(tolerances_beyond_one_are_refused),
+        cmocka_unit_test(no_allocation_failure_leaks),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
