@@ -30,7 +30,7 @@ holds() {
 
 for jobs in 1 4; do
     mkdir "$dir/$jobs"
-    cp "$data"/*.bdf "$data"/*.op4 "$data"/*.yaml "$data"/*.gp \
+    cp "$data"/*.bdf "$data"/*.op4 "$data"/*.yaml "$data"/*.gp "$data"/*.awk \
         "$data/Makefile" "$dir/$jobs"
     holds "the demonstration runs with -j $jobs" \
         make -C "$dir/$jobs" -j "$jobs" BIN="$bin"
@@ -40,7 +40,7 @@ for file in system.h5 rotor-verified.h5 full-60-response.h5 report.txt \
     holds "$file has the same bytes both times" \
         cmp "$dir/1/build/$file" "$dir/4/build/$file"
 done
-for picture in response-60 response-180 response-300 overview; do
+for picture in response-60 response-180 response-300 overview tolerances; do
     holds "$picture.svg is drawn" \
         grep -q '</svg>' "$dir/4/build/$picture.svg"
 done
