@@ -1,0 +1,313 @@
+#!/usr/bin/python3
+"""methods.py FOLDER-OF-THE-TOOLS [--solid N] - every method on every data set
+it fits, at equal order: the tables of docs/methods/errors.md, on standard output.
+
+Each component is reduced by each method to the same number of columns, as near
+as its blocks and clusters allow, and measured by ritz-verify against the full
+model up to its fifth flexible mode. --solid N adds a block of N x N x N bricks
+(25: 52 728 dofs), which takes most of an hour. Files of others come from
+RITZ_EXTERNAL_DATA; where one is absent its table is left out, and said so.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+import scipy.io
+import scipy.sparse
+
+HERE = pathlib.Path(__file__).resolve().parent
+DATA = HERE.parent.parent / "data"
+
+# How a method is asked for an order: "modes" by their number, "interface" by
+# nothing, its order being that of the attached dofs, "measured" by as many modes
+# as there are of those; and what else it is told.
+METHODS = [
+    ("guyan", "interface", []),
+    ("irs", "interface", []),
+    ("serep", "measured", []),
+    ("craig-bampton", "modes", []),
+    ("krylov-cms-fixed", "modes", []),
+    ("macneal-rubin", "modes", []),
+    ("rubin", "modes", []),
+    ("macneal", "modes", []),
+    ("inertia-relief", "modes", []),
+    ("krylov-cms-free", "modes", []),
+    ("normal-modes", "modes", ["--loads", "inputs"]),
+    ("krylov", "modes", ["--loads", "inputs,outputs"]),
+    ("krylov-damped", "modes", ["--loads", "inputs,outputs"]),
+    ("tangential", "modes", ["--loads", "inputs,outputs"]),
+]
+
+
+class Refused(Exception):
+    """What a tool said."""
+
+
+def run(bin_, *words):
+    """One tool with --json, its object."""
+    done = subprocess.run([bin_ / words[0], *map(str, words[1:]), "--json"],
+                          capture_output=True, text=True)
+    if done.returncode not in (0, 1) or not done.stdout.strip():
+        raise Refused(done.stderr.strip().splitlines()[0])
+    answer = json.loads(done.stdout)
+    if done.returncode == 1:
+        raise Refused(answer.get("error", "it failed"))
+    return answer
+
+
+def write(folder, name, A):
+    """A matrix that ritz-import reads."""
+    path = folder / f"{name}.mtx"
+    scipy.io.mmwrite(path, scipy.sparse.coo_matrix(A), symmetry="symmetric",
+                     precision=17)
+    return path
+
+
+def rows(folder, name, count, directions="0"):
+    """What --dofs reads."""
+    path = folder / f"{name}.dofs"
+    path.write_text("".join(f"{k} {d}\n" for k in range(1, count + 1)
+                            for d in directions))
+    return path
+
+
+def abaqus(path):
+    """`row col value` lines, both triangles, no header."""
+    t = numpy.loadtxt(path)
+    A = scipy.sparse.coo_matrix((t[:, 2], (t[:, 0].astype(int) - 1,
+                                           t[:, 1].astype(int) - 1)))
+    return (A + A.T) / 2
+
+
+def lund(external, folder, _):
+    """Grounded, no geometry."""
+    p = external / "pairs/lund"
+    return dict(order=16, options=[
+        "--stiffness", p / "lund_a.mtx", "--mass", p / "lund_b.mtx",
+        "--dofs", rows(folder, "lund", 147), "--port", "ends=1,40,80,147:0",
+        "--input", "in=20:0", "--output-at", "out=120:0"])
+
+
+def lf10(external, folder, _):
+    """A damped beam, the model's own input and output."""
+    p = external / "second_order/LF10"
+    return dict(order=8, damping=None, options=[
+        "--stiffness", p / "K.mtx", "--mass", p / "M.mtx", "--damping",
+        p / "D.mtx", "--dofs", rows(folder, "lf10", 18), "--port",
+        "ends=1,18:0", "--input", "in=9:0", "--output-at", "out=9:0"])
+
+
+def block(external, folder, _):
+    """A free solid of quadratic tetrahedra."""
+    p = external / "abaqus"
+    K = abaqus(p / "blockC3D10_STIF1.mtx")
+    M = abaqus(p / "blockC3D10_MASS1.mtx")
+    n = K.shape[0] // 3
+    return dict(order=40, options=[
+        "--stiffness", write(folder, "block.k", K), "--mass",
+        write(folder, "block.m", M), "--dofs", rows(folder, "block", n, "123"),
+        "--port", "face=1,2,3,4:123", "--input", f"in={n}:1", "--output-at",
+        f"out={n // 2}:1"])
+
+
+def rotor(external, folder, _):
+    """A free rotor with double roots."""
+    p = external / "ansys"
+    return dict(order=40, options=[
+        "--stiffness", p / "rotorAnsysStiffnessMatrixSparse.txt", "--mass",
+        p / "rotorAnsysMassMatrixSparse.txt", "--dofs",
+        rows(folder, "rotor", 115, "123"), "--port", "disc=10,60,100:123",
+        "--input", "in=40:1", "--output-at", "out=41:1"])
+
+
+def nas2cam(external, folder, _):
+    """A free frame of a spacecraft."""
+    p = external / "nastran/public_solvers"
+    return dict(order=48, options=[
+        "--stiffness", f"{p}/nastran95_outboard.op4:KGG", "--mass",
+        f"{p}/nastran95_outboard.op4:MGG", "--bulk",
+        p / "nastran95_outboard.deck", "--port", "frame=3,11,19,27",
+        "--input", "in=1:3", "--output-at", "out=2:3"])
+
+
+def dualspin(part, order, place):
+    """A component of the demonstration."""
+
+    def make(external, folder, _):
+        p = DATA / "dualspin"
+        return dict(order=order, options=[
+            "--stiffness", f"{p}/{part}.op4:KGG", "--mass",
+            f"{p}/{part}.op4:MGG", "--bulk", p / f"{part}.bdf", "--port",
+            "bearing=1", "--input", f"in={place}:3", "--output-at",
+            f"out={place}:3"])
+    make.__doc__ = f"The {part} of the demonstration, free."
+    return make
+
+
+def truss(external, folder, _):
+    """The plane truss of 72 dofs, free."""
+    p = DATA / "truss72"
+    return dict(order=18, options=[
+        "--stiffness", p / "truss72.k.mtx", "--mass", p / "truss72.m.mtx",
+        "--bulk", p / "truss72.bdf", "--dofs", p / "truss72.dofs", "--port",
+        "ends=1,2:12", "--input", "in=36:2", "--output-at", "out=35:2"])
+
+
+def solid(external, folder, n):
+    """A free block of bricks, its port a patch of 4 x 4 grids."""
+    subprocess.run([sys.executable, HERE / "brick.py", *3 * [str(n)], folder],
+                   check=True, capture_output=True)
+    port = ",".join(str(j * (n + 1) + k) for j in range(4)
+                    for k in range(1, 5))
+    return dict(order=110, options=[
+        "--stiffness", folder / "K.mtx", "--mass", folder / "M.mtx", "--bulk",
+        folder / "grids.bdf", "--dofs", folder / "dofs.txt", "--port",
+        f"face={port}", "--input", f"in={(n + 1)**3}:1", "--output-at",
+        f"out={(n + 1)**3}:2"])
+
+
+SETS = [
+    ("lund", lund, "pairs/lund/lund_a.mtx"),
+    ("LF10", lf10, "second_order/LF10/K.mtx"),
+    ("truss72", truss, None),
+    ("blockC3D10", block, "abaqus/blockC3D10_STIF1.mtx"),
+    ("rotorAnsys", rotor, "ansys/rotorAnsysMassMatrixSparse.txt"),
+    ("nas2cam outboard", nas2cam,
+     "nastran/public_solvers/nastran95_outboard.op4"),
+    ("dual-spin rotor", dualspin("rotor", 40, 61), None),
+    ("dual-spin stator", dualspin("stator", 24, 7), None),
+]
+
+
+def make_basis(bin_, method, how, more, component, order, rigid, out):
+    """A basis as near to the order as the method allows, and its columns."""
+    words = ["ritz-basis", method, *more, component, "-o", out]
+    if how == "interface":
+        return run(bin_, *words)["vectors"]
+    if how == "measured":
+        order = run(bin_, "ritz-basis", "guyan", component, "-o",
+                    out)["vectors"]
+    modes, seen = (order - rigid if how == "measured" else order), {}
+    for _ in range(4):
+        seen[modes] = run(bin_, *words, "--modes", modes)["vectors"]
+        if seen[modes] == order or modes + order - seen[modes] in seen:
+            break
+        modes = max(0, modes + order - seen[modes])
+        if modes in seen:
+            break
+    return seen[list(seen)[-1]]
+
+
+def band_of(bin_, component, folder):
+    """A little above the fifth flexible mode, Hz; how many are rigid."""
+    f = run(bin_, "ritz-basis", "macneal-rubin", "--attach", "", "--modes", 6,
+            component, "-o", folder / "modes.h5")["frequencies_hz"]
+    flexible = [x for x in f if x > 0]
+    five = flexible[:5]
+    above = [x for x in flexible if x > 1.001 * five[-1]]
+    return (math.sqrt(five[-1] * (above[0] if above else 1.1 * five[-1])),
+            len(f) - len(flexible))
+
+
+def measure(bin_, folder, component, case, band, method, how, more):
+    """One line of a table."""
+    basis, reduced = folder / "basis.h5", folder / "reduced.h5"
+    start = time.monotonic()
+    order = make_basis(bin_, method, how, more, component, case["order"],
+                       case["rigid"], basis)
+    seconds = time.monotonic() - start
+    run(bin_, "ritz-reduce", component, basis, "-o", reduced)
+    words = ["ritz-verify", component, reduced, "--band-hz", f"0,{band:.9g}",
+             "-o", folder / "verified.h5"]
+    if case.get("damping", 1):
+        words += ["--damping", "modal 0.01"]
+    found = {m["name"]: m["value"] for m in run(bin_, *words)["measures"]}
+    return order, seconds, found
+
+
+HEAD = """# How wrong each method is
+
+Every method on every data set that it fits, reduced to as many columns as it can have of those asked for and measured by `ritz-verify` against the full model up to its fifth flexible mode (damping `modal 0.01` where the model states none). Made by
+
+    /usr/bin/python3 tests/bench/methods.py build/release/bin --solid 25 >docs/methods/errors.md
+
+*missing*: modes of the band that no reduced mode is like (MAC below one half); *frequency*, *1 - MAC* and *damping*: the worst of the others; *response*: from an input inside to an output inside, largest error over the largest response in the band, which of a free body is that of its rigid motion; *static gain*: of the flexible part, relative. An error of 1 - MAC of 1 is a mode that is missing.
+
+What to read from it. Modes of a free body are best kept by modes: macneal-rubin, rubin, macneal and inertia-relief span one subspace and have them to rounding. They answer at their port; an input elsewhere costs them the static gain, which normal-modes and krylov, told of the inputs, have to rounding. Craig-Bampton at equal order is behind by some digits wherever the interface is not held by anything, which is how components are measured here, and ahead once neighbours are stiff. Krylov methods have responses and gains right where modes of the same number do not, and lose high modes that no load reaches: on a driven model that is a virtue. guyan, irs and serep have no more columns than the port has dofs.
+
+Not here: `loaded-interface`, which needs neighbours; `dual-craig-bampton`, which by itself is macneal-rubin; the Lanczos methods, whose models are of states; `rigid` and `full`."""
+
+COLUMNS = [("missing-modes", "missing"), ("frequency-relative", "frequency"),
+           ("mac", "1 - MAC"),
+           ("damping-relative", "damping"), ("response-relative", "response"),
+           ("static-gain-relative", "static gain")]
+
+
+def cell(name, found):
+    """A number of a table."""
+    value = found.get(name)
+    if value is None:
+        return ""
+    if name == "missing-modes":
+        return f"{value:.0f}"
+    return f"{1 - value if name == 'mac' else value:.1e}"
+
+
+def table(bin_, name, make, external, folder, n):
+    """All methods on one data set."""
+    case = make(external, folder, n)
+    component = folder / "component.h5"
+    answer = run(bin_, "ritz-import", *case["options"], "-o", component)
+    dofs = run(bin_, "ritz-info", component)["dofs"]
+    band, case["rigid"] = band_of(bin_, component, folder)
+    print(f"\n## {name}\n\n{make.__doc__} {dofs} dofs, asked for "
+          f"{case['order']} columns, measured up to {band:.4g} Hz.\n")
+    print("| method | columns | " + " | ".join(c for _, c in COLUMNS) + " |")
+    print("|---|" + "---|" * (len(COLUMNS) + 1), flush=True)
+    for method, how, more in METHODS:
+        try:
+            order, _, found = measure(bin_, folder, component, case, band,
+                                      method, how, more)
+            cells = [cell(key, found) for key, _ in COLUMNS]
+            print(f"| {method} | {order} | " + " | ".join(cells) + " |",
+                  flush=True)
+        except Refused as sentence:
+            text = str(sentence).split(": ", 1)[-1]
+            print(f"| {method} | refused: {text} |" + " |" * len(COLUMNS),
+                  flush=True)
+
+
+def main():
+    """Parse and run."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("bin", type=pathlib.Path)
+    parser.add_argument("--solid", type=int, default=0)
+    parser.add_argument("--only", help="one data set")
+    asked = parser.parse_args()
+    external = pathlib.Path(os.environ.get(
+        "RITZ_EXTERNAL_DATA", HERE.parent.parent.parent / "shared" / "data"))
+    if not asked.only:
+        print(HEAD)
+    sets = list(SETS)
+    if asked.solid:
+        sets.append(("solid", solid, None))
+    for name, make, needs in sets:
+        if asked.only not in (None, name):
+            continue
+        if needs and not (external / needs).exists():
+            print(f"\n## {name}\n\nleft out: no external data")
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            table(asked.bin.resolve(), name, make, external,
+                  pathlib.Path(folder), asked.solid)
+
+
+if __name__ == "__main__":
+    main()
