@@ -113,8 +113,10 @@ static const struct form *find_form(const claims_line *line)
 }
 
 /* How a value may differ. */
+typedef enum bound_kind { RELATIVE, ABSOLUTE, BELOW, ABOVE } bound_kind;
+
 typedef struct bound {
-    enum { RELATIVE, ABSOLUTE, BELOW, ABOVE } kind;
+    bound_kind kind;
     double size;
 } bound;
 
@@ -252,7 +254,7 @@ static ritz_status read_bound(const claims_line *line, int count, bound *out)
     RITZ_FAIL_IF(kind == sizeof words / sizeof *words, RITZ_ERR_FORMAT,
                  "'%.40s' is none of rel, abs, below, above",
                  line->word[line->count - 2]);
-    out->kind = (int)kind;
+    out->kind = (bound_kind)kind;
     RITZ_FAIL_IF(!ritz_text_real(line->word[line->count - 1], &out->size),
                  RITZ_ERR_FORMAT, "'%.40s' is not a number",
                  line->word[line->count - 1]);

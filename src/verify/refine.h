@@ -3,6 +3,8 @@
  * Z(s) = s^2 M + s D + K (+ i K4):
  *
  *     u = Z(s)^-1 Z'(s) x,    s_new = s - (x^H x) / (x^H u),   x_new = u
+ *
+ * [Ruhe1973]
  */
 #ifndef RITZ_VERIFY_REFINE_H
 #define RITZ_VERIFY_REFINE_H

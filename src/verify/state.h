@@ -17,7 +17,7 @@
  *
  * F = D_aa^-1 D_ap. Scaled by W, slow poles are not lost beside fast ones.
  * Rigid motions that nothing damps are left out: a double pole at 0 is
- * defective, and rounding would scatter it.
+ * defective, and rounding would scatter it [TisseurMeerbergen2001].
  */
 #ifndef RITZ_VERIFY_STATE_H
 #define RITZ_VERIFY_STATE_H
