@@ -144,7 +144,7 @@ static void remark(const ritz_request *request, const ritz_free_set *set,
     if (count > 0)
         snprintf(basis->remark, sizeof basis->remark,
                  "%" PRId64
-                 " attached dof(s) are no coordinates, %.160s%s: their "
+                 " attached dof(s) are no coordinates, %.80s%s: their "
                  "residual flexibility depends on others, or is nothing "
                  "beside the kept modes",
                  count, text, count > NAMED ? ", ..." : "");

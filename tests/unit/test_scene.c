@@ -752,7 +752,7 @@ static void too_many_settings_are_refused(void **state)
 
     (void)state;
     for (int k = 0; k < 501; k++) { /* names of their own */
-        char number[8];
+        char number[16];
 
         name = strstr(name, "name: ") + strlen("name: ");
         snprintf(number, sizeof number, "%04d", k);
