@@ -113,12 +113,10 @@ ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
 {
     static const matrix_kind kind = {of_reduced, "reduced component",
                                      "K, M, D, K4, T, B, C, Cv and Ca"};
-    char all[16] = "K,M";
+    char all[16];
 
-    if (reduced->D.val)
-        strcat(all, ",D");
-    if (reduced->K4.val)
-        strcat(all, ",K4");
+    snprintf(all, sizeof all, "K,M%s%s", reduced->D.val ? ",D" : "",
+             reduced->K4.val ? ",K4" : "");
     return list_matrices(&kind, reduced, names ? names : all, out);
 }
 
