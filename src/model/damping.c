@@ -1,4 +1,4 @@
-/* Damping in words, and the ratio it gives a mode. */
+/* Damping in words. */
 #include <ritz/damping.h>
 
 #include <assert.h>
@@ -13,8 +13,6 @@ enum { MOST_NUMBERS = RITZ_MOST_RATIOS, NUMBER_SIZE = 32 };
 static_assert(3 * RITZ_MAX_BANDS <= MOST_NUMBERS, "bands are fewer numbers");
 static_assert(2 * RITZ_MOST_POINTS <= MOST_NUMBERS, "points are fewer numbers");
 static_assert(16 + 25 * MOST_NUMBERS <= RITZ_DAMPING_SIZE, "the text fits");
-
-static const double pi = 3.14159265358979323846;
 
 static ritz_status check_ratio(double zeta)
 {
@@ -196,13 +194,14 @@ static const struct form {
     [RITZ_DAMPING_NONE] = {"", 0, 1, 0, take_nothing, check_none, ""},
     [RITZ_DAMPING_MODAL] = {"modal", 1, 1, 1, take_modal, check_modal,
                             "modal 0.002"},
-    [RITZ_DAMPING_BANDS] = {"bands", 3, 3, 3 * RITZ_MAX_BANDS, take_bands,
-                            check_bands, "bands 0 5 0.002 5 20 0.005"},
+    [RITZ_DAMPING_BANDS] = {"bands", 3, 3, 3 * (int64_t)RITZ_MAX_BANDS,
+                            take_bands, check_bands,
+                            "bands 0 5 0.002 5 20 0.005"},
     [RITZ_DAMPING_RAYLEIGH] = {"rayleigh", 2, 1, 2, take_rayleigh,
                                check_rayleigh, "rayleigh 0.1 2e-5"},
     [RITZ_DAMPING_MODES] = {"modes", 1, 1, RITZ_MOST_RATIOS, take_modes,
                             check_modes, "modes 0.01 0.02 0.015"},
-    [RITZ_DAMPING_FIT] = {"fit", 4, 2, 2 * RITZ_MOST_POINTS, take_fit,
+    [RITZ_DAMPING_FIT] = {"fit", 4, 2, 2 * (int64_t)RITZ_MOST_POINTS, take_fit,
                           check_fit, "fit 1 0.01 10 0.02"},
 };
 
@@ -312,40 +311,4 @@ ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
     *out = damping;
 done:
     return status;
-}
-
-double ritz_damping_ratio(const ritz_damping *damping, double omega)
-{
-    double hertz = omega / (2.0 * pi);
-
-    switch (damping->kind) {
-    case RITZ_DAMPING_NONE:
-        break;
-    case RITZ_DAMPING_MODAL:
-        return damping->zeta;
-    case RITZ_DAMPING_BANDS:
-        /* an edge that two bands share is the upper one's */
-        for (int64_t k = damping->count - 1; k >= 0; k--)
-            if (hertz >= damping->band[k][0] && hertz <= damping->band[k][1])
-                return damping->band[k][2];
-        break;
-    case RITZ_DAMPING_RAYLEIGH:
-    case RITZ_DAMPING_FIT:
-        /* phi'(a M + b K)phi = a + b omega^2 = 2 zeta omega */
-        if (omega > 0.0)
-            return 0.5 * (damping->a / omega + damping->b * omega);
-        break;
-    case RITZ_DAMPING_MODES:
-        return damping->ratio[damping->count - 1];
-    }
-    return 0.0;
-}
-
-double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
-                            double omega)
-{
-    if (damping->kind == RITZ_DAMPING_MODES && mode >= 0 &&
-        mode < damping->count)
-        return damping->ratio[mode];
-    return ritz_damping_ratio(damping, omega);
 }

@@ -24,10 +24,10 @@ static bool find(const ritz_component *component, ritz_check *out)
     return found;
 }
 
-static void without_D_there_is_nothing_to_fit(void **state)
+static void without_damping_there_is_nothing_to_fit(void **state)
 {
     ritz_component chain = {0};
-    ritz_check check;
+    ritz_check check = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
@@ -39,7 +39,7 @@ static void without_D_there_is_nothing_to_fit(void **state)
 static void proportional_damping_is_recognised(void **state)
 {
     ritz_component chain = {0};
-    ritz_check check;
+    ritz_check check = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
@@ -58,7 +58,7 @@ static void damping_that_couples_is_no_fault(void **state)
     static const int64_t at[] = {2};
     static const double one[] = {1.0};
     ritz_component chain = {0};
-    ritz_check check;
+    ritz_check check = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
@@ -75,7 +75,7 @@ static void a_gyroscopic_part_is_named(void **state)
     static const int64_t row[] = {2, 3}, col[] = {3, 2};
     static const double skew[] = {1.0, -1.0};
     ritz_component chain = {0};
-    ritz_check check;
+    ritz_check check = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
@@ -95,7 +95,7 @@ static void a_published_model_is_proportional_to_rounding(void **state)
     ritz_import_request request = {.dofs = "test_audit_damping.dofs"};
     ritz_import_report report = {0};
     ritz_component model = {0};
-    ritz_check check;
+    ritz_check check = {0};
     FILE *dofs = NULL;
 
     (void)state;
@@ -148,7 +148,7 @@ static void no_allocation_is_forgotten(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_D_there_is_nothing_to_fit),
+        cmocka_unit_test(without_damping_there_is_nothing_to_fit),
         cmocka_unit_test(proportional_damping_is_recognised),
         cmocka_unit_test(damping_that_couples_is_no_fault),
         cmocka_unit_test(a_gyroscopic_part_is_named),

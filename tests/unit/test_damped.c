@@ -92,7 +92,8 @@ static void open_chain(ritz_component *chain)
 }
 
 /* Modal LU of all modes and MUMPS LU of the sparse matrices. */
-static void dense_and_direct_agree_with_a_skew_D_and_K4(void **state)
+static void
+dense_and_direct_agree_with_skew_and_structural_damping(void **state)
 {
     const ritz_grid grid = {0.05, 3.0, 25, false, false, NULL};
     ritz_component chain = {0};
@@ -123,7 +124,7 @@ static void dense_and_direct_agree_with_a_skew_D_and_K4(void **state)
 }
 
 /* The skew part counts: without it the response is another. */
-static void direct_reads_both_triangles_of_D(void **state)
+static void direct_reads_both_triangles_of_the_damping(void **state)
 {
     const ritz_grid grid = {0.3, 3.0, 10, false, false, NULL};
     ritz_component chain = {0};
@@ -316,7 +317,7 @@ static void assert_poles(const ritz_component *full,
 }
 
 /* The same poles from sparse elimination and from constraints' null space. */
-static void a_system_has_the_dampers_and_K4_of_its_bodies(void **state)
+static void a_system_has_the_damping_of_its_bodies(void **state)
 {
     ritz_scene scene = {0};
     ritz_component full = {0};
@@ -431,12 +432,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_gyroscopic_pair_answers_in_closed_form),
         cmocka_unit_test(damping_of_massless_points_is_in_the_response),
-        cmocka_unit_test(dense_and_direct_agree_with_a_skew_D_and_K4),
-        cmocka_unit_test(direct_reads_both_triangles_of_D),
+        cmocka_unit_test(
+            dense_and_direct_agree_with_skew_and_structural_damping),
+        cmocka_unit_test(direct_reads_both_triangles_of_the_damping),
         cmocka_unit_test(verification_sees_what_dampers_do),
         cmocka_unit_test(overdamped_models_are_compared_pole_by_pole),
         cmocka_unit_test(what_creeps_in_one_model_alone_is_wholly_wrong),
-        cmocka_unit_test(a_system_has_the_dampers_and_K4_of_its_bodies),
+        cmocka_unit_test(a_system_has_the_damping_of_its_bodies),
         cmocka_unit_test(no_allocation_is_forgotten),
     };
 

@@ -45,7 +45,7 @@ static void assert_same(const ritz_dense *A, const ritz_dense *B, double bound)
 }
 
 /* Damper 'a' lies between the third mass and the second, spring 2 has 1400. */
-static void a_damper_goes_into_D_and_K_where_it_lies(void **state)
+static void a_damper_goes_into_the_matrices_where_it_lies(void **state)
 {
     ritz_component c = chain();
     double before = entry(&c.K, 2, 1);
@@ -315,7 +315,7 @@ static void no_allocation_is_forgotten(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_damper_goes_into_D_and_K_where_it_lies),
+        cmocka_unit_test(a_damper_goes_into_the_matrices_where_it_lies),
         cmocka_unit_test(installing_twice_adds_nothing),
         cmocka_unit_test(installing_after_a_change_adds_the_difference),
         cmocka_unit_test(projecting_and_installing_commute),

@@ -1,5 +1,6 @@
 /*
- * A fit of a M + b K to ratios zeta_k at w_k: linear least squares of
+ * Ratios of modes; and a fit of a M + b K to ratios zeta_k at w_k: linear least
+ * squares of
  *
  *     [1 / (2 w_k), w_k / 2] [a; b] = zeta_k
  *
@@ -99,4 +100,40 @@ double ritz_damping_misfit(const ritz_damping *damping, int64_t *at)
         }
     }
     return worst;
+}
+
+double ritz_damping_ratio(const ritz_damping *damping, double omega)
+{
+    double hertz = omega / (2.0 * pi);
+
+    switch (damping->kind) {
+    case RITZ_DAMPING_NONE:
+        break;
+    case RITZ_DAMPING_MODAL:
+        return damping->zeta;
+    case RITZ_DAMPING_BANDS:
+        /* an edge that two bands share is the upper one's */
+        for (int64_t k = damping->count - 1; k >= 0; k--)
+            if (hertz >= damping->band[k][0] && hertz <= damping->band[k][1])
+                return damping->band[k][2];
+        break;
+    case RITZ_DAMPING_RAYLEIGH:
+    case RITZ_DAMPING_FIT:
+        /* phi'(a M + b K)phi = a + b omega^2 = 2 zeta omega */
+        if (omega > 0.0)
+            return 0.5 * (damping->a / omega + damping->b * omega);
+        break;
+    case RITZ_DAMPING_MODES:
+        return damping->ratio[damping->count - 1];
+    }
+    return 0.0;
+}
+
+double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
+                            double omega)
+{
+    if (damping->kind == RITZ_DAMPING_MODES && mode >= 0 &&
+        mode < damping->count)
+        return damping->ratio[mode];
+    return ritz_damping_ratio(damping, omega);
 }
