@@ -192,12 +192,14 @@ done:
     return status;
 }
 
-/* "text NAME": the indented lines that follow become that file. */
+/* "text NAME": the lines that follow, indented as the first of them, become
+ * that file. */
 static ritz_status write_text(const claims_state *state,
                               const claims_line *line, char **rest, int *number)
 {
     ritz_status status = RITZ_OK;
     char path[2 * PATH_MAX];
+    size_t indent = *rest ? strspn(*rest, " \t") : 0;
     FILE *file = NULL;
 
     RITZ_FAIL_IF(line->count != 2 || strchr(line->word[1], '/'),
@@ -206,11 +208,12 @@ static ritz_status write_text(const claims_state *state,
     file = fopen(path, "w");
     RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s'", path);
     while (*rest && (**rest == ' ' || **rest == '\t')) {
+        size_t blank = strspn(*rest, " \t");
         char *end = strchr(*rest, '\n');
 
         if (end)
             *end = '\0';
-        fprintf(file, "%s\n", *rest);
+        fprintf(file, "%s\n", *rest + (blank < indent ? blank : indent));
         *rest = end ? end + 1 : NULL;
         ++*number;
     }

@@ -290,11 +290,15 @@ def main():
     parser.add_argument("bin", type=pathlib.Path)
     parser.add_argument("--solid", type=int, default=0)
     parser.add_argument("--only", help="one data set")
+    parser.add_argument("--methods", help="some methods, with commas between")
     asked = parser.parse_args()
     external = pathlib.Path(os.environ.get(
         "RITZ_EXTERNAL_DATA", HERE.parent.parent.parent / "shared" / "data"))
     if not asked.only:
         print(HEAD)
+    global METHODS
+    if asked.methods:
+        METHODS = [m for m in METHODS if m[0] in asked.methods.split(",")]
     sets = list(SETS)
     if asked.solid:
         sets.append(("solid", solid, None))
