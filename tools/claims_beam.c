@@ -115,8 +115,8 @@ static void fill(const beam *b, double K[SIDE][SIDE], double M[SIDE][SIDE])
 
     memset(K, 0, sizeof(double[SIDE][SIDE]));
     memset(M, 0, sizeof(double[SIDE][SIDE]));
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++) {
+    for (int64_t i = 0; i < 2; i++)
+        for (int64_t j = 0; j < 2; j++) {
             K[NODE * i][NODE * j] =
                 (i == j ? 1.0 : -1.0) * b->modulus * b->area / l;
             M[NODE * i][NODE * j] = (i == j ? 140.0 : 70.0) * m;

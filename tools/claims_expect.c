@@ -13,18 +13,17 @@ static const json_t *find_item(const json_t *list, const char *name,
                                size_t length)
 {
     static const char *const keys[] = {"name", "at"};
-    size_t index = 0;
-    json_t *item = NULL;
 
-    json_array_foreach((json_t *)(uintptr_t)list, index,
-                       item) for (size_t k = 0; k < sizeof keys / sizeof *keys;
-                                  k++)
-    {
-        const char *text = json_string_value(json_object_get(item, keys[k]));
+    for (size_t i = 0; i < json_array_size(list); i++)
+        for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+            const json_t *item = json_array_get(list, i);
+            const char *text =
+                json_string_value(json_object_get(item, keys[k]));
 
-        if (text && strlen(text) == length && strncmp(text, name, length) == 0)
-            return item;
-    }
+            if (text && strlen(text) == length &&
+                strncmp(text, name, length) == 0)
+                return item;
+        }
     return NULL;
 }
 
@@ -197,10 +196,14 @@ static void expect_text(claims_state *state, const claims_line *line)
 static void name_item(const char *path, int64_t more, size_t size, char *out)
 {
     const char *bracket = strrchr(path, '[');
+    char digits[24] = "";
     int64_t index = 0;
 
     snprintf(out, size, "%s", path);
-    if (more > 0 && bracket && sscanf(bracket, "[%" SCNd64, &index) == 1)
+    if (bracket)
+        snprintf(digits, sizeof digits, "%.*s", (int)strcspn(bracket + 1, "]"),
+                 bracket + 1);
+    if (more > 0 && ritz_text_whole(digits, &index))
         snprintf(out, size, "%.*s[%" PRId64 "]", (int)(bracket - path), path,
                  index + more);
 }

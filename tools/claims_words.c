@@ -26,14 +26,16 @@ static const char *replace(const claims_state *state, const char *text,
  */
 static const char *take(const claims_state *state, const char *text, char *out)
 {
-    char quote = strchr("\"'", *text) ? *text++ : '\0';
+    char quote = '\0';
 
+    if (strchr("\"'", *text))
+        quote = *text++;
     for (; *text && (quote || !strchr(" \t", *text)); text++) {
         size_t length = 0;
         const char *value = *text == '$' ? replace(state, text, &length) : NULL;
 
         if (value) {
-            strcpy(out, value);
+            memcpy(out, value, strlen(value));
             out += strlen(value);
             text += length - 1;
         } else if (quote && *text == quote) {

@@ -158,7 +158,7 @@ static ritz_status frf(cli_run *run, const wish *asked)
     ritz_grid grid = {0};
     ritz_response response = {0};
     ritz_stamp stamp = {0};
-    ritz_io ends = {0}; /* borrowed */
+    ritz_io ends; /* borrowed */
 
     RITZ_TRY(model_read(
         run, path,
