@@ -8,6 +8,7 @@
 #include "verify/poles.h"
 #include "verify/state.h"
 
+#include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
@@ -159,16 +160,41 @@ static int ascending(const void *left, const void *right)
     return (a->index > b->index) - (a->index < b->index);
 }
 
-/* Which are listed, in order; zeros are counted. */
-static int64_t choose(const found *f, bool structural, place *order,
-                      int64_t *zeros)
+/*
+ * What of |s| is rounding where rigid motion is kept, as D acts on it: eps of
+ * the matrix.
+ */
+static ritz_status find_zero(const ritz_state *state, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense A = {0};
+    bool rigid = false;
+    double size = 0.0;
+
+    for (int64_t j = 0; j < state->m; j++)
+        rigid = rigid || state->lambda[j] == 0.0;
+    *out = 0.0;
+    if (!rigid || state->diagonal)
+        return RITZ_OK;
+    RITZ_TRY(ritz_state_matrix(state, &A));
+    for (int64_t i = 0; i < A.nrow * A.ncol; i++)
+        size = hypot(size, A.val[i]);
+    *out = 10.0 * DBL_EPSILON * size;
+done:
+    ritz_dense_free(&A);
+    return status;
+}
+
+/* Which are listed, in order; those up to `zero` are counted. */
+static int64_t choose(const found *f, bool structural, double zero,
+                      place *order, int64_t *zeros)
 {
     int64_t count = 0;
 
     for (int64_t j = 0; j < f->count; j++) {
         double im = cimag(f->s[j]);
 
-        if (cabs(f->s[j]) == 0.0)
+        if (cabs(f->s[j]) <= zero)
             (*zeros)++;
         else if (im > 0.0 || (im == 0.0 && !structural))
             order[count++] = (place){cabs(f->s[j]), im, j};
@@ -277,10 +303,12 @@ static ritz_status list(const ritz_state *state, const found *f,
     ritz_status status = RITZ_OK;
     int64_t n = state->X.nrow;
     place *order = NULL;
+    double zero = 0.0;
 
     RITZ_NEW(order, f->count);
     out->num_zero = 2 * state->num_free;
-    out->count = choose(f, state->K4.val, order, &out->num_zero);
+    RITZ_TRY(find_zero(state, &zero));
+    out->count = choose(f, state->K4.val, zero, order, &out->num_zero);
     RITZ_NEW(out->s, out->count);
     RITZ_NEW(out->residual, out->count);
     RITZ_TRY(ritz_dense_new(n, out->count, &out->re));

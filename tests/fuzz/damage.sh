@@ -27,7 +27,7 @@ cd "$dir/good"
 cp "$data"/stator.op4 "$data"/stator.bdf "$data"/rotor.op4 "$data"/rotor.bdf .
 ritz-import -q --stiffness stator.op4:KGG --mass stator.op4:MGG \
     --bulk stator.bdf --port bearing=1 --port scan=5 --input torque=1:6 \
-    --output-at gyro=5:6@1e-3 -o stator.h5
+    --output-at gyro=5:6@1e-3 --damper 'strut=5:1,1:1*0' -o stator.h5
 ritz-import -q --mass "$data/platform.op4:MGG" --bulk "$data/platform.bdf" \
     --port scan=1 -o platform.h5
 cat >scene.yaml <<'YAML'
@@ -100,6 +100,8 @@ scene.yaml   ritz-compare @ -o OUT
 stator.h5    ritz-assemble scene.yaml -o OUT
 platform.h5  ritz-compare scene.yaml -o OUT
 system.h5    ritz-rank --at cone=0 @ -o OUT
+system.h5    ritz-poles --at cone=0 --damper stator/strut=5 @ -o OUT
+stator.h5    ritz-poles --scan strut=0:10:5 @ -o OUT
 system.h5    ritz-frf --at cone=0 --points 5 @ -o OUT
 full.h5      ritz-frf --points 5 --to-hz 10 --damping 'modal 0.01' --method direct @ -o OUT
 response.h5  ritz-frf --at cone=0 --points-of @ system.h5 -o OUT

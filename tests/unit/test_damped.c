@@ -5,8 +5,9 @@
 #include "folder.h"
 #include "frame.h"
 #include "scenes.h"
+#include "verify/damped.h"
+#include "verify/dense_poles.h"
 
-#include <ritz/spectrum.h>
 #include <ritz/synthesis.h>
 #include <ritz/verify.h>
 
@@ -52,6 +53,60 @@ static void a_gyroscopic_pair_answers_in_closed_form(void **state)
                     40.0 * eps * 40.0 / (det * det) * fabs(z) + 8.0 * eps);
     }
     ritz_response_free(&r);
+}
+
+/* D(2,1) = d alone: what moves 1 pushes 2, and 2 does not answer.
+ * H_21 = -i w d / ((k_1 - w^2)(k_2 - w^2)). */
+static void one_sided_coupling_counts(void **state)
+{
+    double K[] = {4.0, 0.0, 0.0, 9.0};
+    double M[] = {1.0, 0.0, 0.0, 1.0};
+    double D[] = {0.0, 0.5, 0.0, 0.0};
+    const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
+    const ritz_grid grid = {0.1, 0.2, 3, false, false, NULL};
+    ritz_io io = {0};
+    ritz_response r = {0};
+
+    (void)state;
+    assert_ok(ritz_io_new(2, 1, 1, &io));
+    io.B.val[0] = io.C.val[1] = 1.0;
+    assert_ok(ritz_response_dense(&A[0], &A[1], &A[2], &io, NULL, &grid, &r));
+    for (int64_t k = 0; k < r.count; k++) {
+        double w = 2.0 * pi * r.hertz[k];
+        double expected = -0.5 * w / ((4.0 - w * w) * (9.0 - w * w));
+
+        assert_near(creal(r.H[k]), 0.0, 1e-15);
+        assert_near(cimag(r.H[k]), expected, 1e-15);
+    }
+    ritz_response_free(&r);
+    ritz_io_free(&io);
+}
+
+/* w = 1 under d = 5 creeps, w = 3 under 0.6 swings with a ratio near 0.1: it is
+ * not the first mode's too. */
+static void a_mode_that_creeps_is_not_given_its_neighbour_s_ratio(void **state)
+{
+    double K[] = {1.0, 0.0, 0.0, 9.0};
+    double M[] = {1.0, 0.0, 0.0, 1.0};
+    double D[] = {5.0, 0.5, 0.5, 0.6};
+    const double band[2] = {0.0, 1.0};
+    const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
+    ritz_io io = {0};
+    ritz_poles poles = {0};
+    ritz_damped damped = {0};
+
+    (void)state;
+    assert_ok(ritz_io_new(2, 0, 0, &io));
+    assert_ok(ritz_poles_of_dense(
+        &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL, &poles));
+    assert_ok(ritz_damped_new(&poles, NULL, NULL, band, &damped));
+    assert_true(isnan(damped.zeta[0]));
+    assert_true(isnan(creal(damped.s[0])));
+    assert_near(damped.zeta[1], 0.1, 0.01);
+    assert_int_equal(damped.listing.count, 3);
+    ritz_damped_free(&damped);
+    ritz_poles_free(&poles);
+    ritz_io_free(&io);
 }
 
 /* Maxwell element of test_spectrum.c: 1 / (1 - w^2 + 2 i w / (2 + i w)). */
@@ -431,6 +486,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_gyroscopic_pair_answers_in_closed_form),
+        cmocka_unit_test(one_sided_coupling_counts),
+        cmocka_unit_test(a_mode_that_creeps_is_not_given_its_neighbour_s_ratio),
         cmocka_unit_test(damping_of_massless_points_is_in_the_response),
         cmocka_unit_test(
             dense_and_direct_agree_with_skew_and_structural_damping),

@@ -351,6 +351,38 @@ static void inputs_and_outputs_act_along_basic_axes(void **state)
     ritz_import_report_free(&report);
 }
 
+/* Grid 7 is turned: its first axis is the second basic one. */
+static void dampers_lie_along_basic_axes(void **state)
+{
+    const char *const dampers[] = {"strut=7:1,3:1*150*-200", "foot=5:0*2"};
+    const ritz_import_request request = {.mass =
+                                             put_diagonal("m.mtx", 19, full),
+                                         .bulk = put("deck.bdf", deck),
+                                         .num_dampers = 2,
+                                         .damper = dampers};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+    const double *b = NULL;
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.dampers.count, 2);
+    assert_string_equal(c.dampers.name[0], "strut");
+    assert_near(c.dampers.c[0], 150.0, 0.0);
+    assert_near(c.dampers.k[0], -200.0, 0.0);
+    assert_near(c.dampers.c[1], 2.0, 0.0);
+    assert_near(c.dampers.k[1], 0.0, 0.0);
+    assert_null(c.D.colptr);
+    b = ritz_dense_col(&c.dampers.B, 0);
+    /* frames are built of square roots: two eps */
+    assert_near(b[0], -1.0, 0.0);
+    assert_near(b[7], 0.0, 1e-15);
+    assert_near(b[8], -1.0, 1e-15);
+    assert_near(ritz_dense_col(&c.dampers.B, 1)[6], 1.0, 0.0);
+    ritz_component_free(&c);
+    ritz_import_report_free(&report);
+}
+
 /* One wrong text, and the sentence that it gets. */
 typedef struct refusal {
     const char *text, *says;
@@ -481,6 +513,34 @@ static void asymmetry_is_refused_unless_it_is_to_be_averaged(void **state)
     ritz_import_report_free(&report);
 }
 
+static void wrong_dampers_are_refused(void **state)
+{
+    static const refusal dampers[] = {
+        {"a=3:1", "'a=3:1' is not of the form NAME=GRID:COMP[,GRID:COMP]*C"},
+        {"a=3:1*x", "'x' is neither C nor C*K"},
+        {"a=3:1*1*", "'1*' is neither C nor C*K"},
+        {"a=3:1*1*2*3", "is neither C nor C*K"},
+        {"a=3:1*inf", "is neither C nor C*K"},
+        {"a=3:1*-2", "a damper's c is not negative, '-2' is"},
+        {"a=3:1,3:1*2", "nothing moves between '3:1,3:1'"},
+        {"a=3:1,4:1*2", "the nearest is 3"},
+        {"a=,3:1*2", "no grid and direction"},
+        {"3:1*2", "form NAME=GRID:COMP"},
+    };
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
+                                   .bulk = put("deck.bdf", deck),
+                                   .num_dampers = 1};
+    ritz_import_report report = {0};
+    ritz_component c = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof dampers / sizeof *dampers; k++) {
+        request.damper = &dampers[k].text;
+        assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
+                     dampers[k].says);
+    }
+}
+
 static ritz_status import_and_free(const ritz_import_request *request)
 {
     ritz_import_report report = {0};
@@ -497,6 +557,7 @@ static void no_allocation_failure_leaks(void **state)
     const char *const ports[] = {"a=3,7", "b=5"};
     const char *const inputs[] = {"u=7:1"};
     const char *const outputs[] = {"y=7:1/acc"};
+    const char *const dampers[] = {"d=7:1,3:2*5*-6"};
     char load[300];
     const char *const loads[] = {load};
     const ritz_import_request request = {
@@ -510,7 +571,9 @@ static void no_allocation_failure_leaks(void **state)
         .num_inputs = 1,
         .input = inputs,
         .num_outputs = 1,
-        .output = outputs};
+        .output = outputs,
+        .num_dampers = 1,
+        .damper = dampers};
 
     (void)state;
     snprintf(load, sizeof load, "%s@spin", request.stiffness);
@@ -662,6 +725,8 @@ int main(void)
         cmocka_unit_test(a_file_of_names_rules),
         cmocka_unit_test(matrices_that_name_their_rows_are_united),
         cmocka_unit_test(inputs_and_outputs_act_along_basic_axes),
+        cmocka_unit_test(dampers_lie_along_basic_axes),
+        cmocka_unit_test(wrong_dampers_are_refused),
         cmocka_unit_test(wrong_ports_are_refused),
         cmocka_unit_test(wrong_inputs_and_outputs_are_refused),
         cmocka_unit_test(wrong_matrices_are_refused),

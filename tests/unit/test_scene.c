@@ -218,6 +218,10 @@ static void dampings_of_every_kind_are_read(void **state)
     ritz_scene bands =
         parse(SMALL "damping: {bands: [[0, 5, 0.002], [5, 20, 0.005]]}\n");
     ritz_scene rayleigh = parse(SMALL "damping: {rayleigh: [0.1, 2.0e-5]}\n");
+    ritz_scene modes = parse(SMALL "damping: {modes: [0.01, 0.02, 0.015]}\n");
+    ritz_scene fit =
+        parse(SMALL "damping: {rayleigh_fit: [[1, 0.01], [10, 0.02]]}\n");
+    ritz_damping stated = {0};
 
     (void)state;
     assert_int_equal(bands.damping.kind, RITZ_DAMPING_BANDS);
@@ -225,6 +229,15 @@ static void dampings_of_every_kind_are_read(void **state)
     assert_near(bands.damping.band[1][2], 0.005, 0.0);
     assert_int_equal(rayleigh.damping.kind, RITZ_DAMPING_RAYLEIGH);
     assert_near(rayleigh.damping.b, 2e-5, 0.0);
+    assert_int_equal(modes.damping.kind, RITZ_DAMPING_MODES);
+    assert_int_equal(modes.damping.count, 3);
+    assert_near(modes.damping.ratio[2], 0.015, 0.0);
+    /* two points are met: the text says the same */
+    assert_ok(ritz_damping_parse("fit 1 0.01 10 0.02", &stated));
+    assert_memory_equal(&fit.damping, &stated, sizeof stated);
+    assert_true(fit.damping.a > 0.1);
+    ritz_scene_free(&modes);
+    ritz_scene_free(&fit);
     ritz_scene_free(&bands);
     ritz_scene_free(&rayleigh);
 }
@@ -863,6 +876,14 @@ static void bad_options_are_refused(void **state)
          "before it ends"},
         {SMALL "damping: {rayleigh: [0, 0]}\n",
          "s:6:21: rayleigh damping 0 0 is none"},
+        {SMALL "damping: {modes: []}\n",
+         "s:6:18: 1 to 40 ratios of modes can be given, not 0"},
+        {SMALL "damping: {modes: [0.1, 0]}\n",
+         "s:6:18: damping ratio 0 is not above 0"},
+        {SMALL "damping: {rayleigh_fit: [[1, 0.1]]}\n",
+         "s:6:25: 2 to 20 points of a fit can be given, not 1"},
+        {SMALL "damping: {rayleigh_fit: [[1, 0.1], [1, 0.2]]}\n",
+         "s:6:25: a damping fit needs two different frequencies, all are 1 Hz"},
         {SMALL "select: {tolerance: 1}\n", "s:6:21: 1 is not between 0 and 1"},
         {SMALL "select: {tolerance: -0.5}\n",
          "s:6:21: -0.5 is not between 0 and 1"},
