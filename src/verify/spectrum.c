@@ -40,7 +40,7 @@ done:
 
 double ritz_spectrum_ratio(double _Complex s)
 {
-    return cabs(s) == 0.0 ? 0.0 : -creal(s) / cabs(s);
+    return creal(s) == 0.0 ? 0.0 : -creal(s) / cabs(s); /* never -0 */
 }
 
 /* Roots of s^2 + d s + lambda: a pair, or two real ones without cancellation;
