@@ -49,9 +49,24 @@ ritz_status ritz_verify_system(const ritz_component *full,
 /** Whether a measure meets its limit (a NaN limit always). MAC is a minimum. */
 bool ritz_measure_holds(const ritz_measure *measure);
 
-/** Flexible static gain C Phi_f Lambda_f^-1 Phi_f' B of a dense model. */
+/**
+ * Flexible static gain C Phi_f Lambda_f^-1 Phi_f' B of a dense model.
+ *
+ * @param[in] num_rigid  of the model this one stands for, 0: not known. As many
+ *                       of the lowest modes are left out at least: a reduction
+ *                       that holds a rigid motion badly has it at some
+ *                       frequency, and no compliance by that
+ */
 ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
-                             const ritz_io *io, ritz_dense *out);
+                             const ritz_io *io, int64_t num_rigid,
+                             ritz_dense *out);
+
+/**
+ * |G - G_r| / |G| of two static gains of one size, largest singular values; NaN
+ * where G is nothing but rounding beside the difference.
+ */
+ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
+                            double *out);
 
 /** Residual bounds of a reduced component's own modes, for its estimates. */
 ritz_status ritz_estimate(const ritz_component *component,

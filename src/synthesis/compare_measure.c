@@ -131,9 +131,11 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
     ritz_status status = RITZ_OK;
     ritz_dense one = {0}, two = {0};
 
-    RITZ_TRY(ritz_static_gain(&first->K, &first->M, &first->io, &one));
-    RITZ_TRY(ritz_static_gain(&second->K, &second->M, &second->io, &two));
-    *out = relative(&one, &two);
+    RITZ_TRY(ritz_static_gain(&first->K, &first->M, &first->io,
+                              first->num_rigid, &one));
+    RITZ_TRY(ritz_static_gain(&second->K, &second->M, &second->io,
+                              first->num_rigid, &two));
+    RITZ_TRY(ritz_gain_error(&one, &two, out));
 done:
     ritz_dense_free(&one);
     ritz_dense_free(&two);

@@ -164,11 +164,12 @@ ritz_status ritz_compare_strays(const ritz_scene *scene,
 ritz_status ritz_compare_remove(const ritz_compare_row *row,
                                 ritz_configuration *second);
 
-/** Error of the flexible static gain, relative to its largest entry. */
+/** Error of the flexible static gain: see ritz_gain_error. */
 ritz_status ritz_compare_gain(const ritz_configuration *first,
                               const ritz_configuration *second, double *out);
 
-/** The same of the kept moments; NaN if there are none. */
+/** Worst error of the kept moments, relative to the largest entry of each; NaN
+    if there are none. */
 ritz_status ritz_compare_moments(const ritz_configuration *first,
                                  const ritz_configuration *second,
                                  int64_t count, double *out);

@@ -5,13 +5,21 @@
  *
  * and what motions without mass add to it.
  */
+#include "base/alloc.h"
 #include "verify/static_rest.h"
 
 #include <ritz/eigen.h>
 #include <ritz/verify.h>
 
+#include <lapacke.h>
+#include <math.h>
+
+/* A gain this much smaller than its error is rounding. */
+static const double no_gain = 1e-14;
+
 ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
-                             const ritz_io *io, ritz_dense *out)
+                             const ritz_io *io, int64_t num_rigid,
+                             ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_second_order model = {.K = K, .M = M, .io = io};
@@ -20,11 +28,13 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
     ritz_residual rest = {0};
 
     RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
+    if (num_rigid < pairs.num_rigid)
+        num_rigid = pairs.num_rigid;
     RITZ_TRY(ritz_io_project(io, &pairs.Phi, &modes));
     for (int64_t j = 0; j < modes.num_inputs; j++)
         for (int64_t k = 0; k < pairs.Phi.ncol; k++)
             ritz_dense_col(&modes.B, j)[k] *=
-                k < pairs.num_rigid ? 0.0 : 1.0 / pairs.lambda[k];
+                k < num_rigid ? 0.0 : 1.0 / pairs.lambda[k];
     RITZ_TRY(ritz_static_rest(&model, &pairs, &rest));
     RITZ_TRY(ritz_dense_mul(&modes.C, &modes.B, out));
     for (int64_t k = 0; rest.count > 0 && k < out->nrow * out->ncol; k++)
@@ -33,5 +43,47 @@ done:
     ritz_residual_free(&rest);
     ritz_pairs_free(&pairs);
     ritz_io_free(&modes);
+    return status;
+}
+
+/* Largest singular value; overwrites A. */
+static ritz_status norm(ritz_dense *A, double *out)
+{
+    ritz_status status = RITZ_OK;
+    double *sigma = NULL;
+    int info = 0;
+
+    *out = 0.0;
+    if (A->nrow == 0 || A->ncol == 0)
+        return RITZ_OK;
+    RITZ_NEW(sigma, A->nrow < A->ncol ? A->nrow : A->ncol);
+    info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
+                          A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "the norm of the static gain was not found");
+    *out = sigma[0];
+done:
+    free(sigma);
+    return status;
+}
+
+ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
+                            double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense G = {0}, apart = {0};
+    double size = 0.0;
+    double error = 0.0;
+
+    RITZ_TRY(ritz_dense_copy(full, &G));
+    RITZ_TRY(ritz_dense_copy(reduced, &apart));
+    for (int64_t k = 0; k < G.nrow * G.ncol; k++)
+        apart.val[k] -= G.val[k];
+    RITZ_TRY(norm(&G, &size));
+    RITZ_TRY(norm(&apart, &error));
+    *out = error == 0.0 ? 0.0 : size > no_gain * error ? error / size : nan("");
+done:
+    ritz_dense_free(&G);
+    ritz_dense_free(&apart);
     return status;
 }

@@ -142,8 +142,6 @@ static ritz_status open_reduced(const ritz_second_order *model,
     RITZ_TRY_IN("reduced model",
                 ritz_damped_new(&sides->reduced, NULL, NULL, sides->band_hz,
                                 &sides->damped_reduced));
-    RITZ_TRY_IN("reduced model", ritz_static_gain(model->K, model->M, model->io,
-                                                  &sides->gain_reduced));
 done:
     return status;
 }
@@ -165,7 +163,8 @@ done:
     return status;
 }
 
-static ritz_status measure(const ritz_component *full, const ritz_dense *T,
+static ritz_status measure(const ritz_component *full,
+                           const ritz_second_order *model, const ritz_dense *T,
                            const ritz_verify_request *request,
                            ritz_sides *sides, ritz_measures *out)
 {
@@ -175,6 +174,9 @@ static ritz_status measure(const ritz_component *full, const ritz_dense *T,
 
     sides->component = full;
     RITZ_TRY(open_full(full, sides));
+    RITZ_TRY_IN("reduced model",
+                ritz_static_gain(model->K, model->M, model->io,
+                                 sides->pairs.num_rigid, &sides->gain_reduced));
     if (T && T->val && T->nrow == full->num_dofs) {
         sides->shapes = true;
         RITZ_TRY(cross(full, T, sides, &Q));
@@ -228,7 +230,7 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
     choose_band(&sides.reduced,
                 highest_hertz(&sides.reduced, &reduced->columns), request,
                 sides.band_hz);
-    RITZ_TRY(measure(full, &reduced->T, request, &sides, out));
+    RITZ_TRY(measure(full, &model, &reduced->T, request, &sides, out));
 done:
     ritz_sides_free(&sides);
     return status;
@@ -250,7 +252,7 @@ ritz_status ritz_verify_system(const ritz_component *full,
     choose_band(&sides.reduced, highest_hertz(&sides.reduced, NULL), request,
                 sides.band_hz);
     sides.outputs = true;
-    RITZ_TRY(measure(full, NULL, request, &sides, out));
+    RITZ_TRY(measure(full, &model, NULL, request, &sides, out));
 done:
     ritz_sides_free(&sides);
     return status;

@@ -597,7 +597,7 @@ static void no_allocation_failure_leaks(void **state)
     assert_ok(ritz_basis_make(&ritz_method_macneal, &f->request, &basis));
     assert_survives_every_allocation(ritz_reduce(&f->bar, &basis, &reduced));
     assert_survives_every_allocation(
-        ritz_static_gain(&reduced.K, &reduced.M, &reduced.io, &gain));
+        ritz_static_gain(&reduced.K, &reduced.M, &reduced.io, 0, &gain));
     ritz_dense_free(&gain);
     ritz_reduced_free(&reduced);
     ritz_basis_free(&basis);

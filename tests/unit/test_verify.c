@@ -163,8 +163,17 @@ static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
     (void)s;
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = io.C.val[0] = 1.0;
-    assert_ok(ritz_static_gain(&K, &M, &io, &G));
+    assert_ok(ritz_static_gain(&K, &M, &io, 0, &G));
     assert_near(G.val[0], 0.25, 1e-15); /* phi = 1/sqrt 2, lambda = 2 */
+    ritz_dense_free(&G);
+    /* The rigid motion on a weak spring: compliance, unless told what it is. */
+    k[0] += 1e-6;
+    k[3] += 1e-6;
+    assert_ok(ritz_static_gain(&K, &M, &io, 0, &G));
+    assert_true(G.val[0] > 1e5);
+    ritz_dense_free(&G);
+    assert_ok(ritz_static_gain(&K, &M, &io, 1, &G));
+    assert_near(G.val[0], 0.25, 1e-6);
     ritz_dense_free(&G);
     ritz_io_free(&io);
 }
