@@ -25,6 +25,8 @@ typedef enum ritz_column_kind {
     RITZ_COLUMN_MASSLESS,   /* residual flexibility, its mass left out */
     RITZ_COLUMN_FORCE,      /* residual flexibility of a dual interface force */
     RITZ_COLUMN_STATE,      /* of a first-order basis */
+    RITZ_COLUMN_PERTURBED,  /* a state that answers statically */
+    RITZ_COLUMN_BALANCED,   /* balanced, of second order */
 } ritz_column_kind;
 
 /* What each of r columns is. */
@@ -46,13 +48,15 @@ typedef struct ritz_origin {
 
 /*
  * T, n x r, and of each of its columns what it is. Of states T has 2n rows, n
- * displacements and then n velocities, and there may be left vectors W: see
- * ritz_reduce_states.
+ * displacements and then n velocities, or the states of a state space; left
+ * vectors W may stand beside: see ritz_reduce_states.
  */
 typedef struct ritz_basis {
     ritz_dense T;
-    ritz_dense W; /* of states, as T; {0}: T itself */
+    ritz_dense W; /* as T; {0}: T itself */
     bool states;
+    int64_t num_hankel; /* values of the model that was balanced; 0: none */
+    double *hankel;     /* descending, the rest of which bounds the error */
     char damping[RITZ_DAMPING_SIZE]; /* of states: what they were made with,
                                         as ritz_damping_parse reads */
     ritz_columns columns;

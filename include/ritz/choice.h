@@ -24,6 +24,12 @@ enum {
     RITZ_USES_OPERATOR = 128,
     RITZ_USES_DAMPING = 256,
     RITZ_USES_NEIGHBOUR = 512,
+    RITZ_USES_ENGINE = 1024,
+    RITZ_USES_AMONG = 2048,
+    RITZ_USES_BAND = 4096,
+    RITZ_USES_REMAINDER = 8192,
+    RITZ_USES_SIDES = 16384,
+    RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
 };
 
 /* Forces that vectors answer; what is read gives as many: H K^-1 F. */
@@ -44,6 +50,14 @@ typedef enum ritz_gramian {
     RITZ_GRAMIAN_OUTPUTS, /* observability */
 } ritz_gramian;
 
+/* How Gramians are found: see gramians.h. */
+typedef enum ritz_engine {
+    RITZ_ENGINE_AUTO,
+    RITZ_ENGINE_DENSE,
+    RITZ_ENGINE_MODAL,
+    RITZ_ENGINE_LOW_RANK,
+} ritz_engine;
+
 typedef struct ritz_choice {
     int given; /* RITZ_USES_... of the words that were given */
     int64_t num_shifts;
@@ -54,6 +68,11 @@ typedef struct ritz_choice {
     ritz_gramian gramian;
     bool inverse;         /* Lanczos on A^-1 instead of A */
     ritz_damping damping; /* instead of the component's own */
+    ritz_engine engine;
+    double among_hz;   /* modal engine: modes up to here */
+    double band_hz[2]; /* where the response matters */
+    bool perturb;      /* the remainder answers statically, it is not dropped */
+    bool one_sided;    /* of second order: W = T, which keeps symmetry */
 } ritz_choice;
 
 /* A word, and how its value is taken from a text. */
@@ -71,7 +90,9 @@ extern const ritz_choice_word ritz_choice_words[];
 /**
  * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
- * gramian, "state" or "inverse" for operator, "modal 0.01" for damping.
+ * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
+ * "dense", "modal" or "low-rank" for engine, "50" for among_hz, "0,10" for
+ * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
  */

@@ -5,6 +5,7 @@
 #include <ritz/basis.h>
 #include <ritz/choice.h>
 #include <ritz/component.h>
+#include <ritz/state_space.h>
 
 /* What hangs on the attached dofs while modes are found, of their order. */
 typedef struct ritz_neighbour {
@@ -17,6 +18,7 @@ typedef struct ritz_neighbour {
  */
 typedef struct ritz_request {
     const ritz_component *component; /* borrowed */
+    const ritz_state_space *space; /* in its place, RITZ_USES_SPACE; borrowed */
     ritz_dofs attached; /* kept as they are, in this order; borrowed */
     int64_t modes;      /* how many flexible ones; -1: as up_to_hz says */
     double up_to_hz;    /* every mode up to this frequency; 0: modes decides */

@@ -19,6 +19,8 @@ static const char *const names[] = {
     [RITZ_COLUMN_MASSLESS] = "massless",
     [RITZ_COLUMN_FORCE] = "force",
     [RITZ_COLUMN_STATE] = "state",
+    [RITZ_COLUMN_PERTURBED] = "perturbed",
+    [RITZ_COLUMN_BALANCED] = "balanced",
 };
 
 ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
@@ -103,5 +105,6 @@ void ritz_basis_free(ritz_basis *basis)
     ritz_dense_free(&basis->T);
     ritz_dense_free(&basis->W);
     ritz_columns_free(&basis->columns);
+    free(basis->hankel);
     *basis = (ritz_basis){0};
 }

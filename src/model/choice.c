@@ -134,6 +134,85 @@ static ritz_status take_damping(const char *text, ritz_choice *choice)
     return ritz_damping_parse(text, &choice->damping);
 }
 
+static const char engines[][16] = {
+    [RITZ_ENGINE_AUTO] = "auto",
+    [RITZ_ENGINE_DENSE] = "dense",
+    [RITZ_ENGINE_MODAL] = "modal",
+    [RITZ_ENGINE_LOW_RANK] = "low-rank",
+};
+
+static ritz_status take_engine(const char *text, ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_TRY(take_word("engine", text, sizeof engines / sizeof *engines,
+                       engines, &at));
+    choice->engine = (ritz_engine)at;
+done:
+    return status;
+}
+
+static ritz_status take_among(const char *text, ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    char cut[RITZ_SHORT_SIZE];
+    double hertz = 0.0;
+
+    RITZ_FAIL_IF(!ritz_text_real(text, &hertz) || !(hertz > 0.0),
+                 RITZ_ERR_ARGUMENT, "'%s' is no frequency above 0 Hz",
+                 ritz_text_short(text, cut));
+    choice->among_hz = hertz;
+done:
+    return status;
+}
+
+static ritz_status take_band(const char *text, ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    char word[2][RITZ_SHORT_SIZE] = {"", ""};
+    char cut[RITZ_SHORT_SIZE];
+    const char *rest = next_word(text, word[0]);
+    double hertz[2] = {0.0, 0.0};
+
+    if (rest)
+        rest = next_word(rest, word[1]);
+    RITZ_FAIL_IF(rest || !ritz_text_real(word[0], &hertz[0]) ||
+                     !ritz_text_real(word[1], &hertz[1]) ||
+                     !(hertz[0] >= 0.0 && hertz[1] > hertz[0]),
+                 RITZ_ERR_ARGUMENT,
+                 "'%s' is no band: two ascending frequencies, 0 Hz or above",
+                 ritz_text_short(text, cut));
+    choice->band_hz[0] = hertz[0];
+    choice->band_hz[1] = hertz[1];
+done:
+    return status;
+}
+
+static ritz_status take_remainder(const char *text, ritz_choice *choice)
+{
+    static const char words[][16] = {"dropped", "static"};
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_TRY(take_word("remainder", text, 2, words, &at));
+    choice->perturb = at == 1;
+done:
+    return status;
+}
+
+static ritz_status take_sides(const char *text, ritz_choice *choice)
+{
+    static const char words[][16] = {"one", "two"};
+    ritz_status status = RITZ_OK;
+    int64_t at = 0;
+
+    RITZ_TRY(take_word("side", text, 2, words, &at));
+    choice->one_sided = at == 0;
+done:
+    return status;
+}
+
 const ritz_choice_word ritz_choice_words[] = {
     {"shift_hz", "F[,F]", "expansion points of Krylov vectors [0]",
      RITZ_USES_SHIFTS, take_shifts},
@@ -151,6 +230,15 @@ const ritz_choice_word ritz_choice_words[] = {
      RITZ_USES_OPERATOR, take_operator},
     {"damping", "TEXT", "'modal 0.01', instead of the component's own",
      RITZ_USES_DAMPING, take_damping},
+    {"engine", "WORD", "how Gramians are found: auto, dense, modal, low-rank",
+     RITZ_USES_ENGINE, take_engine},
+    {"among_hz", "F", "modal Gramians: of the modes up to this frequency",
+     RITZ_USES_AMONG, take_among},
+    {"band_hz", "F,F", "where the response matters", RITZ_USES_BAND, take_band},
+    {"remainder", "WORD", "what becomes of other states: dropped or static",
+     RITZ_USES_REMAINDER, take_remainder},
+    {"sides", "WORD", "project by one side, which keeps symmetry, or by two",
+     RITZ_USES_SIDES, take_sides},
     {0},
 };
 
@@ -207,6 +295,24 @@ void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
     if (choice->given & RITZ_USES_OPERATOR)
         append(size, out,
                choice->inverse ? "operator inverse" : "operator state");
+    if (choice->given & RITZ_USES_ENGINE) {
+        snprintf(text, sizeof text, "engine %s", engines[choice->engine]);
+        append(size, out, text);
+    }
+    if (choice->given & RITZ_USES_AMONG) {
+        snprintf(text, sizeof text, "among-hz %.17g", choice->among_hz);
+        append(size, out, text);
+    }
+    if (choice->given & RITZ_USES_BAND) {
+        snprintf(text, sizeof text, "band-hz %.17g,%.17g", choice->band_hz[0],
+                 choice->band_hz[1]);
+        append(size, out, text);
+    }
+    if (choice->given & RITZ_USES_REMAINDER)
+        append(size, out,
+               choice->perturb ? "remainder static" : "remainder dropped");
+    if (choice->given & RITZ_USES_SIDES)
+        append(size, out, choice->one_sided ? "sides one" : "sides two");
     if (choice->given & RITZ_USES_DAMPING) {
         char damping[RITZ_DAMPING_SIZE];
 

@@ -1,18 +1,40 @@
 /* Containers of bases. */
+#include "base/alloc.h"
 #include "model/container_parts.h"
-
-#include <inttypes.h>
 
 /* A basis of states says so by its attribute `states`. */
 static ritz_status write_states(hid_t file, const ritz_basis *basis)
 {
     ritz_status status = RITZ_OK;
 
+    RITZ_TRY(ritz_part_write_dense(file, "W", &basis->W));
+    if (basis->num_hankel > 0)
+        RITZ_TRY(ritz_h5_write(file, "hankel", H5T_IEEE_F64LE,
+                               ritz_h5_vector(basis->num_hankel),
+                               basis->hankel));
     if (!basis->states)
         return RITZ_OK;
     RITZ_TRY(ritz_part_set_whole(file, "states", 1));
     RITZ_TRY(ritz_h5_set_text(file, "damping", basis->damping));
-    RITZ_TRY(ritz_part_write_dense(file, "W", &basis->W));
+done:
+    return status;
+}
+
+static ritz_status read_hankel(hid_t file, ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!ritz_h5_has(file, "hankel"))
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_count(file, "hankel", &basis->num_hankel));
+    RITZ_NEW(basis->hankel, basis->num_hankel);
+    RITZ_TRY(ritz_h5_read_real(file, "hankel",
+                               ritz_h5_vector(basis->num_hankel), false,
+                               basis->hankel));
+    for (int64_t k = 0; k < basis->num_hankel; k++)
+        RITZ_FAIL_IF(basis->hankel[k] < 0.0 ||
+                         (k > 0 && basis->hankel[k] > basis->hankel[k - 1]),
+                     RITZ_ERR_FORMAT, "'hankel' does not descend to zero");
 done:
     return status;
 }
@@ -23,16 +45,13 @@ static ritz_status read_states(hid_t file, ritz_basis *basis)
     const ritz_dense *T = &basis->T;
     int64_t one = 0;
 
+    RITZ_TRY(ritz_part_read_dense(file, "W", T->nrow, T->ncol, &basis->W));
+    RITZ_TRY(read_hankel(file, basis));
     if (H5Aexists(file, "states") <= 0)
         return RITZ_OK;
     RITZ_TRY(ritz_part_get_size(file, "states", 1, 1, &one));
-    RITZ_FAIL_IF(T->nrow % 2 != 0, RITZ_ERR_FORMAT,
-                 "'T' has %" PRId64 " rows, of states there are two for each "
-                 "dof",
-                 T->nrow);
     RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof basis->damping,
                               basis->damping));
-    RITZ_TRY(ritz_part_read_dense(file, "W", T->nrow, T->ncol, &basis->W));
     basis->states = true;
 done:
     return status;

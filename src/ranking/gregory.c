@@ -13,7 +13,9 @@
  * [Gregory1984], [McDaniel2000] eq. 3.2.22
  */
 #include "base/alloc.h"
-#include "ranking/cluster.h"
+#include "gramians/cluster.h"
+
+#include <ritz/ranking.h>
 
 #include <lapacke.h>
 #include <math.h>

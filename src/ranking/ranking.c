@@ -1,5 +1,7 @@
 #include "base/alloc.h"
-#include "ranking/cluster.h"
+#include "gramians/cluster.h"
+
+#include <ritz/ranking.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -12,7 +12,8 @@ except ImportError as missing:
     sys.exit(77)
 
 KINDS = {"rigid", "constraint", "normal", "residual", "system", "krylov",
-         "static", "attachment", "interface", "massless", "force", "state"}
+         "static", "attachment", "interface", "massless", "force", "state",
+         "perturbed", "balanced"}
 
 
 def text(value):

@@ -1,8 +1,8 @@
 /* Modes too close to be told apart. */
-#ifndef RITZ_RANKING_CLUSTER_H
-#define RITZ_RANKING_CLUSTER_H
+#ifndef RITZ_GRAMIANS_CLUSTER_H
+#define RITZ_GRAMIANS_CLUSTER_H
 
-#include <ritz/ranking.h>
+#include <ritz/modal.h>
 
 /** One past the last mode of the cluster that begins at mode @p first. */
 int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first);

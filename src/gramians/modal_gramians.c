@@ -23,7 +23,7 @@
  */
 #include "base/alloc.h"
 
-#include <ritz/ranking.h>
+#include <ritz/modal.h>
 
 #include <math.h>
 

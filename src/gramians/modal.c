@@ -10,7 +10,7 @@
  * and the feedthrough Ca b u is left out: it is the same whatever is kept.
  */
 #include "base/alloc.h"
-#include "ranking/cluster.h"
+#include "gramians/cluster.h"
 
 #include <ritz/eigen.h>
 
