@@ -34,12 +34,23 @@ int folder_remove(void **state)
 
 const char *folder_path(const char *name)
 {
-    static char path[4][512];
+    static char path[16][512];
     static int turn = 0;
 
-    turn = (turn + 1) % 4;
+    turn = (turn + 1) % 16;
     snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
     return path[turn];
+}
+
+const char *folder_write(const char *name, const char *text)
+{
+    const char *path = folder_path(name);
+    FILE *file = fopen(path, "w");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    return path;
 }
 
 void folder_store(const char *name, const ritz_component *component)

@@ -1,23 +1,22 @@
 #include "masses.h"
 
 #include "base/alloc.h"
+#include "frame.h"
 
 #include <ritz/import.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST = 64 };
-
-/* Elements s[i] between i - 1 and i; s[0] to ground. */
+/* Elements s[i] between i - 1 and i; s[0] to ground, if it is not 0. */
 static ritz_status assemble(int64_t n, const double *s, ritz_sparse *out)
 {
-    int64_t row[4 * MOST];
-    int64_t col[4 * MOST];
-    double val[4 * MOST];
+    int64_t row[4 * MASSES_MOST];
+    int64_t col[4 * MASSES_MOST];
+    double val[4 * MASSES_MOST];
     int64_t count = 0;
 
-    for (int64_t e = 0; e < n; e++)
+    for (int64_t e = s[0] != 0.0 ? 0 : 1; e < n; e++)
         for (int64_t i = e > 0 ? e - 1 : 0; i <= e; i++)
             for (int64_t j = e > 0 ? e - 1 : 0; j <= e; j++) {
                 row[count] = i;
@@ -32,9 +31,9 @@ ritz_status masses_component(int64_t n, const double *m, const double *k,
 {
     ritz_status status = RITZ_OK;
     ritz_component masses = {.units = "none", .num_dofs = n};
-    int64_t own[MOST];
+    int64_t own[MASSES_MOST];
 
-    RITZ_FAIL_IF(n > MOST, RITZ_ERR_ARGUMENT, "the row is too long");
+    RITZ_FAIL_IF(n > MASSES_MOST, RITZ_ERR_ARGUMENT, "the row is too long");
     for (int64_t i = 0; i < n; i++)
         own[i] = i;
     RITZ_NEW(masses.dof, n);
@@ -56,24 +55,7 @@ ritz_status masses_io(ritz_component *masses, int64_t num_inputs,
                       const int64_t *input_mass, int64_t num_outputs,
                       const int64_t *output_mass)
 {
-    ritz_status status = RITZ_OK;
-    ritz_io io = {0};
-
-    RITZ_TRY(ritz_io_new(masses->num_dofs, num_inputs, num_outputs, &io));
-    for (int64_t k = 0; k < num_inputs; k++) {
-        snprintf(io.input[k], RITZ_NAME_SIZE, "u%d", (int)k + 1);
-        ritz_dense_col(&io.B, k)[input_mass[k]] = 1.0;
-    }
-    for (int64_t k = 0; k < num_outputs; k++) {
-        snprintf(io.output[k], RITZ_NAME_SIZE, "y%d", (int)k + 1);
-        ritz_dense_col(&io.C, output_mass[k])[k] = 1.0;
-    }
-    ritz_io_free(&masses->io);
-    masses->io = io;
-    io = (ritz_io){0};
-done:
-    ritz_io_free(&io);
-    return status;
+    return frame_io(masses, num_inputs, input_mass, num_outputs, output_mass);
 }
 
 ritz_status masses_shipped(ritz_component *out)

@@ -7,8 +7,11 @@
 
 #include <ritz/component.h>
 
+enum { MASSES_MOST = 64 };
+
 /**
- * @p n masses without inputs and outputs. k[0] = 0 sets them free.
+ * @p n masses, MASSES_MOST at most, without inputs and outputs. k[0] = 0 sets
+ * them free.
  *
  * @param[in] c  dashpots, in D; NULL: there is no D
  */

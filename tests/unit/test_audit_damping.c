@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "chain.h"
+#include "spring_chain.h"
 
 #include <ritz/audit.h>
 #include <ritz/import.h>

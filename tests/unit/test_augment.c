@@ -7,11 +7,11 @@
 
 #include "beams.h"
 #include "dualspin.h"
+#include "matrices.h"
 #include "scenes.h"
 
 #include "synthesis/compare_parts.h"
 
-#include <ritz/eigen.h>
 #include <ritz/method.h>
 #include <ritz/verify.h>
 
@@ -45,25 +45,6 @@ static void release(fixture *f)
     ritz_comparison_free(&f->c);
     ritz_stage_free(&f->stage);
     ritz_scene_free(&f->scene);
-}
-
-/* Largest singular value, by the eigenvalues of A'A. */
-static double norm_2(const ritz_dense *A)
-{
-    ritz_dense square = {0}, one = {0};
-    ritz_pairs pairs = {0};
-    double largest = 0.0;
-
-    assert_ok(ritz_dense_mul_tn(A, A, &square));
-    assert_ok(ritz_dense_new(A->ncol, A->ncol, &one));
-    for (int64_t k = 0; k < A->ncol; k++)
-        ritz_dense_col(&one, k)[k] = 1.0;
-    assert_ok(ritz_eigen_dense(&square, &one, &pairs));
-    largest = sqrt(pairs.lambda[pairs.Phi.ncol - 1]);
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&square);
-    ritz_dense_free(&one);
-    return largest;
 }
 
 /* ||gain of stage 2 - gain of stage 1|| / ||gain of stage 1||, 2-norms. */

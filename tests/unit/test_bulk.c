@@ -265,7 +265,7 @@ static void what_a_deck_cannot_mean_is_refused(void **state)
 
 static void write_file(const char *folder, const char *name, const char *text)
 {
-    char path[200];
+    char path[512];
     FILE *file = NULL;
 
     snprintf(path, sizeof path, "%s/%s", folder, name);

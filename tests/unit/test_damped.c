@@ -1,10 +1,11 @@
 /* Responses, errors and systems of models that D or K4 couples. */
 #include "testing.h"
 
-#include "chain.h"
 #include "folder.h"
 #include "frame.h"
+#include "project.h"
 #include "scenes.h"
+#include "spring_chain.h"
 #include "verify/damped.h"
 #include "verify/dense_poles.h"
 
@@ -199,15 +200,6 @@ static void direct_reads_both_triangles_of_the_damping(void **state)
     ritz_component_free(&chain);
 }
 
-static const ritz_measure *find(const ritz_measures *measures, const char *name)
-{
-    for (int64_t k = 0; k < measures->count; k++)
-        if (strcmp(measures->item[k].name, name) == 0)
-            return &measures->item[k];
-    fail_msg("there is no measure '%s'", name);
-    return NULL;
-}
-
 static void verify(const ritz_component *full, const ritz_method *method,
                    int64_t modes, int loads, double c, ritz_measures *out)
 {
@@ -261,13 +253,15 @@ static void verification_sees_what_dampers_do(void **state)
     verify(&full, &ritz_method_normal_modes, 8, RITZ_LOADS_DAMPERS, 150.0,
            &ritz);
     verify(&full, &ritz_method_macneal_rubin, 11, 0, 150.0, &truncated);
-    assert_near(find(&ritz, "damping-relative")->value, 0.00121, 1e-5);
-    assert_near(find(&truncated, "damping-relative")->value, 0.48556, 1e-5);
-    assert_non_null(strstr(find(&ritz, "damping-relative")->where, "mode 4"));
-    assert_true(find(&ritz, "frequency-relative")->value < 2e-6);
-    assert_true(find(&truncated, "frequency-relative")->value < 2e-3);
-    assert_true(find(&ritz, "response-relative")->value < 1e-3);
-    assert_true(find(&truncated, "response-relative")->value > 0.1);
+    assert_near(find_measure(&ritz, "damping-relative")->value, 0.00121, 1e-5);
+    assert_near(find_measure(&truncated, "damping-relative")->value, 0.48556,
+                1e-5);
+    assert_non_null(
+        strstr(find_measure(&ritz, "damping-relative")->where, "mode 4"));
+    assert_true(find_measure(&ritz, "frequency-relative")->value < 2e-6);
+    assert_true(find_measure(&truncated, "frequency-relative")->value < 2e-3);
+    assert_true(find_measure(&ritz, "response-relative")->value < 1e-3);
+    assert_true(find_measure(&truncated, "response-relative")->value > 0.1);
     ritz_measures_free(&ritz);
     ritz_measures_free(&truncated);
     ritz_component_free(&full);
@@ -286,10 +280,10 @@ static void overdamped_models_are_compared_pole_by_pole(void **state)
     verify(&full, &ritz_method_normal_modes, 8, RITZ_LOADS_DAMPERS, 5000.0,
            &ritz);
     verify(&full, &ritz_method_full, -1, 0, 150.0, &other);
-    assert_near(find(&same, "damping-relative")->value, 0.0, 1e-8);
-    assert_near(find(&same, "response-relative")->value, 0.0, 1e-9);
-    assert_true(find(&ritz, "damping-relative")->value < 0.05);
-    assert_true(find(&other, "damping-relative")->value > 0.5);
+    assert_near(find_measure(&same, "damping-relative")->value, 0.0, 1e-8);
+    assert_near(find_measure(&same, "response-relative")->value, 0.0, 1e-9);
+    assert_true(find_measure(&ritz, "damping-relative")->value < 0.05);
+    assert_true(find_measure(&other, "damping-relative")->value > 0.5);
     ritz_measures_free(&same);
     ritz_measures_free(&ritz);
     ritz_measures_free(&other);
@@ -315,7 +309,7 @@ static void what_creeps_in_one_model_alone_is_wholly_wrong(void **state)
         reduced.D.val[31 * k] += 1e4; /* and the couplings stay */
     request.band_hz[1] = 2.0;
     assert_ok(ritz_verify_reduced(&full, &reduced, &request, &found));
-    assert_near(find(&found, "damping-relative")->value, 1.0, 0.0);
+    assert_near(find_measure(&found, "damping-relative")->value, 1.0, 0.0);
     ritz_measures_free(&found);
     ritz_reduced_free(&reduced);
     ritz_basis_free(&basis);

@@ -1,6 +1,7 @@
 #include "testing.h"
 
-#include "chain.h"
+#include "matrices.h"
+#include "spring_chain.h"
 
 #include <ritz/basis.h>
 #include <ritz/import.h>
@@ -26,14 +27,6 @@ static ritz_basis some_basis(int64_t n, int64_t r)
     for (int64_t k = 0; k < n * r; k++)
         basis.T.val[k] = sin(1.0 + 0.7 * (double)(k * k % 101));
     return basis;
-}
-
-static double entry(const ritz_sparse *A, int64_t i, int64_t j)
-{
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-        if (A->rowind[p] == i)
-            return A->val[p];
-    return 0.0;
 }
 
 static void assert_same(const ritz_dense *A, const ritz_dense *B, double bound)

@@ -1,57 +1,13 @@
 /* Importing: small decks and matrices written here, and real ones. */
 #include "testing.h"
 
+#include "folder.h"
+
 #include <ritz/eigen.h>
 #include <ritz/import.h>
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
-
-static char folder[] = "/tmp/ritz-import-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    static const char *const names[] = {"k.mtx", "m.mtx",  "deck.bdf",
-                                        "dofs",  "k.pch",  "c.mtx",
-                                        "r.mtx", "m24.mtx"};
-    char path[256];
-
-    (void)state;
-    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-        snprintf(path, sizeof path, "%s/%s", folder, names[k]);
-        unlink(path);
-    }
-    return rmdir(folder);
-}
-
-/* Where a file of the test lies; good for the next 15 calls. */
-static const char *at(const char *name)
-{
-    static char path[16][256];
-    static int turn = 0;
-
-    turn = (turn + 1) % 16;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
-}
-
-static const char *put(const char *name, const char *text)
-{
-    const char *path = at(name);
-    FILE *file = fopen(path, "w");
-
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-    return path;
-}
 
 /* Diagonal matrix in Matrix Market; 0 stands for a row without entry. */
 static const char *put_diagonal(const char *name, int n, const double *value)
@@ -70,7 +26,7 @@ static const char *put_diagonal(const char *name, int n, const double *value)
         if (value[k] != 0.0)
             used += snprintf(text + used, sizeof text - (size_t)used,
                              "%d %d %g\n", k + 1, k + 1, value[k]);
-    return put(name, text);
+    return folder_write(name, text);
 }
 
 /* A file of somebody else; NULL and a word if it is not there. */
@@ -107,7 +63,7 @@ static void grids_ascend_with_six_rows_and_points_with_one(void **state)
     const ritz_import_request request = {
         .stiffness = put_diagonal("k.mtx", 19, full),
         .mass = put_diagonal("m.mtx", 19, full),
-        .bulk = put("deck.bdf", deck),
+        .bulk = folder_write("deck.bdf", deck),
         .num_ports = 3,
         .port = ports,
         .units = "kg m s"};
@@ -183,7 +139,7 @@ static void rows_that_the_deck_fixes_are_taken_out(void **state)
     const ritz_import_request request = {
         .stiffness = put_diagonal("k.mtx", 6, full),
         .mass = put_diagonal("m.mtx", 6, full),
-        .bulk = put("deck.bdf", "GRID,3,,1.,0.,0.,,156\n")};
+        .bulk = folder_write("deck.bdf", "GRID,3,,1.,0.,0.,,156\n")};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -199,11 +155,11 @@ static void rows_that_the_deck_fixes_are_taken_out(void **state)
 
 static void other_sizes_are_the_a_set_or_grids_less_spcs(void **state)
 {
-    ritz_import_request request = {.mass = put_diagonal("m.mtx", 4, full),
-                                   .bulk = put("deck.bdf",
-                                               "GRID,3,,1.,0.,0.,,156\n"
-                                               "GRID,4,,1.,0.,0.\nSPOINT,9\n"
-                                               "BSET1,123,4\nQSET1,,9\n")};
+    ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 4, full),
+        .bulk = folder_write("deck.bdf", "GRID,3,,1.,0.,0.,,156\n"
+                                         "GRID,4,,1.,0.,0.\nSPOINT,9\n"
+                                         "BSET1,123,4\nQSET1,,9\n")};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -234,8 +190,9 @@ static void constraints_act_on_matrices_that_have_their_dofs(void **state)
 {
     ritz_import_request request = {
         .mass = put_diagonal("m.mtx", 12, full),
-        .bulk = put("deck.bdf", "GRID,3,,1.,0.,0.\nGRID,4,,2.,0.,0.\n"
-                                "RBE2,600,3,123456,4\nASET1,123456,3\n")};
+        .bulk =
+            folder_write("deck.bdf", "GRID,3,,1.,0.,0.\nGRID,4,,2.,0.,0.\n"
+                                     "RBE2,600,3,123456,4\nASET1,123456,3\n")};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -258,7 +215,7 @@ static void a_file_of_names_rules(void **state)
 {
     ritz_import_request request = {
         .mass = put_diagonal("m.mtx", 3, full),
-        .dofs = put("dofs", "# GRID COMP\n 8 3\n\n7 2 # y\n9 0\n")};
+        .dofs = folder_write("dofs", "# GRID COMP\n 8 3\n\n7 2 # y\n9 0\n")};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -269,35 +226,35 @@ static void a_file_of_names_rules(void **state)
     assert_string_equal(report.map, "--dofs");
     ritz_component_free(&c);
     ritz_import_report_free(&report);
-    put("dofs", "8 3\n7 2\n");
+    folder_write("dofs", "8 3\n7 2\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "names 2 dofs");
-    put("dofs", "8 3\n7 2\n\n8 3\n");
+    folder_write("dofs", "8 3\n7 2\n\n8 3\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "line 4: 'grid 8 T3' was named at line 1 already");
-    put("dofs", "8 3\n7 x\n");
+    folder_write("dofs", "8 3\n7 x\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT, "line 2");
-    put("dofs", "8 3\n7 7\n");
+    folder_write("dofs", "8 3\n7 7\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "'7 7' is no dof");
-    put("dofs", "8 3 4\n");
+    folder_write("dofs", "8 3 4\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT, "line 1");
 }
 
 /* K has rows 1 T1 and 2 T1, M has 2 T1 and point 5: together three. */
 static void matrices_that_name_their_rows_are_united(void **state)
 {
-    const char *file =
-        put("k.pch", "DMIG    K              0       6       2       0\n"
-                     "DMIG    K              1       1               1"
-                     "       1      5.\n"
-                     "DMIG    K              2       1               2"
-                     "       1      7.\n"
-                     "DMIG    M              0       6       2       0\n"
-                     "DMIG    M              2       1               2"
-                     "       1      3.\n"
-                     "DMIG    M              5       0               5"
-                     "       0      4.\n");
+    const char *file = folder_write(
+        "k.pch", "DMIG    K              0       6       2       0\n"
+                 "DMIG    K              1       1               1"
+                 "       1      5.\n"
+                 "DMIG    K              2       1               2"
+                 "       1      7.\n"
+                 "DMIG    M              0       6       2       0\n"
+                 "DMIG    M              2       1               2"
+                 "       1      3.\n"
+                 "DMIG    M              5       0               5"
+                 "       0      4.\n");
     char K[300];
     char M[300];
     const ritz_import_request request = {.stiffness = K, .mass = M};
@@ -326,7 +283,7 @@ static void inputs_and_outputs_act_along_basic_axes(void **state)
     const char *const outputs[] = {"y=7:2", "v=3:1/vel", "a=9:6/acc@1e-3"};
     const ritz_import_request request = {.mass =
                                              put_diagonal("m.mtx", 19, full),
-                                         .bulk = put("deck.bdf", deck),
+                                         .bulk = folder_write("deck.bdf", deck),
                                          .num_inputs = 3,
                                          .input = inputs,
                                          .num_outputs = 3,
@@ -357,7 +314,7 @@ static void dampers_lie_along_basic_axes(void **state)
     const char *const dampers[] = {"strut=7:1,3:1*150*-200", "foot=5:0*2"};
     const ritz_import_request request = {.mass =
                                              put_diagonal("m.mtx", 19, full),
-                                         .bulk = put("deck.bdf", deck),
+                                         .bulk = folder_write("deck.bdf", deck),
                                          .num_dampers = 2,
                                          .damper = dampers};
     ritz_import_report report = {0};
@@ -410,7 +367,7 @@ static void wrong_ports_are_refused(void **state)
         {"a=3:0", "there is no 'point 3'"},
     };
     ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
-                                   .bulk = put("deck.bdf", deck),
+                                   .bulk = folder_write("deck.bdf", deck),
                                    .num_ports = 1};
     const char *const twice[] = {"a=3", "a=9"};
     ritz_import_report report = {0};
@@ -443,7 +400,7 @@ static void wrong_inputs_and_outputs_are_refused(void **state)
         {"a=3:1@", "'' is no number"},
     };
     ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
-                                   .bulk = put("deck.bdf", deck)};
+                                   .bulk = folder_write("deck.bdf", deck)};
     const char *const twice[] = {"a=3:1", "a=3:2"};
     ritz_import_report report = {0};
     ritz_component c = {0};
@@ -477,12 +434,14 @@ static void wrong_matrices_are_refused(void **state)
     (void)state;
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
                  "no mass matrix");
-    request.mass = put("c.mtx", "%%MatrixMarket matrix coordinate complex "
-                                "general\n1 1 1\n1 1 2 3\n");
+    request.mass =
+        folder_write("c.mtx", "%%MatrixMarket matrix coordinate complex "
+                              "general\n1 1 1\n1 1 2 3\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "is complex");
-    request.mass = put("r.mtx", "%%MatrixMarket matrix coordinate real "
-                                "general\n6 5 1\n1 1 2\n");
+    request.mass =
+        folder_write("r.mtx", "%%MatrixMarket matrix coordinate real "
+                              "general\n6 5 1\n1 1 2\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "is 6 x 5");
     request.mass = put_diagonal("m.mtx", 7, full);
@@ -497,7 +456,8 @@ static void asymmetry_is_refused_unless_it_is_to_be_averaged(void **state)
 {
     ritz_import_request request = {
         .mass = put_diagonal("m.mtx", 6, full),
-        .stiffness = put("k.mtx", "%%MatrixMarket matrix coordinate real "
+        .stiffness =
+            folder_write("k.mtx", "%%MatrixMarket matrix coordinate real "
                                   "general\n6 6 3\n1 1 2\n1 2 1\n2 1 0.5\n")};
     ritz_import_report report = {0};
     ritz_component c = {0};
@@ -528,7 +488,7 @@ static void wrong_dampers_are_refused(void **state)
         {"3:1*2", "form NAME=GRID:COMP"},
     };
     ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
-                                   .bulk = put("deck.bdf", deck),
+                                   .bulk = folder_write("deck.bdf", deck),
                                    .num_dampers = 1};
     ritz_import_report report = {0};
     ritz_component c = {0};
@@ -563,7 +523,7 @@ static void no_allocation_failure_leaks(void **state)
     const ritz_import_request request = {
         .stiffness = put_diagonal("k.mtx", 19, full),
         .mass = put_diagonal("m.mtx", 19, full),
-        .bulk = put("deck.bdf", deck),
+        .bulk = folder_write("deck.bdf", deck),
         .num_loads = 1,
         .load = loads,
         .num_ports = 2,
@@ -675,7 +635,7 @@ static void convert_map(const char *path)
         sized = true;
     }
     fclose(file);
-    put("dofs", text);
+    folder_write("dofs", text);
 }
 
 static void a_dof_map_names_the_rows_of_the_rotor(void **state)
@@ -696,7 +656,7 @@ static void a_dof_map_names_the_rows_of_the_rotor(void **state)
     if (!map)
         skip();
     convert_map(map);
-    request.dofs = at("dofs");
+    request.dofs = folder_path("dofs");
     request.stiffness = external("RITZ_EXTERNAL_DATA",
                                  "ansys/rotorAnsysStiffnessMatrixSparse.txt");
     request.mass =
@@ -736,5 +696,5 @@ int main(void)
         cmocka_unit_test(a_dof_map_names_the_rows_of_the_rotor),
     };
 
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }

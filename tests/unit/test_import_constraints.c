@@ -1,6 +1,9 @@
 /* Constraints at import: elimination, recovery, ports of grids made for them. */
 #include "testing.h"
 
+#include "folder.h"
+#include "matrices.h"
+
 #include <ritz/bulk.h>
 #include <ritz/eigen.h>
 #include <ritz/import.h>
@@ -10,52 +13,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static char folder[] = "/tmp/ritz-tied-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    static const char *const names[] = {"k.mtx", "m.mtx", "deck.bdf", "dofs"};
-    char path[256];
-
-    (void)state;
-    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-        snprintf(path, sizeof path, "%s/%s", folder, names[k]);
-        unlink(path);
-    }
-    return rmdir(folder);
-}
-
-static const char *at(const char *name)
-{
-    static char path[8][256];
-    static int turn = 0;
-
-    turn = (turn + 1) % 8;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
-}
-
-static const char *put(const char *name, const char *text)
-{
-    const char *path = at(name);
-    FILE *file = fopen(path, "w");
-
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-    return path;
-}
-
 /* A dense symmetric matrix as a file. */
 static const char *put_matrix(const char *name, const ritz_dense *A)
 {
-    const char *path = at(name);
+    const char *path = folder_path(name);
     FILE *file = fopen(path, "w");
 
     assert_non_null(file);
@@ -78,14 +39,6 @@ static const char *put_diagonal(const char *name, int n, const double *value)
     path = put_matrix(name, &A);
     ritz_dense_free(&A);
     return path;
-}
-
-static double entry(const ritz_sparse *A, int64_t i, int64_t j)
-{
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-        if (A->rowind[p] == i)
-            return A->val[p];
-    return 0.0;
 }
 
 static int64_t row(const ritz_component *c, int64_t grid, int64_t direction)
@@ -195,14 +148,14 @@ static void a_mass_on_a_rigid_lever_is_where_it_should_be(void **state)
     const double m[12] = {1, 1, 1, 1, 1, 1, 5, 5, 5, 0.1, 0.1, 0.1};
     const char *const outputs[] = {"tip=7:2@0.5", "spin=7:6/vel"};
     const char *const inputs[] = {"push=7:2*3", "turn=7:6"};
-    const ritz_import_request request = {.stiffness =
-                                             put_diagonal("k.mtx", 12, k),
-                                         .mass = put_diagonal("m.mtx", 12, m),
-                                         .bulk = put("deck.bdf", LEVER),
-                                         .num_inputs = 2,
-                                         .input = inputs,
-                                         .num_outputs = 2,
-                                         .output = outputs};
+    const ritz_import_request request = {
+        .stiffness = put_diagonal("k.mtx", 12, k),
+        .mass = put_diagonal("m.mtx", 12, m),
+        .bulk = folder_write("deck.bdf", LEVER),
+        .num_inputs = 2,
+        .input = inputs,
+        .num_outputs = 2,
+        .output = outputs};
     ritz_import_report report = {0};
     ritz_component c = {0};
     ritz_inertia inertia = {0};
@@ -243,8 +196,8 @@ static void a_leader_needs_no_rows_of_its_own(void **state)
     const double m[6] = {5, 5, 5, 1, 1, 1};
     ritz_import_request request = {
         .mass = put_diagonal("m.mtx", 6, m),
-        .bulk = put("deck.bdf", LEVER),
-        .dofs = put("dofs", "7 1\n7 2\n7 3\n7 4\n7 5\n7 6\n")};
+        .bulk = folder_write("deck.bdf", LEVER),
+        .dofs = folder_write("dofs", "7 1\n7 2\n7 3\n7 4\n7 5\n7 6\n")};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -257,7 +210,7 @@ static void a_leader_needs_no_rows_of_its_own(void **state)
     ritz_component_free(&c);
     ritz_import_report_free(&report);
     /* rows of 3 alone: it has been done, and 7 is recovered */
-    request.dofs = put("dofs", "3 1\n3 2\n3 3\n3 4\n3 5\n3 6\n");
+    request.dofs = folder_write("dofs", "3 1\n3 2\n3 3\n3 4\n3 5\n3 6\n");
     assert_ok(ritz_import(&request, &c, &report));
     assert_near(entry(&c.M, 5, 5), 1.0, 0.0);
     assert_int_equal(report.num_eliminated, 0);
@@ -266,7 +219,7 @@ static void a_leader_needs_no_rows_of_its_own(void **state)
     ritz_import_report_free(&report);
     /* and part of them: what follows the others is not known */
     request.mass = put_diagonal("m.mtx", 2, m);
-    request.dofs = put("dofs", "3 2\n3 6\n");
+    request.dofs = folder_write("dofs", "3 2\n3 6\n");
     assert_ok(ritz_import(&request, &c, &report));
     assert_int_equal(c.num_dofs, 2);
     assert_int_equal(report.num_recovered, 2); /* 7.1 and 7.6 */
@@ -286,7 +239,7 @@ static void what_is_fixed_holds_what_depends_on_it(void **state)
 
     (void)state;
     snprintf(text, sizeof text, "%sSPC1,1,12345,3\n", LEVER);
-    request.bulk = put("deck.bdf", text);
+    request.bulk = folder_write("deck.bdf", text);
     assert_ok(ritz_import(&request, &c, &report));
     assert_int_equal(c.num_dofs, 1);
     assert_near(entry(&c.M, 0, 0), 22.0, 0.0);
@@ -330,7 +283,7 @@ static void decks_that_contradict_themselves_are_refused(void **state)
         ritz_import_request request = {.mass = put_diagonal("m.mtx", 12, m)};
 
         snprintf(text, sizeof text, "%s%s", LEVER, cases[k].card);
-        request.bulk = put("deck.bdf", text);
+        request.bulk = folder_write("deck.bdf", text);
         assert_true(ritz_import(&request, &c, &report) != RITZ_OK);
         if (!strstr(ritz_error_message(), cases[k].words))
             fail_msg("%s: '%s'", cases[k].card, ritz_error_message());
@@ -348,7 +301,7 @@ static void what_is_not_understood_matters_only_where_it_acts(void **state)
 
     (void)state;
     snprintf(text, sizeof text, "%sRSPLINE,9,,3,7\nASET1,123456,3\n", LEVER);
-    request.bulk = put("deck.bdf", text);
+    request.bulk = folder_write("deck.bdf", text);
     assert_ok(ritz_import(&request, &c, &report));
     assert_string_equal(report.map, "A-set");
     assert_int_equal(c.recovery.count, 0);
@@ -363,7 +316,7 @@ static void a_dof_that_depends_cannot_be_attached(void **state)
     static const char *const ports[] = {"a=7", "a=3,7:2", "a=1-9:3"};
     const double m[12] = {1, 1, 1, 1, 1, 1, 5, 5, 5, 1, 1, 1};
     ritz_import_request request = {.mass = put_diagonal("m.mtx", 12, m),
-                                   .bulk = put("deck.bdf", LEVER),
+                                   .bulk = folder_write("deck.bdf", LEVER),
                                    .num_ports = 1};
     ritz_import_report report = {0};
     ritz_component c = {0};
@@ -465,9 +418,9 @@ static ritz_status import_cube(const char *deck_rest, const char *rigid,
     for (int k = 0; k < SOLID; k++)
         used += snprintf(text + used, sizeof text - (size_t)used, "%d %d\n",
                          k / 3 + 1, k % 3 + 1);
-    request.dofs = put("dofs", text);
+    request.dofs = folder_write("dofs", text);
     snprintf(text, sizeof text, "%s%s", CUBE, deck_rest);
-    request.bulk = put("deck.bdf", text);
+    request.bulk = folder_write("deck.bdf", text);
     return ritz_import(&request, out, report);
 }
 
@@ -682,11 +635,11 @@ static void one_grid_of_six_dofs_is_enough(void **state)
 {
     const double m[6] = {2, 2, 2, 3, 4, 5};
     const char *port = "p=7";
-    ritz_import_request request = {.mass = put_diagonal("m.mtx", 6, m),
-                                   .bulk =
-                                       put("deck.bdf", "GRID,7,,1.,0.,0.\n"),
-                                   .num_rigid_ports = 1,
-                                   .rigid_port = &port};
+    ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 6, m),
+        .bulk = folder_write("deck.bdf", "GRID,7,,1.,0.,0.\n"),
+        .num_rigid_ports = 1,
+        .rigid_port = &port};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -746,10 +699,10 @@ static void averaged_ports_may_share_grids(void **state)
     (void)state;
     assert_ok(import_cube("", NULL, NULL, &plain, &report));
     ritz_import_report_free(&report);
-    request.stiffness = at("k.mtx");
-    request.mass = at("m.mtx");
-    request.dofs = at("dofs");
-    request.bulk = at("deck.bdf");
+    request.stiffness = folder_path("k.mtx");
+    request.mass = folder_path("m.mtx");
+    request.dofs = folder_path("dofs");
+    request.bulk = folder_path("deck.bdf");
     /* two of the six means over all corners follow from those of the others,
      * as singular values of the 18 x 24 matrix of the three show too */
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
@@ -796,10 +749,10 @@ static void importing_survives_every_allocation(void **state)
     static const char *const rigid = "low=1-3";
     static const char *const averaged = "top=5-8";
     static const char *const output = "tip=7:3";
-    const ritz_import_request request = {.stiffness = at("k.mtx"),
-                                         .mass = at("m.mtx"),
-                                         .dofs = at("dofs"),
-                                         .bulk = at("deck.bdf"),
+    const ritz_import_request request = {.stiffness = folder_path("k.mtx"),
+                                         .mass = folder_path("m.mtx"),
+                                         .dofs = folder_path("dofs"),
+                                         .bulk = folder_path("deck.bdf"),
                                          .num_rigid_ports = 1,
                                          .rigid_port = &rigid,
                                          .num_averaged_ports = 1,
@@ -840,5 +793,5 @@ int main(void)
         cmocka_unit_test(importing_survives_every_allocation),
     };
 
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }

@@ -1,6 +1,8 @@
 #include "testing.h"
 
 #include "frame.h"
+#include "masses.h"
+#include "matrices.h"
 #include "moments.h"
 #include "project.h"
 #include "truss.h"
@@ -489,24 +491,6 @@ static void answer_on(const ritz_component *c, const ritz_dense *Phi,
     ritz_dense_free(&gone);
 }
 
-/* X less its part in the span of K-orthonormal V: V V' K X. */
-static double outside(const ritz_sparse *K, const ritz_dense *V,
-                      const ritz_dense *X)
-{
-    ritz_dense KX = {0}, H = {0}, part = {0};
-    double worst = 0.0;
-
-    assert_ok(ritz_sparse_mul(K, X, &KX));
-    assert_ok(ritz_dense_mul_tn(V, &KX, &H));
-    assert_ok(ritz_dense_mul(V, &H, &part));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        worst = fmax(worst, fabs(X->val[k] - part.val[k]));
-    ritz_dense_free(&KX);
-    ritz_dense_free(&H);
-    ritz_dense_free(&part);
-    return worst / ritz_dense_max(X);
-}
-
 /* The static answers of equation (6) lie in the span, whatever holds the body:
  * within the rounding of solves, eps times the spread of eigenvalues. */
 static void the_formula_with_any_support_gives_the_same(void **state)
@@ -658,29 +642,15 @@ static void velocity_outputs_keep_their_moments(void **state)
 /* Masses on springs, of which every second one is nothing: M is singular. */
 static ritz_component chain_of(int64_t n, bool grounded)
 {
-    ritz_component c = {.num_dofs = n};
-    int64_t row[64], col[64];
-    double k[64], m[16];
-    int64_t count = 0;
+    ritz_component c = {0};
+    double k[MASSES_MOST], m[MASSES_MOST];
 
-    assert_non_null(c.dof = calloc((size_t)n, sizeof *c.dof));
+    assert_true(n <= MASSES_MOST);
     for (int64_t i = 0; i < n; i++) {
-        c.dof[i] = (ritz_dof){i + 1, 1};
-        row[count] = col[count] = i;
-        k[count++] = (i > 0 || grounded) + (i + 1 < n);
+        k[i] = i > 0 || grounded ? 1.0 : 0.0;
         m[i] = i % 2 ? 0.0 : 2.0;
-        if (i + 1 == n)
-            continue;
-        row[count] = col[count + 1] = i;
-        col[count] = row[count + 1] = i + 1;
-        k[count] = k[count + 1] = -1.0;
-        count += 2;
     }
-    assert_ok(ritz_sparse_from_triplets(n, n, count, row, col, k, &c.K));
-    for (int64_t i = 0; i < n; i++)
-        row[i] = col[i] = i;
-    assert_ok(ritz_sparse_from_triplets(n, n, n, row, col, m, &c.M));
-    assert_ok(ritz_component_settle(&c, false));
+    assert_ok(masses_component(n, m, k, NULL, &c));
     assert_ok(frame_io(&c, 1, &(int64_t){1}, 1, &(int64_t){n - 1}));
     return c;
 }
@@ -722,17 +692,13 @@ static void dofs_without_mass_are_answered(void **state)
 
 static void a_rigid_body_is_its_rigid_motion(void **state)
 {
-    ritz_component mass = {.num_dofs = 1};
+    ritz_component mass = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     int64_t zero = 0;
     ritz_basis basis = {0};
 
     (void)state;
-    assert_non_null(mass.dof = calloc(1, sizeof *mass.dof));
-    mass.dof[0] = (ritz_dof){1, 1};
-    assert_ok(ritz_sparse_from_triplets(1, 1, 1, &zero, &zero, &(double){4.0},
-                                        &mass.M));
-    assert_ok(ritz_component_settle(&mass, false));
+    assert_ok(masses_component(1, &(double){4.0}, &(double){0.0}, NULL, &mass));
     request.component = &mass;
     request.attached = (ritz_dofs){1, &zero};
     basis = basis_of(request, 3);
@@ -799,7 +765,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
 /* K - sigma M = 0 exactly. */
 static void an_expansion_about_a_resonance_is_refused(void **state)
 {
-    ritz_component c = {.num_dofs = 1};
+    ritz_component c = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     const double one = 1.0;
     const double stiffness = ritz_eigen_lambda(1.0);
@@ -807,12 +773,7 @@ static void an_expansion_about_a_resonance_is_refused(void **state)
     ritz_basis none = {0};
 
     (void)state;
-    assert_non_null(c.dof = calloc(1, sizeof *c.dof));
-    c.dof[0] = (ritz_dof){1, 1};
-    assert_ok(
-        ritz_sparse_from_triplets(1, 1, 1, &zero, &zero, &stiffness, &c.K));
-    assert_ok(ritz_sparse_from_triplets(1, 1, 1, &zero, &zero, &one, &c.M));
-    assert_ok(ritz_component_settle(&c, false));
+    assert_ok(masses_component(1, &one, &stiffness, NULL, &c));
     request.component = &c;
     request.attached = (ritz_dofs){1, &zero};
     request.modes = 1;

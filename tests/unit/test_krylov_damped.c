@@ -1,6 +1,7 @@
 #include "testing.h"
 
 #include "frame.h"
+#include "matrices.h"
 #include "moments.h"
 #include "project.h"
 #include "truss.h"
@@ -157,24 +158,6 @@ static void long_chains_stay_independent(void **state)
     assert_near(ritz_dense_max(&G), 0.0, solve_error);
     ritz_dense_free(&G);
     ritz_basis_free(&basis);
-}
-
-/* |X - V V'KX| over |X|, entry by entry at most. */
-static double outside(const ritz_sparse *K, const ritz_dense *V,
-                      const ritz_dense *X)
-{
-    ritz_dense KX = {0}, H = {0}, part = {0};
-    double worst = 0.0;
-
-    assert_ok(ritz_sparse_mul(K, X, &KX));
-    assert_ok(ritz_dense_mul_tn(V, &KX, &H));
-    assert_ok(ritz_dense_mul(V, &H, &part));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        worst = fmax(worst, fabs(X->val[k] - part.val[k]));
-    ritz_dense_free(&KX);
-    ritz_dense_free(&H);
-    ritz_dense_free(&part);
-    return worst / ritz_dense_max(X);
 }
 
 static void without_damping_the_span_is_that_of_krylov(void **state)

@@ -1,6 +1,7 @@
 #include "testing.h"
 
 #include "bar.h"
+#include "masses.h"
 #include "project.h"
 
 #include <ritz/eigen.h>
@@ -233,15 +234,11 @@ static void a_dof_attached_twice_is_refused(void **state)
 static void a_rigid_body_keeps_its_mass(void **state)
 {
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component mass = {.num_dofs = 1};
+    ritz_component mass = {0};
     int64_t zero = 0;
     ritz_basis basis = {0};
 
-    assert_non_null(mass.dof = calloc(1, sizeof *mass.dof));
-    mass.dof[0] = (ritz_dof){1, 1};
-    assert_ok(ritz_sparse_from_triplets(1, 1, 1, &zero, &zero, &(double){4.0},
-                                        &mass.M));
-    assert_ok(ritz_component_settle(&mass, false));
+    assert_ok(masses_component(1, &(double){4.0}, &(double){0.0}, NULL, &mass));
     request.component = &mass;
     request.attached = (ritz_dofs){1, &zero};
     assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));

@@ -1,7 +1,7 @@
 #include "testing.h"
 
-#include "chain.h"
 #include "masses.h"
+#include "spring_chain.h"
 
 #include <ritz/probe.h>
 

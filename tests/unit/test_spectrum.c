@@ -1,7 +1,7 @@
 #include "testing.h"
 
-#include "chain.h"
 #include "scenes.h"
+#include "spring_chain.h"
 #include "verify/spectrum_parts.h"
 
 #include <complex.h>

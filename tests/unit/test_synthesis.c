@@ -5,6 +5,8 @@
 #include "testing.h"
 
 #include "frame.h"
+#include "matrices.h"
+#include "project.h"
 #include "scenes.h"
 
 #include <ritz/eigen.h>
@@ -97,19 +99,6 @@ static void project_and_assemble(const ritz_stage *stage, int count,
     ritz_configuration_free(&c);
 }
 
-static void assert_hertz(const ritz_dense *K, const ritz_dense *M, int count,
-                         const double *expected, double bound)
-{
-    ritz_pairs pairs = {0};
-
-    assert_ok(ritz_eigen_dense(K, M, &pairs));
-    assert_int_equal(pairs.Phi.ncol, count);
-    for (int k = 0; k < count; k++)
-        assert_near(fabs(ritz_eigen_hertz(pairs.lambda[k])), expected[k],
-                    bound);
-    ritz_pairs_free(&pairs);
-}
-
 /*
  * Table 3.3 with six dofs: bending modes leave the axial row of the interface
  * constraint zero, which is no constraint.
@@ -182,25 +171,6 @@ static ritz_dense static_gain(const ritz_configuration *c, const ritz_dense *V)
                                                see(c, V, inputs[j], k) /
                                                c->lambda[k];
     return gain;
-}
-
-/* Largest singular value, by the eigenvalues of A'A. */
-static double norm_2(const ritz_dense *A)
-{
-    ritz_dense square = {0}, one = {0};
-    ritz_pairs pairs = {0};
-    double largest = 0.0;
-
-    assert_ok(ritz_dense_mul_tn(A, A, &square));
-    assert_ok(ritz_dense_new(A->ncol, A->ncol, &one));
-    for (int64_t k = 0; k < A->ncol; k++)
-        ritz_dense_col(&one, k)[k] = 1.0;
-    assert_ok(ritz_eigen_dense(&square, &one, &pairs));
-    largest = sqrt(pairs.lambda[pairs.Phi.ncol - 1]);
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&square);
-    ritz_dense_free(&one);
-    return largest;
 }
 
 /* Orthonormal columns of the same span; dependent ones are left out. */

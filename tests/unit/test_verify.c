@@ -1,6 +1,7 @@
 #include "testing.h"
 
 #include "frame.h"
+#include "project.h"
 
 #include <ritz/eigen.h>
 #include <ritz/sparse.h>
@@ -43,15 +44,6 @@ static void truncate_beam(const ritz_component *beam, int64_t modes,
     ritz_dense_free(&M);
 }
 
-static const ritz_measure *find(const ritz_measures *measures, const char *name)
-{
-    for (int64_t k = 0; k < measures->count; k++)
-        if (strcmp(measures->item[k].name, name) == 0)
-            return &measures->item[k];
-    fail_msg("there is no measure '%s'", name);
-    return NULL;
-}
-
 /* A basis of exact modes: all but what they leave out is exact. */
 static void exact_modes_have_no_error_but_in_the_gain(void **state)
 {
@@ -67,17 +59,18 @@ static void exact_modes_have_no_error_but_in_the_gain(void **state)
         assert_ok(ritz_reduce(&beam, &basis, &reduced));
         assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
         /* eps lambda_max / lambda_1 of this beam is 1e-9 */
-        assert_near(find(&found, "frequency-relative")->value, 0.0, 1e-8);
-        assert_near(find(&found, "mac")->value, 1.0, 1e-10);
-        assert_near(find(&found, "missing-modes")->value, 0.0, 0.0);
-        assert_near(find(&found, "extra-modes")->value, 0.0, 0.0);
-        assert_true(find(&found, "static-gain-relative")->value > 1e-6);
-        assert_true(find(&found, "static-gain-relative")->value < 0.1);
-        assert_true(find(&found, "response-relative")->value < 0.1);
-        assert_non_null(strstr(find(&found, "response-relative")->where,
+        assert_near(find_measure(&found, "frequency-relative")->value, 0.0,
+                    1e-8);
+        assert_near(find_measure(&found, "mac")->value, 1.0, 1e-10);
+        assert_near(find_measure(&found, "missing-modes")->value, 0.0, 0.0);
+        assert_near(find_measure(&found, "extra-modes")->value, 0.0, 0.0);
+        assert_true(find_measure(&found, "static-gain-relative")->value > 1e-6);
+        assert_true(find_measure(&found, "static-gain-relative")->value < 0.1);
+        assert_true(find_measure(&found, "response-relative")->value < 0.1);
+        assert_non_null(strstr(find_measure(&found, "response-relative")->where,
                                "modal 0.01 assumed"));
         if (!clamped)
-            assert_true(find(&found, "rigid-hertz")->value < 1e-6);
+            assert_true(find_measure(&found, "rigid-hertz")->value < 1e-6);
         ritz_measures_free(&found);
         ritz_reduced_free(&reduced);
         ritz_basis_free(&basis);
@@ -105,10 +98,10 @@ static void the_whole_space_has_no_error_at_all(void **state)
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
     assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
     /* frequencies to 1e-9, over zeta = 1e-3 at a peak */
-    assert_near(find(&found, "response-relative")->value, 0.0, 1e-6);
-    assert_true(ritz_measure_holds(find(&found, "response-relative")));
-    assert_near(find(&found, "static-gain-relative")->value, 0.0, 1e-8);
-    assert_near(find(&found, "damping-relative")->value, 0.0, 1e-12);
+    assert_near(find_measure(&found, "response-relative")->value, 0.0, 1e-6);
+    assert_true(ritz_measure_holds(find_measure(&found, "response-relative")));
+    assert_near(find_measure(&found, "static-gain-relative")->value, 0.0, 1e-8);
+    assert_near(find_measure(&found, "damping-relative")->value, 0.0, 1e-12);
     ritz_measures_free(&found);
     ritz_reduced_free(&reduced);
     ritz_basis_free(&basis);
@@ -138,11 +131,12 @@ static void a_mode_that_was_left_out_is_missing_by_name(void **state)
         if (!with_shapes)
             ritz_dense_free(&reduced.T);
         assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
-        assert_near(find(&found, "missing-modes")->value, 1.0, 0.0);
+        assert_near(find_measure(&found, "missing-modes")->value, 1.0, 0.0);
         assert_non_null(
-            strstr(find(&found, "missing-modes")->where, "mode 2,"));
-        assert_false(ritz_measure_holds(find(&found, "missing-modes")));
-        assert_true(ritz_measure_holds(find(&found, "frequency-relative")));
+            strstr(find_measure(&found, "missing-modes")->where, "mode 2,"));
+        assert_false(ritz_measure_holds(find_measure(&found, "missing-modes")));
+        assert_true(
+            ritz_measure_holds(find_measure(&found, "frequency-relative")));
         ritz_measures_free(&found);
         ritz_reduced_free(&reduced);
     }
@@ -192,8 +186,9 @@ static void estimates_hold_and_vanish_for_exact_modes(void **state)
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
     assert_ok(ritz_estimate(&beam, &basis, &reduced));
     /* rounding of K x, eps lambda_max / lambda_1 */
-    assert_near(find(&reduced.estimates, "frequency-relative-bound")->value,
-                0.0, 1e-5);
+    assert_near(
+        find_measure(&reduced.estimates, "frequency-relative-bound")->value,
+        0.0, 1e-5);
     ritz_reduced_free(&reduced);
     for (int64_t i = 0; i < beam.num_dofs; i++)
         for (int64_t j = 0; j < 6; j++)
@@ -201,9 +196,10 @@ static void estimates_hold_and_vanish_for_exact_modes(void **state)
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
     assert_ok(ritz_estimate(&beam, &basis, &reduced));
     assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
-    assert_true(find(&reduced.estimates, "frequency-relative-bound")->value >=
-                find(&found, "frequency-relative")->value);
-    assert_non_null(find(&reduced.estimates, "mode-1"));
+    assert_true(
+        find_measure(&reduced.estimates, "frequency-relative-bound")->value >=
+        find_measure(&found, "frequency-relative")->value);
+    assert_non_null(find_measure(&reduced.estimates, "mode-1"));
     ritz_measures_free(&found);
     ritz_reduced_free(&reduced);
     ritz_basis_free(&basis);
