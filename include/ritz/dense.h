@@ -28,6 +28,9 @@ ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
 
 ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out);
 
+/** |A(i,j)|. */
+ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out);
+
 /** A := (A + A') / 2, exactly symmetric; A must be square. */
 void ritz_dense_symmetrise(ritz_dense *A);
 
@@ -42,6 +45,21 @@ ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
 ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
                                ritz_dense *out);
 
+/** |B|'|A||B|: of B'AB, what it sums up, for its rounding. */
+ritz_status ritz_dense_terms(const ritz_dense *A, const ritz_dense *B,
+                             ritz_dense *out);
+
+/**
+ * X := X - left (right' X): of columns with right' left = I, the part of X along
+ * them. Once leaves rounding; twice is enough.
+ */
+ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
+                                ritz_dense *X);
+
+/** Column i of A times column j of B. */
+double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
+                      int64_t j);
+
 /** [A B]; both have as many rows, or B has no columns. */
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *out);
@@ -49,6 +67,13 @@ ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
 /** Columns j0..j0+count-1 as a matrix of their own. */
 ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
                                int64_t count, ritz_dense *out);
+
+/** The same, borrowed: they stay where they are. */
+ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count);
+
+/** Rows row[0], row[1], ... as a matrix of their own. */
+ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
+                            const int64_t *row, ritz_dense *out);
 
 /** Largest |A(i,j)|, 0 if empty. */
 double ritz_dense_max(const ritz_dense *A);

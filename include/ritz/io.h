@@ -33,12 +33,6 @@ ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
 ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
                             ritz_io *out);
 
-/**
- * Put two models side by side: coordinates, inputs and outputs of @p a, then
- * of @p b.
- */
-ritz_status ritz_io_join(const ritz_io *a, const ritz_io *b, ritz_io *out);
-
 void ritz_io_free(ritz_io *io);
 
 #endif

@@ -76,6 +76,18 @@ ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out);
 ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
                                    ritz_sparse *out);
 
+/** T'AT of a symmetric A, exactly symmetric. @cost O(r nnz + n r^2) */
+ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
+                                 ritz_dense *out);
+
+/** T'AT, exactly symmetric only if A is: of damping; {0} of an absent A. */
+ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
+                                ritz_dense *out);
+
+/** |T|'|A||T| of a symmetric A: of T'AT, what it sums up, for its rounding. */
+ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
+                              ritz_dense *out);
+
 /** Copy of @p A. */
 ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out);
 
@@ -100,6 +112,9 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
  * @return RITZ_ERR_FORMAT if one does not hold
  */
 ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz);
+
+/** A(j,j), 0 where nothing is stored. */
+double ritz_sparse_diagonal(const ritz_sparse *A, int64_t j);
 
 /** Largest |A(i,j)|, 0 if there is none. */
 double ritz_sparse_max(const ritz_sparse *A);

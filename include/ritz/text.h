@@ -34,14 +34,6 @@ bool ritz_text_real(const char *text, double *out);
 bool ritz_text_whole(const char *text, int64_t *out);
 
 /**
- * A list as users write it, "1,5,10-20": ascending as written, no repeats
- * removed.
- *
- * @return RITZ_ERR_ARGUMENT with the part that is not understood
- */
-ritz_status ritz_text_list(const char *text, int64_t *count, int64_t **out);
-
-/**
  * Copy a name, which must fit RITZ_NAME_SIZE, be not empty and hold neither
  * '/' nor control characters, as names become parts of HDF5 paths.
  *

@@ -1,12 +1,8 @@
-/* Sparse matrices seen by few columns, and those that attached dofs see. */
+/* K and M as attached dofs see them. */
 #ifndef RITZ_BASES_CONDENSE_H
 #define RITZ_BASES_CONDENSE_H
 
 #include <ritz/component.h>
-
-/** T'AT of a symmetric A, exactly symmetric. @cost O(r nnz + n r^2) */
-ritz_status ritz_condense_one(const ritz_sparse *A, const ritz_dense *T,
-                              ritz_dense *out);
 
 /**
  * T_b'KT_b and T_b'MT_b. What the first shows of motions that cost no energy is

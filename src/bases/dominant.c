@@ -10,7 +10,6 @@
 #include "bases/dominant.h"
 
 #include "base/alloc.h"
-#include "bases/condense.h"
 
 #include <ritz/eigen.h>
 
@@ -72,7 +71,7 @@ static ritz_status in_modes(const ritz_sparse *A, const ritz_dense *T,
 
     if (!A->colptr)
         return ritz_dense_new(Phi->ncol, Phi->ncol, out);
-    RITZ_TRY(ritz_condense_one(A, T, &small));
+    RITZ_TRY(ritz_sparse_condense(A, T, &small));
     RITZ_TRY(ritz_dense_congruence(&small, Phi, out));
 done:
     ritz_dense_free(&small);
@@ -131,8 +130,8 @@ static ritz_status make_model(const ritz_rational *R,
     ritz_dense K = {0}, M = {0}, TX = {0};
 
     s->R = R;
-    RITZ_TRY(ritz_condense_one(&component->K, T, &K));
-    RITZ_TRY(ritz_condense_one(&component->M, T, &M));
+    RITZ_TRY(ritz_sparse_condense(&component->K, T, &K));
+    RITZ_TRY(ritz_sparse_condense(&component->M, T, &M));
     RITZ_TRY(ritz_eigen_dense(&K, &M, &s->modes));
     RITZ_TRY(in_modes(&component->D, T, &s->modes.Phi, &s->W));
     RITZ_TRY(in_modes(&component->K4, T, &s->modes.Phi, &s->K4));

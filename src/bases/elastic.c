@@ -23,31 +23,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double diagonal(const ritz_sparse *A, int64_t j)
-{
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-        if (A->rowind[p] == j)
-            return A->val[p];
-    return 0.0;
-}
-
-/* X := X - left (right' X) */
-static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
-                            ritz_dense *X)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, gone = {0};
-
-    RITZ_TRY(ritz_dense_mul_tn(right, X, &part));
-    RITZ_TRY(ritz_dense_mul(left, &part, &gone));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        X->val[k] -= gone.val[k];
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&gone);
-    return status;
-}
-
 /* Row of W, r columns and stored row by row, with the largest square. */
 static int64_t largest_row(int64_t n, int64_t r, const double *W)
 {
@@ -102,8 +77,8 @@ static ritz_status choose_support(ritz_elastic *E)
     RITZ_NEW(E->held.at, r);
     for (int64_t i = 0; i < n; i++)
         for (int64_t k = 0; k < r; k++)
-            W[i * r + k] =
-                sqrt(fabs(diagonal(E->M, i))) * ritz_dense_col(&E->Phi, k)[i];
+            W[i * r + k] = sqrt(fabs(ritz_sparse_diagonal(E->M, i))) *
+                           ritz_dense_col(&E->Phi, k)[i];
     for (; E->held.count < r; E->held.count++) {
         int64_t pivot = largest_row(n, r, W);
 
@@ -199,8 +174,8 @@ ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F)
 
     if (E->Phi.ncol == 0 || F->ncol == 0)
         goto done;
-    RITZ_TRY(take_out(&E->MPhi, &E->Phi, F));
-    RITZ_TRY(take_out(&E->MPhi, &E->Phi, F)); /* twice is enough */
+    RITZ_TRY(ritz_dense_take_out(&E->MPhi, &E->Phi, F));
+    RITZ_TRY(ritz_dense_take_out(&E->MPhi, &E->Phi, F)); /* twice is enough */
 done:
     return status;
 }
@@ -211,8 +186,8 @@ static ritz_status take_out_motion(const ritz_elastic *E, ritz_dense *X)
 
     if (E->Phi.ncol == 0)
         goto done;
-    RITZ_TRY(take_out(&E->Phi, &E->MPhi, X));
-    RITZ_TRY(take_out(&E->Phi, &E->MPhi, X));
+    RITZ_TRY(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
+    RITZ_TRY(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
 done:
     return status;
 }
@@ -226,10 +201,7 @@ static ritz_status solve_supported(const ritz_elastic *E, ritz_dense *X)
 
     if (E->held.count == 0)
         return E->L ? ritz_factor_solve(E->L, X) : RITZ_OK;
-    RITZ_TRY(ritz_dense_new(w->count, X->ncol, &X_w));
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < w->count; i++)
-            ritz_dense_col(&X_w, j)[i] = ritz_dense_col(X, j)[w->at[i]];
+    RITZ_TRY(ritz_dense_rows(X, w->count, w->at, &X_w));
     if (E->L)
         RITZ_TRY(ritz_factor_solve(E->L, &X_w));
     memset(X->val, 0, (size_t)(X->nrow * X->ncol) * sizeof *X->val);

@@ -57,7 +57,7 @@ static ritz_status measure(const ritz_krylov *S, double *worst, double *bound)
     ritz_status status = RITZ_OK;
     bool by_mass = S->inner == RITZ_INNER_MASS;
     const ritz_sparse *W = by_mass ? S->body->M : S->body->K;
-    const ritz_dense V = ritz_orthonormal_part(&S->set.V, 0, S->set.count);
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
     ritz_dense WV = {0}, size = {0}, G = {0};
 
     RITZ_TRY(ritz_sparse_mul(W, &V, &WV));

@@ -197,8 +197,7 @@ static ritz_status take_inertia(const ritz_krylov *S,
                                 ritz_forces *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dense Q =
-        ritz_orthonormal_part(&S->set.V, point->first, point->count);
+    const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
 
     RITZ_TRY(ritz_sparse_mul(S->body->M, &Q, &out->G));
     RITZ_TRY(ritz_dense_new(Q.nrow, Q.ncol, &out->size));

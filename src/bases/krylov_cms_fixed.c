@@ -82,7 +82,7 @@ static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
 {
     ritz_status status = RITZ_OK;
     const ritz_dofs *b = s->b;
-    const ritz_dense V = ritz_orthonormal_part(&S->set.V, 0, S->set.count);
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
 
     RITZ_FAIL_IF(b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
                  "the basis would have no vectors");

@@ -157,7 +157,7 @@ done:
 static ritz_status choose_unit(const recurrence *r, double *omega)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dense V = ritz_orthonormal_part(&r->S.set.V, 0, r->S.set.count);
+    const ritz_dense V = ritz_dense_part(&r->S.set.V, 0, r->S.set.count);
     ritz_dense MV = {0}, KV = {0};
     double most = 0.0;
 

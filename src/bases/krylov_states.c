@@ -44,7 +44,7 @@ static ritz_status append(ritz_krylov *S, const ritz_forces *forces,
     RITZ_TRY(ritz_krylov_answer(S, &S->point[0], forces, &R));
     RITZ_TRY(ritz_dense_copy(&R, &raw));
     RITZ_TRY(ritz_orthonormal_append(set, &R, S->vectors - set->count, NULL));
-    WV = ritz_orthonormal_part(&set->WV, 0, set->count);
+    WV = ritz_dense_part(&set->WV, 0, set->count);
     RITZ_TRY(ritz_dense_mul_tn(&WV, &raw, &d));
     RITZ_TRY(ritz_dense_new(2 * c->room, d.ncol, &Z));
     put_rows(&d, 0, &Z);
@@ -69,7 +69,7 @@ static ritz_status find_forces(const ritz_krylov *S, const ritz_sparse *D,
 {
     ritz_status status = RITZ_OK;
     const ritz_sparse *M = S->body->M;
-    const ritz_dense V = ritz_orthonormal_part(&S->set.V, 0, S->set.count);
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
     ritz_dense d = {0}, v = {0}, Dd = {0}, Mv = {0};
 
     RITZ_TRY(ritz_dense_mul(&V, d_in_V, &d));

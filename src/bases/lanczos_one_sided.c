@@ -28,7 +28,7 @@
 #include "base/alloc.h"
 #include "bases/gramian_range.h"
 #include "bases/orthonormal.h"
-#include "bases/states.h"
+#include "bases/states_asked.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
 
@@ -151,7 +151,7 @@ static ritz_status find_vectors(const ritz_request *request, one_sided *s)
         first = P.count;
         RITZ_TRY(ritz_orthonormal_append(&P, &X, request->modes - first, NULL));
         ritz_dense_free(&X);
-        last = ritz_orthonormal_part(&P.V, first, P.count - first);
+        last = ritz_dense_part(&P.V, first, P.count - first);
         RITZ_TRY(ritz_dense_mul(&s->G, &last, &X));
     } while (P.count > first && P.count < request->modes);
     RITZ_TRY(ritz_dense_columns(&P.V, 0, P.count, &s->P));
@@ -165,7 +165,7 @@ done:
 static ritz_status reduce(const one_sided *s, int64_t columns, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dense P = {s->P.nrow, columns, s->P.val};
+    const ritz_dense P = ritz_dense_part(&s->P, 0, columns);
     ritz_dense GP = {0};
 
     RITZ_TRY(ritz_dense_mul(&s->G, &P, &GP));
@@ -267,7 +267,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     one_sided s = {0};
     ritz_dense Gr = {0}, own = {0}, other = {0};
 
-    RITZ_TRY(ritz_states_new(request, &states));
+    RITZ_TRY(ritz_states_asked(request, &states));
     RITZ_TRY(start(request, &states, &s));
     RITZ_TRY(check_poles(&states, &s));
     RITZ_TRY(choose_operator(request, &s));

@@ -18,7 +18,7 @@
  * there is no way on: a serious breakdown, unless one side is exhausted.
  */
 #include "base/alloc.h"
-#include "bases/states.h"
+#include "bases/states_asked.h"
 #include "linear/general.h"
 
 #include <inttypes.h>
@@ -60,27 +60,6 @@ static void release(two_sided *t)
     }
 }
 
-/* X := X - V W'X, twice */
-static ritz_status take_out(const ritz_dense *V, const ritz_dense *W,
-                            ritz_dense *X)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense q = {0}, part = {0};
-
-    for (int pass = 0; pass < 2; pass++) {
-        RITZ_TRY(ritz_dense_mul_tn(W, X, &q));
-        RITZ_TRY(ritz_dense_mul(V, &q, &part));
-        for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-            X->val[k] -= part.val[k];
-        ritz_dense_free(&q);
-        ritz_dense_free(&part);
-    }
-done:
-    ritz_dense_free(&q);
-    ritz_dense_free(&part);
-    return status;
-}
-
 /* All candidates, side by side, each of unit length or zero. */
 static ritz_status gather(const side *s, ritz_dense *out)
 {
@@ -108,14 +87,15 @@ static ritz_status prepare(const side *own, const side *other, int64_t used,
                            double tolerance, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dense V = {own->vectors.nrow, used, own->vectors.val};
-    const ritz_dense W = {other->vectors.nrow, used, other->vectors.val};
+    const ritz_dense V = ritz_dense_part(&own->vectors, 0, used);
+    const ritz_dense W = ritz_dense_part(&other->vectors, 0, used);
     ritz_dense X = {0}, U = {0};
     double *s = NULL;
     int64_t rank = 0;
 
     RITZ_TRY(gather(own, &X));
-    RITZ_TRY(take_out(&V, &W, &X));
+    RITZ_TRY(ritz_dense_take_out(&V, &W, &X));
+    RITZ_TRY(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
     RITZ_TRY(ritz_general_svd(&X, &U, &s, NULL));
     while (rank < U.ncol && s[rank] > tolerance)
         rank++;
@@ -303,7 +283,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     two_sided t = {0};
     bool going = true;
 
-    RITZ_TRY(ritz_states_new(request, &states));
+    RITZ_TRY(ritz_states_asked(request, &states));
     RITZ_TRY(start(request, &states, &t));
     while (going)
         RITZ_TRY(step(request->tolerance, &t, &going));

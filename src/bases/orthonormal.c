@@ -35,12 +35,6 @@ typedef struct block {
     double *least;  /* energy that is rounding of the column that came in */
 } block;
 
-ritz_dense ritz_orthonormal_part(const ritz_dense *V, int64_t first,
-                                 int64_t count)
-{
-    return (ritz_dense){V->nrow, count, V->val + first * V->nrow};
-}
-
 static void scale_column(ritz_dense *A, int64_t j, double factor)
 {
     double *a = ritz_dense_col(A, j);
@@ -56,17 +50,6 @@ static void copy_column(ritz_dense *A, int64_t from, int64_t to)
                (size_t)A->nrow * sizeof *A->val);
 }
 
-static double dot(const ritz_dense *A, const ritz_dense *B, int64_t j)
-{
-    const double *a = ritz_dense_col(A, j);
-    const double *b = ritz_dense_col(B, j);
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < A->nrow; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* A := A - B H, of what is kept as columns. */
 static void subtract(const ritz_dense *B, const ritz_dense *H, ritz_dense *A)
 {
@@ -80,8 +63,8 @@ static void subtract(const ritz_dense *B, const ritz_dense *H, ritz_dense *A)
 static ritz_status project_out(const ritz_orthonormal *set, block *b)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dense V = ritz_orthonormal_part(&set->V, 0, set->count);
-    const ritz_dense WV = ritz_orthonormal_part(&set->WV, 0, set->count);
+    const ritz_dense V = ritz_dense_part(&set->V, 0, set->count);
+    const ritz_dense WV = ritz_dense_part(&set->WV, 0, set->count);
     ritz_dense H = {0};
 
     RITZ_TRY(ritz_dense_mul_tn(&WV, &b->R, &H));
@@ -96,7 +79,7 @@ done:
 static bool still_falls(const block *b, const double *before, double tolerance)
 {
     for (int64_t j = 0; j < b->R.ncol; j++) {
-        double size = dot(&b->R, &b->WR, j);
+        double size = ritz_dense_dot(&b->R, j, &b->WR, j);
         double left = b->energy[j] * size;
 
         if (size < 0.5 * before[j] && left > tolerance * tolerance &&
@@ -116,7 +99,7 @@ static ritz_status orthogonalise(const ritz_orthonormal *set, block *b)
     RITZ_NEW(before, b->R.ncol);
     for (int pass = 0; pass < MOST_PASSES && falls; pass++) {
         for (int64_t j = 0; j < b->R.ncol; j++)
-            before[j] = dot(&b->R, &b->WR, j);
+            before[j] = ritz_dense_dot(&b->R, j, &b->WR, j);
         RITZ_TRY(project_out(set, b));
         falls = pass == 0 || still_falls(b, before, set->tolerance);
     }
@@ -131,7 +114,7 @@ static void sift(block *b, double tolerance)
     int64_t kept = 0;
 
     for (int64_t j = 0; j < b->R.ncol; j++) {
-        double size = dot(&b->R, &b->WR, j);
+        double size = ritz_dense_dot(&b->R, j, &b->WR, j);
         double left = b->energy[j] * size;
 
         if (!(size > 0.0 && isfinite(size) && left > tolerance * tolerance &&
@@ -217,8 +200,8 @@ static ritz_status take(ritz_orthonormal *set, block *b, int64_t count,
     size_t size = (size_t)b->R.nrow * sizeof *b->R.val;
 
     RITZ_TRY(reserve(set, count));
-    Q = ritz_orthonormal_part(&set->V, set->count, count);
-    WQ = ritz_orthonormal_part(&set->WV, set->count, count);
+    Q = ritz_dense_part(&set->V, set->count, count);
+    WQ = ritz_dense_part(&set->WV, set->count, count);
     for (int64_t k = 0; k < count && size > 0; k++) {
         memcpy(ritz_dense_col(&Q, k), ritz_dense_col(&b->R, order[k]), size);
         memcpy(ritz_dense_col(&WQ, k), ritz_dense_col(&b->WR, order[k]), size);

@@ -36,10 +36,6 @@ ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
                                     int64_t most, bool *taken);
 
-/** Columns first, ... of V, or of WV, borrowed until the next append. */
-ritz_dense ritz_orthonormal_part(const ritz_dense *V, int64_t first,
-                                 int64_t count);
-
 void ritz_orthonormal_free(ritz_orthonormal *set);
 
 #endif

@@ -182,15 +182,6 @@ done:
     return status;
 }
 
-static double dot(int64_t n, const double *x, const double *y)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < n; i++)
-        sum += x[i] * y[i];
-    return sum;
-}
-
 /* w := w / |w|, and |w| in the inner product P. */
 static ritz_status normalise(const ritz_rational *R, ritz_dense *w,
                              double *size)
@@ -199,7 +190,7 @@ static ritz_status normalise(const ritz_rational *R, ritz_dense *w,
     ritz_dense Pw = {0};
 
     RITZ_TRY(ritz_sparse_mul(&R->P, w, &Pw));
-    *size = sqrt(fmax(dot(w->nrow, w->val, Pw.val), 0.0));
+    *size = sqrt(fmax(ritz_dense_dot(w, 0, &Pw, 0), 0.0));
     for (int64_t i = 0; i<w->nrow && * size> 0.0; i++)
         w->val[i] /= *size;
 done:

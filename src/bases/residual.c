@@ -42,23 +42,6 @@ typedef struct residual_problem {
     const ritz_dense *F;
 } residual_problem;
 
-/* X := X - Y (Y' M X), or its transpose's counterpart on forces. */
-static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
-                            ritz_dense *X)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, gone = {0};
-
-    RITZ_TRY(ritz_dense_mul_tn(right, X, &part));
-    RITZ_TRY(ritz_dense_mul(left, &part, &gone));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        X->val[k] -= gone.val[k];
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&gone);
-    return status;
-}
-
 /* K + s M. */
 static ritz_status shift(const ritz_sparse *K, const ritz_sparse *M, double s,
                          ritz_sparse *out)
@@ -96,18 +79,6 @@ done:
     return status;
 }
 
-static double dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
-                  int64_t j)
-{
-    const double *a = ritz_dense_col(A, i);
-    const double *b = ritz_dense_col(B, j);
-    double sum = 0.0;
-
-    for (int64_t k = 0; k < A->nrow; k++)
-        sum += a[k] * b[k];
-    return sum;
-}
-
 /* The largest entry of a column. */
 static double column_size(const ritz_dense *A, int64_t j)
 {
@@ -125,9 +96,9 @@ static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
     double most = 0.0;
 
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
-        most =
-            fmax(most, column_size(&modes->Phi, k) *
-                           fabs(dot(&modes->Phi, k, F, j)) / modes->lambda[k]);
+        most = fmax(most, column_size(&modes->Phi, k) *
+                              fabs(ritz_dense_dot(&modes->Phi, k, F, j)) /
+                              modes->lambda[k]);
     return most;
 }
 
@@ -175,8 +146,8 @@ static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
     ritz_status status = RITZ_OK;
 
     RITZ_TRY(ritz_dense_copy(F, G));
-    RITZ_TRY(take_out(MPhi, Phi, G));
-    RITZ_TRY(take_out(MPhi, Phi, G)); /* twice is enough */
+    RITZ_TRY(ritz_dense_take_out(MPhi, Phi, G));
+    RITZ_TRY(ritz_dense_take_out(MPhi, Phi, G)); /* twice is enough */
 done:
     return status;
 }
@@ -194,7 +165,7 @@ static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
     RITZ_TRY(ritz_dense_copy(p->F, &X));
     RITZ_TRY(ritz_factor_solve(A, &X));
     for (int64_t j = 0; j < X.ncol; j++) {
-        own[j] = dot(p->F, j, &X, j);
+        own[j] = ritz_dense_dot(p->F, j, &X, j);
         least[j] =
             fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
                  rounding * column_size(&X, j));
@@ -229,7 +200,7 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
     RITZ_TRY(ritz_dense_new(G.nrow, G.ncol, Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
         RITZ_TRY(sweep(L, &component->M, s, &G, least, Psi, &change));
-        RITZ_TRY(take_out(&modes->Phi, &MPhi, Psi));
+        RITZ_TRY(ritz_dense_take_out(&modes->Phi, &MPhi, Psi));
         if (k > 8 && change > 0.5 * best)
             break; /* rounding, not contraction, is what is left */
         best = fmin(best, change);
@@ -252,7 +223,7 @@ static double kept_flexibility(const residual_problem *p, int64_t j)
     double sum = 0.0;
 
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
-        double x = dot(&modes->Phi, k, p->F, j);
+        double x = ritz_dense_dot(&modes->Phi, k, p->F, j);
 
         sum += x * x / modes->lambda[k];
     }

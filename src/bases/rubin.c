@@ -46,20 +46,6 @@ done:
     return status;
 }
 
-/* Rows b of A. */
-static ritz_status rows(const ritz_dense *A, int64_t p, const int64_t *b,
-                        ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(p, A->ncol, out));
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < p; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[b[i]];
-done:
-    return status;
-}
-
 /* G = Psi Psi_bb^-1, Psi_bb = S L L' S with a unit diagonal within. */
 static ritz_status divide(const int64_t *b, ritz_dense *Psi)
 {
@@ -70,7 +56,7 @@ static ritz_status divide(const int64_t *b, ritz_dense *Psi)
     int p = (int)Psi->ncol;
 
     RITZ_NEW(scale, p);
-    RITZ_TRY(rows(Psi, p, b, &F));
+    RITZ_TRY(ritz_dense_rows(Psi, p, b, &F));
     ritz_dense_symmetrise(&F);
     for (int64_t j = 0; j < p; j++)
         scale[j] = 1.0 / sqrt(ritz_dense_col(&F, j)[j]);
@@ -105,7 +91,7 @@ static ritz_status shape(const ritz_dense *Phi, const int64_t *b, ritz_dense *G,
     int64_t p = G->ncol;
     double *rest = ritz_dense_col(T, p);
 
-    RITZ_TRY(rows(Phi, p, b, &Phi_b));
+    RITZ_TRY(ritz_dense_rows(Phi, p, b, &Phi_b));
     for (int64_t j = 0; j < p; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(G, j)[b[i]] = i == j ? 1.0 : 0.0;

@@ -12,20 +12,6 @@
 #include <lapacke.h>
 #include <stdlib.h>
 
-/* Rows h of W. */
-static ritz_status pick_rows(const ritz_dense *W, const int64_t *h,
-                             ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(W->ncol, W->ncol, out));
-    for (int64_t j = 0; j < W->ncol; j++)
-        for (int64_t i = 0; i < W->ncol; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(W, j)[h[i]];
-done:
-    return status;
-}
-
 /* G := G^-1, symmetric positive definite. */
 static ritz_status invert(ritz_dense *G)
 {
@@ -70,7 +56,7 @@ ritz_status ritz_condensed_all(const ritz_shifted *S, int64_t count,
         for (int64_t j = 0; j < count; j++)
             ritz_dense_col(&W, j)[heavy[j]] = 1.0;
         RITZ_TRY(ritz_factor_solve(S->A, &W));
-        RITZ_TRY(pick_rows(&W, heavy, &G));
+        RITZ_TRY(ritz_dense_rows(&W, count, heavy, &G));
         RITZ_TRY(invert(&G));
     }
     RITZ_TRY(pick_mass(S->M, count, heavy, &M_hh));

@@ -2,7 +2,6 @@
 
 #include <ritz/dense.h>
 
-#include <cblas.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
@@ -27,46 +26,6 @@ done:
     return status;
 }
 
-/* C = op(A) op(B), m x q with p summed over. */
-static ritz_status multiply(CBLAS_TRANSPOSE left, const ritz_dense *A,
-                            CBLAS_TRANSPOSE right, const ritz_dense *B,
-                            ritz_dense *C)
-{
-    ritz_status status = RITZ_OK;
-    int64_t m = left == CblasTrans ? A->ncol : A->nrow;
-    int64_t p = left == CblasTrans ? A->nrow : A->ncol;
-    int64_t rows = right == CblasTrans ? B->ncol : B->nrow;
-    int64_t q = right == CblasTrans ? B->nrow : B->ncol;
-
-    RITZ_FAIL_IF(p != rows, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " columns meet %" PRId64 " rows", p, rows);
-    RITZ_TRY(ritz_dense_new(m, q, C));
-    if (m > 0 && p > 0 && q > 0)
-        cblas_dgemm(CblasColMajor, left, right, (int)m, (int)q, (int)p, 1.0,
-                    A->val, (int)A->nrow, B->val, (int)B->nrow, 0.0, C->val,
-                    (int)m);
-done:
-    return status;
-}
-
-ritz_status ritz_dense_mul(const ritz_dense *A, const ritz_dense *B,
-                           ritz_dense *C)
-{
-    return multiply(CblasNoTrans, A, CblasNoTrans, B, C);
-}
-
-ritz_status ritz_dense_mul_tn(const ritz_dense *A, const ritz_dense *B,
-                              ritz_dense *C)
-{
-    return multiply(CblasTrans, A, CblasNoTrans, B, C);
-}
-
-ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
-                              ritz_dense *C)
-{
-    return multiply(CblasNoTrans, A, CblasTrans, B, C);
-}
-
 ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
                                int64_t count, ritz_dense *out)
 {
@@ -76,6 +35,24 @@ ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
     if (A->nrow * count > 0)
         memcpy(out->val, ritz_dense_col(A, first),
                (size_t)(A->nrow * count) * sizeof *out->val);
+done:
+    return status;
+}
+
+ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count)
+{
+    return (ritz_dense){A->nrow, count, A->val + first * A->nrow};
+}
+
+ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
+                            const int64_t *row, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(count, A->ncol, out));
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < count; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[row[i]];
 done:
     return status;
 }
@@ -101,6 +78,17 @@ ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out)
     return ritz_dense_columns(A, 0, A->ncol, out);
 }
 
+ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_copy(A, out));
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        out->val[k] = fabs(out->val[k]);
+done:
+    return status;
+}
+
 void ritz_dense_symmetrise(ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
@@ -110,35 +98,6 @@ void ritz_dense_symmetrise(ritz_dense *A)
 
             *upper = *lower = 0.5 * (*upper + *lower);
         }
-}
-
-ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
-                                  ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense AB = {0};
-
-    RITZ_TRY(ritz_dense_mul(A, B, &AB));
-    RITZ_TRY(ritz_dense_mul_tn(B, &AB, out));
-    ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&AB);
-    return status;
-}
-
-ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
-                               ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense AB = {0};
-
-    RITZ_TRY(ritz_dense_mul(A, B, &AB));
-    RITZ_TRY(ritz_dense_mul_tn(B, &AB, out));
-    if (ritz_dense_asymmetry(A) == 0.0)
-        ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&AB);
-    return status;
 }
 
 double ritz_dense_asymmetry(const ritz_dense *A)

@@ -130,12 +130,6 @@ done:
     return status;
 }
 
-/* Columns first.. of A, borrowed. */
-static ritz_dense columns(const ritz_dense *A, int64_t first, int64_t count)
-{
-    return (ritz_dense){A->nrow, count, A->val + first * A->nrow};
-}
-
 /* T, n x rank, written over the last columns of Q; see the head. */
 static ritz_status condense(const ritz_dense *K, ritz_dense *N, ritz_dense *Q_r)
 {
@@ -213,8 +207,8 @@ static ritz_status by_condensing(const ritz_dense *K, ritz_dense *M,
                  m[0], m[n - 1]);
     while (null < n && m[null] <= limit)
         null++;
-    N = columns(M, 0, null);
-    Q_r = columns(M, null, n - null);
+    N = ritz_dense_part(M, 0, null);
+    Q_r = ritz_dense_part(M, null, n - null);
     if (null > 0)
         RITZ_TRY(condense(K, &N, &Q_r));
     RITZ_TRY(solve_condensed(K, &Q_r, m + null, lambda, X));

@@ -300,6 +300,14 @@ static bool stored(const ritz_sparse *A, int64_t i, int64_t j)
     return ritz_search(A->colptr[j + 1] - p, A->rowind + p, i) >= 0;
 }
 
+double ritz_sparse_diagonal(const ritz_sparse *A, int64_t j)
+{
+    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+        if (A->rowind[p] == j)
+            return A->val[p];
+    return 0.0;
+}
+
 double ritz_sparse_max(const ritz_sparse *A)
 {
     double largest = 0.0;

@@ -1,9 +1,10 @@
-/* Products of sparse matrices: what eliminating constraints needs. */
+/* Products of sparse matrices, and of theirs with few dense columns. */
 #include "base/alloc.h"
 
 #include <ritz/sparse.h>
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 
 ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
@@ -122,5 +123,62 @@ done:
     ritz_sparse_free(&AT);
     ritz_sparse_free(&turned);
     ritz_sparse_free(&C);
+    return status;
+}
+
+/* T'AT as it comes. */
+static ritz_status condense(const ritz_sparse *A, const ritz_dense *T,
+                            ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AT = {0};
+
+    RITZ_TRY(ritz_sparse_mul(A, T, &AT));
+    RITZ_TRY(ritz_dense_mul_tn(T, &AT, out));
+done:
+    ritz_dense_free(&AT);
+    return status;
+}
+
+ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
+                                 ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(condense(A, T, out));
+    ritz_dense_symmetrise(out);
+done:
+    return status;
+}
+
+ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
+                                ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!A->colptr)
+        return RITZ_OK;
+    RITZ_TRY(condense(A, T, out));
+    if (ritz_sparse_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(out);
+done:
+    return status;
+}
+
+ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
+                              ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse size = {0};
+    ritz_dense columns = {0};
+
+    RITZ_TRY(ritz_sparse_copy(A, &size));
+    for (int64_t k = 0; k < size.colptr[size.ncol]; k++)
+        size.val[k] = fabs(size.val[k]);
+    RITZ_TRY(ritz_dense_abs(T, &columns));
+    RITZ_TRY(ritz_sparse_condense(&size, &columns, out));
+done:
+    ritz_sparse_free(&size);
+    ritz_dense_free(&columns);
     return status;
 }

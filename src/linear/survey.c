@@ -5,15 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Diagonal entry of column j. */
-static double diagonal(const ritz_sparse *A, int64_t j)
-{
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-        if (A->rowind[p] == j)
-            return A->val[p];
-    return 0.0;
-}
-
 static int ascending(const void *a, const void *b)
 {
     const double *x = a;
@@ -33,8 +24,8 @@ ritz_status ritz_shifted_survey(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_NEW(ratio, K->nrow);
     RITZ_NEW(s.heavy, K->nrow);
     for (int64_t j = 0; j < K->nrow; j++) {
-        double k = diagonal(K, j);
-        double m = diagonal(M, j);
+        double k = ritz_sparse_diagonal(K, j);
+        double m = ritz_sparse_diagonal(M, j);
         bool heavy = false;
 
         for (int64_t p = M->colptr[j]; p < M->colptr[j + 1]; p++)

@@ -73,18 +73,17 @@ done:
     return status;
 }
 
+static const char inners[][16] = {
+    [RITZ_INNER_STIFFNESS] = "stiffness",
+    [RITZ_INNER_MASS] = "mass",
+};
+
 static ritz_status take_inner(const char *text, ritz_choice *choice)
 {
-    static const char words[][16] = {
-        [RITZ_INNER_STIFFNESS] = "stiffness",
-        [RITZ_INNER_MASS] = "mass",
-    };
-    ritz_status status = RITZ_OK;
-    int64_t at = 0;
+    int64_t at = choice->inner;
+    ritz_status status = take_word("inner product", text, 2, inners, &at);
 
-    RITZ_TRY(take_word("inner product", text, 2, words, &at));
     choice->inner = (ritz_inner)at;
-done:
     return status;
 }
 
@@ -102,30 +101,28 @@ done:
     return status;
 }
 
+static const char gramians[][16] = {
+    [RITZ_GRAMIAN_INPUTS] = "inputs",
+    [RITZ_GRAMIAN_OUTPUTS] = "outputs",
+};
+
 static ritz_status take_gramian(const char *text, ritz_choice *choice)
 {
-    static const char words[][16] = {
-        [RITZ_GRAMIAN_INPUTS] = "inputs",
-        [RITZ_GRAMIAN_OUTPUTS] = "outputs",
-    };
-    ritz_status status = RITZ_OK;
-    int64_t at = 0;
+    int64_t at = choice->gramian;
+    ritz_status status = take_word("Gramian", text, 2, gramians, &at);
 
-    RITZ_TRY(take_word("Gramian", text, 2, words, &at));
     choice->gramian = (ritz_gramian)at;
-done:
     return status;
 }
 
+static const char operators[][16] = {"state", "inverse"};
+
 static ritz_status take_operator(const char *text, ritz_choice *choice)
 {
-    static const char words[][16] = {"state", "inverse"};
-    ritz_status status = RITZ_OK;
-    int64_t at = 0;
+    int64_t at = choice->inverse;
+    ritz_status status = take_word("operator", text, 2, operators, &at);
 
-    RITZ_TRY(take_word("operator", text, 2, words, &at));
     choice->inverse = at == 1;
-done:
     return status;
 }
 
@@ -143,13 +140,11 @@ static const char engines[][16] = {
 
 static ritz_status take_engine(const char *text, ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
-    int64_t at = 0;
+    int64_t at = choice->engine;
+    ritz_status status = take_word(
+        "engine", text, sizeof engines / sizeof *engines, engines, &at);
 
-    RITZ_TRY(take_word("engine", text, sizeof engines / sizeof *engines,
-                       engines, &at));
     choice->engine = (ritz_engine)at;
-done:
     return status;
 }
 
@@ -189,27 +184,25 @@ done:
     return status;
 }
 
+static const char remainders[][16] = {"dropped", "static"};
+
 static ritz_status take_remainder(const char *text, ritz_choice *choice)
 {
-    static const char words[][16] = {"dropped", "static"};
-    ritz_status status = RITZ_OK;
-    int64_t at = 0;
+    int64_t at = choice->perturb;
+    ritz_status status = take_word("remainder", text, 2, remainders, &at);
 
-    RITZ_TRY(take_word("remainder", text, 2, words, &at));
     choice->perturb = at == 1;
-done:
     return status;
 }
 
+static const char sides[][16] = {"one", "two"};
+
 static ritz_status take_sides(const char *text, ritz_choice *choice)
 {
-    static const char words[][16] = {"one", "two"};
-    ritz_status status = RITZ_OK;
-    int64_t at = 0;
+    int64_t at = !choice->one_sided;
+    ritz_status status = take_word("side", text, 2, sides, &at);
 
-    RITZ_TRY(take_word("side", text, 2, words, &at));
     choice->one_sided = at == 0;
-done:
     return status;
 }
 
@@ -262,6 +255,14 @@ static void append(int64_t size, char *out, const char *text)
              text);
 }
 
+/* The same of a key and its word. */
+static void append_word(int64_t size, char *out, const char *key,
+                        const char *word)
+{
+    append(size, out, key);
+    append(size, out, word);
+}
+
 void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
 {
     char text[2 * RITZ_NAME_SIZE] = "";
@@ -275,30 +276,21 @@ void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
             snprintf(out + strlen(out), (size_t)size - strlen(out), "%s", text);
     }
     for (size_t k = 0; k < sizeof loads / sizeof *loads; k++)
-        if (choice->loads & (1 << k)) {
-            snprintf(text, sizeof text, "load %s", loads[k]);
-            append(size, out, text);
-        }
+        if (choice->loads & (1 << k))
+            append_word(size, out, "load", loads[k]);
     if (choice->given & RITZ_USES_INNER)
-        append(size, out,
-               choice->inner == RITZ_INNER_MASS ? "inner mass"
-                                                : "inner stiffness");
+        append_word(size, out, "inner", inners[choice->inner]);
     if (choice->given & RITZ_USES_INTERFACE) {
         snprintf(text, sizeof text, "interface-modes %" PRId64,
                  choice->interface_modes);
         append(size, out, text);
     }
     if (choice->given & RITZ_USES_GRAMIAN)
-        append(size, out,
-               choice->gramian == RITZ_GRAMIAN_INPUTS ? "gramian inputs"
-                                                      : "gramian outputs");
+        append_word(size, out, "gramian", gramians[choice->gramian]);
     if (choice->given & RITZ_USES_OPERATOR)
-        append(size, out,
-               choice->inverse ? "operator inverse" : "operator state");
-    if (choice->given & RITZ_USES_ENGINE) {
-        snprintf(text, sizeof text, "engine %s", engines[choice->engine]);
-        append(size, out, text);
-    }
+        append_word(size, out, "operator", operators[choice->inverse]);
+    if (choice->given & RITZ_USES_ENGINE)
+        append_word(size, out, "engine", engines[choice->engine]);
     if (choice->given & RITZ_USES_AMONG) {
         snprintf(text, sizeof text, "among-hz %.17g", choice->among_hz);
         append(size, out, text);
@@ -309,10 +301,9 @@ void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
         append(size, out, text);
     }
     if (choice->given & RITZ_USES_REMAINDER)
-        append(size, out,
-               choice->perturb ? "remainder static" : "remainder dropped");
+        append_word(size, out, "remainder", remainders[choice->perturb]);
     if (choice->given & RITZ_USES_SIDES)
-        append(size, out, choice->one_sided ? "sides one" : "sides two");
+        append_word(size, out, "sides", sides[!choice->one_sided]);
     if (choice->given & RITZ_USES_DAMPING) {
         char damping[RITZ_DAMPING_SIZE];
 

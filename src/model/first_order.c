@@ -86,30 +86,14 @@ void ritz_structure_free(ritz_structure *model)
     ritz_dense_free(&model->D);
 }
 
-static ritz_status magnitudes(const ritz_dense *A, ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(A, out));
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        out->val[k] = fabs(out->val[k]);
-done:
-    return status;
-}
-
 /* Phi'D Phi; what of a rigid motion is no more than rounding is zero. */
 static ritz_status project_damping(const ritz_dense *D, ritz_first_order *model)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense DPhi = {0}, size = {0}, shape = {0}, most = {0};
+    ritz_dense most = {0};
 
-    RITZ_TRY(ritz_dense_mul(D, &model->Phi, &DPhi));
-    RITZ_TRY(ritz_dense_mul_tn(&model->Phi, &DPhi, &model->Delta));
-    ritz_dense_free(&DPhi);
-    RITZ_TRY(magnitudes(D, &size));
-    RITZ_TRY(magnitudes(&model->Phi, &shape));
-    RITZ_TRY(ritz_dense_mul(&size, &shape, &DPhi));
-    RITZ_TRY(ritz_dense_mul_tn(&shape, &DPhi, &most));
+    RITZ_TRY(ritz_dense_project(D, &model->Phi, &model->Delta));
+    RITZ_TRY(ritz_dense_terms(D, &model->Phi, &most));
     for (int64_t j = 0; j < model->count; j++)
         for (int64_t i = 0; i < model->count; i++)
             if ((i < model->num_rigid || j < model->num_rigid) &&
@@ -117,9 +101,6 @@ static ritz_status project_damping(const ritz_dense *D, ritz_first_order *model)
                     rounding * ritz_dense_col(&most, j)[i])
                 ritz_dense_col(&model->Delta, j)[i] = 0.0;
 done:
-    ritz_dense_free(&DPhi);
-    ritz_dense_free(&size);
-    ritz_dense_free(&shape);
     ritz_dense_free(&most);
     return status;
 }
@@ -275,6 +256,20 @@ done:
     return status;
 }
 
+ritz_status ritz_first_order_drive(const ritz_io *io,
+                                   const ritz_damping *damping,
+                                   ritz_first_order *modes)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!modes->Delta.val)
+        RITZ_TRY(ritz_dense_new(modes->count, modes->count, &modes->Delta));
+    add_damping(damping, modes);
+    RITZ_TRY(project_io(io, modes));
+done:
+    return status;
+}
+
 ritz_status ritz_first_order_new(const ritz_structure *model, const ritz_io *io,
                                  const ritz_damping *damping,
                                  ritz_first_order *out)
@@ -285,10 +280,7 @@ ritz_status ritz_first_order_new(const ritz_structure *model, const ritz_io *io,
     RITZ_TRY(find_modes(model, &modes));
     if (model->D.val)
         RITZ_TRY(project_damping(&model->D, &modes));
-    else
-        RITZ_TRY(ritz_dense_new(modes.count, modes.count, &modes.Delta));
-    add_damping(damping, &modes);
-    RITZ_TRY(project_io(io, &modes));
+    RITZ_TRY(ritz_first_order_drive(io, damping, &modes));
     if (modes.count < modes.num_dofs && io->num_inputs + io->num_outputs > 0)
         RITZ_TRY(add_massless(model, io, damping, &modes));
     *out = modes;

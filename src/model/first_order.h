@@ -44,6 +44,18 @@ typedef struct ritz_first_order {
 ritz_status ritz_first_order_new(const ritz_structure *model, const ritz_io *io,
                                  const ritz_damping *damping,
                                  ritz_first_order *out);
+
+/**
+ * The last steps of that, with modes found otherwise, which may be some of all:
+ * @p damping goes into Delta ({0}: no other), and what drives and is seen is
+ * projected. What massless dofs answer is left out.
+ *
+ * @param[in,out] modes  with Phi, lambda, Delta and counts
+ */
+ritz_status ritz_first_order_drive(const ritz_io *io,
+                                   const ritz_damping *damping,
+                                   ritz_first_order *modes);
+
 void ritz_first_order_free(ritz_first_order *model);
 
 #endif

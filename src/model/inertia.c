@@ -14,14 +14,12 @@ static ritz_status condense(const ritz_component *component, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     const double origin[3] = {0.0, 0.0, 0.0};
-    ritz_dense R = {0}, MR = {0};
+    ritz_dense R = {0};
 
     RITZ_TRY(ritz_rigid_geometry(component, origin, &R));
-    RITZ_TRY(ritz_sparse_mul(&component->M, &R, &MR));
-    RITZ_TRY(ritz_dense_mul_tn(&R, &MR, out));
+    RITZ_TRY(ritz_sparse_condense(&component->M, &R, out));
 done:
     ritz_dense_free(&R);
-    ritz_dense_free(&MR);
     return status;
 }
 

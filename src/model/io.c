@@ -28,15 +28,14 @@ done:
     return status;
 }
 
-/* Names and limits of `from`, starting at some input and output of `to`. */
-static void label(const ritz_io *from, ritz_io *to, int64_t first_input,
-                  int64_t first_output)
+/* Names and limits. */
+static void label(const ritz_io *from, ritz_io *to)
 {
     for (int64_t k = 0; k < from->num_inputs; k++)
-        memcpy(to->input[first_input + k], from->input[k], RITZ_NAME_SIZE);
+        memcpy(to->input[k], from->input[k], RITZ_NAME_SIZE);
     for (int64_t k = 0; k < from->num_outputs; k++) {
-        memcpy(to->output[first_output + k], from->output[k], RITZ_NAME_SIZE);
-        to->limit[first_output + k] = from->limit[k];
+        memcpy(to->output[k], from->output[k], RITZ_NAME_SIZE);
+        to->limit[k] = from->limit[k];
     }
 }
 
@@ -47,7 +46,7 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
     ritz_io part = {0};
 
     RITZ_TRY(ritz_io_new(0, io->num_inputs, io->num_outputs, &part));
-    label(io, &part, 0, 0);
+    label(io, &part);
     ritz_dense_free(&part.B);
     ritz_dense_free(&part.C);
     ritz_dense_free(&part.Cv);
@@ -60,46 +59,6 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
     part = (ritz_io){0};
 done:
     ritz_io_free(&part);
-    return status;
-}
-
-/* Put `part` into `whole` with its corner at (row, col). */
-static void place(const ritz_dense *part, int64_t row, int64_t col,
-                  ritz_dense *whole)
-{
-    for (int64_t j = 0; j < part->ncol; j++)
-        for (int64_t i = 0; i < part->nrow; i++)
-            ritz_dense_col(whole, col + j)[row + i] =
-                ritz_dense_col(part, j)[i];
-}
-
-ritz_status ritz_io_join(const ritz_io *a, const ritz_io *b, ritz_io *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_io both = {0};
-    const ritz_io *const parts[] = {a, b};
-    int64_t n = 0;
-    int64_t p = 0;
-    int64_t m = 0;
-
-    RITZ_TRY(ritz_io_new(a->B.nrow + b->B.nrow, a->num_inputs + b->num_inputs,
-                         a->num_outputs + b->num_outputs, &both));
-    for (int k = 0; k < 2; k++) {
-        const ritz_io *part = parts[k];
-
-        label(part, &both, m, p);
-        place(&part->B, n, m, &both.B);
-        place(&part->C, p, n, &both.C);
-        place(&part->Cv, p, n, &both.Cv);
-        place(&part->Ca, p, n, &both.Ca);
-        n += part->B.nrow;
-        m += part->num_inputs;
-        p += part->num_outputs;
-    }
-    *out = both;
-    both = (ritz_io){0};
-done:
-    ritz_io_free(&both);
     return status;
 }
 

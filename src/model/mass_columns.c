@@ -47,15 +47,6 @@ static void settle_mass(double fast, const ritz_dense *K, ritz_dense *M)
     }
 }
 
-/* A(j, j) of a sparse matrix. */
-static double diagonal(const ritz_sparse *A, int64_t j)
-{
-    for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
-        if (A->rowind[k] == j)
-            return A->val[k];
-    return 0.0;
-}
-
 /* Largest K_jj / M_jj of dofs with mass; 0 if all of them have mass. */
 static double fastest_dof(const ritz_component *component)
 {
@@ -63,10 +54,10 @@ static double fastest_dof(const ritz_component *component)
     bool any = false;
 
     for (int64_t j = 0; j < component->num_dofs; j++) {
-        double m = diagonal(&component->M, j);
+        double m = ritz_sparse_diagonal(&component->M, j);
 
         if (m > 0.0)
-            most = fmax(most, diagonal(&component->K, j) / m);
+            most = fmax(most, ritz_sparse_diagonal(&component->K, j) / m);
         else
             any = true;
     }

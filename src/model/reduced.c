@@ -9,36 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* T'AT of a sparse A, exactly symmetric if A is; {0} of an absent one. */
-static ritz_status project_sparse(const ritz_sparse *A, const ritz_dense *T,
-                                  ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense AT = {0};
-
-    if (!A->colptr)
-        return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(A, T, &AT));
-    RITZ_TRY(ritz_dense_mul_tn(T, &AT, out));
-    if (ritz_sparse_asymmetry(A) == 0.0)
-        ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&AT);
-    return status;
-}
-
-/* |A| entry by entry. */
-static ritz_status absolute(const ritz_dense *A, ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(A, out));
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        out->val[k] = fabs(out->val[k]);
-done:
-    return status;
-}
-
 /* Columns that may be rigid-body motion, or be so together. */
 static bool may_be_rigid(ritz_column_kind kind)
 {
@@ -56,15 +26,9 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
 {
     const double rounding = 64.0 * DBL_EPSILON;
     ritz_status status = RITZ_OK;
-    ritz_sparse size = {0};
-    ritz_dense T = {0}, KT = {0}, most = {0};
+    ritz_dense most = {0};
 
-    RITZ_TRY(ritz_sparse_copy(K, &size));
-    for (int64_t k = 0; k < K->colptr[K->ncol]; k++)
-        size.val[k] = fabs(size.val[k]);
-    RITZ_TRY(absolute(&basis->T, &T));
-    RITZ_TRY(ritz_sparse_mul(&size, &T, &KT));
-    RITZ_TRY(ritz_dense_mul_tn(&T, &KT, &most));
+    RITZ_TRY(ritz_sparse_terms(K, &basis->T, &most));
     for (int64_t j = 0; j < Kr->ncol; j++)
         for (int64_t i = 0; i < Kr->nrow; i++)
             if ((may_be_rigid(basis->columns.kind[i]) ||
@@ -74,9 +38,6 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                 ritz_dense_col(Kr, j)[i] = 0.0;
     ritz_dense_symmetrise(Kr);
 done:
-    ritz_sparse_free(&size);
-    ritz_dense_free(&T);
-    ritz_dense_free(&KT);
     ritz_dense_free(&most);
     return status;
 }
@@ -119,19 +80,6 @@ done:
 }
 
 /* Rows `at` of T. */
-static ritz_status pick_rows(const ritz_dense *T, const ritz_dofs *at,
-                             ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(at->count, T->ncol, out));
-    for (int64_t j = 0; j < T->ncol; j++)
-        for (int64_t i = 0; i < at->count; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(T, j)[at->at[i]];
-done:
-    return status;
-}
-
 /* A port moves by its rows of T, turned into basic axes. */
 static ritz_status map_port(const ritz_component *component,
                             const ritz_port *port, const ritz_dense *T,
@@ -146,7 +94,7 @@ static ritz_status map_port(const ritz_component *component,
     memcpy(map->axes, port->axes, sizeof map->axes);
     map->count = port->dofs.count;
     RITZ_TRY(ritz_port_turn(component, port, &turn, &map->dof));
-    RITZ_TRY(pick_rows(T, &port->dofs, &rows));
+    RITZ_TRY(ritz_dense_rows(T, port->dofs.count, port->dofs.at, &rows));
     RITZ_TRY(ritz_dense_mul(&turn, &rows, &map->map));
     RITZ_NEW(map->position, 3 * map->count);
     for (int64_t i = 0; i < map->count; i++) {
@@ -211,16 +159,20 @@ ritz_status ritz_reduce(const ritz_component *component,
                  "the basis of '%s' is of states, it makes a state space and "
                  "no masses and stiffnesses",
                  basis->origin.method);
+    RITZ_FAIL_IF(basis->W.val, RITZ_ERR_ARGUMENT,
+                 "the basis of '%s' has left vectors of its own, it makes a "
+                 "state space and no symmetric masses and stiffnesses",
+                 basis->origin.method);
     RITZ_FAIL_IF(T->nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
                  "the basis is for %lld dofs, the component has %lld",
                  (long long)T->nrow, (long long)component->num_dofs);
     RITZ_TRY(keep_names(component, basis, &reduced));
-    RITZ_TRY(project_sparse(&component->K, T, &reduced.K));
+    RITZ_TRY(ritz_sparse_project(&component->K, T, &reduced.K));
     RITZ_TRY(settle_rigid(&component->K, basis, &reduced.K));
-    RITZ_TRY(project_sparse(&component->M, T, &reduced.M));
-    RITZ_TRY(project_sparse(&component->D, T, &reduced.D));
+    RITZ_TRY(ritz_sparse_project(&component->M, T, &reduced.M));
+    RITZ_TRY(ritz_sparse_project(&component->D, T, &reduced.D));
     ritz_mass_settle(component, &basis->columns, &reduced);
-    RITZ_TRY(project_sparse(&component->K4, T, &reduced.K4));
+    RITZ_TRY(ritz_sparse_project(&component->K4, T, &reduced.K4));
     RITZ_TRY(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_TRY(map_ports(component, T, &reduced));
     RITZ_TRY(ritz_io_project(&component->io, T, &reduced.io));

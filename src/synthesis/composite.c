@@ -135,7 +135,8 @@ static ritz_status choose_directions(const ritz_dense *L, const double *scale,
         RITZ_TRY(ritz_mass_transform(L, scale, &of->group[g], &Y));
         if (g == MASSLESS || (g == STATIC && own))
             make_unit(&Y);
-        RITZ_TRY(ritz_take_out(U, &Y));
+        RITZ_TRY(ritz_dense_take_out(U, U, &Y));
+        RITZ_TRY(ritz_dense_take_out(U, U, &Y)); /* twice is enough */
         RITZ_TRY(ritz_span_of(&Y, least, &largest, &more));
         if (g == MASSLESS) {
             of->massless = (ritz_range){U->ncol, U->ncol + more.ncol};

@@ -12,21 +12,17 @@
 /* Of mass scaled to unit diagonal: below this it counts as singular. */
 static const double well_conditioned = 1e-12;
 
-/*
- * A time squared that makes stiffness a mass: of the body's own, so that a
- * motion without mass weighs like the others. Geometric mean of M_jj / K_jj.
- */
-static double typical(const ritz_reduced *body)
+double ritz_typical_lambda(const ritz_reduced *body)
 {
     double sum = 0.0;
     int64_t count = 0;
 
-    for (int64_t j = 0; j < body->M.ncol; j++) {
-        double m = ritz_dense_col(&body->M, j)[j];
+    for (int64_t j = 0; j < body->K.ncol; j++) {
         double k = ritz_dense_col(&body->K, j)[j];
+        double m = ritz_dense_col(&body->M, j)[j];
 
-        if (m > 0.0 && k > 0.0) {
-            sum += log(m / k);
+        if (k > 0.0 && m > 0.0) {
+            sum += log(k / m);
             count++;
         }
     }
@@ -74,7 +70,7 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
     if (factor(L, well_conditioned))
         return RITZ_OK;
     *mixed = true;
-    fill(body, scale, typical(body), L);
+    fill(body, scale, 1.0 / ritz_typical_lambda(body), L);
     RITZ_FAIL_IF(!factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
                  "a motion has neither mass nor stiffness, or the reduced mass "
                  "is not positive");
@@ -127,24 +123,5 @@ done:
     free(sigma);
     free(work);
     ritz_dense_free(&U);
-    return status;
-}
-
-ritz_status ritz_take_out(const ritz_dense *U, ritz_dense *Y)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense share = {0}, gone = {0};
-
-    for (int pass = 0; pass < 2; pass++) {
-        RITZ_TRY(ritz_dense_mul_tn(U, Y, &share));
-        RITZ_TRY(ritz_dense_mul(U, &share, &gone));
-        for (int64_t k = 0; k < Y->nrow * Y->ncol; k++)
-            Y->val[k] -= gone.val[k];
-        ritz_dense_free(&share);
-        ritz_dense_free(&gone);
-    }
-done:
-    ritz_dense_free(&share);
-    ritz_dense_free(&gone);
     return status;
 }

@@ -7,6 +7,12 @@
 #include <stdbool.h>
 
 /**
+ * A lambda of the body's own, the geometric mean of K_jj / M_jj: of stiffness
+ * and mass added by it, neither is rounding.
+ */
+double ritz_typical_lambda(const ritz_reduced *body);
+
+/**
  * Lower Cholesky factor of the mass, in coordinates scaled to unit diagonal;
  * where mass is singular, of mass plus stiffness over a lambda of the body's.
  *
@@ -26,8 +32,5 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
  */
 ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
                          ritz_dense *out);
-
-/** Y := Y - U U' Y with orthonormal U, twice, for once leaves rounding. */
-ritz_status ritz_take_out(const ritz_dense *U, ritz_dense *Y);
 
 #endif

@@ -19,6 +19,7 @@
  */
 #include "base/alloc.h"
 #include "synthesis/compare_parts.h"
+#include "synthesis/directions.h"
 
 #include <ritz/eigen.h>
 
@@ -93,24 +94,6 @@ done:
     return status;
 }
 
-/* A lambda of the body's own, lest one of two summands be rounding. */
-static double typical(const ritz_reduced *body)
-{
-    double sum = 0.0;
-    int64_t count = 0;
-
-    for (int64_t j = 0; j < body->K.ncol; j++) {
-        double k = ritz_dense_col(&body->K, j)[j];
-        double m = ritz_dense_col(&body->M, j)[j];
-
-        if (k > 0.0 && m > 0.0) {
-            sum += log(k / m);
-            count++;
-        }
-    }
-    return count > 0 ? exp(sum / (double)count) : 1.0;
-}
-
 /* K + s M R R' M, scaled to a unit diagonal by *scale, factored in place. */
 static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
                           double *scale, ritz_dense *L)
@@ -121,7 +104,7 @@ static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
     RITZ_TRY(ritz_dense_copy(&body->K, L));
     if (MR->ncol > 0)
         cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, r, (int)MR->ncol,
-                    typical(body), MR->val, r, 1.0, L->val, r);
+                    ritz_typical_lambda(body), MR->val, r, 1.0, L->val, r);
     for (int j = 0; j < r; j++) {
         double own = ritz_dense_col(L, j)[j];
 

@@ -130,23 +130,6 @@ done:
     return status;
 }
 
-/* A'XA of a sparse X. */
-static ritz_status condense(const ritz_sparse *X, const ritz_dense *A,
-                            ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense XA = {0};
-
-    if (!X->colptr)
-        return ritz_dense_new(A->ncol, A->ncol, out);
-    RITZ_TRY(ritz_sparse_mul(X, A, &XA));
-    RITZ_TRY(ritz_dense_mul_tn(A, &XA, out));
-    ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&XA);
-    return status;
-}
-
 /* R V, M-orthonormal: V from the eigenvectors of R'MR that have mass. */
 static ritz_status orthonormalise(const ritz_auditor *it, ritz_dense *out)
 {
@@ -154,7 +137,7 @@ static ritz_status orthonormalise(const ritz_auditor *it, ritz_dense *out)
     ritz_dense B = {0}, V = {0};
     ritz_pairs pairs = {0};
 
-    RITZ_TRY(condense(&it->component->M, &it->R, &B));
+    RITZ_TRY(ritz_sparse_condense(&it->component->M, &it->R, &B));
     RITZ_TRY(eigen_of(&B, &pairs));
     RITZ_TRY(ritz_dense_new(B.nrow, B.nrow, &V));
     keep_massive(&pairs, &V);
@@ -178,7 +161,7 @@ ritz_status ritz_audit_geometry(ritz_auditor *it)
     RITZ_NEW(it->mu, Q.ncol);
     if (Q.ncol == 0)
         goto done;
-    RITZ_TRY(condense(&it->component->K, &Q, &A));
+    RITZ_TRY(ritz_sparse_condense(&it->component->K, &Q, &A));
     RITZ_TRY(eigen_of(&A, &pairs));
     RITZ_TRY(ritz_dense_mul(&Q, &pairs.Phi, &it->Phi));
     memcpy(it->mu, pairs.lambda, (size_t)Q.ncol * sizeof *it->mu);

@@ -36,17 +36,15 @@ static ritz_status condense(const ritz_auditor *it, const double *centre,
                             ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense R = {0}, MR = {0};
+    ritz_dense R = {0};
 
     if (it->placed)
         RITZ_TRY(ritz_rigid_geometry(it->component, centre, &R));
     else
         RITZ_TRY(ritz_dense_copy(&it->R, &R));
-    RITZ_TRY(ritz_sparse_mul(&it->component->M, &R, &MR));
-    RITZ_TRY(ritz_dense_mul_tn(&R, &MR, out));
+    RITZ_TRY(ritz_sparse_condense(&it->component->M, &R, out));
 done:
     ritz_dense_free(&R);
-    ritz_dense_free(&MR);
     return status;
 }
 

@@ -34,10 +34,7 @@ static double typical(const ritz_component *c)
 
     for (int k = 0; k < 2; k++)
         for (int64_t j = 0; j < c->num_dofs; j++)
-            for (int64_t p = both[k]->colptr[j]; p < both[k]->colptr[j + 1];
-                 p++)
-                if (both[k]->rowind[p] == j)
-                    trace[k] += both[k]->val[p];
+            trace[k] += ritz_sparse_diagonal(both[k], j);
     return trace[1] > 0.0 ? fabs(trace[0]) / trace[1] : 1.0;
 }
 

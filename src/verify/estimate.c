@@ -49,16 +49,6 @@ done:
     return ritz_context(status, "estimate");
 }
 
-/* Dot product of columns j of two matrices. */
-static double dot(const ritz_dense *a, const ritz_dense *b, int64_t j)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < a->nrow; i++)
-        sum += ritz_dense_col(a, j)[i] * ritz_dense_col(b, j)[i];
-    return sum;
-}
-
 /* R = K X - M X diag(theta) */
 static ritz_status residuals(const ritz_component *component,
                              const ritz_dense *X, const double *theta,
@@ -100,7 +90,8 @@ static ritz_status measure(const ritz_component *component, const ritz_dense *X,
         S.val[k] = R.val[k];
     RITZ_TRY(ritz_factor_solve(F, &S));
     for (int64_t j = 0; j < X->ncol; j++)
-        eps[j] = sqrt(fmax(dot(&R, &S, j), 0.0) / dot(X, &AX, j));
+        eps[j] = sqrt(fmax(ritz_dense_dot(&R, j, &S, j), 0.0) /
+                      ritz_dense_dot(X, j, &AX, j));
 done:
     ritz_sparse_free(&A);
     ritz_factor_free(&F);

@@ -37,24 +37,6 @@ typedef struct solver {
     double sigma;
 } solver;
 
-/* X -= A (B'X) */
-static ritz_status remove_modes(const ritz_dense *A, const ritz_dense *B,
-                                ritz_dense *X)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense q = {0};
-    ritz_dense part = {0};
-
-    RITZ_TRY(ritz_dense_mul_tn(B, X, &q));
-    RITZ_TRY(ritz_dense_mul(A, &q, &part));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        X->val[k] -= part.val[k];
-done:
-    ritz_dense_free(&q);
-    ritz_dense_free(&part);
-    return status;
-}
-
 static ritz_status solver_new(const ritz_component *component,
                               const ritz_pairs *pairs, solver *s)
 {
@@ -95,14 +77,14 @@ static ritz_status solve(const solver *s, ritz_dense *f, ritz_dense *out)
     ritz_dense next = {0};
     bool still = false;
 
-    RITZ_TRY(remove_modes(&s->MPhi, s->Phi, f));
+    RITZ_TRY(ritz_dense_take_out(&s->MPhi, s->Phi, f));
     RITZ_TRY(ritz_dense_new(f->nrow, f->ncol, &R));
     for (int step = 0; step < MOST_STEPS && !still; step++) {
         RITZ_TRY(ritz_sparse_mul(s->M, &R, &next));
         for (int64_t k = 0; k < f->nrow * f->ncol; k++)
             next.val[k] = f->val[k] - s->sigma * next.val[k];
         RITZ_TRY(ritz_factor_solve(s->F, &next));
-        RITZ_TRY(remove_modes(s->Phi, &s->MPhi, &next));
+        RITZ_TRY(ritz_dense_take_out(s->Phi, &s->MPhi, &next));
         still = stands_still(&next, &R);
         ritz_dense_free(&R);
         R = next;

@@ -17,34 +17,19 @@ static const double unseen = 1e-24;
 /* Eigenvalues more negative than this, of the largest, are no rigid motion. */
 static const double unstable = 1e-9;
 
-static ritz_status absolute(const ritz_dense *A, ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(A, out));
-    for (int64_t i = 0; i < A->nrow * A->ncol; i++)
-        out->val[i] = fabs(out->val[i]);
-done:
-    return status;
-}
-
 /* X'AX whose entries are 0 where they are rounding alone. */
 static ritz_status project(const ritz_dense *A, const ritz_dense *X,
                            ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense size = {0}, columns = {0}, most = {0};
+    ritz_dense most = {0};
 
     RITZ_TRY(ritz_dense_project(A, X, out));
-    RITZ_TRY(absolute(A, &size));
-    RITZ_TRY(absolute(X, &columns));
-    RITZ_TRY(ritz_dense_project(&size, &columns, &most));
+    RITZ_TRY(ritz_dense_terms(A, X, &most));
     for (int64_t i = 0; i < out->nrow * out->ncol; i++)
         if (fabs(out->val[i]) <= rounding * most.val[i])
             out->val[i] = 0.0;
 done:
-    ritz_dense_free(&size);
-    ritz_dense_free(&columns);
     ritz_dense_free(&most);
     return status;
 }

@@ -47,7 +47,7 @@ static void add_shape(double scale, int power, double *x)
 /* max |V'WV - I| of what is there */
 static double error_of(const ritz_orthonormal *set, const ritz_sparse *W)
 {
-    ritz_dense V = ritz_orthonormal_part(&set->V, 0, set->count);
+    ritz_dense V = ritz_dense_part(&set->V, 0, set->count);
     ritz_dense G = project(W, &V);
     double worst = 0.0;
 

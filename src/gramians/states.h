@@ -1,10 +1,10 @@
-/* What bases of states share: a component in states that are well scaled. */
-#ifndef RITZ_BASES_STATES_H
-#define RITZ_BASES_STATES_H
+/* A component in states that are well scaled. */
+#ifndef RITZ_GRAMIANS_STATES_H
+#define RITZ_GRAMIANS_STATES_H
 
 #include "model/first_order.h"
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 /*
  * z = [S q; q'] of the modes, S = diag(w) where w > 0: A is then near skew, and
@@ -22,10 +22,14 @@ typedef struct ritz_states {
 } ritz_states;
 
 /**
- * @return RITZ_ERR_ARGUMENT if the request is not for a number of states with
- *         at most one shift, or as ritz_state_space_of_component
+ * @param[in] damping  beside the component's matrices and dampers
+ * @param[in] alpha    shift of A [rad/s]
+ * @return RITZ_ERR_ARGUMENT as ritz_state_space_of_component, or if there are
+ *         rigid modes alone
  */
-ritz_status ritz_states_new(const ritz_request *request, ritz_states *out);
+ritz_status ritz_states_new(const ritz_component *component,
+                            const ritz_damping *damping, double alpha,
+                            ritz_states *out);
 
 /**
  * A, or A^-1 if @p inverse.

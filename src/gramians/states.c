@@ -1,4 +1,4 @@
-#include "bases/states.h"
+#include "gramians/states.h"
 
 #include "base/alloc.h"
 #include "linear/general.h"
@@ -7,34 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
-
-static ritz_status check(const ritz_request *request)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                 "states are asked for by their number, not by a frequency");
-    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                 "no states are asked for, one at least is needed");
-    RITZ_FAIL_IF(request->choice.num_shifts > 1, RITZ_ERR_ARGUMENT,
-                 "the states are shifted by one frequency, not by several");
-done:
-    return status;
-}
-
-/* The damping that was asked for, or else the component's own. */
-static ritz_status choose_damping(const ritz_request *request,
-                                  ritz_damping *out)
-{
-    if (request->choice.given & RITZ_USES_DAMPING) {
-        *out = request->choice.damping;
-        return RITZ_OK;
-    }
-    return ritz_context(ritz_damping_parse(request->component->damping, out),
-                        "damping of the component");
-}
 
 /* Rigid modes stand apart if Delta does not join them to flexible ones. */
 static int64_t count_apart(const ritz_first_order *modes)
@@ -109,21 +81,18 @@ done:
     return status;
 }
 
-ritz_status ritz_states_new(const ritz_request *request, ritz_states *out)
+ritz_status ritz_states_new(const ritz_component *component,
+                            const ritz_damping *damping, double alpha,
+                            ritz_states *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_states states = {0};
+    ritz_states states = {.alpha = alpha};
     ritz_structure structure = {0};
-    ritz_damping damping = {0};
 
-    RITZ_TRY(check(request));
-    RITZ_TRY(choose_damping(request, &damping));
-    RITZ_TRY(ritz_structure_of_component(request->component, &structure));
-    RITZ_TRY(ritz_first_order_new(&structure, &request->component->io, &damping,
+    RITZ_TRY(ritz_structure_of_component(component, &structure));
+    RITZ_TRY(ritz_first_order_new(&structure, &component->io, damping,
                                   &states.modes));
-    ritz_damping_print(&damping, states.damping);
-    if (request->choice.num_shifts > 0)
-        states.alpha = 2.0 * pi * request->choice.shift_hz[0];
+    ritz_damping_print(damping, states.damping);
     states.num_apart = count_apart(&states.modes);
     RITZ_TRY(choose_scale(&states));
     RITZ_TRY(fill(&states));
