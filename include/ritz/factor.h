@@ -60,11 +60,22 @@ typedef struct ritz_zldl ritz_zldl;
 ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
                           ritz_zldl **out);
 
+/**
+ * Say that every sum to come has, times one complex number, a definite real
+ * part, as s^2 M + s D + K has off the imaginary axis where M, D and K are
+ * semidefinite. Such factors are stable without pivots, and a fifth cheaper.
+ */
+void ritz_zldl_definite(ritz_zldl *F);
+
 /** Factor sum_k c[k] A_k. @return RITZ_ERR_SINGULAR */
 ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c);
 
 /** Overwrite @p X, n x k column-major, by the solution. */
 ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X);
+
+/** The same of the transposed matrix: of symmetric ones no other. */
+ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
+                                       double _Complex *X);
 void ritz_zldl_free(ritz_zldl **F);
 
 #endif

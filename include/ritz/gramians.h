@@ -48,15 +48,22 @@ typedef struct ritz_balanced {
     int64_t count;   /* m Hankel values, of which rounding leaves these */
     double *sigma;   /* m, descending */
     int64_t kept;    /* r */
-    ritz_dense T, W; /* n x r, W'E T = I, T'... of the kept ones, best first */
+    ritz_dense T, W; /* n x r, W'E T = I, of the kept ones, best first */
     double bound;    /* 2 sum of the rest; rank decisions are not in it */
 } ritz_balanced;
 
 /**
- * Dense, of a state space, E or not.
+ * Dense, of a state space, E or not. Poles that are right of the axis, or left
+ * of it by no more than eight times their rounding, stand apart; those of a
+ * model of which rounding provably makes none unstable do not. E that is
+ * symmetric and definite is reduced by its Cholesky factor (SLICOT SB03OD),
+ * another one is kept (SG03BD).
  *
- * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs
- * @cost   O(n^3)
+ * @return RITZ_ERR_ARGUMENT if it has no states, no inputs or no outputs, or a
+ *         limit is not positive; RITZ_ERR_FORMAT as ritz_state_space_check;
+ *         RITZ_ERR_CONVERGENCE if poles that must be told apart are too close
+ * @cost   some 60 n^3, a third where A and E are symmetric, thrice with SG03BD
+ * @see    [Hammarling1982], [Penzl1998]
  */
 ritz_status ritz_gramians_of_space(const ritz_state_space *model,
                                    ritz_gramians *out);
@@ -66,8 +73,9 @@ typedef struct ritz_gramians_request {
     const ritz_component *component; /* borrowed */
     ritz_damping damping;            /* beside its matrices and dampers */
     ritz_engine engine;
-    double among_hz;  /* modal: all modes up to here; 0: all there are */
-    double tolerance; /* low-rank: of the residual; 0: 1e-10 */
+    double among_hz;   /* modal: all modes up to here; 0: all there are */
+    double band_hz[2]; /* modal: over this band alone; 0, 0: all frequencies */
+    double tolerance;  /* low-rank: of the residual; 0: 1e-10 */
 } ritz_gramians_request;
 
 /**
@@ -81,7 +89,13 @@ typedef struct ritz_gramians_request {
 ritz_status ritz_gramians_of_component(const ritz_gramians_request *request,
                                        ritz_gramians *out);
 
-/** Hankel values, to be freed, descending: singular values of Z_o' E Z_c. */
+/**
+ * Hankel values, to be freed, descending: singular values of Z_o' E Z_c, small
+ * ones as accurate as the factors are; 0 stands for what is below eps^2 of the
+ * largest.
+ *
+ * @see [Drmac1998]
+ */
 ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
                                  double **sigma);
 
@@ -89,14 +103,19 @@ ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
  * Balance by square roots: Z_o'E Z_c = U S V', T = Z_c V S^-1/2,
  * W = Z_o U S^-1/2, cut to @p order, or where values fall below @p tolerance of
  * the largest, whichever is less (order -1: all). Equal values (relative gap
- * below 1e-6) are kept or dropped whole: the cut moves down.
+ * below 1e-6) are kept or dropped whole: the cut moves down. Values below
+ * max(k, l) eps of the largest, and those whose directions rounding has taken,
+ * are never kept nor counted.
  *
  * [Moore1981], [Tombs1987]
  */
 ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
                                   double tolerance, ritz_balanced *out);
 
-/** 2 sum of sigma_k, k = kept.., each value that repeats counted once. */
+/**
+ * 2 sum of sigma_k, k = kept.., each value that repeats (relative gap below
+ * 1e-9: no error tells such from equal ones) counted once.
+ */
 double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept);
 
 void ritz_gramians_free(ritz_gramians *gramians);

@@ -41,6 +41,38 @@ ritz_status ritz_modal_gramians(const ritz_modal *modal, ritz_dense *Wc,
 /** Exact Hankel singular values, 2m, descending. @cost O(m^3) */
 ritz_status ritz_modal_hankel(const ritz_modal *modal, double *sigma);
 
+/**
+ * Factors of both, W_c = Z_c Z_c' and W_o = Z_o Z_o', in the same states and of
+ * as many columns as there is rank.
+ */
+ritz_status ritz_modal_factors(const ritz_modal *modal, ritz_dense *Zc,
+                               ritz_dense *Zo);
+
+/**
+ * The same of a band alone, closed form:
+ *
+ *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
+ *
+ * and W_o likewise. From 0 to infinity they are those above. They are
+ * semidefinite, rounding apart.
+ *
+ * @param[in] band_hz  from and to; HUGE_VAL is infinity
+ * @return RITZ_ERR_ARGUMENT if it is no band, or a mode has no damping
+ */
+ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
+                                     const double band_hz[static 2],
+                                     ritz_dense *Wc, ritz_dense *Wo);
+
+/** @return RITZ_ERR_CONVERGENCE if one is indefinite beyond rounding */
+ritz_status ritz_modal_factors_band(const ritz_modal *modal,
+                                    const double band_hz[static 2],
+                                    ritz_dense *Zc, ritz_dense *Zo);
+
+/** Hankel values over a band, 2m, descending. @return as the factors */
+ritz_status ritz_modal_hankel_band(const ritz_modal *modal,
+                                   const double band_hz[static 2],
+                                   double *sigma);
+
 void ritz_modal_free(ritz_modal *modal);
 
 #endif

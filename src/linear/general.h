@@ -35,6 +35,21 @@ ritz_status ritz_general_svd(const ritz_dense *A, ritz_dense *U, double **s,
 ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
                                  ritz_dense *U);
 
+/**
+ * The same of a pair in Schur form, S quasi-triangular and P triangular, P {0}
+ * the identity:
+ *
+ *     S W P' + P W S' + B B' = 0,   W = F F'
+ *
+ * or, if @p transposed, S'W P + P'W S + B B' = 0, F the transpose of a
+ * triangle (SLICOT SB03OD and SG03BD, [Hammarling1982], [Penzl1998]).
+ *
+ * @return RITZ_ERR_ARGUMENT if an eigenvalue is not left of the axis
+ */
+ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
+                                    bool transposed, const ritz_dense *B,
+                                    ritz_dense *F);
+
 /** The transpose. */
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);
 

@@ -11,6 +11,10 @@
 #include <string.h>
 #include <zmumps_c.h>
 
+/* Indices from zero: ICNTL(9) is 1 for the matrix, else its transpose is
+ * meant; CNTL(1) is the threshold of pivots, 0 for none. */
+enum { TRANSPOSED = 8, THRESHOLD = 0 };
+
 struct ritz_zldl {
     ZMUMPS_STRUC_C id;
     bool started;
@@ -97,6 +101,12 @@ done:
     return status;
 }
 
+void ritz_zldl_definite(ritz_zldl *F)
+{
+    if (F->started)
+        F->id.cntl[THRESHOLD] = 0.0;
+}
+
 /* val += c A, or its lower triangle. */
 static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
 {
@@ -142,6 +152,17 @@ ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X)
                  "a solve needs a factor first");
     RITZ_TRY(ritz_mumps_solve(&mumps, F->pattern.n, k, X));
 done:
+    return status;
+}
+
+ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
+                                       double _Complex *X)
+{
+    ritz_status status = RITZ_OK;
+
+    F->id.icntl[TRANSPOSED] = 0;
+    status = ritz_zldl_solve(F, k, X);
+    F->id.icntl[TRANSPOSED] = 1;
     return status;
 }
 

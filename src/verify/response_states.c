@@ -3,11 +3,12 @@
  *
  *     H = C (i w I - A)^-1 B + D,
  *
- * by SLICOT TB05AD: A is balanced and brought to Hessenberg form once, and each
+ * by SLICOT TB05AD: A is scaled and brought to Hessenberg form once, and each
  * point then costs n^2 operations.
  */
 #include "base/alloc.h"
 #include "linear/eigenvalues.h"
+#include "linear/frame.h"
 #include "linear/general.h"
 #include "verify/poles.h"
 
@@ -49,6 +50,31 @@ static int at_least_one(int n)
     return n > 1 ? n : 1;
 }
 
+/* A, B and C in coordinates of the library's own scaling. */
+static ritz_status set_up(const ritz_state_space *model, hessenberg *h)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->A.nrow;
+    ritz_frame frame = {0};
+    ritz_dense one = {0}, back = {0};
+
+    RITZ_TRY(ritz_frame_new(&model->A, &model->E, &frame));
+    RITZ_TRY(ritz_dense_copy(&frame.A, &h->A));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.left, &model->B, &h->B));
+    RITZ_TRY(ritz_general_transpose(&model->C, &one));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
+    RITZ_TRY(ritz_general_transpose(&back, &h->C));
+    if (frame.E.val && n > 0) {
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &h->A));
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &h->B));
+    }
+done:
+    ritz_frame_free(&frame);
+    ritz_dense_free(&one);
+    ritz_dense_free(&back);
+    return status;
+}
+
 static ritz_status start(const ritz_state_space *model, hessenberg *h)
 {
     ritz_status status = RITZ_OK;
@@ -59,13 +85,7 @@ static ritz_status start(const ritz_state_space *model, hessenberg *h)
     h->p = (int)model->num_outputs;
     h->room = at_least_one(3 * n + (n > h->m ? n : h->m) + h->p);
     h->zroom = at_least_one(n * n + 2 * n);
-    RITZ_TRY(ritz_dense_copy(&model->A, &h->A));
-    RITZ_TRY(ritz_dense_copy(&model->B, &h->B));
-    RITZ_TRY(ritz_dense_copy(&model->C, &h->C));
-    if (model->E.val) {
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &h->A));
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &h->B));
-    }
+    RITZ_TRY(set_up(model, h));
     RITZ_NEW(h->iwork, n + 1);
     RITZ_NEW(h->re, n + 1);
     RITZ_NEW(h->im, n + 1);
@@ -100,10 +120,10 @@ static ritz_status solve(hessenberg *h, double hertz)
     double rcond = 0.0;
     int info = 0;
 
-    tb05ad_(h->begun ? "C" : "A", h->begun ? "H" : "G", &h->n, &h->m, &h->p, &s,
-            h->A.val, &ldn, h->B.val, &ldn, h->C.val, &ldp, &rcond, h->G, &ldp,
-            h->re, h->im, h->X, &ldn, h->iwork, h->work, &h->room, h->zwork,
-            &h->zroom, &info, 1, 1);
+    tb05ad_("C", h->begun ? "H" : "G", &h->n, &h->m, &h->p, &s, h->A.val, &ldn,
+            h->B.val, &ldn, h->C.val, &ldp, &rcond, h->G, &ldp, h->re, h->im,
+            h->X, &ldn, h->iwork, h->work, &h->room, h->zwork, &h->zroom, &info,
+            1, 1);
     h->begun = true;
     RITZ_FAIL_IF(info == 2, RITZ_ERR_SINGULAR,
                  "%.9g Hz is the frequency of a pole: an undamped mode, or at "

@@ -1,6 +1,8 @@
 #include "testing.h"
 
-#include <ritz/ranking.h>
+#include "linear/general.h"
+
+#include <ritz/modal.h>
 
 #include <stdlib.h>
 
@@ -202,6 +204,105 @@ static void a_mode_without_damping_has_no_gramian(void **unused)
     ritz_modal_free(&modal);
 }
 
+/*
+ * Z Z' = W, by eps of a unit diagonal a column; under-, over- and critically
+ * damped, of one frequency too. The least damped ratio is 0.7 zeta.
+ */
+static void factors_multiply_to_the_gramians(void **unused)
+{
+    static const double zeta[] = {1e-4, 0.3, 0.95, 1.0, 3.0};
+    static const double gap[] = {3.0, 0.01, 0.0};
+
+    (void)unused;
+    for (int t = 0; t < 15; t++) {
+        ritz_modal modal = {0};
+        ritz_dense W[2] = {{0}, {0}}, Z[2] = {{0}, {0}};
+
+        assert_ok(modal_model(MODES, zeta[t / 3], gap[t % 3], &modal));
+        modal.zeta[0] = t / 3 == 3 ? 1.0 : modal.zeta[0];
+        assert_ok(ritz_modal_gramians(&modal, &W[0], &W[1]));
+        assert_ok(ritz_modal_factors(&modal, &Z[0], &Z[1]));
+        for (int k = 0; k < 2; k++) {
+            ritz_dense ZZ = {0};
+
+            assert_ok(ritz_dense_mul_nt(&Z[k], &Z[k], &ZZ));
+            for (int e = 0; e < STATES * STATES; e++)
+                assert_near(ZZ.val[e], W[k].val[e],
+                            2.0 * STATES * 2.2e-16 *
+                                sqrt(entry(&W[k], e % STATES, e % STATES) *
+                                     entry(&W[k], e / STATES, e / STATES)));
+            ritz_dense_free(&ZZ);
+            ritz_dense_free(&W[k]);
+            ritz_dense_free(&Z[k]);
+        }
+        ritz_modal_free(&modal);
+    }
+}
+
+enum { MANY = 40 };
+
+/* One input, and every position is an output. */
+static void set_one_to_many(double zeta, ritz_modal *modal, ritz_dense *A,
+                            ritz_dense *B, ritz_dense *Ct)
+{
+    assert_ok(modal_model(MANY, zeta, 0.5, modal));
+    modal->B.ncol = 1;
+    ritz_dense_free(&modal->C);
+    ritz_dense_free(&modal->Cv);
+    assert_ok(ritz_dense_new(MANY, MANY, &modal->C));
+    assert_ok(ritz_dense_new(MANY, MANY, &modal->Cv));
+    assert_ok(ritz_dense_new(2 * MANY, 2 * MANY, A));
+    assert_ok(ritz_dense_new(2 * MANY, 1, B));
+    assert_ok(ritz_dense_new(2 * MANY, MANY, Ct));
+    for (int64_t j = 0; j < 2 * MANY; j++)
+        for (int64_t i = 0; i < 2 * MANY; i++)
+            ritz_dense_col(A, j)[i] = state(modal, i, j);
+    for (int64_t k = 0; k < MANY; k++) {
+        ritz_dense_col(&modal->C, k)[k] = 1.0;
+        ritz_dense_col(Ct, k)[2 * k] = 1.0;
+        B->val[2 * k + 1] = modal->B.val[k];
+    }
+}
+
+/*
+ * W_o has full rank and shows what W_c hardly holds: factors of Gramians that
+ * were formed would be wrong by eps^1/2 of the largest value.
+ */
+static void small_values_are_those_of_hammarlings_factors(void **unused)
+{
+    static const double zeta[] = {1.0, 2.0};
+
+    (void)unused;
+    for (int t = 0; t < 2; t++) {
+        ritz_modal modal = {0};
+        ritz_dense A = {0}, At = {0}, B = {0}, Ct = {0};
+        ritz_dense U = {0}, V = {0}, H = {0}, left = {0};
+        double sigma[2 * MANY];
+        double *due = NULL;
+
+        set_one_to_many(zeta[t], &modal, &A, &B, &Ct);
+        assert_ok(ritz_general_transpose(&A, &At));
+        assert_ok(ritz_general_gramian(&A, &B, &U));
+        assert_ok(ritz_general_gramian(&At, &Ct, &V));
+        assert_ok(ritz_dense_mul_tn(&V, &U, &H));
+        assert_ok(ritz_general_svd(&H, &left, &due, NULL));
+        assert_ok(ritz_modal_hankel(&modal, sigma));
+        assert_true(due[3 * MANY / 4] < 1e-9 * due[0]);
+        for (int k = 0; k < 2 * MANY; k++) /* measured: 2e-15 */
+            assert_near(sigma[k], due[k], 1e-12 * due[0]);
+        free(due);
+        ritz_dense_free(&A);
+        ritz_dense_free(&At);
+        ritz_dense_free(&B);
+        ritz_dense_free(&Ct);
+        ritz_dense_free(&U);
+        ritz_dense_free(&V);
+        ritz_dense_free(&H);
+        ritz_dense_free(&left);
+        ritz_modal_free(&modal);
+    }
+}
+
 static ritz_status gramians_once(const ritz_modal *modal)
 {
     ritz_status status = RITZ_OK;
@@ -234,6 +335,8 @@ int main(void)
         cmocka_unit_test(both_gramians_give_one_h2_norm),
         cmocka_unit_test(one_mode_has_the_textbook_gramian),
         cmocka_unit_test(a_mode_without_damping_has_no_gramian),
+        cmocka_unit_test(factors_multiply_to_the_gramians),
+        cmocka_unit_test(small_values_are_those_of_hammarlings_factors),
         cmocka_unit_test(gramians_survive_every_allocation),
     };
 

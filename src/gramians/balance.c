@@ -1,0 +1,227 @@
+/*
+ * Balancing by square roots. With the factors of both Gramians
+ *
+ *     Z_o'E Z_c = U S V',   T = Z_c V S^-1/2,   W = Z_o U S^-1/2,
+ *
+ *     W'E T = I,   T'... of W_c = T S T', W_o = W S W' in the kept states
+ *
+ * so that both Gramians of the states W'E x are S: what is reached by little
+ * input and what is seen by little output stand in the same order. A value no
+ * larger than the rounding of the product has no direction of its own: T and W
+ * leave it out whatever was asked for. [Moore1981], [Tombs1987]
+ */
+#include "base/alloc.h"
+#include "linear/general.h"
+#include "linear/product_svd.h"
+
+#include <ritz/gramians.h>
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Of equal values, which no truncation may tell apart. */
+static const double tie = 1e-6;
+/*
+ * Of values the bound counts once. Two of one sign whose relative gap is g need
+ * in one channel a pole g^2 / 16 of the others: below this it is rounding, above
+ * it both count, as the error of such a system is the sum of both.
+ */
+static const double repeated = 1e-9;
+/* Of W'E T from I, in which states a value still has a direction. */
+static const double most_defect = 0.1;
+
+static const ritz_dense *descriptor_times(const ritz_gramians *gramians)
+{
+    return gramians->EZc.val ? &gramians->EZc : &gramians->Zc;
+}
+
+ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
+                                 double **sigma)
+{
+    ritz_status status = RITZ_OK;
+    ritz_product_svd svd = {0};
+
+    RITZ_TRY_IN("Hankel values",
+                ritz_product_svd_new(&gramians->Zo, descriptor_times(gramians),
+                                     false, &svd));
+    *count = svd.count;
+    *sigma = svd.s;
+    svd.s = NULL;
+done:
+    ritz_product_svd_free(&svd);
+    return status;
+}
+
+double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept)
+{
+    double sum = 0.0;
+    double last = 0.0;
+
+    for (int64_t k = 0; k < count; k++) {
+        if (k > 0 && last - sigma[k] <= repeated * last)
+            continue;
+        last = sigma[k];
+        if (k >= kept)
+            sum += last;
+    }
+    return 2.0 * sum;
+}
+
+/* Values that rounding of the product leaves. */
+static int64_t count_true(const ritz_gramians *gramians,
+                          const ritz_product_svd *svd)
+{
+    int64_t k = gramians->Zc.ncol;
+    int64_t l = gramians->Zo.ncol;
+    double size = (double)(k > l ? k : l);
+    int64_t count = 0;
+
+    while (count < svd->rank && svd->s[count] > 0.0 &&
+           svd->s[count] > size * DBL_EPSILON * svd->s[0])
+        count++;
+    return count;
+}
+
+/* Of the leading rows and columns of G those that are close to I. */
+static int64_t count_close(const ritz_dense *G)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < G->ncol; j++) {
+        for (int64_t i = 0; i <= j; i++) {
+            double upper = ritz_dense_col(G, j)[i] - (i == j ? 1.0 : 0.0);
+            double lower = ritz_dense_col(G, i)[j];
+
+            sum += upper * upper + (i < j ? lower * lower : 0.0);
+        }
+        if (!(sqrt(sum) <= most_defect))
+            return j;
+    }
+    return G->ncol;
+}
+
+/* How many of them are kept. */
+static int64_t cut(int64_t count, const double *sigma, int64_t order,
+                   double tolerance)
+{
+    int64_t kept = 0;
+
+    while (kept < count && (order < 0 || kept < order) &&
+           sigma[kept] >= tolerance * sigma[0])
+        kept++;
+    while (kept > 0 && kept < count &&
+           sigma[kept - 1] - sigma[kept] <= tie * sigma[kept - 1])
+        kept--;
+    return kept;
+}
+
+/* Z times columns of a side of the product, over the roots of s. */
+static ritz_status side(const ritz_dense *Z, const ritz_dense *vectors,
+                        const double *sigma, int64_t count, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense V = {0};
+
+    RITZ_TRY(ritz_dense_columns(vectors, 0, count, &V));
+    for (int64_t j = 0; j < count; j++)
+        for (int64_t i = 0; i < V.nrow; i++)
+            ritz_dense_col(&V, j)[i] /= sqrt(sigma[j]);
+    RITZ_TRY(ritz_dense_mul(Z, &V, out));
+done:
+    ritz_dense_free(&V);
+    return status;
+}
+
+/* The leading columns of W times G^-1 of the leading rows and columns. */
+static ritz_status correct(const ritz_dense *W, const ritz_dense *G,
+                           int64_t count, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense leading = {0}, X = {0};
+    ritz_dense part = ritz_dense_part(W, 0, count);
+
+    RITZ_TRY(ritz_dense_new(count, count, &leading));
+    for (int64_t j = 0; j < count; j++)
+        for (int64_t i = 0; i < count; i++)
+            ritz_dense_col(&leading, j)[i] = ritz_dense_col(G, j)[i];
+    RITZ_TRY(ritz_general_transpose(&part, &X));
+    RITZ_TRY_IN("balancing", ritz_general_solve(&leading, true, &X));
+    RITZ_TRY(ritz_general_transpose(&X, out));
+done:
+    ritz_dense_free(&leading);
+    ritz_dense_free(&X);
+    return status;
+}
+
+/*
+ * T and W of as many values as there are, then cut. G = (E T)'W is I but for
+ * rounding, some eps |Z_o| |E Z_c| / sigma, and W := W G^-1 takes that away.
+ */
+static ritz_status project(const ritz_gramians *gramians,
+                           const ritz_product_svd *svd, int64_t order,
+                           double tolerance, ritz_balanced *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = count_true(gramians, svd);
+    ritz_dense T = {0}, ET = {0}, W = {0}, G = {0};
+
+    RITZ_TRY(side(&gramians->Zc, &svd->V, svd->s, count, &T));
+    RITZ_TRY(side(&gramians->Zo, &svd->U, svd->s, count, &W));
+    RITZ_TRY(side(descriptor_times(gramians), &svd->V, svd->s, count, &ET));
+    RITZ_TRY(ritz_dense_mul_tn(&ET, &W, &G));
+    out->count = count_close(&G);
+    out->kept = cut(out->count, svd->s, order, tolerance);
+    out->bound = ritz_hankel_bound(out->count, svd->s, out->kept);
+    RITZ_TRY(ritz_dense_columns(&T, 0, out->kept, &out->T));
+    RITZ_TRY(correct(&W, &G, out->kept, &out->W));
+done:
+    ritz_dense_free(&T);
+    ritz_dense_free(&ET);
+    ritz_dense_free(&W);
+    ritz_dense_free(&G);
+    return status;
+}
+
+ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
+                                  double tolerance, ritz_balanced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_product_svd svd = {0};
+    ritz_balanced balanced = {0};
+
+    RITZ_FAIL_IF(!(tolerance >= 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                 "a tolerance of Hankel values is %g, it must be at least 0 "
+                 "and below 1",
+                 tolerance);
+    RITZ_TRY_IN("balancing",
+                ritz_product_svd_new(&gramians->Zo, descriptor_times(gramians),
+                                     true, &svd));
+    RITZ_TRY(project(gramians, &svd, order, tolerance, &balanced));
+    balanced.sigma = svd.s;
+    svd.s = NULL;
+    *out = balanced;
+    balanced = (ritz_balanced){0};
+done:
+    ritz_product_svd_free(&svd);
+    ritz_balanced_free(&balanced);
+    return status;
+}
+
+void ritz_gramians_free(ritz_gramians *gramians)
+{
+    ritz_dense_free(&gramians->Zc);
+    ritz_dense_free(&gramians->EZc);
+    ritz_dense_free(&gramians->Zo);
+    ritz_dense_free(&gramians->T);
+    ritz_dense_free(&gramians->W);
+    *gramians = (ritz_gramians){0};
+}
+
+void ritz_balanced_free(ritz_balanced *balanced)
+{
+    free(balanced->sigma);
+    ritz_dense_free(&balanced->T);
+    ritz_dense_free(&balanced->W);
+    *balanced = (ritz_balanced){0};
+}

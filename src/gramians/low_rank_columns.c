@@ -1,0 +1,189 @@
+/*
+ * Sizes in units of energy, and columns of a factor Z, which grows, and is compressed now and then: with
+ * S Z = Q R, S the units of energy, and R = U s V', Z V has columns that are
+ * orthogonal and of the lengths s; the short ones are left out.
+ */
+#include "base/alloc.h"
+#include "gramians/low_rank_parts.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the longest column. */
+static const double short_below = 1e-14;
+/* Bytes that one factor may take: three of them stay below 4 GiB. */
+static const double most_bytes = 1.4e9;
+/* Columns to begin with. */
+enum { ROOM = 64 };
+
+ritz_status ritz_low_rank_reserve(int64_t n, int64_t more,
+                                  ritz_low_rank_columns *Z)
+{
+    ritz_status status = RITZ_OK;
+    int64_t room = Z->room > 0 ? Z->room : ROOM;
+    double *val = NULL;
+
+    if (Z->count + more <= Z->room)
+        return RITZ_OK;
+    while (room < Z->count + more)
+        room += room / 2;
+    RITZ_FAIL_IF((double)(2 * n) * (double)(Z->count + more) * 8.0 > most_bytes,
+                 RITZ_ERR_CONVERGENCE,
+                 "the Gramians have no low rank: %" PRId64
+                 " columns of a factor are more than memory shall hold, take "
+                 "engine 'modal' or fewer inputs and outputs",
+                 Z->count + more);
+    RITZ_NEW(val, 2 * n * room);
+    if (Z->count > 0)
+        memcpy(val, Z->val, (size_t)(2 * n * Z->count) * sizeof *val);
+    free(Z->val);
+    Z->val = val;
+    Z->room = room;
+done:
+    return status;
+}
+
+/* Row i of the upper half: W_c has displacements there, W_o forces. */
+static double unit_above(const ritz_low_rank_model *model, int side, int64_t i)
+{
+    double stiff = model->stiff[i];
+
+    if (!(stiff > 0.0))
+        return 0.0;
+    return side == RITZ_REACHED ? sqrt(stiff) : 1.0 / sqrt(stiff);
+}
+
+/* Row i of the lower half, velocities; of M times that, one over it. */
+static double unit_below(const ritz_low_rank_model *model, int64_t i)
+{
+    return sqrt(fmax(model->mass[i], 0.0));
+}
+
+ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
+                               double *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *W = model->W[side];
+    ritz_dense S[RITZ_HALVES] = {0}, G = {0}, more = {0};
+    double *e = NULL;
+    int p = (int)W[0].ncol;
+    int info = 0;
+
+    RITZ_NEW(e, p);
+    RITZ_TRY(ritz_dense_copy(&W[RITZ_ABOVE], &S[RITZ_ABOVE]));
+    RITZ_TRY(ritz_dense_copy(&W[RITZ_BELOW], &S[RITZ_BELOW]));
+    for (int64_t i = 0; i < model->n; i++) {
+        double above = unit_above(model, side, i);
+        double m = unit_below(model, i);
+
+        for (int64_t j = 0; j < p; j++) {
+            ritz_dense_col(&S[RITZ_ABOVE], j)[i] *= above;
+            ritz_dense_col(&S[RITZ_BELOW], j)[i] *= m > 0.0 ? 1.0 / m : 0.0;
+        }
+    }
+    RITZ_TRY(ritz_dense_mul_tn(&S[RITZ_ABOVE], &S[RITZ_ABOVE], &G));
+    RITZ_TRY(ritz_dense_mul_tn(&S[RITZ_BELOW], &S[RITZ_BELOW], &more));
+    for (int64_t k = 0; k < G.nrow * G.ncol; k++)
+        G.val[k] += more.val[k];
+    if (p > 0)
+        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', p, G.val, p, e);
+    RITZ_FAIL_IF(info != 0 || (p > 0 && !isfinite(e[p - 1])),
+                 RITZ_ERR_CONVERGENCE, "a residual of a Gramian is not finite");
+    *out = p > 0 ? fmax(e[p - 1], 0.0) : 0.0;
+done:
+    ritz_dense_free(&S[RITZ_ABOVE]);
+    ritz_dense_free(&S[RITZ_BELOW]);
+    ritz_dense_free(&G);
+    ritz_dense_free(&more);
+    free(e);
+    return status;
+}
+
+/* R of S Z = Q R. */
+static ritz_status triangle(const ritz_low_rank_model *model, int side,
+                            const ritz_low_rank_columns *Z, ritz_dense *R)
+{
+    ritz_status status = RITZ_OK;
+    int64_t rows = 2 * model->n;
+    int64_t k = Z->count;
+    double *S = NULL, *tau = NULL;
+    int info = 0;
+
+    RITZ_NEW(S, rows * k);
+    RITZ_NEW(tau, k);
+    for (int64_t i = 0; i < rows; i++) {
+        double by = i < model->n ? unit_above(model, side, i)
+                                 : unit_below(model, i - model->n);
+
+        for (int64_t j = 0; j < k; j++)
+            S[i + j * rows] = by * Z->val[i + j * rows];
+    }
+    info =
+        LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)rows, (int)k, S, (int)rows, tau);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "a factor could not be compressed");
+    RITZ_TRY(ritz_dense_new(rows < k ? rows : k, k, R));
+    for (int64_t j = 0; j < k; j++)
+        for (int64_t i = 0; i <= j && i < R->nrow; i++)
+            ritz_dense_col(R, j)[i] = S[i + j * rows];
+done:
+    free(S);
+    free(tau);
+    return status;
+}
+
+/* V of the long columns, k x r, from R, which is overwritten. */
+static ritz_status long_ones(ritz_dense *R, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int m = (int)R->nrow;
+    int k = (int)R->ncol;
+    int64_t r = 0;
+    double *s = NULL, *super = NULL;
+    int info = 0;
+
+    RITZ_NEW(s, m);
+    RITZ_NEW(super, m);
+    info = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'O', m, k, R->val, m, s, NULL,
+                          1, NULL, 1, super);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "a factor could not be compressed");
+    while (r < m && s[r] > short_below * s[0])
+        r++;
+    RITZ_TRY(ritz_dense_new(k, r, out));
+    for (int64_t j = 0; j < r; j++)
+        for (int64_t i = 0; i < k; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(R, i)[j];
+done:
+    free(s);
+    free(super);
+    return status;
+}
+
+ritz_status ritz_low_rank_compress(const ritz_low_rank_model *model, int side,
+                                   ritz_low_rank_columns *Z)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense all = {
+        .nrow = 2 * model->n, .ncol = Z->count, .val = Z->val};
+    ritz_dense R = {0}, V = {0}, turned = {0};
+
+    if (Z->count == 0)
+        return RITZ_OK;
+    RITZ_TRY(triangle(model, side, Z, &R));
+    RITZ_TRY(long_ones(&R, &V));
+    RITZ_TRY(ritz_dense_mul(&all, &V, &turned));
+    free(Z->val);
+    Z->val = turned.val;
+    Z->count = Z->room = Z->settled = turned.ncol;
+    turned.val = NULL;
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&V);
+    ritz_dense_free(&turned);
+    return status;
+}

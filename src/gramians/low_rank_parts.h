@@ -1,0 +1,115 @@
+/* Parts of the low-rank engine: see low_rank.c for the equations. */
+#ifndef RITZ_GRAMIANS_LOW_RANK_PARTS_H
+#define RITZ_GRAMIANS_LOW_RANK_PARTS_H
+
+#include <ritz/dofs.h>
+#include <ritz/factor.h>
+#include <ritz/gramians.h>
+
+#include <complex.h>
+#include <stdbool.h>
+
+enum {
+    RITZ_LOW_RANK_STARTS = 2,  /* shifts at the lowest modes */
+    RITZ_LOW_RANK_SHIFTS = 300 /* most of them */
+};
+
+/* The two equations, and the two halves of 2n rows. */
+enum { RITZ_REACHED, RITZ_SEEN, RITZ_SIDES };
+enum { RITZ_ABOVE, RITZ_BELOW, RITZ_HALVES };
+
+/* What is solved: M v' + D v + K u = 0 from a start W. */
+typedef struct ritz_low_rank_model {
+    int64_t n;
+    ritz_sparse K, D;  /* with damping of words and dampers installed */
+    ritz_sparse Dt;    /* D' of an unsymmetric D; else {0} */
+    ritz_sparse M;     /* borrowed */
+    ritz_dofs massive; /* dofs with mass */
+    ritz_dofs massless;
+    ritz_dense Phi, MPhi; /* n x a, rigid modes, which stand apart */
+    ritz_dense W[RITZ_SIDES][RITZ_HALVES]; /* n x inputs, n x outputs */
+    double whole[RITZ_SIDES];              /* |W'W| with rigid motion */
+    double *stiff, *mass;                  /* n, what a dof has of each */
+    int64_t num_starts;
+    double _Complex start[RITZ_LOW_RANK_STARTS];
+} ritz_low_rank_model;
+
+ritz_status ritz_low_rank_model_new(const ritz_gramians_request *request,
+                                    ritz_low_rank_model *out);
+void ritz_low_rank_model_free(ritz_low_rank_model *model);
+
+/** |W'W| of a side, each dof in its own units of energy. */
+ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
+                               double *out);
+
+/** W of both sides, whose dofs and modes are known. */
+ritz_status ritz_low_rank_loads(const ritz_io *io, ritz_low_rank_model *model);
+
+/* Columns of a factor Z = [above; below], with room for more. */
+typedef struct ritz_low_rank_columns {
+    int64_t count, room;
+    int64_t settled; /* how many were left when they were compressed last */
+    double *val;     /* 2n x room */
+} ritz_low_rank_columns;
+
+/** Room for @p more columns of 2n rows. */
+ritz_status ritz_low_rank_reserve(int64_t n, int64_t more,
+                                  ritz_low_rank_columns *Z);
+
+/** Turn columns so that those beneath 1e-14 of the largest can be dropped. */
+ritz_status ritz_low_rank_compress(const ritz_low_rank_model *model, int side,
+                                   ritz_low_rank_columns *Z);
+
+/* Latest displacements, and M, K and D between them. */
+typedef struct ritz_low_rank_window {
+    int64_t count, room, next;
+    ritz_dense X;    /* n x room, the oldest are overwritten */
+    ritz_dense G[3]; /* X'MX, X'KX, X'DX */
+} ritz_low_rank_window;
+
+ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
+                                     ritz_low_rank_window *out);
+ritz_status ritz_low_rank_window_add(const ritz_low_rank_model *model,
+                                     const ritz_dense *X,
+                                     ritz_low_rank_window *window);
+/**
+ * Modes X F of the small model, M-orthonormal: F, frequencies and F'X'DX F.
+ *
+ * @param[out] F      count x r
+ * @param[out] omega  r, positive, to be freed
+ */
+ritz_status ritz_low_rank_window_modes(const ritz_low_rank_window *window,
+                                       ritz_dense *F, double **omega,
+                                       ritz_dense *Delta);
+void ritz_low_rank_window_free(ritz_low_rank_window *window);
+
+/**
+ * Shifts for what is left of W.
+ *
+ * @param[in]  open  of either side: it has not converged
+ * @param[out] out   at least one, at most @p most
+ */
+ritz_status ritz_low_rank_shifts(const ritz_low_rank_model *model,
+                                 const ritz_low_rank_window *window,
+                                 const bool open[static RITZ_SIDES],
+                                 int64_t most, int64_t *count,
+                                 double _Complex *out);
+
+/* The iteration: W of the model shrinks as Z grows. */
+typedef struct ritz_low_rank_sweep {
+    ritz_low_rank_model model;
+    ritz_zldl *F;
+    ritz_low_rank_window window;
+    ritz_low_rank_columns Z[RITZ_SIDES];
+    double first[RITZ_SIDES];    /* |W'W| of the start */
+    double residual[RITZ_SIDES]; /* |W'W| over that */
+    bool open[RITZ_SIDES];
+    double tolerance;
+    double least; /* damping ratio of the shifts so far */
+    int64_t shifts;
+} ritz_low_rank_sweep;
+
+/** Take one shift, or a pair of them, and add what it gives. */
+ritz_status ritz_low_rank_step(ritz_low_rank_sweep *sweep, double _Complex p);
+
+#endif

@@ -1,0 +1,244 @@
+/*
+ * Shifts from the space that the iteration spans itself: M, K and D projected
+ * on the latest displacements keep their signs, so that every projected pole
+ * is stable. In modes of that small model, states (w q, q'), it is
+ *
+ *     A = [0 w; -w -Delta],   A x_i = lambda_i x_i,   y_i'A = lambda_i y_i'
+ *
+ * and what is left of W has the shares |y_i'w| / |y_i'x_i| and |w'x_i|, |x_i|
+ * being one. Poles with the largest share are the next shifts: each takes its
+ * own share away.
+ *
+ * Projection on the latest block is [BennerKuerschnerSaak2014]; second order,
+ * more blocks and the choice by shares are our own.
+ */
+#include "base/alloc.h"
+#include "gramians/low_rank_parts.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Imaginary part, of the real one, that makes a pole no pair. */
+static const double nearly_real = 1e-3;
+/* Least |Re p| / |p| that can be told from none. */
+static const double undamped = 64.0 * DBL_EPSILON;
+
+/* Modes of the window and poles of its states. */
+typedef struct small {
+    ritz_dense F;             /* window x r: modes are X F */
+    ritz_dense A;             /* 2r x 2r */
+    double *omega;            /* r */
+    double *re, *im;          /* 2r */
+    ritz_dense left, right;   /* 2r x 2r, as LAPACK packs pairs */
+    ritz_dense w[RITZ_SIDES]; /* 2r x inputs, outputs */
+    double *share;            /* 2r */
+} small;
+
+static void free_small(small *s)
+{
+    ritz_dense_free(&s->F);
+    ritz_dense_free(&s->A);
+    free(s->omega);
+    free(s->re);
+    free(s->im);
+    ritz_dense_free(&s->left);
+    ritz_dense_free(&s->right);
+    ritz_dense_free(&s->w[RITZ_REACHED]);
+    ritz_dense_free(&s->w[RITZ_SEEN]);
+    free(s->share);
+}
+
+/* A, its poles and both kinds of vectors. */
+static ritz_status find_poles(const ritz_low_rank_window *window, small *s)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Delta = {0};
+    int64_t r = 0;
+    int n = 0;
+    int info = 0;
+
+    RITZ_TRY(ritz_low_rank_window_modes(window, &s->F, &s->omega, &Delta));
+    r = s->F.ncol;
+    n = (int)(2 * r);
+    RITZ_TRY(ritz_dense_new(n, n, &s->A));
+    RITZ_TRY(ritz_dense_new(n, n, &s->left));
+    RITZ_TRY(ritz_dense_new(n, n, &s->right));
+    RITZ_NEW(s->re, n);
+    RITZ_NEW(s->im, n);
+    for (int64_t j = 0; j < r; j++) {
+        ritz_dense_col(&s->A, r + j)[j] = s->omega[j];
+        ritz_dense_col(&s->A, j)[r + j] = -s->omega[j];
+        for (int64_t i = 0; i < r; i++)
+            ritz_dense_col(&s->A, r + j)[r + i] = -ritz_dense_col(&Delta, j)[i];
+    }
+    if (n > 0)
+        info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n, s->A.val, n, s->re,
+                             s->im, s->left.val, n, s->right.val, n);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "no poles were found for shifts");
+done:
+    ritz_dense_free(&Delta);
+    return status;
+}
+
+/* rows first.. of w := diag(omega^power) F'X'A */
+static ritz_status put_half(const ritz_low_rank_window *window,
+                            const ritz_dense *A, double power, int64_t first,
+                            small *s, ritz_dense *w)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = ritz_dense_part(&window->X, 0, window->count);
+    ritz_dense XA = {0}, q = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(&X, A, &XA));
+    RITZ_TRY(ritz_dense_mul_tn(&s->F, &XA, &q));
+    for (int64_t j = 0; j < q.ncol; j++)
+        for (int64_t i = 0; i < q.nrow; i++)
+            ritz_dense_col(w, j)[first + i] =
+                pow(s->omega[i], power) * ritz_dense_col(&q, j)[i];
+done:
+    ritz_dense_free(&XA);
+    ritz_dense_free(&q);
+    return status;
+}
+
+/* What is left of W: velocities w Phi'M W_1 and forces; outputs w^-1, 1. */
+static ritz_status project_loads(const ritz_low_rank_model *model,
+                                 const ritz_low_rank_window *window, small *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t r = s->F.ncol;
+    const ritz_dense *U = model->W[RITZ_REACHED];
+    const ritz_dense *Y = model->W[RITZ_SEEN];
+    ritz_dense MU = {0};
+
+    RITZ_TRY(ritz_sparse_mul(&model->M, &U[RITZ_ABOVE], &MU));
+    RITZ_TRY(ritz_dense_new(2 * r, MU.ncol, &s->w[RITZ_REACHED]));
+    RITZ_TRY(ritz_dense_new(2 * r, Y[0].ncol, &s->w[RITZ_SEEN]));
+    RITZ_TRY(put_half(window, &MU, 1.0, 0, s, &s->w[RITZ_REACHED]));
+    RITZ_TRY(put_half(window, &U[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_REACHED]));
+    RITZ_TRY(put_half(window, &Y[RITZ_ABOVE], -1.0, 0, s, &s->w[RITZ_SEEN]));
+    RITZ_TRY(put_half(window, &Y[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_SEEN]));
+done:
+    ritz_dense_free(&MU);
+    return status;
+}
+
+/* |x'w|^2 of a vector whose imaginary part is y, NULL if real. */
+static double seen_by(int64_t n, const double *x, const double *y,
+                      const ritz_dense *w)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < w->ncol; j++) {
+        const double *column = ritz_dense_col(w, j);
+        double re = 0.0;
+        double im = 0.0;
+
+        for (int64_t i = 0; i < n; i++) {
+            re += x[i] * column[i];
+            im += y ? y[i] * column[i] : 0.0;
+        }
+        sum += re * re + im * im;
+    }
+    return sum;
+}
+
+/* |y'x|^2 of a left and a right vector. */
+static double cosine(int64_t n, const double *y, const double *y_im,
+                     const double *x, const double *x_im)
+{
+    double re = 0.0;
+    double im = 0.0;
+
+    for (int64_t i = 0; i < n; i++) {
+        re += y[i] * x[i] + (x_im ? y_im[i] * x_im[i] : 0.0);
+        im += x_im ? y[i] * x_im[i] - y_im[i] * x[i] : 0.0;
+    }
+    return re * re + im * im;
+}
+
+/* Squares of both shares, each of the largest, added. */
+static ritz_status weigh(const bool open[static RITZ_SIDES], small *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = s->A.nrow;
+    double most[RITZ_SIDES] = {0.0, 0.0};
+    ritz_dense part = {0};
+
+    RITZ_NEW(s->share, n);
+    RITZ_TRY(ritz_dense_new(n, RITZ_SIDES, &part));
+    for (int64_t k = 0; k < n; k += s->im[k] != 0.0 ? 2 : 1) {
+        bool pair = s->im[k] != 0.0;
+        const double *x = ritz_dense_col(&s->right, k);
+        const double *y = ritz_dense_col(&s->left, k);
+        const double angle =
+            cosine(n, y, pair ? y + n : NULL, x, pair ? x + n : NULL);
+        double *in = ritz_dense_col(&part, RITZ_REACHED) + k;
+        double *seen = ritz_dense_col(&part, RITZ_SEEN) + k;
+
+        *in = seen_by(n, y, pair ? y + n : NULL, &s->w[RITZ_REACHED]);
+        *in /= fmax(angle, DBL_EPSILON);
+        *seen = seen_by(n, x, pair ? x + n : NULL, &s->w[RITZ_SEEN]);
+        most[RITZ_REACHED] = fmax(most[RITZ_REACHED], *in);
+        most[RITZ_SEEN] = fmax(most[RITZ_SEEN], *seen);
+    }
+    for (int side = 0; side < RITZ_SIDES; side++)
+        for (int64_t k = 0; k < n && open[side] && most[side] > 0.0; k++)
+            s->share[k] += ritz_dense_col(&part, side)[k] / most[side];
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* The poles with the largest shares, of a pair the first. */
+static ritz_status choose(small *s, int64_t most, int64_t *count,
+                          double _Complex *out)
+{
+    ritz_status status = RITZ_OK;
+
+    for (*count = 0; *count < most; (*count)++) {
+        int64_t best = -1;
+        double size = 0.0;
+
+        for (int64_t k = 0; k < s->A.nrow; k++)
+            if (s->share[k] > 0.0 && (best < 0 || s->share[k] > s->share[best]))
+                best = k;
+        if (best < 0)
+            break;
+        size = hypot(s->re[best], s->im[best]);
+        RITZ_FAIL_IF(!(s->re[best] < -undamped * size), RITZ_ERR_ARGUMENT,
+                     "a motion near %.4g Hz is not damped, or even fed, by D: "
+                     "it has no Gramian",
+                     size / (2.0 * acos(-1.0)));
+        out[*count] = s->re[best];
+        if (fabs(s->im[best]) > nearly_real * fabs(s->re[best]))
+            out[*count] += fabs(s->im[best]) * (double _Complex)_Complex_I;
+        s->share[best] = 0.0;
+    }
+    RITZ_FAIL_IF(*count == 0, RITZ_ERR_CONVERGENCE,
+                 "there is no shift for what the Gramians still miss");
+done:
+    return status;
+}
+
+ritz_status ritz_low_rank_shifts(const ritz_low_rank_model *model,
+                                 const ritz_low_rank_window *window,
+                                 const bool open[static RITZ_SIDES],
+                                 int64_t most, int64_t *count,
+                                 double _Complex *out)
+{
+    ritz_status status = RITZ_OK;
+    small s = {0};
+
+    RITZ_TRY(find_poles(window, &s));
+    RITZ_TRY(project_loads(model, window, &s));
+    RITZ_TRY(weigh(open, &s));
+    RITZ_TRY(choose(&s, most, count, out));
+done:
+    free_small(&s);
+    return status;
+}

@@ -1,0 +1,304 @@
+/*
+ * Gramians of a band in closed form. With the full ones,
+ *
+ *     W_c(band) = S W_c + W_c S',    W_o(band) = S'W_o + W_o S,
+ *     S = S(w2) - S(w1),    S(w) = i/2pi ln((A + i w)(A - i w)^-1)
+ *
+ * and of a mode, whose A is 2 x 2, S(w) = p I + g (A + d/2 I). Whether it is
+ * under-, over- or critically damped: with h = w_k^2 + w^2,
+ * beta^2 = w_k^2 - d^2/4 of either sign,
+ *
+ *     2 pi p = arg(w_k^2 - w^2 + i d w)
+ *     2 pi g = (2 w / h) artanh(x) / x,    x = 2 w beta / h
+ *
+ * and the difference of two p is the angle between both arguments.
+ *
+ * Factors are from eigenvalues of Gramians scaled to a unit diagonal. What lies
+ * within the rounding of S W + W S' is dropped; a negative one beyond it is an
+ * error.
+ *
+ * [GawronskiJuang1990]
+ */
+#include "base/alloc.h"
+
+#include <ritz/modal.h>
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+/* Of the magnitudes of a sum: roundings on the way to it. */
+static const double few = 8.0 * DBL_EPSILON;
+
+/* S of a mode, in states (q, q'). */
+typedef struct response {
+    double s[2][2];
+} response;
+
+/* 2 pi g at w */
+static double slope(double wk, double d, double w)
+{
+    double h = wk * wk + w * w;
+    double square = (wk - d / 2.0) * (wk + d / 2.0);
+    double beta = sqrt(fabs(square));
+    double x = 2.0 * w * beta / h;
+
+    if (isinf(w))
+        return 0.0;
+    if (!(x > 0.0))
+        return 2.0 * w / h;
+    if (square < 0.0)
+        return atan(x) / beta;
+    /* artanh(x) = log((h + 2 w beta) / (h - 2 w beta)) / 2, near resonance */
+    return log1p(4.0 * w * beta / (d * d / 4.0 + (w - beta) * (w - beta))) /
+           (2.0 * beta);
+}
+
+/* 2 pi (p(w2) - p(w1)) */
+static double turned(double wk, double d, const double w[static 2])
+{
+    double below = (wk - w[0]) * (wk + w[0]);
+    double above = (wk - w[1]) * (wk + w[1]);
+
+    if (isinf(w[1]))
+        return atan2(d * w[0], -below);
+    return atan2(d * (w[1] - w[0]) * (wk * wk + w[0] * w[1]),
+                 above * below + d * d * w[0] * w[1]);
+}
+
+static response response_of(double wk, double zeta, const double w[static 2])
+{
+    double d = 2.0 * zeta * wk;
+    double p = turned(wk, d, w) / (2.0 * pi);
+    double g = (slope(wk, d, w[1]) - slope(wk, d, w[0])) / (2.0 * pi);
+
+    return (response){{{p + g * d / 2.0, g}, {-g * wk * wk, p - g * d / 2.0}}};
+}
+
+/* Row i of S W, or of S'W, at column j. */
+static double applied(const response *S, bool transposed, const ritz_dense *W,
+                      int64_t i, int64_t j)
+{
+    const double(*s)[2] = S[i / 2].s;
+    const double *x = ritz_dense_col(W, j) + 2 * (i / 2);
+    int a = (int)(i % 2);
+
+    return transposed ? s[0][a] * x[0] + s[1][a] * x[1]
+                      : s[a][0] * x[0] + s[a][1] * x[1];
+}
+
+/* S W + W S', exactly symmetric as W is. */
+static ritz_status filter(const response *S, bool transposed,
+                          const ritz_dense *W, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(W->nrow, W->ncol, out));
+    for (int64_t j = 0; j < W->ncol; j++)
+        for (int64_t i = 0; i <= j; i++) {
+            double x = applied(S, transposed, W, i, j) +
+                       applied(S, transposed, W, j, i);
+
+            ritz_dense_col(out, j)[i] = x;
+            ritz_dense_col(out, i)[j] = x;
+        }
+done:
+    return status;
+}
+
+/* Band Gramians with the magnitudes that they are sums of. */
+typedef struct filtered {
+    ritz_dense W, terms;
+} filtered;
+
+static void release(filtered *f)
+{
+    ritz_dense_free(&f->W);
+    ritz_dense_free(&f->terms);
+}
+
+static ritz_status filter_both(const response *S, const response *size,
+                               bool transposed, const ritz_dense *W,
+                               filtered *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense magnitude = {0};
+
+    RITZ_TRY(ritz_dense_abs(W, &magnitude));
+    RITZ_TRY(filter(S, transposed, W, &out->W));
+    RITZ_TRY(filter(size, transposed, &magnitude, &out->terms));
+done:
+    ritz_dense_free(&magnitude);
+    return status;
+}
+
+static ritz_status check_band(const double band_hz[static 2])
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(!(band_hz[0] >= 0.0 && band_hz[1] > band_hz[0]) ||
+                     isinf(band_hz[0]),
+                 RITZ_ERR_ARGUMENT,
+                 "a band is from 0 Hz or more to more, not from %g to %g",
+                 band_hz[0], band_hz[1]);
+done:
+    return status;
+}
+
+static ritz_status band_gramians(const ritz_modal *modal,
+                                 const double band_hz[static 2],
+                                 filtered out[static 2])
+{
+    ritz_status status = RITZ_OK;
+    const double w[2] = {2.0 * pi * band_hz[0], 2.0 * pi * band_hz[1]};
+    ritz_dense Wc = {0}, Wo = {0};
+    response *S = NULL, *size = NULL;
+
+    RITZ_TRY(check_band(band_hz));
+    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
+    RITZ_NEW(S, modal->count);
+    RITZ_NEW(size, modal->count);
+    for (int64_t k = 0; k < modal->count; k++) {
+        S[k] = response_of(modal->omega[k], modal->zeta[k], w);
+        for (int i = 0; i < 4; i++)
+            size[k].s[i / 2][i % 2] = fabs(S[k].s[i / 2][i % 2]);
+    }
+    RITZ_TRY(filter_both(S, size, false, &Wc, &out[0]));
+    RITZ_TRY(filter_both(S, size, true, &Wo, &out[1]));
+done:
+    free(S);
+    free(size);
+    ritz_dense_free(&Wc);
+    ritz_dense_free(&Wo);
+    return status;
+}
+
+ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
+                                     const double band_hz[static 2],
+                                     ritz_dense *Wc, ritz_dense *Wo)
+{
+    ritz_status status = RITZ_OK;
+    filtered of[2] = {0};
+
+    RITZ_TRY(band_gramians(modal, band_hz, of));
+    *Wc = of[0].W;
+    *Wo = of[1].W;
+    of[0].W = of[1].W = (ritz_dense){0};
+done:
+    release(&of[0]);
+    release(&of[1]);
+    return status;
+}
+
+/* Roots of the diagonal, 0 where that is rounding. */
+static ritz_status roots(const filtered *f, double *root)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < f->W.nrow; k++) {
+        double own = ritz_dense_col(&f->W, k)[k];
+        double rounding = few * ritz_dense_col(&f->terms, k)[k];
+
+        RITZ_FAIL_IF(!(own >= -rounding), RITZ_ERR_CONVERGENCE,
+                     "the Gramian of a band is negative beyond rounding");
+        root[k] = own > rounding ? sqrt(own) : 0.0;
+    }
+done:
+    return status;
+}
+
+/* A(i,j) / (root_i root_j); returns its largest sum of a column. */
+static double scale(ritz_dense *A, const double *root)
+{
+    double largest = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++) {
+        double sum = 0.0;
+
+        for (int64_t i = 0; i < A->nrow; i++) {
+            double by = root[i] * root[j];
+            double *x = ritz_dense_col(A, j) + i;
+
+            *x = by > 0.0 ? *x / by : 0.0;
+            sum += fabs(*x);
+        }
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
+
+/* root V s^1/2 of the eigenvalues s above what is rounding of others. */
+static ritz_status put(const ritz_dense *V, const double *s, const double *root,
+                       ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = V->nrow;
+    int64_t first = 0;
+    double rounding = (double)n * DBL_EPSILON;
+
+    if (n > 0)
+        rounding = fmax(rounding, -s[0]);
+    while (first < n && s[first] <= rounding)
+        first++;
+    RITZ_TRY(ritz_dense_new(n, n - first, out));
+    for (int64_t j = first; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(out, j - first)[i] =
+                root[i] * ritz_dense_col(V, j)[i] * sqrt(s[j]);
+done:
+    return status;
+}
+
+/* Overwrites both matrices. */
+static ritz_status factor(filtered *f, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)f->W.nrow;
+    double *root = NULL, *s = NULL;
+    double rounding = 0.0;
+    int info = 0;
+
+    RITZ_NEW(root, n);
+    RITZ_NEW(s, n);
+    RITZ_TRY(roots(f, root));
+    (void)scale(&f->W, root);
+    rounding = few * scale(&f->terms, root);
+    if (n > 0)
+        info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, f->W.val, n, s);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "eigenvalues of the Gramian of a band were not found");
+    RITZ_FAIL_IF(n > 0 && s[0] < -rounding, RITZ_ERR_CONVERGENCE,
+                 "the Gramian of a band has an eigenvalue of %.1e of its "
+                 "diagonal, beyond rounding (%.1e)",
+                 s[0], rounding);
+    RITZ_TRY(put(&f->W, s, root, out));
+done:
+    free(root);
+    free(s);
+    return status;
+}
+
+ritz_status ritz_modal_factors_band(const ritz_modal *modal,
+                                    const double band_hz[static 2],
+                                    ritz_dense *Zc, ritz_dense *Zo)
+{
+    ritz_status status = RITZ_OK;
+    filtered of[2] = {0};
+    ritz_dense C = {0}, O = {0};
+
+    RITZ_TRY(band_gramians(modal, band_hz, of));
+    RITZ_TRY(factor(&of[0], &C));
+    RITZ_TRY(factor(&of[1], &O));
+    *Zc = C;
+    *Zo = O;
+    C = O = (ritz_dense){0};
+done:
+    release(&of[0]);
+    release(&of[1]);
+    ritz_dense_free(&C);
+    ritz_dense_free(&O);
+    return status;
+}

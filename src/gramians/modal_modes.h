@@ -1,0 +1,43 @@
+/* Modal models of modes that are known. */
+#ifndef RITZ_GRAMIANS_MODAL_MODES_H
+#define RITZ_GRAMIANS_MODAL_MODES_H
+
+#include "model/first_order.h"
+
+#include <ritz/modal.h>
+
+#include <stdbool.h>
+
+/**
+ * Modes of one frequency may be any basis of their space: turn them into one in
+ * which damping is diagonal. MPhi may be {0}.
+ */
+ritz_status ritz_modes_turn(ritz_first_order *modes);
+
+/* Two modes that damping couples, one at least flexible. */
+typedef struct ritz_coupling {
+    double hertz[2];
+    double ratio; /* of their own damping */
+} ritz_coupling;
+
+/** Whether there are such. */
+bool ritz_modes_coupled(const ritz_first_order *modes, ritz_coupling *out);
+
+/** RITZ_ERR_ARGUMENT, with a sentence that ends in @p why. */
+ritz_status ritz_coupling_refuse(const ritz_coupling *coupling,
+                                 const char *why);
+
+/** Of so many modes, all zero. */
+ritz_status ritz_modal_empty(int64_t count, int64_t inputs, int64_t outputs,
+                             ritz_modal *out);
+
+/**
+ * Their flexible ones, of which damping couples none.
+ *
+ * @param[in] io  for the limits of its outputs
+ * @return RITZ_ERR_ARGUMENT if one has no damping, or a limit is not positive
+ */
+ritz_status ritz_modal_of_modes(const ritz_first_order *modes,
+                                const ritz_io *io, ritz_modal *out);
+
+#endif

@@ -1,0 +1,210 @@
+/*
+ * E = L L' where it is definite, L^-1 A L^-T in the place of A, and the scaling
+ * of LAPACK's balancing: powers of a base, rows and columns of equal size.
+ */
+#include "linear/frame.h"
+
+#include "base/alloc.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of what asymmetry sums of products leave. */
+static const double symmetric_within = 8.0 * DBL_EPSILON;
+/* Beyond this condition of E, scaled to a unit diagonal, it is not reduced. */
+static const double least_rcond = 1e-8;
+/* Of the rounding that scaling may add, over that of the given matrices. */
+static const double most_growth = 1e4;
+
+/* E = L L' in place, its lower triangle; false if it cannot be trusted. */
+static ritz_status cholesky(ritz_dense *E, bool *good)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)E->nrow;
+    double *root = NULL;
+    double norm = 0.0, rcond = 0.0;
+
+    *good = false;
+    RITZ_NEW(root, n);
+    for (int64_t i = 0; i < n; i++) {
+        root[i] = sqrt(ritz_dense_col(E, i)[i]);
+        if (!(root[i] > 0.0))
+            goto done;
+    }
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(E, j)[i] /= root[i] * root[j];
+    norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', n, E->val, n);
+    if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, E->val, n) != 0)
+        goto done;
+    (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, E->val, n, norm, &rcond);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = j; i < n; i++)
+            ritz_dense_col(E, j)[i] *= root[i];
+    *good = rcond > least_rcond;
+done:
+    free(root);
+    return status;
+}
+
+/* A := L^-1 A L^-T, symmetric if A is, if E is symmetric and definite. */
+static ritz_status reduce(const ritz_dense *A, const ritz_dense *E,
+                          ritz_frame *f, bool *reduced)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense L = {0};
+    int n = (int)E->nrow;
+
+    *reduced = false;
+    if (ritz_dense_asymmetry(E) > symmetric_within)
+        goto done;
+    RITZ_TRY(ritz_dense_copy(E, &L));
+    RITZ_TRY(cholesky(&L, reduced));
+    if (!*reduced)
+        goto done;
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans,
+                CblasNonUnit, n, n, 1.0, L.val, n, f->A.val, n);
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                n, n, 1.0, L.val, n, f->A.val, n);
+    if (ritz_dense_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(&f->A);
+    f->L = L;
+    L = (ritz_dense){0};
+done:
+    ritz_dense_free(&L);
+    return status;
+}
+
+static double size_of(const ritz_dense *A)
+{
+    return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
+                          A->val, (int)A->nrow);
+}
+
+static double least_of(int64_t count, const double *value)
+{
+    double least = HUGE_VAL;
+
+    for (int64_t i = 0; i < count; i++)
+        least = fmin(least, value[i]);
+    return least;
+}
+
+static ritz_status scale(ritz_frame *f)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)f->A.nrow;
+    lapack_int low = 0, high = 0;
+    int info = 0;
+
+    if (f->E.val)
+        info = LAPACKE_dggbal(LAPACK_COL_MAJOR, 'S', n, f->A.val, n, f->E.val,
+                              n, &low, &high, f->left, f->right);
+    else
+        info = LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, f->A.val, n, &low,
+                              &high, f->right);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_ARGUMENT,
+                 "a matrix whose poles are wanted is not finite");
+    for (int64_t i = 0; i < n && !f->E.val; i++)
+        f->left[i] = 1.0 / f->right[i];
+done:
+    return status;
+}
+
+/*
+ * Rounding of the scaled matrix, eps |A|, is eps |A| / (left_i right_j) of the
+ * given one. Where entries are themselves rounding, scaling takes them for what
+ * they are not, and that grows beyond all bounds: then there is none.
+ */
+static ritz_status balance(ritz_frame *f)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = f->A.nrow;
+    ritz_dense A = {0}, E = {0};
+    double most = 0.0;
+
+    RITZ_NEW(f->right, n);
+    RITZ_NEW(f->left, n);
+    RITZ_TRY(ritz_dense_copy(&f->A, &A));
+    if (f->E.val)
+        RITZ_TRY(ritz_dense_copy(&f->E, &E));
+    if (n > 0)
+        RITZ_TRY(scale(f));
+    most = most_growth * least_of(n, f->left) * least_of(n, f->right);
+    if (n > 0 && (size_of(&f->A) > most * size_of(&A) ||
+                  (E.val && size_of(&f->E) > most * size_of(&E)))) {
+        memcpy(f->A.val, A.val, (size_t)(n * n) * sizeof *A.val);
+        if (E.val)
+            memcpy(f->E.val, E.val, (size_t)(n * n) * sizeof *E.val);
+        for (int64_t i = 0; i < n; i++)
+            f->left[i] = f->right[i] = 1.0;
+    }
+done:
+    ritz_dense_free(&A);
+    ritz_dense_free(&E);
+    return status;
+}
+
+ritz_status ritz_frame_new(const ritz_dense *A, const ritz_dense *E,
+                           ritz_frame *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_frame f = {0};
+    bool reduced = true;
+
+    RITZ_TRY(ritz_dense_copy(A, &f.A));
+    if (E->val)
+        RITZ_TRY(reduce(A, E, &f, &reduced));
+    if (!reduced)
+        RITZ_TRY(ritz_dense_copy(E, &f.E));
+    RITZ_TRY(balance(&f));
+    *out = f;
+    f = (ritz_frame){0};
+done:
+    ritz_frame_free(&f);
+    return status;
+}
+
+void ritz_frame_turn_back(const ritz_frame *f, const double *scale,
+                          ritz_dense *V)
+{
+    for (int64_t j = 0; j < V->ncol; j++)
+        for (int64_t i = 0; i < V->nrow; i++)
+            ritz_dense_col(V, j)[i] *= scale[i];
+    if (f->L.val && V->ncol > 0)
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
+                    CblasNonUnit, (int)V->nrow, (int)V->ncol, 1.0, f->L.val,
+                    (int)V->nrow, V->val, (int)V->nrow);
+}
+
+ritz_status ritz_frame_forward(const ritz_frame *f, const double *scale,
+                               const ritz_dense *V, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_copy(V, out));
+    if (f->L.val && V->ncol > 0)
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans,
+                    CblasNonUnit, (int)V->nrow, (int)V->ncol, 1.0, f->L.val,
+                    (int)V->nrow, out->val, (int)V->nrow);
+    for (int64_t j = 0; j < V->ncol; j++)
+        for (int64_t i = 0; i < V->nrow; i++)
+            ritz_dense_col(out, j)[i] *= scale[i];
+done:
+    return status;
+}
+
+void ritz_frame_free(ritz_frame *f)
+{
+    ritz_dense_free(&f->A);
+    ritz_dense_free(&f->E);
+    ritz_dense_free(&f->L);
+    free(f->right);
+    free(f->left);
+    *f = (ritz_frame){0};
+}

@@ -1,0 +1,157 @@
+/*
+ * Factors of Gramians of a pair in Schur form. SLICOT takes the Schur vectors,
+ * here the identity, and leaves a triangle: U, W = U U', or of the transposed
+ * equation U'U, for which the right hand side goes in as B'.
+ */
+#include "base/alloc.h"
+#include "linear/general.h"
+
+#include <stdlib.h>
+
+/* Fortran names; character arguments bring their lengths at the end. */
+void sb03od_(/* NOLINT: its name */ const char *dico, const char *fact,
+             const char *trans, const int *n, const int *m, double *A,
+             const int *lda, double *Q, const int *ldq, double *B,
+             const int *ldb, double *scale, double *wr, double *wi,
+             double *work, const int *ldwork, int *info, size_t dico_length,
+             size_t fact_length, size_t trans_length);
+void sg03bd_(/* NOLINT: its name */ const char *dico, const char *fact,
+             const char *trans, const int *n, const int *m, double *A,
+             const int *lda, double *E, const int *lde, double *Q,
+             const int *ldq, double *Z, const int *ldz, double *B,
+             const int *ldb, double *scale, double *alphar, double *alphai,
+             double *beta, double *work, const int *ldwork, int *info,
+             size_t dico_length, size_t fact_length, size_t trans_length);
+
+/* What SLICOT is given and may overwrite. */
+typedef struct equation {
+    int n, m, ldb, room;
+    bool transposed;
+    ritz_dense S, P, Q, Z, B;
+    double *re, *im, *beta, *work;
+    double scale;
+} equation;
+
+static void discard(equation *e)
+{
+    ritz_dense_free(&e->S);
+    ritz_dense_free(&e->P);
+    ritz_dense_free(&e->Q);
+    ritz_dense_free(&e->Z);
+    ritz_dense_free(&e->B);
+    free(e->re);
+    free(e->im);
+    free(e->beta);
+    free(e->work);
+}
+
+static ritz_status identity(int64_t n, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(n, n, out));
+    for (int64_t i = 0; i < n; i++)
+        ritz_dense_col(out, i)[i] = 1.0;
+done:
+    return status;
+}
+
+static ritz_status copy_right_side(const ritz_dense *B, equation *e)
+{
+    ritz_status status = RITZ_OK;
+    int64_t wide = e->m > e->n ? e->m : e->n;
+
+    e->ldb = e->transposed ? (int)wide : e->n;
+    RITZ_TRY(ritz_dense_new(e->ldb, wide, &e->B));
+    for (int64_t j = 0; j < B->ncol; j++)
+        for (int64_t i = 0; i < B->nrow; i++)
+            if (e->transposed)
+                ritz_dense_col(&e->B, i)[j] = ritz_dense_col(B, j)[i];
+            else
+                ritz_dense_col(&e->B, j)[i] = ritz_dense_col(B, j)[i];
+done:
+    return status;
+}
+
+static ritz_status prepare(const ritz_dense *S, const ritz_dense *P,
+                           const ritz_dense *B, equation *e)
+{
+    ritz_status status = RITZ_OK;
+
+    e->n = (int)S->nrow;
+    e->m = (int)B->ncol;
+    e->room = 64 * (e->n + e->m) + 64;
+    RITZ_TRY(ritz_dense_copy(S, &e->S));
+    RITZ_TRY(identity(e->n, &e->Q));
+    if (P->val) {
+        RITZ_TRY(ritz_dense_copy(P, &e->P));
+        RITZ_TRY(identity(e->n, &e->Z));
+    }
+    RITZ_TRY(copy_right_side(B, e));
+    RITZ_NEW(e->re, e->n);
+    RITZ_NEW(e->im, e->n);
+    RITZ_NEW(e->beta, e->n);
+    RITZ_NEW(e->work, e->room);
+done:
+    return status;
+}
+
+static ritz_status solve(equation *e)
+{
+    ritz_status status = RITZ_OK;
+    const char *trans = e->transposed ? "N" : "T";
+    int n = e->n;
+    int unstable = e->P.val ? 5 : 3;
+    int info = 0;
+
+    if (e->P.val)
+        sg03bd_("C", "F", trans, &n, &e->m, e->S.val, &n, e->P.val, &n,
+                e->Q.val, &n, e->Z.val, &n, e->B.val, &e->ldb, &e->scale, e->re,
+                e->im, e->beta, e->work, &e->room, &info, 1, 1, 1);
+    else
+        sb03od_("C", "F", trans, &n, &e->m, e->S.val, &n, e->Q.val, &n,
+                e->B.val, &e->ldb, &e->scale, e->re, e->im, e->work, &e->room,
+                &info, 1, 1, 1);
+    RITZ_FAIL_IF(info == unstable || (!e->P.val && info == 2),
+                 RITZ_ERR_ARGUMENT,
+                 "a Gramian is infinite: a pole is not stable");
+    RITZ_FAIL_IF(info < 0 || info > 1 || e->scale == 0.0, RITZ_ERR_CONVERGENCE,
+                 "the Lyapunov equation was not solved, SLICOT says %d", info);
+done:
+    return status;
+}
+
+static ritz_status take_triangle(const equation *e, ritz_dense *F)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(e->n, e->n, F));
+    for (int64_t j = 0; j < e->n; j++)
+        for (int64_t i = 0; i <= j; i++) {
+            double u = ritz_dense_col(&e->B, j)[i] / e->scale;
+
+            if (e->transposed)
+                ritz_dense_col(F, i)[j] = u;
+            else
+                ritz_dense_col(F, j)[i] = u;
+        }
+done:
+    return status;
+}
+
+ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
+                                    bool transposed, const ritz_dense *B,
+                                    ritz_dense *F)
+{
+    ritz_status status = RITZ_OK;
+    equation e = {.transposed = transposed, .scale = 1.0};
+
+    if (S->nrow == 0 || B->ncol == 0)
+        return ritz_dense_new(S->nrow, S->nrow, F);
+    RITZ_TRY(prepare(S, P, B, &e));
+    RITZ_TRY(solve(&e));
+    RITZ_TRY(take_triangle(&e, F));
+done:
+    discard(&e);
+    return status;
+}

@@ -1,0 +1,258 @@
+/*
+ * With D the lengths of the rows of X (it has no fewer columns than Y, or the
+ * two change places):
+ *
+ *     X'Y = (D^-1 X)' (D Y),   (D Y)' P = Q R,   F = (P' D^-1 X)' R'
+ *
+ *     F P_F = Q_F R_F,   G = P_F R_F',   G = U_G diag(s) V_G'
+ *
+ *     U = Q_F V_G,   V = Q U_G
+ *
+ * D Y carries the scaling of all rows, pivoting sorts it, and both F and G are
+ * well behaved matrices times diagonal ones: one-sided Jacobi (LAPACK dgejsv)
+ * then finds small values to a small relative error. Rows of R_F below eps^2 of
+ * the first, which is the rounding of rounding, are left out. [Drmac1998]
+ */
+#include "linear/product_svd.h"
+
+#include "base/alloc.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const double negligible = DBL_EPSILON * DBL_EPSILON;
+
+/* A P = Q R as LAPACK leaves it. */
+typedef struct pivoted {
+    ritz_dense A;   /* reflectors below R */
+    double *tau;    /* of the reflectors */
+    lapack_int *at; /* column j of A P is column at[j] - 1 of A */
+    int64_t rank;   /* min(nrow, ncol), or as far as R is not negligible */
+} pivoted;
+
+static void discard(pivoted *f)
+{
+    ritz_dense_free(&f->A);
+    free(f->tau);
+    free(f->at);
+}
+
+static ritz_status check(const ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        RITZ_FAIL_IF(!isfinite(A->val[k]), RITZ_ERR_ARGUMENT,
+                     "a factor of a product is not finite");
+done:
+    return status;
+}
+
+/* Of f->A. */
+static ritz_status factor(pivoted *f)
+{
+    ritz_status status = RITZ_OK;
+    int m = (int)f->A.nrow;
+    int n = (int)f->A.ncol;
+
+    f->rank = m < n ? m : n;
+    RITZ_NEW(f->tau, f->rank);
+    RITZ_NEW(f->at, n);
+    if (f->rank > 0)
+        RITZ_FAIL_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, m, n, f->A.val, m, f->at,
+                                    f->tau) != 0,
+                     RITZ_ERR_ARGUMENT, "a product is not finite");
+done:
+    return status;
+}
+
+/* Q V, V of as many rows as R has. */
+static ritz_status turn(const pivoted *f, const ritz_dense *V, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int m = (int)f->A.nrow;
+
+    RITZ_TRY(ritz_dense_new(m, V->ncol, out));
+    for (int64_t j = 0; j < V->ncol; j++)
+        for (int64_t i = 0; i < V->nrow; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(V, j)[i];
+    if (V->ncol > 0)
+        RITZ_FAIL_IF(
+            LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', m, (int)V->ncol,
+                           (int)V->nrow, f->A.val, m, f->tau, out->val, m) != 0,
+            RITZ_ERR_CONVERGENCE, "vectors of a product were not found");
+done:
+    return status;
+}
+
+/* D of X */
+static ritz_status row_lengths(const ritz_dense *X, double **out)
+{
+    ritz_status status = RITZ_OK;
+    double *length = NULL;
+
+    RITZ_NEW(length, X->nrow);
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < X->nrow; i++)
+            length[i] = hypot(length[i], ritz_dense_col(X, j)[i]);
+    *out = length;
+    length = NULL;
+done:
+    free(length);
+    return status;
+}
+
+/* (D Y)' */
+static ritz_status scale(const ritz_dense *Y, const double *length,
+                         ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(Y->ncol, Y->nrow, out));
+    for (int64_t j = 0; j < Y->ncol; j++)
+        for (int64_t i = 0; i < Y->nrow; i++)
+            ritz_dense_col(out, i)[j] = length[i] * ritz_dense_col(Y, j)[i];
+done:
+    return status;
+}
+
+/* F = (P' D^-1 X)' R' */
+static ritz_status multiply(const ritz_dense *X, const double *length,
+                            const pivoted *of_Y, ritz_dense *F)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = X->nrow;
+    ritz_dense sorted = {0}, R = {0}; /* R', n x rank */
+
+    RITZ_TRY(ritz_dense_new(n, X->ncol, &sorted));
+    RITZ_TRY(ritz_dense_new(n, of_Y->rank, &R));
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < n; i++) {
+            int64_t row = of_Y->at[i] - 1;
+
+            if (length[row] > 0.0)
+                ritz_dense_col(&sorted, j)[i] =
+                    ritz_dense_col(X, j)[row] / length[row];
+        }
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = 0; j <= i && j < of_Y->rank; j++)
+            ritz_dense_col(&R, j)[i] = ritz_dense_col(&of_Y->A, i)[j];
+    RITZ_TRY(ritz_dense_mul_tn(&sorted, &R, F));
+done:
+    ritz_dense_free(&sorted);
+    ritz_dense_free(&R);
+    return status;
+}
+
+/* G = P_F R_F', as far as R_F is not negligible. */
+static ritz_status compress(pivoted *of_F, ritz_dense *G)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *R = &of_F->A;
+    int64_t r = of_F->rank;
+
+    while (r > 0 && !(fabs(ritz_dense_col(R, r - 1)[r - 1]) >
+                      negligible * fabs(R->val[0])))
+        r--;
+    of_F->rank = r;
+    RITZ_TRY(ritz_dense_new(R->ncol, r, G));
+    for (int64_t i = 0; i < R->ncol; i++)
+        for (int64_t j = 0; j <= i && j < r; j++)
+            ritz_dense_col(G, j)[of_F->at[i] - 1] = ritz_dense_col(R, i)[j];
+done:
+    return status;
+}
+
+/* G = U diag(s) V'; LAPACK scales values that would over- or underflow. */
+static ritz_status rotate(ritz_dense *G, bool vectors, double *s, ritz_dense *U,
+                          ritz_dense *V)
+{
+    ritz_status status = RITZ_OK;
+    int q = (int)G->nrow;
+    int r = (int)G->ncol;
+    double stat[7] = {0};
+    lapack_int istat[3] = {0};
+    int info = 0;
+
+    RITZ_TRY(ritz_dense_new(q, vectors ? r : 0, U));
+    RITZ_TRY(ritz_dense_new(r, vectors ? r : 0, V));
+    if (r > 0)
+        info = LAPACKE_dgejsv(LAPACK_COL_MAJOR, 'C', vectors ? 'U' : 'N',
+                              vectors ? 'V' : 'N', 'R', 'N', 'N', q, r, G->val,
+                              q, s, U->val, q, V->val, r, stat, istat);
+    RITZ_FAIL_IF(info < 0, RITZ_ERR_ARGUMENT, "a product is not finite");
+    RITZ_FAIL_IF(info > 0, RITZ_ERR_CONVERGENCE,
+                 "singular values of a product did not converge");
+    for (int i = 0; i < r && stat[0] != stat[1] && stat[1] != 0.0; i++)
+        s[i] *= stat[0] / stat[1];
+done:
+    return status;
+}
+
+/* Y has no more columns than X. */
+static ritz_status find(const ritz_dense *X, const ritz_dense *Y, bool vectors,
+                        ritz_product_svd *out)
+{
+    ritz_status status = RITZ_OK;
+    pivoted of_Y = {0}, of_F = {0};
+    ritz_dense G = {0}, U = {0}, V = {0};
+    double *length = NULL;
+
+    RITZ_TRY(row_lengths(X, &length));
+    RITZ_TRY(scale(Y, length, &of_Y.A));
+    RITZ_TRY(factor(&of_Y));
+    out->count = of_Y.rank;
+    RITZ_NEW(out->s, out->count);
+    RITZ_TRY(multiply(X, length, &of_Y, &of_F.A));
+    RITZ_TRY(factor(&of_F));
+    RITZ_TRY(compress(&of_F, &G));
+    out->rank = of_F.rank;
+    RITZ_TRY(rotate(&G, vectors, out->s, &U, &V));
+    if (vectors) {
+        RITZ_TRY(turn(&of_F, &V, &out->U));
+        RITZ_TRY(turn(&of_Y, &U, &out->V));
+    }
+done:
+    discard(&of_Y);
+    discard(&of_F);
+    ritz_dense_free(&G);
+    ritz_dense_free(&U);
+    ritz_dense_free(&V);
+    free(length);
+    return status;
+}
+
+ritz_status ritz_product_svd_new(const ritz_dense *X, const ritz_dense *Y,
+                                 bool vectors, ritz_product_svd *out)
+{
+    ritz_status status = RITZ_OK;
+    bool swap = X->ncol < Y->ncol;
+    ritz_product_svd svd = {0};
+    ritz_dense U = {0};
+
+    RITZ_FAIL_IF(X->nrow != Y->nrow, RITZ_ERR_ARGUMENT,
+                 "the factors of a product do not fit each other");
+    RITZ_TRY(check(X));
+    RITZ_TRY(check(Y));
+    RITZ_TRY(find(swap ? Y : X, swap ? X : Y, vectors, &svd));
+    if (swap) {
+        U = svd.U;
+        svd.U = svd.V;
+        svd.V = U;
+    }
+    *out = svd;
+    svd = (ritz_product_svd){0};
+done:
+    ritz_product_svd_free(&svd);
+    return status;
+}
+
+void ritz_product_svd_free(ritz_product_svd *svd)
+{
+    free(svd->s);
+    ritz_dense_free(&svd->U);
+    ritz_dense_free(&svd->V);
+    *svd = (ritz_product_svd){0};
+}

@@ -1,0 +1,261 @@
+/*
+ * With right and left eigenvectors x, y of a pair, A x = lambda E x, an
+ * eigenvalue of matrices rounded by eps |A| and eps |E| moves, to first order, by
+ *
+ *     eps (|A| + |lambda| |E|) |x| |y| / |y'E x|
+ *
+ * and without E by eps |A| |x| |y| / |y'x|.
+ */
+#include "linear/schur.h"
+
+#include "base/alloc.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Of the form, before vectors are turned by Q and Z: lengths stay. */
+typedef struct vectors {
+    ritz_dense left, right, Eright;
+} vectors;
+
+static double frobenius(const ritz_dense *A)
+{
+    return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
+                          A->val, (int)A->nrow);
+}
+
+static void discard(vectors *v)
+{
+    ritz_dense_free(&v->left);
+    ritz_dense_free(&v->right);
+    ritz_dense_free(&v->Eright);
+}
+
+static ritz_status find_vectors(ritz_schur *schur, vectors *out)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)schur->count;
+    lapack_int found = 0;
+    int info = 0;
+
+    RITZ_TRY(ritz_dense_new(n, n, &out->left));
+    RITZ_TRY(ritz_dense_new(n, n, &out->right));
+    if (schur->T.val)
+        info = LAPACKE_dtgevc(LAPACK_COL_MAJOR, 'B', 'A', NULL, n, schur->S.val,
+                              n, schur->T.val, n, out->left.val, n,
+                              out->right.val, n, n, &found);
+    else
+        info =
+            LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'A', NULL, n, schur->S.val, n,
+                           out->left.val, n, out->right.val, n, n, &found);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "eigenvectors of a Schur "
+                 "form were not found");
+    if (schur->T.val)
+        RITZ_TRY(ritz_dense_mul(&schur->T, &out->right, &out->Eright));
+done:
+    return status;
+}
+
+/* |y'E x| / |x| |y| of column k, or of the pair that begins there. */
+static double cosine(const vectors *v, int64_t k, bool pair)
+{
+    const ritz_dense *Ex = v->Eright.val ? &v->Eright : &v->right;
+    double x = ritz_dense_dot(&v->right, k, &v->right, k);
+    double y = ritz_dense_dot(&v->left, k, &v->left, k);
+    double re = ritz_dense_dot(&v->left, k, Ex, k);
+    double im = 0.0;
+
+    if (pair) {
+        x += ritz_dense_dot(&v->right, k + 1, &v->right, k + 1);
+        y += ritz_dense_dot(&v->left, k + 1, &v->left, k + 1);
+        re += ritz_dense_dot(&v->left, k + 1, Ex, k + 1);
+        im = ritz_dense_dot(&v->left, k, Ex, k + 1) -
+             ritz_dense_dot(&v->left, k + 1, Ex, k);
+    }
+    return x > 0.0 && y > 0.0 ? hypot(re, im) / sqrt(x) / sqrt(y) : 0.0;
+}
+
+static ritz_status find_errors(ritz_schur *schur)
+{
+    ritz_status status = RITZ_OK;
+    vectors v = {0};
+    double size = frobenius(&schur->S);
+    double size_of_E = schur->T.val ? frobenius(&schur->T) : 0.0;
+    int64_t step = 1;
+
+    RITZ_TRY(find_vectors(schur, &v));
+    for (int64_t k = 0; k < schur->count; k += step) {
+        bool pair = k + 1 < schur->count && schur->im[k] != 0.0;
+        double lambda = hypot(schur->re[k], schur->im[k]);
+        double moves = size + lambda * size_of_E;
+        double s = cosine(&v, k, pair);
+        /* no vector of unit length is better known than to eps */
+        double least = DBL_EPSILON * (schur->T.val ? size_of_E : 1.0);
+
+        step = pair ? 2 : 1;
+        for (int64_t i = k; i < k + step; i++)
+            schur->error[i] = DBL_EPSILON * moves / fmax(s, least);
+    }
+done:
+    discard(&v);
+    return status;
+}
+
+/* A symmetric matrix has its eigenvectors for Schur vectors. */
+static ritz_status diagonalise(ritz_schur *schur)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)schur->count;
+    double size = frobenius(&schur->S);
+
+    for (int64_t k = 0; k < schur->count * schur->count; k++) {
+        schur->Q.val[k] = schur->S.val[k];
+        schur->S.val[k] = 0.0;
+    }
+    RITZ_FAIL_IF(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, schur->Q.val, n,
+                                schur->re) != 0,
+                 RITZ_ERR_CONVERGENCE, "poles were not found");
+    for (int64_t k = 0; k < schur->count; k++) {
+        ritz_dense_col(&schur->S, k)[k] = schur->re[k];
+        schur->error[k] = DBL_EPSILON * size;
+    }
+done:
+    return status;
+}
+
+static ritz_status factor(ritz_schur *schur)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)schur->count;
+    lapack_int none = 0;
+
+    if (ritz_dense_asymmetry(&schur->S) == 0.0)
+        return diagonalise(schur);
+    RITZ_FAIL_IF(LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n,
+                               schur->S.val, n, &none, schur->re, schur->im,
+                               schur->Q.val, n) != 0,
+                 RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_TRY(find_errors(schur));
+done:
+    return status;
+}
+
+/* lambda = alpha / beta, beta the diagonal of T. */
+static ritz_status divide(ritz_schur *schur, const double *beta)
+{
+    ritz_status status = RITZ_OK;
+    double least = DBL_EPSILON * frobenius(&schur->T);
+
+    for (int64_t k = 0; k < schur->count; k++) {
+        RITZ_FAIL_IF(!(fabs(beta[k]) > least), RITZ_ERR_SINGULAR,
+                     "E is singular to working accuracy");
+        schur->re[k] /= beta[k];
+        schur->im[k] /= beta[k];
+    }
+done:
+    return status;
+}
+
+static ritz_status factor_pair(const ritz_dense *E, ritz_schur *schur)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)schur->count;
+    lapack_int none = 0;
+    double *beta = NULL;
+
+    RITZ_NEW(beta, n);
+    RITZ_TRY(ritz_dense_copy(E, &schur->T));
+    RITZ_TRY(ritz_dense_new(n, n, &schur->Z));
+    RITZ_FAIL_IF(LAPACKE_dgges(LAPACK_COL_MAJOR, 'V', 'V', 'N', NULL, n,
+                               schur->S.val, n, schur->T.val, n, &none,
+                               schur->re, schur->im, beta, schur->Q.val, n,
+                               schur->Z.val, n) != 0,
+                 RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_TRY(divide(schur, beta));
+    RITZ_TRY(find_errors(schur));
+done:
+    free(beta);
+    return status;
+}
+
+ritz_status ritz_schur_new(const ritz_dense *A, const ritz_dense *E,
+                           ritz_schur *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_schur schur = {.count = A->nrow};
+
+    RITZ_TRY(ritz_dense_copy(A, &schur.S));
+    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &schur.Q));
+    RITZ_NEW(schur.re, A->nrow);
+    RITZ_NEW(schur.im, A->nrow);
+    RITZ_NEW(schur.error, A->nrow);
+    if (A->nrow > 0 && E && E->val)
+        RITZ_TRY(factor_pair(E, &schur));
+    else if (A->nrow > 0)
+        RITZ_TRY(factor(&schur));
+    *out = schur;
+    schur = (ritz_schur){0};
+done:
+    ritz_schur_free(&schur);
+    return status;
+}
+
+/* Work space is ours: LAPACKE gives none where LAPACK reports its size. */
+static int reorder(ritz_schur *schur, const lapack_logical *select,
+                   double *work, lapack_int *moved)
+{
+    int n = (int)schur->count;
+    int room = 4 * n + 16;
+    lapack_int integer = 0;
+    double unused[2] = {0};
+
+    if (schur->T.val)
+        return LAPACKE_dtgsen_work(
+            LAPACK_COL_MAJOR, 0, 1, 1, select, n, schur->S.val, n, schur->T.val,
+            n, schur->re, schur->im, work, schur->Q.val, n, schur->Z.val, n,
+            moved, &unused[0], &unused[1], NULL, work + n, room, &integer, 1);
+    return LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', select, n,
+                               schur->S.val, n, schur->Q.val, n, schur->re,
+                               schur->im, moved, &unused[0], &unused[1], work,
+                               room, &integer, 1);
+}
+
+ritz_status ritz_schur_order(ritz_schur *schur, const bool *first,
+                             int64_t *moved)
+{
+    ritz_status status = RITZ_OK;
+    lapack_logical *select = NULL;
+    double *work = NULL; /* of a pair it begins with the diagonal of T */
+    lapack_int count = 0;
+
+    RITZ_NEW(select, schur->count);
+    RITZ_NEW(work, 5 * schur->count + 16);
+    for (int64_t k = 0; k < schur->count; k++)
+        select[k] = first[k];
+    if (schur->count > 0)
+        RITZ_FAIL_IF(reorder(schur, select, work, &count) != 0,
+                     RITZ_ERR_CONVERGENCE,
+                     "poles that must be told apart are too close to be");
+    if (schur->T.val)
+        RITZ_TRY(divide(schur, work));
+    *moved = count;
+done:
+    free(select);
+    free(work);
+    return status;
+}
+
+void ritz_schur_free(ritz_schur *schur)
+{
+    ritz_dense_free(&schur->S);
+    ritz_dense_free(&schur->T);
+    ritz_dense_free(&schur->Q);
+    ritz_dense_free(&schur->Z);
+    free(schur->re);
+    free(schur->im);
+    free(schur->error);
+    *schur = (ritz_schur){0};
+}

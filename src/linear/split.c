@@ -1,0 +1,204 @@
+/*
+ * In Schur form, stable poles first, the rest is taken off by a Sylvester
+ * equation,
+ *
+ *     [I -G; 0 I] [S11 S12; 0 S22] [I R; 0 I] = [S11 0; 0 S22],
+ *     S11 R - G S22 = -S12,   P11 R - G P22 = -P12    (G = R without E)
+ *
+ * so that X = Z_1, T = Z_1 R + Z_2, Y = Q_1 - Q_2 G', W = Q_2 P22^-T.
+ *
+ * Poles whose bound reaches the axis may yet be stable: those of a cascade of
+ * equal stages are as defective as can be. With A X E' + E X A' = -I, A and E
+ * remain stable under any change for which
+ *
+ *     2 |dA X E' + A X dE'| < 1
+ */
+#include "linear/split.h"
+
+#include "base/alloc.h"
+#include "linear/frame.h"
+#include "linear/general.h"
+#include "linear/schur.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+/* The bound on a pole's rounding is of first order, and eigensolvers are
+   backward stable within a few eps. */
+static const double times = 8.0;
+
+/* Whether no rounding of the matrices makes a pole unstable; all are left. */
+static ritz_status prove(const ritz_schur *schur, bool *proven)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)schur->count;
+    ritz_dense one = {0}, F = {0};
+    double change = times * DBL_EPSILON * 2.0;
+
+    RITZ_TRY(ritz_dense_new(n, n, &one));
+    for (int64_t i = 0; i < n; i++)
+        ritz_dense_col(&one, i)[i] = 1.0;
+    RITZ_TRY(ritz_general_hammarling(&schur->S, &schur->T, false, &one, &F));
+    change *= LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, schur->S.val, n);
+    change *= pow(LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, F.val, n), 2.0);
+    if (schur->T.val)
+        change *=
+            2.0 * LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, schur->T.val, n);
+    *proven = change < 1.0;
+done:
+    ritz_dense_free(&one);
+    ritz_dense_free(&F);
+    return status;
+}
+
+static ritz_status choose_stable(const ritz_schur *schur, bool *stable)
+{
+    ritz_status status = RITZ_OK;
+    bool all_left = true, doubt = false, proven = false;
+
+    for (int64_t k = 0; k < schur->count; k++) {
+        stable[k] = schur->re[k] < -times * schur->error[k];
+        all_left = all_left && schur->re[k] < 0.0;
+        doubt = doubt || !stable[k];
+    }
+    if (doubt && all_left)
+        RITZ_TRY(prove(schur, &proven));
+    for (int64_t k = 0; k < schur->count && proven; k++)
+        stable[k] = true;
+done:
+    return status;
+}
+
+/* R and G of m stable poles and the others. */
+static ritz_status decouple(const ritz_schur *schur, int64_t m, ritz_dense *R,
+                            ritz_dense *G)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)schur->count;
+    int a = n - (int)m;
+    int info = 0;
+    double scale = 1.0, unused = 0.0;
+    const double *S = schur->S.val, *P = schur->T.val;
+    int64_t at = m * n; /* of the blocks 12, and m further down 22 */
+
+    RITZ_TRY(ritz_dense_new(m, a, R));
+    RITZ_TRY(ritz_dense_new(m, a, G));
+    for (int64_t j = 0; j < a; j++)
+        for (int64_t i = 0; i < m; i++) {
+            ritz_dense_col(R, j)[i] = -S[at + i + j * n];
+            ritz_dense_col(G, j)[i] = P ? -P[at + i + j * n] : 0.0;
+        }
+    if (m == 0 || a == 0)
+        goto done;
+    info = P ? LAPACKE_dtgsyl(LAPACK_COL_MAJOR, 'N', 0, (int)m, a, S, n,
+                              S + at + m, n, R->val, (int)m, P, n, P + at + m,
+                              n, G->val, (int)m, &scale, &unused)
+             : LAPACKE_dtrsyl(LAPACK_COL_MAJOR, 'N', 'N', -1, (int)m, a, S, n,
+                              S + at + m, n, R->val, (int)m, &scale);
+    RITZ_FAIL_IF(info != 0 || scale == 0.0, RITZ_ERR_CONVERGENCE,
+                 "stable poles and others are too close to be told apart");
+    for (int64_t k = 0; k < m * a; k++) {
+        R->val[k] /= scale;
+        G->val[k] = P ? G->val[k] / scale : R->val[k];
+    }
+done:
+    return status;
+}
+
+/* out = base + sign factor, of the same size. */
+static void add(double sign, const ritz_dense *term, ritz_dense *out)
+{
+    for (int64_t k = 0; k < out->nrow * out->ncol; k++)
+        out->val[k] += sign * term->val[k];
+}
+
+/* X, T, Y, W in the coordinates of the form's own matrices. */
+static ritz_status assemble(const ritz_schur *schur, int64_t m, ritz_split *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = schur->count, a = n - m;
+    const ritz_dense *Z = schur->Z.val ? &schur->Z : &schur->Q;
+    ritz_dense Z1 = ritz_dense_part(Z, 0, m);
+    ritz_dense Q2 = ritz_dense_part(&schur->Q, m, a);
+    ritz_dense R = {0}, G = {0}, Z1R = {0}, Q2G = {0};
+
+    RITZ_TRY(decouple(schur, m, &R, &G));
+    RITZ_TRY(ritz_dense_mul(&Z1, &R, &Z1R));
+    RITZ_TRY(ritz_dense_mul_nt(&Q2, &G, &Q2G));
+    RITZ_TRY(ritz_dense_columns(Z, 0, m, &out->X));
+    RITZ_TRY(ritz_dense_columns(&schur->Q, 0, m, &out->Y));
+    RITZ_TRY(ritz_dense_columns(Z, m, a, &out->T));
+    RITZ_TRY(ritz_dense_columns(&schur->Q, m, a, &out->W));
+    add(1.0, &Z1R, &out->T);
+    add(-1.0, &Q2G, &out->Y);
+    if (schur->T.val && a > 0)
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasTrans,
+                    CblasNonUnit, (int)n, (int)a, 1.0, schur->T.val + m * n + m,
+                    (int)n, out->W.val, (int)n);
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&G);
+    ritz_dense_free(&Z1R);
+    ritz_dense_free(&Q2G);
+    return status;
+}
+
+static ritz_status leading(const ritz_dense *A, int64_t m, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(m, m, out));
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
+done:
+    return status;
+}
+
+ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
+                           ritz_split *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_frame f = {0};
+    ritz_schur schur = {0};
+    ritz_split split = {0};
+    bool *stable = NULL;
+    int64_t m = 0;
+
+    RITZ_TRY(ritz_frame_new(A, E, &f));
+    RITZ_TRY(ritz_schur_new(&f.A, &f.E, &schur));
+    RITZ_NEW(stable, A->nrow);
+    RITZ_TRY(choose_stable(&schur, stable));
+    RITZ_TRY(ritz_schur_order(&schur, stable, &m));
+    RITZ_TRY(leading(&schur.S, m, &split.S));
+    if (schur.T.val)
+        RITZ_TRY(leading(&schur.T, m, &split.P));
+    RITZ_TRY(assemble(&schur, m, &split));
+    ritz_frame_turn_back(&f, f.right, &split.X);
+    ritz_frame_turn_back(&f, f.right, &split.T);
+    ritz_frame_turn_back(&f, f.left, &split.Y);
+    ritz_frame_turn_back(&f, f.left, &split.W);
+    *out = split;
+    split = (ritz_split){0};
+done:
+    ritz_frame_free(&f);
+    ritz_schur_free(&schur);
+    ritz_split_free(&split);
+    free(stable);
+    return status;
+}
+
+void ritz_split_free(ritz_split *split)
+{
+    ritz_dense_free(&split->S);
+    ritz_dense_free(&split->P);
+    ritz_dense_free(&split->X);
+    ritz_dense_free(&split->Y);
+    ritz_dense_free(&split->T);
+    ritz_dense_free(&split->W);
+    *split = (ritz_split){0};
+}

@@ -1,0 +1,36 @@
+/*
+ * A linear system's poles told apart: those left of the imaginary axis by more
+ * than rounding, in Schur form, and what is left.
+ */
+#ifndef RITZ_LINEAR_SPLIT_H
+#define RITZ_LINEAR_SPLIT_H
+
+#include <ritz/dense.h>
+
+/* E x' = A x with x = X z + T a; n states, m of them stable. */
+typedef struct ritz_split {
+    ritz_dense S, P; /* m x m, Y'A X quasi-triangular, Y'E X triangular; P {0}
+                        is the identity */
+    ritz_dense X, Y; /* n x m */
+    ritz_dense T, W; /* n x (n - m), W'E T = I, Y'E T = 0, W'E X = 0 */
+} ritz_split;
+
+/**
+ * A pole stands apart if it is right of the axis or not further left of it than
+ * rounding may move it (eigenvalues.h), unless a Lyapunov equation proves that
+ * rounding of A cannot make any pole unstable.
+ *
+ * E that is symmetric and definite is reduced by its Cholesky factor; with
+ * another one the pair is kept.
+ *
+ * @param[in] E  invertible; {0}: the identity
+ * @return RITZ_ERR_SINGULAR if E is, to rounding; RITZ_ERR_CONVERGENCE if
+ *         poles to be told apart are too close to each other
+ * @cost   some 30 n^3, of a pair 70 n^3
+ */
+ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
+                           ritz_split *out);
+
+void ritz_split_free(ritz_split *split);
+
+#endif
