@@ -53,21 +53,36 @@ done:
     return status;
 }
 
-/* States have no bounds yet: what is known of them is whether they are stable.
- */
-static ritz_status to_states(cli_run *run, const ritz_component *full,
+/* A model of either kind, in a basis that makes states of it. */
+static ritz_status project(const model *full, const ritz_basis *basis,
+                           ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_damping damping = {0};
+
+    if (full->kind == MODEL_STATES)
+        return ritz_reduce_space(&full->states, basis, out);
+    RITZ_TRY(ritz_damping_parse(basis->damping, &damping));
+    if (basis->states)
+        RITZ_TRY(ritz_reduce_states(&full->component, &damping, basis, out));
+    else
+        RITZ_TRY(ritz_reduce_companion(&full->component, &damping, basis, out));
+done:
+    return status;
+}
+
+/* Of states it is known whether they are stable and, of some, a bound. */
+static ritz_status to_states(cli_run *run, const model *full,
                              const ritz_basis *basis)
 {
     ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
-    ritz_damping damping = {0};
     ritz_state_space states = {0};
     ritz_probe probe = {0};
     ritz_stamp stamp = {0};
     char text[2 * RITZ_NAME_SIZE];
 
-    RITZ_TRY_IN(what, ritz_damping_parse(basis->damping, &damping));
-    RITZ_TRY_IN(what, ritz_reduce_states(full, &damping, basis, &states));
+    RITZ_TRY_IN(what, project(full, basis, &states));
     RITZ_TRY_IN(what, ritz_probe_states(&states, &probe));
     RITZ_TRY(ritz_probe_record(&probe, &states.estimates));
     stamp = cli_stamp(run);
@@ -76,13 +91,34 @@ static ritz_status to_states(cli_run *run, const ritz_component *full,
     RITZ_TRY(describe_states(run, run->report, &states));
     cli_report_int(run, "vectors", states.columns.count);
     cli_record(run, states.origin.method, states.A.nrow);
-    cli_record_error(run, states.estimates.item[0].name,
-                     states.estimates.item[0].value);
+    for (int64_t k = 0; k < states.estimates.count; k++)
+        cli_record_error(run, states.estimates.item[k].name,
+                         states.estimates.item[k].value);
     ritz_probe_print(&probe, text);
     if (probe.verdict == RITZ_UNSTABLE)
         cli_warn(run, "'%s' is unstable: %s", run->output, text);
 done:
     ritz_state_space_free(&states);
+    return status;
+}
+
+/* Whether a basis was made for as many dofs, or states, as there are. */
+static ritz_status check_rows(const cli_run *run, const model *full,
+                              const ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    bool space = full->kind == MODEL_STATES;
+    int64_t due = space ? full->states.A.nrow : full->component.num_dofs;
+    int64_t rows = basis->T.nrow / (basis->states && !space ? 2 : 1);
+
+    RITZ_FAIL_IF(space && !basis->states, RITZ_ERR_ARGUMENT,
+                 "'%s' is a basis of displacements, '%s' is a state space",
+                 run->operand[1], run->operand[0]);
+    RITZ_FAIL_IF(rows != due, RITZ_ERR_ARGUMENT,
+                 "'%s' is a basis for %lld %s, '%s' has %lld", run->operand[1],
+                 (long long)rows, space ? "states" : "dofs", run->operand[0],
+                 (long long)due);
+done:
     return status;
 }
 
@@ -92,17 +128,15 @@ static ritz_status reduce(cli_run *run, bool without_basis)
     const char *what = run->operand[1];
     model full = {0};
     model basis = {0};
-    int64_t rows = 0;
-
-    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
+    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
+                        &full));
     RITZ_TRY(model_read(run, what, MODEL_BASIS, &basis));
-    rows = basis.basis.T.nrow / (basis.basis.states ? 2 : 1);
-    RITZ_FAIL_IF(rows != full.component.num_dofs, RITZ_ERR_ARGUMENT,
-                 "'%s' is a basis for %lld dofs, '%s' has %lld", what,
-                 (long long)rows, run->operand[0],
-                 (long long)full.component.num_dofs);
-    if (basis.basis.states)
-        RITZ_TRY(to_states(run, &full.component, &basis.basis));
+    RITZ_TRY(check_rows(run, &full, &basis.basis));
+    RITZ_FAIL_IF(without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+                 "a reduced state space keeps no basis, --without-basis is for "
+                 "components");
+    if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
+        RITZ_TRY(to_states(run, &full, &basis.basis));
     else
         RITZ_TRY(
             to_matrices(run, &full.component, &basis.basis, without_basis));
@@ -122,13 +156,14 @@ int main(int argc, char **argv)
     };
     const cli_program program = {
         .name = "ritz-reduce",
-        .operands = {{"COMPONENT", "the full component", false},
+        .operands = {{"COMPONENT", "the full component or state space", false},
                      {"BASIS", "what ritz-basis made of it", false}},
         .summary = "Project a component on a basis; estimate the errors; "
                    "state its mass properties.",
         .example = "ritz-reduce blade.h5 basis.h5 -o blade-reduced.h5",
         .options = options,
-        .output = "the reduced component; the state space, of states",
+        .output = "the reduced component; the state space, of states or of "
+                  "vectors on two sides",
         .threads = true,
     };
     cli_run run;

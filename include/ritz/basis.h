@@ -56,9 +56,12 @@ typedef struct ritz_basis {
     ritz_dense W; /* as T; {0}: T itself */
     bool states;
     int64_t num_hankel; /* values of the model that was balanced; 0: none */
-    double *hankel;     /* descending, the rest of which bounds the error */
-    char damping[RITZ_DAMPING_SIZE]; /* of states: what they were made with,
-                                        as ritz_damping_parse reads */
+    double *hankel;     /* descending */
+    double bound; /* of the H-infinity error, outputs over their limits, where
+                     there are Hankel values; NaN: they bound nothing */
+    char damping[RITZ_DAMPING_SIZE]; /* of states, or with a W: what they were
+                                        made with, as ritz_damping_parse reads */
+    double among_hz; /* they are made of modes up to here alone; 0: of all */
     ritz_columns columns;
     ritz_origin origin;
     char remark[4 * RITZ_NAME_SIZE]; /* what a user should know; not stored */

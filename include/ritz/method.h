@@ -48,6 +48,10 @@ typedef struct ritz_method {
 /** All methods, ended by NULL. */
 extern const ritz_method *const ritz_methods[];
 
+extern const ritz_method ritz_method_balanced;
+extern const ritz_method ritz_method_balanced_band;
+extern const ritz_method ritz_method_balanced_position;
+extern const ritz_method ritz_method_balanced_velocity;
 extern const ritz_method ritz_method_craig_bampton;
 extern const ritz_method ritz_method_dual_craig_bampton;
 extern const ritz_method ritz_method_full;
@@ -63,6 +67,7 @@ extern const ritz_method ritz_method_lanczos_two_sided;
 extern const ritz_method ritz_method_loaded_interface;
 extern const ritz_method ritz_method_macneal;
 extern const ritz_method ritz_method_macneal_rubin;
+extern const ritz_method ritz_method_modal_balanced;
 extern const ritz_method ritz_method_normal_modes;
 extern const ritz_method ritz_method_rigid;
 extern const ritz_method ritz_method_rubin;

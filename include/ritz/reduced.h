@@ -93,7 +93,8 @@ typedef struct ritz_reduced {
  * invariants: their rows and columns of M and D are zero.
  *
  * @param[in] T  n x r, columns independent
- * @return RITZ_ERR_ARGUMENT if the sizes disagree
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree, or the basis is of states or
+ *         has left vectors: see ritz_reduce_states and ritz_reduce_companion
  * @cost   O(r nnz + n r^2)
  */
 ritz_status ritz_reduce(const ritz_component *component,

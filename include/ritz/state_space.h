@@ -30,7 +30,8 @@ typedef struct ritz_state_space {
     ritz_origin origin;
     char
         damping[RITZ_DAMPING_SIZE]; /* beside matrices, that is in A; "" none */
-    ritz_measures estimates;        /* what the stability probe found */
+    ritz_measures estimates;        /* by ritz-reduce: stability, a bound */
+    ritz_measures errors;           /* by ritz-verify */
     char units[RITZ_NAME_SIZE];
 } ritz_state_space;
 
@@ -73,15 +74,49 @@ ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
  *
  *     W'E T x' = W'A T x + W'B u
  *
- * solved for x'. Massless dofs answer as above.
+ * solved for x'. Massless dofs answer as above. Columns of kind perturbed
+ * answer statically and are eliminated, and what bounds the error is noted as
+ * estimate "h-infinity-bound".
+ *
+ * Of more than RITZ_STATE_DOFS dofs nothing dense is made; damping ratios then
+ * need basis->among_hz, and dofs without mass must be without input.
  *
  * @param[in] basis  of states, W {0}: T itself
  * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree, or as
- *         above; RITZ_ERR_SINGULAR if W'E T is
+ *         above; RITZ_ERR_SINGULAR if W'E T is, or the columns that are to be
+ *         eliminated have no static answer
  */
 ritz_status ritz_reduce_states(const ritz_component *component,
                                const ritz_damping *damping,
                                const ritz_basis *basis, ritz_state_space *out);
+
+/**
+ * A state space in a basis of its states: W'E T z' = W'A T z + W'B u, y = C T z
+ * + D u, solved for z'; columns of kind perturbed, and the bound, as above.
+ *
+ * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree;
+ *         RITZ_ERR_SINGULAR as above
+ */
+ritz_status ritz_reduce_space(const ritz_state_space *full,
+                              const ritz_basis *basis, ritz_state_space *out);
+
+/**
+ * A component in a basis of displacements u = T q with left vectors W of its
+ * own, in companion form x = [q; q'], which is still of second order:
+ *
+ *     A = [0 I; -M_r^-1 K_r, -M_r^-1 D_r],   B = [0; M_r^-1 W'B],
+ *     M_r = W'M T,   K_r = W'K T,   D_r = W'D T
+ *
+ * K_r and D_r need not be symmetric, which is why this is no ritz_reduced.
+ * Rigid columns, which must be M-orthogonal to all others, have no part in K_r.
+ *
+ * @return RITZ_ERR_ARGUMENT if the basis is of states, or has no W, or as
+ *         ritz_reduce_states; RITZ_ERR_SINGULAR if M_r is
+ */
+ritz_status ritz_reduce_companion(const ritz_component *component,
+                                  const ritz_damping *damping,
+                                  const ritz_basis *basis,
+                                  ritz_state_space *out);
 
 /**
  * Poles: eigenvalues of A, or of E^-1 A, by magnitude ascending; of a pair the

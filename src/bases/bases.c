@@ -7,6 +7,10 @@
 
 /* A new method is a new file that defines one descriptor, and one line here. */
 const ritz_method *const ritz_methods[] = {
+    &ritz_method_balanced,
+    &ritz_method_balanced_band,
+    &ritz_method_balanced_position,
+    &ritz_method_balanced_velocity,
     &ritz_method_craig_bampton,
     &ritz_method_dual_craig_bampton,
     &ritz_method_full,
@@ -22,6 +26,7 @@ const ritz_method *const ritz_methods[] = {
     &ritz_method_loaded_interface,
     &ritz_method_macneal,
     &ritz_method_macneal_rubin,
+    &ritz_method_modal_balanced,
     &ritz_method_normal_modes,
     &ritz_method_rigid,
     &ritz_method_rubin,

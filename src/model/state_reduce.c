@@ -9,15 +9,18 @@
  *     W'A T = W_q'T_v - W_v' (Lambda T_q + Delta T_v),   W'B = W_v' Phi'B
  *
  * Differences of large numbers, which K u is for every smooth u, are so taken
- * once, when the modes are found.
+ * once, when the modes are found. Of too many dofs for that the products are
+ * those of sparse matrices, in state_project.c.
  */
 #include <ritz/state_space.h>
 
 #include "base/alloc.h"
-#include "linear/general.h"
 #include "model/first_order.h"
+#include "model/state_reduce.h"
 
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* A'(rows first..first + n - 1 of X) */
@@ -97,29 +100,75 @@ done:
     return status;
 }
 
+/* Sum of |A(k,i) X(first + k,j)|: n eps of it is rounding of what they add to. */
+static double terms(const ritz_dense *A, int64_t i, const ritz_dense *X,
+                    int64_t first, int64_t j)
+{
+    double sum = 0.0;
+
+    for (int64_t k = 0; k < A->nrow; k++)
+        sum += fabs(ritz_dense_col(A, i)[k] * ritz_dense_col(X, j)[first + k]);
+    return sum;
+}
+
+/*
+ * Columns of rigid motion are made of rigid modes and of no others. Of other
+ * columns, what is rounding of no rigid motion is none: left as it is, it would
+ * join what stands apart, by numbers so small that scaling goes astray.
+ */
+static void settle_rigid(const ritz_first_order *modes,
+                         const ritz_columns *columns, const ritz_dense *A,
+                         const ritz_dense *X, int64_t first, ritz_dense *part)
+{
+    double rounding = (double)(A->nrow + 64) * DBL_EPSILON;
+
+    for (int64_t j = 0; j < part->ncol && modes->num_rigid > 0; j++) {
+        bool rigid = columns->kind[j] == RITZ_COLUMN_RIGID;
+        double *x = ritz_dense_col(part, j);
+
+        for (int64_t i = 0; i < modes->num_rigid && !rigid; i++)
+            if (fabs(x[i]) <= rounding * terms(A, i, X, first, j))
+                x[i] = 0.0;
+        for (int64_t i = modes->num_rigid; i < part->nrow && rigid; i++)
+            x[i] = 0.0;
+    }
+}
+
+/* A half of T or W in modal coordinates. */
+static ritz_status take_settled(const ritz_first_order *modes,
+                                const ritz_columns *columns,
+                                const ritz_dense *A, const ritz_dense *X,
+                                int64_t first, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(take(A, X, first, out));
+    settle_rigid(modes, columns, A, X, first, out);
+done:
+    return status;
+}
+
 static ritz_status project(const ritz_first_order *modes,
-                           const ritz_basis *basis, ritz_state_space *out)
+                           const ritz_basis *basis, ritz_state_space *out,
+                           ritz_dense *E)
 {
     ritz_status status = RITZ_OK;
     int64_t n = modes->num_dofs;
     bool own = basis->W.val != NULL;
     const ritz_dense *W = own ? &basis->W : &basis->T;
-    ritz_dense T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0};
-    ritz_dense F = {0}, E = {0};
+    ritz_dense T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0}, F = {0};
+    const ritz_columns *columns = &basis->columns;
 
     ritz_dense_free(&out->A);
     ritz_dense_free(&out->B);
-    RITZ_TRY(take(&modes->MPhi, &basis->T, 0, &T_q));
-    RITZ_TRY(take(&modes->MPhi, &basis->T, n, &T_v));
-    RITZ_TRY(take(&modes->Phi, W, 0, &W_q));
-    RITZ_TRY(take(&modes->MPhi, W, n, &W_v));
+    RITZ_TRY(take_settled(modes, columns, &modes->MPhi, &basis->T, 0, &T_q));
+    RITZ_TRY(take_settled(modes, columns, &modes->MPhi, &basis->T, n, &T_v));
+    RITZ_TRY(take_settled(modes, columns, &modes->Phi, W, 0, &W_q));
+    RITZ_TRY(take_settled(modes, columns, &modes->MPhi, W, n, &W_v));
     RITZ_TRY(restoring(modes, &T_q, &T_v, &F));
-    RITZ_TRY(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, &E));
+    RITZ_TRY(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
     RITZ_TRY(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
     RITZ_TRY(ritz_dense_mul_tn(&W_v, &modes->B, &out->B));
-    RITZ_TRY_IN("left against right vectors",
-                ritz_general_solve(&E, false, &out->A));
-    RITZ_TRY(ritz_general_solve(&E, false, &out->B));
     RITZ_TRY(project_outputs(modes, &T_q, &T_v, out));
 done:
     ritz_dense_free(&T_q);
@@ -127,7 +176,25 @@ done:
     ritz_dense_free(&W_q);
     ritz_dense_free(&W_v);
     ritz_dense_free(&F);
-    ritz_dense_free(&E);
+    return status;
+}
+
+/* By all modes, of which there can be so many. */
+static ritz_status project_modes(const ritz_component *component,
+                                 const ritz_damping *damping,
+                                 const ritz_basis *basis, ritz_state_space *out,
+                                 ritz_dense *E)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure model = {0};
+    ritz_first_order modes = {0};
+
+    RITZ_TRY(ritz_structure_of_component(component, &model));
+    RITZ_TRY(ritz_first_order_new(&model, &component->io, damping, &modes));
+    RITZ_TRY(project(&modes, basis, out, E));
+done:
+    ritz_structure_free(&model);
+    ritz_first_order_free(&modes);
     return status;
 }
 
@@ -158,25 +225,23 @@ ritz_status ritz_reduce_states(const ritz_component *component,
                                const ritz_basis *basis, ritz_state_space *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
-    ritz_first_order modes = {0};
+    bool small = component->num_dofs <= RITZ_STATE_DOFS;
     ritz_state_space reduced = {0};
+    ritz_dense E = {0};
 
     RITZ_TRY(check(component, basis));
-    RITZ_TRY(ritz_structure_of_component(component, &model));
-    RITZ_TRY(ritz_first_order_new(&model, &component->io, damping, &modes));
     RITZ_TRY(ritz_state_space_new(basis->T.ncol, &component->io, &reduced));
-    RITZ_TRY(project(&modes, basis, &reduced));
-    ritz_columns_free(&reduced.columns);
-    RITZ_TRY(ritz_columns_copy(&basis->columns, &reduced.columns));
-    reduced.origin = basis->origin;
+    if (small)
+        RITZ_TRY(project_modes(component, damping, basis, &reduced, &E));
+    else
+        RITZ_TRY(ritz_states_project(component, damping, basis, &reduced, &E));
+    RITZ_TRY(ritz_states_settle(basis, &E, &reduced));
     memcpy(reduced.units, component->units, sizeof reduced.units);
     ritz_damping_print(damping, reduced.damping);
     *out = reduced;
     reduced = (ritz_state_space){0};
 done:
-    ritz_structure_free(&model);
-    ritz_first_order_free(&modes);
+    ritz_dense_free(&E);
     ritz_state_space_free(&reduced);
     return status;
 }

@@ -300,5 +300,6 @@ void ritz_state_space_free(ritz_state_space *model)
     free(model->limit);
     ritz_columns_free(&model->columns);
     ritz_measures_free(&model->estimates);
+    ritz_measures_free(&model->errors);
     *model = (ritz_state_space){0};
 }

@@ -233,6 +233,12 @@ ritz_status sample_basis(ritz_basis *out)
     RITZ_TRY(filled(SAMPLE_DOFS, SAMPLE_ORDER, 8.0, &basis.W));
     basis.states = true;
     snprintf(basis.damping, sizeof basis.damping, "modal 0.02");
+    basis.among_hz = 12.5;
+    basis.bound = 6.25;
+    basis.num_hankel = 3;
+    RITZ_NEW(basis.hankel, 3);
+    for (int64_t k = 0; k < 3; k++)
+        basis.hankel[k] = 4.0 - (double)k;
     RITZ_TRY(sample_columns(&basis.columns));
     *out = basis;
     basis = (ritz_basis){0};
@@ -331,6 +337,9 @@ static ritz_status sample_configuration(bool full, int64_t k,
     out->setting[0] = 60.0 * (double)k;
     RITZ_TRY(filled(e, e, 5.0, &out->D));
     RITZ_TRY(filled(e, e, 6.0, &out->K4));
+    RITZ_TRY(filled(6, e, 7.0, &out->momentum));
+    for (int j = 0; j < 36; j++)
+        out->rigid[j] = 0.25 * j;
     RITZ_TRY(sample_dampers(e, &out->dampers));
     RITZ_TRY(sample_io(e, &out->io));
     RITZ_TRY(sample_measures(&out->errors));
@@ -414,8 +423,21 @@ ritz_status sample_ranking(ritz_ranking *out)
                             .reference = "Gawronski2004",
                             .count = modes,
                             .num_system = 2 * modes,
+                            .at = "clock=60",
+                            .damping = "modal 0.002",
+                            .total = 2.5,
                             .coupling = nan("")};
 
+    RITZ_NEW(ranking.cluster, modes);
+    RITZ_TRY(ritz_ranking_parts(2, &ranking));
+    for (int64_t k = 0; k < 2 * modes; k++)
+        ranking.parts.val[k] = -0.5 * (double)k;
+    for (int64_t k = 0; k < modes; k++)
+        ranking.cluster[k] = k - k % 2;
+    for (size_t k = 0; k < 2; k++) {
+        ranking.whole[k] = nan("");
+        RITZ_TRY(ritz_name_copy(k > 0 ? "gyro" : "tip", ranking.part[k]));
+    }
     RITZ_NEW(ranking.hertz, modes);
     RITZ_NEW(ranking.zeta, modes);
     RITZ_NEW(ranking.value, modes);

@@ -1,0 +1,211 @@
+#include "bases/balance_asked.h"
+
+#include "base/alloc.h"
+#include "bases/states_asked.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static ritz_status check(const ritz_request *request)
+{
+    ritz_status status = RITZ_OK;
+    const int of_components = RITZ_USES_DAMPING | RITZ_USES_AMONG;
+    int given = request->choice.given;
+    ritz_engine engine = request->choice.engine;
+    bool modal = given & (RITZ_USES_AMONG | RITZ_USES_BAND);
+
+    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                 "balanced vectors are asked for by their number, not by a "
+                 "frequency");
+    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                 "no vectors are asked for, one at least is needed");
+    RITZ_FAIL_IF(request->space && (given & of_components), RITZ_ERR_ARGUMENT,
+                 "a state space has neither modes nor any damping beside its "
+                 "matrix");
+    RITZ_FAIL_IF(request->space && engine > RITZ_ENGINE_DENSE,
+                 RITZ_ERR_ARGUMENT,
+                 "a state space is balanced by the dense engine alone");
+    RITZ_FAIL_IF(modal && engine != RITZ_ENGINE_AUTO &&
+                     engine != RITZ_ENGINE_MODAL,
+                 RITZ_ERR_ARGUMENT,
+                 "a choice of modes, or a band, is of the modal engine alone");
+done:
+    return status;
+}
+
+ritz_status ritz_gramians_asked(const ritz_request *request, ritz_gramians *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_choice *choice = &request->choice;
+    ritz_gramians_request asked = {
+        .component = request->component,
+        .engine = choice->engine,
+        .among_hz = choice->among_hz,
+        .band_hz = {choice->band_hz[0], choice->band_hz[1]}};
+
+    RITZ_TRY(check(request));
+    if (request->space)
+        return ritz_gramians_of_space(request->space, out);
+    RITZ_TRY(ritz_request_damping(request, &asked.damping));
+    if (choice->given & (RITZ_USES_AMONG | RITZ_USES_BAND))
+        asked.engine = RITZ_ENGINE_MODAL;
+    RITZ_TRY(ritz_gramians_of_component(&asked, out));
+done:
+    return status;
+}
+
+ritz_status ritz_balance_asked(const ritz_request *request,
+                               const ritz_gramians *gramians,
+                               ritz_balanced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_balanced balanced = {0};
+
+    RITZ_TRY(ritz_gramians_balance(gramians, request->modes, request->tolerance,
+                                   &balanced));
+    RITZ_FAIL_IF(balanced.count == 0, RITZ_ERR_ARGUMENT,
+                 "inputs reach nothing that outputs see: there is nothing to "
+                 "balance");
+    RITZ_FAIL_IF(balanced.kept == 0, RITZ_ERR_ARGUMENT,
+                 "the first values are equal, and are kept whole or not at "
+                 "all: ask for more than %" PRId64,
+                 request->modes);
+    *out = balanced;
+    balanced = (ritz_balanced){0};
+done:
+    ritz_balanced_free(&balanced);
+    return status;
+}
+
+/* [A B], of which A may be {0}. */
+static ritz_status beside(const ritz_dense *A, const ritz_dense *B,
+                          ritz_dense *out)
+{
+    return A->ncol == 0 ? ritz_dense_copy(B, out)
+                        : ritz_dense_beside(A, B, out);
+}
+
+/* Rigid modes stand in T as positions or as velocities; other poles as both. */
+static bool is_rigid(const ritz_dense *T, int64_t j)
+{
+    const double *x = ritz_dense_col(T, j);
+    int64_t n = T->nrow / 2;
+    bool zero[2] = {true, true};
+
+    for (int64_t i = 0; i < 2 * n; i++)
+        zero[i >= n] = zero[i >= n] && x[i] == 0.0;
+    return zero[0] || zero[1];
+}
+
+static void name_columns(const ritz_request *request,
+                         const ritz_gramians *gramians, int64_t kept,
+                         ritz_columns *columns)
+{
+    int64_t apart = gramians->T.ncol;
+
+    for (int64_t j = 0; j < columns->count; j++)
+        columns->kind[j] =
+            j < apart + kept ? RITZ_COLUMN_STATE : RITZ_COLUMN_PERTURBED;
+    for (int64_t j = 0; j < apart; j++)
+        if (request->component && is_rigid(&gramians->T, j)) {
+            columns->kind[j] = RITZ_COLUMN_RIGID;
+            columns->hertz[j] = 0.0;
+        }
+}
+
+void ritz_remark_append(ritz_basis *basis, const char *text)
+{
+    size_t used = strlen(basis->remark);
+
+    snprintf(basis->remark + used, sizeof basis->remark - used, "%s%s",
+             used > 0 ? "; " : "", text);
+}
+
+static void remark(const ritz_request *request, const ritz_gramians *gramians,
+                   const ritz_balanced *balanced, const char *what,
+                   ritz_basis *basis)
+{
+    char text[2 * RITZ_DAMPING_SIZE];
+    const double *residual = gramians->residual;
+
+    snprintf(text, sizeof text, "%" PRId64 " of %" PRId64 " %s kept",
+             balanced->kept, balanced->count, what);
+    ritz_remark_append(basis, text);
+    if (balanced->kept < request->modes) {
+        snprintf(text, sizeof text,
+                 balanced->kept == balanced->count
+                     ? "%" PRId64 " were asked for, rounding leaves no more"
+                     : "%" PRId64 " were asked for, the next are equal or "
+                       "below the tolerance",
+                 request->modes);
+        ritz_remark_append(basis, text);
+    }
+    if (!isnan(basis->bound)) {
+        snprintf(text, sizeof text, "error at most %.4g of %.4g", basis->bound,
+                 balanced->sigma[0]);
+        ritz_remark_append(basis, text);
+    }
+    if (residual[0] > 0.0 || residual[1] > 0.0) {
+        snprintf(text, sizeof text, "residuals of Gramians %.1e and %.1e",
+                 residual[0], residual[1]);
+        ritz_remark_append(basis, text);
+    }
+    if (!request->space) {
+        snprintf(text, sizeof text, "damping: %s",
+                 gramians->damping[0] ? gramians->damping
+                                      : "that of the matrices");
+        ritz_remark_append(basis, text);
+    }
+}
+
+ritz_status ritz_balanced_note(const ritz_request *request,
+                               const ritz_gramians *gramians,
+                               const ritz_balanced *balanced, bool bounded,
+                               const char *what, ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(basis->hankel, balanced->count);
+    basis->num_hankel = balanced->count;
+    memcpy(basis->hankel, balanced->sigma,
+           (size_t)balanced->count * sizeof *basis->hankel);
+    basis->bound = bounded ? balanced->bound : nan("");
+    basis->among_hz = request->choice.among_hz;
+    memcpy(basis->damping, gramians->damping, sizeof basis->damping);
+    snprintf(basis->origin.engine, sizeof basis->origin.engine, "%s",
+             gramians->engine);
+    remark(request, gramians, balanced, what, basis);
+done:
+    return status;
+}
+
+ritz_status ritz_balanced_states(const ritz_request *request,
+                                 const ritz_gramians *gramians, bool bounded,
+                                 ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_balanced kept = {0}, all = {0};
+    const ritz_balanced *used = &kept;
+    ritz_basis basis = {.states = true};
+
+    RITZ_TRY(ritz_balance_asked(request, gramians, &kept));
+    if (request->choice.perturb) {
+        RITZ_TRY(ritz_gramians_balance(gramians, -1, request->tolerance, &all));
+        used = &all;
+    }
+    RITZ_TRY(beside(&gramians->T, &used->T, &basis.T));
+    RITZ_TRY(beside(&gramians->W, &used->W, &basis.W));
+    RITZ_TRY(ritz_columns_new(basis.T.ncol, &basis.columns));
+    name_columns(request, gramians, kept.kept, &basis.columns);
+    RITZ_TRY(ritz_balanced_note(request, gramians, &kept, bounded, "states",
+                                &basis));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_balanced_free(&kept);
+    ritz_balanced_free(&all);
+    ritz_basis_free(&basis);
+    return status;
+}

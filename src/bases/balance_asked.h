@@ -1,0 +1,46 @@
+/* What methods that balance share. */
+#ifndef RITZ_BASES_BALANCE_ASKED_H
+#define RITZ_BASES_BALANCE_ASKED_H
+
+#include <ritz/gramians.h>
+#include <ritz/method.h>
+
+/**
+ * Gramians of the component or state space of a request, by its engine. With
+ * among_hz given, or a band, the engine is the modal one.
+ *
+ * @return RITZ_ERR_ARGUMENT if the request is not for a number of vectors, or
+ *         asks of a state space what is of components
+ */
+ritz_status ritz_gramians_asked(const ritz_request *request,
+                                ritz_gramians *out);
+
+/**
+ * Cut as the request says.
+ *
+ * @return RITZ_ERR_ARGUMENT if nothing is left
+ */
+ritz_status ritz_balance_asked(const ritz_request *request,
+                               const ritz_gramians *gramians,
+                               ritz_balanced *out);
+
+/**
+ * T = [T_apart, T_kept, T_rest] of states, and W likewise: what has no Gramian,
+ * what is kept and, if it is asked for, what answers statically.
+ *
+ * @param[in] bounded  whether the rest of the values bounds the error
+ */
+ritz_status ritz_balanced_states(const ritz_request *request,
+                                 const ritz_gramians *gramians, bool bounded,
+                                 ritz_basis *out);
+
+/** A text at the end of a remark, as far as there is room. */
+void ritz_remark_append(ritz_basis *basis, const char *text);
+
+/** Values, and what a user should know of them; @p what: "states". */
+ritz_status ritz_balanced_note(const ritz_request *request,
+                               const ritz_gramians *gramians,
+                               const ritz_balanced *balanced, bool bounded,
+                               const char *what, ritz_basis *basis);
+
+#endif

@@ -1,0 +1,40 @@
+/*
+ * Balanced truncation: the states that inputs reach best and outputs see best,
+ * both being measured by the same values. With factors of the Gramians,
+ *
+ *     Z_o'E Z_c = U S V',   T = Z_c V_1 S_1^-1/2,   W = Z_o U_1 S_1^-1/2,
+ *
+ * W'E T = I, and of the reduced model W'A T both Gramians are S_1. It is stable
+ * and its error is at most twice the sum of the values in S_2 [Moore1981]. The
+ * states of S_2 can be kept as columns that answer statically: then the answer
+ * at 0 Hz is exact, and the bound the same [LiuAnderson1989].
+ *
+ * Rigid modes, and unstable poles of a state space, have no Gramian: they stand
+ * apart and are always kept.
+ */
+#include "bases/balance_asked.h"
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramians gramians = {0};
+
+    RITZ_TRY(ritz_gramians_asked(request, &gramians));
+    RITZ_TRY(ritz_balanced_states(request, &gramians, true, out));
+done:
+    ritz_gramians_free(&gramians);
+    return status;
+}
+
+const ritz_method ritz_method_balanced = {
+    .name = "balanced",
+    .summary = "balanced states, with a bound of the error before it is made",
+    .reference = "Moore1981",
+    .when = "damped models for control, few inputs and outputs; state spaces",
+    .cost = "modal O(m^2 r), dense O(n^3); low rank: some solves a state",
+    .holds = "stability; error at most twice the values left out",
+    .fails = "light damping: no value is small; interfaces of other bodies",
+    .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
+            RITZ_USES_AMONG | RITZ_USES_REMAINDER | RITZ_USES_SPACE,
+    .make = make,
+};

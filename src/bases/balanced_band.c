@@ -1,0 +1,40 @@
+/*
+ * Balanced truncation over a band [GawronskiJuang1990]: Gramians are integrals
+ * over frequency, and those over w1 <= |w| <= w2 alone,
+ *
+ *     W_c = 1/2pi int (i w - A)^-1 B B' (i w - A)^-* dw,
+ *
+ * tell which states matter there. They solve Lyapunov equations whose right
+ * side is not definite, so that nothing holds the poles of the reduced model
+ * left of the axis, and no sum of the values bounds its error: ritz-reduce
+ * probes it. In modal coordinates they have closed forms.
+ */
+#include "base/alloc.h"
+#include "bases/balance_asked.h"
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramians gramians = {0};
+
+    RITZ_FAIL_IF(!(request->choice.given & RITZ_USES_BAND), RITZ_ERR_ARGUMENT,
+                 "a band is needed, from and to which frequency: band-hz 0,10");
+    RITZ_TRY(ritz_gramians_asked(request, &gramians));
+    RITZ_TRY(ritz_balanced_states(request, &gramians, false, out));
+done:
+    ritz_gramians_free(&gramians);
+    return status;
+}
+
+const ritz_method ritz_method_balanced_band = {
+    .name = "balanced-band",
+    .summary = "states balanced over a band of frequencies alone",
+    .reference = "GawronskiJuang1990",
+    .when = "a response over one band, modal damping, in states",
+    .cost = "all modes, or those up to a frequency; O(m^3)",
+    .holds = "nothing: stability is probed, the error measured",
+    .fails = "one reduction in ten is unstable; coupled damping",
+    .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
+            RITZ_USES_AMONG | RITZ_USES_BAND,
+    .make = make,
+};

@@ -1,0 +1,274 @@
+/*
+ * Balanced truncation of M u'' + D u' + K u = B f, y = C u + Cv u', that gives a
+ * model of second order [ReisStykel2008]. The factors of both Gramians of
+ * x = [u; u'] are cut in halves,
+ *
+ *     Z_c = [Z_p; Z_v],   Z_o = [.; L],   U S V' = svd(L'M Z),
+ *     T = Z V_1 S_1^-1/2,   W = L U_1 S_1^-1/2,   W'M T = I,
+ *     M_r = I,   D_r = W'D T,   K_r = W'K T,
+ *
+ * with Z = Z_p or Z = Z_v, the position-velocity and the velocity balancing of
+ * the paper. The lower half of the equation (s E - A)' w = [C'; Cv'] is
+ *
+ *     (s^2 M' + s D' + K') w = C' + s Cv'
+ *
+ * so L L' is the position Gramian of the dual model that C' drives, and its
+ * velocity Gramian where Cv' does. Hence of a symmetric model whose outputs
+ * are, in number and place, the displacements (Z_p) or velocities (Z_v) of its
+ * inputs, W = T, and so is what is made of it: symmetric, definite and stable.
+ * Otherwise nothing says so; with one side asked for, T serves on the left too,
+ * which keeps symmetry but not the balance.
+ *
+ * The upper half of Z_o is the dual velocity but for D': balancing it against
+ * Z_p, as [MeyerSrinivasan1996] do and keep T alone of, needs M^-1 to be a left
+ * vector and is not symmetric where the model is.
+ */
+#include "bases/balanced_second.h"
+
+#include "base/alloc.h"
+#include "bases/balance_asked.h"
+#include "bases/orthonormal.h"
+
+#include <ritz/eigen.h>
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* What of a state is no rigid motion, relative: more is another motion. */
+static const double not_rigid = 1e-6;
+/* Of squares of norms whose difference is rounding. */
+static const double rounding = 1e-13;
+
+typedef struct second {
+    ritz_gramians states; /* of x = [u; u'] */
+    ritz_gramians half;   /* Z, M Z and L in the place of Z_c, E Z_c and Z_o */
+    ritz_balanced balanced;
+    ritz_dense Phi, MPhi; /* rigid modes; {0}: none */
+} second;
+
+static void release(second *s)
+{
+    ritz_gramians_free(&s->states);
+    ritz_gramians_free(&s->half);
+    ritz_balanced_free(&s->balanced);
+    ritz_dense_free(&s->Phi);
+    ritz_dense_free(&s->MPhi);
+}
+
+static ritz_status rows(const ritz_dense *Z, bool lower, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = Z->nrow / 2;
+
+    RITZ_TRY(ritz_dense_new(n, Z->ncol, out));
+    for (int64_t j = 0; j < Z->ncol && n > 0; j++)
+        memcpy(ritz_dense_col(out, j), ritz_dense_col(Z, j) + (lower ? n : 0),
+               (size_t)n * sizeof *out->val);
+done:
+    return status;
+}
+
+/* What stands apart must be rigid motion, and nothing else. */
+static ritz_status refuse_unstable(const second *s)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    for (int lower = 0; lower < 2; lower++) {
+        double size = 0.0;
+
+        RITZ_TRY(rows(&s->states.T, lower, &part));
+        size = ritz_dense_max(&part);
+        if (s->Phi.ncol > 0)
+            RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &part));
+        RITZ_FAIL_IF(ritz_dense_max(&part) > not_rigid * size,
+                     RITZ_ERR_ARGUMENT,
+                     "a pole that is no rigid motion is not left of the axis: "
+                     "balance the states of this component instead");
+        ritz_dense_free(&part);
+    }
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+static ritz_status find_rigid(const ritz_component *component, second *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span rigid = {.modes = 0};
+    ritz_pairs pairs = {0};
+
+    if (s->states.T.ncol == 0)
+        return RITZ_OK;
+    RITZ_TRY_IN("rigid modes", ritz_eigen_sparse(&component->K, &component->M,
+                                                 &rigid, &pairs));
+    RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &s->Phi));
+    RITZ_TRY(ritz_sparse_mul(&component->M, &s->Phi, &s->MPhi));
+    RITZ_TRY(refuse_unstable(s));
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* Halves, M-orthogonal to rigid motion. */
+static ritz_status cut(const ritz_component *component, ritz_half half,
+                       second *s)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramians *to = &s->half;
+
+    RITZ_TRY(rows(&s->states.Zc, half == RITZ_HALF_VELOCITY, &to->Zc));
+    RITZ_TRY(rows(&s->states.Zo, true, &to->Zo));
+    for (int twice = 0; twice < 2 && s->Phi.ncol > 0; twice++) {
+        RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zc));
+        RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zo));
+    }
+    RITZ_TRY(ritz_sparse_mul(&component->M, &to->Zc, &to->EZc));
+done:
+    return status;
+}
+
+/* |X'Y|^2 of Frobenius. */
+static ritz_status square(const ritz_dense *X, const ritz_dense *Y, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense XY = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(X, Y, &XY));
+    *out = 0.0;
+    for (int64_t k = 0; k < XY.nrow * XY.ncol; k++)
+        *out += XY.val[k] * XY.val[k];
+done:
+    ritz_dense_free(&XY);
+    return status;
+}
+
+/* C over limits, transposed. */
+static ritz_status scaled(const ritz_io *io, const ritz_dense *C,
+                          ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(C->ncol, C->nrow, out));
+    for (int64_t i = 0; i < C->nrow; i++)
+        for (int64_t j = 0; j < C->ncol; j++)
+            ritz_dense_col(out, i)[j] =
+                ritz_dense_col(C, j)[i] /
+                (isnan(io->limit[i]) ? 1.0 : io->limit[i]);
+done:
+    return status;
+}
+
+/*
+ * Whether B B' = a C'C, a > 0, and K, M and D are symmetric:
+ *
+ *     |B B' - a C'C|^2 = |B'B|^2 - 2 a |C B|^2 + a^2 |C C'|^2
+ *
+ * is least, and then zero, with a = |C B|^2 / |C C'|^2.
+ */
+static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
+                                bool *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &component->io;
+    bool velocity = half == RITZ_HALF_VELOCITY;
+    const ritz_dense *seen = velocity ? &io->Cv : &io->C;
+    ritz_dense C = {0};
+    double BB = 0.0, CB = 0.0, CC = 0.0;
+
+    *out = false;
+    if (ritz_dense_max(velocity ? &io->C : &io->Cv) > 0.0 ||
+        ritz_dense_max(&io->Ca) > 0.0 ||
+        (component->D.colptr && ritz_sparse_asymmetry(&component->D) > 0.0))
+        return RITZ_OK;
+    RITZ_TRY(scaled(io, seen, &C));
+    RITZ_TRY(square(&io->B, &io->B, &BB));
+    RITZ_TRY(square(&C, &io->B, &CB));
+    RITZ_TRY(square(&C, &C, &CC));
+    *out = CB > 0.0 && BB * CC - CB * CB <= rounding * BB * CC;
+done:
+    ritz_dense_free(&C);
+    return status;
+}
+
+/* [Phi X] */
+static ritz_status beside(const second *s, const ritz_dense *X, ritz_dense *out)
+{
+    return s->Phi.ncol == 0 ? ritz_dense_copy(X, out)
+                            : ritz_dense_beside(&s->Phi, X, out);
+}
+
+/* T made M-orthonormal, column by column, so that the first stay the best. */
+static ritz_status orthonormalise(const ritz_component *component,
+                                  double tolerance, ritz_dense *T)
+{
+    ritz_status status = RITZ_OK;
+    ritz_orthonormal set = {0};
+    ritz_dense column = {0};
+
+    RITZ_TRY(ritz_orthonormal_new(T->nrow, &component->M, tolerance, &set));
+    for (int64_t j = 0; j < T->ncol; j++) {
+        RITZ_TRY(ritz_dense_columns(T, j, 1, &column));
+        RITZ_TRY(ritz_orthonormal_append(&set, &column, 1, NULL));
+        ritz_dense_free(&column);
+    }
+    ritz_dense_free(T);
+    RITZ_TRY(ritz_dense_columns(&set.V, 0, set.count, T));
+done:
+    ritz_orthonormal_free(&set);
+    ritz_dense_free(&column);
+    return status;
+}
+
+static ritz_status vectors(const ritz_request *request, const second *s,
+                           bool one_sided, ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(beside(s, &s->balanced.T, &basis->T));
+    if (one_sided)
+        RITZ_TRY(
+            orthonormalise(request->component, request->tolerance, &basis->T));
+    else
+        RITZ_TRY(beside(s, &s->balanced.W, &basis->W));
+    RITZ_TRY(ritz_columns_new(basis->T.ncol, &basis->columns));
+    for (int64_t j = 0; j < basis->T.ncol; j++) {
+        bool rigid = j < s->Phi.ncol;
+
+        basis->columns.kind[j] =
+            rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_BALANCED;
+        if (rigid)
+            basis->columns.hertz[j] = 0.0;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_balanced_second(const ritz_request *request, ritz_half half,
+                                 ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    second s = {0};
+    ritz_basis basis = {0};
+    bool self_dual = false;
+
+    RITZ_TRY(ritz_gramians_asked(request, &s.states));
+    RITZ_TRY(find_rigid(component, &s));
+    RITZ_TRY(cut(component, half, &s));
+    RITZ_TRY(ritz_balance_asked(request, &s.half, &s.balanced));
+    RITZ_TRY(is_self_dual(component, half, &self_dual));
+    RITZ_TRY(
+        vectors(request, &s, self_dual || request->choice.one_sided, &basis));
+    if (self_dual)
+        ritz_remark_append(&basis, "left and right vectors agree");
+    RITZ_TRY(ritz_balanced_note(request, &s.states, &s.balanced, false,
+                                "vectors", &basis));
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    release(&s);
+    ritz_basis_free(&basis);
+    return status;
+}

@@ -1,0 +1,252 @@
+/*
+ * Modes, ranked by what they matter from inputs to outputs: the largest exact
+ * Hankel value that a mode has alone, or a cluster of modes closer than 1e-6 in
+ * frequency [Moore1981],
+ *
+ *     sigma_k = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
+ *
+ * with a displacement output. Of lightly damped modes far apart these are the
+ * Hankel values of the whole, and the best modes its balanced states; of close
+ * ones they are not. The error is at most what all that is left out can answer:
+ * twice the sum of all values of each cluster alone.
+ */
+#include "base/alloc.h"
+#include "bases/balance_asked.h"
+#include "bases/states_asked.h"
+#include "gramians/cluster.h"
+#include "gramians/engines.h"
+#include "gramians/modal_modes.h"
+
+#include <ritz/eigen.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Modes that are kept whole or not at all. */
+typedef struct group {
+    int64_t first, last; /* flexible modes first .. last - 1 */
+    double value;        /* by which it is ranked */
+    double bound;        /* of what it answers alone */
+    bool keep;
+} group;
+
+typedef struct search {
+    ritz_gramians_request asked;
+    ritz_first_order modes;
+    ritz_modal modal;
+    int64_t count;
+    group *groups; /* by frequency */
+    int64_t kept;  /* modes */
+    double bound;  /* of all that is left out */
+} search;
+
+static void release(search *s)
+{
+    ritz_first_order_free(&s->modes);
+    ritz_modal_free(&s->modal);
+    free(s->groups);
+}
+
+static ritz_status check(const ritz_request *request)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &request->component->io;
+
+    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                 "the best modes are asked for by their number, not by a "
+                 "frequency: among-hz says which to choose from");
+    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                 "no modes are asked for, one at least is needed");
+    RITZ_FAIL_IF(io->num_inputs == 0, RITZ_ERR_ARGUMENT,
+                 "the component has no inputs: no mode can be reached");
+    RITZ_FAIL_IF(io->num_outputs == 0, RITZ_ERR_ARGUMENT,
+                 "the component has no outputs: no mode can be seen");
+    for (int64_t i = 0; i < io->num_outputs; i++)
+        RITZ_FAIL_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
+                     "output '%s' has the limit %g, which is not positive",
+                     io->output[i], io->limit[i]);
+done:
+    return status;
+}
+
+static ritz_status find_modes(const ritz_request *request, search *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_choice *choice = &request->choice;
+    ritz_coupling coupling = {0};
+
+    s->asked = (ritz_gramians_request){.component = request->component,
+                                       .engine = RITZ_ENGINE_MODAL,
+                                       .among_hz = choice->among_hz};
+    RITZ_TRY(ritz_request_damping(request, &s->asked.damping));
+    RITZ_TRY(ritz_gramians_modes(&s->asked, &s->modes));
+    if (ritz_modes_coupled(&s->modes, &coupling))
+        RITZ_TRY(ritz_coupling_refuse(
+            &coupling, "modes are ranked one by one: take 'balanced'"));
+    RITZ_TRY(
+        ritz_modal_of_modes(&s->modes, &request->component->io, &s->modal));
+done:
+    return status;
+}
+
+/* What modes first .. last - 1 are worth alone; over a band, if there is one. */
+static ritz_status weigh(const search *s, const double *band, double *sigma,
+                         group *at)
+{
+    ritz_status status = RITZ_OK;
+    ritz_modal part = {0};
+
+    RITZ_TRY(ritz_modal_part(&s->modal, at->first, at->last, &part));
+    RITZ_TRY(ritz_modal_hankel(&part, sigma));
+    for (int64_t k = 0; k < 2 * part.count; k++)
+        at->bound += 2.0 * sigma[k];
+    if (band)
+        RITZ_TRY(ritz_modal_hankel_band(&part, band, sigma));
+    at->value = sigma[0];
+done:
+    ritz_modal_free(&part);
+    return status;
+}
+
+static ritz_status rank(const ritz_request *request, search *s)
+{
+    ritz_status status = RITZ_OK;
+    bool banded = request->choice.given & RITZ_USES_BAND;
+    const double *band = banded ? request->choice.band_hz : NULL;
+    double *sigma = NULL;
+    int64_t last = 0;
+
+    RITZ_NEW(sigma, 2 * s->modal.count);
+    RITZ_NEW(s->groups, s->modal.count);
+    for (int64_t first = 0; first < s->modal.count; first = last) {
+        group *at = &s->groups[s->count++];
+
+        last = ritz_modal_cluster(&s->modal, first);
+        *at = (group){.first = first, .last = last};
+        RITZ_TRY(weigh(s, band, sigma, at));
+    }
+done:
+    free(sigma);
+    return status;
+}
+
+/* Of those that are not kept yet; of equal ones the lowest in frequency. */
+static group *best(search *s)
+{
+    group *found = NULL;
+
+    for (int64_t k = 0; k < s->count; k++) {
+        group *at = &s->groups[k];
+
+        if (!at->keep && at->value > (found ? found->value : 0.0))
+            found = at;
+    }
+    return found;
+}
+
+/* The best first, until the next does not fit or does nothing. */
+static ritz_status choose(const ritz_request *request, search *s)
+{
+    ritz_status status = RITZ_OK;
+    group *next = best(s);
+
+    RITZ_FAIL_IF(!next, RITZ_ERR_ARGUMENT,
+                 "inputs reach no mode that outputs see");
+    RITZ_FAIL_IF(next->last - next->first > request->modes, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " modes at %.6g Hz are one cluster, kept whole or "
+                 "not at all: ask for as many at least",
+                 next->last - next->first,
+                 ritz_eigen_hertz(s->modal.omega[next->first] *
+                                  s->modal.omega[next->first]));
+    for (; next && s->kept + next->last - next->first <= request->modes;
+         next = best(s)) {
+        next->keep = true;
+        s->kept += next->last - next->first;
+    }
+    for (int64_t k = 0; k < s->count; k++)
+        s->bound += s->groups[k].keep ? 0.0 : s->groups[k].bound;
+done:
+    return status;
+}
+
+static void put(const search *s, int64_t mode, int64_t column,
+                ritz_basis *basis)
+{
+    bool rigid = mode < s->modes.num_rigid;
+
+    memcpy(ritz_dense_col(&basis->T, column),
+           ritz_dense_col(&s->modes.Phi, mode),
+           (size_t)basis->T.nrow * sizeof *basis->T.val);
+    basis->columns.kind[column] =
+        rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
+    basis->columns.hertz[column] =
+        rigid ? 0.0 : ritz_eigen_hertz(s->modes.lambda[mode]);
+}
+
+static void remark(const ritz_request *request, const search *s,
+                   ritz_basis *basis)
+{
+    char damping[RITZ_DAMPING_SIZE] = "";
+    char text[2 * RITZ_DAMPING_SIZE];
+    char among[RITZ_NAME_SIZE] = "";
+    char less[RITZ_NAME_SIZE] = "";
+
+    if (s->asked.among_hz > 0.0)
+        snprintf(among, sizeof among, " up to %.6g Hz", s->asked.among_hz);
+    if (s->kept < request->modes)
+        snprintf(less, sizeof less, " of %" PRId64 " asked for",
+                 request->modes);
+    ritz_damping_print(&s->asked.damping, damping);
+    snprintf(text, sizeof text,
+             "the best %" PRId64 " of %" PRId64
+             " modes%s%s; the others together answer at most %.4g; "
+             "damping: %s",
+             s->kept, s->modal.count, among, less, s->bound,
+             damping[0] ? damping : "that of the matrices");
+    ritz_remark_append(basis, text);
+}
+
+static ritz_status make(const ritz_request *request, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    search s = {0};
+    ritz_basis basis = {0};
+    int64_t column = 0;
+
+    RITZ_TRY(check(request));
+    RITZ_TRY(find_modes(request, &s));
+    RITZ_TRY(rank(request, &s));
+    RITZ_TRY(choose(request, &s));
+    RITZ_TRY(
+        ritz_basis_new(s.modes.num_dofs, s.modes.num_rigid + s.kept, &basis));
+    for (; column < s.modes.num_rigid; column++)
+        put(&s, column, column, &basis);
+    for (int64_t k = 0; k < s.count; k++)
+        for (int64_t j = s.groups[k].first;
+             j < s.groups[k].last && s.groups[k].keep; j++)
+            put(&s, s.modes.num_rigid + j, column++, &basis);
+    snprintf(basis.origin.engine, sizeof basis.origin.engine, "closed form");
+    remark(request, &s, &basis);
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    release(&s);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+const ritz_method ritz_method_modal_balanced = {
+    .name = "modal-balanced",
+    .summary = "the modes that matter most from inputs to outputs",
+    .reference = "Moore1981",
+    .when = "light damping, few inputs and outputs, modes as coordinates",
+    .cost = "all modes, or those up to a frequency; ranking O(m)",
+    .holds = "kept modes, symmetry, stability; a bound of what is left out",
+    .fails = "close modes: their values add up or cancel; static gain",
+    .uses =
+        RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_AMONG | RITZ_USES_BAND,
+    .make = make,
+};

@@ -1,0 +1,330 @@
+/*
+ * A component of many dofs in a basis of states, without its modes:
+ *
+ *     W'E T = W_q'T_q + W_v'M T_v,   W'A T = W_q'T_v - W_v'F,
+ *     F = K T_q + (D + a M + b K + M Phi diag(2 zeta w) Phi'M) T_v
+ *
+ * with Phi the modes of which the vectors are made, where damping is by ratios.
+ * Accelerations are M u'' = B f - F z, so that with M Y = Ca'
+ *
+ *     y = (C T_q + Cv T_v - Y'F) z + Y'B f
+ *
+ * Rigid motion costs no energy: K u is zero there, and so is u'K.
+ */
+#include "base/alloc.h"
+#include "linear/general.h"
+#include "model/state_reduce.h"
+
+#include <ritz/eigen.h>
+#include <ritz/factor.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+
+/* Halves of T and W, and forces F; K and D hold the dampers. */
+typedef struct large {
+    const ritz_component *component;
+    const ritz_columns *columns;
+    ritz_sparse K, D;
+    ritz_dense T_q, T_v, W_q, W_v;
+    ritz_dense KT, F; /* K T_q; all of it */
+} large;
+
+static void release(large *m)
+{
+    ritz_sparse_free(&m->K);
+    ritz_sparse_free(&m->D);
+    ritz_dense_free(&m->T_q);
+    ritz_dense_free(&m->T_v);
+    ritz_dense_free(&m->W_q);
+    ritz_dense_free(&m->W_v);
+    ritz_dense_free(&m->KT);
+    ritz_dense_free(&m->F);
+}
+
+static ritz_status half(const ritz_dense *T, int64_t first, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = T->nrow / 2;
+
+    RITZ_TRY(ritz_dense_new(n, T->ncol, out));
+    for (int64_t j = 0; j < T->ncol; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(T, j)[first + i];
+done:
+    return status;
+}
+
+static ritz_status install(const ritz_component *component, large *m)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dampers dampers = {0};
+
+    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
+                 "structural damping is of harmonic motion and has no states, "
+                 "give it as a modal ratio");
+    RITZ_TRY(ritz_sparse_copy(&component->K, &m->K));
+    if (component->D.colptr)
+        RITZ_TRY(ritz_sparse_copy(&component->D, &m->D));
+    RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
+    RITZ_TRY(ritz_dampers_install_sparse(&dampers, &m->K, &m->D));
+done:
+    ritz_dampers_free(&dampers);
+    return status;
+}
+
+static bool is_rigid(const large *m, int64_t j)
+{
+    return m->columns->kind[j] == RITZ_COLUMN_RIGID;
+}
+
+/* Y := K X but for rigid columns. */
+static ritz_status stiffness_times(const large *m, const ritz_dense *X,
+                                   ritz_dense *Y)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_sparse_mul(&m->K, X, Y));
+    for (int64_t j = 0; j < Y->ncol; j++)
+        for (int64_t i = 0; i < Y->nrow && is_rigid(m, j); i++)
+            ritz_dense_col(Y, j)[i] = 0.0;
+done:
+    return status;
+}
+
+/* A := A + factor B */
+static void add(double factor, const ritz_dense *B, ritz_dense *A)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        A->val[k] += factor * B->val[k];
+}
+
+/* F += M Phi diag(2 zeta w) Phi'M T_v */
+static ritz_status add_ratios(const ritz_damping *damping, double among_hz,
+                              const ritz_dense *MT, large *m)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_sparse *M = &m->component->M;
+    const ritz_span span = {-1, among_hz};
+    ritz_pairs modes = {0};
+    ritz_dense q = {0}, rate = {0}, force = {0};
+
+    RITZ_FAIL_IF(!(among_hz > 0.0), RITZ_ERR_ARGUMENT,
+                 "damping ratios need all modes of %" PRId64
+                 " dofs: state damping as rayleigh or fit, or choose modes "
+                 "up to a frequency",
+                 m->component->num_dofs);
+    RITZ_TRY_IN("damping ratios", ritz_eigen_sparse(&m->K, M, &span, &modes));
+    RITZ_TRY(ritz_dense_mul_tn(&modes.Phi, MT, &q));
+    for (int64_t j = 0; j < q.ncol; j++)
+        for (int64_t k = 0; k < q.nrow; k++) {
+            double w = sqrt(fmax(modes.lambda[k], 0.0));
+            int64_t flexible = k - modes.num_rigid;
+
+            ritz_dense_col(&q, j)[k] *=
+                flexible < 0
+                    ? 0.0
+                    : 2.0 * w * ritz_damping_of_mode(damping, flexible, w);
+        }
+    RITZ_TRY(ritz_dense_mul(&modes.Phi, &q, &rate));
+    RITZ_TRY(ritz_sparse_mul(M, &rate, &force));
+    add(1.0, &force, &m->F);
+done:
+    ritz_pairs_free(&modes);
+    ritz_dense_free(&q);
+    ritz_dense_free(&rate);
+    ritz_dense_free(&force);
+    return status;
+}
+
+/* F, once K T_q is there. */
+static ritz_status add_damping(const ritz_damping *damping, double among_hz,
+                               const ritz_dense *MT, large *m)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_copy(&m->KT, &m->F));
+    if (m->D.colptr) {
+        RITZ_TRY(ritz_sparse_mul(&m->D, &m->T_v, &part));
+        add(1.0, &part, &m->F);
+    }
+    if (ritz_damping_is_rayleigh(damping)) {
+        ritz_dense_free(&part);
+        RITZ_TRY(stiffness_times(m, &m->T_v, &part));
+        add(damping->b, &part, &m->F);
+        add(damping->a, MT, &m->F);
+    } else if (damping->kind != RITZ_DAMPING_NONE) {
+        RITZ_TRY(add_ratios(damping, among_hz, MT, m));
+    }
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* S := |X|'|Y| */
+static ritz_status magnitudes(const ritz_dense *X, const ritz_dense *Y,
+                              ritz_dense *S)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense x = {0}, y = {0};
+
+    RITZ_TRY(ritz_dense_abs(X, &x));
+    RITZ_TRY(ritz_dense_abs(Y, &y));
+    RITZ_TRY(ritz_dense_mul_tn(&x, &y, S));
+done:
+    ritz_dense_free(&x);
+    ritz_dense_free(&y);
+    return status;
+}
+
+/*
+ * Of A = U'X +- V'Y, what is rounding between rigid motion and the rest is
+ * nothing: rigid motion stands apart.
+ */
+static ritz_status settle_rigid(const large *m, const ritz_dense *const left[2],
+                                const ritz_dense *const right[2], ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+    double rounding = (double)(left[0]->nrow + 64) * DBL_EPSILON;
+    ritz_dense first = {0}, second = {0};
+
+    RITZ_TRY(magnitudes(left[0], right[0], &first));
+    RITZ_TRY(magnitudes(left[1], right[1], &second));
+    add(1.0, &second, &first);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            if (is_rigid(m, i) != is_rigid(m, j) &&
+                fabs(ritz_dense_col(A, j)[i]) <=
+                    rounding * ritz_dense_col(&first, j)[i])
+                ritz_dense_col(A, j)[i] = 0.0;
+done:
+    ritz_dense_free(&first);
+    ritz_dense_free(&second);
+    return status;
+}
+
+/* A := W_q'T_v - W_v'F, where rigid rows see nothing of K. */
+static ritz_status motion(const large *m, ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense WF = {0}, WK = {0};
+
+    ritz_dense_free(A);
+    RITZ_TRY(ritz_dense_mul_tn(&m->W_q, &m->T_v, A));
+    RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &m->F, &WF));
+    RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &m->KT, &WK));
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(A, j)[i] -=
+                ritz_dense_col(&WF, j)[i] -
+                (is_rigid(m, i) ? ritz_dense_col(&WK, j)[i] : 0.0);
+    RITZ_TRY(settle_rigid(m, (const ritz_dense *[]){&m->W_q, &m->W_v},
+                          (const ritz_dense *[]){&m->T_v, &m->F}, A));
+done:
+    ritz_dense_free(&WF);
+    ritz_dense_free(&WK);
+    return status;
+}
+
+/* C := C - Y'F, D := Y'B; M Y = Ca' */
+static ritz_status accelerations(const large *m, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &m->component->io;
+    ritz_factor *L = NULL;
+    ritz_dense Y = {0}, part = {0};
+
+    if (ritz_dense_max(&io->Ca) == 0.0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_general_transpose(&io->Ca, &Y));
+    status = ritz_factor_spd(&m->component->M, &L);
+    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_ARGUMENT,
+                 "accelerations are seen of a component with massless dofs: "
+                 "condense them first");
+    RITZ_TRY(status);
+    RITZ_TRY(ritz_factor_solve(L, &Y));
+    RITZ_TRY(ritz_dense_mul_tn(&Y, &m->F, &part));
+    add(-1.0, &part, &out->C);
+    ritz_dense_free(&part);
+    RITZ_TRY(ritz_dense_mul_tn(&Y, &io->B, &part));
+    add(1.0, &part, &out->D);
+done:
+    ritz_factor_free(&L);
+    ritz_dense_free(&Y);
+    ritz_dense_free(&part);
+    return status;
+}
+
+static ritz_status see(const large *m, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &m->component->io;
+    ritz_dense rate = {0};
+
+    ritz_dense_free(&out->B);
+    ritz_dense_free(&out->C);
+    RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
+    RITZ_TRY(ritz_dense_mul(&io->C, &m->T_q, &out->C));
+    RITZ_TRY(ritz_dense_mul(&io->Cv, &m->T_v, &rate));
+    add(1.0, &rate, &out->C);
+    RITZ_TRY(accelerations(m, out));
+done:
+    ritz_dense_free(&rate);
+    return status;
+}
+
+/* What massless dofs answer at once would need more than the vectors. */
+static ritz_status refuse_massless_inputs(const ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &component->io;
+
+    for (int64_t j = 0; j < io->num_inputs; j++)
+        for (int64_t i = 0; i < component->num_dofs; i++)
+            RITZ_FAIL_IF(ritz_dense_col(&io->B, j)[i] != 0.0 &&
+                             ritz_sparse_diagonal(&component->M, i) == 0.0,
+                         RITZ_ERR_ARGUMENT,
+                         "input '%s' drives a dof without mass, and there are "
+                         "too many dofs for what it answers at once: condense "
+                         "it first",
+                         io->input[j]);
+done:
+    return status;
+}
+
+ritz_status ritz_states_project(const ritz_component *component,
+                                const ritz_damping *damping,
+                                const ritz_basis *basis, ritz_state_space *out,
+                                ritz_dense *E)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = component->num_dofs;
+    const ritz_dense *T = &basis->T;
+    const ritz_dense *W = basis->W.val ? &basis->W : T;
+    large m = {.component = component, .columns = &basis->columns};
+    ritz_dense MT = {0}, inertia = {0};
+
+    RITZ_TRY(refuse_massless_inputs(component));
+    RITZ_TRY(install(component, &m));
+    RITZ_TRY(half(T, 0, &m.T_q));
+    RITZ_TRY(half(T, n, &m.T_v));
+    RITZ_TRY(half(W, 0, &m.W_q));
+    RITZ_TRY(half(W, n, &m.W_v));
+    RITZ_TRY(ritz_sparse_mul(&component->M, &m.T_v, &MT));
+    RITZ_TRY(stiffness_times(&m, &m.T_q, &m.KT));
+    RITZ_TRY(add_damping(damping, basis->among_hz, &MT, &m));
+    RITZ_TRY(motion(&m, &out->A));
+    RITZ_TRY(see(&m, out));
+    RITZ_TRY(ritz_dense_mul_tn(&m.W_q, &m.T_q, E));
+    RITZ_TRY(ritz_dense_mul_tn(&m.W_v, &MT, &inertia));
+    add(1.0, &inertia, E);
+    RITZ_TRY(settle_rigid(&m, (const ritz_dense *[]){&m.W_q, &m.W_v},
+                          (const ritz_dense *[]){&m.T_q, &MT}, E));
+done:
+    release(&m);
+    ritz_dense_free(&MT);
+    ritz_dense_free(&inertia);
+    return status;
+}

@@ -1,0 +1,69 @@
+#!/bin/sh
+# balanced.sh FOLDER-OF-THE-TOOLS - bases that are balanced, and what ritz-reduce
+# makes of each kind.
+. "$(dirname "$0")/tap.sh"
+data=${RITZ_DATA:?is not set}/chain
+
+ritz-import -q --stiffness "$data/chain.K.mtx" --mass "$data/chain.M.mtx" \
+    --damping "$data/chain.D.mtx" --dofs "$data/chain.dofs" \
+    --input tip=10:1 --output-at root=1:1 -o chain.h5
+ritz-import -q --stiffness "$data/chain.K.mtx" --mass "$data/chain.M.mtx" \
+    --damping "$data/chain.D.mtx" --dofs "$data/chain.dofs" \
+    --input tip=10:1 --output-at tip=10:1 -o tip.h5
+
+# --- states: the bound is printed, noted and held -------------------------------
+
+expect 0 '4 of 20 states kept; error at most 121.2 of 424.3' \
+    ritz-basis balanced --modes 4 chain.h5 -o states.h5
+json 0 ritz-reduce chain.h5 states.h5 -o small.h5
+holds '  notes the bound' 'j["kind"] == "state-space" and j["states"] == 4 and
+    j["estimates"][0]["name"] == "h-infinity-bound" and
+    near([j["estimates"][0]["value"]], [121.19], 1e-3) and
+    j["stability"] == "stable"'
+expect 0 '4 state, 16 perturbed' ritz-basis balanced --modes 4 \
+    --remainder static chain.h5 -o static.h5
+expect 0 '4 state' ritz-reduce chain.h5 static.h5 -o static-small.h5
+json 0 ritz-verify chain.h5 static-small.h5 -o verified.h5
+holds '  keeps the static gain, and the bound' '[e["value"] < limit
+    for name, limit in [("static-gain-relative", 1e-12), ("h-infinity", 121.2)]
+    for e in j["measures"] if e["name"] == name] == [True, True]'
+for engine in dense low-rank; do
+    expect 0 'error at most 121.2 of 424.3' ritz-basis balanced --modes 4 \
+        --engine $engine chain.h5 -o $engine.h5
+done
+expect 2 "no 'band_hz'" ritz-basis balanced --modes 4 --band-hz 0,1 chain.h5 \
+    -o none.h5
+
+# --- over a band ----------------------------------------------------------------
+
+expect 0 'balanced-band (modes 4 band-hz 0,0.1' ritz-basis balanced-band \
+    --modes 4 --band-hz 0,0.1 chain.h5 -o band.h5
+json 0 ritz-reduce chain.h5 band.h5 -o band-small.h5
+holds '  bounds nothing' 'all(e["name"] != "h-infinity-bound"
+    for e in j["estimates"])'
+expect 1 'a band is needed' ritz-basis balanced-band --modes 4 chain.h5 \
+    -o none.h5
+
+# --- second order ---------------------------------------------------------------
+
+for half in position velocity; do
+    expect 0 '3 balanced' ritz-basis balanced-$half --modes 3 chain.h5 \
+        -o two.h5
+    expect 0 'state space, 6 states' ritz-reduce chain.h5 two.h5 -o two-small.h5
+    expect 0 '3 balanced' ritz-basis balanced-$half --modes 3 --sides one \
+        chain.h5 -o one.h5
+    expect 0 'reduced component, 3 coordinates' ritz-reduce chain.h5 one.h5 \
+        -o one-small.h5
+done
+expect 0 'left and right vectors agree' ritz-basis balanced-position --modes 3 \
+    tip.h5 -o own.h5
+expect 0 'reduced component, 3 coordinates' ritz-reduce tip.h5 own.h5 \
+    -o own-small.h5
+
+# --- modes ----------------------------------------------------------------------
+
+expect 0 'the best 4 of 10 modes; the others together answer at most 30.93' \
+    ritz-basis modal-balanced --modes 4 chain.h5 -o modal.h5
+expect 0 '4 normal' ritz-reduce chain.h5 modal.h5 -o modal-small.h5
+
+echo "1..$count"
