@@ -13,6 +13,7 @@
 const ritz_format *const ritz_formats[] = {
     &ritz_format_output4,
     &ritz_format_matrix_market,
+    &ritz_format_mat,
     &ritz_format_dmig,
     NULL,
 };
@@ -171,6 +172,21 @@ done:
     return status;
 }
 
+/* As they stand, or failing that whatever their case. */
+static bool is_named(const ritz_matrices *all, const spec *s, int64_t k)
+{
+    const char *name = all->matrix[k].name;
+
+    if (!s->name)
+        return !all->matrix[k].other[0];
+    for (int64_t i = 0; i < all->count; i++)
+        if (strlen(all->matrix[i].name) == (size_t)s->length &&
+            strncmp(all->matrix[i].name, s->name, (size_t)s->length) == 0)
+            return strlen(name) == (size_t)s->length &&
+                   strncmp(name, s->name, (size_t)s->length) == 0;
+    return same_name(name, s->name, s->length);
+}
+
 static int64_t count_name(const ritz_matrices *all, const char *name,
                           int64_t from)
 {
@@ -220,7 +236,7 @@ static ritz_status find(const ritz_matrices *all, const spec *s,
 
     base = base ? base + 1 : file;
     for (int64_t k = 0; k < all->count; k++) {
-        if (s->name && !same_name(all->matrix[k].name, s->name, s->length))
+        if (!is_named(all, s, k))
             continue;
         times++;
         if (times == 1 || times == s->which)
@@ -230,6 +246,8 @@ static ritz_status find(const ritz_matrices *all, const spec *s,
     RITZ_FAIL_IF(!s->name && times > 1, RITZ_ERR_ARGUMENT,
                  "'%.80s' holds %s: name one, as %.80s:%s%s", base, holds, base,
                  first, count_name(all, first, 0) > 1 ? "#1" : "");
+    RITZ_FAIL_IF(!s->name && times == 0, RITZ_ERR_FORMAT,
+                 "'%.80s' holds no matrix, but %s", base, holds);
     RITZ_FAIL_IF(times == 0, RITZ_ERR_ARGUMENT,
                  "'%.80s' holds no '%.*s', but %s", base, (int)(s->length % 80),
                  s->name, holds);
@@ -258,6 +276,8 @@ ritz_status ritz_foreign_select(const char *spec_text, ritz_matrix *out)
     RITZ_FAIL_IF(all.count == 0, RITZ_ERR_FORMAT, "'%.200s' holds no matrix",
                  path);
     RITZ_TRY(find(&all, &s, path, &which));
+    RITZ_FAIL_IF(all.matrix[which].other[0], RITZ_ERR_FORMAT, "'%.200s' is %s",
+                 spec_text, all.matrix[which].other);
     *out = all.matrix[which];
     all.matrix[which] = (ritz_matrix){0};
 done:

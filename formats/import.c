@@ -103,8 +103,7 @@ static double source_digits(const ritz_parts *parts)
     return parts->count > 0 ? (double)parts->part[0].matrix.digits : 0.0;
 }
 
-/* A label, in which '/' divides: "N/mm". */
-static ritz_status take_units(const char *text, char out[RITZ_NAME_SIZE])
+ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 {
     ritz_status status = RITZ_OK;
 
@@ -184,7 +183,8 @@ static ritz_status make_component(const ritz_import_request *request,
     }
     component->digits = source_digits(parts);
     if (request->units)
-        RITZ_TRY_IN("--units", take_units(request->units, component->units));
+        RITZ_TRY_IN("--units",
+                    ritz_import_units(request->units, component->units));
 done:
     ritz_names_free(&names);
     return status;

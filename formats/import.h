@@ -189,4 +189,7 @@ ritz_status ritz_import_aim(const char *text, size_t length,
 ritz_status ritz_import_split(const char *text, const char *form,
                               char name[RITZ_NAME_SIZE], const char **rest);
 
+/** A label, in which '/' divides: "N/mm". @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE]);
+
 #endif

@@ -14,6 +14,18 @@ static void set_text(json_t *keys, const char *key, const char *text)
     json_object_set_new(keys, key, cli_string(text));
 }
 
+/* What is none: its name, and what it is. */
+static void describe_other(const cli_run *run, json_t *array,
+                           const ritz_matrix *a)
+{
+    json_t *item = json_object();
+
+    cli_say(run, "  %-10s %17s %s", *a->name ? a->name : "-", "-", a->other);
+    set_text(item, "name", a->name);
+    set_text(item, "other", a->other);
+    json_array_append_new(array, item);
+}
+
 /* One matrix: a line, and its object in the array. */
 static void describe_matrix(const cli_run *run, json_t *array, json_t *sums,
                             const ritz_matrix *a)
@@ -60,8 +72,12 @@ void describe_matrices(const cli_run *run, json_t *keys, const ritz_matrices *m)
             (long long)m->count);
     cli_say(run, "  %-10s %17s %10s %-17s %6s %9s  %s", "name", "size",
             "entries", "form", "digits", "asymmetry", "spelling");
-    for (int64_t k = 0; k < m->count; k++)
-        describe_matrix(run, array, sums, &m->matrix[k]);
+    for (int64_t k = 0; k < m->count; k++) {
+        if (*m->matrix[k].other)
+            describe_other(run, array, &m->matrix[k]);
+        else
+            describe_matrix(run, array, sums, &m->matrix[k]);
+    }
     set_text(keys, "kind", "matrices");
     set_text(keys, "format", m->format);
     json_object_set_new(keys, "matrices", array);

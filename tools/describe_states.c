@@ -117,6 +117,7 @@ ritz_status describe_states(const cli_run *run, json_t *keys,
     json_object_set_new(keys, "stability",
                         cli_string(ritz_stability_name(probe.verdict)));
     describe_measures(run, keys, "estimates", &states->estimates);
+    describe_measures(run, keys, "errors", &states->errors);
 done:
     free(pole);
     return status;

@@ -43,7 +43,7 @@ static void judge(cli_run *run, const ritz_spectrum *spectrum)
         if (creal(s) > neutral * cabs(s))
             cli_warn(run, "pole %lld, %.6g Hz, is unstable: it grows by %.3g/s",
                      (long long)j + 1, hertz_of(s), creal(s));
-        rough += !(spectrum->residual[j] <= exact);
+        rough += spectrum->residual[j] > exact; /* NaN: it has none */
     }
     if (rough > 0)
         cli_warn(run,
@@ -63,7 +63,10 @@ void poles_say(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
     for (int64_t j = 0; j < spectrum->count; j++) {
         double _Complex s = spectrum->s[j];
         json_t *item = pole_json(s);
+        char residual[32] = "-";
 
+        if (!isnan(spectrum->residual[j]))
+            snprintf(residual, sizeof residual, "%.1e", spectrum->residual[j]);
         json_object_set_new(item, "residual", cli_real(spectrum->residual[j]));
         json_array_append_new(array, item);
         if (tsv)
@@ -72,10 +75,10 @@ void poles_say(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
                     ritz_spectrum_ratio(s), creal(s), cimag(s),
                     spectrum->residual[j]);
         else
-            cli_say(run, "%5lld %13.7g %13.7g %12.6g %13.6g %13.7g %9.1e%s%s",
+            cli_say(run, "%5lld %13.7g %13.7g %12.6g %13.6g %13.7g %9s%s%s",
                     (long long)j + 1, hertz_of(s), cabs(s),
                     100.0 * ritz_spectrum_ratio(s), creal(s), cimag(s),
-                    spectrum->residual[j], *note_of(s) ? "  " : "", note_of(s));
+                    residual, *note_of(s) ? "  " : "", note_of(s));
     }
     if (spectrum->num_zero > 0 && !tsv)
         cli_say(run, "%lld poles at 0 are not listed: rigid-body motion",

@@ -83,9 +83,15 @@ static ritz_status make(cli_run *run, const ritz_method *method,
     ritz_stamp stamp = {0};
 
     cli_record(run, method->name, -1);
-    RITZ_TRY(model_read(run, run->operand[1], MODEL_COMPONENT, &m));
-    request->component = &m.component;
-    if (method->uses & RITZ_USES_ATTACHED)
+    RITZ_TRY(model_read(run, run->operand[1],
+                        MODEL_COMPONENT |
+                            (method->uses & RITZ_USES_SPACE ? MODEL_STATES : 0),
+                        &m));
+    if (m.kind == MODEL_STATES)
+        request->space = &m.states;
+    else
+        request->component = &m.component;
+    if (request->component && method->uses & RITZ_USES_ATTACHED)
         RITZ_TRY_IN(
             run->operand[1],
             ritz_component_attached(&m.component, ports, &request->attached));
@@ -96,8 +102,9 @@ static ritz_status make(cli_run *run, const ritz_method *method,
     }
     RITZ_TRY_IN(run->operand[1], ritz_basis_make(method, request, &basis));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_basis(run->output, &basis, m.component.units,
-                                        &stamp));
+    RITZ_TRY(ritz_container_write_basis(
+        run->output, &basis,
+        request->space ? m.states.units : m.component.units, &stamp));
     report(run, &basis);
 done:
     ritz_dofs_free(&request->attached);
@@ -145,7 +152,7 @@ int main(int argc, char **argv)
     cli_option options[NUM_OWN + MAX_WORDS + 1] = {
         {CLI_INT(&request.modes), .name = "modes", .argument = "N", .min = 0,
          .max = 100000,
-         .help = "how many flexible vectors (Lanczos: states), or"},
+         .help = "how many flexible vectors (of states: states), or"},
         {CLI_REAL(&request.up_to_hz), .name = "up-to-hz", .argument = "F",
          .min = 1e-9, .max = 1e9, .help = "every mode up to this frequency"},
         {CLI_TEXT(&ports), .name = "attach", .argument = "PORT[,PORT]",
@@ -162,7 +169,8 @@ int main(int argc, char **argv)
     const cli_program program = {
         .name = "ritz-basis",
         .operands = {{"METHOD", "one of those that --list shows", false},
-                     {"COMPONENT", "the component to be reduced", false}},
+                     {"COMPONENT",
+                      "the component, or state space, to be reduced", false}},
         .summary = "Find the subspace in which a component is reduced. Rigid "
                    "modes of a free component\nare kept beside the flexible "
                    "ones asked for.",

@@ -31,14 +31,14 @@ static const ritz_exporter *find(const cli_program *program, const char *word)
 }
 
 /* Which errors are known of it: no number without its error. */
-static ritz_status vouch(cli_run *run, const ritz_reduced *reduced, bool force)
+static ritz_status vouch(cli_run *run, const ritz_measures *errors,
+                         const ritz_measures *estimates, bool force)
 {
     ritz_status status = RITZ_OK;
-    const char *rests = reduced->errors.count > 0      ? "measured"
-                        : reduced->estimates.count > 0 ? "estimated"
-                                                       : "unknown";
-    const ritz_measures *known =
-        reduced->errors.count > 0 ? &reduced->errors : &reduced->estimates;
+    const char *rests = errors->count > 0      ? "measured"
+                        : estimates->count > 0 ? "estimated"
+                                               : "unknown";
+    const ritz_measures *known = errors->count > 0 ? errors : estimates;
 
     cli_report_text(run, "errors_rest_on", rests);
     json_object_set_new(run->report, "errors",
@@ -53,8 +53,8 @@ static ritz_status vouch(cli_run *run, const ritz_reduced *reduced, bool force)
         return RITZ_OK;
     }
     cli_say(run, "errors %s by %s:", rests,
-            reduced->errors.count > 0 ? "ritz-verify or ritz-compare"
-                                      : "ritz-reduce, not verified");
+            errors->count > 0 ? "ritz-verify or ritz-compare"
+                              : "ritz-reduce, not verified");
     model_say_measures(run, known, rests);
     for (int64_t k = 0; k < known->count; k++) {
         cli_record_error(run, known->item[k].name, known->item[k].value);
@@ -119,13 +119,32 @@ static ritz_status export_reduced(cli_run *run, model *m,
     ritz_status status = RITZ_OK;
     ritz_probe probe = {0};
 
-    RITZ_TRY(vouch(run, &m->reduced, force));
+    RITZ_TRY(vouch(run, &m->reduced.errors, &m->reduced.estimates, force));
     RITZ_TRY(check_forces(run, &m->reduced.columns, force));
     RITZ_TRY_IN(run->operand[0], ritz_probe_reduced(&m->reduced, &probe));
     RITZ_TRY(check_stability(run, &probe, m->reduced.origin.method, force));
     RITZ_TRY(exporter->write_reduced(&m->reduced, request, done));
 done:
     return status;
+}
+
+/* What was imported is no reduction and has no errors; of some reductions
+   nothing but their stability is known. */
+static ritz_status vouch_states(cli_run *run, const ritz_state_space *states,
+                                bool force)
+{
+    bool bounded = false;
+
+    if (!*states->origin.method && states->errors.count == 0)
+        return RITZ_OK;
+    for (int64_t k = 0; k < states->estimates.count; k++)
+        bounded = bounded || strcmp(states->estimates.item[k].name,
+                                    "growth-relative") != 0;
+    if (states->errors.count > 0 || bounded)
+        return vouch(run, &states->errors, &states->estimates, force);
+    cli_warn(run, "nothing is known of the errors of '%s' but its stability",
+             run->operand[0]);
+    return RITZ_OK;
 }
 
 static ritz_status export_states(cli_run *run, model *m,
@@ -139,8 +158,7 @@ static ritz_status export_states(cli_run *run, model *m,
     cli_record(run, exporter->name, m->states.A.nrow);
     RITZ_TRY_IN(run->operand[0], ritz_probe_states(&m->states, &probe));
     RITZ_TRY(check_stability(run, &probe, m->states.origin.method, force));
-    cli_warn(run, "nothing is known of the errors of '%s' but its stability",
-             run->operand[0]);
+    RITZ_TRY(vouch_states(run, &m->states, force));
     RITZ_TRY(exporter->write_states(&m->states, request, done));
 done:
     return status;

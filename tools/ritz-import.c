@@ -174,6 +174,70 @@ done:
     return status;
 }
 
+/* Files of "A=F,B=F,..." or one file. */
+static ritz_status take_space_inputs(cli_run *run, const char *matrices)
+{
+    ritz_status status = RITZ_OK;
+    char *spec = malloc(strlen(matrices) + 1);
+
+    RITZ_FAIL_IF(!spec, RITZ_ERR_MEMORY, "no memory for '%s'", matrices);
+    while (ritz_import_space_next(&matrices, spec))
+        RITZ_TRY(take_matrix(run, spec));
+done:
+    free(spec);
+    return status;
+}
+
+static ritz_status import_space(cli_run *run,
+                                const ritz_import_space_request *request)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space space = {0};
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY(take_space_inputs(run, request->matrices));
+    RITZ_TRY_IN("--state-space", ritz_import_state_space(request, &space));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_state_space(run->output, &space, &stamp));
+    cli_say(run, "%s:", run->output);
+    RITZ_TRY(describe_states(run, run->report, &space));
+    cli_record(run, "import", space.A.nrow);
+done:
+    ritz_state_space_free(&space);
+    return status;
+}
+
+/* A state space has neither rows with names nor ports. */
+static void refuse_others(const cli_program *program, const repeated *lists,
+                          const ritz_import_request *request)
+{
+    const struct {
+        bool given;
+        const char *name;
+    } none[] = {
+        {request->stiffness, "stiffness"},
+        {request->mass, "mass"},
+        {request->damping, "damping"},
+        {request->structural_damping, "structural-damping"},
+        {request->bulk, "bulk"},
+        {request->dofs, "dofs"},
+        {request->symmetrise, "symmetrise"},
+        {lists->load.count > 0, "geometric-stiffness"},
+        {lists->port.count > 0, "port"},
+        {lists->rigid.count > 0, "rigid-port"},
+        {lists->averaged.count > 0, "averaged-port"},
+        {lists->input.count > 0, "input"},
+        {lists->output.count > 0, "output-at"},
+        {lists->damper.count > 0, "damper"},
+    };
+
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++)
+        if (none[k].given)
+            cli_refuse(program,
+                       "--state-space is a whole model, --%s is not for it",
+                       none[k].name);
+}
+
 /* Lists of options as the request has them. */
 static void take_lists(const repeated *lists, ritz_import_request *request)
 {
@@ -193,49 +257,16 @@ static void take_lists(const repeated *lists, ritz_import_request *request)
     request->damper = lists->damper.text;
 }
 
-int main(int argc, char **argv)
+/* All that the options answer. */
+typedef struct wish {
+    repeated lists;
+    ritz_import_request request;
+    ritz_import_space_request space;
+} wish;
+
+/* The options stand in main, which has room for nothing else. */
+static int serve(const cli_option *options, int argc, char **argv, wish *asked)
 {
-    repeated lists = {0};
-    ritz_import_request request = {0};
-    const cli_option options[] = {
-        {CLI_TEXT(&request.stiffness), .name = "stiffness", .argument = "F",
-         .help = "matrix K, F being FILE[:NAME[#K]]; absent: a rigid body"},
-        {CLI_TEXT(&request.mass), .name = "mass", .argument = "F",
-         .help = "matrix M"},
-        {CLI_TEXT(&request.damping), .name = "damping", .argument = "F",
-         .help = "viscous damping D"},
-        {CLI_TEXT(&request.structural_damping), .name = "structural-damping",
-         .argument = "F", .help = "structural damping K4, of K + i K4"},
-        {CLI_LIST(&lists.load), .name = "geometric-stiffness",
-         .argument = "F@LOAD", .help = "geometric stiffness of a unit load"},
-        {CLI_TEXT(&request.bulk), .name = "bulk", .argument = "F",
-         .help = "NASTRAN bulk data: grids, frames, sets"},
-        {CLI_TEXT(&request.dofs), .name = "dofs", .argument = "F",
-         .help = "what each row is: GRID COMP a line, COMP 0 a scalar point"},
-        {CLI_LIST(&lists.port), .name = "port",
-         .argument = "NAME=GRIDS[:COMPS]",
-         .help = "dofs by which other bodies hold this one"},
-        {CLI_LIST(&lists.rigid), .name = "rigid-port",
-         .argument = "NAME=GRIDS[:COMPS]",
-         .help = "port of a new grid amid these, which they follow rigidly"},
-        {CLI_LIST(&lists.averaged), .name = "averaged-port",
-         .argument = "NAME=GRIDS[:COMPS]",
-         .help = "port of a new grid that is the average of these"},
-        {CLI_LIST(&lists.input), .name = "input",
-         .argument = "NAME=GRID:COMP[*SCALE]",
-         .help = "force (COMP 1-3) or moment (4-6)"},
-        {CLI_LIST(&lists.output), .name = "output-at",
-         .argument = "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
-         .help = "displacement, velocity or acceleration that matters"},
-        {CLI_LIST(&lists.damper), .name = "damper",
-         .argument = "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
-         .help = "damper C, and spring K, from a dof to another or to ground"},
-        {CLI_TEXT(&request.units), .name = "units", .argument = "LABELS",
-         .help = "\"kg m s\": kept and shown, nothing is converted"},
-        {CLI_FLAG(&request.symmetrise), .name = "symmetrise",
-         .help = "average away any asymmetry, not only up to 1e-6"},
-        {0},
-    };
     const cli_program program = {
         .name = "ritz-import",
         .summary = "Matrices and geometry of a finite-element code become a "
@@ -244,14 +275,77 @@ int main(int argc, char **argv)
                    "blade.op4:MGG --bulk blade.bdf \\\n"
                    "      --port root=1-4:123 --units \"kg m s\" -o blade.h5",
         .options = options,
-        .output = "the component",
+        .output = "the component or state space",
     };
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (!request.stiffness && !request.mass)
+    if (asked->space.matrices) {
+        refuse_others(&program, &asked->lists, &asked->request);
+        asked->space.units = asked->request.units;
+        return cli_finish(&run, import_space(&run, &asked->space));
+    }
+    if (asked->space.inputs || asked->space.outputs)
+        cli_refuse(&program, "--input-names and --output-names are for "
+                             "--state-space");
+    if (!asked->request.stiffness && !asked->request.mass)
         cli_refuse(&program, "nothing to import: name --stiffness, --mass or "
-                             "both");
-    take_lists(&lists, &request);
-    return cli_finish(&run, import(&run, &request));
+                             "both, or --state-space");
+    take_lists(&asked->lists, &asked->request);
+    return cli_finish(&run, import(&run, &asked->request));
+}
+
+int main(int argc, char **argv)
+{
+    wish asked = {0};
+    const cli_option options[] = {
+        {CLI_TEXT(&asked.request.stiffness), .name = "stiffness",
+         .argument = "F",
+         .help = "matrix K, F being FILE[:NAME[#K]]; absent: a rigid body"},
+        {CLI_TEXT(&asked.request.mass), .name = "mass", .argument = "F",
+         .help = "matrix M"},
+        {CLI_TEXT(&asked.request.damping), .name = "damping", .argument = "F",
+         .help = "viscous damping D"},
+        {CLI_TEXT(&asked.request.structural_damping),
+         .name = "structural-damping", .argument = "F",
+         .help = "structural damping K4, of K + i K4"},
+        {CLI_LIST(&asked.lists.load), .name = "geometric-stiffness",
+         .argument = "F@LOAD", .help = "geometric stiffness of a unit load"},
+        {CLI_TEXT(&asked.request.bulk), .name = "bulk", .argument = "F",
+         .help = "NASTRAN bulk data: grids, frames, sets"},
+        {CLI_TEXT(&asked.request.dofs), .name = "dofs", .argument = "F",
+         .help = "what each row is: GRID COMP a line, COMP 0 a scalar point"},
+        {CLI_LIST(&asked.lists.port), .name = "port",
+         .argument = "NAME=GRIDS[:COMPS]",
+         .help = "dofs by which other bodies hold this one"},
+        {CLI_LIST(&asked.lists.rigid), .name = "rigid-port",
+         .argument = "NAME=GRIDS[:COMPS]",
+         .help = "port of a new grid amid these, which they follow rigidly"},
+        {CLI_LIST(&asked.lists.averaged), .name = "averaged-port",
+         .argument = "NAME=GRIDS[:COMPS]",
+         .help = "port of a new grid that is the average of these"},
+        {CLI_LIST(&asked.lists.input), .name = "input",
+         .argument = "NAME=GRID:COMP[*SCALE]",
+         .help = "force (COMP 1-3) or moment (4-6)"},
+        {CLI_LIST(&asked.lists.output), .name = "output-at",
+         .argument = "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
+         .help = "displacement, velocity or acceleration that matters"},
+        {CLI_LIST(&asked.lists.damper), .name = "damper",
+         .argument = "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
+         .help = "damper C, and spring K, from a dof to another or to ground"},
+        {CLI_TEXT(&asked.space.matrices), .name = "state-space",
+         .argument = "A=F,B=F,C=F[,D=F][,E=F]",
+         .help = "E x' = A x + B u, y = C x + D u instead; or a file of them"},
+        {CLI_TEXT(&asked.space.inputs), .name = "input-names",
+         .argument = "NAME[,NAME]", .help = "of a state space [u1,u2,...]"},
+        {CLI_TEXT(&asked.space.outputs), .name = "output-names",
+         .argument = "NAME[@LIMIT][,NAME]", .help = "the same [y1,y2,...]"},
+        {CLI_TEXT(&asked.request.units), .name = "units", .argument = "LABELS",
+         .help = "\"kg m s\": kept and shown, nothing is converted"},
+        {CLI_FLAG(&asked.request.symmetrise), .name = "symmetrise",
+         .help = "average away any asymmetry, not only up to 1e-6"},
+        {0},
+    };
+
+    return serve(options, argc, argv, &asked);
 }

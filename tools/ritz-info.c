@@ -21,7 +21,7 @@ static ritz_status describe(const cli_run *run, json_t *keys, const model *m)
         describe_response(run, keys, &m->response);
         return RITZ_OK;
     case MODEL_RANKING:
-        describe_ranking(run, keys, &m->ranking);
+        describe_rankings(run, keys, &m->rankings);
         return RITZ_OK;
     case MODEL_STATES:
         return describe_states(run, keys, &m->states);
@@ -133,7 +133,7 @@ int main(int argc, char **argv)
         .name = "ritz-info",
         .operands = {{"FILE",
                       "a container, a matrix file (OUTPUT4, DMIG, "
-                      "Matrix Market) or bulk data",
+                      "Matrix Market, MAT) or bulk data",
                       true}},
         .summary = "What is in a file: sizes, names, frequencies, checksums, "
                    "how it was made.",

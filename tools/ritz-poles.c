@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Poles of a large component that are listed where nothing is asked for. */
 enum { SOME_MODES = 20 };
@@ -16,6 +17,30 @@ typedef struct wish {
     cli_list damper;
     bool tsv;
 } wish;
+
+/* Of states, one of each pair; no shapes and so no residuals. */
+static ritz_status find_states(const ritz_state_space *states,
+                               ritz_spectrum *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_spectrum found = {.engine = "dense LAPACK"};
+    int64_t count = 0;
+
+    RITZ_TRY(ritz_state_space_poles(states, &count, &found.s));
+    found.residual = calloc((size_t)count + 1, sizeof *found.residual);
+    RITZ_FAIL_IF(!found.residual, RITZ_ERR_MEMORY, "no memory for poles");
+    for (int64_t k = 0; k < count; k++) {
+        if (cimag(found.s[k]) < 0.0)
+            continue;
+        found.residual[found.count] = (double)NAN;
+        found.s[found.count++] = found.s[k];
+    }
+    *out = found;
+    found = (ritz_spectrum){0};
+done:
+    ritz_spectrum_free(&found);
+    return status;
+}
 
 static ritz_status find(const model *m, const wish *asked,
                         const ritz_damping *damping, ritz_spectrum *out)
@@ -30,7 +55,9 @@ static ritz_status find(const model *m, const wish *asked,
         span = (ritz_span){.modes = -1, .up_to_hz = asked->up_to_hz};
     if (m->kind == MODEL_COMPONENT)
         return ritz_spectrum_component(&m->component, damping, &span, out);
-    RITZ_TRY(ritz_spectrum_dense(&view, damping, out));
+    RITZ_TRY(m->kind == MODEL_STATES
+                 ? find_states(&m->states, out)
+                 : ritz_spectrum_dense(&view, damping, out));
     while (out->count > 0 &&
            ((asked->modes > 0 && out->count > asked->modes) ||
             (by_hertz && cabs(out->s[out->count - 1]) > limit)))
@@ -62,6 +89,46 @@ done:
     return status;
 }
 
+/* Its damping is in A, and its dampers too. */
+static ritz_status check_states(const char *path, const wish *asked)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(asked->damping || asked->scan || asked->damper.count > 0,
+                 RITZ_ERR_ARGUMENT,
+                 "'%s' is a state space, damped as it is: --damping, --damper "
+                 "and --scan are not for it",
+                 path);
+done:
+    return status;
+}
+
+/* Dampers installed, and the damping beside them. */
+static ritz_status damp(cli_run *run, model *m, const wish *asked,
+                        ritz_damping *out)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    char text[RITZ_DAMPING_SIZE] = "";
+
+    if (m->kind == MODEL_STATES) {
+        RITZ_TRY(check_states(path, asked));
+        memcpy(text, m->states.damping, sizeof text);
+    } else {
+        RITZ_TRY_IN(path, dampers_install(m, &asked->damper));
+        RITZ_TRY(model_damping(m, asked->damping, out));
+        ritz_damping_print(out, text);
+    }
+    if (!asked->tsv) {
+        cli_say(run, "%s:", path);
+        describe_damping(run, run->report, text);
+        if (m->kind != MODEL_STATES)
+            describe_dampers(run, run->report, dampers_of(m));
+    }
+done:
+    return status;
+}
+
 static ritz_status poles(cli_run *run, const wish *asked)
 {
     ritz_status status = RITZ_OK;
@@ -69,19 +136,12 @@ static ritz_status poles(cli_run *run, const wish *asked)
     model m = {0};
     ritz_damping damping = {0};
     ritz_spectrum spectrum = {0};
-    char text[RITZ_DAMPING_SIZE] = "";
 
-    RITZ_TRY(model_read(run, path,
-                        MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM, &m));
+    RITZ_TRY(model_read(
+        run, path,
+        MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &m));
     RITZ_TRY(model_at(&m, path, asked->at));
-    RITZ_TRY_IN(path, dampers_install(&m, &asked->damper));
-    RITZ_TRY(model_damping(&m, asked->damping, &damping));
-    if (!asked->tsv) {
-        ritz_damping_print(&damping, text);
-        cli_say(run, "%s:", path);
-        describe_damping(run, run->report, text);
-        describe_dampers(run, run->report, dampers_of(&m));
-    }
+    RITZ_TRY(damp(run, &m, asked, &damping));
     if (asked->scan) {
         RITZ_TRY_IN(path, scan(run, &m, asked, &damping));
     } else {
@@ -122,7 +182,8 @@ int main(int argc, char **argv)
     };
     const cli_program program = {
         .name = "ritz-poles",
-        .operands = {{"FILE", "a component, reduced component or system",
+        .operands = {{"FILE",
+                      "a component, reduced component, system or state space",
                       false}},
         .summary = "Damped poles: frequency |s|/2pi and damping ratio of each, "
                    "and the best c of dampers.",

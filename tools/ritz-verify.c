@@ -12,27 +12,33 @@ typedef struct wish {
 /* Where the errors of what is verified stand. */
 static ritz_measures *place_of(model *reduced)
 {
+    if (reduced->kind == MODEL_STATES)
+        return &reduced->states.errors;
     return reduced->at ? &reduced->at->errors : &reduced->reduced.errors;
 }
 
-/* The measures, into the object that is written. */
+/* Measures, which are moved, into the object that is written. */
+static void keep(cli_run *run, ritz_measures *measures, ritz_measures *place)
+{
+    ritz_measures_free(place);
+    *place = *measures;
+    *measures = (ritz_measures){0};
+    for (int64_t k = 0; k < place->count; k++)
+        cli_record_error(run, place->item[k].name, place->item[k].value);
+}
+
 static ritz_status measure(cli_run *run, const model *full, model *reduced,
                            const ritz_verify_request *request)
 {
     ritz_status status = RITZ_OK;
     ritz_measures measures = {0};
-    ritz_measures *place = place_of(reduced);
 
     RITZ_TRY(reduced->at
                  ? ritz_verify_system(&full->component, reduced->at, request,
                                       &measures)
                  : ritz_verify_reduced(&full->component, &reduced->reduced,
                                        request, &measures));
-    ritz_measures_free(place);
-    *place = measures;
-    measures = (ritz_measures){0};
-    for (int64_t k = 0; k < place->count; k++)
-        cli_record_error(run, place->item[k].name, place->item[k].value);
+    keep(run, &measures, place_of(reduced));
 done:
     ritz_measures_free(&measures);
     return status;
@@ -42,6 +48,9 @@ static ritz_status write(cli_run *run, const model *reduced)
 {
     ritz_stamp stamp = cli_stamp(run);
 
+    if (reduced->kind == MODEL_STATES)
+        return ritz_container_write_state_space(run->output, &reduced->states,
+                                                &stamp);
     if (reduced->at)
         return ritz_container_write_system(run->output, &reduced->system,
                                            &stamp);
@@ -76,6 +85,82 @@ done:
     return status;
 }
 
+/* Modes have frequencies and shapes, state spaces have norms. */
+static ritz_status check_limits(const cli_run *run, const wish *asked,
+                                bool states)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_verify_request *v = &asked->verify;
+    const struct {
+        double limit;
+        const char *name;
+        bool states;
+    } limits[] = {
+        {v->limit_frequency, "frequency", false},
+        {v->limit_mac, "mac", false},
+        {v->limit_damping, "damping", false},
+        {v->limit_infinity, "h-infinity", true},
+        {v->limit_two, "h2", true},
+    };
+
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++)
+        RITZ_FAIL_IF(!isnan(limits[k].limit) && limits[k].states != states,
+                     RITZ_ERR_ARGUMENT,
+                     "'%s' is %s state space, --limit-%s is not for it",
+                     run->operand[1], states ? "a" : "no", limits[k].name);
+done:
+    return status;
+}
+
+/* The full model as states: as it is, or a component that is small enough. */
+static ritz_status full_states(const cli_run *run, model *full,
+                               const model *reduced, const wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    const char *own = asked->damping;
+    ritz_damping damping = {0};
+
+    RITZ_FAIL_IF(asked->damper.count > 0, RITZ_ERR_ARGUMENT,
+                 "'%s' holds its dampers in A: --damper cannot change them",
+                 run->operand[1]);
+    RITZ_FAIL_IF(full->kind == MODEL_STATES && own, RITZ_ERR_ARGUMENT,
+                 "'%s' is damped as it is: --damping is for components", path);
+    if (full->kind == MODEL_STATES)
+        return RITZ_OK;
+    RITZ_FAIL_IF(full->component.num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+                 "'%s' has %lld dofs, of more than %d no norms are taken: "
+                 "compare the responses that ritz-frf gives of both",
+                 path, (long long)full->component.num_dofs,
+                 (int)RITZ_STATE_DOFS);
+    RITZ_TRY_IN(
+        own ? "--damping" : run->operand[1],
+        ritz_damping_parse(own ? own : reduced->states.damping, &damping));
+    RITZ_TRY_IN(path, ritz_state_space_of_component(&full->component, &damping,
+                                                    &full->states));
+done:
+    return status;
+}
+
+static ritz_status verify_states(cli_run *run, model *full, model *reduced,
+                                 const wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures measures = {0};
+
+    cli_record(run, reduced->states.origin.method, reduced->states.A.nrow);
+    RITZ_TRY(full_states(run, full, reduced, asked));
+    RITZ_TRY_IN(run->operand[1],
+                ritz_verify_states(&full->states, &reduced->states,
+                                   &asked->verify, &measures));
+    keep(run, &measures, place_of(reduced));
+    RITZ_TRY(write(run, reduced));
+    RITZ_TRY(judge(run, place_of(reduced)));
+done:
+    ritz_measures_free(&measures);
+    return status;
+}
+
 static ritz_status verify(cli_run *run, wish *asked)
 {
     ritz_status status = RITZ_OK;
@@ -84,10 +169,20 @@ static ritz_status verify(cli_run *run, wish *asked)
     dampers_bare bare = {0};
     const char *own = asked->damping;
 
-    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT, &full));
-    RITZ_TRY(model_read(run, run->operand[1], MODEL_REDUCED | MODEL_SYSTEM,
-                        &reduced));
+    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
+                        &full));
+    RITZ_TRY(model_read(run, run->operand[1],
+                        MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &reduced));
     RITZ_TRY(model_at(&reduced, run->operand[1], asked->at));
+    RITZ_TRY(check_limits(run, asked, reduced.kind == MODEL_STATES));
+    if (reduced.kind == MODEL_STATES) {
+        RITZ_TRY(verify_states(run, &full, &reduced, asked));
+        goto done;
+    }
+    RITZ_FAIL_IF(full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+                 "'%s' is a state space and '%s' is none: there is nothing to "
+                 "compare by",
+                 run->operand[0], run->operand[1]);
     RITZ_TRY(model_damping(&reduced, own, &asked->verify.damping));
     if (reduced.at && !(asked->verify.band_hz[1] > 0.0)) {
         asked->verify.band_hz[0] = reduced.system.band_hz[0];
@@ -113,12 +208,7 @@ done:
 int main(int argc, char **argv)
 {
     const char *band = NULL;
-    const double none = (double)NAN;
-    wish asked = {.verify = {.limit_frequency = none,
-                             .limit_mac = none,
-                             .limit_damping = none,
-                             .limit_response = none,
-                             .limit_gain = none}};
+    wish asked = {.verify = RITZ_VERIFY_NONE};
     ritz_verify_request *v = &asked.verify;
     const cli_option options[] = {
         {CLI_TEXT(&asked.at), .name = "at",
@@ -141,15 +231,22 @@ int main(int argc, char **argv)
         {CLI_REAL(&v->limit_gain), .name = "limit-gain", .argument = "X",
          .min = 0.0, .max = 1e9,
          .help = "relative error of the flexible static gain"},
+        {CLI_REAL(&v->limit_infinity), .name = "limit-h-infinity",
+         .argument = "X", .min = 0.0, .max = 1e9,
+         .help = "of state spaces: relative, of the largest |H| anywhere"},
+        {CLI_REAL(&v->limit_two), .name = "limit-h2", .argument = "X",
+         .min = 0.0, .max = 1e9,
+         .help = "of state spaces: relative, of the H2 norm"},
         {0},
     };
     const cli_program program = {
         .name = "ritz-verify",
         .operands = {{"FULL",
                       "the full component (ritz-assemble --full of a "
-                      "system)",
+                      "system) or state space",
                       false},
-                     {"REDUCED", "the reduced component or system", false}},
+                     {"REDUCED", "the reduced component, system or state space",
+                      false}},
         .summary = "Measure every error of a reduced model against the full "
                    "one. The output is REDUCED\nwith the errors, their limits "
                    "and verdicts added; it is written even where a limit is\n"

@@ -44,6 +44,7 @@ typedef struct ritz_exporter {
 /** All exporters, ended by NULL. */
 extern const ritz_exporter *const ritz_exporters[];
 extern const ritz_exporter ritz_exporter_exudyn;
+extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_tsv;

@@ -1,5 +1,5 @@
 /*
- * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market.
+ * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market, MAT.
  * A format is recognised by content, never by name.
  */
 #ifndef RITZ_FOREIGN_H
@@ -20,6 +20,8 @@ typedef struct ritz_matrix {
     char spelling[RITZ_NAME_SIZE]; /* "OUTPUT4 text, bigmat, 1P,3E23.16" */
     ritz_dof *row; /* dof of each row where the file says; else NULL */
     ritz_dof *col; /* of each column, of rectangular ones; NULL: as rows */
+    char other[RITZ_NAME_SIZE]; /* why it is no matrix that can be used, "a cell
+                                   array"; A is then 0 x 0. "": it is one */
 } ritz_matrix;
 
 typedef struct ritz_matrices {
@@ -45,6 +47,7 @@ typedef struct ritz_format {
 /** All formats of matrices, ended by NULL. */
 extern const ritz_format *const ritz_formats[];
 extern const ritz_format ritz_format_dmig;
+extern const ritz_format ritz_format_mat;
 extern const ritz_format ritz_format_matrix_market;
 extern const ritz_format ritz_format_output4;
 

@@ -3,6 +3,7 @@
 #define RITZ_IMPORT_H
 
 #include <ritz/component.h>
+#include <ritz/state_space.h>
 
 /* Texts as the options of ritz-import take them; NULL or count 0: not given. */
 typedef struct ritz_import_request {
@@ -85,6 +86,30 @@ typedef struct ritz_import_report {
  */
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
                         ritz_import_report *report);
+
+/* A state space out of files, as the options have it; NULL: not given. */
+typedef struct ritz_import_space_request {
+    const char *matrices; /* "A=F,B=F,C=F[,D=F][,E=F]" or "FILE[:NAME]" */
+    const char *inputs;   /* "NAME,NAME"; u1, u2, ... */
+    const char *outputs;  /* "NAME[@LIMIT],NAME"; y1, y2, ... */
+    const char *units;
+} ritz_import_space_request;
+
+/**
+ * Read A, B and C, and D and E if they are given, as dense matrices.
+ *
+ * @return RITZ_ERR_ARGUMENT if one is missing, or there are more than
+ *         2 RITZ_STATE_DOFS states, inputs or outputs; RITZ_ERR_FORMAT if sizes
+ *         disagree, one is complex or not finite, or E is singular
+ */
+ritz_status ritz_import_state_space(const ritz_import_space_request *request,
+                                    ritz_state_space *out);
+
+/**
+ * The next file of such `matrices`, as "FILE[:NAME]", into room for as many
+ * letters as there are. @return false behind the last
+ */
+bool ritz_import_space_next(const char **at, char *out);
 
 void ritz_import_report_free(ritz_import_report *report);
 

@@ -4,6 +4,7 @@
 
 #include <ritz/reduced.h>
 #include <ritz/response.h>
+#include <ritz/state_space.h>
 #include <ritz/system.h>
 
 #include <math.h>
@@ -18,13 +19,16 @@ typedef struct ritz_verify_request {
     double limit_damping;   /* relative error of damping ratios */
     double limit_response;  /* relative to the largest |H| in the band */
     double limit_gain;      /* relative, flexible static gain */
+    double limit_infinity;  /* of state spaces, h-infinity-relative */
+    double limit_two;       /* of state spaces, h2-relative */
 } ritz_verify_request;
 
 #define RITZ_VERIFY_NONE                                                       \
     {                                                                          \
         .limit_frequency = (double)NAN, .limit_mac = (double)NAN,              \
         .limit_damping = (double)NAN, .limit_response = (double)NAN,           \
-        .limit_gain = (double)NAN                                              \
+        .limit_gain = (double)NAN, .limit_infinity = (double)NAN,              \
+        .limit_two = (double)NAN                                               \
     }
 
 /**
@@ -43,6 +47,29 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
  */
 ritz_status ritz_verify_system(const ritz_component *full,
                                const ritz_configuration *reduced,
+                               const ritz_verify_request *request,
+                               ritz_measures *out);
+
+/**
+ * Two models in first-order form, of the same inputs and outputs; outputs that
+ * have a limit in @p full are divided by it.
+ *
+ *     h-infinity, h-infinity-relative, h2-relative
+ *                            norms of the difference, and over those of the full
+ *                            model. Poles that are not left of the axis, if both
+ *                            have as many, are left out of all of them
+ *     h-infinity-bound       the first again, held to the bound that the
+ *                            reduced model has as estimate
+ *     response-relative      largest |H - H_r| / max |H|, if a band is given
+ *     static-gain-relative   of D - C A^-1 B, if neither has a pole at 0
+ *     growth-relative        of the reduced model: see ritz_probe_record
+ *
+ * @return RITZ_ERR_ARGUMENT if names differ, or a limit is set for a measure
+ *         that does not exist
+ * @cost   O(n^3), some fifty times
+ */
+ritz_status ritz_verify_states(const ritz_state_space *full,
+                               const ritz_state_space *reduced,
                                const ritz_verify_request *request,
                                ritz_measures *out);
 

@@ -84,6 +84,7 @@ static ritz_status read_all(hid_t file, ritz_state_space *model)
     RITZ_TRY(read_matrices(file, model));
     RITZ_TRY(ritz_part_read_columns(file, 0, model->A.ncol, &model->columns));
     RITZ_TRY(ritz_part_read_measures(file, "estimates", &model->estimates));
+    RITZ_TRY(ritz_part_read_measures(file, "errors", &model->errors));
     RITZ_TRY(ritz_state_space_check(model));
 done:
     return status;
@@ -123,6 +124,7 @@ static ritz_status write_all(hid_t file, const ritz_state_space *model)
                          model->limit));
     RITZ_TRY(ritz_part_write_columns(file, &model->columns));
     RITZ_TRY(ritz_part_write_measures(file, "estimates", &model->estimates));
+    RITZ_TRY(ritz_part_write_measures(file, "errors", &model->errors));
 done:
     return status;
 }

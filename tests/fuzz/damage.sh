@@ -55,6 +55,7 @@ ritz-reduce -q stator.h5 states.h5 -o space.h5
 ritz-export -q --to output4 reduced.h5 -o binary.op4
 ritz-export -q --to output4 --text reduced.h5 -o text.op4
 ritz-export -q --to matrix-market --matrix K reduced.h5 -o k.mtx
+ritz-export -q --to matlab space.h5 -o space.mat
 rows=$(awk '!/^%/ { print $1; exit }' k.mtx)
 awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print i, 0 }' >k.dofs
 
@@ -81,10 +82,12 @@ stator.h5    ritz-info @
 system.h5    ritz-info @
 ranking.h5   ritz-info @
 space.h5     ritz-info @
+space.mat    ritz-info @
 stator.op4   ritz-import --stiffness @:KGG --mass @:MGG --bulk stator.bdf --port bearing=1 -o OUT
 stator.bdf   ritz-import --stiffness stator.op4:KGG --mass stator.op4:MGG --bulk @ --port bearing=1 -o OUT
 binary.op4   ritz-import --stiffness @:K --mass @:M -o OUT
 text.op4     ritz-import --stiffness @:K --mass @:M -o OUT
+space.mat    ritz-import --state-space @ -o OUT
 k.mtx        ritz-import --stiffness @ --dofs k.dofs -o OUT
 k.dofs       ritz-import --stiffness k.mtx --dofs @ -o OUT
 k.pch        ritz-import --stiffness @:KAAX -o OUT
@@ -95,6 +98,7 @@ stator.h5    ritz-reduce @ basis.h5 -o OUT
 states.h5    ritz-reduce stator.h5 @ -o OUT
 reduced.h5   ritz-verify --band-hz 0,10 stator.h5 @ -o OUT
 stator.h5    ritz-verify --band-hz 0,10 @ reduced.h5 -o OUT
+space.h5     ritz-verify --band-hz 0,10 stator.h5 @ -o OUT
 scene.yaml   ritz-assemble @ -o OUT
 scene.yaml   ritz-compare @ -o OUT
 stator.h5    ritz-assemble scene.yaml -o OUT
@@ -107,6 +111,7 @@ full.h5      ritz-frf --points 5 --to-hz 10 --damping 'modal 0.01' --method dire
 response.h5  ritz-frf --at cone=0 --points-of @ system.h5 -o OUT
 space.h5     ritz-frf --points 5 --to-hz 10 @ -o OUT
 space.h5     ritz-export --to output4 @ -o OUT
+space.h5     ritz-export --to matlab @ -o OUT
 reduced.h5   ritz-export --to exudyn @ -o OUT
 reduced.h5   ritz-export --to output4 @ -o OUT
 response.h5  ritz-export --to tsv @ -o OUT

@@ -216,14 +216,33 @@ def response(file):
     assert file["H/real"].shape == file["H/imag"].shape == shape
 
 
+def one_ranking(at):
+    m = len(at["hertz"])
+    for name in "zeta", "value", "order", "cluster":
+        assert at[name].shape == (m,), name
+    assert sorted(at["order"][:]) == list(range(m))
+    assert (at["cluster"][:] <= numpy.arange(m)).all()
+    assert (numpy.diff(abs(at["value"][:])[at["order"][:]]) <= 0.0).all()
+    assert (numpy.diff(at["system_value"][:]) <= 0.0).all()
+    assert at.attrs["coupled"].shape == (2,)
+    assert at.attrs["coupling"].shape == at.attrs["total"].shape == ()
+    assert "at" in at.attrs and "damping" in at.attrs
+    if "parts" in at:
+        p = len(at["parts/names"])
+        assert at["parts/values"].shape == (m, p)
+        assert at["parts/whole"].shape == (p,)
+    if not numpy.isnan(at.attrs["total"]):
+        assert numpy.isclose(at["value"][:].sum(), at.attrs["total"], 1e-12)
+
+
 def ranking(file):
-    m = len(file["hertz"])
-    for name in "zeta", "value", "order":
-        assert file[name].shape == (m,)
-    assert sorted(file["order"][:]) == list(range(m))
-    assert (numpy.diff(file["system_value"][:]) <= 0.0).all()
-    assert file.attrs["coupled"].shape == (2,)
-    assert file.attrs["coupling"].shape == ()
+    if "rankings" not in file:
+        one_ranking(file)
+        return
+    groups = sorted(file["rankings"].values(), key=lambda g: g.attrs["index"])
+    assert [g.attrs["index"] for g in groups] == list(range(len(groups)))
+    for group in groups:
+        one_ranking(group)
 
 
 def state_space(file):
@@ -238,6 +257,7 @@ def state_space(file):
     assert p == 0 or file["outputs/limits"].shape == (p,)
     check_columns(file, n)
     check_measures(file, "estimates")
+    check_measures(file, "errors")
     assert "damping" in file.attrs
 
 

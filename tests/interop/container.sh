@@ -25,8 +25,10 @@ ritz-reduce -q build/rotor.h5 basis.h5 -o reduced.h5
 ritz-verify -q build/rotor.h5 reduced.h5 -o verified.h5
 ritz-compare -q scene.yaml --components part- -o system.h5
 ritz-rank -q --by hankel --at clock=0 system.h5 -o ranking.h5
+ritz-rank -q --by modal-cost,h2 system.h5 -o rankings.h5
 ritz-frf -q --at clock=0 system.h5 -o response.h5
 ritz-basis -q lanczos-one-sided --modes 9 --damping 'modal 0.01' \
     build/stator.h5 -o states.h5
 ritz-reduce -q build/stator.h5 states.h5 -o space.h5
+ritz-verify -q --damping 'modal 0.01' build/stator.h5 space.h5 -o measured.h5
 exec /usr/bin/python3 "$here/container.py" build/*.h5 ./*.h5

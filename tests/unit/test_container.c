@@ -303,6 +303,8 @@ static void same_configuration(const ritz_configuration *a,
     same_dense(&a->M, &b->M);
     same_dense(&a->D, &b->D);
     same_dense(&a->K4, &b->K4);
+    same_dense(&a->momentum, &b->momentum);
+    assert_memory_equal(a->rigid, b->rigid, sizeof a->rigid);
     same_dampers(&a->dampers, &b->dampers);
     assert_same(a->lambda, b->lambda, a->K.ncol, 8);
     assert_int_equal(a->num_blocks, b->num_blocks);
@@ -419,6 +421,14 @@ static void a_ranking_comes_back(void **state)
     assert_same(a.zeta, b.zeta, a.count, 8);
     assert_same(a.value, b.value, a.count, 8);
     assert_same(a.order, b.order, a.count, 8);
+    assert_same(a.cluster, b.cluster, a.count, 8);
+    assert_string_equal(a.at, b.at);
+    assert_string_equal(a.damping, b.damping);
+    assert_near(b.total, a.total, 0.0);
+    assert_int_equal(a.num_parts, b.num_parts);
+    assert_memory_equal(a.part, b.part, 2 * RITZ_NAME_SIZE);
+    assert_memory_equal(a.whole, b.whole, 16);
+    assert_same(a.parts.val, b.parts.val, 2 * a.count, 8);
     assert_same(a.system_value, b.system_value, a.num_system, 8);
     assert_memory_equal(&a.coupling, &b.coupling, 8);
     assert_memory_equal(a.coupled, b.coupled, sizeof a.coupled);

@@ -92,7 +92,7 @@ static void files_that_are_none_are_refused(void **state)
     put("foreign.txt", "hello\n");
     assert_fails(ritz_foreign_read("foreign.txt", &all), RITZ_ERR_FORMAT,
                  "'foreign.txt': holds no matrix in a format that is known: "
-                 "output4, matrix-market, dmig");
+                 "output4, matrix-market, mat, dmig");
     put("foreign.txt", "");
     assert_fails(ritz_foreign_read("foreign.txt", &all), RITZ_ERR_FORMAT,
                  "'foreign.txt': is empty");
