@@ -181,7 +181,8 @@ void describe_columns(const cli_run *run, json_t *keys, const ritz_columns *c)
     double low = 0.0;
     double high = 0.0;
 
-    for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_STATE; kind++) {
+    for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_BALANCED;
+         kind++) {
         const char *name = ritz_column_name((ritz_column_kind)kind);
         int64_t count = 0;
 
@@ -211,6 +212,23 @@ void describe_origin(const cli_run *run, json_t *keys, const ritz_origin *o)
     set_text(keys, "engine", o->engine);
 }
 
+/* Values of what was balanced: some of them, and all in JSON. */
+static void describe_hankel(const cli_run *run, json_t *keys,
+                            const ritz_basis *b)
+{
+    enum { SHOWN = 10, ROOM = 12 };
+    char text[SHOWN * ROOM + 8] = "";
+    size_t used = 0;
+
+    for (int64_t k = 0; k < b->num_hankel && k < SHOWN; k++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%.4g",
+                                 k > 0 ? " " : "", b->hankel[k]);
+    cli_say(run, "  %-14s %s%s", "Hankel values", text,
+            b->num_hankel > SHOWN ? " ..." : "");
+    json_object_set_new(keys, "hankel_values",
+                        model_reals_json(b->num_hankel, b->hankel));
+}
+
 void describe_basis(const cli_run *run, json_t *keys, const ritz_basis *b)
 {
     json_t *sums = json_object();
@@ -225,6 +243,8 @@ void describe_basis(const cli_run *run, json_t *keys, const ritz_basis *b)
     dense(run, sums, "W", &b->W);
     if (*b->damping)
         describe_damping(run, keys, b->damping);
+    if (b->num_hankel > 0)
+        describe_hankel(run, keys, b);
     for (int64_t k = 0; k < b->columns.count; k++)
         if (!isnan(b->columns.hertz[k]))
             json_array_append_new(hertz, cli_real(b->columns.hertz[k]));
@@ -428,42 +448,4 @@ void describe_response(const cli_run *run, json_t *keys, const ritz_response *r)
     set_text(keys, "damping", r->damping);
     json_object_set_new(keys, "inputs", names_json(r->num_inputs, r->input));
     json_object_set_new(keys, "outputs", names_json(r->num_outputs, r->output));
-}
-
-void describe_order(const cli_run *run, const ritz_ranking *r)
-{
-    double total = 0.0;
-    char beside[64];
-
-    for (int64_t k = 0; k < r->count; k++)
-        total += r->value[k];
-    cli_say(run, "%4s %6s %14s %9s %13s %7s  %s", "rank", "mode", "Hz", "zeta",
-            r->by, "share", "exact Hankel values of the system");
-    for (int64_t k = 0; k < r->count; k++) {
-        int64_t mode = r->order[k];
-
-        snprintf(beside, sizeof beside, "-");
-        if (2 * k + 1 < r->num_system)
-            snprintf(beside, sizeof beside, "%.5e %.5e", r->system_value[2 * k],
-                     r->system_value[2 * k + 1]);
-        cli_say(run, "%4lld %6lld %14.7g %9.3g %13.5e %6.2f%%  %s",
-                (long long)k + 1, (long long)mode + 1, r->hertz[mode],
-                r->zeta[mode], r->value[mode],
-                total > 0.0 ? 100.0 * r->value[mode] / total : 0.0, beside);
-    }
-}
-
-void describe_ranking(const cli_run *run, json_t *keys, const ritz_ranking *r)
-{
-    cli_say(run, "  %-14s ranking of %lld flexible modes by %s [%s]", "kind",
-            (long long)r->count, r->by, r->reference);
-    describe_order(run, r);
-    set_text(keys, "kind", "ranking");
-    set_text(keys, "by", r->by);
-    set_int(keys, "modes", r->count);
-    json_object_set_new(keys, "frequencies_hz",
-                        model_reals_json(r->count, r->hertz));
-    json_object_set_new(keys, "values", model_reals_json(r->count, r->value));
-    json_object_set_new(keys, "system_values",
-                        model_reals_json(r->num_system, r->system_value));
 }

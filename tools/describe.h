@@ -17,8 +17,8 @@ ritz_status describe_system(const cli_run *run, json_t *keys,
                             const ritz_system *system);
 void describe_response(const cli_run *run, json_t *keys,
                        const ritz_response *response);
-void describe_ranking(const cli_run *run, json_t *keys,
-                      const ritz_ranking *ranking);
+void describe_rankings(const cli_run *run, json_t *keys,
+                       const ritz_rankings *all);
 ritz_status describe_states(const cli_run *run, json_t *keys,
                             const ritz_state_space *states);
 void describe_matrices(const cli_run *run, json_t *keys,
@@ -45,9 +45,6 @@ void describe_columns(const cli_run *run, json_t *keys,
                       const ritz_columns *columns);
 void describe_measures(const cli_run *run, json_t *keys, const char *key,
                        const ritz_measures *measures);
-
-/** Best first: mode, frequency, damping, value, share. */
-void describe_order(const cli_run *run, const ritz_ranking *ranking);
 
 /** Mass, centre and inertia; nothing if not known. */
 void describe_inertia(const cli_run *run, json_t *keys,

@@ -33,7 +33,7 @@ static ritz_status read_response(const char *path, model *out)
 
 static ritz_status read_ranking(const char *path, model *out)
 {
-    return ritz_container_read_ranking(path, &out->ranking);
+    return ritz_container_read_rankings(path, &out->rankings);
 }
 
 static ritz_status read_states(const char *path, model *out)
@@ -256,7 +256,7 @@ void model_free(model *m)
     ritz_reduced_free(&m->reduced);
     ritz_system_free(&m->system);
     ritz_response_free(&m->response);
-    ritz_ranking_free(&m->ranking);
+    ritz_rankings_free(&m->rankings);
     ritz_state_space_free(&m->states);
     *m = (model){0};
 }

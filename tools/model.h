@@ -30,7 +30,7 @@ typedef struct model {
     ritz_reduced reduced;
     ritz_system system;
     ritz_response response;
-    ritz_ranking ranking;
+    ritz_rankings rankings;
     ritz_state_space states;
     ritz_configuration *at; /* of a system, once model_at has chosen */
 } model;

@@ -1,22 +1,22 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
 #include "dampers.h"
-#include "describe.h"
+#include "rankings.h"
+#include "rankings_make.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { MAX_RANKERS = 64 };
-
-/* Above this share of one mode in another's Gramian, Gregory's assumption of
- * modes that do not couple costs several percent. */
-static const double coupled_limit = 0.1;
 
 static void list_rankers(void)
 {
     for (const ritz_ranker *const *r = ritz_rankers; *r; r++)
-        printf("%-12s %-60s [%s]\n", (*r)->name, (*r)->summary,
+        printf("%-25s %-58s [%s]\n", (*r)->name, (*r)->summary,
                (*r)->reference);
 }
 
+/* The ranking of that name, or the end of the program. */
 static const ritz_ranker *find(const cli_program *program, const char *word)
 {
     const ritz_ranker *ranker = ritz_ranker_find(word);
@@ -32,113 +32,181 @@ static const ritz_ranker *find(const cli_program *program, const char *word)
     cli_refuse_name(program, "no ranking", word, count, names);
 }
 
-static void report(cli_run *run, const ritz_ranking *r,
-                   const ritz_damping *damping)
+/* "gregory,hankel". */
+static void find_all(const cli_program *program, const char *by,
+                     rank_wish *asked)
 {
-    char text[RITZ_DAMPING_SIZE];
-    json_t *order = json_array();
+    char word[RITZ_NAME_SIZE];
 
-    ritz_damping_print(damping, text);
-    cli_say(run, "%lld flexible modes of '%s' by %s [%s], damping %s",
-            (long long)r->count, run->operand[0], r->by, r->reference,
-            *text ? text : "of the matrices");
-    describe_order(run, r);
-    for (int64_t k = 0; k < r->count; k++)
-        json_array_append_new(order, json_integer(r->order[k] + 1));
-    if (!isnan(r->coupling)) {
-        cli_say(run,
-                "coupling: modes %lld and %lld share %.3g of the exact "
-                "Gramian",
-                (long long)r->coupled[0] + 1, (long long)r->coupled[1] + 1,
-                r->coupling);
-        json_object_set_new(run->report, "coupling", cli_real(r->coupling));
-        if (r->coupling > coupled_limit)
-            cli_warn(run,
-                     "modes %lld and %lld couple by %.3g: values of "
-                     "single modes are rough there, trust the exact ones",
-                     (long long)r->coupled[0] + 1, (long long)r->coupled[1] + 1,
-                     r->coupling);
+    for (const char *c = by;; c++) {
+        size_t length = strcspn(c, ",");
+
+        if (asked->num_rankers == RANK_MOST)
+            cli_refuse(program, "--by takes up to %d rankings", RANK_MOST);
+        snprintf(word, sizeof word, "%.*s", (int)(length < 60 ? length : 60),
+                 c);
+        asked->ranker[asked->num_rankers++] = find(program, word);
+        c += length;
+        if (!*c)
+            return;
     }
-    cli_report_text(run, "by", r->by);
-    cli_report_text(run, "damping", text);
-    json_object_set_new(run->report, "order", order);
-    cli_report_reals(run, "frequencies_hz", r->count, r->hertz);
-    cli_report_reals(run, "values", r->count, r->value);
-    cli_report_reals(run, "system_values", r->num_system, r->system_value);
-    cli_record(run, r->by, r->count);
 }
 
-static ritz_status rank(cli_run *run, const ritz_ranker *ranker, const char *at,
-                        const char *asked)
+/* Words of Gramians that are a choice of components. */
+static void take_choice(const cli_program *program, const char *key,
+                        const char *text, ritz_choice *choice)
+{
+    for (const ritz_choice_word *w = ritz_choice_words; text && w->key; w++)
+        if (strcmp(w->key, key) == 0 &&
+            ritz_choice_take(w, text, choice) != RITZ_OK)
+            cli_refuse(program, "%s", ritz_error_message());
+}
+
+static ritz_status report(cli_run *run, const rank_wish *asked,
+                          const rank_result *result)
 {
     ritz_status status = RITZ_OK;
-    const char *path = run->operand[0];
-    model m = {0};
-    ritz_second_order view = {0};
-    ritz_damping damping = {0};
-    ritz_modal modal = {0};
-    ritz_ranking ranking = {0};
-    ritz_stamp stamp = {0};
+    contest all = {0};
+    char title[256];
+    const ritz_ranking *first = ranked_whole(result->group);
 
-    RITZ_TRY(model_read(run, path, MODEL_REDUCED | MODEL_SYSTEM, &m));
-    RITZ_TRY(model_at(&m, path, at));
-    RITZ_TRY(model_damping(&m, asked, &damping));
-    RITZ_TRY_IN(path, dampers_install(&m, NULL));
-    view = model_look(&m).matrices;
-    if (view.K4->val)
-        cli_warn(run,
-                 "the structural damping of '%s' is left out of its ranking",
-                 path);
-    RITZ_FAIL_IF(view.io->num_inputs == 0 || view.io->num_outputs == 0,
-                 RITZ_ERR_ARGUMENT, "'%s' has no %s: nothing to rank by", path,
-                 view.io->num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_TRY_IN(path, ritz_modal_new(view.K, view.M, view.D, view.io, &damping,
-                                     &modal));
-    RITZ_TRY_IN(path, ritz_rank(ranker, &modal, &ranking));
-    stamp = cli_stamp(run);
-    if (run->output)
-        RITZ_TRY(ritz_container_write_ranking(run->output, &ranking, &stamp));
-    report(run, &ranking, &damping);
+    if (run->output) {
+        ritz_stamp stamp = cli_stamp(run);
+
+        RITZ_TRY(rank_write(run->output, result, &stamp));
+    }
+    RITZ_TRY(rank_contest(result, true, &all));
+    if (asked->table)
+        RITZ_TRY(rankings_write_table(asked->table, &all));
+    rank_contest_free(&all);
+    RITZ_TRY(rank_contest(result, false, &all));
+    if (all.count > 1)
+        RITZ_TRY(rankings_compare(run, &all, asked->top));
+    snprintf(title, sizeof title, "%.100s, damping %.100s", run->operand[0],
+             rankings_damping(first));
+    if (asked->chart)
+        RITZ_TRY(rankings_draw(asked->chart, title, &all, asked->top));
+    cli_record(run, first->by,
+               first->count > 0 ? first->count : first->num_system);
 done:
-    ritz_ranking_free(&ranking);
-    ritz_modal_free(&modal);
-    model_free(&m);
+    rank_contest_free(&all);
     return status;
 }
 
-int main(int argc, char **argv)
+static ritz_status rank(cli_run *run, const rank_wish *asked)
 {
-    const char *by = "hankel";
-    const char *at = NULL;
-    const char *damping = NULL;
-    const cli_option options[] = {
-        {CLI_TEXT(&by), .name = "by", .argument = "NAME",
-         .help = "ranking, one of those that --list shows"},
-        {CLI_TEXT(&at), .name = "at",
+    ritz_status status = RITZ_OK;
+    rank_result result = {0};
+
+    if (asked->compare)
+        RITZ_TRY(rank_read(run, &result));
+    else
+        RITZ_TRY(rank_model(run, asked, &result));
+    RITZ_TRY(report(run, asked, &result));
+done:
+    rank_result_free(&result);
+    return status;
+}
+
+static void check(const cli_program *program, const cli_run *run,
+                  const rank_wish *asked)
+{
+    if (asked->compare && (asked->at || asked->damping.count > 0 ||
+                           asked->tracks || asked->keep > 0))
+        cli_refuse(program, "--compare takes rankings as they are");
+    if (!asked->compare && run->num_operands > 1)
+        cli_refuse(program, "one model is ranked; rankings of several go to "
+                            "--compare");
+    if (asked->at && asked->tracks)
+        cli_refuse(program, "--tracks follows modes over configurations, --at "
+                            "leaves one");
+}
+
+/* Options that are more than a place to put them. */
+typedef struct rank_words {
+    const char *by, *band, *engine, *among;
+} rank_words;
+
+enum { MOST_OPTIONS = 20 };
+
+static void set_options(rank_wish *asked, rank_words *words,
+                        cli_option out[MOST_OPTIONS])
+{
+    const cli_option options[MOST_OPTIONS] = {
+        {CLI_TEXT(&words->by), .name = "by", .argument = "NAME[,NAME]",
+         .help = "rankings, of those that --list shows"},
+        {CLI_TEXT(&asked->at), .name = "at",
          .argument = "JOINT=SETTING[,JOINT=SETTING]",
-         .help = "which configuration of a system, degrees and lengths"},
-        DAMPING_OPTION(&damping),
+         .help = "one configuration of a system, degrees and lengths [all]"},
+        {CLI_LIST(&asked->damping), .name = "damping", .argument = "TEXT",
+         .help = "\"modal ZETA\" or another that --help of ritz-frf shows "
+                 "[the model's]"},
+        {CLI_TEXT(&words->band), .name = "band-hz", .argument = "F,F",
+         .help = "of hankel-band [the system's]"},
+        {CLI_TEXT(&asked->input_weights), .name = "input-weights",
+         .argument = "NAME=W,...",
+         .help = "intensities of inputs, squares of their size [1]"},
+        {CLI_TEXT(&asked->output_weights), .name = "output-weights",
+         .argument = "NAME=W,...",
+         .help = "what squares of outputs count [1 / limit^2, or 1]"},
+        {CLI_INT(&asked->keep), .name = "reweigh", .argument = "N", .min = 1,
+         .max = 1e6,
+         .help = "find output weights that suit a choice of N modes"},
+        {CLI_TEXT(&words->engine), .name = "engine", .argument = "WORD",
+         .help = "Gramians of a component: auto, dense, modal, low-rank"},
+        {CLI_TEXT(&words->among), .name = "among-hz", .argument = "F",
+         .help = "modal Gramians of a component: modes up to here"},
+        {CLI_TEXT(&asked->tracks), .name = "tracks", .argument = "FILE",
+         .help = "table of ritz-assemble --tracks: which mode is which at "
+                 "other configurations"},
+        {CLI_FLAG(&asked->compare), .name = "compare",
+         .help = "files are rankings, each is held against the first"},
+        {CLI_INT(&asked->top), .name = "top", .argument = "N", .min = 1,
+         .max = 1e6,
+         .help = "so many of each are compared, drawn and, of several, "
+                 "printed"},
+        {CLI_TEXT(&asked->table), .name = "table", .argument = "FILE",
+         .help = "write all values as a table with tabs"},
+        {CLI_TEXT(&asked->chart), .name = "chart", .argument = "FILE.svg",
+         .help = "draw bars of the values, by gnuplot"},
         {CLI_ACTION(list_rankers), .name = "list",
          .help = "list rankings and their papers"},
         {0},
     };
+
+    memcpy(out, options, sizeof options);
+}
+
+int main(int argc, char **argv)
+{
+    rank_words words = {.by = "hankel"};
+    rank_wish asked = {.top = 10};
+    cli_option options[MOST_OPTIONS];
     const cli_program program = {
         .name = "ritz-rank",
-        .operands = {{"FILE", "a reduced component or a system", false}},
+        .operands = {{"FILE",
+                      "a reduced component or a system; of a component or a "
+                      "state space, exact Hankel values alone",
+                      true}},
         .summary = "Rank the flexible modes of a model by what they carry "
                    "from its inputs to its\noutputs, best first; the exact "
                    "Hankel values of the whole stand beside.",
-        .example = "ritz-rank system.h5 --at clock=60,cone=0 --by gregory "
-                   "--damping \"modal 0.002\"",
+        .example = "ritz-rank system.h5 --at clock=60,cone=0 --by "
+                   "gregory,modal-cost --damping \"modal 0.002\"",
         .options = options,
-        .output = "the ranking, as a container",
+        .output = "the rankings, as a container",
         .output_optional = true,
         .threads = true,
     };
-    const ritz_ranker *ranker = NULL;
     cli_run run;
 
+    set_options(&asked, &words, options);
     cli_parse(&program, argc, argv, &run);
-    ranker = find(&program, by);
-    return cli_finish(&run, rank(&run, ranker, at, damping));
+    check(&program, &run, &asked);
+    find_all(&program, words.by, &asked);
+    if (words.band)
+        cli_pair(&program, "band-hz", words.band, asked.band_hz);
+    take_choice(&program, "engine", words.engine, &asked.choice);
+    take_choice(&program, "among_hz", words.among, &asked.choice);
+    return cli_finish(&run, rank(&run, &asked));
 }

@@ -74,4 +74,10 @@ ritz_status ritz_container_write_ranking(const char *path,
                                          const ritz_ranking *ranking,
                                          const ritz_stamp *stamp);
 
+/** The same of several in one file; a file of one is as above. */
+ritz_status ritz_container_read_rankings(const char *path, ritz_rankings *out);
+ritz_status ritz_container_write_rankings(const char *path,
+                                          const ritz_rankings *rankings,
+                                          const ritz_stamp *stamp);
+
 #endif

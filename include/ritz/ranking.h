@@ -1,7 +1,7 @@
 /*
- * Rankings of the modes of a modal model: which matter from input to output.
- * Rigid modes are not ranked. Modes closer than 1e-6 in frequency are one
- * cluster, which gets one value and is kept or dropped whole.
+ * Rankings of modes: which matter from input to output, or carry mass. Rigid
+ * modes are not ranked. Modes closer than 1e-6 in frequency are one cluster,
+ * which gets one value and is kept or dropped whole.
  */
 #ifndef RITZ_RANKING_H
 #define RITZ_RANKING_H
@@ -9,14 +9,84 @@
 #include <ritz/modal.h>
 #include <ritz/system.h>
 
+/* What a ranking needs of a model; the rest may be absent. */
+enum {
+    RITZ_RANK_INPUTS = 1,
+    RITZ_RANK_OUTPUTS = 2,
+    RITZ_RANK_DAMPING = 4,
+    RITZ_RANK_BAND = 8,
+    RITZ_RANK_MOMENTUM = 16,
+    RITZ_RANK_INTERFACE = 32, /* ranks the modes of its interface held */
+};
+
+/*
+ * Weights of inputs and outputs: the cost is sum_i Q_i y_i^2 of inputs of
+ * intensity W_j. Q_i is 1 / limit^2 and W_j is 1 where nothing is said.
+ */
+typedef struct ritz_weight {
+    char name[RITZ_NAME_SIZE];
+    double value; /* not negative */
+} ritz_weight;
+
+typedef struct ritz_weights {
+    int64_t num_inputs, num_outputs;
+    ritz_weight *input, *output;
+} ritz_weights;
+
+/**
+ * Take "torque=4,force=1" for inputs, or for outputs; NULL: none.
+ *
+ * @return RITZ_ERR_ARGUMENT if it is no list of names and weights, or a name
+ *         comes twice
+ */
+ritz_status ritz_weights_parse(const char *inputs, const char *outputs,
+                               ritz_weights *out);
+
+void ritz_weights_free(ritz_weights *weights);
+
+/* How a model is to be ranked, beside the ranking itself. */
+typedef struct ritz_rank_choice {
+    ritz_damping damping;        /* beside its matrices */
+    double band_hz[2];           /* [0, 0]: none */
+    const ritz_weights *weights; /* borrowed; NULL: none */
+} ritz_rank_choice;
+
+/* What is ranked. {0} parts are absent. */
+typedef struct ritz_rank_request {
+    ritz_modal modal;     /* the modes */
+    bool undamped;        /* they have no damping: ratios there mean nothing */
+    bool bare;            /* values and order alone, nothing exact beside */
+    double band_hz[2];    /* HUGE_VAL is infinity */
+    ritz_dense momentum;  /* 6 x m, R'M phi about the basic origin */
+    double rigid[36];     /* R'MR, symmetric */
+    ritz_dense coupling;  /* p x m, M_ib of fixed-interface modes */
+    ritz_dense interface; /* p x p, mass of the interface: Psi'M Psi */
+    char (*input)[RITZ_NAME_SIZE];  /* NULL: without names */
+    char (*output)[RITZ_NAME_SIZE]; /* NULL: without names */
+} ritz_rank_request;
+
+/*
+ * One ranking, of one model at one configuration. Of a component or a state
+ * space there are no modes, only exact values.
+ */
 typedef struct ritz_ranking {
     char by[RITZ_NAME_SIZE];
     char reference[RITZ_NAME_SIZE];
-    int64_t count;  /* m flexible modes */
-    double *hertz;  /* m */
-    double *zeta;   /* m, the damping used */
-    double *value;  /* m, one for each mode; equal within a cluster */
-    int64_t *order; /* m, best first; ties in order of frequency */
+    char at[RITZ_NAME_SIZE];         /* configuration; "" of a model without */
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" that of
+                                        the matrices alone */
+    int64_t count;                   /* m flexible modes */
+    double *hertz;                   /* m */
+    double *zeta;                    /* m, the damping used; 0: none was */
+    double *value;    /* m, one for each mode; equal within a cluster */
+    int64_t *order;   /* m, best first; ties in order of frequency */
+    int64_t *cluster; /* m, the first mode of its cluster */
+    double total;     /* what all values add up to by identity; NaN: nothing */
+    int64_t num_parts;
+    char (*part)[RITZ_NAME_SIZE]; /* what a value is made of: outputs, inputs,
+                                     directions */
+    ritz_dense parts;             /* m x num_parts */
+    double *whole; /* num_parts, what all of a part is; NaN where unknown */
     int64_t num_system;
     double *system_value; /* exact Hankel values of the whole, descending */
     double coupling;      /* largest normalised off-diagonal of the exact modal
@@ -29,21 +99,80 @@ typedef struct ritz_ranker {
     const char *name;
     const char *summary;
     const char *reference;
-    /** Value of each mode; those of a cluster get that of the whole cluster. */
-    ritz_status (*rank)(const ritz_modal *modal, double *value);
+    int needs; /* RITZ_RANK_... */
+    bool sums; /* values add up: a cluster's is shared out evenly. If not, it
+                   is that of the whole for each of its modes */
+    double (*exact)(const double pair[static 2]); /* what a value approaches, of
+                   a pair of exact Hankel values; NULL: it is no Hankel value */
+    /** Values, and `total` and parts where it has any, by ritz_ranking_parts;
+     * all modes of a cluster get the same, or are summed up by the caller. */
+    ritz_status (*rank)(const ritz_rank_request *request,
+                        ritz_ranking *ranking);
 } ritz_ranker;
 
 /** All rankings, ended by NULL. */
 extern const ritz_ranker *const ritz_rankers[];
+extern const ritz_ranker ritz_ranker_effective_interface_mass;
+extern const ritz_ranker ritz_ranker_effective_mass;
 extern const ritz_ranker ritz_ranker_gregory;
+extern const ritz_ranker ritz_ranker_h2;
 extern const ritz_ranker ritz_ranker_hankel;
+extern const ritz_ranker ritz_ranker_hankel_band;
+extern const ritz_ranker ritz_ranker_modal_cost;
+extern const ritz_ranker ritz_ranker_participation;
 
 const ritz_ranker *ritz_ranker_find(const char *name);
 
-/** Rank, with exact system values and the coupling flag beside. */
-ritz_status ritz_rank(const ritz_ranker *ranker, const ritz_modal *modal,
-                      ritz_ranking *out);
+/**
+ * What a ranking takes of a reduced component, or of a configuration: its
+ * flexible modes or, for rankings that want that, those of its interface held.
+ *
+ * @param[in] needs  of the ranker
+ * @return RITZ_ERR_ARGUMENT if the model lacks it, or a weight names nothing
+ */
+ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
+                                         const ritz_rank_choice *choice,
+                                         int needs, ritz_rank_request *out);
+ritz_status
+ritz_rank_request_of_configuration(const ritz_configuration *configuration,
+                                   const ritz_rank_choice *choice, int needs,
+                                   ritz_rank_request *out);
+
+void ritz_rank_request_free(ritz_rank_request *request);
+
+/**
+ * Rank, by magnitude of value, with exact system values and the coupling flag
+ * beside where there are inputs, outputs and damping.
+ *
+ * @return RITZ_ERR_ARGUMENT if the request lacks what the ranker needs
+ */
+ritz_status ritz_rank(const ritz_ranker *ranker,
+                      const ritz_rank_request *request, ritz_ranking *out);
+
+/** Room for parts, all zero; names and wholes are the ranker's to fill. */
+ritz_status ritz_ranking_parts(int64_t count, ritz_ranking *ranking);
+
+/** Which of several values are those of one configuration, and the largest. */
+typedef struct ritz_rankings {
+    int64_t count;
+    ritz_ranking *item;
+    int64_t **track; /* of each, m numbers that say which mode is which in the
+                        others; NULL: the k-th is the k-th */
+} ritz_rankings;
+
+/**
+ * The largest value of each mode over several rankings, in one.
+ *
+ * @param[out] where  of each mode, the ranking that has it; to be freed
+ * @param[out] track  of each mode, its number; to be freed
+ * @return RITZ_ERR_ARGUMENT if they are not by one ranking, or without tracks
+ *         not of as many modes
+ */
+ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
+                                  ritz_ranking *out, int64_t **where,
+                                  int64_t **track);
 
 void ritz_ranking_free(ritz_ranking *ranking);
+void ritz_rankings_free(ritz_rankings *rankings);
 
 #endif

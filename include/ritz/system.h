@@ -25,6 +25,10 @@ typedef struct ritz_configuration {
     ritz_io io;           /* for e coordinates */
     int64_t num_blocks;   /* as many as there are components */
     ritz_dense *P;        /* num_blocks, r_c x e */
+    ritz_dense momentum;  /* 6 x e, R'M P of all bodies, R the rigid motions
+                             about the origin of the first body's basic frame;
+                             {0}: not known of every body */
+    double rigid[36];     /* R'MR, symmetric */
     ritz_measures errors; /* by ritz-verify or ritz-compare */
 } ritz_configuration;
 

@@ -119,6 +119,33 @@ done:
     return ritz_context(status, "blocks");
 }
 
+/* What rigid motions of the whole carry; absent where a body's is not known. */
+static ritz_status write_mass(hid_t at, const ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!c->momentum.val)
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_write_dense(at, "momentum", &c->momentum));
+    RITZ_TRY(ritz_h5_write(at, "rigid", H5T_IEEE_F64LE, ritz_h5_table(6, 6),
+                           c->rigid));
+done:
+    return status;
+}
+
+static ritz_status read_mass(hid_t at, ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!ritz_h5_has(at, "momentum"))
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_read_dense(at, "momentum", 6, c->K.ncol, &c->momentum));
+    RITZ_TRY(
+        ritz_h5_read_real(at, "rigid", ritz_h5_table(6, 6), false, c->rigid));
+done:
+    return status;
+}
+
 static ritz_status write_configuration(hid_t at, const ritz_system *system,
                                        const ritz_configuration *c)
 {
@@ -138,6 +165,7 @@ static ritz_status write_configuration(hid_t at, const ritz_system *system,
                            ritz_h5_vector(c->K.ncol), c->lambda));
     RITZ_TRY(ritz_part_write_io(at, &c->io));
     RITZ_TRY(write_maps(at, system, c));
+    RITZ_TRY(write_mass(at, c));
     RITZ_TRY(ritz_part_write_measures(at, "errors", &c->errors));
 done:
     return status;
@@ -168,6 +196,7 @@ static ritz_status read_configuration(hid_t at, const ritz_system *system,
         ritz_h5_read_real(at, "lambda", ritz_h5_vector(e), false, c->lambda));
     RITZ_TRY(ritz_part_read_io(at, e, &c->io));
     RITZ_TRY(read_maps(at, system, c));
+    RITZ_TRY(read_mass(at, c));
     RITZ_TRY(ritz_part_read_measures(at, "errors", &c->errors));
 done:
     return status;

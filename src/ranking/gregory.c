@@ -81,9 +81,11 @@ done:
     return status;
 }
 
-static ritz_status rank(const ritz_modal *modal, double *value)
+static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
     ritz_status status = RITZ_OK;
+    const ritz_modal *modal = &request->modal;
+    double *value = ranking->value;
     ritz_modal cluster = {0};
     int64_t last = 0;
 
@@ -100,9 +102,17 @@ done:
     return status;
 }
 
+/* Of one mode sigma (sqrt(1 + zeta^2) +- zeta), whose product is sigma^2. */
+static double exact(const double pair[static 2])
+{
+    return sqrt(pair[0]) * sqrt(pair[1]);
+}
+
 const ritz_ranker ritz_ranker_gregory = {
     .name = "gregory",
     .summary = "Hankel values in the limit of light damping, mode by mode",
     .reference = "Gregory1984",
+    .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
+    .exact = exact,
     .rank = rank,
 };

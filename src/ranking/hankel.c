@@ -13,9 +13,11 @@
 
 #include <stdlib.h>
 
-static ritz_status rank(const ritz_modal *modal, double *value)
+static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
     ritz_status status = RITZ_OK;
+    const ritz_modal *modal = &request->modal;
+    double *value = ranking->value;
     ritz_modal cluster = {0};
     double *sigma = NULL;
     int64_t last = 0;
@@ -35,9 +37,16 @@ done:
     return status;
 }
 
+static double exact(const double pair[static 2])
+{
+    return pair[0];
+}
+
 const ritz_ranker ritz_ranker_hankel = {
     .name = "hankel",
     .summary = "largest exact Hankel value of each mode (or cluster) alone",
     .reference = "Moore1981",
+    .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
+    .exact = exact,
     .rank = rank,
 };

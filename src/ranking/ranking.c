@@ -1,7 +1,6 @@
 #include "base/alloc.h"
-#include "gramians/cluster.h"
-
-#include <ritz/ranking.h>
+#include "ranking/costs.h"
+#include "ranking/coupling.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -9,13 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A mode this much weaker than the largest is rounding: its coupling is too. */
-static const double negligible = 1e-20;
-
 /* A new ranking is a new file that defines one descriptor, and a line here. */
 const ritz_ranker *const ritz_rankers[] = {
     &ritz_ranker_gregory,
     &ritz_ranker_hankel,
+    &ritz_ranker_hankel_band,
+    &ritz_ranker_modal_cost,
+    &ritz_ranker_h2,
+    &ritz_ranker_effective_mass,
+    &ritz_ranker_effective_interface_mass,
+    &ritz_ranker_participation,
     NULL,
 };
 
@@ -41,145 +43,122 @@ const ritz_ranker *ritz_ranker_find(const char *name)
     return NULL;
 }
 
-/* Which of a pair of Gramians' entries are largest against their diagonals. */
-static void couple(const ritz_dense *W, const int64_t *cluster,
-                   ritz_ranking *ranking)
-{
-    double largest[2] = {0.0, 0.0};
-
-    for (int64_t a = 0; a < W->nrow; a++)
-        largest[a % 2] = fmax(largest[a % 2], ritz_dense_col(W, a)[a]);
-    for (int64_t b = 0; b < W->nrow; b++)
-        for (int64_t a = 0; a < b; a++) {
-            double wa = ritz_dense_col(W, a)[a];
-            double wb = ritz_dense_col(W, b)[b];
-            double off = fabs(ritz_dense_col(W, b)[a]) / sqrt(wa * wb);
-
-            if (cluster[a / 2] == cluster[b / 2] ||
-                !(wa > negligible * largest[a % 2]) ||
-                !(wb > negligible * largest[b % 2]) ||
-                !(off > ranking->coupling))
-                continue;
-            ranking->coupling = off;
-            ranking->coupled[0] = a / 2;
-            ranking->coupled[1] = b / 2;
-        }
-}
-
-/* Coupling of both Gramians, but within clusters, which are ranked whole. */
-static ritz_status measure_coupling(const ritz_modal *modal,
-                                    const int64_t *cluster,
-                                    ritz_ranking *ranking)
+ritz_status ritz_ranking_parts(int64_t count, ritz_ranking *ranking)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense Wc = {0};
-    ritz_dense Wo = {0};
 
-    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
-    couple(&Wc, cluster, ranking);
-    couple(&Wo, cluster, ranking);
+    RITZ_NEW(ranking->part, count);
+    RITZ_NEW(ranking->whole, count);
+    RITZ_TRY(ritz_dense_new(ranking->count, count, &ranking->parts));
+    ranking->num_parts = count;
 done:
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    return status;
-}
-
-/* The largest value of a cluster is that of each of its modes. */
-static void join_clusters(const ritz_modal *modal, int64_t *cluster,
-                          double *value)
-{
-    int64_t last = 0;
-
-    for (int64_t first = 0; first < modal->count; first = last) {
-        double largest = 0.0;
-
-        last = ritz_modal_cluster(modal, first);
-        for (int64_t k = first; k < last; k++)
-            largest = fmax(largest, value[k]);
-        for (int64_t k = first; k < last; k++) {
-            value[k] = largest;
-            cluster[k] = first;
-        }
-    }
-}
-
-/* A value and its mode, to be sorted. */
-typedef struct place {
-    double value;
-    int64_t mode;
-} place;
-
-/* Larger values first, of equal ones the lower frequency. */
-static int compare(const void *left, const void *right)
-{
-    const place *a = left;
-    const place *b = right;
-
-    if (a->value != b->value)
-        return a->value > b->value ? -1 : 1;
-    return (a->mode > b->mode) - (a->mode < b->mode);
-}
-
-static ritz_status sort(ritz_ranking *ranking)
-{
-    ritz_status status = RITZ_OK;
-    place *all = NULL;
-
-    RITZ_NEW(all, ranking->count);
-    for (int64_t k = 0; k < ranking->count; k++)
-        all[k] = (place){ranking->value[k], k};
-    qsort(all, (size_t)ranking->count, sizeof *all, compare);
-    for (int64_t k = 0; k < ranking->count; k++)
-        ranking->order[k] = all[k].mode;
-done:
-    free(all);
     return status;
 }
 
 static ritz_status ranking_new(const ritz_ranker *ranker,
-                               const ritz_modal *modal, ritz_ranking *out)
+                               const ritz_rank_request *request,
+                               ritz_ranking *out)
 {
     static const double pi = 3.14159265358979323846;
+    const ritz_modal *modal = &request->modal;
     ritz_status status = RITZ_OK;
     int64_t m = modal->count;
 
     (void)snprintf(out->by, RITZ_NAME_SIZE, "%s", ranker->name);
     (void)snprintf(out->reference, RITZ_NAME_SIZE, "%s", ranker->reference);
     out->count = m;
-    out->num_system = 2 * m;
+    out->total = nan("");
+    out->coupling = nan("");
     RITZ_NEW(out->hertz, m);
     RITZ_NEW(out->zeta, m);
     RITZ_NEW(out->value, m);
     RITZ_NEW(out->order, m);
+    RITZ_NEW(out->cluster, m);
     RITZ_NEW(out->system_value, 2 * m);
     for (int64_t k = 0; k < m; k++) {
         out->hertz[k] = modal->omega[k] / (2.0 * pi);
-        out->zeta[k] = modal->zeta[k];
+        out->zeta[k] = request->undamped ? 0.0 : modal->zeta[k];
     }
+    ritz_ranking_clusters(modal, out->cluster);
 done:
     return status;
 }
 
-ritz_status ritz_rank(const ritz_ranker *ranker, const ritz_modal *modal,
-                      ritz_ranking *out)
+/* What a ranker needs and a request may lack, with the sentence for it. */
+static ritz_status check(const ritz_ranker *ranker, const ritz_rank_request *r)
+{
+    const struct {
+        int need;
+        bool there;
+        const char *sentence;
+    } wants[] = {
+        {RITZ_RANK_INPUTS, r->modal.B.ncol > 0,
+         "a ranking needs at least one input and one output, there is no "
+         "input"},
+        {RITZ_RANK_OUTPUTS, r->modal.C.nrow > 0,
+         "a ranking needs at least one input and one output, there is no "
+         "output"},
+        {RITZ_RANK_DAMPING, !r->undamped,
+         "the modes have no damping, which this ranking needs of every one"},
+        {RITZ_RANK_BAND, r->band_hz[0] >= 0.0 && r->band_hz[1] > r->band_hz[0],
+         "there is no band to rank modes within"},
+        {RITZ_RANK_MOMENTUM, r->momentum.val,
+         "the model does not know its mass in rigid motion: its grids have no "
+         "positions, or it has too many columns"},
+        {RITZ_RANK_INTERFACE, r->interface.ncol > 0,
+         "these are not modes of an interface that is held"},
+    };
+    ritz_status status = RITZ_OK;
+
+    for (size_t k = 0; k < sizeof wants / sizeof *wants; k++)
+        RITZ_FAIL_IF((ranker->needs & wants[k].need) && !wants[k].there,
+                     RITZ_ERR_ARGUMENT, "%s", wants[k].sentence);
+done:
+    return status;
+}
+
+/* One value for each cluster; a sum is shared out evenly. */
+static void join(const ritz_ranker *ranker, const ritz_modal *modal,
+                 ritz_ranking *ranking)
+{
+    if (ranker->sums)
+        ritz_ranking_share(modal, ranking->value);
+    for (int64_t j = 0; j < ranking->num_parts; j++)
+        ritz_ranking_share(modal, ritz_dense_col(&ranking->parts, j));
+}
+
+/* Exact values of the whole, where there is something to drive and to see. */
+static ritz_status stand_beside(const ritz_rank_request *request,
+                                ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_modal *modal = &request->modal;
+
+    if (request->bare || request->undamped || modal->B.ncol == 0 ||
+        modal->C.nrow == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_modal_hankel(modal, ranking->system_value));
+    ranking->num_system = 2 * modal->count;
+    RITZ_TRY(ritz_ranking_coupling(modal, ranking));
+done:
+    return status;
+}
+
+ritz_status ritz_rank(const ritz_ranker *ranker,
+                      const ritz_rank_request *request, ritz_ranking *out)
 {
     ritz_status status = RITZ_OK;
     ritz_ranking ranking = {0};
-    int64_t *cluster = NULL;
 
-    RITZ_FAIL_IF(modal->B.ncol == 0 || modal->C.nrow == 0, RITZ_ERR_ARGUMENT,
-                 "a ranking needs at least one input and one output");
-    RITZ_NEW(cluster, modal->count);
-    RITZ_TRY(ranking_new(ranker, modal, &ranking));
-    RITZ_TRY_IN(ranker->name, ranker->rank(modal, ranking.value));
-    join_clusters(modal, cluster, ranking.value);
-    RITZ_TRY(sort(&ranking));
-    RITZ_TRY(ritz_modal_hankel(modal, ranking.system_value));
-    RITZ_TRY(measure_coupling(modal, cluster, &ranking));
+    RITZ_TRY_IN(ranker->name, check(ranker, request));
+    RITZ_TRY(ranking_new(ranker, request, &ranking));
+    RITZ_TRY_IN(ranker->name, ranker->rank(request, &ranking));
+    join(ranker, &request->modal, &ranking);
+    RITZ_TRY(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
+    RITZ_TRY(stand_beside(request, &ranking));
     *out = ranking;
     ranking = (ritz_ranking){0};
 done:
-    free(cluster);
     ritz_ranking_free(&ranking);
     return status;
 }
@@ -190,6 +169,22 @@ void ritz_ranking_free(ritz_ranking *ranking)
     free(ranking->zeta);
     free(ranking->value);
     free(ranking->order);
+    free(ranking->cluster);
+    free(ranking->part);
+    free(ranking->whole);
+    ritz_dense_free(&ranking->parts);
     free(ranking->system_value);
     *ranking = (ritz_ranking){0};
+}
+
+void ritz_rankings_free(ritz_rankings *rankings)
+{
+    for (int64_t k = 0; k < rankings->count; k++) {
+        ritz_ranking_free(&rankings->item[k]);
+        if (rankings->track)
+            free(rankings->track[k]);
+    }
+    free(rankings->item);
+    free(rankings->track);
+    *rankings = (ritz_rankings){0};
 }

@@ -12,6 +12,7 @@
 #include "base/alloc.h"
 #include "synthesis/dual.h"
 #include "synthesis/null_space.h"
+#include "synthesis/placement.h"
 #include "synthesis/springs.h"
 
 #include <ritz/eigen.h>
@@ -224,6 +225,7 @@ static ritz_status finish(const ritz_stage *stage, const double *setting,
     RITZ_TRY(ritz_io_project(&stage->io, P, &c->io));
     RITZ_TRY(ritz_dampers_project(&stage->dampers, P, &c->dampers));
     RITZ_TRY(project_structural(stage, P, &c->K4));
+    RITZ_TRY(ritz_place_mass(stage, setting, c));
 done:
     free(sweep);
     return status;

@@ -22,29 +22,38 @@ static ritz_status rank_one(const ritz_scene *scene,
 {
     ritz_status status = RITZ_OK;
     const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
-    ritz_modal modal = {0};
+    const ritz_rank_choice choice = {
+        .damping = scene->damping,
+        .band_hz = {scene->band_hz[0], scene->band_hz[1]}};
+    ritz_rank_request request = {0};
 
     if (!ranker) {
         status = RITZ_ERR_ARGUMENT;
         goto done;
     }
-    RITZ_TRY(ritz_modal_new(&c->K, &c->M, c->D.val ? &c->D : NULL, &c->io,
-                            &scene->damping, &modal));
-    RITZ_TRY(ritz_rank(ranker, &modal, ranking));
+    RITZ_TRY(ritz_rank_request_of_configuration(c, &choice, ranker->needs,
+                                                &request));
+    request.bare = true;
+    RITZ_TRY(ritz_rank(ranker, &request, ranking));
     RITZ_FAIL_IF(ranking->count != c->K.ncol - c->num_rigid,
                  RITZ_ERR_CONVERGENCE,
                  "%" PRId64 " flexible modes were ranked where there are "
                  "%" PRId64,
                  ranking->count, c->K.ncol - c->num_rigid);
 done:
-    ritz_modal_free(&modal);
+    ritz_rank_request_free(&request);
     return ritz_context(status, c->at);
 }
 
+/* Whether there is what its ranking needs. */
 static bool is_ranked(const ritz_scene *scene)
 {
-    return scene->select == RITZ_SELECT_RANKED && scene->num_inputs > 0 &&
-           scene->num_outputs > 0;
+    const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
+    int needs = ranker ? ranker->needs : RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS;
+
+    return scene->select == RITZ_SELECT_RANKED &&
+           (scene->num_inputs > 0 || !(needs & RITZ_RANK_INPUTS)) &&
+           (scene->num_outputs > 0 || !(needs & RITZ_RANK_OUTPUTS));
 }
 
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
@@ -66,7 +75,7 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
     for (int64_t k = 0; k < system->num_configurations; k++) {
         RITZ_TRY(rank_one(scene, &system->configuration[k], &ranking));
         for (int64_t j = 0; j < ranking.count; j++)
-            largest = fmax(largest, ranking.value[j]);
+            largest = fmax(largest, fabs(ranking.value[j]));
         ritz_ranking_free(&ranking);
     }
     RITZ_FAIL_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
@@ -88,7 +97,7 @@ static ritz_status mark_ranked(const ritz_scene *scene,
 
     RITZ_TRY(rank_one(scene, c, &ranking));
     for (int64_t k = 0; k < ranking.count; k++)
-        taken[k] = ranking.value[k] >= least;
+        taken[k] = fabs(ranking.value[k]) >= least;
 done:
     ritz_ranking_free(&ranking);
     return status;

@@ -47,4 +47,11 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t count, const ritz_component *body,
                              int64_t *add, ritz_grids *out);
 
+/**
+ * Momentum and mass of rigid motion of all bodies where they stand, for a
+ * configuration that has its P; nothing where a body does not know its own.
+ */
+ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
+                            ritz_configuration *configuration);
+
 #endif

@@ -104,10 +104,7 @@ static ritz_status take_rows(int64_t count, const int64_t *keep, bool square,
 
     if (square)
         RITZ_TRY(take_columns(count, keep, A));
-    RITZ_TRY(ritz_dense_new(count, A->ncol, &less));
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < count; i++)
-            ritz_dense_col(&less, j)[i] = ritz_dense_col(A, j)[keep[i]];
+    RITZ_TRY(ritz_dense_rows(A, count, keep, &less));
     ritz_dense_free(A);
     *A = less;
     less = (ritz_dense){0};
@@ -127,6 +124,8 @@ static ritz_status truncate(int64_t count, const int64_t *keep,
     RITZ_TRY(take_columns(count, keep, &c->io.C));
     RITZ_TRY(take_columns(count, keep, &c->io.Cv));
     RITZ_TRY(take_columns(count, keep, &c->io.Ca));
+    if (c->momentum.val)
+        RITZ_TRY(take_columns(count, keep, &c->momentum));
     RITZ_TRY(take_rows(count, keep, false, &c->io.B));
     RITZ_TRY(take_rows(count, keep, true, &c->K));
     RITZ_TRY(take_rows(count, keep, true, &c->M));

@@ -226,8 +226,8 @@ holds '  orders all flexible modes' \
      len(j["system_values"]) == 2 * len(j["values"])'
 expect 2 "no ranking 'gregori', is 'gregory' meant?" \
     ritz-rank system.h5 --by gregori
-expect 1 'clock=0' ritz-rank system.h5
-expect 1 'a reduced component or a system' ritz-rank bar.h5
+expect 0 'Largest over 2 configurations' ritz-rank system.h5
+expect 1 'not a component or a reduced component' ritz-rank ranking.h5
 
 sed 's/by: hankel/by: hankle/' scene.yaml >by.yaml
 expect 1 "by.yaml:11:14: there is no ranking 'hankle', did you mean 'hankel'" \

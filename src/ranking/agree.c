@@ -1,0 +1,253 @@
+/*
+ * With places p and q of the m modes that both rankings have, equal values
+ * sharing the mean of their places, Spearman's coefficient is the correlation
+ * of p and q, and Kendall's
+ *
+ *     tau_b = (C - D) / sqrt((n - t_p) (n - t_q)),    n = m (m - 1) / 2
+ *
+ * with C pairs in the same order in both, D in the other, t tied in one.
+ *
+ * [Kendall1948]
+ */
+#include "ritz/agreement.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Of the largest value: rounding, and so equal. */
+static const double rounding = 1e-12;
+
+/* A mode that both rankings have. */
+typedef struct shared {
+    int64_t number;
+    double size[2];  /* |value|, 0 if it is rounding */
+    double place[2]; /* from 1 */
+} shared;
+
+/* One ranking, its modes' numbers and its largest value. */
+typedef struct side {
+    const ritz_ranking *ranking;
+    const int64_t *track;
+    double largest;
+} side;
+
+static side side_of(const ritz_ranking *ranking, const int64_t *track)
+{
+    side s = {ranking, track, 0.0};
+
+    for (int64_t k = 0; k < ranking->count; k++)
+        s.largest = fmax(s.largest, fabs(ranking->value[k]));
+    return s;
+}
+
+static int64_t number_of(const side *s, int64_t mode)
+{
+    return s->track ? s->track[mode] : mode;
+}
+
+static double size_of(const side *s, int64_t mode)
+{
+    double size = fabs(s->ranking->value[mode]);
+
+    return size > rounding * s->largest ? size : 0.0;
+}
+
+/* Mode of that number; -1: none. */
+static int64_t find(const side *s, int64_t number)
+{
+    if (!s->track)
+        return number < s->ranking->count ? number : -1;
+    for (int64_t k = 0; k < s->ranking->count; k++)
+        if (s->track[k] == number)
+            return k;
+    return -1;
+}
+
+/* Mean place of equal values: those larger, and half of those like it. */
+static void set_places(int64_t count, shared *all, int which)
+{
+    for (int64_t i = 0; i < count; i++) {
+        double larger = 0.0, like = 0.0;
+
+        for (int64_t j = 0; j < count; j++) {
+            larger += all[j].size[which] > all[i].size[which];
+            like += all[j].size[which] == all[i].size[which];
+        }
+        all[i].place[which] = larger + 0.5 * (like + 1.0);
+    }
+}
+
+static double spearman(int64_t count, const shared *all)
+{
+    double mean = 0.5 * ((double)count + 1.0);
+    double xy = 0.0, xx = 0.0, yy = 0.0;
+
+    for (int64_t i = 0; i < count; i++) {
+        double x = all[i].place[0] - mean;
+        double y = all[i].place[1] - mean;
+
+        xy += x * y;
+        xx += x * x;
+        yy += y * y;
+    }
+    return xx > 0.0 && yy > 0.0 ? xy / sqrt(xx * yy) : nan("");
+}
+
+static int sign(double x)
+{
+    return (x > 0.0) - (x < 0.0);
+}
+
+static double kendall(int64_t count, const shared *all)
+{
+    double sum = 0.0, untied[2] = {0.0, 0.0};
+
+    for (int64_t i = 0; i < count; i++)
+        for (int64_t j = 0; j < i; j++) {
+            int a = sign(all[i].place[0] - all[j].place[0]);
+            int b = sign(all[i].place[1] - all[j].place[1]);
+
+            sum += a * b;
+            untied[0] += a != 0;
+            untied[1] += b != 0;
+        }
+    return untied[0] > 0.0 && untied[1] > 0.0
+               ? sum / sqrt(untied[0] * untied[1])
+               : nan("");
+}
+
+static ritz_status correlate(const side s[static 2], ritz_agreement *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_ranking *a = s[0].ranking;
+    shared *all = NULL;
+    int64_t n = 0;
+
+    RITZ_NEW(all, a->count);
+    for (int64_t k = 0; k < a->count; k++) {
+        int64_t number = number_of(&s[0], k);
+        int64_t other = find(&s[1], number);
+
+        if (other < 0)
+            continue;
+        all[n++] = (shared){
+            number, {size_of(&s[0], k), size_of(&s[1], other)}, {0.0, 0.0}};
+    }
+    set_places(n, all, 0);
+    set_places(n, all, 1);
+    out->common = n;
+    out->alone[0] = a->count - n;
+    out->alone[1] = s[1].ranking->count - n;
+    out->spearman = spearman(n, all);
+    out->kendall = kendall(n, all);
+done:
+    free(all);
+    return status;
+}
+
+/* How many the first k are, with the rest of the last one's cluster. */
+static int64_t whole(const ritz_ranking *r, int64_t k)
+{
+    int64_t n = k < r->count ? k : r->count;
+
+    while (n > 0 && n < r->count &&
+           r->cluster[r->order[n]] == r->cluster[r->order[n - 1]])
+        n++;
+    return n;
+}
+
+static bool is_among(const side *s, int64_t n, int64_t number)
+{
+    for (int64_t k = 0; k < n; k++)
+        if (number_of(s, s->ranking->order[k]) == number)
+            return true;
+    return false;
+}
+
+/* Numbers among the first k of `s` that are not among those of `other`. */
+static int64_t difference(const side *s, const side *other, int64_t k,
+                          int64_t *out)
+{
+    int64_t n = whole(s->ranking, k);
+    int64_t m = whole(other->ranking, k);
+    int64_t count = 0;
+
+    for (int64_t i = 0; i < n; i++) {
+        int64_t number = number_of(s, s->ranking->order[i]);
+
+        if (is_among(other, m, number))
+            continue;
+        if (out)
+            out[count] = number;
+        count++;
+    }
+    return count;
+}
+
+static double share(const side s[static 2], int64_t k)
+{
+    int64_t n = whole(s[0].ranking, k);
+    int64_t m = whole(s[1].ranking, k);
+    int64_t both = n - difference(&s[0], &s[1], k, NULL);
+
+    return n > 0 || m > 0 ? (double)both / (double)(n > m ? n : m) : nan("");
+}
+
+/* 1, 2, 5, 10, 20, ... of which the last is all. */
+static ritz_status set_overlaps(const side s[static 2], ritz_agreement *out)
+{
+    static const int64_t step[] = {1, 2, 5};
+    enum { MOST = 3 * 18 };
+    ritz_status status = RITZ_OK;
+    int64_t n = s[0].ranking->count, m = s[1].ranking->count;
+    int64_t most = n > m ? n : m;
+    int64_t ten = 1;
+
+    RITZ_NEW(out->overlap, MOST);
+    for (int64_t i = 0; i < MOST && out->num_overlaps < MOST; i++) {
+        int64_t k = step[i % 3] * ten;
+
+        if (k > most)
+            break;
+        out->overlap[out->num_overlaps++] = (ritz_overlap){k, share(s, k)};
+        ten *= i % 3 == 2 ? 10 : 1;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
+                                const ritz_ranking *b, const int64_t *track_b,
+                                int64_t top, ritz_agreement *out)
+{
+    ritz_status status = RITZ_OK;
+    const side s[2] = {side_of(a, track_a), side_of(b, track_b)};
+    ritz_agreement agreement = {.top = top};
+
+    RITZ_FAIL_IF(top < 1, RITZ_ERR_ARGUMENT,
+                 "at least the first mode is compared");
+    RITZ_TRY(correlate(s, &agreement));
+    RITZ_FAIL_IF(agreement.common == 0, RITZ_ERR_ARGUMENT,
+                 "the rankings have no mode in common");
+    RITZ_TRY(set_overlaps(s, &agreement));
+    RITZ_NEW(agreement.left, a->count);
+    RITZ_NEW(agreement.entered, b->count);
+    agreement.num_left = difference(&s[0], &s[1], top, agreement.left);
+    agreement.num_entered = difference(&s[1], &s[0], top, agreement.entered);
+    agreement.top_share = share(s, top);
+    *out = agreement;
+    agreement = (ritz_agreement){0};
+done:
+    ritz_agreement_free(&agreement);
+    return status;
+}
+
+void ritz_agreement_free(ritz_agreement *agreement)
+{
+    free(agreement->overlap);
+    free(agreement->left);
+    free(agreement->entered);
+    *agreement = (ritz_agreement){0};
+}

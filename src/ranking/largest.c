@@ -1,0 +1,148 @@
+/*
+ * One ranking over several configurations: what matters at one of them matters.
+ */
+#include "base/alloc.h"
+#include "ranking/costs.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int64_t number_of(const ritz_rankings *all, int64_t item, int64_t mode)
+{
+    return all->track ? all->track[item][mode] : mode;
+}
+
+static ritz_status check(const ritz_rankings *all, int64_t *numbers)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_ranking *first = all->item;
+
+    RITZ_FAIL_IF(all->count == 0, RITZ_ERR_ARGUMENT, "there is no ranking");
+    *numbers = 0;
+    for (int64_t k = 0; k < all->count; k++) {
+        const ritz_ranking *r = &all->item[k];
+
+        RITZ_FAIL_IF(strcmp(r->by, first->by) != 0, RITZ_ERR_ARGUMENT,
+                     "values by '%s' and by '%s' have no largest one",
+                     first->by, r->by);
+        RITZ_FAIL_IF(!all->track && r->count != first->count, RITZ_ERR_ARGUMENT,
+                     "%" PRId64 " modes at '%s' and %" PRId64
+                     " at '%s': only tracks say which is which",
+                     first->count, first->at, r->count, r->at);
+        for (int64_t i = 0; i < r->count; i++)
+            if (number_of(all, k, i) >= *numbers)
+                *numbers = number_of(all, k, i) + 1;
+    }
+done:
+    return status;
+}
+
+/* Where each number has its largest value: ranking and mode, -1 if nowhere. */
+static void search(const ritz_rankings *all, int64_t numbers, int64_t *item,
+                   int64_t *mode)
+{
+    for (int64_t n = 0; n < numbers; n++)
+        item[n] = -1;
+    for (int64_t k = 0; k < all->count; k++)
+        for (int64_t i = 0; i < all->item[k].count; i++) {
+            int64_t n = number_of(all, k, i);
+            double size = fabs(all->item[k].value[i]);
+
+            if (item[n] < 0 || size > fabs(all->item[item[n]].value[mode[n]])) {
+                item[n] = k;
+                mode[n] = i;
+            }
+        }
+}
+
+/* Modes that are one cluster where the first of them is largest stay one. */
+static void take_clusters(const ritz_rankings *all, const int64_t *item,
+                          const int64_t *mode, ritz_ranking *out)
+{
+    for (int64_t k = 0; k < out->count; k++) {
+        const ritz_ranking *r = &all->item[item[k]];
+
+        out->cluster[k] = k;
+        if (k > 0 && item[k] == item[k - 1] &&
+            r->cluster[mode[k]] == r->cluster[mode[k - 1]])
+            out->cluster[k] = out->cluster[k - 1];
+    }
+}
+
+static ritz_status empty(const ritz_ranking *like, int64_t count,
+                         ritz_ranking *out)
+{
+    ritz_status status = RITZ_OK;
+
+    memcpy(out->by, like->by, sizeof out->by);
+    memcpy(out->reference, like->reference, sizeof out->reference);
+    memcpy(out->damping, like->damping, sizeof out->damping);
+    out->count = count;
+    out->total = nan("");
+    out->coupling = nan("");
+    RITZ_NEW(out->hertz, count);
+    RITZ_NEW(out->zeta, count);
+    RITZ_NEW(out->value, count);
+    RITZ_NEW(out->order, count);
+    RITZ_NEW(out->cluster, count);
+    RITZ_NEW(out->system_value, 1);
+done:
+    return status;
+}
+
+/* Numbers that no ranking has are passed over. */
+static int64_t close_ranks(int64_t numbers, int64_t *item, int64_t *mode,
+                           int64_t *track)
+{
+    int64_t count = 0;
+
+    for (int64_t n = 0; n < numbers; n++) {
+        if (item[n] < 0)
+            continue;
+        item[count] = item[n];
+        mode[count] = mode[n];
+        track[count++] = n;
+    }
+    return count;
+}
+
+ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
+                                  ritz_ranking *out, int64_t **where,
+                                  int64_t **track)
+{
+    ritz_status status = RITZ_OK;
+    ritz_ranking largest = {0};
+    int64_t *item = NULL, *mode = NULL, *number = NULL;
+    int64_t numbers = 0, count = 0;
+
+    RITZ_TRY(check(rankings, &numbers));
+    RITZ_NEW(item, numbers);
+    RITZ_NEW(mode, numbers);
+    RITZ_NEW(number, numbers);
+    search(rankings, numbers, item, mode);
+    count = close_ranks(numbers, item, mode, number);
+    RITZ_TRY(empty(rankings->item, count, &largest));
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_ranking *r = &rankings->item[item[k]];
+
+        largest.hertz[k] = r->hertz[mode[k]];
+        largest.zeta[k] = r->zeta[mode[k]];
+        largest.value[k] = r->value[mode[k]];
+    }
+    take_clusters(rankings, item, mode, &largest);
+    RITZ_TRY(ritz_ranking_sort(count, largest.value, largest.order));
+    *out = largest;
+    largest = (ritz_ranking){0};
+    *where = item;
+    item = NULL;
+    *track = number;
+    number = NULL;
+done:
+    free(item);
+    free(mode);
+    free(number);
+    ritz_ranking_free(&largest);
+    return status;
+}

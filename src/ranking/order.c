@@ -1,0 +1,79 @@
+/* Places of modes by magnitude of value, and what clusters share. */
+#include "base/alloc.h"
+#include "gramians/cluster.h"
+#include "ranking/costs.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* A value and its mode, to be sorted. */
+typedef struct place {
+    double size;
+    int64_t mode;
+} place;
+
+/* Larger values first, of equal ones the lower frequency. */
+static int compare(const void *left, const void *right)
+{
+    const place *a = left;
+    const place *b = right;
+
+    if (a->size != b->size)
+        return a->size > b->size ? -1 : 1;
+    return (a->mode > b->mode) - (a->mode < b->mode);
+}
+
+ritz_status ritz_ranking_sort(int64_t count, const double *value,
+                              int64_t *order)
+{
+    ritz_status status = RITZ_OK;
+    place *all = NULL;
+
+    RITZ_NEW(all, count);
+    for (int64_t k = 0; k < count; k++)
+        all[k] = (place){fabs(value[k]), k};
+    qsort(all, (size_t)count, sizeof *all, compare);
+    for (int64_t k = 0; k < count; k++)
+        order[k] = all[k].mode;
+done:
+    free(all);
+    return status;
+}
+
+void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster)
+{
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        last = ritz_modal_cluster(modal, first);
+        for (int64_t k = first; k < last; k++)
+            cluster[k] = first;
+    }
+}
+
+void ritz_ranking_share(const ritz_modal *modal, double *value)
+{
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        double sum = 0.0;
+
+        last = ritz_modal_cluster(modal, first);
+        for (int64_t k = first; k < last; k++)
+            sum += value[k];
+        for (int64_t k = first; last > first + 1 && k < last; k++)
+            value[k] = sum / (double)(last - first);
+    }
+}
+
+void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
+                            const char *letter, int64_t k,
+                            char out[RITZ_NAME_SIZE])
+{
+    if (names)
+        (void)snprintf(out, RITZ_NAME_SIZE, "%s", names[k]);
+    else
+        (void)snprintf(out, RITZ_NAME_SIZE, "%s%" PRId64, letter, k + 1);
+}

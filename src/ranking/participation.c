@@ -1,0 +1,90 @@
+/*
+ * Modal participation: how hard a mode is driven. With mass-normalised modes
+ *
+ *     q_k'' + 2 zeta w q_k' + w^2 q_k = b_k u
+ *
+ * b_kj is the factor of mode k from input j, and the value |b_k|_2. Of a
+ * cluster, whose modes may be any basis of one space, it is the largest
+ * singular value of its rows, and the part of an input their norm.
+ *
+ * [Girard2008]
+ */
+#include "base/alloc.h"
+#include "ranking/costs.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Rows first .. last - 1 of B, and their largest singular value. */
+static ritz_status largest(const ritz_dense *B, int64_t first, int64_t last,
+                           double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = last - first;
+    ritz_dense A = {0};
+    double *sigma = NULL;
+    int info = 0;
+
+    RITZ_NEW(sigma, n < B->ncol ? n : B->ncol);
+    RITZ_TRY(ritz_dense_new(n, B->ncol, &A));
+    for (int64_t j = 0; j < B->ncol; j++)
+        for (int64_t k = 0; k < n; k++)
+            ritz_dense_col(&A, j)[k] = ritz_dense_col(B, j)[first + k];
+    info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)n, (int)B->ncol, A.val,
+                          (int)n, sigma, NULL, 1, NULL, 1);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "singular values of a cluster of modes were not found");
+    *out = sigma[0];
+done:
+    free(sigma);
+    ritz_dense_free(&A);
+    return status;
+}
+
+static void fill_parts(const ritz_dense *B, int64_t first, int64_t last,
+                       ritz_dense *parts)
+{
+    for (int64_t j = 0; j < B->ncol; j++) {
+        const double *b = ritz_dense_col(B, j);
+        double norm = 0.0;
+
+        for (int64_t k = first; k < last; k++)
+            norm = hypot(norm, b[k]);
+        for (int64_t k = first; k < last; k++)
+            ritz_dense_col(parts, j)[k] = norm;
+    }
+}
+
+static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *B = &request->modal.B;
+    int64_t m = request->modal.count;
+    int64_t last = 0;
+
+    RITZ_TRY(ritz_ranking_parts(B->ncol, ranking));
+    ritz_ranking_clusters(&request->modal, ranking->cluster);
+    for (int64_t j = 0; j < B->ncol; j++) {
+        ritz_ranking_name_part(request->input, "u", j, ranking->part[j]);
+        ranking->whole[j] = nan("");
+    }
+    for (int64_t first = 0; first < m; first = last) {
+        for (last = first + 1; last < m && ranking->cluster[last] == first;)
+            last++;
+        RITZ_TRY(largest(B, first, last, &ranking->value[first]));
+        for (int64_t k = first + 1; k < last; k++)
+            ranking->value[k] = ranking->value[first];
+        fill_parts(B, first, last, &ranking->parts);
+    }
+done:
+    return status;
+}
+
+const ritz_ranker ritz_ranker_participation = {
+    .name = "participation",
+    .summary = "how hard inputs drive each mode (or cluster)",
+    .reference = "Girard2008",
+    .needs = RITZ_RANK_INPUTS,
+    .rank = rank,
+};

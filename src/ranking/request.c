@@ -1,0 +1,305 @@
+/*
+ * What rankings take of a model. Momentum R'M phi of each mode comes as six
+ * outputs more, which are taken off again: so it follows whichever basis of a
+ * cluster the modal model chose.
+ */
+#include "base/alloc.h"
+#include "ranking/weights.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIRECTIONS = 6 };
+
+/* Of a coupling K_bn against sqrt(K_bb K_nn): modes of another interface. */
+static const double clamped = 1e-6;
+
+/* What is ranked: matrices and io of coordinates, and what is known of mass. */
+typedef struct subject {
+    const ritz_dense *K, *M, *D;
+    const ritz_io *io;
+    const ritz_dense *momentum; /* 6 x r; without values: not known */
+    const double *rigid;
+} subject;
+
+/* io with weights and, where momentum is known, six outputs more. */
+static ritz_status extend(const subject *s, const ritz_weights *weights,
+                          ritz_io *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = s->io;
+    int64_t n = s->K->nrow;
+    int64_t more = s->momentum->val ? DIRECTIONS : 0;
+    ritz_io all = {0};
+
+    RITZ_TRY(ritz_io_new(n, io->num_inputs, io->num_outputs + more, &all));
+    for (int64_t j = 0; j < io->num_inputs; j++) {
+        memcpy(all.input[j], io->input[j], RITZ_NAME_SIZE);
+        memcpy(ritz_dense_col(&all.B, j), ritz_dense_col(&io->B, j),
+               (size_t)n * sizeof(double));
+    }
+    for (int64_t i = 0; i < io->num_outputs; i++) {
+        memcpy(all.output[i], io->output[i], RITZ_NAME_SIZE);
+        all.limit[i] = io->limit[i];
+    }
+    for (int64_t j = 0; j < n; j++) {
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            ritz_dense_col(&all.C, j)[i] = ritz_dense_col(&io->C, j)[i];
+            ritz_dense_col(&all.Cv, j)[i] = ritz_dense_col(&io->Cv, j)[i];
+            ritz_dense_col(&all.Ca, j)[i] = ritz_dense_col(&io->Ca, j)[i];
+        }
+        for (int64_t d = 0; d < more; d++)
+            ritz_dense_col(&all.C, j)[io->num_outputs + d] =
+                ritz_dense_col(s->momentum, j)[d];
+    }
+    if (weights)
+        RITZ_TRY(ritz_weights_apply(weights, &all));
+    *out = all;
+    all = (ritz_io){0};
+done:
+    ritz_io_free(&all);
+    return status;
+}
+
+/* Rows first .. of C as a matrix of their own, and C without them. */
+static ritz_status split(ritz_dense *C, int64_t first, ritz_dense *rest)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense head = {0};
+
+    RITZ_TRY(ritz_dense_new(first, C->ncol, &head));
+    RITZ_TRY(ritz_dense_new(C->nrow - first, C->ncol, rest));
+    for (int64_t j = 0; j < C->ncol; j++) {
+        for (int64_t i = 0; i < first; i++)
+            ritz_dense_col(&head, j)[i] = ritz_dense_col(C, j)[i];
+        for (int64_t i = first; i < C->nrow; i++)
+            ritz_dense_col(rest, j)[i - first] = ritz_dense_col(C, j)[i];
+    }
+    ritz_dense_free(C);
+    *C = head;
+    head = (ritz_dense){0};
+done:
+    ritz_dense_free(&head);
+    return status;
+}
+
+static ritz_status take_momentum(const subject *s, ritz_rank_request *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense none = {0};
+
+    if (!s->momentum->val)
+        return RITZ_OK;
+    RITZ_TRY(split(&out->modal.C, s->io->num_outputs, &out->momentum));
+    RITZ_TRY(split(&out->modal.Cv, s->io->num_outputs, &none));
+    memcpy(out->rigid, s->rigid, sizeof out->rigid);
+done:
+    ritz_dense_free(&none);
+    return status;
+}
+
+static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
+                              char (**out)[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(*out, count);
+    for (int64_t k = 0; k < count; k++)
+        memcpy((*out)[k], names[k], RITZ_NAME_SIZE);
+done:
+    return status;
+}
+
+/*
+ * The modal model. Rankings of mass do without damping: where there is none,
+ * any ratio gives them the modes, and `undamped` says that it means nothing.
+ */
+static ritz_status make_modal(const subject *s, const ritz_rank_choice *choice,
+                              int needs, const ritz_io *io,
+                              ritz_rank_request *out)
+{
+    const ritz_damping any = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.5};
+    const ritz_dense *D = s->D && s->D->val ? s->D : NULL;
+    bool given = D || choice->damping.kind != RITZ_DAMPING_NONE;
+
+    out->undamped = !(needs & RITZ_RANK_DAMPING) && !given;
+    return ritz_modal_new(s->K, s->M, D, io,
+                          out->undamped ? &any : &choice->damping, &out->modal);
+}
+
+static ritz_status make(const subject *s, const ritz_rank_choice *choice,
+                        int needs, ritz_rank_request *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_rank_request request = {0};
+    ritz_io io = {0};
+
+    RITZ_TRY(extend(s, choice->weights, &io));
+    RITZ_TRY(make_modal(s, choice, needs, &io, &request));
+    RITZ_TRY(take_momentum(s, &request));
+    RITZ_TRY(copy_names(s->io->num_inputs, s->io->input, &request.input));
+    RITZ_TRY(copy_names(s->io->num_outputs, s->io->output, &request.output));
+    memcpy(request.band_hz, choice->band_hz, sizeof request.band_hz);
+    *out = request;
+    request = (ritz_rank_request){0};
+done:
+    ritz_io_free(&io);
+    ritz_rank_request_free(&request);
+    return status;
+}
+
+/* Coordinates that are interface displacements, or fixed-interface modes. */
+static ritz_status find_columns(const ritz_columns *columns, bool interface,
+                                int64_t *count, int64_t **out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = 0;
+
+    RITZ_NEW(*out, columns->count);
+    for (int64_t k = 0; k < columns->count; k++) {
+        ritz_column_kind kind = columns->kind[k];
+        bool fits = interface ? kind == RITZ_COLUMN_CONSTRAINT ||
+                                    kind == RITZ_COLUMN_INTERFACE
+                              : kind == RITZ_COLUMN_NORMAL;
+
+        if (fits)
+            (*out)[n++] = k;
+    }
+    RITZ_FAIL_IF(n == 0, RITZ_ERR_ARGUMENT,
+                 "the component has no %s: its basis must be craig-bampton or "
+                 "like it",
+                 interface ? "constraint modes" : "fixed-interface modes");
+    *count = n;
+done:
+    return status;
+}
+
+/* A(row, col). */
+static ritz_status block(const ritz_dense *A, int64_t n, const int64_t *row,
+                         int64_t m, const int64_t *col, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(n, m, out));
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, col[j])[row[i]];
+done:
+    return status;
+}
+
+/* Of modes whose interface is held, K_bn is zero. */
+static ritz_status check_clamped(const ritz_dense *K, int64_t p,
+                                 const int64_t *b, int64_t m, const int64_t *n)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < p; i++) {
+            double own = sqrt(fabs(ritz_dense_col(K, b[i])[b[i]] *
+                                   ritz_dense_col(K, n[j])[n[j]]));
+
+            RITZ_FAIL_IF(
+                !(fabs(ritz_dense_col(K, n[j])[b[i]]) <= clamped * own),
+                RITZ_ERR_ARGUMENT,
+                "normal modes and constraint modes share stiffness: the "
+                "interface was not held when they were made");
+        }
+done:
+    return status;
+}
+
+/* The interface drives fixed-interface modes by -M_nb u_b''; none reads them.*/
+static ritz_status make_held(const ritz_reduced *r,
+                             const ritz_rank_choice *choice, int needs,
+                             ritz_rank_request *out)
+{
+    static const int64_t six[DIRECTIONS] = {0, 1, 2, 3, 4, 5};
+    ritz_status status = RITZ_OK;
+    ritz_dense K = {0}, M = {0}, D = {0}, momentum = {0};
+    ritz_io io = {0};
+    const subject s = {&K, &M, &D, &io, &momentum, r->invariants.rigid};
+    const ritz_rank_choice bare = {.damping = choice->damping};
+    int64_t *b = NULL, *n = NULL;
+    int64_t p = 0, m = 0;
+
+    RITZ_TRY(find_columns(&r->columns, true, &p, &b));
+    RITZ_TRY(find_columns(&r->columns, false, &m, &n));
+    RITZ_TRY(check_clamped(&r->K, p, b, m, n));
+    RITZ_TRY(block(&r->K, m, n, m, n, &K));
+    RITZ_TRY(block(&r->M, m, n, m, n, &M));
+    if (r->D.val)
+        RITZ_TRY(block(&r->D, m, n, m, n, &D));
+    if (r->invariants.momentum.val)
+        RITZ_TRY(
+            block(&r->invariants.momentum, DIRECTIONS, six, m, n, &momentum));
+    RITZ_TRY(ritz_io_new(m, p, 0, &io));
+    ritz_dense_free(&io.B);
+    RITZ_TRY(block(&r->M, m, n, p, b, &io.B));
+    RITZ_TRY(make(&s, &bare, needs, out));
+    RITZ_TRY(block(&r->M, p, b, p, b, &out->interface));
+    RITZ_TRY(ritz_dense_new(p, out->modal.count, &out->coupling));
+    for (int64_t k = 0; k < p * out->modal.count; k++)
+        out->coupling.val[k] = ritz_dense_col(&out->modal.B, k % p)[k / p];
+done:
+    free(b);
+    free(n);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&D);
+    ritz_dense_free(&momentum);
+    ritz_io_free(&io);
+    return status;
+}
+
+ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
+                                         const ritz_rank_choice *choice,
+                                         int needs, ritz_rank_request *out)
+{
+    const subject s = {&reduced->K,
+                       &reduced->M,
+                       &reduced->D,
+                       &reduced->io,
+                       &reduced->invariants.momentum,
+                       reduced->invariants.rigid};
+    ritz_rank_request request = {0};
+    ritz_status status = RITZ_OK;
+
+    if (needs & RITZ_RANK_INTERFACE)
+        RITZ_TRY(make_held(reduced, choice, needs, &request));
+    else
+        RITZ_TRY(make(&s, choice, needs, &request));
+    *out = request;
+    request = (ritz_rank_request){0};
+done:
+    ritz_rank_request_free(&request);
+    return status;
+}
+
+ritz_status
+ritz_rank_request_of_configuration(const ritz_configuration *configuration,
+                                   const ritz_rank_choice *choice, int needs,
+                                   ritz_rank_request *out)
+{
+    const ritz_configuration *c = configuration;
+    const subject s = {&c->K, &c->M, &c->D, &c->io, &c->momentum, c->rigid};
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(needs & RITZ_RANK_INTERFACE, RITZ_ERR_ARGUMENT,
+                 "a system has no interface to hold: rank its components");
+    RITZ_TRY(make(&s, choice, needs, out));
+done:
+    return status;
+}
+
+void ritz_rank_request_free(ritz_rank_request *request)
+{
+    ritz_modal_free(&request->modal);
+    ritz_dense_free(&request->momentum);
+    ritz_dense_free(&request->coupling);
+    ritz_dense_free(&request->interface);
+    free(request->input);
+    free(request->output);
+    *request = (ritz_rank_request){0};
+}
