@@ -190,7 +190,7 @@ set title 'free, as it was reduced'
 plot for [k=2:5] $free using 1:k with linespoints ls k title word(names,k-1)
 set logscale x
 set format x '10^{{%L}}'
-set key at graph 0.98,0.62 right
+set key at graph 0.98,0.87 right
 set xlabel 'springs on the port / stiffness of a bar'
 set ylabel 'worst of five elastic frequencies, relative'
 set title '{states} states, held afterwards'
