@@ -143,8 +143,8 @@ static void remark(const ritz_request *request, const ritz_gramians *gramians,
         ritz_remark_append(basis, text);
     }
     if (!isnan(basis->bound)) {
-        snprintf(text, sizeof text, "error at most %.4g of %.4g", basis->bound,
-                 balanced->sigma[0]);
+        snprintf(text, sizeof text, "error at most %.4g, largest value %.4g",
+                 basis->bound, balanced->sigma[0]);
         ritz_remark_append(basis, text);
     }
     if (residual[0] > 0.0 || residual[1] > 0.0) {

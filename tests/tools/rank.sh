@@ -137,6 +137,20 @@ expect 0 '' ritz-basis lanczos-one-sided --modes 8 --damping 'modal 0.02' \
     truss.h5 -o states.h5
 expect 1 'nothing else ranks it' ritz-rank truss.h5 --by gregory
 
+# --- state spaces: 1/(s + 1) and 3/(s + 2) apart ---------------------------------
+
+for entry in 'A 2 2 -1 0 0 -2' 'B 2 2 1 0 0 3' 'C 2 2 1 0 0 1'; do
+    # shellcheck disable=SC2086 # words of it
+    set -- $entry
+    { printf '%%%%MatrixMarket matrix array real general\n%s %s\n' "$2" "$3"
+      name=$1; shift 3; printf '%s\n' "$@"; } >"$1.mtx"
+done
+expect 0 '' ritz-import --state-space A=A.mtx,B=B.mtx,C=C.mtx -o space.h5
+json 0 ritz-rank space.h5
+holds '  has the values of its two halves' \
+    'near(j["system_values"], [0.75, 0.5], 1e-14)'
+expect 1 'it has Hankel values, and nothing else ranks it' ritz-rank space.h5 --by gregory
+
 # --- usage -------------------------------------------------------------------
 
 expect 2 "no ranking 'modalcost', is 'modal-cost' meant?" \
