@@ -162,12 +162,11 @@ def truss(external, folder, _):
 
 def solid(external, folder, n):
     """A free block of bricks, its port a patch of 4 x 4 grids."""
-    # Each round of tangential factors a complex matrix for every other column.
     subprocess.run([sys.executable, HERE / "brick.py", *3 * [str(n)], folder],
                    check=True, capture_output=True)
     port = ",".join(str(j * (n + 1) + k) for j in range(4)
                     for k in range(1, 5))
-    return dict(order=110, orders=dict(tangential=14), options=[
+    return dict(order=110, unfit=["tangential"], options=[
         "--stiffness", folder / "K.mtx", "--mass", folder / "M.mtx", "--bulk",
         folder / "grids.bdf", "--dofs", folder / "dofs.txt", "--port",
         f"face={port}", "--input", f"in={(n + 1)**3}:1", "--output-at",
@@ -221,8 +220,7 @@ def measure(bin_, folder, component, case, band, method, how, more):
     """One line of a table."""
     basis, reduced = folder / "basis.h5", folder / "reduced.h5"
     start = time.monotonic()
-    order = case.get("orders", {}).get(method, case["order"])
-    order = make_basis(bin_, method, how, more, component, order,
+    order = make_basis(bin_, method, how, more, component, case["order"],
                        case["rigid"], basis)
     seconds = time.monotonic() - start
     run(bin_, "ritz-reduce", component, basis, "-o", reduced)
@@ -243,6 +241,8 @@ Every method on every data set that it fits, reduced to as many columns as it ca
 *missing*: modes of the band that no reduced mode is like (MAC below one half); *frequency*, *1 - MAC* and *damping*: the worst of the others; *response*: from an input inside to an output inside, largest error over the largest response in the band, which of a free body is that of its rigid motion; *static gain*: of the flexible part, relative. An error of 1 - MAC of 1 is a mode that is missing.
 
 What to read from it. Modes of a free body are best kept by modes: macneal-rubin, rubin, macneal and inertia-relief span one subspace and have them to rounding. They answer at their port; an input elsewhere costs them the static gain, which normal-modes and krylov, told of the inputs, have to rounding. Craig-Bampton at equal order is behind by some digits wherever the interface is not held by anything, which is how components are measured here, and ahead once neighbours are stiff. Krylov methods have responses and gains right where modes of the same number do not, and lose high modes that no load reaches: on a driven model that is a virtue. guyan, irs and serep have no more columns than the port has dofs. The static gain leaves out as many of the lowest modes as the full model has rigid ones, so that a rigid motion which guyan or irs hold badly is no compliance; where nothing stands, nothing could be compared.
+
+tangential is left out on the solid of 52 728 dofs: it factors a complex matrix for every other column in each round, up to 50 rounds, and was stopped there after 52 minutes of processor with 10 columns asked for. That is no way to reduce such a body, and nothing is claimed for it.
 
 Not here: `loaded-interface`, which needs neighbours; `dual-craig-bampton`, which by itself is macneal-rubin; the Lanczos methods, whose models are of states; `rigid` and `full`."""
 
@@ -274,6 +274,10 @@ def table(bin_, name, make, external, folder, n):
     print("| method | columns | " + " | ".join(c for _, c in COLUMNS) + " |")
     print("|---|" + "---|" * (len(COLUMNS) + 1), flush=True)
     for method, how, more in METHODS:
+        if method in case.get("unfit", []):
+            print(f"| {method} | left out: see above |" + " |" * len(COLUMNS),
+                  flush=True)
+            continue
         try:
             order, _, found = measure(bin_, folder, component, case, band,
                                       method, how, more)
