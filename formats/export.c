@@ -9,12 +9,8 @@
 
 /* A new format is a new file that defines one descriptor, and one line here. */
 const ritz_exporter *const ritz_exporters[] = {
-    &ritz_exporter_exudyn,
-    &ritz_exporter_matlab,
-    &ritz_exporter_matrix_market,
-    &ritz_exporter_output4,
-    &ritz_exporter_tsv,
-    NULL,
+    &ritz_exporter_exudyn,  &ritz_exporter_matlab, &ritz_exporter_matrix_market,
+    &ritz_exporter_output4, &ritz_exporter_tsv,    NULL,
 };
 
 const ritz_exporter *ritz_exporter_find(const char *name)

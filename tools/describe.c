@@ -181,8 +181,7 @@ void describe_columns(const cli_run *run, json_t *keys, const ritz_columns *c)
     double low = 0.0;
     double high = 0.0;
 
-    for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_BALANCED;
-         kind++) {
+    for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_BALANCED; kind++) {
         const char *name = ritz_column_name((ritz_column_kind)kind);
         int64_t count = 0;
 
