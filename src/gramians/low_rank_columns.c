@@ -1,7 +1,8 @@
 /*
- * Sizes in units of energy, and columns of a factor Z, which grows, and is compressed now and then: with
- * S Z = Q R, S the units of energy, and R = U s V', Z V has columns that are
- * orthogonal and of the lengths s; the short ones are left out.
+ * Sizes in units of energy, and columns of a factor Z, which grows, and is
+ * compressed now and then: with S Z = Q R, S those units, and R = U s V', Z V
+ * has columns that are orthogonal and of the lengths s; the short ones are left
+ * out.
  */
 #include "base/alloc.h"
 #include "gramians/low_rank_parts.h"

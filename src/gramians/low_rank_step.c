@@ -34,7 +34,7 @@ static void free_block(block *v)
     }
 }
 
-/* Displacements were solved for: v_1 of what is reached, v_2 of what is seen. */
+/* What was solved for: v_1 of what is reached, v_2 of what is seen. */
 static int solved(int side)
 {
     return side == RITZ_REACHED ? RITZ_ABOVE : RITZ_BELOW;
@@ -53,7 +53,7 @@ done:
     return status;
 }
 
-/* x := x (p M - D) W_1 - W_2 of what is reached. */
+/* x := (p M - D) W_1 - W_2 of what is reached. */
 static ritz_status load_reached(const ritz_low_rank_model *model,
                                 double _Complex p, double _Complex *x)
 {

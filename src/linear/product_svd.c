@@ -200,6 +200,10 @@ static ritz_status find(const ritz_dense *X, const ritz_dense *Y, bool vectors,
     ritz_dense G = {0}, U = {0}, V = {0};
     double *length = NULL;
 
+    if (Y->ncol == 0 || Y->nrow == 0) { /* there is nothing to factor */
+        RITZ_TRY(ritz_dense_new(X->ncol, 0, &out->U));
+        return ritz_dense_new(Y->ncol, 0, &out->V);
+    }
     RITZ_TRY(row_lengths(X, &length));
     RITZ_TRY(scale(Y, length, &of_Y.A));
     RITZ_TRY(factor(&of_Y));

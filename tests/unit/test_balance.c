@@ -319,9 +319,34 @@ static void balancing_survives_every_allocation(void **unused)
     ritz_gramians_free(&g);
 }
 
+/* Inputs that reach nothing, or outputs that see nothing: no columns. */
+static void a_factor_without_columns_has_no_values(void **state)
+{
+    (void)state;
+    for (int side = 0; side < 2; side++) {
+        ritz_gramians none = {0};
+        ritz_product_svd svd = {0};
+        double *sigma = NULL;
+        int64_t count = -1;
+
+        fill(5, side == 0 ? 0 : 3, 1, &none.Zc);
+        fill(5, side == 0 ? 3 : 0, 1, &none.Zo);
+        assert_ok(ritz_gramians_hankel(&none, &count, &sigma));
+        assert_int_equal(count, 0);
+        assert_ok(ritz_product_svd_new(&none.Zo, &none.Zc, true, &svd));
+        assert_int_equal(svd.U.nrow, none.Zo.ncol);
+        assert_int_equal(svd.V.nrow, none.Zc.ncol);
+        assert_int_equal(svd.U.ncol + svd.V.ncol, 0);
+        free(sigma);
+        ritz_product_svd_free(&svd);
+        ritz_gramians_free(&none);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_factor_without_columns_has_no_values),
         cmocka_unit_test(small_values_of_a_product_are_as_good_as_its_factors),
         cmocka_unit_test(a_product_is_what_its_svd_says),
         cmocka_unit_test(balancing_makes_both_gramians_equal_and_diagonal),

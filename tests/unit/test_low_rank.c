@@ -216,6 +216,8 @@ static void rigid_motion_alone_has_no_columns(void **state)
     ritz_component body = mass_row(0.0);
     const ritz_gramians_request request = mass_row_rayleigh(&body, 0.0, 2e-3);
     ritz_gramians low = {0};
+    double *sigma = NULL;
+    int64_t count = -1;
 
     (void)state;
     for (int64_t i = 0; i < MASS_ROW; i++)
@@ -224,6 +226,9 @@ static void rigid_motion_alone_has_no_columns(void **state)
     assert_ok(ritz_gramians_low_rank(&request, &low));
     assert_int_equal(low.Zc.ncol, 0);
     assert_true(low.Zo.ncol > 0);
+    assert_ok(ritz_gramians_hankel(&low, &count, &sigma));
+    assert_int_equal(count, 0);
+    free(sigma);
     ritz_gramians_free(&low);
     ritz_component_free(&body);
 }
@@ -324,7 +329,7 @@ static ritz_component spread(double zeta, ritz_modal *modal)
     return c;
 }
 
-/* SciPy's own ADI of the same model takes 34 shifts. */
+/* An ADI in SciPy, apart from this one, takes 34 shifts; this one 32. */
 static void five_hundred_damped_modes_agree_with_closed_form(void **state)
 {
     ritz_modal modal = {0};
