@@ -55,15 +55,14 @@ static void free_recurrence(recurrence *r)
     ritz_sparse_free(&r->K);
 }
 
-/* D := D + a M + b K */
-static ritz_status add_rayleigh(const ritz_component *component,
+/* D := D + a M + b K, springs of dampers being part of K as any other. */
+static ritz_status add_rayleigh(const ritz_sparse *K, const ritz_sparse *M,
                                 const ritz_damping *damping, ritz_sparse *D)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse C = {0}, sum = {0};
 
-    RITZ_TRY(ritz_sparse_add(damping->a, &component->M, damping->b,
-                             &component->K, &C));
+    RITZ_TRY(ritz_sparse_add(damping->a, M, damping->b, K, &C));
     if (D->colptr)
         RITZ_TRY(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
     else {
@@ -99,12 +98,12 @@ static ritz_status collect_matrices(recurrence *r)
     RITZ_TRY(ritz_sparse_copy(&component->K, &r->K));
     if (component->D.colptr)
         RITZ_TRY(ritz_sparse_copy(&component->D, &r->D[0]));
-    if (damping.kind != RITZ_DAMPING_NONE)
-        RITZ_TRY(add_rayleigh(component, &damping, &r->D[0]));
     if (component->dampers.count > 0) {
         RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
         RITZ_TRY(ritz_dampers_install_sparse(&dampers, &r->K, &r->D[0]));
     }
+    if (damping.kind != RITZ_DAMPING_NONE)
+        RITZ_TRY(add_rayleigh(&r->K, &component->M, &damping, &r->D[0]));
 done:
     ritz_dampers_free(&dampers);
     return status;

@@ -209,7 +209,10 @@ static void stated_rayleigh_damping_is_a_matrix(void **state)
     ritz_sparse_free(&matrix.D);
 }
 
-/* A discrete damper with a spring, kept apart, counts as D and K do. */
+/*
+ * A discrete damper with a spring, kept apart, counts as D and K do, and its
+ * spring as any stiffness where damping is proportional to that.
+ */
 static void discrete_dampers_count(void **state)
 {
     fixture *f = *state;
@@ -229,6 +232,9 @@ static void discrete_dampers_count(void **state)
     ritz_dampers_free(&within.dampers);
     ritz_io_free(&within.io);
     within.io = f->truss.io;
+    request.choice.given = RITZ_USES_DAMPING;
+    request.choice.damping =
+        (ritz_damping){.kind = RITZ_DAMPING_RAYLEIGH, .a = 3.0, .b = 1e-2};
     request.component = &apart;
     one = basis_of(request, 9);
     request.component = &within;
