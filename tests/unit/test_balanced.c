@@ -505,9 +505,64 @@ static void no_allocation_failure_leaks(void **state)
     ritz_state_space_free(&reduced);
 }
 
+/*
+ * SLICOT's example of AB09BD, singular perturbation to five states. Entries are
+ * printed to 5e-5, which moves the response by 3e-4 (measured on AB09AD's).
+ */
+static void slicot_publishes_this_perturbed_model(void **state)
+{
+    static const double A7[] = {
+        -0.04165, 0,     4.92,  -4.92, 0,        0,     0,    /**/
+        -5.21,    -12.5, 0,     0,     0,        0,     0,    /**/
+        0,        3.33,  -3.33, 0,     0,        0,     0,    /**/
+        0.545,    0,     0,     0,     -0.545,   0,     0,    /**/
+        0,        0,     0,     4.92,  -0.04165, 0,     4.92, /**/
+        0,        0,     0,     0,     -5.21,    -12.5, 0,    /**/
+        0,        0,     0,     0,     0,        3.33,  -3.33};
+    static const double B7[] = {0, 0, 12.5, 0, 0, 0, 0, 0, 0, 0, 0, 12.5, 0, 0};
+    static const double C7[] = {1, 0, 0, 0, 0, 0, 0, /**/
+                                0, 0, 0, 1, 0, 0, 0, /**/
+                                0, 0, 0, 0, 1, 0, 0};
+    static const double A5[] = {
+        1.3960,  5.1248,  0,       0,       4.4331,  /**/
+        -4.1411, -3.8605, 0,       0,       -0.6738, /**/
+        0,       0,       0.5847,  1.9230,  0,       /**/
+        0,       0,       -4.3823, -3.2922, 0,       /**/
+        1.3261,  1.7851,  0,       0,       -0.2249};
+    static const double B5[] = {-0.2901, 0.2901,  -3.4004, 3.4004, -0.6379,
+                                -0.6379, -3.9315, -3.9315, 1.9813, -1.9813};
+    static const double C5[] = {-0.6570, 0.2053,  -0.6416, 0.2526, -0.0364,
+                                0.1094,  0.4875,  0,       0,      0.8641,
+                                0.6570,  -0.2053, -0.6416, 0.2526, 0.0364};
+    static const double D5[] = {0.0498,  -0.0007, 0.0010,
+                                -0.0010, -0.0007, 0.0498};
+    static const spaces_rows whole = {7, 2, 3, A7, B7, C7, NULL, NULL};
+    static const spaces_rows printed = {5, 2, 3, A5, B5, C5, D5, NULL};
+    ritz_state_space model = {0}, theirs = {0}, ours = {0};
+    ritz_request request = RITZ_REQUEST_NONE;
+    ritz_basis basis = {0};
+
+    (void)state;
+    assert_ok(spaces_make(&whole, &model));
+    assert_ok(spaces_make(&printed, &theirs));
+    request.space = &model;
+    request.modes = 5;
+    request.choice.given = RITZ_USES_REMAINDER;
+    request.choice.perturb = true;
+    assert_ok(ritz_basis_make(&ritz_method_balanced, &request, &basis));
+    assert_ok(ritz_reduce_space(&model, &basis, &ours));
+    assert_int_equal(ours.A.nrow, 5);
+    assert_near(balancing_error(&ours, &theirs), 0.0, 1e-3);
+    ritz_basis_free(&basis);
+    ritz_state_space_free(&model);
+    ritz_state_space_free(&theirs);
+    ritz_state_space_free(&ours);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slicot_publishes_this_perturbed_model),
         cmocka_unit_test(the_error_lies_between_its_bounds),
         cmocka_unit_test(hankel_values_are_those_of_another_program),
         cmocka_unit_test(gramians_of_the_reduced_model_are_equal_and_diagonal),
