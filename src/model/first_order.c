@@ -27,30 +27,49 @@ static const double rounding = 64.0 * DBL_EPSILON;
 /* What a shifted solve leaves of a share that is zero, relative. */
 static const double unseen = 1e-8;
 
+static ritz_status refuse_structural(bool there)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(there, RITZ_ERR_ARGUMENT,
+                 "structural damping is of harmonic motion and has no states, "
+                 "give it as a modal ratio");
+done:
+    return status;
+}
+
+/* K and D with the dampers that are kept apart. */
+static ritz_status install(const ritz_dampers *apart, ritz_structure *model)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dampers dampers = {0};
+
+    RITZ_TRY(ritz_dampers_copy(apart, &dampers));
+    RITZ_TRY(ritz_dampers_install(&dampers, &model->K, &model->D));
+done:
+    ritz_dampers_free(&dampers);
+    return status;
+}
+
 ritz_status ritz_structure_of_component(const ritz_component *component,
                                         ritz_structure *out)
 {
     ritz_status status = RITZ_OK;
     ritz_structure model = {0};
-    ritz_dampers dampers = {0};
 
     RITZ_FAIL_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
                  "%" PRId64 " dofs are too many for dense matrices of states, "
                  "there can be %d: reduce it by another method first",
                  component->num_dofs, RITZ_STATE_DOFS);
-    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no states, "
-                 "give it as a modal ratio");
+    RITZ_TRY(refuse_structural(component->K4.colptr != NULL));
     RITZ_TRY(ritz_sparse_dense(&component->K, &model.K));
     RITZ_TRY(ritz_sparse_dense(&component->M, &model.M));
     if (component->D.colptr)
         RITZ_TRY(ritz_sparse_dense(&component->D, &model.D));
-    RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install(&dampers, &model.K, &model.D));
+    RITZ_TRY(install(&component->dampers, &model));
     *out = model;
     model = (ritz_structure){0};
 done:
-    ritz_dampers_free(&dampers);
     ritz_structure_free(&model);
     return status;
 }
@@ -60,21 +79,16 @@ ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
 {
     ritz_status status = RITZ_OK;
     ritz_structure model = {0};
-    ritz_dampers dampers = {0};
 
-    RITZ_FAIL_IF(reduced->K4.val, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no states, "
-                 "give it as a modal ratio");
+    RITZ_TRY(refuse_structural(reduced->K4.val != NULL));
     RITZ_TRY(ritz_dense_copy(&reduced->K, &model.K));
     RITZ_TRY(ritz_dense_copy(&reduced->M, &model.M));
     if (reduced->D.val)
         RITZ_TRY(ritz_dense_copy(&reduced->D, &model.D));
-    RITZ_TRY(ritz_dampers_copy(&reduced->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install(&dampers, &model.K, &model.D));
+    RITZ_TRY(install(&reduced->dampers, &model));
     *out = model;
     model = (ritz_structure){0};
 done:
-    ritz_dampers_free(&dampers);
     ritz_structure_free(&model);
     return status;
 }
