@@ -6,23 +6,7 @@
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
 #include "gramians/modal_block.h"
-
-#include <lapacke.h>
-
-/* Singular values of A, descending; overwrites A. */
-static ritz_status singular(ritz_dense *A, double *sigma)
-{
-    ritz_status status = RITZ_OK;
-    int info = 0;
-
-    if (A->nrow > 0 && A->ncol > 0)
-        info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
-                              A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values of the Gramians' factors were not found");
-done:
-    return status;
-}
+#include "linear/general.h"
 
 static ritz_status hankel(const ritz_dense *Zo, const ritz_dense *Zc,
                           double *sigma)
@@ -33,7 +17,7 @@ static ritz_status hankel(const ritz_dense *Zo, const ritz_dense *Zc,
     for (int64_t k = 0; k < Zc->nrow; k++)
         sigma[k] = 0.0;
     RITZ_TRY(ritz_dense_mul_tn(Zo, Zc, &H));
-    RITZ_TRY(singular(&H, sigma));
+    RITZ_TRY_IN("Hankel values", ritz_general_singular(&H, sigma));
 done:
     ritz_dense_free(&H);
     return status;

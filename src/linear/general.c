@@ -97,6 +97,34 @@ done:
     return status;
 }
 
+ritz_status ritz_general_singular(ritz_dense *A, double *sigma)
+{
+    ritz_status status = RITZ_OK;
+    int info = 0;
+
+    if (A->nrow > 0 && A->ncol > 0)
+        info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
+                              A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "singular values did not converge");
+done:
+    return status;
+}
+
+ritz_status ritz_general_norm(ritz_dense *A, double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t k = A->nrow < A->ncol ? A->nrow : A->ncol;
+    double *sigma = NULL;
+
+    RITZ_NEW(sigma, k);
+    RITZ_TRY(ritz_general_singular(A, sigma));
+    *out = k > 0 ? sigma[0] : 0.0;
+done:
+    free(sigma);
+    return status;
+}
+
 ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
                                  ritz_dense *U)
 {

@@ -50,6 +50,16 @@ ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
                                     bool transposed, const ritz_dense *B,
                                     ritz_dense *F);
 
+/**
+ * Singular values of A, min(m, n) of them, descending; A is lost.
+ *
+ * @return RITZ_ERR_CONVERGENCE
+ */
+ritz_status ritz_general_singular(ritz_dense *A, double *sigma);
+
+/** The largest of them, 0 of an empty matrix; A is lost. */
+ritz_status ritz_general_norm(ritz_dense *A, double *out);
+
 /** The transpose. */
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);
 

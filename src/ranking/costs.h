@@ -12,6 +12,15 @@ void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
                             const char *letter, int64_t k,
                             char out[RITZ_NAME_SIZE]);
 
+/* What a cluster of modes, a model of its own, is worth. */
+typedef ritz_status ritz_cluster_value(const ritz_rank_request *request,
+                                       const ritz_modal *cluster, double *out);
+
+/** The value of each mode is that of its cluster. */
+ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
+                                    ritz_cluster_value *value,
+                                    ritz_ranking *ranking);
+
 /** Mean of the values within each cluster, for all of its modes. */
 void ritz_ranking_share(const ritz_modal *modal, double *value);
 

@@ -12,14 +12,10 @@
  *
  * [Gregory1984], [McDaniel2000] eq. 3.2.22
  */
-#include "base/alloc.h"
-#include "gramians/cluster.h"
+#include "linear/general.h"
+#include "ranking/costs.h"
 
-#include <ritz/ranking.h>
-
-#include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* B / sqrt(4 zeta w) and [C_d / w; C_v] / sqrt(4 zeta w) of some modes. */
 static void scale(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
@@ -42,38 +38,20 @@ static void scale(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
     }
 }
 
-/* Largest singular value; overwrites A. */
-static ritz_status norm(ritz_dense *A, double *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t k = A->nrow < A->ncol ? A->nrow : A->ncol;
-    double *sigma = NULL;
-    int info = 0;
-
-    RITZ_NEW(sigma, k);
-    if (k > 0)
-        info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
-                              A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values of a cluster of modes were not found");
-    *out = sigma[0];
-done:
-    free(sigma);
-    return status;
-}
-
-static ritz_status cluster_value(const ritz_modal *cluster, double *out)
+static ritz_status value(const ritz_rank_request *request,
+                         const ritz_modal *cluster, double *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense B = {0};
     ritz_dense C = {0};
     ritz_dense CB = {0};
 
+    (void)request;
     RITZ_TRY(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
     RITZ_TRY(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
     scale(cluster, &B, &C);
     RITZ_TRY(ritz_dense_mul(&C, &B, &CB));
-    RITZ_TRY(norm(&CB, out));
+    RITZ_TRY(ritz_general_norm(&CB, out));
 done:
     ritz_dense_free(&B);
     ritz_dense_free(&C);
@@ -83,23 +61,7 @@ done:
 
 static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_modal *modal = &request->modal;
-    double *value = ranking->value;
-    ritz_modal cluster = {0};
-    int64_t last = 0;
-
-    for (int64_t first = 0; first < modal->count; first = last) {
-        last = ritz_modal_cluster(modal, first);
-        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
-        RITZ_TRY(cluster_value(&cluster, &value[first]));
-        for (int64_t k = first + 1; k < last; k++)
-            value[k] = value[first];
-        ritz_modal_free(&cluster);
-    }
-done:
-    ritz_modal_free(&cluster);
-    return status;
+    return ritz_ranking_by_cluster(request, value, ranking);
 }
 
 /* Of one mode sigma (sqrt(1 + zeta^2) +- zeta), whose product is sigma^2. */

@@ -9,17 +9,18 @@
  *
  * [Skelton1982]
  */
-#include "gramians/cluster.h"
 #include "ranking/costs.h"
 
 #include <math.h>
 
-static ritz_status cluster_value(const ritz_modal *cluster, double *out)
+static ritz_status value(const ritz_rank_request *request,
+                         const ritz_modal *cluster, double *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense V = {0};
     double sum = 0.0;
 
+    (void)request;
     RITZ_TRY(ritz_modal_costs(cluster, &V));
     for (int64_t k = 0; k < V.nrow * V.ncol; k++)
         sum += V.val[k];
@@ -31,22 +32,7 @@ done:
 
 static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_modal *modal = &request->modal;
-    ritz_modal cluster = {0};
-    int64_t last = 0;
-
-    for (int64_t first = 0; first < modal->count; first = last) {
-        last = ritz_modal_cluster(modal, first);
-        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
-        RITZ_TRY(cluster_value(&cluster, &ranking->value[first]));
-        for (int64_t k = first + 1; k < last; k++)
-            ranking->value[k] = ranking->value[first];
-        ritz_modal_free(&cluster);
-    }
-done:
-    ritz_modal_free(&cluster);
-    return status;
+    return ritz_ranking_by_cluster(request, value, ranking);
 }
 
 const ritz_ranker ritz_ranker_h2 = {

@@ -10,33 +10,27 @@
  * [GawronskiJuang1990]
  */
 #include "base/alloc.h"
-#include "gramians/cluster.h"
-
-#include <ritz/ranking.h>
+#include "ranking/costs.h"
 
 #include <stdlib.h>
 
-static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+static ritz_status value(const ritz_rank_request *request,
+                         const ritz_modal *cluster, double *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_modal *modal = &request->modal;
-    ritz_modal cluster = {0};
     double *sigma = NULL;
-    int64_t last = 0;
 
-    RITZ_NEW(sigma, 2 * modal->count);
-    for (int64_t first = 0; first < modal->count; first = last) {
-        last = ritz_modal_cluster(modal, first);
-        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
-        RITZ_TRY(ritz_modal_hankel_band(&cluster, request->band_hz, sigma));
-        for (int64_t k = first; k < last; k++)
-            ranking->value[k] = sigma[0];
-        ritz_modal_free(&cluster);
-    }
+    RITZ_NEW(sigma, 2 * cluster->count);
+    RITZ_TRY(ritz_modal_hankel_band(cluster, request->band_hz, sigma));
+    *out = sigma[0];
 done:
-    ritz_modal_free(&cluster);
     free(sigma);
     return status;
+}
+
+static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+{
+    return ritz_ranking_by_cluster(request, value, ranking);
 }
 
 const ritz_ranker ritz_ranker_hankel_band = {

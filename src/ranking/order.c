@@ -77,3 +77,25 @@ void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
     else
         (void)snprintf(out, RITZ_NAME_SIZE, "%s%" PRId64, letter, k + 1);
 }
+
+ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
+                                    ritz_cluster_value *value,
+                                    ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_modal *modal = &request->modal;
+    ritz_modal cluster = {0};
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        last = ritz_modal_cluster(modal, first);
+        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
+        RITZ_TRY(value(request, &cluster, &ranking->value[first]));
+        for (int64_t k = first + 1; k < last; k++)
+            ranking->value[k] = ranking->value[first];
+        ritz_modal_free(&cluster);
+    }
+done:
+    ritz_modal_free(&cluster);
+    return status;
+}

@@ -9,12 +9,10 @@
  *
  * [Girard2008]
  */
-#include "base/alloc.h"
+#include "linear/general.h"
 #include "ranking/costs.h"
 
-#include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* Rows first .. last - 1 of B, and their largest singular value. */
 static ritz_status largest(const ritz_dense *B, int64_t first, int64_t last,
@@ -23,21 +21,13 @@ static ritz_status largest(const ritz_dense *B, int64_t first, int64_t last,
     ritz_status status = RITZ_OK;
     int64_t n = last - first;
     ritz_dense A = {0};
-    double *sigma = NULL;
-    int info = 0;
 
-    RITZ_NEW(sigma, n < B->ncol ? n : B->ncol);
     RITZ_TRY(ritz_dense_new(n, B->ncol, &A));
     for (int64_t j = 0; j < B->ncol; j++)
         for (int64_t k = 0; k < n; k++)
             ritz_dense_col(&A, j)[k] = ritz_dense_col(B, j)[first + k];
-    info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)n, (int)B->ncol, A.val,
-                          (int)n, sigma, NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values of a cluster of modes were not found");
-    *out = sigma[0];
+    RITZ_TRY(ritz_general_norm(&A, out));
 done:
-    free(sigma);
     ritz_dense_free(&A);
     return status;
 }

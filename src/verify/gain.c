@@ -5,13 +5,12 @@
  *
  * and what motions without mass add to it.
  */
-#include "base/alloc.h"
+#include "linear/general.h"
 #include "verify/static_rest.h"
 
 #include <ritz/eigen.h>
 #include <ritz/verify.h>
 
-#include <lapacke.h>
 #include <math.h>
 
 /* A gain this much smaller than its error is rounding. */
@@ -46,27 +45,6 @@ done:
     return status;
 }
 
-/* Largest singular value; overwrites A. */
-static ritz_status norm(ritz_dense *A, double *out)
-{
-    ritz_status status = RITZ_OK;
-    double *sigma = NULL;
-    int info = 0;
-
-    *out = 0.0;
-    if (A->nrow == 0 || A->ncol == 0)
-        return RITZ_OK;
-    RITZ_NEW(sigma, A->nrow < A->ncol ? A->nrow : A->ncol);
-    info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
-                          A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the norm of the static gain was not found");
-    *out = sigma[0];
-done:
-    free(sigma);
-    return status;
-}
-
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out)
 {
@@ -79,8 +57,8 @@ ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
     RITZ_TRY(ritz_dense_copy(reduced, &apart));
     for (int64_t k = 0; k < G.nrow * G.ncol; k++)
         apart.val[k] -= G.val[k];
-    RITZ_TRY(norm(&G, &size));
-    RITZ_TRY(norm(&apart, &error));
+    RITZ_TRY_IN("static gain", ritz_general_norm(&G, &size));
+    RITZ_TRY_IN("static gain", ritz_general_norm(&apart, &error));
     *out = error == 0.0 ? 0.0 : size > no_gain * error ? error / size : nan("");
 done:
     ritz_dense_free(&G);

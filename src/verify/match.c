@@ -1,8 +1,8 @@
 #include "verify/match.h"
 
 #include "base/alloc.h"
+#include "linear/general.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -52,7 +52,6 @@ static ritz_status subspace_mac(const ritz_dense *Q, int64_t first,
     int64_t s = last - first;
     ritz_dense block = {0};
     double *sigma = NULL;
-    int info = 0;
 
     RITZ_TRY(ritz_dense_new(s, s, &block));
     RITZ_NEW(sigma, s);
@@ -60,10 +59,7 @@ static ritz_status subspace_mac(const ritz_dense *Q, int64_t first,
         for (int64_t i = 0; i < s; i++)
             ritz_dense_col(&block, j)[i] =
                 ritz_dense_col(Q, partner[first + j])[first + i];
-    info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)s, (int)s, block.val,
-                          (int)s, sigma, NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the shapes of a cluster of modes cannot be compared");
+    RITZ_TRY_IN("shapes of a cluster", ritz_general_singular(&block, sigma));
     *out = sigma[s - 1] * sigma[s - 1];
 done:
     ritz_dense_free(&block);
