@@ -70,7 +70,8 @@ ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
  *   below 100 times the most negative and 1e-9 lambda_max, with a gap of 1e4;
  * - those below 64 eps lambda_max, with a gap of 100 to lambda_next or none
  *   above;
- * - those below the first gap of 1e8, which is 1e4 in frequency.
+ * - those below the first gap of 1e8, which is 1e4 in frequency, if as many
+ *   stand above: one very stiff link makes no rigid modes of all others.
  *
  * @param[in] lambda_max  largest eigenvalue of the pencil, or the largest
  *                        |x|'|K||x| of its modes x: eps of it is rounding

@@ -75,7 +75,7 @@ int64_t ritz_eigen_rigid(int64_t count, const double *lambda, double lambda_max)
         return found < count ? found : 0;
     }
     found = below(&clean, count, lambda);
-    for (int64_t k = 0; found == 0 && k + 1 < count; k++)
+    for (int64_t k = 0; found == 0 && 2 * (k + 1) <= count; k++)
         if (fabs(lambda[k]) <= 1e-8 * lambda[k + 1])
             found = k + 1;
     return found;
