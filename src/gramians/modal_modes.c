@@ -6,6 +6,7 @@
 
 #include <lapacke.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -154,11 +155,14 @@ bool ritz_modes_coupled(const ritz_first_order *modes, ritz_coupling *out)
 
 ritz_status ritz_coupling_refuse(const ritz_coupling *coupling, const char *why)
 {
+    char own[RITZ_NAME_SIZE] = "which have none of their own";
+
+    if (isfinite(coupling->ratio))
+        snprintf(own, sizeof own, "%.1e of their own damping", coupling->ratio);
     return ritz_fail(RITZ_ERR_ARGUMENT,
                      "the damping matrix couples the modes at %.6g and %.6g "
-                     "Hz (%.1e of their own damping): %s",
-                     coupling->hertz[0], coupling->hertz[1], coupling->ratio,
-                     why);
+                     "Hz (%s): %s",
+                     coupling->hertz[0], coupling->hertz[1], own, why);
 }
 
 ritz_status ritz_modal_empty(int64_t count, int64_t inputs, int64_t outputs,
