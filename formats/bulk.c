@@ -154,6 +154,7 @@ static ritz_status build(ritz_bulk_cards *all, ritz_bulk *out)
                                     &out->num_sets[k], &out->set[k]));
     RITZ_TRY(name_constraints(all, out));
     RITZ_TRY(ritz_bulk_list_equations(all, out));
+    RITZ_TRY(ritz_bulk_list_elements(all, out));
 done:
     return status;
 }
@@ -204,6 +205,7 @@ void ritz_bulk_free(ritz_bulk *bulk)
         free(bulk->set[k]);
     free(bulk->constraint);
     ritz_equations_free(&bulk->equations);
+    ritz_elements_free(&bulk->elements);
     free(bulk->imposed);
     *bulk = (ritz_bulk){0};
 }

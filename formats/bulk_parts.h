@@ -145,6 +145,9 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
 /** Copy the sentence of the latest failure. */
 ritz_status ritz_bulk_keep_sentence(char **out);
 
+/** Which grids elements join. */
+ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_bulk *out);
+
 /** Whether a set of SPC or MPC cards acts. */
 bool ritz_bulk_selects(const ritz_deck *deck, int64_t which, int64_t set);
 

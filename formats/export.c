@@ -9,8 +9,10 @@
 
 /* A new format is a new file that defines one descriptor, and one line here. */
 const ritz_exporter *const ritz_exporters[] = {
-    &ritz_exporter_exudyn,  &ritz_exporter_matlab, &ritz_exporter_matrix_market,
-    &ritz_exporter_output4, &ritz_exporter_tsv,    NULL,
+    &ritz_exporter_exudyn,        &ritz_exporter_matlab,
+    &ritz_exporter_matrix_market, &ritz_exporter_output4,
+    &ritz_exporter_tsv,           &ritz_exporter_vtu,
+    &ritz_exporter_xdmf,          NULL,
 };
 
 const ritz_exporter *ritz_exporter_find(const char *name)
@@ -32,6 +34,10 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
                  exporter->name);
     RITZ_FAIL_IF(request->matrices && !*request->matrices, RITZ_ERR_ARGUMENT,
                  "no matrix is named");
+    RITZ_FAIL_IF(request->modes && !(exporter->uses & RITZ_EXPORT_SHAPES),
+                 RITZ_ERR_ARGUMENT,
+                 "%s takes a model whole, without a choice of modes",
+                 exporter->name);
     RITZ_FAIL_IF(styled && !(exporter->uses & RITZ_EXPORT_STYLE),
                  RITZ_ERR_ARGUMENT,
                  "%s has one way of writing, without text, "

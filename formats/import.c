@@ -162,6 +162,19 @@ static bool has_ties(const ritz_import_request *request, const ritz_bulk *bulk)
            request->num_averaged_ports > 0;
 }
 
+/* Elements whose grids are all there, out of the deck. */
+static void take_elements(ritz_bulk *bulk, ritz_component *component,
+                          ritz_import_report *report)
+{
+    const ritz_grids *grids = &component->grids;
+
+    component->elements = bulk->elements;
+    bulk->elements = (ritz_elements){0};
+    report->num_hidden =
+        bulk->num_strange +
+        ritz_elements_keep(&component->elements, grids->count, grids->id);
+}
+
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
                                   ritz_parts *parts, ritz_bulk *bulk,
@@ -181,6 +194,7 @@ static ritz_status make_component(const ritz_import_request *request,
         RITZ_TRY(ritz_parts_settle(parts, bulk, &names, component, report));
         RITZ_TRY(place_grids(bulk, &names, component));
     }
+    take_elements(bulk, component, report);
     component->digits = source_digits(parts);
     if (request->units)
         RITZ_TRY_IN("--units",

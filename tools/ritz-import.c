@@ -147,11 +147,19 @@ static void report(cli_run *run, const ritz_component *component,
                 "%lld rows have mass but no stiffness, kept: they move "
                 "freely",
                 (long long)done->num_floating);
+    if (component->elements.count + done->num_hidden > 0)
+        cli_say(run,
+                "%lld elements for pictures; %lld left out, as not all of "
+                "their grids are there",
+                (long long)component->elements.count,
+                (long long)done->num_hidden);
     if (component->asymmetry > MODEL_ROUNDING)
         cli_warn(run, "unsymmetric by %.1e of the largest entry, averaged away",
                  component->asymmetry);
     cli_report_text(run, "map", done->map);
     cli_report_int(run, "massless", done->num_massless);
+    cli_report_int(run, "elements", component->elements.count);
+    cli_report_int(run, "elements_left_out", done->num_hidden);
     cli_report_int(run, "floating", done->num_floating);
     cli_record(run, "import", component->num_dofs);
 }

@@ -1,11 +1,12 @@
 /*
  * NASTRAN bulk data: the geometry and the sets that a deck states, nothing of
- * its elements but those that eliminate dofs.
+ * its elements but which grids they join, and those that eliminate dofs.
  */
 #ifndef RITZ_BULK_H
 #define RITZ_BULK_H
 
 #include <ritz/component.h>
+#include <ritz/elements.h>
 #include <ritz/equations.h>
 
 typedef struct ritz_bulk {
@@ -24,6 +25,8 @@ typedef struct ritz_bulk {
                                            as SPC sets are */
     ritz_equations equations;           /* what these state; `refused` says why
                                            it is not all of that */
+    ritz_elements elements; /* for pictures; grids need not be there */
+    int64_t num_strange;    /* elements whose grids are not understood */
     char *imposed; /* of an SPC that acts and moves its dof; NULL: none does */
 } ritz_bulk;
 

@@ -13,6 +13,7 @@
 #include <ritz/dampers.h>
 #include <ritz/damping.h>
 #include <ritz/dofs.h>
+#include <ritz/elements.h>
 #include <ritz/equations.h>
 #include <ritz/io.h>
 #include <ritz/sparse.h>
@@ -53,6 +54,7 @@ typedef struct ritz_component {
     int64_t num_loads;
     ritz_load *load;
     ritz_grids grids;
+    ritz_elements elements; /* for pictures; {0}: none are known */
     int64_t num_ports;
     ritz_port *port;
     ritz_io io;             /* for n coordinates */

@@ -52,6 +52,8 @@ typedef struct ritz_import_report {
     int64_t num_recovered;  /* that follow from the component's dofs */
     int64_t num_lost;       /* that follow from dofs that it has not */
     char *unknown; /* why constraints are not recovered from; NULL: they are */
+    int64_t num_hidden; /* elements that no picture shows: their grids are not
+                           understood, or not there */
     int64_t num_grids;
     ritz_import_grid *grid; /* made for ports */
 } ritz_import_report;

@@ -277,6 +277,10 @@ static void disorder(ritz_component *c)
             c->grids.position[3 * j + k] = x;
         }
     }
+    for (int64_t k = 0; k < c->elements.count; k++)
+        for (int64_t i = c->elements.first[k]; i < c->elements.first[k + 1];
+             i++)
+            c->elements.grid[i] = 9999 - c->elements.grid[i];
     ritz_sparse_free(&c->K);
     ritz_sparse_free(&c->M);
     free(c->dof);

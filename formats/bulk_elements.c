@@ -1,0 +1,168 @@
+/*
+ * Elements as a picture needs them: which grids each of them joins. What else
+ * their cards say is of no concern here, so one that is not understood is no
+ * failure: it is left out of pictures, and counted.
+ *
+ * Nodes between corners come in another order in wedges and bricks: edges below,
+ * upright, above here; below, above, upright in VTK.
+ *
+ * [Nastran1986], section 2.4.
+ */
+#include "formats/bulk_parts.h"
+
+#include "base/alloc.h"
+
+#include <ritz/elements.h>
+
+enum { MOST_GRIDS = 20 };
+
+/* Fields from 0, of the element's number. */
+typedef struct ritz_bulk_cell {
+    const char *name;
+    int8_t first;   /* field of its first grid */
+    int8_t step;    /* from one grid's field to the next one's */
+    ritz_cell kind; /* with corners alone */
+    ritz_cell full; /* with nodes between them; 0: it has none */
+} ritz_bulk_cell;
+
+/* Sorted by name. */
+static const ritz_bulk_cell cells[] = {
+    {"CBAR", 2, 1, RITZ_CELL_LINE, 0},
+    {"CBEAM", 2, 1, RITZ_CELL_LINE, 0},
+    {"CBUSH", 2, 1, RITZ_CELL_LINE, 0},
+    {"CELAS1", 2, 2, RITZ_CELL_LINE, 0},
+    {"CELAS2", 2, 2, RITZ_CELL_LINE, 0},
+    {"CHEXA", 2, 1, RITZ_CELL_HEXA, RITZ_CELL_HEXA20},
+    {"CONROD", 1, 1, RITZ_CELL_LINE, 0},
+    {"CPENTA", 2, 1, RITZ_CELL_WEDGE, RITZ_CELL_WEDGE15},
+    {"CQUAD4", 2, 1, RITZ_CELL_QUAD, 0},
+    {"CQUAD8", 2, 1, RITZ_CELL_QUAD, RITZ_CELL_QUAD8},
+    {"CQUADR", 2, 1, RITZ_CELL_QUAD, 0},
+    {"CROD", 2, 1, RITZ_CELL_LINE, 0},
+    {"CSHEAR", 2, 1, RITZ_CELL_QUAD, 0},
+    {"CTETRA", 2, 1, RITZ_CELL_TETRA, RITZ_CELL_TETRA10},
+    {"CTRIA3", 2, 1, RITZ_CELL_TRIANGLE, 0},
+    {"CTRIA6", 2, 1, RITZ_CELL_TRIANGLE, RITZ_CELL_TRIANGLE6},
+    {"CTRIAR", 2, 1, RITZ_CELL_TRIANGLE, 0},
+    {"CTUBE", 2, 1, RITZ_CELL_LINE, 0},
+    {"PLOTEL", 1, 1, RITZ_CELL_LINE, 0},
+};
+
+/* Cells as they are gathered. */
+typedef struct gathering {
+    ritz_elements elements;
+    int64_t kinds_room, firsts_room, grids_room, num_grids, num_firsts;
+} gathering;
+
+static int compare_name(const void *name, const void *cell)
+{
+    const ritz_bulk_cell *one = cell;
+
+    return strcmp(name, one->name);
+}
+
+/* Grids of a card, up to `most`; how many there are without a gap. */
+static int64_t take_grids(const ritz_card *card, const ritz_bulk_cell *cell,
+                          int64_t most, int64_t *grid)
+{
+    int64_t count = 0;
+
+    while (count < most) {
+        int64_t k = cell->first + count * cell->step;
+        int64_t id = 0;
+
+        if (k >= card->count || !*ritz_card_text(card, k) ||
+            ritz_card_whole(card, k, 0, &id) != RITZ_OK || id < 1)
+            break;
+        grid[count++] = id;
+    }
+    return count;
+}
+
+/* Where node i of VTK's order stands on the card. */
+static int64_t place_of(int64_t kind, int64_t i)
+{
+    int64_t corners = ritz_cell_corners(kind);
+    int64_t edges = 0; /* below, and as many upright and above */
+
+    if (kind == RITZ_CELL_HEXA20)
+        edges = 4;
+    if (kind == RITZ_CELL_WEDGE15)
+        edges = 3;
+    if (edges == 0 || i < corners + edges)
+        return i;
+    return i < corners + 2 * edges ? i + edges : i - edges;
+}
+
+static ritz_status add_cell(int64_t kind, const int64_t *grid, gathering *it)
+{
+    ritz_status status = RITZ_OK;
+    ritz_elements *all = &it->elements;
+    int64_t size = ritz_cell_size(kind);
+
+    RITZ_ROOM(all->kind, all->count, it->kinds_room);
+    RITZ_ROOM(all->first, it->num_firsts, it->firsts_room);
+    if (it->num_firsts == 0)
+        all->first[it->num_firsts++] = 0;
+    RITZ_ROOM(all->first, it->num_firsts, it->firsts_room);
+    for (int64_t i = 0; i < size; i++) {
+        RITZ_ROOM(all->grid, it->num_grids, it->grids_room);
+        all->grid[it->num_grids++] = grid[place_of(kind, i)];
+    }
+    all->first[it->num_firsts++] = it->num_grids;
+    all->kind[all->count++] = kind;
+done:
+    return status;
+}
+
+/* A spring to the ground joins one grid and is nothing to be seen. */
+static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
+                             gathering *it, int64_t *strange)
+{
+    int64_t grid[MOST_GRIDS];
+    int64_t corners = ritz_cell_size(cell->kind);
+    int64_t most = cell->full ? ritz_cell_size(cell->full) : corners;
+    int64_t count = take_grids(card, cell, most, grid);
+
+    if (count == 1 && corners == 2)
+        return RITZ_OK;
+    if (count < corners) {
+        (*strange)++;
+        return RITZ_OK;
+    }
+    return add_cell(cell->full && count == most ? cell->full : cell->kind, grid,
+                    it);
+}
+
+ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_bulk *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_deck *deck = &all->deck;
+    gathering it = {0};
+    ritz_card card = {0};
+    int64_t strange = 0;
+
+    for (int64_t k = 0; k < deck->num_entries; k++) {
+        const ritz_bulk_cell *cell =
+            bsearch(deck->entry[k].name, cells, sizeof cells / sizeof *cells,
+                    sizeof *cells, compare_name);
+
+        if (!cell)
+            continue;
+        status = ritz_deck_card(deck, k, &card);
+        if (status == RITZ_OK)
+            status = take_cell(&card, cell, &it, &strange);
+        else if (status == RITZ_ERR_FORMAT) {
+            strange++;
+            status = RITZ_OK;
+        }
+        RITZ_TRY(status);
+    }
+    out->elements = it.elements;
+    out->num_strange = strange;
+    it.elements = (ritz_elements){0};
+done:
+    ritz_card_free(&card);
+    ritz_elements_free(&it.elements);
+    return status;
+}

@@ -1,0 +1,228 @@
+/*
+ * Shapes as XDMF [Clarke2007]: a small XML file, and an HDF5 file beside it that
+ * holds the numbers and is named after it. Cells are drawn by their corners, as
+ * few readers know others in a mixed mesh.
+ */
+#include "base/alloc.h"
+#include "base/draft.h"
+#include "formats/xml.h"
+#include "model/h5.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Numbers of cells in a mixed topology; lines bring their length along. */
+static const struct code {
+    ritz_cell kind;
+    int64_t code;
+} codes[] = {
+    {RITZ_CELL_LINE, 2},  {RITZ_CELL_TRIANGLE, 4}, {RITZ_CELL_QUAD, 5},
+    {RITZ_CELL_TETRA, 6}, {RITZ_CELL_WEDGE, 8},    {RITZ_CELL_HEXA, 9},
+};
+
+static int64_t code_of(int64_t kind)
+{
+    for (size_t k = 0; k < sizeof codes / sizeof *codes; k++)
+        if ((int64_t)codes[k].kind == ritz_cell_linear(kind))
+            return codes[k].code;
+    return 0;
+}
+
+/* Cells one after the other, each behind its number; room if @p out is NULL. */
+static int64_t list_cells(const ritz_elements *cells, int64_t *out)
+{
+    int64_t at = 0;
+
+    for (int64_t k = 0; k < cells->count; k++) {
+        int64_t corners = ritz_cell_corners(cells->kind[k]);
+        int64_t code = code_of(cells->kind[k]);
+        int64_t head[] = {code, corners};
+        int64_t heads = code == 0 ? 0 : code == 2 ? 2 : 1;
+
+        for (int64_t i = 0; i < heads; i++, at++)
+            if (out)
+                out[at] = head[i];
+        for (int64_t i = 0; i < corners; i++, at++)
+            if (out)
+                out[at] = cells->grid[cells->first[k] + i];
+    }
+    return at;
+}
+
+static ritz_status write_field(hid_t file, const char *word, int64_t j,
+                               const ritz_shapes *s, const ritz_dense *of)
+{
+    char name[48];
+
+    snprintf(name, sizeof name, "%s_%" PRId64, word, j + 1);
+    return ritz_h5_write(file, name, H5T_IEEE_F64LE,
+                         ritz_h5_table(s->num_points, 3),
+                         ritz_dense_col(of, j));
+}
+
+/* The numbers; @p length of the list of cells. */
+static ritz_status write_heavy(const char *path, const ritz_shapes *s,
+                               int64_t *length)
+{
+    ritz_status status = RITZ_OK;
+    hid_t file = 0;
+    int64_t *list = NULL;
+    herr_t closed = 0;
+
+    *length = list_cells(&s->cells, NULL);
+    RITZ_NEW(list, *length);
+    (void)list_cells(&s->cells, list);
+    RITZ_TRY(ritz_h5_create(path, &file));
+    RITZ_TRY(ritz_h5_write(file, "points", H5T_IEEE_F64LE,
+                           ritz_h5_table(s->num_points, 3), s->position));
+    RITZ_TRY(ritz_h5_write(file, "grids", H5T_STD_I64LE,
+                           ritz_h5_vector(s->num_points), s->id));
+    RITZ_TRY(ritz_h5_write(
+        file, "cells", H5T_STD_I64LE,
+        s->meshed ? ritz_h5_vector(*length) : ritz_h5_table(*length, 1), list));
+    for (int64_t j = 0; j < s->count; j++) {
+        RITZ_TRY(write_field(file, "translations", j, s, &s->u));
+        if (s->turn.val)
+            RITZ_TRY(write_field(file, "rotations", j, s, &s->turn));
+    }
+    closed = H5Fclose(file); /* what HDF5 held back may not fit */
+    file = 0;
+    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
+                 "'%s' cannot be written to its end, is the disk full?", path);
+done:
+    ritz_h5_close(file);
+    free(list);
+    return status;
+}
+
+/* A reference to a data set of the file beside. */
+static void refer(FILE *file, const char *heavy, const char *type, int64_t rows,
+                  int64_t columns, const char *name)
+{
+    fprintf(file, "<DataItem DataType=\"%s\" Precision=\"8\" Dimensions=\"",
+            type);
+    if (columns > 0)
+        fprintf(file, "%" PRId64 " %" PRId64, rows, columns);
+    else
+        fprintf(file, "%" PRId64, rows);
+    fputs("\" Format=\"HDF\">", file);
+    ritz_xml_put(file, heavy);
+    fprintf(file, ":/%s</DataItem>\n", name);
+}
+
+static void print_field(FILE *file, const char *heavy, const ritz_shapes *s,
+                        int64_t j, const char *word, const char *beside)
+{
+    char name[48];
+
+    snprintf(name, sizeof name, "%s_%" PRId64, word, j + 1);
+    fputs("<Attribute Name=\"", file);
+    ritz_xml_put(file, s->name[j]);
+    fprintf(file, "%s\" AttributeType=\"Vector\" Center=\"Node\">\n", beside);
+    refer(file, heavy, "Float", s->num_points, 3, name);
+    fputs("</Attribute>\n", file);
+}
+
+static void print_light(FILE *file, const char *heavy, const ritz_shapes *s,
+                        int64_t length)
+{
+    fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+          "<Grid Name=\"shapes\" GridType=\"Uniform\">\n",
+          file);
+    fprintf(file,
+            "<Topology TopologyType=\"%s\" NumberOfElements=\"%" PRId64
+            "\"%s>\n",
+            s->meshed ? "Mixed" : "Polyvertex", s->cells.count,
+            s->meshed ? "" : " NodesPerElement=\"1\"");
+    refer(file, heavy, "Int", length, s->meshed ? 0 : 1, "cells");
+    fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">\n", file);
+    refer(file, heavy, "Float", s->num_points, 3, "points");
+    fputs("</Geometry>\n", file);
+    for (int64_t j = 0; j < s->count; j++) {
+        print_field(file, heavy, s, j, "translations", "");
+        if (s->turn.val)
+            print_field(file, heavy, s, j, "rotations", ", rotations");
+    }
+    fputs("<Attribute Name=\"grid\" AttributeType=\"Scalar\" "
+          "Center=\"Node\">\n",
+          file);
+    refer(file, heavy, "Int", s->num_points, 0, "grids");
+    fputs("</Attribute>\n</Grid>\n</Domain>\n</Xdmf>\n", file);
+}
+
+static ritz_status write_light(const char *path, const char *heavy,
+                               const ritz_shapes *s, int64_t length)
+{
+    ritz_status status = RITZ_OK;
+    const char *name = strrchr(heavy, '/');
+    bool whole = true;
+    FILE *file = fopen(path, "w");
+
+    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", path,
+                 strerror(errno));
+    print_light(file, name ? name + 1 : heavy, s, length);
+    whole = !ferror(file);
+    whole = fclose(file) == 0 && whole;
+    RITZ_FAIL_IF(!whole, RITZ_ERR_FILE,
+                 "'%s' cannot be written to its end, is the disk full?", path);
+done:
+    return status;
+}
+
+/* "shapes.xdmf.h5", in which readers look for the last ':' alone. */
+static ritz_status name_heavy(const char *output, char **out)
+{
+    ritz_status status = RITZ_OK;
+    const char *name = strrchr(output, '/');
+    char *heavy = NULL;
+
+    RITZ_FAIL_IF(strchr(name ? name + 1 : output, ':'), RITZ_ERR_ARGUMENT,
+                 "'%s' holds ':', which parts file and data set in XDMF",
+                 output);
+    RITZ_NEW(heavy, (int64_t)strlen(output) + 4);
+    strcpy(heavy, output); // NOLINT: there is room
+    strcat(heavy, ".h5");  // NOLINT
+    *out = heavy;
+done:
+    return status;
+}
+
+/* Both drafts are complete before either gets its name. */
+static ritz_status write(const ritz_shapes *shapes,
+                         const ritz_export_request *request,
+                         ritz_export_report *report)
+{
+    ritz_status status = RITZ_OK;
+    ritz_draft heavy = {0}, light = {0};
+    char *beside = NULL;
+    int64_t length = 0;
+
+    RITZ_TRY(name_heavy(request->output, &beside));
+    RITZ_TRY(ritz_draft_new(beside, &heavy));
+    RITZ_TRY(ritz_draft_new(request->output, &light));
+    RITZ_TRY(write_heavy(heavy.name, shapes, &length));
+    RITZ_TRY(write_light(light.name, beside, shapes, length));
+    RITZ_TRY(ritz_draft_publish(&heavy));
+    RITZ_TRY(ritz_draft_publish(&light));
+    RITZ_TRY(ritz_shapes_say(shapes, report));
+    RITZ_TRY(ritz_export_say(report,
+                             "the numbers are in %.200s, which must "
+                             "stay beside it",
+                             beside));
+done:
+    free(beside);
+    ritz_draft_free(&heavy);
+    ritz_draft_free(&light);
+    return status;
+}
+
+const ritz_exporter ritz_exporter_xdmf = {
+    .name = "xdmf",
+    .summary = "shapes of modes or of columns for viewers (XDMF, HDF5)",
+    .reference = "Clarke2007",
+    .kind = "shapes",
+    .uses = RITZ_EXPORT_SHAPES,
+    .write_shapes = write,
+};

@@ -1,0 +1,152 @@
+/* Cells of a mesh. */
+#include <ritz/elements.h>
+
+#include "base/alloc.h"
+#include "base/search.h"
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct shape {
+    ritz_cell kind, linear;
+    int64_t size, corners;
+} shapes[] = {
+    {RITZ_CELL_POINT, RITZ_CELL_POINT, 1, 1},
+    {RITZ_CELL_LINE, RITZ_CELL_LINE, 2, 2},
+    {RITZ_CELL_TRIANGLE, RITZ_CELL_TRIANGLE, 3, 3},
+    {RITZ_CELL_QUAD, RITZ_CELL_QUAD, 4, 4},
+    {RITZ_CELL_TETRA, RITZ_CELL_TETRA, 4, 4},
+    {RITZ_CELL_HEXA, RITZ_CELL_HEXA, 8, 8},
+    {RITZ_CELL_WEDGE, RITZ_CELL_WEDGE, 6, 6},
+    {RITZ_CELL_TRIANGLE6, RITZ_CELL_TRIANGLE, 6, 3},
+    {RITZ_CELL_QUAD8, RITZ_CELL_QUAD, 8, 4},
+    {RITZ_CELL_TETRA10, RITZ_CELL_TETRA, 10, 4},
+    {RITZ_CELL_HEXA20, RITZ_CELL_HEXA, 20, 8},
+    {RITZ_CELL_WEDGE15, RITZ_CELL_WEDGE, 15, 6},
+};
+
+static const struct shape *find(int64_t kind)
+{
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
+        if ((int64_t)shapes[k].kind == kind)
+            return &shapes[k];
+    return NULL;
+}
+
+int64_t ritz_cell_size(int64_t kind)
+{
+    const struct shape *shape = find(kind);
+
+    return shape ? shape->size : 0;
+}
+
+int64_t ritz_cell_corners(int64_t kind)
+{
+    const struct shape *shape = find(kind);
+
+    return shape ? shape->corners : 0;
+}
+
+int64_t ritz_cell_linear(int64_t kind)
+{
+    const struct shape *shape = find(kind);
+
+    return shape ? (int64_t)shape->linear : kind;
+}
+
+ritz_status ritz_elements_copy(const ritz_elements *elements,
+                               ritz_elements *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_elements copy = {.count = elements->count};
+    size_t n = (size_t)elements->count;
+    int64_t grids = 0;
+
+    if (n == 0)
+        return RITZ_OK;
+    grids = elements->first[n];
+    RITZ_NEW(copy.kind, copy.count);
+    RITZ_NEW(copy.first, copy.count + 1);
+    RITZ_NEW(copy.grid, grids);
+    memcpy(copy.kind, elements->kind, n * sizeof *copy.kind);
+    memcpy(copy.first, elements->first, (n + 1) * sizeof *copy.first);
+    memcpy(copy.grid, elements->grid, (size_t)grids * sizeof *copy.grid);
+    *out = copy;
+    copy = (ritz_elements){0};
+done:
+    ritz_elements_free(&copy);
+    return status;
+}
+
+static bool all_there(const ritz_elements *elements, int64_t k, int64_t count,
+                      const int64_t *id)
+{
+    for (int64_t i = elements->first[k]; i < elements->first[k + 1]; i++)
+        if (ritz_search(count, id, elements->grid[i]) < 0)
+            return false;
+    return true;
+}
+
+int64_t ritz_elements_keep(ritz_elements *elements, int64_t count,
+                           const int64_t *id)
+{
+    int64_t kept = 0, end = 0, all = elements->count;
+
+    for (int64_t k = 0; k < all; k++) {
+        int64_t from = elements->first[k];
+        int64_t size = elements->first[k + 1] - from;
+
+        if (!all_there(elements, k, count, id))
+            continue;
+        /* earlier cells end before this one begins */
+        memmove(elements->grid + end, elements->grid + from,
+                (size_t)size * sizeof *elements->grid);
+        elements->kind[kept] = elements->kind[k];
+        elements->first[kept++] = end;
+        end += size;
+    }
+    if (all > 0)
+        elements->first[kept] = end;
+    elements->count = kept;
+    if (kept == 0)
+        ritz_elements_free(elements);
+    return all - kept;
+}
+
+ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
+                                const int64_t *id)
+{
+    ritz_status status = RITZ_OK;
+
+    if (elements->count == 0)
+        return RITZ_OK;
+    RITZ_FAIL_IF(elements->first[0] != 0, RITZ_ERR_FORMAT,
+                 "elements do not begin at their first grid");
+    for (int64_t k = 0; k < elements->count; k++) {
+        int64_t size = elements->first[k + 1] - elements->first[k];
+
+        RITZ_FAIL_IF(ritz_cell_size(elements->kind[k]) == 0, RITZ_ERR_FORMAT,
+                     "element %" PRId64 " is of kind %" PRId64
+                     ", which is not known",
+                     k + 1, elements->kind[k]);
+        RITZ_FAIL_IF(size != ritz_cell_size(elements->kind[k]), RITZ_ERR_FORMAT,
+                     "element %" PRId64 " has %" PRId64
+                     " grids, its kind has %" PRId64,
+                     k + 1, size, ritz_cell_size(elements->kind[k]));
+        RITZ_FAIL_IF(!all_there(elements, k, count, id), RITZ_ERR_FORMAT,
+                     "element %" PRId64 " has a grid without a position",
+                     k + 1);
+    }
+done:
+    return status;
+}
+
+void ritz_elements_free(ritz_elements *elements)
+{
+    free(elements->kind);
+    free(elements->first);
+    free(elements->grid);
+    *elements = (ritz_elements){0};
+}
