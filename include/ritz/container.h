@@ -15,6 +15,7 @@
 #include <ritz/ranking.h>
 #include <ritz/reduced.h>
 #include <ritz/response.h>
+#include <ritz/simulate.h>
 #include <ritz/state_space.h>
 #include <ritz/system.h>
 
@@ -69,6 +70,11 @@ ritz_status ritz_container_read_state_space(const char *path,
 ritz_status ritz_container_write_state_space(const char *path,
                                              const ritz_state_space *model,
                                              const ritz_stamp *stamp);
+ritz_status ritz_container_read_simulation(const char *path,
+                                           ritz_simulation *out);
+ritz_status ritz_container_write_simulation(const char *path,
+                                            const ritz_simulation *simulation,
+                                            const ritz_stamp *stamp);
 ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out);
 ritz_status ritz_container_write_ranking(const char *path,
                                          const ritz_ranking *ranking,

@@ -4,6 +4,8 @@
 
 #include <ritz/reduced.h>
 #include <ritz/response.h>
+#include <ritz/shapes.h>
+#include <ritz/simulate.h>
 #include <ritz/state_space.h>
 
 /* What may be asked of an exporter; zero where not given. */
@@ -12,6 +14,7 @@ typedef struct ritz_export_request {
     const char *matrices; /* "K,M"; NULL: all that the format takes */
     bool text, dense;     /* output4 */
     int64_t digits;       /* text */
+    const char *modes;    /* of shapes, "1-6,9"; NULL: see shapes.h */
 } ritz_export_request;
 
 /* What an exporter says it lost or did: lines for people. */
@@ -21,13 +24,17 @@ typedef struct ritz_export_report {
 } ritz_export_report;
 
 /* Which fields of a request an exporter heeds; others must be left alone. */
-enum { RITZ_EXPORT_MATRICES = 1, RITZ_EXPORT_STYLE = 2 };
+enum {
+    RITZ_EXPORT_MATRICES = 1,
+    RITZ_EXPORT_STYLE = 2,
+    RITZ_EXPORT_SHAPES = 4,
+};
 
 typedef struct ritz_exporter {
     const char *name;
     const char *summary;
     const char *reference;
-    const char *kind; /* of container it takes: "reduced", "response" */
+    const char *kind; /* of what it takes: "reduced", "response", "shapes" */
     int uses;         /* RITZ_EXPORT_... */
     ritz_status (*write_reduced)(const ritz_reduced *reduced,
                                  const ritz_export_request *request,
@@ -39,6 +46,14 @@ typedef struct ritz_exporter {
     ritz_status (*write_states)(const ritz_state_space *model,
                                 const ritz_export_request *request,
                                 ritz_export_report *report);
+    /** Beside responses over frequency; NULL: it takes none. */
+    ritz_status (*write_simulation)(const ritz_simulation *simulation,
+                                    const ritz_export_request *request,
+                                    ritz_export_report *report);
+    /** Of kind "shapes", alone. */
+    ritz_status (*write_shapes)(const ritz_shapes *shapes,
+                                const ritz_export_request *request,
+                                ritz_export_report *report);
 } ritz_exporter;
 
 /** All exporters, ended by NULL. */
@@ -48,6 +63,8 @@ extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_tsv;
+extern const ritz_exporter ritz_exporter_vtu;
+extern const ritz_exporter ritz_exporter_xdmf;
 
 const ritz_exporter *ritz_exporter_find(const char *name);
 

@@ -65,6 +65,19 @@ typedef struct ritz_invariants {
 /* Nine r x r matrices: of more columns than this they are not kept. */
 enum { RITZ_INVARIANT_COLUMNS = 400 };
 
+/*
+ * Columns so ordered that the first of them are a model too, and what is known
+ * of such prefixes: see nested.h.
+ */
+typedef struct ritz_nested {
+    int64_t smallest; /* columns of the smallest prefix; 0: it is not nested */
+    int64_t count;    /* orders of which something is known */
+    int64_t *order;   /* count, ascending */
+    int64_t num_errors;
+    char (*error)[RITZ_NAME_SIZE]; /* distinct names of measures */
+    ritz_dense value; /* count x num_errors; NaN where not measured */
+} ritz_nested;
+
 typedef struct ritz_reduced {
     ritz_dense K, M, D, K4; /* r x r; D, K4 {0}: none. D may be unsymmetric */
     ritz_dampers dampers;   /* as of a component, for r coordinates */
@@ -79,10 +92,12 @@ typedef struct ritz_reduced {
     int64_t num_dofs;       /* n, of the full component */
     ritz_dof *dof;          /* n; NULL without basis */
     ritz_grids grids;       /* of the full component; {0} without basis */
+    ritz_elements elements; /* the same */
     ritz_recovery recovery; /* the same, from its n dofs */
     char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
     ritz_measures estimates;         /* by ritz-reduce */
     ritz_measures errors;            /* by ritz-verify */
+    ritz_nested nested;
     char units[RITZ_NAME_SIZE];
 } ritz_reduced;
 
@@ -135,6 +150,7 @@ ritz_status ritz_invariants_project(const ritz_invariants *invariants,
 ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
                               double value, double limit, const char *where);
 
+void ritz_nested_free(ritz_nested *nested);
 void ritz_invariants_free(ritz_invariants *invariants);
 void ritz_measures_free(ritz_measures *measures);
 void ritz_port_map_free(ritz_port_map *port);

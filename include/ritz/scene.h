@@ -15,9 +15,10 @@ typedef struct ritz_scene_component {
     char name[RITZ_NAME_SIZE];
     char *model; /* path, relative ones taken from the scene's folder */
     char basis[RITZ_NAME_SIZE]; /* a method; "" with a reduced model */
-    int64_t modes;              /* -1: none given */
-    double up_to_hz;            /* 0: none given */
-    char *attach; /* ports with commas between; NULL: those of the scene */
+    int64_t order;   /* of a nested reduced model its first columns; 0: all */
+    int64_t modes;   /* -1: none given */
+    double up_to_hz; /* 0: none given */
+    char *attach;    /* ports with commas between; NULL: those of the scene */
     ritz_choice choice;   /* what the basis is told beside that */
     int64_t line, column; /* where it stands, for later refusals */
 } ritz_scene_component;

@@ -36,6 +36,22 @@ typedef struct ritz_stage {
 ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out);
 
 /**
+ * The model of component @p k of a scene, its ports checked: a full one, or one
+ * that is reduced already; the other stays empty.
+ */
+ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
+                            ritz_component *full, ritz_reduced *reduced);
+
+/**
+ * Reduce that full model as @p item says, which may be the scene's own or
+ * another: its basis, modes, up_to_hz, attach and choice are used.
+ */
+ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
+                              const ritz_scene_component *item,
+                              const ritz_component *component,
+                              ritz_reduced *out);
+
+/**
  * A stage of bodies that are there already, in the order of the scene.
  *
  * @param[in,out] body  scene->num_components, moved into the stage: on success

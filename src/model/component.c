@@ -186,6 +186,8 @@ ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
     RITZ_TRY(check_dofs(component));
     RITZ_TRY(settle_matrices(component, symmetrise));
     RITZ_TRY(check_grids(&component->grids));
+    RITZ_TRY(ritz_elements_check(&component->elements, component->grids.count,
+                                 component->grids.id));
     RITZ_TRY(check_ports(component));
     RITZ_TRY(settle_io(component));
     RITZ_TRY(ritz_recovery_check(&component->recovery, component->num_dofs,
@@ -287,6 +289,7 @@ void ritz_component_free(ritz_component *component)
     free(component->load);
     free(component->dof);
     ritz_grids_free(&component->grids);
+    ritz_elements_free(&component->elements);
     for (int64_t k = 0; k < component->num_ports; k++)
         ritz_dofs_free(&component->port[k].dofs);
     free(component->port);

@@ -193,6 +193,8 @@ static ritz_status read_all(hid_t file, ritz_component *component)
     RITZ_TRY(ritz_part_read_dofs(file, &component->num_dofs, &component->dof));
     RITZ_TRY(read_matrices(file, component));
     RITZ_TRY(ritz_part_read_grids(file, &component->grids));
+    RITZ_TRY(
+        ritz_part_read_elements(file, &component->grids, &component->elements));
     RITZ_TRY(read_ports(file, component));
     RITZ_TRY(ritz_part_read_io(file, component->num_dofs, &component->io));
     RITZ_TRY(ritz_part_read_recovery(file, component->num_dofs, component->dof,
@@ -242,6 +244,7 @@ ritz_status ritz_container_write_component(const char *path,
     RITZ_TRY(write_loads(file, component));
     RITZ_TRY(ritz_part_write_dofs(file, component->num_dofs, component->dof));
     RITZ_TRY(ritz_part_write_grids(file, &component->grids));
+    RITZ_TRY(ritz_part_write_elements(file, &component->elements));
     RITZ_TRY(write_ports(file, component));
     RITZ_TRY(ritz_part_write_io(file, &component->io));
     RITZ_TRY(ritz_part_write_recovery(file, &component->recovery));

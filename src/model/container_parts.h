@@ -58,6 +58,12 @@ ritz_status ritz_part_write_names(hid_t at, const char *name, int64_t count,
 ritz_status ritz_part_read_names(hid_t at, const char *name, int64_t count,
                                  ritz_name *out);
 
+/** The same in a group of its own, `inputs` or `outputs`; count as found. */
+ritz_status ritz_part_write_group_names(hid_t at, const char *name,
+                                        int64_t count, const ritz_name *names);
+ritz_status ritz_part_read_group_names(hid_t at, const char *name,
+                                       int64_t *count, ritz_name **out);
+
 /** Texts that need not be distinct and may be empty. */
 ritz_status ritz_part_write_words(hid_t at, const char *name, int64_t count,
                                   const ritz_name *words);
@@ -80,6 +86,11 @@ ritz_status ritz_part_read_dofs(hid_t at, int64_t *count, ritz_dof **out);
 /** Group `grids`; none is an empty object. */
 ritz_status ritz_part_write_grids(hid_t at, const ritz_grids *grids);
 ritz_status ritz_part_read_grids(hid_t at, ritz_grids *out);
+
+/** Group `elements`, of grids that are there; none if empty. */
+ritz_status ritz_part_write_elements(hid_t at, const ritz_elements *elements);
+ritz_status ritz_part_read_elements(hid_t at, const ritz_grids *grids,
+                                    ritz_elements *out);
 
 /** Groups `inputs` and `outputs` for @p n coordinates; none if empty. */
 ritz_status ritz_part_write_io(hid_t at, const ritz_io *io);
@@ -108,6 +119,10 @@ ritz_status ritz_part_write_measures(hid_t at, const char *name,
                                      const ritz_measures *measures);
 ritz_status ritz_part_read_measures(hid_t at, const char *name,
                                     ritz_measures *out);
+
+/** Group `nested` of @p r columns; none if it is not nested. */
+ritz_status ritz_part_write_nested(hid_t at, const ritz_nested *nested);
+ritz_status ritz_part_read_nested(hid_t at, int64_t r, ritz_nested *out);
 
 /** Place of a port: attributes `origin` and `axes`. */
 ritz_status ritz_part_set_place(hid_t at, const double origin[static 3],

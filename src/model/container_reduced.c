@@ -165,6 +165,8 @@ static ritz_status read_full(hid_t file, ritz_reduced *reduced)
     RITZ_TRY(ritz_part_read_dense(file, "T", reduced->num_dofs, reduced->K.ncol,
                                   &reduced->T));
     RITZ_TRY(ritz_part_read_grids(file, &reduced->grids));
+    RITZ_TRY(
+        ritz_part_read_elements(file, &reduced->grids, &reduced->elements));
     if (!ritz_h5_has(file, "dofs"))
         return RITZ_OK;
     RITZ_TRY(ritz_part_read_dofs(file, &count, &reduced->dof));
@@ -202,6 +204,7 @@ static ritz_status read_all(hid_t file, ritz_reduced *reduced)
     RITZ_TRY(read_inertia(file, reduced));
     RITZ_TRY(ritz_part_read_measures(file, "estimates", &reduced->estimates));
     RITZ_TRY(ritz_part_read_measures(file, "errors", &reduced->errors));
+    RITZ_TRY(ritz_part_read_nested(file, r, &reduced->nested));
 done:
     return status;
 }
@@ -236,6 +239,7 @@ static ritz_status write_all(hid_t file, const ritz_reduced *reduced)
     RITZ_TRY(ritz_part_write_dampers(file, &reduced->dampers));
     RITZ_TRY(ritz_part_write_dense(file, "T", &reduced->T));
     RITZ_TRY(ritz_part_write_grids(file, &reduced->grids));
+    RITZ_TRY(ritz_part_write_elements(file, &reduced->elements));
     if (reduced->dof)
         RITZ_TRY(ritz_part_write_dofs(file, reduced->num_dofs, reduced->dof));
     RITZ_TRY(ritz_part_write_recovery(file, &reduced->recovery));
@@ -245,6 +249,7 @@ static ritz_status write_all(hid_t file, const ritz_reduced *reduced)
     RITZ_TRY(write_inertia(file, reduced));
     RITZ_TRY(ritz_part_write_measures(file, "estimates", &reduced->estimates));
     RITZ_TRY(ritz_part_write_measures(file, "errors", &reduced->errors));
+    RITZ_TRY(ritz_part_write_nested(file, &reduced->nested));
 done:
     return status;
 }

@@ -11,40 +11,6 @@ static const ritz_text_member members[] = {
     {NULL, 0},
 };
 
-static ritz_status write_group_names(hid_t at, const char *name, int64_t count,
-                                     const ritz_name *names)
-{
-    ritz_status status = RITZ_OK;
-    hid_t group = 0;
-
-    RITZ_TRY(ritz_h5_group(at, name, &group));
-    RITZ_TRY_IN(name, ritz_part_write_names(group, "names", count, names));
-done:
-    ritz_h5_close(group);
-    return status;
-}
-
-static ritz_status read_group_names(hid_t at, const char *name, int64_t *count,
-                                    ritz_name **out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_name *names = NULL;
-    int64_t found = 0;
-    hid_t group = 0;
-
-    RITZ_TRY(ritz_h5_enter(at, name, &group));
-    RITZ_TRY_IN(name, ritz_h5_count(group, "names", &found));
-    RITZ_NEW(names, found);
-    RITZ_TRY_IN(name, ritz_part_read_names(group, "names", found, names));
-    *count = found;
-    *out = names;
-    names = NULL;
-done:
-    free(names);
-    ritz_h5_close(group);
-    return status;
-}
-
 static ritz_h5_shape shape_of(const ritz_response *response)
 {
     return ritz_h5_stack(response->count, response->num_outputs,
@@ -118,6 +84,71 @@ done:
     return ritz_context(status, "H");
 }
 
+static ritz_status write_singular(hid_t file, const ritz_response *response)
+{
+    if (response->num_singular == 0)
+        return RITZ_OK;
+    return ritz_h5_write(file, "singular_values", H5T_IEEE_F64LE,
+                         ritz_h5_table(response->count, response->num_singular),
+                         response->singular);
+}
+
+static ritz_status read_singular(hid_t file, ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    ritz_h5_shape found = {0};
+    int64_t most = response->num_outputs < response->num_inputs
+                       ? response->num_outputs
+                       : response->num_inputs;
+
+    if (!ritz_h5_has(file, "singular_values"))
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_shape_of(file, "singular_values", 2, &found));
+    RITZ_FAIL_IF(found.dims[0] != (hsize_t)response->count ||
+                     found.dims[1] != (hsize_t)most,
+                 RITZ_ERR_FORMAT,
+                 "'singular_values' is not hertz x the fewer of outputs and "
+                 "inputs");
+    RITZ_NEW(response->singular, response->count * most);
+    RITZ_TRY(ritz_h5_read_real(file, "singular_values", found, false,
+                               response->singular));
+    response->num_singular = most;
+done:
+    return status;
+}
+
+/* How to go between points, where they were chosen for it. */
+static ritz_status write_between(hid_t file, const ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!response->interpolation[0])
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_set_text(file, "interpolation", response->interpolation));
+    RITZ_TRY(ritz_h5_set(file, "tolerance", H5T_IEEE_F64LE, ritz_h5_scalar(),
+                         &response->tolerance));
+done:
+    return status;
+}
+
+static ritz_status read_between(hid_t file, ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    double tolerance = 0.0;
+
+    if (H5Aexists(file, "interpolation") <= 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_get_text(file, "interpolation",
+                              sizeof response->interpolation,
+                              response->interpolation));
+    RITZ_TRY(ritz_h5_get(file, "tolerance", H5T_NATIVE_DOUBLE, 1, &tolerance));
+    RITZ_FAIL_IF(!(tolerance >= 0.0) || !(tolerance < 1.0), RITZ_ERR_FORMAT,
+                 "'tolerance' is %g, not between 0 and 1", tolerance);
+    response->tolerance = tolerance;
+done:
+    return status;
+}
+
 static ritz_status read_all(hid_t file, ritz_response *response)
 {
     ritz_status status = RITZ_OK;
@@ -133,11 +164,13 @@ static ritz_status read_all(hid_t file, ritz_response *response)
         RITZ_FAIL_IF(response->hertz[k] < response->hertz[k - 1],
                      RITZ_ERR_FORMAT, "'hertz' descends at value %" PRId64,
                      k + 1);
-    RITZ_TRY(read_group_names(file, "inputs", &response->num_inputs,
-                              &response->input));
-    RITZ_TRY(read_group_names(file, "outputs", &response->num_outputs,
-                              &response->output));
+    RITZ_TRY(ritz_part_read_group_names(file, "inputs", &response->num_inputs,
+                                        &response->input));
+    RITZ_TRY(ritz_part_read_group_names(file, "outputs", &response->num_outputs,
+                                        &response->output));
     RITZ_TRY(read_values(file, response));
+    RITZ_TRY(read_between(file, response));
+    RITZ_TRY(read_singular(file, response));
 done:
     return status;
 }
@@ -172,11 +205,13 @@ ritz_status ritz_container_write_response(const char *path,
     RITZ_TRY(ritz_h5_set_text(file, "damping", response->damping));
     RITZ_TRY(ritz_h5_write(file, "hertz", H5T_IEEE_F64LE,
                            ritz_h5_vector(response->count), response->hertz));
-    RITZ_TRY(write_group_names(file, "inputs", response->num_inputs,
-                               response->input));
-    RITZ_TRY(write_group_names(file, "outputs", response->num_outputs,
-                               response->output));
+    RITZ_TRY(ritz_part_write_group_names(file, "inputs", response->num_inputs,
+                                         response->input));
+    RITZ_TRY(ritz_part_write_group_names(file, "outputs", response->num_outputs,
+                                         response->output));
     RITZ_TRY(write_values(file, response));
+    RITZ_TRY(write_between(file, response));
+    RITZ_TRY(write_singular(file, response));
     RITZ_TRY(ritz_writer_finish(&writer));
 done:
     ritz_writer_free(&writer);

@@ -139,6 +139,7 @@ static ritz_status keep_names(const ritz_component *component,
     RITZ_TRY(ritz_dense_copy(&basis->T, &reduced->T));
     RITZ_TRY(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
     RITZ_TRY(copy_grids(&component->grids, &reduced->grids));
+    RITZ_TRY(ritz_elements_copy(&component->elements, &reduced->elements));
     RITZ_TRY(ritz_recovery_copy(&component->recovery, &reduced->recovery));
     RITZ_TRY(ritz_inertia_of(component, &reduced->inertia));
     RITZ_TRY(ritz_mass_columns(basis, &T));
@@ -238,6 +239,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         RITZ_TRY(ritz_dense_mul(&reduced->T, V, &second.T));
         RITZ_TRY(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
         RITZ_TRY(copy_grids(&reduced->grids, &second.grids));
+        RITZ_TRY(ritz_elements_copy(&reduced->elements, &second.elements));
         RITZ_TRY(ritz_recovery_copy(&reduced->recovery, &second.recovery));
     }
     *out = second;
@@ -294,8 +296,10 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_dense_free(&reduced->T);
     free(reduced->dof);
     ritz_grids_free(&reduced->grids);
+    ritz_elements_free(&reduced->elements);
     ritz_recovery_free(&reduced->recovery);
     ritz_measures_free(&reduced->estimates);
     ritz_measures_free(&reduced->errors);
+    ritz_nested_free(&reduced->nested);
     *reduced = (ritz_reduced){0};
 }

@@ -85,13 +85,29 @@ done:
     return status;
 }
 
-enum { MODEL, BASIS, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
+static ritz_status take_order(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_status status = RITZ_OK;
+    int64_t order = 0;
+
+    RITZ_TRY(ritz_yaml_whole(yaml, node, &order));
+    RITZ_REFUSE_IF(order < 1, yaml, node, "%" PRId64 " columns are no model",
+                   order);
+    *(int64_t *)field = order;
+done:
+    return status;
+}
+
+enum { MODEL, BASIS, ORDER, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
     [MODEL] = {"model", true, ritz_yaml_copy,
                offsetof(ritz_scene_component, model)},
     [BASIS] = {"basis", false, ritz_yaml_name,
                offsetof(ritz_scene_component, basis)},
+    [ORDER] = {"order", false, take_order,
+               offsetof(ritz_scene_component, order)},
     [MODES] = {"modes", false, take_modes,
                offsetof(ritz_scene_component, modes)},
     [UP_TO] = {"up_to_hz", false, ritz_yaml_positive,
@@ -158,6 +174,9 @@ static ritz_status read_component(const ritz_yaml *yaml,
     RITZ_TRY(ritz_yaml_mapping(yaml, node, count, all, out, value));
     RITZ_REFUSE_IF(value[MODES] && value[UP_TO], yaml, value[UP_TO],
                    "'modes' and 'up_to_hz' are both given, one decides");
+    RITZ_REFUSE_IF(value[ORDER] && value[BASIS], yaml, value[ORDER],
+                   "'order' is how much of a model that is reduced already to "
+                   "take, and a 'basis' reduces one");
     for (int64_t k = MODES; k < count; k++)
         RITZ_REFUSE_IF(value[k] && !value[BASIS], yaml, value[k],
                        "'%s' says how to reduce, which needs a 'basis' too",

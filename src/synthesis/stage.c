@@ -5,6 +5,7 @@
 #include <ritz/container.h>
 #include <ritz/method.h>
 #include <ritz/monitor.h>
+#include <ritz/nested.h>
 #include <ritz/synthesis.h>
 
 #include <inttypes.h>
@@ -63,13 +64,12 @@ done:
     return status;
 }
 
-/* Reduce a full model as the scene says. */
-static ritz_status reduce_body(const ritz_scene *scene, int64_t k,
-                               const ritz_component *component,
-                               ritz_reduced *out)
+ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
+                              const ritz_scene_component *item,
+                              const ritz_component *component,
+                              ritz_reduced *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_scene_component *item = &scene->component[k];
     ritz_request request = RITZ_REQUEST_NONE;
     const ritz_method *method = ritz_method_find(item->basis);
     ritz_neighbour neighbour = {0};
@@ -142,8 +142,27 @@ done:
     return status;
 }
 
-static ritz_status load_body(const ritz_scene *scene, int64_t k,
-                             ritz_reduced *out)
+/* A reduced model, or as many of its columns as the scene takes. */
+static ritz_status read_columns(const ritz_scene_component *item,
+                                ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced whole = {0};
+
+    RITZ_TRY(ritz_container_read_reduced(item->model, &whole));
+    if (item->order > 0) {
+        RITZ_TRY_IN(item->model, ritz_reduced_prefix(&whole, item->order, out));
+    } else {
+        *out = whole;
+        whole = (ritz_reduced){0};
+    }
+done:
+    ritz_reduced_free(&whole);
+    return status;
+}
+
+ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
+                            ritz_component *full, ritz_reduced *reduced)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene_component *item = &scene->component[k];
@@ -156,24 +175,40 @@ static ritz_status load_body(const ritz_scene *scene, int64_t k,
         RITZ_FAIL_IF(item->basis[0], RITZ_ERR_ARGUMENT,
                      "'%s' is reduced already, so it takes no basis",
                      item->model);
-        RITZ_TRY(ritz_container_read_reduced(item->model, out));
+        RITZ_TRY(read_columns(item, reduced));
         goto done;
     }
     RITZ_FAIL_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
                  "'%s' is a full model, so a basis is due", item->model);
     RITZ_TRY(ritz_container_read_component(item->model, &component));
     status = check_ports(scene, k, &component);
-    if (status != RITZ_OK) {
-        known = true; /* said where the port is named */
-        goto done;
-    }
-    RITZ_TRY(reduce_body(scene, k, &component, out));
+    known = status != RITZ_OK; /* said where the port is named */
+    RITZ_TRY(status);
+    *full = component;
+    component = (ritz_component){0};
 done:
     ritz_summary_free(&summary);
     ritz_component_free(&component);
     return known ? status
                  : ritz_scene_context(scene, status, item->line, item->column,
                                       "component", item->name);
+}
+
+static ritz_status load_body(const ritz_scene *scene, int64_t k,
+                             ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_component *item = &scene->component[k];
+    ritz_component component = {0};
+
+    RITZ_TRY(ritz_stage_load(scene, k, &component, out));
+    if (component.num_dofs > 0)
+        status = ritz_scene_context(
+            scene, ritz_stage_reduce(scene, k, item, &component, out),
+            item->line, item->column, "component", item->name);
+done:
+    ritz_component_free(&component);
+    return status;
 }
 
 /*

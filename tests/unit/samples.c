@@ -2,6 +2,8 @@
 
 #include "base/alloc.h"
 
+#include <ritz/nested.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -135,6 +137,25 @@ done:
     return status;
 }
 
+/* A line and a triangle of these grids. */
+static ritz_status sample_elements(ritz_elements *out)
+{
+    static const int64_t grids[] = {102, 101, 101, 102, 103};
+    ritz_status status = RITZ_OK;
+
+    RITZ_NEW(out->kind, 2);
+    RITZ_NEW(out->first, 3);
+    RITZ_NEW(out->grid, 5);
+    out->count = 2;
+    out->kind[0] = RITZ_CELL_LINE;
+    out->kind[1] = RITZ_CELL_TRIANGLE;
+    out->first[1] = 2;
+    out->first[2] = 5;
+    memcpy(out->grid, grids, sizeof grids);
+done:
+    return status;
+}
+
 /* The second by name comes first: their order is not that of their names. */
 static ritz_status sample_ports(ritz_component *out)
 {
@@ -186,6 +207,7 @@ ritz_status sample_component(bool full, ritz_component *out)
         RITZ_TRY(chain(4.0, &component.K4));
         RITZ_TRY(sample_loads(&component));
         RITZ_TRY(sample_grids(&component.grids));
+        RITZ_TRY(sample_elements(&component.elements));
         RITZ_TRY(sample_ports(&component));
         RITZ_TRY(sample_io(SAMPLE_DOFS, &component.io));
         RITZ_TRY(sample_dampers(SAMPLE_DOFS, &component.dampers));
@@ -296,6 +318,7 @@ ritz_status sample_reduced(bool full, ritz_reduced *out)
         RITZ_TRY(filled(SAMPLE_DOFS, r, 4.0, &reduced.T));
         RITZ_TRY(label(SAMPLE_DOFS, &reduced.dof));
         RITZ_TRY(sample_grids(&reduced.grids));
+        RITZ_TRY(sample_elements(&reduced.elements));
         RITZ_TRY(sample_recovery(&reduced.recovery));
         RITZ_TRY(sample_maps(&reduced));
         RITZ_TRY(sample_io(r, &reduced.io));
@@ -304,6 +327,9 @@ ritz_status sample_reduced(bool full, ritz_reduced *out)
         reduced.inertia =
             (ritz_inertia){12.5, {1, 2, 3}, {4, 0, 0, 0, 5, 0, 0, 0, 6}, true};
         snprintf(reduced.damping, RITZ_NAME_SIZE, "rayleigh 0.1 1e-5");
+        reduced.nested.smallest = 2;
+        RITZ_TRY(ritz_nested_note(&reduced, 7, "mac-bound", 0.75));
+        RITZ_TRY(ritz_nested_note(&reduced, 3, "frequency-relative", 0.25));
     }
     *out = reduced;
     reduced = (ritz_reduced){0};
@@ -408,10 +434,56 @@ ritz_status sample_response(ritz_response *out)
         H[0] = k;
         H[1] = -0.25 * k;
     }
+    snprintf(response.interpolation, RITZ_NAME_SIZE, "cubic");
+    response.tolerance = 1e-3;
+    RITZ_NEW(response.singular, 40);
+    response.num_singular = 2;
+    for (int k = 0; k < 40; k++)
+        response.singular[k] = 300.0 - k;
     *out = response;
     response = (ritz_response){0};
 done:
     ritz_response_free(&response);
+    return status;
+}
+
+ritz_status sample_simulation(ritz_simulation *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_simulation s = {.count = 70,
+                         .num_inputs = 1,
+                         .num_outputs = 2,
+                         .integrator = "trapezoidal",
+                         .hold = "first",
+                         .step = 0.025,
+                         .order = 12,
+                         .damping = "modal 0.002"};
+    double **const energy[] = {&s.kinetic, &s.potential, &s.dissipated, &s.work,
+                               &s.balance};
+
+    RITZ_NEW(s.seconds, 70);
+    RITZ_NEW(s.input, 1);
+    RITZ_NEW(s.output, 2);
+    RITZ_NEW(s.u, 70);
+    RITZ_NEW(s.y, 140);
+    snprintf(s.input[0], RITZ_NAME_SIZE, "torque");
+    snprintf(s.output[0], RITZ_NAME_SIZE, "z");
+    snprintf(s.output[1], RITZ_NAME_SIZE, "y");
+    for (int k = 0; k < 70; k++) {
+        s.seconds[k] = 0.025 * k;
+        s.u[k] = 1.5 - k;
+        s.y[2 * k] = 3.25 * k;
+        s.y[2 * k + 1] = -1e-3 * k;
+    }
+    for (int j = 0; j < 5; j++) {
+        RITZ_NEW(*energy[j], 70);
+        for (int k = 0; k < 70; k++)
+            (*energy[j])[k] = j + 0.01 * k;
+    }
+    *out = s;
+    s = (ritz_simulation){0};
+done:
+    ritz_simulation_free(&s);
     return status;
 }
 
@@ -527,6 +599,8 @@ WRITE(make_response, response, sample_response(&object))
 WRITE(bare_response, response, RITZ_OK)
 WRITE(make_ranking, ranking, sample_ranking(&object))
 WRITE(bare_ranking, ranking, RITZ_OK)
+WRITE(make_simulation, simulation, sample_simulation(&object))
+WRITE(bare_simulation, simulation, RITZ_OK)
 WRITE(make_state_space, state_space, sample_state_space(true, &object))
 WRITE(bare_state_space, state_space, sample_state_space(false, &object))
 COPY(component)
@@ -535,6 +609,7 @@ COPY(system)
 COPY(response)
 COPY(ranking)
 COPY(state_space)
+COPY(simulation)
 
 static ritz_status make_basis(const char *path, const ritz_stamp *stamp)
 {
@@ -582,4 +657,5 @@ const sample_kind sample_kinds[SAMPLE_KINDS] = {
     {"response", make_response, bare_response, copy_response},
     {"ranking", make_ranking, bare_ranking, copy_ranking},
     {"state-space", make_state_space, bare_state_space, copy_state_space},
+    {"simulation", make_simulation, bare_simulation, copy_simulation},
 };

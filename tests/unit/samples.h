@@ -19,6 +19,7 @@ ritz_status sample_basis(ritz_basis *out);
 ritz_status sample_reduced(bool full, ritz_reduced *out);
 ritz_status sample_system(bool full, ritz_system *out);
 ritz_status sample_response(ritz_response *out);
+ritz_status sample_simulation(ritz_simulation *out);
 ritz_status sample_ranking(ritz_ranking *out);
 ritz_status sample_state_space(bool full, ritz_state_space *out);
 
@@ -31,7 +32,7 @@ typedef struct sample_kind {
                         const ritz_stamp *stamp);
 } sample_kind;
 
-enum { SAMPLE_KINDS = 7 };
+enum { SAMPLE_KINDS = 8 };
 extern const sample_kind sample_kinds[SAMPLE_KINDS];
 
 #endif

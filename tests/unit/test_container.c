@@ -234,6 +234,24 @@ static void a_matrix_of_many_chunks_comes_back(void **state)
     ritz_basis_free(&b);
 }
 
+static void same_nested(const ritz_nested *a, const ritz_nested *b)
+{
+    assert_int_equal(a->smallest, b->smallest);
+    assert_int_equal(a->count, b->count);
+    assert_int_equal(a->num_errors, b->num_errors);
+    for (int64_t k = 0; k < a->count; k++)
+        assert_int_equal(a->order[k], b->order[k]);
+    for (int64_t j = 0; j < a->num_errors; j++) {
+        assert_string_equal(a->error[j], b->error[j]);
+        for (int64_t k = 0; k < a->count; k++) {
+            double x = ritz_dense_col(&a->value, j)[k];
+            double y = ritz_dense_col(&b->value, j)[k];
+
+            assert_true(x == y || (isnan(x) && isnan(y)));
+        }
+    }
+}
+
 static void compare_reduced(bool full)
 {
     ritz_reduced a = {0};
@@ -279,6 +297,7 @@ static void compare_reduced(bool full)
     assert_string_equal(a.damping, b.damping);
     same_measures(&a.estimates, &b.estimates);
     same_measures(&a.errors, &b.errors);
+    same_nested(&a.nested, &b.nested);
     assert_string_equal(a.units, b.units);
     ritz_reduced_free(&a);
     ritz_reduced_free(&b);
@@ -366,8 +385,39 @@ static void a_response_comes_back(void **state)
     assert_same(a.H, b.H, a.count * a.num_inputs * a.num_outputs, 16);
     assert_string_equal(a.method, b.method);
     assert_string_equal(a.damping, b.damping);
+    assert_int_equal(a.num_singular, b.num_singular);
+    assert_same(a.singular, b.singular, a.count * a.num_singular, 8);
     ritz_response_free(&a);
     ritz_response_free(&b);
+}
+
+static void a_simulation_comes_back(void **state)
+{
+    ritz_simulation a = {0};
+    ritz_simulation b = {0};
+
+    (void)state;
+    assert_ok(sample_simulation(&a));
+    assert_ok(ritz_container_write_simulation(path, &a, &stamp));
+    assert_ok(ritz_container_read_simulation(path, &b));
+    assert_int_equal(a.count, b.count);
+    assert_int_equal(a.order, b.order);
+    assert_same(a.seconds, b.seconds, a.count, 8);
+    assert_same(a.input, b.input, a.num_inputs, RITZ_NAME_SIZE);
+    assert_same(a.output, b.output, a.num_outputs, RITZ_NAME_SIZE);
+    assert_same(a.u, b.u, a.count * a.num_inputs, 8);
+    assert_same(a.y, b.y, a.count * a.num_outputs, 8);
+    assert_same(a.kinetic, b.kinetic, a.count, 8);
+    assert_same(a.potential, b.potential, a.count, 8);
+    assert_same(a.dissipated, b.dissipated, a.count, 8);
+    assert_same(a.work, b.work, a.count, 8);
+    assert_same(a.balance, b.balance, a.count, 8);
+    assert_near(a.step, b.step, 0.0);
+    assert_string_equal(a.integrator, b.integrator);
+    assert_string_equal(a.hold, b.hold);
+    assert_string_equal(a.damping, b.damping);
+    ritz_simulation_free(&a);
+    ritz_simulation_free(&b);
 }
 
 static void compare_state_spaces(bool full)
@@ -590,6 +640,7 @@ int main(void)
         cmocka_unit_test(a_reduced_component_comes_back),
         cmocka_unit_test(a_system_comes_back),
         cmocka_unit_test(a_response_comes_back),
+        cmocka_unit_test(a_simulation_comes_back),
         cmocka_unit_test(a_ranking_comes_back),
         cmocka_unit_test(a_state_space_comes_back),
         cmocka_unit_test(what_is_read_and_written_again_has_the_same_bytes),

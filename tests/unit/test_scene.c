@@ -383,9 +383,9 @@ static void bad_keys_are_refused(void **state)
         {"scene: a\ncomponents: {a: {modez: 2, modes: 1}}\n",
          "s:2:18: unknown key 'modez', is 'model' meant?"},
         {"scene: a\ncomponents: {a: {model: m, q: 2}}\n",
-         "s:2:28: unknown key 'q', there is model, basis, modes, up_to_hz, "
-         "attach, shift_hz, loads, inner, interface_modes, gramian, operator, "
-         "damping, engine, among_hz, band_hz, remainder, sides"},
+         "s:2:28: unknown key 'q', there is model, basis, order, modes, "
+         "up_to_hz, attach, shift_hz, loads, inner, interface_modes, gramian, "
+         "operator, damping, engine, among_hz, band_hz, remainder, sides"},
         {"scene: a\ncomponent: {a: {model: m}}\n",
          "s:2:1: unknown key 'component', is 'components' meant?"},
         {"scene: a\nscene: b\n", "s:2:1: key 'scene' is given twice"},
@@ -462,6 +462,11 @@ static void bad_components_are_refused(void **state)
          "s:2:58: 'modes' and 'up_to_hz' are both given, one decides"},
         {"scene: a\ncomponents: {a: {model: m, modes: 1}}\n",
          "s:2:35: 'modes' says how to reduce, which needs a 'basis' too"},
+        {"scene: a\ncomponents: {a: {model: m, order: 0}}\n",
+         "s:2:35: 0 columns are no model"},
+        {"scene: a\ncomponents: {a: {model: m, basis: b, order: 4}}\n",
+         "s:2:45: 'order' is how much of a model that is reduced already to "
+         "take, and a 'basis' reduces one"},
         {"scene: a\ncomponents: {a: {model: m, attach: [x]}}\n",
          "s:2:36: 'attach' says how to reduce, which needs a 'basis' too"},
         {"scene: a\ncomponents: {a: {model: m, basis: b, attach: []}}\n",

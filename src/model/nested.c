@@ -1,0 +1,231 @@
+/*
+ * Nested reduced components: with S the unit vectors of some columns,
+ *
+ *     K := S'K S, ..., T := T S
+ *
+ * which moves numbers and changes none of them.
+ */
+#include "base/alloc.h"
+#include "model/nested_parts.h"
+
+#include <ritz/nested.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static ritz_status pick_columns(const ritz_dense *A, int64_t count,
+                                const int64_t *at, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    for (int64_t j = 0; j < count && A->nrow > 0; j++)
+        memcpy(ritz_dense_col(out, j), ritz_dense_col(A, at[j]),
+               (size_t)A->nrow * sizeof *out->val);
+done:
+    return status;
+}
+
+/* Columns b r + k for the three axes b. */
+static ritz_status pick_invariants(const ritz_invariants *in, int64_t r,
+                                   int64_t count, const int64_t *at,
+                                   ritz_invariants *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense rows = {0};
+    int64_t *thrice = NULL;
+
+    if (!in->momentum.val)
+        return RITZ_OK;
+    RITZ_NEW(thrice, 3 * count);
+    for (int64_t k = 0; k < 3 * count; k++)
+        thrice[k] = k / count * r + at[k % count];
+    memcpy(out->rigid, in->rigid, sizeof out->rigid);
+    RITZ_TRY(pick_columns(&in->momentum, count, at, &out->momentum));
+    RITZ_TRY(pick_columns(&in->position, 3 * count, thrice, &out->position));
+    RITZ_TRY(ritz_dense_rows(&in->product, 3 * count, thrice, &rows));
+    RITZ_TRY(pick_columns(&rows, 3 * count, thrice, &out->product));
+done:
+    free(thrice);
+    ritz_dense_free(&rows);
+    return status;
+}
+
+static void pick_kinds(const ritz_columns *in, const int64_t *at,
+                       ritz_columns *out)
+{
+    for (int64_t j = 0; j < out->count; j++) {
+        out->kind[j] = in->kind[at[j]];
+        out->dof[j] = in->dof[at[j]];
+        out->hertz[j] = in->hertz[at[j]];
+        out->residual[j] = in->residual[at[j]];
+    }
+}
+
+/* A projection on unit vectors; T and the invariants, which are large, are not
+   multiplied but picked from. */
+static ritz_status pick(const ritz_reduced *in, int64_t count,
+                        const int64_t *at, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced bare = *in; /* borrowed */
+    ritz_reduced made = {0};
+    ritz_dense S = {0};
+
+    bare.T.nrow = 0;
+    bare.invariants = (ritz_invariants){0};
+    RITZ_TRY(ritz_dense_new(in->K.ncol, count, &S));
+    for (int64_t j = 0; j < count; j++)
+        ritz_dense_col(&S, j)[at[j]] = 1.0;
+    RITZ_TRY(ritz_reduced_project(&bare, &S, &made));
+    pick_kinds(&in->columns, at, &made.columns);
+    ritz_dense_free(&made.T);
+    if (in->T.val)
+        RITZ_TRY(pick_columns(&in->T, count, at, &made.T));
+    RITZ_TRY(pick_invariants(&in->invariants, in->K.ncol, count, at,
+                             &made.invariants));
+    *out = made;
+    made = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&made);
+    ritz_dense_free(&S);
+    return status;
+}
+
+static ritz_status copy_measures(const ritz_measures *in, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < in->count; k++)
+        RITZ_TRY(ritz_measures_add(out, in->item[k].name, in->item[k].value,
+                                   in->item[k].limit, in->item[k].where));
+done:
+    return status;
+}
+
+static ritz_status check_columns(int64_t r, int64_t count, const int64_t *at,
+                                 int64_t smallest)
+{
+    ritz_status status = RITZ_OK;
+    bool *taken = NULL;
+
+    RITZ_FAIL_IF(smallest < 1 || smallest > count, RITZ_ERR_ARGUMENT,
+                 "a smallest prefix of %" PRId64
+                 " columns is not in 1..%" PRId64,
+                 smallest, count);
+    RITZ_NEW(taken, r);
+    for (int64_t j = 0; j < count; j++) {
+        RITZ_FAIL_IF(at[j] < 0 || at[j] >= r, RITZ_ERR_ARGUMENT,
+                     "there is no column %" PRId64 ", there are %" PRId64,
+                     at[j] + 1, r);
+        RITZ_FAIL_IF(taken[at[j]], RITZ_ERR_ARGUMENT,
+                     "column %" PRId64 " is named twice", at[j] + 1);
+        taken[at[j]] = true;
+    }
+done:
+    free(taken);
+    return status;
+}
+
+ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
+                              const int64_t *order_of_columns, int64_t smallest,
+                              ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced made = {0};
+
+    RITZ_TRY(check_columns(in->K.ncol, count, order_of_columns, smallest));
+    RITZ_TRY(pick(in, count, order_of_columns, &made));
+    RITZ_TRY(ritz_nested_new(smallest, 0, 0, &made.nested));
+    if (count == in->K.ncol) {
+        RITZ_TRY(copy_measures(&in->estimates, &made.estimates));
+        RITZ_TRY(copy_measures(&in->errors, &made.errors));
+    }
+    *out = made;
+    made = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&made);
+    return status;
+}
+
+/* The orders that a prefix has too. */
+static ritz_status shorten(const ritz_nested *in, int64_t order,
+                           ritz_nested *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+
+    while (count < in->count && in->order[count] <= order)
+        count++;
+    RITZ_TRY(ritz_nested_new(in->smallest, count, in->num_errors, out));
+    for (int64_t k = 0; k < count; k++)
+        out->order[k] = in->order[k];
+    for (int64_t j = 0; j < in->num_errors; j++) {
+        memcpy(out->error[j], in->error[j], sizeof in->error[j]);
+        for (int64_t k = 0; k < count; k++)
+            ritz_dense_col(&out->value, j)[k] =
+                ritz_dense_col(&in->value, j)[k];
+    }
+done:
+    return status;
+}
+
+static bool is_bound(const char *name)
+{
+    static const char ending[] = "-bound";
+    size_t length = strlen(name);
+    size_t end = sizeof ending - 1;
+
+    return length > end && strcmp(name + length - end, ending) == 0;
+}
+
+/* What was noted of just this order. */
+static ritz_status vouch(int64_t order, ritz_reduced *reduced)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_nested *n = &reduced->nested;
+    int64_t row = n->count - 1;
+    char where[RITZ_NAME_SIZE];
+
+    if (row < 0 || n->order[row] != order)
+        return RITZ_OK;
+    snprintf(where, sizeof where, "of %" PRId64 " columns, when it was made",
+             order);
+    for (int64_t j = 0; j < n->num_errors; j++) {
+        double value = ritz_dense_col(&n->value, j)[row];
+
+        if (!isnan(value))
+            RITZ_TRY(ritz_measures_add(
+                is_bound(n->error[j]) ? &reduced->estimates : &reduced->errors,
+                n->error[j], value, nan(""), where));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
+                                ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced made = {0};
+    int64_t *first = NULL;
+
+    RITZ_TRY(ritz_nested_check(in, order));
+    RITZ_NEW(first, order);
+    for (int64_t j = 0; j < order; j++)
+        first[j] = j;
+    RITZ_TRY(ritz_reduced_nest(in, order, first, in->nested.smallest, &made));
+    ritz_nested_free(&made.nested);
+    RITZ_TRY(shorten(&in->nested, order, &made.nested));
+    if (order < in->K.ncol)
+        RITZ_TRY(vouch(order, &made));
+    *out = made;
+    made = (ritz_reduced){0};
+done:
+    free(first);
+    ritz_reduced_free(&made);
+    return status;
+}
