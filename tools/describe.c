@@ -1,6 +1,7 @@
 #include "describe.h"
 
 #include "checksum.h"
+#include "nested.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -343,6 +344,7 @@ ritz_status describe_reduced(const cli_run *run, json_t *keys,
     json_object_set_new(keys, "frequencies_hz", model_reals_json(count, hertz));
     describe_measures(run, keys, "estimates", &r->estimates);
     describe_measures(run, keys, "errors", &r->errors);
+    nested_describe(run, keys, &r->nested, r->K.ncol);
 done:
     free(hertz);
     return status;

@@ -17,6 +17,8 @@ ritz_status describe_system(const cli_run *run, json_t *keys,
                             const ritz_system *system);
 void describe_response(const cli_run *run, json_t *keys,
                        const ritz_response *response);
+void describe_simulation(const cli_run *run, json_t *keys,
+                         const ritz_simulation *simulation);
 void describe_rankings(const cli_run *run, json_t *keys,
                        const ritz_rankings *all);
 ritz_status describe_states(const cli_run *run, json_t *keys,

@@ -41,6 +41,11 @@ static ritz_status read_states(const char *path, model *out)
     return ritz_container_read_state_space(path, &out->states);
 }
 
+static ritz_status read_simulation(const char *path, model *out)
+{
+    return ritz_container_read_simulation(path, &out->simulation);
+}
+
 static const struct kind {
     const char *name; /* in files */
     const char *noun; /* in sentences */
@@ -54,6 +59,7 @@ static const struct kind {
     {"response", "a response", MODEL_RESPONSE, read_response},
     {"ranking", "a ranking", MODEL_RANKING, read_ranking},
     {"state-space", "a state space", MODEL_STATES, read_states},
+    {"simulation", "a time response", MODEL_SIMULATION, read_simulation},
 };
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
@@ -258,5 +264,6 @@ void model_free(model *m)
     ritz_response_free(&m->response);
     ritz_rankings_free(&m->rankings);
     ritz_state_space_free(&m->states);
+    ritz_simulation_free(&m->simulation);
     *m = (model){0};
 }

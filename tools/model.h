@@ -19,7 +19,8 @@ typedef enum model_kind {
     MODEL_RESPONSE = 16,
     MODEL_RANKING = 32,
     MODEL_STATES = 64,
-    MODEL_ANY = 127,
+    MODEL_SIMULATION = 128,
+    MODEL_ANY = 255,
 } model_kind;
 
 /* A container that was read: the object that `kind` names, others empty. */
@@ -32,6 +33,7 @@ typedef struct model {
     ritz_response response;
     ritz_rankings rankings;
     ritz_state_space states;
+    ritz_simulation simulation;
     ritz_configuration *at; /* of a system, once model_at has chosen */
 } model;
 

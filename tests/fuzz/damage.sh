@@ -49,6 +49,9 @@ ritz-assemble -q scene.yaml -o system.h5
 ritz-assemble -q --full --at cone=0 scene.yaml -o full.h5
 ritz-rank -q --at cone=0 system.h5 -o ranking.h5
 ritz-frf -q --at cone=0 --points 5 --no-refine system.h5 -o response.h5
+ritz-simulate -q --at cone=0 --seconds 0.1 --step 0.01 --input torque=step \
+    system.h5 -o run.h5
+printf '0\t0\n0.05\t1\n0.1\t0\n' >pulse.tsv
 ritz-basis -q lanczos-one-sided --modes 6 --damping 'modal 0.01' stator.h5 \
     -o states.h5
 ritz-reduce -q stator.h5 states.h5 -o space.h5
@@ -115,6 +118,11 @@ space.h5     ritz-export --to matlab @ -o OUT
 reduced.h5   ritz-export --to exudyn @ -o OUT
 reduced.h5   ritz-export --to output4 @ -o OUT
 response.h5  ritz-export --to tsv @ -o OUT
+run.h5       ritz-info @
+run.h5       ritz-export --to tsv @ -o OUT
+system.h5    ritz-simulate --at cone=0 --seconds 0.1 --step 0.01 --input torque=step @ -o OUT
+space.h5     ritz-simulate --seconds 0.1 --step 0.01 --input torque=step @ -o OUT
+pulse.tsv    ritz-simulate --seconds 0.1 --step 0.01 --input torque=@ reduced.h5 -o OUT
 CASES
 
 /usr/bin/python3 "$here/damage.py" "$dir/good" "$seeds"

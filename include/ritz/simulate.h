@@ -1,0 +1,256 @@
+/*
+ * Time responses of linear models, and what they cost.
+ *
+ * Inputs are functions of time from t = 0 on. An integrator sees them at the
+ * ends of its steps only: between them it takes them as linear
+ * (RITZ_HOLD_FIRST) or as they were at the start (RITZ_HOLD_ZERO, what a
+ * sampled controller commands). `modal` is exact for both; the others are
+ * measured against it.
+ *
+ * Structural damping K4 is refused: i K4 is of harmonic motion alone, and read
+ * as a time response it would answer before it is driven.
+ */
+#ifndef RITZ_SIMULATE_H
+#define RITZ_SIMULATE_H
+
+#include <ritz/component.h>
+#include <ritz/damping.h>
+#include <ritz/response.h>
+#include <ritz/state_space.h>
+
+#include <stdbool.h>
+
+typedef enum ritz_hold {
+    RITZ_HOLD_FIRST,
+    RITZ_HOLD_ZERO,
+} ritz_hold;
+
+typedef enum ritz_signal_kind {
+    RITZ_SIGNAL_ZERO,
+    RITZ_SIGNAL_STEP,    /* the amplitude, from t = 0 on */
+    RITZ_SIGNAL_IMPULSE, /* of that area, at t = 0: a jump of the velocity */
+    RITZ_SIGNAL_SINE,    /* sin(2 pi hertz[0] t) */
+    RITZ_SIGNAL_CHIRP,   /* from hertz[0] to hertz[1], linear over the run */
+    RITZ_SIGNAL_TABLE,   /* linear between its points, 0 beside them */
+} ritz_signal_kind;
+
+typedef struct ritz_signal {
+    ritz_signal_kind kind;
+    double amplitude;
+    double hertz[2];
+    int64_t count;        /* of a table */
+    double *time, *value; /* count, times ascending */
+} ritz_signal;
+
+/**
+ * "step", "impulse", "sine:F" or "chirp:F0,F1", each with "*A" behind it for
+ * another amplitude than 1; anything else is a file of two columns, time and
+ * value, where '#' begins a comment. Of a time that is there twice the second
+ * value counts from there on.
+ *
+ * @return RITZ_ERR_ARGUMENT with what is wrong; RITZ_ERR_FILE, RITZ_ERR_FORMAT
+ */
+ritz_status ritz_signal_parse(const char *text, ritz_signal *out);
+
+/** Whether a text names a file: none of the words. */
+bool ritz_signal_is_file(const char *text);
+
+/** Value at @p t >= 0 of a run of @p seconds; 0 of an impulse. */
+double ritz_signal_at(const ritz_signal *signal, double t, double seconds);
+
+void ritz_signal_free(ritz_signal *signal);
+
+struct ritz_motion;
+struct ritz_march;
+
+/* A way from one time to the next, as a table row. */
+typedef struct ritz_integrator {
+    const char *name;
+    const char *summary;
+    const char *accuracy;    /* order in the step */
+    const char *stability;   /* for which steps */
+    const char *dissipation; /* what it takes out beside the model's damping */
+    const char *fails;
+    const char *reference; /* key in docs/references.bib */
+    bool takes_sparse;     /* full components, without modes */
+    bool takes_states;     /* first-order models */
+    bool is_explicit;      /* bounded by 2/omega_max */
+    /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR: no way with this step */
+    ritz_status (*start)(const struct ritz_motion *motion, double step,
+                         double rho, struct ritz_march *out);
+} ritz_integrator;
+
+/** All of them, ended by NULL. */
+extern const ritz_integrator *const ritz_integrators[];
+
+extern const ritz_integrator ritz_integrator_modal;
+extern const ritz_integrator ritz_integrator_trapezoidal;
+extern const ritz_integrator ritz_integrator_generalised_alpha;
+extern const ritz_integrator ritz_integrator_central_difference;
+
+/** Integrator called @p name; NULL and a sentence with the nearest if none. */
+const ritz_integrator *ritz_integrator_find(const char *name);
+
+/* What is asked of a simulation. Everything is borrowed. */
+typedef struct ritz_simulation_request {
+    const ritz_integrator *integrator;
+    double seconds, step; /* the last step ends at `seconds` or just beyond */
+    ritz_hold hold;
+    double rho;      /* generalised-alpha, at infinite frequency, 0 to 1 */
+    double up_to_hz; /* of a component by its modes */
+    int64_t every;   /* write each so many steps; 0: every one */
+    const ritz_signal *signal; /* one of each input, in their order; NULL: 0 */
+    const double *x0, *v0;     /* of the model's coordinates; NULL: at rest.
+                                  Of a state space x0 are its states */
+} ritz_simulation_request;
+
+#define RITZ_SIMULATION_NONE                                                   \
+    {                                                                          \
+        .integrator = &ritz_integrator_modal, .rho = 0.8                       \
+    }
+
+/*
+ * A time response. Energies are of second-order models only:
+ *
+ *     balance = kinetic + potential + dissipated - work - (at the start)
+ *
+ * is what the integrator adds or takes: rounding for `modal`, whose integrals
+ * are exact, and for `trapezoidal`, of which this is an identity.
+ */
+typedef struct ritz_simulation {
+    int64_t count;
+    double *seconds; /* count, from 0, ascending */
+    int64_t num_inputs, num_outputs;
+    char (*input)[RITZ_NAME_SIZE];
+    char (*output)[RITZ_NAME_SIZE];
+    double *u; /* u[k * num_inputs + j]; an impulse is not in it */
+    double *y; /* y[k * num_outputs + i] */
+    double *kinetic, *potential, *dissipated, *work, *balance; /* count, or
+                                                                  all NULL */
+    char integrator[RITZ_NAME_SIZE];
+    char hold[RITZ_NAME_SIZE]; /* "first", "zero" */
+    double step;
+    int64_t order; /* coordinates that were integrated */
+    char damping[RITZ_DAMPING_SIZE];
+} ritz_simulation;
+
+/* What is simulated: one of the three, borrowed. */
+typedef struct ritz_simulated {
+    const ritz_second_order *model;  /* small and dense */
+    const ritz_component *component; /* full, its dampers installed */
+    const ritz_state_space *states;  /* its damping is in A */
+    const ritz_damping *damping;     /* beside matrices; NULL: none */
+} ritz_simulated;
+
+/**
+ * Simulate. Of a small dense model motions without mass are eliminated
+ * statically. A full component goes by its modes up to request->up_to_hz, what
+ * lies above them answering statically; or implicitly by one sparse factor,
+ * with Rayleigh damping or that of its D. A state space goes by the exponential
+ * of A, or by the trapezoidal rule.
+ *
+ * An impulse moves a state at once; what an output sees of it directly, as an
+ * acceleration does, is an impulse too and left out.
+ *
+ * @return RITZ_ERR_ARGUMENT if the step is beyond an explicit integrator's
+ *         limit (which it names), if there is structural damping, if a motion
+ *         without mass is damped, or the request makes no sense;
+ *         RITZ_ERR_CONVERGENCE if the motion leaves all bounds
+ * @cost   modal: O(r^3) once and O(r) a step, O(r^2) if D couples modes;
+ *         the others O(r^3) once and O(r^2) a step; of a full component one
+ *         factor, and one solve a step
+ */
+ritz_status ritz_simulate(const ritz_simulated *subject,
+                          const ritz_simulation_request *request,
+                          ritz_simulation *out);
+
+/**
+ * The same with a step halved from request->step (0: a fiftieth of the run)
+ * until the outputs are within @p tolerance of those of `modal` at half that
+ * step, which so also tells what holding the inputs costs; of a full component
+ * by an implicit integrator, of the same at half that step. Relative to the
+ * largest value of each output.
+ *
+ * @param[out] error  that was reached; may be NULL
+ * @return RITZ_ERR_CONVERGENCE if 24 halvings do not reach it
+ */
+ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
+                                   const ritz_simulation_request *request,
+                                   double tolerance, double *error,
+                                   ritz_simulation *out);
+
+/**
+ * Largest difference of the outputs at the same times, of each output relative
+ * to its largest value in @p exact; of outputs that stay 0, not counted.
+ *
+ * @return RITZ_ERR_ARGUMENT if times or outputs disagree
+ */
+ritz_status ritz_simulation_difference(const ritz_simulation *exact,
+                                       const ritz_simulation *other,
+                                       double *out);
+
+void ritz_simulation_free(ritz_simulation *simulation);
+
+/*
+ * What a model costs a simulator. step_explicit is the largest stable step of
+ * central differences that take the damping forces from half a step before, as
+ * explicit codes do: 2/s, s the largest root of det(s^2 M - s D - K); never
+ * above 2/omega_max, which it is without damping. (Our own central-difference
+ * solves for the damping forces and is stable to 2/omega_max.) step_accurate is
+ * that at which the trapezoidal rule makes periods at the band's end longer by
+ * a thousandth: (w h)^2 / 12 = 1e-3. seconds_per_second is processor time, and
+ * so changes from run to run.
+ */
+typedef struct ritz_cost {
+    double highest_hz;               /* of the model; 0 if it is rigid */
+    double step_explicit;            /* s; HUGE_VAL of a rigid undamped model */
+    double step_accurate;            /* s */
+    double seconds_per_second;       /* measured: processor time to simulate one
+                                  second by `integrator` at `step` */
+    double step;                     /* s: step_accurate */
+    char integrator[RITZ_NAME_SIZE]; /* "trapezoidal", full matrices */
+    int64_t order;                   /* r */
+} ritz_cost;
+
+/**
+ * @param[in] band_hz  its end is to be resolved; NULL or an end of 0: the
+ *                     highest frequency of the model, of a rigid one 1 Hz
+ * @return RITZ_ERR_ARGUMENT as ritz_simulate, or if the band makes no sense
+ * @cost   O(r^3) and some 20 ms of steps
+ */
+ritz_status ritz_simulate_cost(const ritz_second_order *model,
+                               const ritz_damping *damping,
+                               const double band_hz[2], ritz_cost *out);
+
+/** Processor time, s, of one step of any integrator: the least of several. */
+ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
+                                    const ritz_damping *damping,
+                                    const ritz_integrator *integrator,
+                                    double step, double *out);
+
+/**
+ * An estimate, not measured on the model: the same at each step if the mass
+ * matrix is made anew and factored (r^3 / 3 flops, at the rate that one factor
+ * of this size runs at), as simulators of bodies that rotate do.
+ */
+ritz_status ritz_simulate_refactor_cost(int64_t order, double *out);
+
+/**
+ * How an integrator's free motion grows: from @p starts random states (seeded,
+ * the same in each run), each mode with as much energy, @p steps steps with no
+ * input; the largest
+ *
+ *     E(t) / E(0),   E = sum over modes of (q'^2 + |lambda| q^2) / 2
+ *
+ * at any step. 1 or less for a passive model by an implicit integrator, but
+ * for rounding; stops once it is above 1e12, and returns what it then is.
+ * A gyroscopic D and an unsymmetric one are heeded.
+ *
+ * @param[in] step  s; of an explicit integrator any, above its limit too
+ */
+ritz_status ritz_simulate_growth(const ritz_second_order *model,
+                                 const ritz_damping *damping,
+                                 const ritz_integrator *integrator, double step,
+                                 int64_t steps, int64_t starts, double *out);
+
+#endif

@@ -1,0 +1,219 @@
+/*
+ * What a model costs a simulator, in processor time. Full matrices are used, as
+ * a simulator of bodies does, whatever the coordinates: modal ones would be
+ * cheaper and would say nothing about it.
+ *
+ * The largest s of det(s^2 M - s D - K) = 0, in modes with y = L^1/2 q / s:
+ *
+ *     s [q; y] = [D L^1/2; L^1/2 0] [q; y],
+ *
+ * symmetric with the symmetric part of D.
+ */
+#include "simulate/run.h"
+
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+
+#include <inttypes.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static const double pi = 3.14159265358979323846;
+static const double elongation = 1e-3;
+/* Least processor time of one measurement, and how many there are. */
+static const double long_enough = 2e-3;
+enum { MEASUREMENTS = 5, FIRST_STEPS = 16 };
+
+static double processor_seconds(void)
+{
+    struct timespec now = {0};
+
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* s, of modes. */
+static ritz_status fastest(const ritz_motion *modes, double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = modes->n;
+    ritz_dense A = {0};
+    double *w = NULL;
+    double top = sqrt(modes->highest);
+
+    for (int64_t j = 0; j < m; j++) {
+        double d = ritz_dense_col(&modes->D, j)[j];
+
+        top = fmax(top,
+                   0.5 * d + sqrt(0.25 * d * d + fmax(modes->lambda[j], 0.0)));
+    }
+    *out = top;
+    if (m == 0)
+        return RITZ_OK;
+    RITZ_NEW(w, 2 * m);
+    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &A));
+    for (int64_t j = 0; j < m; j++) {
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(&A, j)[i] = 0.5 * (ritz_dense_col(&modes->D, j)[i] +
+                                              ritz_dense_col(&modes->D, i)[j]);
+        ritz_dense_col(&A, j)[m + j] = sqrt(fmax(modes->lambda[j], 0.0));
+    }
+    RITZ_FAIL_IF(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', (int)(2 * m), A.val,
+                               (int)(2 * m), w) != 0,
+                 RITZ_ERR_CONVERGENCE, "the fastest motion was not found");
+    *out = fmax(sqrt(modes->highest), w[2 * m - 1]);
+done:
+    ritz_dense_free(&A);
+    free(w);
+    return status;
+}
+
+/* Some steps; how much processor time they took. */
+static ritz_status take_steps(ritz_march *march, int64_t steps, const double *u,
+                              double *out)
+{
+    ritz_status status = RITZ_OK;
+    double began = processor_seconds();
+
+    for (int64_t k = 0; k < steps; k++)
+        RITZ_TRY(march->advance(march, u, u));
+    *out = processor_seconds() - began;
+done:
+    return status;
+}
+
+/* Fewer at first: until they take long enough to be measured. */
+static ritz_status measure(ritz_march *march, const double *u, double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t steps = FIRST_STEPS;
+    double spent = 0.0, least = HUGE_VAL;
+
+    RITZ_TRY(take_steps(march, steps, u, &spent));
+    while (spent < long_enough) {
+        steps *= 2;
+        RITZ_TRY(take_steps(march, steps, u, &spent));
+    }
+    least = spent;
+    for (int k = 1; k < MEASUREMENTS; k++) {
+        RITZ_TRY(take_steps(march, steps, u, &spent));
+        least = fmin(least, spent);
+    }
+    *out = least / (double)steps;
+done:
+    return status;
+}
+
+ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
+                                    const ritz_damping *damping,
+                                    const ritz_integrator *integrator,
+                                    double step, double *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_simulation_request request = {
+        .integrator = integrator, .step = step, .rho = 0.8};
+    const ritz_simulated subject = {.model = model, .damping = damping};
+    ritz_motion motion = {0};
+    ritz_march march = {0};
+    double *u = NULL;
+
+    RITZ_FAIL_IF(!(step > 0.0) || !isfinite(step), RITZ_ERR_ARGUMENT,
+                 "%g s is no step", step);
+    RITZ_TRY(ritz_motion_new(&subject, &request, &motion));
+    RITZ_NEW(u, motion.B.ncol);
+    RITZ_TRY(ritz_march_new(&motion, integrator, step, request.rho, &march));
+    RITZ_TRY(measure(&march, u, out));
+done:
+    free(u);
+    ritz_march_free(&march);
+    ritz_motion_free(&motion);
+    return status;
+}
+
+ritz_status ritz_simulate_cost(const ritz_second_order *model,
+                               const ritz_damping *damping,
+                               const double band_hz[2], ritz_cost *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_cost cost = {.order = model->K->nrow};
+    ritz_motion modes = {0};
+    double end = band_hz ? band_hz[1] : 0.0;
+    double root = 0.0;
+
+    RITZ_FAIL_IF(!isfinite(end) || end < 0.0, RITZ_ERR_ARGUMENT,
+                 "a band to %g Hz makes no sense", end);
+    RITZ_TRY(ritz_motion_dense(model, damping, true, &modes));
+    RITZ_TRY(fastest(&modes, &root));
+    cost.highest_hz = sqrt(modes.highest) / (2.0 * pi);
+    cost.step_explicit = root > 0.0 ? 2.0 / root : HUGE_VAL;
+    if (end <= 0.0)
+        end = cost.highest_hz > 0.0 ? cost.highest_hz : 1.0;
+    cost.step_accurate = sqrt(12.0 * elongation) / (2.0 * pi * end);
+    cost.step = cost.step_accurate;
+    (void)snprintf(cost.integrator, sizeof cost.integrator, "%s",
+                   ritz_integrator_trapezoidal.name);
+    RITZ_TRY(ritz_simulate_step_cost(model, damping,
+                                     &ritz_integrator_trapezoidal, cost.step,
+                                     &cost.seconds_per_second));
+    cost.seconds_per_second /= cost.step;
+    *out = cost;
+done:
+    ritz_motion_free(&modes);
+    return status;
+}
+
+/* Cholesky factors of a well-conditioned matrix, until they take long enough. */
+static ritz_status factors(const ritz_dense *A, int64_t count, ritz_dense *work,
+                           double *out)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)A->nrow;
+    size_t size = (size_t)(A->nrow * A->ncol) * sizeof *A->val;
+    double began = processor_seconds();
+
+    for (int64_t k = 0; k < count; k++) {
+        memcpy(work->val, A->val, size);
+        RITZ_FAIL_IF(
+            LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, work->val, n) != 0,
+            RITZ_ERR_SINGULAR, "a factor broke down");
+    }
+    *out = processor_seconds() - began;
+done:
+    return status;
+}
+
+ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense A = {0}, work = {0};
+    double spent = 0.0, least = HUGE_VAL;
+    int64_t count = 1;
+
+    RITZ_FAIL_IF(order < 1, RITZ_ERR_ARGUMENT, "%" PRId64 " is no order",
+                 order);
+    RITZ_TRY(ritz_dense_new(order, order, &A));
+    RITZ_TRY(ritz_dense_new(order, order, &work));
+    for (int64_t j = 0; j < order; j++)
+        for (int64_t i = 0; i < order; i++)
+            ritz_dense_col(&A, j)[i] = i == j ? 2.0 : 1.0 / (double)order;
+    RITZ_TRY(factors(&A, count, &work, &spent));
+    while (spent < long_enough) {
+        count *= 2;
+        RITZ_TRY(factors(&A, count, &work, &spent));
+    }
+    least = spent;
+    for (int k = 1; k < MEASUREMENTS; k++) {
+        RITZ_TRY(factors(&A, count, &work, &spent));
+        least = fmin(least, spent);
+    }
+    *out = least / (double)count;
+done:
+    ritz_dense_free(&A);
+    ritz_dense_free(&work);
+    return status;
+}

@@ -1,0 +1,218 @@
+/* Products with the matrices of a motion, and factors of their sums. */
+#include "simulate/motion.h"
+
+#include "base/alloc.h"
+
+#include <cblas.h>
+#include <complex.h>
+#include <float.h>
+#include <lapacke.h>
+#include <stdlib.h>
+
+void ritz_motion_gemv(const ritz_dense *A, double alpha, const double *x,
+                      double *y)
+{
+    if (A->val && A->nrow > 0 && A->ncol > 0)
+        cblas_dgemv(CblasColMajor, CblasNoTrans, (int)A->nrow, (int)A->ncol,
+                    alpha, A->val, (int)A->nrow, x, 1, 1.0, y, 1);
+}
+
+double ritz_motion_dot(int64_t n, const double *a, const double *b)
+{
+    double sum = 0.0;
+
+    for (int64_t k = 0; k < n; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+static void sparse_product(const ritz_sparse *A, double alpha, const double *x,
+                           double *y)
+{
+    for (int64_t j = 0; A->colptr && j < A->ncol; j++) {
+        double xj = alpha * x[j];
+
+        if (xj == 0.0)
+            continue;
+        for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
+            y[A->rowind[k]] += A->val[k] * xj;
+    }
+}
+
+void ritz_motion_stiffness(const ritz_motion *motion, double alpha,
+                           const double *x, double *y)
+{
+    if (motion->form == RITZ_FORM_SPARSE)
+        sparse_product(&motion->sK, alpha, x, y);
+    else
+        ritz_motion_gemv(&motion->K, alpha, x, y);
+}
+
+void ritz_motion_mass(const ritz_motion *motion, double alpha, const double *x,
+                      double *y)
+{
+    if (motion->form == RITZ_FORM_SPARSE)
+        sparse_product(&motion->sM, alpha, x, y);
+    else
+        ritz_motion_gemv(&motion->M, alpha, x, y);
+}
+
+void ritz_motion_damping(const ritz_motion *motion, double alpha,
+                         const double *x, double *y)
+{
+    if (motion->form == RITZ_FORM_SPARSE)
+        sparse_product(&motion->sD, alpha, x, y);
+    else
+        ritz_motion_gemv(&motion->D, alpha, x, y);
+}
+
+static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
+                                double k, ritz_effective *F)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)F->n;
+    double norm = 0.0, rcond = 0.0;
+
+    if (n == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_new(n, n, &F->LU));
+    RITZ_NEW(F->pivot, n);
+    for (int64_t i = 0; i < F->n * F->n; i++)
+        F->LU.val[i] = m * motion->M.val[i] + k * motion->K.val[i] +
+                       (motion->D.val ? d * motion->D.val[i] : 0.0);
+    norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, F->LU.val, n);
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, F->LU.val, n, F->pivot) == 0)
+        (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, F->LU.val, n, norm,
+                             &rcond);
+    RITZ_FAIL_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
+                 "the matrix of a step is singular to working accuracy");
+done:
+    return status;
+}
+
+/* The sum of the sparse matrices. */
+static ritz_status combine(const ritz_motion *motion, const double c[3],
+                           bool fill, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse sum = {0}, more = {0};
+
+    RITZ_TRY(ritz_sparse_add(c[0], &motion->sM, c[2], &motion->sK, &sum));
+    if (motion->sD.colptr && c[1] != 0.0) {
+        RITZ_TRY(ritz_sparse_add(1.0, &sum, c[1], &motion->sD, &more));
+        ritz_sparse_free(&sum);
+        sum = more;
+        more = (ritz_sparse){0};
+    }
+    if (fill) {
+        RITZ_TRY(ritz_sparse_new(motion->n, motion->n, motion->n, &more));
+        for (int64_t j = 0; j < motion->n; j++) {
+            more.colptr[j + 1] = j + 1;
+            more.rowind[j] = j;
+            more.val[j] = motion->massless[j] ? 1.0 : 0.0;
+        }
+        RITZ_TRY(ritz_sparse_add(1.0, &sum, 1.0, &more, out));
+    } else {
+        *out = sum;
+        sum = (ritz_sparse){0};
+    }
+done:
+    ritz_sparse_free(&sum);
+    ritz_sparse_free(&more);
+    return status;
+}
+
+/* CHOLMOD, MUMPS if K is indefinite, MUMPS's LU if D is not symmetric. */
+static ritz_status factor_sparse(const ritz_motion *motion, const double c[3],
+                                 bool fill, ritz_effective *F)
+{
+    const double _Complex one = 1.0;
+    ritz_status status = RITZ_OK;
+    bool skew = motion->sD.colptr && c[1] != 0.0 &&
+                ritz_sparse_asymmetry(&motion->sD) > 0.0;
+    const ritz_sparse *sum = NULL;
+
+    RITZ_NEW(F->kept, 1);
+    RITZ_TRY(combine(motion, c, fill, F->kept));
+    sum = F->kept;
+    if (skew) {
+        RITZ_NEW(F->z, motion->n);
+        RITZ_TRY(ritz_zldl_new(1, &sum, &F->general));
+        RITZ_TRY(ritz_zldl_factor(F->general, &one));
+        goto done;
+    }
+    status = ritz_factor_spd(sum, &F->spd);
+    if (status == RITZ_ERR_SINGULAR && !fill)
+        status = ritz_ldl_new(sum, NULL, &F->ldl);
+done:
+    return status;
+}
+
+ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
+                               double k, bool fill, ritz_effective *out)
+{
+    const double c[3] = {m, d, k};
+    ritz_status status = RITZ_OK;
+    ritz_effective F = {.n = motion->n};
+
+    if (motion->form == RITZ_FORM_SPARSE)
+        RITZ_TRY(factor_sparse(motion, c, fill, &F));
+    else
+        RITZ_TRY(factor_dense(motion, m, d, k, &F));
+    *out = F;
+    F = (ritz_effective){0};
+done:
+    ritz_effective_free(&F);
+    return status;
+}
+
+/* A real right side of the complex factor. */
+static ritz_status solve_general(ritz_effective *F, double *x)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < F->n; k++)
+        F->z[k] = x[k];
+    RITZ_TRY(ritz_zldl_solve(F->general, 1, F->z));
+    for (int64_t k = 0; k < F->n; k++)
+        x[k] = creal(F->z[k]);
+done:
+    return status;
+}
+
+ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)F->n;
+    ritz_dense X = {F->n, columns, x}; /* borrowed */
+
+    if (n == 0 || columns == 0)
+        return RITZ_OK;
+    if (F->spd)
+        return ritz_factor_solve(F->spd, &X);
+    if (F->ldl)
+        return ritz_ldl_solve(F->ldl, &X);
+    if (!F->general) {
+        (void)LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, (int)columns,
+                                  F->LU.val, n, F->pivot, x, n);
+        return RITZ_OK;
+    }
+    for (int64_t j = 0; j < columns; j++)
+        RITZ_TRY(solve_general(F, x + j * F->n));
+done:
+    return status;
+}
+
+void ritz_effective_free(ritz_effective *F)
+{
+    ritz_dense_free(&F->LU);
+    free(F->pivot);
+    ritz_factor_free(&F->spd);
+    ritz_ldl_free(&F->ldl);
+    ritz_zldl_free(&F->general);
+    if (F->kept)
+        ritz_sparse_free(F->kept);
+    free(F->kept);
+    free(F->z);
+    *F = (ritz_effective){0};
+}

@@ -1,0 +1,193 @@
+/*
+ * exp(A h) = exp(A t)^(2^j), t = h / 2^j with |A t| <= 1/2 in the 1-norm, where
+ * 16 terms of its series are enough [MolerVanLoan1978]. The integral follows
+ * along,
+ *
+ *     W(2 t) = W(t) + E(t)'W(t) E(t),
+ *
+ * and starts as a series too, as d/dt E'QE = E'L(Q)E, L(X) = A'X + X A:
+ *
+ *     W(t) = sum t^(k+1) / (k+1)! L^k(Q)
+ *
+ * Nothing in it grows if A is stable, unlike in exponentials of [-A' Q; 0 A].
+ */
+#include "simulate/exponential.h"
+
+#include "base/alloc.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* (1/2)^17 / 17! and 1 / 19! are below the rounding of 1. */
+enum { TERMS = 17, INTEGRAL_TERMS = 20, MOST_DOUBLINGS = 60 };
+
+static void scale(double factor, ritz_dense *A)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        A->val[k] *= factor;
+}
+
+static void add(double factor, const ritz_dense *X, ritz_dense *A)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        A->val[k] += factor * X->val[k];
+}
+
+static void replace(ritz_dense *A, ritz_dense *by)
+{
+    ritz_dense_free(A);
+    *A = *by;
+    *by = (ritz_dense){0};
+}
+
+/* A := D^-1 A D with D = diag(d) of powers of two. */
+static ritz_status balance(ritz_dense *A, double *d)
+{
+    ritz_status status = RITZ_OK;
+    lapack_int low = 0, high = 0;
+    int n = (int)A->nrow;
+
+    RITZ_FAIL_IF(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, A->val, n, &low,
+                                &high, d) != 0,
+                 RITZ_ERR_ARGUMENT, "a matrix of states is not finite");
+done:
+    return status;
+}
+
+/* A(i,j) *= d(i)^row d(j)^col, powers being 1 or -1. */
+static void turn(const double *d, int row, int col, ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(A, j)[i] *=
+                (row > 0 ? d[i] : 1.0 / d[i]) * (col > 0 ? d[j] : 1.0 / d[j]);
+}
+
+/* E = I + A (I + A / 2 (I + A / 3 (...))) */
+static ritz_status series(const ritz_dense *A, ritz_dense *E)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AE = {0};
+
+    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, E));
+    for (int64_t j = 0; j < A->nrow; j++)
+        ritz_dense_col(E, j)[j] = 1.0;
+    for (int k = TERMS; k > 0; k--) {
+        RITZ_TRY(ritz_dense_mul(A, E, &AE));
+        scale(1.0 / k, &AE);
+        for (int64_t j = 0; j < A->nrow; j++)
+            ritz_dense_col(&AE, j)[j] += 1.0;
+        replace(E, &AE);
+    }
+done:
+    ritz_dense_free(&AE);
+    return status;
+}
+
+/* The integral over t of A t = `A`. */
+static ritz_status integral(const ritz_dense *A, double t, const ritz_dense *Q,
+                            ritz_dense *W)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0}, XA = {0};
+
+    RITZ_TRY(ritz_dense_copy(Q, &X));
+    scale(t, &X);
+    RITZ_TRY(ritz_dense_copy(&X, W));
+    for (int k = 2; k <= INTEGRAL_TERMS; k++) {
+        RITZ_TRY(ritz_dense_mul(&X, A, &XA));
+        ritz_dense_symmetrise(&XA); /* half of X A + A'X */
+        scale(2.0 / k, &XA);
+        replace(&X, &XA);
+        add(1.0, &X, W);
+    }
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&XA);
+    return status;
+}
+
+/* W += E'W E */
+static ritz_status double_integral(const ritz_dense *E, ritz_dense *W)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense more = {0};
+
+    RITZ_TRY(ritz_dense_congruence(W, E, &more));
+    add(1.0, &more, W);
+done:
+    ritz_dense_free(&more);
+    return status;
+}
+
+/* Over t first, then doubled; A is scaled to A t. */
+static ritz_status propagate(ritz_dense *A, double h, int count, ritz_dense *Q,
+                             ritz_dense *E, ritz_dense *W)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)A->nrow;
+    double size =
+        n > 0 ? h * LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, A->val, n)
+              : 0.0;
+    ritz_dense square = {0};
+    int doublings = 0;
+
+    (void)frexp(2.0 * size, &doublings);
+    doublings = size > 0.5 ? doublings : 0;
+    RITZ_FAIL_IF(!isfinite(size) || doublings > MOST_DOUBLINGS,
+                 RITZ_ERR_ARGUMENT,
+                 "a step of %g s is too long for the fastest of its states", h);
+    h = ldexp(h, -doublings);
+    scale(h, A);
+    RITZ_TRY(series(A, E));
+    for (int k = 0; k < count; k++)
+        RITZ_TRY(integral(A, h, &Q[k], &W[k]));
+    for (int j = 0; j < doublings; j++) {
+        for (int k = 0; k < count; k++)
+            RITZ_TRY(double_integral(E, &W[k]));
+        RITZ_TRY(ritz_dense_mul(E, E, &square));
+        replace(E, &square);
+    }
+done:
+    ritz_dense_free(&square);
+    return status;
+}
+
+ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
+                             const ritz_dense *Q, ritz_dense *E, ritz_dense *W)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense scaled = {0}, form[2] = {{0}, {0}}, made = {0};
+    ritz_dense whole[2] = {{0}, {0}};
+    double *d = NULL;
+
+    RITZ_FAIL_IF(count > 2, RITZ_ERR_ARGUMENT, "two forms at most");
+    RITZ_NEW(d, A->nrow);
+    RITZ_TRY(ritz_dense_copy(A, &scaled));
+    if (A->nrow > 0)
+        RITZ_TRY(balance(&scaled, d));
+    for (int k = 0; k < count; k++) {
+        RITZ_TRY(ritz_dense_copy(&Q[k], &form[k]));
+        turn(d, 1, 1, &form[k]);
+    }
+    RITZ_TRY(propagate(&scaled, h, count, form, &made, whole));
+    turn(d, 1, -1, &made);
+    for (int k = 0; k < count; k++) {
+        turn(d, -1, -1, &whole[k]);
+        W[k] = whole[k];
+        whole[k] = (ritz_dense){0};
+    }
+    *E = made;
+    made = (ritz_dense){0};
+done:
+    free(d);
+    ritz_dense_free(&scaled);
+    ritz_dense_free(&made);
+    for (int k = 0; k < 2; k++) {
+        ritz_dense_free(&form[k]);
+        ritz_dense_free(&whole[k]);
+    }
+    return status;
+}

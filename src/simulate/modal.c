@@ -1,0 +1,277 @@
+/*
+ * Exact propagation by modes [Sirlin1992]: inputs that are held, or linear,
+ * over a step leave no error but rounding, at any step. Modes that D leaves
+ * apart go by the closed forms of oscillator.c; those it couples go together,
+ * each group by one exponential of
+ *
+ *     z = [q; q'; s u; s u'],   z' = [0 I 0 0; -L -D B/s 0; 0 0 0 I; 0 0 0 0] z
+ *
+ * s the largest entry of B, lest large units cost doublings.
+ *
+ * What damping takes in a step and what inputs give are z'W z with W of
+ * exponential.c, exact as well.
+ */
+#include "simulate/exponential.h"
+#include "simulate/groups.h"
+#include "simulate/oscillator.h"
+#include "simulate/states.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Modes that D couples; one alone if `o` is to be used. */
+typedef struct group {
+    int64_t count; /* g */
+    const int64_t *mode;
+    ritz_oscillator o;
+    double scale;
+    ritz_dense E;    /* N x N, N = 2 g + 2 p, or {0} */
+    ritz_dense W[2]; /* N x N, of damping and of inputs; or {0} */
+} group;
+
+typedef struct modal {
+    int64_t num_groups;
+    group *group;
+    ritz_groups parts;
+    double *f, *g; /* n, modal forces and their rates */
+    double *z, *z1;
+} modal;
+
+static void release(void *own)
+{
+    modal *s = own;
+
+    for (int64_t k = 0; s->group && k < s->num_groups; k++) {
+        ritz_dense_free(&s->group[k].E);
+        ritz_dense_free(&s->group[k].W[0]);
+        ritz_dense_free(&s->group[k].W[1]);
+    }
+    free(s->group);
+    ritz_groups_free(&s->parts);
+    free(s->f);
+    free(s->g);
+    free(s->z);
+    free(s->z1);
+    free(s);
+}
+
+/* The matrix of z'; `forces` of a lone mode, whose input is its own force. */
+static ritz_status first_order(const ritz_motion *m, const group *part,
+                               ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t g = part->count;
+    int64_t p = g == 1 ? 1 : m->B.ncol;
+    ritz_dense A = {0};
+
+    RITZ_TRY(ritz_dense_new(2 * g + 2 * p, 2 * g + 2 * p, &A));
+    for (int64_t j = 0; j < g; j++) {
+        const double *d = ritz_dense_col(&m->D, part->mode[j]);
+
+        ritz_dense_col(&A, g + j)[j] = 1.0;
+        ritz_dense_col(&A, j)[g + j] = -m->lambda[part->mode[j]];
+        for (int64_t i = 0; i < g; i++)
+            ritz_dense_col(&A, g + j)[g + i] = -d[part->mode[i]];
+    }
+    for (int64_t j = 0; j < p; j++) {
+        double *b = ritz_dense_col(&A, 2 * g + j) + g;
+
+        for (int64_t i = 0; i < g; i++)
+            b[i] = g == 1
+                       ? 1.0
+                       : ritz_dense_col(&m->B, j)[part->mode[i]] / part->scale;
+        ritz_dense_col(&A, 2 * g + p + j)[2 * g + j] = 1.0;
+    }
+    *out = A;
+    A = (ritz_dense){0};
+done:
+    ritz_dense_free(&A);
+    return status;
+}
+
+/* q'D q' and q'B u as forms of z. */
+static ritz_status forms(const ritz_motion *m, const group *part,
+                         const ritz_dense *A, ritz_dense Q[2])
+{
+    ritz_status status = RITZ_OK;
+    int64_t g = part->count;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &Q[0]));
+    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &Q[1]));
+    for (int64_t j = 0; j < g; j++)
+        for (int64_t i = 0; i < g; i++)
+            ritz_dense_col(&Q[0], g + j)[g + i] =
+                0.5 * (ritz_dense_col(&m->D, part->mode[j])[part->mode[i]] +
+                       ritz_dense_col(&m->D, part->mode[i])[part->mode[j]]);
+    for (int64_t j = 2 * g; j < A->nrow; j++)
+        for (int64_t i = g; i < 2 * g; i++) {
+            ritz_dense_col(&Q[1], j)[i] = 0.5 * ritz_dense_col(A, j)[i];
+            ritz_dense_col(&Q[1], i)[j] = 0.5 * ritz_dense_col(A, j)[i];
+        }
+done:
+    return status;
+}
+
+static ritz_status prepare(const ritz_motion *m, double h, group *part)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense A = {0}, Q[2] = {{0}, {0}};
+    int64_t j = part->mode[0];
+
+    part->scale = fmax(ritz_dense_max(&m->B), 1e-300);
+    if (part->count == 1) {
+        part->o =
+            ritz_oscillator_over(m->lambda[j], ritz_dense_col(&m->D, j)[j], h);
+        if (!m->energies)
+            return RITZ_OK;
+    }
+    RITZ_TRY(first_order(m, part, &A));
+    if (m->energies)
+        RITZ_TRY(forms(m, part, &A, Q));
+    RITZ_TRY(
+        ritz_exponential(&A, h, m->energies ? 2 : 0, Q, &part->E, part->W));
+done:
+    ritz_dense_free(&A);
+    ritz_dense_free(&Q[0]);
+    ritz_dense_free(&Q[1]);
+    return status;
+}
+
+static double form(const ritz_dense *W, const double *z)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < W->ncol; j++)
+        sum += z[j] * ritz_motion_dot(W->nrow, ritz_dense_col(W, j), z);
+    return sum;
+}
+
+static void account(const group *part, const double *z, ritz_march *march)
+{
+    march->dissipated += form(&part->W[0], z);
+    march->work += form(&part->W[1], z);
+}
+
+/* A mode alone. */
+static void advance_one(const group *part, double f, double g,
+                        ritz_march *march)
+{
+    int64_t j = part->mode[0];
+    const ritz_oscillator *o = &part->o;
+    double q = march->x[j];
+    double v = march->v[j];
+    const double z[4] = {q, v, f, g};
+
+    if (march->motion->energies)
+        account(part, z, march);
+    march->x[j] = o->hold * q + o->S * v + o->P * f + o->R * g;
+    march->v[j] = -march->motion->lambda[j] * o->S * q + o->rate * v +
+                  o->S * f + o->P * g;
+}
+
+static void advance_group(const group *part, const double *u0, const double *u1,
+                          modal *s, ritz_march *march)
+{
+    const ritz_motion *m = march->motion;
+    int64_t g = part->count;
+    int64_t p = m->B.ncol;
+
+    for (int64_t i = 0; i < g; i++) {
+        s->z[i] = march->x[part->mode[i]];
+        s->z[g + i] = march->v[part->mode[i]];
+    }
+    for (int64_t j = 0; j < p; j++) {
+        s->z[2 * g + j] = part->scale * u0[j];
+        s->z[2 * g + p + j] = part->scale * (u1[j] - u0[j]) / march->step;
+    }
+    if (m->energies)
+        account(part, s->z, march);
+    memset(s->z1, 0, (size_t)(2 * g + 2 * p) * sizeof *s->z1);
+    ritz_motion_gemv(&part->E, 1.0, s->z, s->z1);
+    for (int64_t i = 0; i < g; i++) {
+        march->x[part->mode[i]] = s->z1[i];
+        march->v[part->mode[i]] = s->z1[g + i];
+    }
+}
+
+static ritz_status advance(ritz_march *march, const double *u0,
+                           const double *u1)
+{
+    const ritz_motion *m = march->motion;
+    modal *s = march->own;
+
+    memset(s->f, 0, (size_t)m->n * sizeof *s->f);
+    memset(s->g, 0, (size_t)m->n * sizeof *s->g);
+    for (int64_t j = 0; j < m->B.ncol; j++) {
+        const double *b = ritz_dense_col(&m->B, j);
+        double rate = (u1[j] - u0[j]) / march->step;
+
+        for (int64_t k = 0; k < m->n; k++) {
+            s->f[k] += b[k] * u0[j];
+            s->g[k] += b[k] * rate;
+        }
+    }
+    for (int64_t k = 0; k < s->num_groups; k++) {
+        const group *part = &s->group[k];
+
+        if (part->count == 1)
+            advance_one(part, s->f[part->mode[0]], s->g[part->mode[0]], march);
+        else
+            advance_group(part, u0, u1, s, march);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status start_modes(const ritz_motion *motion, double step,
+                               ritz_march *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t room = 2 * motion->n + 2 * motion->B.ncol;
+    modal *s = NULL;
+
+    RITZ_NEW(s, 1);
+    RITZ_TRY(ritz_groups_new(&motion->D, &s->parts));
+    RITZ_NEW(s->group, s->parts.count);
+    s->num_groups = s->parts.count;
+    RITZ_NEW(s->f, motion->n);
+    RITZ_NEW(s->g, motion->n);
+    RITZ_NEW(s->z, room);
+    RITZ_NEW(s->z1, room);
+    for (int64_t k = 0; k < s->num_groups; k++) {
+        s->group[k].mode = s->parts.member + s->parts.first[k];
+        s->group[k].count = s->parts.first[k + 1] - s->parts.first[k];
+        RITZ_TRY(prepare(motion, step, &s->group[k]));
+    }
+    out->own = s;
+    out->advance = advance;
+    out->free = release;
+    s = NULL;
+done:
+    if (s)
+        release(s);
+    return status;
+}
+
+static ritz_status start(const ritz_motion *motion, double step, double rho,
+                         ritz_march *out)
+{
+    (void)rho;
+    if (motion->form == RITZ_FORM_STATES)
+        return ritz_states_exact(motion, step, out);
+    return start_modes(motion, step, out);
+}
+
+const ritz_integrator ritz_integrator_modal = {
+    .name = "modal",
+    .summary = "exact for inputs held or linear over a step, mode by mode",
+    .accuracy = "exact but for rounding, and for what inputs do in a step",
+    .stability = "any step",
+    .dissipation = "none of its own",
+    .fails = "needs all modes; a loop closed around it is of first order",
+    .reference = "Sirlin1992",
+    .takes_states = true,
+    .start = start,
+};

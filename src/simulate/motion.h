@@ -1,0 +1,137 @@
+/*
+ * What integrators act on, in one of four forms, all outputs as
+ *
+ *     y = C x + Cv x' + feed u,   accelerations written out
+ *
+ * modal    x'' + D x' + Lambda x = B u, D diagonal or not
+ * dense    M x'' + D x' + K x = B u, full matrices, M regular
+ * sparse   the same of a full component; rows of M may be empty
+ * states   x' = A x + B u,   y = C x + feed u
+ */
+#ifndef RITZ_SIMULATE_MOTION_H
+#define RITZ_SIMULATE_MOTION_H
+
+#include "model/first_order.h"
+
+#include <ritz/factor.h>
+#include <ritz/simulate.h>
+
+typedef enum ritz_form {
+    RITZ_FORM_MODAL,
+    RITZ_FORM_DENSE,
+    RITZ_FORM_SPARSE,
+    RITZ_FORM_STATES,
+} ritz_form;
+
+typedef struct ritz_motion {
+    ritz_form form;
+    int64_t n;          /* coordinates, or states */
+    int64_t original;   /* of the model, as x0 and v0 are given */
+    int64_t num_rigid;  /* modal */
+    double *lambda;     /* modal, n; 0 where rigid */
+    double highest;     /* largest |lambda| known of a dense model, else NaN */
+    ritz_dense K, M, D; /* dense, n x n; D {0}: none; modal: D alone */
+    ritz_sparse sK, sM, sD; /* sparse; sD {0}: none */
+    ritz_dense A;           /* states */
+    ritz_dense B;           /* n x inputs */
+    ritz_dense C, Cv;       /* outputs x n; Cv {0} of states */
+    ritz_dense feed;        /* outputs x inputs */
+    ritz_dense push;        /* n x inputs, what a unit impulse adds to x', or
+                               to x of states */
+    ritz_dense to;          /* original x n: x = to' x0; {0}: the same */
+    bool *massless;         /* sparse, n: rows empty in M */
+    bool energies;          /* are wanted, which costs */
+    bool any_step;          /* of an explicit integrator, to see it fail */
+} ritz_motion;
+
+/** Modal if @p modal, else dense: of its modes where M is singular. */
+ritz_status ritz_motion_dense(const ritz_second_order *model,
+                              const ritz_damping *damping, bool modal,
+                              ritz_motion *out);
+
+/** Modal, up to a frequency, with the static answer of all above in `feed`. */
+ritz_status ritz_motion_modes(const ritz_component *component,
+                              const ritz_damping *damping, double up_to_hz,
+                              ritz_motion *out);
+
+ritz_status ritz_motion_sparse(const ritz_component *component,
+                               const ritz_damping *damping, ritz_motion *out);
+
+ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out);
+
+/** Modes as they are: what @p modes owns moves over. */
+ritz_status ritz_motion_take_modes(ritz_first_order *modes, ritz_motion *m);
+
+/** The sentence that refuses structural damping, if it is there. */
+ritz_status ritz_motion_refuse_structural(bool there);
+
+/** Whichever of them a subject and an integrator ask for. */
+ritz_status ritz_motion_new(const ritz_simulated *subject,
+                            const ritz_simulation_request *request,
+                            ritz_motion *out);
+
+/** y += alpha K x, M x or D x, of a dense or sparse motion. */
+void ritz_motion_stiffness(const ritz_motion *motion, double alpha,
+                           const double *x, double *y);
+void ritz_motion_mass(const ritz_motion *motion, double alpha, const double *x,
+                      double *y);
+void ritz_motion_damping(const ritz_motion *motion, double alpha,
+                         const double *x, double *y);
+
+/** y += alpha A x and y += alpha A'x of a dense matrix; nothing of {0}. */
+void ritz_motion_gemv(const ritz_dense *A, double alpha, const double *x,
+                      double *y);
+double ritz_motion_dot(int64_t n, const double *a, const double *b);
+
+/* A factor of m M + d D + k K. */
+typedef struct ritz_effective {
+    int64_t n;
+    ritz_dense LU;
+    int *pivot;
+    ritz_factor *spd;
+    ritz_ldl *ldl;
+    ritz_zldl *general; /* of the sparse matrix below, which it borrows */
+    ritz_sparse *kept;
+    double _Complex *z; /* n, to work in */
+} ritz_effective;
+
+/**
+ * @param[in] fill  1 in its diagonal where rows of M are empty: for M alone
+ * @return RITZ_ERR_SINGULAR
+ */
+ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
+                               double k, bool fill, ritz_effective *out);
+ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x);
+void ritz_effective_free(ritz_effective *F);
+
+void ritz_motion_free(ritz_motion *motion);
+
+/* A motion on its way. */
+typedef struct ritz_march {
+    const ritz_motion *motion; /* borrowed */
+    double step;
+    double *x, *v; /* n each; of states v is NULL */
+    double dissipated, work;
+    void *own; /* of the integrator */
+    /** One step, with inputs as they are at its start and at its end. */
+    ritz_status (*advance)(struct ritz_march *march, const double *u0,
+                           const double *u1);
+    /** x, v were set and inputs are u: anything else that follows from it. */
+    ritz_status (*settle)(struct ritz_march *march, const double *u);
+    void (*free)(void *own);
+} ritz_march;
+
+/** Allocate x and v, all else by the integrator's start. */
+ritz_status ritz_march_new(const ritz_motion *motion,
+                           const ritz_integrator *integrator, double step,
+                           double rho, ritz_march *out);
+void ritz_march_free(ritz_march *march);
+
+/** Outputs now. */
+void ritz_march_see(const ritz_march *march, const double *u, double *y);
+
+/** Kinetic and potential energy now. */
+void ritz_march_energy(const ritz_march *march, double *kinetic,
+                       double *potential);
+
+#endif

@@ -1,0 +1,176 @@
+/* What is asked of a simulation, and what comes of it. */
+#include <ritz/simulate.h>
+
+#include "base/alloc.h"
+#include "simulate/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static ritz_status check(const ritz_simulated *subject,
+                         const ritz_simulation_request *request)
+{
+    ritz_status status = RITZ_OK;
+    int64_t steps = 0;
+
+    RITZ_FAIL_IF((subject->model != NULL) + (subject->component != NULL) +
+                         (subject->states != NULL) !=
+                     1,
+                 RITZ_ERR_ARGUMENT, "there is not one thing to simulate");
+    RITZ_TRY(ritz_request_steps(request, &steps));
+    RITZ_FAIL_IF(subject->states && subject->damping &&
+                     subject->damping->kind != RITZ_DAMPING_NONE,
+                 RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
+done:
+    return status;
+}
+
+static void take_names(const ritz_simulated *subject, ritz_simulation *s)
+{
+    const ritz_io *io = subject->model       ? subject->model->io
+                        : subject->component ? &subject->component->io
+                                             : NULL;
+    const char(*input)[RITZ_NAME_SIZE] =
+        io ? (const char(*)[RITZ_NAME_SIZE])io->input
+           : (const char(*)[RITZ_NAME_SIZE])subject->states->input;
+    const char(*output)[RITZ_NAME_SIZE] =
+        io ? (const char(*)[RITZ_NAME_SIZE])io->output
+           : (const char(*)[RITZ_NAME_SIZE])subject->states->output;
+
+    if (s->num_inputs > 0)
+        memcpy(s->input, input, (size_t)s->num_inputs * RITZ_NAME_SIZE);
+    if (s->num_outputs > 0)
+        memcpy(s->output, output, (size_t)s->num_outputs * RITZ_NAME_SIZE);
+}
+
+static ritz_status simulate(const ritz_simulated *subject,
+                            const ritz_simulation_request *request,
+                            bool energies, ritz_simulation *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_motion motion = {0};
+
+    RITZ_TRY(check(subject, request));
+    RITZ_TRY(ritz_motion_new(subject, request, &motion));
+    motion.energies = energies && motion.form != RITZ_FORM_STATES;
+    RITZ_TRY(ritz_run(&motion, request, out));
+    take_names(subject, out);
+    if (subject->damping)
+        ritz_damping_print(subject->damping, out->damping);
+    else if (subject->states)
+        memcpy(out->damping, subject->states->damping, sizeof out->damping);
+done:
+    ritz_motion_free(&motion);
+    return status;
+}
+
+ritz_status ritz_simulate(const ritz_simulated *subject,
+                          const ritz_simulation_request *request,
+                          ritz_simulation *out)
+{
+    return simulate(subject, request, true, out);
+}
+
+ritz_status ritz_simulation_difference(const ritz_simulation *exact,
+                                       const ritz_simulation *other,
+                                       double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t p = exact->num_outputs;
+    double worst = 0.0;
+
+    RITZ_FAIL_IF(exact->count != other->count || p != other->num_outputs,
+                 RITZ_ERR_ARGUMENT, "two simulations do not fit each other");
+    for (int64_t k = 0; k < exact->count; k++)
+        RITZ_FAIL_IF(fabs(exact->seconds[k] - other->seconds[k]) >
+                         1e-9 * exact->seconds[exact->count - 1],
+                     RITZ_ERR_ARGUMENT, "two simulations have different times");
+    for (int64_t i = 0; i < p; i++) {
+        double size = 0.0, off = 0.0;
+
+        for (int64_t k = 0; k < exact->count; k++) {
+            double y = exact->y[k * p + i];
+
+            size = fmax(size, fabs(y));
+            off = fmax(off, fabs(other->y[k * p + i] - y));
+        }
+        if (size > 0.0)
+            worst = fmax(worst, off / size);
+    }
+    *out = worst;
+done:
+    return status;
+}
+
+/* Error at a step, by `modal` (or itself) at half of it. */
+static ritz_status measure(const ritz_simulated *subject,
+                           const ritz_simulation_request *request,
+                           double *error)
+{
+    ritz_status status = RITZ_OK;
+    ritz_simulation_request coarse = *request, fine = *request;
+    ritz_simulation made = {0}, exact = {0};
+
+    coarse.every = 1;
+    fine.step = 0.5 * request->step;
+    fine.every = 2;
+    if (!subject->component)
+        fine.integrator = &ritz_integrator_modal;
+    RITZ_TRY(simulate(subject, &coarse, false, &made));
+    RITZ_TRY(simulate(subject, &fine, false, &exact));
+    RITZ_TRY(ritz_simulation_difference(&exact, &made, error));
+done:
+    ritz_simulation_free(&made);
+    ritz_simulation_free(&exact);
+    return status;
+}
+
+ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
+                                   const ritz_simulation_request *request,
+                                   double tolerance, double *error,
+                                   ritz_simulation *out)
+{
+    enum { HALVINGS = 24, STEPS = 50 };
+    ritz_status status = RITZ_OK;
+    ritz_simulation_request asked = *request;
+    double reached = HUGE_VAL;
+
+    RITZ_FAIL_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
+                 tolerance);
+    if (asked.step <= 0.0)
+        asked.step = asked.seconds / STEPS;
+    for (int k = 0; k <= HALVINGS; k++) {
+        status = measure(subject, &asked, &reached);
+        /* an explicit integrator may refuse what is too coarse */
+        if (status != RITZ_OK &&
+            (status != RITZ_ERR_ARGUMENT || !asked.integrator->is_explicit))
+            goto done;
+        if (status == RITZ_OK && reached <= tolerance)
+            break;
+        asked.step *= 0.5;
+    }
+    RITZ_FAIL_IF(!(reached <= tolerance), RITZ_ERR_CONVERGENCE,
+                 "'%s' errs by %.2g at a step of %.3g s, %g was asked",
+                 asked.integrator->name, reached, 2.0 * asked.step, tolerance);
+    RITZ_TRY(ritz_simulate(subject, &asked, out));
+    if (error)
+        *error = reached;
+done:
+    return status;
+}
+
+void ritz_simulation_free(ritz_simulation *simulation)
+{
+    free(simulation->seconds);
+    free(simulation->input);
+    free(simulation->output);
+    free(simulation->u);
+    free(simulation->y);
+    free(simulation->kinetic);
+    free(simulation->potential);
+    free(simulation->dissipated);
+    free(simulation->work);
+    free(simulation->balance);
+    *simulation = (ritz_simulation){0};
+}

@@ -1,0 +1,154 @@
+/*
+ * x_1 = E x_0 + G u_0 + H (u_1 - u_0), with
+ *
+ *     exp([A B/s 0; 0 0 I/h; 0 0 0] h) = [E G/s H/s; 0 I I; 0 0 I]
+ *
+ * exactly, s the largest entry of B; or by the trapezoidal rule
+ *
+ *     E = (I - h/2 A)^-1 (I + h/2 A),   G = (I - h/2 A)^-1 h B,   H = G / 2
+ */
+#include "simulate/states.h"
+
+#include "base/alloc.h"
+#include "linear/general.h"
+#include "simulate/exponential.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct states {
+    ritz_dense E, G, H;
+    double *x;    /* n */
+    double *rise; /* inputs */
+} states;
+
+static void release(void *own)
+{
+    states *s = own;
+
+    ritz_dense_free(&s->E);
+    ritz_dense_free(&s->G);
+    ritz_dense_free(&s->H);
+    free(s->x);
+    free(s->rise);
+    free(s);
+}
+
+static ritz_status advance(ritz_march *march, const double *u0,
+                           const double *u1)
+{
+    states *s = march->own;
+    int64_t n = march->motion->n;
+
+    memset(s->x, 0, (size_t)n * sizeof *s->x);
+    for (int64_t j = 0; j < s->G.ncol; j++)
+        s->rise[j] = u1[j] - u0[j];
+    ritz_motion_gemv(&s->E, 1.0, march->x, s->x);
+    ritz_motion_gemv(&s->G, 1.0, u0, s->x);
+    ritz_motion_gemv(&s->H, 1.0, s->rise, s->x);
+    memcpy(march->x, s->x, (size_t)n * sizeof *s->x);
+    return RITZ_OK;
+}
+
+static ritz_status states_new(const ritz_motion *motion, states **out)
+{
+    ritz_status status = RITZ_OK;
+    states *s = NULL;
+
+    RITZ_NEW(s, 1);
+    RITZ_NEW(s->x, motion->n);
+    RITZ_NEW(s->rise, motion->B.ncol);
+    *out = s;
+    s = NULL;
+done:
+    if (s)
+        release(s);
+    return status;
+}
+
+static void hand_over(states **s, ritz_march *out)
+{
+    out->own = *s;
+    out->advance = advance;
+    out->free = release;
+    *s = NULL;
+}
+
+/* Rows 0..n-1 of some columns, times a factor. */
+static ritz_status block(const ritz_dense *A, int64_t n, int64_t first,
+                         int64_t count, double factor, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(n, count, out));
+    for (int64_t j = 0; j < count; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(out, j)[i] =
+                factor * ritz_dense_col(A, first + j)[i];
+done:
+    return status;
+}
+
+ritz_status ritz_states_exact(const ritz_motion *motion, double step,
+                              ritz_march *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = motion->n;
+    int64_t p = motion->B.ncol;
+    double scale = fmax(ritz_dense_max(&motion->B), 1e-300);
+    ritz_dense A = {0}, E = {0};
+    states *s = NULL;
+
+    RITZ_TRY(states_new(motion, &s));
+    RITZ_TRY(ritz_dense_new(n + 2 * p, n + 2 * p, &A));
+    for (int64_t j = 0; j < n; j++)
+        memcpy(ritz_dense_col(&A, j), ritz_dense_col(&motion->A, j),
+               (size_t)n * sizeof *A.val);
+    for (int64_t j = 0; j < p; j++) {
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(&A, n + j)[i] =
+                ritz_dense_col(&motion->B, j)[i] / scale;
+        ritz_dense_col(&A, n + p + j)[n + j] = 1.0 / step;
+    }
+    RITZ_TRY(ritz_exponential(&A, step, 0, NULL, &E, NULL));
+    RITZ_TRY(block(&E, n, 0, n, 1.0, &s->E));
+    RITZ_TRY(block(&E, n, n, p, scale, &s->G));
+    RITZ_TRY(block(&E, n, n + p, p, scale, &s->H));
+    hand_over(&s, out);
+done:
+    ritz_dense_free(&A);
+    ritz_dense_free(&E);
+    if (s)
+        release(s);
+    return status;
+}
+
+ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
+                                    ritz_march *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = motion->n;
+    ritz_dense left = {0};
+    states *s = NULL;
+
+    RITZ_TRY(states_new(motion, &s));
+    RITZ_TRY(ritz_dense_copy(&motion->A, &left));
+    RITZ_TRY(ritz_dense_copy(&motion->A, &s->E));
+    for (int64_t k = 0; k < n * n; k++) {
+        double one = k % (n + 1) == 0 ? 1.0 : 0.0;
+
+        left.val[k] = one - 0.5 * step * left.val[k];
+        s->E.val[k] = one + 0.5 * step * s->E.val[k];
+    }
+    RITZ_TRY(block(&motion->B, n, 0, motion->B.ncol, step, &s->G));
+    RITZ_TRY(ritz_general_solve(&left, false, &s->E));
+    RITZ_TRY(ritz_general_solve(&left, false, &s->G));
+    RITZ_TRY(block(&s->G, n, 0, s->G.ncol, 0.5, &s->H));
+    hand_over(&s, out);
+done:
+    ritz_dense_free(&left);
+    if (s)
+        release(s);
+    return status;
+}

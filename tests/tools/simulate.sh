@@ -1,0 +1,108 @@
+#!/bin/sh
+# Time responses as a user asks for them. Usage: simulate.sh FOLDER-OF-THE-TOOLS
+data=$(cd "$(dirname "$0")/../../data/dualspin" && pwd)
+. "$(dirname "$0")/tap.sh"
+
+ritz-import -q --stiffness "$data/stator.op4:KGG" --mass "$data/stator.op4:MGG" \
+    --bulk "$data/stator.bdf" --port bearing=1 --port scan=5 \
+    --input torque=1:6 --output-at gyro=5:6 --output-at rate=5:6/vel \
+    --output-at shake=5:6/acc -o stator.h5
+ritz-basis -q macneal-rubin --modes 4 stator.h5 -o basis.h5
+ritz-reduce -q stator.h5 basis.h5 -o reduced.h5
+
+# --- runs --------------------------------------------------------------------
+
+expect 0 'Time response to inputs' ritz-simulate --help
+expect 0 '[ChungHulbert1993]' ritz-simulate --list
+expect 0 'energies       balance to' ritz-simulate --seconds 2 --step 0.01 \
+    --input torque=step --damping 'modal 0.01' reduced.h5 -o modal.h5
+expect 0 '201 times to 2 s' ritz-info modal.h5
+ritz-simulate -q --seconds 2 --step 0.01 --input torque=step \
+    --damping 'modal 0.01' reduced.h5 -o modal2.h5
+for name in trapezoidal generalised-alpha central-difference; do
+    expect 0 "$name, step" ritz-simulate --method "$name" --seconds 0.5 \
+        --step 0.001 --input torque=sine:3 --damping 'rayleigh 1 1e-5' \
+        reduced.h5 -o "$name.h5"
+done
+json 0 ritz-simulate --seconds 2 --accuracy 1e-2 --method trapezoidal \
+    --initial mode:7 --damping 'modal 0.01' reduced.h5 -o halved.h5
+holds '  halves its step until it is accurate' \
+    'j["error"] <= 1e-2 and j["step"] < 0.04 and j["imbalance"] < 1e-9
+     and j["method"] == "trapezoidal" and len(j["peaks"]) == 3'
+
+# A component by an implicit integrator and by all its modes: alike.
+for how in '--method trapezoidal --step 1e-4' '--up-to-hz 1e4 --step 5e-4'; do
+    # shellcheck disable=SC2086
+    json 0 ritz-simulate $how --seconds 0.5 --input torque=sine:3 \
+        --damping 'rayleigh 1 1e-5' stator.h5 -o full.h5
+    [ -s peak ] || /usr/bin/python3 -c \
+        'import json; print(json.load(open("log.json"))["peaks"][0])' >peak
+    # a sine that is linear over 5e-4 s: (w h)^2 / 12 of it is 8e-6
+    holds "  peaks alike ($how)" \
+        "abs(j['peaks'][0] / $(cat peak) - 1) < 1e-4"
+done
+
+# A file of times and values, held; and as text again.
+printf '# s\tN m\n0\t0\n0.1\t1\n0.2\t0\n' >pulse.tsv
+expect 0 'inputs held to order zero' ritz-simulate --seconds 0.4 --step 0.05 \
+    --hold zero --input torque=pulse.tsv --damping 'modal 0.01' reduced.h5 \
+    -o pulse.h5
+expect 0 'pulse.tsv' ritz-info pulse.h5
+expect 0 '9 times, 3 outputs, 1 inputs' ritz-export --to tsv pulse.h5 \
+    -o pulse.out
+[ "$(awk -F '\t' 'NR == 4 { print $1 * 100, $2 * 100 }' pulse.out)" = '10 100' ] &&
+    verdict=yes || verdict=no
+report "$verdict" 'a table is interpolated'
+expect 0 '3 times to 0.4 s' ritz-simulate --seconds 0.4 --step 0.05 --every 4 \
+    --input torque=impulse reduced.h5 -o few.h5
+
+# --- what it costs -----------------------------------------------------------
+
+json 0 ritz-simulate --cost --band-hz 0,10 --damping 'modal 0.01' \
+    --record runs.jsonl reduced.h5
+holds '  every integrator has a step, a cost and an error' \
+    'len(j["integrators"]) == 4 and j["integrators"][0]["error"] == 0
+     and all(i["seconds_per_second"] > 0 and i["error"] < 0.05
+             for i in j["integrators"])
+     and abs((2 * math.pi * 10 * j["cost"]["step_accurate"]) ** 2 / 12 - 1e-3)
+         < 1e-12
+     and j["cost"]["step_explicit"] < 1 / (math.pi * j["cost"]["highest_hz"])'
+cp runs.jsonl log.json
+holds '  and the record says so' \
+    'j["cost"]["integrator"] == "trapezoidal" and j["order"] > 4
+     and j["cost"]["seconds_per_second"] > 0
+     and j["method"] == "macneal-rubin"'
+expect 1 'is of reduced components and systems' ritz-simulate --cost stator.h5
+
+# --- what is asked in vain ---------------------------------------------------
+
+expect 2 "no integrator 'trapezoid'" ritz-simulate --method trapezoid \
+    --seconds 1 reduced.h5 -o none.h5
+expect 2 'how long? give --seconds' ritz-simulate reduced.h5 -o none.h5
+expect 2 'nothing to do' ritz-simulate reduced.h5
+expect 2 "first or zero, not 'second'" ritz-simulate --hold second --seconds 1 \
+    reduced.h5 -o none.h5
+expect 2 'one of them' ritz-simulate --step 1 --accuracy 0.1 --seconds 1 \
+    reduced.h5 -o none.h5
+expect 1 'nothing moves it' ritz-simulate --seconds 1 reduced.h5 -o none.h5
+expect 1 "no input 'torqe', is 'torque' meant?" ritz-simulate --seconds 1 \
+    --input torqe=step reduced.h5 -o none.h5
+expect 1 'is given twice' ritz-simulate --seconds 1 --input torque=step \
+    --input torque=step reduced.h5 -o none.h5
+expect 1 'Hz, limits it to' ritz-simulate --seconds 1 --step 0.1 \
+    --method central-difference --input torque=step reduced.h5 -o none.h5
+expect 1 'up to which modes are to be found' ritz-simulate --seconds 1 \
+    --input torque=step stator.h5 -o none.h5
+expect 1 'damping ratios are of modes' ritz-simulate --seconds 1 \
+    --method trapezoidal --damping 'modal 0.01' --input torque=step stator.h5 \
+    -o none.h5
+expect 1 'modes, not 999' ritz-simulate --seconds 1 --initial mode:999 \
+    reduced.h5 -o none.h5
+expect 1 'rows for' ritz-simulate --seconds 1 --initial pulse.tsv reduced.h5 \
+    -o none.h5
+expect 1 'holds a time response, not' ritz-simulate --seconds 1 modal.h5 \
+    -o none.h5
+[ -e none.h5 ] && verdict=no || verdict=yes
+report "$verdict" 'nothing is written where it fails'
+
+echo "1..$count"
