@@ -1,8 +1,10 @@
 /* ritz-export - a reduced model or a response as a file of others. */
 #include "dampers.h"
+#include "nested.h"
+#include "shapes.h"
+#include "stability.h"
 
 #include <ritz/export.h>
-#include <ritz/probe.h>
 
 #include <string.h>
 
@@ -65,32 +67,6 @@ done:
     return status;
 }
 
-/* No simulator is handed a model that grows by itself, or one of a method that
-   promises nothing, unless it is wanted. */
-static ritz_status check_stability(cli_run *run, const ritz_probe *probe,
-                                   const char *method, bool force)
-{
-    static const char unproven[] = "lanczos-two-sided";
-    ritz_status status = RITZ_OK;
-    const char *verdict = ritz_stability_name(probe->verdict);
-    char text[2 * RITZ_NAME_SIZE];
-
-    ritz_probe_print(probe, text);
-    cli_report_text(run, "stability", verdict);
-    RITZ_FAIL_IF(probe->verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
-                 "'%s' is unstable: %s; export it all the same with --force",
-                 run->operand[0], text);
-    RITZ_FAIL_IF(strcmp(method, unproven) == 0 && !force, RITZ_ERR_ARGUMENT,
-                 "'%s' was made by %s, which promises no stability (now %s: "
-                 "%s); export it all the same with --force",
-                 run->operand[0], method, verdict, text);
-    if (probe->verdict == RITZ_UNSTABLE)
-        cli_warn(run, "'%s' is unstable: %s", run->operand[0], text);
-    cli_say(run, "%s: %s", verdict, text);
-done:
-    return status;
-}
-
 /* Other codes join bodies by displacements, as which force columns are those
    of macneal-rubin. */
 static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
@@ -117,14 +93,16 @@ static ritz_status export_reduced(cli_run *run, model *m,
                                   bool force, ritz_export_report *done)
 {
     ritz_status status = RITZ_OK;
-    ritz_probe probe = {0};
+    ritz_audit audit = {0};
 
     RITZ_TRY(vouch(run, &m->reduced.errors, &m->reduced.estimates, force));
     RITZ_TRY(check_forces(run, &m->reduced.columns, force));
-    RITZ_TRY_IN(run->operand[0], ritz_probe_reduced(&m->reduced, &probe));
-    RITZ_TRY(check_stability(run, &probe, m->reduced.origin.method, force));
+    RITZ_TRY_IN(run->operand[0],
+                stability_of_reduced(&m->reduced, request, &audit));
+    RITZ_TRY(stability_check(run, &audit, m->reduced.origin.method, force));
     RITZ_TRY(exporter->write_reduced(&m->reduced, request, done));
 done:
+    ritz_audit_free(&audit);
     return status;
 }
 
@@ -153,14 +131,16 @@ static ritz_status export_states(cli_run *run, model *m,
                                  ritz_export_report *done)
 {
     ritz_status status = RITZ_OK;
-    ritz_probe probe = {0};
+    ritz_audit audit = {0};
 
     cli_record(run, exporter->name, m->states.A.nrow);
-    RITZ_TRY_IN(run->operand[0], ritz_probe_states(&m->states, &probe));
-    RITZ_TRY(check_stability(run, &probe, m->states.origin.method, force));
+    RITZ_TRY_IN(run->operand[0],
+                stability_of_states(&m->states, request, &audit));
+    RITZ_TRY(stability_check(run, &audit, m->states.origin.method, force));
     RITZ_TRY(vouch_states(run, &m->states, force));
     RITZ_TRY(exporter->write_states(&m->states, request, done));
 done:
+    ritz_audit_free(&audit);
     return status;
 }
 
@@ -168,7 +148,10 @@ done:
 static int kinds_of(const ritz_exporter *exporter)
 {
     if (strcmp(exporter->kind, "response") == 0)
-        return MODEL_RESPONSE;
+        return MODEL_RESPONSE |
+               (exporter->write_simulation ? MODEL_SIMULATION : 0);
+    if (exporter->write_shapes)
+        return MODEL_REDUCED | MODEL_COMPONENT | MODEL_BASIS;
     return MODEL_REDUCED | (exporter->write_states ? MODEL_STATES : 0);
 }
 
@@ -180,12 +163,20 @@ static void say_dampers(const cli_run *run, const ritz_dampers *dampers)
                 dampers->c[j], dampers->k[j]);
 }
 
+/* What is asked beside the format. */
+typedef struct export_how {
+    int64_t order;
+    const char *component; /* that a basis is of */
+    bool force;
+} export_how;
+
 static ritz_status export(cli_run *run, const ritz_exporter *exporter,
                           const ritz_export_request *request,
-                          const cli_list *damper, bool force)
+                          const cli_list *damper, const export_how *how)
 {
     ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
+    bool force = how->force;
     model m = {0};
     ritz_export_report done = {0};
     json_t *said = json_array();
@@ -194,8 +185,15 @@ static ritz_status export(cli_run *run, const ritz_exporter *exporter,
     cli_report_text(run, "format", exporter->name);
     cli_record(run, exporter->name, -1);
     RITZ_TRY(model_read(run, path, kinds_of(exporter), &m));
-    if (m.kind == MODEL_RESPONSE) {
+    RITZ_TRY(nested_take(path, how->order, &m));
+    if (exporter->write_shapes) {
+        RITZ_TRY_IN(path, dampers_install(&m, damper));
+        RITZ_TRY(
+            shapes_export(run, &m, how->component, exporter, request, &done));
+    } else if (m.kind == MODEL_RESPONSE) {
         RITZ_TRY(exporter->write_response(&m.response, request, &done));
+    } else if (m.kind == MODEL_SIMULATION) {
+        RITZ_TRY(exporter->write_simulation(&m.simulation, request, &done));
     } else if (m.kind == MODEL_STATES) {
         RITZ_TRY(export_states(run, &m, exporter, request, force, &done));
     } else {
@@ -218,7 +216,7 @@ done:
 int main(int argc, char **argv)
 {
     const char *to = NULL;
-    bool force = false;
+    export_how how = {0};
     cli_list damper = {0};
     ritz_export_request request = {0};
     const cli_option options[] = {
@@ -232,16 +230,24 @@ int main(int argc, char **argv)
          .help = "every entry, zeros too (output4)"},
         {CLI_INT(&request.digits), .name = "digits", .argument = "N", .min = 1,
          .max = 17, .help = "significant, of text; 17 if not given"},
+        ORDER_OPTION(&how.order),
         DAMPERS_OPTION(&damper),
-        {CLI_FLAG(&force), .name = "force",
+        {CLI_FLAG(&how.force), .name = "force",
          .help = "even if nothing is known of the errors, or if unstable"},
+        {CLI_TEXT(&request.modes), .name = "modes", .argument = "LIST",
+         .help = "shapes of these modes, or columns, 1-6,9 (vtu, xdmf) [all; "
+                 "10 of a component]"},
+        {CLI_TEXT(&how.component), .name = "component", .argument = "FILE",
+         .help = "the component that a basis is of (vtu, xdmf)"},
         {CLI_ACTION(list_formats), .name = "list",
          .help = "list formats and what they take"},
         {0},
     };
     const cli_program program = {
         .name = "ritz-export",
-        .operands = {{"FILE", "a reduced component, state space or response",
+        .operands = {{"FILE",
+                      "a reduced component, state space, response over hertz "
+                      "or seconds; for shapes also a component or a basis",
                       false}},
         .summary = "Write a reduced component for a simulator, or a response "
                    "as a table, and say what\nis known of its errors and "
@@ -260,5 +266,7 @@ int main(int argc, char **argv)
     if (ritz_export_check(exporter, &request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     request.output = run.output;
-    return cli_finish(&run, export(&run, exporter, &request, &damper, force));
+    if (how.component && !exporter->write_shapes)
+        cli_refuse(&program, "--component is for shapes of a basis");
+    return cli_finish(&run, export(&run, exporter, &request, &damper, &how));
 }

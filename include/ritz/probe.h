@@ -1,10 +1,11 @@
 /*
- * Whether a small model is stable, by its own poles: what export asks before it
- * hands a model on.
+ * Whether a small model is stable, by its own poles and by what others will do
+ * with it: what export asks before it hands a model on.
  */
 #ifndef RITZ_PROBE_H
 #define RITZ_PROBE_H
 
+#include <ritz/audit.h>
 #include <ritz/reduced.h>
 #include <ritz/state_space.h>
 
@@ -45,6 +46,37 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
 
 /** The same with its dampers and its own damping. */
 ritz_status ritz_probe_reduced(const ritz_reduced *reduced, ritz_probe *out);
+
+/**
+ * Everything that can grow, alone or in an assembly. docs/methods/stability.md
+ * says what each check measures and where its limit comes from:
+ *
+ *     mass-definite         least eigenvalue of M, over the largest
+ *     stiffness-definite    the same of K, beyond rigid motion
+ *     damping-definite      of D's symmetric part             (if there is D)
+ *     structural-definite   of K4                            (if there is K4)
+ *     poles                 growth of the one that decides, over the radius
+ *     energy-growth         largest energy of a free motion, over its first
+ *     passivity             least Re of force to velocity, over its size
+ *     interface-locked      growth with the interface held
+ *     interface-sprung      the same on springs, and with masses on it
+ *     interface-joined      joined by forces           (if there are such)
+ *
+ * Where M, K and D are semidefinite, and that is found first, nothing can grow,
+ * whatever passive is attached: the checks behind say so and compute nothing.
+ * The interface are the ports or, where there is none, the inputs.
+ *
+ * @cost  an eigenproblem of M, K and D each; of others some fifty of 2r states
+ */
+ritz_status ritz_probe_audit_reduced(const ritz_reduced *reduced,
+                                     ritz_audit *out);
+
+/**
+ * The same of states, from poles on. The interface are pairs of an input and an
+ * output of one name, taken for a force and how its own point moves.
+ */
+ritz_status ritz_probe_audit_states(const ritz_state_space *model,
+                                    ritz_audit *out);
 
 /** "stable", "marginal" or "unstable". */
 const char *ritz_stability_name(ritz_stability verdict);

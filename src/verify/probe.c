@@ -11,7 +11,7 @@
 #include "base/alloc.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
-#include "model/first_order.h"
+#include "verify/probe_parts.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -20,12 +20,9 @@
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
-/* The bound on a pole's rounding is of first order, and eigensolvers are
-   backward stable within a few eps. */
-static const double times = 8.0;
+static const double times = RITZ_PROBE_TIMES;
 
-/* The pole that decides, and what it says. */
-static ritz_status judge(const ritz_dense *A, ritz_probe *out)
+ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
 {
     ritz_status status = RITZ_OK;
     ritz_eigenvalues poles = {0};
@@ -61,7 +58,7 @@ ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out)
     RITZ_TRY(ritz_dense_copy(&model->A, &A));
     if (model->E.val)
         RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &A));
-    RITZ_TRY(judge(&A, &probe));
+    RITZ_TRY(ritz_probe_judge(&A, &probe));
     *out = probe;
 done:
     ritz_dense_free(&A);
@@ -162,7 +159,7 @@ static ritz_status probe_modes(const ritz_structure *model,
     }
     RITZ_TRY(status);
     RITZ_TRY(first_order_matrix(&modes, &A));
-    RITZ_TRY(judge(&A, out));
+    RITZ_TRY(ritz_probe_judge(&A, out));
     r = modes.num_rigid;
     if (r < modes.count && modes.lambda[r] < 0.0) {
         out->verdict = RITZ_UNSTABLE;
