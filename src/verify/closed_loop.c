@@ -1,0 +1,243 @@
+/*
+ * The closed loop in states. With S_y the measured outputs, S_u the driven
+ * inputs, the sign s = -1 of negative feedback, and u = r + s S_u v,
+ *
+ *     e = S_y y = Q (C_y x + s D_yu C_c w + D_y r),   Q = (I - s D_yu D_c)^-1,
+ *     v = C_c w + D_c e,
+ *     E x' = A x + B r + s B_u v,    E_c w' = A_c w + B_c e,
+ *     y = C x + D r + s D_u v
+ *
+ * [Sirlin1992] (4), (5), with what feeds through the plant.
+ */
+#include "base/alloc.h"
+#include "linear/general.h"
+
+#include <ritz/closed_loop.h>
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* e and v as rows of what [x; w; r] makes of them. */
+typedef struct signals {
+    ritz_dense e, v;
+} signals;
+
+/* A(:, at) */
+static ritz_status pick(const ritz_dense *A, int64_t count, const int64_t *at,
+                        ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    for (int64_t j = 0; j < count && A->nrow > 0; j++)
+        memcpy(ritz_dense_col(out, j), ritz_dense_col(A, at[j]),
+               (size_t)A->nrow * sizeof *out->val);
+done:
+    return status;
+}
+
+/* to(row.., col..) += factor A */
+static void add_block(double factor, const ritz_dense *A, int64_t row,
+                      int64_t col, ritz_dense *to)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(to, col + j)[row + i] +=
+                factor * ritz_dense_col(A, j)[i];
+}
+
+/* to(row.., :) += factor A X */
+static ritz_status add_product(double factor, const ritz_dense *A,
+                               const ritz_dense *X, int64_t row, ritz_dense *to)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AX = {0};
+
+    RITZ_TRY(ritz_dense_mul(A, X, &AX));
+    add_block(factor, &AX, row, 0, to);
+done:
+    ritz_dense_free(&AX);
+    return status;
+}
+
+/* e := Q e, and the status says if Q is there. */
+static ritz_status solve_circle(double sign, const ritz_dense *D_yu,
+                                const ritz_dense *D_c, ritz_dense *e)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense circle = {0};
+
+    RITZ_TRY(ritz_dense_mul(D_yu, D_c, &circle));
+    for (int64_t j = 0; j < circle.ncol; j++)
+        for (int64_t i = 0; i < circle.nrow; i++)
+            ritz_dense_col(&circle, j)[i] =
+                (i == j ? 1.0 : 0.0) - sign * ritz_dense_col(&circle, j)[i];
+    if (ritz_dense_max(D_yu) == 0.0 || ritz_dense_max(D_c) == 0.0)
+        goto done; /* Q = I */
+    status = ritz_general_solve(&circle, false, e);
+    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                 "what passes through plant and controller at once makes a "
+                 "circle without an answer: I + D_c D is singular");
+done:
+    ritz_dense_free(&circle);
+    return status;
+}
+
+static ritz_status find_signals(const ritz_state_space *p,
+                                const ritz_state_space *c,
+                                const ritz_loop *loop, signals *out)
+{
+    ritz_status status = RITZ_OK;
+    double sign = loop->positive ? 1.0 : -1.0;
+    int64_t n = p->A.nrow, width = n + c->A.nrow + p->num_inputs;
+    ritz_dense C_y = {0}, D_y = {0}, D_yu = {0}, DC = {0};
+
+    RITZ_TRY(ritz_dense_rows(&p->C, loop->num_measured, loop->measured, &C_y));
+    RITZ_TRY(ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
+    RITZ_TRY(pick(&D_y, loop->num_driven, loop->driven, &D_yu));
+    RITZ_TRY(ritz_dense_mul(&D_yu, &c->C, &DC));
+    RITZ_TRY(ritz_dense_new(loop->num_measured, width, &out->e));
+    add_block(1.0, &C_y, 0, 0, &out->e);
+    add_block(sign, &DC, 0, n, &out->e);
+    add_block(1.0, &D_y, 0, n + c->A.nrow, &out->e);
+    RITZ_TRY(solve_circle(sign, &D_yu, &c->D, &out->e));
+    RITZ_TRY(ritz_dense_mul(&c->D, &out->e, &out->v));
+    add_block(1.0, &c->C, 0, n, &out->v);
+done:
+    ritz_dense_free(&C_y);
+    ritz_dense_free(&D_y);
+    ritz_dense_free(&D_yu);
+    ritz_dense_free(&DC);
+    return status;
+}
+
+/* [A B] of both, their own and what they make each other do. */
+static ritz_status fill(const ritz_state_space *p, const ritz_state_space *c,
+                        const ritz_loop *loop, const signals *s,
+                        ritz_dense *rates, ritz_dense *seen)
+{
+    ritz_status status = RITZ_OK;
+    double sign = loop->positive ? 1.0 : -1.0;
+    int64_t n = p->A.nrow, m = c->A.nrow;
+    ritz_dense B_u = {0}, D_u = {0};
+
+    RITZ_TRY(pick(&p->B, loop->num_driven, loop->driven, &B_u));
+    RITZ_TRY(pick(&p->D, loop->num_driven, loop->driven, &D_u));
+    RITZ_TRY(ritz_dense_new(n + m, n + m + p->num_inputs, rates));
+    RITZ_TRY(ritz_dense_new(p->num_outputs, n + m + p->num_inputs, seen));
+    add_block(1.0, &p->A, 0, 0, rates);
+    add_block(1.0, &c->A, n, n, rates);
+    add_block(1.0, &p->B, 0, n + m, rates);
+    RITZ_TRY(add_product(sign, &B_u, &s->v, 0, rates));
+    RITZ_TRY(add_product(1.0, &c->B, &s->e, n, rates));
+    add_block(1.0, &p->C, 0, 0, seen);
+    add_block(1.0, &p->D, 0, n + m, seen);
+    RITZ_TRY(add_product(sign, &D_u, &s->v, 0, seen));
+done:
+    ritz_dense_free(&B_u);
+    ritz_dense_free(&D_u);
+    return status;
+}
+
+/* [E 0; 0 E_c]; {0} if both are the identity. */
+static ritz_status join_masses(const ritz_state_space *p,
+                               const ritz_state_space *c, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = p->A.nrow, m = c->A.nrow;
+
+    if (!p->E.val && !c->E.val)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_new(n + m, n + m, out));
+    for (int64_t k = 0; k < n + m; k++)
+        if (!(k < n ? &p->E : &c->E)->val)
+            ritz_dense_col(out, k)[k] = 1.0;
+    if (p->E.val)
+        add_block(1.0, &p->E, 0, 0, out);
+    if (c->E.val)
+        add_block(1.0, &c->E, n, n, out);
+done:
+    return status;
+}
+
+static ritz_status name(const ritz_state_space *p, const ritz_state_space *c,
+                        ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = p->A.nrow, m = c->A.nrow;
+
+    out->num_inputs = p->num_inputs;
+    out->num_outputs = p->num_outputs;
+    RITZ_NEW(out->input, p->num_inputs);
+    RITZ_NEW(out->output, p->num_outputs);
+    RITZ_NEW(out->limit, p->num_outputs);
+    if (p->num_inputs > 0)
+        memcpy(out->input, p->input, (size_t)p->num_inputs * RITZ_NAME_SIZE);
+    for (int64_t k = 0; k < p->num_outputs; k++) {
+        memcpy(out->output[k], p->output[k], RITZ_NAME_SIZE);
+        out->limit[k] = p->limit[k];
+    }
+    RITZ_TRY(ritz_columns_new(n + m, &out->columns));
+    for (int64_t k = 0; k < n + m; k++)
+        out->columns.kind[k] =
+            k < n ? p->columns.kind[k] : c->columns.kind[k - n];
+    memcpy(out->damping, p->damping, sizeof out->damping);
+    memcpy(out->units, p->units, sizeof out->units);
+done:
+    return status;
+}
+
+static ritz_status check(const ritz_state_space *p, const ritz_state_space *c,
+                         const ritz_loop *loop)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(loop->num_measured != c->num_inputs ||
+                     loop->num_driven != c->num_outputs,
+                 RITZ_ERR_ARGUMENT,
+                 "a loop of %" PRId64 " measured and %" PRId64
+                 " driven signals is not of this controller",
+                 loop->num_measured, loop->num_driven);
+    for (int64_t k = 0; k < loop->num_measured; k++)
+        RITZ_FAIL_IF(loop->measured[k] < 0 ||
+                         loop->measured[k] >= p->num_outputs,
+                     RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
+                     loop->measured[k] + 1);
+    for (int64_t k = 0; k < loop->num_driven; k++)
+        RITZ_FAIL_IF(loop->driven[k] < 0 || loop->driven[k] >= p->num_inputs,
+                     RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
+                     loop->driven[k] + 1);
+done:
+    return status;
+}
+
+ritz_status ritz_closed_loop(const ritz_state_space *plant,
+                             const ritz_state_space *controller,
+                             const ritz_loop *loop, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space made = {0};
+    ritz_dense rates = {0}, seen = {0};
+    signals s = {0};
+    int64_t states = plant->A.nrow + controller->A.nrow;
+
+    RITZ_TRY(check(plant, controller, loop));
+    RITZ_TRY(find_signals(plant, controller, loop, &s));
+    RITZ_TRY(fill(plant, controller, loop, &s, &rates, &seen));
+    RITZ_TRY(name(plant, controller, &made));
+    RITZ_TRY(ritz_dense_columns(&rates, 0, states, &made.A));
+    RITZ_TRY(ritz_dense_columns(&rates, states, plant->num_inputs, &made.B));
+    RITZ_TRY(ritz_dense_columns(&seen, 0, states, &made.C));
+    RITZ_TRY(ritz_dense_columns(&seen, states, plant->num_inputs, &made.D));
+    RITZ_TRY(join_masses(plant, controller, &made.E));
+    *out = made;
+    made = (ritz_state_space){0};
+done:
+    ritz_state_space_free(&made);
+    ritz_dense_free(&rates);
+    ritz_dense_free(&seen);
+    ritz_dense_free(&s.e);
+    ritz_dense_free(&s.v);
+    return status;
+}
