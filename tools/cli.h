@@ -164,6 +164,14 @@ void cli_report_text(cli_run *run, const char *key, const char *text);
 void cli_record(cli_run *run, const char *method, int64_t order);
 void cli_record_error(cli_run *run, const char *name, double value);
 
+/**
+ * Append one further line to the file of --record, now: tool, command and
+ * inputs are added to it. Without --record nothing happens.
+ *
+ * @param[in] line  given away
+ */
+ritz_status cli_record_line(cli_run *run, json_t *line);
+
 /** Exit status for main: report, say why it failed, check standard output. */
 int cli_finish(cli_run *run, ritz_status status);
 

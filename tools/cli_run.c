@@ -157,10 +157,9 @@ static void set_missing(json_t *object, const char *key, json_t *value)
         json_decref(value);
 }
 
-/* What there is to say of this run, complete but for what it cost. */
-static void fill_line(cli_run *run, ritz_status status)
+/* What every line says of the run that it is of. */
+static void sign_line(const cli_run *run, json_t *line)
 {
-    json_t *line = run->line;
     json_t *inputs = json_array();
 
     for (int64_t k = 0; k < run->num_inputs; k++)
@@ -169,10 +168,26 @@ static void fill_line(cli_run *run, ritz_status status)
     json_object_set_new(line, "version", json_string(ritz_version()));
     json_object_set_new(line, "command", cli_string(run->command));
     json_object_set_new(line, "inputs", inputs);
+}
+
+/* What there is to say of this run, complete but for what it cost. */
+static void fill_line(cli_run *run, ritz_status status)
+{
+    json_t *line = run->line;
+
+    sign_line(run, line);
     json_object_set_new(line, "ok", json_boolean(status == RITZ_OK));
     set_missing(line, "method", json_null());
     set_missing(line, "order", json_null());
     set_missing(line, "errors", json_object());
+}
+
+static json_int_t peak_bytes(void)
+{
+    struct rusage usage = {0};
+
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024 * (json_int_t)usage.ru_maxrss;
 }
 
 static void fill_cost(cli_run *run)
@@ -190,21 +205,18 @@ static void fill_cost(cli_run *run)
         json_pack("{s:f, s:f}", "wall",
                   (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - run->began,
                   "cpu", cpu));
-    json_object_set_new(run->line, "peak_bytes",
-                        json_integer(1024 * (json_int_t)usage.ru_maxrss));
+    json_object_set_new(run->line, "peak_bytes", json_integer(peak_bytes()));
 }
 
 /* One line in one write, so that those of parallel tools do not mix. */
-static ritz_status append_line(cli_run *run, ritz_status outcome)
+static ritz_status append_line(const cli_run *run, const json_t *line)
 {
     ritz_status status = RITZ_OK;
     char *text = NULL;
     size_t length = 0;
     int file = -1;
 
-    fill_line(run, outcome);
-    fill_cost(run);
-    text = json_dumps(run->line, JSON_COMPACT | JSON_PRESERVE_ORDER);
+    text = json_dumps(line, JSON_COMPACT | JSON_PRESERVE_ORDER);
     RITZ_FAIL_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
     length = strlen(text);
     text[length] = '\n'; /* in the place of its NUL */
@@ -221,12 +233,28 @@ done:
     return status;
 }
 
+ritz_status cli_record_line(cli_run *run, json_t *line)
+{
+    ritz_status status = RITZ_OK;
+
+    if (run->record) {
+        sign_line(run, line);
+        json_object_set_new(line, "peak_bytes", json_integer(peak_bytes()));
+        status = append_line(run, line);
+    }
+    json_decref(line);
+    return status;
+}
+
 /* Of two failures the first is told, and the second only if there is none. */
 static ritz_status keep_record(cli_run *run, ritz_status outcome)
 {
     char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());
-    ritz_status recorded = append_line(run, outcome);
+    ritz_status recorded = RITZ_OK;
 
+    fill_line(run, outcome);
+    fill_cost(run);
+    recorded = append_line(run, run->line);
     if (first)
         ritz_record("%s", first);
     free(first);

@@ -17,22 +17,31 @@ done:
     return status;
 }
 
-ritz_status cli_table_save(cli_table *table, const char *path)
+ritz_status cli_table_write(cli_table *table, const char *path)
 {
     ritz_status status = RITZ_OK;
-    ritz_draft draft = {0};
     FILE *file = NULL;
     bool whole = false;
 
     RITZ_FAIL_IF(ferror(table->file) || fflush(table->file) != 0,
                  RITZ_ERR_MEMORY, "no memory for a table");
-    RITZ_TRY(ritz_draft_new(path, &draft));
-    file = fopen(draft.name, "w");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", draft.name,
+    file = fopen(path, "w");
+    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
                  strerror(errno));
     whole = fwrite(table->text, 1, table->size, file) == table->size;
     whole = fclose(file) == 0 && whole;
     RITZ_FAIL_IF(!whole, RITZ_ERR_FILE, "cannot write: %s", strerror(errno));
+done:
+    return status;
+}
+
+ritz_status cli_table_save(cli_table *table, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_draft draft = {0};
+
+    RITZ_TRY(ritz_draft_new(path, &draft));
+    RITZ_TRY(cli_table_write(table, draft.name));
     RITZ_TRY(ritz_draft_publish(&draft));
 done:
     ritz_draft_free(&draft);

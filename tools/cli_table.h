@@ -18,6 +18,9 @@ ritz_status cli_table_new(cli_table *out);
 /** Write it under a name of its own, then give it this one. */
 ritz_status cli_table_save(cli_table *table, const char *path);
 
+/** Write it into a file that is the caller's own, such as a draft. */
+ritz_status cli_table_write(cli_table *table, const char *path);
+
 void cli_table_free(cli_table *table);
 
 #endif

@@ -3,6 +3,7 @@
 #define RITZ_TOOLS_RANKINGS_H
 
 #include "cli.h"
+#include "gnuplot.h"
 
 #include <ritz/agreement.h>
 #include <ritz/reweigh.h>
@@ -75,6 +76,10 @@ ritz_status rankings_write_table(const char *path, const contest *all);
  * @return RITZ_ERR_FILE if gnuplot is not there or fails
  */
 ritz_status rankings_draw(const char *path, const char *title,
+                          const contest *all, int64_t most);
+
+/** The same in a picture that was begun. */
+ritz_status rankings_plot(gnuplot *picture, const char *title,
                           const contest *all, int64_t most);
 
 /**

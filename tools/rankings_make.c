@@ -1,6 +1,7 @@
 #include "rankings_make.h"
 
 #include "dampers.h"
+#include "nested.h"
 
 #include <ritz/gramians.h>
 
@@ -43,7 +44,7 @@ static ritz_status rank_at(const subject *s, const ritz_ranker *ranker,
         snprintf(out->at, sizeof out->at, "%s", at->at);
 done:
     ritz_rank_request_free(&request);
-    return ritz_context(status, at ? at->at : NULL);
+    return at ? ritz_context(status, at->at) : status;
 }
 
 /* At one configuration: at several, each would want weights of its own. */
@@ -343,6 +344,7 @@ ritz_status rank_model(cli_run *run, const rank_wish *asked, rank_result *out)
     RITZ_TRY(model_read(
         run, run->operand[0],
         MODEL_REDUCED | MODEL_SYSTEM | MODEL_COMPONENT | MODEL_STATES, &m));
+    RITZ_TRY(nested_take(run->operand[0], asked->order, &m));
     RITZ_TRY(m.kind == MODEL_REDUCED || m.kind == MODEL_SYSTEM
                  ? rank_modes(run, asked, &m, out)
                  : rank_values(run, asked, &m, out));

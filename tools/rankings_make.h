@@ -15,6 +15,7 @@ typedef struct rank_wish {
     const char *at, *input_weights, *output_weights, *tracks, *table, *chart;
     double band_hz[2]; /* [0, 0]: the model's */
     int64_t keep, top; /* keep 0: weights stay */
+    int64_t order;     /* columns of a nested component; 0: all */
     bool compare;
     ritz_choice choice; /* of a component's Gramians */
 } rank_wish;

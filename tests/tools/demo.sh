@@ -28,12 +28,14 @@ holds() {
     fi
 }
 
+# of all methods the fit takes a minute
+methods=craig-bampton,macneal-rubin
 for jobs in 1 4; do
     mkdir "$dir/$jobs"
     cp "$data"/*.bdf "$data"/*.op4 "$data"/*.yaml "$data"/*.gp "$data"/*.awk \
         "$data/Makefile" "$dir/$jobs"
     holds "the demonstration runs with -j $jobs" \
-        make -C "$dir/$jobs" -j "$jobs" BIN="$bin"
+        make -C "$dir/$jobs" -j "$jobs" BIN="$bin" METHODS="$methods"
 done
 for file in system.h5 rotor-verified.h5 full-60-response.h5 report.txt \
     rotor.op4 rotor-exudyn.hdf5; do
@@ -44,9 +46,12 @@ for picture in response-60 response-180 response-300 overview tolerances; do
     holds "$picture.svg is drawn" \
         grep -q '</svg>' "$dir/4/build/$picture.svg"
 done
+holds "the page has a verdict and nine pictures" sh -c \
+    "[ \$(grep -c '<figure>' '$dir/4/build/report.html') -ge 9 ] &&
+     grep -q 'Which method' '$dir/4/build/report.html'"
 holds "nothing is left half written" \
     sh -c "! ls '$dir'/4/build/*.part '$dir'/1/build/*.part 2>/dev/null"
 # the table and the pictures' names are printed each time; no tool runs again
 holds "a second make has nothing to do" sh -c \
-    "make -C '$dir/4' BIN='$bin' >'$dir/again' && ! grep -q ritz- '$dir/again'"
+    "make -C '$dir/4' BIN='$bin' METHODS='$methods' >'$dir/again' && ! grep -q ritz- '$dir/again'"
 echo "1..$count"

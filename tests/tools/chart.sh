@@ -1,0 +1,196 @@
+#!/bin/sh
+# Charts of every kind, hostile names in all of them, and what is refused.
+# Usage: chart.sh FOLDER-OF-THE-TOOLS
+data=$(cd "$(dirname "$0")/../../data" && pwd)
+. "$(dirname "$0")/tap.sh"
+
+# --- usage and files that are none -------------------------------------------
+
+expect 0 'from run records' ritz-chart --list
+expect 2 "no chart 'parato', is 'pareto' meant?" ritz-chart parato x -o x.svg
+expect 2 "--against takes 'reduce' or 'simulate'" ritz-chart pareto x \
+    --against time -o x.svg
+expect 1 "cannot open 'none'" ritz-chart pareto none -o x.svg
+: >empty
+expect 1 "'empty' is empty" ritz-chart pareto empty -o x.svg
+echo 'one two' >words
+expect 1 "'words' is no container, no table of --tracks, and no file of" \
+    ritz-chart report words -o x.html
+printf '{"a":1}\n{"a":\n' >broken.jsonl
+expect 1 "'broken.jsonl', line 2: no JSON" ritz-chart pareto broken.jsonl \
+    -o x.svg
+echo '{"tool":"ritz-basis","method":"m","order":3}' >bare.jsonl
+expect 1 'no record has a method, an order and errors' ritz-chart convergence \
+    bare.jsonl -o x.svg
+expect 1 'no record has a method, an order and errors' ritz-chart report \
+    bare.jsonl -o x.html
+expect 1 'holds run records, not a table of tracks' ritz-chart tracks \
+    bare.jsonl -o x.svg
+
+# line METHOD ORDER ERROR MORE: a record
+line() {
+    printf '{"method":"%s","order":%s,"errors":{"response-relative":%s},' \
+        "$1" "$2" "$3"
+    printf '"seconds":{"cpu":%s.5}%s}\n' "$2" "${4-}"
+}
+line a 3 0.5 >plain.jsonl
+line a 4 0.01 >>plain.jsonl
+expect 1 "does not end in '.svg'" ritz-chart pareto plain.jsonl -o x.png
+expect 1 "no record has an error 'mac' that is not drawn already" \
+    ritz-chart pareto plain.jsonl --measure mac -o x.svg
+echo '{"method":"a","order":3,"errors":{"mac":0.9}}' >timeless.jsonl
+expect 1 'no record says what its model cost' ritz-chart pareto \
+    timeless.jsonl -o x.svg
+line a 3 0.5 ',"subject":"rotor"' >two.jsonl
+line a 3 0.5 ',"subject":"stator"' >>two.jsonl
+expect 1 "choose by --subject" ritz-chart pareto two.jsonl -o x.svg
+expect 0 '' cat plain.jsonl
+for left in x.*; do
+    [ ! -e "$left" ] || { ls >log && report no 'nothing is left behind'; }
+done
+report yes 'nothing is left behind'
+
+command -v gnuplot >/dev/null || {
+    echo "1..$count"
+    exit 0
+}
+if [ "$(command -v gnuplot)" != "$bin/gnuplot" ]; then
+    expect 1 "gnuplot is not installed: 'x.svg.gp' is there to be drawn by" \
+        env PATH="$bin" "$bin/ritz-chart" pareto plain.jsonl -o x.svg
+    expect 1 'gnuplot is not installed' \
+        env PATH="$bin" "$bin/ritz-chart" report plain.jsonl -o x.html
+    [ ! -e x.html ] && report yes 'no half page' || report no 'no half page'
+fi
+
+cat >well.py <<'END'
+import sys, xml.etree.ElementTree as xml
+root = xml.parse(sys.argv[1]).getroot()
+assert root.tag.endswith("svg")
+for node in root.iter():
+    assert not node.tag.endswith("script")
+    assert not any(k.startswith("on") for k in node.attrib)
+END
+cat >mac.py <<'END'
+rows = [line.split("\t") for line in open("mac.svg.tsv")][1:]
+cell = {(r[0], r[1]): float(r[2]) for r in rows if len(r) == 4}
+assert len(cell) > 20 and cell["0", "0"] > 0.9999
+assert all(-1e-12 <= v <= 1 + 1e-12 for v in cell.values())
+END
+
+# well NAME: XML, without scripts; what gnuplot draws again is a picture too
+well() {
+    expect 0 '' /usr/bin/python3 well.py "$1"
+    expect 0 '' gnuplot -e "out='again.svg'" "$1.gp"
+    expect 0 '</svg>' cat again.svg
+}
+
+# --- records: hostile names, values that no logarithm shows --------------------
+
+evil='x_{y}^2 @a &b ~c \\\\n <b onload=1> '"it's"' \"q\" `date` %s é'
+{
+    line "$evil" 2 0.5 ',"feasible":false'
+    line "$evil" 4 0 ',"chosen":true,"why":"<script>alert(1)</script>"'
+    line plain 3 1e-3 ',"runner_up":true,"subject":null'
+    line plain 5 -1
+    line plain 6 null
+    line plain 7 1e-30
+    line plain 8 1e30
+} >runs.jsonl
+for kind in pareto convergence; do
+    expect 0 '' ritz-chart -q $kind runs.jsonl -o $kind.svg
+    well $kind.svg
+    expect 0 "&lt;b onload=1&gt;" cat $kind.svg
+    expect 0 'stand at the foot. 1 are not known and left out' \
+        cat $kind.svg
+    expect 0 'chosen: x_{y}^2 @a' cat $kind.svg
+    mv $kind.svg first.svg && mv $kind.svg.tsv first.tsv
+    mv $kind.svg.gp first.gp
+    expect 0 '' ritz-chart -q $kind runs.jsonl -o $kind.svg
+    same "$kind has the same bytes again" first.svg $kind.svg
+    same '  and its data' first.tsv $kind.svg.tsv
+    same '  and its script' first.gp $kind.svg.gp
+done
+expect 0 'order	method' cat pareto.svg.tsv
+i=0
+while [ $i -lt 3000 ]; do
+    i=$((i + 1))
+    line "method$((i % 30))" $i "1e-$((1 + i % 7))"
+done >many.jsonl
+expect 0 '' ritz-chart -q pareto many.jsonl -o many.svg
+expect 0 '' ritz-chart -q report runs.jsonl -o evil.html
+expect 1 '' grep -F -e '<script>alert' -e '<b onload' evil.html
+expect 0 'Why: &lt;script&gt;alert(1)&lt;/script&gt;' cat evil.html
+evil_file="it's <i> & \$(x) \"q\" é.jsonl"
+cp runs.jsonl "$evil_file"
+expect 0 '' ritz-chart -q pareto "$evil_file" -o "it's <i> & é.svg"
+well "it's <i> & é.svg"
+expect 0 '' ritz-chart -q report "$evil_file" -o "it's <i> & é.html"
+expect 1 '' grep -F -e "it's <i>" "it's <i> & é.html"
+
+# --- containers ------------------------------------------------------------------
+
+n=$data/dualspin
+expect 0 '' ritz-import --stiffness "$n/stator.op4:KGG" --mass \
+    "$n/stator.op4:MGG" --bulk "$n/stator.bdf" --port bearing=1 \
+    --input 'a_b<&=1:6' --output-at "it's {x}=5:6" -o stator.h5
+expect 0 '' ritz-basis craig-bampton --modes 8 --attach bearing stator.h5 \
+    -o basis.h5
+expect 0 '' ritz-reduce stator.h5 basis.h5 -o reduced.h5
+expect 0 '' ritz-frf --from-hz 1 --to-hz 40 --points 200 stator.h5 \
+    --damping 'modal 0.01' -o full.h5
+expect 0 '' ritz-frf --points-of full.h5 reduced.h5 --damping 'modal 0.01' \
+    -o response.h5
+expect 0 '' ritz-frf --from-hz 2 --to-hz 3 --points 7 reduced.h5 \
+    --damping 'modal 0.01' -o apart.h5
+expect 0 '' ritz-chart response full.h5 response.h5 -o response.svg
+well response.svg
+expect 0 "it's {x} / a_b&lt;&amp;: error at most" cat response.svg
+expect 0 '' ritz-chart response full.h5 apart.h5 -o apart.svg
+expect 0 "it's {x} / a_b&lt;&amp;</text>" cat apart.svg
+expect 1 "no channel 'x': say OUTPUT/INPUT, such as 'it's {x}/a_b<&'" \
+    ritz-chart response full.h5 --channel x -o x.svg
+expect 0 '' ritz-chart response full.h5 --channel "it's {x}/a_b<&" \
+    -o channel.svg
+expect 0 '' ritz-chart mac reduced.h5 stator.h5 -o mac.svg
+well mac.svg
+expect 0 '' /usr/bin/python3 mac.py
+expect 0 '' ritz-chart mac basis.h5 stator.h5 -o basis.svg
+expect 1 'MAC is of two models, this is one' ritz-chart mac stator.h5 -o x.svg
+expect 0 '' ritz-rank -q reduced.h5 --damping 'modal 0.01' -o ranking.h5
+expect 0 '' ritz-chart hankel ranking.h5 -o hankel.svg
+well hankel.svg
+expect 1 "'ranking.h5' holds a ranking, not a response" ritz-chart response \
+    ranking.h5 -o x.svg
+
+expect 0 '' ritz-simulate reduced.h5 --seconds 0.5 --input 'a_b<&=step' \
+    --damping 'modal 0.01' -o run.h5
+expect 0 '' ritz-simulate reduced.h5 --seconds 0.5 --input 'a_b<&=step' \
+    --damping 'modal 0.01' --method trapezoidal --step 0.005 -o step.h5
+expect 0 '' ritz-chart simulation run.h5 step.h5 -o simulation.svg
+well simulation.svg
+expect 0 'step.h5, trapezoidal' cat simulation.svg
+
+# --- tracks ------------------------------------------------------------------------
+
+printf 'track\tconfiguration\tmode\thertz\tmac\n' | tee none.tsv >tracks.tsv
+printf '1\tx=%s,<y>=1\t1\t%s\t%s\n' 0 1.5 nan 60 1.7 0.99 20 1.6 0.7 \
+    >>tracks.tsv
+expect 0 '' ritz-chart tracks tracks.tsv -o tracks.svg
+well tracks.svg
+expect 0 'MAC 0.700: hardly the same mode' cat tracks.svg
+expect 1 "none.tsv: no mode is in it" ritz-chart tracks none.tsv -o x.svg
+{ cat tracks.tsv && printf '1\ta\tb\n'; } >bad.tsv
+expect 1 "bad.tsv: line 5 is no row of tracks" ritz-chart tracks bad.tsv \
+    -o x.svg
+expect 0 '' ritz-chart report runs.jsonl full.h5 response.h5 reduced.h5 \
+    stator.h5 ranking.h5 tracks.tsv -o all.html
+for words in 'Speed against accuracy' Convergence 'At equal order' \
+    'At equal error' 'Which modes matter' 'Frequency responses' 'Mode shapes' \
+    'Modes over configurations' "$(sha256sum full.h5 | cut -d' ' -f1)"; do
+    expect 0 "$words" cat all.html
+done
+mv all.html before.html
+expect 0 '' ritz-chart report runs.jsonl full.h5 response.h5 reduced.h5 \
+    stator.h5 ranking.h5 tracks.tsv -o all.html
+same 'a report has the same bytes again' before.html all.html
+echo "1..$count"

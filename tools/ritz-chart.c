@@ -1,0 +1,100 @@
+/* ritz-chart - pictures of what other tools found, and one page of them all. */
+#include "chart.h"
+#include "report.h"
+
+#include <string.h>
+
+enum { MAX_KINDS = 32 };
+
+static void list_kinds(void)
+{
+    for (const chart_kind *k = chart_kinds; k->name; k++)
+        printf("%-12s %-56s from %s\n", k->name, k->summary, k->files);
+    printf("%-12s %-56s from any of these files\n", "report",
+           "all of these on one page, with tables and a verdict");
+}
+
+/* The kind of that name; NULL: the report; or the end of the program. */
+static const chart_kind *find(const cli_program *program, const char *word)
+{
+    const char *names[MAX_KINDS] = {"report"};
+    int64_t count = 1;
+
+    if (strcmp(word, "report") == 0)
+        return NULL;
+    for (const chart_kind *k = chart_kinds; k->name; k++) {
+        if (strcmp(k->name, word) == 0)
+            return k;
+        names[count++] = k->name;
+    }
+    cli_refuse_name(program, "no chart", word, count, names);
+}
+
+static ritz_status draw(cli_run *run, const chart_kind *kind,
+                        const chart_wish *wish)
+{
+    ritz_status status = RITZ_OK;
+    chart_sources sources = {0};
+    gnuplot picture = {0};
+
+    RITZ_TRY(chart_read(run, run->num_operands - 1, run->operand + 1,
+                        kind ? kind->holds : -1, &sources));
+    if (kind)
+        RITZ_TRY(kind->draw(&sources, wish, &picture));
+    else
+        RITZ_TRY(report_write(&sources, wish));
+    cli_say(run, "%s", run->output);
+done:
+    gnuplot_free(&picture);
+    chart_sources_free(&sources);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    chart_wish wish = {.keep = true, .top = 10, .up_to_hz = 1e12};
+    const cli_option options[] = {
+        {CLI_LIST(&wish.measure), .name = "measure", .argument = "NAME",
+         .help = "of records: errors to be drawn [all that are relative]"},
+        {CLI_TEXT(&wish.subject), .name = "subject", .argument = "NAME",
+         .help = "of records: those of one component or scene"},
+        {CLI_TEXT(&wish.against), .name = "against", .argument = "WORD",
+         .help = "pareto: time to 'reduce' or to 'simulate' [simulate, if all "
+                 "records know it]"},
+        {CLI_LIST(&wish.channel), .name = "channel", .argument = "OUTPUT/INPUT",
+         .help = "response: what is drawn [the first four]"},
+        {CLI_INT(&wish.top), .name = "top", .argument = "N", .min = 1,
+         .max = 1000, .help = "hankel: so many modes of each ranking"},
+        {CLI_REAL(&wish.up_to_hz), .name = "up-to-hz", .argument = "F",
+         .min = 0.0, .max = 1e12, .help = "tracks: modes up to here"},
+        {CLI_ACTION(list_kinds), .name = "list",
+         .help = "list charts and what they are made from"},
+        {0},
+    };
+    const cli_program program = {
+        .name = "ritz-chart",
+        .operands = {{"KIND",
+                      "a chart, of those that --list shows, or 'report'",
+                      false},
+                     {"FILE", "what it is made from", true}},
+        .summary = "Draw charts as SVG, by gnuplot; data and script stay "
+                   "beside each. A report is one\nHTML page of all that the "
+                   "files allow, with tables and a verdict, that needs no\n"
+                   "network.",
+        .example = "ritz-chart report runs.jsonl ranking.h5 full.h5 "
+                   "reduced.h5 -o report.html",
+        .options = options,
+        .output = "the picture, NAME.svg, or the page, NAME.html",
+    };
+    const chart_kind *kind = NULL;
+    cli_run run;
+
+    cli_parse(&program, argc, argv, &run);
+    kind = find(&program, run.operand[0]);
+    if (wish.against && strcmp(wish.against, "reduce") != 0 &&
+        strcmp(wish.against, "simulate") != 0)
+        cli_refuse(&program, "--against takes 'reduce' or 'simulate', not '%s'",
+                   wish.against);
+    wish.path = run.output;
+    return cli_finish(&run, draw(&run, kind, &wish));
+}
