@@ -1,13 +1,14 @@
 /* ritz-basis - find the subspace in which a component is reduced. */
 #include "describe.h"
 #include "neighbours.h"
+#include "words.h"
 
 #include <ritz/method.h>
 
 #include <math.h>
 #include <string.h>
 
-enum { MAX_METHODS = 64, MAX_WORDS = 15, MAX_NAME = 32 };
+enum { MAX_METHODS = 64 };
 
 static void list_methods(void)
 {
@@ -114,42 +115,14 @@ done:
     return status;
 }
 
-/* What was asked by words, into the request. */
-static void take_choice(const cli_program *program, const char *const *text,
-                        ritz_request *request)
-{
-    for (int k = 0; ritz_choice_words[k].key; k++)
-        if (text[k] && ritz_choice_take(&ritz_choice_words[k], text[k],
-                                        &request->choice) != RITZ_OK)
-            cli_refuse(program, "%s", ritz_error_message());
-}
-
-/* An option for every word of a choice: shift_hz becomes --shift-hz. */
-static void add_words(const char **text, char (*name)[MAX_NAME],
-                      cli_option *options)
-{
-    for (int k = 0; ritz_choice_words[k].key && k < MAX_WORDS; k++) {
-        const ritz_choice_word *word = &ritz_choice_words[k];
-
-        for (int i = 0; word->key[i] && i < MAX_NAME - 1; i++)
-            name[k][i] = word->key[i];
-        for (char *at = strchr(name[k], '_'); at; at = strchr(at, '_'))
-            *at = '-';
-        options[k] =
-            (cli_option){CLI_TEXT(&text[k]), .name = name[k],
-                         .argument = word->argument, .help = word->help};
-    }
-}
-
 int main(int argc, char **argv)
 {
     enum { NUM_OWN = 6 };
     const char *ports = NULL;
-    const char *text[MAX_WORDS] = {0};
-    char name[MAX_WORDS][MAX_NAME] = {0};
+    words choice = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     cli_list neighbours = {0};
-    cli_option options[NUM_OWN + MAX_WORDS + 1] = {
+    cli_option options[NUM_OWN + WORDS_MOST + 1] = {
         {CLI_INT(&request.modes), .name = "modes", .argument = "N", .min = 0,
          .max = 100000,
          .help = "how many flexible vectors (of states: states), or"},
@@ -182,7 +155,7 @@ int main(int argc, char **argv)
     const ritz_method *method = NULL;
     cli_run run;
 
-    add_words(text, name, options + NUM_OWN);
+    words_add(&choice, 0, options + NUM_OWN);
     cli_parse(&program, argc, argv, &run);
     method = find(&program, run.operand[0]);
     if (ports && !(method->uses & RITZ_USES_ATTACHED))
@@ -193,7 +166,7 @@ int main(int argc, char **argv)
     if (neighbours.count > 0 && !(method->uses & RITZ_USES_NEIGHBOUR))
         cli_refuse(&program, "%s loads nothing, --neighbour is not for it",
                    method->name);
-    take_choice(&program, text, &request);
+    words_take(&program, &choice, &request.choice);
     if (ritz_request_check(method, &request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     return cli_finish(&run, make(&run, method, ports, &neighbours, &request));

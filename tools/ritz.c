@@ -23,8 +23,11 @@ static const struct verb {
     {"rank", "which modes matter from inputs to outputs"},
     {"compare", "scene -> two-stage reduction over all configurations"},
     {"frf", "frequency response of a component, reduced component or system"},
+    {"simulate", "time response of any model, and what a second of it costs"},
     {"poles", "damped poles of any model, dampers retuned or scanned"},
+    {"fit", "component or scene + tolerance -> the smallest model that holds"},
     {"verify", "full against reduced: every error, pass or fail"},
+    {"chart", "pictures of records, rankings, responses; one page of them all"},
     {"export", "reduced component or response -> file of a simulator"},
     {"claims", "published numbers held against what the tools answer"},
 };

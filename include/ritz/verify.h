@@ -18,7 +18,9 @@ typedef struct ritz_verify_request {
     double limit_mac;       /* smallest */
     double limit_damping;   /* relative error of damping ratios */
     double limit_response;  /* relative to the largest |H| in the band */
+    double limit_flexible;  /* relative to what of |H| is no rigid motion */
     double limit_gain;      /* relative, flexible static gain */
+    double limit_missing;   /* modes; NaN: 0 where limit_frequency is given */
     double limit_infinity;  /* of state spaces, h-infinity-relative */
     double limit_two;       /* of state spaces, h2-relative */
 } ritz_verify_request;
@@ -27,7 +29,8 @@ typedef struct ritz_verify_request {
     {                                                                          \
         .limit_frequency = (double)NAN, .limit_mac = (double)NAN,              \
         .limit_damping = (double)NAN, .limit_response = (double)NAN,           \
-        .limit_gain = (double)NAN, .limit_infinity = (double)NAN,              \
+        .limit_flexible = (double)NAN, .limit_gain = (double)NAN,              \
+        .limit_missing = (double)NAN, .limit_infinity = (double)NAN,           \
         .limit_two = (double)NAN                                               \
     }
 
@@ -94,9 +97,5 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
  */
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out);
-
-/** Residual bounds of a reduced component's own modes, for its estimates. */
-ritz_status ritz_estimate(const ritz_component *component,
-                          const ritz_basis *basis, ritz_reduced *reduced);
 
 #endif

@@ -5,9 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-/* The edge of a band belongs to it, and rounding of the edge too. */
-static const double edge = 1e-9;
-
 /* The largest (or smallest) of something, and the full mode where it is. */
 typedef struct extreme {
     double value;
@@ -16,15 +13,12 @@ typedef struct extreme {
 
 static bool in_band(const ritz_sides *sides, double lambda)
 {
-    double hertz = ritz_eigen_hertz(lambda);
-
-    return hertz >= sides->band_hz[0] * (1.0 - edge) &&
-           hertz <= sides->band_hz[1] * (1.0 + edge);
+    return ritz_in_band(sides->full->band_hz, lambda);
 }
 
 static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
 {
-    double full = sqrt(sides->full.lambda[k]);
+    double full = sqrt(sides->full->poles.lambda[k]);
     double reduced = sqrt(sides->reduced.lambda[r]);
 
     return fabs(reduced - full) / full;
@@ -37,14 +31,14 @@ static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
  */
 static double damping_error(const ritz_sides *sides, int64_t k, int64_t r)
 {
-    bool coupled = sides->full.coupled || sides->reduced.coupled;
-    double full = sides->damped_full.zeta[k];
+    bool coupled = sides->full->poles.coupled || sides->reduced.coupled;
+    double full = sides->full->damped.zeta[k];
     double reduced = sides->damped_reduced.zeta[r];
 
     if (coupled && !isnan(full))
         reduced = ritz_spectrum_ratio(
             ritz_damped_nearest(&sides->damped_reduced, sides->reduced.count,
-                                sides->damped_full.s[k]));
+                                sides->full->damped.s[k]));
     if (full == reduced)
         return 0.0;
     if (!isnan(full) && isnan(reduced))
@@ -69,7 +63,7 @@ static ritz_status add(const ritz_sides *sides, const char *name, double limit,
         return RITZ_OK;
     (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz",
                    found.mode + 1,
-                   ritz_eigen_hertz(sides->full.lambda[found.mode]));
+                   ritz_eigen_hertz(sides->full->poles.lambda[found.mode]));
     return ritz_measures_add(out, name, found.value, limit, where);
 }
 
@@ -93,12 +87,14 @@ static ritz_status add_missing(const ritz_sides *sides, double limit,
     int64_t count = 0;
     int64_t first = -1;
 
-    for (int64_t k = sides->full.num_rigid; k < match->count; k++)
-        if (match->partner[k] < 0 && in_band(sides, sides->full.lambda[k])) {
+    for (int64_t k = sides->full->poles.num_rigid; k < match->count; k++)
+        if (match->partner[k] < 0 &&
+            in_band(sides, sides->full->poles.lambda[k])) {
             first = count == 0 ? k : first;
             count++;
         }
-    return add_count("missing-modes", count, first, &sides->full, limit, out);
+    return add_count("missing-modes", count, first, &sides->full->poles, limit,
+                     out);
 }
 
 static ritz_status add_extra(const ritz_sides *sides, ritz_measures *out)
@@ -121,10 +117,10 @@ static ritz_status add_rigid(const ritz_sides *sides, ritz_measures *out)
 {
     double largest = 0.0;
 
-    for (int64_t k = 0; k < sides->full.num_rigid && k < sides->small.Phi.ncol;
-         k++)
+    for (int64_t k = 0;
+         k < sides->full->poles.num_rigid && k < sides->small.Phi.ncol; k++)
         largest = fmax(largest, fabs(ritz_eigen_hertz(sides->small.lambda[k])));
-    return sides->full.num_rigid > 0
+    return sides->full->poles.num_rigid > 0
                ? ritz_measures_add(out, "rigid-hertz", largest, nan(""), "")
                : RITZ_OK;
 }
@@ -139,18 +135,20 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
     extreme mac = {0.0, -1};
     extreme damping = {0.0, -1};
     /* a frequency that is asked to be near must be there */
-    double none_missing = isnan(request->limit_frequency) ? nan("") : 0.0;
+    double none_missing = isnan(request->limit_frequency)
+                              ? request->limit_missing
+                              : fmax(request->limit_missing, 0.0);
 
-    for (int64_t k = sides->full.num_rigid; k < match->count; k++) {
+    for (int64_t k = sides->full->poles.num_rigid; k < match->count; k++) {
         int64_t r = match->partner[k];
 
-        if (!in_band(sides, sides->full.lambda[k]))
+        if (!in_band(sides, sides->full->poles.lambda[k]))
             continue;
         keep(&mac, -1.0, match->mac[k], k);
         if (r < 0)
             continue;
         keep(&frequency, 1.0, frequency_error(sides, k, r), k);
-        if (!sides->assumed)
+        if (!sides->full->assumed)
             keep(&damping, 1.0, damping_error(sides, k, r), k);
     }
     RITZ_TRY(add(sides, "frequency-relative", request->limit_frequency,

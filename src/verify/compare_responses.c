@@ -9,181 +9,238 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points before those at the poles are added. */
-enum { EVEN_POINTS = 200 };
+static const double pi = 3.14159265358979323846;
 /* Of the largest |H|: a level in dB means nothing beneath. */
 static const double audible = 1e-6;
 /* A free body has no response at 0 Hz: begin at this part of the band. */
 static const double above_rest = 1e-3;
 
-/* Both models' responses, at the same frequencies. */
-typedef struct sweep {
-    int64_t count, values; /* points; responses at each */
-    double *hertz;
-    double _Complex *full, *reduced;
-} sweep;
-
-static void sweep_free(sweep *s)
+void ritz_sweep_free(ritz_sweep *sweep)
 {
-    free(s->hertz);
-    free(s->full);
-    free(s->reduced);
-    *s = (sweep){0};
+    free(sweep->hertz);
+    free(sweep->full);
+    *sweep = (ritz_sweep){0};
 }
 
-/* The band, refined at the poles of both models. */
-static ritz_status points(const ritz_sides *sides, sweep *s)
+ritz_status ritz_sweep_points(const ritz_reference *reference,
+                              const ritz_poles *poles,
+                              const ritz_damped *damped, int64_t even,
+                              ritz_sweep *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_poles *const side[2] = {&sides->full, &sides->reduced};
-    const double *const zeta[2] = {sides->damped_full.zeta,
-                                   sides->damped_reduced.zeta};
-    int64_t m = 0;
     double *omega = NULL;
-    double *ratio = NULL;
-    ritz_grid grid = {.from_hz = sides->band_hz[0],
-                      .to_hz = sides->band_hz[1],
-                      .count = EVEN_POINTS,
+    ritz_grid grid = {.from_hz = reference->band_hz[0],
+                      .to_hz = reference->band_hz[1],
+                      .count = even,
                       .refine = true};
 
-    if (sides->full.num_rigid + sides->reduced.num_rigid > 0)
+    if (poles->num_rigid + reference->poles.num_rigid > 0)
         grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
-    RITZ_NEW(omega, side[0]->count + side[1]->count);
-    RITZ_NEW(ratio, side[0]->count + side[1]->count);
-    for (int t = 0; t < 2; t++)
-        for (int64_t k = 0; k < side[t]->count; k++, m++) {
-            omega[m] = sqrt(side[t]->lambda[k]);
-            ratio[m] = zeta[t][k];
-        }
-    RITZ_TRY(ritz_grid_points(&grid, m, omega, ratio, &s->count, &s->hertz));
+    RITZ_NEW(omega, poles->count);
+    for (int64_t k = 0; k < poles->count; k++)
+        omega[k] = sqrt(poles->lambda[k]);
+    RITZ_TRY(ritz_grid_points(&grid, poles->count, omega, damped->zeta,
+                              &out->count, &out->hertz));
 done:
     free(omega);
-    free(ratio);
     return status;
 }
 
+/* The largest of what is no rigid motion: y = (C + i w Cv - w^2 Ca) q less the
+ * rigid q = phi'b / (-w^2 + i w d). */
+static double flexible_part(const ritz_poles *poles, const ritz_sweep *s)
+{
+    const ritz_io *io = &poles->io;
+    double largest = 0.0;
+
+    for (int64_t e = 0; e < s->count * s->values; e++) {
+        double w = 2.0 * pi * s->hertz[e / s->values];
+        int64_t i = e % s->values / io->num_inputs;
+        int64_t j = e % io->num_inputs;
+        double _Complex H = s->full[e];
+
+        for (int64_t k = 0; k < poles->num_rigid; k++)
+            H -= ritz_complex(ritz_dense_col(&io->C, k)[i] -
+                                  w * w * ritz_dense_col(&io->Ca, k)[i],
+                              w * ritz_dense_col(&io->Cv, k)[i]) *
+                 ritz_dense_col(&io->B, j)[k] /
+                 ritz_complex(-w * w, w * poles->rate[k]);
+        largest = fmax(largest, cabs(H));
+    }
+    return largest;
+}
+
 /*
- * The full model at the points. Modes and the static answer of the rest do not
- * say what a local damper does, through which the rest moves too: then each
- * point takes a factor.
+ * Modes and the static answer of the rest do not say what a local damper does,
+ * through which the rest moves too: then each point takes a factor.
  */
-static ritz_status evaluate_full(const ritz_sides *sides, sweep *s)
+ritz_status ritz_reference_respond(const ritz_reference *reference,
+                                   ritz_sweep *s)
 {
     ritz_status status = RITZ_OK;
+    const ritz_poles *poles = &reference->poles;
     const ritz_grid grid = {.from_hz = s->hertz[0],
                             .to_hz = s->hertz[s->count - 1],
                             .count = s->count,
                             .hertz = s->hertz};
-    bool local =
-        sides->full.coupled && sides->full.count < sides->component->num_dofs;
+    bool local = ritz_reference_factors(reference);
     ritz_response direct = {0};
 
+    s->values = poles->io.num_inputs * poles->io.num_outputs;
+    RITZ_NEW(s->full, s->count * s->values);
     if (local) {
-        RITZ_TRY(ritz_response_direct(sides->component, &sides->damping,
-                                      sides->modes_hz, &grid, &direct));
+        RITZ_TRY(ritz_response_direct(reference->component, &reference->damping,
+                                      reference->modes_hz, &grid, &direct));
         memcpy(s->full, direct.H,
                (size_t)(s->count * s->values) * sizeof *s->full);
     }
     for (int64_t k = 0; !local && k < s->count; k++) {
-        RITZ_TRY(
-            ritz_poles_add(&sides->full, s->hertz[k], s->full + k * s->values));
-        ritz_residual_add(&sides->residual, s->hertz[k],
+        RITZ_TRY(ritz_poles_add(poles, s->hertz[k], s->full + k * s->values));
+        ritz_residual_add(&reference->residual, s->hertz[k],
                           s->full + k * s->values);
     }
+    s->flexible = flexible_part(poles, s);
 done:
     ritz_response_free(&direct);
+    return ritz_context(status, "full model");
+}
+
+/* What is found while the points of all sweeps are passed. */
+typedef struct extreme {
+    double largest;   /* |H| of the full model */
+    double flexible;  /* of that less rigid motion */
+    double error;     /* |H - H_r| */
+    double error_hz;  /* where */
+    double db, db_hz; /* the level, where it is audible */
+} extreme;
+
+/* Both models at some frequencies. */
+typedef struct both {
+    const ritz_sweep *full; /* NULL: none */
+    double _Complex *reduced;
+} both;
+
+/*
+ * The reduced model at the points, and how far it is off. Where a rigid motion
+ * of the reduced model alone would answer without end, at rest, it is not asked.
+ */
+static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t values = s->full->values;
+    double least = sides->reduced.num_rigid > 0
+                       ? above_rest * sides->full->band_hz[1] * (1.0 - 1e-9)
+                       : 0.0;
+
+    found->flexible = fmax(found->flexible, s->full->flexible);
+    RITZ_NEW(s->reduced, s->full->count * values);
+    for (int64_t k = 0; k < s->full->count; k++) {
+        double hertz = s->full->hertz[k];
+        const double _Complex *H = s->full->full + k * values;
+        double _Complex *H_r = s->reduced + k * values;
+
+        if (hertz < least) {
+            memcpy(H_r, H, (size_t)values * sizeof *H);
+            continue;
+        }
+        RITZ_TRY_IN("reduced model",
+                    ritz_poles_add(&sides->reduced, hertz, H_r));
+        for (int64_t i = 0; i < values; i++) {
+            found->largest = fmax(found->largest, cabs(H[i]));
+            if (cabs(H[i] - H_r[i]) > found->error) {
+                found->error = cabs(H[i] - H_r[i]);
+                found->error_hz = hertz;
+            }
+        }
+    }
+done:
     return status;
 }
 
-static ritz_status evaluate(const ritz_sides *sides, sweep *s)
+/* Levels mean something above a part of the largest |H|, once that is known. */
+static void compare_levels(const both *s, extreme *found)
 {
-    ritz_status status = RITZ_OK;
-    int64_t values = sides->full.io.num_inputs * sides->full.io.num_outputs;
+    const int64_t values = s->full->values;
 
-    s->values = values;
-    RITZ_NEW(s->full, s->count * values);
-    RITZ_NEW(s->reduced, s->count * values);
-    RITZ_TRY_IN("full model", evaluate_full(sides, s));
-    for (int64_t k = 0; k < s->count; k++) {
-        RITZ_TRY_IN("reduced model",
-                    ritz_poles_add(&sides->reduced, s->hertz[k],
-                                   s->reduced + k * values));
+    for (int64_t k = 0; k < s->full->count * values; k++) {
+        double a = cabs(s->full->full[k]);
+        double b = fmax(cabs(s->reduced[k]), 1e-300);
+
+        if (a > audible * found->largest &&
+            fabs(20.0 * log10(b / a)) > found->db) {
+            found->db = fabs(20.0 * log10(b / a));
+            found->db_hz = s->full->hertz[k / values];
+        }
     }
-done:
-    return status;
 }
 
 /* "3.41 Hz, modal 0.01 assumed" */
-static void say_where(const ritz_sides *sides, double hertz,
+static void say_where(const ritz_reference *full, double hertz,
                       char where[RITZ_NAME_SIZE])
 {
     char damping[RITZ_DAMPING_SIZE] = "";
 
-    ritz_damping_print(&sides->damping, damping);
+    ritz_damping_print(&full->damping, damping);
     (void)snprintf(where, RITZ_NAME_SIZE, "%.6g Hz%s%.30s%s", hertz,
                    damping[0] ? ", " : "", damping,
-                   sides->assumed ? " assumed" : "");
+                   full->assumed ? " assumed" : "");
 }
 
-static ritz_status add_response(const ritz_sides *sides, const sweep *s,
+static ritz_status add_response(const ritz_sides *sides, const extreme *found,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    double largest = 0.0;
-    double error = 0.0;
-    double db = 0.0;
-    int64_t at[2] = {0, 0};
     char where[RITZ_NAME_SIZE];
 
-    for (int64_t k = 0; k < s->count * s->values; k++)
-        largest = fmax(largest, cabs(s->full[k]));
-    for (int64_t k = 0; k < s->count * s->values; k++) {
-        double a = cabs(s->full[k]);
-        double b = cabs(s->reduced[k]);
-        double apart = cabs(s->full[k] - s->reduced[k]);
-        double level = a > audible * largest
-                           ? fabs(20.0 * log10(fmax(b, 1e-300) / a))
-                           : 0.0;
-
-        if (apart > error) {
-            error = apart;
-            at[0] = k / s->values;
-        }
-        if (level > db) {
-            db = level;
-            at[1] = k / s->values;
-        }
-    }
-    if (largest == 0.0) /* no output sees any input: nothing to compare */
+    if (found->largest == 0.0) /* no output sees any input */
         return RITZ_OK;
-    say_where(sides, s->hertz[at[0]], where);
-    RITZ_TRY(ritz_measures_add(out, "response-relative", error / largest,
+    say_where(sides->full, found->error_hz, where);
+    RITZ_TRY(ritz_measures_add(out, "response-relative",
+                               found->error / found->largest,
                                request->limit_response, where));
-    say_where(sides, s->hertz[at[1]], where);
-    RITZ_TRY(ritz_measures_add(out, "response-db", db, nan(""), where));
+    if (sides->full->poles.num_rigid > 0 &&
+        found->flexible > audible * found->error)
+        RITZ_TRY(ritz_measures_add(out, "flexible-response-relative",
+                                   found->error / found->flexible,
+                                   request->limit_flexible, where));
+    say_where(sides->full, found->db_hz, where);
+    RITZ_TRY(ritz_measures_add(out, "response-db", found->db, nan(""), where));
 done:
     return status;
 }
 
-/* The full model's gain: of its modes, and of the rest. */
-static ritz_status full_gain(const ritz_sides *sides, ritz_dense *out)
+/* Every sweep that was asked for. */
+static ritz_status compare(const ritz_sides *sides,
+                           const ritz_verify_request *request,
+                           ritz_measures *out)
 {
+    enum { SWEEPS = 3 };
     ritz_status status = RITZ_OK;
-    const ritz_poles *poles = &sides->full;
-    int64_t p = poles->io.num_outputs;
+    const ritz_reference *full = sides->full;
+    ritz_sweep other = {0};
+    extreme found = {0};
+    both sweep[SWEEPS] = {{&full->own, NULL}};
 
-    RITZ_TRY(ritz_dense_new(p, poles->io.num_inputs, out));
-    for (int64_t j = 0; j < poles->io.num_inputs; j++)
-        for (int64_t i = 0; i < p; i++) {
-            double *g = &ritz_dense_col(out, j)[i];
-
-            *g = sides->residual.count > 0 ? sides->residual.C[i + j * p] : 0.0;
-            for (int64_t k = poles->num_rigid; k < poles->count; k++)
-                *g += ritz_dense_col(&poles->io.C, k)[i] *
-                      ritz_dense_col(&poles->io.B, j)[k] / poles->lambda[k];
-        }
+    if (sides->where & RITZ_AT_RANDOM)
+        sweep[1].full = &full->random;
+    if (sides->where & RITZ_AT_OTHER_POLES) {
+        RITZ_TRY(ritz_sweep_points(full, &sides->reduced,
+                                   &sides->damped_reduced, 2, &other));
+        RITZ_TRY(ritz_reference_respond(full, &other));
+        sweep[2].full = &other;
+    }
+    for (int k = 0; k < SWEEPS; k++)
+        if (sweep[k].full)
+            RITZ_TRY(respond(sides, &sweep[k], &found));
+    for (int k = 0; k < SWEEPS; k++)
+        if (sweep[k].full)
+            compare_levels(&sweep[k], &found);
+    RITZ_TRY(add_response(sides, &found, request, out));
 done:
+    for (int k = 0; k < SWEEPS; k++)
+        free(sweep[k].reduced);
+    ritz_sweep_free(&other);
     return status;
 }
 
@@ -191,16 +248,13 @@ static ritz_status add_gain(const ritz_sides *sides, double limit,
                             ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense G = {0};
     double error = 0.0;
 
-    RITZ_TRY(full_gain(sides, &G));
-    RITZ_TRY(ritz_gain_error(&G, &sides->gain_reduced, &error));
+    RITZ_TRY(ritz_gain_error(&sides->full->gain, &sides->gain_reduced, &error));
     if (!isnan(error))
         RITZ_TRY(ritz_measures_add(out, "static-gain-relative", error, limit,
                                    "largest singular value"));
 done:
-    ritz_dense_free(&G);
     return status;
 }
 
@@ -209,18 +263,13 @@ ritz_status ritz_sides_responses(const ritz_sides *sides,
                                  ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_io *io = &sides->full.io;
-    sweep s = {0};
+    const ritz_io *io = &sides->full->poles.io;
 
     if (io->num_inputs == 0 || io->num_outputs == 0)
         return RITZ_OK;
-    if (sides->band_hz[1] > sides->band_hz[0]) {
-        RITZ_TRY(points(sides, &s));
-        RITZ_TRY(evaluate(sides, &s));
-        RITZ_TRY(add_response(sides, &s, request, out));
-    }
+    if (sides->full->own.count > 0)
+        RITZ_TRY(compare(sides, request, out));
     RITZ_TRY(add_gain(sides, request->limit_gain, out));
 done:
-    sweep_free(&s);
     return status;
 }

@@ -5,24 +5,82 @@
 #include "verify/damped.h"
 #include "verify/match.h"
 
-#include <ritz/verify.h>
+#include <ritz/reference.h>
 
-typedef struct ritz_sides {
+/* The full model's responses at some frequencies. */
+typedef struct ritz_sweep {
+    int64_t count, values; /* points; responses at each */
+    double *hertz;
+    double _Complex *full;
+    double flexible; /* largest |H| less what rigid motion answers */
+} ritz_sweep;
+
+/* What of the full model serves every comparison. */
+struct ritz_reference {
+    const ritz_component *component; /* borrowed */
     double band_hz[2];
-    double modes_hz; /* the full model's modes are known up to here */
+    double modes_hz; /* its modes are known up to here */
     ritz_damping damping;
     bool assumed;     /* nobody had said how it is damped */
+    ritz_pairs pairs; /* to three times the band */
+    ritz_poles poles;
+    ritz_residual residual;
+    ritz_damped damped;
+    ritz_dense gain;
+    ritz_sweep own, random;
+};
+
+typedef struct ritz_sides {
+    const ritz_reference *full;
+    int where;        /* sum of RITZ_AT_... */
     bool shapes;      /* MAC is of shapes */
     bool outputs;     /* MAC is of what inputs and outputs see */
-    ritz_pairs pairs; /* of the full model, to three times the band */
-    ritz_pairs small; /* of the reduced one, all */
-    const ritz_component *component; /* the full model, borrowed */
-    ritz_poles full, reduced;
-    ritz_residual residual; /* of the full model */
+    ritz_pairs small; /* of the reduced model, all */
+    ritz_poles reduced;
     ritz_dense gain_reduced;
-    ritz_damped damped_full, damped_reduced;
+    ritz_damped damped_reduced;
     ritz_match match;
 } ritz_sides;
+
+/** The edge of a band belongs to it, and rounding of the edge too. */
+bool ritz_in_band(const double band_hz[2], double lambda);
+
+/** The same with damping that somebody has chosen, or has not. */
+ritz_status ritz_reference_open(const ritz_component *full,
+                                const ritz_reference_request *request,
+                                bool assumed, ritz_reference **out);
+
+/**
+ * The measures of one model, whose poles are there already, against the full
+ * one.
+ *
+ * @param[in]     T      NULL: shapes cannot be compared
+ * @param[in,out] sides  with `reduced` and `small`; the rest is filled in
+ */
+ritz_status ritz_sides_measure(const ritz_second_order *model,
+                               const ritz_dense *T,
+                               const ritz_verify_request *limits,
+                               ritz_sides *sides, ritz_measures *out);
+
+/** Poles and pairs of a reduced model, all of them. */
+ritz_status ritz_sides_open(const ritz_second_order *model,
+                            const ritz_damping *damping, ritz_sides *sides);
+
+/** That what goes in and comes out is the same of both. */
+ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *reduced);
+
+/** The full model at the points of a sweep, which has its hertz. */
+ritz_status ritz_reference_respond(const ritz_reference *reference,
+                                   ritz_sweep *sweep);
+
+/**
+ * The points of the band refined at some poles, @p even evenly spaced among
+ * them.
+ */
+ritz_status ritz_sweep_points(const ritz_reference *reference,
+                              const ritz_poles *poles,
+                              const ritz_damped *damped, int64_t even,
+                              ritz_sweep *out);
 
 /** Frequency, MAC, damping, rigid, missing and extra modes. */
 ritz_status ritz_sides_modes(const ritz_sides *sides,
@@ -34,6 +92,7 @@ ritz_status ritz_sides_responses(const ritz_sides *sides,
                                  const ritz_verify_request *request,
                                  ritz_measures *out);
 
+void ritz_sweep_free(ritz_sweep *sweep);
 void ritz_sides_free(ritz_sides *sides);
 
 #endif

@@ -15,28 +15,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A full model's modes are computed so far beyond the band. */
-static const double beyond = 3.0;
 /* Where nothing says how a response is damped. */
 static const ritz_damping assumed = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
+
+/* Rounding of the edge of a band belongs to it. */
+static const double edge = 1e-9;
 
 /* Damping of both models: as asked, as the full one says, as the other does. */
 static ritz_status choose_damping(const ritz_component *full,
                                   const char *reduced_text,
                                   const ritz_verify_request *request,
-                                  ritz_sides *sides)
+                                  ritz_damping *out, bool *is_assumed)
 {
     ritz_status status = RITZ_OK;
     const char *text = full->damping[0] ? full->damping : reduced_text;
     bool matrices = full->D.colptr || full->K4.colptr;
 
-    sides->damping = request->damping;
-    if (sides->damping.kind == RITZ_DAMPING_NONE && text[0])
-        RITZ_TRY_IN("damping", ritz_damping_parse(text, &sides->damping));
-    if (sides->damping.kind == RITZ_DAMPING_NONE && !matrices) {
-        sides->damping = assumed;
-        sides->assumed = true;
-    }
+    *out = request->damping;
+    if (out->kind == RITZ_DAMPING_NONE && text[0])
+        RITZ_TRY_IN("damping", ritz_damping_parse(text, out));
+    *is_assumed = out->kind == RITZ_DAMPING_NONE && !matrices;
+    if (*is_assumed)
+        *out = assumed;
 done:
     return status;
 }
@@ -76,30 +76,37 @@ static void choose_band(const ritz_poles *reduced, double highest,
         band[1] = fmax(1.0, 2.0 * band[0]); /* rigid bodies: any will do */
 }
 
-static ritz_status check(const ritz_component *full, const ritz_io *io,
-                         const ritz_verify_request *request)
+ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *io)
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_FAIL_IF(full->io.num_inputs != io->num_inputs ||
-                     full->io.num_outputs != io->num_outputs,
+    RITZ_FAIL_IF(full->num_inputs != io->num_inputs ||
+                     full->num_outputs != io->num_outputs,
                  RITZ_ERR_ARGUMENT,
                  "the full model has %" PRId64 " inputs and %" PRId64
                  " outputs, the reduced one %" PRId64 " and %" PRId64,
-                 full->io.num_inputs, full->io.num_outputs, io->num_inputs,
+                 full->num_inputs, full->num_outputs, io->num_inputs,
                  io->num_outputs);
     for (int64_t k = 0; k < io->num_inputs; k++)
-        RITZ_FAIL_IF(strcmp(full->io.input[k], io->input[k]) != 0,
+        RITZ_FAIL_IF(strcmp(full->input[k], io->input[k]) != 0,
                      RITZ_ERR_ARGUMENT,
                      "input %" PRId64 " is '%s' in the full model and '%s' in "
                      "the reduced one",
-                     k + 1, full->io.input[k], io->input[k]);
+                     k + 1, full->input[k], io->input[k]);
     for (int64_t k = 0; k < io->num_outputs; k++)
-        RITZ_FAIL_IF(strcmp(full->io.output[k], io->output[k]) != 0,
+        RITZ_FAIL_IF(strcmp(full->output[k], io->output[k]) != 0,
                      RITZ_ERR_ARGUMENT,
                      "output %" PRId64 " is '%s' in the full model and '%s' in "
                      "the reduced one",
-                     k + 1, full->io.output[k], io->output[k]);
+                     k + 1, full->output[k], io->output[k]);
+done:
+    return status;
+}
+
+static ritz_status check_band(const ritz_verify_request *request)
+{
+    ritz_status status = RITZ_OK;
+
     RITZ_FAIL_IF(!(request->band_hz[0] >= 0.0) ||
                      !isfinite(request->band_hz[1]) ||
                      (request->band_hz[1] != 0.0 &&
@@ -110,84 +117,72 @@ done:
     return status;
 }
 
-/* The full model's modes, and of the rest what inputs reach. */
-static ritz_status open_full(const ritz_component *full, ritz_sides *sides)
+bool ritz_in_band(const double band_hz[2], double lambda)
 {
-    ritz_status status = RITZ_OK;
+    double hertz = ritz_eigen_hertz(lambda);
 
-    sides->modes_hz = beyond * sides->band_hz[1];
-    RITZ_TRY_IN("full model",
-                ritz_poles_of_component(full, &sides->damping, sides->modes_hz,
-                                        &sides->pairs, &sides->full));
-    RITZ_TRY_IN("full model",
-                ritz_residual_new(full, &sides->pairs, sides->band_hz[1],
-                                  &sides->residual));
-    RITZ_TRY_IN("full model",
-                ritz_damped_new(&sides->full, full, &sides->pairs,
-                                sides->band_hz, &sides->damped_full));
-done:
-    return status;
+    return hertz >= band_hz[0] * (1.0 - edge) &&
+           hertz <= band_hz[1] * (1.0 + edge);
 }
 
-/* The reduced one's: its basis is dense and its modes are all there. */
-static ritz_status open_reduced(const ritz_second_order *model,
-                                ritz_sides *sides)
+/* Its basis is dense and its modes are all there. */
+ritz_status ritz_sides_open(const ritz_second_order *model,
+                            const ritz_damping *damping, ritz_sides *sides)
 {
     ritz_status status = RITZ_OK;
 
     RITZ_TRY_IN("reduced model",
-                ritz_poles_of_dense(model, &sides->damping, &sides->reduced));
+                ritz_poles_of_dense(model, damping, &sides->reduced));
     RITZ_TRY_IN("reduced model",
                 ritz_eigen_dense(model->K, model->M, &sides->small));
-    RITZ_TRY_IN("reduced model",
-                ritz_damped_new(&sides->reduced, NULL, NULL, sides->band_hz,
-                                &sides->damped_reduced));
 done:
     return status;
 }
 
 /* Q = Phi_full' M (T Phi_reduced) */
-static ritz_status cross(const ritz_component *full, const ritz_dense *T,
-                         const ritz_sides *sides, ritz_dense *out)
+static ritz_status cross(const ritz_sides *sides, const ritz_dense *T,
+                         ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense shapes = {0};
     ritz_dense MS = {0};
 
     RITZ_TRY(ritz_dense_mul(T, &sides->small.Phi, &shapes));
-    RITZ_TRY(ritz_sparse_mul(&full->M, &shapes, &MS));
-    RITZ_TRY(ritz_dense_mul_tn(&sides->pairs.Phi, &MS, out));
+    RITZ_TRY(ritz_sparse_mul(&sides->full->component->M, &shapes, &MS));
+    RITZ_TRY(ritz_dense_mul_tn(&sides->full->pairs.Phi, &MS, out));
 done:
     ritz_dense_free(&shapes);
     ritz_dense_free(&MS);
     return status;
 }
 
-static ritz_status measure(const ritz_component *full,
-                           const ritz_second_order *model, const ritz_dense *T,
-                           const ritz_verify_request *request,
-                           ritz_sides *sides, ritz_measures *out)
+ritz_status ritz_sides_measure(const ritz_second_order *model,
+                               const ritz_dense *T,
+                               const ritz_verify_request *limits,
+                               ritz_sides *sides, ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
+    const ritz_reference *full = sides->full;
     ritz_dense Q = {0};
     ritz_measures found = {0};
 
-    sides->component = full;
-    RITZ_TRY(open_full(full, sides));
+    RITZ_TRY_IN("reduced model",
+                ritz_damped_new(&sides->reduced, NULL, NULL, full->band_hz,
+                                &sides->damped_reduced));
     RITZ_TRY_IN("reduced model",
                 ritz_static_gain(model->K, model->M, model->io,
-                                 sides->pairs.num_rigid, &sides->gain_reduced));
-    if (T && T->val && T->nrow == full->num_dofs) {
+                                 full->pairs.num_rigid, &sides->gain_reduced));
+    if (T && T->val && T->nrow == full->component->num_dofs) {
         sides->shapes = true;
-        RITZ_TRY(cross(full, T, sides, &Q));
-        RITZ_TRY(ritz_match_shapes(&sides->full, &sides->reduced, &Q,
+        RITZ_TRY(cross(sides, T, &Q));
+        RITZ_TRY(ritz_match_shapes(&full->poles, &sides->reduced, &Q,
                                    &sides->match));
     } else {
         RITZ_TRY(
-            ritz_match_outputs(&sides->full, &sides->reduced, &sides->match));
+            ritz_match_outputs(&full->poles, &sides->reduced, &sides->match));
     }
-    RITZ_TRY(ritz_sides_modes(sides, request, &found));
-    RITZ_TRY(ritz_sides_responses(sides, request, &found));
+    RITZ_TRY(ritz_sides_modes(sides, limits, &found));
+    RITZ_TRY(ritz_sides_responses(sides, limits, &found));
     *out = found;
     found = (ritz_measures){0};
 done:
@@ -198,16 +193,46 @@ done:
 
 void ritz_sides_free(ritz_sides *sides)
 {
-    ritz_pairs_free(&sides->pairs);
     ritz_pairs_free(&sides->small);
-    ritz_poles_free(&sides->full);
     ritz_poles_free(&sides->reduced);
-    ritz_residual_free(&sides->residual);
     ritz_dense_free(&sides->gain_reduced);
     ritz_match_free(&sides->match);
-    ritz_damped_free(&sides->damped_full);
     ritz_damped_free(&sides->damped_reduced);
     *sides = (ritz_sides){0};
+}
+
+/* What is compared: a reduced component, or a system without shapes. */
+typedef struct other {
+    ritz_second_order model;
+    const ritz_columns *columns;
+    const ritz_dense *T;
+    const char *damping;
+} other;
+
+static ritz_status verify(const ritz_component *full, const other *o,
+                          const ritz_verify_request *request,
+                          ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reference_request asked = {0};
+    ritz_reference *reference = NULL;
+    ritz_sides sides = {.where = RITZ_AT_OTHER_POLES, .outputs = !o->columns};
+    bool is_assumed = false;
+
+    RITZ_TRY(ritz_sides_check(&full->io, o->model.io));
+    RITZ_TRY(check_band(request));
+    RITZ_TRY(
+        choose_damping(full, o->damping, request, &asked.damping, &is_assumed));
+    RITZ_TRY(ritz_sides_open(&o->model, &asked.damping, &sides));
+    choose_band(&sides.reduced, highest_hertz(&sides.reduced, o->columns),
+                request, asked.band_hz);
+    RITZ_TRY(ritz_reference_open(full, &asked, is_assumed, &reference));
+    sides.full = reference;
+    RITZ_TRY(ritz_sides_measure(&o->model, o->T, request, &sides, out));
+done:
+    ritz_sides_free(&sides);
+    ritz_reference_free(&reference);
+    return status;
 }
 
 ritz_status ritz_verify_reduced(const ritz_component *full,
@@ -216,23 +241,18 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
                                 ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
-                                     &reduced->K4, &reduced->io};
-    ritz_sides sides = {0};
+    const other o = {
+        {&reduced->K, &reduced->M, &reduced->D, &reduced->K4, &reduced->io},
+        &reduced->columns,
+        &reduced->T,
+        reduced->damping};
 
     RITZ_FAIL_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
                  "the reduced model comes from %" PRId64
                  " dofs, the full one has %" PRId64,
                  reduced->num_dofs, full->num_dofs);
-    RITZ_TRY(check(full, &reduced->io, request));
-    RITZ_TRY(choose_damping(full, reduced->damping, request, &sides));
-    RITZ_TRY(open_reduced(&model, &sides));
-    choose_band(&sides.reduced,
-                highest_hertz(&sides.reduced, &reduced->columns), request,
-                sides.band_hz);
-    RITZ_TRY(measure(full, &model, &reduced->T, request, &sides, out));
+    RITZ_TRY(verify(full, &o, request, out));
 done:
-    ritz_sides_free(&sides);
     return status;
 }
 
@@ -241,21 +261,13 @@ ritz_status ritz_verify_system(const ritz_component *full,
                                const ritz_verify_request *request,
                                ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
-                                     &reduced->K4, &reduced->io};
-    ritz_sides sides = {0};
+    const other o = {
+        {&reduced->K, &reduced->M, &reduced->D, &reduced->K4, &reduced->io},
+        NULL,
+        NULL,
+        ""};
 
-    RITZ_TRY(check(full, &reduced->io, request));
-    RITZ_TRY(choose_damping(full, "", request, &sides));
-    RITZ_TRY(open_reduced(&model, &sides));
-    choose_band(&sides.reduced, highest_hertz(&sides.reduced, NULL), request,
-                sides.band_hz);
-    sides.outputs = true;
-    RITZ_TRY(measure(full, &model, NULL, request, &sides, out));
-done:
-    ritz_sides_free(&sides);
-    return status;
+    return verify(full, &o, request, out);
 }
 
 bool ritz_measure_holds(const ritz_measure *measure)

@@ -4,12 +4,14 @@
 #include "project.h"
 
 #include <ritz/eigen.h>
+#include <ritz/estimate.h>
 #include <ritz/sparse.h>
 #include <ritz/verify.h>
 
 #include <stdlib.h>
 
 static const ritz_verify_request plain = RITZ_VERIFY_NONE;
+static const ritz_estimate_request usual = {0};
 
 /* Beam of 8 elements: force and displacement at the tip, one seen halfway. */
 static void open_beam(bool clamped, ritz_component *beam)
@@ -184,7 +186,7 @@ static void estimates_hold_and_vanish_for_exact_modes(void **state)
     open_beam(true, &beam);
     truncate_beam(&beam, 6, &basis);
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
-    assert_ok(ritz_estimate(&beam, &basis, &reduced));
+    assert_ok(ritz_estimate(&beam, &basis, &usual, &reduced));
     /* rounding of K x, eps lambda_max / lambda_1 */
     assert_near(
         find_measure(&reduced.estimates, "frequency-relative-bound")->value,
@@ -194,7 +196,7 @@ static void estimates_hold_and_vanish_for_exact_modes(void **state)
         for (int64_t j = 0; j < 6; j++)
             ritz_dense_col(&basis.T, j)[i] *= 1.0 + 0.01 * (double)(i % 3);
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
-    assert_ok(ritz_estimate(&beam, &basis, &reduced));
+    assert_ok(ritz_estimate(&beam, &basis, &usual, &reduced));
     assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
     assert_true(
         find_measure(&reduced.estimates, "frequency-relative-bound")->value >=
@@ -259,7 +261,7 @@ static ritz_status verify_once(pair *p)
     ritz_measures found = {0};
 
     RITZ_TRY(ritz_verify_reduced(&p->beam, &p->reduced, &plain, &found));
-    RITZ_TRY(ritz_estimate(&p->beam, &p->basis, &p->reduced));
+    RITZ_TRY(ritz_estimate(&p->beam, &p->basis, &usual, &p->reduced));
 done:
     ritz_measures_free(&found);
     return status;

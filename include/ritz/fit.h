@@ -1,0 +1,202 @@
+/*
+ * The smallest model that meets a tolerance: over methods and orders, every
+ * candidate measured against one full model that was prepared once.
+ *
+ * A component is measured as it stands, with its own inputs and outputs; how it
+ * behaves between others a scene tells, which is measured as a system at every
+ * listed configuration and, to confirm, at random ones between them.
+ */
+#ifndef RITZ_FIT_H
+#define RITZ_FIT_H
+
+#include <ritz/method.h>
+#include <ritz/reduced.h>
+#include <ritz/scene.h>
+#include <ritz/simulate.h>
+#include <ritz/system.h>
+#include <ritz/verify.h>
+
+/* Seconds: on the wall, and of the processor. */
+typedef struct ritz_fit_watch {
+    double wall, cpu;
+} ritz_fit_watch;
+
+/* One model that was tried. */
+typedef struct ritz_fit_candidate {
+    const ritz_method *method;
+    int64_t num_bodies; /* flexible components; 1 of a component */
+    int64_t *modes;     /* num_bodies, what each was asked for; -1: the method
+                           has nothing to ask */
+    int64_t order;      /* columns; of a scene: of the largest system */
+    int64_t left_out;   /* columns of a component's basis that its tolerance can
+                           do without: not in `order` */
+    int64_t columns;    /* of all flexible bodies together */
+    ritz_measures errors; /* worst of all configurations; {0} if refused */
+    ritz_measures estimates;
+    double excess;   /* largest error over its tolerance; 1 or less: feasible */
+    int64_t binding; /* measure that decides it; -1: none */
+    bool feasible;   /* and stable, and confirmed at random places */
+    bool caught;     /* it met the grid, and not what confirms */
+    bool screened;   /* estimates alone ruled it out: it has no errors */
+    ritz_fit_watch spent; /* to make basis and reduction */
+    double highest_hz;    /* of the model; 0: not known */
+    ritz_cost cost;       /* if it is feasible; order 0: not measured */
+    char refusal[256];    /* why it could not be made, or is unstable; "" */
+} ritz_fit_candidate;
+
+/* Called with each candidate as it is done. */
+typedef void ritz_fit_observer(const ritz_fit_candidate *candidate,
+                               void *context);
+
+typedef struct ritz_fit_request {
+    ritz_verify_request tolerance; /* band, damping, limits */
+    int64_t num_methods; /* 0: every one that makes reduced components by a
+                            number of modes */
+    const ritz_method *const *methods; /* borrowed */
+    ritz_choice choice;                /* what methods are told that heed it */
+    const char *attach;                /* ports of a component; NULL: all */
+    int64_t largest;     /* order to be tried; 0: four times what the band
+                               holds, and 40 */
+    int64_t num_random;  /* frequencies that confirm; configurations are
+                               `num_between` */
+    int64_t num_between; /* random configurations that confirm */
+    uint64_t seed;       /* of both */
+    bool estimates;      /* of a component: bounds beside errors, and before
+                            them: what they rule out is not measured */
+    bool costs;          /* of feasible ones, measured: some 20 ms each */
+    bool thorough;       /* every method to its end, not only as far as twice
+                            the best of others */
+    int64_t most_full;   /* dofs up to which a scene's full system is the
+                               reference; above it a rich stage one is */
+    ritz_fit_observer *observe; /* may be NULL */
+    void *context;
+} ritz_fit_request;
+
+#define RITZ_FIT_NONE                                                          \
+    {                                                                          \
+        .tolerance = RITZ_VERIFY_NONE, .num_random = 1000, .num_between = 4,   \
+        .seed = 1, .estimates = true, .costs = true, .most_full = 20000        \
+    }
+
+/* The full model, ready; and what of candidates can be kept. */
+typedef struct ritz_fitter ritz_fitter;
+
+/* What came of a search. */
+typedef struct ritz_fit {
+    int64_t count;
+    ritz_fit_candidate *candidate; /* all that were tried, in their order */
+    int64_t chosen, runner_up;     /* -1: none; the runner-up is the best of
+                                      another method */
+    int64_t num_methods;
+    int64_t *best;    /* num_methods, of each the smallest that is feasible;
+                          -1: none is */
+    int64_t *reached; /* num_methods, of each the one with the least excess;
+                          -1: all were refused */
+    const ritz_method **method; /* num_methods */
+    char why[1024];
+} ritz_fit;
+
+/**
+ * Take "frequency=1e-3,mac=0.99,gain=1e-6": measures, their tolerances; a
+ * number alone is of the response. Others stay as they are.
+ *
+ * @return RITZ_ERR_ARGUMENT for a measure that is none, naming the nearest, for
+ *         one that is named twice, or a tolerance that can be none
+ */
+ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits);
+
+/** Its text form: "response=0.01". Cut to fit. */
+void ritz_tolerance_print(const ritz_verify_request *limits, int64_t size,
+                          char *out);
+
+/** Word of a measure: "response" of "response-relative"; its own name if it has
+ * none. */
+const char *ritz_tolerance_word(const char *measure);
+
+/**
+ * Prepare a component: its modes to three times the band, responses at all
+ * points where candidates are compared.
+ *
+ * @param[in] component  borrowed until free; dampers not installed
+ * @return RITZ_ERR_ARGUMENT if there is no band, no tolerance, or one for what
+ *         the component does not have
+ */
+ritz_status ritz_fitter_new(const ritz_component *component,
+                            const ritz_fit_request *request, ritz_fitter **out);
+
+/**
+ * Prepare a scene: the system at each listed configuration, and at random ones
+ * between them. Bodies that the scene has as rigid, or that are reduced
+ * already, stay as they are.
+ *
+ * @param[in] scene  borrowed until free; its band and damping where the request
+ *                   has none
+ */
+ritz_status ritz_fitter_scene(const ritz_scene *scene,
+                              const ritz_fit_request *request,
+                              ritz_fitter **out);
+
+/** "the full system of 1200 dofs at 6 configurations, 4 more at random". */
+void ritz_fitter_describe(const ritz_fitter *fitter, int64_t size, char *out);
+
+/** Band and damping as they were settled. */
+const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter);
+
+/** Flexible bodies; how many there are to be asked for modes. */
+int64_t ritz_fitter_bodies(const ritz_fitter *fitter);
+const char *ritz_fitter_body(const ritz_fitter *fitter, int64_t k);
+
+/**
+ * Try one candidate. What cannot be made is no failure: its refusal says why.
+ *
+ * @param[in] modes  one for each flexible body
+ * @return RITZ_ERR_MEMORY, or RITZ_ERR_... of the full model
+ */
+ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
+                            const int64_t *modes, ritz_fit_candidate *out);
+
+/**
+ * Search methods and orders.
+ *
+ * Of each method the order is doubled until the tolerance holds, bisected, and
+ * then orders below are tried one by one, since errors do not always fall with
+ * the order; of a scene modes are then taken from one body after the other, and
+ * exchanged between them.
+ *
+ * @return as ritz_fitter_try; that no method meets the tolerance is no failure
+ *         but has no `chosen`
+ */
+ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out);
+
+/**
+ * Of each method of a search one candidate of an order, or the nearest below:
+ * appended to the search's candidates.
+ *
+ * @param[out] at  num_methods, which candidate; -1: all were refused
+ */
+ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
+                              int64_t *at);
+
+/**
+ * The reduced component of a candidate, nested: columns that must stay first,
+ * then the others as they matter, with the errors of every prefix.
+ */
+ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
+                                const ritz_fit_candidate *candidate,
+                                ritz_reduced *out);
+
+/**
+ * The reduced system of a candidate at all configurations of the scene.
+ *
+ * @param[out] body  one for each component of the scene, nested where flexible;
+ *                   the caller's to free
+ */
+ritz_status ritz_fitter_system(ritz_fitter *fitter,
+                               const ritz_fit_candidate *candidate,
+                               ritz_reduced **body, ritz_system *out);
+
+void ritz_fitter_free(ritz_fitter **fitter);
+void ritz_fit_candidate_free(ritz_fit_candidate *candidate);
+void ritz_fit_free(ritz_fit *fit);
+
+#endif

@@ -1,0 +1,162 @@
+/* The answer in words: what decides it, and what else there was. */
+#include "fit/fit_parts.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+[[gnu::format(printf, 2, 3)]] static void add(ritz_fit *fit, const char *format,
+                                              ...)
+{
+    size_t used = strlen(fit->why);
+    va_list args;
+
+    va_start(args, format);
+    (void)vsnprintf(fit->why + used, sizeof fit->why - used, format, args);
+    va_end(args);
+}
+
+/* "its response would be wrong by 2.1e-02 (3.41 Hz) where 1.0e-02 is asked" */
+static void add_error(ritz_fit *fit, const ritz_fit_candidate *c,
+                      const char *verb)
+{
+    const ritz_measure *m = NULL;
+
+    if (c->refusal[0]) {
+        add(fit, "it is refused: %s", c->refusal);
+        return;
+    }
+    if (c->screened)
+        add(fit, "its estimates are %.0f times what is allowed", c->excess);
+    if (c->binding < 0)
+        return;
+    m = &c->errors.item[c->binding];
+    if (strcmp(m->name, "missing-modes") == 0)
+        add(fit, "%.0f mode%s of the band would be missing (%s)", m->value,
+            m->value > 1.0 ? "s" : "", m->where);
+    else if (strcmp(m->name, "mac") == 0)
+        add(fit, "the least MAC %s %.4f (%s) where %.4f is asked", verb,
+            m->value, m->where, m->limit);
+    else
+        add(fit, "the error of '%s' %s %.1e (%s) where %.1e is allowed",
+            ritz_tolerance_word(m->name), verb, m->value, m->where, m->limit);
+}
+
+/* The next smaller one of the same method, of those that were tried. */
+static const ritz_fit_candidate *smaller(const ritz_fit *fit,
+                                         const ritz_fit_candidate *than)
+{
+    const ritz_fit_candidate *best = NULL;
+
+    for (int64_t k = 0; k < fit->count; k++) {
+        const ritz_fit_candidate *c = &fit->candidate[k];
+
+        if (c->method != than->method || c->order >= than->order ||
+            c->refusal[0])
+            continue;
+        if (!best || c->order > best->order ||
+            (c->order == best->order && c->excess < best->excess))
+            best = c;
+    }
+    return best;
+}
+
+static void explain_none(ritz_fit *fit)
+{
+    const ritz_fit_candidate *near = NULL;
+
+    for (int64_t m = 0; m < fit->num_methods; m++)
+        if (fit->reached[m] >= 0) {
+            const ritz_fit_candidate *c = &fit->candidate[fit->reached[m]];
+
+            near = !near || c->excess < near->excess ? c : near;
+        }
+    if (!near) {
+        add(fit, "every method was refused");
+        for (int64_t k = 0; k < fit->count; k++)
+            if (fit->candidate[k].refusal[0]) {
+                add(fit, ", the first with: %s", fit->candidate[k].refusal);
+                break;
+            }
+        return;
+    }
+    add(fit,
+        "no method meets the tolerance; nearest is %s with %" PRId64
+        " columns, where ",
+        near->method->name, near->order);
+    add_error(fit, near, "is");
+}
+
+static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
+{
+    const ritz_fit_candidate *second = &fit->candidate[fit->runner_up];
+    int64_t more = second->order - c->order;
+
+    if (more == 0)
+        add(fit,
+            "; %s is as small, and comes to %.2f of its tolerance where "
+            "%s comes to %.2f",
+            second->method->name, second->excess, c->method->name, c->excess);
+    else
+        add(fit, "; the runner-up, %s, needs %" PRId64 " column%s more",
+            second->method->name, more, more == 1 ? "" : "s");
+    if (c->cost.order > 0 && second->cost.order > 0 &&
+        isfinite(second->cost.step_explicit))
+        add(fit, ", its largest explicit step being %.2g s (%.2g s)",
+            second->cost.step_explicit, c->cost.step_explicit);
+}
+
+/* Whether a tolerance of the response left modes of the band out. */
+static bool rigid_alone(const ritz_fitter *fitter, const ritz_fit_candidate *c)
+{
+    const ritz_verify_request *limits = &fitter->request.tolerance;
+    double flexible = 0.0;
+
+    if (isnan(limits->limit_response) || !isnan(limits->limit_flexible))
+        return false;
+    for (int64_t k = 0; k < c->errors.count; k++)
+        if (strcmp(c->errors.item[k].name, "flexible-response-relative") == 0)
+            flexible = c->errors.item[k].value;
+    return flexible > 10.0 * limits->limit_response;
+}
+
+ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
+{
+    const ritz_fit_candidate *c = NULL;
+    const ritz_fit_candidate *less = NULL;
+    int64_t caught = 0;
+
+    fit->why[0] = '\0';
+    if (fit->chosen < 0) {
+        explain_none(fit);
+        return RITZ_OK;
+    }
+    c = &fit->candidate[fit->chosen];
+    less = smaller(fit, c);
+    add(fit, "%s meets the tolerance with %" PRId64 " columns", c->method->name,
+        c->order);
+    if (c->left_out > 0)
+        add(fit, ", %" PRId64 " of its basis being left out", c->left_out);
+    if (less) {
+        add(fit, "; with %" PRId64 ", ", less->order);
+        add_error(fit, less, "would be");
+    } else {
+        add(fit, ", the fewest that it can have");
+    }
+    if (fit->runner_up >= 0)
+        explain_runner_up(fit, c);
+    else if (fit->num_methods > 1)
+        add(fit, "; no other method meets it");
+    if (rigid_alone(fitter, c))
+        add(fit, "; nothing but rigid motion makes the largest response: to "
+                 "hold the rest, ask for 'flexible'");
+    for (int64_t k = 0; k < fit->count; k++)
+        caught += fit->candidate[k].caught;
+    if (caught > 0)
+        add(fit, "; %" PRId64 " candidate%s the grid and failed at random %s",
+            caught, caught == 1 ? " met" : "s met",
+            fitter->num_places > 1 ? "places" : "frequencies");
+    return RITZ_OK;
+}

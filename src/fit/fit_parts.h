@@ -1,0 +1,166 @@
+/* What the files of this room share. */
+#ifndef RITZ_FIT_FIT_PARTS_H
+#define RITZ_FIT_FIT_PARTS_H
+
+#include <ritz/estimate.h>
+#include <ritz/fit.h>
+#include <ritz/reference.h>
+
+/* The full system at one configuration. */
+typedef struct ritz_fit_place {
+    double *setting; /* of each sweep of the scene; NULL: of a component */
+    char at[RITZ_NAME_SIZE];
+    bool listed;         /* false: between, to confirm */
+    ritz_component full; /* as it is compared, with its dampers */
+    ritz_reference *reference;
+} ritz_fit_place;
+
+/* A body of a scene in one basis, kept as neighbours of a candidate use it. */
+typedef struct ritz_fit_made {
+    const ritz_method *method;
+    int64_t body, modes;
+    ritz_reduced reduced; /* without T */
+    ritz_fit_watch spent;
+    ritz_status status; /* of making it */
+    char refusal[256];
+} ritz_fit_made;
+
+struct ritz_fitter {
+    ritz_fit_request request;
+    const ritz_component *component; /* of a component: borrowed */
+    const ritz_scene *scene;         /* of a scene: borrowed */
+    ritz_dofs attached;              /* of a component */
+    ritz_estimator *estimator;       /* of a component; NULL: none */
+    int64_t num_places;
+    ritz_fit_place *place; /* listed ones first */
+    bool rich;             /* a stage one is the reference */
+    int64_t num_bodies;    /* flexible */
+    int64_t *body;         /* num_bodies, component of the scene */
+    ritz_component *model; /* num_bodies, of a scene */
+    ritz_reduced *still;   /* of every component of the scene that stays as
+                               it is; empty for flexible ones */
+    int64_t num_steps;     /* rungs of the ladder beyond the first */
+    int64_t *step;         /* num_steps, which body has one mode more */
+    int64_t num_made;
+    ritz_fit_made *made;
+    int64_t largest; /* order to be tried */
+};
+
+/** Copy with K and D of its own, its dampers installed. */
+ritz_status ritz_fit_install(const ritz_component *component,
+                             ritz_component *out);
+void ritz_fit_uninstall(ritz_component *copy);
+
+/** Fill excess, binding and feasible from errors and limits. */
+void ritz_fit_judge(const ritz_verify_request *limits,
+                    ritz_fit_candidate *candidate);
+
+/** Limit of a measure by its name; NaN: none. */
+double ritz_fit_limit(const ritz_verify_request *limits, const char *measure);
+
+/** Whether some measure has a limit at all, and what is limited exists. */
+ritz_status ritz_fit_check(const ritz_verify_request *limits,
+                           const ritz_component *full);
+
+/** Where nothing moves rigidly, the flexible response is the response. */
+void ritz_fit_settle(const ritz_reference *reference,
+                     ritz_verify_request *limits);
+
+/** Order up to which candidates are tried, of @p n dofs with @p held attached. */
+int64_t ritz_fit_largest(const ritz_fitter *fitter, int64_t held, int64_t n);
+
+/** The reference of a place, whose full model is there. */
+ritz_status ritz_fit_refer(const ritz_fit_request *request,
+                           ritz_fit_place *place);
+
+/** Modes of each body after @p rung steps of the ladder. */
+void ritz_fit_rung(const ritz_fitter *fitter, int64_t rung, int64_t *modes);
+
+/** Try a component's candidate, a scene's. */
+ritz_status ritz_fit_try_component(ritz_fitter *fitter,
+                                   ritz_fit_candidate *candidate);
+ritz_status ritz_fit_try_scene(ritz_fitter *fitter,
+                               ritz_fit_candidate *candidate);
+
+/** Basis and reduction of the component, dampers bare. */
+ritz_status ritz_fit_make(const ritz_fitter *fitter,
+                          const ritz_fit_candidate *candidate,
+                          ritz_basis *basis, ritz_reduced *reduced);
+
+/** Record the sentence of a failure that is the candidate's own; pass on what
+ * is not: memory. */
+ritz_status ritz_fit_refuse(ritz_status status, ritz_fit_candidate *candidate);
+
+/** A stop watch, and what it shows. */
+ritz_fit_watch ritz_fit_start(void);
+ritz_fit_watch ritz_fit_since(ritz_fit_watch start);
+
+/** What a method heeds of what all are told; its damping is everybody's. */
+ritz_choice ritz_fit_choose(const ritz_fitter *fitter,
+                            const ritz_method *method);
+
+/** Refuse what is unstable; measure what a feasible one costs. */
+ritz_status ritz_fit_probe(const ritz_second_order *model,
+                           const ritz_damping *damping,
+                           ritz_fit_candidate *candidate);
+ritz_status ritz_fit_price(const ritz_fitter *fitter,
+                           const ritz_second_order *model,
+                           ritz_fit_candidate *candidate);
+
+/** Bodies that stay as they are, lent to a stage, come home. */
+void ritz_fit_take_back(ritz_fitter *fitter, ritz_reduced *body);
+
+/** Flexible body @p k by a method and a number of modes. */
+ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
+                          int64_t k, int64_t modes, ritz_reduced *out);
+
+/** Columns in order of what they matter, of a component; of a body of a scene
+ * in the order in which they were made. */
+ritz_status ritz_fit_nest(const ritz_fitter *fitter, const ritz_reduced *whole,
+                          ritz_reduced *out);
+
+/** Measure and judge a component's reduction, whose dampers are installed by
+ * that: on the grid, and where it is confirmed. */
+ritz_status ritz_fit_measure(ritz_fitter *fitter, ritz_reduced *reduced,
+                             ritz_fit_candidate *candidate);
+
+/**
+ * The candidate without columns that its tolerance can do without; its order is
+ * 0 if there are none.
+ */
+ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
+                          ritz_fit_candidate *out);
+
+/** Whether a column must stay: without it a body could not move rigidly, or
+ * would not have its interface. */
+bool ritz_fit_stays(ritz_column_kind kind);
+
+/** Whether candidate @p a is a better answer than @p b: smaller, or as small
+ * and nearer. */
+bool ritz_fit_is_better(const ritz_fit_candidate *a,
+                        const ritz_fit_candidate *b);
+
+/**
+ * Where what met the grid is confirmed: at random frequencies, and at the
+ * model's own poles. Where each point takes a factor, poles that stand for the
+ * full model's, around which the grid is fine already, are passed over.
+ */
+int ritz_fit_places(const ritz_reference *reference,
+                    const ritz_measures *errors);
+
+/** Worse of two sets of measures, by name, into the first. */
+ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
+                           ritz_measures *worst);
+
+/** Candidates tried so far; try one, or find it among them. */
+ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                           const int64_t *modes, int64_t *at);
+
+/** Take modes from bodies, and exchange them, while the tolerance holds. */
+ritz_status ritz_fit_thin(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                          int64_t *best);
+
+/** Why the chosen one, in words. */
+ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit);
+
+#endif

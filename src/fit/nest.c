@@ -1,0 +1,293 @@
+/*
+ * Columns in the order in which they matter. From all of them one at a time is
+ * left out, that without which the model is nearest to its tolerance; what is
+ * left out last comes first.
+ */
+#include "fit/fit_parts.h"
+
+#include "base/alloc.h"
+
+#include <ritz/monitor.h>
+#include <ritz/nested.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Columns that are tried at each step: those that matter least alone. */
+enum { TRIED = 6 };
+/* Entries of T above which columns stay in the order they were made in. */
+static const int64_t most_entries = 4000000;
+
+bool ritz_fit_stays(ritz_column_kind kind)
+{
+    static const ritz_column_kind kinds[] = {
+        RITZ_COLUMN_RIGID, RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
+        RITZ_COLUMN_MASSLESS, RITZ_COLUMN_FORCE};
+
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (kind == kinds[k])
+            return true;
+    return false;
+}
+
+/* What is being put in order. */
+typedef struct nesting {
+    const ritz_fitter *fitter;
+    const ritz_reduced *whole;
+    int64_t count, fixed; /* columns; those that stay first */
+    int64_t *order;       /* count */
+    int64_t *trial;       /* to work in */
+    double *alone;        /* of each column: the excess without it */
+} nesting;
+
+/* How far a model of these columns is off; infinite if it is none. */
+static ritz_status excess_of(const nesting *n, int64_t count,
+                             const int64_t *columns, double *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_verify_request *limits = &n->fitter->request.tolerance;
+    ritz_fit_candidate judged = {0};
+    ritz_reduced part = {0};
+
+    RITZ_TRY(ritz_reduced_nest(n->whole, count, columns, 1, &part));
+    RITZ_TRY(ritz_reduced_install(&part));
+    RITZ_TRY(ritz_reference_measure(n->fitter->place[0].reference, &part,
+                                    limits, 0, &judged.errors));
+    ritz_fit_judge(limits, &judged);
+done:
+    status = ritz_fit_refuse(status, &judged);
+    *out = judged.excess;
+    ritz_reduced_free(&part);
+    ritz_fit_candidate_free(&judged);
+    return status;
+}
+
+/* Without one of the first `count` columns of the order. */
+static ritz_status without(const nesting *n, int64_t count, int64_t which,
+                           double *out)
+{
+    memcpy(n->trial, n->order, (size_t)count * sizeof *n->trial);
+    memmove(n->trial + which, n->trial + which + 1,
+            (size_t)(count - which - 1) * sizeof *n->trial);
+    return excess_of(n, count - 1, n->trial, out);
+}
+
+/* Fixed columns first, then the others from those that matter most alone. */
+static ritz_status sort_alone(nesting *n)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = n->fixed; k < n->count && n->count > 1; k++) {
+        ritz_monitor_step("columns alone", k, n->count);
+        RITZ_TRY(without(n, n->count, k, &n->alone[n->order[k]]));
+    }
+    for (int64_t k = n->fixed + 1; k < n->count; k++)
+        for (int64_t i = k; i > n->fixed; i--) {
+            int64_t here = n->order[i];
+
+            if (!(n->alone[here] > n->alone[n->order[i - 1]]))
+                break;
+            n->order[i] = n->order[i - 1];
+            n->order[i - 1] = here;
+        }
+done:
+    return status;
+}
+
+/* Of the last few of those that are left, the one that goes to the end. */
+static ritz_status drop(nesting *n, int64_t left)
+{
+    ritz_status status = RITZ_OK;
+    double least = 0.0;
+    int64_t worst = left - 1;
+    int64_t here = 0;
+
+    for (int64_t t = 0; t < TRIED && left - 1 - t >= n->fixed; t++) {
+        double excess = 0.0;
+
+        RITZ_TRY(without(n, left, left - 1 - t, &excess));
+        if (t == 0 || excess < least) {
+            least = excess;
+            worst = left - 1 - t;
+        }
+    }
+    here = n->order[worst];
+    memmove(n->order + worst, n->order + worst + 1,
+            (size_t)(left - 1 - worst) * sizeof *n->order);
+    n->order[left - 1] = here;
+done:
+    return status;
+}
+
+/* What every prefix comes to. */
+static ritz_status note_errors(const ritz_fitter *fitter, ritz_reduced *nested)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced part = {0};
+    ritz_measures found = {0};
+
+    for (int64_t r = nested->nested.smallest; r <= nested->K.ncol; r++) {
+        ritz_monitor_step("errors of prefixes", r, nested->K.ncol);
+        RITZ_TRY(ritz_reduced_prefix(nested, r, &part));
+        RITZ_TRY(ritz_reduced_install(&part));
+        status = ritz_reference_measure(
+            fitter->place[0].reference, &part, &fitter->request.tolerance,
+            RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM, &found);
+        if (status == RITZ_ERR_MEMORY)
+            goto done;
+        for (int64_t k = 0; status == RITZ_OK && k < found.count; k++)
+            RITZ_TRY(ritz_nested_note(nested, r, found.item[k].name,
+                                      found.item[k].value));
+        status = RITZ_OK; /* of a prefix that cannot be measured: nothing */
+        ritz_measures_free(&found);
+        ritz_reduced_free(&part);
+    }
+done:
+    ritz_measures_free(&found);
+    ritz_reduced_free(&part);
+    return status;
+}
+
+ritz_status ritz_fit_nest(const ritz_fitter *fitter, const ritz_reduced *whole,
+                          ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    nesting n = {.fitter = fitter, .whole = whole, .count = whole->K.ncol};
+
+    RITZ_NEW(n.order, n.count);
+    RITZ_NEW(n.trial, n.count);
+    RITZ_NEW(n.alone, n.count);
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t k = 0, at = n.fixed; k < n.count; k++)
+            if (ritz_fit_stays(whole->columns.kind[k]) == (pass == 0)) {
+                n.order[at++] = k;
+                n.fixed += pass == 0;
+            }
+    if (!fitter->scene && whole->T.nrow * n.count <= most_entries) {
+        RITZ_TRY(sort_alone(&n));
+        for (int64_t left = n.count; left > n.fixed + 1; left--) {
+            ritz_monitor_step("columns in order", n.count - left, n.count);
+            RITZ_TRY(drop(&n, left));
+        }
+    }
+    RITZ_TRY(ritz_reduced_nest(whole, n.count, n.order,
+                               n.fixed > 0 ? n.fixed : 1, out));
+done:
+    free(n.order);
+    free(n.trial);
+    free(n.alone);
+    return status;
+}
+
+static ritz_status copy_measures(const ritz_measures *from, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+
+    ritz_measures_free(out);
+    for (int64_t k = 0; k < from->count; k++)
+        RITZ_TRY(ritz_measures_add(out, from->item[k].name, from->item[k].value,
+                                   from->item[k].limit, from->item[k].where));
+done:
+    return status;
+}
+
+/* A prefix as it is judged: on the grid, and then where it is confirmed. */
+static ritz_status judge(ritz_fitter *fitter, const ritz_reduced *nested,
+                         int64_t order, ritz_fit_candidate *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced part = {0};
+
+    ritz_measures_free(&out->errors);
+    RITZ_TRY(ritz_reduced_prefix(nested, order, &part));
+    out->order = out->columns = order;
+    out->left_out = nested->K.ncol - order;
+    RITZ_TRY(ritz_fit_measure(fitter, &part, out));
+done:
+    ritz_reduced_free(&part);
+    return ritz_fit_refuse(status, out);
+}
+
+ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
+                          ritz_fit_candidate *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_basis basis = {0};
+    ritz_reduced whole = {0}, nested = {0};
+    ritz_fit_candidate best = {0}, trial = {.method = from->method};
+
+    RITZ_TRY(ritz_fit_make(fitter, from, &basis, &whole));
+    RITZ_TRY(ritz_fit_nest(fitter, &whole, &nested));
+    for (int64_t r = from->order - 1, failed = 0;
+         r >= nested.nested.smallest && failed < 2; r--) {
+        RITZ_TRY(judge(fitter, &nested, r, &trial));
+        failed = trial.feasible ? 0 : failed + 1;
+        if (trial.feasible) {
+            ritz_fit_candidate_free(&best);
+            best = trial;
+            trial = (ritz_fit_candidate){.method = from->method};
+        }
+    }
+    if (best.order > 0) {
+        best.num_bodies = 1;
+        best.spent = from->spent;
+        RITZ_NEW(best.modes, 1);
+        best.modes[0] = from->modes[0];
+    }
+    *out = best;
+    best = (ritz_fit_candidate){0};
+done:
+    ritz_basis_free(&basis);
+    ritz_reduced_free(&whole);
+    ritz_reduced_free(&nested);
+    ritz_fit_candidate_free(&best);
+    ritz_fit_candidate_free(&trial);
+    return status;
+}
+
+/* The first columns of what is nested, nested again. */
+static ritz_status cut(ritz_reduced *nested, int64_t order)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced part = {0};
+    int64_t *first = NULL;
+
+    if (order >= nested->K.ncol)
+        return RITZ_OK;
+    RITZ_NEW(first, order);
+    for (int64_t k = 0; k < order; k++)
+        first[k] = k;
+    RITZ_TRY(ritz_reduced_nest(nested, order, first, nested->nested.smallest,
+                               &part));
+    ritz_reduced_free(nested);
+    *nested = part;
+    part = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&part);
+    free(first);
+    return status;
+}
+
+ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
+                                const ritz_fit_candidate *candidate,
+                                ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_basis basis = {0};
+    ritz_reduced whole = {0}, nested = {0};
+
+    RITZ_TRY(ritz_fit_make(fitter, candidate, &basis, &whole));
+    RITZ_TRY(ritz_fit_nest(fitter, &whole, &nested));
+    RITZ_TRY(cut(&nested, candidate->order));
+    RITZ_TRY(note_errors(fitter, &nested));
+    RITZ_TRY(copy_measures(&candidate->errors, &nested.errors));
+    RITZ_TRY(copy_measures(&candidate->estimates, &nested.estimates));
+    *out = nested;
+    nested = (ritz_reduced){0};
+done:
+    ritz_basis_free(&basis);
+    ritz_reduced_free(&whole);
+    ritz_reduced_free(&nested);
+    return status;
+}

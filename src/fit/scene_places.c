@@ -1,0 +1,329 @@
+/*
+ * A scene prepared: which bodies are flexible, in which order they get modes,
+ * and the full system at every place where candidates are compared.
+ */
+#include "fit/fit_parts.h"
+
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+#include <ritz/monitor.h>
+#include <ritz/synthesis.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Modes of bodies count so far beyond the band, as steps of the ladder. */
+static const double ladder_to = 6.0;
+/* A first stage that stands for the full system: modes of bodies up to this
+   part of the band. */
+static const double rich_to = 8.0;
+
+/* Flexible is what the scene reduces by a number of modes. */
+static ritz_status load_bodies(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = f->scene;
+    ritz_component full = {0};
+
+    RITZ_NEW(f->still, scene->num_components);
+    RITZ_NEW(f->model, scene->num_components);
+    RITZ_NEW(f->body, scene->num_components);
+    for (int64_t k = 0; k < scene->num_components; k++) {
+        const ritz_scene_component *item = &scene->component[k];
+        const ritz_method *method = NULL;
+
+        ritz_monitor_step("component", k, scene->num_components);
+        RITZ_TRY(ritz_stage_load(scene, k, &full, &f->still[k]));
+        if (full.num_dofs == 0) {
+            f->rich = true; /* there is no full system */
+            continue;
+        }
+        method = ritz_method_find(item->basis);
+        if (!method || !(method->uses & RITZ_USES_MODES)) {
+            RITZ_TRY(ritz_scene_context(
+                scene,
+                method ? ritz_stage_reduce(scene, k, item, &full, &f->still[k])
+                       : RITZ_ERR_ARGUMENT,
+                item->line, item->column, "component", item->name));
+            ritz_component_free(&full);
+            continue;
+        }
+        f->body[f->num_bodies] = k;
+        f->model[f->num_bodies++] = full;
+        full = (ritz_component){0};
+    }
+    RITZ_FAIL_IF(f->num_bodies == 0, RITZ_ERR_ARGUMENT,
+                 "no component of the scene is reduced by a number of modes: "
+                 "there is nothing to fit");
+done:
+    ritz_component_free(&full);
+    return status;
+}
+
+/* A flexible mode of a body. */
+typedef struct rung {
+    double hertz;
+    int64_t body;
+} rung;
+
+static int by_hertz(const void *left, const void *right)
+{
+    const rung *a = left;
+    const rung *b = right;
+
+    if (a->hertz != b->hertz)
+        return (a->hertz > b->hertz) - (a->hertz < b->hertz);
+    return (a->body > b->body) - (a->body < b->body);
+}
+
+/* The free modes of all bodies by frequency: who gets the next mode. */
+static ritz_status make_ladder(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span span = {
+        .modes = -1, .up_to_hz = ladder_to * f->request.tolerance.band_hz[1]};
+    ritz_pairs pairs = {0};
+    rung *all = NULL, *more = NULL;
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        RITZ_TRY_IN(
+            ritz_fitter_body(f, k),
+            ritz_eigen_sparse(&f->model[k].K, &f->model[k].M, &span, &pairs));
+        RITZ_NEW(more, count + pairs.Phi.ncol);
+        if (count > 0)
+            memcpy(more, all, (size_t)count * sizeof *more);
+        free(all);
+        all = more;
+        more = NULL;
+        for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++)
+            all[count++] = (rung){ritz_eigen_hertz(pairs.lambda[j]), k};
+        ritz_pairs_free(&pairs);
+    }
+    qsort(all, (size_t)count, sizeof *all, by_hertz);
+    RITZ_NEW(f->step, count);
+    for (int64_t k = 0; k < count; k++)
+        f->step[k] = all[k].body;
+    f->num_steps = count;
+done:
+    ritz_pairs_free(&pairs);
+    free(all);
+    return status;
+}
+
+/* Listed settings, and random ones between a listed one and the next. */
+static ritz_status make_places(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = f->scene;
+    const int64_t h = scene->num_sweeps;
+    const int64_t listed = scene->num_configurations;
+    int64_t between = listed > 1 ? f->request.num_between : 0;
+    uint64_t seed = f->request.seed;
+
+    RITZ_FAIL_IF(listed < 1, RITZ_ERR_ARGUMENT,
+                 "the scene has no configuration");
+    RITZ_NEW(f->place, listed + between);
+    for (int64_t k = 0; k < listed + between; k++) {
+        ritz_fit_place *place = &f->place[f->num_places++];
+        double at = (double)(listed - 1) * ritz_random_next(&seed);
+        int64_t from = k < listed ? k : (int64_t)at;
+        const double *a = scene->setting + from * h;
+
+        place->listed = k < listed;
+        RITZ_NEW(place->setting, h);
+        for (int64_t j = 0; j < h; j++)
+            place->setting[j] =
+                place->listed ? a[j]
+                              : a[j] + (at - (double)from) * (a[h + j] - a[j]);
+        (void)snprintf(place->at, sizeof place->at, "as joined");
+    }
+done:
+    return status;
+}
+
+/* "clock=60,cone=0" of each place. */
+static ritz_status name_places(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = f->scene;
+    char(*name)[RITZ_NAME_SIZE] = NULL;
+
+    if (scene->num_sweeps == 0)
+        return RITZ_OK;
+    RITZ_NEW(name, scene->num_sweeps);
+    for (int64_t j = 0; j < scene->num_sweeps; j++)
+        memcpy(name[j], scene->sweep[j].name, sizeof name[j]);
+    for (int64_t k = 0; k < f->num_places; k++)
+        ritz_configuration_name(scene->num_sweeps,
+                                (const char(*)[RITZ_NAME_SIZE])name,
+                                f->place[k].setting, f->place[k].at);
+done:
+    free(name);
+    return status;
+}
+
+static ritz_status as_sparse(const ritz_dense *A, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = A->nrow;
+    int64_t *row = NULL, *col = NULL;
+    double *val = NULL;
+    int64_t count = 0;
+
+    RITZ_NEW(row, n * n);
+    RITZ_NEW(col, n * n);
+    RITZ_NEW(val, n * n);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            if (ritz_dense_col(A, j)[i] != 0.0) {
+                row[count] = i;
+                col[count] = j;
+                val[count++] = ritz_dense_col(A, j)[i];
+            }
+    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, val, out));
+done:
+    free(row);
+    free(col);
+    free(val);
+    return status;
+}
+
+/* Mass normalised modes of a rich first stage as a model to compare with. */
+static ritz_status as_component(const ritz_configuration *from,
+                                const ritz_scene *scene, ritz_component *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *const matrix[] = {&from->K, &from->M, &from->D,
+                                        &from->K4};
+    ritz_component made = {.num_dofs = from->K.ncol};
+    ritz_sparse *const into[] = {&made.K, &made.M, &made.D, &made.K4};
+    ritz_dense eye = {0};
+
+    RITZ_TRY(ritz_dense_new(made.num_dofs, made.num_dofs, &eye));
+    for (int64_t j = 0; j < made.num_dofs; j++)
+        ritz_dense_col(&eye, j)[j] = 1.0;
+    for (size_t k = 0; k < sizeof matrix / sizeof *matrix; k++)
+        if (matrix[k]->val)
+            RITZ_TRY(as_sparse(matrix[k], into[k]));
+    RITZ_TRY(ritz_io_project(&from->io, &eye, &made.io));
+    RITZ_NEW(made.dof, made.num_dofs);
+    for (int64_t j = 0; j < made.num_dofs; j++)
+        made.dof[j] = (ritz_dof){.grid = j + 1};
+    ritz_damping_print(&scene->damping, made.damping);
+    RITZ_TRY(ritz_component_settle(&made, false));
+    *out = made;
+    made = (ritz_component){0};
+done:
+    ritz_dense_free(&eye);
+    ritz_component_free(&made);
+    return status;
+}
+
+/* Bodies as the scene reduces them, with modes far beyond the band. */
+static ritz_status rich_stage(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = f->scene;
+    ritz_reduced *body = NULL;
+    ritz_stage stage = {0};
+    ritz_configuration at = {0};
+
+    RITZ_NEW(body, scene->num_components);
+    for (int64_t k = 0; k < scene->num_components; k++)
+        body[k] = f->still[k]; /* lent */
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        ritz_scene_component item = scene->component[f->body[k]];
+
+        item.modes = -1;
+        item.up_to_hz = rich_to * f->request.tolerance.band_hz[1];
+        RITZ_TRY_IN(item.name,
+                    ritz_stage_reduce(scene, f->body[k], &item, &f->model[k],
+                                      &body[f->body[k]]));
+    }
+    RITZ_TRY(ritz_stage_from(scene, body, &stage));
+    for (int64_t k = 0; k < f->num_places; k++) {
+        ritz_monitor_step("first stage", k, f->num_places);
+        RITZ_TRY(ritz_stage_assemble(&stage, f->place[k].setting, &at));
+        RITZ_TRY(as_component(&at, scene, &f->place[k].full));
+        ritz_configuration_free(&at);
+    }
+done:
+    ritz_configuration_free(&at);
+    ritz_fit_take_back(f, stage.body ? stage.body : body);
+    for (int64_t k = 0; body && k < f->num_bodies; k++)
+        ritz_reduced_free(&body[f->body[k]]);
+    ritz_stage_free(&stage);
+    free(body);
+    return status;
+}
+
+static ritz_status full_systems(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < f->num_places; k++) {
+        ritz_fit_place *place = &f->place[k];
+
+        ritz_monitor_step("full system", k, f->num_places);
+        RITZ_TRY_IN(place->at,
+                    ritz_assemble_full(f->scene, place->setting, &place->full));
+        RITZ_TRY_IN(place->at, ritz_component_install(&place->full));
+    }
+done:
+    return status;
+}
+
+static ritz_status refer(ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    int64_t dofs = 0;
+
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        dofs += f->model[k].num_dofs;
+    f->rich = f->rich || dofs > f->request.most_full;
+    RITZ_TRY(f->rich ? rich_stage(f) : full_systems(f));
+    for (int64_t k = 0; k < f->num_places; k++) {
+        ritz_monitor_step("modes of the full system", k, f->num_places);
+        RITZ_TRY_IN(f->place[k].at, ritz_fit_refer(&f->request, &f->place[k]));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_fitter_scene(const ritz_scene *scene,
+                              const ritz_fit_request *request,
+                              ritz_fitter **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fitter *f = NULL;
+    ritz_verify_request *limits = NULL;
+
+    RITZ_NEW(f, 1);
+    f->request = *request;
+    f->scene = scene;
+    limits = &f->request.tolerance;
+    if (!(limits->band_hz[1] > 0.0))
+        memcpy(limits->band_hz, scene->band_hz, sizeof limits->band_hz);
+    if (limits->damping.kind == RITZ_DAMPING_NONE)
+        limits->damping = scene->damping;
+    RITZ_FAIL_IF(!(limits->band_hz[1] > 0.0), RITZ_ERR_ARGUMENT,
+                 "the scene has no band: where is the tolerance to hold");
+    RITZ_TRY(load_bodies(f));
+    RITZ_TRY(make_ladder(f));
+    RITZ_TRY(make_places(f));
+    RITZ_TRY(name_places(f));
+    RITZ_TRY(refer(f));
+    RITZ_TRY(ritz_fit_check(limits, &f->place[0].full));
+    ritz_fit_settle(f->place[0].reference, limits);
+    f->largest = request->largest > 0 ? request->largest : INT64_MAX;
+    *out = f;
+    f = NULL;
+done:
+    ritz_fitter_free(&f);
+    return status;
+}

@@ -1,0 +1,105 @@
+/* A scene's answer: bodies, nested, and the system at every configuration. */
+#include "fit/fit_parts.h"
+
+#include "base/alloc.h"
+
+#include <ritz/nested.h>
+#include <ritz/synthesis.h>
+
+#include <stdlib.h>
+
+/* A copy of a body; bodies that stay have no columns to be put in order. */
+static ritz_status copy(const ritz_reduced *from, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *order = NULL;
+
+    RITZ_NEW(order, from->M.ncol);
+    for (int64_t k = 0; k < from->M.ncol; k++)
+        order[k] = k;
+    RITZ_TRY(ritz_reduced_nest(from, from->M.ncol, order, from->M.ncol, out));
+    if (from->nested.smallest == 0)
+        ritz_nested_free(&out->nested);
+done:
+    free(order);
+    return status;
+}
+
+static ritz_status make_bodies(ritz_fitter *f,
+                               const ritz_fit_candidate *candidate,
+                               ritz_reduced *body)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced made = {0};
+
+    for (int64_t k = 0; k < f->scene->num_components; k++) {
+        int64_t j = 0;
+
+        while (j < f->num_bodies && f->body[j] != k)
+            j++;
+        if (j == f->num_bodies) {
+            RITZ_TRY(copy(&f->still[k], &body[k]));
+            continue;
+        }
+        RITZ_TRY(
+            ritz_fit_body(f, candidate->method, j, candidate->modes[j], &made));
+        RITZ_TRY(ritz_fit_nest(f, &made, &body[k]));
+        ritz_reduced_free(&made);
+    }
+done:
+    ritz_reduced_free(&made);
+    return status;
+}
+
+/* Each listed configuration with its errors; they are the first places. */
+static ritz_status measure(ritz_fitter *f, ritz_system *system)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < system->num_configurations; k++) {
+        ritz_configuration *at = &system->configuration[k];
+
+        ritz_measures_free(&at->errors);
+        RITZ_TRY(ritz_reference_measure_at(
+            f->place[k].reference, at, &f->request.tolerance,
+            RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM, &at->errors));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_fitter_system(ritz_fitter *f,
+                               const ritz_fit_candidate *candidate,
+                               ritz_reduced **body, ritz_system *out)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t count = f->scene->num_components;
+    ritz_reduced *made = NULL, *joined = NULL;
+    ritz_stage stage = {0};
+    ritz_system system = {0};
+
+    RITZ_NEW(made, count);
+    RITZ_NEW(joined, count);
+    RITZ_TRY(make_bodies(f, candidate, made));
+    for (int64_t k = 0; k < count; k++)
+        RITZ_TRY(copy(&made[k], &joined[k]));
+    RITZ_TRY(ritz_stage_from(f->scene, joined, &stage));
+    RITZ_TRY(ritz_assemble(&stage, NULL, &system));
+    RITZ_TRY(measure(f, &system));
+    *out = system;
+    *body = made;
+    system = (ritz_system){0};
+    made = NULL;
+done:
+    for (int64_t k = 0; k < count; k++) {
+        if (made)
+            ritz_reduced_free(&made[k]);
+        if (joined)
+            ritz_reduced_free(&joined[k]);
+    }
+    free(made);
+    free(joined);
+    ritz_stage_free(&stage);
+    ritz_system_free(&system);
+    return status;
+}

@@ -1,0 +1,88 @@
+#!/bin/sh
+# The smallest model that meets a tolerance, as its user meets it.
+# Usage: fit.sh FOLDER-OF-THE-TOOLS
+here=$(cd "$(dirname "$0")" && pwd)
+data=${RITZ_DATA:-$here/../../data}
+. "$here/tap.sh"
+
+truss=$data/truss72
+expect 0 '' ritz-import --stiffness "$truss/truss72.k.mtx" \
+    --mass "$truss/truss72.m.mtx" --bulk "$truss/truss72.bdf" \
+    --dofs "$truss/truss72.dofs" --port left=1:12 --input f=36:2 \
+    --output-at y=35:2 -q -o truss.h5
+
+# --- a component -----------------------------------------------------------------
+
+set -- ritz-fit truss.h5 --band-hz 0,20 --damping 'modal 0.01' \
+    --methods craig-bampton,normal-modes,krylov
+expect 0 'Why: ' "$@" --tolerance flexible=1e-2 --record fit.jsonl -o fit.h5
+json 0 "$@" --tolerance flexible=1e-2 -o fit.h5
+holds '  says method, order, error, tolerance, runner-up and why' \
+    'j["method"] and j["order"] > 0 and j["error"] <= 1 and
+     j["tolerance"] == {"flexible-response-relative": 0.01} and
+     j["runner_up"]["order"] >= j["order"] and j["why"]'
+expect 0 'pass' ritz-verify truss.h5 fit.h5 --band-hz 0,20 \
+    --damping 'modal 0.01' --limit-response 1e-2 -o verified.h5
+expect 0 'nested' ritz-info fit.h5
+expect 0 '"chosen":true' tail -n 2 fit.jsonl
+expect 0 '"runner_up":true' tail -n 3 fit.jsonl
+json 0 "$@" --tolerance frequency=1e-3 --all --order 9
+holds '  compares all at equal order, none above' \
+    'len(j["equal_order"]) == 3 and
+     all(c["order"] <= 9 for c in j["equal_order"] if "refused" not in c)'
+
+# --- refusals ----------------------------------------------------------------------
+
+expect 2 "there is no measure 'frequncy', is 'frequency' meant?" "$@" \
+    --tolerance frequncy=1 -o no.h5
+expect 2 '--tolerance says what is to hold' "$@" -o no.h5
+expect 2 "there is no method 'rubn', is 'rubin' meant?" ritz-fit truss.h5 \
+    --tolerance 1 --methods rubn -o no.h5
+expect 1 'there is no band' ritz-fit truss.h5 --tolerance 1e-2 -o no.h5
+expect 1 'no method meets the tolerance; nearest is' "$@" --tolerance flexible=1e-9 \
+    --largest 6 -o no.h5
+expect 1 'is a component: --components is for scenes' "$@" --tolerance 1e-2 \
+    --components x- -o no.h5
+[ ! -e no.h5 ] && report yes '  leave nothing behind' || report no 'no.h5'
+
+# --- a scene -------------------------------------------------------------------------
+
+for name in rotor stator; do
+    ports='--port bearing=1'
+    [ "$name" = stator ] && ports="$ports --port scan=5"
+    # shellcheck disable=SC2086
+    expect 0 '' ritz-import --stiffness "$data/dualspin/$name.op4:KGG" \
+        --mass "$data/dualspin/$name.op4:MGG" \
+        --bulk "$data/dualspin/$name.bdf" $ports --units 'kg m s' -q \
+        -o "$name.h5"
+done
+expect 0 '' ritz-import --mass "$data/dualspin/platform.op4:MGG" \
+    --bulk "$data/dualspin/platform.bdf" --port scan=1 --units 'kg m s' -q \
+    -o platform.h5
+cat >scene.yaml <<'END'
+scene: two bodies and a platform
+components:
+  rotor: {model: rotor.h5, basis: macneal-rubin, modes: 12}
+  stator: {model: stator.h5, basis: craig-bampton, modes: 4}
+  platform: {model: platform.h5, basis: rigid}
+joints:
+  - {name: clock, between: [rotor/bearing, stator/bearing], type: hinge, axis: [0, 0, 1], angles_deg: [0, 90]}
+  - {name: cone, between: [stator/scan, platform/scan], type: hinge, axis: [0, 1, 0], angles_deg: [0]}
+inputs: [{name: motor, at: rotor/bearing, component: 6, against: stator/bearing}]
+outputs: [{name: gyro, at: platform/scan, component: 6}]
+band_hz: [0, 5]
+damping: {modal: 0.002}
+END
+expect 0 'at 2 configurations, and 4 more at random' ritz-fit scene.yaml \
+    --tolerance flexible=1e-1 --methods craig-bampton --components s- -o s.h5
+expect 0 'nested' ritz-info s-rotor.h5
+expect 0 'flexible-response-relative' ritz-info s.h5
+expect 1 'is a scene: --damper and --attach are for components' ritz-fit \
+    scene.yaml --tolerance 1e-2 --attach bearing -o s.h5
+sed '/^band_hz/d' scene.yaml >bare.yaml
+expect 1 'the scene has no band' ritz-fit bare.yaml --tolerance 1e-2 -o s.h5
+sed '/^inputs/d' scene.yaml >still.yaml
+expect 1 "a tolerance of 'response' needs inputs and outputs" ritz-fit \
+    still.yaml --tolerance 1e-2 -o s.h5
+
+echo "1..$count"

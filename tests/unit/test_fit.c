@@ -1,0 +1,476 @@
+/* The smallest component that meets a tolerance, against exhaustive search. */
+#include "testing.h"
+
+#include "frame.h"
+#include "masses.h"
+#include "project.h"
+#include "scenes.h"
+#include "spring_chain.h"
+#include "truss.h"
+
+#include <ritz/eigen.h>
+#include <ritz/fit.h>
+#include <ritz/nested.h>
+#include <ritz/reference.h>
+
+#include <stdlib.h>
+
+static const ritz_fit_request plain = RITZ_FIT_NONE;
+
+static const ritz_method *const some[] = {
+    &ritz_method_craig_bampton, &ritz_method_krylov, &ritz_method_macneal_rubin,
+    &ritz_method_normal_modes, &ritz_method_rubin};
+enum { SOME = sizeof some / sizeof *some };
+
+/* Without what costs time and decides nothing. */
+static ritz_fit_request quick(double to_hz, double zeta, const char *tolerance)
+{
+    ritz_fit_request request = plain;
+
+    request.tolerance.band_hz[1] = to_hz;
+    request.tolerance.damping =
+        (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = zeta};
+    request.num_random = 100;
+    request.estimates = request.costs = false;
+    request.methods = some;
+    request.num_methods = SOME;
+    assert_ok(ritz_tolerance_take(tolerance, &request.tolerance));
+    return request;
+}
+
+/* Beam of 8 elements, its tip driven and seen, a port at the tip. */
+static void open_beam(bool clamped, ritz_component *beam)
+{
+    int64_t in = 0;
+
+    assert_ok(
+        frame_component(8, 0.5, &frame_mcdaniel, clamped, false, 0, beam));
+    in = beam->num_dofs - 2;
+    assert_ok(frame_io(beam, 1, &in, 1, &in));
+    assert_ok(add_port(beam, "tip", 8));
+}
+
+/* The free truss, driven and seen at its end. */
+static void open_truss(ritz_component *truss)
+{
+    const int64_t in = 69;
+    const int64_t seen = 71;
+
+    assert_ok(truss_component(&truss_free72, truss));
+    assert_ok(frame_io(truss, 1, &in, 1, &seen));
+    assert_ok(add_port(truss, "left", 1));
+}
+
+/* Every order that any method has, tried one by one. */
+static int64_t exhaust(ritz_fitter *fitter, const ritz_fit *fit)
+{
+    int64_t least = INT64_MAX;
+
+    for (int64_t m = 0; m < fit->num_methods; m++)
+        for (int64_t modes = 0, before = -1; modes < 60; modes++) {
+            ritz_fit_candidate c = {0};
+            bool over = false;
+
+            assert_ok(ritz_fitter_try(fitter, fit->method[m], &modes, &c));
+            if (c.feasible && c.order < least)
+                least = c.order;
+            /* smaller ones of this method were all tried */
+            over = c.order >= least || (modes > 8 && c.order == before);
+            before = c.order;
+            ritz_fit_candidate_free(&c);
+            if (over)
+                break;
+        }
+    return least;
+}
+
+/* Whatever the request says of estimates, exhaustive search measures all. */
+static void assert_within_one(const ritz_component *component,
+                              const ritz_fit_request *request)
+{
+    ritz_fit_request measured = *request;
+    ritz_fitter *fitter = NULL;
+    ritz_fitter *all = NULL;
+    ritz_fit fit = {0};
+    int64_t least = 0;
+    int64_t order = 0;
+
+    assert_ok(ritz_fitter_new(component, request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_true(fit.chosen >= 0);
+    order = fit.candidate[fit.chosen].order;
+    measured.estimates = false;
+    assert_ok(ritz_fitter_new(component, &measured, &all));
+    least = exhaust(all, &fit);
+    ritz_fitter_free(&all);
+    assert_true(least < INT64_MAX);
+    /* fewer yet: columns are left out of bases that were tried whole */
+    if (order > least + 1)
+        fail_msg("%s\nfound %d, exhaustive search %d", fit.why, (int)order,
+                 (int)least);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+}
+
+static void a_clamped_beam_is_fitted_within_one(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fit_request request = quick(0.5, 0.01, "response=1e-2");
+
+    (void)state;
+    open_beam(true, &beam);
+    assert_within_one(&beam, &request);
+    request = quick(0.5, 0.01, "frequency=1e-3,mac=0.99");
+    assert_within_one(&beam, &request);
+    ritz_component_free(&beam);
+}
+
+/* What they rule out is not measured: of the answer's own neighbours none. */
+static void estimates_rule_out_candidates_and_change_no_answer(void **state)
+{
+    ritz_component truss = {0};
+    ritz_fit_request request = quick(40.0, 0.01, "frequency=1e-3");
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    int64_t screened = 0;
+
+    (void)state;
+    open_truss(&truss);
+    request.estimates = true;
+    assert_within_one(&truss, &request);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    for (int64_t k = 0; k < fit.count; k++) {
+        const ritz_fit_candidate *c = &fit.candidate[k];
+
+        screened += c->screened;
+        assert_true(!c->screened || (!c->feasible && c->errors.count == 0));
+    }
+    assert_true(screened > 0 && screened < fit.count);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&truss);
+}
+
+static void a_free_beam_is_fitted_within_one(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fit_request request = quick(1.0, 0.01, "1e-3,gain=1e-2");
+
+    (void)state;
+    open_beam(false, &beam);
+    assert_within_one(&beam, &request);
+    ritz_component_free(&beam);
+}
+
+static void a_free_truss_is_fitted_within_one(void **state)
+{
+    ritz_component truss = {0};
+    ritz_fit_request request = {0};
+
+    (void)state;
+    open_truss(&truss);
+    request = quick(40.0, 0.01, "response=1e-3,frequency=1e-2");
+    assert_within_one(&truss, &request);
+    ritz_component_free(&truss);
+}
+
+/* Its dampers couple modes, and each point of the full model takes a factor. */
+static void a_chain_with_dampers_is_fitted_within_one(void **state)
+{
+    ritz_component chain = {0};
+    ritz_fit_request request = quick(3.0, 0.01, "response=2e-2,damping=5e-2");
+    const ritz_method *const one[] = {&ritz_method_normal_modes};
+
+    (void)state;
+    request.methods = one;
+    request.num_methods = 1;
+    assert_ok(chain_component(30, &chain));
+    assert_within_one(&chain, &request);
+    ritz_component_free(&chain);
+}
+
+/* Chains of random masses and springs; half of them are free. */
+static void random_chains_are_fitted_within_one(void **state)
+{
+    uint64_t seed = 7;
+
+    (void)state;
+    for (int trial = 0; trial < 4; trial++) {
+        double m[16];
+        double k[16];
+        const int64_t in = 15;
+        const int64_t seen = 5 * trial;
+        ritz_component chain = {0};
+        const ritz_fit_request request =
+            quick(0.2, 0.02, trial < 2 ? "response=3e-2" : "response=1e-3");
+
+        for (int i = 0; i < 16; i++) {
+            m[i] = 0.5 + 2.0 * ritz_random_next(&seed);
+            k[i] = 5.0 + 20.0 * ritz_random_next(&seed);
+        }
+        if (trial % 2 == 0)
+            k[0] = 0.0;
+        assert_ok(masses_component(16, m, k, NULL, &chain));
+        assert_ok(masses_io(&chain, 1, &in, 1, &seen));
+        assert_within_one(&chain, &request);
+        ritz_component_free(&chain);
+    }
+}
+
+static void tolerances_are_taken_and_refused_in_words(void **state)
+{
+    ritz_verify_request limits = RITZ_VERIFY_NONE;
+    char text[128];
+
+    (void)state;
+    assert_ok(ritz_tolerance_take("1e-2,frequency=1e-3,mac=0.9", &limits));
+    ritz_tolerance_print(&limits, sizeof text, text);
+    assert_string_equal(text, "frequency=0.001,mac=0.9,response=0.01");
+    assert_fails(ritz_tolerance_take("gian=1", &limits), RITZ_ERR_ARGUMENT,
+                 "there is no measure 'gian', is 'gain' meant?");
+    assert_fails(ritz_tolerance_take("2e-2", &limits), RITZ_ERR_ARGUMENT,
+                 "'response' is given twice");
+    assert_fails(ritz_tolerance_take("gain=-1", &limits), RITZ_ERR_ARGUMENT,
+                 "'-1' is no tolerance of 'gain'");
+    assert_fails(ritz_tolerance_take("gain=0", &limits), RITZ_ERR_ARGUMENT,
+                 "'0' is no tolerance of 'gain'");
+    assert_fails(ritz_tolerance_take("gain=1,,", &limits), RITZ_ERR_ARGUMENT,
+                 "'gain=1,,' is no list of tolerances");
+}
+
+static void what_cannot_be_fitted_is_refused_in_words(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit_request request = quick(0.0, 0.01, "response=1e-2");
+
+    (void)state;
+    assert_ok(frame_component(3, 0.5, &frame_mcdaniel, true, false, 0, &beam));
+    assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
+                 "there is no band");
+    request = quick(0.5, 0.01, "response=1e-2");
+    assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
+                 "a tolerance of 'response' needs inputs and outputs");
+    request = quick(0.5, 0.01, "frequency=1e-2");
+    request.tolerance.limit_frequency = nan("");
+    assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
+                 "no tolerance is given");
+    request = quick(0.5, 0.01, "damping=1e-2");
+    request.tolerance.damping.kind = RITZ_DAMPING_NONE;
+    assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
+                 "a tolerance of 'damping' needs a model that is damped");
+    request = quick(0.5, 0.01, "frequency=1e-2");
+    request.attach = "tpi";
+    assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
+                 "tpi");
+    ritz_component_free(&beam);
+}
+
+/* With few columns allowed, the nearest is told and nothing is chosen. */
+static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    ritz_fit_request request = quick(1.0, 0.01, "response=1e-6");
+
+    (void)state;
+    open_beam(true, &beam);
+    request.largest = 6;
+    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_int_equal(fit.chosen, -1);
+    assert_non_null(strstr(fit.why, "no method meets the tolerance; nearest"));
+    for (int64_t k = 0; k < fit.count; k++)
+        assert_false(fit.candidate[k].feasible);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
+/*
+ * Every prefix of what comes out is a model, is as far off as its file says,
+ * and the whole is what was chosen.
+ */
+static void the_answer_is_nested_and_knows_its_errors(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    ritz_reduced reduced = {0};
+    ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3,mac=0.99");
+    const ritz_method *const one[] = {&ritz_method_craig_bampton};
+
+    (void)state;
+    open_beam(true, &beam);
+    request.methods = one;
+    request.num_methods = 1;
+    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_ok(
+        ritz_fitter_reduced(fitter, &fit.candidate[fit.chosen], &reduced));
+    assert_int_equal(reduced.K.ncol, fit.candidate[fit.chosen].order);
+    assert_int_equal(reduced.nested.smallest, 3); /* the tip's dofs */
+    assert_true(reduced.K.ncol > 3);
+    for (int64_t r = 3; r <= reduced.K.ncol; r++) {
+        ritz_reduced part = {0};
+        ritz_measures found = {0};
+        const ritz_verify_request *limits = ritz_fitter_tolerance(fitter);
+
+        assert_ok(ritz_reduced_prefix(&reduced, r, &part));
+        assert_ok(ritz_verify_reduced(&beam, &part, limits, &found));
+        if (r < reduced.K.ncol)
+            assert_true(find_measure(&found, "mac")->value < 0.99 ||
+                        find_measure(&found, "frequency-relative")->value >
+                            1e-3);
+        /* the same arithmetic, but for the order of columns */
+        assert_near(find_measure(&part.errors, "mac")->value,
+                    find_measure(&found, "mac")->value, 1e-9);
+        ritz_measures_free(&found);
+        ritz_reduced_free(&part);
+    }
+    assert_near(find_measure(&reduced.errors, "mac")->limit, 0.99, 0.0);
+    ritz_reduced_free(&reduced);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
+/* The bounds of a candidate hold: none is below the error that it bounds. */
+static void bounds_stand_beside_errors_and_hold(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3");
+
+    (void)state;
+    open_beam(true, &beam);
+    request.estimates = request.thorough = true;
+    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    for (int64_t modes = 2; modes < 8; modes++) {
+        ritz_fit_candidate c = {0};
+        const ritz_measure *error = NULL;
+        const ritz_measure *bound = NULL;
+
+        assert_ok(
+            ritz_fitter_try(fitter, &ritz_method_craig_bampton, &modes, &c));
+        error = find_measure(&c.errors, "frequency-relative");
+        bound = find_measure(&c.estimates, "frequency-relative-bound");
+        if (find_measure(&c.estimates, "missing-modes-bound")->value > 0.0) {
+            ritz_fit_candidate_free(&c);
+            continue; /* errors of modes that no bound is of */
+        }
+        /* rounding of a frequency, eps lambda_max / lambda_1 = 1e-9 */
+        assert_true(bound->value >= error->value - 1e-9);
+        ritz_fit_candidate_free(&c);
+    }
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
+/*
+ * Between even points and the poles of the full model a pole of the reduced one
+ * alone may stand, and only what confirms sees it: here the seventh mode of a
+ * beam is given another frequency within the band.
+ */
+static void a_pole_between_points_is_seen_by_what_confirms(void **state)
+{
+    ritz_component beam = {0};
+    ritz_reference *reference = NULL;
+    ritz_fitter *fitter = NULL;
+    ritz_fit_request asked = quick(1.0, 1e-5, "response=1e-2");
+    ritz_fit_candidate c = {0};
+    const int64_t modes = 21;
+    ritz_reference_request request = {
+        .band_hz = {0.0, 1.0},
+        .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-5},
+        .num_random = 10,
+        .seed = 3};
+    ritz_reduced reduced = {0};
+    ritz_measures grid = {0};
+    ritz_measures all = {0};
+    double lambda = 0.0;
+
+    (void)state;
+    open_beam(true, &beam);
+    assert_ok(ritz_fitter_new(&beam, &asked, &fitter));
+    assert_ok(ritz_fitter_try(fitter, &ritz_method_normal_modes, &modes, &c));
+    assert_ok(ritz_fitter_reduced(fitter, &c, &reduced));
+    for (int64_t k = 0; k < reduced.K.ncol; k++)
+        lambda = fmax(lambda, ritz_dense_col(&reduced.K, k)[k]);
+    for (int64_t k = 0; k < reduced.K.ncol; k++)
+        if (ritz_dense_col(&reduced.K, k)[k] == lambda) /* 0.6531 Hz */
+            ritz_dense_col(&reduced.K, k)[k] = ritz_eigen_lambda(0.6531);
+    assert_ok(ritz_reference_new(&beam, &request, &reference));
+    assert_ok(ritz_reference_measure(reference, &reduced, &asked.tolerance, 0,
+                                     &grid));
+    assert_ok(ritz_reference_measure(reference, &reduced, &asked.tolerance,
+                                     RITZ_AT_OTHER_POLES, &all));
+    assert_true(find_measure(&all, "response-relative")->value >
+                10.0 * find_measure(&grid, "response-relative")->value);
+    ritz_measures_free(&grid);
+    ritz_measures_free(&all);
+    ritz_reduced_free(&reduced);
+    ritz_fit_candidate_free(&c);
+    ritz_reference_free(&reference);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
+static ritz_status fit_once(const ritz_component *beam)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_request request = quick(0.3, 0.01, "frequency=1e-2");
+    const ritz_method *const one[] = {&ritz_method_normal_modes};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    ritz_reduced reduced = {0};
+
+    request.methods = one;
+    request.num_methods = 1;
+    request.num_random = 3;
+    request.largest = 2;
+    RITZ_TRY(ritz_fitter_new(beam, &request, &fitter));
+    RITZ_TRY(ritz_fitter_search(fitter, &fit));
+    RITZ_TRY(ritz_fitter_reduced(fitter, &fit.candidate[fit.chosen], &reduced));
+done:
+    ritz_reduced_free(&reduced);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    return status;
+}
+
+static void fitting_survives_every_allocation(void **state)
+{
+    const double ones[] = {1.0, 1.0};
+    const int64_t in = 1;
+    ritz_component beam = {0};
+
+    (void)state;
+    assert_ok(masses_component(2, ones, ones, NULL, &beam));
+    assert_ok(masses_io(&beam, 1, &in, 1, &in));
+    assert_survives_every_allocation(fit_once(&beam));
+    ritz_component_free(&beam);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_clamped_beam_is_fitted_within_one),
+        cmocka_unit_test(estimates_rule_out_candidates_and_change_no_answer),
+        cmocka_unit_test(a_free_beam_is_fitted_within_one),
+        cmocka_unit_test(a_free_truss_is_fitted_within_one),
+        cmocka_unit_test(a_chain_with_dampers_is_fitted_within_one),
+        cmocka_unit_test(random_chains_are_fitted_within_one),
+        cmocka_unit_test(tolerances_are_taken_and_refused_in_words),
+        cmocka_unit_test(what_cannot_be_fitted_is_refused_in_words),
+        cmocka_unit_test(a_tolerance_that_no_method_meets_tells_the_nearest),
+        cmocka_unit_test(the_answer_is_nested_and_knows_its_errors),
+        cmocka_unit_test(bounds_stand_beside_errors_and_hold),
+        cmocka_unit_test(a_pole_between_points_is_seen_by_what_confirms),
+        cmocka_unit_test(fitting_survives_every_allocation),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,37 @@
+/* The report of ritz-fit, and the lines that it records. */
+#ifndef RITZ_TOOLS_FIT_H
+#define RITZ_TOOLS_FIT_H
+
+#include "model.h"
+
+#include <ritz/fit.h>
+
+/* A run of ritz-fit, for the observer that records candidates. */
+typedef struct fit_run {
+    cli_run *run;
+    const char *subject;
+    const ritz_verify_request *limits; /* NULL: not known yet */
+    ritz_status recorded;              /* the first failure to append */
+} fit_run;
+
+/* What a candidate was found to be. */
+typedef struct fit_mark {
+    bool chosen, runner_up;
+    const char *why; /* NULL: none */
+} fit_mark;
+
+/** Append a candidate to the file of --record. */
+void fit_record(fit_run *fit, const ritz_fit_candidate *candidate,
+                fit_mark mark);
+
+/** The same as an observer; @p context is a fit_run. */
+void fit_observe(const ritz_fit_candidate *candidate, void *context);
+
+/** What was searched, and the answer; the same as JSON. */
+void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit);
+
+/** Every method at equal error and at @p equal_order; the same as JSON. */
+void fit_say_all(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit,
+                 int64_t equal_order, const int64_t *equal);
+
+#endif
