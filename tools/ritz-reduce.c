@@ -1,15 +1,25 @@
 /* ritz-reduce - a component in the subspace of a basis, with estimates. */
+#include "dampers.h"
 #include "describe.h"
 
+#include <ritz/estimate.h>
 #include <ritz/probe.h>
 
 #include <stdlib.h>
+
+/* What was asked for beside the names of files. */
+typedef struct request {
+    bool without_basis;
+    const char *damping;
+    ritz_estimate_request estimate;
+} request;
 
 /* Without T nobody can recover the full mesh, but the file is small. */
 static void drop_basis(ritz_reduced *reduced)
 {
     ritz_dense_free(&reduced->T);
     ritz_grids_free(&reduced->grids);
+    ritz_elements_free(&reduced->elements);
     ritz_recovery_free(&reduced->recovery);
     free(reduced->dof);
     reduced->dof = NULL;
@@ -34,7 +44,7 @@ done:
 }
 
 static ritz_status to_matrices(cli_run *run, const ritz_component *full,
-                               const ritz_basis *basis, bool without_basis)
+                               const ritz_basis *basis, const request *asked)
 {
     ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
@@ -42,8 +52,8 @@ static ritz_status to_matrices(cli_run *run, const ritz_component *full,
     ritz_stamp stamp = {0};
 
     RITZ_TRY_IN(what, ritz_reduce(full, basis, &reduced));
-    RITZ_TRY_IN(what, ritz_estimate(full, basis, &reduced));
-    if (without_basis)
+    RITZ_TRY_IN(what, ritz_estimate(full, basis, &asked->estimate, &reduced));
+    if (asked->without_basis)
         drop_basis(&reduced);
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_reduced(run->output, &reduced, &stamp));
@@ -122,7 +132,7 @@ done:
     return status;
 }
 
-static ritz_status reduce(cli_run *run, bool without_basis)
+static ritz_status reduce(cli_run *run, request *asked)
 {
     ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
@@ -132,14 +142,15 @@ static ritz_status reduce(cli_run *run, bool without_basis)
                         &full));
     RITZ_TRY(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_TRY(check_rows(run, &full, &basis.basis));
-    RITZ_FAIL_IF(without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+    RITZ_TRY(model_damping(&full, asked->damping, &asked->estimate.damping));
+    RITZ_FAIL_IF(asked->without_basis && full.kind == MODEL_STATES,
+                 RITZ_ERR_ARGUMENT,
                  "a reduced state space keeps no basis, --without-basis is for "
                  "components");
     if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
         RITZ_TRY(to_states(run, &full, &basis.basis));
     else
-        RITZ_TRY(
-            to_matrices(run, &full.component, &basis.basis, without_basis));
+        RITZ_TRY(to_matrices(run, &full.component, &basis.basis, asked));
 done:
     model_free(&basis);
     model_free(&full);
@@ -148,9 +159,14 @@ done:
 
 int main(int argc, char **argv)
 {
-    bool without_basis = false;
+    request asked = {0};
+    const char *band = NULL;
     const cli_option options[] = {
-        {CLI_FLAG(&without_basis), .name = "without-basis",
+        {CLI_TEXT(&band), .name = "band-hz", .argument = "F,F",
+         .help = "where errors are estimated [up to half of what the basis "
+                 "knows]"},
+        DAMPING_OPTION(&asked.damping),
+        {CLI_FLAG(&asked.without_basis), .name = "without-basis",
          .help = "leave out T and the full mesh: a smaller file"},
         {0},
     };
@@ -169,5 +185,7 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    return cli_finish(&run, reduce(&run, without_basis));
+    if (band)
+        cli_pair(&program, "band-hz", band, asked.estimate.band_hz);
+    return cli_finish(&run, reduce(&run, &asked));
 }

@@ -1,24 +1,10 @@
 /*
- * How far a reduced model's frequencies can be off, without the full one's:
- * with x = T q of a reduced pair (theta, q), A = K - sigma M and sigma < 0,
- *
- *     r = K x - theta M x,   eps = |r|_(A^-1) / |x|_A
- *     |lambda - theta| <= eps (lambda - sigma)    for some lambda of (K, M)
- *
- * because M x - A x / (theta - sigma) = -r / (theta - sigma) is the residual of
- * the pencil (M, A), whose eigenvalues 1/(lambda - sigma) it bounds in the norm
- * of A^-1. The lower end, lambda >= (theta + eps sigma) / (1 + eps), is what a
- * projected theta, too high by nature, is held against:
- *
- *     bound = sqrt(theta / lambda_low) - 1
- *
- * Massless modes (lambda infinite) are within the statement: 1/lambda = 0.
+ * How far a reduced model can be off, told by one factor of the full matrices,
+ * by what they leave of its modes, and by how many modes lie below some
+ * frequencies. See estimate_enclose.c.
  */
 #include "base/alloc.h"
-
-#include <ritz/eigen.h>
-#include <ritz/factor.h>
-#include <ritz/verify.h>
+#include "verify/estimate_parts.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -26,86 +12,41 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_LISTED = 100, MOST_SHIFTS = 16 };
-/* Of the first flexible eigenvalue: the smaller, the tighter. */
-static const double shift = 1e-2;
-/* A bound that leaves no digit. */
-static const double worthless = 1.0;
+/* sigma, of the band: smaller is tighter at its end, larger rounds less. */
+static const double shift = 0.1;
+/* Trial modes so far beyond the band, in lambda, and as many beyond. */
+static const double beyond = 30.0;
+enum { MORE = 10, GAPS = 3 };
+/* Counts that one reduction may ask for: some, and some for each mode. */
+enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
 
-/* K - sigma M, factored; |sigma| grows where rounding wins over it. */
-static ritz_status factor(const ritz_component *component, double *sigma,
-                          ritz_sparse *A, ritz_factor **F)
-{
-    ritz_status status = RITZ_ERR_SINGULAR;
-
-    for (int t = 0; t < MOST_SHIFTS && status == RITZ_ERR_SINGULAR; t++) {
-        ritz_sparse_free(A);
-        *sigma *= t > 0 ? 10.0 : 1.0;
-        RITZ_TRY(
-            ritz_sparse_add(1.0, &component->K, -*sigma, &component->M, A));
-        status = ritz_factor_spd(A, F);
-    }
-done:
-    return ritz_context(status, "estimate");
-}
-
-/* R = K X - M X diag(theta) */
-static ritz_status residuals(const ritz_component *component,
-                             const ritz_dense *X, const double *theta,
-                             ritz_dense *R)
+ritz_status ritz_estimator_new(const ritz_component *full,
+                               const ritz_estimate_request *request,
+                               ritz_estimator **out)
 {
     ritz_status status = RITZ_OK;
-    ritz_dense KX = {0};
-    ritz_dense MX = {0};
+    const double *band = request->band_hz;
+    ritz_estimator *made = NULL;
 
-    RITZ_TRY(ritz_sparse_mul(&component->K, X, &KX));
-    RITZ_TRY(ritz_sparse_mul(&component->M, X, &MX));
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < X->nrow; i++)
-            ritz_dense_col(&KX, j)[i] -= theta[j] * ritz_dense_col(&MX, j)[i];
-    *R = KX;
-    KX = (ritz_dense){0};
+    RITZ_FAIL_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
+                     (band[1] != 0.0 && band[0] >= band[1]),
+                 RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none", band[0],
+                 band[1]);
+    RITZ_NEW(made, 1);
+    made->component = full;
+    made->request = *request;
+    *out = made;
 done:
-    ritz_dense_free(&KX);
-    ritz_dense_free(&MX);
     return status;
 }
 
-/* eps of each column of X. */
-static ritz_status measure(const ritz_component *component, const ritz_dense *X,
-                           const double *theta, double *sigma, double *eps)
+void ritz_estimator_free(ritz_estimator **estimator)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
-    ritz_dense R = {0};
-    ritz_dense S = {0};
-    ritz_dense AX = {0};
-
-    RITZ_TRY(residuals(component, X, theta, &R));
-    RITZ_TRY(factor(component, sigma, &A, &F));
-    RITZ_TRY(ritz_sparse_mul(&A, X, &AX));
-    RITZ_TRY(ritz_dense_new(R.nrow, R.ncol, &S));
-    for (int64_t k = 0; k < R.nrow * R.ncol; k++)
-        S.val[k] = R.val[k];
-    RITZ_TRY(ritz_factor_solve(F, &S));
-    for (int64_t j = 0; j < X->ncol; j++)
-        eps[j] = sqrt(fmax(ritz_dense_dot(&R, j, &S, j), 0.0) /
-                      ritz_dense_dot(X, j, &AX, j));
-done:
-    ritz_sparse_free(&A);
-    ritz_factor_free(&F);
-    ritz_dense_free(&R);
-    ritz_dense_free(&S);
-    ritz_dense_free(&AX);
-    return status;
-}
-
-static double bound_of(double theta, double sigma, double eps)
-{
-    double low = (theta + eps * sigma) / (1.0 + eps);
-
-    return low > 0.0 ? fmin(sqrt(theta / low) - 1.0, worthless) : worthless;
+    if (!*estimator)
+        return;
+    ritz_factor_free(&(*estimator)->A);
+    free(*estimator);
+    *estimator = NULL;
 }
 
 /* Half of the highest frequency that the basis knows of. */
@@ -121,83 +62,196 @@ static double trusted_hertz(const ritz_basis *basis, const ritz_pairs *pairs)
     return 0.5 * highest;
 }
 
-/* Modes first, first + 1, ... with their eps: the worst, and each. */
-static ritz_status report(const ritz_pairs *pairs, int64_t count, double sigma,
-                          const double *eps, ritz_measures *out)
+/* Flexible modes in the band, without one asked at least one if any. */
+static void choose_modes(const ritz_estimator *estimator,
+                         const ritz_basis *basis, ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
-    int64_t first = pairs->num_rigid;
-    int64_t worst = 0;
-    char name[RITZ_NAME_SIZE];
-    char where[RITZ_NAME_SIZE];
+    const ritz_pairs *pairs = &m->pairs;
+    const double *asked = estimator->request.band_hz;
 
-    for (int64_t pass = -1; pass < count && pass < MOST_LISTED; pass++) {
-        int64_t k = pass < 0 ? worst : pass;
-        double theta = 0.0;
-
-        for (int64_t j = 0; pass < 0 && j < count; j++)
-            if (bound_of(pairs->lambda[first + j], sigma, eps[j]) >
-                bound_of(pairs->lambda[first + k], sigma, eps[k]))
-                k = j;
-        theta = pairs->lambda[first + k];
-        (void)snprintf(name, sizeof name, "mode-%" PRId64, first + k + 1);
-        (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz",
-                       first + k + 1, ritz_eigen_hertz(theta));
-        RITZ_TRY(
-            ritz_measures_add(out, pass < 0 ? "frequency-relative-bound" : name,
-                              bound_of(theta, sigma, eps[k]), nan(""), where));
+    m->band_hz[0] = asked[0];
+    m->band_hz[1] = asked[1] > 0.0 ? asked[1] : trusted_hertz(basis, pairs);
+    m->first = pairs->num_rigid;
+    while (m->first < pairs->Phi.ncol &&
+           ritz_eigen_hertz(pairs->lambda[m->first]) < m->band_hz[0])
+        m->first++;
+    m->last = m->first;
+    while (m->last < pairs->Phi.ncol &&
+           ritz_eigen_hertz(pairs->lambda[m->last]) <= m->band_hz[1])
+        m->last++;
+    if (asked[1] == 0.0 && m->last == m->first && m->last < pairs->Phi.ncol) {
+        m->last++;
+        m->band_hz[1] = ritz_eigen_hertz(pairs->lambda[m->first]);
     }
-done:
-    return status;
 }
 
-/* Flexible modes up to a frequency, at least one if there is any. */
-static int64_t count_trusted(const ritz_pairs *pairs, double hertz)
+/* Trial modes that serve those of the band. */
+static int64_t count_trial(const ritz_measuring *m, bool response)
 {
-    int64_t first = pairs->num_rigid;
-    int64_t count = pairs->Phi.ncol > first ? 1 : 0;
+    double reach = beyond * ritz_eigen_lambda(m->band_hz[1]);
+    int64_t most = m->pairs.Phi.ncol;
+    int64_t count = m->last + MORE < most ? m->last + MORE : most;
 
-    while (first + count < pairs->Phi.ncol &&
-           ritz_eigen_hertz(pairs->lambda[first + count]) <= hertz)
+    while (count < most && (response || m->pairs.lambda[count] < reach))
         count++;
     return count;
 }
 
-ritz_status ritz_estimate(const ritz_component *component,
-                          const ritz_basis *basis, ritz_reduced *reduced)
+/* Count there; what cannot be factored is not counted. */
+static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
+{
+    ritz_status status = ritz_estimator_count(estimator, rho);
+
+    *end = status == RITZ_ERR_SINGULAR;
+    return *end ? RITZ_OK : status;
+}
+
+/*
+ * Count where it helps, until every mode is told or enough is spent; but an
+ * inverse iteration helps first.
+ */
+static ritz_status refine(ritz_estimator *estimator, ritz_measuring *m)
 {
     ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
-    ritz_dense part = {0}; /* borrowed columns of pairs.Phi */
-    ritz_dense X = {0};
-    ritz_measures found = {0};
-    double *eps = NULL;
-    double sigma = 0.0;
+    int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->last - m->first);
+    ritz_pursuit pursuit = {.first = m->first, .last = m->last};
+    bool end = false;
 
-    RITZ_FAIL_IF(basis->T.nrow != component->num_dofs ||
+    RITZ_NEW(pursuit.tries, m->last - m->first);
+    while (!end) {
+        double rho = nan("");
+        int64_t mode = -1;
+
+        ritz_enclosure_free(&m->enclosure);
+        RITZ_TRY(ritz_enclosure_new(estimator, &m->trial, &m->polished,
+                                    &m->enclosure));
+        if (budget-- > 0 && estimator->num_counts < RITZ_MOST_COUNTS)
+            rho = ritz_propose_count(estimator, &m->trial, &m->enclosure,
+                                     &pursuit, &mode);
+        if (mode >= 0 && !m->polished.X.val) {
+            RITZ_TRY(ritz_lehmann_polish(estimator, &m->trial, &m->polished));
+            continue;
+        }
+        if (mode >= 0)
+            pursuit.tries[mode - m->first]++;
+        end = isnan(rho);
+        if (!end)
+            RITZ_TRY(count_at(estimator, rho, &end));
+    }
+done:
+    free(pursuit.tries);
+    return status;
+}
+
+/* One more far above the band: the further, the less the rest answers. */
+static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
+{
+    ritz_status status = RITZ_OK;
+    double rho = ritz_propose_above(estimator, &m->trial,
+                                    ritz_eigen_lambda(m->band_hz[1]));
+    bool end = isnan(rho) || estimator->num_counts == RITZ_MOST_COUNTS;
+
+    if (end)
+        return RITZ_OK;
+    RITZ_TRY(count_at(estimator, rho, &end));
+    ritz_enclosure_free(&m->enclosure);
+    RITZ_TRY(
+        ritz_enclosure_new(estimator, &m->trial, &m->polished, &m->enclosure));
+done:
+    return status;
+}
+
+/* Where to count modes of the band: at its end, or in a gap behind. */
+static double end_of_band(const ritz_measuring *m, int64_t gap)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]) * (1.0 + DBL_EPSILON);
+    int64_t above = m->last + gap;
+    double low = above > 0 ? m->pairs.lambda[above - 1] : 0.0;
+    double high = above < m->pairs.Phi.ncol ? m->pairs.lambda[above] : end;
+
+    return gap == 0 ? end : fmax(end, low + 0.3 * (high - low));
+}
+
+/*
+ * Unless it is known that none is missing, count at the end of the band, and in
+ * the next gaps, where the partners of the last modes may be.
+ */
+static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
+{
+    ritz_status status = RITZ_OK;
+    double at = 0.0;
+    bool end = false;
+
+    for (int64_t gap = 0; gap < GAPS && m->last + gap <= m->pairs.Phi.ncol &&
+                          ritz_missing_modes(estimator, m, &at) != 0 && !end &&
+                          estimator->num_counts < RITZ_MOST_COUNTS;
+         gap++)
+        RITZ_TRY(count_at(estimator, end_of_band(m, gap), &end));
+done:
+    return status;
+}
+
+static void measuring_free(ritz_measuring *m)
+{
+    ritz_pairs_free(&m->pairs);
+    ritz_lehmann_free(&m->trial);
+    ritz_lehmann_free(&m->polished);
+    ritz_enclosure_free(&m->enclosure);
+}
+
+ritz_status ritz_estimator_measure(ritz_estimator *estimator,
+                                   const ritz_basis *basis,
+                                   const ritz_reduced *reduced,
+                                   ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measuring m = {0};
+    ritz_measures found = {0};
+    bool response = false;
+
+    RITZ_FAIL_IF(basis->T.nrow != estimator->component->num_dofs ||
                      basis->T.ncol != reduced->K.nrow,
                  RITZ_ERR_ARGUMENT, "the basis is not that of the reduction");
-    RITZ_TRY(ritz_eigen_dense(&reduced->K, &reduced->M, &pairs));
-    part.nrow = pairs.Phi.nrow;
-    part.ncol = count_trusted(&pairs, trusted_hertz(basis, &pairs));
-    if (part.ncol > 0) {
-        part.val = ritz_dense_col(&pairs.Phi, pairs.num_rigid);
-        /* a rigid motion that the basis holds badly may count as flexible */
-        sigma = -shift * fmax(pairs.lambda[pairs.num_rigid],
-                              DBL_EPSILON * pairs.lambda[pairs.Phi.ncol - 1]);
-        RITZ_NEW(eps, part.ncol);
-        RITZ_TRY(ritz_dense_mul(&basis->T, &part, &X));
-        RITZ_TRY(measure(component, &X, pairs.lambda + pairs.num_rigid, &sigma,
-                         eps));
-        RITZ_TRY(report(&pairs, part.ncol, sigma, eps, &found));
+    RITZ_TRY(ritz_eigen_dense(&reduced->K, &reduced->M, &m.pairs));
+    choose_modes(estimator, basis, &m);
+    response = ritz_response_boundable(estimator, reduced, m.pairs.Phi.ncol);
+    if (m.band_hz[1] > 0.0) {
+        RITZ_TRY(ritz_estimator_open(estimator,
+                                     -shift * ritz_eigen_lambda(m.band_hz[1])));
+        RITZ_TRY(ritz_lehmann_new(estimator, &basis->T, reduced, &m.pairs,
+                                  count_trial(&m, response), &m.trial));
+        RITZ_TRY(refine(estimator, &m));
+        if (response)
+            RITZ_TRY(count_above(estimator, &m));
+        RITZ_TRY(count_band(estimator, &m));
+        RITZ_TRY(ritz_report_modes(estimator, &m, &found));
+        RITZ_TRY(ritz_report_missing(estimator, &m, &found));
+        if (response)
+            RITZ_TRY(ritz_bound_response(estimator, &m, reduced, &found));
     }
+    *out = found;
+    found = (ritz_measures){0};
+done:
+    measuring_free(&m);
+    ritz_measures_free(&found);
+    return status;
+}
+
+ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
+                          const ritz_estimate_request *request,
+                          ritz_reduced *reduced)
+{
+    ritz_status status = RITZ_OK;
+    ritz_estimator *estimator = NULL;
+    ritz_measures found = {0};
+
+    RITZ_TRY(ritz_estimator_new(full, request, &estimator));
+    RITZ_TRY(ritz_estimator_measure(estimator, basis, reduced, &found));
     ritz_measures_free(&reduced->estimates);
     reduced->estimates = found;
     found = (ritz_measures){0};
 done:
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&X);
+    ritz_estimator_free(&estimator);
     ritz_measures_free(&found);
-    free(eps);
     return status;
 }

@@ -9,6 +9,7 @@
 
 #include <ritz/compare.h>
 #include <ritz/eigen.h>
+#include <ritz/estimate.h>
 #include <ritz/method.h>
 #include <ritz/reduced.h>
 #include <ritz/response.h>
@@ -18,6 +19,8 @@
 
 #include <float.h>
 #include <stdlib.h>
+
+static const ritz_estimate_request usual = {0};
 
 enum { ELEMENTS = 16, DOFS = ELEMENTS + 1, MODES = 4, ATTACHED = 3 };
 
@@ -199,7 +202,7 @@ static void reduce(const fixture *f, const ritz_method *method,
 
     assert_ok(ritz_basis_make(method, &f->request, &basis));
     assert_ok(ritz_reduce(&f->bar, &basis, out));
-    assert_ok(ritz_estimate(&f->bar, &basis, out));
+    assert_ok(ritz_estimate(&f->bar, &basis, &usual, out));
     ritz_basis_free(&basis);
 }
 

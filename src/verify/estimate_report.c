@@ -1,0 +1,99 @@
+/* What was found of a reduced model's modes, as named numbers. */
+#include "verify/estimate_parts.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+enum { MOST_LISTED = 100 };
+
+/* "mode 7, 3.41 Hz", and which of the full model if it is another. */
+static void say_where(const ritz_claim *claim, int64_t k, double theta,
+                      char where[RITZ_NAME_SIZE])
+{
+    int used = snprintf(where, RITZ_NAME_SIZE, "mode %" PRId64 ", %.4g Hz",
+                        k + 1, ritz_eigen_hertz(theta));
+    size_t left = (size_t)(RITZ_NAME_SIZE - used);
+
+    if (claim->number < 0)
+        (void)snprintf(where + used, left, ", near some full mode");
+    else if (claim->number != k)
+        (void)snprintf(where + used, left, ", full mode %" PRId64,
+                       claim->number + 1);
+}
+
+ritz_status ritz_report_modes(const ritz_estimator *estimator,
+                              const ritz_measuring *m, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures each = {0};
+    ritz_measure worst = {.value = -1.0};
+    double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
+    char name[RITZ_NAME_SIZE];
+    char where[RITZ_NAME_SIZE];
+
+    for (int64_t k = m->first; k < m->last; k++) {
+        double theta = m->pairs.lambda[k];
+        ritz_claim claim = ritz_claim_of(&m->trial, &m->enclosure, k, theta);
+
+        if (ritz_counted_rigid(estimator, k, theta, band))
+            continue;
+        (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
+        say_where(&claim, k, theta, where);
+        if (each.count < MOST_LISTED)
+            RITZ_TRY(
+                ritz_measures_add(&each, name, claim.bound, nan(""), where));
+        if (claim.bound > worst.value) {
+            worst.value = claim.bound;
+            (void)snprintf(worst.where, sizeof worst.where, "%s", where);
+        }
+    }
+    if (each.count > 0)
+        RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", worst.value,
+                                   nan(""), worst.where));
+    for (int64_t k = 0; k < each.count; k++)
+        RITZ_TRY(ritz_measures_add(out, each.item[k].name, each.item[k].value,
+                                   nan(""), each.item[k].where));
+done:
+    ritz_measures_free(&each);
+    return status;
+}
+
+int64_t ritz_missing_modes(const ritz_estimator *estimator,
+                           const ritz_measuring *m, double *at)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]);
+    int64_t least = -1;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++) {
+        const ritz_counted *c = &estimator->count[s];
+        int64_t below = 0;
+
+        while (below < m->pairs.Phi.ncol && m->pairs.lambda[below] < c->rho)
+            below++;
+        below = c->below > below ? c->below - below : 0;
+        if (c->rho >= end && (least < 0 || below < least)) {
+            least = below;
+            *at = c->rho;
+        }
+    }
+    return least;
+}
+
+ritz_status ritz_report_missing(const ritz_estimator *estimator,
+                                const ritz_measuring *m, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    double at = 0.0;
+    int64_t count = ritz_missing_modes(estimator, m, &at);
+    char where[RITZ_NAME_SIZE];
+
+    if (count < 0)
+        return RITZ_OK;
+    (void)snprintf(where, sizeof where, "counted below %.4g Hz",
+                   ritz_eigen_hertz(at));
+    RITZ_TRY(ritz_measures_add(out, "missing-modes-bound", (double)count,
+                               nan(""), where));
+done:
+    return status;
+}
