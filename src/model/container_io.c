@@ -193,7 +193,11 @@ static ritz_status read_table(hid_t group, int64_t count, table *t)
     RITZ_TRY(new_table(count, t));
     RITZ_TRY(ritz_part_read_words(group, "name", count, t->name));
     RITZ_TRY(ritz_part_read_words(group, "where", count, t->where));
-    RITZ_TRY(ritz_h5_read_real(group, "value", shape, false, t->value));
+    RITZ_TRY(ritz_h5_read(group, "value", H5T_IEEE_F64LE, shape, t->value));
+    for (int64_t k = 0; k < count; k++) /* infinite: a bound that bounds none */
+        RITZ_FAIL_IF(isnan(t->value[k]) || t->value[k] == -HUGE_VAL,
+                     RITZ_ERR_FORMAT, "value %" PRId64 " of 'value' is none",
+                     k + 1);
     RITZ_TRY(ritz_h5_read_real(group, "limit", shape, true, t->limit));
 done:
     return status;

@@ -350,7 +350,7 @@ static const change changes[] = {
     {2,
      "/errors",
      "value",
-     "value 1 of 'value' is not finite",
+     "value 1 of 'value' is none",
      REAL,
      false,
      1,
