@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Of the logarithm of two steps: five per cent. */
+static const double worth_saying = 0.05;
+
 [[gnu::format(printf, 2, 3)]] static void add(ritz_fit *fit, const char *format,
                                               ...)
 {
@@ -103,8 +106,12 @@ static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
         add(fit, "; the runner-up, %s, needs %" PRId64 " column%s more",
             second->method->name, more, more == 1 ? "" : "s");
     if (c->cost.order > 0 && second->cost.order > 0 &&
-        isfinite(second->cost.step_explicit))
-        add(fit, ", its largest explicit step being %.2g s (%.2g s)",
+        isfinite(second->cost.step_explicit) &&
+        fabs(log(second->cost.step_explicit / c->cost.step_explicit)) >
+            worth_saying)
+        add(fit,
+            ", and an explicit integrator could take steps of %.2g s, not of "
+            "%.2g s",
             second->cost.step_explicit, c->cost.step_explicit);
 }
 

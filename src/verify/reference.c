@@ -84,12 +84,17 @@ static ritz_status open_modes(ritz_reference *r)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *full = r->component;
+    bool damped = false; /* beside ratios */
 
     r->modes_hz = beyond * r->band_hz[1];
     RITZ_TRY_IN("full model",
                 ritz_poles_of_component(full, &r->damping, r->modes_hz,
                                         &r->pairs, &r->poles));
-    if (ritz_reference_factors(r) && full->num_dofs <= SMALL) {
+    /* what lies above them answers without damping, which D may give it */
+    damped = full->D.colptr || full->K4.colptr ||
+             r->damping.kind == RITZ_DAMPING_RAYLEIGH ||
+             r->damping.kind == RITZ_DAMPING_FIT;
+    if (damped && full->num_dofs <= SMALL) {
         ritz_pairs_free(&r->pairs);
         ritz_poles_free(&r->poles);
         RITZ_TRY_IN("full model",
