@@ -1,17 +1,28 @@
 /* ritz-frf - frequency response from inputs to outputs. */
 #include "dampers.h"
+#include "engines.h"
+#include "loops.h"
+#include "nested.h"
+#include "responses.h"
 
 #include <complex.h>
 #include <math.h>
-#include <string.h>
+
+/* Even ones, where nothing is said; with a tolerance, to begin with. */
+static const int64_t usual_points = 400;
+static const int64_t first_points = 20;
 
 /* What the command line asks for; NaN or NULL where it says nothing. */
 typedef struct wish {
-    double from_hz, to_hz, up_to_hz;
+    double from_hz, to_hz;
     int64_t points;
+    int64_t order; /* columns of a nested component; 0: all */
     bool log, no_refine;
-    const char *method, *damping, *at, *points_of;
+    const char *damping, *at, *points_of;
+    engines_wish engine;
     cli_list damper;
+    responses_wish more;
+    loops_wish loops;
 } wish;
 
 /*
@@ -40,7 +51,9 @@ static ritz_status place(const model *m, const wish *asked, ritz_grid *out)
                  "--log needs --from-hz above 0");
     *out = (ritz_grid){.from_hz = from,
                        .to_hz = to,
-                       .count = asked->points,
+                       .count = asked->points > 0                ? asked->points
+                                : isnan(asked->engine.tolerance) ? usual_points
+                                                                 : first_points,
                        .log = asked->log,
                        .refine = !asked->no_refine};
 done:
@@ -63,36 +76,6 @@ static ritz_status borrow(cli_run *run, const wish *asked, model *other,
                        .hertz = r->hertz};
 done:
     return status;
-}
-
-/* A model of states brings its damping in A. */
-static ritz_status respond_states(const model *m, const wish *asked,
-                                  const ritz_grid *grid, ritz_response *out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(asked->damping, RITZ_ERR_ARGUMENT,
-                 "a state space is damped as it was made: --damping is for "
-                 "ritz-basis");
-    RITZ_TRY(ritz_response_states(&m->states, grid, out));
-done:
-    return status;
-}
-
-static ritz_status respond(const model *m, const wish *asked,
-                           const ritz_damping *damping, const ritz_grid *grid,
-                           ritz_response *out)
-{
-    double up_to = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz;
-    ritz_second_order view = model_look(m).matrices;
-
-    if (m->kind == MODEL_STATES)
-        return respond_states(m, asked, grid, out);
-    if (m->kind != MODEL_COMPONENT)
-        return ritz_response_second_order(&view, damping, grid, out);
-    if (strcmp(asked->method, "direct") == 0)
-        return ritz_response_direct(&m->component, damping, up_to, grid, out);
-    return ritz_response_modal(&m->component, damping, up_to, grid, out);
 }
 
 /* The highest point of each response, and where it is. */
@@ -138,6 +121,33 @@ static void report(cli_run *run, const ritz_response *r)
     cli_record(run, r->method, r->count);
 }
 
+/* The model, or the loop that is closed around it, at the points. */
+static ritz_status respond(cli_run *run, const model *m, const wish *asked,
+                           const ritz_damping *damping, const ritz_grid *grid,
+                           loop_run *loop, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    const double range[2] = {grid->from_hz, grid->to_hz};
+    ritz_second_order view = {0};
+    ritz_responder *plant = NULL, *asked_of = NULL;
+
+    if (m->kind == MODEL_REDUCED || m->kind == MODEL_SYSTEM)
+        view = model_look(m).matrices;
+    RITZ_TRY(
+        engines_start(run, m, &asked->engine, damping, grid, &view, &plant));
+    RITZ_TRY(loops_close(run, &asked->loops, m, damping, plant, range, loop));
+    asked_of = loop->closed ? loop->closed : plant;
+    RITZ_TRY(engines_respond(asked_of, &asked->engine, grid, out));
+    RITZ_TRY(loops_report(run, loop, plant, out));
+    report(run, out);
+    RITZ_TRY(responses_singular(run, &asked->more, m, asked_of, out));
+    RITZ_TRY(responses_zeros(run, &asked->more, m, damping));
+done:
+    ritz_responder_free(&loop->closed); /* it borrows the plant */
+    ritz_responder_free(&plant);
+    return status;
+}
+
 /* What drives it and is seen of it; of states the numbers alone. */
 static ritz_io io_of(const model *m)
 {
@@ -157,17 +167,19 @@ static ritz_status frf(cli_run *run, const wish *asked)
     ritz_damping damping = {0};
     ritz_grid grid = {0};
     ritz_response response = {0};
+    loop_run loop = {0};
     ritz_stamp stamp = {0};
     ritz_io ends; /* borrowed */
 
     RITZ_TRY(model_read(
         run, path,
         MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &m));
+    RITZ_TRY(loops_read(run, &asked->loops, &loop));
+    RITZ_TRY(nested_take(path, asked->order, &m));
     RITZ_TRY(model_at(&m, path, asked->at));
-    RITZ_FAIL_IF(
-        m.kind != MODEL_COMPONENT && strcmp(asked->method, "direct") == 0,
-        RITZ_ERR_ARGUMENT,
-        "'%s' is small and dense: --method direct is for components", path);
+    RITZ_FAIL_IF(m.kind == MODEL_STATES && asked->damping, RITZ_ERR_ARGUMENT,
+                 "a state space is damped as it was made: --damping is for "
+                 "ritz-basis");
     RITZ_TRY_IN(path, dampers_install(&m, &asked->damper));
     RITZ_TRY(model_damping(&m, asked->damping, &damping));
     if (asked->points_of)
@@ -178,18 +190,13 @@ static ritz_status frf(cli_run *run, const wish *asked)
     RITZ_FAIL_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
                  RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
                  path, ends.num_inputs == 0 ? "inputs" : "outputs");
-    if (m.kind == MODEL_COMPONENT && strcmp(asked->method, "modal") == 0 &&
-        (m.component.D.colptr || m.component.K4.colptr))
-        cli_warn(run,
-                 "the damping matrices of '%s' act on the modes that are "
-                 "summed alone, --method direct leaves out nothing",
-                 path);
-    RITZ_TRY_IN(path, respond(&m, asked, &damping, &grid, &response));
+    RITZ_TRY_IN(path,
+                respond(run, &m, asked, &damping, &grid, &loop, &response));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_response(run->output, &response, &stamp));
-    report(run, &response);
 done:
     ritz_response_free(&response);
+    loop_run_free(&loop);
     model_free(&m);
     model_free(&other);
     return status;
@@ -197,12 +204,11 @@ done:
 
 int main(int argc, char **argv)
 {
-    static const char *const methods[] = {"modal", "direct"};
     wish asked = {.from_hz = (double)NAN,
                   .to_hz = (double)NAN,
-                  .up_to_hz = (double)NAN,
-                  .points = 400,
-                  .method = "modal"};
+                  .engine = {.method = "auto",
+                             .up_to_hz = (double)NAN,
+                             .tolerance = (double)NAN}};
     const cli_option options[] = {
         {CLI_REAL(&asked.from_hz), .name = "from-hz", .argument = "F",
          .min = 0.0, .max = 1e9,
@@ -211,23 +217,23 @@ int main(int argc, char **argv)
         {CLI_REAL(&asked.to_hz), .name = "to-hz", .argument = "F", .min = 1e-9,
          .max = 1e9, .help = "end [the band's of a system]"},
         {CLI_INT(&asked.points), .name = "points", .argument = "N", .min = 2,
-         .max = 1000000, .help = "how many evenly spaced points"},
+         .max = 1000000,
+         .help = "how many evenly spaced points [400; with --tolerance 20]"},
         {CLI_FLAG(&asked.log), .name = "log",
          .help = "evenly spaced in the logarithm of frequency"},
         {CLI_FLAG(&asked.no_refine), .name = "no-refine",
          .help = "add no points at and around resonances"},
         {CLI_TEXT(&asked.points_of), .name = "points-of", .argument = "FILE",
          .help = "the points of another response instead"},
-        {CLI_TEXT(&asked.method), .name = "method", .argument = "NAME",
-         .help = "modal, or direct: a factor at each point (components)"},
+        ENGINES_OPTIONS(&asked.engine),
+        ORDER_OPTION(&asked.order),
         DAMPING_OPTION(&asked.damping),
         DAMPERS_OPTION(&asked.damper),
-        {CLI_REAL(&asked.up_to_hz), .name = "up-to-hz", .argument = "F",
-         .min = 1e-9, .max = 1e9,
-         .help = "modes of a component up to this one [three times the end]"},
         {CLI_TEXT(&asked.at), .name = "at",
          .argument = "JOINT=SETTING[,JOINT=SETTING]",
          .help = "which configuration of a system, degrees and lengths"},
+        RESPONSES_OPTIONS(&asked.more),
+        LOOPS_OPTIONS(&asked.loops),
         {0},
     };
     const cli_program program = {
@@ -245,8 +251,10 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (strcmp(asked.method, "modal") != 0 &&
-        strcmp(asked.method, "direct") != 0)
-        cli_refuse_name(&program, "no method", asked.method, 2, methods);
+    loops_check(&program, &asked.loops);
+    engines_check(&program, &asked.engine);
+    if (asked.points_of && !isnan(asked.engine.tolerance))
+        cli_refuse(&program, "--points-of gives the points, --tolerance "
+                             "chooses them: one of the two");
     return cli_finish(&run, frf(&run, &asked));
 }

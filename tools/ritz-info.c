@@ -25,6 +25,9 @@ static ritz_status describe(const cli_run *run, json_t *keys, const model *m)
         return RITZ_OK;
     case MODEL_STATES:
         return describe_states(run, keys, &m->states);
+    case MODEL_SIMULATION:
+        describe_simulation(run, keys, &m->simulation);
+        return RITZ_OK;
     case MODEL_ANY:
         break;
     }

@@ -1,6 +1,7 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
 #include "dampers.h"
 #include "describe.h"
+#include "nested.h"
 #include "poles.h"
 
 #include <math.h>
@@ -12,6 +13,7 @@ enum { SOME_MODES = 20 };
 
 typedef struct wish {
     int64_t modes, mode;
+    int64_t order; /* columns of a nested component; 0: all */
     double up_to_hz;
     const char *at, *damping, *scan;
     cli_list damper;
@@ -140,6 +142,7 @@ static ritz_status poles(cli_run *run, const wish *asked)
     RITZ_TRY(model_read(
         run, path,
         MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &m));
+    RITZ_TRY(nested_take(path, asked->order, &m));
     RITZ_TRY(model_at(&m, path, asked->at));
     RITZ_TRY(damp(run, &m, asked, &damping));
     if (asked->scan) {
@@ -168,6 +171,7 @@ int main(int argc, char **argv)
         {CLI_TEXT(&asked.at), .name = "at",
          .argument = "JOINT=SETTING[,JOINT=SETTING]",
          .help = "which configuration of a system, degrees and lengths"},
+        ORDER_OPTION(&asked.order),
         DAMPING_OPTION(&asked.damping),
         DAMPERS_OPTION(&asked.damper),
         {CLI_TEXT(&asked.scan), .name = "scan",

@@ -1,5 +1,6 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
 #include "dampers.h"
+#include "nested.h"
 #include "rankings.h"
 #include "rankings_make.h"
 
@@ -138,6 +139,7 @@ static void set_options(rank_wish *asked, rank_words *words,
         {CLI_TEXT(&asked->at), .name = "at",
          .argument = "JOINT=SETTING[,JOINT=SETTING]",
          .help = "one configuration of a system, degrees and lengths [all]"},
+        ORDER_OPTION(&asked->order),
         {CLI_LIST(&asked->damping), .name = "damping", .argument = "TEXT",
          .help = "\"modal ZETA\" or another that --help of ritz-frf shows "
                  "[the model's]"},

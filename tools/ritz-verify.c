@@ -1,11 +1,13 @@
 /* ritz-verify - full against reduced: every error, pass or fail. */
 #include "dampers.h"
+#include "nested.h"
 
 #include <math.h>
 
 typedef struct wish {
     ritz_verify_request verify;
     const char *damping, *at;
+    int64_t order; /* columns of a nested component; 0: all */
     cli_list damper;
 } wish;
 
@@ -173,6 +175,7 @@ static ritz_status verify(cli_run *run, wish *asked)
                         &full));
     RITZ_TRY(model_read(run, run->operand[1],
                         MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &reduced));
+    RITZ_TRY(nested_take(run->operand[1], asked->order, &reduced));
     RITZ_TRY(model_at(&reduced, run->operand[1], asked->at));
     RITZ_TRY(check_limits(run, asked, reduced.kind == MODEL_STATES));
     if (reduced.kind == MODEL_STATES) {
@@ -216,6 +219,7 @@ int main(int argc, char **argv)
          .help = "which configuration of a system, degrees and lengths"},
         {CLI_TEXT(&band), .name = "band-hz", .argument = "F,F",
          .help = "where it matters [the system's; else what is reliable]"},
+        ORDER_OPTION(&asked.order),
         DAMPING_OPTION(&asked.damping),
         DAMPERS_OPTION(&asked.damper),
         {CLI_REAL(&v->limit_frequency), .name = "limit-frequency",

@@ -1,4 +1,8 @@
-/* Frequency responses H(i omega) from inputs to outputs. */
+/*
+ * Frequency responses H(i omega) from inputs to outputs: on a grid, or at
+ * points chosen so that whoever interpolates between them keeps a tolerance.
+ * How H is found at one frequency is the business of an engine.
+ */
 #ifndef RITZ_RESPONSE_H
 #define RITZ_RESPONSE_H
 
@@ -17,8 +21,13 @@ typedef struct ritz_response {
     char (*input)[RITZ_NAME_SIZE];
     char (*output)[RITZ_NAME_SIZE];
     double _Complex *H;          /* H[(k * num_outputs + i) * num_inputs + j] */
-    char method[RITZ_NAME_SIZE]; /* "modal", "direct" */
+    char method[RITZ_NAME_SIZE]; /* the engine: "modal", "direct", ... */
     char damping[RITZ_DAMPING_SIZE];
+    char interpolation[RITZ_NAME_SIZE]; /* "cubic": made for it; "" not said */
+    double tolerance;     /* between points, of the largest |H| of a channel; 0:
+                         not kept */
+    int64_t num_singular; /* values at each point; 0: not computed */
+    double *singular;     /* count x num_singular, descending: singular.h */
 } ritz_response;
 
 /* Where a response is wanted. */
@@ -85,6 +94,119 @@ ritz_status ritz_response_direct(const ritz_component *component,
                                  const ritz_damping *damping, double up_to_hz,
                                  const ritz_grid *grid, ritz_response *out);
 
+/**
+ * Between stored points: each channel is the cubic through the four points
+ * around, two on either side, at the ends the outermost four; of fewer points,
+ * through all. This is what `tolerance` of a response is about.
+ *
+ * @param[out] out  num_outputs x num_inputs, row by row
+ * @return RITZ_ERR_ARGUMENT outside the range of the points
+ */
+ritz_status ritz_response_at(const ritz_response *response, double hertz,
+                             double _Complex *out);
+
 void ritz_response_free(ritz_response *response);
+
+/* What is to respond: one of the first three, borrowed as all of this is. */
+typedef struct ritz_response_request {
+    const ritz_component *component;
+    const ritz_second_order *matrices;
+    const struct ritz_state_space *states;
+    const ritz_damping *damping; /* NULL: that of the matrices alone */
+    double from_hz, to_hz;       /* where responses will be asked for */
+    double up_to_hz;  /* modes of a component; 0: three times the end */
+    double tolerance; /* of engines that approximate, relative to the largest
+                         |H| of a channel; 0: 1e-9 */
+} ritz_response_request;
+
+/* A model made ready to respond at any frequency of its range: opaque. */
+typedef struct ritz_responder ritz_responder;
+
+enum {
+    RITZ_RESPONDS_COMPONENT = 1,
+    RITZ_RESPONDS_MATRICES = 2,
+    RITZ_RESPONDS_STATES = 4,
+};
+
+typedef struct ritz_response_engine {
+    const char *name;    /* as typed on the command line */
+    const char *summary; /* one line for --list */
+    const char *reference;
+    /* what a newcomer chooses by: for which models, at what cost, what is
+       guaranteed, where it fails */
+    const char *when, *cost, *holds, *fails;
+    int takes; /* RITZ_RESPONDS_... */
+    ritz_status (*make)(const ritz_response_request *request,
+                        ritz_responder *out);
+} ritz_response_engine;
+
+/** All engines, ended by NULL. */
+extern const ritz_response_engine *const ritz_response_engines[];
+
+/** Engine called @p name; NULL and a sentence with the nearest if none. */
+const ritz_response_engine *ritz_response_engine_find(const char *name);
+
+/**
+ * The engine that `auto` stands for.
+ *
+ * @param[out] why  a sentence without its end; not to be freed
+ */
+const ritz_response_engine *
+ritz_response_engine_choose(const ritz_response_request *request,
+                            const char **why);
+
+/**
+ * Make a model ready: modes, factors, interpolants, all that points share.
+ *
+ * @return RITZ_ERR_ARGUMENT if the engine is not for such a model;
+ *         RITZ_ERR_CONVERGENCE if it cannot keep the tolerance
+ */
+ritz_status ritz_responder_new(const ritz_response_engine *engine,
+                               const ritz_response_request *request,
+                               ritz_responder **out);
+
+/**
+ * H at one frequency.
+ *
+ * @param[out] H  num_outputs x num_inputs, row by row
+ * @return RITZ_ERR_SINGULAR on an undamped pole, or at 0 Hz where a rigid
+ *         motion is driven and seen; RITZ_ERR_ARGUMENT above the range of a
+ *         component
+ */
+ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
+                              double _Complex *H);
+
+/** What was done to make it ready: "" if there is nothing to say. */
+const char *ritz_responder_remark(const ritz_responder *responder);
+
+/** The points of a grid, which must lie in the range that was asked for. */
+ritz_status ritz_responder_sample(ritz_responder *responder,
+                                  const ritz_grid *grid, ritz_response *out);
+
+/**
+ * The points of a grid and as many more as it takes for ritz_response_at to be
+ * within @p tolerance, relative to the largest |H| of each channel, at all
+ * frequencies between; among them the peak of every pole and the dip of every
+ * zero that is near enough to the axis to make one.
+ *
+ * @return RITZ_ERR_SINGULAR as above; RITZ_ERR_CONVERGENCE if it would take
+ *         more points than can be
+ * @cost   at 1e-3 some 40 points a resonance, at 1e-6 some 200
+ */
+ritz_status ritz_responder_follow(ritz_responder *responder,
+                                  const ritz_grid *grid, double tolerance,
+                                  ritz_response *out);
+
+void ritz_responder_free(ritz_responder **responder);
+
+/**
+ * All at once for a component: the points of @p grid if @p tolerance is 0, else
+ * those that keep it. @p engine NULL: the one that is chosen.
+ */
+ritz_status ritz_response_component(const ritz_component *component,
+                                    const ritz_response_engine *engine,
+                                    const ritz_damping *damping,
+                                    double up_to_hz, double tolerance,
+                                    const ritz_grid *grid, ritz_response *out);
 
 #endif

@@ -105,8 +105,18 @@ done:
     return status;
 }
 
-/* Whether any output sees, through mode k, any input; of what all modes do. */
-static bool matters(const ritz_poles *poles, int64_t k)
+/* How much output i sees of mode k; a rigid acceleration is no pole. */
+static double seen_of(const ritz_poles *poles, int64_t i, int64_t k)
+{
+    const ritz_io *io = &poles->io;
+    double of_rest = fabs(ritz_dense_col(&io->C, k)[i]) +
+                     fabs(ritz_dense_col(&io->Cv, k)[i]);
+
+    return k < poles->num_rigid ? of_rest
+                                : of_rest + fabs(ritz_dense_col(&io->Ca, k)[i]);
+}
+
+bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
 {
     const ritz_io *io = &poles->io;
 
@@ -118,13 +128,11 @@ static bool matters(const ritz_poles *poles, int64_t k)
             driven = fmax(driven, fabs(b[m]));
         for (int64_t i = 0; i < io->num_outputs; i++) {
             double seen = 0.0;
-            double own = fabs(ritz_dense_col(&io->C, k)[i]) +
-                         fabs(ritz_dense_col(&io->Cv, k)[i]);
 
             for (int64_t m = 0; m < poles->count; m++)
-                seen = fmax(seen, fabs(ritz_dense_col(&io->C, m)[i]) +
-                                      fabs(ritz_dense_col(&io->Cv, m)[i]));
-            if (fabs(b[k]) * own > unseen_below * driven * seen)
+                seen = fmax(seen, seen_of(poles, i, m));
+            if (fabs(b[k]) * seen_of(poles, i, k) >
+                unseen_below * driven * seen)
                 return true;
         }
     }
@@ -143,11 +151,11 @@ static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
 
     *out = 0.0;
     if (on_pole) {
-        RITZ_FAIL_IF(matters(poles, k) && k < poles->num_rigid,
+        RITZ_FAIL_IF(ritz_poles_matter(poles, k) && k < poles->num_rigid,
                      RITZ_ERR_SINGULAR,
                      "at 0 Hz the response is infinite: a rigid-body motion is "
                      "driven and seen, begin above 0 Hz");
-        RITZ_FAIL_IF(matters(poles, k), RITZ_ERR_SINGULAR,
+        RITZ_FAIL_IF(ritz_poles_matter(poles, k), RITZ_ERR_SINGULAR,
                      "%.9g Hz is the frequency of an undamped mode: give it "
                      "damping or leave the point out",
                      hertz);
@@ -176,7 +184,7 @@ done:
 ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
                              double _Complex *q)
 {
-    if (poles->count == 0 || poles->io.num_inputs == 0)
+    if (poles->count + poles->massless == 0 || poles->io.num_inputs == 0)
         return RITZ_OK;
     return poles->coupled ? ritz_poles_together(poles, hertz, q)
                           : solve_apart(poles, hertz, q);

@@ -61,6 +61,12 @@ ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
                              double _Complex *q);
 
 /**
+ * Whether any output sees, through mode k, any input: more than rounding of
+ * what it sees through all.
+ */
+bool ritz_poles_matter(const ritz_poles *poles, int64_t k);
+
+/**
  * Add what the modes, and motions without mass, answer to H, num_outputs x
  * num_inputs, row by row.
  */

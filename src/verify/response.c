@@ -86,5 +86,6 @@ void ritz_response_free(ritz_response *response)
     free(response->input);
     free(response->output);
     free(response->H);
+    free(response->singular);
     *response = (ritz_response){0};
 }

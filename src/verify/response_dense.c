@@ -1,9 +1,7 @@
-/* Response of a small dense model, by all its modes. */
+/* Every mode of a small dense model, for a response by all of them. */
 #include "verify/dense_poles.h"
 #include "verify/state.h"
 #include "verify/static_rest.h"
-
-#include <ritz/monitor.h>
 
 #include <math.h>
 
@@ -55,13 +53,13 @@ done:
  * Damping of motions without mass couples them with the modes: they are taken
  * beside them, as X = [Phi N], and their lambda is N'KN = 1.
  */
-static ritz_status take_massless(const ritz_second_order *model,
+static ritz_status take_massless(const ritz_second_order *model, bool beside,
                                  ritz_pairs *pairs, int64_t *count)
 {
     ritz_status status = RITZ_OK;
     ritz_dense N = {0}, X = {0};
     int64_t m = pairs->Phi.ncol;
-    bool damped = false;
+    bool damped = beside;
 
     *count = 0;
     if (m == pairs->Phi.nrow)
@@ -83,18 +81,53 @@ done:
 }
 
 /* The last coordinates are no modes: no ratio acts on them. */
-static void mark_massless(int64_t count, const ritz_dense *D,
-                          const ritz_damping *damping, ritz_poles *poles)
+static ritz_status mark_massless(int64_t count, const ritz_dense *D,
+                                 const ritz_damping *damping, ritz_poles *poles)
 {
+    ritz_status status = RITZ_OK;
     double b = damping && ritz_damping_is_rayleigh(damping) ? damping->b : 0.0;
 
     poles->count -= count;
     poles->massless = count;
     poles->coupled = poles->coupled || count > 0;
+    if (count > 0 && !poles->D.val) /* beside modes that nothing couples */
+        RITZ_TRY(ritz_dense_new(poles->count + count, poles->count + count,
+                                &poles->D));
+    for (int64_t j = 0; j < poles->count && count > 0; j++)
+        ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
     for (int64_t j = poles->count; j < poles->count + count; j++) {
         poles->rate[j] = b + (D->val ? ritz_dense_col(D, j)[j] : 0.0);
         ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
     }
+done:
+    return status;
+}
+
+ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
+                                const ritz_damping *damping, bool beside,
+                                ritz_pairs *pairs, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense D = {0};
+    ritz_dense K4 = {0};
+    ritz_residual rest = {0};
+    int64_t massless = 0;
+
+    RITZ_TRY(ritz_static_rest(model, pairs, &rest));
+    RITZ_TRY(take_massless(model, beside, pairs, &massless));
+    RITZ_TRY_IN("D", project(model->D, &pairs->Phi, &D));
+    RITZ_TRY_IN("K4", project(model->K4, &pairs->Phi, &K4));
+    RITZ_TRY(ritz_poles_new(pairs, &D, &K4, model->io, damping, out));
+    RITZ_TRY(mark_massless(massless, &D, damping, out));
+    if (massless == 0) {
+        out->rest = rest;
+        rest = (ritz_residual){0};
+    }
+done:
+    ritz_dense_free(&D);
+    ritz_dense_free(&K4);
+    ritz_residual_free(&rest);
+    return status;
 }
 
 ritz_status ritz_poles_of_dense(const ritz_second_order *model,
@@ -102,61 +135,11 @@ ritz_status ritz_poles_of_dense(const ritz_second_order *model,
 {
     ritz_status status = RITZ_OK;
     ritz_pairs pairs = {0};
-    ritz_dense D = {0};
-    ritz_dense K4 = {0};
-    ritz_residual rest = {0};
-    int64_t massless = 0;
 
     RITZ_TRY(ritz_eigen_dense(model->K, model->M, &pairs));
     RITZ_TRY(refuse_unstable(&pairs));
-    RITZ_TRY(ritz_static_rest(model, &pairs, &rest));
-    RITZ_TRY(take_massless(model, &pairs, &massless));
-    RITZ_TRY_IN("D", project(model->D, &pairs.Phi, &D));
-    RITZ_TRY_IN("K4", project(model->K4, &pairs.Phi, &K4));
-    RITZ_TRY(ritz_poles_new(&pairs, &D, &K4, model->io, damping, out));
-    mark_massless(massless, &D, damping, out);
-    if (massless == 0) {
-        out->rest = rest;
-        rest = (ritz_residual){0};
-    }
+    RITZ_TRY(ritz_poles_of_pairs(model, damping, false, &pairs, out));
 done:
     ritz_pairs_free(&pairs);
-    ritz_dense_free(&D);
-    ritz_dense_free(&K4);
-    ritz_residual_free(&rest);
     return status;
-}
-
-ritz_status ritz_response_second_order(const ritz_second_order *model,
-                                       const ritz_damping *damping,
-                                       const ritz_grid *grid,
-                                       ritz_response *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_poles poles = {0};
-    ritz_response r = {0};
-
-    RITZ_TRY(ritz_poles_of_dense(model, damping, &poles));
-    RITZ_TRY(ritz_response_new(grid, &poles, "modal", damping, &r));
-    for (int64_t k = 0; k < r.count; k++) {
-        RITZ_TRY(ritz_poles_add(&poles, r.hertz[k],
-                                r.H + k * r.num_outputs * r.num_inputs));
-        ritz_monitor_step("response", k + 1, r.count);
-    }
-    *out = r;
-    r = (ritz_response){0};
-done:
-    ritz_poles_free(&poles);
-    ritz_response_free(&r);
-    return status;
-}
-
-ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
-                                const ritz_damping *damping,
-                                const ritz_grid *grid, ritz_response *out)
-{
-    const ritz_second_order model = {.K = K, .M = M, .D = D, .io = io};
-
-    return ritz_response_second_order(&model, damping, grid, out);
 }

@@ -1,40 +1,122 @@
-/* Response of a full component by its lowest modes and the residual. */
-#include "verify/poles.h"
+/*
+ * Response by modes: all of a small dense model; of a full component its lowest
+ * ones and the residual of the rest.
+ */
+#include "base/alloc.h"
+#include "verify/dense_poles.h"
+#include "verify/responder.h"
 
-#include <ritz/monitor.h>
+#include <stdlib.h>
+
+/* `pairs` and `residual` of a component alone. */
+typedef struct modal {
+    ritz_pairs pairs;
+    ritz_poles poles;
+    ritz_residual residual;
+} modal;
+
+static void modal_free(modal *m)
+{
+    ritz_pairs_free(&m->pairs);
+    ritz_poles_free(&m->poles);
+    ritz_residual_free(&m->residual);
+}
+
+static void finish(void *state)
+{
+    modal_free(state);
+    free(state);
+}
+
+static ritz_status at(void *state, double hertz, double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    const modal *m = state;
+
+    RITZ_TRY(ritz_poles_add(&m->poles, hertz, H));
+    ritz_residual_add(&m->residual, hertz, H);
+done:
+    return status;
+}
+
+static ritz_status of_component(const ritz_response_request *request, modal *m)
+{
+    ritz_status status = RITZ_OK;
+    double highest = ritz_response_highest(request);
+
+    RITZ_FAIL_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
+                 "modes up to %g Hz cannot give a response up to %g Hz",
+                 highest, request->to_hz);
+    RITZ_TRY(ritz_poles_of_component(request->component, request->damping,
+                                     highest, &m->pairs, &m->poles));
+    RITZ_TRY(ritz_residual_new(request->component, &m->pairs, request->to_hz,
+                               &m->residual));
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_response_request *request,
+                        ritz_responder *out)
+{
+    ritz_status status = RITZ_OK;
+    modal *m = NULL;
+
+    RITZ_NEW(m, 1);
+    if (request->component)
+        RITZ_TRY(of_component(request, m));
+    else
+        RITZ_TRY(ritz_poles_of_dense(request->matrices, request->damping,
+                                     &m->poles));
+    out->poles = &m->poles;
+    out->at = at;
+    out->free = finish;
+    out->state = m;
+    m = NULL;
+done:
+    if (m)
+        finish(m);
+    return status;
+}
+
+const ritz_response_engine ritz_response_engine_modal = {
+    .name = "modal",
+    .summary = "a sum of modes, and of a component the series of the rest",
+    .reference = "Sirlin1992",
+    .when = "reduced components and systems; components with damping ratios",
+    .cost = "the modes; then O(modes) a point, O(modes^3) where D or K4 "
+            "couples them",
+    .holds = "exact for dense models; of components without D and K4 to 1e-12",
+    .fails = "of components, D and K4 act on the modes that are summed alone",
+    .takes = RITZ_RESPONDS_COMPONENT | RITZ_RESPONDS_MATRICES,
+    .make = make,
+};
 
 ritz_status ritz_response_modal(const ritz_component *component,
                                 const ritz_damping *damping, double up_to_hz,
                                 const ritz_grid *grid, ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
-    ritz_poles poles = {0};
-    ritz_residual residual = {0};
-    ritz_response r = {0};
-    double highest = up_to_hz > 0.0 ? up_to_hz : 3.0 * grid->to_hz;
+    ritz_response_request request = {
+        .component = component, .damping = damping, .up_to_hz = up_to_hz};
 
-    RITZ_TRY(ritz_grid_check(grid));
-    RITZ_FAIL_IF(highest < grid->to_hz, RITZ_ERR_ARGUMENT,
-                 "modes up to %g Hz cannot give a response up to %g Hz",
-                 highest, grid->to_hz);
-    RITZ_TRY(
-        ritz_poles_of_component(component, damping, highest, &pairs, &poles));
-    RITZ_TRY(ritz_residual_new(component, &pairs, grid->to_hz, &residual));
-    RITZ_TRY(ritz_response_new(grid, &poles, "modal", damping, &r));
-    for (int64_t k = 0; k < r.count; k++) {
-        double _Complex *H = r.H + k * r.num_outputs * r.num_inputs;
+    return ritz_response_once(&ritz_response_engine_modal, &request, grid, out);
+}
 
-        RITZ_TRY(ritz_poles_add(&poles, r.hertz[k], H));
-        ritz_residual_add(&residual, r.hertz[k], H);
-        ritz_monitor_step("response", k + 1, r.count);
-    }
-    *out = r;
-    r = (ritz_response){0};
-done:
-    ritz_pairs_free(&pairs);
-    ritz_poles_free(&poles);
-    ritz_residual_free(&residual);
-    ritz_response_free(&r);
-    return status;
+ritz_status ritz_response_second_order(const ritz_second_order *model,
+                                       const ritz_damping *damping,
+                                       const ritz_grid *grid,
+                                       ritz_response *out)
+{
+    ritz_response_request request = {.matrices = model, .damping = damping};
+
+    return ritz_response_once(&ritz_response_engine_modal, &request, grid, out);
+}
+
+ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
+                                const ritz_dense *D, const ritz_io *io,
+                                const ritz_damping *damping,
+                                const ritz_grid *grid, ritz_response *out)
+{
+    const ritz_second_order model = {.K = K, .M = M, .D = D, .io = io};
+
+    return ritz_response_second_order(&model, damping, grid, out);
 }

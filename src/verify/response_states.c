@@ -10,9 +10,8 @@
 #include "linear/eigenvalues.h"
 #include "linear/frame.h"
 #include "linear/general.h"
-#include "verify/poles.h"
+#include "verify/responder.h"
 
-#include <ritz/monitor.h>
 #include <ritz/state_space.h>
 
 #include <complex.h>
@@ -190,33 +189,75 @@ done:
     return status;
 }
 
+typedef struct states {
+    ritz_poles poles;
+    hessenberg h;
+    const ritz_state_space *model; /* borrowed */
+} states;
+
+static void free_states(void *state)
+{
+    states *s = state;
+
+    ritz_poles_free(&s->poles);
+    finish(&s->h);
+    free(s);
+}
+
+static ritz_status at(void *state, double hertz, double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    states *s = state;
+    hessenberg *h = &s->h;
+
+    RITZ_TRY(solve(h, hertz));
+    for (int i = 0; i < h->p; i++)
+        for (int j = 0; j < h->m; j++)
+            H[i * h->m + j] =
+                h->G[i + j * h->p] + ritz_dense_col(&s->model->D, j)[i];
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_response_request *request,
+                        ritz_responder *out)
+{
+    ritz_status status = RITZ_OK;
+    states *s = NULL;
+
+    RITZ_NEW(s, 1);
+    s->model = request->states;
+    RITZ_TRY(find_poles(s->model, &s->poles));
+    RITZ_TRY(start(s->model, &s->h));
+    memcpy(out->damping, s->model->damping, sizeof out->damping);
+    out->poles = &s->poles;
+    out->at = at;
+    out->free = free_states;
+    out->state = s;
+    s = NULL;
+done:
+    if (s)
+        free_states(s);
+    return status;
+}
+
+const ritz_response_engine ritz_response_engine_states = {
+    .name = "states",
+    .summary = "of a state space, by its Hessenberg form",
+    .reference = "KenneyStubberudLaub1992",
+    .when = "state spaces",
+    .cost = "O(n^3), then O(n^2) a point and input",
+    .holds = "exact to rounding",
+    .fails = "a point on a pole is refused",
+    .takes = RITZ_RESPONDS_STATES,
+    .make = make,
+};
+
 ritz_status ritz_response_states(const ritz_state_space *model,
                                  const ritz_grid *grid, ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_poles poles = {0};
-    ritz_response r = {0};
-    hessenberg h = {0};
+    ritz_response_request request = {.states = model};
 
-    RITZ_TRY(find_poles(model, &poles));
-    RITZ_TRY(ritz_response_new(grid, &poles, "states", NULL, &r));
-    RITZ_TRY(start(model, &h));
-    for (int64_t k = 0; k < r.count; k++) {
-        double _Complex *H = r.H + k * r.num_outputs * r.num_inputs;
-
-        RITZ_TRY(solve(&h, r.hertz[k]));
-        for (int64_t i = 0; i < h.p; i++)
-            for (int64_t j = 0; j < h.m; j++)
-                H[i * h.m + j] =
-                    h.G[i + j * h.p] + ritz_dense_col(&model->D, j)[i];
-        ritz_monitor_step("response", k + 1, r.count);
-    }
-    memcpy(r.damping, model->damping, sizeof r.damping);
-    *out = r;
-    r = (ritz_response){0};
-done:
-    ritz_poles_free(&poles);
-    ritz_response_free(&r);
-    finish(&h);
-    return status;
+    return ritz_response_once(&ritz_response_engine_states, &request, grid,
+                              out);
 }
