@@ -37,7 +37,7 @@ ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
     if (k < 0)
         goto done;
     error = times * poles.error[k];
-    out->pole[0] = poles.re[k];
+    out->pole[0] = poles.re[k] + 0.0; /* -0 reads as if it decayed */
     out->pole[1] = fabs(poles.im[k]);
     out->tolerance = poles.radius > 0.0 ? error / poles.radius : 0.0;
     if (poles.re[k] >= -error)
