@@ -114,6 +114,7 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
                     const char *name)
 {
     char modes[64] = "-";
+    char cost[32] = "-"; /* of what is not met it is not measured */
     size_t used = 0;
 
     if (!c) {
@@ -129,13 +130,14 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
         cli_say(run, "%-18s refused: %s", name, c->refusal);
         return;
     }
-    cli_say(run, "%-18s %6lld %8s  %8.2g %-10s %8.2g %9.2g  %s",
-            c->method->name, (long long)c->order, modes, c->excess,
+    if (c->cost.order > 0)
+        snprintf(cost, sizeof cost, "%.2g", c->cost.seconds_per_second);
+    cli_say(run, "%-18s %6lld %8s  %8.2g %-10s %8.2g %9s  %s", c->method->name,
+            (long long)c->order, modes, c->excess,
             c->binding < 0
                 ? ""
                 : ritz_tolerance_word(c->errors.item[c->binding].name),
-            c->spent.cpu, c->cost.order > 0 ? c->cost.seconds_per_second : 0.0,
-            c->feasible ? "" : "not met");
+            c->spent.cpu, cost, c->feasible ? "" : "not met");
 }
 
 static void say_head(const cli_run *run)

@@ -17,6 +17,7 @@ typedef struct asked {
     bool all;
     int64_t order; /* of --all; 0: the answer's */
     int64_t seed;
+    const ritz_component *component; /* NULL: of a scene */
 } asked;
 
 /* "craig-bampton,rubin", or "all" there are. */
@@ -115,6 +116,21 @@ done:
     return status;
 }
 
+/* What inputs and outputs see was held to the tolerance, what other bodies feel
+   at a port was not, unless the method keeps ports. */
+static void warn_of_ports(cli_run *run, const ritz_component *component,
+                          const ritz_fit_candidate *chosen)
+{
+    if (!component || component->num_ports == 0 ||
+        chosen->method->uses & RITZ_USES_ATTACHED)
+        return;
+    cli_warn(run,
+             "%s keeps nothing for port '%s': the tolerance was held against "
+             "inputs and outputs alone. Where other bodies are joined to it, "
+             "fit their scene, or name --methods that keep ports",
+             chosen->method->name, component->port[0].name);
+}
+
 /* Search, say, record, write; nothing is written if nothing is found. */
 static ritz_status answer(cli_run *run, const asked *a, fit_run *recorder,
                           const ritz_scene *scene, ritz_fitter *fitter)
@@ -134,6 +150,7 @@ static ritz_status answer(cli_run *run, const asked *a, fit_run *recorder,
                    (fit_mark){.runner_up = true});
     fit_record(recorder, chosen, (fit_mark){.chosen = true, .why = fit.why});
     RITZ_TRY(recorder->recorded);
+    warn_of_ports(run, a->component, chosen);
     if (run->output)
         RITZ_TRY(scene ? write_scene(run, a, scene, fitter, chosen)
                        : write_component(run, fitter, chosen));
@@ -177,6 +194,7 @@ static ritz_status fit(cli_run *run, asked *a)
                      "'%s' is a component: --components is for scenes", path);
         RITZ_TRY(model_read(run, path, MODEL_COMPONENT, &full));
         RITZ_TRY_IN(path, dampers_tune(&full, &a->damper));
+        a->component = &full.component;
         RITZ_TRY_IN(path,
                     ritz_fitter_new(&full.component, &a->request, &fitter));
         RITZ_TRY(answer(run, a, &recorder, NULL, fitter));

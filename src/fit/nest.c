@@ -22,8 +22,9 @@ static const int64_t most_entries = 4000000;
 bool ritz_fit_stays(ritz_column_kind kind)
 {
     static const ritz_column_kind kinds[] = {
-        RITZ_COLUMN_RIGID, RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
-        RITZ_COLUMN_MASSLESS, RITZ_COLUMN_FORCE};
+        RITZ_COLUMN_RIGID,      RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
+        RITZ_COLUMN_ATTACHMENT, RITZ_COLUMN_RESIDUAL,   RITZ_COLUMN_MASSLESS,
+        RITZ_COLUMN_FORCE};
 
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
         if (kind == kinds[k])

@@ -246,6 +246,7 @@ static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
                method != &ritz_method_serep;
     return (method->uses & RITZ_USES_MODES) && !(method->uses & special) &&
            !(method->uses & RITZ_USES_NEIGHBOUR) &&
+           method != &ritz_method_dual_craig_bampton &&
            method != &ritz_method_balanced_band; /* its models are of states */
 }
 
