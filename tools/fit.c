@@ -14,20 +14,6 @@ static json_t *values_json(const ritz_measures *measures)
     return object;
 }
 
-static json_t *cost_json(const ritz_cost *cost)
-{
-    json_t *object = json_object();
-
-    json_object_set_new(object, "highest_hz", cli_real(cost->highest_hz));
-    json_object_set_new(object, "step_explicit", cli_real(cost->step_explicit));
-    json_object_set_new(object, "step_accurate", cli_real(cost->step_accurate));
-    json_object_set_new(object, "step", cli_real(cost->step));
-    json_object_set_new(object, "seconds_per_second",
-                        cli_real(cost->seconds_per_second));
-    json_object_set_new(object, "integrator", cli_string(cost->integrator));
-    return object;
-}
-
 /* "response-relative": 0.01 of each measure that has a tolerance. */
 static json_t *tolerance_json(const ritz_verify_request *limits)
 {
@@ -76,7 +62,7 @@ static json_t *candidate_json(const ritz_fit_candidate *c)
     json_object_set_new(object, "errors", values_json(&c->errors));
     json_object_set_new(object, "estimates", values_json(&c->estimates));
     if (c->cost.order > 0)
-        json_object_set_new(object, "cost", cost_json(&c->cost));
+        json_object_set_new(object, "cost", model_cost_json(&c->cost));
     json_object_set_new(object, "feasible", json_boolean(c->feasible));
     if (c->refusal[0])
         json_object_set_new(object, "refused", cli_string(c->refusal));
@@ -192,7 +178,7 @@ static void say_cost(cli_run *run, const ritz_fitter *fitter,
             "Suggested step %.3g s, which resolves the band to %g Hz: %.3g s "
             "of processor a second simulated (%s, measured).",
             cost->step, band[1], cost->seconds_per_second, cost->integrator);
-    json_object_set_new(run->report, "cost", cost_json(cost));
+    json_object_set_new(run->report, "cost", model_cost_json(cost));
 }
 
 static void say_answer(cli_run *run, const ritz_fitter *fitter,

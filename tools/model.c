@@ -230,6 +230,20 @@ json_t *model_measures_json(const ritz_measures *measures, const char *known)
     return array;
 }
 
+json_t *model_cost_json(const ritz_cost *cost)
+{
+    json_t *object = json_object();
+
+    json_object_set_new(object, "highest_hz", cli_real(cost->highest_hz));
+    json_object_set_new(object, "step_explicit", cli_real(cost->step_explicit));
+    json_object_set_new(object, "step_accurate", cli_real(cost->step_accurate));
+    json_object_set_new(object, "step", cli_real(cost->step));
+    json_object_set_new(object, "seconds_per_second",
+                        cli_real(cost->seconds_per_second));
+    json_object_set_new(object, "integrator", cli_string(cost->integrator));
+    return object;
+}
+
 json_t *model_reals_json(int64_t count, const double *values)
 {
     json_t *array = json_array();

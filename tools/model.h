@@ -6,6 +6,7 @@
 
 #include <ritz/container.h>
 #include <ritz/scene.h>
+#include <ritz/simulate.h>
 #include <ritz/verify.h>
 
 /* Up to here two triangles differ by rounding, which is no cause to warn. */
@@ -78,6 +79,9 @@ ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 void model_say_measures(const cli_run *run, const ritz_measures *measures,
                         const char *known);
 json_t *model_measures_json(const ritz_measures *measures, const char *known);
+
+/** What a simulator pays, as JSON and records have it. */
+json_t *model_cost_json(const ritz_cost *cost);
 
 /** Frequencies as JSON array. */
 json_t *model_reals_json(int64_t count, const double *values);

@@ -8,20 +8,6 @@
 static const double margin = 0.95;
 static const double default_steps = 1000.0;
 
-static json_t *cost_json(const ritz_cost *cost)
-{
-    json_t *object = json_object();
-
-    json_object_set_new(object, "highest_hz", cli_real(cost->highest_hz));
-    json_object_set_new(object, "step_explicit", cli_real(cost->step_explicit));
-    json_object_set_new(object, "step_accurate", cli_real(cost->step_accurate));
-    json_object_set_new(object, "step", cli_real(cost->step));
-    json_object_set_new(object, "seconds_per_second",
-                        cli_real(cost->seconds_per_second));
-    json_object_set_new(object, "integrator", cli_string(cost->integrator));
-    return object;
-}
-
 static ritz_status difference(const ritz_simulated *subject,
                               ritz_simulation_request request, double *out)
 {
@@ -121,8 +107,8 @@ ritz_status simulation_costs(cli_run *run, const ritz_simulated *subject,
     json_object_set_new(run->report, "integrators", rows);
     RITZ_TRY(
         ritz_simulate_cost(subject->model, subject->damping, band_hz, &cost));
-    json_object_set_new(run->report, "cost", cost_json(&cost));
-    json_object_set_new(run->line, "cost", cost_json(&cost));
+    json_object_set_new(run->report, "cost", model_cost_json(&cost));
+    json_object_set_new(run->line, "cost", model_cost_json(&cost));
     say_head(run, &cost);
     if (!driven)
         sweep(&cost, band_hz, drive);
@@ -153,7 +139,7 @@ ritz_status simulation_record_cost(cli_run *run, const ritz_simulated *subject,
         return RITZ_OK;
     RITZ_TRY(
         ritz_simulate_cost(subject->model, subject->damping, band_hz, &cost));
-    json_object_set_new(run->line, "cost", cost_json(&cost));
+    json_object_set_new(run->line, "cost", model_cost_json(&cost));
 done:
     return status;
 }

@@ -60,7 +60,7 @@ def check(tap, tools, expected, options):
 
 
 def check_digits(tap, tools, expected):
-    tools("ritz-export", "--to", "output4", "--text", "--digits", 9,
+    tools("ritz-export", "--to", "output4", "--text", "--digits", 9, "--force",
           "--matrix", "K", "reduced.h5", "-o", "nine.op4")
     for reader, read in READERS.items():
         error = numpy.abs(read(tools.path("nine.op4"))["K"] - expected["K"])
