@@ -45,6 +45,14 @@ ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
                             ritz_loop *out);
 
 /**
+ * Whether all signals of a loop exist; names are not asked.
+ *
+ * @return RITZ_ERR_ARGUMENT naming what does not
+ */
+ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
+                            const ritz_ends *controller);
+
+/**
  * The closed loop as one model, from the plant's inputs to its outputs; states
  * are the plant's, then the controller's.
  *

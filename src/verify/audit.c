@@ -9,23 +9,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+void ritz_audit_add(ritz_audit *audit, int64_t most, const ritz_check *found,
+                    const char *where, const char *says, va_list values)
+{
+    ritz_check *check = NULL;
+
+    if (audit->count >= most)
+        return;
+    check = &audit->check[audit->count++];
+    *check = *found;
+    snprintf(check->where, sizeof check->where, "%s", where ? where : "");
+    vsnprintf(check->says, sizeof check->says, says, values);
+}
+
 void ritz_auditor_say(ritz_auditor *it, const char *name, double value,
                       double limit, ritz_verdict verdict, const char *where,
                       const char *says, ...)
 {
-    ritz_check *check = NULL;
+    ritz_check check = {.value = value, .limit = limit, .verdict = verdict};
     va_list values;
 
-    if (it->audit.count >= RITZ_AUDIT_MOST)
-        return;
-    check = &it->audit.check[it->audit.count++];
-    check->value = value;
-    check->limit = limit;
-    check->verdict = verdict;
-    snprintf(check->name, sizeof check->name, "%s", name);
-    snprintf(check->where, sizeof check->where, "%s", where ? where : "");
+    snprintf(check.name, sizeof check.name, "%s", name);
     va_start(values, says);
-    vsnprintf(check->says, sizeof check->says, says, values);
+    ritz_audit_add(&it->audit, RITZ_AUDIT_MOST, &check, where, says, values);
     va_end(values);
 }
 

@@ -5,6 +5,8 @@
 #include <ritz/audit.h>
 #include <ritz/component.h>
 
+#include <stdarg.h>
+
 enum {
     RITZ_AUDIT_MOST = 32, /* checks; the table in audit.h has fewer */
     RITZ_SHOWN = 4,       /* dofs that a line names before it says "..." */
@@ -20,6 +22,17 @@ typedef struct ritz_forces {
     double bound;
     double fine; /* relative error that is no fault */
 } ritz_forces;
+
+/**
+ * Put a check behind the others, if there is room for it.
+ *
+ * @param[in] most   that there is room for
+ * @param[in] found  name, value, limit and verdict
+ * @param[in] where  NULL: nowhere
+ */
+[[gnu::format(printf, 5, 0)]] void
+ritz_audit_add(ritz_audit *audit, int64_t most, const ritz_check *found,
+               const char *where, const char *says, va_list values);
 
 typedef struct ritz_auditor {
     const ritz_component *component;

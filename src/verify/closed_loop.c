@@ -188,30 +188,6 @@ done:
     return status;
 }
 
-static ritz_status check(const ritz_state_space *p, const ritz_state_space *c,
-                         const ritz_loop *loop)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(loop->num_measured != c->num_inputs ||
-                     loop->num_driven != c->num_outputs,
-                 RITZ_ERR_ARGUMENT,
-                 "a loop of %" PRId64 " measured and %" PRId64
-                 " driven signals is not of this controller",
-                 loop->num_measured, loop->num_driven);
-    for (int64_t k = 0; k < loop->num_measured; k++)
-        RITZ_FAIL_IF(loop->measured[k] < 0 ||
-                         loop->measured[k] >= p->num_outputs,
-                     RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
-                     loop->measured[k] + 1);
-    for (int64_t k = 0; k < loop->num_driven; k++)
-        RITZ_FAIL_IF(loop->driven[k] < 0 || loop->driven[k] >= p->num_inputs,
-                     RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
-                     loop->driven[k] + 1);
-done:
-    return status;
-}
-
 ritz_status ritz_closed_loop(const ritz_state_space *plant,
                              const ritz_state_space *controller,
                              const ritz_loop *loop, ritz_state_space *out)
@@ -222,7 +198,10 @@ ritz_status ritz_closed_loop(const ritz_state_space *plant,
     signals s = {0};
     int64_t states = plant->A.nrow + controller->A.nrow;
 
-    RITZ_TRY(check(plant, controller, loop));
+    RITZ_TRY(ritz_loop_check(
+        loop, &(ritz_ends){plant->num_inputs, plant->num_outputs, NULL, NULL},
+        &(ritz_ends){controller->num_inputs, controller->num_outputs, NULL,
+                     NULL}));
     RITZ_TRY(find_signals(plant, controller, loop, &s));
     RITZ_TRY(fill(plant, controller, loop, &s, &rates, &seen));
     RITZ_TRY(name(plant, controller, &made));

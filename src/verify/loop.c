@@ -235,31 +235,6 @@ static const ritz_response_engine engine = {
     .reference = "Sirlin1992",
 };
 
-static ritz_status check(const ritz_loop *loop, const ritz_io *plant,
-                         const ritz_io *controller)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(loop->num_measured != controller->num_inputs ||
-                     loop->num_driven != controller->num_outputs,
-                 RITZ_ERR_ARGUMENT,
-                 "a loop of %" PRId64 " measured and %" PRId64
-                 " driven signals is not of this controller",
-                 loop->num_measured, loop->num_driven);
-    for (int64_t k = 0; k < loop->num_measured; k++)
-        RITZ_FAIL_IF(loop->measured[k] < 0 ||
-                         loop->measured[k] >= plant->num_outputs,
-                     RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
-                     loop->measured[k] + 1);
-    for (int64_t k = 0; k < loop->num_driven; k++)
-        RITZ_FAIL_IF(loop->driven[k] < 0 ||
-                         loop->driven[k] >= plant->num_inputs,
-                     RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
-                     loop->driven[k] + 1);
-done:
-    return status;
-}
-
 ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
                                 ritz_responder *controller, int64_t num_poles,
                                 const double _Complex *pole,
@@ -267,10 +242,13 @@ ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
 {
     ritz_status status = RITZ_OK;
     const ritz_io *io = &plant->poles->io;
+    const ritz_io *other = &controller->poles->io;
     ritz_responder *r = NULL;
     closed *s = NULL;
 
-    RITZ_TRY(check(loop, io, &controller->poles->io));
+    RITZ_TRY(ritz_loop_check(
+        loop, &(ritz_ends){io->num_inputs, io->num_outputs, NULL, NULL},
+        &(ritz_ends){other->num_inputs, other->num_outputs, NULL, NULL}));
     RITZ_NEW(r, 1);
     RITZ_NEW(s, 1);
     r->state = s;

@@ -16,6 +16,31 @@ static int64_t find(int64_t count, const char (*name)[RITZ_NAME_SIZE],
     return -1;
 }
 
+ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
+                            const ritz_ends *controller)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(loop->num_measured != controller->num_inputs ||
+                     loop->num_driven != controller->num_outputs,
+                 RITZ_ERR_ARGUMENT,
+                 "a loop of %" PRId64 " measured and %" PRId64
+                 " driven signals is not of this controller",
+                 loop->num_measured, loop->num_driven);
+    for (int64_t k = 0; k < loop->num_measured; k++)
+        RITZ_FAIL_IF(loop->measured[k] < 0 ||
+                         loop->measured[k] >= plant->num_outputs,
+                     RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
+                     loop->measured[k] + 1);
+    for (int64_t k = 0; k < loop->num_driven; k++)
+        RITZ_FAIL_IF(loop->driven[k] < 0 ||
+                         loop->driven[k] >= plant->num_inputs,
+                     RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
+                     loop->driven[k] + 1);
+done:
+    return status;
+}
+
 /* One place is taken once. */
 static ritz_status put(int64_t *place, int64_t index, const char *name)
 {

@@ -18,19 +18,12 @@ void ritz_prober_say(ritz_prober *it, const char *name, double value,
                      double limit, ritz_verdict verdict, const char *where,
                      const char *says, ...)
 {
-    ritz_check *check = NULL;
+    ritz_check check = {.value = value, .limit = limit, .verdict = verdict};
     va_list values;
 
-    if (it->audit.count >= RITZ_PROBE_MOST)
-        return;
-    check = &it->audit.check[it->audit.count++];
-    check->value = value;
-    check->limit = limit;
-    check->verdict = verdict;
-    snprintf(check->name, sizeof check->name, "%s", name);
-    snprintf(check->where, sizeof check->where, "%s", where ? where : "");
+    snprintf(check.name, sizeof check.name, "%s", name);
     va_start(values, says);
-    vsnprintf(check->says, sizeof check->says, says, values);
+    ritz_audit_add(&it->audit, RITZ_PROBE_MOST, &check, where, says, values);
     va_end(values);
 }
 
