@@ -17,10 +17,10 @@
 
 static const ritz_fit_request plain = RITZ_FIT_NONE;
 
-static const ritz_method *const some[] = {
+enum { SOME = 5 };
+static const ritz_method *const some[SOME] = {
     &ritz_method_craig_bampton, &ritz_method_krylov, &ritz_method_macneal_rubin,
     &ritz_method_normal_modes, &ritz_method_rubin};
-enum { SOME = sizeof some / sizeof *some };
 
 /* Without what costs time and decides nothing. */
 static ritz_fit_request quick(double to_hz, double zeta, const char *tolerance)
