@@ -104,7 +104,8 @@ static ritz_status make_ladder(ritz_fitter *f)
             all[count++] = (rung){ritz_eigen_hertz(pairs.lambda[j]), k};
         ritz_pairs_free(&pairs);
     }
-    qsort(all, (size_t)count, sizeof *all, by_hertz);
+    if (all)
+        qsort(all, (size_t)count, sizeof *all, by_hertz);
     RITZ_NEW(f->step, count);
     for (int64_t k = 0; k < count; k++)
         f->step[k] = all[k].body;
@@ -198,16 +199,17 @@ static ritz_status as_component(const ritz_configuration *from,
                                 const ritz_scene *scene, ritz_component *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_dense *const matrix[] = {&from->K, &from->M, &from->D,
-                                        &from->K4};
+    enum { MATRICES = 4 };
+    const ritz_dense *const matrix[MATRICES] = {&from->K, &from->M, &from->D,
+                                                &from->K4};
     ritz_component made = {.num_dofs = from->K.ncol};
-    ritz_sparse *const into[] = {&made.K, &made.M, &made.D, &made.K4};
+    ritz_sparse *const into[MATRICES] = {&made.K, &made.M, &made.D, &made.K4};
     ritz_dense eye = {0};
 
     RITZ_TRY(ritz_dense_new(made.num_dofs, made.num_dofs, &eye));
     for (int64_t j = 0; j < made.num_dofs; j++)
         ritz_dense_col(&eye, j)[j] = 1.0;
-    for (size_t k = 0; k < sizeof matrix / sizeof *matrix; k++)
+    for (int k = 0; k < MATRICES; k++)
         if (matrix[k]->val)
             RITZ_TRY(as_sparse(matrix[k], into[k]));
     RITZ_TRY(ritz_io_project(&from->io, &eye, &made.io));

@@ -260,7 +260,7 @@ static ritz_status list_methods(const ritz_fitter *fitter, ritz_fit *fit)
         all++;
     if (asked->num_methods > 0)
         all = asked->num_methods;
-    RITZ_NEW(fit->method, all);
+    RITZ_NEW(fit->method, all); /* NOLINT: an array of pointers is meant */
     RITZ_NEW(fit->best, all);
     RITZ_NEW(fit->reached, all);
     for (int64_t k = 0; k < all; k++) {
