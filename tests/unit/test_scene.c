@@ -460,6 +460,15 @@ static void bad_components_are_refused(void **state)
         {"scene: a\ncomponents: {a: {model: m, basis: b, modes: 1, "
          "up_to_hz: 2}}\n",
          "s:2:58: 'modes' and 'up_to_hz' are both given, one decides"},
+    };
+
+    (void)state;
+    ASSERT_ALL_REFUSED(cases);
+}
+
+static void ways_to_reduce_that_make_no_sense_are_refused(void **state)
+{
+    static const refusal cases[] = {
         {"scene: a\ncomponents: {a: {model: m, modes: 1}}\n",
          "s:2:35: 'modes' says how to reduce, which needs a 'basis' too"},
         {"scene: a\ncomponents: {a: {model: m, order: 0}}\n",
@@ -1105,6 +1114,7 @@ int main(void)
         cmocka_unit_test(texts_that_are_no_yaml_are_refused),
         cmocka_unit_test(bad_keys_are_refused),
         cmocka_unit_test(bad_components_are_refused),
+        cmocka_unit_test(ways_to_reduce_that_make_no_sense_are_refused),
         cmocka_unit_test(joints_of_every_type_are_read),
         cmocka_unit_test(bad_joints_are_refused),
         cmocka_unit_test(bad_axes_and_angles_are_refused),
