@@ -67,7 +67,7 @@ ritz_status ritz_sides_open(const ritz_second_order *model,
                             const ritz_damping *damping, ritz_sides *sides);
 
 /** That what goes in and comes out is the same of both. */
-ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *reduced);
+ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *io);
 
 /** The full model at the points of a sweep, which has its hertz. */
 ritz_status ritz_reference_respond(const ritz_reference *reference,
