@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "verify/poles.h"
+#include "verify/widen.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -20,44 +21,6 @@ static const double worth_climbing = 0.5;
 static const double golden = 0.61803398874989485;
 /* Of a bracket's length when it is done, relative to its frequency. */
 static const double close_enough = 1e-9;
-
-static ritz_status widen(const ritz_dense *A, double _Complex **out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, A->nrow * A->ncol);
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        (*out)[k] = A->val[k];
-done:
-    return status;
-}
-
-/* B := Q^H B, C := C Z */
-static ritz_status turn(ritz_peak *s, const double _Complex *Q,
-                        const double _Complex *Z)
-{
-    ritz_status status = RITZ_OK;
-    const double _Complex one = 1.0, zero = 0.0;
-    double _Complex *B = NULL, *C = NULL;
-    int n = s->n, m = s->m, p = s->p;
-
-    RITZ_NEW(B, (int64_t)n * m);
-    RITZ_NEW(C, (int64_t)p * n);
-    cblas_zgemm(CblasColMajor, CblasConjTrans, CblasNoTrans, n, m, n, &one, Q,
-                n, s->B, n, &zero, B, n);
-    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, n, n, &one, s->C,
-                p, Z, n, &zero, C, p);
-    free(s->B);
-    free(s->C);
-    s->B = B;
-    s->C = C;
-    B = NULL;
-    C = NULL;
-done:
-    free(B);
-    free(C);
-    return status;
-}
 
 /* Blocks of two, which stand for a pair, become triangles. */
 static ritz_status triangularise(ritz_peak *s)
@@ -79,7 +42,7 @@ static ritz_status triangularise(ritz_peak *s)
         info = LAPACKE_zhseqr(LAPACK_COL_MAJOR, 'S', 'I', s->n, 1, s->n, s->S,
                               s->n, alpha, Q, s->n);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
-    RITZ_TRY(turn(s, Q, s->P ? Z : Q));
+    RITZ_TRY(ritz_turn(s->n, s->m, s->p, Q, s->P ? Z : Q, &s->B, &s->C));
 done:
     free(Q);
     free(Z);
@@ -96,12 +59,12 @@ ritz_status ritz_peak_new(const ritz_split *split, const ritz_dense *B,
     ritz_peak s = {.n = (int)B->nrow, .m = (int)B->ncol, .p = (int)C->nrow};
     int64_t least = s.m < s.p ? s.m : s.p;
 
-    RITZ_TRY(widen(&split->S, &s.S));
+    RITZ_TRY(ritz_widen(&split->S, &s.S));
     if (split->P.val)
-        RITZ_TRY(widen(&split->P, &s.P));
-    RITZ_TRY(widen(B, &s.B));
-    RITZ_TRY(widen(C, &s.C));
-    RITZ_TRY(widen(D, &s.D));
+        RITZ_TRY(ritz_widen(&split->P, &s.P));
+    RITZ_TRY(ritz_widen(B, &s.B));
+    RITZ_TRY(ritz_widen(C, &s.C));
+    RITZ_TRY(ritz_widen(D, &s.D));
     RITZ_NEW(s.T, (int64_t)s.n * s.n);
     RITZ_NEW(s.X, (int64_t)s.n * s.m);
     RITZ_NEW(s.H, (int64_t)s.p * s.m);

@@ -9,6 +9,7 @@
 
 #include "base/alloc.h"
 #include "verify/poles.h"
+#include "verify/widen.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -27,43 +28,6 @@ struct ritz_sampler {
 /* On a pole there is no answer. */
 static const double on_pole = 1e-13;
 
-static ritz_status widen(const ritz_dense *A, double _Complex **out)
-{
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, A->nrow * A->ncol);
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        (*out)[k] = A->val[k];
-done:
-    return status;
-}
-
-/* B := U^* B, C := C U */
-static ritz_status turn(ritz_sampler *s, const double _Complex *U)
-{
-    ritz_status status = RITZ_OK;
-    const double _Complex one = 1.0, zero = 0.0;
-    double _Complex *B = NULL, *C = NULL;
-    int n = s->n, p = s->p;
-
-    RITZ_NEW(B, (int64_t)n * p);
-    RITZ_NEW(C, (int64_t)n * p);
-    cblas_zgemm(CblasColMajor, CblasConjTrans, CblasNoTrans, n, p, n, &one, U,
-                n, s->B, n, &zero, B, n);
-    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, n, n, &one, s->C,
-                p, U, n, &zero, C, p);
-    free(s->B);
-    free(s->C);
-    s->B = B;
-    s->C = C;
-    B = NULL;
-    C = NULL;
-done:
-    free(B);
-    free(C);
-    return status;
-}
-
 ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
 {
     ritz_status status = RITZ_OK;
@@ -77,9 +41,9 @@ ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
     s->p = (int)model->B.ncol;
     s->D = model->D.val;
     s->power = model->power;
-    RITZ_TRY(widen(&model->A, &s->S));
-    RITZ_TRY(widen(&model->B, &s->B));
-    RITZ_TRY(widen(&model->C, &s->C));
+    RITZ_TRY(ritz_widen(&model->A, &s->S));
+    RITZ_TRY(ritz_widen(&model->B, &s->B));
+    RITZ_TRY(ritz_widen(&model->C, &s->C));
     RITZ_NEW(s->T, (int64_t)s->n * s->n);
     RITZ_NEW(s->X, (int64_t)s->n * s->p);
     RITZ_NEW(s->H, (int64_t)s->p * s->p);
@@ -90,7 +54,7 @@ ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
                              &none, lambda, U, s->n);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
     if (s->n > 0)
-        RITZ_TRY(turn(s, U));
+        RITZ_TRY(ritz_turn(s->n, s->p, s->p, U, U, &s->B, &s->C));
     *out = s;
     s = NULL;
 done:
