@@ -62,7 +62,7 @@ static const char fixed_beams[] =
     "band_hz: [0, 0.2]\n"
     "damping: {modal: 0.01}\n";
 
-static const char hinged_beams[] =
+static const char mixed_beams[] =
     "scene: an arm\n"
     "components:\n"
     "  left: {model: left.h5, basis: craig-bampton, modes: 4}\n"
@@ -74,6 +74,19 @@ static const char hinged_beams[] =
     " {name: z, at: left/joint, component: 2}]\n"
     "band_hz: [0, 0.5]\n"
     "damping: {modal: 0.01}\n";
+
+static const char driven_beams[] =
+    "scene: driven at the joint\n"
+    "components:\n"
+    "  left: {model: left.h5, basis: craig-bampton, modes: 4}\n"
+    "  right: {model: right.h5, basis: craig-bampton, modes: 4}\n"
+    "joints:\n"
+    "  - {name: j, between: [left/joint, right/joint], type: fixed}\n"
+    "inputs: [{name: f, at: left/joint, component: 2}]\n"
+    "outputs: [{name: y, at: right/tip, component: 2},"
+    " {name: z, at: right/tip, component: 6}]\n"
+    "band_hz: [0, 0.3]\n"
+    "damping: {modal: 0.005}\n";
 
 /* Every pair of numbers of modes up to `most` each, of every method. */
 static int64_t exhaust(ritz_fitter *fitter, const ritz_fit *fit, int64_t most)
@@ -128,6 +141,31 @@ static void two_beams_are_fitted_within_one(void **state)
     ritz_scene_free(&scene);
 }
 
+/* Other lengths, ends and tolerances: each a scene of its own. */
+static void other_beams_are_fitted_within_one(void **state)
+{
+    static const struct {
+        int64_t left, right;
+        const char *text, *tolerance;
+    } cases[] = {
+        {7, 3, fixed_beams, "frequency=1e-3"},
+        {3, 8, fixed_beams, "response=1e-3,gain=1e-2"},
+        {5, 5, driven_beams, "response=1e-2,frequency=1e-2"},
+        {4, 7, driven_beams, "frequency=1e-4,response=1e-3"},
+    };
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        const ritz_fit_request request = quick(cases[k].tolerance);
+        ritz_scene scene = {0};
+
+        store_beams(cases[k].left, cases[k].right);
+        folder_parse(cases[k].text, &scene);
+        assert_within_one(&scene, &request, 10);
+        ritz_scene_free(&scene);
+    }
+}
+
 static void beams_along_and_across_are_fitted_within_one(void **state)
 {
     const ritz_fit_request request = quick("frequency=1e-2,response=1e-1");
@@ -135,7 +173,7 @@ static void beams_along_and_across_are_fitted_within_one(void **state)
 
     (void)state;
     store_beams(6, 3);
-    folder_parse(hinged_beams, &scene);
+    folder_parse(mixed_beams, &scene);
     assert_within_one(&scene, &request, 6);
     ritz_scene_free(&scene);
 }
@@ -263,6 +301,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_beams_are_fitted_within_one),
+        cmocka_unit_test(other_beams_are_fitted_within_one),
         cmocka_unit_test(beams_along_and_across_are_fitted_within_one),
         cmocka_unit_test(the_spacecraft_is_fitted_within_one),
         cmocka_unit_test(what_meets_the_listed_angles_alone_is_caught),
