@@ -94,6 +94,9 @@ ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out);
 /** @p A as a dense matrix. @return RITZ_ERR_ARGUMENT if it is too large */
 ritz_status ritz_sparse_dense(const ritz_sparse *A, ritz_dense *out);
 
+/** Entries of @p A that are not 0. */
+ritz_status ritz_sparse_from_dense(const ritz_dense *A, ritz_sparse *out);
+
 /**
  * Y = A X.
  *
