@@ -109,6 +109,39 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
                                     int64_t count, const double *tolerance,
                                     ritz_tolerance_row **out);
 
+/*
+ * The composite set of each body with its directions in the order in which they
+ * matter: any number of the first is a subspace for stage two.
+ */
+typedef struct ritz_composite {
+    int64_t num_bodies;
+    ritz_dense *V;     /* of each, r_c x s_c: rigid motions, then directions */
+    int64_t *rigid;    /* of each, how many are rigid motions */
+    int64_t num_steps; /* directions of all bodies */
+    int64_t *step;     /* num_steps: the body whose next direction matters most
+                          of those that are left */
+} ritz_composite;
+
+/**
+ * Of the modes up to the end of the scene's band at all its configurations,
+ * then of static answers to inputs and outputs, then of all that stage one has.
+ *
+ * Modes that are to be ranked (scene.select) weigh as much as their value in
+ * the ranking, others all the same. Where the scene augments, static answers
+ * come with the modes, not behind them. A body that does not move rigidly with
+ * the system has its first direction before any other.
+ *
+ * What is cut keeps no mode exactly; it is for searches that measure each cut.
+ *
+ * @return RITZ_ERR_ARGUMENT if there is no band or no configuration, or as
+ *         ritz_compare
+ * @cost   an eigenproblem of the stage-1 order a configuration, and of each
+ *         body a singular value decomposition, r_c rows and a column for each
+ *         mode and configuration
+ */
+ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out);
+void ritz_composite_free(ritz_composite *composite);
+
 void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows);
 void ritz_comparison_free(ritz_comparison *comparison);
 

@@ -104,6 +104,31 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
 ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
                                ritz_component *out);
 
+/* Which dof of which body a dof of the full-order system is. */
+typedef struct ritz_master {
+    int64_t body, dof;
+} ritz_master;
+
+/**
+ * The same, and where its dofs are; bodies ascend, and dofs of each.
+ *
+ * @param[out] master  out->num_dofs; the caller's to free
+ */
+ritz_status ritz_assemble_masters(const ritz_scene *scene,
+                                  const double *setting, ritz_component *out,
+                                  ritz_master **master);
+
+/**
+ * T of the system at a configuration, n x e, over the dofs of the full-order
+ * system there: rows of T_c P_c of each body. With it the system's matrices are
+ * those of the full one condensed, since ports move in both as T says.
+ *
+ * @return RITZ_ERR_ARGUMENT if a body has no T, or one of other dofs
+ */
+ritz_status ritz_stage_basis(const ritz_stage *stage,
+                             const ritz_configuration *at, int64_t n,
+                             const ritz_master *master, ritz_dense *out);
+
 /* A component at one side of a joint, and what messages call it. */
 typedef struct ritz_joined {
     const char *name;

@@ -57,6 +57,12 @@ void ritz_trial_free(ritz_trial *trial);
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
                                    const ritz_system *system, double *least);
 
+/** Value of each flexible mode in the scene's ranking; 1 where modes are not
+ * ranked. */
+ritz_status ritz_compare_values(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                double *value);
+
 /** Choose the modes of one configuration that matter, or count its vectors. */
 ritz_status ritz_compare_select(const ritz_scene *scene,
                                 const ritz_configuration *configuration,

@@ -56,6 +56,26 @@ static bool is_ranked(const ritz_scene *scene)
            (scene->num_outputs > 0 || !(needs & RITZ_RANK_OUTPUTS));
 }
 
+ritz_status ritz_compare_values(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                double *value)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_configuration *c = configuration;
+    ritz_ranking ranking = {0};
+
+    for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
+        value[k] = 1.0;
+    if (!is_ranked(scene))
+        return RITZ_OK;
+    RITZ_TRY(rank_one(scene, c, &ranking));
+    for (int64_t k = 0; k < ranking.count; k++)
+        value[k] = fabs(ranking.value[k]);
+done:
+    ritz_ranking_free(&ranking);
+    return status;
+}
+
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
                                    const ritz_system *system, double *least)
 {

@@ -58,6 +58,20 @@ static bool factor(ritz_dense *L, double least)
            rcond > least;
 }
 
+ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
+                              double lambda, ritz_dense *L)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(body->M.ncol, body->M.ncol, L));
+    fill(body, scale, 1.0 / lambda, L);
+    RITZ_FAIL_IF(!factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
+                 "a motion has neither mass nor stiffness, or the reduced mass "
+                 "is not positive");
+done:
+    return status;
+}
+
 ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
                              ritz_dense *L, bool *mixed)
 {
@@ -70,12 +84,22 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
     if (factor(L, well_conditioned))
         return RITZ_OK;
     *mixed = true;
-    fill(body, scale, 1.0 / ritz_typical_lambda(body), L);
-    RITZ_FAIL_IF(!factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
-                 "a motion has neither mass nor stiffness, or the reduced mass "
-                 "is not positive");
+    ritz_dense_free(L);
+    return ritz_mixed_factor(body, scale, ritz_typical_lambda(body), L);
 done:
     return status;
+}
+
+void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U)
+{
+    int r = (int)U->nrow;
+
+    if (U->ncol > 0)
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
+                    CblasNonUnit, r, (int)U->ncol, 1.0, L->val, r, U->val, r);
+    for (int64_t j = 0; j < U->ncol; j++)
+        for (int64_t i = 0; i < r; i++)
+            ritz_dense_col(U, j)[i] *= scale[i];
 }
 
 ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
@@ -95,8 +119,8 @@ done:
     return status;
 }
 
-ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
-                         ritz_dense *out)
+ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
+                             double *value, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int r = (int)Y->nrow;
@@ -118,10 +142,18 @@ ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
     }
     while (rank < least && sigma[rank] > tolerance * *largest)
         rank++;
+    for (int k = 0; value && k < rank; k++)
+        value[k] = sigma[k];
     RITZ_TRY(ritz_dense_columns(&U, 0, rank, out));
 done:
     free(sigma);
     free(work);
     ritz_dense_free(&U);
     return status;
+}
+
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         ritz_dense *out)
+{
+    return ritz_span_values(Y, tolerance, largest, NULL, out);
 }

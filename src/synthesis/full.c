@@ -21,9 +21,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* T from the reduced constraints; master[j] is the dof of its column j. */
+/* T from the reduced constraints, and what the masters are. */
 static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
-                              const int64_t *pivot_of, int64_t *master,
+                              const int64_t *pivot_of, ritz_master *master,
                               ritz_sparse *T)
 {
     ritz_status status = RITZ_OK;
@@ -39,11 +39,14 @@ static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
     for (int64_t j = 0; j < C->ncol; j++)
         if (pivot_of[j] >= 0)
             column[p->row[j]] = -1;
-    for (int64_t i = 0; i < p->num_dofs; i++) {
+    for (int64_t i = 0, k = 0; i < p->num_dofs; i++) {
+        while (i >= p->first[k] + p->body[k].num_dofs)
+            k++;
         if (column[i] < 0)
             continue;
         column[i] = masters;
-        master[masters] = row[count] = i;
+        master[masters] = (ritz_master){k, i - p->first[k]};
+        row[count] = i;
         col[count] = masters++;
         val[count++] = 1.0;
     }
@@ -199,7 +202,7 @@ done:
 
 /* Names of the masters; grids of all bodies where the angles put them. */
 static ritz_status name_dofs(const ritz_held *p, const double *setting,
-                             const int64_t *master, const ritz_sparse *T,
+                             const ritz_master *master, const ritz_sparse *T,
                              ritz_component *system)
 {
     ritz_status status = RITZ_OK;
@@ -209,11 +212,9 @@ static ritz_status name_dofs(const ritz_held *p, const double *setting,
     RITZ_TRY(ritz_place_grids(&p->stage, setting, p->count, p->body, add,
                               &system->grids));
     RITZ_NEW(system->dof, system->num_dofs);
-    for (int64_t j = 0, k = 0; j < system->num_dofs; j++) {
-        while (master[j] >= p->first[k] + p->body[k].num_dofs)
-            k++;
-        system->dof[j] = p->body[k].dof[master[j] - p->first[k]];
-        system->dof[j].grid += add[k];
+    for (int64_t j = 0; j < system->num_dofs; j++) {
+        system->dof[j] = p->body[master[j].body].dof[master[j].dof];
+        system->dof[j].grid += add[master[j].body];
     }
     RITZ_TRY(ritz_held_recovery(p, add, T, &system->recovery));
 done:
@@ -234,16 +235,18 @@ done:
     return status;
 }
 
-ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
-                               ritz_component *out)
+ritz_status ritz_assemble_masters(const ritz_scene *scene,
+                                  const double *setting, ritz_component *out,
+                                  ritz_master **where)
 {
     ritz_status status = RITZ_OK;
     ritz_component system = {0};
+    ritz_master *master = NULL;
     ritz_held p = {0};
     ritz_dense C = {0};
     ritz_sparse T = {0};
     double *scale = NULL;
-    int64_t *pivot_of = NULL, *master = NULL;
+    int64_t *pivot_of = NULL;
 
     RITZ_TRY(ritz_held_load(scene, &p));
     RITZ_TRY(check_units(scene, &p));
@@ -264,7 +267,9 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
     memcpy(system.units, p.body[0].units, sizeof system.units);
     RITZ_TRY(ritz_component_settle(&system, false));
     *out = system;
+    *where = master;
     system = (ritz_component){0};
+    master = NULL;
 done:
     free(scale);
     free(pivot_of);
@@ -273,5 +278,15 @@ done:
     ritz_sparse_free(&T);
     ritz_held_free(&p);
     ritz_component_free(&system);
+    return status;
+}
+
+ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
+                               ritz_component *out)
+{
+    ritz_master *master = NULL;
+    ritz_status status = ritz_assemble_masters(scene, setting, out, &master);
+
+    free(master);
     return status;
 }

@@ -1,0 +1,64 @@
+/*
+ * T of an assembled system. Bodies move as u_c = T_c q_c with q_c = P_c x, and
+ * C P = 0 holds in their ports' maps, which are rows of T_c: so (u_1, u_2, ...)
+ * meets the full-order constraints too, and its masters say all of it.
+ */
+#include "base/alloc.h"
+
+#include <ritz/synthesis.h>
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows of body k, which are first .. first + count - 1 of the system. */
+static ritz_status add_body(const ritz_reduced *body, const ritz_dense *P,
+                            int64_t first, int64_t count, const int64_t *row,
+                            ritz_dense *T)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0}, TP = {0};
+
+    RITZ_TRY(ritz_dense_rows(&body->T, count, row, &part));
+    RITZ_TRY(ritz_dense_mul(&part, P, &TP));
+    for (int64_t j = 0; j < T->ncol; j++)
+        memcpy(ritz_dense_col(T, j) + first, ritz_dense_col(&TP, j),
+               (size_t)count * sizeof *T->val);
+done:
+    ritz_dense_free(&part);
+    ritz_dense_free(&TP);
+    return status;
+}
+
+ritz_status ritz_stage_basis(const ritz_stage *stage,
+                             const ritz_configuration *at, int64_t n,
+                             const ritz_master *master, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense T = {0};
+    int64_t *row = NULL;
+
+    RITZ_NEW(row, n);
+    RITZ_TRY(ritz_dense_new(n, at->K.ncol, &T));
+    for (int64_t first = 0, last = 0; first < n; first = last) {
+        const int64_t k = master[first].body;
+        const ritz_reduced *body = &stage->body[k];
+        int64_t most = 0;
+
+        for (last = first; last < n && master[last].body == k; last++) {
+            row[last] = master[last].dof;
+            most = row[last] > most ? row[last] : most;
+        }
+        RITZ_FAIL_IF(!body->T.val || body->T.nrow <= most, RITZ_ERR_ARGUMENT,
+                     "'%s' has no basis T for its %" PRId64 " dofs",
+                     stage->scene->component[k].name, most + 1);
+        RITZ_TRY(
+            add_body(body, &at->P[k], first, last - first, row + first, &T));
+    }
+    *out = T;
+    T = (ritz_dense){0};
+done:
+    free(row);
+    ritz_dense_free(&T);
+    return status;
+}
