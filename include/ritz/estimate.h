@@ -6,6 +6,9 @@
  *                                 band, f that of the full mode of its number
  *                                 or of the one that the place names
  *     frequency-relative-bound    the worst of them; none without such modes
+ *     frequency-relative-least    what the worst error is at least, of a band
+ *                                 that begins at 0, however modes are paired as
+ *                                 long as none is missing; none if it may be 0
  *     missing-modes-bound         full modes less reduced ones below the end of
  *                                 the band, or below a count above it
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
@@ -54,6 +57,17 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
                                    const ritz_basis *basis,
                                    const ritz_reduced *reduced,
                                    ritz_measures *out);
+
+/**
+ * frequency-relative-least alone, as far as an inverse iteration of the reduced
+ * modes shows it: no mode is counted.
+ *
+ * @cost a factor once, a solve for each mode up to some way beyond the band
+ */
+ritz_status ritz_estimator_least(ritz_estimator *estimator,
+                                 const ritz_basis *basis,
+                                 const ritz_reduced *reduced,
+                                 ritz_measures *out);
 
 void ritz_estimator_free(ritz_estimator **estimator);
 

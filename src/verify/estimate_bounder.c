@@ -3,9 +3,13 @@
 
 #include "base/alloc.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Of a sum: one is due, the rest is room. */
+static const double roundings = 4.0;
 
 static double square(double x)
 {
@@ -33,7 +37,24 @@ double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j)
                : ritz_bounder_rate(r, ritz_bounder_stiffness(r, j));
 }
 
-/* [R b_o c_o], with M X X' of them taken out. */
+/* A X from a column of V on; nothing of no A. */
+static ritz_status damp(const ritz_sparse *A, const ritz_bounder *r, int64_t at,
+                        ritz_dense *V)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AX = {0};
+
+    if (!A->colptr)
+        return RITZ_OK;
+    RITZ_TRY(ritz_sparse_mul(A, &r->trial->X, &AX));
+    memcpy(ritz_dense_col(V, at), AX.val,
+           (size_t)(AX.nrow * AX.ncol) * sizeof *AX.val);
+done:
+    ritz_dense_free(&AX);
+    return status;
+}
+
+/* [R b_o c_o D_o K4_o], with M X X' of all but R taken out. */
 static ritz_status stack(const ritz_estimator *estimator, ritz_bounder *r,
                          ritz_dense *V)
 {
@@ -55,6 +76,10 @@ static ritz_status stack(const ritz_estimator *estimator, ritz_bounder *r,
             for (int64_t d = 0; d < n; d++)
                 ritz_dense_col(V, m + io->num_inputs + k * io->num_outputs +
                                       i)[d] = ritz_dense_col(C[k], d)[i];
+    if (r->coupled) {
+        RITZ_TRY(damp(&estimator->component->D, r, r->size - 2 * m, V));
+        RITZ_TRY(damp(&estimator->component->K4, r, r->size - m, V));
+    }
     RITZ_TRY(ritz_sparse_mul(&estimator->component->M, &r->trial->X, &MX));
     part = ritz_dense_part(V, m, r->size - m);
     for (int twice = 0; twice < 2; twice++)
@@ -86,18 +111,26 @@ done:
     return status;
 }
 
-/* sin^2 of a rigid mode, by its residual and the gap to flexible ones. */
-static double rigid_sin2(const ritz_bounder *r, int64_t p)
+/*
+ * sin^2 of each rigid mode: by the residuals of all together, as full and trial
+ * ones may be turned among themselves, and the gap to flexible modes.
+ */
+static double rigid_sin2(const ritz_bounder *r)
 {
     const ritz_lehmann *trial = r->trial;
-    double t = trial->theta[p] - trial->sigma;
-    double eps = sqrt(fmax(ritz_dense_col(&trial->G, p)[p], 0.0) / t);
     double next = r->num_rigid < r->e->count ? r->e->low[r->num_rigid] : 0.0;
+    double sum = 0.0;
 
     if (!(next > 0.0))
         return 1.0;
-    return square(trial->rounding[p] / trial->sigma) +
-           square(eps * (1.0 - trial->sigma / next));
+    for (int64_t j = 0; j < r->num_rigid; j++) {
+        double t = trial->theta[j] - trial->sigma;
+        double eps2 = fmax(ritz_dense_col(&trial->G, j)[j], 0.0) / t;
+
+        sum += square(trial->rounding[j] / trial->sigma) +
+               eps2 * square(1.0 - trial->sigma / next);
+    }
+    return sum;
 }
 
 /* sin^2 of each full mode against the trial modes of numbers up to N. */
@@ -125,9 +158,41 @@ static ritz_status turn(ritz_bounder *r)
         }
     }
     for (int64_t p = 0; p < r->num_rigid && p < e->count; p++)
-        r->sin2[p] = fmin(r->sin2[p], rigid_sin2(r, p));
+        r->sin2[p] = fmin(r->sin2[p], rigid_sin2(r));
 done:
     return status;
+}
+
+/* How much faster w d grows with an eigenvalue than that does itself. */
+static double damping_over(const ritz_bounder *r, double w, double theta)
+{
+    return r->rayleigh ? w * r->b : w * r->zeta / sqrt(theta);
+}
+
+double ritz_bounder_rounding(const ritz_bounder *r, double w,
+                             const ritz_side *in, const ritz_side *out)
+{
+    double all[2] = {0.0, 0.0};
+    double rigid[2] = {0.0, 0.0};
+    double mass[2] = {0.0, 0.0};
+
+    for (int64_t j = 0; j < r->trial->count; j++) {
+        double off = r->trial->rounding[j] + r->trial->reduced[j];
+        double own = w * sqrt(r->trial->inertia[j]);
+        double each = sqrt(
+            off * (1.0 + damping_over(r, w, fmax(r->trial->theta[j], off))));
+
+        mass[0] += own * cabs(in->eta[j]);
+        mass[1] += own * cabs(out->eta[j]);
+        all[0] += cabs(in->eta[j]) * each;
+        all[1] += cabs(out->eta[j]) * each;
+        if (j + 1 == r->num_rigid) {
+            rigid[0] = all[0];
+            rigid[1] = all[1];
+        }
+    }
+    return all[0] * all[1] - rigid[0] * rigid[1] +
+           roundings * DBL_EPSILON * mass[0] * mass[1];
 }
 
 static ritz_status side_new(const ritz_bounder *r, int64_t count,
@@ -174,6 +239,7 @@ void ritz_bounder_free(ritz_bounder *r)
     free(r->sin2);
     free(r->GV);
     free(r->QV);
+    ritz_coupled_free(r);
 }
 
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
@@ -182,7 +248,8 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
     const ritz_io *io = r->io;
     const ritz_dense *X = &r->trial->X;
 
-    r->size = r->trial->count + io->num_inputs + KINDS * io->num_outputs;
+    r->size = (r->coupled ? 3 : 1) * r->trial->count + io->num_inputs +
+              KINDS * io->num_outputs;
     RITZ_TRY(form(estimator, r));
     RITZ_TRY(turn(r));
     RITZ_TRY(ritz_dense_mul_tn(X, &io->B, &r->B));
@@ -193,6 +260,8 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
     RITZ_TRY(side_new(r, io->num_outputs, &r->out));
     RITZ_NEW(r->GV, r->size);
     RITZ_NEW(r->QV, r->size);
+    if (r->coupled)
+        RITZ_TRY(ritz_coupled_open(estimator->component, r));
 done:
     return status;
 }

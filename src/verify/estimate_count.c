@@ -226,15 +226,20 @@ double ritz_propose_above(const ritz_estimator *estimator,
     return above_band(estimator, trial, far * band, farthest * band);
 }
 
+bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho)
+{
+    const ritz_counted *c = estimator->count;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++)
+        if (c[s].below > k && c[s].rho <= rho)
+            return true;
+    return false;
+}
+
 bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
                         double theta, double band)
 {
-    const ritz_counted *c = estimator->count;
-    bool below = false;
-
-    for (int64_t s = 0; s < estimator->num_counts; s++)
-        below = below || (c[s].below > k && c[s].rho <= 0.5 * theta);
-    return below && theta <= slow * band;
+    return theta <= slow * band && ritz_counted_more(estimator, k, 0.5 * theta);
 }
 
 /* For one mode: where to count, NaN if it is told well enough. */

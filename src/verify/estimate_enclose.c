@@ -30,15 +30,14 @@
 
 #include "base/alloc.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
 /* Of the rounding of eigenvalues beside: how far a count may be off. */
 static const double margin = 2.0;
-/* A bound that says nothing: 100 %. */
-static const double worthless = 1.0;
-/* The mode of the same number is preferred to another one that is nearer. */
-static const double favour = 4.0;
+/* Of eigenvalues, in eps of the largest. */
+static const double roundings = 4.0;
 
 static double shifted(const ritz_lehmann *trial, int64_t j)
 {
@@ -49,38 +48,6 @@ static double shifted(const ritz_lehmann *trial, int64_t j)
 static double eigenvalue(double kappa, double sigma)
 {
     return kappa > 0.0 ? 1.0 / kappa + sigma : HUGE_VAL;
-}
-
-/* tau of all Ritz values, ascending. */
-static ritz_status ritz_values(const ritz_lehmann *trial, double kappa_rho,
-                               ritz_pairs *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t m = trial->count;
-    ritz_dense D = {0};
-    ritz_dense D2 = {0};
-
-    RITZ_TRY(ritz_dense_new(m, m, &D));
-    RITZ_TRY(ritz_dense_new(m, m, &D2));
-    for (int64_t j = 0; j < m; j++) {
-        double t_j = shifted(trial, j);
-        double d = 1.0 / t_j - kappa_rho;
-        double rounded = trial->rounding[j] / (t_j * t_j);
-
-        for (int64_t i = 0; i < m; i++) {
-            double t = shifted(trial, i) * t_j;
-
-            ritz_dense_col(&D2, j)[i] =
-                ritz_dense_col(&trial->G, j)[i] / (t * sqrt(t));
-        }
-        ritz_dense_col(&D, j)[j] = d;
-        ritz_dense_col(&D2, j)[j] += d * d + rounded * rounded;
-    }
-    RITZ_TRY(ritz_eigen_dense(&D, &D2, out));
-done:
-    ritz_dense_free(&D);
-    ritz_dense_free(&D2);
-    return status;
 }
 
 /* Rounding of the trial's modes up to about rho. */
@@ -94,6 +61,63 @@ static double rounding_at(const ritz_lehmann *trial, double rho)
     return most;
 }
 
+/* Of eigenvalues of a dense matrix. */
+static double rounding_of(const ritz_pairs *nu)
+{
+    int64_t count = nu->Phi.ncol;
+
+    return count > 0 ? roundings * DBL_EPSILON *
+                           fmax(fabs(nu->lambda[0]), nu->lambda[count - 1])
+                     : 0.0;
+}
+
+/*
+ * What one count says of full modes below it: least is carried down, as modes
+ * that rounding may exchange share it.
+ */
+static void enclose_below(const ritz_lehmann *trial, const ritz_pairs *nu,
+                          double kappa_rho, int64_t below, ritz_enclosure *e)
+{
+    int64_t count = nu->Phi.ncol;
+    int64_t first = 0;
+    double off = rounding_of(nu);
+    double least = HUGE_VAL;
+
+    while (first < count && nu->lambda[first] <= 0.0)
+        first++;
+    for (int64_t at = first; at < count; at++) {
+        int64_t p = below - 1 - (at - first);
+        double kappa = kappa_rho + nu->lambda[at] + off;
+
+        least = fmin(least, eigenvalue(kappa, trial->sigma) -
+                                trial->rounding[count - 1 - at]);
+        if (p >= 0 && p < e->count)
+            e->low[p] = fmax(e->low[p], least);
+    }
+}
+
+/* The same of modes above it: most is carried up. */
+static void enclose_above(const ritz_lehmann *trial, const ritz_pairs *nu,
+                          double kappa_rho, int64_t below, ritz_enclosure *e)
+{
+    int64_t count = nu->Phi.ncol;
+    int64_t last = count - 1;
+    double off = rounding_of(nu);
+    double most = 0.0;
+
+    while (last >= 0 && nu->lambda[last] > 0.0)
+        last--;
+    for (int64_t at = last; at >= 0; at--) {
+        int64_t p = below + (last - at);
+        double kappa = kappa_rho + nu->lambda[at] - off;
+
+        most = fmax(most, eigenvalue(kappa, trial->sigma) +
+                              trial->rounding[count - 1 - at]);
+        if (p < e->count)
+            e->high[p] = fmin(e->high[p], most);
+    }
+}
+
 /* What one count says of eigenvalues above it, or below it. */
 static ritz_status enclose(const ritz_lehmann *trial,
                            const ritz_counted *counted, bool above,
@@ -103,32 +127,17 @@ static ritz_status enclose(const ritz_lehmann *trial,
     double off = margin * rounding_at(trial, counted->rho);
     double rho = counted->rho + (above ? off : -off);
     double kappa_rho = 1.0 / (rho - trial->sigma);
-    int64_t positive = 0;
-    ritz_pairs tau = {0};
+    ritz_pairs nu = {0};
 
-    RITZ_TRY(ritz_values(trial, kappa_rho, &tau));
-    while (positive < tau.Phi.ncol &&
-           !(tau.lambda[tau.Phi.ncol - 1 - positive] <= 0.0))
-        positive++;
-    for (int64_t i = 0; !above && i < positive; i++) {
-        int64_t p = counted->below - positive + i;
-        double inverse = 1.0 / tau.lambda[tau.Phi.ncol - positive + i];
-        double low = eigenvalue(kappa_rho + inverse, trial->sigma);
-
-        if (p >= 0 && p < e->count)
-            e->low[p] = fmax(e->low[p], low - trial->rounding[i]);
-    }
-    for (int64_t i = 0; above && i < tau.Phi.ncol - positive; i++) {
-        int64_t p = counted->below + i;
-        int64_t j =
-            (int64_t)fmin((double)(positive + i), (double)(trial->count - 1));
-        double high = eigenvalue(kappa_rho + 1.0 / tau.lambda[i], trial->sigma);
-
-        if (p < e->count)
-            e->high[p] = fmin(e->high[p], high + trial->rounding[j]);
-    }
+    if (!(kappa_rho > 0.0))
+        return RITZ_OK;
+    RITZ_TRY(ritz_lehmann_values(trial, rho, &nu));
+    if (above)
+        enclose_above(trial, &nu, kappa_rho, counted->below, e);
+    else
+        enclose_below(trial, &nu, kappa_rho, counted->below, e);
 done:
-    ritz_pairs_free(&tau);
+    ritz_pairs_free(&nu);
     return status;
 }
 
@@ -137,6 +146,8 @@ static ritz_status improve(const ritz_lehmann *trial, ritz_enclosure *e)
 {
     ritz_status status = RITZ_OK;
     int64_t m = trial->count;
+    double off = 0.0;
+    double most = 0.0;
     ritz_dense S = {0};
     ritz_dense one = {0};
     ritz_pairs kappa = {0};
@@ -151,11 +162,15 @@ static ritz_status improve(const ritz_lehmann *trial, ritz_enclosure *e)
         ritz_dense_col(&one, j)[j] = 1.0;
     }
     RITZ_TRY(ritz_eigen_dense(&S, &one, &kappa));
-    for (int64_t k = 0; k < m; k++) {
-        double better = fmin(trial->theta[k],
-                             eigenvalue(kappa.lambda[m - 1 - k], trial->sigma));
+    off = rounding_of(&kappa);
+    for (int64_t k = 0; k < kappa.Phi.ncol; k++) {
+        double better =
+            fmin(trial->theta[k],
+                 eigenvalue(kappa.lambda[kappa.Phi.ncol - 1 - k] - off,
+                            trial->sigma));
 
-        e->high[k] = fmin(e->high[k], better + trial->rounding[k]);
+        most = fmax(most, better + trial->rounding[k]);
+        e->high[k] = fmin(e->high[k], most);
     }
 done:
     ritz_dense_free(&S);
@@ -207,6 +222,22 @@ done:
     return status;
 }
 
+/* Some kappa is within eps / t of 1 / t, eps = |R|_(A^-1) / |x|_A. */
+static void add_near(const ritz_lehmann *trial, ritz_enclosure *e)
+{
+    for (int64_t k = 0; k < trial->count; k++) {
+        double t = shifted(trial, k);
+        double eps = sqrt(fmax(ritz_dense_col(&trial->G, k)[k], 0.0) / t);
+        int64_t at = e->num_near++;
+
+        e->near_high[at] = HUGE_VAL;
+        if (!(eps < 1.0)) /* it may be the kappa = 0 of no mass */
+            continue;
+        e->near_low[at] = t / (1.0 + eps) + trial->sigma - trial->rounding[k];
+        e->near_high[at] = t / (1.0 - eps) + trial->sigma + trial->rounding[k];
+    }
+}
+
 ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
                                const ritz_lehmann *trial,
                                const ritz_lehmann *polished,
@@ -222,8 +253,12 @@ ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
     e.count++; /* the next one, of which counts may say something */
     RITZ_NEW(e.low, e.count);
     RITZ_NEW(e.high, e.count);
+    RITZ_NEW(e.near_low, trial->count + polished->count);
+    RITZ_NEW(e.near_high, trial->count + polished->count);
     for (int64_t p = 0; p < e.count; p++)
         e.high[p] = HUGE_VAL;
+    add_near(trial, &e);
+    add_near(polished, &e);
     RITZ_TRY(add_trial(estimator, trial, &e));
     RITZ_TRY(add_trial(estimator, polished, &e));
     settle(estimator, trial, &e);
@@ -238,55 +273,7 @@ void ritz_enclosure_free(ritz_enclosure *enclosure)
 {
     free(enclosure->low);
     free(enclosure->high);
+    free(enclosure->near_low);
+    free(enclosure->near_high);
     *enclosure = (ritz_enclosure){0};
-}
-
-/* Largest |f' - f| / f, f' of theta and f of [low, high]. */
-static double apart(double theta, double low, double high)
-{
-    if (!(low > 0.0))
-        return HUGE_VAL;
-    return fmax(sqrt(theta / low) - 1.0, 1.0 - sqrt(theta / high));
-}
-
-/* Some kappa is within eps of that of theta, eps = |R|_(A^-1) / |x|_A. */
-static double by_residual(const ritz_lehmann *trial, int64_t k, double theta)
-{
-    double t = shifted(trial, k);
-    double eps = sqrt(fmax(ritz_dense_col(&trial->G, k)[k], 0.0) / t);
-    double low = t / (1.0 + eps) + trial->sigma - trial->rounding[k];
-    double high = t / (1.0 - eps) + trial->sigma + trial->rounding[k];
-
-    return apart(theta, low, eps < 1.0 ? high : HUGE_VAL);
-}
-
-ritz_claim ritz_claim_of(const ritz_lehmann *trial,
-                         const ritz_enclosure *enclosure, int64_t k,
-                         double theta)
-{
-    ritz_claim claim = {.bound = HUGE_VAL, .number = k};
-    double rounding = 0.5 * trial->reduced[k] / theta;
-    double residual = by_residual(trial, k, theta);
-    double same = apart(theta, enclosure->low[k], enclosure->high[k]);
-
-    for (int64_t p = 0; p < enclosure->count; p++) {
-        double bound = apart(theta, enclosure->low[p], enclosure->high[p]);
-
-        if (bound < claim.bound) {
-            claim.bound = bound;
-            claim.number = p;
-        }
-    }
-    if (same <= favour * claim.bound) {
-        claim.bound = same;
-        claim.number = k;
-    }
-    if (claim.bound > worthless && residual < claim.bound) {
-        claim.bound = residual;
-        claim.number = -1;
-    }
-    claim.bound = fmax(claim.bound, 0.0) + rounding;
-    claim.least = 0.5 * ritz_dense_col(&trial->G, k)[k] /
-                  (shifted(trial, k) * fabs(trial->theta[k]));
-    return claim;
 }

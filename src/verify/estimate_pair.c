@@ -105,7 +105,8 @@ static void solve_all(ritz_bounder *r, double w, double h)
         r->in[k].alpha[m + k] = 1.0;
         for (int64_t j = 0; j < m; j++)
             r->in[k].modal[j] = ritz_dense_col(&r->B, k)[j];
-        solve_side(r, w, h, 0.0, &r->in[k]);
+        if (!r->coupled)
+            solve_side(r, w, h, 0.0, &r->in[k]);
     }
     for (int64_t k = 0; k < p; k++) {
         ritz_side *s = &r->out[k];
@@ -126,8 +127,16 @@ static void solve_all(ritz_bounder *r, double w, double h)
             s->first[j] = ritz_complex(-2.0 * w * ca, cv);
             s->second[j] = 2.0 * fabs(ca);
         }
-        solve_side(r, w, h, 2.0 * r->size_of[at + 2 * p], s);
+        if (!r->coupled)
+            solve_side(r, w, h, 2.0 * r->size_of[at + 2 * p], s);
     }
+    if (!r->coupled)
+        return;
+    ritz_coupled_solve(r, w);
+    for (int64_t k = 0; k < io->num_inputs; k++)
+        r->in[k].norm = norm_of(r, r->in[k].alpha, r->GV);
+    for (int64_t k = 0; k < p; k++)
+        r->out[k].norm = norm_of(r, r->out[k].alpha, r->GV);
 }
 
 /* At one interval of frequencies. */
@@ -189,30 +198,6 @@ static double weigh(const ritz_bounder *r, const place *at, double all,
     return best;
 }
 
-/*
- * How far rounding moves a reduced response: K_ij off by sqrt(r_i r_j), r the
- * rounding of eigenvalues, moves it by p_i eta_j K_ij. Among rigid motions there
- * is none: their stiffness is set to 0.
- */
-static double rounding_of(const ritz_bounder *r, const ritz_side *in,
-                          const ritz_side *out)
-{
-    double all[2] = {0.0, 0.0};
-    double rigid[2] = {0.0, 0.0};
-
-    for (int64_t j = 0; j < r->trial->count; j++) {
-        double each = sqrt(r->trial->rounding[j] + r->trial->reduced[j]);
-
-        all[0] += cabs(in->eta[j]) * each;
-        all[1] += cabs(out->eta[j]) * each;
-        if (j + 1 == r->num_rigid) {
-            rigid[0] = all[0];
-            rigid[1] = all[1];
-        }
-    }
-    return all[0] * all[1] - rigid[0] * rigid[1];
-}
-
 /* Bound of one pair; *response is its |H_r|. */
 static double pair(const ritz_bounder *r, const place *at, double h,
                    const ritz_side *in, const ritz_side *out, double *response)
@@ -244,7 +229,8 @@ static double pair(const ritz_bounder *r, const place *at, double h,
            (turned + moved / sigma +
             2.0 * turned * at->most_s / sigma / sqrt(at->least_c2)) /
                at->least_c2 * P * D +
-           weigh(r, at, all, all - P * D) + rounding_of(r, in, out);
+           weigh(r, at, all, all - P * D) +
+           ritz_bounder_rounding(r, at->high, in, out);
 }
 
 static place place_of(const ritz_bounder *r, double w, double h)

@@ -41,8 +41,10 @@ typedef struct ritz_lehmann {
     double *theta;    /* m, ascending */
     double *rounding; /* m, of theta, absolute: eps |x|'|K||x| and more */
     double *reduced; /* m, of the reduced model's: eps |q|'|K_r||q| and so on */
-    ritz_dense R, E; /* n x m; E = A^-1 R */
-    ritz_dense G;    /* m x m, R'A^-1 R */
+    double *inertia; /* m, of x'Mx = 1 in both: |q|'|M_r||q| and so on */
+    double *least, *most; /* m, its eigenvalues, which rounding may exchange */
+    ritz_dense R, E;      /* n x m; E = A^-1 R */
+    ritz_dense G;         /* m x m, R'A^-1 R */
     double sigma;
 } ritz_lehmann;
 
@@ -70,11 +72,20 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out);
 void ritz_lehmann_free(ritz_lehmann *trial);
 
+/**
+ * nu of estimate_values.c for rho, ascending; none where rho is too close to a
+ * mode of the trial.
+ */
+ritz_status ritz_lehmann_values(const ritz_lehmann *trial, double rho,
+                                ritz_pairs *out);
+
 /* Enclosures of the full model's lowest eigenvalues, and of trial modes. */
 typedef struct ritz_enclosure {
     int64_t count; /* of full modes */
     double *low;   /* count, ascending; 0 if nothing is known */
     double *high;  /* count, ascending; HUGE_VAL if nothing is known */
+    int64_t num_near;
+    double *near_low, *near_high; /* num_near, each holds some full mode */
 } ritz_enclosure;
 
 /**
@@ -106,6 +117,9 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
 bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
                         double theta, double band);
 
+/** Whether more than @p k full modes were counted at or below @p rho. */
+bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho);
+
 /* Modes first .. last - 1, and how many counts were taken for each. */
 typedef struct ritz_pursuit {
     int64_t first, last;
@@ -135,6 +149,17 @@ typedef struct ritz_measuring {
     ritz_lehmann trial, polished;
     ritz_enclosure enclosure;
 } ritz_measuring;
+
+/** What the worst error is at least; none if nothing is sure. */
+ritz_status ritz_report_least(const ritz_estimator *estimator,
+                              const ritz_measuring *m, ritz_measures *out);
+
+/**
+ * Rounding of the reduced matrices may hide a rigid motion: what it leaves of
+ * such a mode is no frequency, and left out of the band if a count finds the
+ * full model's there.
+ */
+ritz_status ritz_skip_rounded(ritz_estimator *estimator, ritz_measuring *m);
 
 /** The worst mode of the band, and each. */
 ritz_status ritz_report_modes(const ritz_estimator *estimator,

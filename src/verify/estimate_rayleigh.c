@@ -1,13 +1,16 @@
 /*
- * D as a M + b K, if it is that to rounding: least squares over the diagonals d,
- * m, k, by Gram-Schmidt, once more of what it leaves, and then held to every
+ * D as a M + b K, if it is that to rounding: least squares over the diagonals
+ * d, m, k, by Gram-Schmidt, once more of what it leaves, and then held to every
  * entry.
  */
 #include "verify/estimate_parts.h"
 
-#include <math.h>
+#include "base/alloc.h"
 
-/* Of D's largest entry: rounding of matrices printed with 15 digits. */
+#include <math.h>
+#include <stdlib.h>
+
+/* Of sqrt(d_ii d_jj): rounding of matrices printed with 15 digits. */
 static const double within = 1e-13;
 enum { PASSES = 3 };
 
@@ -52,6 +55,29 @@ static void improve(const ritz_component *full, double ab[2])
     ab[1] += b;
 }
 
+/* A soft row is held to what is soft, however stiff others are. */
+static ritz_status vanishes(const ritz_component *full, const double ab[2],
+                            const ritz_sparse *rest, bool *out)
+{
+    ritz_status status = RITZ_OK;
+    double *size = NULL;
+    bool all = true;
+
+    RITZ_NEW(size, full->num_dofs);
+    for (int64_t j = 0; j < full->num_dofs; j++)
+        size[j] =
+            sqrt(within * (fabs(ritz_sparse_diagonal(&full->D, j)) +
+                           fabs(ab[0] * ritz_sparse_diagonal(&full->M, j)) +
+                           fabs(ab[1] * ritz_sparse_diagonal(&full->K, j))));
+    for (int64_t j = 0; j < rest->ncol; j++)
+        for (int64_t p = rest->colptr[j]; p < rest->colptr[j + 1]; p++)
+            all = all && fabs(rest->val[p]) <= size[rest->rowind[p]] * size[j];
+    *out = all;
+done:
+    free(size);
+    return status;
+}
+
 ritz_status ritz_rayleigh_of(const ritz_component *full, double *a, double *b,
                              bool *found)
 {
@@ -71,8 +97,8 @@ ritz_status ritz_rayleigh_of(const ritz_component *full, double *a, double *b,
         improve(full, ab);
     RITZ_TRY(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
     RITZ_TRY(ritz_sparse_add(1.0, &part, -ab[1], &full->K, &rest));
-    *found = ritz_sparse_max(&rest) <= most && ab[0] * m_size >= -most &&
-             ab[1] * k_size >= -most;
+    RITZ_TRY(vanishes(full, ab, &rest, found));
+    *found = *found && ab[0] * m_size >= -most && ab[1] * k_size >= -most;
     *a = fmax(ab[0], 0.0);
     *b = fmax(ab[1], 0.0);
 done:

@@ -22,6 +22,46 @@ static void say_where(const ritz_claim *claim, int64_t k, double theta,
                        claim->number + 1);
 }
 
+/*
+ * What mode k says of the worst error at least: however the first k full modes
+ * are paired with reduced ones, one of them has a partner of number k or more,
+ * which is above the highest that mode k of the full model can be.
+ */
+static double least_of(const ritz_measuring *m, int64_t k)
+{
+    double theta = m->pairs.lambda[k];
+    double rounding = 0.5 * m->trial.reduced[k] / theta;
+    double low = fmax(fmin(theta, m->trial.least[k]), 0.0);
+
+    return sqrt(low / m->enclosure.high[k]) - 1.0 - rounding;
+}
+
+/* Modes below a band need no partner, so nothing is sure of it. */
+ritz_status ritz_report_least(const ritz_estimator *estimator,
+                              const ritz_measuring *m, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
+    double most = 0.0;
+    char where[RITZ_NAME_SIZE] = "";
+
+    for (int64_t k = m->first; k < m->last && m->band_hz[0] == 0.0; k++) {
+        double theta = m->pairs.lambda[k];
+        double least = least_of(m, k);
+
+        if (!(least > most) || ritz_counted_rigid(estimator, k, theta, band))
+            continue;
+        most = least;
+        (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz", k + 1,
+                       ritz_eigen_hertz(theta));
+    }
+    if (most > 0.0)
+        RITZ_TRY(ritz_measures_add(out, "frequency-relative-least", most,
+                                   nan(""), where));
+done:
+    return status;
+}
+
 ritz_status ritz_report_modes(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
@@ -51,6 +91,7 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
     if (each.count > 0)
         RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", worst.value,
                                    nan(""), worst.where));
+    RITZ_TRY(ritz_report_least(estimator, m, out));
     for (int64_t k = 0; k < each.count; k++)
         RITZ_TRY(ritz_measures_add(out, each.item[k].name, each.item[k].value,
                                    nan(""), each.item[k].where));

@@ -33,7 +33,6 @@
 
 #include "base/alloc.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -134,7 +133,7 @@ static ritz_status sweep(ritz_bounder *r, const double band_hz[2], double *out,
     }
     best = fmax(best, nothing * r->largest);
     top = best;
-    for (int64_t k = 0; k + 1 < count; k++)
+    for (int64_t k = 0; k + 1 < count && !r->coupled; k++)
         top = fmax(top, between(r, two_pi * hertz[k], two_pi * hertz[k + 1],
                                 &best, &left));
     *out = top;
@@ -142,6 +141,9 @@ done:
     free(hertz);
     return status;
 }
+
+/* Of D, relative; a gyroscopic part is no damping. */
+static const double symmetric = 1e-9;
 
 /* What can be said of a response. */
 typedef enum promise { NOTHING, ESTIMATE, BOUND } promise;
@@ -154,7 +156,8 @@ static promise promise_of(const ritz_estimator *estimator,
 
     if (modes != reduced->K.nrow || full->io.num_inputs == 0 ||
         full->io.num_outputs == 0 ||
-        (full->dampers.count > 0 && !full->D.colptr)) /* not installed */
+        (full->dampers.count > 0 && !full->D.colptr) || /* not installed */
+        (full->D.colptr && ritz_sparse_asymmetry(&full->D) > symmetric))
         return NOTHING;
     if (full->D.colptr || full->K4.colptr || kind == RITZ_DAMPING_BANDS ||
         kind == RITZ_DAMPING_MODES)
@@ -166,53 +169,6 @@ bool ritz_response_boundable(const ritz_estimator *estimator,
                              const ritz_reduced *reduced, int64_t modes)
 {
     return promise_of(estimator, reduced, modes) != NOTHING;
-}
-
-/* Diagonal of X'D X, 0 of no D. */
-static ritz_status diagonal(const ritz_sparse *D, const ritz_dense *X,
-                            double *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense DX = {0};
-
-    if (!D->colptr)
-        return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(D, X, &DX));
-    for (int64_t j = 0; j < X->ncol; j++)
-        out[j] = ritz_dense_dot(X, j, &DX, j);
-done:
-    ritz_dense_free(&DX);
-    return status;
-}
-
-/*
- * Rates where no ratio is common to all modes: D's diagonal, K4's over omega,
- * and what was asked for. The least ratio stands for modes not yet met.
- */
-static ritz_status gather_rates(const ritz_estimator *estimator,
-                                ritz_bounder *r, double *rates)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_damping *damping = &estimator->request.damping;
-    double *hysteretic = NULL;
-
-    RITZ_NEW(hysteretic, r->trial->count);
-    RITZ_TRY(diagonal(&estimator->component->D, &r->trial->X, rates));
-    RITZ_TRY(diagonal(&estimator->component->K4, &r->trial->X, hysteretic));
-    r->zeta = 1.0;
-    for (int64_t j = r->num_rigid; j < r->trial->count; j++) {
-        double w = sqrt(fmax(r->trial->theta[j], DBL_MIN));
-
-        rates[j] +=
-            hysteretic[j] / w +
-            2.0 * w * ritz_damping_of_mode(damping, j - r->num_rigid, w);
-        r->zeta = fmin(r->zeta, fmax(0.5 * rates[j] / w, 0.0));
-    }
-    r->given = rates;
-    r->rayleigh = false;
-done:
-    free(hysteretic);
-    return status;
 }
 
 /*
@@ -249,20 +205,26 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
                       .a = damping->a,
                       .b = damping->b};
     double *rates = NULL;
+    double *matrices = NULL;
     double bound = 0.0;
     double at = 0.0;
+    double counted = 0.0;
     char where[RITZ_NAME_SIZE];
 
     RITZ_NEW(rates, m->trial.count);
+    RITZ_NEW(matrices, m->trial.count);
     if (!known && damping->kind == RITZ_DAMPING_NONE)
         RITZ_TRY(
             ritz_rayleigh_of(estimator->component, &r.a, &r.b, &r.rayleigh));
     sure =
         (known || r.rayleigh) && rigid_in_full(&m->trial, m->pairs.num_rigid);
     if (!known && !r.rayleigh)
-        RITZ_TRY(gather_rates(estimator, &r, rates));
+        RITZ_TRY(ritz_bounder_rates(estimator, &r, rates, matrices));
     RITZ_TRY(ritz_bounder_open(estimator, &r));
     RITZ_TRY(sweep(&r, m->band_hz, &bound, &at));
+    if ((r.coupled && ritz_missing_modes(estimator, m, &counted) != 0) ||
+        ritz_bounder_at_odds(&r))
+        bound = HUGE_VAL; /* of their damping nothing is known */
     (void)snprintf(where, sizeof where, "%.6g Hz", at);
     if (bound > 0.0)
         RITZ_TRY(ritz_measures_add(
@@ -272,5 +234,6 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
 done:
     ritz_bounder_free(&r);
     free(rates);
+    free(matrices);
     return status;
 }

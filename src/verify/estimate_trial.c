@@ -3,8 +3,9 @@
  * own are theirs to rounding, unless some of its columns have lost their mass.
  *
  * Rounding. K x is summed up from |K||x|: so x'Kx is off by some eps times
- * |x|'|K||x|, and so may any other program's be. Pairs of a dense pencil err by
- * eps times its largest eigenvalue beside.
+ * |x|'|K||x|, and so may any other program's be; M x too. Pairs of a dense
+ * pencil err by eps times its largest eigenvalue beside. Modes nearer to each
+ * other than that may change places: what one of them is, the other may be.
  */
 #include "verify/estimate_parts.h"
 
@@ -87,6 +88,7 @@ static ritz_status resist(const ritz_component *full, ritz_lehmann *trial)
     if (trial->count > 0)
         largest = trial->theta[trial->count - 1];
     RITZ_NEW(trial->rounding, trial->count);
+    RITZ_NEW(trial->inertia, trial->count);
     RITZ_TRY(ritz_sparse_mul(&full->K, &trial->X, &trial->R));
     RITZ_TRY(ritz_sparse_mul(&full->M, &trial->X, &MX));
     for (int64_t j = 0; j < trial->count; j++) {
@@ -95,18 +97,37 @@ static ritz_status resist(const ritz_component *full, ritz_lehmann *trial)
 
         for (int64_t i = 0; i < MX.nrow; i++)
             r[i] -= trial->theta[j] * ritz_dense_col(&MX, j)[i];
+        trial->inertia[j] = magnitude(&full->M, x);
         trial->rounding[j] =
             roundings * DBL_EPSILON *
-            (magnitude(&full->K, x) + fabs(trial->theta[j]) + largest);
+            (magnitude(&full->K, x) +
+             (fabs(trial->theta[j]) - trial->sigma) * trial->inertia[j] +
+             largest);
     }
 done:
     ritz_dense_free(&MX);
     return status;
 }
 
+/* Between what each eigenvalue of the reduced pencil can be. */
+static void exchange(const ritz_pairs *pairs, ritz_lehmann *trial)
+{
+    double least = HUGE_VAL;
+    double most = -HUGE_VAL;
+
+    for (int64_t j = 0; j < trial->count; j++) {
+        most = fmax(most, pairs->lambda[j] + trial->reduced[j]);
+        trial->most[j] = most;
+    }
+    for (int64_t j = trial->count - 1; j >= 0; j--) {
+        least = fmin(least, pairs->lambda[j] - trial->reduced[j]);
+        trial->least[j] = least;
+    }
+}
+
 /*
- * Of eigenvalues of the reduced pencil as it is: its entries, which some vectors
- * take the difference of, and the largest eigenvalue.
+ * Of eigenvalues of the reduced pencil as it is: its entries, which some
+ * vectors take the difference of, and the largest eigenvalue.
  */
 static ritz_status round_reduced(const ritz_reduced *reduced,
                                  const ritz_pairs *pairs, ritz_lehmann *trial)
@@ -117,13 +138,18 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
     ritz_dense M = {0};
 
     RITZ_NEW(trial->reduced, trial->count);
+    RITZ_NEW(trial->least, trial->count);
+    RITZ_NEW(trial->most, trial->count);
     RITZ_TRY(ritz_dense_terms(&reduced->K, &Q, &K));
     RITZ_TRY(ritz_dense_terms(&reduced->M, &Q, &M));
-    for (int64_t j = 0; j < trial->count; j++)
+    for (int64_t j = 0; j < trial->count; j++) {
+        trial->inertia[j] += ritz_dense_col(&M, j)[j];
         trial->reduced[j] = roundings * DBL_EPSILON *
                             (ritz_dense_col(&K, j)[j] +
                              fabs(pairs->lambda[j]) * ritz_dense_col(&M, j)[j] +
                              pairs->lambda[pairs->Phi.ncol - 1]);
+    }
+    exchange(pairs, trial);
 done:
     ritz_dense_free(&K);
     ritz_dense_free(&M);
@@ -156,6 +182,8 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
 
     RITZ_TRY(ritz_dense_mul(T, &part, &Y));
     RITZ_TRY(diagonalise(estimator->component, &Y, &trial));
+    RITZ_FAIL_IF(trial.count != count, RITZ_ERR_SINGULAR,
+                 "estimate: columns of the basis depend on each other");
     RITZ_TRY(resist(estimator->component, &trial));
     RITZ_TRY(round_reduced(reduced, pairs, &trial));
     RITZ_TRY(answer(estimator, &trial));
@@ -200,6 +228,9 @@ void ritz_lehmann_free(ritz_lehmann *trial)
     ritz_dense_free(&trial->G);
     free(trial->theta);
     free(trial->rounding);
+    free(trial->inertia);
     free(trial->reduced);
+    free(trial->least);
+    free(trial->most);
     *trial = (ritz_lehmann){0};
 }

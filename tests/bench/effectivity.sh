@@ -1,4 +1,7 @@
 #!/bin/sh
 # effectivity.sh FOLDER-OF-THE-TOOLS - the tables of docs/methods/estimates.md.
 set -eu
-exec /usr/bin/python3 "$(dirname "$0")/effectivity.py" "$1"
+here=$(dirname "$0")
+/usr/bin/python3 "$here/effectivity.py" "$1"
+/usr/bin/python3 "$here/effectivity_damping.py" "$1"
+/usr/bin/python3 "$here/effectivity_tail.py" "$1"
