@@ -11,23 +11,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Chosen columns of Phi, called after their frequencies. */
+/* Chosen columns, and room for what they are called. */
+static ritz_status pick(const ritz_dense *from, const shapes_choice *which,
+                        ritz_dense *T, ritz_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(from->nrow, which->count, T));
+    RITZ_NEW(out->name, which->count + 1);
+    out->count = which->count;
+    for (int64_t j = 0; j < which->count; j++)
+        memcpy(ritz_dense_col(T, j), ritz_dense_col(from, which->at[j]),
+               (size_t)T->nrow * sizeof *T->val);
+done:
+    return status;
+}
+
+/* "mode 7, 12.3 Hz" */
 static ritz_status pick_modes(const ritz_pairs *pairs,
                               const shapes_choice *which, ritz_dense *Phi,
                               ritz_shapes *out)
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_TRY(ritz_dense_new(pairs->Phi.nrow, which->count, Phi));
-    RITZ_NEW(out->name, which->count + 1);
-    out->count = which->count;
+    RITZ_TRY(pick(&pairs->Phi, which, Phi, out));
     for (int64_t j = 0; j < which->count; j++) {
         int64_t k = which->at[j];
         double hertz =
             k < pairs->num_rigid ? 0.0 : ritz_eigen_hertz(pairs->lambda[k]);
 
-        memcpy(ritz_dense_col(Phi, j), ritz_dense_col(&pairs->Phi, k),
-               (size_t)Phi->nrow * sizeof *Phi->val);
         snprintf(out->name[j], RITZ_NAME_SIZE, "mode %" PRId64 ", %.4g Hz",
                  k + 1, hertz);
     }
@@ -155,16 +167,12 @@ static ritz_status pick_columns(const ritz_basis *basis,
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_TRY(ritz_dense_new(basis->T.nrow, which->count, T));
-    RITZ_NEW(out->name, which->count + 1);
-    out->count = which->count;
+    RITZ_TRY(pick(&basis->T, which, T, out));
     for (int64_t j = 0; j < which->count; j++) {
         int64_t k = which->at[j];
         const char *kind = ritz_column_name(basis->columns.kind[k]);
         double hertz = basis->columns.hertz[k];
 
-        memcpy(ritz_dense_col(T, j), ritz_dense_col(&basis->T, k),
-               (size_t)T->nrow * sizeof *T->val);
         if (isfinite(hertz))
             snprintf(out->name[j], RITZ_NAME_SIZE,
                      "column %" PRId64 " %s, %.4g Hz", k + 1, kind, hertz);

@@ -43,7 +43,7 @@ done:
 }
 
 /* What K leaves to modes above, as the first term of their series. */
-static ritz_status add_rest(const ritz_component *component,
+static ritz_status add_rest(const ritz_component *component, double up_to_hz,
                             const ritz_pairs *pairs, ritz_dense *feed)
 {
     ritz_status status = RITZ_OK;
@@ -52,7 +52,7 @@ static ritz_status add_rest(const ritz_component *component,
 
     if (pairs->Phi.ncol >= component->num_dofs)
         return RITZ_OK;
-    RITZ_TRY(ritz_residual_new(component, pairs, 0.0, &rest));
+    RITZ_TRY(ritz_residual_new(component, NULL, pairs, 0.0, up_to_hz, &rest));
     for (int64_t k = 0; rest.count > 0 && k < size; k++)
         feed->val[k] += rest.C[k];
 done:
@@ -87,7 +87,7 @@ ritz_status ritz_motion_modes(const ritz_component *component,
     RITZ_TRY(ritz_first_order_drive(&component->io, damping ? damping : &none,
                                     &modes));
     RITZ_TRY_IN("what lies above the modes",
-                add_rest(component, &pairs, &modes.feed));
+                add_rest(component, up_to_hz, &pairs, &modes.feed));
     RITZ_TRY(ritz_motion_take_modes(&modes, &m));
     m.highest = nan("");
     *out = m;

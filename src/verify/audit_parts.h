@@ -39,7 +39,7 @@ typedef struct ritz_auditor {
     bool rigid;      /* K has no entries */
     bool placed;     /* every grid has a position */
     double digits;   /* of K, at most 17 */
-    bool declared;   /* the digits are those that the source states */
+    bool declared;   /* they are those that the source states, and not exact */
     bool rounded;    /* K times a rigid motion is what its digits leave */
     int64_t *part;   /* n, connected part of each dof, from 0 */
     int64_t largest; /* the part with most dofs */
@@ -70,6 +70,9 @@ void ritz_auditor_list(char where[RITZ_WHERE_SIZE], const char *text);
 /** What the k-th dof of a port is. */
 ritz_dof ritz_auditor_dof(const ritz_auditor *it, const ritz_port *port,
                           int64_t k);
+
+/** Set `digits` and `declared` from K, which has entries. */
+ritz_status ritz_audit_digits(ritz_auditor *it);
 
 /* The checks, in this order: each uses what those before it left. */
 ritz_status ritz_audit_values(ritz_auditor *it, bool *usable);

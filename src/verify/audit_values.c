@@ -1,17 +1,10 @@
-/*
- * Values: finite, symmetric, and with how many digits they came.
- *
- * The digits are those that the source states, or fewer where the values
- * themselves are all decimal numbers of fewer digits.
- */
+/* Values: finite and symmetric. */
 #include "verify/audit_parts.h"
 
 #include "base/alloc.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Asymmetry that importing lets pass, contracts.md. */
@@ -80,43 +73,20 @@ static void check_symmetry(ritz_auditor *it)
             found > 0.0 ? "rounding only, averaged away" : "exactly symmetric");
 }
 
-/* Whether `digits` decimal digits say what `value` is. */
-static bool suffices(double value, int digits)
-{
-    char text[40];
-
-    snprintf(text, sizeof text, "%.*e", digits - 1, value);
-    return fabs(strtod(text, NULL) - value) <= 4.0 * DBL_EPSILON * fabs(value);
-}
-
-/* Digits that all of some thousand entries of K make do with. */
-static int digits_needed(const ritz_sparse *K)
-{
-    enum { LOOKED_AT = 2000, FULL = 16 };
-    int64_t nnz = K->colptr[K->ncol];
-    int64_t step = nnz / LOOKED_AT + 1;
-    int digits = 1;
-
-    for (int64_t p = 0; p < nnz && digits < FULL; p += step)
-        while (digits < FULL && !suffices(K->val[p], digits))
-            digits++;
-    return digits < FULL ? digits : 17;
-}
-
 ritz_status ritz_audit_values(ritz_auditor *it, bool *usable)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    double needed = 0.0;
 
     it->rigid = !c->K.colptr || c->K.colptr[c->K.ncol] == 0;
     RITZ_TRY(check_finite(it, usable));
     if (!*usable)
         goto done;
     check_symmetry(it);
-    needed = it->rigid ? 17.0 : digits_needed(&c->K);
-    it->declared = c->digits > 0.0 && c->digits <= needed;
-    it->digits = it->declared ? c->digits : needed;
+    if (it->rigid)
+        it->digits = 17.0;
+    else
+        RITZ_TRY(ritz_audit_digits(it));
 done:
     return status;
 }

@@ -19,8 +19,9 @@ typedef struct climb {
     double where, best;
 } climb;
 
-static ritz_status look(climb *c, double hertz, double *value)
+static ritz_status look(void *state, double hertz, double *value)
 {
+    climb *c = state;
     ritz_status status = c->curve->at(c->curve->state, hertz, value);
 
     if (status == RITZ_ERR_SINGULAR) {
@@ -34,34 +35,46 @@ static ritz_status look(climb *c, double hertz, double *value)
     return status;
 }
 
-/* The most between two frequencies, as if there were one peak. */
+ritz_status ritz_curve_between(const ritz_curve *curve, double within,
+                               double *low, double *high, double *most)
+{
+    ritz_status status = RITZ_OK;
+    double a = *high - golden * (*high - *low);
+    double b = *low + golden * (*high - *low);
+    double at_a = 0.0, at_b = 0.0;
+
+    RITZ_TRY(curve->at(curve->state, a, &at_a));
+    RITZ_TRY(curve->at(curve->state, b, &at_b));
+    while (*high - *low > within * *high) {
+        if (at_a > at_b) {
+            *high = b;
+            b = a;
+            at_b = at_a;
+            a = *high - golden * (*high - *low);
+            RITZ_TRY(curve->at(curve->state, a, &at_a));
+        } else {
+            *low = a;
+            a = b;
+            at_a = at_b;
+            b = *low + golden * (*high - *low);
+            RITZ_TRY(curve->at(curve->state, b, &at_b));
+        }
+    }
+    *most = fmax(at_a, at_b);
+done:
+    return status;
+}
+
+/* The most between two frequencies, or that it grows without end. */
 static ritz_status between(climb *c, double low, double high)
 {
     ritz_status status = RITZ_OK;
-    double a = high - golden * (high - low);
-    double b = low + golden * (high - low);
-    double at_a = 0.0, at_b = 0.0, before = HUGE_VAL;
+    const ritz_curve seen = {look, c};
+    double before = 0.0, most = 0.0;
 
-    RITZ_TRY(look(c, a, &at_a));
-    RITZ_TRY(look(c, b, &at_b));
-    while (high - low > close_enough * high) {
-        if (high - low > late * high)
-            before = fmax(at_a, at_b);
-        if (at_a > at_b) {
-            high = b;
-            b = a;
-            at_b = at_a;
-            a = high - golden * (high - low);
-            RITZ_TRY(look(c, a, &at_a));
-        } else {
-            low = a;
-            a = b;
-            at_a = at_b;
-            b = low + golden * (high - low);
-            RITZ_TRY(look(c, b, &at_b));
-        }
-    }
-    if (fmax(at_a, at_b) > still_growing * before) {
+    RITZ_TRY(ritz_curve_between(&seen, late, &low, &high, &before));
+    RITZ_TRY(ritz_curve_between(&seen, close_enough, &low, &high, &most));
+    if (most > still_growing * before) {
         c->best = HUGE_VAL;
         c->where = (low + high) / 2.0;
     }

@@ -13,6 +13,16 @@ typedef struct ritz_curve {
 } ritz_curve;
 
 /**
+ * The most between two frequencies, as if there were one peak: golden sections
+ * until the bracket is no longer than @p within of its upper end.
+ *
+ * @param[in,out] low,high  the bracket
+ * @param[out]    most      of the last two values
+ */
+ritz_status ritz_curve_between(const ritz_curve *curve, double within,
+                               double *low, double *high, double *most);
+
+/**
  * Among points and, by golden sections between neighbours, around those that
  * are higher than theirs and no lower than half the highest.
  *

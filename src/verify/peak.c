@@ -6,6 +6,7 @@
 #include "verify/peak.h"
 
 #include "base/alloc.h"
+#include "verify/curve.h"
 #include "verify/poles.h"
 #include "verify/widen.h"
 
@@ -18,7 +19,6 @@
 /* Points that stand out: so many, and no lower than so much of the highest. */
 enum { MOST_PEAKS = 8 };
 static const double worth_climbing = 0.5;
-static const double golden = 0.61803398874989485;
 /* Of a bracket's length when it is done, relative to its frequency. */
 static const double close_enough = 1e-9;
 
@@ -174,33 +174,18 @@ done:
     return status;
 }
 
-/* The most between two frequencies, as if there were one peak. */
+static ritz_status at(void *state, double w, double *value)
+{
+    return ritz_peak_at(state, w, value);
+}
+
+/* What is met is remembered by the peak. */
 static ritz_status climb(ritz_peak *s, double low, double high)
 {
-    ritz_status status = RITZ_OK;
-    double a = high - golden * (high - low);
-    double b = low + golden * (high - low);
-    double at_a = 0.0, at_b = 0.0;
+    const ritz_curve curve = {at, s};
+    double most = 0.0;
 
-    RITZ_TRY(ritz_peak_at(s, a, &at_a));
-    RITZ_TRY(ritz_peak_at(s, b, &at_b));
-    while (high - low > close_enough * high) {
-        if (at_a > at_b) {
-            high = b;
-            b = a;
-            at_b = at_a;
-            a = high - golden * (high - low);
-            RITZ_TRY(ritz_peak_at(s, a, &at_a));
-        } else {
-            low = a;
-            a = b;
-            at_a = at_b;
-            b = low + golden * (high - low);
-            RITZ_TRY(ritz_peak_at(s, b, &at_b));
-        }
-    }
-done:
-    return status;
+    return ritz_curve_between(&curve, close_enough, &low, &high, &most);
 }
 
 /* Index of the largest that was not yet taken, -1 if there is none. */

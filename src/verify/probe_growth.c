@@ -17,7 +17,6 @@
 
 #include "base/alloc.h"
 #include "linear/general.h"
-#include "linear/split.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -34,11 +33,6 @@ enum {
 static const double died_out = 1e-3;
 /* Of |A| t: squaring has added up rounding to 1e-7 then. */
 static const double long_enough = 1e-7 / DBL_EPSILON;
-
-typedef struct growth {
-    double met, seconds; /* largest energy, and when */
-    double most;         /* bound; HUGE_VAL: none is known */
-} growth;
 
 ritz_status ritz_probe_energy_matrix(const ritz_first_order *modes,
                                      ritz_dense *out)
@@ -101,7 +95,7 @@ done:
 
 /* e^(A h), e^(2 A h), e^(4 A h), ... until nothing is left, or t = most. */
 static ritz_status follow(const ritz_dense *A, double h, double most,
-                          growth *out)
+                          ritz_growth *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense E = {0}, next = {0};
@@ -157,19 +151,20 @@ done:
     return status;
 }
 
-static ritz_status measure(const ritz_dense *A, growth *out)
+ritz_status ritz_growth_measure(const ritz_dense *A, ritz_growth *out)
 {
     ritz_status status = RITZ_OK;
     double size = norm_one(A);
 
-    *out = (growth){.met = 1.0, .most = HUGE_VAL};
+    *out = (ritz_growth){.met = 1.0, .most = HUGE_VAL, .followed = true};
     if (A->nrow == 0 || size == 0.0) {
         out->most = 1.0;
         return RITZ_OK;
     }
     RITZ_TRY(bound(A, &out->most));
-    if (A->nrow > MOST_STATES)
-        return RITZ_OK;
+    out->followed = A->nrow <= MOST_STATES;
+    if (!out->followed)
+        goto done;
     for (int k = 0; k < FOURTHS; k++)
         RITZ_TRY(follow(A, 0.25 / size * exp2((double)k / FOURTHS),
                         long_enough / size, out));
@@ -178,15 +173,19 @@ done:
     return status;
 }
 
-static void say_growth(ritz_prober *it, const growth *found, double limit,
-                       const char *what)
+void ritz_prober_growth(ritz_prober *it, const ritz_growth *found, double limit,
+                        const char *what)
 {
     char where[RITZ_WHERE_SIZE];
 
-    snprintf(where, sizeof where, "after %.3g s", found->seconds);
+    if (found->seconds > 0.0)
+        snprintf(where, sizeof where, "after %.3g s", found->seconds);
+    else
+        snprintf(where, sizeof where, "not followed, of more than %d states",
+                 MOST_STATES);
     ritz_prober_say(it, "energy-growth", found->met, limit,
                     found->met > limit ? RITZ_WARN : RITZ_PASS,
-                    found->met > 1.0 ? where : "",
+                    found->met > 1.0 || !found->followed ? where : "",
                     "%s of a free motion: %.4g times its first at least, %.3g "
                     "at most",
                     what, found->met, found->most);
@@ -195,42 +194,14 @@ static void say_growth(ritz_prober *it, const growth *found, double limit,
 static ritz_status grow_modes(ritz_prober *it)
 {
     ritz_status status = RITZ_OK;
-    growth found = {0};
+    ritz_growth found = {0};
     ritz_dense A = {0};
 
     RITZ_TRY(ritz_probe_energy_matrix(&it->modes, &A));
-    RITZ_TRY(measure(&A, &found));
+    RITZ_TRY(ritz_growth_measure(&A, &found));
     /* squaring doubles rounding each time */
-    say_growth(it, &found, 1.0 + 1e-6, "energy");
+    ritz_prober_growth(it, &found, 1.0 + 1e-6, "energy");
 done:
-    ritz_dense_free(&A);
-    return status;
-}
-
-/* States have no energy; scaled as an eigensolver would, at least a size. */
-static ritz_status grow_states(ritz_prober *it)
-{
-    ritz_status status = RITZ_OK;
-    growth found = {0};
-    ritz_dense A = {0};
-    ritz_split split = {0};
-    const ritz_dense none = {0};
-    double *scale = NULL;
-    lapack_int low = 0, high = 0;
-    int n = (int)it->space->A.nrow;
-
-    RITZ_NEW(scale, n);
-    RITZ_TRY(ritz_dense_copy(&it->space->A, &A));
-    if (it->space->E.val)
-        RITZ_TRY_IN("E", ritz_general_solve(&it->space->E, false, &A));
-    if (n > 0)
-        LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, A.val, n, &low, &high, scale);
-    RITZ_TRY(ritz_split_new(&A, &none, &split));
-    RITZ_TRY(measure(&split.S, &found));
-    say_growth(it, &found, nan(""), "square of scaled states");
-done:
-    free(scale);
-    ritz_split_free(&split);
     ritz_dense_free(&A);
     return status;
 }
@@ -251,5 +222,5 @@ ritz_status ritz_probe_growth(ritz_prober *it)
                         "a free motion grows without bound");
         return RITZ_OK;
     }
-    return it->reduced ? grow_modes(it) : grow_states(it);
+    return it->reduced ? grow_modes(it) : ritz_probe_growth_states(it);
 }

@@ -39,6 +39,13 @@ typedef struct ritz_passivity {
     int64_t port; /* with the largest share in its eigenvector */
 } ritz_passivity;
 
+/* The largest |e^(A t)|^2, t >= 0. */
+typedef struct ritz_growth {
+    double met, seconds; /* what was met, and when */
+    double most;         /* bound; HUGE_VAL: none is known */
+    bool followed;       /* false: too many states, `met` is 1 */
+} ritz_growth;
+
 typedef struct ritz_prober {
     const ritz_reduced *reduced;   /* NULL of a state space */
     const ritz_state_space *space; /* NULL of a reduced component */
@@ -80,6 +87,16 @@ ritz_status ritz_probe_passive(ritz_prober *it);
 ritz_status ritz_probe_locked(ritz_prober *it);
 ritz_status ritz_probe_sprung(ritz_prober *it);
 ritz_status ritz_probe_joined(ritz_prober *it);
+
+/** The part of a state space, which is stable. */
+ritz_status ritz_probe_growth_states(ritz_prober *it);
+
+/** Of a stable A. @cost O(n^3), some hundred products up to 400 states */
+ritz_status ritz_growth_measure(const ritz_dense *A, ritz_growth *out);
+
+/** Say it of @p what, which may reach @p limit. */
+void ritz_prober_growth(ritz_prober *it, const ritz_growth *found, double limit,
+                        const char *what);
 
 /** The same of pairs of a state space. */
 ritz_status ritz_probe_locked_states(ritz_prober *it);

@@ -39,18 +39,29 @@ static bool present(const ritz_dense *A)
     return A && A->val;
 }
 
-/* The finite modes as X; lambda, 0 where rigid. */
+/*
+ * The finite modes as X; lambda, 0 where rigid. Of a model with negative
+ * eigenvalues, as columns joined by forces bring with them, rigid motions come
+ * behind those, and are told by what is left; num_rigid counts both.
+ */
 static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
 {
     ritz_status status = RITZ_OK;
     double largest = 0.0;
+    int64_t m = 0, negative = 0;
 
     RITZ_TRY(ritz_eigen_dense(model->K, model->M, pairs));
-    for (int64_t j = 0; j < pairs->Phi.ncol; j++)
+    m = pairs->Phi.ncol;
+    for (int64_t j = 0; j < m; j++)
         largest = fmax(largest, fabs(pairs->lambda[j]));
-    for (int64_t j = 0; j < pairs->num_rigid; j++)
-        if (pairs->lambda[j] >= -unstable * largest)
-            pairs->lambda[j] = 0.0;
+    while (negative < m && pairs->lambda[negative] < -unstable * largest)
+        negative++;
+    if (negative > 0)
+        pairs->num_rigid =
+            negative +
+            ritz_eigen_rigid(m - negative, pairs->lambda + negative, largest);
+    for (int64_t j = negative; j < pairs->num_rigid; j++)
+        pairs->lambda[j] = 0.0;
 done:
     return status;
 }

@@ -80,6 +80,12 @@ for method in macneal rubin inertia-relief dual-craig-bampton \
 done
 expect 0 "negative-eigenvalues           1.0000e+01            0  fail" \
     ritz-assemble scene-dual-craig-bampton.yaml --at clock=60 -o dual.h5
+# poles on the right are those of the forces: rigid motion is not among them
+expect 0 "16 poles at 0 are not listed: rigid-body motion" ritz-poles dual.h5
+json 0 ritz-poles dual.h5
+holds '  and none of the unstable ones is rounding' \
+    'sum(p["real"] > 0 for p in j["poles"]) == 10
+     and all(p["hertz"] > 1e-2 for p in j["poles"])'
 expect 1 "an unstable model has no steady response" ritz-frf --from-hz 0.1 \
     --to-hz 10 dual.h5 -o none.h5
 expect 1 "component 'rotor' is reduced by dual-craig-bampton" \

@@ -41,33 +41,6 @@ static void add_spring(ritz_dense *K, int a, int b)
         }
 }
 
-static ritz_status to_sparse(const ritz_dense *A, ritz_sparse *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t n = A->nrow;
-    int64_t *row = NULL;
-    int64_t *col = NULL;
-    double *val = NULL;
-    int64_t count = 0;
-
-    RITZ_NEW(row, n * n);
-    RITZ_NEW(col, n * n);
-    RITZ_NEW(val, n * n);
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < n; i++)
-            if (ritz_dense_col(A, j)[i] != 0.0) {
-                row[count] = i;
-                col[count] = j;
-                val[count++] = ritz_dense_col(A, j)[i];
-            }
-    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, val, out));
-done:
-    free(row);
-    free(col);
-    free(val);
-    return status;
-}
-
 /* Grids 11 to 15; `parts` 2: grid 15 hangs on nothing but a grounded spring. */
 static ritz_component lattice(int parts)
 {
@@ -98,8 +71,8 @@ static ritz_component lattice(int parts)
     for (int a = 0; a < whole; a++)
         for (int b = 0; b < a; b++)
             add_spring(&K, a, b);
-    assert_ok(to_sparse(&K, &c.K));
-    assert_ok(to_sparse(&M, &c.M));
+    assert_ok(ritz_sparse_from_dense(&K, &c.K));
+    assert_ok(ritz_sparse_from_dense(&M, &c.M));
     assert_ok(ritz_component_settle(&c, false));
     ritz_dense_free(&K);
     ritz_dense_free(&M);

@@ -1,0 +1,33 @@
+/* A channel of a second-order model by its modes. */
+#ifndef RITZ_VERIFY_CHANNEL_MODES_H
+#define RITZ_VERIFY_CHANNEL_MODES_H
+
+#include "model/first_order.h"
+#include "verify/channel.h"
+
+/* Modes of one channel as they are summed, c + s cv over s^2 + rate s + lambda;
+   of equal poles one, with the share of all. What rounding may make of each
+   stands beside it. */
+typedef struct ritz_channel_row {
+    double lambda, rate, c, cv;
+    double doubt_rate, doubt_c, doubt_cv;
+} ritz_channel_row;
+
+/**
+ * Modes that are driven and seen beyond rounding.
+ *
+ * @param[in]  D     that Delta was projected from; {0}: none
+ * @param[in]  io    of one input and one output
+ * @param[out] out   as many as there are modes, to be freed by the caller
+ * @param[out] count of them that count; -1: damping couples modes
+ */
+ritz_status ritz_channel_rows(const ritz_first_order *modes,
+                              const ritz_dense *D, const ritz_io *io,
+                              int64_t *count, ritz_channel_row **out);
+
+/** @param[in] single  whether @p io is of one input and one output */
+ritz_status ritz_channel_of_modes(const ritz_first_order *modes,
+                                  const ritz_dense *D, const ritz_io *io,
+                                  bool single, ritz_channel *out);
+
+#endif
