@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* The largest (or smallest) of something, and the full mode where it is. */
 typedef struct extreme {
@@ -65,6 +66,38 @@ static ritz_status add(const ritz_sides *sides, const char *name, double limit,
                    found.mode + 1,
                    ritz_eigen_hertz(sides->full->poles.lambda[found.mode]));
     return ritz_measures_add(out, name, found.value, limit, where);
+}
+
+/* How many modes of the band no channel shows: their MAC is none. */
+static int64_t count_unseen(const ritz_sides *sides)
+{
+    const ritz_poles *full = &sides->full->poles;
+    int64_t count = 0;
+
+    for (int64_t k = full->num_rigid; k < full->count; k++)
+        count += in_band(sides, full->lambda[k]) && !sides->full->seen.mode[k];
+    return count;
+}
+
+/* "mode 5, 0.1202 Hz, 1 not seen" */
+static ritz_status add_mac(const ritz_sides *sides, double limit, extreme found,
+                           ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t unseen = sides->outputs ? count_unseen(sides) : 0;
+    char *where = NULL;
+    size_t used = 0;
+
+    if (found.mode < 0 || !(sides->shapes || sides->outputs))
+        return RITZ_OK;
+    RITZ_TRY(add(sides, "mac", limit, found, out));
+    where = out->item[out->count - 1].where;
+    used = strlen(where);
+    if (unseen > 0)
+        (void)snprintf(where + used, RITZ_NAME_SIZE - used,
+                       ", %" PRId64 " not seen", unseen);
+done:
+    return status;
 }
 
 /* A count, and the first that was counted. */
@@ -153,8 +186,7 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
     }
     RITZ_TRY(add(sides, "frequency-relative", request->limit_frequency,
                  frequency, out));
-    if (sides->shapes || sides->outputs)
-        RITZ_TRY(add(sides, "mac", request->limit_mac, mac, out));
+    RITZ_TRY(add_mac(sides, request->limit_mac, mac, out));
     RITZ_TRY(
         add(sides, "damping-relative", request->limit_damping, damping, out));
     RITZ_TRY(add_rigid(sides, out));

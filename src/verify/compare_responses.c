@@ -10,8 +10,6 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
-/* Of the largest |H|: a level in dB means nothing beneath. */
-static const double audible = 1e-6;
 /* A free body has no response at 0 Hz: begin at this part of the band. */
 static const double above_rest = 1e-3;
 
@@ -166,7 +164,7 @@ static void compare_levels(const both *s, extreme *found)
         double a = cabs(s->full->full[k]);
         double b = fmax(cabs(s->reduced[k]), 1e-300);
 
-        if (a > audible * found->largest &&
+        if (a > RITZ_AUDIBLE * found->largest &&
             fabs(20.0 * log10(b / a)) > found->db) {
             found->db = fabs(20.0 * log10(b / a));
             found->db_hz = s->full->hertz[k / values];
@@ -200,7 +198,7 @@ static ritz_status add_response(const ritz_sides *sides, const extreme *found,
                                found->error / found->largest,
                                request->limit_response, where));
     if (sides->full->poles.num_rigid > 0 &&
-        found->flexible > audible * found->error)
+        found->flexible > RITZ_AUDIBLE * found->error)
         RITZ_TRY(ritz_measures_add(out, "flexible-response-relative",
                                    found->error / found->flexible,
                                    request->limit_flexible, where));

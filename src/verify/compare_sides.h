@@ -26,6 +26,7 @@ struct ritz_reference {
     ritz_poles poles;
     ritz_residual residual;
     ritz_damped damped;
+    ritz_seen seen;
     ritz_dense gain;
     ritz_sweep own, random;
 };
@@ -34,7 +35,8 @@ typedef struct ritz_sides {
     const ritz_reference *full;
     int where;        /* sum of RITZ_AT_... */
     bool shapes;      /* MAC is of shapes */
-    bool outputs;     /* MAC is of what inputs and outputs see */
+    bool outputs;     /* MAC is of what inputs and outputs see, of modes that
+                         they do see */
     ritz_pairs small; /* of the reduced model, all */
     ritz_poles reduced;
     ritz_dense gain_reduced;

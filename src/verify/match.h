@@ -2,7 +2,10 @@
 #ifndef RITZ_VERIFY_MATCH_H
 #define RITZ_VERIFY_MATCH_H
 
-#include "verify/poles.h"
+#include "verify/seen.h"
+
+/* Reduction turns vectors within modes that lie closer than its own error. */
+#define RITZ_CLOSE 1e-3
 
 typedef struct ritz_match {
     int64_t count;    /* modes of the full model */
@@ -11,6 +14,10 @@ typedef struct ritz_match {
     int64_t num_reduced;
     bool *taken; /* num_reduced, is somebody's partner */
 } ritz_match;
+
+/** No partner for any mode, and no MAC. */
+ritz_status ritz_match_new(const ritz_poles *full, const ritz_poles *reduced,
+                           ritz_match *out);
 
 /**
  * By shapes: Q = Phi_full' M T Phi_reduced, both sides normalised. Full modes
@@ -22,11 +29,14 @@ ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
 
 /**
  * By frequency and by what inputs and outputs see: the alignment of the two
- * ascending lists that costs least. MAC is of the vectors of inputs and outputs
- * (C phi, phi'B), NaN where there are none.
+ * ascending lists that costs least, but for modes that have changed places in
+ * one of them. MAC is ritz_seen_mac, 0 without partner; NaN
+ * of modes that are not seen, and of those closer than 1e-3, which are any
+ * mixture.
  */
 ritz_status ritz_match_outputs(const ritz_poles *full,
-                               const ritz_poles *reduced, ritz_match *out);
+                               const ritz_poles *reduced, const ritz_seen *seen,
+                               ritz_match *out);
 
 void ritz_match_free(ritz_match *match);
 

@@ -19,12 +19,17 @@ static inline double _Complex ritz_complex(double re, double im)
 }
 
 /*
- * What the modes that were left out answer, without damping: with K^+ the
- * inverse of K where they live, X = sum_j w^(2j) R_j, R_0 = K^+ B and
- * R_j = K^+ M R_(j-1); of it only what the outputs see.
+ * What the modes that were left out answer, damped by a M + b K: with K^+ the
+ * inverse of K where they live, R_0 = K^+ B and R_j = K^+ M R_(j-1),
+ *
+ *     X = sum_j mu^j R_j / (1 + i w b),    mu = (w^2 - i w a) / (1 + i w b)
+ *
+ * of it only what the outputs see. No ratio damps them.
  */
 typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
+    double a, b;
+    bool known;          /* a and b are all that D and K4 do to them */
     double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
                             as ritz_dense */
 } ritz_residual;
@@ -101,10 +106,19 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
                                     double up_to_hz, ritz_pairs *pairs,
                                     ritz_poles *out);
 
-/** @param[in] to_hz  where the series is to be good to 1e-12 */
+/**
+ * What the modes beside @p pairs answer, damped as @p damping, if it is
+ * a M + b K, and D say together. Of a D that is no such sum, of K4, and where
+ * a is so large that there is no series, nothing is heeded.
+ *
+ * @param[in] damping  NULL: none beside D
+ * @param[in] to_hz    where the series is to be good to 1e-12
+ * @param[in] out_hz   all modes up to here are in @p pairs
+ */
 ritz_status ritz_residual_new(const ritz_component *component,
+                              const ritz_damping *damping,
                               const ritz_pairs *pairs, double to_hz,
-                              ritz_residual *out);
+                              double out_hz, ritz_residual *out);
 
 /** H += the residual's share. */
 void ritz_residual_add(const ritz_residual *residual, double hertz,

@@ -14,7 +14,8 @@
 static const double beyond = 3.0;
 /* Hz: no model has a mode above. */
 static const double all_modes = 1e100;
-/* Dofs up to which all modes are taken where D couples them. */
+/* Dofs up to which all modes are taken where D couples them, or does what is
+   not known to those above. */
 enum { SMALL = 300 };
 /* Points before those at the poles are added. */
 enum { EVEN_POINTS = 200 };
@@ -76,35 +77,41 @@ done:
 
 bool ritz_reference_factors(const ritz_reference *reference)
 {
-    return reference->poles.coupled &&
+    return (reference->poles.coupled || !reference->residual.known) &&
            reference->poles.count < reference->component->num_dofs;
+}
+
+/* Modes up to a frequency, and the answer of the rest. */
+static ritz_status take_modes(double up_to_hz, ritz_reference *r)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *full = r->component;
+
+    RITZ_TRY(ritz_poles_of_component(full, &r->damping, up_to_hz, &r->pairs,
+                                     &r->poles));
+    RITZ_TRY(ritz_residual_new(full, &r->damping, &r->pairs, r->band_hz[1],
+                               up_to_hz, &r->residual));
+done:
+    return ritz_context(status, "full model");
 }
 
 static ritz_status open_modes(ritz_reference *r)
 {
     ritz_status status = RITZ_OK;
-    const ritz_component *full = r->component;
-    bool damped = false; /* beside ratios */
 
     r->modes_hz = beyond * r->band_hz[1];
-    RITZ_TRY_IN("full model",
-                ritz_poles_of_component(full, &r->damping, r->modes_hz,
-                                        &r->pairs, &r->poles));
-    /* what lies above them answers without damping, which D may give it */
-    damped = full->D.colptr || full->K4.colptr ||
-             r->damping.kind == RITZ_DAMPING_RAYLEIGH ||
-             r->damping.kind == RITZ_DAMPING_FIT;
-    if (damped && full->num_dofs <= SMALL) {
+    RITZ_TRY(take_modes(r->modes_hz, r));
+    if (ritz_reference_factors(r) && r->component->num_dofs <= SMALL) {
         ritz_pairs_free(&r->pairs);
         ritz_poles_free(&r->poles);
-        RITZ_TRY_IN("full model",
-                    ritz_poles_of_component(full, &r->damping, all_modes,
-                                            &r->pairs, &r->poles));
+        ritz_residual_free(&r->residual);
+        RITZ_TRY(take_modes(all_modes, r));
     }
-    RITZ_TRY_IN("full model", ritz_residual_new(full, &r->pairs, r->band_hz[1],
-                                                &r->residual));
-    RITZ_TRY_IN("full model", ritz_damped_new(&r->poles, full, &r->pairs,
-                                              r->band_hz, &r->damped));
+    RITZ_TRY_IN("full model",
+                ritz_damped_new(&r->poles, r->component, &r->pairs, r->band_hz,
+                                &r->damped));
+    RITZ_TRY_IN("full model", ritz_seen_new(r->component, &r->pairs, &r->poles,
+                                            r->band_hz, &r->seen));
     RITZ_TRY_IN("full model", full_gain(r));
 done:
     return status;
@@ -254,6 +261,7 @@ void ritz_reference_free(ritz_reference **reference)
     ritz_poles_free(&r->poles);
     ritz_residual_free(&r->residual);
     ritz_damped_free(&r->damped);
+    ritz_seen_free(&r->seen);
     ritz_dense_free(&r->gain);
     ritz_sweep_free(&r->own);
     ritz_sweep_free(&r->random);

@@ -9,14 +9,22 @@
  *     A R_new = f - sigma M R,
  *
  * whose error falls by |sigma| / (lambda + |sigma|) a step, lambda being of the
- * first mode that is left out. The series falls by (w / w_out)^2 a term.
+ * first mode that is left out. Damping a M + b K acts on those modes too:
+ *
+ *     lambda (1 + i w b) + i w a - w^2 = (1 + i w b) (lambda - mu),
+ *     mu = (w^2 - i w a) / (1 + i w b)
+ *
+ * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall by
+ * |mu| / lambda. |mu| grows with w.
  */
 #include "verify/poles.h"
 
 #include "base/alloc.h"
+#include "verify/proportional.h"
 
 #include <ritz/factor.h>
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +35,8 @@ enum { MOST_STEPS = 200, MOST_TERMS = 40 };
 static const double settled = 1e-14;
 static const double small_shift = 0.01;
 static const double series_within = 1e-12;
+/* falls_enough^MOST_TERMS = series_within */
+static const double falls_enough = 0.5;
 
 /* What the terms are solved with. */
 typedef struct solver {
@@ -138,34 +148,67 @@ done:
     return status;
 }
 
-/* Terms until (to / out)^(2 j) is small, of the highest mode that is kept. */
-static int64_t count_terms(const ritz_pairs *pairs, double to_hz)
+/* a and b of given damping, and of D if it has any; what else D and K4 do to
+ * the rest is not known. */
+static ritz_status take_damping(const ritz_component *component,
+                                const ritz_damping *damping, ritz_residual *r)
 {
-    int64_t m = pairs->Phi.ncol;
-    double falls = 0.0;
+    ritz_status status = RITZ_OK;
+    double left = 0.0;
 
-    if (m <= pairs->num_rigid)
-        return MOST_TERMS / 2;
-    falls = ritz_eigen_lambda(to_hz) / pairs->lambda[m - 1];
-    if (!(falls < 1.0))
+    r->known = !component->K4.colptr;
+    if (component->D.colptr && component->D.colptr[component->D.ncol] > 0)
+        RITZ_TRY(ritz_proportional(component, &r->a, &r->b, &left));
+    if (left > RITZ_PROPORTIONAL_WITHIN) {
+        r->a = r->b = 0.0;
+        r->known = false;
+    }
+    if (damping && ritz_damping_is_rayleigh(damping)) {
+        r->a += damping->a;
+        r->b += damping->b;
+    }
+done:
+    return status;
+}
+
+/*
+ * Terms until (|mu| / lambda)^j is small at the end. Where damping keeps the
+ * series from that, it is left out.
+ */
+static int64_t count_terms(double to_hz, double out_hz, ritz_residual *r)
+{
+    double w = sqrt(ritz_eigen_lambda(to_hz));
+    double lambda = ritz_eigen_lambda(out_hz);
+    double mu = w * hypot(w, r->a) / hypot(1.0, w * r->b);
+
+    if (mu > w * w && mu > falls_enough * lambda) {
+        mu = w * w;
+        r->a = r->b = 0.0;
+        r->known = false;
+    }
+    if (!(mu < lambda))
         return MOST_TERMS;
     return (int64_t)fmin(MOST_TERMS,
-                         1.0 + ceil(log(series_within) / log(falls)));
+                         1.0 + ceil(log(series_within) / log(mu / lambda)));
 }
 
 ritz_status ritz_residual_new(const ritz_component *component,
+                              const ritz_damping *damping,
                               const ritz_pairs *pairs, double to_hz,
-                              ritz_residual *out)
+                              double out_hz, ritz_residual *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
     int64_t pm = io->num_outputs * io->num_inputs;
     ritz_residual r = {.num_outputs = io->num_outputs,
-                       .num_inputs = io->num_inputs};
+                       .num_inputs = io->num_inputs,
+                       .known = true};
     solver s = {0};
 
-    if (pairs->Phi.ncol < component->num_dofs && pm > 0)
-        r.count = count_terms(pairs, to_hz);
+    if (pairs->Phi.ncol < component->num_dofs && pm > 0) {
+        RITZ_TRY(take_damping(component, damping, &r));
+        r.count = count_terms(to_hz, out_hz, &r);
+    }
     RITZ_NEW(r.C, r.count * pm);
     RITZ_NEW(r.Cv, r.count * pm);
     RITZ_NEW(r.Ca, r.count * pm);
@@ -187,7 +230,9 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
 {
     double w2 = ritz_eigen_lambda(hertz);
     double w = sqrt(w2);
-    double power = 1.0;
+    double _Complex stiff = ritz_complex(1.0, w * residual->b);
+    double _Complex mu = ritz_complex(w2, -w * residual->a) / stiff;
+    double _Complex power = 1.0 / stiff;
     int64_t p = residual->num_outputs;
     int64_t k = 0;
 
@@ -197,7 +242,7 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
                 H[i * residual->num_inputs + j] +=
                     power * ritz_complex(residual->C[k] - w2 * residual->Ca[k],
                                          w * residual->Cv[k]);
-        power *= w2;
+        power *= mu;
     }
 }
 

@@ -121,6 +121,8 @@ ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
     RITZ_TRY(mark_massless(massless, &D, damping, out));
     if (massless == 0) {
         out->rest = rest;
+        if (damping && ritz_damping_is_rayleigh(damping))
+            out->rest.b = damping->b;
         rest = (ritz_residual){0};
     }
 done:

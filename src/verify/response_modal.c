@@ -49,8 +49,8 @@ static ritz_status of_component(const ritz_response_request *request, modal *m)
                  highest, request->to_hz);
     RITZ_TRY(ritz_poles_of_component(request->component, request->damping,
                                      highest, &m->pairs, &m->poles));
-    RITZ_TRY(ritz_residual_new(request->component, &m->pairs, request->to_hz,
-                               &m->residual));
+    RITZ_TRY(ritz_residual_new(request->component, request->damping, &m->pairs,
+                               request->to_hz, highest, &m->residual));
 done:
     return status;
 }
@@ -85,8 +85,10 @@ const ritz_response_engine ritz_response_engine_modal = {
     .when = "reduced components and systems; components with damping ratios",
     .cost = "the modes; then O(modes) a point, O(modes^3) where D or K4 "
             "couples them",
-    .holds = "exact for dense models; of components without D and K4 to 1e-12",
-    .fails = "of components, D and K4 act on the modes that are summed alone",
+    .holds = "exact for dense models; of components without K4, and with no D "
+             "but a M + b K, to 1e-12",
+    .fails = "of components, K4 and any other D act on the modes that are "
+             "summed alone",
     .takes = RITZ_RESPONDS_COMPONENT | RITZ_RESPONDS_MATRICES,
     .make = make,
 };

@@ -28,7 +28,8 @@ ritz_status ritz_static_rest(const ritz_second_order *model,
     const ritz_io *io = model->io;
     int64_t size = io->num_outputs * io->num_inputs;
     ritz_residual found = {.num_outputs = io->num_outputs,
-                           .num_inputs = io->num_inputs};
+                           .num_inputs = io->num_inputs,
+                           .known = true};
     ritz_dense N = {0}, NB = {0};
 
     if (pairs->Phi.ncol == model->K->ncol || size == 0)

@@ -178,8 +178,8 @@ ritz_status ritz_sides_measure(const ritz_second_order *model,
         RITZ_TRY(ritz_match_shapes(&full->poles, &sides->reduced, &Q,
                                    &sides->match));
     } else {
-        RITZ_TRY(
-            ritz_match_outputs(&full->poles, &sides->reduced, &sides->match));
+        RITZ_TRY(ritz_match_outputs(&full->poles, &sides->reduced, &full->seen,
+                                    &sides->match));
     }
     RITZ_TRY(ritz_sides_modes(sides, limits, &found));
     RITZ_TRY(ritz_sides_responses(sides, limits, &found));
