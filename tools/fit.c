@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Measures by name, as records and JSON hold them. */
-static json_t *values_json(const ritz_measures *measures)
+json_t *fit_values_json(const ritz_measures *measures)
 {
     json_t *object = json_object();
 
@@ -59,8 +58,8 @@ static json_t *candidate_json(const ritz_fit_candidate *c)
     json_object_set_new(
         object, "seconds",
         json_pack("{s:f, s:f}", "wall", c->spent.wall, "cpu", c->spent.cpu));
-    json_object_set_new(object, "errors", values_json(&c->errors));
-    json_object_set_new(object, "estimates", values_json(&c->estimates));
+    json_object_set_new(object, "errors", fit_values_json(&c->errors));
+    json_object_set_new(object, "estimates", fit_values_json(&c->estimates));
     if (c->cost.order > 0)
         json_object_set_new(object, "cost", model_cost_json(&c->cost));
     json_object_set_new(object, "feasible", json_boolean(c->feasible));
@@ -101,6 +100,7 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
 {
     char modes[64] = "-";
     char cost[32] = "-"; /* of what is not met it is not measured */
+    char error[32];
     size_t used = 0;
 
     if (!c) {
@@ -118,9 +118,11 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
     }
     if (c->cost.order > 0)
         snprintf(cost, sizeof cost, "%.2g", c->cost.seconds_per_second);
-    cli_say(run, "%-18s %6lld %8s  %8.2g %-10s %8.2g %9s  %s", c->method->name,
-            (long long)c->order, modes, c->excess,
-            c->binding < 0
+    snprintf(error, sizeof error, "%s%.2g", c->screened ? ">" : "", c->excess);
+    cli_say(run, "%-18s %6lld %8s  %8s %-10s %8.2g %9s  %s", c->method->name,
+            (long long)c->order, modes, error,
+            c->screened ? "frequency"
+            : c->binding < 0
                 ? ""
                 : ritz_tolerance_word(c->errors.item[c->binding].name),
             c->spent.cpu, cost, c->feasible ? "" : "not met");
@@ -181,6 +183,18 @@ static void say_cost(cli_run *run, const ritz_fitter *fitter,
     json_object_set_new(run->report, "cost", model_cost_json(cost));
 }
 
+/* How wrong it can be, where that is known; modes one by one are in the file. */
+static void say_bounds(const cli_run *run, const ritz_measures *estimates)
+{
+    for (int64_t k = 0; k < estimates->count; k++) {
+        const ritz_measure *m = &estimates->item[k];
+
+        if (strncmp(m->name, "mode-", 5) != 0)
+            cli_say(run, "%-28s %12.4e %12s  %-9s  %s", m->name, m->value, "-",
+                    "estimated", m->where);
+    }
+}
+
 static void say_answer(cli_run *run, const ritz_fitter *fitter,
                        const ritz_fit *fit)
 {
@@ -194,6 +208,7 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
         cli_say(run, "  %-20s %lld modes", ritz_fitter_body(fitter, k),
                 (long long)c->modes[k]);
     model_say_measures(run, &c->errors, "measured");
+    say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);
     cli_report_text(run, "method", c->method->name);
     cli_report_int(run, "order", c->order);
@@ -202,6 +217,8 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     json_object_set_new(run->report, "error", cli_real(c->excess));
     json_object_set_new(run->report, "measures",
                         model_measures_json(&c->errors, "measured"));
+    json_object_set_new(run->report, "estimates",
+                        model_measures_json(&c->estimates, "estimated"));
     json_object_set_new(run->report, "runner_up",
                         second ? candidate_json(second) : json_null());
 }
@@ -218,7 +235,7 @@ void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit)
             limits->band_hz[0], limits->band_hz[1], what);
     cli_say(run,
             "%lld candidates of %lld methods; errors in parts of their "
-            "tolerance.\n",
+            "tolerance, > at least.\n",
             (long long)fit->count, (long long)fit->num_methods);
     say_head(run);
     for (int64_t m = 0; m < fit->num_methods; m++)

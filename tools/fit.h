@@ -30,6 +30,18 @@ void fit_observe(const ritz_fit_candidate *candidate, void *context);
 /** What was searched, and the answer; the same as JSON. */
 void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit);
 
+/**
+ * Say what a scene's answer comes to if its bodies are cut, the same as JSON;
+ * write its bodies as PREFIXname.h5 if @p prefix is there, and its system to
+ * the output if there is one.
+ */
+ritz_status fit_write_scene(cli_run *run, const char *prefix,
+                            const ritz_scene *scene, ritz_fitter *fitter,
+                            const ritz_fit_candidate *chosen);
+
+/** Measures by name, as records and JSON hold them. */
+json_t *fit_values_json(const ritz_measures *measures);
+
 /** Every method at equal error and at @p equal_order; the same as JSON. */
 void fit_say_all(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit,
                  int64_t equal_order, const int64_t *equal);

@@ -29,13 +29,15 @@ static void read_methods(const cli_program *program, const char *text, asked *a)
     request->methods = a->method;
     for (int k = 0; strcmp(text, "all") == 0 && ritz_methods[k]; k++)
         a->method[request->num_methods++] = ritz_methods[k];
+    if (request->num_methods > 0)
+        a->method[request->num_methods++] = &ritz_fit_compare;
     for (const char *at = request->num_methods > 0 ? NULL : text; at;) {
         size_t length = strcspn(at, ",");
         const ritz_method *found = NULL;
 
         snprintf(word, sizeof word, "%.*s", (int)(length < 60 ? length : 60),
                  at);
-        found = ritz_method_find(word);
+        found = ritz_fit_method_find(word);
         if (!found)
             cli_refuse(program, "%s", ritz_error_message());
         if (request->num_methods == MOST_METHODS)
@@ -84,38 +86,6 @@ done:
     return status;
 }
 
-static ritz_status write_scene(cli_run *run, const asked *a,
-                               const ritz_scene *scene, ritz_fitter *fitter,
-                               const ritz_fit_candidate *chosen)
-{
-    ritz_status status = RITZ_OK;
-    ritz_stamp stamp = cli_stamp(run);
-    ritz_system system = {0};
-    ritz_reduced *body = NULL;
-    json_t *files = json_array();
-    char path[4096];
-
-    json_object_set_new(run->report, "component_files", files);
-    RITZ_TRY(ritz_fitter_system(fitter, chosen, &body, &system));
-    for (int64_t k = 0; a->prefix && k < scene->num_components; k++) {
-        int length = snprintf(path, sizeof path, "%s%s.h5", a->prefix,
-                              scene->component[k].name);
-
-        RITZ_FAIL_IF(length < 0 || length >= (int)sizeof path,
-                     RITZ_ERR_ARGUMENT, "--components '%.40s...' is too long",
-                     a->prefix);
-        RITZ_TRY(ritz_container_write_reduced(path, &body[k], &stamp));
-        json_array_append_new(files, cli_string(path));
-    }
-    RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
-done:
-    for (int64_t k = 0; body && k < scene->num_components; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    ritz_system_free(&system);
-    return status;
-}
-
 /* What inputs and outputs see was held to the tolerance, what other bodies feel
    at a port was not, unless the method keeps ports. */
 static void warn_of_ports(cli_run *run, const ritz_component *component,
@@ -151,8 +121,8 @@ static ritz_status answer(cli_run *run, const asked *a, fit_run *recorder,
     fit_record(recorder, chosen, (fit_mark){.chosen = true, .why = fit.why});
     RITZ_TRY(recorder->recorded);
     warn_of_ports(run, a->component, chosen);
-    if (run->output)
-        RITZ_TRY(scene ? write_scene(run, a, scene, fitter, chosen)
+    if (run->output || a->prefix)
+        RITZ_TRY(scene ? fit_write_scene(run, a->prefix, scene, fitter, chosen)
                        : write_component(run, fitter, chosen));
     if (a->report)
         RITZ_TRY(cli_save(run, a->report));
@@ -229,8 +199,8 @@ static void own_options(asked *a, cli_option options[NUM_OWN])
          .help = "where it is to hold [the scene's]"},
         DAMPERS_OPTION(&a->damper),
         {CLI_TEXT(&a->methods), .name = "methods", .argument = "M[,M]",
-         .help = "which, or all [those of second order with a number of "
-                 "modes]"},
+         .help = "which, or all; of a scene compare too [those of second "
+                 "order with a number of modes]"},
         {CLI_TEXT(&r->attach), .name = "attach", .argument = "PORT[,PORT]",
          .help = "of a component: keep the dofs of these ports [all]"},
         {CLI_INT(&r->largest), .name = "largest", .argument = "N", .min = 1,

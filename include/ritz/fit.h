@@ -24,20 +24,22 @@ typedef struct ritz_fit_watch {
 /* One model that was tried. */
 typedef struct ritz_fit_candidate {
     const ritz_method *method;
-    int64_t num_bodies; /* flexible components; 1 of a component */
-    int64_t *modes;     /* num_bodies, what each was asked for; -1: the method
+    int64_t num_bodies;   /* flexible components; 1 of a component */
+    int64_t *modes;       /* num_bodies, what each was asked for; -1: the method
                            has nothing to ask */
-    int64_t order;      /* columns; of a scene: of the largest system */
-    int64_t left_out;   /* columns of a component's basis that its tolerance can
-                           do without: not in `order` */
-    int64_t columns;    /* of all flexible bodies together */
+    int64_t order;        /* columns; of a scene: of the largest system */
+    int64_t left_out;     /* columns of its bases that the tolerance can do
+                           without: not in `order` and `columns` */
+    int64_t columns;      /* of all flexible bodies together */
     ritz_measures errors; /* worst of all configurations; {0} if refused */
-    ritz_measures estimates;
+    ritz_measures estimates; /* of a scene: worst of the places looked at */
     double excess;   /* largest error over its tolerance; 1 or less: feasible */
     int64_t binding; /* measure that decides it; -1: none */
     bool feasible;   /* and stable, and confirmed at random places */
     bool caught;     /* it met the grid, and not what confirms */
-    bool screened;   /* estimates alone ruled it out: it has no errors */
+    bool screened;   /* bounds alone ruled it out: it has no errors */
+    bool held;       /* bounds alone said that a component's grid holds: it was
+                        measured where it is confirmed, and there alone */
     ritz_fit_watch spent; /* to make basis and reduction */
     double highest_hz;    /* of the model; 0: not known */
     ritz_cost cost;       /* if it is feasible; order 0: not measured */
@@ -51,23 +53,26 @@ typedef void ritz_fit_observer(const ritz_fit_candidate *candidate,
 typedef struct ritz_fit_request {
     ritz_verify_request tolerance; /* band, damping, limits */
     int64_t num_methods; /* 0: every one that makes reduced components by a
-                            number of modes */
+                            number of modes, and of a scene `compare` */
     const ritz_method *const *methods; /* borrowed */
     ritz_choice choice;                /* what methods are told that heed it */
     const char *attach;                /* ports of a component; NULL: all */
-    int64_t largest;     /* order to be tried; 0: four times what the band
+    int64_t largest;       /* order to be tried; 0: four times what the band
                                holds, and 40 */
-    int64_t num_random;  /* frequencies that confirm; configurations are
+    int64_t num_random;    /* frequencies that confirm; configurations are
                                `num_between` */
-    int64_t num_between; /* random configurations that confirm */
-    uint64_t seed;       /* of both */
-    bool estimates;      /* of a component: bounds beside errors, and before
-                            them: what they rule out is not measured */
-    bool costs;          /* of feasible ones, measured: some 20 ms each */
-    bool thorough;       /* every method to its end, not only as far as twice
+    int64_t num_between;   /* random configurations that confirm */
+    uint64_t seed;         /* of both */
+    bool estimates;        /* bounds before errors: what they decide is not
+                            measured, but where it is confirmed */
+    bool costs;            /* of feasible ones, measured: some 20 ms each */
+    bool thorough;         /* every method to its end, not only as far as twice
                             the best of others */
-    int64_t most_full;   /* dofs up to which a scene's full system is the
+    int64_t most_full;     /* dofs up to which a scene's full system is the
                                reference; above it a rich stage one is */
+    int64_t most_measured; /* systems at a place, to put a scene's columns in
+                              order and for what cuts come to: beyond it some
+                              places and some cuts speak for all; 0: no end */
     ritz_fit_observer *observe; /* may be NULL */
     void *context;
 } ritz_fit_request;
@@ -75,7 +80,8 @@ typedef struct ritz_fit_request {
 #define RITZ_FIT_NONE                                                          \
     {                                                                          \
         .tolerance = RITZ_VERIFY_NONE, .num_random = 1000, .num_between = 4,   \
-        .seed = 1, .estimates = true, .costs = true, .most_full = 20000        \
+        .seed = 1, .estimates = true, .costs = true, .most_full = 20000,       \
+        .most_measured = 1000                                                  \
     }
 
 /* The full model, ready; and what of candidates can be kept. */
@@ -95,6 +101,36 @@ typedef struct ritz_fit {
     const ritz_method **method; /* num_methods */
     char why[1024];
 } ritz_fit;
+
+/* A scene's answer with fewer columns: what it comes to if each flexible body
+   is cut to its first ones. */
+typedef struct ritz_fit_row {
+    int64_t *first;  /* num_bodies: the `order` of each in a scene's file */
+    int64_t columns; /* of all flexible bodies together */
+    int64_t order;   /* of the largest system */
+    ritz_measures errors; /* worst of all listed and random configurations; {0}
+                             if refused */
+    double excess;        /* as of candidates */
+    int64_t binding;
+    bool feasible;
+    char refusal[256]; /* why it could not be joined, or would be feasible and
+                          is unstable; "" */
+} ritz_fit_row;
+
+/* From the whole answer down to the fewest columns that its bodies can have,
+   each row one column less than the one before; where they are many, some. */
+typedef struct ritz_fit_path {
+    int64_t num_bodies, count;
+    ritz_fit_row *row;
+} ritz_fit_path;
+
+/* Composite modes of a scene's configurations on each body, the second stage of
+   COMPARE: a method among those of a scene, and refused of a component. Its
+   "modes" are the first so many directions of a body. */
+extern const ritz_method ritz_fit_compare;
+
+/** A method of a search by its name: one of ritz_methods, or that. */
+const ritz_method *ritz_fit_method_find(const char *name);
 
 /**
  * Take "frequency=1e-3,mac=0.99,gain=1e-6": measures, their tolerances; a
@@ -186,17 +222,39 @@ ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
                                 ritz_reduced *out);
 
 /**
- * The reduced system of a candidate at all configurations of the scene.
+ * The reduced system of a candidate at all configurations of the scene, and how
+ * it can be cut.
+ *
+ * Columns of all flexible bodies are put in one order: from the whole system
+ * one at a time is left out, that without which it is nearest to its tolerance
+ * on the grid of the listed configurations, of six that matter least alone.
+ * Those that must stay (ritz_fitter_reduced) stay, of a body without any that
+ * which matters most alone. Each body is nested in its own part of that order.
+ *
+ * What a body's file notes of a prefix, and of the whole body as its errors, is
+ * no error of the body but one of the system, and its name begins with
+ * "system-": the worst at all listed and random configurations if this body
+ * alone is cut to that prefix while all others are whole. What several cuts
+ * come to together, the path tells.
  *
  * @param[out] body  one for each component of the scene, nested where flexible;
  *                   the caller's to free
+ * @param[out] path  from the whole system down, measured where candidates are
+ *                   confirmed; ritz_fit_path_free
+ * @cost  of c columns that may go at p listed and q random configurations:
+ *        c (2 p + 5) systems measured on the grid, or some more, and at most
+ *        2 c (p + q) where candidates are confirmed; where c p or the latter is
+ *        above request.most_measured, at every s-th place and for every s-th
+ *        cut alone
  */
 ritz_status ritz_fitter_system(ritz_fitter *fitter,
                                const ritz_fit_candidate *candidate,
-                               ritz_reduced **body, ritz_system *out);
+                               ritz_reduced **body, ritz_fit_path *path,
+                               ritz_system *out);
 
 void ritz_fitter_free(ritz_fitter **fitter);
 void ritz_fit_candidate_free(ritz_fit_candidate *candidate);
 void ritz_fit_free(ritz_fit *fit);
+void ritz_fit_path_free(ritz_fit_path *path);
 
 #endif

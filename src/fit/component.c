@@ -170,7 +170,7 @@ int ritz_fit_places(const ritz_reference *reference,
                : RITZ_AT_RANDOM;
 }
 
-/* On the grid first; what meets it there, at random places too. */
+/* On the grid first; what meets it there, or is known to, at random places. */
 ritz_status ritz_fit_measure(ritz_fitter *fitter, ritz_reduced *reduced,
                              ritz_fit_candidate *candidate)
 {
@@ -182,11 +182,13 @@ ritz_status ritz_fit_measure(ritz_fitter *fitter, ritz_reduced *reduced,
     int where = 0;
 
     RITZ_TRY(ritz_reduced_install(reduced));
-    RITZ_TRY(ritz_reference_measure(reference, reduced, limits, 0,
-                                    &candidate->errors));
-    ritz_fit_judge(limits, candidate);
-    if (!candidate->feasible)
-        return RITZ_OK;
+    if (!candidate->held) {
+        RITZ_TRY(ritz_reference_measure(reference, reduced, limits, 0,
+                                        &candidate->errors));
+        ritz_fit_judge(limits, candidate);
+        if (!candidate->feasible)
+            return RITZ_OK;
+    }
     where = ritz_fit_places(reference, &candidate->errors);
     ritz_measures_free(&candidate->errors);
     RITZ_TRY(ritz_reference_measure(reference, reduced, limits, where,
@@ -201,39 +203,6 @@ done:
     return status;
 }
 
-/* Bounds are of the component as bases see it, without dampers. */
-static ritz_status estimate(ritz_fitter *fitter, const ritz_basis *basis,
-                            const ritz_reduced *reduced,
-                            ritz_fit_candidate *candidate)
-{
-    if (!fitter->estimator || fitter->component->dampers.count > 0)
-        return RITZ_OK;
-    return ritz_estimator_measure(fitter->estimator, basis, reduced,
-                                  &candidate->estimates);
-}
-
-/*
- * A frequency's bound is within ten of its error (docs/methods/estimates.md), so
- * that what exceeds a tolerance thirtyfold by its bound is not measured to see
- * that it fails. A thorough search measures all.
- */
-static bool rule_out(const ritz_fitter *fitter, ritz_fit_candidate *candidate)
-{
-    static const double hopeless = 30.0;
-    const double limit = fitter->request.tolerance.limit_frequency;
-
-    for (int64_t k = 0; k < candidate->estimates.count; k++) {
-        const ritz_measure *m = &candidate->estimates.item[k];
-
-        if (strcmp(m->name, "frequency-relative-bound") != 0 ||
-            !(m->value > hopeless * limit))
-            continue;
-        candidate->excess = m->value / limit;
-        candidate->screened = !fitter->request.thorough;
-    }
-    return candidate->screened;
-}
-
 ritz_status ritz_fit_try_component(ritz_fitter *fitter,
                                    ritz_fit_candidate *candidate)
 {
@@ -241,6 +210,7 @@ ritz_status ritz_fit_try_component(ritz_fitter *fitter,
     ritz_basis basis = {0};
     ritz_reduced reduced = {0};
     ritz_fit_watch watch = ritz_fit_start();
+    ritz_fit_verdict verdict = RITZ_FIT_OPEN;
 
     RITZ_TRY(ritz_fit_make(fitter, candidate, &basis, &reduced));
     candidate->spent = ritz_fit_since(watch);
@@ -252,8 +222,10 @@ ritz_status ritz_fit_try_component(ritz_fitter *fitter,
         candidate->excess = HUGE_VAL;
         goto done;
     }
-    RITZ_TRY(estimate(fitter, &basis, &reduced, candidate));
-    if (!rule_out(fitter, candidate))
+    RITZ_TRY(ritz_fit_foresee(fitter, &fitter->place[0], &basis.T, &reduced,
+                              candidate, &verdict));
+    candidate->held = verdict == RITZ_FIT_HOLDS;
+    if (verdict != RITZ_FIT_FAILS)
         RITZ_TRY(ritz_fit_measure(fitter, &reduced, candidate));
 done:
     ritz_basis_free(&basis);

@@ -21,6 +21,21 @@ static const double worth_saying = 0.05;
     va_end(args);
 }
 
+/* What ruled it out without being measured. */
+static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c,
+                      const char *verb)
+{
+    for (int64_t k = 0; k < c->estimates.count; k++) {
+        const ritz_measure *m = &c->estimates.item[k];
+
+        if (strcmp(m->name, "frequency-relative-least") == 0)
+            add(fit,
+                "the error of 'frequency' %s %.1e at least (%s) where %.1e is "
+                "allowed",
+                verb, m->value, m->where, m->value / c->excess);
+    }
+}
+
 /* "its response would be wrong by 2.1e-02 (3.41 Hz) where 1.0e-02 is asked" */
 static void add_error(ritz_fit *fit, const ritz_fit_candidate *c,
                       const char *verb)
@@ -32,7 +47,7 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c,
         return;
     }
     if (c->screened)
-        add(fit, "its estimates are %.0f times what is allowed", c->excess);
+        add_bound(fit, c, verb);
     if (c->binding < 0)
         return;
     m = &c->errors.item[c->binding];
@@ -74,7 +89,7 @@ static void explain_none(ritz_fit *fit)
         if (fit->reached[m] >= 0) {
             const ritz_fit_candidate *c = &fit->candidate[fit->reached[m]];
 
-            near = !near || c->excess < near->excess ? c : near;
+            near = !near || ritz_fit_is_nearer(c, near) ? c : near;
         }
     if (!near) {
         add(fit, "every method was refused");

@@ -5,6 +5,7 @@
 #include <ritz/estimate.h>
 #include <ritz/fit.h>
 #include <ritz/reference.h>
+#include <ritz/synthesis.h>
 
 /* The full system at one configuration. */
 typedef struct ritz_fit_place {
@@ -13,26 +14,40 @@ typedef struct ritz_fit_place {
     bool listed;         /* false: between, to confirm */
     ritz_component full; /* as it is compared, with its dampers */
     ritz_reference *reference;
+    ritz_estimator *estimator; /* NULL: none */
+    ritz_master *master;       /* of a scene: which dofs full's are */
 } ritz_fit_place;
 
 /* A body of a scene in one basis, kept as neighbours of a candidate use it. */
 typedef struct ritz_fit_made {
     const ritz_method *method;
     int64_t body, modes;
-    ritz_reduced reduced; /* without T */
+    ritz_reduced reduced; /* without T, unless bounds need it */
     ritz_fit_watch spent;
     ritz_status status; /* of making it */
     char refusal[256];
 } ritz_fit_made;
+
+/* Bodies of COMPARE's second stage in all their directions. */
+typedef struct ritz_fit_second {
+    bool made;
+    ritz_status status; /* of making it */
+    char refusal[256];
+    ritz_reduced *body; /* num_bodies, nested, dampers bare */
+    int64_t *rigid;     /* num_bodies, columns that move rigidly */
+    int64_t num_steps;  /* a ladder of its own */
+    int64_t *step;      /* num_steps, whose next direction matters most */
+    ritz_fit_watch spent;
+} ritz_fit_second;
 
 struct ritz_fitter {
     ritz_fit_request request;
     const ritz_component *component; /* of a component: borrowed */
     const ritz_scene *scene;         /* of a scene: borrowed */
     ritz_dofs attached;              /* of a component */
-    ritz_estimator *estimator;       /* of a component; NULL: none */
     int64_t num_places;
     ritz_fit_place *place; /* listed ones first */
+    int64_t hardest;       /* listed place where errors were largest */
     bool rich;             /* a stage one is the reference */
     int64_t num_bodies;    /* flexible */
     int64_t *body;         /* num_bodies, component of the scene */
@@ -43,6 +58,7 @@ struct ritz_fitter {
     int64_t *step;         /* num_steps, which body has one mode more */
     int64_t num_made;
     ritz_fit_made *made;
+    ritz_fit_second second;
     int64_t largest; /* order to be tried */
 };
 
@@ -73,8 +89,33 @@ int64_t ritz_fit_largest(const ritz_fitter *fitter, int64_t held, int64_t n);
 ritz_status ritz_fit_refer(const ritz_fit_request *request,
                            ritz_fit_place *place);
 
-/** Modes of each body after @p rung steps of the ladder. */
-void ritz_fit_rung(const ritz_fitter *fitter, int64_t rung, int64_t *modes);
+/** Load the bodies of a scene and make the ladder of those that are flexible. */
+ritz_status ritz_fit_bodies(ritz_fitter *fitter);
+
+/** Modes of each body after @p rung steps of a method's ladder. */
+void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
+                   int64_t rung, int64_t *modes);
+
+/** Steps of that ladder, of a scene. */
+int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method);
+
+/**
+ * The scene's flexible bodies with modes far beyond the band, joined to those
+ * that stay, which are lent: ritz_fit_rich_free takes them back.
+ */
+ritz_status ritz_fit_rich(ritz_fitter *fitter, ritz_stage *out);
+
+/** How far beyond the band, times it: 8, and up to 32 for fine tolerances. */
+double ritz_fit_rich_to(const ritz_verify_request *limits);
+void ritz_fit_rich_free(ritz_fitter *fitter, ritz_stage *stage);
+
+/** Make COMPARE's bodies, once; if they are refused, each candidate says why. */
+ritz_status ritz_fit_second_make(ritz_fitter *fitter);
+
+/** Flexible body @p k with its rigid motions and so many directions. */
+ritz_status ritz_fit_second_body(ritz_fitter *fitter, int64_t k, int64_t count,
+                                 ritz_reduced *out);
+void ritz_fit_second_free(int64_t num_bodies, ritz_fit_second *second);
 
 /** Try a component's candidate, a scene's. */
 ritz_status ritz_fit_try_component(ritz_fitter *fitter,
@@ -107,6 +148,22 @@ ritz_status ritz_fit_price(const ritz_fitter *fitter,
                            const ritz_second_order *model,
                            ritz_fit_candidate *candidate);
 
+/**
+ * Measure and judge a stage of a scene: at every listed place, by bounds or on
+ * the grid; what holds there where it is confirmed too. Bounds need every
+ * body's T.
+ */
+ritz_status ritz_fit_measure_scene(ritz_fitter *fitter, const ritz_stage *stage,
+                                   ritz_fit_candidate *candidate);
+
+/** Bounds of a scene's candidate at every listed place, for its estimates. */
+ritz_status ritz_fit_bound_scene(ritz_fitter *fitter, const ritz_stage *stage,
+                                 ritz_fit_candidate *candidate);
+
+/** The same of a candidate that was tried; of a component nothing is left to
+ * do. */
+ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);
+
 /** Bodies that stay as they are, lent to a stage, come home. */
 void ritz_fit_take_back(ritz_fitter *fitter, ritz_reduced *body);
 
@@ -114,10 +171,25 @@ void ritz_fit_take_back(ritz_fitter *fitter, ritz_reduced *body);
 ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
                           int64_t k, int64_t modes, ritz_reduced *out);
 
-/** Columns in order of what they matter, of a component; of a body of a scene
- * in the order in which they were made. */
+/** A component's columns in the order in which they matter. */
 ritz_status ritz_fit_nest(const ritz_fitter *fitter, const ritz_reduced *whole,
                           ritz_reduced *out);
+
+/**
+ * The same of all flexible bodies of a scene together.
+ *
+ * @param[in]  whole  num_bodies, dampers bare
+ * @param[in]  notes  whether prefixes are measured and noted too
+ * @param[out] body   the scene's components, of which flexible ones are made
+ */
+ritz_status ritz_fit_nest_scene(ritz_fitter *fitter, const ritz_reduced *whole,
+                                bool notes, ritz_reduced *body,
+                                ritz_fit_path *path);
+
+/** Flexible bodies of a scene's candidate, num_bodies, cut if it is. */
+ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
+                                 const ritz_fit_candidate *candidate,
+                                 ritz_reduced *out);
 
 /** Measure and judge a component's reduction, whose dampers are installed by
  * that: on the grid, and where it is confirmed. */
@@ -130,6 +202,9 @@ ritz_status ritz_fit_measure(ritz_fitter *fitter, ritz_reduced *reduced,
  */
 ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
                           ritz_fit_candidate *out);
+ritz_status ritz_fit_trim_scene(ritz_fitter *fitter,
+                                const ritz_fit_candidate *from,
+                                ritz_fit_candidate *out);
 
 /** Whether a column must stay: without it a body could not move rigidly, or
  * would not have its interface. */
@@ -140,6 +215,10 @@ bool ritz_fit_stays(ritz_column_kind kind);
 bool ritz_fit_is_better(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b);
 
+/** Whether candidate @p a is nearer to the tolerance, as far as is known. */
+bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
+                        const ritz_fit_candidate *b);
+
 /**
  * Where what met the grid is confirmed: at random frequencies, and at the
  * model's own poles. Where each point takes a factor, poles that stand for the
@@ -148,13 +227,57 @@ bool ritz_fit_is_better(const ritz_fit_candidate *a,
 int ritz_fit_places(const ritz_reference *reference,
                     const ritz_measures *errors);
 
-/** Worse of two sets of measures, by name, into the first. */
+/* What bounds say of a candidate at a place. */
+typedef enum ritz_fit_verdict {
+    RITZ_FIT_OPEN, /* measure it */
+    RITZ_FIT_HOLDS,
+    RITZ_FIT_FAILS,
+} ritz_fit_verdict;
+
+/** Factors for bounds at a place, if they are wanted. */
+ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
+                               const ritz_component *full,
+                               ritz_fit_place *place);
+
+/**
+ * Bounds of a reduced model at a place that has an estimator, or what its error
+ * is at least; none where nothing can be known.
+ */
+ritz_status ritz_fit_bound_at(const ritz_fit_place *place, const ritz_dense *T,
+                              const ritz_reduced *reduced, bool least,
+                              ritz_measures *out);
+
+/**
+ * Bound a candidate at a place, into its estimates; one that fails is screened.
+ * A thorough search leaves everything open.
+ *
+ * @param[in] T  over the full model's dofs there, of the reduced model's columns
+ */
+ritz_status ritz_fit_foresee(const ritz_fitter *fitter,
+                             const ritz_fit_place *place, const ritz_dense *T,
+                             const ritz_reduced *reduced,
+                             ritz_fit_candidate *candidate,
+                             ritz_fit_verdict *verdict);
+
+/** The worse of each measure, @p more's told with where it is, into @p worst. */
 ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
                            ritz_measures *worst);
 
 /** Candidates tried so far; try one, or find it among them. */
 ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                            const int64_t *modes, int64_t *at);
+
+/** Whether it was made, and not refused. */
+bool ritz_fit_was_made(const ritz_fit_candidate *candidate);
+
+/** One candidate more, moved into the list. */
+ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate);
+
+/** The best and the nearest of a method, of all that were tried. */
+void ritz_fit_conclude(ritz_fit *fit, int64_t method);
+
+/** Search one method. */
+ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method);
 
 /** Take modes from bodies, and exchange them, while the tolerance holds. */
 ritz_status ritz_fit_thin(ritz_fitter *fitter, ritz_fit *fit, int64_t method,

@@ -39,18 +39,6 @@ ritz_status ritz_fit_refer(const ritz_fit_request *request,
     return ritz_reference_new(&place->full, &asked, &place->reference);
 }
 
-static ritz_status estimator(const ritz_component *component, ritz_fitter *f)
-{
-    const ritz_verify_request *limits = &f->request.tolerance;
-    const ritz_estimate_request asked = {
-        .band_hz = {limits->band_hz[0], limits->band_hz[1]},
-        .damping = limits->damping};
-
-    if (!f->request.estimates)
-        return RITZ_OK;
-    return ritz_estimator_new(component, &asked, &f->estimator);
-}
-
 ritz_status ritz_fitter_new(const ritz_component *component,
                             const ritz_fit_request *request, ritz_fitter **out)
 {
@@ -77,7 +65,8 @@ ritz_status ritz_fitter_new(const ritz_component *component,
     ritz_monitor_step("full model", 0, 0);
     RITZ_TRY(ritz_fit_refer(&f->request, &f->place[0]));
     ritz_fit_settle(f->place[0].reference, limits);
-    RITZ_TRY(estimator(component, f));
+    if (component->dampers.count == 0) /* bases do not see them */
+        RITZ_TRY(ritz_fit_estimator(f, component, &f->place[0]));
     f->largest = ritz_fit_largest(f, f->attached.count, component->num_dofs);
     *out = f;
     f = NULL;
@@ -120,15 +109,27 @@ void ritz_fitter_describe(const ritz_fitter *fitter, int64_t size, char *out)
                        full->num_dofs, listed, fitter->num_places - listed);
 }
 
-void ritz_fit_rung(const ritz_fitter *fitter, int64_t rung, int64_t *modes)
+int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method)
 {
+    return method == &ritz_fit_compare ? fitter->second.num_steps
+                                       : fitter->num_steps;
+}
+
+void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
+                   int64_t rung, int64_t *modes)
+{
+    const ritz_fit_second *second =
+        method == &ritz_fit_compare ? &fitter->second : NULL;
+    const int64_t *step = second ? second->step : fitter->step;
+
     if (!fitter->scene) {
         modes[0] = rung;
         return;
     }
-    memset(modes, 0, (size_t)fitter->num_bodies * sizeof *modes);
-    for (int64_t k = 0; k < rung && k < fitter->num_steps; k++)
-        modes[fitter->step[k]]++;
+    for (int64_t k = 0; k < fitter->num_bodies; k++)
+        modes[k] = second && second->rigid && second->rigid[k] == 0;
+    for (int64_t k = 0; k < rung && k < ritz_fit_rungs(fitter, method); k++)
+        modes[step[k]]++;
 }
 
 ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
@@ -155,6 +156,8 @@ done:
 static void free_place(const ritz_fitter *fitter, ritz_fit_place *place)
 {
     ritz_reference_free(&place->reference);
+    ritz_estimator_free(&place->estimator);
+    free(place->master);
     if (fitter->scene)
         ritz_component_free(&place->full);
     else
@@ -176,7 +179,7 @@ void ritz_fitter_free(ritz_fitter **fitter)
         ritz_reduced_free(&f->still[k]);
     for (int64_t k = 0; k < f->num_made; k++)
         ritz_reduced_free(&f->made[k].reduced);
-    ritz_estimator_free(&f->estimator);
+    ritz_fit_second_free(f->num_bodies, &f->second);
     ritz_dofs_free(&f->attached);
     free(f->place);
     free(f->body);

@@ -1,57 +1,38 @@
 /*
- * Columns in the order in which they matter. From all of them one at a time is
- * left out, that without which the model is nearest to its tolerance; what is
- * left out last comes first.
+ * A component's columns in the order in which they matter, and what every
+ * prefix of them comes to. A scene's are in nest_scene.c.
  */
 #include "fit/fit_parts.h"
+#include "fit/order.h"
 
 #include "base/alloc.h"
 
 #include <ritz/monitor.h>
 #include <ritz/nested.h>
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-/* Columns that are tried at each step: those that matter least alone. */
-enum { TRIED = 6 };
 /* Entries of T above which columns stay in the order they were made in. */
 static const int64_t most_entries = 4000000;
-
-bool ritz_fit_stays(ritz_column_kind kind)
-{
-    static const ritz_column_kind kinds[] = {
-        RITZ_COLUMN_RIGID,      RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
-        RITZ_COLUMN_ATTACHMENT, RITZ_COLUMN_RESIDUAL,   RITZ_COLUMN_MASSLESS,
-        RITZ_COLUMN_FORCE};
-
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-        if (kind == kinds[k])
-            return true;
-    return false;
-}
 
 /* What is being put in order. */
 typedef struct nesting {
     const ritz_fitter *fitter;
     const ritz_reduced *whole;
-    int64_t count, fixed; /* columns; those that stay first */
-    int64_t *order;       /* count */
-    int64_t *trial;       /* to work in */
-    double *alone;        /* of each column: the excess without it */
 } nesting;
 
 /* How far a model of these columns is off; infinite if it is none. */
-static ritz_status excess_of(const nesting *n, int64_t count,
-                             const int64_t *columns, double *out)
+static ritz_status excess_of(void *context, int64_t count,
+                             const int64_t *column, double most, double *out)
 {
     ritz_status status = RITZ_OK;
+    const nesting *n = context;
     const ritz_verify_request *limits = &n->fitter->request.tolerance;
     ritz_fit_candidate judged = {0};
     ritz_reduced part = {0};
 
-    RITZ_TRY(ritz_reduced_nest(n->whole, count, columns, 1, &part));
+    (void)most; /* one measurement gives it all */
+    RITZ_TRY(ritz_reduced_nest(n->whole, count, column, 1, &part));
     RITZ_TRY(ritz_reduced_install(&part));
     RITZ_TRY(ritz_reference_measure(n->fitter->place[0].reference, &part,
                                     limits, 0, &judged.errors));
@@ -61,63 +42,6 @@ done:
     *out = judged.excess;
     ritz_reduced_free(&part);
     ritz_fit_candidate_free(&judged);
-    return status;
-}
-
-/* Without one of the first `count` columns of the order. */
-static ritz_status without(const nesting *n, int64_t count, int64_t which,
-                           double *out)
-{
-    memcpy(n->trial, n->order, (size_t)count * sizeof *n->trial);
-    memmove(n->trial + which, n->trial + which + 1,
-            (size_t)(count - which - 1) * sizeof *n->trial);
-    return excess_of(n, count - 1, n->trial, out);
-}
-
-/* Fixed columns first, then the others from those that matter most alone. */
-static ritz_status sort_alone(nesting *n)
-{
-    ritz_status status = RITZ_OK;
-
-    for (int64_t k = n->fixed; k < n->count && n->count > 1; k++) {
-        ritz_monitor_step("columns alone", k, n->count);
-        RITZ_TRY(without(n, n->count, k, &n->alone[n->order[k]]));
-    }
-    for (int64_t k = n->fixed + 1; k < n->count; k++)
-        for (int64_t i = k; i > n->fixed; i--) {
-            int64_t here = n->order[i];
-
-            if (!(n->alone[here] > n->alone[n->order[i - 1]]))
-                break;
-            n->order[i] = n->order[i - 1];
-            n->order[i - 1] = here;
-        }
-done:
-    return status;
-}
-
-/* Of the last few of those that are left, the one that goes to the end. */
-static ritz_status drop(nesting *n, int64_t left)
-{
-    ritz_status status = RITZ_OK;
-    double least = 0.0;
-    int64_t worst = left - 1;
-    int64_t here = 0;
-
-    for (int64_t t = 0; t < TRIED && left - 1 - t >= n->fixed; t++) {
-        double excess = 0.0;
-
-        RITZ_TRY(without(n, left, left - 1 - t, &excess));
-        if (t == 0 || excess < least) {
-            least = excess;
-            worst = left - 1 - t;
-        }
-    }
-    here = n->order[worst];
-    memmove(n->order + worst, n->order + worst + 1,
-            (size_t)(left - 1 - worst) * sizeof *n->order);
-    n->order[left - 1] = here;
-done:
     return status;
 }
 
@@ -154,30 +78,19 @@ ritz_status ritz_fit_nest(const ritz_fitter *fitter, const ritz_reduced *whole,
                           ritz_reduced *out)
 {
     ritz_status status = RITZ_OK;
-    nesting n = {.fitter = fitter, .whole = whole, .count = whole->K.ncol};
+    nesting n = {.fitter = fitter, .whole = whole};
+    ritz_fit_order order = {0};
 
-    RITZ_NEW(n.order, n.count);
-    RITZ_NEW(n.trial, n.count);
-    RITZ_NEW(n.alone, n.count);
-    for (int pass = 0; pass < 2; pass++)
-        for (int64_t k = 0, at = n.fixed; k < n.count; k++)
-            if (ritz_fit_stays(whole->columns.kind[k]) == (pass == 0)) {
-                n.order[at++] = k;
-                n.fixed += pass == 0;
-            }
-    if (!fitter->scene && whole->T.nrow * n.count <= most_entries) {
-        RITZ_TRY(sort_alone(&n));
-        for (int64_t left = n.count; left > n.fixed + 1; left--) {
-            ritz_monitor_step("columns in order", n.count - left, n.count);
-            RITZ_TRY(drop(&n, left));
-        }
+    RITZ_TRY(ritz_fit_order_new(whole->K.ncol, whole->columns.kind, excess_of,
+                                &n, &order));
+    if (whole->T.nrow * order.count <= most_entries) {
+        RITZ_TRY(ritz_fit_order_alone(&order));
+        RITZ_TRY(ritz_fit_order_drop(&order));
     }
-    RITZ_TRY(ritz_reduced_nest(whole, n.count, n.order,
-                               n.fixed > 0 ? n.fixed : 1, out));
+    RITZ_TRY(ritz_reduced_nest(whole, order.count, order.column,
+                               order.fixed > 0 ? order.fixed : 1, out));
 done:
-    free(n.order);
-    free(n.trial);
-    free(n.alone);
+    ritz_fit_order_free(&order);
     return status;
 }
 

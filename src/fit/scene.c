@@ -1,7 +1,4 @@
-/*
- * A scene's candidates: bodies in a basis, joined and compared at every listed
- * configuration; what meets the tolerance there, at random ones too.
- */
+/* A scene's candidates: bodies in a basis, each made once, lent to a stage. */
 #include "fit/fit_parts.h"
 
 #include "base/alloc.h"
@@ -12,6 +9,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Entries of T of all bodies that were made: half a gigabyte. */
+static const int64_t most_entries = INT64_C(1) << 26;
 
 /* Bodies that stay as they are, lent to a stage, come home. */
 void ritz_fit_take_back(ritz_fitter *f, ritz_reduced *body)
@@ -33,6 +33,8 @@ ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
 {
     ritz_scene_component item = f->scene->component[f->body[k]];
 
+    if (method == &ritz_fit_compare)
+        return ritz_fit_second_body(f, k, modes, out);
     (void)snprintf(item.basis, sizeof item.basis, "%s", method->name);
     item.modes = modes;
     item.up_to_hz = 0.0;
@@ -48,6 +50,16 @@ static void free_made(ritz_fit_made *made)
 {
     ritz_reduced_free(&made->reduced);
     *made = (ritz_fit_made){0};
+}
+
+/* Whether there is room for one more T; bounds need those of all bodies. */
+static bool keep_basis(const ritz_fitter *f, const ritz_dense *T)
+{
+    int64_t held = T->nrow * T->ncol;
+
+    for (int64_t k = 0; k < f->num_made; k++)
+        held += f->made[k].reduced.T.nrow * f->made[k].reduced.T.ncol;
+    return f->place[0].estimator && held <= most_entries;
 }
 
 /* That body in that basis, made once; of what cannot be, why. */
@@ -74,7 +86,8 @@ static ritz_status made_body(ritz_fitter *f, const ritz_method *method,
                        ritz_error_message());
     made.status = status;
     made.spent = ritz_fit_since(watch);
-    ritz_dense_free(&made.reduced.T);
+    if (!keep_basis(f, &made.reduced.T))
+        ritz_dense_free(&made.reduced.T);
     RITZ_NEW(more, f->num_made + 1);
     if (f->num_made > 0)
         memcpy(more, f->made, (size_t)f->num_made * sizeof *more);
@@ -88,95 +101,18 @@ done:
     return status;
 }
 
-/* A measure of that name; NULL: none. */
-static ritz_measure *find(const ritz_measures *measures, const char *name)
-{
-    for (int64_t k = 0; k < measures->count; k++)
-        if (strcmp(measures->item[k].name, name) == 0)
-            return &measures->item[k];
-    return NULL;
-}
-
-ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
-                           ritz_measures *worst)
-{
-    ritz_status status = RITZ_OK;
-    char where[RITZ_NAME_SIZE];
-
-    for (int64_t k = 0; k < more->count; k++) {
-        const ritz_measure *m = &more->item[k];
-        ritz_measure *old = find(worst, m->name);
-        bool least = strcmp(m->name, "mac") == 0;
-
-        (void)snprintf(where, sizeof where, "%.28s%s%.32s", at,
-                       m->where[0] ? ": " : "", m->where);
-        if (!old) {
-            RITZ_TRY(
-                ritz_measures_add(worst, m->name, m->value, m->limit, where));
-        } else if (least ? m->value < old->value : m->value > old->value) {
-            old->value = m->value;
-            memcpy(old->where, where, sizeof where);
-        }
-    }
-done:
-    return status;
-}
-
-/* The candidate at one place, its errors among the worst so far. */
-static ritz_status measure_at(ritz_fitter *f, const ritz_stage *stage,
-                              const ritz_fit_place *place, int where,
-                              ritz_fit_candidate *candidate)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_verify_request *limits = &f->request.tolerance;
-    ritz_configuration at = {0};
-    ritz_measures found = {0};
-    ritz_second_order model = {0};
-
-    RITZ_TRY(ritz_stage_assemble(stage, place->setting, &at));
-    if (at.K.ncol > candidate->order)
-        candidate->order = at.K.ncol;
-    model = (ritz_second_order){&at.K, &at.M, &at.D, NULL, &at.io};
-    RITZ_TRY(ritz_reference_measure_at(place->reference, &at, limits, where,
-                                       &found));
-    RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->errors));
-    ritz_fit_judge(limits, candidate);
-    if (candidate->feasible && where)
-        RITZ_TRY(ritz_fit_probe(&model, &limits->damping, candidate));
-    if (candidate->feasible && where && place == f->place)
-        RITZ_TRY(ritz_fit_price(f, &model, candidate));
-done:
-    ritz_measures_free(&found);
-    ritz_configuration_free(&at);
-    return status;
-}
-
-static ritz_status measure(ritz_fitter *f, const ritz_stage *stage,
-                           ritz_fit_candidate *candidate)
-{
-    ritz_status status = RITZ_OK;
-    int where = 0;
-
-    for (int64_t k = 0; k < f->num_places; k++)
-        if (f->place[k].listed)
-            RITZ_TRY(measure_at(f, stage, &f->place[k], 0, candidate));
-    if (!candidate->feasible)
-        return RITZ_OK;
-    where = ritz_fit_places(f->place[0].reference, &candidate->errors);
-    ritz_measures_free(&candidate->errors);
-    for (int64_t k = 0; k < f->num_places && candidate->refusal[0] == '\0'; k++)
-        RITZ_TRY(measure_at(f, stage, &f->place[k], where, candidate));
-    candidate->caught = !candidate->feasible;
-done:
-    return status;
-}
-
 /* The candidate's bodies, lent to a stage. */
 static ritz_status lend(ritz_fitter *f, ritz_fit_candidate *candidate,
                         int64_t *at, ritz_reduced *body)
 {
     ritz_status status = RITZ_OK;
 
+    candidate->spent = (ritz_fit_watch){0};
+    candidate->columns = 0;
+    if (candidate->method == &ritz_fit_compare) {
+        RITZ_TRY(ritz_fit_second_make(f));
+        candidate->spent = f->second.spent;
+    }
     for (int64_t k = 0; k < f->num_bodies; k++) {
         RITZ_TRY(
             made_body(f, candidate->method, k, candidate->modes[k], &at[k]));
@@ -205,7 +141,12 @@ done:
     return status;
 }
 
-ritz_status ritz_fit_try_scene(ritz_fitter *f, ritz_fit_candidate *candidate)
+/* What is done with the candidate once it is a stage. */
+typedef ritz_status use(ritz_fitter *f, const ritz_stage *stage,
+                        ritz_fit_candidate *candidate);
+
+static ritz_status with_stage(ritz_fitter *f, use *what,
+                              ritz_fit_candidate *candidate)
 {
     ritz_status status = RITZ_OK;
     ritz_reduced *body = NULL;
@@ -221,7 +162,7 @@ ritz_status ritz_fit_try_scene(ritz_fitter *f, ritz_fit_candidate *candidate)
     lent = body;
     RITZ_TRY(ritz_stage_from(f->scene, body, &stage));
     lent = stage.body;
-    RITZ_TRY(measure(f, &stage, candidate));
+    RITZ_TRY(what(f, &stage, candidate));
 done:
     if (lent) { /* all bodies go home, their dampers installed or not */
         ritz_reduced *home = stage.body ? stage.body : body;
@@ -235,5 +176,19 @@ done:
     ritz_stage_free(&stage);
     free(body);
     free(at);
+    return status;
+}
+
+ritz_status ritz_fit_try_scene(ritz_fitter *f, ritz_fit_candidate *candidate)
+{
+    ritz_status status = with_stage(f, ritz_fit_measure_scene, candidate);
+
     return ritz_fit_refuse(status, candidate);
+}
+
+ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
+{
+    return f->scene && f->place[0].estimator && candidate->left_out == 0
+               ? with_stage(f, ritz_fit_bound_scene, candidate)
+               : RITZ_OK;
 }

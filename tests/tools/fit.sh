@@ -77,6 +77,55 @@ expect 0 'at 2 configurations, and 4 more at random' ritz-fit scene.yaml \
     --tolerance flexible=1e-1 --methods craig-bampton --components s- -o s.h5
 expect 0 'nested' ritz-info s-rotor.h5
 expect 0 'flexible-response-relative' ritz-info s.h5
+
+# the second stage of COMPARE is a method of scenes, and of nothing else
+json 0 ritz-fit scene.yaml --tolerance flexible=1e-1 --methods \
+    macneal-rubin,compare --components k- -o k.h5
+holds '  compare is the smaller of two' \
+    'j["method"] == "compare" and j["order"] < j["runner_up"]["order"]'
+expect 0 'compare' ritz-info k-rotor.h5
+expect 1 'compare: it is made of the modes of a scene' ritz-fit truss.h5 \
+    --band-hz 0,20 --damping 'modal 0.01' --tolerance 1e-2 --methods compare
+
+# its path: bodies cut as a row says are as far off as it says
+json 0 ritz-fit scene.yaml --tolerance frequency=1e-2 --methods macneal-rubin \
+    --between 0 --components s- -o s.h5
+holds '  has a path, a column less each, from the answer down' \
+    '[r["columns"] for r in j["path"]] ==
+         list(range(j["columns"], j["path"][-1]["columns"] - 1, -1)) and
+     all(sum(r["orders"].values()) == r["columns"] for r in j["path"]) and
+     near([j["path"][0]["error"]], [j["error"]], 1e-9) and
+     set(j["path"][0]["orders"]) == {"rotor", "stator"}'
+mv log.json path.json
+expect 0 'With the first columns alone' ritz-fit scene.yaml --tolerance \
+    frequency=1e-2 --methods macneal-rubin --between 0 --components t-
+expect 0 'system-frequency-relative' ritz-info t-rotor.h5
+/usr/bin/python3 - >cut.yaml <<'END'
+import json
+orders = json.load(open("path.json"))["path"][2]["orders"]
+for line in open("scene.yaml"):
+    name = line.split(":")[0].strip()
+    if name in orders:
+        line = f"  {name}: {{model: s-{name}.h5, order: {orders[name]}}}\n"
+    print(line, end="")
+END
+expect 0 '' ritz-assemble cut.yaml -q -o cut.h5
+for angle in 0 90; do
+    expect 0 '' ritz-assemble --full --at "clock=$angle" scene.yaml -q \
+        -o full.h5
+    json 0 ritz-verify --at "clock=$angle" full.h5 cut.h5 --band-hz 0,5 \
+        -o verified.h5
+    mv log.json "verified-$angle.json"
+done
+cp path.json log.json
+holds '  says what a scene of the cut bodies comes to' \
+    'near([max(m["value"] for a in (0, 90)
+                for m in json.load(open(f"verified-{a}.json"))["measures"]
+                if m["name"] == "frequency-relative")],
+          [j["path"][2]["errors"]["frequency-relative"]], 1e-9)'
+expect 0 'system-frequency-relative' ritz-export --to output4 s-rotor.h5 \
+    --order 15 -o s.op4
+
 expect 1 'is a scene: --damper and --attach are for components' ritz-fit \
     scene.yaml --tolerance 1e-2 --attach bearing -o s.h5
 sed '/^band_hz/d' scene.yaml >bare.yaml

@@ -1,0 +1,128 @@
+/*
+ * What bounds decide before anything is measured. A candidate fails for certain
+ * if its worst frequency error is at least more than is allowed; a component's
+ * holds on the grid if every measure that has a tolerance has a bound within.
+ */
+#include "fit/fit_parts.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Measures of which there is a bound. */
+static const char *const bounded[][2] = {
+    {"frequency-relative", "frequency-relative-bound"},
+    {"response-relative", "response-relative-bound"},
+    {"missing-modes", "missing-modes-bound"},
+};
+
+enum { BOUNDED = sizeof bounded / sizeof *bounded };
+
+ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
+                               const ritz_component *full,
+                               ritz_fit_place *place)
+{
+    const ritz_verify_request *limits = &fitter->request.tolerance;
+    const ritz_estimate_request asked = {
+        .band_hz = {limits->band_hz[0], limits->band_hz[1]},
+        .damping = limits->damping};
+
+    if (!fitter->request.estimates)
+        return RITZ_OK;
+    return ritz_estimator_new(full, &asked, &place->estimator);
+}
+
+static double value_of(const ritz_measures *found, const char *name)
+{
+    for (int64_t k = 0; k < found->count; k++)
+        if (strcmp(found->item[k].name, name) == 0)
+            return found->item[k].value;
+    return nan("");
+}
+
+/* Where a frequency is asked to be near, no mode may be missing. */
+static ritz_verify_request complete(const ritz_verify_request *limits)
+{
+    ritz_verify_request all = *limits;
+
+    if (!isnan(all.limit_frequency))
+        all.limit_missing = fmax(all.limit_missing, 0.0);
+    return all;
+}
+
+/* Of mac, damping, gain and the flexible response there are no bounds. */
+static bool within(const ritz_verify_request *limits,
+                   const ritz_measures *found)
+{
+    const ritz_verify_request all = complete(limits);
+    bool held = isnan(all.limit_mac) && isnan(all.limit_damping) &&
+                isnan(all.limit_flexible) && isnan(all.limit_gain);
+
+    for (int k = 0; k < BOUNDED; k++) {
+        double limit = ritz_fit_limit(&all, bounded[k][0]);
+
+        held =
+            held && (isnan(limit) || value_of(found, bounded[k][1]) <= limit);
+    }
+    return held;
+}
+
+/* Where modes may be missing, no error is certain. */
+static bool beyond(const ritz_verify_request *limits,
+                   const ritz_measures *found, double *excess)
+{
+    double least = value_of(found, "frequency-relative-least");
+
+    *excess = least / limits->limit_frequency;
+    return !(limits->limit_missing > 0.0) && *excess > 1.0;
+}
+
+ritz_status ritz_fit_bound_at(const ritz_fit_place *place, const ritz_dense *T,
+                              const ritz_reduced *reduced, bool least,
+                              ritz_measures *out)
+{
+    const ritz_basis basis = {.T = *T};
+    ritz_status status =
+        least ? ritz_estimator_least(place->estimator, &basis, reduced, out)
+              : ritz_estimator_measure(place->estimator, &basis, reduced, out);
+
+    /* where nothing can be known, nothing is, which is no failure */
+    return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+}
+
+/*
+ * A component's bounds stand beside the errors of every candidate. Of a scene
+ * measuring costs less than they do, save that what is off at one configuration
+ * need not be measured at all: so that is asked alone.
+ */
+ritz_status ritz_fit_foresee(const ritz_fitter *fitter,
+                             const ritz_fit_place *place, const ritz_dense *T,
+                             const ritz_reduced *reduced,
+                             ritz_fit_candidate *candidate,
+                             ritz_fit_verdict *verdict)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_verify_request *limits = &fitter->request.tolerance;
+    ritz_measures found = {0};
+    double excess = 0.0;
+
+    *verdict = RITZ_FIT_OPEN;
+    if (!place->estimator || (fitter->scene && isnan(limits->limit_frequency)))
+        return RITZ_OK;
+    RITZ_TRY(
+        ritz_fit_bound_at(place, T, reduced, fitter->scene != NULL, &found));
+    RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->estimates));
+    if (fitter->request.thorough)
+        goto done;
+    if (within(limits, &found))
+        *verdict = RITZ_FIT_HOLDS;
+    if (beyond(limits, &found, &excess)) {
+        *verdict = RITZ_FIT_FAILS;
+        candidate->screened = true;
+        candidate->excess = excess;
+    }
+done:
+    ritz_measures_free(&found);
+    return status;
+}

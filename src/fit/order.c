@@ -1,0 +1,132 @@
+/*
+ * Columns in the order in which they matter. From all of them one at a time is
+ * left out, that without which the model is nearest to its tolerance; what is
+ * left out last comes first.
+ */
+#include "fit/order.h"
+
+#include "base/alloc.h"
+#include "fit/fit_parts.h"
+
+#include <ritz/monitor.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Columns that are tried at each step: those that matter least alone. */
+enum { TRIED = 6 };
+
+bool ritz_fit_stays(ritz_column_kind kind)
+{
+    static const ritz_column_kind kinds[] = {
+        RITZ_COLUMN_RIGID,      RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
+        RITZ_COLUMN_ATTACHMENT, RITZ_COLUMN_RESIDUAL,   RITZ_COLUMN_MASSLESS,
+        RITZ_COLUMN_FORCE};
+
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (kind == kinds[k])
+            return true;
+    return false;
+}
+
+ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
+                               ritz_fit_excess *excess, void *context,
+                               ritz_fit_order *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_order made = {
+        .count = count, .excess = excess, .context = context};
+
+    RITZ_NEW(made.column, count);
+    RITZ_NEW(made.trial, count);
+    RITZ_NEW(made.alone, count);
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t k = 0, at = made.fixed; k < count; k++)
+            if (ritz_fit_stays(kind[k]) == (pass == 0)) {
+                made.column[at++] = k;
+                made.fixed += pass == 0;
+            }
+    *out = made;
+    made = (ritz_fit_order){0};
+done:
+    ritz_fit_order_free(&made);
+    return status;
+}
+
+/* Without one of the first `left` columns of the order. */
+static ritz_status without(const ritz_fit_order *o, int64_t left, int64_t which,
+                           double most, double *out)
+{
+    memcpy(o->trial, o->column, (size_t)left * sizeof *o->trial);
+    memmove(o->trial + which, o->trial + which + 1,
+            (size_t)(left - which - 1) * sizeof *o->trial);
+    return o->excess(o->context, left - 1, o->trial, most, out);
+}
+
+ritz_status ritz_fit_order_alone(ritz_fit_order *o)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = o->fixed; k < o->count && o->count > 1; k++) {
+        ritz_monitor_step("columns alone", k, o->count);
+        RITZ_TRY(without(o, o->count, k, HUGE_VAL, &o->alone[o->column[k]]));
+    }
+    for (int64_t k = o->fixed + 1; k < o->count; k++)
+        for (int64_t i = k; i > o->fixed; i--) {
+            int64_t here = o->column[i];
+
+            if (!(o->alone[here] > o->alone[o->column[i - 1]]))
+                break;
+            o->column[i] = o->column[i - 1];
+            o->column[i - 1] = here;
+        }
+done:
+    return status;
+}
+
+/* Of the last few of those that are left, the one that goes to the end. */
+static ritz_status drop(ritz_fit_order *o, int64_t left)
+{
+    ritz_status status = RITZ_OK;
+    double least = HUGE_VAL;
+    int64_t worst = left - 1;
+    int64_t here = 0;
+
+    for (int64_t t = 0; t < TRIED && left - 1 - t >= o->fixed; t++) {
+        double excess = 0.0;
+
+        RITZ_TRY(without(o, left, left - 1 - t, least, &excess));
+        if (excess < least) {
+            least = excess;
+            worst = left - 1 - t;
+        }
+    }
+    here = o->column[worst];
+    memmove(o->column + worst, o->column + worst + 1,
+            (size_t)(left - 1 - worst) * sizeof *o->column);
+    o->column[left - 1] = here;
+done:
+    return status;
+}
+
+ritz_status ritz_fit_order_drop(ritz_fit_order *o)
+{
+    ritz_status status = RITZ_OK;
+
+    /* the one that matters least alone is the first to go */
+    for (int64_t left = o->count - 1; left > o->fixed + 1; left--) {
+        ritz_monitor_step("columns in order", o->count - left, o->count);
+        RITZ_TRY(drop(o, left));
+    }
+done:
+    return status;
+}
+
+void ritz_fit_order_free(ritz_fit_order *order)
+{
+    free(order->column);
+    free(order->trial);
+    free(order->alone);
+    *order = (ritz_fit_order){0};
+}

@@ -1,0 +1,40 @@
+/* Columns in the order in which they matter, whatever they are columns of. */
+#ifndef RITZ_FIT_ORDER_H
+#define RITZ_FIT_ORDER_H
+
+#include <ritz/basis.h>
+
+/**
+ * How far a model of some columns is off, in parts of its tolerance; infinite
+ * if it is none. Once it is known to be @p most or more it need not be known
+ * better.
+ */
+typedef ritz_status ritz_fit_excess(void *context, int64_t count,
+                                    const int64_t *column, double most,
+                                    double *out);
+
+typedef struct ritz_fit_order {
+    int64_t count, fixed; /* columns; those that stay, first */
+    int64_t *column;      /* count, what matters most first */
+    ritz_fit_excess *excess;
+    void *context;  /* of excess; borrowed */
+    int64_t *trial; /* to work in */
+    double *alone;  /* of each column: the excess without it */
+} ritz_fit_order;
+
+/** Columns as they were made, but that those that must stay are first. */
+ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
+                               ritz_fit_excess *excess, void *context,
+                               ritz_fit_order *out);
+
+/** Those that may go, by how far the model without each of them alone is off.
+ */
+ritz_status ritz_fit_order_alone(ritz_fit_order *order);
+
+/** One after the other left out, of few that matter least alone that without
+ * which the rest is nearest to its tolerance. */
+ritz_status ritz_fit_order_drop(ritz_fit_order *order);
+
+void ritz_fit_order_free(ritz_fit_order *order);
+
+#endif

@@ -1,0 +1,44 @@
+/* A scene's answer in files of the test's folder, to be cut in other scenes. */
+#ifndef RITZ_TESTS_ANSWERS_H
+#define RITZ_TESTS_ANSWERS_H
+
+#include <ritz/fit.h>
+
+enum { ANSWER_BODIES = 3 };
+
+/* A scene, the system of one candidate, and its bodies in files. */
+typedef struct answer {
+    const char *text;
+    ritz_scene scene;
+    ritz_fitter *fitter;
+    ritz_fit_candidate whole;
+    ritz_reduced *body;
+    ritz_fit_path path;
+    ritz_system system;
+} answer;
+
+/** Fit that candidate; its bodies are cut-NAME.h5 in the folder. */
+void answer_make(const char *text, const ritz_fit_request *request,
+                 const ritz_method *method, const int64_t *modes, answer *out);
+
+/**
+ * A scene of those files against the full system, at listed places on the grid
+ * or at all and where it is confirmed.
+ *
+ * @param[in] order  key `order` of each component, 0: none
+ */
+void answer_measure(const answer *a, const int64_t *order, bool all,
+                    ritz_measures *worst);
+
+/** How far off that is at listed places. */
+double answer_excess(const answer *a, const int64_t *order);
+
+/** A row of the path as such orders. */
+void answer_orders(const answer *a, const ritz_fit_row *row, int64_t *order);
+
+/** Write a body's file anew, with column `from` moved to the place `to`. */
+void answer_turn(const answer *a, int k, int64_t from, int64_t to);
+
+void answer_free(answer *a);
+
+#endif

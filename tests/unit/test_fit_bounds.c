@@ -1,0 +1,353 @@
+/* What bounds decide in a search, and what they say of its answer. */
+#include "testing.h"
+
+#include "bar.h"
+#include "bodies.h"
+#include "folder.h"
+#include "project.h"
+#include "scenes.h"
+
+#include <ritz/estimate.h>
+#include <ritz/fit.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+static const ritz_fit_request plain = RITZ_FIT_NONE;
+static const ritz_method *const two[] = {&ritz_method_craig_bampton,
+                                         &ritz_method_macneal_rubin};
+
+/* Two chains of bodies in space that turn against each other about z. */
+static const char arm[] =
+    "scene: an arm\n"
+    "components:\n"
+    "  left: {model: left.h5, basis: craig-bampton, modes: 3}\n"
+    "  right: {model: right.h5, basis: craig-bampton, modes: 3}\n"
+    "joints:\n"
+    "  - {name: j, between: [left/g1, right/g1], type: hinge,"
+    " axis: [0, 0, 1], angles_deg: [0, 30, 90]}\n"
+    "inputs: [{name: f, at: left/g1, component: 6, against: right/g1}]\n"
+    "outputs: [{name: y, at: right/g2, component: 2}]\n"
+    "band_hz: [0, 6]\n"
+    "damping: {modal: 0.01}\n";
+
+static void store_arm(int64_t left, int64_t right, ritz_scene *scene)
+{
+    enum { MOST = 12 };
+    const int64_t count[] = {left, right};
+    static const char *const file[] = {"left.h5", "right.h5"};
+    double position[MOST][3];
+
+    for (int k = 0; k < MOST; k++) {
+        position[k][0] = 0.7 * k;
+        position[k][1] = 0.1 * k * k;
+        position[k][2] = k % 2 == 0 ? 0.0 : 0.3;
+    }
+    for (int k = 0; k < 2; k++) {
+        ritz_component chain = {0};
+
+        assert_ok(body_chain(count[k], (const double(*)[3])position,
+                             k == 0 ? 1 : 101, k == 0 ? 11 : 12, &chain));
+        folder_store(file[k], &chain);
+        ritz_component_free(&chain);
+    }
+    folder_parse(arm, scene);
+}
+
+/* Largest |A - B| over largest |B|. */
+static double off(const ritz_dense *A, const ritz_dense *B)
+{
+    double gap = 0.0, size = 0.0;
+
+    assert_int_equal(A->nrow * A->ncol, B->nrow * B->ncol);
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++) {
+        gap = fmax(gap, fabs(A->val[k] - B->val[k]));
+        size = fmax(size, fabs(B->val[k]));
+    }
+    return gap / size;
+}
+
+/* K_e = T'KT and so on, to some hundred roundings; measured: 7e-15. */
+static void the_system_s_basis_condenses_the_full_system(void **state)
+{
+    const double setting[] = {30.0};
+    const double rounding = 1e-13;
+    ritz_scene scene = {0};
+    ritz_stage stage = {0};
+    ritz_configuration at = {0};
+    ritz_component full = {0};
+    ritz_master *master = NULL;
+    ritz_dense T = {0}, K = {0}, M = {0}, B = {0}, C = {0};
+
+    (void)state;
+    store_arm(4, 6, &scene);
+    assert_ok(ritz_stage_new(&scene, &stage));
+    assert_ok(ritz_stage_assemble(&stage, setting, &at));
+    assert_ok(ritz_assemble_masters(&scene, setting, &full, &master));
+    assert_ok(ritz_stage_basis(&stage, &at, full.num_dofs, master, &T));
+    assert_int_equal(T.nrow, full.num_dofs);
+    assert_int_equal(T.ncol, at.K.ncol);
+    assert_ok(ritz_sparse_condense(&full.K, &T, &K));
+    assert_ok(ritz_sparse_condense(&full.M, &T, &M));
+    assert_ok(ritz_dense_mul_tn(&T, &full.io.B, &B));
+    assert_ok(ritz_dense_mul(&full.io.C, &T, &C));
+    assert_true(off(&M, &at.M) < rounding);
+    assert_true(off(&B, &at.io.B) < rounding);
+    assert_true(off(&C, &at.io.C) < rounding);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&B);
+    ritz_dense_free(&C);
+    ritz_dense_free(&T);
+    free(master);
+    ritz_component_free(&full);
+    ritz_configuration_free(&at);
+    ritz_stage_free(&stage);
+    ritz_scene_free(&scene);
+}
+
+static void a_body_without_its_basis_is_refused(void **state)
+{
+    ritz_scene scene = {0};
+    ritz_stage stage = {0};
+    ritz_configuration at = {0};
+    const double setting[] = {0.0};
+    const ritz_master master[] = {{0, 0}, {0, 1}, {1, 0}};
+    ritz_dense T = {0};
+
+    (void)state;
+    store_arm(2, 2, &scene);
+    assert_ok(ritz_stage_new(&scene, &stage));
+    assert_ok(ritz_stage_assemble(&stage, setting, &at));
+    ritz_dense_free(&stage.body[1].T);
+    assert_fails(ritz_stage_basis(&stage, &at, 3, master, &T),
+                 RITZ_ERR_ARGUMENT, "'right' has no basis T for its 1 dofs");
+    assert_null(T.val);
+    ritz_configuration_free(&at);
+    ritz_stage_free(&stage);
+    ritz_scene_free(&scene);
+}
+
+static ritz_status make_basis(const ritz_stage *stage,
+                              const ritz_configuration *at, int64_t n,
+                              const ritz_master *master)
+{
+    ritz_dense T = {0};
+    ritz_status status = ritz_stage_basis(stage, at, n, master, &T);
+
+    ritz_dense_free(&T);
+    return status;
+}
+
+static void every_allocation_of_the_basis_may_fail(void **state)
+{
+    const double setting[] = {90.0};
+    ritz_scene scene = {0};
+    ritz_stage stage = {0};
+    ritz_configuration at = {0};
+    ritz_component full = {0};
+    ritz_master *master = NULL;
+
+    (void)state;
+    store_arm(2, 2, &scene);
+    assert_ok(ritz_stage_new(&scene, &stage));
+    assert_ok(ritz_stage_assemble(&stage, setting, &at));
+    assert_ok(ritz_assemble_masters(&scene, setting, &full, &master));
+    assert_survives_every_allocation(
+        make_basis(&stage, &at, full.num_dofs, master));
+    free(master);
+    ritz_component_free(&full);
+    ritz_configuration_free(&at);
+    ritz_stage_free(&stage);
+    ritz_scene_free(&scene);
+}
+
+static ritz_fit_request asked(const char *tolerance, bool estimates)
+{
+    ritz_fit_request request = plain;
+
+    request.num_random = 30;
+    request.num_between = 1;
+    request.costs = false;
+    request.methods = two;
+    request.num_methods = 2;
+    request.estimates = estimates;
+    assert_ok(ritz_tolerance_take(tolerance, &request.tolerance));
+    return request;
+}
+
+static double value_of(const ritz_measures *found, const char *name)
+{
+    const ritz_measure *m = find_measure(found, name);
+
+    return m ? m->value : nan("");
+}
+
+/* What was ruled out unmeasured is measured, and fails where it was said to. */
+static void assert_rightly_screened(ritz_fitter *measuring, const ritz_fit *fit)
+{
+    int64_t screened = 0;
+
+    for (int64_t k = 0; k < fit->count; k++) {
+        const ritz_fit_candidate *c = &fit->candidate[k];
+        ritz_fit_candidate again = {0};
+
+        if (!c->screened)
+            continue;
+        screened++;
+        assert_int_equal(c->errors.count, 0);
+        assert_ok(ritz_fitter_try(measuring, c->method, c->modes, &again));
+        assert_false(again.feasible);
+        assert_false(again.screened);
+        if (!(value_of(&again.errors, "missing-modes") > 0.0))
+            assert_true(value_of(&again.errors, "frequency-relative") >=
+                        value_of(&c->estimates, "frequency-relative-least"));
+        ritz_fit_candidate_free(&again);
+    }
+    assert_true(screened > 0);
+    assert_true(screened < fit->count);
+}
+
+static void bounds_rule_out_what_fails_and_change_no_answer(void **state)
+{
+    static const char *const tolerance[] = {"frequency=1e-3", "frequency=1e-5",
+                                            "frequency=1e-2,response=1e-2",
+                                            "frequency=1e-3,mac=0.99"};
+
+    (void)state;
+    for (size_t t = 0; t < sizeof tolerance / sizeof *tolerance; t++) {
+        ritz_scene scene = {0};
+        ritz_fitter *fitter[2] = {0};
+        ritz_fit fit[2] = {0};
+
+        store_arm(t % 2 == 0 ? 4 : 5, 4, &scene);
+        for (int k = 0; k < 2; k++) {
+            const ritz_fit_request request = asked(tolerance[t], k == 0);
+
+            assert_ok(ritz_fitter_scene(&scene, &request, &fitter[k]));
+            assert_ok(ritz_fitter_search(fitter[k], &fit[k]));
+            assert_true(fit[k].chosen >= 0);
+        }
+        assert_int_equal(fit[0].candidate[fit[0].chosen].order,
+                         fit[1].candidate[fit[1].chosen].order);
+        assert_int_equal(fit[0].count, fit[1].count);
+        assert_rightly_screened(fitter[1], &fit[0]);
+        for (int k = 0; k < 2; k++) {
+            ritz_fit_free(&fit[k]);
+            ritz_fitter_free(&fitter[k]);
+        }
+        ritz_scene_free(&scene);
+    }
+}
+
+/* The answer's bounds are of all listed configurations. */
+static void the_answer_of_a_scene_is_bounded(void **state)
+{
+    const ritz_fit_request request =
+        asked("frequency=1e-3,response=1e-2", true);
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    ritz_system system = {0};
+    ritz_fit_path path = {0};
+    ritz_reduced *body = NULL;
+    const ritz_measures *said = NULL;
+    double frequency = 0.0, response = 0.0;
+
+    (void)state;
+    store_arm(4, 3, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    if (fit.chosen < 0)
+        fail_msg("%s", fit.why);
+    said = &fit.candidate[fit.chosen].estimates;
+    assert_ok(ritz_fitter_system(fitter, &fit.candidate[fit.chosen], &body,
+                                 &path, &system));
+    for (int64_t k = 0; k < system.num_configurations; k++) {
+        const ritz_measures *e = &system.configuration[k].errors;
+
+        frequency = fmax(frequency, value_of(e, "frequency-relative"));
+        response = fmax(response, value_of(e, "response-relative"));
+    }
+    assert_true(frequency > 0.0);
+    assert_true(value_of(said, "frequency-relative-bound") >= frequency);
+    assert_true(value_of(said, "frequency-relative-bound") < 10.0 * frequency);
+    assert_true(value_of(said, "frequency-relative-least") <= frequency);
+    assert_true(value_of(said, "frequency-relative-least") > 0.1 * frequency);
+    assert_true(value_of(said, "response-relative-bound") >= response);
+    assert_true(value_of(said, "missing-modes-bound") == 0.0);
+    for (int64_t k = 0; k < scene.num_components; k++)
+        ritz_reduced_free(&body[k]);
+    free(body);
+    ritz_fit_path_free(&path);
+    ritz_system_free(&system);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+/* The bar's errors are known: what is told at least is below, and near. */
+static void what_is_told_at_least_is_below_the_error(void **state)
+{
+    enum { ELEMENTS = 40, MODES = 12 };
+    int64_t attached[] = {0, 40};
+    ritz_component bar = {0};
+
+    (void)state;
+    assert_ok(bar_component(ELEMENTS, &bar));
+    for (int64_t modes = 0; modes < MODES; modes++) {
+        ritz_request request = {
+            .component = &bar, .attached = {2, attached}, .modes = modes};
+        const ritz_estimate_request band = {
+            .band_hz = {0.0, ritz_eigen_hertz(bar_eigenvalue(ELEMENTS, 8))}};
+        ritz_estimator *estimator = NULL;
+        ritz_basis basis = {0};
+        ritz_reduced reduced = {0};
+        ritz_pairs pairs = {0};
+        ritz_measures all = {0}, found = {0};
+        double worst = 0.0;
+
+        assert_ok(
+            ritz_basis_make(&ritz_method_craig_bampton, &request, &basis));
+        assert_ok(ritz_reduce(&bar, &basis, &reduced));
+        assert_ok(ritz_estimator_new(&bar, &band, &estimator));
+        assert_ok(ritz_estimator_least(estimator, &basis, &reduced, &found));
+        assert_ok(ritz_estimator_measure(estimator, &basis, &reduced, &all));
+        assert_ok(ritz_eigen_dense(&reduced.K, &reduced.M, &pairs));
+        for (int64_t k = 1; k < pairs.Phi.ncol; k++) {
+            double known = bar_eigenvalue(ELEMENTS, k);
+
+            if (ritz_eigen_hertz(pairs.lambda[k]) <= band.band_hz[1])
+                worst = fmax(worst, sqrt(pairs.lambda[k] / known) - 1.0);
+        }
+        if (worst > 1e-8) {
+            assert_true(value_of(&found, "frequency-relative-least") <= worst);
+            assert_true(value_of(&found, "frequency-relative-least") >
+                        0.3 * worst); /* measured: 0.6 and more */
+            assert_true(value_of(&all, "frequency-relative-least") >=
+                        value_of(&found, "frequency-relative-least"));
+            assert_true(value_of(&all, "frequency-relative-least") <= worst);
+        }
+        ritz_measures_free(&found);
+        ritz_measures_free(&all);
+        ritz_pairs_free(&pairs);
+        ritz_estimator_free(&estimator);
+        ritz_reduced_free(&reduced);
+        ritz_basis_free(&basis);
+    }
+    ritz_component_free(&bar);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_system_s_basis_condenses_the_full_system),
+        cmocka_unit_test(a_body_without_its_basis_is_refused),
+        cmocka_unit_test(every_allocation_of_the_basis_may_fail),
+        cmocka_unit_test(bounds_rule_out_what_fails_and_change_no_answer),
+        cmocka_unit_test(the_answer_of_a_scene_is_bounded),
+        cmocka_unit_test(what_is_told_at_least_is_below_the_error),
+    };
+
+    return cmocka_run_group_tests(tests, folder_make, folder_remove);
+}

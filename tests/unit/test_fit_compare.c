@@ -1,0 +1,351 @@
+/* COMPARE among the methods of a scene: what its bodies hold, how small. */
+#include "testing.h"
+
+#include "dualspin.h"
+#include "fit/fit_parts.h"
+#include "fit_scenes.h"
+#include "folder.h"
+#include "frame.h"
+
+#include <ritz/fit.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const ritz_method *const compare[] = {&ritz_fit_compare};
+
+static ritz_fit_request alone(const char *tolerance)
+{
+    ritz_fit_request request = fit_scenes_quick(tolerance);
+
+    request.methods = compare;
+    request.num_methods = 1;
+    return request;
+}
+
+/* Every pair of numbers of directions that both bodies have. */
+static int64_t exhaust(ritz_fitter *fitter, int64_t most)
+{
+    int64_t least = INT64_MAX;
+
+    for (int64_t i = 0; i <= most; i++)
+        for (int64_t j = 0; j <= most; j++) {
+            const int64_t modes[] = {i, j};
+            ritz_fit_candidate c = {0};
+
+            assert_ok(ritz_fitter_try(fitter, &ritz_fit_compare, modes, &c));
+            if (c.feasible && c.order < least)
+                least = c.order;
+            ritz_fit_candidate_free(&c);
+        }
+    return least;
+}
+
+static void assert_within_one(const ritz_scene *scene, const char *tolerance,
+                              int64_t most)
+{
+    const ritz_fit_request request = alone(tolerance);
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    int64_t least = 0;
+
+    assert_ok(ritz_fitter_scene(scene, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    if (fit.chosen < 0)
+        fail_msg("%s: %s", tolerance, fit.why);
+    least = exhaust(fitter, most);
+    assert_true(least < INT64_MAX);
+    if (fit.candidate[fit.chosen].order > least + 1)
+        fail_msg("%s\nfound %d, exhaustive search %d", fit.why,
+                 (int)fit.candidate[fit.chosen].order, (int)least);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+}
+
+static void beams_are_fitted_within_one(void **state)
+{
+    static const struct {
+        int64_t left, right;
+        const char *tolerance;
+    } cases[] = {{4, 6, "response=1e-2"},
+                 {7, 3, "frequency=1e-3"},
+                 {3, 8, "response=1e-3,gain=1e-2"},
+                 {5, 5, "response=1e-2,frequency=1e-2"}};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        ritz_scene scene = {0};
+
+        fit_scenes_store_beams(cases[k].left, cases[k].right);
+        folder_parse(fit_scenes_beams, &scene);
+        assert_within_one(&scene, cases[k].tolerance, 8);
+        ritz_scene_free(&scene);
+    }
+}
+
+static bool no_spacecraft(void)
+{
+    if (!dualspin_is_there())
+        print_message("RITZ_DATA is not set\n");
+    return !dualspin_is_there();
+}
+
+static void open_spacecraft(ritz_scene *scene)
+{
+    fit_scenes_store_spacecraft();
+    folder_parse(fit_scenes_spacecraft, scene);
+}
+
+/* Where modes weigh by what inputs and outputs see of them. */
+static void of_a_spacecraft_it_is_the_smallest(void **state)
+{
+    ritz_fit_request request = fit_scenes_quick("flexible=1e-1");
+    static const ritz_method *const two[] = {&ritz_method_macneal_rubin,
+                                             &ritz_fit_compare};
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+
+    (void)state;
+    if (no_spacecraft())
+        skip();
+    request.methods = two;
+    request.num_methods = 2;
+    open_spacecraft(&scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_true(fit.best[0] >= 0 && fit.best[1] >= 0);
+    assert_ptr_equal(fit.candidate[fit.chosen].method, &ritz_fit_compare);
+    assert_true(fit.candidate[fit.best[1]].order <
+                fit.candidate[fit.best[0]].order);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+/* Bodies that are the answer's: so many columns, and the method's name. */
+static void its_bodies_are_nested_and_say_so(void **state)
+{
+    const ritz_fit_request request = alone("response=1e-2");
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    ritz_fit_path path = {0};
+    ritz_system system = {0};
+    ritz_reduced *body = NULL;
+    const ritz_fit_candidate *chosen = NULL;
+    int64_t columns = 0;
+
+    (void)state;
+    fit_scenes_store_beams(4, 6);
+    folder_parse(fit_scenes_beams, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    chosen = &fit.candidate[fit.chosen];
+    for (int k = 0; k < 2; k++) /* the first rung: neither is held */
+        assert_int_equal(fit.candidate[0].modes[k], 1);
+    assert_string_equal(fit.candidate[0].refusal, "");
+    assert_true(chosen->feasible && chosen->spent.wall > 0.0);
+    assert_ok(ritz_fitter_system(fitter, chosen, &body, &path, &system));
+    assert_int_equal(system.configuration[0].K.ncol, chosen->order);
+    for (int k = 0; k < 2; k++) {
+        assert_string_equal(body[k].origin.method, "compare");
+        columns += body[k].K.ncol;
+        assert_true(body[k].nested.smallest > 0);
+        assert_true(body[k].T.ncol == body[k].K.ncol);
+        ritz_reduced_free(&body[k]);
+    }
+    assert_int_equal(columns, chosen->columns);
+    free(body);
+    ritz_fit_path_free(&path);
+    ritz_system_free(&system);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+static void it_is_compared_at_equal_order(void **state)
+{
+    static const ritz_method *const two[] = {&ritz_method_craig_bampton,
+                                             &ritz_fit_compare};
+    ritz_fit_request request = fit_scenes_quick("response=1e-2");
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    int64_t at[2] = {-1, -1};
+
+    (void)state;
+    request.methods = two;
+    request.num_methods = 2;
+    fit_scenes_store_beams(4, 6);
+    folder_parse(fit_scenes_beams, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_ok(ritz_fitter_equal(fitter, 10, &fit, at));
+    for (int m = 0; m < 2; m++) {
+        assert_true(at[m] >= 0);
+        assert_ptr_equal(fit.candidate[at[m]].method, two[m]);
+        assert_true(fit.candidate[at[m]].order <= 10);
+    }
+    assert_int_equal(fit.candidate[at[1]].order, 10); /* steps are of one */
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+/* Where no methods are named it is among them, of a scene and of no other. */
+static void it_is_tried_of_a_scene_without_being_named(void **state)
+{
+    ritz_fit_request request = fit_scenes_quick("response=1e-1");
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    int64_t last = 0;
+
+    (void)state;
+    fit_scenes_store_beams(2, 2);
+    folder_parse(fit_scenes_beams, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    last = fit.num_methods - 1;
+    assert_ptr_equal(fit.method[last], &ritz_fit_compare);
+    assert_true(fit.best[last] >= 0);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+/* The last rung of its ladder has all that there is, and no more. */
+static void its_ladder_ends_with_all_directions(void **state)
+{
+    const ritz_fit_request request = alone("response=1e-2");
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit_candidate c = {0};
+    int64_t modes[2] = {0};
+
+    (void)state;
+    fit_scenes_store_beams(2, 2);
+    folder_parse(fit_scenes_beams, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_ok(ritz_fit_second_make(fitter));
+    ritz_fit_rung(fitter, &ritz_fit_compare,
+                  ritz_fit_rungs(fitter, &ritz_fit_compare), modes);
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(modes[k], fitter->second.body[k].K.ncol);
+    assert_ok(ritz_fitter_try(fitter, &ritz_fit_compare, modes, &c));
+    assert_string_equal(c.refusal, "");
+    assert_true(c.feasible);
+    ritz_fit_candidate_free(&c);
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+static void assert_refused(ritz_fitter *fitter, const int64_t *modes,
+                           const char *words)
+{
+    ritz_fit_candidate c = {0};
+
+    assert_ok(ritz_fitter_try(fitter, &ritz_fit_compare, modes, &c));
+    assert_false(c.feasible);
+    if (!strstr(c.refusal, words))
+        fail_msg("'%s' says nothing of '%s'", c.refusal, words);
+    ritz_fit_candidate_free(&c);
+}
+
+static void what_it_cannot_make_it_refuses(void **state)
+{
+    static const int64_t none[] = {0, 3};
+    static const int64_t many[] = {3, 1000};
+    const ritz_fit_request request = alone("response=1e-2");
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+
+    (void)state;
+    fit_scenes_store_beams(2, 2);
+    folder_parse(fit_scenes_beams, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_refused(fitter, none, "'left' would not move at all");
+    assert_refused(fitter, many, "composite vectors, and not 1000");
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+/* A component has no configurations whose modes it could be made of. */
+static void of_a_component_it_is_refused(void **state)
+{
+    static const int64_t tip = 4; /* across */
+    ritz_fit_request request = alone("response=1e-2");
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+
+    (void)state;
+    request.tolerance.band_hz[1] = 0.2;
+    assert_ok(ritz_damping_parse("modal 0.01", &request.tolerance.damping));
+    assert_ok(frame_component(2, 0.5, &frame_mcdaniel, true, false, 0, &beam));
+    assert_ok(frame_io(&beam, 1, &tip, 1, &tip));
+    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_int_equal(fit.chosen, -1);
+    assert_non_null(strstr(fit.why, "compare: it is made of the modes of a "
+                                    "scene, and this is a component"));
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
+static void methods_are_found_by_name(void **state)
+{
+    (void)state;
+    assert_ptr_equal(ritz_fit_method_find("compare"), &ritz_fit_compare);
+    assert_ptr_equal(ritz_fit_method_find("rubin"), &ritz_method_rubin);
+    assert_null(ritz_fit_method_find("compere"));
+    assert_non_null(strstr(ritz_error_message(), "compere"));
+}
+
+/* The bodies anew, and one of them cut. */
+static ritz_status make_anew(ritz_fitter *fitter)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced body = {0};
+
+    ritz_fit_second_free(fitter->num_bodies, &fitter->second);
+    RITZ_TRY(ritz_fit_second_body(fitter, 1, 2, &body));
+done:
+    ritz_reduced_free(&body);
+    return status;
+}
+
+static void it_survives_every_allocation(void **state)
+{
+    const ritz_fit_request request = alone("response=1e-2");
+    ritz_scene scene = {0};
+    ritz_fitter *fitter = NULL;
+
+    (void)state;
+    fit_scenes_store_beams(2, 1);
+    folder_parse(fit_scenes_beams, &scene);
+    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
+    assert_survives_every_allocation(make_anew(fitter));
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(beams_are_fitted_within_one),
+        cmocka_unit_test(of_a_spacecraft_it_is_the_smallest),
+        cmocka_unit_test(its_bodies_are_nested_and_say_so),
+        cmocka_unit_test(it_is_compared_at_equal_order),
+        cmocka_unit_test(it_is_tried_of_a_scene_without_being_named),
+        cmocka_unit_test(its_ladder_ends_with_all_directions),
+        cmocka_unit_test(what_it_cannot_make_it_refuses),
+        cmocka_unit_test(of_a_component_it_is_refused),
+        cmocka_unit_test(methods_are_found_by_name),
+        cmocka_unit_test(it_survives_every_allocation),
+    };
+
+    return cmocka_run_group_tests(tests, folder_make, folder_remove);
+}
