@@ -42,8 +42,7 @@ typedef struct axis_word {
     double wide, high; /* of the word */
     double gap;        /* further from the point, pixels */
     double left, base; /* where it goes: lower left corner */
-    bool must;         /* it is written where it crosses others, too */
-    bool fixed;        /* it is where it is; no room is looked for */
+    bool must;         /* it is written across points, or even words, too */
     bool written;
 } axis_word;
 

@@ -14,8 +14,8 @@ const chart_kind chart_kinds[] = {
      CHART_RANKING, "rankings", chart_hankel},
     {"response", "responses over each other, errors below", CHART_RESPONSE,
      "responses, the reference first", chart_response},
-    {"mac", "how like the modes of two models are", CHART_MODES,
-     "two components, reduced or not, or bases", chart_mac},
+    {"mac", "how like the modes of two models are", CHART_MODES | CHART_SYSTEM,
+     "two of component, reduced, basis, system", chart_mac},
     {"tracks", "frequencies of modes over configurations", CHART_TRACKS,
      "a table of --tracks", chart_tracks},
     {"simulation", "outputs over time, over each other", CHART_SIMULATION,
@@ -35,6 +35,7 @@ static const struct content {
     {CHART_MODES, MODEL_REDUCED, "a reduced component"},
     {CHART_MODES, MODEL_BASIS, "a basis"},
     {CHART_MODES, MODEL_COMPONENT, "a component"},
+    {CHART_SYSTEM, MODEL_SYSTEM, "a system"},
 };
 
 enum { NUM_CONTENTS = sizeof contents / sizeof *contents };

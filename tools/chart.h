@@ -18,6 +18,7 @@ enum {
     CHART_RESPONSE = 8,
     CHART_MODES = 16, /* a reduced component, a basis, a component */
     CHART_SIMULATION = 32,
+    CHART_SYSTEM = 64,
 };
 
 typedef struct chart_file {
@@ -38,8 +39,10 @@ typedef struct chart_wish {
     const char *path; /* of the picture */
     bool keep;        /* see gnuplot_new */
     cli_list measure, channel;
+    cli_list at;         /* of systems: which configurations */
     const char *subject; /* NULL: the only one */
     const char *against; /* "reduce", "simulate"; NULL: what is known */
+    const char *error;   /* "relative", "decibels", "both" */
     double up_to_hz;     /* of tracks */
     int64_t top;         /* so many modes at most */
 } chart_wish;
@@ -83,6 +86,9 @@ enum { CHART_WORD = 160 };
 void chart_say_error(double error, char out[32]);
 void chart_say_seconds(double seconds, char out[32]);
 
+/** "rotor.h5" of "build/rotor.h5". */
+const char *chart_base(const char *path);
+
 /** Colour and mark of one of several series; @p hollow or filled. */
 const char *chart_colour(int64_t series);
 int chart_mark(int64_t series, bool hollow);
@@ -91,6 +97,7 @@ int chart_mark(int64_t series, bool hollow);
 typedef struct chart_area {
     double left, bottom, right, top;
     axis x, y;
+    double edge; /* left end of its cell, where the label of y stands */
 } chart_area;
 
 /** Margins, ranges, tics at decades or as gnuplot likes, labels, title. */

@@ -17,16 +17,16 @@ static void free_work(chart_errors_work *w)
     free(w->front);
 }
 
-enum { MOST_SIGNS = 64 };
+enum { MOST_SIGNS = 64, OTHER_SIGNS = 7 };
 
 /* Methods, then what the other signs mean. */
-static int64_t list_signs(const chart_errors_work *w,
-                          chart_sign signs[MOST_SIGNS])
+static int64_t list_signs(chart_errors_work *w, chart_sign signs[MOST_SIGNS])
 {
-    bool any[4] = {false, false, false, w->form->front};
+    bool any[OTHER_SIGNS] = {[3] = w->form->front, [4] = true};
     int64_t n = 0;
 
-    for (int64_t s = 0; s < w->num_methods && n < MOST_SIGNS - 4; s++) {
+    for (int64_t s = 0; s < w->num_methods && n < MOST_SIGNS - OTHER_SIGNS;
+         s++) {
         signs[n] = (chart_sign){.colour = chart_colour(s),
                                 .mark = chart_mark(s, false)};
         snprintf(signs[n++].name, CHART_WORD, "%.60s", w->method[s]);
@@ -36,13 +36,27 @@ static int64_t list_signs(const chart_errors_work *w,
         any[1] = any[1] || w->all.item[k].runner_up;
         any[2] = any[2] || !w->all.item[k].feasible;
     }
+    for (int64_t k = 0; k < w->num_measures; k++) {
+        chart_area area = {.right = 1.0, .top = 1.0};
+        int64_t count[2];
+
+        chart_errors_place(w, &w->measure[k], &area, count);
+        any[5] = any[5] || w->measure[k].tolerance > 0.0;
+        any[6] = any[6] || chart_errors_uncertain(&area);
+    }
     const chart_sign others[] = {
         {.name = "chosen", .colour = SVG_ALARM, .mark = 6},
         {.name = "runner-up", .colour = SVG_INK, .mark = 6},
         {.name = "hollow: misses a limit", .colour = SVG_MUTED, .mark = 6},
-        {.name = "Pareto front", .colour = SVG_MUTED, .dash = 1},
+        {.name = "Pareto front", .colour = SVG_MUTED, .dash = 1, .wide = 2.0},
+        {.name = "equal error", .colour = SVG_PALE, .dash = 1, .wide = 1.0},
+        {.name = "tolerance", .colour = SVG_ALARM, .dash = 1, .wide = 1.6},
+        {.name = "10 %: model uncertainty",
+         .colour = SVG_INK,
+         .dash = 2,
+         .wide = 1.4},
     };
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < OTHER_SIGNS; k++)
         if (any[k])
             signs[n++] = others[k];
     return n;
@@ -102,7 +116,7 @@ static ritz_status compose(chart_errors_work *w)
     w->picture->wide = wide;
     foot =
         44.0 + 20.0 * (double)chart_legend(w->picture, count, signs, CHART_LEFT,
-                                           0.0, wide - CHART_RIGHT, false);
+                                           0.0, wide - CHART_MARGIN, false);
     high = (w->num_measures > 1 ? CHART_HEAD : 0.0) +
            (double)(rows * CHART_CELL_HIGH) + foot;
     gnuplot_size(w->picture, wide, high);
@@ -121,7 +135,7 @@ static ritz_status compose(chart_errors_work *w)
         chart_text(w->picture, CHART_LEFT, high - 18.0, w->form->title,
                    "font ',16' tc rgb '" SVG_INK "'");
     chart_legend(w->picture, count, signs, CHART_LEFT, foot - 14.0,
-                 wide - CHART_RIGHT, true);
+                 wide - CHART_MARGIN, true);
     put_notes(w, 12.0);
     fprintf(w->picture->plot.file, "plot NaN notitle\nunset multiplot\n");
     put_table(w);

@@ -21,9 +21,13 @@ enum {
     CHART_CELL_WIDE = 490,
     CHART_CELL_HIGH = 380,
     CHART_LEFT = 58,
-    CHART_RIGHT = 30,
+    CHART_RIGHT = 56,  /* where lines of equal error say how much they are */
+    CHART_MARGIN = 14, /* right of a legend */
     CHART_HEAD = 34,
 };
+
+/* Records that are not drawn where they are: at the foot, or not at all. */
+enum { CHART_LIFTED, CHART_LEFT_OUT };
 
 /* A chart in the making. */
 typedef struct chart_errors_work {
@@ -36,9 +40,25 @@ typedef struct chart_errors_work {
     int64_t *which; /* method of each record */
     double *x, *y;  /* of each record, as drawn; NaN: not in this area */
     bool *front;
-    int64_t lifted, absent, left_out; /* to be said below */
+    int64_t lifted, left_out; /* to be said below */
     gnuplot *picture;
 } chart_errors_work;
+
+/** Coordinates of all records in an area, which becomes their axes'; how many
+ * are lifted and left out. */
+void chart_errors_place(chart_errors_work *w, const measure *m,
+                        chart_area *area, int64_t count[2]);
+
+/** Lines of equal error, of the tolerance and of what models are wrong by. */
+void chart_errors_levels(const chart_errors_work *w, const measure *m,
+                         const chart_area *area);
+
+/** Whether an area shows what models are wrong by. */
+bool chart_errors_uncertain(const chart_area *area);
+
+/** Orders beside points: those that count first, others where there is room. */
+ritz_status chart_errors_words(const chart_errors_work *w,
+                               const chart_area *area);
 
 /** Draw one measure into a cell. */
 ritz_status chart_errors_area(chart_errors_work *w, int64_t panel, double left,

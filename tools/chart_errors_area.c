@@ -54,28 +54,31 @@ static void find_front(chart_errors_work *w)
     }
 }
 
-/* Coordinates of all records in an area, which becomes their axes'. */
-static void place(chart_errors_work *w, const measure *m, chart_area *area)
+void chart_errors_place(chart_errors_work *w, const measure *m,
+                        chart_area *area, int64_t count[2])
 {
-    int64_t lifted = 0;
-
+    count[CHART_LIFTED] = count[CHART_LEFT_OUT] = 0;
     for (int64_t k = 0; k < w->all.count; k++) {
         w->x[k] = w->form->x(&w->all.item[k]);
         w->y[k] = record_error(&w->all.item[k], m->name);
         if (!isfinite(w->y[k]) || !isfinite(w->x[k]) ||
             (w->form->seconds && !(w->x[k] > 0.0))) {
-            w->left_out++;
+            count[CHART_LEFT_OUT]++;
             w->x[k] = w->y[k] = nan("");
         }
     }
-    area->y = axis_log(w->all.count, w->y, RECORDS_ROUNDING, &lifted);
+    area->y =
+        axis_log(w->all.count, w->y, RECORDS_ROUNDING, &count[CHART_LIFTED]);
     if (m->tolerance > 0.0 && m->tolerance < area->y.low)
         area->y.low = m->tolerance / 2.0;
     if (m->tolerance > 0.0 && m->tolerance >= area->y.high)
         area->y.high = 2.0 * m->tolerance;
-    w->lifted += lifted;
     area->x = w->form->seconds ? axis_tight(w->all.count, w->x)
                                : axis_linear(w->all.count, w->x, true);
+    area->x.from = area->left;
+    area->x.to = area->right;
+    area->y.from = area->bottom;
+    area->y.to = area->top;
     for (int64_t k = 0; k < w->all.count; k++)
         w->y[k] = axis_clamp(&area->y, w->y[k]);
     find_front(w);
@@ -100,7 +103,10 @@ static int by_place(const void *a, const void *b)
     return x[0] < y[0] ? -1 : x[0] > y[0] ? 1 : x[1] < y[1] ? -1 : x[1] > y[1];
 }
 
-/* Points of a front or of one method, from left to right: x, y, record. */
+/*
+ * Points of a front, or the best of one method at each order, from left to
+ * right: x, y, record. What misses modes is on neither.
+ */
 static void put_line(chart_errors_work *w, int64_t panel, int64_t method,
                      int style, double *room)
 {
@@ -108,7 +114,8 @@ static void put_line(chart_errors_work *w, int64_t panel, int64_t method,
 
     for (int64_t k = 0; k < w->all.count; k++) {
         if (isnan(w->x[k]) || (style == ON_FRONT && !w->front[k]) ||
-            (style == ON_LINE && w->which[k] != method))
+            (style == ON_LINE &&
+             (w->which[k] != method || w->all.item[k].incomplete)))
             continue;
         room[3 * count] = w->x[k];
         room[3 * count + 1] = w->y[k];
@@ -116,7 +123,8 @@ static void put_line(chart_errors_work *w, int64_t panel, int64_t method,
     }
     qsort(room, (size_t)count, 3 * sizeof *room, by_place);
     for (int64_t i = 0; i < count; i++)
-        put_row(w, panel, (int64_t)room[3 * i + 2], style, -1);
+        if (style == ON_FRONT || i == 0 || room[3 * i] > room[3 * (i - 1)])
+            put_row(w, panel, (int64_t)room[3 * i + 2], style, -1);
     fputc('\n', w->picture->data.file); /* ends a line of gnuplot's */
 }
 
@@ -146,144 +154,6 @@ static ritz_status put_points(chart_errors_work *w, int64_t panel)
         put_line(w, panel, s, ON_LINE, room);
 done:
     free(room);
-    return status;
-}
-
-/* Points under a word. */
-static int64_t count_under(const chart_errors_work *w, const chart_area *area,
-                           const axis_word *word)
-{
-    int64_t count = 0;
-
-    for (int64_t k = 0; k < w->all.count; k++) {
-        double x = axis_place(&area->x, w->x[k]) - word->left;
-        double y = axis_place(&area->y, w->y[k]) - word->base;
-
-        count += x > -8.0 && x < word->wide + 8.0 && y > -6.0 &&
-                 y < word->high + 6.0;
-    }
-    return count;
-}
-
-/* A name on a level, where it covers few points: right, left or between.
- * Other words keep clear of it. */
-static void name_level(const chart_errors_work *w, const chart_area *area,
-                       double value, const char *text, const char *how,
-                       axis_word *out)
-{
-    static const double places[] = {1.0, 0.0, 0.75, 0.25, 0.5};
-    double y = axis_place(&area->y, value);
-    int64_t least = INT64_MAX;
-
-    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
-        axis_word word = {.fixed = true,
-                          .wide = axis_width(text, 11.0) + 6.0,
-                          .high = 15.0,
-                          .base = y - 2.0};
-        int64_t under = 0;
-
-        word.left = area->left + 4.0 +
-                    places[k] * (area->right - area->left - 4.0 - word.wide);
-        under = count_under(w, area, &word);
-        if (under >= least)
-            continue;
-        least = under;
-        *out = word;
-    }
-    chart_text(w->picture, out->left + 2.0, y + 8.0, text, how);
-}
-
-/* Lines of equal error that mean something; how many. */
-static int64_t put_levels(const chart_errors_work *w, const measure *m,
-                          const chart_area *area, axis_word names[2])
-{
-    char word[32], text[CHART_WORD];
-    int64_t count = 0;
-
-    if (m->tolerance > 0.0) {
-        chart_level(w->picture, area, m->tolerance,
-                    "lw 1.4 lc rgb '" SVG_ALARM "'");
-        chart_say_error(m->tolerance, word);
-        snprintf(text, sizeof text, "tolerance %s", word);
-        name_level(w, area, m->tolerance, text,
-                   "front font ',11' tc rgb '" SVG_ALARM "'", &names[count++]);
-    }
-    if (area->y.high < CHART_UNCERTAINTY || area->y.low > CHART_UNCERTAINTY ||
-        fabs(m->tolerance - CHART_UNCERTAINTY) < 1e-3)
-        return count;
-    chart_level(w->picture, area, CHART_UNCERTAINTY,
-                "lw 1.2 dt 2 lc rgb '" SVG_INK "'");
-    name_level(w, area, CHART_UNCERTAINTY,
-               "10 %: below, models are as uncertain",
-               "front font ',11' tc rgb '" SVG_INK "'", &names[count++]);
-    return count;
-}
-
-/* How gladly the order of a point is written, least first. */
-static int rank_of(const chart_errors_work *w, int64_t k)
-{
-    const record *r = &w->all.item[k];
-
-    return r->chosen ? 0 : r->runner_up ? 1 : w->front[k] ? 2 : 3;
-}
-
-static void say_point(const chart_errors_work *w, int64_t k,
-                      char out[CHART_WORD])
-{
-    const record *r = &w->all.item[k];
-
-    if (r->chosen || r->runner_up)
-        snprintf(out, CHART_WORD, "%s: %.26s, %lld",
-                 r->chosen ? "chosen" : "runner-up", r->method,
-                 (long long)r->order);
-    else
-        snprintf(out, CHART_WORD, "%lld", (long long)r->order);
-}
-
-/* Orders beside points: those that count first, others where there is room. */
-static ritz_status put_words(const chart_errors_work *w, const measure *m,
-                             const chart_area *area)
-{
-    enum { SIZE = 11, MOST = 400 };
-    ritz_status status = RITZ_OK;
-    const double box[] = {area->left + 2.0, area->bottom + 2.0,
-                          area->right + 14.0, area->top + 6.0};
-    axis_word *words = calloc((size_t)w->all.count + 3, sizeof *words);
-    int64_t *of = calloc((size_t)w->all.count + 3, sizeof *of);
-    int64_t count = 0, first = 0;
-    char text[CHART_WORD];
-
-    RITZ_FAIL_IF(!words || !of, RITZ_ERR_MEMORY, "no memory for a chart");
-    first = count = put_levels(w, m, area, words);
-    for (int rank = 0; rank < 4; rank++)
-        for (int64_t k = 0; k < w->all.count && count < MOST; k++) {
-            if (isnan(w->x[k]) || rank_of(w, k) != rank)
-                continue;
-            say_point(w, k, text);
-            words[count] = (axis_word){.x = axis_place(&area->x, w->x[k]),
-                                       .y = axis_place(&area->y, w->y[k]),
-                                       .wide = axis_width(text, SIZE),
-                                       .high = SIZE + 1.0,
-                                       .gap = rank < 2 ? 7.0 : 0.0,
-                                       .must = rank < 2};
-            if ((w->form->lines && rank > 1) || w->all.item[k].incomplete)
-                words[count].wide = 0.0; /* the axis says the order */
-            of[count++] = k;
-        }
-    axis_words(count, words, box);
-    for (int64_t i = first; i < count; i++) {
-        if (!words[i].written)
-            continue;
-        say_point(w, of[i], text);
-        chart_text(w->picture, words[i].left,
-                   words[i].base + 0.5 * words[i].high, text,
-                   rank_of(w, of[i]) < 2
-                       ? "front font ',12' tc rgb '" SVG_INK "'"
-                       : "front font ',11' tc rgb '" SVG_MUTED "'");
-    }
-done:
-    free(words);
-    free(of);
     return status;
 }
 
@@ -331,20 +201,20 @@ ritz_status chart_errors_area(chart_errors_work *w, int64_t panel, double left,
 {
     ritz_status status = RITZ_OK;
     const measure *m = &w->measure[panel];
+    int64_t count[2];
     chart_area area = {.left = left + CHART_LEFT,
                        .bottom = bottom + BOTTOM,
                        .right = left + CHART_CELL_WIDE - CHART_RIGHT,
                        .top = bottom + CHART_CELL_HIGH - TOP};
 
-    place(w, m, &area);
-    area.x.from = area.left;
-    area.x.to = area.right;
-    area.y.from = area.bottom;
-    area.y.to = area.top;
+    chart_errors_place(w, m, &area, count);
+    w->lifted += count[CHART_LIFTED];
+    w->left_out += count[CHART_LEFT_OUT];
     chart_area_begin(w->picture, &area, m->title, w->form->xlabel, "");
     if (w->form->seconds)
         chart_tics_seconds(w->picture, &area.x);
-    RITZ_TRY(put_words(w, m, &area));
+    chart_errors_levels(w, m, &area);
+    RITZ_TRY(chart_errors_words(w, &area));
     RITZ_TRY(put_points(w, panel));
     put_plot(w, panel);
 done:

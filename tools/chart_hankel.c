@@ -5,13 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *base_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-
-    return slash ? slash + 1 : path;
-}
-
 /* Rankings as ritz-rank holds them; they stay the sources'. */
 static ritz_status borrow(const chart_sources *sources, rank_result *out)
 {
@@ -30,7 +23,7 @@ static ritz_status borrow(const chart_sources *sources, rank_result *out)
                      "'%s' holds no ranking", file->path);
         out->group[out->count].all = file->model.rankings;
         snprintf(out->file[out->count++], RITZ_NAME_SIZE, "%.63s",
-                 base_of(file->path));
+                 chart_base(file->path));
     }
 done:
     return status;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 void chart_say_error(double error, char out[32])
 {
@@ -34,6 +35,13 @@ void chart_say_seconds(double seconds, char out[32])
              seconds >= 99.95 * units[k].unit ? "%.0f\xc2\xa0%s"
                                               : "%.2g\xc2\xa0%s",
              seconds / units[k].unit, units[k].name);
+}
+
+const char *chart_base(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+
+    return slash ? slash + 1 : path;
 }
 
 const char *chart_colour(int64_t series)
@@ -80,9 +88,10 @@ void chart_area_begin(gnuplot *picture, const chart_area *area,
     fprintf(file, "set format y '%s'\n", area->y.log ? "10^{%L}" : "%g");
     fprintf(file, "set xlabel ");
     gnuplot_quote(file, xlabel);
-    fprintf(file, " noenhanced tc rgb '" SVG_INK "' offset 0,0.4\nset ylabel ");
-    gnuplot_quote(file, ylabel);
-    fprintf(file, " noenhanced tc rgb '" SVG_INK "' offset 0.8\n");
+    fprintf(file, " noenhanced tc rgb '" SVG_INK "' offset 0,0.4\n");
+    if (*ylabel)
+        chart_text(picture, area->edge + 13.0, 0.5 * (area->bottom + area->top),
+                   ylabel, "center rotate by 90 tc rgb '" SVG_INK "'");
     chart_text(picture, area->left, area->top + 16.0, title,
                "font ',14' tc rgb '" SVG_INK "'");
 }

@@ -1,191 +1,55 @@
-/* One channel: magnitudes over each other, peaks, errors below. */
+/* One channel: magnitudes over each other, peaks, strips of errors below. */
 #include "chart_response.h"
 
-#include <complex.h>
 #include <math.h>
 
-/* H of a curve's k-th point in the first curve's channel c. */
-static double _Complex value_of(const chart_overlay *o, int64_t which,
-                                int64_t k, int64_t c)
+/* 10 % of a magnitude, in decibels: 20 log10(1.1). */
+static const double ten_percent_db = 0.827853703164501;
+
+enum { FOOT = 52, HEAD = 44, STRIP = 139, GAP = 14 };
+
+/* Lines of all curves: of singular values the largest, then the others, thin.
+   Widths are of the first curve's, and of others', in both ways. */
+static void put_curves(const chart_overlay *o, int64_t c, int64_t from,
+                       int column, const double wide[2][2])
 {
-    const ritz_response *first = o->curve[0].r, *r = o->curve[which].r;
-    int64_t i = chart_response_name(r->num_outputs, r->output,
-                                    first->output[o->output[c]]);
-    int64_t j =
-        chart_response_name(r->num_inputs, r->input, first->input[o->input[c]]);
+    FILE *file = o->picture->plot.file;
+    int ways = chart_response_singular(o, c) ? 2 : 1;
 
-    return r->H[(k * r->num_outputs + i) * r->num_inputs + j];
-}
+    fprintf(file, "plot NaN notitle");
+    for (int64_t w = from; w < o->count; w++) {
+        bool under = w == 0 && o->count > 1;
+        const char *colour = under ? SVG_PALE : chart_colour(w > 0 ? w - 1 : 0);
 
-/* Point of a curve at a frequency of the first; -1: it has none there. */
-static int64_t point_at(const ritz_response *r, double hertz)
-{
-    int64_t low = 0, high = r->count;
-
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (r->hertz[middle] < hertz * (1.0 - 1e-12))
-            low = middle + 1;
-        else
-            high = middle;
+        for (int thin = 0; thin < ways; thin++)
+            fprintf(file,
+                    ", \\\n  data skip 1 using (($1 == %lld && $2 == %lld && "
+                    "$3 %s 0) ? $4 : NaN):%d with lines lw %g lc rgb '%s' "
+                    "dt %lld notitle",
+                    (long long)c, (long long)w, thin ? ">" : "==", column,
+                    wide[!under][thin], colour, (long long)(w < 2 ? 1 : w));
     }
-    return low < r->count && r->hertz[low] <= hertz * (1.0 + 1e-12) ? low : -1;
 }
 
-typedef struct extent {
-    double most, least; /* of magnitudes */
-    double worst, best; /* of errors over the largest magnitude */
-    int64_t shared;     /* points that curves have in common */
-} extent;
-
-/* |H_r - H| / max |H| of curve w at point k of the first; NaN: none there. */
-static double error_of(const chart_overlay *o, int64_t w, int64_t k, int64_t c,
-                       double most)
-{
-    int64_t other = point_at(o->curve[w].r, o->curve[0].r->hertz[k]);
-
-    if (other < 0)
-        return nan("");
-    return cabs(value_of(o, w, other, c) - value_of(o, 0, k, c)) / most;
-}
-
-static extent extent_of(const chart_overlay *o, int64_t c)
-{
-    const ritz_response *first = o->curve[0].r;
-    extent e = {.least = HUGE_VAL, .best = HUGE_VAL};
-
-    for (int64_t k = 0; k < first->count; k++) {
-        double size = cabs(value_of(o, 0, k, c));
-
-        e.most = fmax(e.most, size);
-        if (size > 0.0)
-            e.least = fmin(e.least, size);
-    }
-    for (int64_t w = 1; w < o->count; w++)
-        for (int64_t k = 0; e.most > 0.0 && k < first->count; k++) {
-            double error = error_of(o, w, k, c, e.most);
-
-            if (isnan(error))
-                continue;
-            e.shared++;
-            e.worst = fmax(e.worst, error);
-            if (error > 0.0)
-                e.best = fmin(e.best, error);
-        }
-    return e;
-}
-
-/* channel, curve, hertz, magnitude, phase, error; -1 for tips: see below. */
-static void put_curve(const chart_overlay *o, int64_t w, int64_t c, double most)
-{
-    const ritz_response *r = o->curve[w].r;
-    FILE *file = o->picture->data.file;
-
-    for (int64_t k = 0; k < r->count; k++) {
-        double _Complex H = value_of(o, w, k, c);
-        int64_t at = point_at(o->curve[0].r, r->hertz[k]);
-        double error =
-            w == 0 || at < 0 ? nan("") : cabs(H - value_of(o, 0, at, c)) / most;
-
-        fprintf(file, "%lld\t%lld\t%.9g\t%.9g\t%.6g\t%.6g\t-1\n", (long long)c,
-                (long long)w, r->hertz[k], cabs(H), carg(H) * 180.0 / M_PI,
-                error);
-    }
-    fputc('\n', file);
-}
-
-/* Peaks of the first curve, largest first: where a reader points at. */
-static int64_t find_peaks(const chart_overlay *o, int64_t c,
-                          int64_t peak[MOST_PEAKS])
-{
-    int64_t count = 0;
-    int64_t last = o->curve[0].r->count - 1;
-
-    for (int64_t k = 1; k < last; k++) {
-        double size = cabs(value_of(o, 0, k, c));
-        int64_t at = count;
-
-        if (size <= cabs(value_of(o, 0, k - 1, c)) ||
-            size < cabs(value_of(o, 0, k + 1, c)))
-            continue;
-        while (at > 0 && cabs(value_of(o, 0, peak[at - 1], c)) < size)
-            at--;
-        if (at == MOST_PEAKS)
-            continue;
-        count += count < MOST_PEAKS;
-        for (int64_t i = count - 1; i > at; i--)
-            peak[i] = peak[i - 1];
-        peak[at] = k;
-    }
-    return count;
-}
-
-static void put_peaks(const chart_overlay *o, int64_t c, double most)
-{
-    int64_t peak[MOST_PEAKS];
-    int64_t count = find_peaks(o, c, peak);
-    const ritz_response *first = o->curve[0].r;
-    char text[1500];
-
-    for (int64_t p = 0; p < count; p++) {
-        double hertz = first->hertz[peak[p]];
-        double size = cabs(value_of(o, 0, peak[p], c));
-        size_t used = (size_t)snprintf(text, sizeof text,
-                                       "peak at %.6g Hz\n%.60s: |H| = %.5g",
-                                       hertz, o->curve[0].name, size);
-        int64_t tip = 0;
-
-        fprintf(o->picture->table.file, "%s/%s\t%.6g\t%.5g",
-                first->output[o->output[c]], first->input[o->input[c]], hertz,
-                size);
-        for (int64_t w = 1; w < o->count; w++) {
-            double error = error_of(o, w, peak[p], c, most);
-
-            if (used < sizeof text)
-                used += (size_t)snprintf(text + used, sizeof text - used,
-                                         "\n%.60s: error %.2e of the largest",
-                                         o->curve[w].name, error);
-            fprintf(o->picture->table.file, "\t%.3e", error);
-        }
-        fprintf(o->picture->table.file, "\n");
-        tip = gnuplot_tip(o->picture, "%s", text);
-        fprintf(o->picture->data.file, "%lld\t-1\t%.9g\t%.9g\tnan\tnan\t%lld\n",
-                (long long)c, hertz, size, (long long)tip);
-    }
-    fputc('\n', o->picture->data.file);
-}
-
-static void put_magnitudes(const chart_overlay *o, int64_t c)
+/* What can be pointed at: peaks of the first, and true ones as they are
+   stored. */
+static void put_marks(const chart_overlay *o, int64_t c)
 {
     FILE *file = o->picture->plot.file;
 
-    fprintf(file, "plot NaN notitle");
-    for (int64_t w = 0; w < o->count; w++)
-        fprintf(file,
-                ", \\\n  data skip 1 using (($1 == %lld && $2 == %lld) ? $3 : "
-                "NaN):4 with lines lw %s lc rgb '%s' dt %lld notitle",
-                (long long)c, (long long)w, w == 0 ? "6" : "1.6",
-                w == 0 ? SVG_PALE : chart_colour(w - 1),
-                (long long)(w < 2 ? 1 : w));
     fprintf(file,
-            ", \\\n  data skip 1 using (($1 == %lld && $2 == -1) ? $3 : NaN):4"
-            ":7 with labels hypertext point pt 6 ps 0.7 lc rgb '" SVG_MUTED
-            "' notitle\n",
+            ", \\\n  data skip 1 using (($1 == %lld && $2 == -1) ? $4 : NaN):5"
+            ":9 with labels hypertext point pt 6 ps 0.7 lc rgb '" SVG_MUTED
+            "' notitle",
             (long long)c);
-}
-
-static void put_errors(const chart_overlay *o, int64_t c)
-{
-    FILE *file = o->picture->plot.file;
-
-    fprintf(file, "plot NaN notitle");
-    for (int64_t w = 1; w < o->count; w++)
-        fprintf(file,
-                ", \\\n  data skip 1 using (($1 == %lld && $2 == %lld) ? $3 : "
-                "NaN):6 with lines lw 1.2 lc rgb '%s' dt %lld notitle",
-                (long long)c, (long long)w, chart_colour(w - 1),
-                (long long)(w < 2 ? 1 : w));
+    for (int64_t w = 0; chart_response_singular(o, c) && w < o->count; w++)
+        if (o->curve[w].r->singular_peak[1] > 0.0)
+            fprintf(file,
+                    ", \\\n  data skip 1 using (($1 == %lld && $2 == -2 && "
+                    "$3 == %lld) ? $4 : NaN):5:9 with labels hypertext point "
+                    "pt 12 ps 1.1 lw 1.4 lc rgb '%s' notitle",
+                    (long long)c, (long long)w,
+                    w == 0 ? SVG_INK : chart_colour(w - 1));
     fprintf(file, "\n");
 }
 
@@ -220,43 +84,95 @@ static void begin(const chart_overlay *o, chart_area *area, const char *title,
     area->y.from = area->bottom;
     area->y.to = area->top;
     chart_area_begin(o->picture, area, title, xlabel, ylabel);
+    if (!*xlabel)
+        fprintf(o->picture->plot.file, "set format x ''\n");
+}
+
+/* "tip / torque: error at most 0.31 %, 0.027 dB" */
+static void put_title(const chart_overlay *o, int64_t c, const chart_extent *e,
+                      char out[2 * CHART_WORD])
+{
+    const ritz_response *r = o->curve[0].r;
+    char worst[32];
+    size_t used = 0;
+
+    if (chart_response_singular(o, c))
+        used = (size_t)snprintf(out, CHART_WORD, "singular values");
+    else
+        used = (size_t)snprintf(out, 2 * RITZ_NAME_SIZE + 4, "%s / %s",
+                                r->output[o->output[c]], r->input[o->input[c]]);
+    if (o->count < 2 || e->shared == 0)
+        return;
+    chart_say_error(e->worst[CHART_RELATIVE], worst);
+    used += (size_t)snprintf(out + used, 40, ": %s at most%s%s",
+                             o->strip[CHART_RELATIVE] ? "error" : "difference",
+                             o->strip[CHART_RELATIVE] ? " " : "",
+                             o->strip[CHART_RELATIVE] ? worst : "");
+    if (o->strip[CHART_DECIBELS])
+        snprintf(out + used, 40,
+                 "%s %.2g\xc2\xa0"
+                 "dB",
+                 o->strip[CHART_RELATIVE] ? "," : "", e->worst[CHART_DECIBELS]);
+}
+
+/* One strip of errors; the lowest has frequencies below it. */
+static void put_strip(const chart_overlay *o, int64_t c, int strip,
+                      const chart_extent *e, chart_area *area)
+{
+    static const struct {
+        const char *label;
+        int column;
+    } known[CHART_STRIPS] = {
+        [CHART_RELATIVE] = {"error / largest", 7},
+        [CHART_DECIBELS] = {"difference, dB", 8},
+    };
+    static const double wide[2][2] = {{1.2, 0.7}, {1.2, 0.7}};
+    double level = strip == CHART_DECIBELS ? ten_percent_db : 0.1;
+    bool last = strip == CHART_DECIBELS || !o->strip[CHART_DECIBELS];
+    FILE *file = o->picture->plot.file;
+
+    area->top = area->bottom - GAP;
+    area->bottom = area->top - STRIP;
+    area->y = decades(e->best[strip], e->worst[strip]);
+    begin(o, area, "", last ? "Hz" : "", known[strip].label);
+    if (log10(area->y.high / area->y.low) > 4.0)
+        fprintf(file, "set ytics %g\n",
+                pow(10.0, ceil(log10(area->y.high / area->y.low) / 4.0)));
+    if (area->y.high >= level && area->y.low <= level) {
+        chart_level(o->picture, area, level,
+                    "lw 1.2 dt 2 lc rgb '" SVG_INK "'");
+        chart_text(o->picture, area->right - 2.0,
+                   axis_place(&area->y, level) + 7.0, "10 %",
+                   "right font ',11' tc rgb '" SVG_INK "'");
+    }
+    put_curves(o, c, 1, known[strip].column, wide);
+    fprintf(file, "\n");
 }
 
 void chart_response_channel(const chart_overlay *o, int64_t c, double left,
                             double bottom)
 {
-    const ritz_response *r = o->curve[0].r;
-    extent e = extent_of(o, c);
+    static const double wide[2][2] = {{6.0, 3.0}, {1.6, 0.8}};
+    chart_extent e = chart_response_extent(o, c);
     chart_area area = {.left = left + OVERLAY_LEFT,
                        .right = left + OVERLAY_WIDE - OVERLAY_RIGHT,
+                       .top = bottom + o->high - HEAD,
+                       .bottom = bottom + FOOT,
+                       .edge = left,
                        .x = hertz_axis(o)};
     bool errors = o->count > 1 && e.shared > 0;
-    char title[CHART_WORD + 40], worst[32];
+    char title[2 * CHART_WORD] = "";
 
-    chart_say_error(e.worst, worst);
-    snprintf(title, sizeof title,
-             errors ? "%s / %s: error at most %s" : "%s / %s",
-             r->output[o->output[c]], r->input[o->input[c]], worst);
-    area.bottom = bottom + (errors ? 205.0 : 52.0);
-    area.top = bottom + OVERLAY_HIGH - 44.0;
-    area.y = decades(e.least, e.most);
-    begin(o, &area, title, errors ? "" : "Hz", "magnitude");
-    if (errors)
-        fprintf(o->picture->plot.file, "set format x ''\n");
-    for (int64_t w = 0; w < o->count; w++)
-        put_curve(o, w, c, e.most > 0.0 ? e.most : 1.0);
-    put_peaks(o, c, e.most > 0.0 ? e.most : 1.0);
-    put_magnitudes(o, c);
-    if (!errors)
-        return;
-    area.top = area.bottom - 14.0;
-    area.bottom = bottom + 52.0;
-    area.y = decades(e.best, e.worst);
-    begin(o, &area, "", "Hz", "error / largest");
-    if (log10(area.y.high / area.y.low) > 4.0)
-        fprintf(o->picture->plot.file, "set ytics %g\n",
-                pow(10.0, ceil(log10(area.y.high / area.y.low) / 4.0)));
-    if (area.y.high >= 0.1 && area.y.low <= 0.1)
-        chart_level(o->picture, &area, 0.1, "lw 1.2 dt 2 lc rgb '" SVG_INK "'");
-    put_errors(o, c);
+    for (int s = 0; errors && s < CHART_STRIPS; s++)
+        area.bottom += o->strip[s] ? STRIP + GAP : 0;
+    put_title(o, c, &e, title);
+    area.y = decades(e.least, e.top);
+    begin(o, &area, title, errors ? "" : "Hz",
+          chart_response_singular(o, c) ? "singular values" : "magnitude");
+    chart_response_data(o, c, &e);
+    put_curves(o, c, 0, 5, wide);
+    put_marks(o, c);
+    for (int s = 0; errors && s < CHART_STRIPS; s++)
+        if (o->strip[s])
+            put_strip(o, c, s, &e, &area);
 }

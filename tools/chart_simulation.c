@@ -24,13 +24,6 @@ typedef struct runs {
     gnuplot *picture;
 } runs;
 
-static const char *base_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-
-    return slash ? slash + 1 : path;
-}
-
 static int64_t find_output(const ritz_simulation *s, const char *name)
 {
     for (int64_t k = 0; k < s->num_outputs; k++)
@@ -61,7 +54,7 @@ static ritz_status take_runs(const chart_sources *sources, runs *out)
         if (out->count == 0)
             out->num_outputs =
                 s->num_outputs < MOST_OUTPUTS ? s->num_outputs : MOST_OUTPUTS;
-        out->name[out->count] = base_of(file->path);
+        out->name[out->count] = chart_base(file->path);
         out->run[out->count++] = s;
     }
 done:

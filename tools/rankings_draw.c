@@ -158,7 +158,7 @@ static void write_script(gnuplot *picture, const char *title,
             " noenhanced tc rgb '" SVG_INK "'\nset logscale y\n"
             "set format y '10^{%%L}'\n"
             "set ylabel '%s' noenhanced tc rgb '" SVG_INK "'\n"
-            "set xlabel '%s: Hz' offset 0,1 tc rgb '" SVG_INK "'\n"
+            "set xlabel '%s: Hz' offset 0,1.7 tc rgb '" SVG_INK "'\n"
             "set grid y lc rgb '" SVG_GRID "' lt 1\nset key below center "
             "horizontal Left reverse noenhanced tc rgb '" SVG_INK "'\n"
             "set border 3\nset tics scale 0.6\nset ytics nomirror tc rgb "

@@ -18,6 +18,19 @@ typedef struct report_page {
 void report_begin(report_page *p, const char *title);
 void report_end(report_page *p);
 
+/** Draw, and put picture, caption and data down. */
+ritz_status report_figure(report_page *p, const chart_sources *sources,
+                          const chart_wish *wish,
+                          ritz_status (*draw)(const chart_sources *,
+                                              const chart_wish *, gnuplot *),
+                          const char *caption);
+
+/** What the command line wishes, for pictures that stay on the page. */
+chart_wish report_wish(const report_page *p);
+
+/** The kind of chart of that name, which there is. */
+const chart_kind *report_kind(const char *name);
+
 /** Verdicts, charts and tables of records, if there are any. */
 ritz_status report_records(report_page *p);
 

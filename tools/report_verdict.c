@@ -88,6 +88,28 @@ static void say_size(FILE *file, const record *r)
     fprintf(file, "</ul></dd></div>\n");
 }
 
+/* What is known without measuring: nothing that is worse than all. */
+static void say_bounds(FILE *file, const record *r)
+{
+    static const struct {
+        const char *name, *word;
+    } all[] = {{"frequency-relative-bound", "frequencies"},
+               {"response-relative-bound", "the response"}};
+    const json_t *estimates = json_object_get(r->json, "estimates");
+    char word[32];
+
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        double bound = record_value(estimates, all[k].name);
+
+        if (!(bound <= 1.0))
+            continue;
+        chart_say_error(bound, word);
+        fprintf(file, "<li>");
+        html_print(file, "proven: %s within %s", all[k].word, word);
+        fprintf(file, "</li>");
+    }
+}
+
 static void say_errors(FILE *file, const record *r, int64_t count,
                        const measure *m)
 {
@@ -111,6 +133,7 @@ static void say_errors(FILE *file, const record *r, int64_t count,
         }
         fprintf(file, "</li>");
     }
+    say_bounds(file, r);
     fprintf(file, "</ul></dd></div>\n");
 }
 

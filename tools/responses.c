@@ -104,6 +104,8 @@ ritz_status responses_singular(cli_run *run, const responses_wish *asked,
     RITZ_TRY(find_scales(asked, m, response, size, &scales));
     RITZ_TRY(ritz_singular_of(&scales, response));
     RITZ_TRY(ritz_singular_peak(response, &scales, responder, &hertz, &value));
+    response->singular_peak[0] = hertz;
+    response->singular_peak[1] = value;
     cli_say(run, "%-41s %14.6e %14.7g", "largest singular value", value, hertz);
     if (isinf(value))
         cli_warn(run, "it is infinite: a pole at %.7g Hz is not damped", hertz);

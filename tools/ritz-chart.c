@@ -10,7 +10,7 @@ static void list_kinds(void)
 {
     for (const chart_kind *k = chart_kinds; k->name; k++)
         printf("%-12s %-56s from %s\n", k->name, k->summary, k->files);
-    printf("%-12s %-56s from any of these files\n", "report",
+    printf("%-12s %-56s from any but systems\n", "report",
            "all of these on one page, with tables and a verdict");
 }
 
@@ -38,7 +38,7 @@ static ritz_status draw(cli_run *run, const chart_kind *kind,
     gnuplot picture = {0};
 
     RITZ_TRY(chart_read(run, run->num_operands - 1, run->operand + 1,
-                        kind ? kind->holds : -1, &sources));
+                        kind ? kind->holds : ~CHART_SYSTEM, &sources));
     if (kind)
         RITZ_TRY(kind->draw(&sources, wish, &picture));
     else
@@ -48,6 +48,22 @@ done:
     gnuplot_free(&picture);
     chart_sources_free(&sources);
     return status;
+}
+
+/* Options that take one of a few words. */
+static void check(const cli_program *program, const chart_wish *wish)
+{
+    const char *const against = wish->against, *const error = wish->error;
+
+    if (against && strcmp(against, "reduce") != 0 &&
+        strcmp(against, "simulate") != 0)
+        cli_refuse(program, "--against takes 'reduce' or 'simulate', not '%s'",
+                   against);
+    if (error && strcmp(error, "relative") != 0 &&
+        strcmp(error, "decibels") != 0 && strcmp(error, "both") != 0)
+        cli_refuse(program,
+                   "--error takes 'relative', 'decibels' or 'both', not '%s'",
+                   error);
 }
 
 int main(int argc, char **argv)
@@ -62,7 +78,16 @@ int main(int argc, char **argv)
          .help = "pareto: time to 'reduce' or to 'simulate' [simulate, if all "
                  "records know it]"},
         {CLI_LIST(&wish.channel), .name = "channel", .argument = "OUTPUT/INPUT",
-         .help = "response: what is drawn [the first four]"},
+         .help = "response: what is drawn [the first four]; "
+                 "'singular-values' of files that hold them"},
+        {CLI_TEXT(&wish.error), .name = "error", .argument = "WORD",
+         .help = "response: 'relative' to the largest, in 'decibels' of each "
+                 "point, or 'both' [relative]"},
+        {CLI_LIST(&wish.at), .name = "at", .argument = "JOINT=SETTING[,...]",
+         .help = "mac: configuration of each system, or two of one [the only "
+                 "ones]; they are compared by the masses of all bodies, if "
+                 "their reduced components are named too, else by what inputs "
+                 "drive and outputs see"},
         {CLI_INT(&wish.top), .name = "top", .argument = "N", .min = 1,
          .max = 1000, .help = "hankel: so many modes of each ranking"},
         {CLI_REAL(&wish.up_to_hz), .name = "up-to-hz", .argument = "F",
@@ -91,10 +116,7 @@ int main(int argc, char **argv)
 
     cli_parse(&program, argc, argv, &run);
     kind = find(&program, run.operand[0]);
-    if (wish.against && strcmp(wish.against, "reduce") != 0 &&
-        strcmp(wish.against, "simulate") != 0)
-        cli_refuse(&program, "--against takes 'reduce' or 'simulate', not '%s'",
-                   wish.against);
+    check(&program, &wish);
     wish.path = run.output;
     return cli_finish(&run, draw(&run, kind, &wish));
 }

@@ -11,6 +11,9 @@ const char *const svg_colour[SVG_COLOURS] = {"#0072b2", "#c44e00", "#007a5a",
                                              "#a23b82", "#8a6d00", "#3f8fbf",
                                              "#5b5b5b", "#b2182b"};
 
+/* How gnuplot begins words. */
+static const char bare_words[] = "stroke=\"none\"";
+
 static bool starts(const char *text, const char *with)
 {
     return strncmp(text, with, strlen(with)) == 0;
@@ -55,6 +58,24 @@ static const char *skip_empty(const char *text)
     return starts(inside, "\n</g>\n") ? inside + 6 : text;
 }
 
+/*
+ * Words get a rim of paper, so that they can be read across lines and points;
+ * those that are themselves the colour of paper stand on something dark.
+ */
+static const char *put_rim(FILE *file, const char *text)
+{
+    const char *end = text + strcspn(text, ">");
+    const char *font = strstr(text, "font-family");
+    const char *pale = strstr(text, "fill=\"rgb(255,255,255)\"");
+
+    if (!font || font > end || (pale && pale < end))
+        return text;
+    fputs("stroke=\"" SVG_PAPER "\" stroke-width=\"3\" "
+          "stroke-linejoin=\"round\" paint-order=\"stroke\"",
+          file);
+    return text + strlen(bare_words);
+}
+
 ritz_status svg_dress(const char *drawn, const char *title, const char *summary,
                       int64_t num_tips, char *const *tip, char **out)
 {
@@ -66,7 +87,9 @@ ritz_status svg_dress(const char *drawn, const char *title, const char *summary,
 
     RITZ_TRY(cli_table_new(&table));
     while (*c) {
-        const char *next = starts(c, "<g fill=") ? skip_empty(c) : c;
+        const char *next = starts(c, "<g fill=")   ? skip_empty(c)
+                           : starts(c, bare_words) ? put_rim(table.file, c)
+                                                   : c;
 
         if (next > c) {
             c = next;
@@ -189,7 +212,7 @@ static bool is_wide(const char *svg)
 {
     const char *box = strstr(svg, "viewBox=\"0 0 ");
 
-    return box && strtod(box + strlen("viewBox=\"0 0 "), NULL) > 560.0;
+    return box && strtod(box + strlen("viewBox=\"0 0 "), NULL) > SVG_WIDE;
 }
 
 void svg_embed(FILE *file, const char *svg, const char *prefix)

@@ -20,6 +20,9 @@ extern const char *const svg_colour[SVG_COLOURS];
 #define SVG_ALARM "#b00020" /* limits */
 #define SVG_PALE  "#9fb0c3" /* what others are drawn over */
 
+/* Wider pictures are illegible on a telephone, and to be scrolled; pixels. */
+#define SVG_WIDE 560.0
+
 /**
  * Name a picture and its points. gnuplot's own names go, its scripts, and
  * groups that are empty; a point of hypertext "17" has the 17th tip.

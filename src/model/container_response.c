@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 
 static const ritz_text_member members[] = {
@@ -86,11 +87,37 @@ done:
 
 static ritz_status write_singular(hid_t file, const ritz_response *response)
 {
+    ritz_status status = RITZ_OK;
+
     if (response->num_singular == 0)
         return RITZ_OK;
-    return ritz_h5_write(file, "singular_values", H5T_IEEE_F64LE,
-                         ritz_h5_table(response->count, response->num_singular),
-                         response->singular);
+    RITZ_TRY(
+        ritz_h5_write(file, "singular_values", H5T_IEEE_F64LE,
+                      ritz_h5_table(response->count, response->num_singular),
+                      response->singular));
+    if (response->singular_peak[1] > 0.0)
+        RITZ_TRY(ritz_part_set_real(file, "singular_peak", 2,
+                                    response->singular_peak));
+done:
+    return status;
+}
+
+/* An infinite one is that of a pole which nothing damps. */
+static ritz_status read_peak(hid_t file, ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    double peak[2] = {0.0, 0.0};
+
+    if (H5Aexists(file, "singular_peak") <= 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_h5_get(file, "singular_peak", H5T_NATIVE_DOUBLE, 2, peak));
+    RITZ_FAIL_IF(!(peak[0] >= 0.0) || isinf(peak[0]) || !(peak[1] > 0.0),
+                 RITZ_ERR_FORMAT,
+                 "'singular_peak' is no frequency and no value above 0");
+    response->singular_peak[0] = peak[0];
+    response->singular_peak[1] = peak[1];
+done:
+    return status;
 }
 
 static ritz_status read_singular(hid_t file, ritz_response *response)
@@ -113,6 +140,7 @@ static ritz_status read_singular(hid_t file, ritz_response *response)
     RITZ_TRY(ritz_h5_read_real(file, "singular_values", found, false,
                                response->singular));
     response->num_singular = most;
+    RITZ_TRY(read_peak(file, response));
 done:
     return status;
 }

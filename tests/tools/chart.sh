@@ -10,6 +10,8 @@ expect 0 'from run records' ritz-chart --list
 expect 2 "no chart 'parato', is 'pareto' meant?" ritz-chart parato x -o x.svg
 expect 2 "--against takes 'reduce' or 'simulate'" ritz-chart pareto x \
     --against time -o x.svg
+expect 2 "--error takes 'relative', 'decibels' or 'both', not 'dB'" \
+    ritz-chart response x --error dB -o x.svg
 expect 1 "cannot open 'none'" ritz-chart pareto none -o x.svg
 : >empty
 expect 1 "'empty' is empty" ritz-chart pareto empty -o x.svg
@@ -84,7 +86,7 @@ well() {
     expect 0 '</svg>' cat again.svg
 }
 
-# --- records: hostile names, values that no logarithm shows --------------------
+# --- records: hostile names, values that no logarithm shows -------------------
 
 evil='x_{y}^2 @a &b ~c \\\\n <b onload=1> '"it's"' \"q\" `date` %s é'
 {
@@ -127,7 +129,36 @@ well "it's <i> & é.svg"
 expect 0 '' ritz-chart -q report "$evil_file" -o "it's <i> & é.html"
 expect 1 '' grep -F -e "it's <i>" "it's <i> & é.html"
 
-# --- containers ------------------------------------------------------------------
+# --- lines of equal error, and the best at each order -------------------------
+
+line a 3 0.2 >>plain.jsonl
+line b 3 0.05 ',"tolerance":{"response-relative":0.003}' >>plain.jsonl
+expect 0 '' ritz-chart -q pareto plain.jsonl -o levels.svg
+expect 0 '' ritz-chart -q convergence plain.jsonl -o best.svg
+for words in 'equal error' tolerance '10 %: model uncertainty'; do
+    expect 0 ">$words</text>" cat levels.svg
+done
+expect 0 '' /usr/bin/python3 - <<'END'
+import re
+script = open("levels.svg.gp").read()
+number = r"screen ([\d.]+), screen ([\d.]+)"
+# decades from 1 to 1e-3 are as far apart as each other, and so is what they say
+line = [float(y) for x, y in re.findall(
+    f"set arrow from {number} to .*lw 1 lc rgb '#9fb0c3'", script)]
+assert len(line) == 4
+step = [b - a for a, b in zip(line, line[1:])]
+assert max(step) - min(step) < 1e-5 and min(step) > 0.1
+word = {w: float(y) for w, x, y in re.findall(
+    f"set label '([^']+)' at {number} noenhanced font ',11'", script)}
+said = ["0.1\u00a0%", "1\u00a0%", "10\u00a0%", "100\u00a0%"]
+assert all(abs(word[w] - y) < 1e-5 for w, y in zip(said, line)), word
+assert line[0] < word["0.3\u00a0%"] < line[1]
+rows = [r.split("\t") for r in open("best.svg.tsv").read().splitlines()]
+best = [(r[3], r[4]) for r in rows if r[:3] == ["0", "0", "5"]]
+assert best == [("3", "0.2"), ("4", "0.01")], best
+END
+
+# --- containers ---------------------------------------------------------------
 
 n=$data/dualspin
 expect 0 '' ritz-import --stiffness "$n/stator.op4:KGG" --mass \
@@ -147,7 +178,7 @@ well response.svg
 expect 0 "it's {x} / a_b&lt;&amp;: error at most" cat response.svg
 expect 0 '' ritz-chart response full.h5 apart.h5 -o apart.svg
 expect 0 "it's {x} / a_b&lt;&amp;</text>" cat apart.svg
-expect 1 "no channel 'x': say OUTPUT/INPUT, such as 'it's {x}/a_b<&'" \
+expect 1 "no channel 'x': say OUTPUT/INPUT, such as 'it's {x}/a_b<&', or" \
     ritz-chart response full.h5 --channel x -o x.svg
 expect 0 '' ritz-chart response full.h5 --channel "it's {x}/a_b<&" \
     -o channel.svg
@@ -170,7 +201,7 @@ expect 0 '' ritz-chart simulation run.h5 step.h5 -o simulation.svg
 well simulation.svg
 expect 0 'step.h5, trapezoidal' cat simulation.svg
 
-# --- tracks ------------------------------------------------------------------------
+# --- tracks -------------------------------------------------------------------
 
 printf 'track\tconfiguration\tmode\thertz\tmac\n' | tee none.tsv >tracks.tsv
 printf '1\tx=%s,<y>=1\t1\t%s\t%s\n' 0 1.5 nan 60 1.7 0.99 20 1.6 0.7 \

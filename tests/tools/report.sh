@@ -17,7 +17,8 @@ done
 n=$data/dualspin
 expect 0 '' ritz-import --stiffness "$n/stator.op4:KGG" --mass \
     "$n/stator.op4:MGG" --bulk "$n/stator.bdf" --port bearing=1 \
-    --input torque=1:6 --output-at turn=5:6 -o stator.h5
+    --input torque=1:6 --input push=1:1 --output-at turn=5:6 \
+    --output-at slide=5:1 -o stator.h5
 for method in craig-bampton macneal-rubin; do
     for modes in 2 4 8; do
         ritz-basis $method --modes $modes --attach bearing -q stator.h5 \
@@ -27,8 +28,10 @@ for method in craig-bampton macneal-rubin; do
             --damping 'modal 0.01' --record runs.jsonl
     done
 done
-ritz-frf -q --from-hz 1 --to-hz 40 --damping 'modal 0.01' stator.h5 -o full.h5
-ritz-frf -q --points-of full.h5 --damping 'modal 0.01' craig-bampton.h5 -o r.h5
+ritz-frf -q --from-hz 1 --to-hz 40 --damping 'modal 0.01' --singular-values \
+    stator.h5 -o full.h5
+ritz-frf -q --points-of full.h5 --damping 'modal 0.01' --singular-values \
+    craig-bampton.h5 -o r.h5
 ritz-rank -q craig-bampton.h5 --damping 'modal 0.01' -o ranking.h5
 printf 'track\tconfiguration\tmode\thertz\tmac\n' >tracks.tsv
 printf '1\tclock=%d\t1\t%s\t%s\n' 0 1.5 nan 60 1.7 0.99 120 1.6 0.7 \
@@ -68,7 +71,7 @@ assert c.levels[0] == 1 and c.levels.count(1) == 1
 assert all(b <= a + 1 for a, b in zip(c.levels, c.levels[1:]))
 END
 
-# --- in a browser --------------------------------------------------------------
+# --- in a browser -------------------------------------------------------------
 
 # A page of our own shows the report in frames, drives it, and writes down what
 # it found: the report itself needs nothing for that.
@@ -127,6 +130,28 @@ addEventListener("load", function () {
     found.pictures = page.querySelectorAll("figure svg").length;
     found.named = page.querySelectorAll("figure svg > title").length;
     found.tables = page.querySelectorAll("figure details table").length;
+    found.singular = page.body.textContent.includes("singular values: full.h5");
+    found.equal = page.body.textContent.includes("lines of equal error");
+    found.levels = 0;
+    for (const word of picture.querySelectorAll("text"))
+        found.levels += word.textContent === "equal error";
+    found.whole = page.querySelectorAll(".whole").length;
+    found.cut = [];
+    found.bare = 0;
+    const paper = page.defaultView
+        .getComputedStyle(page.querySelector("figure")).backgroundColor;
+    for (const drawing of page.querySelectorAll(".picture")) {
+        const all = drawing.getBoundingClientRect();
+        for (const word of drawing.querySelectorAll("text")) {
+            const at = word.getBoundingClientRect();
+            const style = page.defaultView.getComputedStyle(word);
+            if (at.left < all.left - 1 || at.right > all.right + 1 ||
+                at.top < all.top - 1 || at.bottom > all.bottom + 1)
+                found.cut.push(word.textContent);
+            if (style.fill !== paper && style.stroke !== paper)
+                found.bare++;
+        }
+    }
     found.stops = picture.querySelectorAll("[tabindex='0']").length;
     found.hidden = tip.hidden;
     picture.querySelector("[tabindex='0']").focus();
@@ -171,6 +196,12 @@ else
 fi
 holds 'nothing is wider than a page of 360, 768 or 1600 pixels' '
     j["w360"] <= 0 and j["w768"] <= 0 and j["w1600"] <= 0'
+holds 'no word of a picture is cut' 'j["cut"] == []'
+holds 'words on marks and lines have a rim' 'j["bare"] == 0'
+holds 'equal error is said, and singular values are drawn' '
+    j["equal"] and j["levels"] == 1 and j["singular"]'
+holds 'a picture of several channels has the width of the page' '
+    j["whole"] >= 1'
 holds 'every picture has a name and a table' '
     j["pictures"] >= 6 and j["named"] == j["pictures"] == j["tables"]'
 holds 'a picture is one stop of the tabulator, and arrows go on' '
@@ -184,7 +215,12 @@ holds 'words have a contrast of 4.5 and marks of 3, light and dark' '
     min(j["first"][0], j["second"][0]) >= 4.5 and
     min(j["first"][1], j["second"][1]) >= 3'
 drive --blink-settings=preferredColorScheme=0
-holds 'a system that is dark has a dark page' 'j["ground"] == "dark"'
+holds 'a system that is dark has a dark page, narrow and wide' '
+    j["ground"] == "dark" and j["w360"] <= 0 and j["w768"] <= 0 and
+    j["w1600"] <= 0'
+holds '  with as much contrast, and light at a press of the button' '
+    j["turned"] and min(j["first"][0], j["second"][0]) >= 4.5 and
+    min(j["first"][1], j["second"][1]) >= 3'
 browse --no-pdf-header-footer --print-to-pdf="$dir/report.pdf" \
     "file://$dir/report.html" >/dev/null || true
 expect 0 '%PDF' head -c 8 report.pdf

@@ -441,6 +441,8 @@ ritz_status sample_response(ritz_response *out)
     response.num_singular = 2;
     for (int k = 0; k < 40; k++)
         response.singular[k] = 300.0 - k;
+    response.singular_peak[0] = 0.125;
+    response.singular_peak[1] = 300.5;
     *out = response;
     response = (ritz_response){0};
 done:

@@ -387,6 +387,8 @@ static void a_response_comes_back(void **state)
     assert_string_equal(a.damping, b.damping);
     assert_int_equal(a.num_singular, b.num_singular);
     assert_same(a.singular, b.singular, a.count * a.num_singular, 8);
+    assert_same(a.singular_peak, b.singular_peak, 2, 8);
+    assert_true(a.singular_peak[1] > 0.0);
     ritz_response_free(&a);
     ritz_response_free(&b);
 }
