@@ -112,11 +112,11 @@ typedef struct ritz_master {
 /**
  * The same, and where its dofs are; bodies ascend, and dofs of each.
  *
- * @param[out] master  out->num_dofs; the caller's to free
+ * @param[out] where  out->num_dofs; the caller's to free
  */
 ritz_status ritz_assemble_masters(const ritz_scene *scene,
                                   const double *setting, ritz_component *out,
-                                  ritz_master **master);
+                                  ritz_master **where);
 
 /**
  * T of the system at a configuration, n x e, over the dofs of the full-order

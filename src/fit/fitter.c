@@ -118,16 +118,16 @@ int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method)
 void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
                    int64_t rung, int64_t *modes)
 {
-    const ritz_fit_second *second =
-        method == &ritz_fit_compare ? &fitter->second : NULL;
-    const int64_t *step = second ? second->step : fitter->step;
+    const ritz_fit_second *second = &fitter->second;
+    const bool composite = method == &ritz_fit_compare;
+    const int64_t *step = composite ? second->step : fitter->step;
 
     if (!fitter->scene) {
         modes[0] = rung;
         return;
     }
     for (int64_t k = 0; k < fitter->num_bodies; k++)
-        modes[k] = second && second->rigid && second->rigid[k] == 0;
+        modes[k] = composite && second->rigid && second->rigid[k] == 0;
     for (int64_t k = 0; k < rung && k < ritz_fit_rungs(fitter, method); k++)
         modes[step[k]]++;
 }

@@ -133,9 +133,12 @@ static void words_that_must_be_stand_beside_each_other(void **state)
     axis_word word[COUNT];
 
     (void)state;
-    for (int k = 0; k < COUNT; k++)
-        word[k] = (axis_word){.x = 10.0 + 20.0 * (k % SIDE),
-                              .y = 10.0 + 20.0 * (k / SIDE)};
+    for (int k = 0; k < COUNT; k++) {
+        const int row = k / SIDE;
+
+        word[k] =
+            (axis_word){.x = 10.0 + 20.0 * (k % SIDE), .y = 10.0 + 20.0 * row};
+    }
     for (int k = 0; k < 2; k++)
         word[k] = (axis_word){
             .x = 200.0, .y = 200.0, .wide = 90.0, .high = 12.0, .must = true};
