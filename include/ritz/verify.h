@@ -45,8 +45,8 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
 
 /**
  * A full-order assembled system and one reduced configuration: the same
- * measures, but MAC, which needs shapes, is taken from outputs when the
- * coordinates of the two cannot be matched.
+ * measures, but MAC, which needs shapes, is of what inputs drive and outputs
+ * see, of the modes that are seen at all: see docs/methods/verify.md.
  */
 ritz_status ritz_verify_system(const ritz_component *full,
                                const ritz_configuration *reduced,
