@@ -92,6 +92,8 @@ static ritz_status check_text(const char *path, int found, int holds)
                  path, strerror(errno));
     RITZ_FAIL_IF(S_ISREG(file.st_mode) && file.st_size == 0, RITZ_ERR_FORMAT,
                  "'%s' is empty", path);
+    RITZ_FAIL_IF(S_ISDIR(file.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
+                 path);
     RITZ_FAIL_IF(found == 0, RITZ_ERR_FORMAT,
                  "'%s' is no container, no table of --tracks, and no file of "
                  "--record",

@@ -69,12 +69,14 @@ static void put_notes(const chart_errors_work *w, double y)
     size_t used = 0;
 
     if (w->lifted > 0)
-        used = (size_t)snprintf(text, sizeof text,
-                                "%lld errors below %.0e stand at the foot. ",
-                                (long long)w->lifted, RECORDS_ROUNDING);
+        used = (size_t)snprintf(
+            text, sizeof text, "%lld error%s below %.0e %s at the foot. ",
+            (long long)w->lifted, w->lifted > 1 ? "s" : "", RECORDS_ROUNDING,
+            w->lifted > 1 ? "stand" : "stands");
     if (w->left_out > 0)
         snprintf(text + used, sizeof text - used,
-                 "%lld are not known and left out.", (long long)w->left_out);
+                 "%lld %s not known and left out.", (long long)w->left_out,
+                 w->left_out > 1 ? "are" : "is");
     chart_text(w->picture, CHART_LEFT, y, text,
                "font ',11' tc rgb '" SVG_MUTED "'");
 }
@@ -154,6 +156,25 @@ static void drop_rounding(chart_errors_work *w)
     w->num_measures = kept;
 }
 
+/* Of measures the first @p kept are taken. */
+static ritz_status not_there(const chart_errors_work *w, const char *asked,
+                             int64_t kept)
+{
+    char names[16 * RITZ_NAME_SIZE] = "";
+    size_t used = 0;
+
+    for (int64_t k = 0; k < w->num_measures; k++) {
+        if (k < kept && strcmp(w->measure[k].name, asked) == 0)
+            return ritz_fail(RITZ_ERR_ARGUMENT, "--measure '%s' is given twice",
+                             asked);
+        if (used < sizeof names)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
+                                     used > 0 ? ", " : "", w->measure[k].name);
+    }
+    return ritz_fail(RITZ_ERR_ARGUMENT, "no record has an error '%s', but %s",
+                     asked, names);
+}
+
 /* Measures that are asked for, or all. */
 static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
 {
@@ -169,9 +190,8 @@ static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
         while (k < w->num_measures &&
                strcmp(w->measure[k].name, asked->text[a]) != 0)
             k++;
-        RITZ_FAIL_IF(k >= w->num_measures, RITZ_ERR_ARGUMENT,
-                     "no record has an error '%s' that is not drawn already",
-                     asked->text[a]);
+        if (k >= w->num_measures)
+            return not_there(w, asked->text[a], kept);
         measure found = w->measure[k];
 
         w->measure[k] = w->measure[kept];

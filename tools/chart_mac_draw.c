@@ -101,16 +101,21 @@ static void put_plot(const mac_shapes *a, const mac_shapes *b, gnuplot *out)
 }
 
 /* As many modes can be told apart as there are inputs and outputs. */
+static bool has_note(const mac_shapes *a, const mac_shapes *b)
+{
+    return a->num_seen > 0 &&
+           (a->num_seen < a->count || a->num_seen < b->count);
+}
+
 static void put_note(const mac_shapes *a, const mac_shapes *b, gnuplot *out)
 {
     char text[CHART_WORD];
 
-    if (a->num_seen == 0 ||
-        (a->num_seen >= a->count && a->num_seen >= b->count))
+    if (!has_note(a, b))
         return;
     snprintf(text, sizeof text,
-             "%lld inputs and outputs tell no more modes apart: likeness can "
-             "be chance",
+             "%lld inputs and outputs tell no more modes apart than that: "
+             "likeness can be chance",
              (long long)a->num_seen);
     chart_text(out, 20.0, 12.0, text, "font ',11' tc rgb '" SVG_MUTED "'");
 }
@@ -121,7 +126,8 @@ ritz_status mac_draw(const mac_shapes *a, const mac_shapes *b,
     ritz_status status = RITZ_OK;
     int64_t most = a->count > b->count ? a->count : b->count;
     double cell = most <= NUMBERED ? 34.0 : 640.0 / (double)most;
-    chart_area area = {.left = 44.0 + wide_of(a), .bottom = 100};
+    chart_area area = {.left = 44.0 + wide_of(a),
+                       .bottom = has_note(a, b) ? 124.0 : 100.0};
     char title[4 * CHART_WORD];
 
     area.right = area.left + cell * (double)b->count;

@@ -62,6 +62,10 @@ static json_t *candidate_json(const ritz_fit_candidate *c)
     json_object_set_new(object, "estimates", fit_values_json(&c->estimates));
     if (c->cost.order > 0)
         json_object_set_new(object, "cost", model_cost_json(&c->cost));
+    json_object_set_new(object, "left_out", json_integer(c->left_out));
+    json_object_set_new(object, "screened", json_boolean(c->screened));
+    json_object_set_new(object, "held", json_boolean(c->held));
+    json_object_set_new(object, "caught", json_boolean(c->caught));
     json_object_set_new(object, "feasible", json_boolean(c->feasible));
     if (c->refusal[0])
         json_object_set_new(object, "refused", cli_string(c->refusal));
@@ -113,7 +117,13 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
                 (size_t)snprintf(modes + used, sizeof modes - used, "%s%lld",
                                  k > 0 ? "+" : "", (long long)c->modes[k]);
     if (c->refusal[0]) {
-        cli_say(run, "%-18s refused: %s", name, c->refusal);
+        const char *why = c->refusal;
+        const size_t length = strlen(name);
+
+        if (strncmp(why, name, length) == 0 &&
+            strncmp(why + length, ": ", 2) == 0)
+            why += length + 2; /* the row begins with it */
+        cli_say(run, "%-18s refused: %s", name, why);
         return;
     }
     if (c->cost.order > 0)
@@ -234,9 +244,10 @@ void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit)
     cli_say(run, "Fitted to %s from %g to %g Hz, against %s:", tolerance,
             limits->band_hz[0], limits->band_hz[1], what);
     cli_say(run,
-            "%lld candidates of %lld methods; errors in parts of their "
+            "%lld candidates of %lld method%s; errors in parts of their "
             "tolerance, > at least.\n",
-            (long long)fit->count, (long long)fit->num_methods);
+            (long long)fit->count, (long long)fit->num_methods,
+            fit->num_methods == 1 ? "" : "s");
     say_head(run);
     for (int64_t m = 0; m < fit->num_methods; m++)
         say_row(run, of_method(fit, m), fit->method[m]->name);
@@ -250,12 +261,11 @@ void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit)
     cli_report_int(run, "candidates", fit->count);
 }
 
-void fit_say_all(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit,
-                 int64_t equal_order, const int64_t *equal)
+void fit_say_all(cli_run *run, const ritz_fit *fit, int64_t equal_order,
+                 const int64_t *equal)
 {
     json_t *array = json_array();
 
-    (void)fitter;
     cli_say(run, "\nThe same at equal order, %lld or the nearest below:\n",
             (long long)equal_order);
     say_head(run);

@@ -43,7 +43,7 @@ ritz_status fit_write_scene(cli_run *run, const char *prefix,
 json_t *fit_values_json(const ritz_measures *measures);
 
 /** Every method at equal error and at @p equal_order; the same as JSON. */
-void fit_say_all(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit,
-                 int64_t equal_order, const int64_t *equal);
+void fit_say_all(cli_run *run, const ritz_fit *fit, int64_t equal_order,
+                 const int64_t *equal);
 
 #endif

@@ -136,7 +136,11 @@ ritz_status report_write(const chart_sources *sources, const chart_wish *wish)
     ritz_status status = RITZ_OK;
     report_page p = {.sources = sources, .wish = wish};
     cli_table whole = {0};
+    const size_t length = strlen(wish->path);
 
+    RITZ_FAIL_IF(length >= 4 && strcmp(wish->path + length - 4, ".svg") == 0,
+                 RITZ_ERR_ARGUMENT,
+                 "a report is a page, no picture: -o NAME.html");
     RITZ_TRY(cli_table_new(&p.body));
     RITZ_TRY(cli_table_new(&p.links));
     RITZ_TRY(cli_table_new(&whole));

@@ -66,7 +66,7 @@ static ritz_status contest(cli_run *run, const asked *a, ritz_fitter *fitter,
     equal = calloc((size_t)fit->num_methods + 1, sizeof *equal);
     RITZ_FAIL_IF(!equal, RITZ_ERR_MEMORY, "no memory for a table");
     RITZ_TRY(ritz_fitter_equal(fitter, order, fit, equal));
-    fit_say_all(run, fitter, fit, order, equal);
+    fit_say_all(run, fit, order, equal);
 done:
     free(equal);
     return status;

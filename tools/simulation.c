@@ -55,6 +55,9 @@ static ritz_status take_input(cli_run *run, const ritz_simulated *subject,
                 ? ritz_text_nearest(word, drive->count, name[0], sizeof *name)
                 : NULL;
 
+        if (!nearest && drive->count > 0)
+            return ritz_fail(RITZ_ERR_ARGUMENT, "no input '%s', but '%s'%s",
+                             word, name[0], drive->count > 1 ? ", ..." : "");
         return ritz_fail(RITZ_ERR_ARGUMENT, "no input '%s'%s%s%s", word,
                          nearest ? ", is '" : "", nearest ? nearest : "",
                          nearest ? "' meant?" : "");

@@ -20,7 +20,8 @@ typedef struct ritz_verify_request {
     double limit_response;  /* relative to the largest |H| in the band */
     double limit_flexible;  /* relative to what of |H| is no rigid motion */
     double limit_gain;      /* relative, flexible static gain */
-    double limit_missing;   /* modes; NaN: 0 where limit_frequency is given */
+    double limit_missing;   /* modes; NaN: 0 where limit_frequency or
+                               limit_damping is given */
     double limit_infinity;  /* of state spaces, h-infinity-relative */
     double limit_two;       /* of state spaces, h2-relative */
 } ritz_verify_request;

@@ -9,6 +9,8 @@
 
 /* Of the logarithm of two steps: five per cent. */
 static const double worth_saying = 0.05;
+/* A MAC above it is told by how much it is less than 1. */
+static const double nearly_one = 0.9989;
 
 [[gnu::format(printf, 2, 3)]] static void add(ritz_fit *fit, const char *format,
                                               ...)
@@ -54,6 +56,9 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c,
     if (strcmp(m->name, "missing-modes") == 0)
         add(fit, "%.0f mode%s of the band would be missing (%s)", m->value,
             m->value > 1.0 ? "s" : "", m->where);
+    else if (strcmp(m->name, "mac") == 0 && m->limit > nearly_one)
+        add(fit, "the least MAC %s 1 - %.1e (%s) where 1 - %.1e is asked", verb,
+            1.0 - m->value, m->where, 1.0 - m->limit);
     else if (strcmp(m->name, "mac") == 0)
         add(fit, "the least MAC %s %.4f (%s) where %.4f is asked", verb,
             m->value, m->where, m->limit);

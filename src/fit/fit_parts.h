@@ -78,7 +78,8 @@ double ritz_fit_limit(const ritz_verify_request *limits, const char *measure);
 ritz_status ritz_fit_check(const ritz_verify_request *limits,
                            const ritz_component *full);
 
-/** Where nothing moves rigidly, the flexible response is the response. */
+/** Where nothing moves rigidly, the flexible response is the response; whose
+ * damping is asked for may not be missing. */
 void ritz_fit_settle(const ritz_reference *reference,
                      ritz_verify_request *limits);
 
@@ -258,6 +259,10 @@ ritz_status ritz_fit_foresee(const ritz_fitter *fitter,
                              const ritz_reduced *reduced,
                              ritz_fit_candidate *candidate,
                              ritz_fit_verdict *verdict);
+
+/** Take frequency-relative-least out of bounds that count missing modes, of
+ * which it says nothing. */
+void ritz_fit_forget_least(ritz_measures *found);
 
 /** The worse of each measure, @p more's told with where it is, into @p worst. */
 ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,

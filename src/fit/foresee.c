@@ -91,6 +91,22 @@ ritz_status ritz_fit_bound_at(const ritz_fit_place *place, const ritz_dense *T,
     return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
 }
 
+/* Where modes are missing the worst error of the others may be 0. */
+void ritz_fit_forget_least(ritz_measures *found)
+{
+    const size_t size = sizeof *found->item;
+
+    if (!(value_of(found, "missing-modes-bound") > 0.0))
+        return;
+    for (int64_t k = 0; k < found->count; k++)
+        if (strcmp(found->item[k].name, "frequency-relative-least") == 0) {
+            found->count--;
+            memmove(found->item + k, found->item + k + 1,
+                    (size_t)(found->count - k) * size);
+            return;
+        }
+}
+
 /*
  * A component's bounds stand beside the errors of every candidate. Of a scene
  * measuring costs less than they do, save that what is off at one configuration
@@ -112,16 +128,18 @@ ritz_status ritz_fit_foresee(const ritz_fitter *fitter,
         return RITZ_OK;
     RITZ_TRY(
         ritz_fit_bound_at(place, T, reduced, fitter->scene != NULL, &found));
-    RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->estimates));
-    if (fitter->request.thorough)
-        goto done;
-    if (within(limits, &found))
-        *verdict = RITZ_FIT_HOLDS;
-    if (beyond(limits, &found, &excess)) {
-        *verdict = RITZ_FIT_FAILS;
-        candidate->screened = true;
-        candidate->excess = excess;
+    if (!fitter->request.thorough) {
+        if (within(limits, &found))
+            *verdict = RITZ_FIT_HOLDS;
+        if (beyond(limits, &found, &excess)) {
+            *verdict = RITZ_FIT_FAILS;
+            candidate->screened = true;
+            candidate->excess = excess;
+        }
     }
+    if (!candidate->screened) /* otherwise it is the reason */
+        ritz_fit_forget_least(&found);
+    RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->estimates));
 done:
     ritz_measures_free(&found);
     return status;

@@ -80,9 +80,11 @@ ritz_status ritz_fit_nest(const ritz_fitter *fitter, const ritz_reduced *whole,
     ritz_status status = RITZ_OK;
     nesting n = {.fitter = fitter, .whole = whole};
     ritz_fit_order order = {0};
+    ritz_column_kind *kind = NULL;
 
-    RITZ_TRY(ritz_fit_order_new(whole->K.ncol, whole->columns.kind, excess_of,
-                                &n, &order));
+    RITZ_NEW(kind, whole->K.ncol);
+    RITZ_TRY(ritz_fit_kinds(whole, kind));
+    RITZ_TRY(ritz_fit_order_new(whole->K.ncol, kind, excess_of, &n, &order));
     if (whole->T.nrow * order.count <= most_entries) {
         RITZ_TRY(ritz_fit_order_alone(&order));
         RITZ_TRY(ritz_fit_order_drop(&order));
@@ -90,6 +92,7 @@ ritz_status ritz_fit_nest(const ritz_fitter *fitter, const ritz_reduced *whole,
     RITZ_TRY(ritz_reduced_nest(whole, order.count, order.column,
                                order.fixed > 0 ? order.fixed : 1, out));
 done:
+    free(kind);
     ritz_fit_order_free(&order);
     return status;
 }

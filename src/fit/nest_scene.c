@@ -49,8 +49,7 @@ static ritz_status begin(ritz_fitter *f, const ritz_reduced *whole,
     RITZ_NEW(n->some, all);
     RITZ_NEW(kind, all);
     for (int64_t k = 0; k < f->num_bodies; k++)
-        memcpy(kind + n->first[k], whole[k].columns.kind,
-               (size_t)whole[k].K.ncol * sizeof *kind);
+        RITZ_TRY(ritz_fit_kinds(&whole[k], kind + n->first[k]));
     RITZ_TRY(ritz_fit_order_new(all, kind, ritz_fit_excess_of, n, &n->order));
     spare(n);
 done:

@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 #include "fit/fit_parts.h"
 
+#include <ritz/eigen.h>
 #include <ritz/monitor.h>
 
 #include <math.h>
@@ -16,6 +17,9 @@
 
 /* Columns that are tried at each step: those that matter least alone. */
 enum { TRIED = 6 };
+
+/* Of a rigid motion: less of it in a column is rounding. */
+static const double least_part = 1e-6;
 
 bool ritz_fit_stays(ritz_column_kind kind)
 {
@@ -28,6 +32,34 @@ bool ritz_fit_stays(ritz_column_kind kind)
         if (kind == kinds[k])
             return true;
     return false;
+}
+
+/* Columns j that take part in rigid motion, |x_j| sqrt(M_jj) of its x'M x = 1. */
+ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs pairs = {0};
+    const int64_t n = whole->K.ncol;
+
+    if (n == 0)
+        return RITZ_OK;
+    memcpy(kind, whole->columns.kind, (size_t)n * sizeof *kind);
+    status = ritz_eigen_dense(&whole->K, &whole->M, &pairs);
+    if (status == RITZ_ERR_SINGULAR)
+        return RITZ_OK; /* a mechanism without mass: kinds alone decide */
+    RITZ_TRY(status);
+    for (int64_t r = 0; r < pairs.num_rigid; r++)
+        for (int64_t j = 0; j < n; j++) {
+            const double mass = ritz_dense_col(&whole->M, j)[j];
+            const double part = ritz_dense_col(&pairs.Phi, r)[j];
+
+            if (part * part * mass > least_part * least_part &&
+                !ritz_fit_stays(kind[j]))
+                kind[j] = RITZ_COLUMN_RIGID;
+        }
+done:
+    ritz_pairs_free(&pairs);
+    return status;
 }
 
 ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,

@@ -3,6 +3,7 @@
 #define RITZ_FIT_ORDER_H
 
 #include <ritz/basis.h>
+#include <ritz/reduced.h>
 
 /**
  * How far a model of some columns is off, in parts of its tolerance; infinite
@@ -21,6 +22,14 @@ typedef struct ritz_fit_order {
     int64_t *trial; /* to work in */
     double *alone;  /* of each column: the excess without it */
 } ritz_fit_order;
+
+/**
+ * What the columns of a body are. One that takes part in its rigid motion is
+ * rigid, whatever its method calls it: modes of Rubin store energy.
+ *
+ * @param[out] kind  one for each column
+ */
+ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
 
 /** Columns as they were made, but that those that must stay are first. */
 ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,

@@ -126,13 +126,6 @@ static ritz_status lend(ritz_fitter *f, ritz_fit_candidate *candidate,
         candidate->spent.cpu += f->made[at[k]].spent.cpu;
         candidate->columns += f->made[at[k]].reduced.K.ncol;
     }
-    if (candidate->columns > f->largest) {
-        (void)snprintf(candidate->refusal, sizeof candidate->refusal,
-                       "%lld columns are more than the %lld that are tried",
-                       (long long)candidate->columns, (long long)f->largest);
-        candidate->excess = HUGE_VAL;
-        goto done;
-    }
     for (int64_t k = 0; k < f->scene->num_components; k++)
         body[k] = f->still[k];
     for (int64_t k = 0; k < f->num_bodies; k++)

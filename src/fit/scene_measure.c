@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,7 +32,7 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
         bool least = strcmp(m->name, "mac") == 0;
 
         (void)snprintf(where, sizeof where, "%.28s%s%.32s", at,
-                       m->where[0] ? ": " : "", m->where);
+                       at[0] && m->where[0] ? ": " : "", m->where);
         if (!old) {
             RITZ_TRY(
                 ritz_measures_add(worst, m->name, m->value, m->limit, where));
@@ -76,6 +77,7 @@ static ritz_status foresee(const ritz_fitter *f, const ritz_stage *stage,
         RITZ_TRY(ritz_fit_foresee(f, place, &T, &lent, candidate, verdict));
     } else {
         RITZ_TRY(ritz_fit_bound_at(place, &T, &lent, false, &found));
+        ritz_fit_forget_least(&found);
         RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->estimates));
     }
 done:
@@ -119,6 +121,10 @@ static ritz_status look_at(ritz_fitter *f, const ritz_stage *stage,
     RITZ_TRY(ritz_stage_assemble(stage, place->setting, &at));
     if (at.K.ncol > candidate->order)
         candidate->order = at.K.ncol;
+    RITZ_FAIL_IF(candidate->order > f->largest, RITZ_ERR_ARGUMENT,
+                 "an order of %" PRId64 " is more than the %" PRId64
+                 " that are tried",
+                 candidate->order, f->largest);
     if (bounds)
         RITZ_TRY(foresee(f, stage, place, &at, candidate, &verdict));
     if (verdict != RITZ_FIT_FAILS)
@@ -158,7 +164,7 @@ ritz_status ritz_fit_measure_scene(ritz_fitter *f, const ritz_stage *stage,
     ritz_measures_free(&candidate->errors);
     for (int64_t k = 0; k < f->num_places && candidate->refusal[0] == '\0'; k++)
         RITZ_TRY(look_at(f, stage, &f->place[k], where, false, candidate));
-    candidate->caught = !candidate->feasible;
+    candidate->caught = !candidate->feasible && candidate->refusal[0] == '\0';
 done:
     return status;
 }

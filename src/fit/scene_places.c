@@ -236,6 +236,12 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
     RITZ_TRY(name_places(f));
     RITZ_TRY(refer(f));
     RITZ_TRY(ritz_fit_check(limits, &f->place[0].full));
+    RITZ_FAIL_IF(!isnan(limits->limit_mac) &&
+                     f->place[0].full.io.num_inputs == 0 &&
+                     f->place[0].full.io.num_outputs == 0,
+                 RITZ_ERR_ARGUMENT,
+                 "a tolerance of 'mac' needs inputs or outputs: of a scene it "
+                 "is that of what they see");
     ritz_fit_settle(f->place[0].reference, limits);
     f->largest = request->largest > 0 ? request->largest : INT64_MAX;
     *out = f;

@@ -192,7 +192,7 @@ static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
         if (ritz_fit_was_made(c) && c->order <= order) {
             low = t;
             met = true;
-        } else if (ritz_fit_was_made(c) || met) {
+        } else if (ritz_fit_was_made(c) || met || c->order > fitter->largest) {
             high = t;
         } else {
             low = t; /* refused for being too small, perhaps */

@@ -165,6 +165,8 @@ void ritz_fit_settle(const ritz_reference *reference,
 {
     int64_t rigid = 0;
 
+    if (!isnan(limits->limit_damping)) /* of a mode that is missing there is */
+        limits->limit_missing = fmax(limits->limit_missing, 0.0); /* none */
     (void)ritz_reference_modes(reference, &rigid);
     if (rigid > 0 || isnan(limits->limit_flexible))
         return;

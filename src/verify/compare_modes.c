@@ -167,10 +167,11 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
     extreme frequency = {0.0, -1};
     extreme mac = {0.0, -1};
     extreme damping = {0.0, -1};
-    /* a frequency that is asked to be near must be there */
-    double none_missing = isnan(request->limit_frequency)
-                              ? request->limit_missing
-                              : fmax(request->limit_missing, 0.0);
+    /* what is asked to be near must be there */
+    double none_missing =
+        isnan(request->limit_frequency) && isnan(request->limit_damping)
+            ? request->limit_missing
+            : fmax(request->limit_missing, 0.0);
 
     for (int64_t k = sides->full->poles.num_rigid; k < match->count; k++) {
         int64_t r = match->partner[k];

@@ -65,6 +65,12 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
     return claim;
 }
 
+double ritz_claim_same(const ritz_lehmann *trial, const ritz_enclosure *e,
+                       int64_t k, double theta)
+{
+    return apart(trial, k, theta, e->low[k], e->high[k]);
+}
+
 ritz_status ritz_skip_rounded(ritz_estimator *estimator, ritz_measuring *m)
 {
     ritz_status status = RITZ_OK;

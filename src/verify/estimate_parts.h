@@ -110,6 +110,11 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
                          const ritz_enclosure *enclosure, int64_t k,
                          double theta);
 
+/** How far mode @p k can be from the full one of its number. */
+double ritz_claim_same(const ritz_lehmann *trial,
+                       const ritz_enclosure *enclosure, int64_t k,
+                       double theta);
+
 /**
  * Whether mode @p k, so slow beside the band, is a rigid motion that the basis
  * holds badly: the full model's is below half of it.

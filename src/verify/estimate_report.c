@@ -69,6 +69,9 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
     ritz_measures each = {0};
     ritz_measure worst = {.value = -1.0};
     double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
+    double at = 0.0;
+    /* where none is missing all are the full model's by their numbers */
+    bool complete = ritz_missing_modes(estimator, m, &at) == 0;
     char name[RITZ_NAME_SIZE];
     char where[RITZ_NAME_SIZE];
 
@@ -78,6 +81,10 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
 
         if (ritz_counted_rigid(estimator, k, theta, band))
             continue;
+        if (complete && claim.number != k) {
+            claim.bound = ritz_claim_same(&m->trial, &m->enclosure, k, theta);
+            claim.number = k;
+        }
         (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
         say_where(&claim, k, theta, where);
         if (each.count < MOST_LISTED)

@@ -38,7 +38,7 @@ line() {
 line a 3 0.5 >plain.jsonl
 line a 4 0.01 >>plain.jsonl
 expect 1 "does not end in '.svg'" ritz-chart pareto plain.jsonl -o x.png
-expect 1 "no record has an error 'mac' that is not drawn already" \
+expect 1 "no record has an error 'mac', but " \
     ritz-chart pareto plain.jsonl --measure mac -o x.svg
 echo '{"method":"a","order":3,"errors":{"mac":0.9}}' >timeless.jsonl
 expect 1 'no record says what its model cost' ritz-chart pareto \
@@ -102,7 +102,7 @@ for kind in pareto convergence; do
     expect 0 '' ritz-chart -q $kind runs.jsonl -o $kind.svg
     well $kind.svg
     expect 0 "&lt;b onload=1&gt;" cat $kind.svg
-    expect 0 'stand at the foot. 1 are not known and left out' \
+    expect 0 'stand at the foot. 1 is not known and left out' \
         cat $kind.svg
     expect 0 'chosen: x_{y}^2 @a' cat $kind.svg
     mv $kind.svg first.svg && mv $kind.svg.tsv first.tsv

@@ -155,7 +155,7 @@ with h5py.File("scaled.h5", "r+") as f:
     f["M"] = M
 END
 expect 0 '' ritz-chart mac pair.h5 pair-full.h5 --at cone=60 -o seen.svg
-expect 0 '3 inputs and outputs tell no more modes apart' cat seen.svg
+expect 0 '3 inputs and outputs tell no more modes apart than that' cat seen.svg
 expect 0 '' ritz-chart mac pair.h5 pair.h5 --at cone=0 -o twice.svg
 expect 0 '' ritz-chart mac pair.h5 -o both.svg
 expect 0 'cone=0 and pair.h5, cone=60, by inputs and' cat both.svg

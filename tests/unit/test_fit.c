@@ -292,6 +292,57 @@ static void what_cannot_be_fitted_is_refused_in_words(void **state)
     ritz_component_free(&beam);
 }
 
+/* Of a mode that is not there no damping is wrong: so all must be there. */
+static void a_tolerance_of_damping_is_not_met_by_missing_modes(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    const ritz_fit_candidate *c = NULL;
+    ritz_fit_request request = quick(0.5, 0.01, "damping=1e-2");
+
+    (void)state;
+    open_beam(true, &beam);
+    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    assert_true(fit.chosen >= 0);
+    c = &fit.candidate[fit.chosen];
+    assert_non_null(find_measure(&c->errors, "damping-relative"));
+    assert_true(find_measure(&c->errors, "missing-modes")->value == 0.0);
+    assert_true(find_measure(&c->errors, "missing-modes")->limit == 0.0);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
+/* What is refused for its size is too large, even if nothing smaller was made
+   by then: three columns of the port and one mode are four. */
+static void equal_order_is_found_below_what_is_too_large(void **state)
+{
+    ritz_component beam = {0};
+    ritz_fitter *fitter = NULL;
+    ritz_fit fit = {0};
+    ritz_fit_request request = quick(1e-5, 0.01, "response=1e-1");
+    int64_t at = -1;
+
+    (void)state;
+    open_beam(true, &beam);
+    request.num_methods = 1; /* craig-bampton */
+    request.largest = 4;
+    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    assert_ok(ritz_fitter_search(fitter, &fit));
+    if (fit.chosen < 0) /* static answers are enough */
+        fail_msg("%s", fit.why);
+    assert_int_equal(fit.candidate[fit.chosen].order, 3);
+    assert_ok(ritz_fitter_equal(fitter, 4, &fit, &at));
+    assert_true(at >= 0);
+    assert_int_equal(fit.candidate[at].order, 4);
+    assert_int_equal(fit.candidate[at].modes[0], 1);
+    ritz_fit_free(&fit);
+    ritz_fitter_free(&fitter);
+    ritz_component_free(&beam);
+}
+
 /* With few columns allowed, the nearest is told and nothing is chosen. */
 static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
 {
@@ -368,12 +419,13 @@ static void bounds_stand_beside_errors_and_hold(void **state)
     ritz_component beam = {0};
     ritz_fitter *fitter = NULL;
     ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3");
+    int64_t incomplete = 0;
 
     (void)state;
     open_beam(true, &beam);
     request.estimates = request.thorough = true;
     assert_ok(ritz_fitter_new(&beam, &request, &fitter));
-    for (int64_t modes = 2; modes < 8; modes++) {
+    for (int64_t modes = 0; modes < 8; modes++) {
         ritz_fit_candidate c = {0};
         const ritz_measure *error = NULL;
         const ritz_measure *bound = NULL;
@@ -383,6 +435,10 @@ static void bounds_stand_beside_errors_and_hold(void **state)
         error = find_measure(&c.errors, "frequency-relative");
         bound = find_measure(&c.estimates, "frequency-relative-bound");
         if (find_measure(&c.estimates, "missing-modes-bound")->value > 0.0) {
+            incomplete++;
+            for (int64_t k = 0; k < c.estimates.count; k++)
+                assert_string_not_equal(c.estimates.item[k].name,
+                                        "frequency-relative-least");
             ritz_fit_candidate_free(&c);
             continue; /* errors of modes that no bound is of */
         }
@@ -390,6 +446,7 @@ static void bounds_stand_beside_errors_and_hold(void **state)
         assert_true(bound->value >= error->value - 1e-9);
         ritz_fit_candidate_free(&c);
     }
+    assert_true(incomplete > 0);
     ritz_fitter_free(&fitter);
     ritz_component_free(&beam);
 }
@@ -490,6 +547,8 @@ int main(void)
         cmocka_unit_test(random_chains_are_fitted_within_one),
         cmocka_unit_test(tolerances_are_taken_and_refused_in_words),
         cmocka_unit_test(what_cannot_be_fitted_is_refused_in_words),
+        cmocka_unit_test(a_tolerance_of_damping_is_not_met_by_missing_modes),
+        cmocka_unit_test(equal_order_is_found_below_what_is_too_large),
         cmocka_unit_test(a_tolerance_that_no_method_meets_tells_the_nearest),
         cmocka_unit_test(the_answer_is_nested_and_knows_its_errors),
         cmocka_unit_test(bounds_stand_beside_errors_and_hold),

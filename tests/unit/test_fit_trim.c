@@ -2,11 +2,13 @@
 #include "testing.h"
 
 #include "fit/fit_parts.h"
+#include "fit/order.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const ritz_method *const one[] = {&ritz_method_craig_bampton};
 
@@ -146,12 +148,38 @@ static void every_allocation_may_fail(void **state)
     end(&scene, &fitter);
 }
 
+/* As in Rubin's basis: the first two move together freely, and the second is
+   called normal. Without it the first would be held. */
+static void what_moves_rigidly_stays_whatever_it_is_called(void **state)
+{
+    static const double stiffness[] = {1, -1, 0, -1, 1, 0, 0, 0, 5};
+    ritz_column_kind called[] = {RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_NORMAL,
+                                 RITZ_COLUMN_NORMAL};
+    ritz_column_kind kind[3];
+    ritz_reduced body = {.columns = {.kind = called}};
+
+    (void)state;
+    assert_ok(ritz_dense_new(3, 3, &body.K));
+    assert_ok(ritz_dense_new(3, 3, &body.M));
+    memcpy(body.K.val, stiffness, sizeof stiffness);
+    for (int64_t j = 0; j < 3; j++)
+        ritz_dense_col(&body.M, j)[j] = 1.0;
+    assert_ok(ritz_fit_kinds(&body, kind));
+    assert_int_equal(kind[0], RITZ_COLUMN_CONSTRAINT);
+    assert_int_equal(kind[1], RITZ_COLUMN_RIGID);
+    assert_int_equal(kind[2], RITZ_COLUMN_NORMAL);
+    body.columns.kind = NULL;
+    ritz_dense_free(&body.K);
+    ritz_dense_free(&body.M);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_moves_along_a_beam_driven_across_is_left_out),
         cmocka_unit_test(what_has_nothing_to_spare_stays),
         cmocka_unit_test(a_cut_of_another_scene_is_refused),
+        cmocka_unit_test(what_moves_rigidly_stays_whatever_it_is_called),
         cmocka_unit_test(every_allocation_may_fail),
     };
 
