@@ -338,6 +338,53 @@ static void what_is_told_at_least_is_below_the_error(void **state)
     ritz_component_free(&bar);
 }
 
+/*
+ * Full eigenvalues 1, 1.44, 25, 100, frequencies 1 and 1.2; the basis has the
+ * second mode and of the first one, with some of the fourth in it,
+ *
+ *     theta = (1 + 100 t) / (1 + t) = 1.4161: a frequency of 1.19,
+ *
+ * much nearer to the second's. None being missing, the error is 19 %.
+ */
+static void bounds_are_of_the_same_mode_where_none_is_missing(void **state)
+{
+    enum { N = 4 };
+    const double two_pi = 6.28318530717958647693;
+    const double t = 0.4161 / (100.0 - 1.4161);
+    const double lambda[N] = {1.0, 1.44, 25.0, 100.0}, unit[N] = {1, 1, 1, 1};
+    const int64_t at[N] = {0, 1, 2, 3};
+    const ritz_estimate_request band = {.band_hz = {0.0, 1.25 / two_pi}};
+    ritz_component full = {.num_dofs = N};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+    ritz_estimator *estimator = NULL;
+    ritz_measures all = {0};
+
+    (void)state;
+    assert_ok(ritz_sparse_from_triplets(N, N, N, at, at, lambda, &full.K));
+    assert_ok(ritz_sparse_from_triplets(N, N, N, at, at, unit, &full.M));
+    assert_ok(ritz_dense_new(N, 2, &basis.T));
+    ritz_dense_col(&basis.T, 0)[0] = 1.0;
+    ritz_dense_col(&basis.T, 0)[3] = sqrt(t);
+    ritz_dense_col(&basis.T, 1)[1] = 1.0;
+    assert_ok(ritz_sparse_condense(&full.K, &basis.T, &reduced.K));
+    assert_ok(ritz_sparse_condense(&full.M, &basis.T, &reduced.M));
+    assert_ok(ritz_estimator_new(&full, &band, &estimator));
+    assert_ok(ritz_estimator_measure(estimator, &basis, &reduced, &all));
+    assert_true(value_of(&all, "missing-modes-bound") == 0.0);
+    assert_true(value_of(&all, "frequency-relative-bound") >= 0.19);
+    assert_true(value_of(&all, "frequency-relative-bound") < 10.0 * 0.19);
+    assert_true(value_of(&all, "frequency-relative-least") <= 0.1901);
+    assert_true(value_of(&all, "frequency-relative-least") > 0.1);
+    ritz_measures_free(&all);
+    ritz_estimator_free(&estimator);
+    ritz_dense_free(&reduced.K);
+    ritz_dense_free(&reduced.M);
+    ritz_dense_free(&basis.T);
+    ritz_sparse_free(&full.K);
+    ritz_sparse_free(&full.M);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -347,6 +394,7 @@ int main(void)
         cmocka_unit_test(bounds_rule_out_what_fails_and_change_no_answer),
         cmocka_unit_test(the_answer_of_a_scene_is_bounded),
         cmocka_unit_test(what_is_told_at_least_is_below_the_error),
+        cmocka_unit_test(bounds_are_of_the_same_mode_where_none_is_missing),
     };
 
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
