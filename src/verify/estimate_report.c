@@ -62,6 +62,19 @@ done:
     return status;
 }
 
+/* The same claim of the mode of its own number, if anything is known of it. */
+static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
+{
+    double same =
+        ritz_claim_same(&m->trial, &m->enclosure, k, m->pairs.lambda[k]);
+
+    if (isfinite(same)) {
+        claim.bound = same;
+        claim.number = k;
+    }
+    return claim;
+}
+
 ritz_status ritz_report_modes(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
@@ -81,10 +94,8 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
 
         if (ritz_counted_rigid(estimator, k, theta, band))
             continue;
-        if (complete && claim.number != k) {
-            claim.bound = ritz_claim_same(&m->trial, &m->enclosure, k, theta);
-            claim.number = k;
-        }
+        if (complete && claim.number >= 0 && claim.number != k)
+            claim = own(m, k, claim);
         (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
         say_where(&claim, k, theta, where);
         if (each.count < MOST_LISTED)
