@@ -62,13 +62,16 @@ done:
     return status;
 }
 
-/* The same claim of the mode of its own number, if anything is known of it. */
+/* The same claim of the mode of its own number, if anything is known of it, and
+ * that it is another than the one that is claimed: of a cluster any will do. */
 static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
 {
-    double same =
-        ritz_claim_same(&m->trial, &m->enclosure, k, m->pairs.lambda[k]);
+    const ritz_enclosure *e = &m->enclosure;
+    const int64_t p = claim.number;
+    double same = ritz_claim_same(&m->trial, e, k, m->pairs.lambda[k]);
+    bool apart = e->high[k] < e->low[p] || e->high[p] < e->low[k];
 
-    if (isfinite(same)) {
+    if (isfinite(same) && apart) {
         claim.bound = same;
         claim.number = k;
     }
