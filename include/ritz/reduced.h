@@ -150,6 +150,16 @@ ritz_status ritz_invariants_project(const ritz_invariants *invariants,
 ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
                               double value, double limit, const char *where);
 
+/** The one called @p name; NULL if there is none. */
+ritz_measure *ritz_measures_find(const ritz_measures *measures,
+                                 const char *name);
+
+/** Its value; NaN if there is none. */
+double ritz_measures_value(const ritz_measures *measures, const char *name);
+
+/** All of @p from in place of what @p out has. */
+ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out);
+
 void ritz_nested_free(ritz_nested *nested);
 void ritz_invariants_free(ritz_invariants *invariants);
 void ritz_measures_free(ritz_measures *measures);

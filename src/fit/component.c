@@ -160,11 +160,8 @@ ritz_status ritz_fit_price(const ritz_fitter *fitter,
 int ritz_fit_places(const ritz_reference *reference,
                     const ritz_measures *errors)
 {
-    bool extra = false;
+    const bool extra = ritz_measures_value(errors, "extra-modes") > 0.0;
 
-    for (int64_t k = 0; k < errors->count; k++)
-        extra = extra || (strcmp(errors->item[k].name, "extra-modes") == 0 &&
-                          errors->item[k].value > 0.0);
     return extra || !ritz_reference_factors(reference)
                ? RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM
                : RITZ_AT_RANDOM;

@@ -27,15 +27,14 @@ static const double nearly_one = 0.9989;
 static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c,
                       const char *verb)
 {
-    for (int64_t k = 0; k < c->estimates.count; k++) {
-        const ritz_measure *m = &c->estimates.item[k];
+    const ritz_measure *m =
+        ritz_measures_find(&c->estimates, "frequency-relative-least");
 
-        if (strcmp(m->name, "frequency-relative-least") == 0)
-            add(fit,
-                "the error of 'frequency' %s %.1e at least (%s) where %.1e is "
-                "allowed",
-                verb, m->value, m->where, m->value / c->excess);
-    }
+    if (m)
+        add(fit,
+            "the error of 'frequency' %s %.1e at least (%s) where %.1e is "
+            "allowed",
+            verb, m->value, m->where, m->value / c->excess);
 }
 
 /* "its response would be wrong by 2.1e-02 (3.41 Hz) where 1.0e-02 is asked" */
@@ -139,14 +138,10 @@ static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
 static bool rigid_alone(const ritz_fitter *fitter, const ritz_fit_candidate *c)
 {
     const ritz_verify_request *limits = &fitter->request.tolerance;
-    double flexible = 0.0;
-
     if (isnan(limits->limit_response) || !isnan(limits->limit_flexible))
         return false;
-    for (int64_t k = 0; k < c->errors.count; k++)
-        if (strcmp(c->errors.item[k].name, "flexible-response-relative") == 0)
-            flexible = c->errors.item[k].value;
-    return flexible > 10.0 * limits->limit_response;
+    return ritz_measures_value(&c->errors, "flexible-response-relative") >
+           10.0 * limits->limit_response;
 }
 
 ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)

@@ -33,14 +33,6 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
     return ritz_estimator_new(full, &asked, &place->estimator);
 }
 
-static double value_of(const ritz_measures *found, const char *name)
-{
-    for (int64_t k = 0; k < found->count; k++)
-        if (strcmp(found->item[k].name, name) == 0)
-            return found->item[k].value;
-    return nan("");
-}
-
 /* Where a frequency is asked to be near, no mode may be missing. */
 static ritz_verify_request complete(const ritz_verify_request *limits)
 {
@@ -62,8 +54,8 @@ static bool within(const ritz_verify_request *limits,
     for (int k = 0; k < BOUNDED; k++) {
         double limit = ritz_fit_limit(&all, bounded[k][0]);
 
-        held =
-            held && (isnan(limit) || value_of(found, bounded[k][1]) <= limit);
+        held = held && (isnan(limit) ||
+                        ritz_measures_value(found, bounded[k][1]) <= limit);
     }
     return held;
 }
@@ -72,7 +64,7 @@ static bool within(const ritz_verify_request *limits,
 static bool beyond(const ritz_verify_request *limits,
                    const ritz_measures *found, double *excess)
 {
-    double least = value_of(found, "frequency-relative-least");
+    double least = ritz_measures_value(found, "frequency-relative-least");
 
     *excess = least / limits->limit_frequency;
     return !(limits->limit_missing > 0.0) && *excess > 1.0;
@@ -94,17 +86,13 @@ ritz_status ritz_fit_bound_at(const ritz_fit_place *place, const ritz_dense *T,
 /* Where modes are missing the worst error of the others may be 0. */
 void ritz_fit_forget_least(ritz_measures *found)
 {
-    const size_t size = sizeof *found->item;
+    ritz_measure *least = ritz_measures_find(found, "frequency-relative-least");
 
-    if (!(value_of(found, "missing-modes-bound") > 0.0))
+    if (!least || !(ritz_measures_value(found, "missing-modes-bound") > 0.0))
         return;
-    for (int64_t k = 0; k < found->count; k++)
-        if (strcmp(found->item[k].name, "frequency-relative-least") == 0) {
-            found->count--;
-            memmove(found->item + k, found->item + k + 1,
-                    (size_t)(found->count - k) * size);
-            return;
-        }
+    found->count--;
+    memmove(least, least + 1,
+            (size_t)(found->item + found->count - least) * sizeof *least);
 }
 
 /*

@@ -97,18 +97,6 @@ done:
     return status;
 }
 
-static ritz_status copy_measures(const ritz_measures *from, ritz_measures *out)
-{
-    ritz_status status = RITZ_OK;
-
-    ritz_measures_free(out);
-    for (int64_t k = 0; k < from->count; k++)
-        RITZ_TRY(ritz_measures_add(out, from->item[k].name, from->item[k].value,
-                                   from->item[k].limit, from->item[k].where));
-done:
-    return status;
-}
-
 /* A prefix as it is judged: on the grid, and then where it is confirmed. */
 static ritz_status judge(ritz_fitter *fitter, const ritz_reduced *nested,
                          int64_t order, ritz_fit_candidate *out)
@@ -198,8 +186,8 @@ ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
     RITZ_TRY(ritz_fit_nest(fitter, &whole, &nested));
     RITZ_TRY(cut(&nested, candidate->order));
     RITZ_TRY(note_errors(fitter, &nested));
-    RITZ_TRY(copy_measures(&candidate->errors, &nested.errors));
-    RITZ_TRY(copy_measures(&candidate->estimates, &nested.estimates));
+    RITZ_TRY(ritz_measures_copy(&candidate->errors, &nested.errors));
+    RITZ_TRY(ritz_measures_copy(&candidate->estimates, &nested.estimates));
     *out = nested;
     nested = (ritz_reduced){0};
 done:

@@ -11,15 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A measure of that name; NULL: none. */
-static ritz_measure *find(const ritz_measures *measures, const char *name)
-{
-    for (int64_t k = 0; k < measures->count; k++)
-        if (strcmp(measures->item[k].name, name) == 0)
-            return &measures->item[k];
-    return NULL;
-}
-
 ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
                            ritz_measures *worst)
 {
@@ -28,7 +19,7 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
 
     for (int64_t k = 0; k < more->count; k++) {
         const ritz_measure *m = &more->item[k];
-        ritz_measure *old = find(worst, m->name);
+        ritz_measure *old = ritz_measures_find(worst, m->name);
         bool least = strcmp(m->name, "mac") == 0;
 
         (void)snprintf(where, sizeof where, "%.28s%s%.32s", at,

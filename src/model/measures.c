@@ -2,6 +2,7 @@
 
 #include <ritz/reduced.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,37 @@ ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
     free(measures->item);
     measures->item = more;
     measures->count++;
+done:
+    return status;
+}
+
+ritz_measure *ritz_measures_find(const ritz_measures *measures,
+                                 const char *name)
+{
+    for (int64_t k = 0; k < measures->count; k++)
+        if (strcmp(measures->item[k].name, name) == 0)
+            return &measures->item[k];
+    return NULL;
+}
+
+double ritz_measures_value(const ritz_measures *measures, const char *name)
+{
+    const ritz_measure *found = ritz_measures_find(measures, name);
+
+    return found ? found->value : nan("");
+}
+
+ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures made = {0};
+
+    RITZ_NEW(made.item, from->count);
+    made.count = from->count;
+    if (from->count > 0)
+        memcpy(made.item, from->item, (size_t)made.count * sizeof *made.item);
+    ritz_measures_free(out);
+    *out = made;
 done:
     return status;
 }

@@ -95,17 +95,6 @@ done:
     return status;
 }
 
-static ritz_status copy_measures(const ritz_measures *in, ritz_measures *out)
-{
-    ritz_status status = RITZ_OK;
-
-    for (int64_t k = 0; k < in->count; k++)
-        RITZ_TRY(ritz_measures_add(out, in->item[k].name, in->item[k].value,
-                                   in->item[k].limit, in->item[k].where));
-done:
-    return status;
-}
-
 static ritz_status check_columns(int64_t r, int64_t count, const int64_t *at,
                                  int64_t smallest)
 {
@@ -141,8 +130,8 @@ ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
     RITZ_TRY(pick(in, count, order_of_columns, &made));
     RITZ_TRY(ritz_nested_new(smallest, 0, 0, &made.nested));
     if (count == in->K.ncol) {
-        RITZ_TRY(copy_measures(&in->estimates, &made.estimates));
-        RITZ_TRY(copy_measures(&in->errors, &made.errors));
+        RITZ_TRY(ritz_measures_copy(&in->estimates, &made.estimates));
+        RITZ_TRY(ritz_measures_copy(&in->errors, &made.errors));
     }
     *out = made;
     made = (ritz_reduced){0};

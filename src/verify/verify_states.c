@@ -169,15 +169,6 @@ static void say_where(const pair *p, const ritz_norm *norm,
         snprintf(where + used, RITZ_NAME_SIZE - used, ", at least");
 }
 
-/* The bound that the reduction came with, NaN if none. */
-static double bound_of(const ritz_state_space *reduced)
-{
-    for (int64_t k = 0; k < reduced->estimates.count; k++)
-        if (strcmp(reduced->estimates.item[k].name, "h-infinity-bound") == 0)
-            return reduced->estimates.item[k].value;
-    return nan("");
-}
-
 static ritz_status add_infinity(const pair *p, const ritz_state_space *apart,
                                 double bound,
                                 const ritz_verify_request *request,
@@ -386,7 +377,9 @@ ritz_status ritz_verify_states(const ritz_state_space *full,
     for (int k = 0; k < 2; k++)
         RITZ_TRY(take_stable(&p.model[k], &p.stable[k], &p.apart[k]));
     RITZ_TRY(take_gains(&p));
-    RITZ_TRY(add_norms(&p, bound_of(reduced), request, &found));
+    RITZ_TRY(add_norms(
+        &p, ritz_measures_value(&reduced->estimates, "h-infinity-bound"),
+        request, &found));
     RITZ_TRY(add_response(&p, request, &found));
     RITZ_TRY(add_gain(&p, request->limit_gain, &found));
     RITZ_TRY(add_growth(full, reduced, &found));

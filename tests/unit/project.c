@@ -30,9 +30,9 @@ void assert_hertz(const ritz_dense *K, const ritz_dense *M, int count,
 const ritz_measure *find_measure(const ritz_measures *measures,
                                  const char *name)
 {
-    for (int64_t k = 0; k < measures->count; k++)
-        if (strcmp(measures->item[k].name, name) == 0)
-            return &measures->item[k];
-    fail_msg("there is no measure '%s'", name);
-    return NULL;
+    const ritz_measure *found = ritz_measures_find(measures, name);
+
+    if (!found)
+        fail_msg("there is no measure '%s'", name);
+    return found;
 }

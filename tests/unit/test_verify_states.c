@@ -28,17 +28,9 @@ static void first_order(double gain, double rigid, ritz_state_space *out)
     }
 }
 
-static const ritz_measure *find(const ritz_measures *all, const char *name)
-{
-    for (int64_t k = 0; k < all->count; k++)
-        if (strcmp(all->item[k].name, name) == 0)
-            return &all->item[k];
-    return NULL;
-}
-
 static double value(const ritz_measures *all, const char *name)
 {
-    const ritz_measure *m = find(all, name);
+    const ritz_measure *m = ritz_measures_find(all, name);
 
     if (!m)
         fail_msg("no measure %s", name);
@@ -64,7 +56,7 @@ static void a_tenth_missing_is_a_tenth_by_every_measure(void **state)
     assert_near(value(&found, "response-relative"), 0.1, 1e-14);
     assert_near(value(&found, "static-gain-relative"), 0.1, 1e-14);
     assert_near(value(&found, "growth-relative"), -1.0, 1e-14);
-    assert_null(find(&found, "h-infinity-bound"));
+    assert_null(ritz_measures_find(&found, "h-infinity-bound"));
     ritz_measures_free(&found);
     ritz_state_space_free(&full);
     ritz_state_space_free(&reduced);
@@ -88,8 +80,9 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
         assert_ok(ritz_measures_add(&reduced.estimates, "h-infinity-bound",
                                     table[k].bound, nan(""), NULL));
         assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
-        assert_int_equal(ritz_measure_holds(find(&found, "h-infinity-bound")),
-                         table[k].holds);
+        assert_int_equal(
+            ritz_measure_holds(ritz_measures_find(&found, "h-infinity-bound")),
+            table[k].holds);
         ritz_measures_free(&found);
         ritz_state_space_free(&full);
         ritz_state_space_free(&reduced);
@@ -126,11 +119,12 @@ static void rigid_motions_of_both_are_left_out_of_norms(void **state)
     assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
     /* to tell poles apart rounds by some eps */
     assert_near(value(&found, "h-infinity"), 0.1, 2e-8 * 0.1);
-    assert_non_null(strstr(find(&found, "h-infinity")->where, "less 2 poles"));
-    assert_null(find(&found, "static-gain-relative"));
+    assert_non_null(strstr(ritz_measures_find(&found, "h-infinity")->where,
+                           "less 2 poles"));
+    assert_null(ritz_measures_find(&found, "static-gain-relative"));
     ritz_measures_free(&found);
     assert_ok(ritz_verify_states(&full, &held, &none, &found));
-    assert_null(find(&found, "h-infinity"));
+    assert_null(ritz_measures_find(&found, "h-infinity"));
     ritz_measures_free(&found);
     request.limit_infinity = 1.0;
     assert_fails(ritz_verify_states(&full, &held, &request, &found),
@@ -155,9 +149,10 @@ static void what_reaches_an_output_at_once_has_no_h2_norm(void **state)
     first_order(0.9, 0.0, &reduced);
     reduced.D.val[0] = 0.1; /* which makes the gain that of the full model */
     assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
-    assert_null(find(&found, "h2-relative"));
+    assert_null(ritz_measures_find(&found, "h2-relative"));
     assert_near(value(&found, "h-infinity"), 0.1, 1.1e-8 * 0.1);
-    assert_non_null(strstr(find(&found, "h-infinity")->where, "infinite"));
+    assert_non_null(
+        strstr(ritz_measures_find(&found, "h-infinity")->where, "infinite"));
     assert_near(value(&found, "static-gain-relative"), 0.0, 1e-15);
     ritz_measures_free(&found);
     request.limit_two = 1.0;
@@ -177,11 +172,13 @@ static void growth_fails_unless_the_full_model_grows_too(void **state)
     first_order(0.9, 0.0, &reduced);
     reduced.A.val[0] = 1.0;
     assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
-    assert_false(ritz_measure_holds(find(&found, "growth-relative")));
+    assert_false(
+        ritz_measure_holds(ritz_measures_find(&found, "growth-relative")));
     ritz_measures_free(&found);
     full.A.val[0] = 1.0;
     assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
-    assert_true(ritz_measure_holds(find(&found, "growth-relative")));
+    assert_true(
+        ritz_measure_holds(ritz_measures_find(&found, "growth-relative")));
     ritz_measures_free(&found);
     ritz_state_space_free(&full);
     ritz_state_space_free(&reduced);
