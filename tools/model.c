@@ -200,15 +200,19 @@ void model_say_measures(const cli_run *run, const ritz_measures *measures,
                         const char *known)
 {
     char limit[32];
+    int width = 28; /* more where a name is longer */
 
-    cli_say(run, "%-28s %12s %12s  %-9s  %s", "measure", "value", "limit",
+    for (int64_t k = 0; k < measures->count; k++)
+        if (strlen(measures->item[k].name) > (size_t)width)
+            width = (int)strlen(measures->item[k].name);
+    cli_say(run, "%-*s %12s %12s  %-9s  %s", width, "measure", "value", "limit",
             "verdict", "where");
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
         snprintf(limit, sizeof limit, isnan(m->limit) ? "-" : "%.4g", m->limit);
-        cli_say(run, "%-28s %12.4e %12s  %-9s  %s", m->name, m->value, limit,
-                verdict(m, known), m->where);
+        cli_say(run, "%-*s %12.4e %12s  %-9s  %s", width, m->name, m->value,
+                limit, verdict(m, known), m->where);
     }
 }
 

@@ -111,6 +111,7 @@ holds '  knows its prefixes' 'j["nested"]["smallest"] == 2 and
     j["nested"]["order"] == [3, 5] and
     j["nested"]["errors"]["response-relative"] == [0.25, None]'
 expect 0 'first 2 to 9 columns (--order N)' ritz-info nested.h5
+expect 0 'response-relative                  2.5e-01        -' ritz-info nested.h5
 json 0 ritz-poles --order 3 nested.h5
 expect 1 'no prefix of 1 columns, there are those of 2 to 9' ritz-poles \
     --order 1 nested.h5
