@@ -88,30 +88,58 @@ done:
 }
 
 /* Modes have frequencies and shapes, state spaces have norms. */
+enum { OF_MODES = 1, OF_STATES = 2 };
+
+static const struct {
+    const char *name;    /* --limit-... */
+    const char *measure; /* that is there if it can be held to it */
+    size_t offset;
+    int of;
+} limits[] = {
+#define LIMIT(field) offsetof(ritz_verify_request, limit_##field)
+    {"frequency", "frequency-relative", LIMIT(frequency), OF_MODES},
+    {"mac", "mac", LIMIT(mac), OF_MODES},
+    {"damping", "damping-relative", LIMIT(damping), OF_MODES},
+    {"missing", "missing-modes", LIMIT(missing), OF_MODES},
+    {"response", "response-relative", LIMIT(response), OF_MODES | OF_STATES},
+    {"flexible", "response-relative", LIMIT(flexible), OF_MODES},
+    {"gain", "static-gain-relative", LIMIT(gain), OF_MODES | OF_STATES},
+    {"h-infinity", "h-infinity-relative", LIMIT(infinity), OF_STATES},
+    {"h2", "h2-relative", LIMIT(two), OF_STATES},
+};
+
+enum { LIMITS = sizeof limits / sizeof *limits };
+
+static double limit_of(const wish *asked, size_t k)
+{
+    return *(const double *)(const void *)((const char *)&asked->verify +
+                                           limits[k].offset);
+}
+
 static ritz_status check_limits(const cli_run *run, const wish *asked,
                                 bool states)
 {
     ritz_status status = RITZ_OK;
-    const ritz_verify_request *v = &asked->verify;
-    const struct {
-        double limit;
-        const char *name;
-        bool states;
-    } limits[] = {
-        {v->limit_frequency, "frequency", false},
-        {v->limit_mac, "mac", false},
-        {v->limit_damping, "damping", false},
-        {v->limit_infinity, "h-infinity", true},
-        {v->limit_two, "h2", true},
-    };
+    const int of = states ? OF_STATES : OF_MODES;
 
-    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++)
-        RITZ_FAIL_IF(!isnan(limits[k].limit) && limits[k].states != states,
+    for (size_t k = 0; k < LIMITS; k++)
+        RITZ_FAIL_IF(!isnan(limit_of(asked, k)) && !(limits[k].of & of),
                      RITZ_ERR_ARGUMENT,
                      "'%s' is %s state space, --limit-%s is not for it",
                      run->operand[1], states ? "a" : "no", limits[k].name);
 done:
     return status;
+}
+
+/* A limit that nothing was held to is met by nothing being there. */
+static void say_unmeasured(cli_run *run, const wish *asked,
+                           const ritz_measures *measures)
+{
+    for (size_t k = 0; k < LIMITS; k++)
+        if (!isnan(limit_of(asked, k)) &&
+            !ritz_measures_find(measures, limits[k].measure))
+            cli_warn(run, "--limit-%s: nothing of '%s' is there to be compared",
+                     limits[k].name, run->operand[1]);
 }
 
 /* The full model as states: as it is, or a component that is small enough. */
@@ -157,6 +185,7 @@ static ritz_status verify_states(cli_run *run, model *full, model *reduced,
                                    &asked->verify, &measures));
     keep(run, &measures, place_of(reduced));
     RITZ_TRY(write(run, reduced));
+    say_unmeasured(run, asked, place_of(reduced));
     RITZ_TRY(judge(run, place_of(reduced)));
 done:
     ritz_measures_free(&measures);
@@ -200,6 +229,7 @@ static ritz_status verify(cli_run *run, wish *asked)
     RITZ_TRY_IN(run->operand[1], measure(run, &full, &reduced, &asked->verify));
     dampers_restore(&reduced, &bare);
     RITZ_TRY(write(run, &reduced)); /* limits met or not: it says which */
+    say_unmeasured(run, asked, place_of(&reduced));
     RITZ_TRY(judge(run, place_of(&reduced)));
 done:
     dampers_bare_free(&bare);
@@ -229,9 +259,17 @@ int main(int argc, char **argv)
          .min = 0.0, .max = 1.0, .help = "least MAC of mode shapes"},
         {CLI_REAL(&v->limit_damping), .name = "limit-damping", .argument = "X",
          .min = 0.0, .max = 1e9, .help = "relative error of damping ratios"},
+        {CLI_REAL(&v->limit_missing), .name = "limit-missing", .argument = "N",
+         .min = 0.0, .max = 1e9,
+         .help = "modes of the band without partner [0 beside a limit of "
+                 "frequency or damping]"},
         {CLI_REAL(&v->limit_response), .name = "limit-response",
          .argument = "X", .min = 0.0, .max = 1e9,
          .help = "error of the response over the largest |H| in the band"},
+        {CLI_REAL(&v->limit_flexible), .name = "limit-flexible",
+         .argument = "X", .min = 0.0, .max = 1e9,
+         .help = "the same over the largest |H| less what rigid motion "
+                 "answers"},
         {CLI_REAL(&v->limit_gain), .name = "limit-gain", .argument = "X",
          .min = 0.0, .max = 1e9,
          .help = "relative error of the flexible static gain"},

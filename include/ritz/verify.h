@@ -38,6 +38,9 @@ typedef struct ritz_verify_request {
 /**
  * A full component and its reduction. Dampers count as far as K and D hold
  * them: install them first.
+ *
+ * @return RITZ_ERR_ARGUMENT if the reduction is of another model, or a response
+ *         or gain has a limit and there are no inputs or no outputs
  */
 ritz_status ritz_verify_reduced(const ritz_component *full,
                                 const ritz_reduced *reduced,

@@ -145,17 +145,42 @@ static ritz_status add_extra(const ritz_sides *sides, ritz_measures *out)
                      out);
 }
 
-/* As many modes as the full model has rigid ones: how far from 0 they are. */
-static ritz_status add_rigid(const ritz_sides *sides, ritz_measures *out)
+/*
+ * As many modes as the full model has rigid ones: how far from 0 they are, and
+ * how many are no rigid motion: neither 0 but for rounding, nor nearer to it
+ * than the first flexible mode's frequency may be off.
+ */
+static ritz_status add_rigid(const ritz_sides *sides,
+                             const ritz_verify_request *request, double limit,
+                             ritz_measures *out)
 {
+    ritz_status status = RITZ_OK;
+    const ritz_poles *full = &sides->full->poles;
+    const int64_t rigid = full->num_rigid;
+    const int64_t there = sides->small.Phi.ncol;
+    char where[RITZ_NAME_SIZE] = "";
+    double allowed = 0.0;
     double largest = 0.0;
+    int64_t lost = rigid > there ? rigid - there : 0;
 
-    for (int64_t k = 0;
-         k < sides->full->poles.num_rigid && k < sides->small.Phi.ncol; k++)
-        largest = fmax(largest, fabs(ritz_eigen_hertz(sides->small.lambda[k])));
-    return sides->full->poles.num_rigid > 0
-               ? ritz_measures_add(out, "rigid-hertz", largest, nan(""), "")
-               : RITZ_OK;
+    if (rigid == 0)
+        return RITZ_OK;
+    if (full->count > rigid && !isnan(request->limit_frequency))
+        allowed =
+            request->limit_frequency * ritz_eigen_hertz(full->lambda[rigid]);
+    for (int64_t k = 0; k < rigid && k < there; k++) {
+        double hertz = fabs(ritz_eigen_hertz(sides->small.lambda[k]));
+
+        largest = fmax(largest, hertz);
+        lost += k >= sides->reduced.num_rigid && hertz > allowed;
+    }
+    if (lost > 0)
+        (void)snprintf(where, sizeof where, "of %" PRId64, rigid);
+    RITZ_TRY(ritz_measures_add(out, "rigid-hertz", largest, nan(""), ""));
+    RITZ_TRY(ritz_measures_add(out, "missing-rigid-modes", (double)lost, limit,
+                               where));
+done:
+    return status;
 }
 
 ritz_status ritz_sides_modes(const ritz_sides *sides,
@@ -172,6 +197,8 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
         isnan(request->limit_frequency) && isnan(request->limit_damping)
             ? request->limit_missing
             : fmax(request->limit_missing, 0.0);
+    double none_rigid =
+        isnan(none_missing) || sides->full->band_hz[0] > 0.0 ? nan("") : 0.0;
 
     for (int64_t k = sides->full->poles.num_rigid; k < match->count; k++) {
         int64_t r = match->partner[k];
@@ -190,7 +217,7 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
     RITZ_TRY(add_mac(sides, request->limit_mac, mac, out));
     RITZ_TRY(
         add(sides, "damping-relative", request->limit_damping, damping, out));
-    RITZ_TRY(add_rigid(sides, out));
+    RITZ_TRY(add_rigid(sides, request, none_rigid, out));
     RITZ_TRY(add_missing(sides, none_missing, out));
     RITZ_TRY(add_extra(sides, out));
 done:

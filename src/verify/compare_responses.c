@@ -189,16 +189,18 @@ static ritz_status add_response(const ritz_sides *sides, const extreme *found,
                                 ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
+    const bool rigid = sides->full->poles.num_rigid > 0;
     char where[RITZ_NAME_SIZE];
 
     if (found->largest == 0.0) /* no output sees any input */
         return RITZ_OK;
     say_where(sides->full, found->error_hz, where);
-    RITZ_TRY(ritz_measures_add(out, "response-relative",
-                               found->error / found->largest,
-                               request->limit_response, where));
-    if (sides->full->poles.num_rigid > 0 &&
-        found->flexible > RITZ_AUDIBLE * found->error)
+    RITZ_TRY(ritz_measures_add(
+        out, "response-relative", found->error / found->largest,
+        rigid ? request->limit_response
+              : fmin(request->limit_response, request->limit_flexible),
+        where));
+    if (rigid && found->flexible > RITZ_AUDIBLE * found->error)
         RITZ_TRY(ritz_measures_add(out, "flexible-response-relative",
                                    found->error / found->flexible,
                                    request->limit_flexible, where));

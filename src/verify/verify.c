@@ -209,6 +209,31 @@ typedef struct other {
     const char *damping;
 } other;
 
+/* What is held to something must be there to be measured. */
+static ritz_status check_limits(const ritz_io *io,
+                                const ritz_verify_request *request)
+{
+    ritz_status status = RITZ_OK;
+    const struct {
+        const char *measure;
+        double limit;
+    } of_responses[] = {
+        {"response-relative", request->limit_response},
+        {"flexible-response-relative", request->limit_flexible},
+        {"static-gain-relative", request->limit_gain},
+    };
+
+    for (size_t k = 0; k < sizeof of_responses / sizeof *of_responses; k++)
+        RITZ_FAIL_IF(!isnan(of_responses[k].limit) &&
+                         (io->num_inputs == 0 || io->num_outputs == 0),
+                     RITZ_ERR_ARGUMENT,
+                     "a limit of '%s' needs inputs and outputs, and there are "
+                     "%" PRId64 " and %" PRId64,
+                     of_responses[k].measure, io->num_inputs, io->num_outputs);
+done:
+    return status;
+}
+
 static ritz_status verify(const ritz_component *full, const other *o,
                           const ritz_verify_request *request,
                           ritz_measures *out)
@@ -221,6 +246,7 @@ static ritz_status verify(const ritz_component *full, const other *o,
 
     RITZ_TRY(ritz_sides_check(&full->io, o->model.io));
     RITZ_TRY(check_band(request));
+    RITZ_TRY(check_limits(&full->io, request));
     RITZ_TRY(
         choose_damping(full, o->damping, request, &asked.damping, &is_assumed));
     RITZ_TRY(ritz_sides_open(&o->model, &asked.damping, &sides));

@@ -2,6 +2,7 @@
 # Tests of the tools as a user meets them: exit status, words, files.
 # Usage: tools.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 
 # --- models whose every number is known --------------------------------------
 
@@ -174,6 +175,12 @@ expect 1 'limits not met' ritz-verify bar.h5 red.h5 --damping 'modal 0.01' \
 json 0 ritz-info failed.h5
 holds '  the file says that it failed' \
     'any(m["verdict"] == "fail" for m in j["errors"])'
+expect 0 '' ritz-basis guyan a.h5 -o a-cb.h5
+expect 0 '' ritz-reduce a.h5 a-cb.h5 -o a-red.h5
+expect 1 "a limit of 'response-relative' needs inputs and outputs" \
+    ritz-verify a.h5 a-red.h5 --limit-response 0.1 -o none.h5
+expect 0 "--limit-mac: nothing of 'red.h5' is there to be compared" \
+    ritz-verify bar.h5 red.h5 --band-hz 1e-4,2e-4 --limit-mac 0.9 -o checked.h5
 expect 2 'two ascending numbers' ritz-verify bar.h5 red.h5 --band-hz 2,1 -o x
 expect 2 'from 0 to 1,' ritz-verify bar.h5 red.h5 --limit-mac 2 -o x.h5
 expect 1 'has nothing to choose from' \
@@ -390,18 +397,11 @@ report $verdict 'a tool that is stopped while it writes leaves no file'
 
 # --- the demo's model --------------------------------------------------------------
 
-rotor=${RITZ_DATA:-none}/dualspin/rotor.op4
-if [ -f "$rotor" ]; then
-    expect 0 'OUTPUT4' ritz-info "$rotor"
-    stator=$RITZ_DATA/dualspin/stator
-    ritz-import -q --stiffness "$stator.op4:KGG" --mass "$stator.op4:MGG" \
-        --bulk "$stator.bdf" --port bearing=1 -o stator.h5
-    # far below what rounding makes of rigid modes
-    expect 0 '6 rigid, 6 residual' \
-        ritz-basis macneal-rubin --up-to-hz 1e-8 stator.h5 -o stator-basis.h5
-else
-    printf 'ok %d - dualspin # SKIP no data in %s\n' $((count += 1)) "$rotor"
-fi
+expect 0 'OUTPUT4' ritz-info "$data/dualspin/rotor.op4"
+import_body stator -q --port bearing=1 -o stator.h5
+# far below what rounding makes of rigid modes
+expect 0 '6 rigid, 6 residual' \
+    ritz-basis macneal-rubin --up-to-hz 1e-8 stator.h5 -o stator-basis.h5
 
 ls -A | grep -E '\.part|^x|^core' >log && report no 'no leftovers' ||
     report yes 'no leftovers'

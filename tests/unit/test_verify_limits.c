@@ -1,0 +1,214 @@
+/* What models are held to that lack a motion, or inputs and outputs. */
+#include "testing.h"
+
+#include "frame.h"
+#include "project.h"
+
+#include <ritz/eigen.h>
+#include <ritz/sparse.h>
+#include <ritz/verify.h>
+
+#include <math.h>
+
+/* A beam of 4 elements that nothing holds, and its modes. */
+typedef struct fixture {
+    ritz_component beam;
+    ritz_pairs pairs;
+} fixture;
+
+enum { RIGID = 3 };
+
+static void open_free(fixture *f)
+{
+    ritz_dense K = {0};
+    ritz_dense M = {0};
+
+    *f = (fixture){0};
+    assert_ok(
+        frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &f->beam));
+    assert_ok(ritz_sparse_dense(&f->beam.K, &K));
+    assert_ok(ritz_sparse_dense(&f->beam.M, &M));
+    assert_ok(ritz_eigen_dense(&K, &M, &f->pairs));
+    assert_int_equal(f->pairs.num_rigid, RIGID);
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+}
+
+static void close_free(fixture *f)
+{
+    ritz_pairs_free(&f->pairs);
+    ritz_component_free(&f->beam);
+}
+
+/* Against `count` modes from `first` on, and a spring on the first of them. */
+static void measure(const fixture *f, int64_t first, int64_t count,
+                    double spring, const ritz_verify_request *request,
+                    ritz_measures *out)
+{
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+
+    assert_ok(ritz_basis_new(f->beam.num_dofs, count, &basis));
+    memcpy(basis.T.val, f->pairs.Phi.val + first * f->pairs.Phi.nrow,
+           (size_t)(f->beam.num_dofs * count) * sizeof(double));
+    assert_ok(ritz_reduce(&f->beam, &basis, &reduced));
+    reduced.K.val[0] += spring; /* M is the identity */
+    assert_ok(ritz_verify_reduced(&f->beam, &reduced, request, out));
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+}
+
+static void a_rigid_motion_that_is_not_there_is_missing(void **state)
+{
+    static const struct {
+        int64_t first, count;
+        double low, missing;
+        bool holds;
+    } table[] = {
+        {0, 5, 0.0, 0.0, true},
+        {1, 5, 0.0, 1.0, false},
+        {3, 5, 0.0, 3.0, false},
+        {1, 1, 0.0, 2.0, false}, /* fewer coordinates than rigid motions */
+        {1, 5, 1e-3, 1.0, true}, /* rigid motion is not of this band */
+    };
+    fixture f;
+
+    (void)state;
+    open_free(&f);
+    for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
+        ritz_verify_request request = RITZ_VERIFY_NONE;
+        ritz_measures found = {0};
+        const ritz_measure *missing = NULL;
+
+        request.limit_frequency = 1e-3;
+        request.band_hz[0] = table[k].low;
+        /* short of the first flexible mode: nothing else is missing */
+        request.band_hz[1] = 0.9 * ritz_eigen_hertz(f.pairs.lambda[RIGID]);
+        measure(&f, table[k].first, table[k].count, 0.0, &request, &found);
+        missing = find_measure(&found, "missing-rigid-modes");
+        assert_true(missing->value == table[k].missing);
+        assert_string_equal(missing->where,
+                            table[k].missing > 0.0 ? "of 3" : "");
+        assert_int_equal(ritz_measure_holds(missing), table[k].holds);
+        assert_true(find_measure(&found, "missing-modes")->value == 0.0);
+        ritz_measures_free(&found);
+    }
+    close_free(&f);
+}
+
+/* lambda of a rigid motion on a spring k is k, of unit modal mass. */
+static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
+{
+    fixture f;
+
+    (void)s;
+    open_free(&f);
+    for (int soft = 0; soft < 2; soft++) {
+        ritz_verify_request request = RITZ_VERIFY_NONE;
+        ritz_measures found = {0};
+        const double relative = soft ? 0.9e-3 : 1.1e-3;
+        const double lambda = f.pairs.lambda[RIGID];
+
+        request.limit_frequency = 1e-3;
+        request.band_hz[1] = 1.1 * ritz_eigen_hertz(lambda);
+        measure(&f, 0, 5, relative * relative * lambda, &request, &found);
+        assert_near(find_measure(&found, "rigid-hertz")->value,
+                    relative * ritz_eigen_hertz(lambda),
+                    1e-3 * ritz_eigen_hertz(lambda) * 1e-3);
+        assert_int_equal(
+            ritz_measure_holds(find_measure(&found, "missing-rigid-modes")),
+            soft);
+        ritz_measures_free(&found);
+        /* nothing is asked: nothing fails */
+        request.limit_frequency = nan("");
+        measure(&f, 0, 5, relative * relative * lambda, &request, &found);
+        assert_true(find_measure(&found, "missing-rigid-modes")->value == 1.0);
+        assert_true(
+            ritz_measure_holds(find_measure(&found, "missing-rigid-modes")));
+        ritz_measures_free(&found);
+    }
+    close_free(&f);
+}
+
+static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **s)
+{
+    static const struct {
+        size_t offset;
+        const char *words;
+    } table[] = {
+        {offsetof(ritz_verify_request, limit_response),
+         "a limit of 'response-relative' needs inputs and outputs"},
+        {offsetof(ritz_verify_request, limit_flexible),
+         "a limit of 'flexible-response-relative' needs inputs and outputs"},
+        {offsetof(ritz_verify_request, limit_gain),
+         "a limit of 'static-gain-relative' needs inputs and outputs, and "
+         "there are 0 and 0"},
+    };
+    fixture f;
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+
+    (void)s;
+    open_free(&f);
+    assert_ok(ritz_basis_new(f.beam.num_dofs, 5, &basis));
+    memcpy(basis.T.val, f.pairs.Phi.val,
+           (size_t)(f.beam.num_dofs * 5) * sizeof(double));
+    assert_ok(ritz_reduce(&f.beam, &basis, &reduced));
+    for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
+        ritz_verify_request request = RITZ_VERIFY_NONE;
+        ritz_measures found = {0};
+
+        memcpy((char *)&request + table[k].offset, &(double){0.1},
+               sizeof(double));
+        assert_fails(ritz_verify_reduced(&f.beam, &reduced, &request, &found),
+                     RITZ_ERR_ARGUMENT, table[k].words);
+    }
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+    close_free(&f);
+}
+
+/* Without rigid motion all of the response is flexible. */
+static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
+{
+    ritz_verify_request request = RITZ_VERIFY_NONE;
+    ritz_component beam = {0};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+    ritz_measures found = {0};
+    int64_t tip = 0;
+
+    (void)state;
+    assert_ok(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
+    tip = beam.num_dofs - 2;
+    assert_ok(frame_io(&beam, 1, &tip, 1, &tip));
+    assert_ok(ritz_basis_new(beam.num_dofs, 1, &basis));
+    basis.T.val[tip] = 1.0; /* far too stiff */
+    assert_ok(ritz_reduce(&beam, &basis, &reduced));
+    request.band_hz[1] = 0.1;
+    request.limit_flexible = 0.1;
+    request.limit_response = 0.5;
+    assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
+    assert_true(find_measure(&found, "response-relative")->limit == 0.1);
+    assert_false(ritz_measure_holds(find_measure(&found, "response-relative")));
+    assert_null(ritz_measures_find(&found, "flexible-response-relative"));
+    assert_null(ritz_measures_find(&found, "missing-rigid-modes"));
+    ritz_measures_free(&found);
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+    ritz_component_free(&beam);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_rigid_motion_that_is_not_there_is_missing),
+        cmocka_unit_test(
+            a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies),
+        cmocka_unit_test(
+            a_response_that_does_not_exist_cannot_be_held_to_a_limit),
+        cmocka_unit_test(the_flexible_response_of_what_is_held_is_all_of_it),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
