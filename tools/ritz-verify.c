@@ -96,16 +96,16 @@ static const struct {
     size_t offset;
     int of;
 } limits[] = {
-#define LIMIT(field) offsetof(ritz_verify_request, limit_##field)
-    {"frequency", "frequency-relative", LIMIT(frequency), OF_MODES},
-    {"mac", "mac", LIMIT(mac), OF_MODES},
-    {"damping", "damping-relative", LIMIT(damping), OF_MODES},
-    {"missing", "missing-modes", LIMIT(missing), OF_MODES},
-    {"response", "response-relative", LIMIT(response), OF_MODES | OF_STATES},
-    {"flexible", "response-relative", LIMIT(flexible), OF_MODES},
-    {"gain", "static-gain-relative", LIMIT(gain), OF_MODES | OF_STATES},
-    {"h-infinity", "h-infinity-relative", LIMIT(infinity), OF_STATES},
-    {"h2", "h2-relative", LIMIT(two), OF_STATES},
+#define OFFSET(field) offsetof(ritz_verify_request, limit_##field)
+    {"frequency", "frequency-relative", OFFSET(frequency), OF_MODES},
+    {"mac", "mac", OFFSET(mac), OF_MODES},
+    {"damping", "damping-relative", OFFSET(damping), OF_MODES},
+    {"missing", "missing-modes", OFFSET(missing), OF_MODES},
+    {"response", "response-relative", OFFSET(response), OF_MODES | OF_STATES},
+    {"flexible", "response-relative", OFFSET(flexible), OF_MODES},
+    {"gain", "static-gain-relative", OFFSET(gain), OF_MODES | OF_STATES},
+    {"h-infinity", "h-infinity-relative", OFFSET(infinity), OF_STATES},
+    {"h2", "h2-relative", OFFSET(two), OF_STATES},
 };
 
 enum { LIMITS = sizeof limits / sizeof *limits };
@@ -238,6 +238,12 @@ done:
     return status;
 }
 
+#define LIMIT(word, field, text)                                               \
+    {                                                                          \
+        CLI_REAL(&v->limit_##field), .name = "limit-" word, .argument = "X",   \
+                                     .min = 0.0, .max = 1e9, .help = (text)    \
+    }
+
 int main(int argc, char **argv)
 {
     const char *band = NULL;
@@ -252,33 +258,21 @@ int main(int argc, char **argv)
         ORDER_OPTION(&asked.order),
         DAMPING_OPTION(&asked.damping),
         DAMPERS_OPTION(&asked.damper),
-        {CLI_REAL(&v->limit_frequency), .name = "limit-frequency",
-         .argument = "X", .min = 0.0, .max = 1e9,
-         .help = "relative error of frequencies"},
+        LIMIT("frequency", frequency, "relative error of frequencies"),
         {CLI_REAL(&v->limit_mac), .name = "limit-mac", .argument = "X",
          .min = 0.0, .max = 1.0, .help = "least MAC of mode shapes"},
-        {CLI_REAL(&v->limit_damping), .name = "limit-damping", .argument = "X",
-         .min = 0.0, .max = 1e9, .help = "relative error of damping ratios"},
-        {CLI_REAL(&v->limit_missing), .name = "limit-missing", .argument = "N",
-         .min = 0.0, .max = 1e9,
-         .help = "modes of the band without partner [0 beside a limit of "
-                 "frequency or damping]"},
-        {CLI_REAL(&v->limit_response), .name = "limit-response",
-         .argument = "X", .min = 0.0, .max = 1e9,
-         .help = "error of the response over the largest |H| in the band"},
-        {CLI_REAL(&v->limit_flexible), .name = "limit-flexible",
-         .argument = "X", .min = 0.0, .max = 1e9,
-         .help = "the same over the largest |H| less what rigid motion "
-                 "answers"},
-        {CLI_REAL(&v->limit_gain), .name = "limit-gain", .argument = "X",
-         .min = 0.0, .max = 1e9,
-         .help = "relative error of the flexible static gain"},
-        {CLI_REAL(&v->limit_infinity), .name = "limit-h-infinity",
-         .argument = "X", .min = 0.0, .max = 1e9,
-         .help = "of state spaces: relative, of the largest |H| anywhere"},
-        {CLI_REAL(&v->limit_two), .name = "limit-h2", .argument = "X",
-         .min = 0.0, .max = 1e9,
-         .help = "of state spaces: relative, of the H2 norm"},
+        LIMIT("damping", damping, "relative error of damping ratios"),
+        LIMIT("missing", missing,
+              "modes of the band without partner [0 beside a limit of "
+              "frequency or damping]"),
+        LIMIT("response", response,
+              "error of the response over the largest |H| in the band"),
+        LIMIT("flexible", flexible,
+              "the same over the largest |H| less what rigid motion answers"),
+        LIMIT("gain", gain, "relative error of the flexible static gain"),
+        LIMIT("h-infinity", infinity,
+              "of state spaces: relative, of the largest |H| anywhere"),
+        LIMIT("h2", two, "of state spaces: relative, of the H2 norm"),
         {0},
     };
     const cli_program program = {

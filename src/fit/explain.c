@@ -116,7 +116,10 @@ static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
     const ritz_fit_candidate *second = &fit->candidate[fit->runner_up];
     int64_t more = second->order - c->order;
 
-    if (more == 0)
+    if (more == 0 && fabs(second->excess - c->excess) < 0.005)
+        add(fit, "; %s is as small, and as near to its tolerance",
+            second->method->name);
+    else if (more == 0)
         add(fit,
             "; %s is as small, and comes to %.2f of its tolerance where "
             "%s comes to %.2f",
