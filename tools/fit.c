@@ -182,10 +182,14 @@ static void say_cost(cli_run *run, const ritz_fitter *fitter,
 
     if (cost->order == 0)
         return;
-    cli_say(run,
-            "Highest frequency %.4g Hz: an explicit integrator is stable up "
-            "to steps of %.3g s.",
-            cost->highest_hz, cost->step_explicit);
+    if (isfinite(cost->step_explicit))
+        cli_say(run,
+                "Highest frequency %.4g Hz: an explicit integrator is stable "
+                "up to steps of %.3g s.",
+                cost->highest_hz, cost->step_explicit);
+    else
+        cli_say(run, "Nothing oscillates: an explicit integrator is stable "
+                     "with any step.");
     cli_say(run,
             "Suggested step %.3g s, which resolves the band to %g Hz: %.3g s "
             "of processor a second simulated (%s, measured).",
@@ -215,8 +219,9 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     cli_say(run, "\nSmallest: %s, order %lld", c->method->name,
             (long long)c->order);
     for (int64_t k = 0; k < c->num_bodies && *ritz_fitter_body(fitter, k); k++)
-        cli_say(run, "  %-20s %lld modes", ritz_fitter_body(fitter, k),
-                (long long)c->modes[k]);
+        if (c->modes[k] >= 0) /* there is a number to choose */
+            cli_say(run, "  %-20s %lld mode%s", ritz_fitter_body(fitter, k),
+                    (long long)c->modes[k], c->modes[k] == 1 ? "" : "s");
     model_say_measures(run, &c->errors, "measured");
     say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);

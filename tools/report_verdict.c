@@ -5,25 +5,66 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* What was chosen; else the smallest that meets the tolerance; or NULL. */
-static const record *find_answer(const records *all, bool *said)
+/* Why a record is the answer. */
+typedef enum reason { CHOSEN, SMALLEST, NEAREST } reason;
+
+/* How many times its tolerance the worst error is; infinite: not known. */
+static double excess_of(const record *r)
+{
+    const char *name = NULL;
+    json_t *limit = NULL;
+    double worst = 0.0;
+
+    if (r->incomplete)
+        return HUGE_VAL;
+    json_object_foreach(r->tolerance, name, limit)
+    {
+        bool mac = strcmp(name, "mac") == 0;
+        double error = record_value(r->errors, name);
+        double allowed = json_number_value(limit);
+        double times = mac ? (1.0 - error) / (1.0 - allowed) : error / allowed;
+
+        if (isnan(times) && error != allowed)
+            return HUGE_VAL;
+        worst = fmax(worst, times);
+    }
+    return worst;
+}
+
+static bool is_better(const record *r, const record *than)
+{
+    if (!than)
+        return true;
+    if (r->feasible != than->feasible)
+        return r->feasible;
+    if (!r->feasible)
+        return excess_of(r) < excess_of(than);
+    return r->order < than->order ||
+           (r->order == than->order && r->cost < than->cost);
+}
+
+/*
+ * What was chosen; else the smallest that meets the tolerance; else what comes
+ * nearest to it; NULL: no tolerance is known.
+ */
+static const record *find_answer(const records *all, reason *why)
 {
     const record *best = NULL;
 
-    *said = false;
     for (int64_t k = 0; k < all->count; k++) {
         const record *r = &all->item[k];
 
         if (r->chosen) {
-            *said = true;
+            *why = CHOSEN;
             return r;
         }
-        if (r->feasible && r->tolerance &&
-            (!best || r->order < best->order ||
-             (r->order == best->order && r->cost < best->cost)))
+        if (r->tolerance && (r->feasible || excess_of(r) < HUGE_VAL) &&
+            is_better(r, best))
             best = r;
     }
+    *why = best && best->feasible ? SMALLEST : NEAREST;
     return best;
 }
 
@@ -168,23 +209,26 @@ static void say_cost(FILE *file, const record *r)
     fprintf(file, "</ul></dd></div>\n");
 }
 
-static void say_why(FILE *file, const record *r, bool said, int64_t count)
+static void say_why(FILE *file, const record *r, reason why, int64_t count)
 {
-    const char *why = json_string_value(json_object_get(r->json, "why"));
+    const char *text = json_string_value(json_object_get(r->json, "why"));
 
     if (r->tolerance)
         fprintf(file, "<p class=\"%s\">%s</p>\n",
                 r->feasible ? "meets" : "misses",
                 r->feasible ? "&#10003; It meets every tolerance."
                             : "&#10007; It misses a tolerance.");
-    if (why) {
+    if (text) {
         fprintf(file, "<p>Why: ");
-        html_text(file, why);
+        html_text(file, text);
         fprintf(file, "</p>\n");
     }
-    if (!said)
-        fprintf(file, "<p class=\"note\">No record says which was chosen: this "
-                      "is the smallest that meets the tolerance.</p>\n");
+    if (why != CHOSEN)
+        fprintf(file,
+                "<p class=\"note\">No record says which was chosen: this is "
+                "the %s.</p>\n",
+                why == SMALLEST ? "smallest that meets the tolerance"
+                                : "one that comes nearest to its tolerance");
     fprintf(file,
             "<p class=\"note\">One of %lld models that were measured.</p>\n",
             (long long)count);
@@ -193,15 +237,16 @@ static void say_why(FILE *file, const record *r, bool said, int64_t count)
 ritz_status report_verdict(FILE *file, const records *all)
 {
     ritz_status status = RITZ_OK;
-    bool said = false;
-    const record *r = find_answer(all, &said);
+    reason why = NEAREST;
+    const record *r = find_answer(all, &why);
     measure *m = NULL;
     int64_t count = 0;
 
     if (!r) {
         fprintf(file,
                 "<p>%lld models were measured. No record says which was "
-                "chosen, and none has a tolerance that it meets.</p>\n",
+                "chosen, and none has a tolerance that its errors can be held "
+                "against.</p>\n",
                 (long long)all->count);
         return RITZ_OK;
     }
@@ -212,7 +257,7 @@ ritz_status report_verdict(FILE *file, const records *all)
     say_errors(file, r, count, m);
     say_cost(file, r);
     fprintf(file, "</dl>\n");
-    say_why(file, r, said, all->count);
+    say_why(file, r, why, all->count);
 done:
     free(m);
     return status;

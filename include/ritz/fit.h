@@ -96,8 +96,8 @@ typedef struct ritz_fit {
     int64_t num_methods;
     int64_t *best;    /* num_methods, of each the smallest that is feasible;
                           -1: none is */
-    int64_t *reached; /* num_methods, of each the one with the least excess;
-                          -1: all were refused */
+    int64_t *reached; /* num_methods, of each the one that misses the fewest
+                         modes, with the least excess; -1: all were refused */
     const ritz_method **method; /* num_methods */
     char why[1024];
 } ritz_fit;

@@ -69,11 +69,42 @@ bool ritz_fit_is_better(const ritz_fit_candidate *a,
     return a->excess < b->excess * (1.0 - 1e-6);
 }
 
-/* Of what was not measured nobody knows more than how far off it is at least. */
+/* Modes that are missing and may not be. */
+static double missing_of(const ritz_fit_candidate *c)
+{
+    const ritz_measure *m = ritz_measures_find(&c->errors, "missing-modes");
+
+    return m && m->value > m->limit ? m->value : 0.0;
+}
+
+/* Of what was not measured nobody knows more than how far off it is at least;
+ * errors of the modes that are there say little where others are missing. */
 bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b)
 {
-    return a->screened != b->screened ? b->screened : a->excess < b->excess;
+    double more = missing_of(a) - missing_of(b);
+
+    if (a->screened != b->screened)
+        return b->screened;
+    return more != 0.0 ? more < 0.0 : a->excess < b->excess;
+}
+
+int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order)
+{
+    int64_t best = -1;
+
+    for (int64_t k = 0; k < fit->count; k++) {
+        const ritz_fit_candidate *c = &fit->candidate[k];
+        const ritz_fit_candidate *b = best < 0 ? NULL : &fit->candidate[best];
+
+        if (c->method != fit->method[method] || !ritz_fit_was_made(c) ||
+            c->order > order)
+            continue;
+        if (!b || c->order > b->order ||
+            (c->order == b->order && c->excess < b->excess))
+            best = k;
+    }
+    return best;
 }
 
 /* The best and the nearest of a method. */

@@ -216,9 +216,14 @@ bool ritz_fit_stays(ritz_column_kind kind);
 bool ritz_fit_is_better(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b);
 
-/** Whether candidate @p a is nearer to the tolerance, as far as is known. */
+/** Whether candidate @p a is nearer to the tolerance, as far as is known: it
+ * misses fewer modes that may not be missing, or its other errors are less. */
 bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b);
+
+/** Of a method's candidates of no higher order the largest, the nearest of
+ * those; -1: it has none. */
+int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order);
 
 /**
  * Where what met the grid is confirmed: at random frequencies, and at the

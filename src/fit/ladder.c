@@ -128,6 +128,31 @@ static int64_t top_of(const ritz_fitter *fitter, const ritz_fit *fit,
     return top;
 }
 
+/*
+ * Of a method that met nothing the largest model is measured, if bounds had
+ * ruled it out: it says how near the method comes.
+ */
+static ritz_status measure_largest(const ladder *l)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fitter *fitter = l->fitter;
+    const bool thorough = fitter->request.thorough;
+    const int64_t at = ritz_fit_largest_of(l->fit, l->method, INT64_MAX);
+    ritz_fit_candidate *c = at < 0 ? NULL : &l->fit->candidate[at];
+    ritz_fit_candidate again = {0};
+
+    if (!c || !c->screened)
+        return RITZ_OK;
+    fitter->request.thorough = true;
+    status = ritz_fitter_try(fitter, c->method, c->modes, &again);
+    fitter->request.thorough = thorough;
+    RITZ_TRY(status);
+    ritz_fit_candidate_free(c);
+    *c = again;
+done:
+    return status;
+}
+
 ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method)
 {
     ritz_status status = RITZ_OK;
@@ -140,6 +165,10 @@ ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method)
     if (high >= 0)
         RITZ_TRY(descend(&l, low, high));
     ritz_fit_conclude(fit, method);
+    if (fit->best[method] < 0) {
+        RITZ_TRY(measure_largest(&l));
+        ritz_fit_conclude(fit, method);
+    }
     if (fitter->scene && fit->best[method] >= 0) {
         RITZ_TRY(ritz_fit_thin(fitter, fit, method, &fit->best[method]));
         ritz_fit_conclude(fit, method);

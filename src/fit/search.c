@@ -150,26 +150,6 @@ done:
     return status;
 }
 
-/* Of a method's candidates of no higher order the largest, the nearest of
- * those; -1: it has none. */
-static int64_t largest_of(const ritz_fit *fit, int64_t method, int64_t order)
-{
-    int64_t best = -1;
-
-    for (int64_t k = 0; k < fit->count; k++) {
-        const ritz_fit_candidate *c = &fit->candidate[k];
-        const ritz_fit_candidate *b = best < 0 ? NULL : &fit->candidate[best];
-
-        if (c->method != fit->method[method] || !ritz_fit_was_made(c) ||
-            c->order > order)
-            continue;
-        if (!b || c->order > b->order ||
-            (c->order == b->order && c->excess < b->excess))
-            best = k;
-    }
-    return best;
-}
-
 /* Of one method the largest that is no larger than that, by bisection. */
 static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
                             int64_t *modes, ritz_fit *fit)
@@ -212,7 +192,7 @@ ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
     for (int64_t m = 0; m < fit->num_methods; m++) {
         RITZ_TRY(approach(fitter, order, m, modes, fit));
         ritz_fit_conclude(fit, m);
-        at[m] = largest_of(fit, m, order);
+        at[m] = ritz_fit_largest_of(fit, m, order);
     }
 done:
     free(modes);
