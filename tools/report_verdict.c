@@ -170,7 +170,7 @@ static void say_errors(FILE *file, const record *r, int64_t count,
         html_print(file, "%s: %s", m[k].title, word);
         if (m[k].tolerance > 0.0) {
             chart_say_error(m[k].tolerance, limit);
-            fprintf(file, ", allowed %s", limit);
+            fprintf(file, ", allowed <span class=\"whole\">%s</span>", limit);
         }
         fprintf(file, "</li>");
     }
