@@ -100,6 +100,33 @@ static void put_plot(const mac_shapes *a, const mac_shapes *b, gnuplot *out)
     fprintf(file, "\n");
 }
 
+/* What the colour says, beside the cells: from 1 at the top down to 0. */
+static void put_scale(const chart_area *area, gnuplot *out)
+{
+    enum { STEPS = 11, STEP = 10, WIDE = 12 };
+    const char *const how = "font ',11' tc rgb '" SVG_MUTED "'";
+    const double left = area->right + 18.0;
+    const double word = left + WIDE + 6.0;
+
+    for (int k = 0; k < STEPS; k++) {
+        double top = area->top - 1.0 - STEP * k;
+        double mac = 1.0 - (double)k / (STEPS - 1);
+
+        fprintf(out->plot.file,
+                "set object %d rectangle from screen %.6f, screen %.6f to "
+                "screen %.6f, screen %.6f fc rgb '#%02x%s' fs solid noborder\n",
+                k + 1, left / out->wide, (top - STEP) / out->high,
+                (left + WIDE) / out->wide, top / out->high,
+                (unsigned)(255.5 * (0.94 - 0.94 * mac)), svg_colour[0] + 1);
+        if (k == 0 || 2 * k == STEPS - 1 || k == STEPS - 1)
+            chart_text(out, word, top - 0.5 * STEP,
+                       k == 0           ? "1"
+                       : k == STEPS - 1 ? "0"
+                                        : "0.5",
+                       how);
+    }
+}
+
 /* As many modes can be told apart as there are inputs and outputs. */
 static bool has_note(const mac_shapes *a, const mac_shapes *b)
 {
@@ -138,10 +165,11 @@ ritz_status mac_draw(const mac_shapes *a, const mac_shapes *b,
              b->name, how);
     gnuplot_size(
         out,
-        fmax(area.right + 20.0, area.left + axis_width(title, 14.0) + 10.0),
+        fmax(area.right + 64.0, area.left + axis_width(title, 14.0) + 10.0),
         area.top + 40.0);
     chart_area_begin(out, &area, title, b->name, a->name);
     put_note(a, b, out);
+    put_scale(&area, out);
     put_data(a, b, row, out);
     put_plot(a, b, out);
     RITZ_TRY(gnuplot_draw(out, title,
