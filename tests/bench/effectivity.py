@@ -8,12 +8,9 @@ matrices, each made exact to quadruple rounding by its Rayleigh quotient in long
 double, and responses by the sum of all modes. Status 1 if any bound is below
 the error it bounds.
 """
-import argparse
-import os
 import pathlib
 import re
 import sys
-import tempfile
 
 import h5py
 import numpy
@@ -163,20 +160,25 @@ def small_modes(K, M):
     return value[order], Q[:, order] / numpy.sqrt((Q * (M @ Q)).sum(0))[order]
 
 
+def estimates_of(path):
+    """Estimates of a reduced model by their names: value and place."""
+    with h5py.File(path) as file:
+        told = file["estimates"]
+        return {name.decode(): (value, where.decode()) for name, value, where
+                in zip(told["name"], told["value"], told["where"])}
+
+
 def reduced_values(full, path):
     """Eigenvalues of a reduced model, and their rounding."""
     with h5py.File(path) as file:
         K, M, T = (file[k][()] for k in ("K", "M", "T"))
-        names = [n.decode() for n in file["estimates/name"][()]]
-        values = file["estimates/value"][()]
-        places = [w.decode() for w in file["estimates/where"][()]]
     value, Q = small_modes(K, M)
     _, terms = precise(full.K, full.M, T @ Q)
     Q = abs(Q)
     terms += (Q * (abs(K) @ Q)).sum(0) + abs(value) * (Q * (abs(M) @ Q)).sum(0)
     floor = 4 * EPS * (terms + abs(value[-1])) / numpy.maximum(
         abs(value), 1e-300) / 2
-    return value, floor, dict(zip(names, zip(values, places)))
+    return value, floor
 
 
 def judge(full, value, floor, estimates):
@@ -207,18 +209,20 @@ def lowest(least, value, full):
     return least[0], abs(hertz(value[k]) / hertz(full.value[k]) - 1)
 
 
-def line(bin_, folder, component, case, band, full, truth, method, how, more):
+def line(bin_, case, full, truth, method, how, more):
     """One line of a table; how many bounds were too low."""
+    folder, component = case["folder"], case["component"]
     basis, reduced = folder / "basis.h5", folder / "reduced.h5"
     order = methods.make_basis(bin_, method, how, more, component,
                                case["order"], case["rigid"], basis)
     words = ["ritz-reduce", component, basis, "-o", reduced, "--band-hz",
-             f"0,{band:.9g}"]
+             f"0,{case['band']:.9g}"]
     if case.get("damping", 1):
         words += ["--damping", "modal 0.01"]
     answer = methods.run(bin_, *words)
     rigid = sum(f == 0 for f in answer["frequencies_hz"])
-    value, floor, estimates = reduced_values(full, reduced)
+    value, floor = reduced_values(full, reduced)
+    estimates = estimates_of(reduced)
     modes = judge(full, value, floor, estimates)
     low = [m for m in modes if not m[0] >= m[1]]
     told = [(b / max(t, r), b, t, w) for b, t, r, w in modes]
@@ -259,42 +263,21 @@ TITLES = ["method", "columns", "modes", "missing", "bound", "error", "ratio",
 
 def main():
     """Parse and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("bin", type=pathlib.Path)
-    parser.add_argument("--only", help="one data set")
-    parser.add_argument("--methods", help="some methods, with commas between")
+    parser = methods.parser_of(__doc__)
+    parser.add_argument("--methods", type=lambda word: word.split(","),
+                        help="some methods, with commas between")
     asked = parser.parse_args()
-    external = pathlib.Path(os.environ.get(
-        "RITZ_EXTERNAL_DATA",
-        methods.HERE.parent.parent.parent / "shared" / "data"))
     low = 0
-    for name, make, needs in methods.SETS:
-        if asked.only not in (None, name):
-            continue
-        if needs and not (external / needs).exists():
-            print(f"\n## {name}\n\nleft out: no external data")
-            continue
-        print(f"\n## {name}\n\n| " + " | ".join(TITLES) + " |\n|"
+    for case in methods.cases(asked.bin, asked.only, absent=methods.left_out):
+        print(f"\n## {case['name']}\n\n| " + " | ".join(TITLES) + " |\n|"
               + "---|" * len(TITLES), flush=True)
-        with tempfile.TemporaryDirectory() as place:
-            folder = pathlib.Path(place)
-            case = make(external, folder, 0)
-            component = folder / "component.h5"
-            methods.run(asked.bin, "ritz-import", *case["options"], "-o",
-                        component)
-            band, case["rigid"] = methods.band_of(asked.bin, component, folder)
-            full = Full(component, case["rigid"])
-            truth = Response(full, case["rigid"], band)
-            for method, how, more in methods.METHODS:
-                if asked.methods and method not in asked.methods.split(","):
-                    continue
-                try:
-                    low += line(asked.bin, folder, component, case, band, full,
-                                truth, method, how, more)
-                except methods.Refused as sentence:
-                    text = str(sentence).split(": ", 1)[-1]
-                    print(f"| {method} | refused: {text} |"
-                          + " |" * (len(TITLES) - 2), flush=True)
+        full = Full(case["component"], case["rigid"])
+        truth = Response(full, case["rigid"], case["band"])
+        for method, how, more in methods.some_methods(asked.methods):
+            try:
+                low += line(asked.bin, case, full, truth, method, how, more)
+            except methods.Refused as sentence:
+                methods.refused(method, sentence, len(TITLES) - 2)
     return 1 if low else 0
 
 

@@ -7,11 +7,8 @@ table of docs/methods/estimates.md, on standard output.
 The truth is one sparse solve for each frequency or, of ratios, the sum of all
 modes. Status 1 if an estimate is below a tenth of the error.
 """
-import argparse
-import os
 import pathlib
 import sys
-import tempfile
 
 import h5py
 import numpy
@@ -179,15 +176,12 @@ def rest(full):
         full.X.T @ full.B)
 
 
-def table(bin_, name, make, external, folder):
+def table(bin_, case):
     """Lines of one data set; how many estimates are dangerous."""
-    case = make(external, folder, 0)
-    component = folder / "component.h5"
+    name, folder, component, band, rigid = (
+        case[key] for key in ("name", "folder", "component", "band", "rigid"))
+    basis, reduced = folder / "basis.h5", folder / "reduced.h5"
     low = 0
-    methods.run(bin_, "ritz-import", *case["options"], "-o", component)
-    if methods.run(bin_, "ritz-info", component)["dofs"] > DOFS:
-        return 0
-    band, rigid = methods.band_of(bin_, component, folder)
     damped = Damped(effectivity.Full(component, rigid), rigid, band)
     for kind, given, asked, H, ratio in kinds(damped, folder):
         try:
@@ -196,10 +190,7 @@ def table(bin_, name, make, external, folder):
         except methods.Refused as sentence:  # rows that an import leaves out
             print(f"{name}, {kind}: {sentence}", file=sys.stderr)
             continue
-        for method, how, more in methods.METHODS:
-            if method not in METHODS:
-                continue
-            basis, reduced = folder / "basis.h5", folder / "reduced.h5"
+        for method, how, more in methods.some_methods(METHODS):
             try:
                 methods.make_basis(bin_, method, how, more, component,
                                    case["order"], rigid, basis)
@@ -215,13 +206,12 @@ def table(bin_, name, make, external, folder):
 
 def line(name, kind, method, H, damped, reduced, ratio):
     """One line; 1 if the estimate is dangerous."""
-    with h5py.File(reduced) as file:
-        found = dict(zip((n.decode() for n in file["estimates/name"][()]),
-                         file["estimates/value"][()]))
-    value = found.get("response-relative-estimate",
-                      found.get("response-relative-bound"))
-    if value is None:
+    found = effectivity.estimates_of(reduced)
+    told = found.get("response-relative-estimate",
+                     found.get("response-relative-bound"))
+    if told is None:
         return 0
+    value = told[0]
     error = abs(H - reduced_response(damped, reduced, ratio)).max() \
         / abs(H).max()
     over = value / max(error, ROUNDING)
@@ -235,22 +225,11 @@ def line(name, kind, method, H, damped, reduced, ratio):
 
 def main():
     """Parse and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("bin", type=pathlib.Path)
-    parser.add_argument("--only", help="one data set")
-    asked = parser.parse_args()
-    external = pathlib.Path(os.environ.get(
-        "RITZ_EXTERNAL_DATA",
-        methods.HERE.parent.parent.parent / "shared" / "data"))
-    low = 0
+    asked = methods.parser_of(__doc__).parse_args()
     print("| set | damping | method | estimate | error | ratio |\n"
           + "|" + "---|" * 6)
-    for name, make, needs in methods.SETS:
-        if asked.only not in (None, name) or (
-                needs and not (external / needs).exists()):
-            continue
-        with tempfile.TemporaryDirectory() as place:
-            low += table(asked.bin, name, make, external, pathlib.Path(place))
+    low = sum(table(asked.bin, case)
+              for case in methods.cases(asked.bin, asked.only, most=DOFS))
     return 1 if low else 0
 
 

@@ -6,8 +6,6 @@ docs/methods/estimates.md, on standard output.
 The truth is the largest singular value of H - H_r at some 2000 frequencies, at
 and beside all poles, by NumPy alone. Status 1 if a tail is below it.
 """
-import argparse
-import os
 import pathlib
 import sys
 import tempfile
@@ -108,11 +106,8 @@ def lines(bin_, name, folder, model, truth, words):
         except methods.Refused as sentence:
             print(f"{name}, {states} states: {sentence}", file=sys.stderr)
             continue
-        with h5py.File(reduced) as file:
-            found = dict(zip((n.decode() for n in file["estimates/name"][()]),
-                             file["estimates/value"][()]))
         error, size = error_of(truth, reduced)
-        bound = found["h-infinity-bound"]
+        bound, _ = effectivity.estimates_of(reduced)["h-infinity-bound"]
         if error < ROUNDING * size:
             continue
         print(f"| {name} | {states} | {bound:.2e} | {error:.2e} | "
@@ -123,33 +118,16 @@ def lines(bin_, name, folder, model, truth, words):
 
 def main():
     """Parse and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("bin", type=pathlib.Path)
-    parser.add_argument("--only", help="one model")
-    asked = parser.parse_args()
-    external = pathlib.Path(os.environ.get(
-        "RITZ_EXTERNAL_DATA",
-        methods.HERE.parent.parent.parent / "shared" / "data"))
+    asked = methods.parser_of(__doc__).parse_args()
     low = 0
     print("| model | states | bound | error | ratio |\n|---|---|---|---|---|")
-    for name, make, needs in methods.SETS:
-        if asked.only not in (None, name) or (
-                needs and not (external / needs).exists()):
-            continue
-        with tempfile.TemporaryDirectory() as place:
-            folder = pathlib.Path(place)
-            case = make(external, folder, 0)
-            model = folder / "component.h5"
-            methods.run(asked.bin, "ritz-import", *case["options"], "-o", model)
-            if methods.run(asked.bin, "ritz-info", model)["dofs"] > DOFS:
-                continue
-            _, rigid = methods.band_of(asked.bin, model, folder)
-            words = (["--damping", f"modal {effectivity.ZETA}"]
-                     if case.get("damping", 1) else [])
-            low += lines(asked.bin, name, folder, model,
-                         Component(model, rigid), words)
+    for case in methods.cases(asked.bin, asked.only, most=DOFS):
+        words = (["--damping", f"modal {effectivity.ZETA}"]
+                 if case.get("damping", 1) else [])
+        low += lines(asked.bin, case["name"], case["folder"], case["component"],
+                     Component(case["component"], case["rigid"]), words)
     for name in SPACES:
-        place = external / "state_space" / name
+        place = methods.EXTERNAL / "state_space" / name
         if asked.only not in (None, name) or not (place / "A.mtx").exists():
             continue
         with tempfile.TemporaryDirectory() as work:

@@ -24,6 +24,8 @@ import scipy.sparse
 
 HERE = pathlib.Path(__file__).resolve().parent
 DATA = HERE.parent.parent / "data"
+EXTERNAL = pathlib.Path(os.environ.get(
+    "RITZ_EXTERNAL_DATA", HERE.parent.parent.parent / "shared" / "data"))
 
 # How a method is asked for an order: "modes" by their number, "interface" by
 # nothing, its order being that of the attached dofs, "measured" by as many modes
@@ -187,6 +189,56 @@ SETS = [
 ]
 
 
+def parser_of(doc):
+    """A parser of what all benchmarks are told."""
+    parser = argparse.ArgumentParser(description=doc.splitlines()[0])
+    parser.add_argument("bin", type=lambda word: pathlib.Path(word).resolve())
+    parser.add_argument("--only", help="one data set")
+    return parser
+
+
+def some_methods(names):
+    """Those of METHODS that are named; all, if none are."""
+    return [m for m in METHODS if not names or m[0] in names]
+
+
+def cases(bin_, only=None, n=0, most=None, absent=lambda name: None):
+    """Each data set that is there, imported into a folder that goes away.
+
+    Not those of more dofs than `most`; n is for the solid. A case says what it
+    is called, its component, how many modes are rigid and what band to look at.
+    """
+    for name, make, needs in SETS + ([("solid", solid, None)] if n else []):
+        if only not in (None, name):
+            continue
+        if needs and not (EXTERNAL / needs).exists():
+            absent(name)
+            continue
+        with tempfile.TemporaryDirectory() as place:
+            folder = pathlib.Path(place)
+            case = make(EXTERNAL, folder, n)
+            case.update(name=name, about=make.__doc__, folder=folder,
+                        component=folder / "component.h5")
+            run(bin_, "ritz-import", *case["options"], "-o", case["component"])
+            case["dofs"] = run(bin_, "ritz-info", case["component"])["dofs"]
+            if most and case["dofs"] > most:
+                continue
+            case["band"], case["rigid"] = band_of(bin_, case["component"],
+                                                  folder)
+            yield case
+
+
+def left_out(name):
+    """In place of a table."""
+    print(f"\n## {name}\n\nleft out: no external data")
+
+
+def refused(method, sentence, more):
+    """In place of a line of a table, with so many cells more."""
+    text = str(sentence).split(": ", 1)[-1]
+    print(f"| {method} | refused: {text} |" + " |" * more, flush=True)
+
+
 def make_basis(bin_, method, how, more, component, order, rigid, out):
     """A basis as near to the order as the method allows, and its columns."""
     words = ["ritz-basis", method, *more, component, "-o", out]
@@ -217,10 +269,10 @@ def band_of(bin_, component, folder):
             len(f) - len(flexible))
 
 
-def measure(bin_, folder, component, case, band, method, how, more):
+def measure(bin_, case, method, how, more):
     """One line of a table."""
+    folder, component, order = case["folder"], case["component"], case["order"]
     basis, reduced = folder / "basis.h5", folder / "reduced.h5"
-    order = case["order"]
     if method in case.get("given", {}):
         order, points = case["given"][method]
         more = [*more, "--shift-hz", points]
@@ -229,8 +281,8 @@ def measure(bin_, folder, component, case, band, method, how, more):
                        case["rigid"], basis)
     seconds = time.monotonic() - start
     run(bin_, "ritz-reduce", component, basis, "-o", reduced)
-    words = ["ritz-verify", component, reduced, "--band-hz", f"0,{band:.9g}",
-             "-o", folder / "verified.h5"]
+    words = ["ritz-verify", component, reduced, "--band-hz",
+             f"0,{case['band']:.9g}", "-o", folder / "verified.h5"]
     if case.get("damping", 1):
         words += ["--damping", "modal 0.01"]
     found = {m["name"]: m["value"] for m in run(bin_, *words)["measures"]}
@@ -267,57 +319,34 @@ def cell(name, found):
     return f"{1 - value if name == 'mac' else value:.1e}"
 
 
-def table(bin_, name, make, external, folder, n):
+def table(bin_, case, names):
     """All methods on one data set."""
-    case = make(external, folder, n)
-    component = folder / "component.h5"
-    answer = run(bin_, "ritz-import", *case["options"], "-o", component)
-    dofs = run(bin_, "ritz-info", component)["dofs"]
-    band, case["rigid"] = band_of(bin_, component, folder)
-    print(f"\n## {name}\n\n{make.__doc__} {dofs} dofs, asked for "
-          f"{case['order']} columns, measured up to {band:.4g} Hz.\n")
+    print(f"\n## {case['name']}\n\n{case['about']} {case['dofs']} dofs, asked "
+          f"for {case['order']} columns, measured up to {case['band']:.4g} "
+          "Hz.\n")
     print("| method | columns | " + " | ".join(c for _, c in COLUMNS) + " |")
     print("|---|" + "---|" * (len(COLUMNS) + 1), flush=True)
-    for method, how, more in METHODS:
+    for method, how, more in some_methods(names):
         try:
-            order, _, found = measure(bin_, folder, component, case, band,
-                                      method, how, more)
+            order, _, found = measure(bin_, case, method, how, more)
             cells = [cell(key, found) for key, _ in COLUMNS]
             print(f"| {method} | {order} | " + " | ".join(cells) + " |",
                   flush=True)
         except Refused as sentence:
-            text = str(sentence).split(": ", 1)[-1]
-            print(f"| {method} | refused: {text} |" + " |" * len(COLUMNS),
-                  flush=True)
+            refused(method, sentence, len(COLUMNS))
 
 
 def main():
     """Parse and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("bin", type=pathlib.Path)
+    parser = parser_of(__doc__)
     parser.add_argument("--solid", type=int, default=0)
-    parser.add_argument("--only", help="one data set")
-    parser.add_argument("--methods", help="some methods, with commas between")
+    parser.add_argument("--methods", type=lambda word: word.split(","),
+                        help="some methods, with commas between")
     asked = parser.parse_args()
-    external = pathlib.Path(os.environ.get(
-        "RITZ_EXTERNAL_DATA", HERE.parent.parent.parent / "shared" / "data"))
     if not asked.only:
         print(HEAD)
-    global METHODS
-    if asked.methods:
-        METHODS = [m for m in METHODS if m[0] in asked.methods.split(",")]
-    sets = list(SETS)
-    if asked.solid:
-        sets.append(("solid", solid, None))
-    for name, make, needs in sets:
-        if asked.only not in (None, name):
-            continue
-        if needs and not (external / needs).exists():
-            print(f"\n## {name}\n\nleft out: no external data")
-            continue
-        with tempfile.TemporaryDirectory() as folder:
-            table(asked.bin.resolve(), name, make, external,
-                  pathlib.Path(folder), asked.solid)
+    for case in cases(asked.bin, asked.only, asked.solid, absent=left_out):
+        table(asked.bin, case, asked.methods)
 
 
 if __name__ == "__main__":

@@ -2,14 +2,10 @@
 # balanced.sh FOLDER-OF-THE-TOOLS - bases that are balanced, and what ritz-reduce
 # makes of each kind.
 . "$(dirname "$0")/tap.sh"
-data=${RITZ_DATA:?is not set}/chain
+. "$here/models.sh"
 
-ritz-import -q --stiffness "$data/chain.K.mtx" --mass "$data/chain.M.mtx" \
-    --damping "$data/chain.D.mtx" --dofs "$data/chain.dofs" \
-    --input tip=10:1 --output-at root=1:1 -o chain.h5
-ritz-import -q --stiffness "$data/chain.K.mtx" --mass "$data/chain.M.mtx" \
-    --damping "$data/chain.D.mtx" --dofs "$data/chain.dofs" \
-    --input tip=10:1 --output-at tip=10:1 -o tip.h5
+import_chain --input tip=10:1 --output-at root=1:1 -o chain.h5
+import_chain --input tip=10:1 --output-at tip=10:1 -o tip.h5
 
 # --- states: the bound is printed, noted and held -------------------------------
 

@@ -2,28 +2,13 @@
 # Charts of several channels and of systems: singular values, decibels,
 # likeness by masses and by inputs and outputs.
 # Usage: chart_systems.sh FOLDER-OF-THE-TOOLS
-data=$(cd "$(dirname "$0")/../../data" && pwd)
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
+. "$here/svg.sh"
 command -v gnuplot >/dev/null || {
     echo 'ok 1 - charts are drawn # SKIP gnuplot is not installed'
     echo '1..1'
     exit 0
-}
-n=$data/dualspin
-
-cat >well.py <<'END'
-import sys, xml.etree.ElementTree as xml
-root = xml.parse(sys.argv[1]).getroot()
-assert root.tag.endswith("svg")
-for node in root.iter():
-    assert not node.tag.endswith("script")
-    assert not any(k.startswith("on") for k in node.attrib)
-END
-# well NAME: XML, without scripts; what gnuplot draws again is a picture too
-well() {
-    expect 0 '' /usr/bin/python3 well.py "$1"
-    expect 0 '' gnuplot -e "out='again.svg'" "$1.gp"
-    expect 0 '</svg>' cat again.svg
 }
 
 # --- several channels: singular values and decibels ---------------------------
@@ -32,9 +17,8 @@ well() {
 stator() {
     name=$1
     shift
-    expect 0 '' ritz-import -q --stiffness "$n/stator.op4:KGG" --mass \
-        "$n/stator.op4:MGG" --bulk "$n/stator.bdf" --port bearing=1 \
-        --port scan=5 "$@" -o "$name"
+    expect 0 '' import_body stator -q --port bearing=1 --port scan=5 "$@" \
+        -o "$name"
 }
 stator two.h5 --input torque=1:6 --input push=1:1 --output-at turn=5:6 \
     --output-at slide=5:1
@@ -120,8 +104,7 @@ expect 0 'singular values: two-full.h5, two-small.h5' cat two.html
 
 # --- likeness of systems: by masses, by inputs and outputs --------------------
 
-expect 0 '' ritz-import -q --mass "$n/platform.op4:MGG" --bulk \
-    "$n/platform.bdf" --port scan=1 -o platform.h5
+expect 0 '' import_body platform -q --port scan=1 -o platform.h5
 cat >pair.yaml <<'END'
 scene: stator and platform
 components:

@@ -2,23 +2,17 @@
 # Two-stage reduction as its user meets it: what stage two is made from, what it
 # is augmented by, what becomes of extraneous modes, tracks, tolerances.
 # Usage: compare.sh FOLDER-OF-THE-TOOLS
-here=$(cd "$(dirname "$0")" && pwd)
-data=${RITZ_DATA:-$here/../../data}/dualspin
-. "$here/tap.sh"
+. "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 
 # --- the spacecraft, at few angles so as to be quick ---------------------------
 
-for name in rotor stator; do
-    ports='--port bearing=1'
-    [ "$name" = stator ] && ports="$ports --port scan=5"
-    [ "$name" = rotor ] && ports="$ports --port boom=33"
-    # shellcheck disable=SC2086
-    expect 0 '' ritz-import --stiffness "$data/$name.op4:KGG" \
-        --mass "$data/$name.op4:MGG" --bulk "$data/$name.bdf" $ports \
-        --units 'kg m s' -q -o "$name.h5"
-done
-expect 0 '' ritz-import --mass "$data/platform.op4:MGG" \
-    --bulk "$data/platform.bdf" --port scan=1 --units 'kg m s' -q -o platform.h5
+expect 0 '' import_body rotor -q --port bearing=1 --port boom=33 \
+    --units 'kg m s' -o rotor.h5
+expect 0 '' import_body stator -q --port bearing=1 --port scan=5 \
+    --units 'kg m s' -o stator.h5
+expect 0 '' import_body platform -q --port scan=1 --units 'kg m s' \
+    -o platform.h5
 
 # scene NAME KEYS...: a scene of the three, with these keys beside them.
 scene() {

@@ -3,7 +3,6 @@
 # them: a brick of solid elements on a hinge.
 # Usage: constraints.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
-data=${RITZ_DATA:-$(dirname "$0")/../../data}
 
 # --- a solid: eight-node bricks, 2 x 2 x 6 of them, E = 70e9, nu = 0.3 ---------
 

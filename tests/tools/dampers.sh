@@ -3,23 +3,21 @@
 # poles, ratios, fits, unsymmetric D; and the passive damper study of
 # data/damper-chain to the published digits.
 # Usage: dampers.sh FOLDER-OF-THE-TOOLS
-here=$(cd "$(dirname "$0")" && pwd)
 . "$(dirname "$0")/tap.sh"
-data=${RITZ_DATA:-$here/../../data}/damper-chain
+data=$data/damper-chain
 
 # near NAME VALUE EXPECTED HALF-A-DIGIT
 near() {
-    awk -v a="$2" -v b="$3" -v t="$4" 'BEGIN {
+    works "$1" awk -v a="$2" -v b="$3" -v t="$4" 'BEGIN {
         d = a - b; if (d < 0) d = -d
         print a, "is not", b, "within", t
-        exit !(d <= t) }' >log && report yes "$1" || report no "$1"
+        exit !(d <= t) }'
 }
 
 # --- the study ---------------------------------------------------------------
 mkdir study
 cp "$data"/* study
-make -C study report -j2 BIN="$bin" >log 2>&1 && report yes "the study runs" ||
-    report no "the study runs"
+works "the study runs" make -C study report -j2 BIN="$bin"
 # field ROW COLUMN of the report's table
 field() { awk -v row="$1" -v column="$2" 'NR == row { print $column }' \
     study/build/report.txt; }

@@ -2,8 +2,7 @@
 # estimates.sh FOLDER-OF-THE-TOOLS - no estimate of ritz-reduce is below the
 # error that NumPy and SciPy find, on data that is shipped and, if it is there,
 # on the data of others; and what ritz-reduce says of them.
-here=$(cd "$(dirname "$0")" && pwd)
-. "$here/tap.sh"
+. "$(dirname "$0")/tap.sh"
 
 # effective SET METHODS: bench/effectivity.py has status 1 for one too low.
 effective() {
@@ -20,7 +19,7 @@ if [ -d "$external/pairs/lund" ]; then
     effective LF10 irs,craig-bampton,krylov
 fi
 
-truss=$here/../../data/truss72
+truss=$data/truss72
 ritz-import --stiffness "$truss/truss72.k.mtx" --mass "$truss/truss72.m.mtx" \
     --bulk "$truss/truss72.bdf" --dofs "$truss/truss72.dofs" \
     --port ends=1,2:12 --input in=36:2 --output-at out=35:2 -o truss.h5 >log

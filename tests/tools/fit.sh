@@ -1,9 +1,8 @@
 #!/bin/sh
 # The smallest model that meets a tolerance, as its user meets it.
 # Usage: fit.sh FOLDER-OF-THE-TOOLS
-here=$(cd "$(dirname "$0")" && pwd)
-data=${RITZ_DATA:-$here/../../data}
-. "$here/tap.sh"
+. "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 
 truss=$data/truss72
 expect 0 '' ritz-import --stiffness "$truss/truss72.k.mtx" \
@@ -43,21 +42,14 @@ expect 1 'no method meets the tolerance; nearest is' "$@" --tolerance flexible=1
     --largest 6 -o no.h5
 expect 1 'is a component: --components is for scenes' "$@" --tolerance 1e-2 \
     --components x- -o no.h5
-[ ! -e no.h5 ] && report yes '  leave nothing behind' || report no 'no.h5'
+works '  leave nothing behind' test ! -e no.h5
 
 # --- a scene -------------------------------------------------------------------------
 
-for name in rotor stator; do
-    ports='--port bearing=1'
-    [ "$name" = stator ] && ports="$ports --port scan=5"
-    # shellcheck disable=SC2086
-    expect 0 '' ritz-import --stiffness "$data/dualspin/$name.op4:KGG" \
-        --mass "$data/dualspin/$name.op4:MGG" \
-        --bulk "$data/dualspin/$name.bdf" $ports --units 'kg m s' -q \
-        -o "$name.h5"
-done
-expect 0 '' ritz-import --mass "$data/dualspin/platform.op4:MGG" \
-    --bulk "$data/dualspin/platform.bdf" --port scan=1 --units 'kg m s' -q \
+expect 0 '' import_body rotor -q --port bearing=1 --units 'kg m s' -o rotor.h5
+expect 0 '' import_body stator -q --port bearing=1 --port scan=5 \
+    --units 'kg m s' -o stator.h5
+expect 0 '' import_body platform -q --port scan=1 --units 'kg m s' \
     -o platform.h5
 cat >scene.yaml <<'END'
 scene: two bodies and a platform

@@ -1,17 +1,14 @@
 #!/bin/sh
 # Free-interface and static methods as a user meets them.
 # Usage: free.sh FOLDER-OF-THE-TOOLS
-data=$(cd "${RITZ_DATA:-$(dirname "$0")/../../data}/dualspin" && pwd)
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 
-expect 0 "243 dofs" ritz-import --stiffness "$data/rotor.op4:KGG" \
-    --mass "$data/rotor.op4:MGG" --bulk "$data/rotor.bdf" --port bearing=1 \
-    --input torque=1:6 --output-at spin=1:6 -o rotor.h5
-expect 0 "57 dofs" ritz-import --stiffness "$data/stator.op4:KGG" \
-    --mass "$data/stator.op4:MGG" --bulk "$data/stator.bdf" \
-    --port bearing=1 --port scan=5 -o stator.h5
-expect 0 "6 dofs" ritz-import --mass "$data/platform.op4:MGG" \
-    --bulk "$data/platform.bdf" --port scan=1 -o platform.h5
+expect 0 "243 dofs" import_body rotor --port bearing=1 --input torque=1:6 \
+    --output-at spin=1:6 -o rotor.h5
+expect 0 "57 dofs" import_body stator --port bearing=1 --port scan=5 \
+    -o stator.h5
+expect 0 "6 dofs" import_body platform --port scan=1 -o platform.h5
 
 # --- a body alone -------------------------------------------------------------
 

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Krylov vectors end to end, on the truss of data/truss72.
 # Usage: krylov.sh FOLDER-OF-THE-TOOLS
-data=$(cd "$(dirname "$0")/../../data/truss72" && pwd)
 . "$(dirname "$0")/tap.sh"
+data=$data/truss72
 
 # --- the data are what their script makes ------------------------------------
 

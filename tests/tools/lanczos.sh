@@ -2,11 +2,9 @@
 # lanczos.sh FOLDER-OF-THE-TOOLS - bases of states, the state spaces that they
 # make, and what is not exported.
 . "$(dirname "$0")/tap.sh"
-data=${RITZ_DATA:?is not set}/chain
+. "$here/models.sh"
 
-ritz-import -q --stiffness "$data/chain.K.mtx" --mass "$data/chain.M.mtx" \
-    --damping "$data/chain.D.mtx" --dofs "$data/chain.dofs" \
-    --input tip=10:1 --output-at root=1:1 -o chain.h5
+import_chain --input tip=10:1 --output-at root=1:1 -o chain.h5
 printf '%s\n' '%%MatrixMarket matrix coordinate real symmetric' '2 2 2' \
     '1 1 1' '2 2 1' >small.K.mtx
 printf '1 1\n2 1\n' >small.dofs

@@ -2,11 +2,9 @@
 # loop.sh FOLDER-OF-THE-TOOLS - closed loops, singular values, zeros, and how
 # many columns of a nested file are taken.
 . "$(dirname "$0")/tap.sh"
-data=${RITZ_DATA:?is not set}/chain
+. "$here/models.sh"
 
-ritz-import -q --stiffness "$data/chain.K.mtx" --mass "$data/chain.M.mtx" \
-    --damping "$data/chain.D.mtx" --dofs "$data/chain.dofs" \
-    --input tip=10:1 --output-at tip=10:1 --output-at root=1:1 -o chain.h5
+import_chain --input tip=10:1 --output-at tip=10:1 --output-at root=1:1 -o chain.h5
 ritz-basis full chain.h5 -q -o full.h5
 ritz-reduce chain.h5 full.h5 -q -o whole.h5
 
@@ -52,7 +50,8 @@ expect 0 'closed loop response' ritz-frf whole.h5 --to-hz 0.5 \
     --connect y1=tip -o again.h5
 expect 0 'states response' ritz-frf states.h5 --to-hz 0.5 --points-of closed.h5 \
     -o by-states.h5
-/usr/bin/python3 - <<'END' >log 2>&1 && good=yes || good=no
+works 'a loop closed in frequency, in states and by hand is one' \
+    /usr/bin/python3 - <<'END'
 import h5py, numpy
 def H(name):
     with h5py.File(name) as f:
@@ -75,7 +74,6 @@ for name in "closed.h5", "again.h5", "by-states.h5":
     assert off < 1e-10, name
 assert abs(sigma[:, 0] - numpy.linalg.norm(due[:, :, 0], axis=1)).max() < 1e-9
 END
-report $good 'a loop closed in frequency, in states and by hand is one'
 expect 1 'the loop is unstable, pole at +0.028934' ritz-frf whole.h5 \
     --to-hz 0.5 --controller drive.h5 --connect tip=u1 --connect y1=tip \
     -o none.h5

@@ -1,21 +1,19 @@
 #!/bin/sh
 # Rankings end to end, on data/dualspin and on the truss of data/truss72.
 # Usage: rank.sh FOLDER-OF-THE-TOOLS
-data=$(cd "$(dirname "$0")/../../data" && pwd)
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 
 # --- a system over its configurations ----------------------------------------
 
 mkdir build
-cp "$data"/dualspin/*.op4 "$data"/dualspin/*.bdf "$data"/dualspin/scene.yaml .
-sed -i 's/0, 60, 120, 180, 240, 300/0, 60/' scene.yaml
-for body in rotor stator; do
-    expect 0 '' ritz-import --stiffness $body.op4:KGG --mass $body.op4:MGG \
-        --bulk $body.bdf --port bearing=1 --port scan=5 --units 'kg m s' \
-        -o build/$body.h5
+sed 's/0, 60, 120, 180, 240, 300/0, 60/' "$data/dualspin/scene.yaml" >scene.yaml
+for name in rotor stator; do
+    expect 0 '' import_body $name --port bearing=1 --port scan=5 \
+        --units 'kg m s' -o build/$name.h5
 done
-expect 0 '' ritz-import --mass platform.op4:MGG --bulk platform.bdf \
-    --port scan=1 --units 'kg m s' -o build/platform.h5
+expect 0 '' import_body platform --port scan=1 --units 'kg m s' \
+    -o build/platform.h5
 expect 0 '' ritz-assemble scene.yaml --tracks tracks.tsv -o system.h5
 
 expect 0 'modes are followed by number' ritz-rank system.h5
@@ -139,12 +137,9 @@ expect 1 'nothing else ranks it' ritz-rank truss.h5 --by gregory
 
 # --- state spaces: 1/(s + 1) and 3/(s + 2) apart ---------------------------------
 
-for entry in 'A 2 2 -1 0 0 -2' 'B 2 2 1 0 0 3' 'C 2 2 1 0 0 1'; do
-    # shellcheck disable=SC2086 # words of it
-    set -- $entry
-    { printf '%%%%MatrixMarket matrix array real general\n%s %s\n' "$2" "$3"
-      name=$1; shift 3; printf '%s\n' "$@"; } >"$1.mtx"
-done
+array A.mtx '2 2' -1 0 0 -2
+array B.mtx '2 2' 1 0 0 3
+array C.mtx '2 2' 1 0 0 1
 expect 0 '' ritz-import --state-space A=A.mtx,B=B.mtx,C=C.mtx -o space.h5
 json 0 ritz-rank space.h5
 holds '  has the values of its two halves' \

@@ -1,8 +1,8 @@
 #!/bin/sh
 # The report of ritz-chart in a real browser: what it fetches, says, how it fits
 # and what keys do. Usage: report.sh FOLDER-OF-THE-TOOLS
-data=$(cd "$(dirname "$0")/../../data" && pwd)
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 for program in gnuplot chromium; do
     command -v $program >/dev/null || {
         echo "ok 1 - the report works in a browser # SKIP $program is not" \
@@ -14,11 +14,8 @@ done
 
 # --- a report of every kind of file ------------------------------------------
 
-n=$data/dualspin
-expect 0 '' ritz-import --stiffness "$n/stator.op4:KGG" --mass \
-    "$n/stator.op4:MGG" --bulk "$n/stator.bdf" --port bearing=1 \
-    --input torque=1:6 --input push=1:1 --output-at turn=5:6 \
-    --output-at slide=5:1 -o stator.h5
+expect 0 '' import_body stator --port bearing=1 --input torque=1:6 \
+    --input push=1:1 --output-at turn=5:6 --output-at slide=5:1 -o stator.h5
 for method in craig-bampton macneal-rubin; do
     for modes in 2 4 8; do
         ritz-basis $method --modes $modes --attach bearing -q stator.h5 \

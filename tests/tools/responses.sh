@@ -2,13 +2,12 @@
 # responses.sh FOLDER-OF-THE-TOOLS - engines of ritz-frf and points that keep a
 # tolerance: what is asked, chosen, refused, and what the file says of it.
 . "$(dirname "$0")/tap.sh"
-chain=${RITZ_DATA:?}/chain
+. "$here/models.sh"
 
-ritz-import -q --stiffness "$chain/chain.K.mtx" --mass "$chain/chain.M.mtx" \
-    --dofs "$chain/chain.dofs" --input tip=10:1 --output-at root=1:1 -o plain.h5
-ritz-import -q --stiffness "$chain/chain.K.mtx" --mass "$chain/chain.M.mtx" \
-    --damping "$chain/chain.D.mtx" --dofs "$chain/chain.dofs" \
-    --input tip=10:1 --output-at root=1:1 -o damped.h5
+ritz-import -q --stiffness "$data/chain/chain.K.mtx" \
+    --mass "$data/chain/chain.M.mtx" --dofs "$data/chain/chain.dofs" \
+    --input tip=10:1 --output-at root=1:1 -o plain.h5
+import_chain --input tip=10:1 --output-at root=1:1 -o damped.h5
 
 expect 0 'KenneyStubberudLaub1992' ritz-frf --list
 expect 2 "no method 'krilov', is 'krylov' meant?" \
@@ -65,8 +64,7 @@ for f in numpy.random.default_rng(1992).uniform(hz[0], hz[-1], 1000):
 assert worst <= 1e-3, worst
 print(len(hz), worst)
 END_OF_CHECK
-    /usr/bin/python3 check.py >log 2>&1 && verdict=yes || verdict=no
-    report "$verdict" 'SciPy finds the same, between points too'
+    works 'SciPy finds the same, between points too' /usr/bin/python3 check.py
 else
     echo '# skipped: no SciPy, responses are not held to it'
 fi

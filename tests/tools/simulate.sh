@@ -1,12 +1,11 @@
 #!/bin/sh
 # Time responses as a user asks for them. Usage: simulate.sh FOLDER-OF-THE-TOOLS
-data=$(cd "$(dirname "$0")/../../data/dualspin" && pwd)
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 
-ritz-import -q --stiffness "$data/stator.op4:KGG" --mass "$data/stator.op4:MGG" \
-    --bulk "$data/stator.bdf" --port bearing=1 --port scan=5 \
-    --input torque=1:6 --output-at gyro=5:6 --output-at rate=5:6/vel \
-    --output-at shake=5:6/acc -o stator.h5
+import_body stator -q --port bearing=1 --port scan=5 --input torque=1:6 \
+    --output-at gyro=5:6 --output-at rate=5:6/vel --output-at shake=5:6/acc \
+    -o stator.h5
 ritz-basis -q macneal-rubin --modes 4 stator.h5 -o basis.h5
 ritz-reduce -q stator.h5 basis.h5 -o reduced.h5
 
@@ -50,9 +49,9 @@ expect 0 'inputs held to order zero' ritz-simulate --seconds 0.4 --step 0.05 \
 expect 0 'pulse.tsv' ritz-info pulse.h5
 expect 0 '9 times, 3 outputs, 1 inputs' ritz-export --to tsv pulse.h5 \
     -o pulse.out
-[ "$(awk -F '\t' 'NR == 4 { print $1 * 100, $2 * 100 }' pulse.out)" = '10 100' ] &&
-    verdict=yes || verdict=no
-report "$verdict" 'a table is interpolated'
+works 'a table is interpolated' awk -F '\t' \
+    'NR == 4 { found = $1 * 100 " " $2 * 100 }
+     END { exit found != "10 100" }' pulse.out
 expect 0 '3 times to 0.4 s' ritz-simulate --seconds 0.4 --step 0.05 --every 4 \
     --input torque=impulse reduced.h5 -o few.h5
 
@@ -102,7 +101,6 @@ expect 1 'rows for' ritz-simulate --seconds 1 --initial pulse.tsv reduced.h5 \
     -o none.h5
 expect 1 'holds a time response, not' ritz-simulate --seconds 1 modal.h5 \
     -o none.h5
-[ -e none.h5 ] && verdict=no || verdict=yes
-report "$verdict" 'nothing is written where it fails'
+works 'nothing is written where it fails' test ! -e none.h5
 
 echo "1..$count"

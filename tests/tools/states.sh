@@ -2,16 +2,8 @@
 # states.sh FOLDER-OF-THE-TOOLS - state spaces through the tools: out of matrix
 # files, reduced, measured, and into MAT and Matrix Market files.
 . "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
 building=${RITZ_EXTERNAL_DATA:?is not set}/state_space/building
-chain=${RITZ_DATA:?is not set}/chain
-
-# array NAME SIZES VALUE...: a full matrix, by columns.
-array() {
-    name=$1 sizes=$2
-    shift 2
-    { printf '%%%%MatrixMarket matrix array real general\n%s\n' "$sizes"
-      printf '%s\n' "$@"; } >"$name"
-}
 
 # --- import -----------------------------------------------------------------------
 
@@ -72,9 +64,7 @@ expect 1 'are left' ritz-import --state-space cut.mat -o none.h5
 
 # --- a component against states that were made of it -----------------------------------
 
-ritz-import -q --stiffness "$chain/chain.K.mtx" --mass "$chain/chain.M.mtx" \
-    --damping "$chain/chain.D.mtx" --dofs "$chain/chain.dofs" \
-    --input tip=10:1 --output-at root=1:1 -o chain.h5
+import_chain --input tip=10:1 --output-at root=1:1 -o chain.h5
 ritz-basis -q lanczos-one-sided --modes 12 --operator inverse chain.h5 \
     -o basis.h5
 ritz-reduce -q chain.h5 basis.h5 -o small.h5
@@ -99,9 +89,9 @@ scipy.io.savemat("chain.mat", {k: scipy.io.mmread(f"{d}/chain.{k}.mtx")
                                for d in [__import__("sys").argv[1]]
                                for k in "KMD"}, do_compression=True)
 END
-    /usr/bin/python3 pack.py "$chain"
+    /usr/bin/python3 pack.py "$data/chain"
     ritz-import -q --stiffness chain.mat:K --mass chain.mat:M \
-        --damping chain.mat:D --dofs "$chain/chain.dofs" --input tip=10:1 \
+        --damping chain.mat:D --dofs "$data/chain/chain.dofs" --input tip=10:1 \
         --output-at root=1:1 -o packed.h5
     for file in chain packed; do
         ritz-info --json "$file.h5" | grep -A 4 '"checksums"' >"$file.sums"
@@ -116,8 +106,7 @@ with h5py.File("two.h5") as f:
 assert [str(x[0][0]) for x in m["output_names"]] == ["slow", "fast"]
 assert m["limits"][0, 0] == 0.5 and numpy.isnan(m["limits"][1, 0])
 END
-    /usr/bin/python3 read.py >log 2>&1 && verdict=yes || verdict=no
-    report "$verdict" 'SciPy reads what was exported'
+    works 'SciPy reads what was exported' /usr/bin/python3 read.py
 else
     echo '# skipped: no SciPy, MAT files of others are not tried'
 fi

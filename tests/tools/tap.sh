@@ -1,8 +1,11 @@
 # What test scripts of the tools share; sourced with FOLDER-OF-THE-TOOLS as $1.
-# They then stand in an empty folder that goes away, the tools in the path.
-# shellcheck shell=sh
+# They then stand in an empty folder that goes away, the tools in the path;
+# $here is where the scripts are, $data where models are.
+# shellcheck shell=sh disable=SC2034 # for those who source it
 set -eu
 bin=$(cd "$1" && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
+data=$(cd "${RITZ_DATA:-$here/../../data}" && pwd)
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir"
@@ -21,6 +24,17 @@ report() {
     exit 1
 }
 
+# works NAME COMMAND...: the command succeeds.
+works() {
+    what=$1
+    shift
+    if "$@" >log 2>&1; then
+        report yes "$what"
+    else
+        report no "$what"
+    fi
+}
+
 # expect STATUS WORDS COMMAND...: the command exits so and says so.
 expect() {
     want=$1 words=$2 got=0
@@ -36,7 +50,7 @@ expect() {
 
 # holds NAME PYTHON: the expression is true of j, the JSON object in log.json.
 holds() {
-    if /usr/bin/python3 - "$2" >log 2>&1 <<'END'; then
+    works "$1" /usr/bin/python3 - "$2" <<'END'
 import json, math, sys
 j = json.load(open("log.json"))
 def near(a, b, tolerance):
@@ -44,10 +58,6 @@ def near(a, b, tolerance):
         abs(x - y) <= tolerance * max(abs(y), 1.0) for x, y in zip(a, b))
 sys.exit(0 if eval(f"({sys.argv[1]})") else f"{sys.argv[1]} fails of {j}")
 END
-        report yes "$1"
-    else
-        report no "$1"
-    fi
 }
 
 # json STATUS COMMAND...: --json gives one object, whatever the status.

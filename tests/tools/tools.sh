@@ -355,8 +355,7 @@ expect 0 'a mass alone' sh -c 'ritz-import -q --mass bar.m.mtx \
 ln -s p1.h5 link.h5
 ritz-basis guyan bar.h5 -q -o link.h5
 ritz-basis guyan bar.h5 -q -o link.h5
-[ -L link.h5 ] && verdict=yes || verdict=no
-report $verdict 'an output that is a link stays one'
+works 'an output that is a link stays one' test -L link.h5
 
 # A large bar keeps the tool busy until it is told to stop.
 bar 60000 K >big.k.mtx
@@ -365,7 +364,8 @@ awk 'BEGIN { for (i = 1; i <= 60001; i++) print i, 1 }' >big.dofs
 ritz-import -q --stiffness big.k.mtx --mass big.m.mtx --dofs big.dofs \
     --port all=1-40000:1 -o big.h5
 for signal in INT TERM HUP; do
-    /usr/bin/python3 - $signal >log 2>&1 <<'END' && verdict=yes || verdict=no
+    works "SIG$signal ends a tool, and the status tells" \
+        /usr/bin/python3 - $signal <<'END'
 import os, signal, subprocess, sys, time
 number = getattr(signal, "SIG" + sys.argv[1])
 run = subprocess.Popen(["ritz-basis", "craig-bampton", "--modes", "400",
@@ -374,11 +374,11 @@ time.sleep(1.0)
 run.send_signal(number)
 sys.exit(0 if run.wait(30) == -number else f"ended with {run.returncode}")
 END
-    report $verdict "SIG$signal ends a tool, and the status tells"
 done
 
 # Told to stop while it writes: tried until the signal meets a draft.
-/usr/bin/python3 - >log 2>&1 <<'END' && verdict=yes || verdict=no
+works 'a tool that is stopped while it writes leaves no file' \
+    /usr/bin/python3 - <<'END'
 import glob, signal, subprocess, sys
 for attempt in range(50):
     run = subprocess.Popen(["ritz-import", "-q", "--stiffness", "big.k.mtx",
@@ -393,7 +393,6 @@ left = glob.glob("big.out*")
 sys.exit(0 if run.returncode == -signal.SIGTERM and not left
          else f"ended with {run.returncode}, left {left}")
 END
-report $verdict 'a tool that is stopped while it writes leaves no file'
 
 # --- the demo's model --------------------------------------------------------------
 

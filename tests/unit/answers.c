@@ -12,19 +12,65 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+void answer_open(const char *text, const ritz_fit_request *request, answer *out)
+{
+    *out = (answer){.text = text};
+    folder_parse(text, &out->scene);
+    assert_true(out->scene.num_components <= ANSWER_BODIES);
+    assert_ok(ritz_fitter_scene(&out->scene, request, &out->fitter));
+}
+
+void answer_search(const char *text, const ritz_fit_request *request,
+                   answer *out)
+{
+    answer_open(text, request, out);
+    assert_ok(ritz_fitter_search(out->fitter, &out->fit));
+}
+
+const ritz_fit_candidate *answer_chosen(const answer *a)
+{
+    if (a->fit.chosen < 0)
+        fail_msg("%s", a->fit.why);
+    return &a->fit.candidate[a->fit.chosen];
+}
+
+int64_t answer_smallest_whole(const answer *a)
+{
+    int64_t least = INT64_MAX;
+
+    for (int64_t k = 0; k < a->fit.count; k++) {
+        const ritz_fit_candidate *c = &a->fit.candidate[k];
+
+        if (c->feasible && c->left_out == 0 && c->order < least)
+            least = c->order;
+    }
+    return least;
+}
+
+void answer_system(answer *a, const ritz_fit_candidate *candidate)
+{
+    assert_ok(ritz_fitter_system(a->fitter, candidate, &a->body, &a->path,
+                                 &a->system));
+}
+
+int64_t answer_columns(const answer *a)
+{
+    int64_t columns = 0;
+
+    for (int64_t k = 0; k < a->fitter->num_bodies; k++)
+        columns += a->body[a->fitter->body[k]].K.ncol;
+    return columns;
+}
+
 void answer_make(const char *text, const ritz_fit_request *request,
                  const ritz_method *method, const int64_t *modes, answer *out)
 {
     const ritz_stamp stamp = {.command = "test"};
     char name[96];
 
-    *out = (answer){.text = text};
-    folder_parse(text, &out->scene);
-    assert_true(out->scene.num_components <= ANSWER_BODIES);
-    assert_ok(ritz_fitter_scene(&out->scene, request, &out->fitter));
+    answer_open(text, request, out);
     assert_ok(ritz_fitter_try(out->fitter, method, modes, &out->whole));
-    assert_ok(ritz_fitter_system(out->fitter, &out->whole, &out->body,
-                                 &out->path, &out->system));
+    answer_system(out, &out->whole);
     for (int64_t k = 0; k < out->scene.num_components; k++) {
         snprintf(name, sizeof name, "cut-%s.h5", out->scene.component[k].name);
         assert_ok(ritz_container_write_reduced(folder_path(name), &out->body[k],
@@ -34,12 +80,13 @@ void answer_make(const char *text, const ritz_fit_request *request,
 
 void answer_free(answer *a)
 {
-    for (int64_t k = 0; k < a->scene.num_components; k++)
+    for (int64_t k = 0; a->body && k < a->scene.num_components; k++)
         ritz_reduced_free(&a->body[k]);
     free(a->body);
     ritz_fit_path_free(&a->path);
     ritz_system_free(&a->system);
     ritz_fit_candidate_free(&a->whole);
+    ritz_fit_free(&a->fit);
     ritz_fitter_free(&a->fitter);
     ritz_scene_free(&a->scene);
 }

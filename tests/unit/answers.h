@@ -1,4 +1,5 @@
-/* A scene's answer in files of the test's folder, to be cut in other scenes. */
+/* A scene of the test's folder and its answer, in files to be cut in other
+   scenes. */
 #ifndef RITZ_TESTS_ANSWERS_H
 #define RITZ_TESTS_ANSWERS_H
 
@@ -6,18 +7,40 @@
 
 enum { ANSWER_BODIES = 3 };
 
-/* A scene, the system of one candidate, and its bodies in files. */
+/* A scene that is fitted; what was not asked for is empty. */
 typedef struct answer {
     const char *text;
     ritz_scene scene;
     ritz_fitter *fitter;
-    ritz_fit_candidate whole;
-    ritz_reduced *body;
+    ritz_fit fit;             /* of answer_search */
+    ritz_fit_candidate whole; /* of answer_make, or a test's own */
+    ritz_reduced *body;       /* these three of answer_system */
     ritz_fit_path path;
     ritz_system system;
 } answer;
 
-/** Fit that candidate; its bodies are cut-NAME.h5 in the folder. */
+/** Read a scene and prepare it. */
+void answer_open(const char *text, const ritz_fit_request *request,
+                 answer *out);
+
+/** The same, and search. */
+void answer_search(const char *text, const ritz_fit_request *request,
+                   answer *out);
+
+/** What the search chose; the test fails if that is nothing. */
+const ritz_fit_candidate *answer_chosen(const answer *a);
+
+/** Order of the smallest that holds with all columns it was asked for. */
+int64_t answer_smallest_whole(const answer *a);
+
+/** Make the system of a candidate, its bodies and its path. */
+void answer_system(answer *a, const ritz_fit_candidate *candidate);
+
+/** Columns of the bodies that are flexible, together. */
+int64_t answer_columns(const answer *a);
+
+/** The system of the whole candidate; its bodies are cut-NAME.h5 in the folder.
+ */
 void answer_make(const char *text, const ritz_fit_request *request,
                  const ritz_method *method, const int64_t *modes, answer *out);
 

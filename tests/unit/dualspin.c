@@ -1,6 +1,7 @@
 #include "dualspin.h"
 
 #include "scenes.h"
+#include "testing.h"
 
 #include <ritz/import.h>
 
@@ -11,6 +12,14 @@
 bool dualspin_is_there(void)
 {
     return getenv("RITZ_DATA");
+}
+
+void dualspin_or_skip(void)
+{
+    if (dualspin_is_there())
+        return;
+    print_message("skipped: no data, RITZ_DATA is not set\n");
+    skip();
 }
 
 const char *dualspin_path(const char *name)

@@ -9,6 +9,9 @@
 /** Whether its data is at hand: RITZ_DATA. */
 bool dualspin_is_there(void);
 
+/** Skip the test, and say so, if it is not. */
+void dualspin_or_skip(void);
+
 /** data/dualspin/NAME, in a buffer that the next call overwrites. */
 const char *dualspin_path(const char *name);
 

@@ -20,6 +20,16 @@ ritz_fit_request fit_scenes_quick(const char *tolerance)
     return request;
 }
 
+ritz_fit_request fit_scenes_by(const ritz_method *const *methods, int64_t count,
+                               const char *tolerance)
+{
+    ritz_fit_request request = fit_scenes_quick(tolerance);
+
+    request.methods = methods;
+    request.num_methods = count;
+    return request;
+}
+
 /* A clamped beam of `left` elements, one of `right` fixed to its end. */
 void fit_scenes_store_beams(int64_t left, int64_t right)
 {
@@ -44,7 +54,6 @@ void fit_scenes_store_beams(int64_t left, int64_t right)
 
 void fit_scenes_damp_left(void)
 {
-    const ritz_stamp stamp = {.command = "test"};
     ritz_component beam = {0};
 
     assert_ok(ritz_container_read_component(folder_path("left.h5"), &beam));
@@ -52,8 +61,7 @@ void fit_scenes_damp_left(void)
     memcpy(beam.dampers.name[0], "pot", 4);
     beam.dampers.c[0] = 0.5;
     beam.dampers.B.val[beam.num_dofs - 2] = 1.0;
-    assert_ok(
-        ritz_container_write_component(folder_path("left.h5"), &beam, &stamp));
+    folder_store("left.h5", &beam);
     ritz_component_free(&beam);
 }
 
@@ -68,6 +76,19 @@ const char fit_scenes_beams[] =
     "outputs: [{name: y, at: right/tip, component: 2}]\n"
     "band_hz: [0, 0.2]\n"
     "damping: {modal: 0.01}\n";
+
+const char fit_scenes_driven[] =
+    "scene: driven at the joint\n"
+    "components:\n"
+    "  left: {model: left.h5, basis: craig-bampton, modes: 4}\n"
+    "  right: {model: right.h5, basis: craig-bampton, modes: 4}\n"
+    "joints:\n"
+    "  - {name: j, between: [left/joint, right/joint], type: fixed}\n"
+    "inputs: [{name: f, at: left/joint, component: 2}]\n"
+    "outputs: [{name: y, at: right/tip, component: 2},"
+    " {name: z, at: right/tip, component: 6}]\n"
+    "band_hz: [0, 0.3]\n"
+    "damping: {modal: 0.005}\n";
 
 void fit_scenes_store_spacecraft(void)
 {

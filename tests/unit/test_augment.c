@@ -239,14 +239,6 @@ static void prepare_thruster(fixture *f, const char *choice)
     assert_ok(ritz_stage_from(&f->scene, body, &f->stage));
 }
 
-static void skip_without_data(void)
-{
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
-}
-
 /*
  * All interface dofs and all inputs, once for all angles: exact at those listed
  * and between them. Any smaller set is not.
@@ -257,7 +249,7 @@ static void the_gain_is_exact_at_every_angle_with_all_attached(void **state)
     fixture f;
 
     (void)state;
-    skip_without_data();
+    dualspin_or_skip();
     prepare_thruster(&f, "augment: component\n");
     assert_ok(ritz_compare(&f.stage, &f.c));
     assert_int_equal(f.c.num_rows, 3);
@@ -283,7 +275,7 @@ static void answers_of_the_system_are_exact_where_they_were_made(void **state)
     fixture f;
 
     (void)state;
-    skip_without_data();
+    dualspin_or_skip();
     prepare_thruster(&f, "augment: system\n");
     assert_ok(ritz_compare(&f.stage, &f.c));
     for (int64_t r = 0; r < 2; r++)
@@ -313,7 +305,7 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **state)
     static const char *const names[] = {"interface", "inputs"};
 
     (void)state;
-    skip_without_data();
+    dualspin_or_skip();
     for (int l = 0; l < 2; l++) {
         char choice[128];
         const ritz_candidate *k = NULL;

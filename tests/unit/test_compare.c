@@ -38,21 +38,13 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void skip_without_data(void)
-{
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
-}
-
 /* 6 + 22 + 6 and 6 + 4 + 12 vectors; ten constraints, eight rigid modes. */
 static void the_first_stage_has_the_orders_of_its_bases(void **state)
 {
     fixture *f = *state;
     const ritz_system *system = &f->c.first_system;
 
-    skip_without_data();
+    dualspin_or_skip();
     assert_int_equal(system->order_full[0], 243);
     assert_int_equal(system->order_full[1], 57);
     assert_int_equal(system->order_full[2], 6);
@@ -70,7 +62,7 @@ static void kept_modes_are_exact_at_every_listed_angle(void **state)
 {
     fixture *f = *state;
 
-    skip_without_data();
+    dualspin_or_skip();
     for (int64_t k = 0; k < 6; k++) {
         const ritz_compare_row *row = &f->c.row[k];
 
@@ -86,7 +78,7 @@ static void kept_frequencies_are_found_in_the_second_system(void **state)
 {
     fixture *f = *state;
 
-    skip_without_data();
+    dualspin_or_skip();
     for (int64_t k = 0; k < 6; k++) {
         const ritz_configuration *one = &f->c.first_system.configuration[k];
         const ritz_configuration *two = &f->c.second_system.configuration[k];
@@ -107,7 +99,7 @@ static void rigid_modes_stay_rigid(void **state)
 {
     fixture *f = *state;
 
-    skip_without_data();
+    dualspin_or_skip();
     for (int64_t k = 0; k < 6; k++) {
         assert_int_equal(f->c.second_system.configuration[k].num_rigid, 8);
         /* sqrt(eps lambda_max) / 2 pi of the stage-1 system is 1e-5 Hz */
@@ -119,7 +111,7 @@ static void flexible_static_gain_is_exact_after_augmentation(void **state)
 {
     fixture *f = *state;
 
-    skip_without_data();
+    dualspin_or_skip();
     for (int64_t k = 0; k < 6; k++)
         assert_true(f->c.row[k].gain_error <= 1e-9);
 }
@@ -128,7 +120,7 @@ static void the_second_stage_removes_vectors(void **state)
 {
     fixture *f = *state;
 
-    skip_without_data();
+    dualspin_or_skip();
     assert_true(f->c.removed);
     assert_true(f->c.V[0].ncol < 34);
     assert_int_equal(f->c.V[2].ncol, 6);
@@ -141,7 +133,7 @@ static void errors_are_known_between_angles_too(void **state)
 {
     fixture *f = *state;
 
-    skip_without_data();
+    dualspin_or_skip();
     assert_int_equal(f->c.num_rows, 12);
     assert_near(f->c.row[6].setting[0], 30.0, 1e-12);
     assert_near(f->c.row[11].setting[0], 330.0, 1e-12);
@@ -159,7 +151,7 @@ static void without_augmentation_the_gain_is_wrong(void **state)
     fixture *f = *state;
     ritz_comparison c = {0};
 
-    skip_without_data();
+    dualspin_or_skip();
     f->scene.augment = RITZ_AUGMENT_NONE;
     assert_ok(ritz_compare(&f->stage, &c));
     f->scene.augment = RITZ_AUGMENT_SYSTEM;
@@ -174,7 +166,7 @@ static void a_reference_angle_is_exact_there_alone(void **state)
     ritz_comparison c = {0};
     int64_t reference[] = {5};
 
-    skip_without_data();
+    dualspin_or_skip();
     f->scene.num_reference = 1;
     f->scene.reference = reference;
     assert_ok(ritz_compare(&f->stage, &c));
@@ -194,7 +186,7 @@ static void keeping_everything_removes_nothing(void **state)
     ritz_comparison c = {0};
     double tolerance = f->scene.select_tolerance;
 
-    skip_without_data();
+    dualspin_or_skip();
     f->scene.select_tolerance = 0.0;
     assert_ok(ritz_compare(&f->stage, &c));
     f->scene.select_tolerance = tolerance;
@@ -208,7 +200,7 @@ static void a_looser_tolerance_gives_smaller_bodies(void **state)
     ritz_comparison c = {0};
     double tolerance = f->scene.composite_tolerance;
 
-    skip_without_data();
+    dualspin_or_skip();
     f->scene.composite_tolerance = 1e-3;
     assert_ok(ritz_compare(&f->stage, &c));
     f->scene.composite_tolerance = tolerance;
@@ -246,7 +238,7 @@ static void the_frequency_error_is_the_largest(void **state)
     ritz_comparison c = {0};
     double tolerance = f->scene.composite_tolerance;
 
-    skip_without_data();
+    dualspin_or_skip();
     f->scene.composite_tolerance = 1e-3;
     assert_ok(ritz_compare(&f->stage, &c));
     f->scene.composite_tolerance = tolerance;
@@ -262,7 +254,7 @@ static void what_was_not_measured_is_not_recorded(void **state)
     ritz_comparison c = {0};
     int64_t inputs = f->scene.num_inputs;
 
-    skip_without_data();
+    dualspin_or_skip();
     assert_int_equal(f->c.second.body[0].errors.count, 3);
     f->scene.num_inputs = 0;
     assert_ok(ritz_compare(&f->stage, &c));
@@ -283,7 +275,7 @@ static void a_ranking_without_damping_is_refused(void **state)
     ritz_comparison none = {0};
     ritz_damping kept = f->scene.damping;
 
-    skip_without_data();
+    dualspin_or_skip();
     f->scene.damping = (ritz_damping){0};
     assert_int_equal(ritz_compare(&f->stage, &none), RITZ_ERR_ARGUMENT);
     f->scene.damping = kept;

@@ -234,10 +234,7 @@ static void weights_change_what_comes_first(void **state)
     double most = 0.0;
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     assert_ok(dualspin_stage(&scene, &stage));
     assert_ok(ritz_composite_new(&stage, &weighed));
     scene.select = RITZ_SELECT_BAND;

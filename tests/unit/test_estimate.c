@@ -120,10 +120,7 @@ static void bounds_hold_on_the_spacecraft(void **state)
     const ritz_span span = {.modes = 12};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("RITZ_DATA holds no data/dualspin\n");
-        skip();
-    }
+    dualspin_or_skip();
     for (int which = 0; which < 3; which++) {
         ritz_component body = {0};
         ritz_pairs full = {0};

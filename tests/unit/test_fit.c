@@ -50,6 +50,32 @@ static void open_beam(bool clamped, ritz_component *beam)
     assert_ok(add_port(beam, "tip", 8));
 }
 
+/* The clamped beam, ready to be fitted. */
+typedef struct fitted {
+    ritz_component beam;
+    ritz_fitter *fitter;
+    ritz_fit fit;
+} fitted;
+
+static void prepare_beam(const ritz_fit_request *request, fitted *out)
+{
+    open_beam(true, &out->beam);
+    assert_ok(ritz_fitter_new(&out->beam, request, &out->fitter));
+}
+
+static void fit_beam(const ritz_fit_request *request, fitted *out)
+{
+    prepare_beam(request, out);
+    assert_ok(ritz_fitter_search(out->fitter, &out->fit));
+}
+
+static void fitted_free(fitted *f)
+{
+    ritz_fit_free(&f->fit);
+    ritz_fitter_free(&f->fitter);
+    ritz_component_free(&f->beam);
+}
+
 /* The free truss, driven and seen at its end. */
 static void open_truss(ritz_component *truss)
 {
@@ -295,74 +321,57 @@ static void what_cannot_be_fitted_is_refused_in_words(void **state)
 /* Of a mode that is not there no damping is wrong: so all must be there. */
 static void a_tolerance_of_damping_is_not_met_by_missing_modes(void **state)
 {
-    ritz_component beam = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    const ritz_fit_request request = quick(0.5, 0.01, "damping=1e-2");
     const ritz_fit_candidate *c = NULL;
-    ritz_fit_request request = quick(0.5, 0.01, "damping=1e-2");
+    fitted f = {0};
 
     (void)state;
-    open_beam(true, &beam);
-    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    assert_true(fit.chosen >= 0);
-    c = &fit.candidate[fit.chosen];
+    fit_beam(&request, &f);
+    assert_true(f.fit.chosen >= 0);
+    c = &f.fit.candidate[f.fit.chosen];
     assert_non_null(find_measure(&c->errors, "damping-relative"));
     assert_true(find_measure(&c->errors, "missing-modes")->value == 0.0);
     assert_true(find_measure(&c->errors, "missing-modes")->limit == 0.0);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
+    fitted_free(&f);
 }
 
 /* What is refused for its size is too large, even if nothing smaller was made
    by then: three columns of the port and one mode are four. */
 static void equal_order_is_found_below_what_is_too_large(void **state)
 {
-    ritz_component beam = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
     ritz_fit_request request = quick(1e-5, 0.01, "response=1e-1");
     int64_t at = -1;
+    fitted f = {0};
 
     (void)state;
-    open_beam(true, &beam);
     request.num_methods = 1; /* craig-bampton */
     request.largest = 4;
-    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    if (fit.chosen < 0) /* static answers are enough */
-        fail_msg("%s", fit.why);
-    assert_int_equal(fit.candidate[fit.chosen].order, 3);
-    assert_ok(ritz_fitter_equal(fitter, 4, &fit, &at));
+    fit_beam(&request, &f);
+    if (f.fit.chosen < 0) /* static answers are enough */
+        fail_msg("%s", f.fit.why);
+    assert_int_equal(f.fit.candidate[f.fit.chosen].order, 3);
+    assert_ok(ritz_fitter_equal(f.fitter, 4, &f.fit, &at));
     assert_true(at >= 0);
-    assert_int_equal(fit.candidate[at].order, 4);
-    assert_int_equal(fit.candidate[at].modes[0], 1);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
+    assert_int_equal(f.fit.candidate[at].order, 4);
+    assert_int_equal(f.fit.candidate[at].modes[0], 1);
+    fitted_free(&f);
 }
 
 /* With few columns allowed, the nearest is told and nothing is chosen. */
 static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
 {
-    ritz_component beam = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
     ritz_fit_request request = quick(1.0, 0.01, "response=1e-6");
+    fitted f = {0};
 
     (void)state;
-    open_beam(true, &beam);
     request.largest = 6;
-    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    assert_int_equal(fit.chosen, -1);
-    assert_non_null(strstr(fit.why, "no method meets the tolerance; nearest"));
-    for (int64_t k = 0; k < fit.count; k++)
-        assert_false(fit.candidate[k].feasible);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
+    fit_beam(&request, &f);
+    assert_int_equal(f.fit.chosen, -1);
+    assert_non_null(
+        strstr(f.fit.why, "no method meets the tolerance; nearest"));
+    for (int64_t k = 0; k < f.fit.count; k++)
+        assert_false(f.fit.candidate[k].feasible);
+    fitted_free(&f);
 }
 
 /*
@@ -371,31 +380,26 @@ static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
  */
 static void the_answer_is_nested_and_knows_its_errors(void **state)
 {
-    ritz_component beam = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
-    ritz_reduced reduced = {0};
     ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3,mac=0.99");
-    const ritz_method *const one[] = {&ritz_method_craig_bampton};
+    ritz_reduced reduced = {0};
+    const ritz_fit_candidate *chosen = NULL;
+    fitted f = {0};
 
     (void)state;
-    open_beam(true, &beam);
-    request.methods = one;
-    request.num_methods = 1;
-    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    assert_ok(
-        ritz_fitter_reduced(fitter, &fit.candidate[fit.chosen], &reduced));
-    assert_int_equal(reduced.K.ncol, fit.candidate[fit.chosen].order);
+    request.num_methods = 1; /* craig-bampton */
+    fit_beam(&request, &f);
+    chosen = &f.fit.candidate[f.fit.chosen];
+    assert_ok(ritz_fitter_reduced(f.fitter, chosen, &reduced));
+    assert_int_equal(reduced.K.ncol, chosen->order);
     assert_int_equal(reduced.nested.smallest, 3); /* the tip's dofs */
     assert_true(reduced.K.ncol > 3);
     for (int64_t r = 3; r <= reduced.K.ncol; r++) {
         ritz_reduced part = {0};
         ritz_measures found = {0};
-        const ritz_verify_request *limits = ritz_fitter_tolerance(fitter);
+        const ritz_verify_request *limits = ritz_fitter_tolerance(f.fitter);
 
         assert_ok(ritz_reduced_prefix(&reduced, r, &part));
-        assert_ok(ritz_verify_reduced(&beam, &part, limits, &found));
+        assert_ok(ritz_verify_reduced(&f.beam, &part, limits, &found));
         if (r < reduced.K.ncol)
             assert_true(find_measure(&found, "mac")->value < 0.99 ||
                         find_measure(&found, "frequency-relative")->value >
@@ -408,30 +412,26 @@ static void the_answer_is_nested_and_knows_its_errors(void **state)
     }
     assert_near(find_measure(&reduced.errors, "mac")->limit, 0.99, 0.0);
     ritz_reduced_free(&reduced);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
+    fitted_free(&f);
 }
 
 /* The bounds of a candidate hold: none is below the error that it bounds. */
 static void bounds_stand_beside_errors_and_hold(void **state)
 {
-    ritz_component beam = {0};
-    ritz_fitter *fitter = NULL;
     ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3");
     int64_t incomplete = 0;
+    fitted f = {0};
 
     (void)state;
-    open_beam(true, &beam);
     request.estimates = request.thorough = true;
-    assert_ok(ritz_fitter_new(&beam, &request, &fitter));
+    prepare_beam(&request, &f);
     for (int64_t modes = 0; modes < 8; modes++) {
         ritz_fit_candidate c = {0};
         const ritz_measure *error = NULL;
         const ritz_measure *bound = NULL;
 
         assert_ok(
-            ritz_fitter_try(fitter, &ritz_method_craig_bampton, &modes, &c));
+            ritz_fitter_try(f.fitter, &ritz_method_craig_bampton, &modes, &c));
         error = find_measure(&c.errors, "frequency-relative");
         bound = find_measure(&c.estimates, "frequency-relative-bound");
         if (find_measure(&c.estimates, "missing-modes-bound")->value > 0.0) {
@@ -447,8 +447,7 @@ static void bounds_stand_beside_errors_and_hold(void **state)
         ritz_fit_candidate_free(&c);
     }
     assert_true(incomplete > 0);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
+    fitted_free(&f);
 }
 
 /*
@@ -458,10 +457,9 @@ static void bounds_stand_beside_errors_and_hold(void **state)
  */
 static void a_pole_between_points_is_seen_by_what_confirms(void **state)
 {
-    ritz_component beam = {0};
+    const ritz_fit_request asked = quick(1.0, 1e-5, "response=1e-2");
+    fitted f = {0};
     ritz_reference *reference = NULL;
-    ritz_fitter *fitter = NULL;
-    ritz_fit_request asked = quick(1.0, 1e-5, "response=1e-2");
     ritz_fit_candidate c = {0};
     const int64_t modes = 21;
     ritz_reference_request request = {
@@ -475,16 +473,15 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
     double lambda = 0.0;
 
     (void)state;
-    open_beam(true, &beam);
-    assert_ok(ritz_fitter_new(&beam, &asked, &fitter));
-    assert_ok(ritz_fitter_try(fitter, &ritz_method_normal_modes, &modes, &c));
-    assert_ok(ritz_fitter_reduced(fitter, &c, &reduced));
+    prepare_beam(&asked, &f);
+    assert_ok(ritz_fitter_try(f.fitter, &ritz_method_normal_modes, &modes, &c));
+    assert_ok(ritz_fitter_reduced(f.fitter, &c, &reduced));
     for (int64_t k = 0; k < reduced.K.ncol; k++)
         lambda = fmax(lambda, ritz_dense_col(&reduced.K, k)[k]);
     for (int64_t k = 0; k < reduced.K.ncol; k++)
         if (ritz_dense_col(&reduced.K, k)[k] == lambda) /* 0.6531 Hz */
             ritz_dense_col(&reduced.K, k)[k] = ritz_eigen_lambda(0.6531);
-    assert_ok(ritz_reference_new(&beam, &request, &reference));
+    assert_ok(ritz_reference_new(&f.beam, &request, &reference));
     assert_ok(ritz_reference_measure(reference, &reduced, &asked.tolerance, 0,
                                      &grid));
     assert_ok(ritz_reference_measure(reference, &reduced, &asked.tolerance,
@@ -496,8 +493,7 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
     ritz_reduced_free(&reduced);
     ritz_fit_candidate_free(&c);
     ritz_reference_free(&reference);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
+    fitted_free(&f);
 }
 
 static ritz_status fit_once(const ritz_component *beam)

@@ -1,19 +1,19 @@
 /* What bounds decide in a search, and what they say of its answer. */
 #include "testing.h"
 
+#include "answers.h"
 #include "bar.h"
 #include "bodies.h"
+#include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
 #include "scenes.h"
 
 #include <ritz/estimate.h>
-#include <ritz/fit.h>
 
 #include <math.h>
 #include <stdlib.h>
 
-static const ritz_fit_request plain = RITZ_FIT_NONE;
 static const ritz_method *const two[] = {&ritz_method_craig_bampton,
                                          &ritz_method_macneal_rubin};
 
@@ -31,7 +31,7 @@ static const char arm[] =
     "band_hz: [0, 6]\n"
     "damping: {modal: 0.01}\n";
 
-static void store_arm(int64_t left, int64_t right, ritz_scene *scene)
+static void store_arm(int64_t left, int64_t right)
 {
     enum { MOST = 12 };
     const int64_t count[] = {left, right};
@@ -51,7 +51,34 @@ static void store_arm(int64_t left, int64_t right, ritz_scene *scene)
         folder_store(file[k], &chain);
         ritz_component_free(&chain);
     }
-    folder_parse(arm, scene);
+}
+
+/* The arm at one setting: its system, and its full system. */
+typedef struct placed {
+    ritz_scene scene;
+    ritz_stage stage;
+    ritz_configuration at;
+    ritz_component full;
+    ritz_master *master;
+} placed;
+
+static void place_arm(int64_t left, int64_t right, double angle, placed *out)
+{
+    store_arm(left, right);
+    folder_parse(arm, &out->scene);
+    assert_ok(ritz_stage_new(&out->scene, &out->stage));
+    assert_ok(ritz_stage_assemble(&out->stage, &angle, &out->at));
+    assert_ok(
+        ritz_assemble_masters(&out->scene, &angle, &out->full, &out->master));
+}
+
+static void placed_free(placed *p)
+{
+    free(p->master);
+    ritz_component_free(&p->full);
+    ritz_configuration_free(&p->at);
+    ritz_stage_free(&p->stage);
+    ritz_scene_free(&p->scene);
 }
 
 /* Largest |A - B| over largest |B|. */
@@ -70,70 +97,50 @@ static double off(const ritz_dense *A, const ritz_dense *B)
 /* K_e = T'KT and so on, to some hundred roundings; measured: 7e-15. */
 static void the_system_s_basis_condenses_the_full_system(void **state)
 {
-    const double setting[] = {30.0};
     const double rounding = 1e-13;
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration at = {0};
-    ritz_component full = {0};
-    ritz_master *master = NULL;
+    placed p = {0};
     ritz_dense T = {0}, K = {0}, M = {0}, B = {0}, C = {0};
 
     (void)state;
-    store_arm(4, 6, &scene);
-    assert_ok(ritz_stage_new(&scene, &stage));
-    assert_ok(ritz_stage_assemble(&stage, setting, &at));
-    assert_ok(ritz_assemble_masters(&scene, setting, &full, &master));
-    assert_ok(ritz_stage_basis(&stage, &at, full.num_dofs, master, &T));
-    assert_int_equal(T.nrow, full.num_dofs);
-    assert_int_equal(T.ncol, at.K.ncol);
-    assert_ok(ritz_sparse_condense(&full.K, &T, &K));
-    assert_ok(ritz_sparse_condense(&full.M, &T, &M));
-    assert_ok(ritz_dense_mul_tn(&T, &full.io.B, &B));
-    assert_ok(ritz_dense_mul(&full.io.C, &T, &C));
-    assert_true(off(&M, &at.M) < rounding);
-    assert_true(off(&B, &at.io.B) < rounding);
-    assert_true(off(&C, &at.io.C) < rounding);
+    place_arm(4, 6, 30.0, &p);
+    assert_ok(ritz_stage_basis(&p.stage, &p.at, p.full.num_dofs, p.master, &T));
+    assert_int_equal(T.nrow, p.full.num_dofs);
+    assert_int_equal(T.ncol, p.at.K.ncol);
+    assert_ok(ritz_sparse_condense(&p.full.K, &T, &K));
+    assert_ok(ritz_sparse_condense(&p.full.M, &T, &M));
+    assert_ok(ritz_dense_mul_tn(&T, &p.full.io.B, &B));
+    assert_ok(ritz_dense_mul(&p.full.io.C, &T, &C));
+    assert_true(off(&M, &p.at.M) < rounding);
+    assert_true(off(&B, &p.at.io.B) < rounding);
+    assert_true(off(&C, &p.at.io.C) < rounding);
     ritz_dense_free(&K);
     ritz_dense_free(&M);
     ritz_dense_free(&B);
     ritz_dense_free(&C);
     ritz_dense_free(&T);
-    free(master);
-    ritz_component_free(&full);
-    ritz_configuration_free(&at);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
+    placed_free(&p);
 }
 
 static void a_body_without_its_basis_is_refused(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration at = {0};
-    const double setting[] = {0.0};
     const ritz_master master[] = {{0, 0}, {0, 1}, {1, 0}};
+    placed p = {0};
     ritz_dense T = {0};
 
     (void)state;
-    store_arm(2, 2, &scene);
-    assert_ok(ritz_stage_new(&scene, &stage));
-    assert_ok(ritz_stage_assemble(&stage, setting, &at));
-    ritz_dense_free(&stage.body[1].T);
-    assert_fails(ritz_stage_basis(&stage, &at, 3, master, &T),
+    place_arm(2, 2, 0.0, &p);
+    ritz_dense_free(&p.stage.body[1].T);
+    assert_fails(ritz_stage_basis(&p.stage, &p.at, 3, master, &T),
                  RITZ_ERR_ARGUMENT, "'right' has no basis T for its 1 dofs");
     assert_null(T.val);
-    ritz_configuration_free(&at);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
+    placed_free(&p);
 }
 
-static ritz_status make_basis(const ritz_stage *stage,
-                              const ritz_configuration *at, int64_t n,
-                              const ritz_master *master)
+static ritz_status make_basis(const placed *p)
 {
     ritz_dense T = {0};
-    ritz_status status = ritz_stage_basis(stage, at, n, master, &T);
+    ritz_status status =
+        ritz_stage_basis(&p->stage, &p->at, p->full.num_dofs, p->master, &T);
 
     ritz_dense_free(&T);
     return status;
@@ -141,46 +148,27 @@ static ritz_status make_basis(const ritz_stage *stage,
 
 static void every_allocation_of_the_basis_may_fail(void **state)
 {
-    const double setting[] = {90.0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration at = {0};
-    ritz_component full = {0};
-    ritz_master *master = NULL;
+    placed p = {0};
 
     (void)state;
-    store_arm(2, 2, &scene);
-    assert_ok(ritz_stage_new(&scene, &stage));
-    assert_ok(ritz_stage_assemble(&stage, setting, &at));
-    assert_ok(ritz_assemble_masters(&scene, setting, &full, &master));
-    assert_survives_every_allocation(
-        make_basis(&stage, &at, full.num_dofs, master));
-    free(master);
-    ritz_component_free(&full);
-    ritz_configuration_free(&at);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
+    place_arm(2, 2, 90.0, &p);
+    assert_survives_every_allocation(make_basis(&p));
+    placed_free(&p);
 }
 
 static ritz_fit_request asked(const char *tolerance, bool estimates)
 {
-    ritz_fit_request request = plain;
+    ritz_fit_request request = fit_scenes_by(two, 2, tolerance);
 
     request.num_random = 30;
     request.num_between = 1;
-    request.costs = false;
-    request.methods = two;
-    request.num_methods = 2;
     request.estimates = estimates;
-    assert_ok(ritz_tolerance_take(tolerance, &request.tolerance));
     return request;
 }
 
 static double value_of(const ritz_measures *found, const char *name)
 {
-    const ritz_measure *m = find_measure(found, name);
-
-    return m ? m->value : nan("");
+    return find_measure(found, name)->value;
 }
 
 /* What was ruled out unmeasured is measured, and fails where it was said to. */
@@ -216,27 +204,18 @@ static void bounds_rule_out_what_fails_and_change_no_answer(void **state)
 
     (void)state;
     for (size_t t = 0; t < sizeof tolerance / sizeof *tolerance; t++) {
-        ritz_scene scene = {0};
-        ritz_fitter *fitter[2] = {0};
-        ritz_fit fit[2] = {0};
+        const ritz_fit_request request = asked(tolerance[t], true);
+        const ritz_fit_request measured = asked(tolerance[t], false);
+        answer a = {0}, all = {0};
 
-        store_arm(t % 2 == 0 ? 4 : 5, 4, &scene);
-        for (int k = 0; k < 2; k++) {
-            const ritz_fit_request request = asked(tolerance[t], k == 0);
-
-            assert_ok(ritz_fitter_scene(&scene, &request, &fitter[k]));
-            assert_ok(ritz_fitter_search(fitter[k], &fit[k]));
-            assert_true(fit[k].chosen >= 0);
-        }
-        assert_int_equal(fit[0].candidate[fit[0].chosen].order,
-                         fit[1].candidate[fit[1].chosen].order);
-        assert_int_equal(fit[0].count, fit[1].count);
-        assert_rightly_screened(fitter[1], &fit[0]);
-        for (int k = 0; k < 2; k++) {
-            ritz_fit_free(&fit[k]);
-            ritz_fitter_free(&fitter[k]);
-        }
-        ritz_scene_free(&scene);
+        store_arm(t % 2 == 0 ? 4 : 5, 4);
+        answer_search(arm, &request, &a);
+        answer_search(arm, &measured, &all);
+        assert_int_equal(answer_chosen(&a)->order, answer_chosen(&all)->order);
+        assert_int_equal(a.fit.count, all.fit.count);
+        assert_rightly_screened(all.fitter, &a.fit);
+        answer_free(&a);
+        answer_free(&all);
     }
 }
 
@@ -245,26 +224,17 @@ static void the_answer_of_a_scene_is_bounded(void **state)
 {
     const ritz_fit_request request =
         asked("frequency=1e-3,response=1e-2", true);
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
-    ritz_system system = {0};
-    ritz_fit_path path = {0};
-    ritz_reduced *body = NULL;
+    answer a = {0};
     const ritz_measures *said = NULL;
     double frequency = 0.0, response = 0.0;
 
     (void)state;
-    store_arm(4, 3, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    if (fit.chosen < 0)
-        fail_msg("%s", fit.why);
-    said = &fit.candidate[fit.chosen].estimates;
-    assert_ok(ritz_fitter_system(fitter, &fit.candidate[fit.chosen], &body,
-                                 &path, &system));
-    for (int64_t k = 0; k < system.num_configurations; k++) {
-        const ritz_measures *e = &system.configuration[k].errors;
+    store_arm(4, 3);
+    answer_search(arm, &request, &a);
+    said = &answer_chosen(&a)->estimates;
+    answer_system(&a, answer_chosen(&a));
+    for (int64_t k = 0; k < a.system.num_configurations; k++) {
+        const ritz_measures *e = &a.system.configuration[k].errors;
 
         frequency = fmax(frequency, value_of(e, "frequency-relative"));
         response = fmax(response, value_of(e, "response-relative"));
@@ -276,14 +246,7 @@ static void the_answer_of_a_scene_is_bounded(void **state)
     assert_true(value_of(said, "frequency-relative-least") > 0.1 * frequency);
     assert_true(value_of(said, "response-relative-bound") >= response);
     assert_true(value_of(said, "missing-modes-bound") == 0.0);
-    for (int64_t k = 0; k < scene.num_components; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    ritz_fit_path_free(&path);
-    ritz_system_free(&system);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    answer_free(&a);
 }
 
 /* The bar's errors are known: what is told at least is below, and near. */

@@ -1,26 +1,27 @@
 /* COMPARE among the methods of a scene: what its bodies hold, how small. */
 #include "testing.h"
 
+#include "answers.h"
 #include "dualspin.h"
 #include "fit/fit_parts.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "frame.h"
 
-#include <ritz/fit.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-
 static const ritz_method *const compare[] = {&ritz_fit_compare};
 
 static ritz_fit_request alone(const char *tolerance)
 {
-    ritz_fit_request request = fit_scenes_quick(tolerance);
+    return fit_scenes_by(compare, 1, tolerance);
+}
 
-    request.methods = compare;
-    request.num_methods = 1;
-    return request;
+/* Two beams, ready to be fitted by it alone. */
+static void open_beams(int64_t left, int64_t right, answer *out)
+{
+    const ritz_fit_request request = alone("response=1e-2");
+
+    fit_scenes_store_beams(left, right);
+    answer_open(fit_scenes_beams, &request, out);
 }
 
 /* Every pair of numbers of directions that both bodies have. */
@@ -41,25 +42,22 @@ static int64_t exhaust(ritz_fitter *fitter, int64_t most)
     return least;
 }
 
-static void assert_within_one(const ritz_scene *scene, const char *tolerance,
+static void assert_within_one(const char *text, const char *tolerance,
                               int64_t most)
 {
     const ritz_fit_request request = alone(tolerance);
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    answer a = {0};
+    int64_t order = 0;
     int64_t least = 0;
 
-    assert_ok(ritz_fitter_scene(scene, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    if (fit.chosen < 0)
-        fail_msg("%s: %s", tolerance, fit.why);
-    least = exhaust(fitter, most);
+    answer_search(text, &request, &a);
+    order = answer_chosen(&a)->order;
+    least = exhaust(a.fitter, most);
     assert_true(least < INT64_MAX);
-    if (fit.candidate[fit.chosen].order > least + 1)
-        fail_msg("%s\nfound %d, exhaustive search %d", fit.why,
-                 (int)fit.candidate[fit.chosen].order, (int)least);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
+    if (order > least + 1)
+        fail_msg("%s\nfound %d, exhaustive search %d", a.fit.why, (int)order,
+                 (int)least);
+    answer_free(&a);
 }
 
 static void beams_are_fitted_within_one(void **state)
@@ -74,171 +72,109 @@ static void beams_are_fitted_within_one(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        ritz_scene scene = {0};
-
         fit_scenes_store_beams(cases[k].left, cases[k].right);
-        folder_parse(fit_scenes_beams, &scene);
-        assert_within_one(&scene, cases[k].tolerance, 8);
-        ritz_scene_free(&scene);
+        assert_within_one(fit_scenes_beams, cases[k].tolerance, 8);
     }
-}
-
-static bool no_spacecraft(void)
-{
-    if (!dualspin_is_there())
-        print_message("RITZ_DATA is not set\n");
-    return !dualspin_is_there();
-}
-
-static void open_spacecraft(ritz_scene *scene)
-{
-    fit_scenes_store_spacecraft();
-    folder_parse(fit_scenes_spacecraft, scene);
 }
 
 /* Where modes weigh by what inputs and outputs see of them. */
 static void of_a_spacecraft_it_is_the_smallest(void **state)
 {
-    ritz_fit_request request = fit_scenes_quick("flexible=1e-1");
     static const ritz_method *const two[] = {&ritz_method_macneal_rubin,
                                              &ritz_fit_compare};
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    const ritz_fit_request request = fit_scenes_by(two, 2, "flexible=1e-1");
+    answer a = {0};
 
     (void)state;
-    if (no_spacecraft())
-        skip();
-    request.methods = two;
-    request.num_methods = 2;
-    open_spacecraft(&scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    assert_true(fit.best[0] >= 0 && fit.best[1] >= 0);
-    assert_ptr_equal(fit.candidate[fit.chosen].method, &ritz_fit_compare);
-    assert_true(fit.candidate[fit.best[1]].order <
-                fit.candidate[fit.best[0]].order);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    dualspin_or_skip();
+    fit_scenes_store_spacecraft();
+    answer_search(fit_scenes_spacecraft, &request, &a);
+    assert_true(a.fit.best[0] >= 0 && a.fit.best[1] >= 0);
+    assert_ptr_equal(answer_chosen(&a)->method, &ritz_fit_compare);
+    assert_true(a.fit.candidate[a.fit.best[1]].order <
+                a.fit.candidate[a.fit.best[0]].order);
+    answer_free(&a);
 }
 
 /* Bodies that are the answer's: so many columns, and the method's name. */
 static void its_bodies_are_nested_and_say_so(void **state)
 {
-    const ritz_fit_request request = alone("response=1e-2");
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
-    ritz_fit_path path = {0};
-    ritz_system system = {0};
-    ritz_reduced *body = NULL;
     const ritz_fit_candidate *chosen = NULL;
-    int64_t columns = 0;
+    answer a = {0};
 
     (void)state;
-    fit_scenes_store_beams(4, 6);
-    folder_parse(fit_scenes_beams, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    chosen = &fit.candidate[fit.chosen];
+    open_beams(4, 6, &a);
+    assert_ok(ritz_fitter_search(a.fitter, &a.fit));
+    chosen = answer_chosen(&a);
     for (int k = 0; k < 2; k++) /* the first rung: neither is held */
-        assert_int_equal(fit.candidate[0].modes[k], 1);
-    assert_string_equal(fit.candidate[0].refusal, "");
+        assert_int_equal(a.fit.candidate[0].modes[k], 1);
+    assert_string_equal(a.fit.candidate[0].refusal, "");
     assert_true(chosen->feasible && chosen->spent.wall > 0.0);
-    assert_ok(ritz_fitter_system(fitter, chosen, &body, &path, &system));
-    assert_int_equal(system.configuration[0].K.ncol, chosen->order);
+    answer_system(&a, chosen);
+    assert_int_equal(a.system.configuration[0].K.ncol, chosen->order);
     for (int k = 0; k < 2; k++) {
-        assert_string_equal(body[k].origin.method, "compare");
-        columns += body[k].K.ncol;
-        assert_true(body[k].nested.smallest > 0);
-        assert_true(body[k].T.ncol == body[k].K.ncol);
-        ritz_reduced_free(&body[k]);
+        assert_string_equal(a.body[k].origin.method, "compare");
+        assert_true(a.body[k].nested.smallest > 0);
+        assert_true(a.body[k].T.ncol == a.body[k].K.ncol);
     }
-    assert_int_equal(columns, chosen->columns);
-    free(body);
-    ritz_fit_path_free(&path);
-    ritz_system_free(&system);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    assert_int_equal(answer_columns(&a), chosen->columns);
+    answer_free(&a);
 }
 
 static void it_is_compared_at_equal_order(void **state)
 {
     static const ritz_method *const two[] = {&ritz_method_craig_bampton,
                                              &ritz_fit_compare};
-    ritz_fit_request request = fit_scenes_quick("response=1e-2");
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    const ritz_fit_request request = fit_scenes_by(two, 2, "response=1e-2");
+    answer a = {0};
     int64_t at[2] = {-1, -1};
 
     (void)state;
-    request.methods = two;
-    request.num_methods = 2;
     fit_scenes_store_beams(4, 6);
-    folder_parse(fit_scenes_beams, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    assert_ok(ritz_fitter_equal(fitter, 10, &fit, at));
+    answer_search(fit_scenes_beams, &request, &a);
+    assert_ok(ritz_fitter_equal(a.fitter, 10, &a.fit, at));
     for (int m = 0; m < 2; m++) {
         assert_true(at[m] >= 0);
-        assert_ptr_equal(fit.candidate[at[m]].method, two[m]);
-        assert_true(fit.candidate[at[m]].order <= 10);
+        assert_ptr_equal(a.fit.candidate[at[m]].method, two[m]);
+        assert_true(a.fit.candidate[at[m]].order <= 10);
     }
-    assert_int_equal(fit.candidate[at[1]].order, 10); /* steps are of one */
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    assert_int_equal(a.fit.candidate[at[1]].order, 10); /* steps are of one */
+    answer_free(&a);
 }
 
 /* Where no methods are named it is among them, of a scene and of no other. */
 static void it_is_tried_of_a_scene_without_being_named(void **state)
 {
-    ritz_fit_request request = fit_scenes_quick("response=1e-1");
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    const ritz_fit_request request = fit_scenes_quick("response=1e-1");
+    answer a = {0};
     int64_t last = 0;
 
     (void)state;
     fit_scenes_store_beams(2, 2);
-    folder_parse(fit_scenes_beams, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    last = fit.num_methods - 1;
-    assert_ptr_equal(fit.method[last], &ritz_fit_compare);
-    assert_true(fit.best[last] >= 0);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    answer_search(fit_scenes_beams, &request, &a);
+    last = a.fit.num_methods - 1;
+    assert_ptr_equal(a.fit.method[last], &ritz_fit_compare);
+    assert_true(a.fit.best[last] >= 0);
+    answer_free(&a);
 }
 
 /* The last rung of its ladder has all that there is, and no more. */
 static void its_ladder_ends_with_all_directions(void **state)
 {
-    const ritz_fit_request request = alone("response=1e-2");
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit_candidate c = {0};
+    answer a = {0};
     int64_t modes[2] = {0};
 
     (void)state;
-    fit_scenes_store_beams(2, 2);
-    folder_parse(fit_scenes_beams, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_ok(ritz_fit_second_make(fitter));
-    ritz_fit_rung(fitter, &ritz_fit_compare,
-                  ritz_fit_rungs(fitter, &ritz_fit_compare), modes);
+    open_beams(2, 2, &a);
+    assert_ok(ritz_fit_second_make(a.fitter));
+    ritz_fit_rung(a.fitter, &ritz_fit_compare,
+                  ritz_fit_rungs(a.fitter, &ritz_fit_compare), modes);
     for (int k = 0; k < 2; k++)
-        assert_int_equal(modes[k], fitter->second.body[k].K.ncol);
-    assert_ok(ritz_fitter_try(fitter, &ritz_fit_compare, modes, &c));
-    assert_string_equal(c.refusal, "");
-    assert_true(c.feasible);
-    ritz_fit_candidate_free(&c);
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+        assert_int_equal(modes[k], a.fitter->second.body[k].K.ncol);
+    assert_ok(ritz_fitter_try(a.fitter, &ritz_fit_compare, modes, &a.whole));
+    assert_string_equal(a.whole.refusal, "");
+    assert_true(a.whole.feasible);
+    answer_free(&a);
 }
 
 static void assert_refused(ritz_fitter *fitter, const int64_t *modes,
@@ -257,18 +193,13 @@ static void what_it_cannot_make_it_refuses(void **state)
 {
     static const int64_t none[] = {0, 3};
     static const int64_t many[] = {3, 1000};
-    const ritz_fit_request request = alone("response=1e-2");
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
+    answer a = {0};
 
     (void)state;
-    fit_scenes_store_beams(2, 2);
-    folder_parse(fit_scenes_beams, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_refused(fitter, none, "'left' would not move at all");
-    assert_refused(fitter, many, "composite vectors, and not 1000");
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    open_beams(2, 2, &a);
+    assert_refused(a.fitter, none, "'left' would not move at all");
+    assert_refused(a.fitter, many, "composite vectors, and not 1000");
+    answer_free(&a);
 }
 
 /* A component has no configurations whose modes it could be made of. */
@@ -319,17 +250,12 @@ done:
 
 static void it_survives_every_allocation(void **state)
 {
-    const ritz_fit_request request = alone("response=1e-2");
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
+    answer a = {0};
 
     (void)state;
-    fit_scenes_store_beams(2, 1);
-    folder_parse(fit_scenes_beams, &scene);
-    assert_ok(ritz_fitter_scene(&scene, &request, &fitter));
-    assert_survives_every_allocation(make_anew(fitter));
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
+    open_beams(2, 1, &a);
+    assert_survives_every_allocation(make_anew(a.fitter));
+    answer_free(&a);
 }
 
 int main(void)

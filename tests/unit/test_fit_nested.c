@@ -69,10 +69,7 @@ static void a_cut_spacecraft_is_as_far_off_as_the_path_says(void **state)
     answer a = {0};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     fit_scenes_store_spacecraft();
     answer_make(fit_scenes_spacecraft, &request, &ritz_method_macneal_rubin,
                 modes, &a);

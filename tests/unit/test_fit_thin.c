@@ -4,13 +4,12 @@
  */
 #include "testing.h"
 
+#include "answers.h"
 #include "dualspin.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "frame.h"
 #include "scenes.h"
-
-#include <ritz/fit.h>
 
 #include <stdlib.h>
 
@@ -19,15 +18,6 @@ static const ritz_method *const three[] = {&ritz_method_craig_bampton,
                                            &ritz_method_krylov_cms_free};
 
 enum { MOST = 20, BODIES = 3 };
-
-static ritz_fit_request quick(const char *tolerance, int64_t num_methods)
-{
-    ritz_fit_request request = fit_scenes_quick(tolerance);
-
-    request.methods = three;
-    request.num_methods = num_methods;
-    return request;
-}
 
 static const char mixed_beams[] =
     "scene: an arm\n"
@@ -41,19 +31,6 @@ static const char mixed_beams[] =
     " {name: z, at: left/joint, component: 2}]\n"
     "band_hz: [0, 0.5]\n"
     "damping: {modal: 0.01}\n";
-
-static const char driven_beams[] =
-    "scene: driven at the joint\n"
-    "components:\n"
-    "  left: {model: left.h5, basis: craig-bampton, modes: 4}\n"
-    "  right: {model: right.h5, basis: craig-bampton, modes: 4}\n"
-    "joints:\n"
-    "  - {name: j, between: [left/joint, right/joint], type: fixed}\n"
-    "inputs: [{name: f, at: left/joint, component: 2}]\n"
-    "outputs: [{name: y, at: right/tip, component: 2},"
-    " {name: z, at: right/tip, component: 6}]\n"
-    "band_hz: [0, 0.3]\n"
-    "damping: {modal: 0.005}\n";
 
 /* A clamped beam and two more in a row, as stiff as it times `stiffness`. */
 static void store_arm(const int64_t elements[BODIES],
@@ -159,44 +136,27 @@ static int64_t exhaust(ritz_fitter *fitter, const ritz_method *method,
     return least;
 }
 
-/* The smallest whose bodies have all columns that they were asked for. */
-static int64_t smallest_whole(const ritz_fit *fit)
-{
-    int64_t least = INT64_MAX;
-
-    for (int64_t k = 0; k < fit->count; k++) {
-        const ritz_fit_candidate *c = &fit->candidate[k];
-
-        if (c->feasible && c->left_out == 0 && c->order < least)
-            least = c->order;
-    }
-    return least;
-}
-
 /* What was found is among what exhaustive search tries, and one above at most;
    the answer, some of whose columns may be left out, is no larger. */
-static void assert_within_one(const ritz_scene *scene,
-                              const ritz_fit_request *request)
+static void assert_within_one(const char *text, int64_t num_methods,
+                              const char *tolerance)
 {
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    const ritz_fit_request request =
+        fit_scenes_by(three, num_methods, tolerance);
+    answer a = {0};
     int64_t least = 0;
     int64_t order = 0;
 
-    assert_ok(ritz_fitter_scene(scene, request, &fitter));
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    if (fit.chosen < 0)
-        fail_msg("%s", fit.why);
-    order = smallest_whole(&fit);
-    assert_true(fit.candidate[fit.chosen].order <= order);
+    answer_search(text, &request, &a);
+    order = answer_smallest_whole(&a);
+    assert_true(answer_chosen(&a)->order <= order);
     least = order + 1;
-    for (int64_t m = 0; m < fit.num_methods; m++)
-        least = exhaust(fitter, fit.method[m], least);
+    for (int64_t m = 0; m < a.fit.num_methods; m++)
+        least = exhaust(a.fitter, a.fit.method[m], least);
     if (order > least + 1 || order < least)
-        fail_msg("%s\nfound %d, exhaustive search %d", fit.why, (int)order,
+        fail_msg("%s\nfound %d, exhaustive search %d", a.fit.why, (int)order,
                  (int)least);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
+    answer_free(&a);
 }
 
 /* Lengths, ends and tolerances: each a scene of its own. */
@@ -210,10 +170,10 @@ static void two_beams_are_fitted_within_one(void **state)
         {7, 3, fit_scenes_beams, "frequency=1e-3"},
         {3, 8, fit_scenes_beams, "response=1e-3,gain=1e-2"},
         {9, 2, fit_scenes_beams, "gain=1e-3,missing=1"},
-        {5, 5, driven_beams, "response=1e-2,frequency=1e-2"},
-        {5, 5, driven_beams, "mac=0.99"},
-        {4, 7, driven_beams, "mac=0.99,frequency=1e-3"},
-        {4, 7, driven_beams, "frequency=1e-4,response=1e-3"},
+        {5, 5, fit_scenes_driven, "response=1e-2,frequency=1e-2"},
+        {5, 5, fit_scenes_driven, "mac=0.99"},
+        {4, 7, fit_scenes_driven, "mac=0.99,frequency=1e-3"},
+        {4, 7, fit_scenes_driven, "frequency=1e-4,response=1e-3"},
         {6, 3, mixed_beams, "frequency=1e-2,response=1e-1"},
         {3, 9, mixed_beams, "missing=2,mac=0.9"},
         {8, 8, mixed_beams, "response=1e-3,gain=1e-3"},
@@ -221,13 +181,8 @@ static void two_beams_are_fitted_within_one(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        const ritz_fit_request request = quick(cases[k].tolerance, 3);
-        ritz_scene scene = {0};
-
         fit_scenes_store_beams(cases[k].left, cases[k].right);
-        folder_parse(cases[k].text, &scene);
-        assert_within_one(&scene, &request);
-        ritz_scene_free(&scene);
+        assert_within_one(cases[k].text, 3, cases[k].tolerance);
     }
 }
 
@@ -247,31 +202,18 @@ static void three_beams_are_fitted_within_one(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        const ritz_fit_request request = quick(cases[k].tolerance, 2);
-        ritz_scene scene = {0};
-
         store_arm(cases[k].elements, cases[k].stiffness);
-        folder_parse(arm, &scene);
-        assert_within_one(&scene, &request);
-        ritz_scene_free(&scene);
+        assert_within_one(arm, 2, cases[k].tolerance);
     }
 }
 
 /* At two angles, where the rotor needs ten modes and the stator four. */
 static void the_spacecraft_is_fitted_within_one(void **state)
 {
-    const ritz_fit_request request = quick("flexible=1e-2", 2);
-    ritz_scene scene = {0};
-
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     fit_scenes_store_spacecraft();
-    folder_parse(fit_scenes_spacecraft, &scene);
-    assert_within_one(&scene, &request);
-    ritz_scene_free(&scene);
+    assert_within_one(fit_scenes_spacecraft, 2, "flexible=1e-2");
 }
 
 int main(void)

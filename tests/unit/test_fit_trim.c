@@ -1,126 +1,92 @@
 /* A scene's answer without columns that its tolerance can do without. */
 #include "testing.h"
 
+#include "answers.h"
 #include "fit/fit_parts.h"
 #include "fit/order.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const ritz_method *const one[] = {&ritz_method_craig_bampton};
 
-static void prepare(int64_t left, int64_t right, const char *tolerance,
-                    ritz_scene *scene, ritz_fitter **out)
+/* Two beams, ready to be fitted. */
+static void open_beams(int64_t left, int64_t right, const char *tolerance,
+                       answer *out)
 {
-    ritz_fit_request request = fit_scenes_quick(tolerance);
+    const ritz_fit_request request = fit_scenes_by(one, 1, tolerance);
 
-    request.methods = one;
-    request.num_methods = 1;
     fit_scenes_store_beams(left, right);
-    folder_parse(fit_scenes_beams, scene);
-    assert_ok(ritz_fitter_scene(scene, &request, out));
-}
-
-static void end(ritz_scene *scene, ritz_fitter **fitter)
-{
-    ritz_fitter_free(fitter);
-    ritz_scene_free(scene);
+    answer_open(fit_scenes_beams, &request, out);
 }
 
 /* The system of that candidate is as large as it says, and holds. */
-static void assert_is_what_it_says(ritz_fitter *fitter,
-                                   const ritz_fit_candidate *c)
+static void assert_is_what_it_says(answer *a, const ritz_fit_candidate *c)
 {
-    ritz_system system = {0};
-    ritz_fit_path path = {0};
-    ritz_reduced *body = NULL;
-    int64_t columns = 0;
-
-    assert_ok(ritz_fitter_system(fitter, c, &body, &path, &system));
-    for (int64_t k = 0; k < fitter->num_bodies; k++)
-        columns += body[fitter->body[k]].K.ncol;
-    assert_int_equal(columns, c->columns);
-    assert_int_equal(path.row[0].columns, c->columns);
-    assert_true(path.row[0].feasible);
-    for (int64_t k = 0; k < system.num_configurations; k++) {
-        const ritz_configuration *at = &system.configuration[k];
+    answer_system(a, c);
+    assert_int_equal(answer_columns(a), c->columns);
+    assert_int_equal(a->path.row[0].columns, c->columns);
+    assert_true(a->path.row[0].feasible);
+    for (int64_t k = 0; k < a->system.num_configurations; k++) {
+        const ritz_configuration *at = &a->system.configuration[k];
 
         assert_int_equal(at->K.ncol, c->order);
         for (int64_t j = 0; j < at->errors.count; j++)
             assert_true(ritz_measure_holds(&at->errors.item[j]));
     }
-    for (int64_t k = 0; k < fitter->scene->num_components; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    ritz_fit_path_free(&path);
-    ritz_system_free(&system);
 }
 
 /* The beam is driven and seen across: what moves along it is left out. */
 static void what_moves_along_a_beam_driven_across_is_left_out(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    answer a = {0};
     const ritz_fit_candidate *c = NULL;
-    int64_t whole = INT64_MAX;
 
     (void)state;
-    prepare(5, 6, "response=1e-5", &scene, &fitter);
-    assert_ok(ritz_fitter_search(fitter, &fit));
-    c = &fit.candidate[fit.chosen];
-    for (int64_t k = 0; k < fit.count; k++)
-        if (fit.candidate[k].feasible && fit.candidate[k].left_out == 0 &&
-            fit.candidate[k].order < whole)
-            whole = fit.candidate[k].order;
+    open_beams(5, 6, "response=1e-5", &a);
+    assert_ok(ritz_fitter_search(a.fitter, &a.fit));
+    c = answer_chosen(&a);
     assert_true(c->left_out > 0);
-    assert_true(c->order < whole);
-    assert_non_null(strstr(fit.why, "of its basis being left out"));
+    assert_true(c->order < answer_smallest_whole(&a));
+    assert_non_null(strstr(a.fit.why, "of its basis being left out"));
     assert_true(find_measure(&c->errors, "response-relative")->value <= 1e-5);
-    assert_is_what_it_says(fitter, c);
-    ritz_fit_free(&fit);
-    end(&scene, &fitter);
+    assert_is_what_it_says(&a, c);
+    answer_free(&a);
 }
 
 /* No column of the least that each body can have may go. */
 static void what_has_nothing_to_spare_stays(void **state)
 {
     const int64_t none[] = {0, 0};
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit_candidate c = {0}, less = {0};
+    answer a = {0};
+    ritz_fit_candidate less = {0};
 
     (void)state;
-    prepare(3, 3, "response=1", &scene, &fitter);
-    assert_ok(ritz_fitter_try(fitter, one[0], none, &c));
-    assert_ok(ritz_fit_trim_scene(fitter, &c, &less));
+    open_beams(3, 3, "response=1", &a);
+    assert_ok(ritz_fitter_try(a.fitter, one[0], none, &a.whole));
+    assert_ok(ritz_fit_trim_scene(a.fitter, &a.whole, &less));
     assert_int_equal(less.order, 0);
-    ritz_fit_candidate_free(&c);
     ritz_fit_candidate_free(&less);
-    end(&scene, &fitter);
+    answer_free(&a);
 }
 
 /* A cut that no path of this scene has. */
 static void a_cut_of_another_scene_is_refused(void **state)
 {
     const int64_t modes[] = {1, 1};
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit_candidate c = {0};
+    answer a = {0};
     ritz_reduced body[2] = {0};
 
     (void)state;
-    prepare(2, 2, "response=1", &scene, &fitter);
-    assert_ok(ritz_fitter_try(fitter, one[0], modes, &c));
-    c.columns = 1;
-    c.left_out = 100;
-    assert_fails(ritz_fit_make_bodies(fitter, &c, body), RITZ_ERR_ARGUMENT,
-                 "no cut of it has 1 columns");
-    ritz_fit_candidate_free(&c);
-    end(&scene, &fitter);
+    open_beams(2, 2, "response=1", &a);
+    assert_ok(ritz_fitter_try(a.fitter, one[0], modes, &a.whole));
+    a.whole.columns = 1;
+    a.whole.left_out = 100;
+    assert_fails(ritz_fit_make_bodies(a.fitter, &a.whole, body),
+                 RITZ_ERR_ARGUMENT, "no cut of it has 1 columns");
+    answer_free(&a);
 }
 
 static ritz_status trim(ritz_fitter *fitter, const ritz_fit_candidate *from)
@@ -135,17 +101,14 @@ static ritz_status trim(ritz_fitter *fitter, const ritz_fit_candidate *from)
 static void every_allocation_may_fail(void **state)
 {
     const int64_t modes[] = {1, 1};
-    ritz_scene scene = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit_candidate c = {0};
+    answer a = {0};
 
     (void)state;
-    prepare(2, 1, "response=1", &scene, &fitter);
-    assert_ok(ritz_fitter_try(fitter, one[0], modes, &c));
-    assert_true(c.feasible);
-    assert_survives_every_allocation(trim(fitter, &c));
-    ritz_fit_candidate_free(&c);
-    end(&scene, &fitter);
+    open_beams(2, 1, "response=1", &a);
+    assert_ok(ritz_fitter_try(a.fitter, one[0], modes, &a.whole));
+    assert_true(a.whole.feasible);
+    assert_survives_every_allocation(trim(a.fitter, &a.whole));
+    answer_free(&a);
 }
 
 /* As in Rubin's basis: the first two move together freely, and the second is

@@ -380,10 +380,7 @@ static void a_rigid_body_on_a_hinge_is_an_exact_neighbour(void **state)
     ritz_configuration c = {0};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("skipped: no RITZ_DATA\n");
-        skip();
-    }
+    dualspin_or_skip();
     assert_ok(ritz_scene_parse("pair.yaml", pair, &scene));
     assert_ok(dualspin_component(1, &stator));
     assert_ok(dualspin_component(2, &platform));

@@ -64,10 +64,7 @@ static void any_mixture_of_bases_keeps_its_modes_and_gain(void **state)
     ritz_component component[3] = {0};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     for (int b = 0; b < 3; b++)
         assert_ok(dualspin_component(b, &component[b]));
     for (size_t m = 0; m < sizeof mixtures / sizeof *mixtures; m++) {
@@ -118,10 +115,7 @@ static void motions_without_mass_are_kept_whole(void **state)
     ritz_scene scene = {0};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     assert_ok(ritz_scene_parse("massless.yaml", massless, &scene));
     for (int pass = 0; pass < 2; pass++) {
         ritz_stage stage = {0};
@@ -197,10 +191,7 @@ static void reduced_bodies_are_reduced_once_more(void **state)
     int64_t modes[] = {0, 1, 2};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     assert_ok(dualspin_stage(&scene, &stage));
     assert_ok(ritz_compare(&stage, &c));
     scene.select = RITZ_SELECT_LISTED;

@@ -457,10 +457,7 @@ static void a_joined_system_knows_its_mass_in_rigid_motion(void **state)
     ritz_dense sum = {0};
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("skipped: no RITZ_DATA\n");
-        skip();
-    }
+    dualspin_or_skip();
     assert_ok(dualspin_stage(&scene, &stage));
     assert_ok(ritz_stage_assemble(&stage, setting, &c));
     assert_int_equal(c.momentum.nrow, 6);

@@ -100,14 +100,6 @@ typedef struct fixture {
     ritz_comparison c;
 } fixture;
 
-static void skip_without_data(void)
-{
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
-}
-
 static void prepare(fixture *f)
 {
     *f = (fixture){0};
@@ -133,7 +125,7 @@ static void a_looser_tolerance_trades_exactness_for_size(void **state)
     fixture f;
 
     (void)state;
-    skip_without_data();
+    dualspin_or_skip();
     prepare(&f);
     {
         const double tolerance[] = {1e-12, f.scene.composite_tolerance, 1e-3};
@@ -166,7 +158,7 @@ static void tolerances_beyond_one_are_refused(void **state)
     fixture f;
 
     (void)state;
-    skip_without_data();
+    dualspin_or_skip();
     prepare(&f);
     assert_fails(ritz_compare_tolerances(&f.stage, &f.c, 2, tolerance, &rows),
                  RITZ_ERR_ARGUMENT,
@@ -192,7 +184,7 @@ static void no_allocation_failure_leaks(void **state)
     fixture f;
 
     (void)state;
-    skip_without_data();
+    dualspin_or_skip();
     prepare(&f);
     f.scene.num_configurations = f.c.first_system.num_configurations = 1;
     for (int64_t n = 0; status != RITZ_OK; n += 37) {

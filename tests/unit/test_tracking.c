@@ -299,10 +299,7 @@ static void modes_of_the_spacecraft_cross_where_they_should(void **state)
     int found = 0;
 
     (void)state;
-    if (!dualspin_is_there()) {
-        print_message("skipped: no data, RITZ_DATA is not set\n");
-        skip();
-    }
+    dualspin_or_skip();
     assert_ok(dualspin_stage(&scene, &stage));
     assert_ok(ritz_assemble(&stage, NULL, &system));
     assert_ok(ritz_track(&stage, &system, 10.0, &t));
