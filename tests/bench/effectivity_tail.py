@@ -23,6 +23,8 @@ STATES = (4, 8, 16, 24, 40)
 DOFS = 400  # of components; gramians are dense
 SPACES = ["building", "CDplayer", "heat-cont", "rail_371"]
 ROUNDING = 1e-10  # of max |H|: errors below it are not told from rounding
+SHAPES = 1e-12  # of max |H|: what shapes of double precision leave of a modal
+# sum, some hundred eps by the condition of a mode (2e-13 measured on LF10)
 
 
 class Component:
@@ -112,7 +114,7 @@ def lines(bin_, name, folder, model, truth, words):
             continue
         print(f"| {name} | {states} | {bound:.2e} | {error:.2e} | "
               f"{bound / error:.2f} |", flush=True)
-        low += not bound >= error * (1 - 1e-6)
+        low += not bound >= error * (1 - 1e-6) - SHAPES * size
     return low
 
 
