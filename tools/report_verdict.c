@@ -229,9 +229,11 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                 "the %s.</p>\n",
                 why == SMALLEST ? "smallest that meets the tolerance"
                                 : "one that comes nearest to its tolerance");
-    fprintf(file,
-            "<p class=\"note\">One of %lld models that were measured.</p>\n",
-            (long long)count);
+    if (count > 1)
+        fprintf(file,
+                "<p class=\"note\">One of %lld models that were "
+                "measured.</p>\n",
+                (long long)count);
 }
 
 ritz_status report_verdict(FILE *file, const records *all)
@@ -244,10 +246,10 @@ ritz_status report_verdict(FILE *file, const records *all)
 
     if (!r) {
         fprintf(file,
-                "<p>%lld models were measured. No record says which was "
-                "chosen, and none has a tolerance that its errors can be held "
+                "<p>%lld model%s measured. No record says which was chosen, "
+                "and none has a tolerance that its errors can be held "
                 "against.</p>\n",
-                (long long)all->count);
+                (long long)all->count, all->count == 1 ? " was" : "s were");
         return RITZ_OK;
     }
     RITZ_TRY(records_measures(all, &count, &m));

@@ -68,6 +68,25 @@ assert c.levels[0] == 1 and c.levels.count(1) == 1
 assert all(b <= a + 1 for a, b in zip(c.levels, c.levels[1:]))
 END
 
+# --- where nothing meets the tolerance -----------------------------------------
+
+# record METHOD ORDER MISSING ERROR
+record() {
+    printf '{"method": "%s", "order": %s, "subject": "beam", "feasible": false,
+ "tolerance": {"response-relative": 0.01}, "seconds": {"cpu": 0.1},
+ "errors": {"missing-modes": %s, "response-relative": %s}}\n' "$@" |
+        tr -d '\n'
+    echo
+}
+{ record poor 3 0 0.5; record near 9 0 0.02; record far 12 0 0.4; } >unmet.jsonl
+expect 0 '' ritz-chart report unmet.jsonl -o unmet.html
+expect 0 '<div class="big">near</div>' cat unmet.html
+expect 0 'this is the one that comes nearest to its tolerance' cat unmet.html
+expect 0 'It misses a tolerance' cat unmet.html
+record lost 12 2 0.001 >lost.jsonl
+expect 0 '' ritz-chart report lost.jsonl -o lost.html
+expect 0 'none has a tolerance that its errors can be held against' cat lost.html
+
 # --- in a browser -------------------------------------------------------------
 
 # A page of our own shows the report in frames, drives it, and writes down what
