@@ -64,9 +64,9 @@ static ritz_status take_input(cli_run *run, const ritz_simulated *subject,
     }
     RITZ_FAIL_IF(drive->signal[j].kind != RITZ_SIGNAL_ZERO, RITZ_ERR_ARGUMENT,
                  "input '%s' is given twice", word);
+    RITZ_TRY(ritz_signal_parse(equals + 1, &drive->signal[j]));
     if (ritz_signal_is_file(equals + 1))
         RITZ_TRY(cli_input(run, equals + 1));
-    RITZ_TRY(ritz_signal_parse(equals + 1, &drive->signal[j]));
 done:
     return status;
 }

@@ -135,7 +135,12 @@ static ritz_status read_table(const char *path, ritz_signal *out)
     char *line = NULL;
     int64_t number = 0;
 
-    RITZ_TRY(ritz_text_read(path, &text));
+    status = ritz_text_read(path, &text);
+    RITZ_FAIL_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
+                 "'%s' is neither step, impulse, sine:F nor chirp:F,F, nor a "
+                 "file that can be read",
+                 path);
+    RITZ_TRY(status);
     RITZ_NEW(signal.time, count_lines(text));
     RITZ_NEW(signal.value, count_lines(text));
     for (line = text; line;) {

@@ -572,6 +572,9 @@ static void a_table_is_linear_between_its_points(void **state)
     write_text(path, "# empty\n");
     assert_fails(ritz_signal_parse(path, &s), RITZ_ERR_FORMAT, "no line");
     assert_int_equal(remove(path), 0);
+    assert_fails(ritz_signal_parse("bump", &s), RITZ_ERR_FILE,
+                 "'bump' is neither step, impulse, sine:F nor chirp:F,F, nor "
+                 "a file that can be read");
 }
 
 static ritz_status run(const ritz_simulated *subject,
