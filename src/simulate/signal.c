@@ -135,12 +135,7 @@ static ritz_status read_table(const char *path, ritz_signal *out)
     char *line = NULL;
     int64_t number = 0;
 
-    status = ritz_text_read(path, &text);
-    RITZ_FAIL_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
-                 "'%s' is neither step, impulse, sine:F nor chirp:F,F, nor a "
-                 "file that can be read",
-                 path);
-    RITZ_TRY(status);
+    RITZ_TRY(ritz_text_read(path, &text));
     RITZ_NEW(signal.time, count_lines(text));
     RITZ_NEW(signal.value, count_lines(text));
     for (line = text; line;) {
@@ -172,8 +167,15 @@ done:
 ritz_status ritz_signal_parse(const char *text, ritz_signal *out)
 {
     const struct word *word = find(text);
+    ritz_status status =
+        word ? parse_word(word, text, out) : read_table(text, out);
 
-    return word ? parse_word(word, text, out) : read_table(text, out);
+    if (status != RITZ_ERR_FILE)
+        return status;
+    return ritz_fail(RITZ_ERR_FILE,
+                     "'%s' is neither step, impulse, sine:F nor chirp:F,F, nor "
+                     "a file that can be read",
+                     text);
 }
 
 /* At a time that occurs twice the table jumps, to the later value. */
