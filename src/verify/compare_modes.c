@@ -25,12 +25,31 @@ static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
     return fabs(reduced - full) / full;
 }
 
+/* Of the largest ratio of both models: smaller ones are what some thousand
+   terms of a modal damping leave by rounding. */
+static const double undamped_within = 1e-12;
+
+/* The ratio up to which a mode is undamped. */
+static double undamped(const ritz_sides *sides)
+{
+    const ritz_damped *both[] = {&sides->full->damped, &sides->damped_reduced};
+    const int64_t count[] = {sides->full->poles.count, sides->reduced.count};
+    double largest = 0.0;
+
+    for (int t = 0; t < 2; t++)
+        for (int64_t k = 0; k < count[t]; k++)
+            if (isfinite(both[t]->zeta[k]))
+                largest = fmax(largest, fabs(both[t]->zeta[k]));
+    return undamped_within * largest;
+}
+
 /*
  * Where D couples modes, undamped partners need not be damped ones: the nearest
  * pole is. Of a mode that does not oscillate in the full model nothing is said
  * (NaN); one that does so in it alone is wholly wrong.
  */
-static double damping_error(const ritz_sides *sides, int64_t k, int64_t r)
+static double damping_error(const ritz_sides *sides, double nothing, int64_t k,
+                            int64_t r)
 {
     bool coupled = sides->full->poles.coupled || sides->reduced.coupled;
     double full = sides->full->damped.zeta[k];
@@ -40,7 +59,7 @@ static double damping_error(const ritz_sides *sides, int64_t k, int64_t r)
         reduced = ritz_spectrum_ratio(
             ritz_damped_nearest(&sides->damped_reduced, sides->reduced.count,
                                 sides->full->damped.s[k]));
-    if (full == reduced)
+    if (full == reduced || (fabs(full) <= nothing && fabs(reduced) <= nothing))
         return 0.0;
     if (!isnan(full) && isnan(reduced))
         return 1.0;
@@ -192,6 +211,7 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
     extreme frequency = {0.0, -1};
     extreme mac = {0.0, -1};
     extreme damping = {0.0, -1};
+    double nothing = sides->full->assumed ? 0.0 : undamped(sides);
     /* what is asked to be near must be there */
     double none_missing =
         isnan(request->limit_frequency) && isnan(request->limit_damping)
@@ -210,7 +230,7 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
             continue;
         keep(&frequency, 1.0, frequency_error(sides, k, r), k);
         if (!sides->full->assumed)
-            keep(&damping, 1.0, damping_error(sides, k, r), k);
+            keep(&damping, 1.0, damping_error(sides, nothing, k, r), k);
     }
     RITZ_TRY(add(sides, "frequency-relative", request->limit_frequency,
                  frequency, out));

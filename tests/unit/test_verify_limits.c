@@ -1,6 +1,7 @@
 /* What models are held to that lack a motion, or inputs and outputs. */
 #include "testing.h"
 
+#include "bar.h"
 #include "frame.h"
 #include "project.h"
 
@@ -199,6 +200,59 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
     ritz_component_free(&beam);
 }
 
+static void put_diagonal(const double value[4], ritz_sparse *out)
+{
+    ritz_dense A = {0};
+
+    assert_ok(ritz_dense_new(4, 4, &A));
+    for (int k = 0; k < 4; k++)
+        ritz_dense_col(&A, k)[k] = value[k];
+    ritz_sparse_free(out);
+    assert_ok(ritz_sparse_from_dense(&A, out));
+    ritz_dense_free(&A);
+}
+
+/* Four masses on springs of their own, the first with a damper. What rounding
+ * leaves of the others is not compared; a ratio that is none is. */
+static void rounding_of_a_ratio_is_no_ratio(void **state)
+{
+    static const double stiffness[] = {1.0, 4.0, 9.0, 16.0};
+    static const double mass[] = {1.0, 1.0, 1.0, 1.0};
+    static const double damper[] = {0.1, 1e-17, -3e-17, 2e-4};
+    static const double error[] = {0.0, 0.5}; /* of 2e-4 and 4e-4 */
+    ritz_verify_request request = RITZ_VERIFY_NONE;
+    ritz_component c = {0};
+
+    (void)state;
+    assert_ok(bar_component(3, &c));
+    put_diagonal(stiffness, &c.K);
+    put_diagonal(mass, &c.M);
+    put_diagonal(damper, &c.D);
+    request.band_hz[1] = 1.0;
+    request.limit_damping = 1e-2;
+    for (int twice = 0; twice < 2; twice++) {
+        ritz_basis basis = {0};
+        ritz_reduced reduced = {0};
+        ritz_measures found = {0};
+
+        assert_ok(ritz_basis_new(4, 4, &basis));
+        for (int k = 0; k < 4; k++)
+            ritz_dense_col(&basis.T, k)[k] = 1.0;
+        assert_ok(ritz_reduce(&c, &basis, &reduced));
+        ritz_dense_col(&reduced.D, 1)[1] *= -2.0;
+        ritz_dense_col(&reduced.D, 2)[2] = 0.0;
+        if (twice)
+            ritz_dense_col(&reduced.D, 3)[3] *= 2.0;
+        assert_ok(ritz_verify_reduced(&c, &reduced, &request, &found));
+        assert_near(find_measure(&found, "damping-relative")->value,
+                    error[twice], 1e-12);
+        ritz_measures_free(&found);
+        ritz_reduced_free(&reduced);
+        ritz_basis_free(&basis);
+    }
+    ritz_component_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +262,7 @@ int main(void)
         cmocka_unit_test(
             a_response_that_does_not_exist_cannot_be_held_to_a_limit),
         cmocka_unit_test(the_flexible_response_of_what_is_held_is_all_of_it),
+        cmocka_unit_test(rounding_of_a_ratio_is_no_ratio),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
