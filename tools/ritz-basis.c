@@ -135,7 +135,7 @@ int main(int argc, char **argv)
          .help = "relative, below which a column depends on others"},
         {CLI_LIST(&neighbours), .name = "neighbour",
          .argument = "PORT=FILE:PORT",
-         .help = "hang this component on a port; may be repeated"},
+         .help = "hang this component on a port"},
         {CLI_ACTION(list_methods), .name = "list",
          .help = "list methods and their papers"},
     };

@@ -24,22 +24,20 @@ static const double nearly_one = 0.9989;
 }
 
 /* What ruled it out without being measured. */
-static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c,
-                      const char *verb)
+static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c)
 {
     const ritz_measure *m =
         ritz_measures_find(&c->estimates, "frequency-relative-least");
 
     if (m)
         add(fit,
-            "the error of 'frequency' %s %.1e at least (%s) where %.1e is "
+            "the error of 'frequency' is %.2e at least (%s) where %g is "
             "allowed",
-            verb, m->value, m->where, m->value / c->excess);
+            m->value, m->where, m->value / c->excess);
 }
 
-/* "its response would be wrong by 2.1e-02 (3.41 Hz) where 1.0e-02 is asked" */
-static void add_error(ritz_fit *fit, const ritz_fit_candidate *c,
-                      const char *verb)
+/* "the error of 'response' is 2.1e-02 (3.41 Hz) where 1.0e-02 is allowed" */
+static void add_error(ritz_fit *fit, const ritz_fit_candidate *c)
 {
     const ritz_measure *m = NULL;
 
@@ -48,22 +46,22 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c,
         return;
     }
     if (c->screened)
-        add_bound(fit, c, verb);
+        add_bound(fit, c);
     if (c->binding < 0)
         return;
     m = &c->errors.item[c->binding];
     if (strcmp(m->name, "missing-modes") == 0)
-        add(fit, "%.0f mode%s of the band would be missing (%s)", m->value,
-            m->value > 1.0 ? "s" : "", m->where);
+        add(fit, "%.0f mode%s of the band %s missing (%s)", m->value,
+            m->value > 1.0 ? "s" : "", m->value > 1.0 ? "are" : "is", m->where);
     else if (strcmp(m->name, "mac") == 0 && m->limit > nearly_one)
-        add(fit, "the least MAC %s 1 - %.1e (%s) where 1 - %.1e is asked", verb,
+        add(fit, "the least MAC is 1 - %.1e (%s) where 1 - %.1e is asked",
             1.0 - m->value, m->where, 1.0 - m->limit);
     else if (strcmp(m->name, "mac") == 0)
-        add(fit, "the least MAC %s %.4f (%s) where %.4f is asked", verb,
-            m->value, m->where, m->limit);
+        add(fit, "the least MAC is %.4f (%s) where %.4f is asked", m->value,
+            m->where, m->limit);
     else
-        add(fit, "the error of '%s' %s %.1e (%s) where %.1e is allowed",
-            ritz_tolerance_word(m->name), verb, m->value, m->where, m->limit);
+        add(fit, "the error of '%s' is %.2e (%s) where %g is allowed",
+            ritz_tolerance_word(m->name), m->value, m->where, m->limit);
 }
 
 /* The next smaller one of the same method, of those that were tried. */
@@ -106,9 +104,9 @@ static void explain_none(ritz_fit *fit)
     }
     add(fit,
         "no method meets the tolerance; nearest is %s with %" PRId64
-        " columns, where ",
-        near->method->name, near->order);
-    add_error(fit, near, "is");
+        " column%s, where ",
+        near->method->name, near->order, near->order == 1 ? "" : "s");
+    add_error(fit, near);
 }
 
 static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
@@ -147,6 +145,27 @@ static bool rigid_alone(const ritz_fitter *fitter, const ritz_fit_candidate *c)
            10.0 * limits->limit_response;
 }
 
+/* What was asked of something that is not there: no mode lies in the band, no
+ * channel shows one, no input drives an output. */
+static void add_vacuous(const ritz_fitter *fitter, ritz_fit *fit,
+                        const ritz_fit_candidate *c)
+{
+    static const char *const asked[] = {"frequency-relative", "mac",
+                                        "damping-relative", "response-relative",
+                                        "static-gain-relative"};
+    bool any = false;
+
+    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
+        double limit = ritz_fit_limit(&fitter->request.tolerance, asked[k]);
+
+        if (isnan(limit) || ritz_measures_find(&c->errors, asked[k]))
+            continue;
+        add(fit, "%s '%s'", any ? " or" : "; nothing was there to be held to",
+            ritz_tolerance_word(asked[k]));
+        any = true;
+    }
+}
+
 ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
 {
     const ritz_fit_candidate *c = NULL;
@@ -160,13 +179,14 @@ ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
     }
     c = &fit->candidate[fit->chosen];
     less = smaller(fit, c);
-    add(fit, "%s meets the tolerance with %" PRId64 " columns", c->method->name,
-        c->order);
+    add(fit, "%s meets the tolerance with %" PRId64 " column%s",
+        c->method->name, c->order, c->order == 1 ? "" : "s");
     if (c->left_out > 0)
         add(fit, ", %" PRId64 " of its basis being left out", c->left_out);
     if (less) {
-        add(fit, "; with %" PRId64 ", ", less->order);
-        add_error(fit, less, "would be");
+        add(fit, "; the next smaller that was tried has %" PRId64 ", and ",
+            less->order);
+        add_error(fit, less);
     } else {
         add(fit, ", the fewest that it can have");
     }
@@ -177,11 +197,15 @@ ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
     if (rigid_alone(fitter, c))
         add(fit, "; nothing but rigid motion makes the largest response: to "
                  "hold the rest, ask for 'flexible'");
+    add_vacuous(fitter, fit, c);
     for (int64_t k = 0; k < fit->count; k++)
         caught += fit->candidate[k].caught;
     if (caught > 0)
-        add(fit, "; %" PRId64 " candidate%s the grid and failed at random %s",
+        add(fit, "; %" PRId64 " candidate%s the grid and failed at %s%s",
             caught, caught == 1 ? " met" : "s met",
-            fitter->num_places > 1 ? "places" : "frequencies");
+            fitter->num_places > 1           ? "random places or "
+            : fitter->request.num_random > 0 ? "random frequencies or "
+                                             : "",
+            caught == 1 ? "its own poles" : "their own poles");
     return RITZ_OK;
 }

@@ -104,9 +104,10 @@ void ritz_fitter_describe(const ritz_fitter *fitter, int64_t size, char *out)
     else
         (void)snprintf(out, (size_t)size,
                        "%s of %" PRId64 " dofs at %" PRId64
-                       " configurations, and %" PRId64 " more at random",
+                       " configuration%s, and %" PRId64 " more at random",
                        fitter->rich ? "a rich first stage" : "the full system",
-                       full->num_dofs, listed, fitter->num_places - listed);
+                       full->num_dofs, listed, listed == 1 ? "" : "s",
+                       fitter->num_places - listed);
 }
 
 int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method)
