@@ -98,6 +98,7 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
                           s->full + k * s->values);
     }
     s->flexible = flexible_part(poles, s);
+    RITZ_TRY(ritz_sweep_hear(poles, s));
 done:
     ritz_response_free(&direct);
     return ritz_context(status, "full model");
@@ -107,6 +108,7 @@ done:
 typedef struct extreme {
     double largest;   /* |H| of the full model */
     double flexible;  /* of that less rigid motion */
+    bool heard;       /* any of it is more than rounding */
     double error;     /* |H - H_r| */
     double error_hz;  /* where */
     double db, db_hz; /* the level, where it is audible */
@@ -131,6 +133,7 @@ static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
                        : 0.0;
 
     found->flexible = fmax(found->flexible, s->full->flexible);
+    found->heard = found->heard || s->full->heard;
     RITZ_NEW(s->reduced, s->full->count * values);
     for (int64_t k = 0; k < s->full->count; k++) {
         double hertz = s->full->hertz[k];
@@ -192,7 +195,7 @@ static ritz_status add_response(const ritz_sides *sides, const extreme *found,
     const bool rigid = sides->full->poles.num_rigid > 0;
     char where[RITZ_NAME_SIZE];
 
-    if (found->largest == 0.0) /* no output sees any input */
+    if (!found->heard) /* no output sees any input */
         return RITZ_OK;
     say_where(sides->full, found->error_hz, where);
     RITZ_TRY(ritz_measures_add(

@@ -13,6 +13,7 @@ typedef struct ritz_sweep {
     double *hertz;
     double _Complex *full;
     double flexible; /* largest |H| less what rigid motion answers */
+    bool heard;      /* any |H| is more than rounding */
 } ritz_sweep;
 
 /* What of the full model serves every comparison. */
@@ -93,6 +94,9 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
 ritz_status ritz_sides_responses(const ritz_sides *sides,
                                  const ritz_verify_request *request,
                                  ritz_measures *out);
+
+/** Fill `heard` of a sweep that has its responses. */
+ritz_status ritz_sweep_hear(const ritz_poles *poles, ritz_sweep *sweep);
 
 void ritz_sweep_free(ritz_sweep *sweep);
 void ritz_sides_free(ritz_sides *sides);

@@ -253,6 +253,65 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
     ritz_component_free(&c);
 }
 
+/* A free chain beside another: an input of one, an output of the other. Rigid
+ * modes and equal ones are mixed by rounding, and that is no response. */
+static void what_cancels_is_no_response(void **state)
+{
+    enum { ELEMENTS = 3, ALL = 2 * (ELEMENTS + 1) };
+    ritz_verify_request request = RITZ_VERIFY_NONE;
+    ritz_component c = {0};
+    ritz_basis basis = {0};
+    ritz_reduced reduced = {0};
+
+    (void)state;
+    assert_ok(bar_component(ALL - 1, &c));
+    for (int which = 0; which < 2; which++) {
+        ritz_sparse *A = which ? &c.M : &c.K;
+        ritz_dense all = {0};
+
+        assert_ok(ritz_sparse_dense(A, &all));
+        for (int k = 0; k < 2; k++) { /* the element between is cut */
+            int64_t i = ELEMENTS + k;
+
+            ritz_dense_col(&all, i)[i] *= 0.5;
+            ritz_dense_col(&all, i)[ALL - 1 - i] = 0.0;
+        }
+        ritz_sparse_free(A);
+        assert_ok(ritz_sparse_from_dense(&all, A));
+        ritz_dense_free(&all);
+    }
+    ritz_io_free(&c.io);
+    assert_ok(ritz_io_new(ALL, 1, 1, &c.io));
+    c.io.B.val[0] = 1.0;
+    c.io.C.val[ALL - 1] = 1.0;
+    assert_ok(ritz_basis_new(ALL, ALL, &basis));
+    for (int64_t j = 0; j < ALL; j++) /* turned, so that nothing is 0 */
+        for (int64_t i = 0; i < ALL; i++)
+            ritz_dense_col(&basis.T, j)[i] =
+                cos((double)(i * j) + 0.3 * (double)i);
+    assert_ok(ritz_reduce(&c, &basis, &reduced));
+    request.band_hz[1] = 1.0;
+    for (int across = 1; across >= 0; across--) {
+        ritz_measures found = {0};
+        const ritz_measure *response = NULL;
+
+        if (!across) {
+            c.io.C.val[0] = 1.0;
+            for (int64_t j = 0; j < ALL; j++)
+                reduced.io.C.val[j] += ritz_dense_col(&basis.T, j)[0];
+        }
+        assert_ok(ritz_verify_reduced(&c, &reduced, &request, &found));
+        response = ritz_measures_find(&found, "response-relative");
+        assert_int_equal(response == NULL, across);
+        /* cond(T)^2 eps of a full turn: measured, 1e-10 */
+        assert_true(!response || response->value < 1e-7);
+        ritz_measures_free(&found);
+    }
+    ritz_reduced_free(&reduced);
+    ritz_basis_free(&basis);
+    ritz_component_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -263,6 +322,7 @@ int main(void)
             a_response_that_does_not_exist_cannot_be_held_to_a_limit),
         cmocka_unit_test(the_flexible_response_of_what_is_held_is_all_of_it),
         cmocka_unit_test(rounding_of_a_ratio_is_no_ratio),
+        cmocka_unit_test(what_cancels_is_no_response),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
