@@ -1,7 +1,7 @@
 #include "axis.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <string.h>
 
 axis axis_log(int64_t count, const double *values, double floor_value,
               int64_t *lifted)
@@ -101,89 +101,16 @@ double axis_place(const axis *a, double value)
     return a->from + share * (a->to - a->from);
 }
 
-static bool cross(const axis_word *a, const axis_word *b)
-{
-    return a->left < b->left + b->wide && b->left < a->left + a->wide &&
-           a->base < b->base + b->high && b->base < a->base + a->high;
-}
-
-/* Whether a word at its place covers no word before it and, unless it may, no
-   other point. */
-static bool is_free(int64_t count, const axis_word *words, int64_t k,
-                    const double box[4], bool across)
-{
-    const double mark = 5.0; /* half a mark, pixels */
-    const axis_word *w = &words[k];
-
-    if (w->left < box[0] || w->base < box[1] || w->left + w->wide > box[2] ||
-        w->base + w->high > box[3])
-        return false;
-    for (int64_t i = 0; i < count; i++) {
-        axis_word point = {.left = words[i].x - mark,
-                           .base = words[i].y - mark,
-                           .wide = 2.0 * mark,
-                           .high = 2.0 * mark};
-
-        if ((!across && cross(w, &point)) ||
-            (words[i].written && i != k && cross(w, &words[i])))
-            return false;
-    }
-    return true;
-}
-
-/* Try places beside a point, the nearest first. */
-static bool find_room(int64_t count, axis_word *words, int64_t k,
-                      const double box[4], bool across)
-{
-    /* of the word's size, then pixels; behind the point's centre */
-    static const struct {
-        double wide, high, x, y;
-    } beside[] = {
-        {0.0, -0.5, 8.0, 0.0},    {-0.5, 0.0, 0.0, 7.0},
-        {-1.0, -0.5, -8.0, 0.0},  {-0.5, -1.0, 0.0, -7.0},
-        {0.0, 0.0, 5.0, 5.0},     {-1.0, 0.0, -5.0, 5.0},
-        {0.0, -1.0, 5.0, -5.0},   {-1.0, -1.0, -5.0, -5.0},
-        {0.0, 0.0, 10.0, 14.0},   {0.0, -1.0, 10.0, -14.0},
-        {-1.0, 0.0, -10.0, 14.0}, {-1.0, -1.0, -10.0, -14.0},
-        {-0.5, 0.0, 0.0, 24.0},   {-0.5, -1.0, 0.0, -24.0},
-    };
-    axis_word *w = &words[k];
-
-    for (size_t p = 0; p < sizeof beside / sizeof *beside; p++) {
-        w->left = w->x + beside[p].wide * w->wide + beside[p].x +
-                  copysign(beside[p].x == 0.0 ? 0.0 : w->gap, beside[p].x);
-        w->base = w->y + beside[p].high * w->high + beside[p].y +
-                  copysign(beside[p].y == 0.0 ? 0.0 : w->gap, beside[p].y);
-        if (is_free(count, words, k, box, across))
-            return true;
-    }
-    return false;
-}
-
-void axis_words(int64_t count, axis_word *words, const double box[4])
-{
-    for (int64_t k = 0; k < count; k++)
-        words[k].written = false;
-    for (int64_t k = 0; k < count; k++) {
-        axis_word *w = &words[k];
-
-        if (!(w->wide > 0.0))
-            continue;
-        w->written = find_room(count, words, k, box, false) ||
-                     (w->must && find_room(count, words, k, box, true));
-        if (w->written || !w->must)
-            continue;
-        w->left = fmin(w->x + 8.0, box[2] - w->wide);
-        w->base = fmin(w->y + 5.0, box[3] - w->high);
-        w->written = true;
-    }
-}
-
+/* Letters of common fonts, in units of their size. */
 double axis_width(const char *text, double size)
 {
-    double letters = 0.0;
+    static const char narrow[] = "fijlrtI.,:;'|!()[]- ", wide[] = "mwMW%@";
+    double sum = 0.0;
 
     for (; *text; text++)
-        letters += ((unsigned char)*text >> 6) != 2;
-    return 0.58 * size * letters;
+        if (((unsigned char)*text >> 6) != 2)
+            sum += strchr(narrow, *text) ? 0.37
+                   : strchr(wide, *text) ? 0.97
+                                         : 0.61;
+    return sum * size;
 }

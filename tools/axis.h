@@ -1,4 +1,4 @@
-/* Scales of charts, in pixels, and where words find room. */
+/* Scales of charts, in pixels. */
 #ifndef RITZ_TOOLS_AXIS_H
 #define RITZ_TOOLS_AXIS_H
 
@@ -35,24 +35,6 @@ double axis_clamp(const axis *a, double value);
 
 /** Pixel of a value. */
 double axis_place(const axis *a, double value);
-
-/* A word beside a point: in pixels, y upwards. */
-typedef struct axis_word {
-    double x, y;       /* the point */
-    double wide, high; /* of the word */
-    double gap;        /* further from the point, pixels */
-    double left, base; /* where it goes: lower left corner */
-    bool must;         /* it is written across points, or even words, too */
-    bool written;
-} axis_word;
-
-/**
- * Find room for words beside their points, first come first served: right,
- * above, left, below and farther out. One that finds none is not written.
- *
- * @param[in] box  left, bottom, right, top of where words may be
- */
-void axis_words(int64_t count, axis_word *words, const double box[4]);
 
 /** Width of a text in pixels, about. */
 double axis_width(const char *text, double size);

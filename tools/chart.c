@@ -66,19 +66,24 @@ static int models_of(int holds)
     return sum;
 }
 
-static ritz_status refuse(const char *path, int found, int holds)
+/* Of text: what it holds. */
+static const char *noun_of(int found)
+{
+    for (int k = 0; k < NUM_CONTENTS; k++)
+        if (contents[k].holds == found && !contents[k].model)
+            return contents[k].noun;
+    return "";
+}
+
+static ritz_status refuse(const char *path, const char *noun, int holds)
 {
     char list[160] = "";
-    const char *noun = "";
     size_t used = 0;
 
-    for (int k = 0; k < NUM_CONTENTS; k++) {
-        if (contents[k].holds == found && !contents[k].model)
-            noun = contents[k].noun;
+    for (int k = 0; k < NUM_CONTENTS; k++)
         if ((contents[k].holds & holds) && used < sizeof list)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
                                      used > 0 ? " or " : "", contents[k].noun);
-    }
     return ritz_fail(RITZ_ERR_FORMAT, "'%s' holds %s, not %s", path, noun,
                      list);
 }
@@ -99,7 +104,24 @@ static ritz_status check_text(const char *path, int found, int holds)
                  "--record",
                  path);
     if (!(found & holds))
-        status = refuse(path, found, holds);
+        status = refuse(path, noun_of(found), holds);
+done:
+    return status;
+}
+
+static ritz_status read_model(cli_run *run, int holds, chart_file *file)
+{
+    ritz_status status = RITZ_OK;
+    model_kind kind = MODEL_ANY;
+    const char *noun = NULL;
+
+    RITZ_TRY(model_peek(file->path, &kind, &noun));
+    if (!(models_of(holds) & (int)kind))
+        return refuse(file->path, noun, holds);
+    RITZ_TRY(model_read(run, file->path, (int)kind, &file->model));
+    for (int k = 0; k < NUM_CONTENTS; k++)
+        if (contents[k].model == (int)kind)
+            file->holds = contents[k].holds;
 done:
     return status;
 }
@@ -110,13 +132,8 @@ static ritz_status read_file(cli_run *run, const char *path, int holds,
     ritz_status status = RITZ_OK;
 
     file->path = path;
-    if (ritz_container_is(path)) {
-        RITZ_TRY(model_read(run, path, models_of(holds), &file->model));
-        for (int k = 0; k < NUM_CONTENTS; k++)
-            if (contents[k].model == (int)file->model.kind)
-                file->holds = contents[k].holds;
-        return RITZ_OK;
-    }
+    if (ritz_container_is(path))
+        return read_model(run, holds, file);
     file->holds = is_tracks(path)    ? CHART_TRACKS
                   : records_is(path) ? CHART_RECORDS
                                      : 0;

@@ -56,8 +56,24 @@ void chart_errors_levels(const chart_errors_work *w, const measure *m,
 /** Whether an area shows what models are wrong by. */
 bool chart_errors_uncertain(const chart_area *area);
 
-/** Orders beside points: those that count first, others where there is room. */
-ritz_status chart_errors_words(const chart_errors_work *w,
+/** Decades that have lines, from first to last; every how many of them. */
+int chart_errors_decades(const chart_area *area, int *first, int *last);
+
+/**
+ * Points of the front, or the best of one method at each order, from left to
+ * right: x, y, record. What misses modes is on neither.
+ *
+ * @param[out] room  three numbers for each record
+ * @return how many
+ */
+int64_t chart_errors_line(const chart_errors_work *w, int64_t method,
+                          bool front, double *room);
+
+/**
+ * What was chosen, a line leading to the words if they are not beside it, and
+ * orders of other points where they cover nothing.
+ */
+ritz_status chart_errors_words(const chart_errors_work *w, const measure *m,
                                const chart_area *area);
 
 /** Draw one measure into a cell. */

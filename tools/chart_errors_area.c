@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { TOP = 42, BOTTOM = 58 };
 
@@ -103,19 +104,14 @@ static int by_place(const void *a, const void *b)
     return x[0] < y[0] ? -1 : x[0] > y[0] ? 1 : x[1] < y[1] ? -1 : x[1] > y[1];
 }
 
-/*
- * Points of a front, or the best of one method at each order, from left to
- * right: x, y, record. What misses modes is on neither.
- */
-static void put_line(chart_errors_work *w, int64_t panel, int64_t method,
-                     int style, double *room)
+int64_t chart_errors_line(const chart_errors_work *w, int64_t method,
+                          bool front, double *room)
 {
-    int64_t count = 0;
+    int64_t count = 0, kept = 0;
 
     for (int64_t k = 0; k < w->all.count; k++) {
-        if (isnan(w->x[k]) || (style == ON_FRONT && !w->front[k]) ||
-            (style == ON_LINE &&
-             (w->which[k] != method || w->all.item[k].incomplete)))
+        if (isnan(w->x[k]) || (front && !w->front[k]) ||
+            (!front && (w->which[k] != method || w->all.item[k].incomplete)))
             continue;
         room[3 * count] = w->x[k];
         room[3 * count + 1] = w->y[k];
@@ -123,8 +119,20 @@ static void put_line(chart_errors_work *w, int64_t panel, int64_t method,
     }
     qsort(room, (size_t)count, 3 * sizeof *room, by_place);
     for (int64_t i = 0; i < count; i++)
-        if (style == ON_FRONT || i == 0 || room[3 * i] > room[3 * (i - 1)])
-            put_row(w, panel, (int64_t)room[3 * i + 2], style, -1);
+        if (front || kept == 0 || room[3 * i] > room[3 * (kept - 1)]) {
+            memmove(room + 3 * kept, room + 3 * i, 3 * sizeof *room);
+            kept++;
+        }
+    return kept;
+}
+
+static void put_line(chart_errors_work *w, int64_t panel, int64_t method,
+                     int style, double *room)
+{
+    int64_t count = chart_errors_line(w, method, style == ON_FRONT, room);
+
+    for (int64_t i = 0; i < count; i++)
+        put_row(w, panel, (int64_t)room[3 * i + 2], style, -1);
     fputc('\n', w->picture->data.file); /* ends a line of gnuplot's */
 }
 
@@ -214,7 +222,7 @@ ritz_status chart_errors_area(chart_errors_work *w, int64_t panel, double left,
     if (w->form->seconds)
         chart_tics_seconds(w->picture, &area.x);
     chart_errors_levels(w, m, &area);
-    RITZ_TRY(chart_errors_words(w, &area));
+    RITZ_TRY(chart_errors_words(w, m, &area));
     RITZ_TRY(put_points(w, panel));
     put_plot(w, panel);
 done:

@@ -45,14 +45,20 @@ bool chart_errors_uncertain(const chart_area *area)
            CHART_UNCERTAINTY <= area->y.high;
 }
 
+int chart_errors_decades(const chart_area *area, int *first, int *last)
+{
+    *first = (int)ceil(log10(area->y.low) - 1e-9);
+    *last = (int)floor(log10(area->y.high) + 1e-9);
+    return *last - *first > MOST_LINES ? 1 + (*last - *first) / FEWER_LINES : 1;
+}
+
 /* Decades, and the numbers of the axis with them. */
 static void put_decades(const chart_errors_work *w, const measure *m,
                         const chart_area *area)
 {
     FILE *file = w->picture->plot.file;
-    int first = (int)ceil(log10(area->y.low) - 1e-9);
-    int last = (int)floor(log10(area->y.high) + 1e-9);
-    int step = last - first > MOST_LINES ? 1 + (last - first) / FEWER_LINES : 1;
+    int first = 0, last = 0;
+    int step = chart_errors_decades(area, &first, &last);
     char word[32];
 
     fprintf(file, "unset grid\nset grid x lc rgb '" SVG_GRID "' lt 1 lw 0.8\n"

@@ -49,12 +49,18 @@ const char *chart_colour(int64_t series)
     return svg_colour[series % SVG_COLOURS];
 }
 
-/* Five marks and eight colours: forty series are told apart. */
+/*
+ * Five marks and eight colours: forty series are told apart. Of the first
+ * eight, colours that are alike, such as the two blues, have other marks, and a
+ * colour that comes again has the next.
+ */
 int chart_mark(int64_t series, bool hollow)
 {
     static const int filled[] = {7, 5, 9, 13, 11};
+    static const int first[SVG_COLOURS] = {0, 1, 2, 3, 4, 3, 1, 2};
 
-    return filled[series % 5] - hollow;
+    return filled[(first[series % SVG_COLOURS] + series / SVG_COLOURS) % 5] -
+           hollow;
 }
 
 static void put_range(FILE *file, char which, const axis *a)

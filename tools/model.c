@@ -76,6 +76,34 @@ static void list_kinds(int wanted, char *out, size_t room)
                                      used > 0 ? " or " : "", kinds[k].noun);
 }
 
+/* NUM_KINDS: one that is not known. */
+static int find_kind(const ritz_summary *summary)
+{
+    int k = 0;
+
+    while (k < NUM_KINDS && strcmp(kinds[k].name, summary->kind) != 0)
+        k++;
+    return k;
+}
+
+ritz_status model_peek(const char *path, model_kind *kind, const char **noun)
+{
+    ritz_status status = RITZ_OK;
+    ritz_summary summary = {0};
+    int k = 0;
+
+    RITZ_TRY(ritz_container_summary(path, &summary));
+    k = find_kind(&summary);
+    RITZ_FAIL_IF(k == NUM_KINDS, RITZ_ERR_FORMAT,
+                 "'%s' holds '%s', which is no kind of container", path,
+                 summary.kind);
+    *kind = kinds[k].kind;
+    *noun = kinds[k].noun;
+done:
+    ritz_summary_free(&summary);
+    return status;
+}
+
 ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
 {
     ritz_status status = RITZ_OK;
@@ -85,8 +113,7 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
 
     RITZ_TRY(cli_input(run, path));
     RITZ_TRY(ritz_container_summary(path, &summary));
-    while (k < NUM_KINDS && strcmp(kinds[k].name, summary.kind) != 0)
-        k++;
+    k = find_kind(&summary);
     list_kinds(wanted, list, sizeof list);
     RITZ_FAIL_IF(k == NUM_KINDS, RITZ_ERR_FORMAT, "'%s' holds '%s', not %s",
                  path, summary.kind, list);

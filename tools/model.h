@@ -44,6 +44,9 @@ typedef struct model_view {
     const char *damping; /* of the model; "" none */
 } model_view;
 
+/** The kind of a container, and how sentences call it: "a system". */
+ritz_status model_peek(const char *path, model_kind *kind, const char **noun);
+
 /**
  * Hash and read a container of one of some kinds.
  *

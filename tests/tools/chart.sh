@@ -144,6 +144,43 @@ best = [(r[3], r[4]) for r in rows if r[:3] == ["0", "0", "5"]]
 assert best == [("3", "0.2"), ("4", "0.01")], best
 END
 
+# --- words beside points, and marks that are told apart -----------------------
+
+i=0
+while [ $i -lt 240 ]; do
+    method=$((i % 20))
+    order=$((3 + 3 * (i / 20)))
+    more=''
+    [ $i -ne 63 ] || more=',"chosen":true'
+    [ $i -ne 64 ] || more=',"runner_up":true'
+    line "method$method" $order "$((1 + i * 7 % 9))e-$((1 + order / 6))" \
+        ',"tolerance":{"response-relative":0.003},"feasible":true'"$more"
+    i=$((i + 1))
+done | sed 's/"cpu":\([0-9]*\).5/"cpu":0.\1/' >dense.jsonl
+for kind in pareto convergence; do
+    expect 0 '' ritz-chart -q $kind dense.jsonl -o dense-$kind.svg
+    expect 0 '' /usr/bin/python3 - $kind <<'END'
+import re, sys
+script = open(f"dense-{sys.argv[1]}.svg.gp").read()
+wide, high = map(float, re.search(r"size ([\d.]+), *([\d.]+)", script).groups())
+word = [(t, float(x) * wide, float(y) * high, int(s)) for t, x, y, s in
+        re.findall(r"set label '([^']+)' at screen ([\d.]+), screen ([\d.]+) "
+                   r"noenhanced front font ',(\d+)'", script)]
+# half an em a letter is less than any font has
+box = [(x, y - s / 2, x + 0.45 * s * len(t), y + s / 2) for t, x, y, s in word]
+for i, a in enumerate(box):
+    for b in box[:i]:
+        assert a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]
+said = [t for t, x, y, s in word]
+assert "chosen: method3, 12" in said and "runner-up: method4, 12" in said, said
+assert (len(said) > 2) == (sys.argv[1] == "pareto"), said
+sign = re.findall(r"point pt (\d+) ps 0.9 lw 1.6 lc rgb '([^']+)'", script)[:20]
+assert len(set(sign)) == 20, sign
+blue = [p for p, c in sign if c in ("#0072b2", "#3f8fbf")][:2]
+assert blue[0] != blue[1]
+END
+done
+
 # --- containers ---------------------------------------------------------------
 
 expect 0 '' import_body stator --port bearing=1 --input 'a_b<&=1:6' \
@@ -176,6 +213,12 @@ expect 0 '' ritz-chart hankel ranking.h5 -o hankel.svg
 well hankel.svg
 expect 1 "'ranking.h5' holds a ranking, not a response" ritz-chart response \
     ranking.h5 -o x.svg
+for kind in pareto convergence; do
+    expect 1 "'response.h5' holds a response, not run records" \
+        ritz-chart $kind response.h5 -o x.svg
+done
+expect 1 "'stator.h5' holds a component, not a table of tracks" \
+    ritz-chart tracks stator.h5 -o x.svg
 
 expect 0 '' ritz-simulate reduced.h5 --seconds 0.5 --input 'a_b<&=step' \
     --damping 'modal 0.01' -o run.h5

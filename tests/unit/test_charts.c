@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "tools/axis.h"
+#include "tools/chart_place.h"
 #include "tools/html.h"
 #include "tools/svg.h"
 
@@ -83,68 +84,77 @@ static void a_decade_is_as_long_as_the_next(void **state)
 
 /* --- words ---------------------------------------------------------------- */
 
-static bool overlap(const axis_word *a, const axis_word *b)
+static bool overlap(const chart_box *a, const chart_box *b)
 {
-    return a->left < b->left + b->wide && b->left < a->left + a->wide &&
-           a->base < b->base + b->high && b->base < a->base + a->high;
+    return a->left < b->right && b->left < a->right && a->bottom < b->top &&
+           b->bottom < a->top;
 }
 
+static bool holds(const chart_box *frame, const chart_box *a)
+{
+    return a->left >= frame->left && a->right <= frame->right &&
+           a->bottom >= frame->bottom && a->top <= frame->top;
+}
+
+/* One mark alone: its word is beside it. Words for the same one follow while
+   there is room. */
 static void words_do_not_cover_each_other(void **state)
 {
     enum { COUNT = 40 };
-    const double box[] = {0.0, 0.0, 400.0, 300.0};
-    axis_word word[COUNT];
-    int64_t written = 0;
+    chart_spot spot = {200.0, 150.0, 4.0};
+    const chart_box mark = {196.0, 146.0, 204.0, 154.0};
+    chart_box word[COUNT];
+    chart_places places = {.frame = {0.0, 0.0, 400.0, 300.0},
+                           .num_spots = 1,
+                           .spot = &spot,
+                           .word = word};
 
     (void)state;
-    for (int k = 0; k < COUNT; k++)
-        word[k] =
-            (axis_word){.x = 200.0, .y = 150.0, .wide = 30.0, .high = 12.0};
-    axis_words(COUNT, word, box);
     for (int k = 0; k < COUNT; k++) {
-        written += word[k].written;
-        for (int i = 0; word[k].written && i < k; i++)
-            assert_false(word[i].written && overlap(&word[i], &word[k]));
+        chart_word w = {
+            .x = 200.0, .y = 150.0, .half = 4.0, .wide = 30.0, .high = 12.0};
+
+        if (!chart_place_beside(&places, &w))
+            break;
+        assert_true(holds(&places.frame, &w.at));
+        assert_false(overlap(&mark, &w.at));
+        for (int64_t i = 0; i < places.num_words; i++)
+            assert_false(overlap(&word[i], &w.at));
+        assert_true(w.at.right - w.at.left == 30.0);
+        word[places.num_words++] = w.at;
     }
-    assert_true(written >= 4 && written < COUNT);
+    assert_true(places.num_words >= 2 && places.num_words < COUNT);
 }
 
+/* A cloud of marks without a gap: an order is left out, and two words that
+   must be are across marks, but in the frame and not across each other. */
 static void a_word_that_must_be_is_written_anywhere(void **state)
 {
-    const double box[] = {0.0, 0.0, 60.0, 10.0}; /* lower than the word */
-    axis_word word = {
-        .x = 50.0, .y = 5.0, .wide = 40.0, .high = 12.0, .must = true};
+    enum { SIDE = 20 };
+    chart_spot spot[SIDE * SIDE];
+    chart_box word[2];
+    chart_places places = {.frame = {0.0, 0.0, 400.0, 400.0},
+                           .num_spots = SIDE * SIDE,
+                           .spot = spot,
+                           .word = word};
 
     (void)state;
-    axis_words(1, &word, box);
-    assert_true(word.written);
-    assert_true(word.left >= 0.0 && word.left + 40.0 <= 60.0);
-    word.must = false;
-    axis_words(1, &word, box);
-    assert_false(word.written);
-}
-
-/* A cloud of points without a gap, and two that must have words at one place:
-   across points, but beside each other. */
-static void words_that_must_be_stand_beside_each_other(void **state)
-{
-    enum { SIDE = 20, COUNT = 2 + SIDE * SIDE };
-    const double box[] = {0.0, 0.0, 400.0, 400.0};
-    axis_word word[COUNT];
-
-    (void)state;
-    for (int k = 0; k < COUNT; k++) {
+    for (int k = 0; k < SIDE * SIDE; k++) {
         const int row = k / SIDE;
 
-        word[k] =
-            (axis_word){.x = 10.0 + 20.0 * (k % SIDE), .y = 10.0 + 20.0 * row};
+        spot[k] =
+            (chart_spot){10.0 + 20.0 * (k % SIDE), 10.0 + 20.0 * row, 9.0};
     }
-    for (int k = 0; k < 2; k++)
-        word[k] = (axis_word){
-            .x = 200.0, .y = 200.0, .wide = 90.0, .high = 12.0, .must = true};
-    axis_words(COUNT, word, box);
-    assert_true(word[0].written && word[1].written);
-    assert_false(overlap(&word[0], &word[1]));
+    for (int k = 0; k < 2; k++) {
+        chart_word w = {
+            .x = 190.0, .y = 190.0, .half = 9.0, .wide = 90.0, .high = 12.0};
+
+        assert_false(chart_place_beside(&places, &w));
+        chart_place_around(&places, &w);
+        assert_true(holds(&places.frame, &w.at));
+        assert_false(k == 1 && overlap(&word[0], &w.at));
+        word[places.num_words++] = w.at;
+    }
 }
 
 /* --- text ----------------------------------------------------------------- */
@@ -265,7 +275,6 @@ int main(void)
         cmocka_unit_test(a_decade_is_as_long_as_the_next),
         cmocka_unit_test(words_do_not_cover_each_other),
         cmocka_unit_test(a_word_that_must_be_is_written_anywhere),
-        cmocka_unit_test(words_that_must_be_stand_beside_each_other),
         cmocka_unit_test(hostile_text_is_text),
         cmocka_unit_test(a_picture_is_named_and_its_points_are),
         cmocka_unit_test(words_have_a_rim_of_paper),
