@@ -172,38 +172,54 @@ static json_t *say_zeros(cli_run *run, int64_t count,
     return list;
 }
 
-/* Of one channel: small matrices as they are, all else as states. */
-static ritz_status zeros_of(const model *m, const ritz_state_space *states,
-                            const ritz_damping *damping, const int64_t at[2],
-                            int64_t *count, double _Complex **out)
+/* Second-order models as they are: their modes tell more than states. */
+static ritz_status zeros_of(const model *m, const ritz_damping *damping,
+                            const int64_t at[2], int64_t *count,
+                            double _Complex **out)
 {
     ritz_second_order view = {0};
 
-    if (states)
-        return ritz_zeros_states(states, at[0], at[1], count, out);
+    if (m->kind == MODEL_STATES)
+        return ritz_zeros_states(&m->states, at[0], at[1], count, out);
+    if (m->kind == MODEL_COMPONENT)
+        return ritz_zeros_component(&m->component, damping, at[0], at[1], count,
+                                    out);
     view = model_look(m).matrices;
     return ritz_zeros_dense(&view, damping, at[0], at[1], count, out);
 }
 
+/* What drives and is seen of it, by name. */
+static ritz_io names_of(const model *m)
+{
+    const ritz_state_space *states = &m->states;
+
+    if (m->kind == MODEL_STATES)
+        return (ritz_io){.num_inputs = states->num_inputs,
+                         .num_outputs = states->num_outputs,
+                         .input = states->input,
+                         .output = states->output};
+    return m->kind == MODEL_COMPONENT ? m->component.io
+                                      : *model_look(m).matrices.io;
+}
+
 static ritz_status list(cli_run *run, const model *m,
-                        const ritz_state_space *states,
-                        const ritz_damping *damping, const ritz_io *io,
-                        json_t *zeros)
+                        const ritz_damping *damping, json_t *zeros)
 {
     ritz_status status = RITZ_OK;
+    const ritz_io io = names_of(m);
     double _Complex *zero = NULL;
 
-    for (int64_t i = 0; i < io->num_outputs; i++)
-        for (int64_t j = 0; j < io->num_inputs; j++) {
+    for (int64_t i = 0; i < io.num_outputs; i++)
+        for (int64_t j = 0; j < io.num_inputs; j++) {
             const int64_t at[2] = {i, j};
             json_t *item = json_object();
             int64_t count = 0;
 
             json_array_append_new(zeros, item);
-            json_object_set_new(item, "output", cli_string(io->output[i]));
-            json_object_set_new(item, "input", cli_string(io->input[j]));
-            cli_say(run, "zeros of %s / %s:", io->output[i], io->input[j]);
-            status = zeros_of(m, states, damping, at, &count, &zero);
+            json_object_set_new(item, "output", cli_string(io.output[i]));
+            json_object_set_new(item, "input", cli_string(io.input[j]));
+            cli_say(run, "zeros of %s / %s:", io.output[i], io.input[j]);
+            status = zeros_of(m, damping, at, &count, &zero);
             if (status == RITZ_ERR_SINGULAR) {
                 cli_say(run, "  %s", ritz_error_message());
                 status = RITZ_OK;
@@ -223,31 +239,20 @@ ritz_status responses_zeros(cli_run *run, const responses_wish *asked,
                             const model *m, const ritz_damping *damping)
 {
     ritz_status status = RITZ_OK;
-    ritz_state_space made = {0};
-    const ritz_state_space *states = NULL;
-    const bool small = m->kind == MODEL_REDUCED || m->kind == MODEL_SYSTEM;
+    const ritz_component *whole = &m->component;
     json_t *zeros = NULL;
-    ritz_io io = {0}; /* borrowed */
 
     if (!asked->zeros)
         return RITZ_OK;
-    if (!small)
-        RITZ_TRY(responses_states(m, damping, &made, &states));
-    RITZ_FAIL_IF(!small && !states, RITZ_ERR_ARGUMENT,
+    RITZ_FAIL_IF(m->kind == MODEL_COMPONENT &&
+                     (whole->num_dofs > MOST_DOFS || whole->K4.colptr),
+                 RITZ_ERR_ARGUMENT,
                  "--zeros: of a component with structural damping, or of more "
                  "than %d dofs, there are none to be had: reduce it",
                  MOST_DOFS);
-    if (small)
-        io = *model_look(m).matrices.io;
-    else
-        io = (ritz_io){.num_inputs = states->num_inputs,
-                       .num_outputs = states->num_outputs,
-                       .input = states->input,
-                       .output = states->output};
     zeros = json_array();
     json_object_set_new(run->report, "zeros", zeros);
-    RITZ_TRY(list(run, m, states, damping, &io, zeros));
+    RITZ_TRY(list(run, m, damping, zeros));
 done:
-    ritz_state_space_free(&made);
     return status;
 }

@@ -11,6 +11,7 @@
 #ifndef RITZ_ZEROS_H
 #define RITZ_ZEROS_H
 
+#include <ritz/component.h>
 #include <ritz/damping.h>
 #include <ritz/response.h>
 #include <ritz/state_space.h>
@@ -26,7 +27,8 @@ enum { RITZ_ALL_CHANNELS = -1 };
  *
  * Of one channel they are transmission zeros: what poles cancel, as those of
  * modes that are not driven or not seen, is not among them. Of all channels at
- * once they are invariant zeros, such modes among them.
+ * once they are invariant zeros, such modes among them, but for free rigid
+ * motions that no input drives or no output sees.
  *
  * A zero that rounding of the model could move by its own magnitude cannot be
  * told from one at infinity, and is taken for that. Without damping, and with
@@ -48,6 +50,16 @@ ritz_status ritz_zeros_dense(const ritz_second_order *model,
                              const ritz_damping *damping, int64_t output,
                              int64_t input, int64_t *count,
                              double _Complex **out);
+
+/**
+ * The same of a component, its dampers at work.
+ *
+ * @return RITZ_ERR_ARGUMENT also if it has too many dofs for dense matrices
+ */
+ritz_status ritz_zeros_component(const ritz_component *component,
+                                 const ritz_damping *damping, int64_t output,
+                                 int64_t input, int64_t *count,
+                                 double _Complex **out);
 
 /** The same of a model in first-order form. */
 ritz_status ritz_zeros_states(const ritz_state_space *model, int64_t output,

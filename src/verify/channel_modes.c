@@ -112,18 +112,22 @@ ritz_status ritz_channel_of_modes(const ritz_first_order *modes,
 {
     ritz_status status = RITZ_OK;
     ritz_channel_row *rows = NULL;
+    ritz_first_order moved = {0};
     int64_t count = -1;
 
     if (single)
         RITZ_TRY(ritz_channel_rows(modes, D, io, &count, &rows));
-    if (count >= 0)
+    if (count >= 0) {
         RITZ_TRY(by_rows(count, rows, modes->feed.val[0], out));
-    else if (ritz_dense_max(&modes->Delta) == 0.0 &&
-             ritz_dense_max(&modes->Cv) == 0.0)
-        RITZ_TRY(by_squares(modes, out));
+        goto done;
+    }
+    RITZ_TRY(ritz_channel_moved(modes, D, io, &moved));
+    if (ritz_dense_max(&moved.Delta) == 0.0 && ritz_dense_max(&moved.Cv) == 0.0)
+        RITZ_TRY(by_squares(&moved, out));
     else
-        RITZ_TRY(by_states(modes, out));
+        RITZ_TRY(by_states(&moved, out));
 done:
     free(rows);
+    ritz_first_order_free(&moved);
     return status;
 }

@@ -46,12 +46,21 @@ static double mixing(const sight *s, int64_t j, int64_t k)
                                           : 1.0;
 }
 
+static sight eyes_on(const ritz_first_order *modes)
+{
+    int64_t m = modes->count;
+    double highest = m > 0 ? fabs(modes->lambda[m - 1]) : 0.0;
+
+    return (sight){.modes = modes,
+                   .highest = highest,
+                   .same = (double)modes->num_dofs * DBL_EPSILON * highest,
+                   .eps = ((double)modes->num_dofs + few) * DBL_EPSILON};
+}
+
 /* a'phi_k of all modes; of equal poles only the sum is asked for. */
-static void see(sight *s, const double *a, int kind)
+static void see(const sight *s, const double *a, double *value, double *doubt)
 {
     const double *lambda = s->modes->lambda;
-    double *value = ritz_dense_col(&s->value, kind);
-    double *doubt = ritz_dense_col(&s->doubt, kind);
 
     for (int64_t k = 0; k < s->modes->count; k++) {
         const double *phi = ritz_dense_col(&s->modes->Phi, k);
@@ -67,6 +76,21 @@ static void see(sight *s, const double *a, int kind)
                 doubt[k] += mixing(s, j, k) * fabs(value[j]);
 }
 
+void ritz_channel_see(const ritz_first_order *modes, const double *a,
+                      double *value, double *doubt)
+{
+    const sight s = eyes_on(modes);
+
+    see(&s, a, value, doubt);
+}
+
+double ritz_channel_mixing(const ritz_first_order *modes, int64_t j, int64_t k)
+{
+    const sight s = eyes_on(modes);
+
+    return mixing(&s, j, k);
+}
+
 static ritz_status open_eyes(const ritz_first_order *modes, const ritz_dense *D,
                              const ritz_io *io, sight *s)
 {
@@ -74,10 +98,7 @@ static ritz_status open_eyes(const ritz_first_order *modes, const ritz_dense *D,
     int64_t m = modes->count;
     const double *a[KINDS] = {io->B.val, io->C.val, io->Cv.val, io->Ca.val};
 
-    s->modes = modes;
-    s->highest = m > 0 ? fabs(modes->lambda[m - 1]) : 0.0;
-    s->same = (double)modes->num_dofs * DBL_EPSILON * s->highest;
-    s->eps = ((double)modes->num_dofs + few) * DBL_EPSILON;
+    *s = eyes_on(modes);
     RITZ_TRY(ritz_dense_new(m, KINDS, &s->value));
     RITZ_TRY(ritz_dense_new(m, KINDS, &s->doubt));
     if (D->val)
@@ -85,7 +106,8 @@ static ritz_status open_eyes(const ritz_first_order *modes, const ritz_dense *D,
     else
         RITZ_TRY(ritz_dense_new(m, m, &s->most));
     for (int kind = 0; kind < KINDS; kind++)
-        see(s, a[kind], kind);
+        see(s, a[kind], ritz_dense_col(&s->value, kind),
+            ritz_dense_col(&s->doubt, kind));
 done:
     return status;
 }

@@ -2,6 +2,7 @@
 #include "verify/channel.h"
 
 #include "base/alloc.h"
+#include "model/first_order.h"
 #include "verify/poles.h"
 
 #include <ritz/zeros.h>
@@ -102,6 +103,23 @@ ritz_status ritz_zeros_dense(const ritz_second_order *model,
     RITZ_TRY(find(&channel, output != RITZ_ALL_CHANNELS, count, out));
 done:
     ritz_channel_free(&channel);
+    return status;
+}
+
+ritz_status ritz_zeros_component(const ritz_component *component,
+                                 const ritz_damping *damping, int64_t output,
+                                 int64_t input, int64_t *count,
+                                 double _Complex **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_structure dense = {0};
+    ritz_second_order model = {
+        .K = &dense.K, .M = &dense.M, .D = &dense.D, .io = &component->io};
+
+    RITZ_TRY(ritz_structure_of_component(component, &dense));
+    RITZ_TRY(ritz_zeros_dense(&model, damping, output, input, count, out));
+done:
+    ritz_structure_free(&dense);
     return status;
 }
 
