@@ -68,6 +68,23 @@ static ritz_simulation_request request_of(const wish *asked,
     };
 }
 
+static void warn_of_rounding(cli_run *run, double accuracy,
+                             const ritz_accuracy *reached,
+                             const ritz_simulation *s)
+{
+    char more[32] = "";
+
+    if (reached->num_left == 0)
+        return;
+    if (reached->num_left > 1)
+        (void)snprintf(more, sizeof more, ", and %lld more",
+                       (long long)reached->num_left - 1);
+    cli_warn(run,
+             "output '%s' is rounding or next to it: accurate to %.1e of what "
+             "the motion could show by it, not to %g of its own largest%s",
+             s->output[reached->left], reached->rounding, accuracy, more);
+}
+
 static ritz_status run_it(cli_run *run, const wish *asked,
                           const ritz_simulated *subject,
                           const simulation_drive *drive)
@@ -76,15 +93,16 @@ static ritz_status run_it(cli_run *run, const wish *asked,
     ritz_simulation_request request = request_of(asked, drive);
     ritz_simulation s = {0};
     ritz_stamp stamp = {0};
-    double error = 0.0;
+    ritz_accuracy reached = {.left = -1};
 
     RITZ_FAIL_IF(asked->input.count == 0 && !asked->initial, RITZ_ERR_ARGUMENT,
                  "nothing moves it: give --input NAME=SIGNAL or --initial");
     if (isnan(asked->step)) {
         RITZ_TRY(ritz_simulate_accurate(subject, &request, asked->accuracy,
-                                        &error, &s));
-        cli_record_error(run, "integration", error);
-        json_object_set_new(run->report, "error", cli_real(error));
+                                        &reached, &s));
+        cli_record_error(run, "integration", reached.error);
+        json_object_set_new(run->report, "error", cli_real(reached.error));
+        warn_of_rounding(run, asked->accuracy, &reached, &s);
     } else {
         RITZ_TRY(ritz_simulate(subject, &request, &s));
     }
@@ -94,7 +112,7 @@ static ritz_status run_it(cli_run *run, const wish *asked,
     describe_simulation(run, run->report, &s);
     if (isnan(asked->step))
         cli_say(run, "  %-14s %.1e of each output's largest, by half the step",
-                "accurate to", error);
+                "accurate to", reached.error);
     cli_record(run, s.integrator, s.order);
 done:
     ritz_simulation_free(&s);

@@ -164,19 +164,35 @@ ritz_status ritz_simulate(const ritz_simulated *subject,
                           const ritz_simulation_request *request,
                           ritz_simulation *out);
 
+/* What came of asking for an accuracy. */
+typedef struct ritz_accuracy {
+    double error;     /* reached, by outputs that were held to it */
+    int64_t num_left; /* outputs that were not */
+    int64_t left;     /* the worst of them; -1: none */
+    double rounding;  /* of it: difference over what could be shown by it */
+} ritz_accuracy;
+
 /**
- * The same with a step halved from request->step (0: a fiftieth of the run)
- * until the outputs are within @p tolerance of those of `modal` at half that
- * step, which so also tells what holding the inputs costs; of a full component
- * by an implicit integrator, of the same at half that step. Relative to the
- * largest value of each output.
+ * The same with a step halved from request->step (0: a fiftieth of the run, a
+ * tenth of the shortest period of a sine or chirp) until the outputs are within
+ * @p tolerance of those of `modal` at half that step, which so also tells what
+ * holding the inputs costs; of a full component by an implicit integrator, of
+ * the same at half that step. Relative to the largest value of each output.
  *
- * @param[out] error  that was reached; may be NULL
- * @return RITZ_ERR_CONVERGENCE if 24 halvings do not reach it
+ * An output that does not respond is rounding, and its own largest value tells
+ * nothing. One that is not so accurate is left out if it is below 64 eps of what the motion could show
+ * by it, or if its difference is below 1e-9 of that and three halvings in a
+ * row have not halved it. What could be shown is |c| |x| + |cv| |x'| +
+ * |ca| |x''|, |x|^2 = x'M x, |c|^2 = c M^-1 c' with the diagonal of M, so that
+ * no unit matters; of a state space sum |c_j| |x_j|.
+ *
+ * @param[out] reached  may be NULL
+ * @return RITZ_ERR_CONVERGENCE if no step with which there are 2^23 of them,
+ *         and 2^28 values, reaches it
  */
 ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
                                    const ritz_simulation_request *request,
-                                   double tolerance, double *error,
+                                   double tolerance, ritz_accuracy *reached,
                                    ritz_simulation *out);
 
 /**

@@ -208,7 +208,7 @@ done:
 }
 
 ritz_status ritz_run(const ritz_motion *motion,
-                     const ritz_simulation_request *request,
+                     const ritz_simulation_request *request, ritz_reach *reach,
                      ritz_simulation *out)
 {
     ritz_status status = RITZ_OK;
@@ -228,6 +228,8 @@ ritz_status ritz_run(const ritz_motion *motion,
     inputs_at(request, 0, s.num_inputs, u1);
     RITZ_TRY(begin(motion, request, u1, &march, &energy));
     note(&march, energy, 0, u1, &s);
+    if (reach)
+        ritz_reach_note(reach, &march, 0.0);
     for (int64_t k = 1; k <= steps; k++) {
         double t = (double)k * request->step;
 
@@ -243,6 +245,8 @@ ritz_status ritz_run(const ritz_motion *motion,
                      t);
         s.seconds[k / every] = t;
         note(&march, energy, k / every, u1, &s);
+        if (reach)
+            ritz_reach_note(reach, &march, t);
         ritz_monitor_step("simulation", k, steps);
     }
     *out = s;

@@ -2,15 +2,29 @@
 #ifndef RITZ_SIMULATE_RUN_H
 #define RITZ_SIMULATE_RUN_H
 
-#include "simulate/motion.h"
+#include "simulate/reach.h"
 
 /** How many steps a request takes. @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_request_steps(const ritz_simulation_request *request,
                                int64_t *out);
 
-/** Simulate what has become a motion; names are left to the caller. */
+/**
+ * Simulate what has become a motion; names are left to the caller.
+ *
+ * @param[in,out] reach  noted with each time that is written; may be NULL
+ */
 ritz_status ritz_run(const ritz_motion *motion,
-                     const ritz_simulation_request *request,
+                     const ritz_simulation_request *request, ritz_reach *reach,
                      ritz_simulation *out);
+
+/**
+ * ritz_simulate, with or without energies.
+ *
+ * @param[out] reach  may be NULL; the caller frees it
+ */
+ritz_status ritz_simulate_noting(const ritz_simulated *subject,
+                                 const ritz_simulation_request *request,
+                                 bool energies, ritz_reach *reach,
+                                 ritz_simulation *out);
 
 #endif

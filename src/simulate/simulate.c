@@ -44,24 +44,32 @@ static void take_names(const ritz_simulated *subject, ritz_simulation *s)
         memcpy(s->output, output, (size_t)s->num_outputs * RITZ_NAME_SIZE);
 }
 
-static ritz_status simulate(const ritz_simulated *subject,
-                            const ritz_simulation_request *request,
-                            bool energies, ritz_simulation *out)
+ritz_status ritz_simulate_noting(const ritz_simulated *subject,
+                                 const ritz_simulation_request *request,
+                                 bool energies, ritz_reach *reach,
+                                 ritz_simulation *out)
 {
     ritz_status status = RITZ_OK;
     ritz_motion motion = {0};
+    ritz_reach found = {0};
 
     RITZ_TRY(check(subject, request));
     RITZ_TRY(ritz_motion_new(subject, request, &motion));
     motion.energies = energies && motion.form != RITZ_FORM_STATES;
-    RITZ_TRY(ritz_run(&motion, request, out));
+    if (reach)
+        RITZ_TRY(ritz_reach_new(subject, &motion, &found));
+    RITZ_TRY(ritz_run(&motion, request, reach ? &found : NULL, out));
     take_names(subject, out);
     if (subject->damping)
         ritz_damping_print(subject->damping, out->damping);
     else if (subject->states)
         memcpy(out->damping, subject->states->damping, sizeof out->damping);
+    if (reach)
+        *reach = found;
+    found = (ritz_reach){0};
 done:
     ritz_motion_free(&motion);
+    ritz_reach_free(&found);
     return status;
 }
 
@@ -69,7 +77,7 @@ ritz_status ritz_simulate(const ritz_simulated *subject,
                           const ritz_simulation_request *request,
                           ritz_simulation *out)
 {
-    return simulate(subject, request, true, out);
+    return ritz_simulate_noting(subject, request, true, NULL, out);
 }
 
 ritz_status ritz_simulation_difference(const ritz_simulation *exact,
@@ -99,63 +107,6 @@ ritz_status ritz_simulation_difference(const ritz_simulation *exact,
             worst = fmax(worst, off / size);
     }
     *out = worst;
-done:
-    return status;
-}
-
-/* Error at a step, by `modal` (or itself) at half of it. */
-static ritz_status measure(const ritz_simulated *subject,
-                           const ritz_simulation_request *request,
-                           double *error)
-{
-    ritz_status status = RITZ_OK;
-    ritz_simulation_request coarse = *request, fine = *request;
-    ritz_simulation made = {0}, exact = {0};
-
-    coarse.every = 1;
-    fine.step = 0.5 * request->step;
-    fine.every = 2;
-    if (!subject->component)
-        fine.integrator = &ritz_integrator_modal;
-    RITZ_TRY(simulate(subject, &coarse, false, &made));
-    RITZ_TRY(simulate(subject, &fine, false, &exact));
-    RITZ_TRY(ritz_simulation_difference(&exact, &made, error));
-done:
-    ritz_simulation_free(&made);
-    ritz_simulation_free(&exact);
-    return status;
-}
-
-ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
-                                   const ritz_simulation_request *request,
-                                   double tolerance, double *error,
-                                   ritz_simulation *out)
-{
-    enum { HALVINGS = 24, STEPS = 50 };
-    ritz_status status = RITZ_OK;
-    ritz_simulation_request asked = *request;
-    double reached = HUGE_VAL;
-
-    RITZ_FAIL_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
-                 tolerance);
-    if (asked.step <= 0.0)
-        asked.step = asked.seconds / STEPS;
-    for (int k = 0; k <= HALVINGS; k++) {
-        status = measure(subject, &asked, &reached);
-        /* an explicit integrator may refuse what is too coarse */
-        if (status != RITZ_OK &&
-            (status != RITZ_ERR_ARGUMENT || !asked.integrator->is_explicit))
-            goto done;
-        if (status == RITZ_OK && reached <= tolerance)
-            break;
-        asked.step *= 0.5;
-    }
-    RITZ_FAIL_IF(!(reached <= tolerance), RITZ_ERR_CONVERGENCE,
-                 "'%s' errs by %.2g at a step of %.3g s, %g was asked",
-                 asked.integrator->name, reached, 2.0 * asked.step, tolerance);
-    RITZ_TRY(ritz_simulate(subject, &asked, out));
-    if (error)
-        *error = reached;
 done:
     return status;
 }

@@ -420,10 +420,12 @@ static void a_step_is_halved_until_it_is_accurate(void **state)
     for (int k = 0; ritz_integrators[k]; k++) {
         ritz_simulation_request request = asking(ritz_integrators[k], 3.0, 0.0);
         ritz_simulation r = {0};
-        double error = 1.0;
+        ritz_accuracy reached = {.error = 1.0};
 
-        assert_ok(ritz_simulate_accurate(&m.dense, &request, 1e-3, &error, &r));
-        assert_true(error <= 1e-3);
+        assert_ok(
+            ritz_simulate_accurate(&m.dense, &request, 1e-3, &reached, &r));
+        assert_true(reached.error <= 1e-3);
+        assert_int_equal(reached.num_left, 0);
         assert_true(r.step <= 0.06);
         /* it halves: twice that step is not yet good enough */
         if (k > 0) {

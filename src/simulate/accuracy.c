@@ -1,0 +1,214 @@
+/*
+ * The step at which outputs are as accurate as asked: halved until they are.
+ *
+ * Halving cannot help an output that is rounding. It is known by its size
+ * beside what the motion could show by it, or by a difference that is small
+ * beside that and does not fall, where second order has it fall fourfold.
+ */
+#include <ritz/simulate.h>
+
+#include "base/alloc.h"
+#include "simulate/run.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Steps, and values at all of them, that are worth trying: 2 GiB. */
+static const int64_t most_steps = INT64_C(1) << 23;
+static const int64_t most_values = INT64_C(1) << 28;
+/* Of what could be shown: a few roundings, and what they may have grown to. */
+static const double rounding = 64.0 * DBL_EPSILON;
+static const double grown = 1e-9;
+
+enum { STEPS = 50, PER_PERIOD = 10, IN_VAIN = 3 };
+
+typedef struct trial {
+    int64_t num_outputs;
+    double *before; /* difference at twice the step */
+    int *in_vain;   /* halvings in a row that did not halve it */
+    ritz_accuracy found;
+} trial;
+
+static ritz_status trial_new(int64_t num_outputs, trial *out)
+{
+    ritz_status status = RITZ_OK;
+    trial t = {.num_outputs = num_outputs, .found.error = HUGE_VAL};
+
+    RITZ_NEW(t.before, num_outputs);
+    RITZ_NEW(t.in_vain, num_outputs);
+    for (int64_t i = 0; i < num_outputs; i++)
+        t.before[i] = HUGE_VAL;
+    *out = t;
+    t = (trial){0};
+done:
+    free(t.before);
+    free(t.in_vain);
+    return status;
+}
+
+static void trial_free(trial *t)
+{
+    free(t->before);
+    free(t->in_vain);
+    *t = (trial){0};
+}
+
+/* Whether it is the rounding of what could be shown that keeps it apart. */
+static bool is_rounding(double size, double off, double shown, int in_vain)
+{
+    return size <= rounding * shown ||
+           (in_vain >= IN_VAIN && off <= grown * shown);
+}
+
+static void judge(const ritz_simulation *exact, const ritz_simulation *made,
+                  const ritz_reach *reach, double tolerance, trial *t)
+{
+    t->found = (ritz_accuracy){.left = -1};
+    for (int64_t i = 0; i < t->num_outputs; i++) {
+        double size = 0.0, off = 0.0;
+        double shown = reach->size[i];
+
+        for (int64_t k = 0; k < exact->count; k++) {
+            int64_t at = k * t->num_outputs + i;
+
+            size = fmax(size, fabs(exact->y[at]));
+            off = fmax(off, fabs(made->y[at] - exact->y[at]));
+        }
+        t->in_vain[i] = off > 0.5 * t->before[i] ? t->in_vain[i] + 1 : 0;
+        t->before[i] = off;
+        if (!(size > 0.0))
+            continue;
+        if (off <= tolerance * size ||
+            !is_rounding(size, off, shown, t->in_vain[i])) {
+            t->found.error = fmax(t->found.error, off / size);
+            continue;
+        }
+        if (t->found.num_left++ == 0 || off > t->found.rounding * shown) {
+            t->found.left = i;
+            t->found.rounding = off / shown;
+        }
+    }
+}
+
+/* Differences at a step, from `modal` (or itself) at half of it. */
+static ritz_status measure(const ritz_simulated *subject,
+                           const ritz_simulation_request *request,
+                           double tolerance, trial *t)
+{
+    ritz_status status = RITZ_OK;
+    ritz_simulation_request coarse = *request, fine = *request;
+    ritz_simulation made = {0}, exact = {0};
+    ritz_reach reach = {0};
+
+    coarse.every = 1;
+    fine.step = 0.5 * request->step;
+    fine.every = 2;
+    if (!subject->component)
+        fine.integrator = &ritz_integrator_modal;
+    RITZ_TRY(ritz_simulate_noting(subject, &coarse, false, NULL, &made));
+    RITZ_TRY(ritz_simulate_noting(subject, &fine, false, &reach, &exact));
+    judge(&exact, &made, &reach, tolerance, t);
+done:
+    ritz_simulation_free(&made);
+    ritz_simulation_free(&exact);
+    ritz_reach_free(&reach);
+    return status;
+}
+
+/* Not at multiples of a period, where a sine is not seen. */
+static double first_step(const ritz_simulation_request *request,
+                         int64_t num_inputs)
+{
+    double step = request->seconds / STEPS;
+
+    for (int64_t j = 0; request->signal && j < num_inputs; j++) {
+        const ritz_signal *s = &request->signal[j];
+        double hertz = s->kind == RITZ_SIGNAL_SINE ? s->hertz[0]
+                       : s->kind == RITZ_SIGNAL_CHIRP
+                           ? fmax(s->hertz[0], s->hertz[1])
+                           : 0.0;
+
+        if (hertz * PER_PERIOD * step > 1.0)
+            step = 1.0 / (hertz * PER_PERIOD);
+    }
+    return request->step > 0.0 ? request->step : step;
+}
+
+static int64_t most_tried(int64_t values)
+{
+    return values * most_steps > most_values ? most_values / values
+                                             : most_steps;
+}
+
+/* @p last is what kept the last step from being taken, if anything did. */
+static ritz_status refuse(const ritz_simulation_request *request, int64_t most,
+                          const ritz_accuracy *found, double tolerance,
+                          ritz_status last)
+{
+    char what[64];
+
+    (void)snprintf(what, sizeof what,
+                   "more than %" PRId64 " steps are not tried", most);
+    if (last != RITZ_OK)
+        return ritz_context(last, what);
+    if (!isfinite(found->error))
+        return ritz_fail(RITZ_ERR_CONVERGENCE, "%s, and inputs need %.2g", what,
+                         request->seconds / request->step);
+    return ritz_fail(RITZ_ERR_CONVERGENCE,
+                     "'%s' errs by %.2g at a step of %.3g s, %g was asked, "
+                     "and %s",
+                     request->integrator->name, found->error,
+                     2.0 * request->step, tolerance, what);
+}
+
+static void count_io(const ritz_simulated *s, int64_t *inputs, int64_t *outputs)
+{
+    const ritz_io *io = s->model       ? s->model->io
+                        : s->component ? &s->component->io
+                                       : NULL;
+
+    *inputs = io ? io->num_inputs : s->states ? s->states->num_inputs : 0;
+    *outputs = io ? io->num_outputs : s->states ? s->states->num_outputs : 0;
+}
+
+ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
+                                   const ritz_simulation_request *request,
+                                   double tolerance, ritz_accuracy *reached,
+                                   ritz_simulation *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_simulation_request asked = *request;
+    int64_t inputs = 0, outputs = 0, most = 0, steps = 0;
+    trial t = {0};
+
+    RITZ_FAIL_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
+                 tolerance);
+    count_io(subject, &inputs, &outputs);
+    asked.step = first_step(request, inputs);
+    most = most_tried(inputs + outputs + 1);
+    RITZ_TRY(ritz_request_steps(&asked, &steps));
+    RITZ_TRY(trial_new(outputs, &t));
+    while (true) {
+        if (asked.seconds / asked.step > (double)most) {
+            status = refuse(&asked, most, &t.found, tolerance, status);
+            goto done;
+        }
+        status = measure(subject, &asked, tolerance, &t);
+        if (status == RITZ_OK && t.found.error <= tolerance)
+            break;
+        /* an explicit integrator may refuse what is too coarse */
+        if (status != RITZ_OK &&
+            (status != RITZ_ERR_ARGUMENT || !asked.integrator->is_explicit))
+            goto done;
+        asked.step *= 0.5;
+    }
+    RITZ_TRY(ritz_simulate(subject, &asked, out));
+    if (reached)
+        *reached = t.found;
+done:
+    trial_free(&t);
+    return status;
+}
