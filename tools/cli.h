@@ -136,6 +136,12 @@ void cli_pair(const cli_program *program, const char *option, const char *text,
  */
 ritz_status cli_input(cli_run *run, const char *path);
 
+/**
+ * Whether a file can be made at @p path, before the work that it is to hold:
+ * one is, beside it, and removed. cli_input asks it of -o by itself.
+ */
+ritz_status cli_can_write(const char *path);
+
 /** Command and inputs so far, as containers take them; borrowed from run. */
 ritz_stamp cli_stamp(const cli_run *run);
 

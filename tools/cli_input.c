@@ -1,6 +1,8 @@
 /* Files that a run reads: their sums, and whether the work is large. */
 #include "cli.h"
 
+#include "../src/base/draft.h"
+
 #include <ritz/text.h>
 
 #include <cblas.h>
@@ -93,9 +95,20 @@ ritz_status cli_input(cli_run *run, const char *path)
     snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
     run->input[run->num_inputs++] = line;
     line = NULL;
+    if (run->output && run->program->threads && run->num_inputs == 1)
+        RITZ_TRY(cli_can_write(run->output));
 done:
     free(line);
     return status;
+}
+
+ritz_status cli_can_write(const char *path)
+{
+    ritz_draft draft = {0};
+    ritz_status status = ritz_draft_new(path, &draft);
+
+    ritz_draft_free(&draft);
+    return ritz_context(status, path);
 }
 
 ritz_stamp cli_stamp(const cli_run *run)

@@ -17,6 +17,7 @@ typedef struct asked {
     bool all;
     int64_t order; /* of --all; 0: the answer's */
     int64_t seed;
+    fit_files files;                 /* that an answer makes */
     const ritz_component *component; /* NULL: of a scene */
 } asked;
 
@@ -127,6 +128,8 @@ static ritz_status answer(cli_run *run, const asked *a, fit_run *recorder,
     if (a->report)
         RITZ_TRY(cli_save(run, a->report));
 done:
+    if (status != RITZ_OK)
+        fit_files_discard(&a->files);
     ritz_fit_free(&fit);
     return status;
 }
@@ -164,6 +167,7 @@ static ritz_status fit(cli_run *run, asked *a)
                      "'%s' is a component: --components is for scenes", path);
         RITZ_TRY(model_read(run, path, MODEL_COMPONENT, &full));
         RITZ_TRY_IN(path, dampers_tune(&full, &a->damper));
+        RITZ_TRY(fit_files_foresee(run, NULL, a->report, NULL, &a->files));
         a->component = &full.component;
         RITZ_TRY_IN(path,
                     ritz_fitter_new(&full.component, &a->request, &fitter));
@@ -174,12 +178,14 @@ static ritz_status fit(cli_run *run, asked *a)
                  "'%s' is a scene: --damper and --attach are for components",
                  path);
     RITZ_TRY(model_scene(run, path, &scene));
+    RITZ_TRY(fit_files_foresee(run, a->prefix, a->report, &scene, &a->files));
     if (*scene.name)
         snprintf(subject, sizeof subject, "%s", scene.name);
     RITZ_TRY_IN(path, ritz_fitter_scene(&scene, &a->request, &fitter));
     RITZ_TRY(answer(run, a, &recorder, &scene, fitter));
 done:
     ritz_fitter_free(&fitter);
+    fit_files_free(&a->files);
     ritz_scene_free(&scene);
     model_free(&full);
     return status;

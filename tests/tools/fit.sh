@@ -126,4 +126,28 @@ sed '/^inputs/d' scene.yaml >still.yaml
 expect 1 "a tolerance of 'response' needs inputs and outputs" ritz-fit \
     still.yaml --tolerance 1e-2 -o s.h5
 
+# --- where an answer goes is seen to before the search ---------------------------
+
+# nothing PREFIX: no file is called so.
+nothing() {
+    ls "$1"* >log 2>&1 && report no "no $1*" || report yes "  leaves no $1*"
+}
+set -- ritz-fit scene.yaml --tolerance frequency=1e-2 --methods macneal-rubin \
+    --between 0 --components left-
+for end in '-o nodir/s.h5' '--report nodir/s.txt' '-o .' '--report .'; do
+    # shellcheck disable=SC2086 # two words
+    json 1 "$@" $end
+    holds '  says where, before there is any answer' \
+        '"why" not in j and "methods" not in j and (
+             "nodir/s" in j["error"] or "not a regular" in j["error"])'
+    nothing left-
+done
+expect 1 "cannot create 'nodir/s-rotor.h5'" ritz-fit scene.yaml --tolerance \
+    frequency=1e-2 --components nodir/s- -o new.h5
+nothing new.h5
+expect 1 "cannot create 'nodir/fit.h5'" ritz-fit truss.h5 --band-hz 0,20 \
+    --tolerance frequency=1e-3 -o nodir/fit.h5
+expect 1 "cannot create 'nodir/x.h5'" ritz-frf truss.h5 --to-hz 20 \
+    -o nodir/x.h5
+
 echo "1..$count"
