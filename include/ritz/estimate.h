@@ -4,13 +4,17 @@
  *
  *     mode-7, mode-8, ...         |f_r - f| / f of each reduced mode in the
  *                                 band, f that of the full mode of its number
- *                                 or of the one that the place names
- *     frequency-relative-bound    the worst of them; none without such modes
- *     frequency-relative-least    what the worst error is at least, of a band
- *                                 that begins at 0, however modes are paired as
- *                                 long as none is missing; none if it may be 0
- *     missing-modes-bound         full modes less reduced ones below the end of
- *                                 the band, or below a count above it
+ *                                 or of the one that the place names; and of
+ *                                 those above it by whose number a full mode is
+ *                                 in it
+ *     frequency-relative-bound    what ritz-verify's frequency-relative is at
+ *                                 most: of full modes in the band and their
+ *                                 partners, wherever these lie; none without
+ *                                 such modes
+ *     frequency-relative-least    what that is at least; none if it may be 0
+ *     missing-modes-bound         what its missing-modes are at most: full modes
+ *                                 in the band of which no reduced one is proven
+ *                                 to hold half
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
  *                                 points too, for ratios common to all modes
  *                                 and for D = a M + b K
@@ -60,7 +64,8 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
 
 /**
  * frequency-relative-least alone, as far as an inverse iteration of the reduced
- * modes shows it: no mode is counted.
+ * modes shows it: no mode is counted, and so it is not known whether partners
+ * are there. The worst error is so large at least, or some mode is missing.
  *
  * @cost a factor once, a solve for each mode up to some way beyond the band
  */

@@ -16,9 +16,7 @@
 static const double shift = 0.1;
 /* Trial modes so far beyond the band, in lambda, and as many beyond. */
 static const double beyond = 30.0;
-enum { MORE = 10, GAPS = 3 };
-/* Counts that one reduction may ask for: some, and some for each mode. */
-enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
+enum { MORE = 10 };
 
 ritz_status ritz_estimator_new(const ritz_component *full,
                                const ritz_estimate_request *request,
@@ -97,100 +95,6 @@ static int64_t count_trial(const ritz_measuring *m, bool response)
     return count;
 }
 
-/* Count there; what cannot be factored is not counted. */
-static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
-{
-    ritz_status status = ritz_estimator_count(estimator, rho);
-
-    *end = status == RITZ_ERR_SINGULAR;
-    return *end ? RITZ_OK : status;
-}
-
-/*
- * Count where it helps, until every mode is told or enough is spent; but an
- * inverse iteration helps first.
- */
-static ritz_status refine(ritz_estimator *estimator, ritz_measuring *m)
-{
-    ritz_status status = RITZ_OK;
-    int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->last - m->first);
-    ritz_pursuit pursuit = {.first = m->first, .last = m->last};
-    bool end = false;
-
-    RITZ_NEW(pursuit.tries, m->last - m->first);
-    while (!end) {
-        double rho = nan("");
-        int64_t mode = -1;
-
-        ritz_enclosure_free(&m->enclosure);
-        RITZ_TRY(ritz_enclosure_new(estimator, &m->trial, &m->polished,
-                                    &m->enclosure));
-        if (budget-- > 0 && estimator->num_counts < RITZ_MOST_COUNTS)
-            rho = ritz_propose_count(estimator, &m->trial, &m->enclosure,
-                                     &pursuit, &mode);
-        if (mode >= 0 && !m->polished.X.val) {
-            RITZ_TRY(ritz_lehmann_polish(estimator, &m->trial, &m->polished));
-            continue;
-        }
-        if (mode >= 0)
-            pursuit.tries[mode - m->first]++;
-        end = isnan(rho);
-        if (!end)
-            RITZ_TRY(count_at(estimator, rho, &end));
-    }
-done:
-    free(pursuit.tries);
-    return status;
-}
-
-/* One more far above the band: the further, the less the rest answers. */
-static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
-{
-    ritz_status status = RITZ_OK;
-    double rho = ritz_propose_above(estimator, &m->trial,
-                                    ritz_eigen_lambda(m->band_hz[1]));
-    bool end = isnan(rho) || estimator->num_counts == RITZ_MOST_COUNTS;
-
-    if (end)
-        return RITZ_OK;
-    RITZ_TRY(count_at(estimator, rho, &end));
-    ritz_enclosure_free(&m->enclosure);
-    RITZ_TRY(
-        ritz_enclosure_new(estimator, &m->trial, &m->polished, &m->enclosure));
-done:
-    return status;
-}
-
-/* Where to count modes of the band: at its end, or in a gap behind. */
-static double end_of_band(const ritz_measuring *m, int64_t gap)
-{
-    double end = ritz_eigen_lambda(m->band_hz[1]) * (1.0 + DBL_EPSILON);
-    int64_t above = m->last + gap;
-    double low = above > 0 ? m->pairs.lambda[above - 1] : 0.0;
-    double high = above < m->pairs.Phi.ncol ? m->pairs.lambda[above] : end;
-
-    return gap == 0 ? end : fmax(end, low + 0.3 * (high - low));
-}
-
-/*
- * Unless it is known that none is missing, count at the end of the band, and in
- * the next gaps, where the partners of the last modes may be.
- */
-static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
-{
-    ritz_status status = RITZ_OK;
-    double at = 0.0;
-    bool end = false;
-
-    for (int64_t gap = 0; gap < GAPS && m->last + gap <= m->pairs.Phi.ncol &&
-                          ritz_missing_modes(estimator, m, &at) != 0 && !end &&
-                          estimator->num_counts < RITZ_MOST_COUNTS;
-         gap++)
-        RITZ_TRY(count_at(estimator, end_of_band(m, gap), &end));
-done:
-    return status;
-}
-
 static void measuring_free(ritz_measuring *m)
 {
     ritz_pairs_free(&m->pairs);
@@ -210,6 +114,7 @@ static ritz_status begin(ritz_estimator *estimator, const ritz_basis *basis,
                      basis->T.ncol != reduced->K.nrow,
                  RITZ_ERR_ARGUMENT, "the basis is not that of the reduction");
     RITZ_TRY(ritz_eigen_dense(&reduced->K, &reduced->M, &m->pairs));
+    m->T = &basis->T;
     choose_modes(estimator, basis, m);
     *response = *response &&
                 ritz_response_boundable(estimator, reduced, m->pairs.Phi.ncol);
@@ -236,12 +141,9 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
 
     RITZ_TRY(begin(estimator, basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0) {
-        RITZ_TRY(refine(estimator, &m));
-        if (response)
-            RITZ_TRY(count_above(estimator, &m));
-        RITZ_TRY(count_band(estimator, &m));
+        RITZ_TRY(ritz_measuring_refine(estimator, response, &m));
         RITZ_TRY(ritz_report_modes(estimator, &m, &found));
-        RITZ_TRY(ritz_report_missing(estimator, &m, &found));
+        RITZ_TRY(ritz_report_missing(&m, &found));
         if (response)
             RITZ_TRY(ritz_bound_response(estimator, &m, reduced, &found));
     }

@@ -82,6 +82,9 @@ ritz_status ritz_bounder_rates(const ritz_estimator *estimator, ritz_bounder *r,
  */
 bool ritz_bounder_at_odds(const ritz_bounder *r);
 
+/** Whether a mode of the band that is driven and seen has no damping. */
+bool ritz_bounder_undamped(const ritz_bounder *r, const double band_hz[2]);
+
 /** Room for it, and D and K4 of trial modes. */
 ritz_status ritz_coupled_open(const ritz_component *full, ritz_bounder *r);
 void ritz_coupled_free(ritz_bounder *r);

@@ -32,6 +32,39 @@ static double apart(const ritz_lehmann *trial, int64_t k, double theta,
     return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
 }
 
+/* Of modes beyond the trial nothing but the eigenvalue is known. */
+static double bounded_by(const ritz_measuring *m, const double *ends, int64_t k,
+                         double sign)
+{
+    double theta = m->pairs.lambda[k];
+
+    if (k < m->trial.count)
+        theta = sign * fmax(sign * theta, sign * ends[k]);
+    return fmax(theta, 0.0);
+}
+
+double ritz_claim_apart(const ritz_measuring *m, int64_t k, double low,
+                        double high)
+{
+    double least = bounded_by(m, m->trial.least, k, -1.0);
+    double most = bounded_by(m, m->trial.most, k, 1.0);
+
+    if (!(low > 0.0))
+        return HUGE_VAL;
+    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
+}
+
+double ritz_claim_between(const ritz_measuring *m, int64_t k, double low,
+                          double high)
+{
+    double least = bounded_by(m, m->trial.least, k, -1.0);
+    double most = bounded_by(m, m->trial.most, k, 1.0);
+
+    if (!(low > 0.0))
+        return 0.0;
+    return fmax(0.0, fmax(sqrt(least / high) - 1.0, 1.0 - sqrt(most / low)));
+}
+
 ritz_claim ritz_claim_of(const ritz_lehmann *trial,
                          const ritz_enclosure *enclosure, int64_t k,
                          double theta)

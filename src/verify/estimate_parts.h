@@ -88,6 +88,36 @@ typedef struct ritz_enclosure {
     double *near_low, *near_high; /* num_near, each holds some full mode */
 } ritz_enclosure;
 
+/* What verify would find of full modes in the band; see estimate_judge.c. */
+typedef struct ritz_matched {
+    bool known;      /* there are no more than `full` up to its end */
+    bool any;        /* some may be in it */
+    bool astride;    /* of some it is not known whether they are */
+    bool slow;       /* or whether they are rigid */
+    bool open;       /* the bound may be far above the error */
+    bool unsettled;  /* some mode's partner is not known */
+    double rho;      /* where a count may help; NaN: nowhere */
+    int64_t full;    /* so many full modes may lie below its end */
+    int64_t missing; /* so many of the band are not proven to have partners */
+    int64_t first;   /* of these; -1: none */
+    double bound;    /* worst |f_r - f| / f; below 0: none has a partner */
+    int64_t mode, number; /* reduced and full mode where it is */
+    double least;         /* what that is at least */
+    int64_t least_mode, least_number;
+} ritz_matched;
+
+/* One reduction at work. */
+typedef struct ritz_measuring {
+    ritz_pairs pairs; /* of the reduced model, as it is */
+    double band_hz[2];
+    const ritz_dense *T; /* borrowed */
+    int64_t first, last; /* its flexible modes in the band: first .. last - 1 */
+    int64_t reach; /* last, or further: numbers of full modes in the band */
+    ritz_lehmann trial, polished;
+    ritz_enclosure enclosure;
+    ritz_matched matched;
+} ritz_measuring;
+
 /**
  * From the trial, that after an inverse iteration, {0} if there is none, and
  * all that was counted, by Lehmann's method.
@@ -109,6 +139,12 @@ typedef struct ritz_claim {
 ritz_claim ritz_claim_of(const ritz_lehmann *trial,
                          const ritz_enclosure *enclosure, int64_t k,
                          double theta);
+
+/** The same of a full mode in [low, high]; how far it is off at least. */
+double ritz_claim_apart(const ritz_measuring *m, int64_t k, double low,
+                        double high);
+double ritz_claim_between(const ritz_measuring *m, int64_t k, double low,
+                          double high);
 
 /** How far mode @p k can be from the full one of its number. */
 double ritz_claim_same(const ritz_lehmann *trial,
@@ -146,16 +182,15 @@ double ritz_propose_count(const ritz_estimator *estimator,
 double ritz_propose_above(const ritz_estimator *estimator,
                           const ritz_lehmann *trial, double band);
 
-/* One reduction at work. */
-typedef struct ritz_measuring {
-    ritz_pairs pairs; /* of the reduced model, as it is */
-    double band_hz[2];
-    int64_t first, last; /* its flexible modes in the band: first .. last - 1 */
-    ritz_lehmann trial, polished;
-    ritz_enclosure enclosure;
-} ritz_measuring;
+/** What verify would find of the band, as far as enclosures tell it. */
+ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
+                                 const ritz_measuring *m, ritz_matched *out);
 
-/** What the worst error is at least; none if nothing is sure. */
+/** Count and iterate until the modes of the band are told. */
+ritz_status ritz_measuring_refine(ritz_estimator *estimator, bool response,
+                                  ritz_measuring *m);
+
+/** What the worst error is at least if no mode is missing, without counts. */
 ritz_status ritz_report_least(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out);
 
@@ -179,8 +214,7 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
  */
 int64_t ritz_missing_modes(const ritz_estimator *estimator,
                            const ritz_measuring *m, double *at);
-ritz_status ritz_report_missing(const ritz_estimator *estimator,
-                                const ritz_measuring *m, ritz_measures *out);
+ritz_status ritz_report_missing(const ritz_measuring *m, ritz_measures *out);
 
 /** Whether D is a M + b K with a, b >= 0, and which; there is no K4. */
 ritz_status ritz_rayleigh_of(const ritz_component *full, double *a, double *b,

@@ -36,16 +36,21 @@ static double least_of(const ritz_measuring *m, int64_t k)
     return sqrt(low / m->enclosure.high[k]) - 1.0 - rounding;
 }
 
-/* Modes below a band need no partner, so nothing is sure of it. */
+/*
+ * Of full modes that are in the band for certain, wherever their partners lie.
+ * Modes below a band need no partner, so nothing is sure of it.
+ */
 ritz_status ritz_report_least(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
+    double band = ritz_eigen_lambda(m->band_hz[1]);
     double most = 0.0;
     char where[RITZ_NAME_SIZE] = "";
 
-    for (int64_t k = m->first; k < m->last && m->band_hz[0] == 0.0; k++) {
+    for (int64_t k = m->first; k < m->trial.count && m->band_hz[0] == 0.0 &&
+                               m->enclosure.high[k] <= band;
+         k++) {
         double theta = m->pairs.lambda[k];
         double least = least_of(m, k);
 
@@ -78,12 +83,11 @@ static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
     return claim;
 }
 
-ritz_status ritz_report_modes(const ritz_estimator *estimator,
+/* "mode-7" and so on, of the band and of what the band's full modes may be. */
+static ritz_status list_modes(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_measures each = {0};
-    ritz_measure worst = {.value = -1.0};
     double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
     double at = 0.0;
     /* where none is missing all are the full model's by their numbers */
@@ -91,7 +95,7 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
     char name[RITZ_NAME_SIZE];
     char where[RITZ_NAME_SIZE];
 
-    for (int64_t k = m->first; k < m->last; k++) {
+    for (int64_t k = m->first; k < m->reach && out->count < MOST_LISTED; k++) {
         double theta = m->pairs.lambda[k];
         ritz_claim claim = ritz_claim_of(&m->trial, &m->enclosure, k, theta);
 
@@ -101,18 +105,41 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
             claim = own(m, k, claim);
         (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
         say_where(&claim, k, theta, where);
-        if (each.count < MOST_LISTED)
-            RITZ_TRY(
-                ritz_measures_add(&each, name, claim.bound, nan(""), where));
-        if (claim.bound > worst.value) {
-            worst.value = claim.bound;
-            (void)snprintf(worst.where, sizeof worst.where, "%s", where);
-        }
+        RITZ_TRY(ritz_measures_add(out, name, claim.bound, nan(""), where));
     }
-    if (each.count > 0)
-        RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", worst.value,
-                                   nan(""), worst.where));
-    RITZ_TRY(ritz_report_least(estimator, m, out));
+done:
+    return status;
+}
+
+/* Of a pair: "mode 7, 3.41 Hz, full mode 8". */
+static ritz_status add_pair(const ritz_measuring *m, const char *name,
+                            double value, int64_t k, int64_t number,
+                            ritz_measures *out)
+{
+    const ritz_claim claim = {.number = number};
+    char where[RITZ_NAME_SIZE];
+
+    say_where(&claim, k, m->pairs.lambda[k], where);
+    return ritz_measures_add(out, name, value, nan(""), where);
+}
+
+ritz_status ritz_report_modes(const ritz_estimator *estimator,
+                              const ritz_measuring *m, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_matched *v = &m->matched;
+    ritz_measures each = {0};
+
+    RITZ_TRY(list_modes(estimator, m, &each));
+    if (!v->known && (v->any || each.count > 0))
+        RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
+                                   nan(""), "modes are not counted"));
+    else if (v->bound >= 0.0)
+        RITZ_TRY(add_pair(m, "frequency-relative-bound", v->bound, v->mode,
+                          v->number, out));
+    if (v->least > 0.0)
+        RITZ_TRY(add_pair(m, "frequency-relative-least", v->least,
+                          v->least_mode, v->least_number, out));
     for (int64_t k = 0; k < each.count; k++)
         RITZ_TRY(ritz_measures_add(out, each.item[k].name, each.item[k].value,
                                    nan(""), each.item[k].where));
@@ -142,20 +169,17 @@ int64_t ritz_missing_modes(const ritz_estimator *estimator,
     return least;
 }
 
-ritz_status ritz_report_missing(const ritz_estimator *estimator,
-                                const ritz_measuring *m, ritz_measures *out)
+ritz_status ritz_report_missing(const ritz_measuring *m, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    double at = 0.0;
-    int64_t count = ritz_missing_modes(estimator, m, &at);
-    char where[RITZ_NAME_SIZE];
+    const ritz_matched *v = &m->matched;
+    char where[RITZ_NAME_SIZE] = "";
 
-    if (count < 0)
+    if (!v->known)
         return RITZ_OK;
-    (void)snprintf(where, sizeof where, "counted below %.4g Hz",
-                   ritz_eigen_hertz(at));
-    RITZ_TRY(ritz_measures_add(out, "missing-modes-bound", (double)count,
-                               nan(""), where));
-done:
-    return status;
+    if (v->first >= 0)
+        (void)snprintf(
+            where, sizeof where, "first: full mode %" PRId64 ", below %.4g Hz",
+            v->first + 1, ritz_eigen_hertz(m->enclosure.high[v->first]));
+    return ritz_measures_add(out, "missing-modes-bound", (double)v->missing,
+                             nan(""), where);
 }

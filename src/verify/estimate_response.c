@@ -223,7 +223,7 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
     RITZ_TRY(ritz_bounder_open(estimator, &r));
     RITZ_TRY(sweep(&r, m->band_hz, &bound, &at));
     if ((r.coupled && ritz_missing_modes(estimator, m, &counted) != 0) ||
-        ritz_bounder_at_odds(&r))
+        ritz_bounder_at_odds(&r) || ritz_bounder_undamped(&r, m->band_hz))
         bound = HUGE_VAL; /* of their damping nothing is known */
     (void)snprintf(where, sizeof where, "%.6g Hz", at);
     if (bound > 0.0)

@@ -206,7 +206,28 @@ def lowest(least, value, full):
     if not which or least[0] <= 0:
         return None
     k = int(which[1]) - 1
-    return least[0], abs(hertz(value[k]) / hertz(full.value[k]) - 1)
+    other = re.search(r"full mode (\d+)", least[1])
+    p = int(other[1]) - 1 if other else k
+    return least[0], abs(hertz(value[k]) / hertz(full.value[p]) - 1)
+
+
+def contradictions(bin_, case, reduced, band, estimates):
+    """What ritz-verify measures in the band and estimates deny."""
+    answer = methods.run(bin_, "ritz-verify", case["component"], reduced, "-o",
+                         case["folder"] / "verified.h5", "--band-hz", band)
+    found = {m["name"]: m["value"] for m in answer["measures"]}
+    error = found.get("frequency-relative", 0)
+    least = estimates.get("frequency-relative-least", (0, ""))
+    rounding = 1e-9  # of frequencies by another eigensolver
+    for name, said, true in [
+            ("frequency-relative", estimates.get("frequency-relative-bound",
+                                                 (0, ""))[0], error),
+            ("frequency-relative-least", error, least[0]),
+            ("missing-modes", estimates.get("missing-modes-bound",
+                                            (float("inf"), ""))[0],
+             found.get("missing-modes", 0))]:
+        if not said >= true - rounding:
+            yield name, said, true
 
 
 def line(bin_, case, full, truth, method, how, more):
@@ -232,6 +253,8 @@ def line(bin_, case, full, truth, method, how, more):
     least = lowest(least, value, full)
     if least and not least[0] <= least[1]:
         low.append(("least", *least))
+    low += contradictions(bin_, case, reduced, f"0,{case['band']:.9g}",
+                          estimates)
     mean = numpy.exp(numpy.mean([numpy.log(x[0]) for x in told])) if told \
         else float("nan")
     response = ["", "", ""]

@@ -268,7 +268,7 @@ static void what_is_told_at_least_is_below_the_error(void **state)
         ritz_reduced reduced = {0};
         ritz_pairs pairs = {0};
         ritz_measures all = {0}, found = {0};
-        double worst = 0.0;
+        double inside = 0.0, worst = 0.0;
 
         assert_ok(
             ritz_basis_make(&ritz_method_craig_bampton, &request, &basis));
@@ -280,13 +280,17 @@ static void what_is_told_at_least_is_below_the_error(void **state)
         for (int64_t k = 1; k < pairs.Phi.ncol; k++) {
             double known = bar_eigenvalue(ELEMENTS, k);
 
+            double off = sqrt(pairs.lambda[k] / known) - 1.0;
+
             if (ritz_eigen_hertz(pairs.lambda[k]) <= band.band_hz[1])
-                worst = fmax(worst, sqrt(pairs.lambda[k] / known) - 1.0);
+                inside = fmax(inside, off);
+            if (k <= 8) /* the band's, wherever the reduced one lies */
+                worst = fmax(worst, off);
         }
-        if (worst > 1e-8) {
+        if (inside > 1e-8) {
             assert_true(value_of(&found, "frequency-relative-least") <= worst);
             assert_true(value_of(&found, "frequency-relative-least") >
-                        0.3 * worst); /* measured: 0.6 and more */
+                        0.3 * inside); /* measured: 0.6 and more */
             assert_true(value_of(&all, "frequency-relative-least") >=
                         value_of(&found, "frequency-relative-least"));
             assert_true(value_of(&all, "frequency-relative-least") <= worst);
