@@ -85,6 +85,7 @@ ritz_status engines_start(cli_run *run, const model *m,
 {
     ritz_status status = RITZ_OK;
     const ritz_response_engine *engine = NULL;
+    const char *why = NULL; /* said before */
     ritz_response_request request = {
         .damping = damping,
         .up_to_hz = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz,
@@ -105,7 +106,10 @@ ritz_status engines_start(cli_run *run, const model *m,
                  "the damping matrices of '%s' act on the modes that are "
                  "summed alone, --method krylov leaves out nothing",
                  run->operand[0]);
-    RITZ_TRY(ritz_responder_new(engine, &request, out));
+    if (strcmp(asked->method, "auto") == 0)
+        RITZ_TRY(ritz_responder_auto(&request, &why, out));
+    else
+        RITZ_TRY(ritz_responder_new(engine, &request, out));
     if (ritz_responder_remark(*out)[0]) {
         cli_say(run, "  %s", ritz_responder_remark(*out));
         cli_report_text(run, "note", ritz_responder_remark(*out));

@@ -169,6 +169,15 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
                                ritz_responder **out);
 
 /**
+ * The same by the engine that `auto` stands for; or, where that cannot keep its
+ * tolerance, by direct, and the remark says so.
+ *
+ * @param[out] why  as above, of the engine that was chosen first
+ */
+ritz_status ritz_responder_auto(const ritz_response_request *request,
+                                const char **why, ritz_responder **out);
+
+/**
  * H at one frequency.
  *
  * @param[out] H  num_outputs x num_inputs, row by row
@@ -204,7 +213,7 @@ void ritz_responder_free(ritz_responder **responder);
 
 /**
  * All at once for a component: the points of @p grid if @p tolerance is 0, else
- * those that keep it. @p engine NULL: the one that is chosen.
+ * those that keep it. @p engine NULL: ritz_responder_auto.
  */
 ritz_status ritz_response_component(const ritz_component *component,
                                     const ritz_response_engine *engine,

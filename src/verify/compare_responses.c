@@ -147,6 +147,8 @@ static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
         RITZ_TRY_IN("reduced model",
                     ritz_poles_add(&sides->reduced, hertz, H_r));
         for (int64_t i = 0; i < values; i++) {
+            RITZ_FAIL_IF(!isfinite(cabs(H[i] - H_r[i])), RITZ_ERR_CONVERGENCE,
+                         "the response at %.6g Hz leaves all bounds", hertz);
             found->largest = fmax(found->largest, cabs(H[i]));
             if (cabs(H[i] - H_r[i]) > found->error) {
                 found->error = cabs(H[i] - H_r[i]);

@@ -40,6 +40,16 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
 ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
                               bool transposed, int64_t k, double _Complex *X);
 
+/**
+ * What rounding may be of the full answers of all inputs, X, and of the outputs
+ * in the transposed system, Y.
+ *
+ * @param[out] out  outputs x inputs, row by row, of H
+ */
+ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
+                              const double _Complex *X, int64_t outputs,
+                              const double _Complex *Y, double *out);
+
 void ritz_direct_free(ritz_direct *direct);
 
 #endif

@@ -21,9 +21,11 @@ typedef struct ritz_krylov {
     double *load;  /* the same of the loads */
     double *error; /* count x values */
     double *trial; /* values: errors at one point more */
+    double *noise; /* values: rounding of the full answers met last */
     double *peak, *allowed; /* values */
     double _Complex *y, *H;
     double worst;                /* largest error / allowed */
+    double unmet;                /* that, or what full answers showed */
     int64_t at;                  /* the point where it is */
     int64_t points, corrections; /* that were made */
 } ritz_krylov;
@@ -51,7 +53,8 @@ ritz_status ritz_krylov_correct(ritz_krylov *k, int64_t *added);
 
 /**
  * Full answers at one frequency, and into the space unless what the projection
- * errs there is within what is allowed.
+ * errs there is within what is allowed of the largest |H|, this one included,
+ * and within what rounding makes of the full answers themselves.
  *
  * @param[out] was  that error over what is allowed
  */

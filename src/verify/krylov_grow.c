@@ -134,16 +134,19 @@ done:
 
 /*
  * Largest error of the projection beside full answers, over what is allowed;
- * where it is more than was thought, all errors are from now on.
+ * where it is more than was thought, all errors are from now on. Neither is
+ * what rounding makes of those answers: Y are the outputs' own.
  */
 static ritz_status compare(ritz_krylov *k, double hertz,
-                           const double _Complex *X, double *out)
+                           const double _Complex *X, const double _Complex *Y,
+                           double *out)
 {
     ritz_status status = RITZ_OK;
     double more = 1.0;
     double _Complex *H = NULL;
 
     RITZ_NEW(H, k->values);
+    RITZ_TRY(ritz_direct_noise(&k->full, hertz, X, k->outputs, Y, k->noise));
     ritz_response_see(&k->full.component->io, hertz, X, H);
     if (k->full.apart)
         RITZ_TRY(ritz_poles_add(&k->full.poles, hertz, H));
@@ -152,12 +155,13 @@ static ritz_status compare(ritz_krylov *k, double hertz,
     RITZ_TRY(ritz_poles_add(&k->small.poles, hertz, k->H));
     *out = 0.0;
     for (int64_t v = 0; v < k->values; v++) {
-        double error = cabs(H[v] - k->H[v]);
+        double error = fmax(cabs(H[v] - k->H[v]) - k->noise[v], 0.0);
+        double allowed = fmax(k->allowed[v], k->tolerance * cabs(H[v]));
 
-        if (!(k->allowed[v] > 0.0))
+        if (!(allowed > 0.0))
             continue;
-        *out = fmax(*out, error / k->allowed[v]);
-        if (error > 0.1 * k->allowed[v] && error > k->trial[v])
+        *out = fmax(*out, error / allowed);
+        if (error > 0.1 * allowed && error > k->trial[v])
             more = fmax(more, error / k->trial[v]);
     }
     k->amplify = fmin(k->amplify * more, most_amplified);
@@ -166,18 +170,25 @@ done:
     return status;
 }
 
-/* Answers to all inputs at a frequency, or beside it where there is none. */
+/* Answers to all inputs at a frequency, or beside it where there is none; and
+   to all outputs, of the transposed system. */
 static ritz_status answer(ritz_krylov *k, double *hertz, double _Complex *Z)
 {
     ritz_status status = RITZ_OK;
 
     put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
     status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
-    if (status != RITZ_ERR_SINGULAR)
-        return status;
-    *hertz *= 1.0 + beside;
-    put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
-    return ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
+    if (status == RITZ_ERR_SINGULAR) {
+        *hertz *= 1.0 + beside;
+        put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
+        status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
+    }
+    if (status != RITZ_OK)
+        goto done;
+    RITZ_TRY(ritz_direct_solve(&k->full, *hertz, true, k->outputs,
+                               Z + k->full.n * k->inputs));
+done:
+    return status;
 }
 
 ritz_status ritz_krylov_expand(ritz_krylov *k, double hertz, int64_t *added,
@@ -191,15 +202,14 @@ ritz_status ritz_krylov_expand(ritz_krylov *k, double hertz, int64_t *added,
 
     RITZ_NEW(Z, n * loads);
     RITZ_TRY(answer(k, &hertz, Z));
-    RITZ_TRY(compare(k, hertz, Z, was));
+    RITZ_TRY(compare(k, hertz, Z, Z + n * k->inputs, was));
     k->points++;
     *added = 0;
     if (*was <= 1.0)
         goto done;
-    RITZ_TRY(ritz_direct_solve(&k->full, hertz, true, k->outputs,
-                               Z + n * k->inputs));
     RITZ_TRY(split(n, loads, Z, &X));
     RITZ_TRY(renew(k, &X, added));
+    k->unmet = fmax(k->unmet, *was);
 done:
     free(Z);
     ritz_dense_free(&X);

@@ -70,6 +70,7 @@ static ritz_status make_room(ritz_krylov *k)
     RITZ_NEW(k->load, k->inputs + k->outputs);
     RITZ_NEW(k->error, k->count * k->values);
     RITZ_NEW(k->trial, k->values);
+    RITZ_NEW(k->noise, k->values);
     RITZ_NEW(k->peak, k->values);
     RITZ_NEW(k->allowed, k->values);
     RITZ_NEW(k->H, k->values);
@@ -170,6 +171,7 @@ ritz_status ritz_krylov_measure(ritz_krylov *k)
                 k->at = c;
             }
         }
+    k->unmet = k->worst;
 done:
     return status;
 }

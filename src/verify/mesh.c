@@ -21,6 +21,7 @@ ritz_status ritz_mesh_ask(ritz_mesh *mesh, double hertz)
     RITZ_TRY(ritz_responder_at(mesh->responder, hertz, mesh->row));
     for (int64_t v = 0; v < mesh->values; v++)
         mesh->peak[v] = fmax(mesh->peak[v], cabs(mesh->row[v]));
+    ritz_noise_heed(&mesh->responder->noise, hertz, mesh->row, mesh->level);
 done:
     return status;
 }
@@ -100,6 +101,7 @@ ritz_status ritz_mesh_new(ritz_responder *responder, int64_t count,
                       .values = io->num_outputs * io->num_inputs};
 
     RITZ_NEW(mesh.peak, mesh.values);
+    RITZ_NEW(mesh.level, mesh.values);
     RITZ_NEW(mesh.scale, mesh.values);
     RITZ_NEW(mesh.row, mesh.values);
     RITZ_NEW(mesh.between, mesh.values);
@@ -151,6 +153,7 @@ void ritz_mesh_free(ritz_mesh *mesh)
     free(mesh->H);
     free(mesh->open);
     free(mesh->peak);
+    free(mesh->level);
     free(mesh->scale);
     free(mesh->row);
     free(mesh->between);

@@ -12,7 +12,8 @@ typedef struct ritz_mesh {
     double _Complex *H; /* count x values */
     bool *open;         /* count: from this point to the next is not settled */
     double *peak;       /* values, largest |H| that was met */
-    double *scale;      /* values, of ritz_channel_scales */
+    double *level;      /* values, of ritz_noise_heed */
+    double *scale;      /* values, of ritz_noise_scales */
     double _Complex *row, *between; /* values, to work in */
 } ritz_mesh;
 

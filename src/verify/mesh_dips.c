@@ -11,6 +11,8 @@
 enum { PARTS = 8, MOST_STEPS = 5 };
 /* Of the frequency: where a step is smaller, it was the last. */
 static const double settled = 1e-9;
+/* Of what its errors are measured by: a channel beneath is rounding. */
+static const double heard = 0.5;
 
 /* Points that were found, in the order of channels. */
 typedef struct finds {
@@ -172,7 +174,7 @@ ritz_status ritz_mesh_add_dips(ritz_mesh *mesh)
     finds f = {.values = mesh->values};
 
     for (int64_t v = 0; v < mesh->values; v++)
-        if (mesh->peak[v] >= mesh->scale[v]) /* else it is rounding */
+        if (mesh->peak[v] > heard * mesh->scale[v])
             RITZ_TRY(search(mesh, v, &f));
     RITZ_TRY(merge(mesh, &f));
 done:

@@ -30,6 +30,7 @@ typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
     double a, b;
     bool known;          /* a and b are all that D and K4 do to them */
+    double unit;         /* of mu: term j is kept times its power j */
     double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
                             as ritz_dense */
 } ritz_residual;

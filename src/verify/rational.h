@@ -21,10 +21,11 @@ typedef struct ritz_nodes {
     int64_t count; /* of candidates */
     double *hertz;
     bool *used;
-    bool *with_zeros; /* values: which of the two is nearer */
-    double *missed;   /* 2 x values: most by either at the last nodes */
-    double *miss;     /* 2 x values of each of those */
-    double *peak, *scale;
+    bool *with_zeros;        /* values: which of the two is nearer */
+    double *missed;          /* 2 x values: most by either at the last nodes */
+    double *miss;            /* 2 x values of each of those */
+    const ritz_noise *noise; /* of the responder */
+    double *peak, *level, *scale;
     double _Complex *H, *guess, *other;
     int64_t nodes;
     bool small; /* `whole` is there */

@@ -14,14 +14,15 @@ static const double cancelled_to = 1.5;
 /* Of |s|: poles nearer than this are one. */
 static const double same = 1e-9;
 
-/* A pole that is there is not added, but for 0, which is double. */
+/* A pole that is there is added once more, and then not again: 0 is double, and
+   what couples two equal modes a little is seen through both. */
 static void add_pole(ritz_nodes *s, double _Complex pole)
 {
     int64_t there = 0;
 
     for (int64_t k = 0; k < s->num_poles; k++)
         there += cabs(s->pole[k] - pole) <= same * cabs(pole);
-    if (there < (pole == 0.0 ? 2 : 1))
+    if (there < 2)
         s->pole[s->num_poles++] = pole;
 }
 

@@ -142,7 +142,9 @@ static bool judge(ritz_nodes *s, double hertz, double tolerance)
     ritz_interpolant_at(&s->both, at, s->other);
     for (int64_t v = 0; v < s->values; v++)
         s->peak[v] = fmax(s->peak[v], cabs(s->H[v]));
-    ritz_channel_scales(io->num_outputs, io->num_inputs, s->peak, s->scale);
+    ritz_noise_heed(s->noise, hertz, s->H, s->level);
+    ritz_noise_scales(io->num_outputs, io->num_inputs, tolerance, s->peak,
+                      s->level, s->scale);
     for (int64_t v = 0; v < s->values; v++) {
         miss[v] = cabs(s->guess[v] - s->H[v]);
         miss[s->values + v] = cabs(s->other[v] - s->H[v]);

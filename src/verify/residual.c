@@ -3,141 +3,29 @@
  *
  *     K R_0 = B - M Phi Phi'B,   K R_j = M R_(j-1),   Phi'M R_j = 0
  *
- * Each is consistent, the rigid modes being among Phi, and is solved with
- * A = K - sigma M, sigma < 0, by
- *
- *     A R_new = f - sigma M R,
- *
- * whose error falls by |sigma| / (lambda + |sigma|) a step, lambda being of the
- * first mode that is left out. Damping a M + b K acts on those modes too:
+ * Damping a M + b K acts on those modes too:
  *
  *     lambda (1 + i w b) + i w a - w^2 = (1 + i w b) (lambda - mu),
  *     mu = (w^2 - i w a) / (1 + i w b)
  *
  * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall by
- * |mu| / lambda. |mu| grows with w.
+ * |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the |mu|
+ * at the end of the range: powers of rad^2/s^2 leave all bounds.
  */
 #include "verify/poles.h"
 
 #include "base/alloc.h"
 #include "verify/proportional.h"
-
-#include <ritz/factor.h>
+#include "verify/rest_solver.h"
 
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps shrink by 100 or more, so that 8 reach rounding; a body of which no
-   flexible mode is kept may need more. */
-enum { MOST_STEPS = 200, MOST_TERMS = 40 };
-static const double settled = 1e-14;
-/* Rounding of an ill-conditioned K may keep it from that, not from this. */
-static const double unsettled = 1e-6;
-static const double small_shift = 0.01;
-/* Of the largest K_jj / M_jj. */
-static const double lost_in_K = 1e-10;
-static const double series_within = 1e-12;
-/* falls_enough^MOST_TERMS = series_within */
+enum { MOST_TERMS = 40 };
+/* falls_enough^MOST_TERMS = RITZ_SERIES_WITHIN */
 static const double falls_enough = 0.5;
-
-/* What the terms are solved with. */
-typedef struct solver {
-    const ritz_sparse *M;
-    const ritz_dense *Phi;
-    ritz_dense MPhi;
-    ritz_factor *F;
-    double sigma;
-} solver;
-
-/*
- * Of a body of which nothing but rigid motion is kept: a hundredth of what all
- * others are above, but no less than what the rounding of K leaves definite.
- */
-static double rigid_shift(const ritz_component *component,
-                          const ritz_pairs *pairs, double out_hz)
-{
-    double usual = pairs->sigma < 0.0 ? -pairs->sigma : 1.0;
-    double least = 0.0;
-
-    for (int64_t j = 0; j < component->num_dofs; j++) {
-        double m = ritz_sparse_diagonal(&component->M, j);
-
-        if (m > 0.0)
-            least = fmax(least, lost_in_K *
-                                    ritz_sparse_diagonal(&component->K, j) / m);
-    }
-    return -fmin(usual, fmax(least, small_shift * ritz_eigen_lambda(out_hz)));
-}
-
-static ritz_status solver_new(const ritz_component *component,
-                              const ritz_pairs *pairs, double out_hz, solver *s)
-{
-    ritz_status status = RITZ_OK;
-    int64_t m = pairs->Phi.ncol;
-    ritz_sparse A = {0};
-
-    s->M = &component->M;
-    s->Phi = &pairs->Phi;
-    s->sigma = rigid_shift(component, pairs, out_hz);
-    if (m > pairs->num_rigid)
-        s->sigma = -small_shift * pairs->lambda[m - 1];
-    else if (m == 0) /* nothing moves freely: K is definite */
-        s->sigma = 0.0;
-    RITZ_TRY(ritz_sparse_mul(s->M, s->Phi, &s->MPhi));
-    RITZ_TRY(ritz_sparse_add(1.0, &component->K, -s->sigma, &component->M, &A));
-    RITZ_TRY_IN("static answer", ritz_factor_spd(&A, &s->F));
-done:
-    ritz_sparse_free(&A);
-    return status;
-}
-
-/* The last change, of the largest value. */
-static double change_of(const ritz_dense *a, const ritz_dense *b)
-{
-    double change = 0.0;
-    double size = 0.0;
-
-    for (int64_t k = 0; k < a->nrow * a->ncol; k++) {
-        change = fmax(change, fabs(a->val[k] - b->val[k]));
-        size = fmax(size, fabs(a->val[k]));
-    }
-    return size > 0.0 ? change / size : 0.0;
-}
-
-/* K R = f in the space of what was left out; f is made to lie there. */
-static ritz_status solve(const solver *s, ritz_dense *f, ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense R = {0};
-    ritz_dense next = {0};
-    double change = HUGE_VAL;
-
-    RITZ_TRY(ritz_dense_take_out(&s->MPhi, s->Phi, f));
-    RITZ_TRY(ritz_dense_new(f->nrow, f->ncol, &R));
-    for (int step = 0; step < MOST_STEPS && change > settled; step++) {
-        RITZ_TRY(ritz_sparse_mul(s->M, &R, &next));
-        for (int64_t k = 0; k < f->nrow * f->ncol; k++)
-            next.val[k] = f->val[k] - s->sigma * next.val[k];
-        RITZ_TRY(ritz_factor_solve(s->F, &next));
-        RITZ_TRY(ritz_dense_take_out(s->Phi, &s->MPhi, &next));
-        change = change_of(&next, &R);
-        ritz_dense_free(&R);
-        R = next;
-        next = (ritz_dense){0};
-    }
-    RITZ_FAIL_IF(!(change <= unsettled), RITZ_ERR_CONVERGENCE,
-                 "what modes above the band answer did not settle in %d steps: "
-                 "the last one changed it by %.1e",
-                 (int)MOST_STEPS, change);
-    *out = R;
-    R = (ritz_dense){0};
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&next);
-    return status;
-}
 
 /* Term j as the outputs see it. */
 static ritz_status see(const ritz_dense *C, const ritz_dense *R, int64_t j,
@@ -154,8 +42,8 @@ done:
     return status;
 }
 
-static ritz_status add_terms(const ritz_component *component, const solver *s,
-                             ritz_residual *r)
+static ritz_status add_terms(const ritz_component *component,
+                             ritz_rest_solver *s, ritz_residual *r)
 {
     ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
@@ -165,12 +53,14 @@ static ritz_status add_terms(const ritz_component *component, const solver *s,
     RITZ_TRY(ritz_dense_new(io->B.nrow, io->B.ncol, &f));
     memcpy(f.val, io->B.val, (size_t)(f.nrow * f.ncol) * sizeof *f.val);
     for (int64_t j = 0; j < r->count; j++) {
-        RITZ_TRY(solve(s, &f, &R));
+        RITZ_TRY(ritz_rest_solve(s, &f, &R));
         RITZ_TRY(see(&io->C, &R, j, r->C));
         RITZ_TRY(see(&io->Cv, &R, j, r->Cv));
         RITZ_TRY(see(&io->Ca, &R, j, r->Ca));
         ritz_dense_free(&f);
         RITZ_TRY(ritz_sparse_mul(&component->M, &R, &f));
+        for (int64_t k = 0; k < f.nrow * f.ncol; k++)
+            f.val[k] *= r->unit;
         ritz_dense_free(&R);
     }
 done:
@@ -217,10 +107,11 @@ static int64_t count_terms(double to_hz, double out_hz, ritz_residual *r)
         r->a = r->b = 0.0;
         r->known = false;
     }
+    r->unit = mu;
     if (!(mu < lambda))
         return MOST_TERMS;
-    return (int64_t)fmin(MOST_TERMS,
-                         1.0 + ceil(log(series_within) / log(mu / lambda)));
+    return (int64_t)fmin(
+        MOST_TERMS, 1.0 + ceil(log(RITZ_SERIES_WITHIN) / log(mu / lambda)));
 }
 
 ritz_status ritz_residual_new(const ritz_component *component,
@@ -233,8 +124,9 @@ ritz_status ritz_residual_new(const ritz_component *component,
     int64_t pm = io->num_outputs * io->num_inputs;
     ritz_residual r = {.num_outputs = io->num_outputs,
                        .num_inputs = io->num_inputs,
-                       .known = true};
-    solver s = {0};
+                       .known = true,
+                       .unit = 1.0};
+    ritz_rest_solver s = {0};
 
     if (pairs->Phi.ncol < component->num_dofs && pm > 0) {
         RITZ_TRY(take_damping(component, damping, &r));
@@ -244,14 +136,13 @@ ritz_status ritz_residual_new(const ritz_component *component,
     RITZ_NEW(r.Cv, r.count * pm);
     RITZ_NEW(r.Ca, r.count * pm);
     if (r.count > 0) {
-        RITZ_TRY(solver_new(component, pairs, out_hz, &s));
+        RITZ_TRY(ritz_rest_solver_new(component, pairs, to_hz, out_hz, &s));
         RITZ_TRY(add_terms(component, &s, &r));
     }
     *out = r;
     r = (ritz_residual){0};
 done:
-    ritz_dense_free(&s.MPhi);
-    ritz_factor_free(&s.F);
+    ritz_rest_solver_free(&s);
     ritz_residual_free(&r);
     return status;
 }
@@ -273,7 +164,8 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
                 H[i * residual->num_inputs + j] +=
                     power * ritz_complex(residual->C[k] - w2 * residual->Ca[k],
                                          w * residual->Cv[k]);
-        power *= mu;
+        if (term + 1 < residual->count)
+            power *= mu / residual->unit;
     }
 }
 

@@ -64,6 +64,7 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
     if (request->damping)
         r->given = *request->damping;
     ritz_damping_print(&r->given, r->damping);
+    RITZ_TRY(ritz_noise_new(request, &r->noise));
     RITZ_TRY(engine->make(request, r));
     *out = r;
     r = NULL;
@@ -78,6 +79,7 @@ void ritz_responder_free(ritz_responder **responder)
         return;
     if ((*responder)->state)
         (*responder)->free((*responder)->state);
+    ritz_noise_free(&(*responder)->noise);
     free(*responder);
     *responder = NULL;
 }
@@ -160,9 +162,10 @@ ritz_status ritz_response_component(const ritz_component *component,
     RITZ_TRY(ritz_grid_check(grid));
     request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
     request.to_hz = ritz_grid_end(grid);
-    if (!engine)
-        engine = ritz_response_engine_choose(&request, &why);
-    RITZ_TRY(ritz_responder_new(engine, &request, &responder));
+    if (engine)
+        RITZ_TRY(ritz_responder_new(engine, &request, &responder));
+    else
+        RITZ_TRY(ritz_responder_auto(&request, &why, &responder));
     if (tolerance > 0.0)
         RITZ_TRY(ritz_responder_follow(responder, grid, tolerance, out));
     else

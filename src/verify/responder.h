@@ -2,9 +2,9 @@
 #ifndef RITZ_VERIFY_RESPONDER_H
 #define RITZ_VERIFY_RESPONDER_H
 
-#include "verify/poles.h"
+#include "verify/noise.h"
 
-enum { RITZ_REMARK_SIZE = 160 };
+enum { RITZ_REMARK_SIZE = 320 };
 
 struct ritz_responder {
     const ritz_response_engine *engine;
@@ -17,6 +17,7 @@ struct ritz_responder {
     ritz_damping given;              /* beside what matrices hold */
     char damping[RITZ_DAMPING_SIZE]; /* the same, or what a model says */
     char remark[RITZ_REMARK_SIZE];
+    ritz_noise noise; /* of what engines answer */
     void *state;
     /** H, which is zero before. */
     ritz_status (*at)(void *state, double hertz, double _Complex *H);
@@ -28,6 +29,14 @@ extern const ritz_response_engine ritz_response_engine_krylov;
 extern const ritz_response_engine ritz_response_engine_modal;
 extern const ritz_response_engine ritz_response_engine_rational;
 extern const ritz_response_engine ritz_response_engine_states;
+
+/**
+ * By an engine; where that does not converge on a component by direct, and the
+ * remark says why.
+ */
+ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
+                                     const ritz_response_request *request,
+                                     ritz_responder **out);
 
 /** The highest mode that a request wants of a component, Hz. */
 double ritz_response_highest(const ritz_response_request *request);

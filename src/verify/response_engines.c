@@ -1,4 +1,5 @@
-/* The table of engines, how one is found, and which `auto` stands for. */
+/* The table of engines, how one is found, which `auto` stands for, and what
+   happens where that one fails. */
 #include "verify/responder.h"
 
 #include <stdio.h>
@@ -60,4 +61,29 @@ ritz_response_engine_choose(const ritz_response_request *request,
     *why =
         "without damping matrices modes and the series of the rest are exact";
     return &ritz_response_engine_modal;
+}
+
+ritz_status ritz_responder_auto(const ritz_response_request *request,
+                                const char **why, ritz_responder **out)
+{
+    return ritz_responder_or_direct(ritz_response_engine_choose(request, why),
+                                    request, out);
+}
+
+ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
+                                     const ritz_response_request *request,
+                                     ritz_responder **out)
+{
+    ritz_status status = ritz_responder_new(engine, request, out);
+    char said[RITZ_REMARK_SIZE / 2];
+
+    if (status != RITZ_ERR_CONVERGENCE || !request->component)
+        return status;
+    (void)snprintf(said, sizeof said, "%.*s", (int)sizeof said - 1,
+                   ritz_error_message());
+    RITZ_TRY(ritz_responder_new(&ritz_response_engine_direct, request, out));
+    (void)snprintf((*out)->remark, sizeof(*out)->remark,
+                   "%s gave up, direct instead: %s", engine->name, said);
+done:
+    return status;
 }

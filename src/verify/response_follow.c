@@ -175,8 +175,8 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
     RITZ_TRY(begin(responder, grid, &count, &hertz));
     RITZ_TRY(ritz_mesh_new(responder, count, hertz, &mesh));
     for (int round = 0; round < MOST_ROUNDS && added > 0; round++) {
-        ritz_channel_scales(io->num_outputs, io->num_inputs, mesh.peak,
-                            mesh.scale);
+        ritz_noise_scales(io->num_outputs, io->num_inputs, margin * tolerance,
+                          mesh.peak, mesh.level, mesh.scale);
         RITZ_TRY(halve(&mesh, margin * tolerance, &added));
     }
     RITZ_TRY(ritz_mesh_add_dips(&mesh));

@@ -38,8 +38,12 @@ static const double pi = 3.14159265358979323846;
 /* Of ratios' modes as all engines have it; without them fewer will do. */
 static const double modes_beyond = 1.5;
 static const double usual_tolerance = 1e-9;
+/* Rounding of what is projected; less is not to be had. */
+static const double least_tolerance = 1e-13;
 /* A correction that leaves more than this of the error was the last. */
 static const double pays = 0.3;
+/* Of its frequency: so far beside an undamped pole full answers keep digits. */
+static const double beside = 1e-5;
 
 static void krylov_free(ritz_krylov *k)
 {
@@ -51,6 +55,7 @@ static void krylov_free(ritz_krylov *k)
     free(k->load);
     free(k->error);
     free(k->trial);
+    free(k->noise);
     free(k->peak);
     free(k->allowed);
     free(k->y);
@@ -87,7 +92,8 @@ done:
     return status;
 }
 
-/* The frequency of the pole that is damped least, 0 if none is in the range. */
+/* The frequency of the pole that is damped least, or beside it where that has
+   no response; 0 if none is in the range. */
 static ritz_status find_quietest(const ritz_krylov *k,
                                  const ritz_response_request *request,
                                  double *out)
@@ -109,6 +115,8 @@ static ritz_status find_quietest(const ritz_krylov *k,
             *out = hertz;
         }
     }
+    if (least < beside)
+        *out *= 1.0 + beside;
 done:
     ritz_damped_free(&damped);
     return status;
@@ -151,7 +159,7 @@ static ritz_status converge(ritz_krylov *k,
     RITZ_FAIL_IF(!held, RITZ_ERR_CONVERGENCE,
                  "a space of %" PRId64
                  " vectors errs by %.1e of the largest response, not %.1e",
-                 k->space.V.ncol, k->worst * k->tolerance, k->tolerance);
+                 k->space.V.ncol, k->unmet * k->tolerance, k->tolerance);
 done:
     return status;
 }
@@ -179,6 +187,7 @@ static ritz_status start(const ritz_response_request *request, ritz_krylov *k)
                  highest, request->to_hz);
     k->tolerance =
         request->tolerance > 0.0 ? request->tolerance : usual_tolerance;
+    k->tolerance = fmax(k->tolerance, least_tolerance);
     k->amplify = 1.0;
     k->lambda_h = ritz_eigen_lambda(highest);
     k->outputs = io->num_outputs;

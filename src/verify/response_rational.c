@@ -41,6 +41,7 @@ static void rational_free(ritz_nodes *s)
     free(s->missed);
     free(s->miss);
     free(s->peak);
+    free(s->level);
     free(s->scale);
     free(s->H);
     free(s->guess);
@@ -56,6 +57,7 @@ static ritz_status start(const ritz_response_request *request,
     double low = request->from_hz;
 
     s->values = io->num_outputs * io->num_inputs;
+    s->noise = &out->noise;
     s->mirror = !request->component->K4.colptr;
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = above_rest * request->to_hz;
@@ -68,6 +70,7 @@ static ritz_status start(const ritz_response_request *request,
     RITZ_NEW(s->missed, 2 * s->values);
     RITZ_NEW(s->miss, 2 * s->values * RITZ_RATIONAL_ENOUGH);
     RITZ_NEW(s->peak, s->values);
+    RITZ_NEW(s->level, s->values);
     RITZ_NEW(s->scale, s->values);
     RITZ_NEW(s->H, s->values);
     RITZ_NEW(s->guess, s->values);
