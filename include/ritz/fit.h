@@ -58,7 +58,8 @@ typedef struct ritz_fit_request {
     ritz_choice choice;                /* what methods are told that heed it */
     const char *attach;                /* ports of a component; NULL: all */
     int64_t largest;       /* order to be tried; 0: four times what the band
-                               holds, and 40 */
+                               holds, and 40; of a scene as far as errors fall,
+                               with a thousand modes or so at most */
     int64_t num_random;    /* frequencies that confirm; configurations are
                                `num_between` */
     int64_t num_between;   /* random configurations that confirm */
@@ -84,6 +85,20 @@ typedef struct ritz_fit_request {
         .most_measured = 1000                                                  \
     }
 
+/* What ended the search of a method that met nothing. */
+typedef enum ritz_fit_end {
+    RITZ_FIT_END_NONE,      /* it met the tolerance, or others do with less */
+    RITZ_FIT_END_LARGEST,   /* the next is larger than `largest` */
+    RITZ_FIT_END_WHOLE,     /* there are no more modes */
+    RITZ_FIT_END_SAME,      /* more modes gave no more columns */
+    RITZ_FIT_END_FLAT,      /* more modes gave no smaller error */
+    RITZ_FIT_END_FAR,       /* as many modes as are tried unless `largest` says
+                              more */
+    RITZ_FIT_END_REFERENCE, /* a rich first stage is compared with, and has no
+                              more */
+    RITZ_FIT_END_REFUSED,   /* the next cannot be made */
+} ritz_fit_end;
+
 /* The full model, ready; and what of candidates can be kept. */
 typedef struct ritz_fitter ritz_fitter;
 
@@ -94,10 +109,11 @@ typedef struct ritz_fit {
     int64_t chosen, runner_up;     /* -1: none; the runner-up is the best of
                                       another method */
     int64_t num_methods;
-    int64_t *best;    /* num_methods, of each the smallest that is feasible;
+    int64_t *best;     /* num_methods, of each the smallest that is feasible;
                           -1: none is */
-    int64_t *reached; /* num_methods, of each the one that misses the fewest
+    int64_t *reached;  /* num_methods, of each the one that misses the fewest
                          modes, with the least excess; -1: all were refused */
+    ritz_fit_end *end; /* num_methods, of each that met nothing what ended it */
     const ritz_method **method; /* num_methods */
     char why[1024];
 } ritz_fit;

@@ -69,8 +69,7 @@ bool ritz_fit_is_better(const ritz_fit_candidate *a,
     return a->excess < b->excess * (1.0 - 1e-6);
 }
 
-/* Modes that are missing and may not be. */
-static double missing_of(const ritz_fit_candidate *c)
+double ritz_fit_misses(const ritz_fit_candidate *c)
 {
     const ritz_measure *m = ritz_measures_find(&c->errors, "missing-modes");
 
@@ -82,7 +81,7 @@ static double missing_of(const ritz_fit_candidate *c)
 bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b)
 {
-    double more = missing_of(a) - missing_of(b);
+    double more = ritz_fit_misses(a) - ritz_fit_misses(b);
 
     if (a->screened != b->screened)
         return b->screened;

@@ -32,7 +32,7 @@ static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c)
     if (m)
         add(fit,
             "the error of 'frequency' is %.2e at least (%s) where %g is "
-            "allowed",
+            "allowed, or a mode is missing",
             m->value, m->where, m->value / c->excess);
 }
 

@@ -37,6 +37,7 @@ typedef struct ritz_fit_second {
     int64_t *rigid;     /* num_bodies, columns that move rigidly */
     int64_t num_steps;  /* a ladder of its own */
     int64_t *step;      /* num_steps, whose next direction matters most */
+    double rich_hz;     /* modes of the first stage, up to it */
     ritz_fit_watch spent;
 } ritz_fit_second;
 
@@ -54,8 +55,11 @@ struct ritz_fitter {
     ritz_component *model; /* num_bodies, of a scene */
     ritz_reduced *still;   /* of every component of the scene that stays as
                                it is; empty for flexible ones */
-    int64_t num_steps;     /* rungs of the ladder beyond the first */
+    int64_t num_first;     /* rungs of the ladder that all are tried on */
+    int64_t num_steps;     /* rungs there are beyond the lowest */
     int64_t *step;         /* num_steps, which body has one mode more */
+    double *step_hz;       /* num_steps, and that mode's frequency */
+    double rich_hz;        /* modes of bodies in a rich reference, up to it */
     int64_t num_made;
     ritz_fit_made *made;
     ritz_fit_second second;
@@ -93,6 +97,13 @@ ritz_status ritz_fit_refer(const ritz_fit_request *request,
 /** Load the bodies of a scene and make the ladder of those that are flexible. */
 ritz_status ritz_fit_bodies(ritz_fitter *fitter);
 
+/**
+ * The ladder longer, to twice the modes of the body that ends it.
+ *
+ * @param[out] end  why it could not be; RITZ_FIT_END_NONE: it is longer
+ */
+ritz_status ritz_fit_extend(ritz_fitter *fitter, ritz_fit_end *end);
+
 /** Modes of each body after @p rung steps of a method's ladder. */
 void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
                    int64_t rung, int64_t *modes);
@@ -104,7 +115,8 @@ int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method);
  * The scene's flexible bodies with modes far beyond the band, joined to those
  * that stay, which are lent: ritz_fit_rich_free takes them back.
  */
-ritz_status ritz_fit_rich(ritz_fitter *fitter, ritz_stage *out);
+ritz_status ritz_fit_rich(ritz_fitter *fitter, double up_to_hz,
+                          ritz_stage *out);
 
 /** How far beyond the band, times it: 8, and up to 32 for fine tolerances. */
 double ritz_fit_rich_to(const ritz_verify_request *limits);
@@ -112,6 +124,22 @@ void ritz_fit_rich_free(ritz_fitter *fitter, ritz_stage *stage);
 
 /** Make COMPARE's bodies, once; if they are refused, each candidate says why. */
 ritz_status ritz_fit_second_make(ritz_fitter *fitter);
+
+/** The same of a first stage with modes up to that; what fails leaves those
+ * that were made before. */
+ritz_status ritz_fit_second_remake(ritz_fitter *fitter, double up_to_hz,
+                                   bool *made);
+
+/**
+ * Make COMPARE's first stage richer until, with nothing removed, it leaves at
+ * most a tenth of the tolerance, or does not get better.
+ *
+ * @param[out] end  what ended it; RITZ_FIT_END_NONE: it is rich enough
+ */
+ritz_status ritz_fit_enrich(ritz_fitter *fitter, ritz_fit_end *end);
+
+/** Forget bodies that were made by a method. */
+void ritz_fit_forget(ritz_fitter *fitter, const ritz_method *method);
 
 /** Flexible body @p k with its rigid motions and so many directions. */
 ritz_status ritz_fit_second_body(ritz_fitter *fitter, int64_t k, int64_t count,
@@ -221,6 +249,9 @@ bool ritz_fit_is_better(const ritz_fit_candidate *a,
 bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b);
 
+/** Modes that a candidate misses and may not. */
+double ritz_fit_misses(const ritz_fit_candidate *candidate);
+
 /** Of a method's candidates of no higher order the largest, the nearest of
  * those; -1: it has none. */
 int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order);
@@ -286,12 +317,17 @@ ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate);
 /** The best and the nearest of a method, of all that were tried. */
 void ritz_fit_conclude(ritz_fit *fit, int64_t method);
 
-/** Search one method. */
-ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method);
+/** Search one method; @p on: beyond the end of the scene's first ladder, where
+ * nothing was met. */
+ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                            bool on);
 
 /** Take modes from bodies, and exchange them, while the tolerance holds. */
 ritz_status ritz_fit_thin(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                           int64_t *best);
+
+/** After `why`, where nothing was met: what ended the nearest method. */
+void ritz_fit_explain_end(const ritz_fitter *fitter, ritz_fit *fit);
 
 /** Why the chosen one, in words. */
 ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit);

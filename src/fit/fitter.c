@@ -187,6 +187,7 @@ void ritz_fitter_free(ritz_fitter **fitter)
     free(f->model);
     free(f->still);
     free(f->step);
+    free(f->step_hz);
     free(f->made);
     free(f);
     *fitter = NULL;
@@ -208,5 +209,6 @@ void ritz_fit_free(ritz_fit *fit)
     free(fit->method);
     free(fit->best);
     free(fit->reached);
+    free(fit->end);
     *fit = (ritz_fit){0};
 }

@@ -15,13 +15,24 @@ enum { COMPONENT_BELOW = 8, SCENE_BELOW = 3 };
 enum { FAR = 2, BESIDE = 8 };
 /* A method that was refused so often is. */
 enum { MOST_REFUSED = 4 };
+/* Ladders that are longer and come no nearer, before a method is given up; what
+   is nearer has so much of the error, or less. */
+enum { MOST_FLAT = 2 };
+static const double nearer = 0.9;
+/* A model so much larger than the smallest may become it by columns left out:
+   trim() in search.c. */
+static const double within_reach = 1.5;
 
 /* One method on its ladder. */
 typedef struct ladder {
     ritz_fitter *fitter;
     ritz_fit *fit;
     int64_t method, top;
-    int64_t *modes; /* to work in */
+    int64_t length; /* rungs of the scene's ladder as far as it is used */
+    bool on; /* beyond the first ladder's end, and no farther than in reach */
+    int64_t *modes;        /* to work in */
+    int64_t last, earlier; /* candidates: the highest rungs that were made */
+    ritz_fit_end end;      /* why there is no higher one; NONE: there is */
 } ladder;
 
 static ritz_status rung(const ladder *l, int64_t t, int64_t *at)
@@ -35,17 +46,46 @@ static const ritz_fit_candidate *get(const ladder *l, int64_t at)
     return &l->fit->candidate[at];
 }
 
+/* What a refused candidate tells of those above it. */
+static ritz_fit_end wall_of(const ladder *l, int64_t at)
+{
+    return get(l, at)->order > l->fitter->largest ? RITZ_FIT_END_LARGEST
+                                                  : RITZ_FIT_END_REFUSED;
+}
+
+/* Order of the best of all methods but one; INT64_MAX: there is none. */
+static int64_t least_order(const ritz_fit *fit, int64_t but)
+{
+    int64_t least = INT64_MAX;
+
+    for (int64_t m = 0; m < fit->num_methods; m++)
+        if (m != but && fit->best[m] >= 0 &&
+            fit->candidate[fit->best[m]].order < least)
+            least = fit->candidate[fit->best[m]].order;
+    return least;
+}
+
+/* Whether others do not do with far less than a candidate. */
+static bool in_reach(const ladder *l, int64_t at)
+{
+    int64_t least = least_order(l->fit, l->method);
+
+    return l->fitter->request.thorough || least == INT64_MAX ||
+           (double)get(l, at)->order < within_reach * (double)least;
+}
+
 /*
  * Up: [low, high] with high the first feasible rung that was met, or -1; low
  * the last below that was made and is not feasible, -1 if none. Where a rung is
  * refused for its size, the highest that is not is sought between.
  */
-static ritz_status climb(const ladder *l, int64_t *low, int64_t *high)
+static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
 {
     ritz_status status = RITZ_OK;
     int64_t refused = 0, at = 0, wall = l->top + 1, before = -1;
 
-    *low = *high = -1;
+    *low = *high = l->last = l->earlier = -1;
+    l->end = RITZ_FIT_END_NONE;
     for (int64_t t = 0; t < wall && *high < 0;) {
         const ritz_fit_candidate *c = NULL;
 
@@ -54,13 +94,21 @@ static ritz_status climb(const ladder *l, int64_t *low, int64_t *high)
         if (c->feasible) {
             *high = t;
         } else if (ritz_fit_was_made(c)) {
-            if (t > 4 && c->order == before) /* it has no more to give */
+            l->earlier = l->last;
+            l->last = at;
+            if (t > 4 && c->order == before) { /* it has no more to give */
+                l->end = RITZ_FIT_END_SAME;
                 break;
+            }
             before = c->order;
             *low = t;
+            if (l->on && !in_reach(l, at))
+                break;
         } else if (*low >= 0) {
+            l->end = wall_of(l, at);
             wall = t;
         } else if (++refused == MOST_REFUSED) {
+            l->end = wall_of(l, at);
             break;
         }
         t = wall <= l->top || t == l->top ? wall
@@ -79,6 +127,109 @@ static ritz_status climb(const ladder *l, int64_t *low, int64_t *high)
             *low = t;
         else
             wall = t;
+    }
+done:
+    return status;
+}
+
+/* Whether one comes nearer than another of fewer modes; what bounds no longer
+   rule out does. */
+static bool falls(const ritz_fit_candidate *now, const ritz_fit_candidate *then)
+{
+    if (now->screened != then->screened)
+        return then->screened;
+    return ritz_fit_is_nearer(now, then) &&
+           (ritz_fit_misses(now) < ritz_fit_misses(then) ||
+            now->excess < nearer * then->excess);
+}
+
+/*
+ * How far a method is pursued: while others do with far less, not at all. Rungs
+ * are modes, of which there are no more than columns.
+ */
+static int64_t top_of(const ladder *l)
+{
+    const ritz_fitter *fitter = l->fitter;
+    const ritz_method *method = l->fit->method[l->method];
+    int64_t top = fitter->scene ? l->length : fitter->largest;
+    int64_t least = least_order(l->fit, l->method);
+
+    if (!(method->uses & RITZ_USES_MODES))
+        return 0;
+    if (!fitter->request.thorough && least < INT64_MAX &&
+        FAR * least + BESIDE < top)
+        top = FAR * least + BESIDE;
+    return top;
+}
+
+/* Up, as long as the ladder is by itself. */
+static ritz_status climb_first(ladder *l, int64_t *low, int64_t *high)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_method *method = l->fit->method[l->method];
+    const bool composite = method == &ritz_fit_compare;
+    ritz_fit_end whole = RITZ_FIT_END_NONE;
+
+    if (l->fitter->scene && composite)
+        RITZ_TRY(ritz_fit_enrich(l->fitter, &whole));
+    l->length =
+        composite ? ritz_fit_rungs(l->fitter, method) : l->fitter->num_first;
+    l->top = top_of(l);
+    RITZ_TRY(climb(l, low, high));
+    if (l->end == RITZ_FIT_END_NONE && l->top == l->length)
+        l->end = whole;
+    if (l->end == RITZ_FIT_END_NONE && l->fitter->component &&
+        (method->uses & RITZ_USES_MODES) && l->top == l->fitter->largest)
+        l->end = l->top < l->fitter->component->num_dofs ? RITZ_FIT_END_LARGEST
+                                                         : RITZ_FIT_END_WHOLE;
+done:
+    return status;
+}
+
+/* Whether it is worth while to go on beyond the ladder's end. */
+static bool goes_on(const ladder *l)
+{
+    const ritz_method *method = l->fit->method[l->method];
+
+    if (l->end != RITZ_FIT_END_NONE || l->last < 0 || l->top < l->length ||
+        !l->fitter->scene || !(method->uses & RITZ_USES_MODES))
+        return false;
+    return in_reach(l, l->last);
+}
+
+/* Twice as long, of what is there or can be had. */
+static ritz_status lengthen(ladder *l)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t twice = 2 * l->length + BESIDE;
+
+    if (l->fitter->num_steps < twice)
+        RITZ_TRY(ritz_fit_extend(l->fitter, &l->end));
+    if (l->fitter->num_steps > l->length)
+        l->end = RITZ_FIT_END_NONE;
+    l->length = twice < l->fitter->num_steps ? twice : l->fitter->num_steps;
+    l->top = top_of(l);
+done:
+    return status;
+}
+
+/* Up, on a ladder that is made longer while nothing is met and errors fall. */
+static ritz_status climb_on(ladder *l, int64_t *low, int64_t *high)
+{
+    ritz_status status = RITZ_OK;
+    int64_t flat = 0;
+
+    while (*high < 0 && goes_on(l)) {
+        flat = l->earlier >= 0 && falls(get(l, l->last), get(l, l->earlier))
+                   ? 0
+                   : flat + 1;
+        if (flat == MOST_FLAT) {
+            l->end = RITZ_FIT_END_FLAT;
+            break;
+        }
+        RITZ_TRY(lengthen(l));
+        if (l->end == RITZ_FIT_END_NONE)
+            RITZ_TRY(climb(l, low, high));
     }
 done:
     return status;
@@ -107,28 +258,6 @@ done:
 }
 
 /*
- * How far a method is pursued: while others do with far less, not at all. Rungs
- * are modes, of which there are no more than columns.
- */
-static int64_t top_of(const ritz_fitter *fitter, const ritz_fit *fit,
-                      int64_t method)
-{
-    int64_t top = fitter->scene ? ritz_fit_rungs(fitter, fit->method[method])
-                                : fitter->largest;
-    int64_t least = INT64_MAX;
-
-    if (!(fit->method[method]->uses & RITZ_USES_MODES))
-        return 0;
-    for (int64_t m = 0; m < method; m++)
-        if (fit->best[m] >= 0 && fit->candidate[fit->best[m]].order < least)
-            least = fit->candidate[fit->best[m]].order;
-    if (!fitter->request.thorough && least < INT64_MAX &&
-        FAR * least + BESIDE < top)
-        top = FAR * least + BESIDE;
-    return top;
-}
-
-/*
  * Of a method that met nothing the largest model is measured, if bounds had
  * ruled it out: it says how near the method comes.
  */
@@ -153,23 +282,28 @@ done:
     return status;
 }
 
-ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method)
+ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                            bool on)
 {
     ritz_status status = RITZ_OK;
     ladder l = {.fitter = fitter, .fit = fit, .method = method};
     int64_t low = -1, high = -1;
 
     RITZ_NEW(l.modes, fitter->num_bodies);
-    l.top = top_of(fitter, fit, method);
-    RITZ_TRY(climb(&l, &low, &high));
+    RITZ_TRY(climb_first(&l, &low, &high));
+    l.on = on;
+    if (on)
+        RITZ_TRY(climb_on(&l, &low, &high));
     if (high >= 0)
         RITZ_TRY(descend(&l, low, high));
     ritz_fit_conclude(fit, method);
+    fit->end[method] = high < 0 ? l.end : RITZ_FIT_END_NONE;
     if (fit->best[method] < 0) {
         RITZ_TRY(measure_largest(&l));
         ritz_fit_conclude(fit, method);
     }
-    if (fitter->scene && fit->best[method] >= 0) {
+    if (fitter->scene && fit->best[method] >= 0 &&
+        (!on || in_reach(&l, fit->best[method]))) {
         RITZ_TRY(ritz_fit_thin(fitter, fit, method, &fit->best[method]));
         ritz_fit_conclude(fit, method);
     }

@@ -52,6 +52,18 @@ static void free_made(ritz_fit_made *made)
     *made = (ritz_fit_made){0};
 }
 
+void ritz_fit_forget(ritz_fitter *f, const ritz_method *method)
+{
+    int64_t kept = 0;
+
+    for (int64_t k = 0; k < f->num_made; k++)
+        if (f->made[k].method == method)
+            free_made(&f->made[k]);
+        else
+            f->made[kept++] = f->made[k];
+    f->num_made = kept;
+}
+
 /* Whether there is room for one more T; bounds need those of all bodies. */
 static bool keep_basis(const ritz_fitter *f, const ritz_dense *T)
 {

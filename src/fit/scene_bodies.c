@@ -6,12 +6,17 @@
 #include <ritz/eigen.h>
 #include <ritz/monitor.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Modes of bodies count so far, of what a reference would hold, as steps of the
    ladder: to six times the band, and further for the finest tolerances. */
 static const double ladder_to = 0.75;
+/* Where that is not enough it goes on, by twice the modes of a body and some,
+   to so many of all bodies, or as many as columns are allowed. */
+enum { AT_FIRST = 4 };
+static const int64_t furthest = 1000;
 
 /* Flexible is what the scene reduces by a number of modes. */
 static ritz_status load_bodies(ritz_fitter *f)
@@ -71,41 +76,126 @@ static int by_hertz(const void *left, const void *right)
     return (a->body > b->body) - (a->body < b->body);
 }
 
+/* Flexible modes of all bodies, while they are gathered. */
+typedef struct rungs {
+    int64_t count;
+    rung *all;
+    double limit; /* Hz: up to it no body lacks any */
+} rungs;
+
+/* Those of one body; so many as were asked for, or all up to a frequency. */
+static ritz_status gather(const ritz_fitter *f, int64_t k,
+                          const ritz_span *span, rungs *r)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs pairs = {0};
+    rung *more = NULL;
+    int64_t found = 0;
+
+    RITZ_TRY_IN(
+        ritz_fitter_body(f, k),
+        ritz_eigen_sparse(&f->model[k].K, &f->model[k].M, span, &pairs));
+    found = pairs.Phi.ncol - pairs.num_rigid;
+    RITZ_NEW(more, r->count + found);
+    if (r->count > 0)
+        memcpy(more, r->all, (size_t)r->count * sizeof *more);
+    free(r->all);
+    r->all = more;
+    for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++)
+        r->all[r->count++] = (rung){ritz_eigen_hertz(pairs.lambda[j]), k};
+    if (span->modes >= 0 && found >= span->modes && found > 0)
+        r->limit = fmin(r->limit, r->all[r->count - 1].hertz);
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* They become the ladder, as far as no body lacks any. */
+static ritz_status climb_by(rungs *r, ritz_fitter *f)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *step = NULL;
+    double *hertz = NULL;
+    const int64_t all = r->all ? r->count : 0;
+    int64_t count = 0;
+
+    if (all > 0)
+        qsort(r->all, (size_t)all, sizeof *r->all, by_hertz);
+    RITZ_NEW(step, all);
+    RITZ_NEW(hertz, all);
+    for (; count < all && r->all[count].hertz <= r->limit; count++) {
+        step[count] = r->all[count].body;
+        hertz[count] = r->all[count].hertz;
+    }
+    free(f->step);
+    free(f->step_hz);
+    f->step = step;
+    f->step_hz = hertz;
+    f->num_steps = count;
+    step = NULL;
+    hertz = NULL;
+done:
+    free(step);
+    free(hertz);
+    return status;
+}
+
 /* The free modes of all bodies by frequency: who gets the next mode. */
 static ritz_status make_ladder(ritz_fitter *f)
 {
     ritz_status status = RITZ_OK;
-    const ritz_span span = {
-        .modes = -1,
-        .up_to_hz = ladder_to * ritz_fit_rich_to(&f->request.tolerance) *
-                    f->request.tolerance.band_hz[1]};
-    ritz_pairs pairs = {0};
-    rung *all = NULL, *more = NULL;
+    const ritz_span span = {.modes = -1, .up_to_hz = ladder_to * f->rich_hz};
+    rungs r = {.limit = HUGE_VAL};
+
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        RITZ_TRY(gather(f, k, &span, &r));
+    RITZ_TRY(climb_by(&r, f));
+    f->num_first = f->num_steps;
+done:
+    free(r.all);
+    return status;
+}
+
+/* Modes of a body that are on the ladder. */
+static int64_t on_ladder(const ritz_fitter *f, int64_t body)
+{
     int64_t count = 0;
 
+    for (int64_t t = 0; t < f->num_steps; t++)
+        count += f->step[t] == body;
+    return count;
+}
+
+ritz_status ritz_fit_extend(ritz_fitter *f, ritz_fit_end *end)
+{
+    ritz_status status = RITZ_OK;
+    rungs r = {.limit = f->rich ? f->rich_hz : HUGE_VAL};
+    const int64_t before = f->num_steps;
+    int64_t room =
+        f->request.largest > furthest ? f->request.largest : furthest;
+
+    *end = RITZ_FIT_END_FAR;
+    room -= before;
+    if (room <= 0)
+        return RITZ_OK;
     for (int64_t k = 0; k < f->num_bodies; k++) {
-        RITZ_TRY_IN(
-            ritz_fitter_body(f, k),
-            ritz_eigen_sparse(&f->model[k].K, &f->model[k].M, &span, &pairs));
-        RITZ_NEW(more, count + pairs.Phi.ncol);
-        if (count > 0)
-            memcpy(more, all, (size_t)count * sizeof *more);
-        free(all);
-        all = more;
-        more = NULL;
-        for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++)
-            all[count++] = (rung){ritz_eigen_hertz(pairs.lambda[j]), k};
-        ritz_pairs_free(&pairs);
+        int64_t has = on_ladder(f, k);
+        int64_t more = has + AT_FIRST < room ? has + AT_FIRST : room;
+        const ritz_span span = {.modes = has + more};
+
+        ritz_monitor_step("modes of bodies", k, f->num_bodies);
+        RITZ_TRY(gather(f, k, &span, &r));
     }
-    if (all)
-        qsort(all, (size_t)count, sizeof *all, by_hertz);
-    RITZ_NEW(f->step, count);
-    for (int64_t k = 0; k < count; k++)
-        f->step[k] = all[k].body;
-    f->num_steps = count;
+    RITZ_TRY(climb_by(&r, f));
+    *end = f->num_steps > before ? RITZ_FIT_END_NONE
+           : f->rich             ? RITZ_FIT_END_REFERENCE
+                                 : RITZ_FIT_END_WHOLE;
 done:
-    ritz_pairs_free(&pairs);
-    free(all);
+    free(r.all);
+    if (status != RITZ_OK && status != RITZ_ERR_MEMORY) {
+        *end = RITZ_FIT_END_REFUSED; /* the ladder is as it was */
+        status = RITZ_OK;
+    }
     return status;
 }
 

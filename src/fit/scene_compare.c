@@ -156,14 +156,15 @@ done:
     return status;
 }
 
-static ritz_status make(ritz_fitter *f, ritz_fit_second *second)
+static ritz_status make(ritz_fitter *f, double up_to_hz,
+                        ritz_fit_second *second)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene scene = choosing(f);
     ritz_stage stage = {0};
     ritz_composite composite = {0};
 
-    RITZ_TRY(ritz_fit_rich(f, &stage));
+    RITZ_TRY(ritz_fit_rich(f, up_to_hz, &stage));
     stage.scene = &scene;
     RITZ_TRY(ritz_composite_new(&stage, &composite));
     RITZ_NEW(second->body, f->num_bodies);
@@ -187,11 +188,11 @@ ritz_status ritz_fit_second_make(ritz_fitter *f)
 {
     ritz_status status = RITZ_OK;
     const ritz_fit_watch watch = ritz_fit_start();
-    ritz_fit_second made = {.made = true};
+    ritz_fit_second made = {.made = true, .rich_hz = f->rich_hz};
 
     if (f->second.made)
         return RITZ_OK;
-    status = make(f, &made);
+    status = make(f, f->rich_hz, &made);
     if (status != RITZ_OK) { /* why, is said by every candidate */
         ritz_fit_second_free(f->num_bodies, &made);
         made.made = status != RITZ_ERR_MEMORY;
@@ -202,6 +203,26 @@ ritz_status ritz_fit_second_make(ritz_fitter *f)
     made.spent = ritz_fit_since(watch);
     f->second = made;
     return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+}
+
+ritz_status ritz_fit_second_remake(ritz_fitter *f, double up_to_hz, bool *made)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_fit_watch watch = ritz_fit_start();
+    ritz_fit_second more = {.made = true, .rich_hz = up_to_hz};
+
+    *made = false;
+    status = make(f, up_to_hz, &more);
+    if (status != RITZ_OK) {
+        ritz_fit_second_free(f->num_bodies, &more);
+        return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+    }
+    more.spent = ritz_fit_since(watch);
+    ritz_fit_forget(f, &ritz_fit_compare);
+    ritz_fit_second_free(f->num_bodies, &f->second);
+    f->second = more;
+    *made = true;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_second_body(ritz_fitter *f, int64_t k, int64_t count,

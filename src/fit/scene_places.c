@@ -122,7 +122,7 @@ done:
     return status;
 }
 
-ritz_status ritz_fit_rich(ritz_fitter *f, ritz_stage *out)
+ritz_status ritz_fit_rich(ritz_fitter *f, double up_to_hz, ritz_stage *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = f->scene;
@@ -135,8 +135,7 @@ ritz_status ritz_fit_rich(ritz_fitter *f, ritz_stage *out)
         ritz_scene_component item = scene->component[f->body[k]];
 
         item.modes = -1;
-        item.up_to_hz = ritz_fit_rich_to(&f->request.tolerance) *
-                        f->request.tolerance.band_hz[1];
+        item.up_to_hz = up_to_hz;
         RITZ_TRY_IN(item.name,
                     ritz_stage_reduce(scene, f->body[k], &item, &f->model[k],
                                       &body[f->body[k]]));
@@ -164,7 +163,7 @@ static ritz_status rich_systems(ritz_fitter *f)
     ritz_stage stage = {0};
     ritz_configuration at = {0};
 
-    RITZ_TRY(ritz_fit_rich(f, &stage));
+    RITZ_TRY(ritz_fit_rich(f, f->rich_hz, &stage));
     for (int64_t k = 0; k < f->num_places; k++) {
         ritz_monitor_step("first stage", k, f->num_places);
         RITZ_TRY(ritz_stage_assemble(&stage, f->place[k].setting, &at));
@@ -231,6 +230,7 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
         limits->damping = scene->damping;
     RITZ_FAIL_IF(!(limits->band_hz[1] > 0.0), RITZ_ERR_ARGUMENT,
                  "the scene has no band: where is the tolerance to hold");
+    f->rich_hz = ritz_fit_rich_to(limits) * limits->band_hz[1];
     RITZ_TRY(ritz_fit_bodies(f));
     RITZ_TRY(make_places(f));
     RITZ_TRY(name_places(f));

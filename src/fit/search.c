@@ -40,6 +40,7 @@ static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
     RITZ_NEW(fit->method, all + 1); /* NOLINT: an array of pointers is meant */
     RITZ_NEW(fit->best, all + 1);
     RITZ_NEW(fit->reached, all + 1);
+    RITZ_NEW(fit->end, all + 1);
     for (int64_t k = 0; k < all; k++)
         if (asked->num_methods > 0)
             fit->method[fit->num_methods++] = asked->methods[k];
@@ -138,11 +139,16 @@ ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
 
     RITZ_TRY(list_methods(fitter, &fit));
     for (int64_t m = 0; m < fit.num_methods; m++)
-        RITZ_TRY(ritz_fit_search(fitter, &fit, m));
+        RITZ_TRY(ritz_fit_search(fitter, &fit, m, false));
+    for (int64_t m = 0; m < fit.num_methods; m++)
+        if (fitter->scene && fit.best[m] < 0 &&
+            fit.method[m] != &ritz_fit_compare)
+            RITZ_TRY(ritz_fit_search(fitter, &fit, m, true));
     choose(&fit);
     RITZ_TRY(trim(fitter, &fit));
     RITZ_TRY(bound(fitter, &fit));
     RITZ_TRY(ritz_fit_explain(fitter, &fit));
+    ritz_fit_explain_end(fitter, &fit);
     *out = fit;
     fit = (ritz_fit){0};
 done:
