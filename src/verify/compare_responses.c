@@ -120,6 +120,24 @@ typedef struct both {
     double _Complex *reduced;
 } both;
 
+/* One response of both models at a frequency. */
+static ritz_status take(double _Complex H, double _Complex H_r, double hertz,
+                        extreme *found)
+{
+    ritz_status status = RITZ_OK;
+    double error = cabs(H - H_r);
+
+    RITZ_FAIL_IF(!isfinite(error), RITZ_ERR_CONVERGENCE,
+                 "the response at %.6g Hz leaves all bounds", hertz);
+    found->largest = fmax(found->largest, cabs(H));
+    if (error > found->error) {
+        found->error = error;
+        found->error_hz = hertz;
+    }
+done:
+    return status;
+}
+
 /*
  * The reduced model at the points, and how far it is off. Where a rigid motion
  * of the reduced model alone would answer without end, at rest, it is not asked.
@@ -146,15 +164,8 @@ static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
         }
         RITZ_TRY_IN("reduced model",
                     ritz_poles_add(&sides->reduced, hertz, H_r));
-        for (int64_t i = 0; i < values; i++) {
-            RITZ_FAIL_IF(!isfinite(cabs(H[i] - H_r[i])), RITZ_ERR_CONVERGENCE,
-                         "the response at %.6g Hz leaves all bounds", hertz);
-            found->largest = fmax(found->largest, cabs(H[i]));
-            if (cabs(H[i] - H_r[i]) > found->error) {
-                found->error = cabs(H[i] - H_r[i]);
-                found->error_hz = hertz;
-            }
-        }
+        for (int64_t i = 0; i < values; i++)
+            RITZ_TRY(take(H[i], H_r[i], hertz, found));
     }
 done:
     return status;
