@@ -4,9 +4,7 @@
  *
  *     mode-7, mode-8, ...         |f_r - f| / f of each reduced mode in the
  *                                 band, f that of the full mode of its number
- *                                 or of the one that the place names; and of
- *                                 those above it by whose number a full mode is
- *                                 in it
+ *                                 or of the one that the place names
  *     frequency-relative-bound    what ritz-verify's frequency-relative is at
  *                                 most: of full modes in the band and their
  *                                 partners, wherever these lie; none without

@@ -83,7 +83,7 @@ static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
     return claim;
 }
 
-/* "mode-7" and so on, of the band and of what the band's full modes may be. */
+/* "mode-7" and so on, of the band. */
 static ritz_status list_modes(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
@@ -95,7 +95,7 @@ static ritz_status list_modes(const ritz_estimator *estimator,
     char name[RITZ_NAME_SIZE];
     char where[RITZ_NAME_SIZE];
 
-    for (int64_t k = m->first; k < m->reach && out->count < MOST_LISTED; k++) {
+    for (int64_t k = m->first; k < m->last && out->count < MOST_LISTED; k++) {
         double theta = m->pairs.lambda[k];
         ritz_claim claim = ritz_claim_of(&m->trial, &m->enclosure, k, theta);
 
