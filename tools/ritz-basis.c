@@ -134,8 +134,7 @@ int main(int argc, char **argv)
          .min = 1e-15, .max = 1e-2,
          .help = "relative, below which a column depends on others"},
         {CLI_LIST(&neighbours), .name = "neighbour",
-         .argument = "PORT=FILE:PORT",
-         .help = "hang this component on a port"},
+         .argument = "PORT=FILE:PORT", .help = "hang this component on a port"},
         {CLI_ACTION(list_methods), .name = "list",
          .help = "list methods and their papers"},
     };
