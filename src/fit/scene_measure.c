@@ -160,7 +160,8 @@ done:
     return status;
 }
 
-/* What was said of a candidate while it was sought was of one place. */
+/* What was said of a candidate while it was sought was of one place. Its errors
+ * are of random ones too, and so are its bounds. */
 ritz_status ritz_fit_bound_scene(ritz_fitter *f, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate)
 {
@@ -169,8 +170,10 @@ ritz_status ritz_fit_bound_scene(ritz_fitter *f, const ritz_stage *stage,
 
     ritz_measures_free(&candidate->estimates);
     for (int64_t k = 0; k < f->num_places && has_bases(stage); k++) {
-        if (!f->place[k].estimator)
+        if (!f->place[0].estimator)
             continue;
+        if (!f->place[k].estimator)
+            RITZ_TRY(ritz_fit_estimator(f, &f->place[k].full, &f->place[k]));
         RITZ_TRY(ritz_stage_assemble(stage, f->place[k].setting, &at));
         RITZ_TRY(foresee(f, stage, &f->place[k], &at, candidate, NULL));
         ritz_configuration_free(&at);
