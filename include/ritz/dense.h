@@ -78,6 +78,9 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
 /** Largest |A(i,j)|, 0 if empty. */
 double ritz_dense_max(const ritz_dense *A);
 
+/** The same of column @p j alone. */
+double ritz_dense_col_max(const ritz_dense *A, int64_t j);
+
 /**
  * Turn each column so that its entry of largest magnitude is positive; of
  * entries equal within 1e-9 the first decides, lest rounding choose the sign.

@@ -79,16 +79,6 @@ done:
     return status;
 }
 
-/* The largest entry of a column. */
-static double column_size(const ritz_dense *A, int64_t j)
-{
-    double size = 0.0;
-
-    for (int64_t i = 0; i < A->nrow; i++)
-        size = fmax(size, fabs(ritz_dense_col(A, j)[i]));
-    return size;
-}
-
 /* What the kept flexible modes answer to load j, at most. */
 static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
                              int64_t j)
@@ -96,7 +86,7 @@ static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
     double most = 0.0;
 
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
-        most = fmax(most, column_size(&modes->Phi, k) *
+        most = fmax(most, ritz_dense_col_max(&modes->Phi, k) *
                               fabs(ritz_dense_dot(&modes->Phi, k, F, j)) /
                               modes->lambda[k]);
     return most;
@@ -168,7 +158,7 @@ static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
         own[j] = ritz_dense_dot(p->F, j, &X, j);
         least[j] =
             fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
-                 rounding * column_size(&X, j));
+                 rounding * ritz_dense_col_max(&X, j));
     }
 done:
     ritz_dense_free(&X);

@@ -13,11 +13,7 @@
 /* Motions that no dof can show: a plane model, a point mass. */
 static bool is_nothing(const ritz_dense *R, int64_t j, double largest)
 {
-    double size = 0.0;
-
-    for (int64_t i = 0; i < R->nrow; i++)
-        size = fmax(size, fabs(ritz_dense_col(R, j)[i]));
-    return size <= 1e-12 * largest;
+    return ritz_dense_col_max(R, j) <= 1e-12 * largest;
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

@@ -120,6 +120,13 @@ double ritz_dense_max(const ritz_dense *A)
     return largest;
 }
 
+double ritz_dense_col_max(const ritz_dense *A, int64_t j)
+{
+    const ritz_dense column = ritz_dense_part(A, j, 1);
+
+    return ritz_dense_max(&column);
+}
+
 void ritz_dense_orient(ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++) {

@@ -114,15 +114,6 @@ done:
     return status;
 }
 
-static double largest(const ritz_dense *R, int64_t j)
-{
-    double size = 0.0;
-
-    for (int64_t i = 0; i < R->nrow; i++)
-        size = fmax(size, fabs(ritz_dense_col(R, j)[i]));
-    return size;
-}
-
 /*
  * The last change of a term, worst of all inputs, over what is small beside
  * its largest value, or beside the whole answer at the end of the range:
@@ -134,7 +125,7 @@ static void judge(const ritz_rest_solver *s, const ritz_dense *R,
     *change = *apart = 0.0;
     for (int64_t j = 0; j < R->ncol; j++) {
         double moved = 0.0;
-        double size = largest(R, j);
+        double size = ritz_dense_col_max(R, j);
         double seen = s->whole[j];
 
         for (int64_t i = 0; i < R->nrow; i++)
@@ -185,7 +176,7 @@ ritz_status ritz_rest_solve(ritz_rest_solver *s, ritz_dense *f, ritz_dense *out)
                  "the last one changed it by %.1e",
                  (int)MOST_STEPS, apart * unsettled);
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)
-        s->whole[j] = fmax(s->whole[j], largest(&R, j));
+        s->whole[j] = fmax(s->whole[j], ritz_dense_col_max(&R, j));
     s->begun = true;
     *out = R;
     R = (ritz_dense){0};
