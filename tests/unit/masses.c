@@ -51,6 +51,32 @@ done:
     return status;
 }
 
+ritz_status masses_apart(int64_t n, const double *k, const double *c,
+                         ritz_component *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_component masses = {.units = "none", .num_dofs = n};
+    int64_t own[MASSES_MOST];
+    double one[MASSES_MOST];
+
+    RITZ_FAIL_IF(n > MASSES_MOST, RITZ_ERR_ARGUMENT, "these are too many");
+    RITZ_NEW(masses.dof, n);
+    for (int64_t i = 0; i < n; i++) {
+        own[i] = i;
+        one[i] = 1.0;
+        masses.dof[i] = (ritz_dof){i + 1, 1};
+    }
+    RITZ_TRY(ritz_sparse_from_triplets(n, n, n, own, own, one, &masses.M));
+    RITZ_TRY(ritz_sparse_from_triplets(n, n, n, own, own, k, &masses.K));
+    if (c)
+        RITZ_TRY(ritz_sparse_from_triplets(n, n, n, own, own, c, &masses.D));
+    *out = masses;
+    masses = (ritz_component){0};
+done:
+    ritz_component_free(&masses);
+    return status;
+}
+
 ritz_status masses_io(ritz_component *masses, int64_t num_inputs,
                       const int64_t *input_mass, int64_t num_outputs,
                       const int64_t *output_mass)

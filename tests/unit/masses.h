@@ -19,6 +19,15 @@ ritz_status masses_component(int64_t n, const double *m, const double *k,
                              const double *c, ritz_component *out);
 
 /**
+ * @p n unit masses, MASSES_MOST at most, each on a spring and dashpot of its
+ * own: the pencil (diag k, I). `io` is {0}, and the caller's to make.
+ *
+ * @param[in] c  NULL: there is no D
+ */
+ritz_status masses_apart(int64_t n, const double *k, const double *c,
+                         ritz_component *out);
+
+/**
  * Unit forces on some masses as inputs u1, u2, ..., and displacements of some
  * as outputs y1, y2, ...
  */

@@ -5,6 +5,7 @@
  */
 #include "testing.h"
 
+#include "masses.h"
 #include "project.h"
 
 #include <ritz/eigen.h>
@@ -19,20 +20,7 @@ enum { MOST = 6 };
 
 static void diagonal(int64_t n, const double *lambda, ritz_component *out)
 {
-    int64_t at[MOST];
-    double one[MOST];
-
-    for (int64_t i = 0; i < n; i++) {
-        at[i] = i;
-        one[i] = 1.0;
-    }
-    out->num_dofs = n;
-    assert_ok(ritz_sparse_from_triplets(n, n, n, at, at, lambda, &out->K));
-    assert_ok(ritz_sparse_from_triplets(n, n, n, at, at, one, &out->M));
-    out->dof = calloc((size_t)n, sizeof *out->dof);
-    assert_non_null(out->dof);
-    for (int64_t i = 0; i < n; i++)
-        out->dof[i].grid = i + 1;
+    assert_ok(masses_apart(n, lambda, NULL, out));
     assert_ok(ritz_io_new(n, 1, 1, &out->io));
     out->io.B.val[0] = out->io.C.val[0] = 1.0;
 }

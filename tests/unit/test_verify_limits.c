@@ -3,6 +3,7 @@
 
 #include "bar.h"
 #include "frame.h"
+#include "masses.h"
 #include "project.h"
 
 #include <ritz/eigen.h>
@@ -200,34 +201,19 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
     ritz_component_free(&beam);
 }
 
-static void put_diagonal(const double value[4], ritz_sparse *out)
-{
-    ritz_dense A = {0};
-
-    assert_ok(ritz_dense_new(4, 4, &A));
-    for (int k = 0; k < 4; k++)
-        ritz_dense_col(&A, k)[k] = value[k];
-    ritz_sparse_free(out);
-    assert_ok(ritz_sparse_from_dense(&A, out));
-    ritz_dense_free(&A);
-}
-
 /* Four masses on springs of their own, the first with a damper. What rounding
  * leaves of the others is not compared; a ratio that is none is. */
 static void rounding_of_a_ratio_is_no_ratio(void **state)
 {
     static const double stiffness[] = {1.0, 4.0, 9.0, 16.0};
-    static const double mass[] = {1.0, 1.0, 1.0, 1.0};
     static const double damper[] = {0.1, 1e-17, -3e-17, 2e-4};
     static const double error[] = {0.0, 0.5}; /* of 2e-4 and 4e-4 */
     ritz_verify_request request = RITZ_VERIFY_NONE;
     ritz_component c = {0};
 
     (void)state;
-    assert_ok(bar_component(3, &c));
-    put_diagonal(stiffness, &c.K);
-    put_diagonal(mass, &c.M);
-    put_diagonal(damper, &c.D);
+    assert_ok(masses_apart(4, stiffness, damper, &c));
+    assert_ok(ritz_io_new(4, 0, 0, &c.io));
     request.band_hz[1] = 1.0;
     request.limit_damping = 1e-2;
     for (int twice = 0; twice < 2; twice++) {
