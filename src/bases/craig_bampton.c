@@ -9,7 +9,7 @@
  * Psi is the static answer to unit boundary motion, Phi the lowest modes with
  * the boundary clamped, scaled to Phi' M_ii Phi = I. T' K T is then block
  * diagonal, and no eigenvalue of (T' K T, T' M T) lies below the one it stands
- * for in (K, M): tests/unit/test_craig_bampton.c holds the code to both.
+ * for in (K, M): tests/unit/bases/test_craig_bampton.c holds the code to both.
  *
  * A boundary of many dofs may move in a few characteristic constraint modes
  * instead, u_b = Phi_c q_c [CastanierTanPierre2001]: interface.h.

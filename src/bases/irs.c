@@ -9,7 +9,8 @@
  *
  * [OCallahan1989]. T is right to first order in lambda / lambda_i, lambda_i the
  * eigenvalues with b clamped, where T_G is right to order zero; frequencies
- * follow to the third and first power: tests/unit/test_irs.c holds it to both.
+ * follow to the third and first power: tests/unit/bases/test_irs.c holds it to
+ * both.
  */
 #include "base/alloc.h"
 #include "bases/condense.h"

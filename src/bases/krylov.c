@@ -10,7 +10,7 @@
  * too, those of j < 2 k. About 0 Hz a free body has moments of its elastic
  * part: krylov_block.c and elastic.c separate the rigid modes first.
  *
- * tests/unit/test_krylov.c holds the code to the published example of
+ * tests/unit/bases/test_krylov.c holds the code to the published example of
  * [McDaniel2000], to moments about 0 Hz and elsewhere, and to the block
  * tridiagonal V'MV that full reorthogonalisation must leave.
  */

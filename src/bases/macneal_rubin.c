@@ -10,8 +10,9 @@
  * S is the pseudo-flexibility of any determinate support, of which Psi is
  * independent: residual.c finds it without one. Psi is M- and K-orthogonal to
  * the kept modes, so that T'KT and T'MT are block diagonal, and the flexible
- * static gain at the attached dofs is exact. tests/unit/test_macneal_rubin.c
- * holds the code to the printed formula with three supports.
+ * static gain at the attached dofs is exact.
+ * tests/unit/bases/test_macneal_rubin.c holds the code to the printed formula
+ * with three supports.
  */
 #include "bases/free_modes.h"
 

@@ -11,7 +11,8 @@
  *
  *     T = Phi Phi_s^-1,   span T = span Phi Phi_a^+ = span Phi
  *
- * so that every kept frequency and shape is exact: tests/unit/test_serep.c.
+ * so that every kept frequency and shape is exact:
+ * tests/unit/bases/test_serep.c.
  */
 #include "base/alloc.h"
 

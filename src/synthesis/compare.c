@@ -6,7 +6,7 @@
  *
  * A mode Phi_k kept at an angle is a vector of the second system at that angle,
  * for its projections on the bodies fit each other, and Rayleigh-Ritz returns
- * it to rounding; tests/unit/test_compare.c holds the code to it.
+ * it to rounding; tests/unit/compare/test_compare.c holds the code to it.
  */
 #include "base/alloc.h"
 #include "synthesis/compare_parts.h"

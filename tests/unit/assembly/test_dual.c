@@ -374,20 +374,17 @@ static void no_allocation_failure_leaks(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_alone_is_that_of_macneal_rubin),
-        cmocka_unit_test(a_force_alone_has_a_negative_eigenvalue),
-        cmocka_unit_test(systems_are_those_of_the_formula),
-        cmocka_unit_test(there_are_as_many_negative_eigenvalues_as_forces),
-        cmocka_unit_test(without_force_columns_joints_are_displacements),
-        cmocka_unit_test(forces_without_mass_are_springs),
-        cmocka_unit_test(the_joint_of_low_modes_nearly_closes),
-        cmocka_unit_test(modes_of_such_a_system_are_not_chosen_from),
-        cmocka_unit_test(an_unstable_model_has_no_response),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_body_alone_is_that_of_macneal_rubin),
+    cmocka_unit_test(a_force_alone_has_a_negative_eigenvalue),
+    cmocka_unit_test(systems_are_those_of_the_formula),
+    cmocka_unit_test(there_are_as_many_negative_eigenvalues_as_forces),
+    cmocka_unit_test(without_force_columns_joints_are_displacements),
+    cmocka_unit_test(forces_without_mass_are_springs),
+    cmocka_unit_test(the_joint_of_low_modes_nearly_closes),
+    cmocka_unit_test(modes_of_such_a_system_are_not_chosen_from),
+    cmocka_unit_test(an_unstable_model_has_no_response),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(dual, tests, NULL, NULL)

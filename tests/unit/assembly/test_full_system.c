@@ -301,17 +301,14 @@ static void no_allocation_failure_leaks(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_pieces_make_the_cantilever),
-        cmocka_unit_test(what_bodies_recover_the_system_recovers),
-        cmocka_unit_test(a_joint_stated_twice_binds_once),
-        cmocka_unit_test(a_loop_of_joints_closes),
-        cmocka_unit_test(four_grids_pair_by_position),
-        cmocka_unit_test(a_reduced_model_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(three_pieces_make_the_cantilever),
+    cmocka_unit_test(what_bodies_recover_the_system_recovers),
+    cmocka_unit_test(a_joint_stated_twice_binds_once),
+    cmocka_unit_test(a_loop_of_joints_closes),
+    cmocka_unit_test(four_grids_pair_by_position),
+    cmocka_unit_test(a_reduced_model_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(full_system, tests, folder_make, folder_remove)

@@ -309,18 +309,15 @@ static void a_bushing_in_a_loop_is_a_spring(void **state)
                  "angles do not agree");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_four_bar_linkage_has_one_motion),
-        cmocka_unit_test(springs_in_a_loop_share_its_motion),
-        cmocka_unit_test(a_slider_crank_closes_and_has_one_motion),
-        cmocka_unit_test(settings_of_few_digits_leave_every_motion),
-        cmocka_unit_test(a_universal_joint_closes_with_its_hinges),
-        cmocka_unit_test(a_spatial_linkage_takes_the_turn_that_is_left),
-        cmocka_unit_test(two_spherical_joints_make_a_hinge),
-        cmocka_unit_test(a_bushing_in_a_loop_is_a_spring),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_four_bar_linkage_has_one_motion),
+    cmocka_unit_test(springs_in_a_loop_share_its_motion),
+    cmocka_unit_test(a_slider_crank_closes_and_has_one_motion),
+    cmocka_unit_test(settings_of_few_digits_leave_every_motion),
+    cmocka_unit_test(a_universal_joint_closes_with_its_hinges),
+    cmocka_unit_test(a_spatial_linkage_takes_the_turn_that_is_left),
+    cmocka_unit_test(two_spherical_joints_make_a_hinge),
+    cmocka_unit_test(a_bushing_in_a_loop_is_a_spring),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(joint_loops, tests, NULL, NULL)

@@ -938,27 +938,24 @@ static void no_allocation_failure_leaks(void **state)
     free_rig(&r);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_a_joint_leaves_is_rigid),
-        cmocka_unit_test(a_caged_joint_swings_on_its_spring),
-        cmocka_unit_test(a_caged_cross_swings_about_both_axes),
-        cmocka_unit_test(a_bushing_is_six_springs),
-        cmocka_unit_test(a_cage_damps),
-        cmocka_unit_test(a_rigid_joint_has_a_lever),
-        cmocka_unit_test(locked_joints_are_fixed_ones),
-        cmocka_unit_test(an_offset_reaches_another_grid),
-        cmocka_unit_test(joints_agree_with_each_other),
-        cmocka_unit_test(stiff_cages_approach_locked_joints),
-        cmocka_unit_test(a_turned_scene_is_the_same),
-        cmocka_unit_test(ends_can_be_exchanged),
-        cmocka_unit_test(full_order_agrees),
-        cmocka_unit_test(several_swept_joints_agree_with_full_order),
-        cmocka_unit_test(every_combination_of_settings_is_assembled),
-        cmocka_unit_test(ports_that_do_not_fit_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(what_a_joint_leaves_is_rigid),
+    cmocka_unit_test(a_caged_joint_swings_on_its_spring),
+    cmocka_unit_test(a_caged_cross_swings_about_both_axes),
+    cmocka_unit_test(a_bushing_is_six_springs),
+    cmocka_unit_test(a_cage_damps),
+    cmocka_unit_test(a_rigid_joint_has_a_lever),
+    cmocka_unit_test(locked_joints_are_fixed_ones),
+    cmocka_unit_test(an_offset_reaches_another_grid),
+    cmocka_unit_test(joints_agree_with_each_other),
+    cmocka_unit_test(stiff_cages_approach_locked_joints),
+    cmocka_unit_test(a_turned_scene_is_the_same),
+    cmocka_unit_test(ends_can_be_exchanged),
+    cmocka_unit_test(full_order_agrees),
+    cmocka_unit_test(several_swept_joints_agree_with_full_order),
+    cmocka_unit_test(every_combination_of_settings_is_assembled),
+    cmocka_unit_test(ports_that_do_not_fit_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(joints, tests, folder_make, folder_remove)

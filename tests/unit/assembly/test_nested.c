@@ -262,15 +262,12 @@ static void nesting_survives_every_allocation(void **state)
     ritz_reduced_free(&a);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns_move_and_no_number_changes),
-        cmocka_unit_test(a_prefix_is_galerkins_model_in_its_columns),
-        cmocka_unit_test(a_prefix_knows_what_was_noted_of_it_alone),
-        cmocka_unit_test(what_is_no_prefix_is_refused),
-        cmocka_unit_test(nesting_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(columns_move_and_no_number_changes),
+    cmocka_unit_test(a_prefix_is_galerkins_model_in_its_columns),
+    cmocka_unit_test(a_prefix_knows_what_was_noted_of_it_alone),
+    cmocka_unit_test(what_is_no_prefix_is_refused),
+    cmocka_unit_test(nesting_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(nested, tests, NULL, NULL)

@@ -273,16 +273,13 @@ static void commercial_reduction_is_joined_as_it_was(void **state)
     ritz_configuration_free(&c);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(joined_frames_have_the_published_frequencies),
-        cmocka_unit_test(craig_bampton_gives_the_published_frequencies),
-        cmocka_unit_test(macneal_rubin_stands_beside_craig_bampton),
-        cmocka_unit_test(interface_held_each_solver_has_its_modes),
-        cmocka_unit_test(spellings_make_the_same_component),
-        cmocka_unit_test(commercial_reduction_is_joined_as_it_was),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(joined_frames_have_the_published_frequencies),
+    cmocka_unit_test(craig_bampton_gives_the_published_frequencies),
+    cmocka_unit_test(macneal_rubin_stands_beside_craig_bampton),
+    cmocka_unit_test(interface_held_each_solver_has_its_modes),
+    cmocka_unit_test(spellings_make_the_same_component),
+    cmocka_unit_test(commercial_reduction_is_joined_as_it_was),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(public_solvers, tests, NULL, NULL)

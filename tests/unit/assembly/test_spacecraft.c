@@ -378,15 +378,12 @@ static void overall_motions_by_geometry_cost_nothing(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spacecraft_has_the_frequencies_of_its_table),
-        cmocka_unit_test(sparse_and_dense_assembly_agree),
-        cmocka_unit_test(a_hinge_stated_from_both_sides_binds_once),
-        cmocka_unit_test(order_and_numbers_of_grids_do_not_matter),
-        cmocka_unit_test(overall_motions_by_geometry_cost_nothing),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(spacecraft_has_the_frequencies_of_its_table),
+    cmocka_unit_test(sparse_and_dense_assembly_agree),
+    cmocka_unit_test(a_hinge_stated_from_both_sides_binds_once),
+    cmocka_unit_test(order_and_numbers_of_grids_do_not_matter),
+    cmocka_unit_test(overall_motions_by_geometry_cost_nothing),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(spacecraft, tests, folder_make, folder_remove)

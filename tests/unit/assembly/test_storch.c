@@ -423,20 +423,17 @@ static void beam_alone_is_the_cantilever(void **state)
     ritz_component_free(&beam);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(joint_holds_what_both_bodies_have),
-        cmocka_unit_test(hermite_elements_give_the_printed_table),
-        cmocka_unit_test(frequencies_come_down_to_the_exact_ones),
-        cmocka_unit_test(sum_of_inverse_squares_is_the_trace),
-        cmocka_unit_test(sum_of_inverse_fourth_powers_converges),
-        cmocka_unit_test(rigid_basis_about_the_centre_loses_nothing),
-        cmocka_unit_test(all_modes_kept_lose_nothing),
-        cmocka_unit_test(few_modes_come_down_to_the_mesh),
-        cmocka_unit_test(tables_of_the_paper_are_met),
-        cmocka_unit_test(beam_alone_is_the_cantilever),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(joint_holds_what_both_bodies_have),
+    cmocka_unit_test(hermite_elements_give_the_printed_table),
+    cmocka_unit_test(frequencies_come_down_to_the_exact_ones),
+    cmocka_unit_test(sum_of_inverse_squares_is_the_trace),
+    cmocka_unit_test(sum_of_inverse_fourth_powers_converges),
+    cmocka_unit_test(rigid_basis_about_the_centre_loses_nothing),
+    cmocka_unit_test(all_modes_kept_lose_nothing),
+    cmocka_unit_test(few_modes_come_down_to_the_mesh),
+    cmocka_unit_test(tables_of_the_paper_are_met),
+    cmocka_unit_test(beam_alone_is_the_cantilever),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(storch, tests, NULL, NULL)

@@ -431,20 +431,17 @@ static void no_allocation_failure_leaks(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_halves_make_the_cantilever),
-        cmocka_unit_test(two_clamped_halves_make_the_clamped_beam),
-        cmocka_unit_test(a_zero_row_is_no_constraint),
-        cmocka_unit_test(static_gain_is_that_published),
-        cmocka_unit_test(an_axial_mode_brings_its_constraint),
-        cmocka_unit_test(bases_of_full_order_lose_nothing),
-        cmocka_unit_test(blocks_satisfy_the_constraints_and_diagonalise),
-        cmocka_unit_test(a_joint_without_partners_is_refused),
-        cmocka_unit_test(a_missing_port_is_refused_with_its_line),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(two_halves_make_the_cantilever),
+    cmocka_unit_test(two_clamped_halves_make_the_clamped_beam),
+    cmocka_unit_test(a_zero_row_is_no_constraint),
+    cmocka_unit_test(static_gain_is_that_published),
+    cmocka_unit_test(an_axial_mode_brings_its_constraint),
+    cmocka_unit_test(bases_of_full_order_lose_nothing),
+    cmocka_unit_test(blocks_satisfy_the_constraints_and_diagonalise),
+    cmocka_unit_test(a_joint_without_partners_is_refused),
+    cmocka_unit_test(a_missing_port_is_refused_with_its_line),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(synthesis, tests, NULL, NULL)

@@ -149,17 +149,14 @@ static void no_more_drafts_than_can_be_discarded(void **state)
         ritz_draft_free(&drafts[k]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_writers_do_not_meet),
-        cmocka_unit_test(what_is_not_published_is_removed),
-        cmocka_unit_test(permissions_are_those_of_any_new_file),
-        cmocka_unit_test(devices_and_folders_stay),
-        cmocka_unit_test(a_link_stays_and_what_it_names_is_replaced),
-        cmocka_unit_test(unfinished_drafts_are_discarded_at_once),
-        cmocka_unit_test(no_more_drafts_than_can_be_discarded),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(two_writers_do_not_meet),
+    cmocka_unit_test(what_is_not_published_is_removed),
+    cmocka_unit_test(permissions_are_those_of_any_new_file),
+    cmocka_unit_test(devices_and_folders_stay),
+    cmocka_unit_test(a_link_stays_and_what_it_names_is_replaced),
+    cmocka_unit_test(unfinished_drafts_are_discarded_at_once),
+    cmocka_unit_test(no_more_drafts_than_can_be_discarded),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(draft, tests, NULL, NULL)

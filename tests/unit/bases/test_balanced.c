@@ -559,28 +559,25 @@ static void slicot_publishes_this_perturbed_model(void **state)
     ritz_state_space_free(&ours);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slicot_publishes_this_perturbed_model),
-        cmocka_unit_test(the_error_lies_between_its_bounds),
-        cmocka_unit_test(hankel_values_are_those_of_another_program),
-        cmocka_unit_test(gramians_of_the_reduced_model_are_equal_and_diagonal),
-        cmocka_unit_test(engines_make_the_same_model),
-        cmocka_unit_test(low_rank_makes_the_same_model),
-        cmocka_unit_test(modes_are_chosen_among_those_below_a_frequency),
-        cmocka_unit_test(a_static_remainder_keeps_the_static_gain),
-        cmocka_unit_test(the_bound_is_an_estimate_of_the_reduced_model),
-        cmocka_unit_test(rigid_motion_is_kept_as_it_is),
-        cmocka_unit_test(an_unstable_pole_of_a_state_space_is_kept),
-        cmocka_unit_test(a_descriptor_matrix_changes_nothing),
-        cmocka_unit_test(the_building_is_reduced_within_its_bound),
-        cmocka_unit_test(equal_values_are_kept_whole),
-        cmocka_unit_test(more_states_than_there_are_gives_all),
-        cmocka_unit_test(requests_that_make_no_sense_are_refused),
-        cmocka_unit_test(what_is_reached_but_not_seen_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(slicot_publishes_this_perturbed_model),
+    cmocka_unit_test(the_error_lies_between_its_bounds),
+    cmocka_unit_test(hankel_values_are_those_of_another_program),
+    cmocka_unit_test(gramians_of_the_reduced_model_are_equal_and_diagonal),
+    cmocka_unit_test(engines_make_the_same_model),
+    cmocka_unit_test(low_rank_makes_the_same_model),
+    cmocka_unit_test(modes_are_chosen_among_those_below_a_frequency),
+    cmocka_unit_test(a_static_remainder_keeps_the_static_gain),
+    cmocka_unit_test(the_bound_is_an_estimate_of_the_reduced_model),
+    cmocka_unit_test(rigid_motion_is_kept_as_it_is),
+    cmocka_unit_test(an_unstable_pole_of_a_state_space_is_kept),
+    cmocka_unit_test(a_descriptor_matrix_changes_nothing),
+    cmocka_unit_test(the_building_is_reduced_within_its_bound),
+    cmocka_unit_test(equal_values_are_kept_whole),
+    cmocka_unit_test(more_states_than_there_are_gives_all),
+    cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(what_is_reached_but_not_seen_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(balanced, tests, set_up, tear_down)

@@ -219,16 +219,13 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_band_of_everything_is_balanced_truncation),
-        cmocka_unit_test(the_band_is_answered_better_than_by_all),
-        cmocka_unit_test(a_band_can_be_unstable_and_the_probe_says_so),
-        cmocka_unit_test(rigid_motion_stands_beside),
-        cmocka_unit_test(bands_that_cannot_be_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_band_of_everything_is_balanced_truncation),
+    cmocka_unit_test(the_band_is_answered_better_than_by_all),
+    cmocka_unit_test(a_band_can_be_unstable_and_the_probe_says_so),
+    cmocka_unit_test(rigid_motion_stands_beside),
+    cmocka_unit_test(bands_that_cannot_be_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(balanced_band, tests, NULL, NULL)

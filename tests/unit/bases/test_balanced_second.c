@@ -378,19 +378,16 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_of_one_mass_are_known),
-        cmocka_unit_test(a_model_that_is_its_own_dual_stays_symmetric),
-        cmocka_unit_test(of_its_own_dual_left_vectors_are_right_ones),
-        cmocka_unit_test(all_vectors_give_the_whole_response),
-        cmocka_unit_test(one_side_keeps_definiteness),
-        cmocka_unit_test(two_sides_can_be_unstable_and_the_probe_says_so),
-        cmocka_unit_test(rigid_motion_stands_beside),
-        cmocka_unit_test(a_pole_that_grows_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(values_of_one_mass_are_known),
+    cmocka_unit_test(a_model_that_is_its_own_dual_stays_symmetric),
+    cmocka_unit_test(of_its_own_dual_left_vectors_are_right_ones),
+    cmocka_unit_test(all_vectors_give_the_whole_response),
+    cmocka_unit_test(one_side_keeps_definiteness),
+    cmocka_unit_test(two_sides_can_be_unstable_and_the_probe_says_so),
+    cmocka_unit_test(rigid_motion_stands_beside),
+    cmocka_unit_test(a_pole_that_grows_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(balanced_second, tests, NULL, NULL)

@@ -203,20 +203,17 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constraint_modes_are_linear),
-        cmocka_unit_test(columns_say_what_they_are),
-        cmocka_unit_test(reduced_stiffness_is_block_diagonal),
-        cmocka_unit_test(reduced_eigenvalues_bound_those_of_the_mesh),
-        cmocka_unit_test(modes_are_chosen_by_frequency),
-        cmocka_unit_test(guyan_is_exact_statically),
-        cmocka_unit_test(boundary_must_be_a_set_of_dofs),
-        cmocka_unit_test(free_rigid_body_motion_is_refused_by_name),
-        cmocka_unit_test(requests_that_make_no_sense_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(constraint_modes_are_linear),
+    cmocka_unit_test(columns_say_what_they_are),
+    cmocka_unit_test(reduced_stiffness_is_block_diagonal),
+    cmocka_unit_test(reduced_eigenvalues_bound_those_of_the_mesh),
+    cmocka_unit_test(modes_are_chosen_by_frequency),
+    cmocka_unit_test(guyan_is_exact_statically),
+    cmocka_unit_test(boundary_must_be_a_set_of_dofs),
+    cmocka_unit_test(free_rigid_body_motion_is_refused_by_name),
+    cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(craig_bampton, tests, set_up, tear_down)

@@ -426,20 +426,17 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes_and_frequencies_of_the_lattice),
-        cmocka_unit_test(all_interface_modes_are_all_boundary_motion),
-        cmocka_unit_test(more_interface_modes_are_nearer),
-        cmocka_unit_test(one_side_may_be_reduced),
-        cmocka_unit_test(both_sides_with_the_same_shapes_do_not_lock),
-        cmocka_unit_test(both_sides_with_different_shapes_lock),
-        cmocka_unit_test(a_determinate_interface_has_rigid_modes_alone),
-        cmocka_unit_test(other_methods_have_none),
-        cmocka_unit_test(an_interface_without_mass_and_stiffness_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(shapes_and_frequencies_of_the_lattice),
+    cmocka_unit_test(all_interface_modes_are_all_boundary_motion),
+    cmocka_unit_test(more_interface_modes_are_nearer),
+    cmocka_unit_test(one_side_may_be_reduced),
+    cmocka_unit_test(both_sides_with_the_same_shapes_do_not_lock),
+    cmocka_unit_test(both_sides_with_different_shapes_lock),
+    cmocka_unit_test(a_determinate_interface_has_rigid_modes_alone),
+    cmocka_unit_test(other_methods_have_none),
+    cmocka_unit_test(an_interface_without_mass_and_stiffness_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(interface_modes, tests, NULL, NULL)

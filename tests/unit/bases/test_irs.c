@@ -318,21 +318,18 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_bar_of_two_elements_by_hand),
-        cmocka_unit_test(columns_are_the_attached_dofs),
-        cmocka_unit_test(frequencies_are_right_to_third_order),
-        cmocka_unit_test(stiffness_grows_by_what_is_added),
-        cmocka_unit_test(eigenvalues_are_bounds),
-        cmocka_unit_test(a_determinate_interface_moves_rigidly),
-        cmocka_unit_test(with_every_dof_attached_nothing_is_reduced),
-        cmocka_unit_test(bad_attached_dofs_are_refused),
-        cmocka_unit_test(a_mechanism_is_named),
-        cmocka_unit_test(attached_dofs_without_mass_are_named),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_bar_of_two_elements_by_hand),
+    cmocka_unit_test(columns_are_the_attached_dofs),
+    cmocka_unit_test(frequencies_are_right_to_third_order),
+    cmocka_unit_test(stiffness_grows_by_what_is_added),
+    cmocka_unit_test(eigenvalues_are_bounds),
+    cmocka_unit_test(a_determinate_interface_moves_rigidly),
+    cmocka_unit_test(with_every_dof_attached_nothing_is_reduced),
+    cmocka_unit_test(bad_attached_dofs_are_refused),
+    cmocka_unit_test(a_mechanism_is_named),
+    cmocka_unit_test(attached_dofs_without_mass_are_named),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(irs, tests, set_up, tear_down)

@@ -823,34 +823,31 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(krylov_frequencies_are_the_published_ones),
-        cmocka_unit_test(moments_are_the_published_ones),
-        cmocka_unit_test(as_many_moments_are_kept_as_there_are_vectors),
-        cmocka_unit_test(twice_as_many_with_outputs_among_the_loads),
-        cmocka_unit_test(raw_vectors_lose_what_orthonormal_ones_keep),
-        cmocka_unit_test(the_controllable_space_is_found_by_deflation),
-        cmocka_unit_test(reduced_mass_is_block_tridiagonal),
-        cmocka_unit_test(vectors_are_as_orthonormal_as_products_can_show),
-        cmocka_unit_test(the_mass_inner_product_gives_the_same_span),
-        cmocka_unit_test(symmetry_and_definiteness_are_kept),
-        cmocka_unit_test(a_free_body_keeps_rigid_motion_and_elastic_moments),
-        cmocka_unit_test(the_formula_with_any_support_gives_the_same),
-        cmocka_unit_test(moments_are_kept_about_every_point),
-        cmocka_unit_test(dependent_loads_are_left_out),
-        cmocka_unit_test(a_block_that_is_cut_does_not_count),
-        cmocka_unit_test(the_tolerance_says_what_depends),
-        cmocka_unit_test(velocity_outputs_keep_their_moments),
-        cmocka_unit_test(dofs_without_mass_are_answered),
-        cmocka_unit_test(a_rigid_body_is_its_rigid_motion),
-        cmocka_unit_test(weight_is_no_load_of_a_free_body),
-        cmocka_unit_test(requests_that_make_no_sense_are_refused),
-        cmocka_unit_test(an_expansion_about_a_resonance_is_refused),
-        cmocka_unit_test(a_stiffness_that_is_not_definite_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(krylov_frequencies_are_the_published_ones),
+    cmocka_unit_test(moments_are_the_published_ones),
+    cmocka_unit_test(as_many_moments_are_kept_as_there_are_vectors),
+    cmocka_unit_test(twice_as_many_with_outputs_among_the_loads),
+    cmocka_unit_test(raw_vectors_lose_what_orthonormal_ones_keep),
+    cmocka_unit_test(the_controllable_space_is_found_by_deflation),
+    cmocka_unit_test(reduced_mass_is_block_tridiagonal),
+    cmocka_unit_test(vectors_are_as_orthonormal_as_products_can_show),
+    cmocka_unit_test(the_mass_inner_product_gives_the_same_span),
+    cmocka_unit_test(symmetry_and_definiteness_are_kept),
+    cmocka_unit_test(a_free_body_keeps_rigid_motion_and_elastic_moments),
+    cmocka_unit_test(the_formula_with_any_support_gives_the_same),
+    cmocka_unit_test(moments_are_kept_about_every_point),
+    cmocka_unit_test(dependent_loads_are_left_out),
+    cmocka_unit_test(a_block_that_is_cut_does_not_count),
+    cmocka_unit_test(the_tolerance_says_what_depends),
+    cmocka_unit_test(velocity_outputs_keep_their_moments),
+    cmocka_unit_test(dofs_without_mass_are_answered),
+    cmocka_unit_test(a_rigid_body_is_its_rigid_motion),
+    cmocka_unit_test(weight_is_no_load_of_a_free_body),
+    cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(an_expansion_about_a_resonance_is_refused),
+    cmocka_unit_test(a_stiffness_that_is_not_definite_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(krylov, tests, set_up, tear_down)

@@ -427,23 +427,20 @@ static void no_allocation_failure_leaks(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(krylov_and_craig_bampton_compare_as_published),
-        cmocka_unit_test(reduced_stiffness_is_block_diagonal),
-        cmocka_unit_test(both_keep_moments_of_the_interface),
-        cmocka_unit_test(loads_of_the_interior_are_answered),
-        cmocka_unit_test(moments_are_kept_about_other_points_too),
-        cmocka_unit_test(free_interface_columns_come_in_their_order),
-        cmocka_unit_test(free_interface_frequencies_come_from_above),
-        cmocka_unit_test(more_vectors_than_there_are_is_said),
-        cmocka_unit_test(attachment_modes_of_nothing_are_left_out),
-        cmocka_unit_test(the_data_set_is_this_truss),
-        cmocka_unit_test(every_dof_attached_is_the_body_itself),
-        cmocka_unit_test(requests_that_make_no_sense_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(krylov_and_craig_bampton_compare_as_published),
+    cmocka_unit_test(reduced_stiffness_is_block_diagonal),
+    cmocka_unit_test(both_keep_moments_of_the_interface),
+    cmocka_unit_test(loads_of_the_interior_are_answered),
+    cmocka_unit_test(moments_are_kept_about_other_points_too),
+    cmocka_unit_test(free_interface_columns_come_in_their_order),
+    cmocka_unit_test(free_interface_frequencies_come_from_above),
+    cmocka_unit_test(more_vectors_than_there_are_is_said),
+    cmocka_unit_test(attachment_modes_of_nothing_are_left_out),
+    cmocka_unit_test(the_data_set_is_this_truss),
+    cmocka_unit_test(every_dof_attached_is_the_body_itself),
+    cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(krylov_cms, tests, set_up, tear_down)

@@ -370,22 +370,19 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inputs_alone_keep_a_moment_a_block),
-        cmocka_unit_test(inputs_and_outputs_keep_two),
-        cmocka_unit_test(undamped_vectors_keep_fewer),
-        cmocka_unit_test(long_chains_stay_independent),
-        cmocka_unit_test(without_damping_the_span_is_that_of_krylov),
-        cmocka_unit_test(stated_rayleigh_damping_is_a_matrix),
-        cmocka_unit_test(discrete_dampers_count),
-        cmocka_unit_test(an_unsymmetric_matrix_keeps_its_moments),
-        cmocka_unit_test(the_mass_inner_product_keeps_them_too),
-        cmocka_unit_test(damping_of_rigid_motion_is_answered),
-        cmocka_unit_test(requests_that_make_no_sense_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(inputs_alone_keep_a_moment_a_block),
+    cmocka_unit_test(inputs_and_outputs_keep_two),
+    cmocka_unit_test(undamped_vectors_keep_fewer),
+    cmocka_unit_test(long_chains_stay_independent),
+    cmocka_unit_test(without_damping_the_span_is_that_of_krylov),
+    cmocka_unit_test(stated_rayleigh_damping_is_a_matrix),
+    cmocka_unit_test(discrete_dampers_count),
+    cmocka_unit_test(an_unsymmetric_matrix_keeps_its_moments),
+    cmocka_unit_test(the_mass_inner_product_keeps_them_too),
+    cmocka_unit_test(damping_of_rigid_motion_is_answered),
+    cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(krylov_damped, tests, set_up, tear_down)

@@ -427,19 +427,16 @@ static void a_semidefinite_gramian_is_worked_on_its_range(void **state)
 #define TEST(name)                                                             \
     cmocka_unit_test_setup_teardown(name, states_set_up, states_tear_down)
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(vectors_are_orthonormal_in_the_gramian),
-        TEST(left_and_right_vectors_are_biorthogonal),
-        TEST(reduced_matrix_is_skew_and_block_tridiagonal),
-        TEST(on_the_inverse_the_inverse_is_so),
-        TEST(parameters_are_kept),
-        TEST(two_sided_is_unstable_where_one_sided_never_is),
-        TEST(all_states_respond_as_the_chain),
-        TEST(a_thousand_random_chains_stay_stable),
-        TEST(a_semidefinite_gramian_is_worked_on_its_range),
-    };
+static const struct CMUnitTest tests[] = {
+    TEST(vectors_are_orthonormal_in_the_gramian),
+    TEST(left_and_right_vectors_are_biorthogonal),
+    TEST(reduced_matrix_is_skew_and_block_tridiagonal),
+    TEST(on_the_inverse_the_inverse_is_so),
+    TEST(parameters_are_kept),
+    TEST(two_sided_is_unstable_where_one_sided_never_is),
+    TEST(all_states_respond_as_the_chain),
+    TEST(a_thousand_random_chains_stay_stable),
+    TEST(a_semidefinite_gramian_is_worked_on_its_range),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(lanczos, tests, NULL, NULL)

@@ -278,17 +278,14 @@ static void no_allocation_failure_leaks(void **state)
 #define TEST(name)                                                             \
     cmocka_unit_test_setup_teardown(name, states_set_up, states_tear_down)
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(rigid_modes_stand_apart),
-        TEST(breakdown_stops_with_the_vectors_there_are),
-        TEST(unequal_numbers_of_inputs_and_outputs_are_joined),
-        TEST(a_shift_bounds_what_is_not_stable),
-        TEST(what_cannot_be_done_is_refused),
-        TEST(bases_of_the_wrong_kind_are_refused),
-        TEST(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    TEST(rigid_modes_stand_apart),
+    TEST(breakdown_stops_with_the_vectors_there_are),
+    TEST(unequal_numbers_of_inputs_and_outputs_are_joined),
+    TEST(a_shift_bounds_what_is_not_stable),
+    TEST(what_cannot_be_done_is_refused),
+    TEST(bases_of_the_wrong_kind_are_refused),
+    TEST(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(lanczos_limits, tests, NULL, NULL)

@@ -481,21 +481,18 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&far);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_hung_on_gives_normal_modes),
-        cmocka_unit_test(one_mass_takes_up_what_hangs_on_it),
-        cmocka_unit_test(modes_are_orthogonal_in_what_is_loaded),
-        cmocka_unit_test(modes_with_an_exact_neighbour_are_those_of_the_system),
-        cmocka_unit_test(a_motion_that_is_free_follows_by_inertia),
-        cmocka_unit_test(a_motion_that_is_free_goes_where_energy_is_least),
-        cmocka_unit_test(a_body_without_stiffness_hangs_on_as_a_whole),
-        cmocka_unit_test(a_rigid_body_on_a_hinge_is_an_exact_neighbour),
-        cmocka_unit_test(requests_without_a_neighbour_are_refused),
-        cmocka_unit_test(a_port_that_is_not_attached_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(nothing_hung_on_gives_normal_modes),
+    cmocka_unit_test(one_mass_takes_up_what_hangs_on_it),
+    cmocka_unit_test(modes_are_orthogonal_in_what_is_loaded),
+    cmocka_unit_test(modes_with_an_exact_neighbour_are_those_of_the_system),
+    cmocka_unit_test(a_motion_that_is_free_follows_by_inertia),
+    cmocka_unit_test(a_motion_that_is_free_goes_where_energy_is_least),
+    cmocka_unit_test(a_body_without_stiffness_hangs_on_as_a_whole),
+    cmocka_unit_test(a_rigid_body_on_a_hinge_is_an_exact_neighbour),
+    cmocka_unit_test(requests_without_a_neighbour_are_refused),
+    cmocka_unit_test(a_port_that_is_not_attached_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(loaded_interface, tests, set_up, tear_down)

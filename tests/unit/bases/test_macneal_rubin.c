@@ -295,21 +295,17 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns_are_rigid_then_normal_then_residual),
-        cmocka_unit_test(residual_modes_are_orthogonal_to_kept_ones),
-        cmocka_unit_test(the_formula_with_any_support_gives_the_same),
-        cmocka_unit_test(flexible_static_gain_is_exact),
-        cmocka_unit_test(residual_modes_of_nothing_are_left_out_and_named),
-        cmocka_unit_test(dependent_residual_modes_are_left_out),
-        cmocka_unit_test(a_dof_attached_twice_is_refused),
-        cmocka_unit_test(a_rigid_body_keeps_its_mass),
-        cmocka_unit_test(
-            without_flexible_modes_the_residual_is_all_flexibility),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(columns_are_rigid_then_normal_then_residual),
+    cmocka_unit_test(residual_modes_are_orthogonal_to_kept_ones),
+    cmocka_unit_test(the_formula_with_any_support_gives_the_same),
+    cmocka_unit_test(flexible_static_gain_is_exact),
+    cmocka_unit_test(residual_modes_of_nothing_are_left_out_and_named),
+    cmocka_unit_test(dependent_residual_modes_are_left_out),
+    cmocka_unit_test(a_dof_attached_twice_is_refused),
+    cmocka_unit_test(a_rigid_body_keeps_its_mass),
+    cmocka_unit_test(without_flexible_modes_the_residual_is_all_flexibility),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(macneal_rubin, tests, set_up, tear_down)

@@ -235,17 +235,14 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_best_modes_are_kept_in_order_of_frequency),
-        cmocka_unit_test(a_band_changes_the_order),
-        cmocka_unit_test(equal_modes_are_kept_whole),
-        cmocka_unit_test(the_error_is_within_what_the_remark_says),
-        cmocka_unit_test(rigid_modes_are_all_kept),
-        cmocka_unit_test(requests_that_make_no_sense_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_best_modes_are_kept_in_order_of_frequency),
+    cmocka_unit_test(a_band_changes_the_order),
+    cmocka_unit_test(equal_modes_are_kept_whole),
+    cmocka_unit_test(the_error_is_within_what_the_remark_says),
+    cmocka_unit_test(rigid_modes_are_all_kept),
+    cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(modal_balanced, tests, NULL, NULL)

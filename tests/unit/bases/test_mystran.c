@@ -139,11 +139,8 @@ static void mystran_reduces_to_the_same_matrices(void **state)
     ritz_component_free(&component);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mystran_reduces_to_the_same_matrices),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(mystran_reduces_to_the_same_matrices),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(mystran, tests, NULL, NULL)

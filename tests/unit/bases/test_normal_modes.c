@@ -426,22 +426,19 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns_are_normal_then_static),
-        cmocka_unit_test(modes_and_static_vector_make_the_static_answer),
-        cmocka_unit_test(matrices_are_block_diagonal),
-        cmocka_unit_test(static_vectors_get_the_damping_right),
-        cmocka_unit_test(modes_alone_get_it_wrong),
-        cmocka_unit_test(attached_loads_of_a_free_body_give_macneal_rubin),
-        cmocka_unit_test(loads_are_what_is_asked_for),
-        cmocka_unit_test(a_damper_given_twice_has_one_vector),
-        cmocka_unit_test(more_modes_than_there_are_leave_nothing_to_answer),
-        cmocka_unit_test(a_load_on_a_massless_dof_is_answered),
-        cmocka_unit_test(loads_that_are_not_there_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(columns_are_normal_then_static),
+    cmocka_unit_test(modes_and_static_vector_make_the_static_answer),
+    cmocka_unit_test(matrices_are_block_diagonal),
+    cmocka_unit_test(static_vectors_get_the_damping_right),
+    cmocka_unit_test(modes_alone_get_it_wrong),
+    cmocka_unit_test(attached_loads_of_a_free_body_give_macneal_rubin),
+    cmocka_unit_test(loads_are_what_is_asked_for),
+    cmocka_unit_test(a_damper_given_twice_has_one_vector),
+    cmocka_unit_test(more_modes_than_there_are_leave_nothing_to_answer),
+    cmocka_unit_test(a_load_on_a_massless_dof_is_answered),
+    cmocka_unit_test(loads_that_are_not_there_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(normal_modes, tests, set_up, tear_down)

@@ -179,15 +179,12 @@ static void no_allocation_failure_leaks(void **state)
     assert_survives_every_allocation(append_two(&f->beam.K));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_new_is_found_below_the_rounding_of_products),
-        cmocka_unit_test(what_depends_is_left_out_and_named),
-        cmocka_unit_test(what_is_not_wanted_is_counted),
-        cmocka_unit_test(a_weak_column_is_as_orthonormal_as_a_strong_one),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(what_is_new_is_found_below_the_rounding_of_products),
+    cmocka_unit_test(what_depends_is_left_out_and_named),
+    cmocka_unit_test(what_is_not_wanted_is_counted),
+    cmocka_unit_test(a_weak_column_is_as_orthonormal_as_a_strong_one),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(orthonormal, tests, set_up, tear_down)

@@ -606,28 +606,25 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_span_what_macneal_rubin_does),
-        cmocka_unit_test(rubin_keeps_the_attached_dofs),
-        cmocka_unit_test(an_end_force_bends_the_bar_into_a_parabola),
-        cmocka_unit_test(attachment_modes_do_not_depend_on_the_modes),
-        cmocka_unit_test(of_a_held_body_they_are_static_shapes),
-        cmocka_unit_test(macneal_leaves_out_the_mass_of_residual_columns),
-        cmocka_unit_test(macneal_leaves_out_their_damping_too),
-        cmocka_unit_test(macneal_answers_statically_what_it_left_out),
-        cmocka_unit_test(macneal_joins_bodies_as_its_formula_says),
-        cmocka_unit_test(systems_of_two_halves_are_those_of_scipy),
-        cmocka_unit_test(compare_takes_bodies_without_full_mass),
-        cmocka_unit_test(without_mass_stays_without_mass),
-        cmocka_unit_test(residual_modes_of_massless_dofs_have_no_mass),
-        cmocka_unit_test(dofs_that_cannot_be_coordinates_are_named),
-        cmocka_unit_test(all_dofs_may_be_attached),
-        cmocka_unit_test(nothing_need_be_attached),
-        cmocka_unit_test(bad_requests_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(all_span_what_macneal_rubin_does),
+    cmocka_unit_test(rubin_keeps_the_attached_dofs),
+    cmocka_unit_test(an_end_force_bends_the_bar_into_a_parabola),
+    cmocka_unit_test(attachment_modes_do_not_depend_on_the_modes),
+    cmocka_unit_test(of_a_held_body_they_are_static_shapes),
+    cmocka_unit_test(macneal_leaves_out_the_mass_of_residual_columns),
+    cmocka_unit_test(macneal_leaves_out_their_damping_too),
+    cmocka_unit_test(macneal_answers_statically_what_it_left_out),
+    cmocka_unit_test(macneal_joins_bodies_as_its_formula_says),
+    cmocka_unit_test(systems_of_two_halves_are_those_of_scipy),
+    cmocka_unit_test(compare_takes_bodies_without_full_mass),
+    cmocka_unit_test(without_mass_stays_without_mass),
+    cmocka_unit_test(residual_modes_of_massless_dofs_have_no_mass),
+    cmocka_unit_test(dofs_that_cannot_be_coordinates_are_named),
+    cmocka_unit_test(all_dofs_may_be_attached),
+    cmocka_unit_test(nothing_need_be_attached),
+    cmocka_unit_test(bad_requests_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(rubin, tests, set_up, tear_down)

@@ -229,20 +229,17 @@ static void no_allocation_failure_leaks(void **state)
     ritz_basis_free(&basis);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(kept_frequencies_are_exact),
-        cmocka_unit_test(measured_shapes_expand_to_whole_ones),
-        cmocka_unit_test(columns_are_the_attached_dofs),
-        cmocka_unit_test(fewer_modes_than_dofs_choose_dofs),
-        cmocka_unit_test(badly_seen_modes_are_reported),
-        cmocka_unit_test(more_modes_than_dofs_are_refused),
-        cmocka_unit_test(unseen_modes_are_refused_by_name),
-        cmocka_unit_test(requests_without_sense_are_refused),
-        cmocka_unit_test(all_modes_at_all_dofs_are_no_reduction),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(kept_frequencies_are_exact),
+    cmocka_unit_test(measured_shapes_expand_to_whole_ones),
+    cmocka_unit_test(columns_are_the_attached_dofs),
+    cmocka_unit_test(fewer_modes_than_dofs_choose_dofs),
+    cmocka_unit_test(badly_seen_modes_are_reported),
+    cmocka_unit_test(more_modes_than_dofs_are_refused),
+    cmocka_unit_test(unseen_modes_are_refused_by_name),
+    cmocka_unit_test(requests_without_sense_are_refused),
+    cmocka_unit_test(all_modes_at_all_dofs_are_no_reduction),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(serep, tests, set_up, tear_down)

@@ -830,28 +830,25 @@ static void no_allocation_failure_leaks(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_driven_oscillator_by_hand),
-        cmocka_unit_test(with_ratios_every_vector_is_a_point),
-        cmocka_unit_test(with_a_damping_matrix_points_mirror_poles),
-        cmocka_unit_test(loads_are_answered_alone_and_together),
-        cmocka_unit_test(velocities_are_read_and_directions_found),
-        cmocka_unit_test(accelerations_are_read),
-        cmocka_unit_test(structural_damping_counts),
-        cmocka_unit_test(given_points_are_interpolated),
-        cmocka_unit_test(rigid_motion_of_a_free_body_is_kept),
-        cmocka_unit_test(in_h2_it_is_no_worse_than_modes_and_krylov),
-        cmocka_unit_test(random_components_stay_definite),
-        cmocka_unit_test(searches_end_in_definite_components),
-        cmocka_unit_test(more_vectors_than_dofs_are_all_there_is),
-        cmocka_unit_test(modes_without_damping_have_points_too),
-        cmocka_unit_test(requests_without_sense_are_refused),
-        cmocka_unit_test(a_point_on_a_pole_is_refused),
-        cmocka_unit_test(loads_that_drive_nothing_flexible_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(one_driven_oscillator_by_hand),
+    cmocka_unit_test(with_ratios_every_vector_is_a_point),
+    cmocka_unit_test(with_a_damping_matrix_points_mirror_poles),
+    cmocka_unit_test(loads_are_answered_alone_and_together),
+    cmocka_unit_test(velocities_are_read_and_directions_found),
+    cmocka_unit_test(accelerations_are_read),
+    cmocka_unit_test(structural_damping_counts),
+    cmocka_unit_test(given_points_are_interpolated),
+    cmocka_unit_test(rigid_motion_of_a_free_body_is_kept),
+    cmocka_unit_test(in_h2_it_is_no_worse_than_modes_and_krylov),
+    cmocka_unit_test(random_components_stay_definite),
+    cmocka_unit_test(searches_end_in_definite_components),
+    cmocka_unit_test(more_vectors_than_dofs_are_all_there_is),
+    cmocka_unit_test(modes_without_damping_have_points_too),
+    cmocka_unit_test(requests_without_sense_are_refused),
+    cmocka_unit_test(a_point_on_a_pole_is_refused),
+    cmocka_unit_test(loads_that_drive_nothing_flexible_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(tangential, tests, NULL, NULL)

@@ -472,26 +472,23 @@ static void the_demo_does_not_fail(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sound_body_passes_every_check),
-        cmocka_unit_test(values_that_are_not_finite_end_the_audit),
-        cmocka_unit_test(averaged_asymmetry_is_remembered),
-        cmocka_unit_test(indefinite_matrices_name_a_dof),
-        cmocka_unit_test(empty_rows_are_named),
-        cmocka_unit_test(separate_parts_are_counted_and_named),
-        cmocka_unit_test(a_held_body_shows_where),
-        cmocka_unit_test(a_wrong_position_is_noticed),
-        cmocka_unit_test(missing_positions_leave_the_translations),
-        cmocka_unit_test(mass_that_couples_translations_is_refused),
-        cmocka_unit_test(ports_are_looked_at),
-        cmocka_unit_test(beams_in_the_plane_have_three_motions),
-        cmocka_unit_test(stiffness_that_was_forgotten_is_noticed),
-        cmocka_unit_test(no_allocation_failure_leaks),
-        cmocka_unit_test(few_digits_hold_a_free_plate),
-        cmocka_unit_test(the_demo_does_not_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_sound_body_passes_every_check),
+    cmocka_unit_test(values_that_are_not_finite_end_the_audit),
+    cmocka_unit_test(averaged_asymmetry_is_remembered),
+    cmocka_unit_test(indefinite_matrices_name_a_dof),
+    cmocka_unit_test(empty_rows_are_named),
+    cmocka_unit_test(separate_parts_are_counted_and_named),
+    cmocka_unit_test(a_held_body_shows_where),
+    cmocka_unit_test(a_wrong_position_is_noticed),
+    cmocka_unit_test(missing_positions_leave_the_translations),
+    cmocka_unit_test(mass_that_couples_translations_is_refused),
+    cmocka_unit_test(ports_are_looked_at),
+    cmocka_unit_test(beams_in_the_plane_have_three_motions),
+    cmocka_unit_test(stiffness_that_was_forgotten_is_noticed),
+    cmocka_unit_test(no_allocation_failure_leaks),
+    cmocka_unit_test(few_digits_hold_a_free_plate),
+    cmocka_unit_test(the_demo_does_not_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(audit, tests, NULL, NULL)

@@ -145,16 +145,13 @@ static void no_allocation_is_forgotten(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_damping_there_is_nothing_to_fit),
-        cmocka_unit_test(proportional_damping_is_recognised),
-        cmocka_unit_test(damping_that_couples_is_no_fault),
-        cmocka_unit_test(a_gyroscopic_part_is_named),
-        cmocka_unit_test(a_published_model_is_proportional_to_rounding),
-        cmocka_unit_test(no_allocation_is_forgotten),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(without_damping_there_is_nothing_to_fit),
+    cmocka_unit_test(proportional_damping_is_recognised),
+    cmocka_unit_test(damping_that_couples_is_no_fault),
+    cmocka_unit_test(a_gyroscopic_part_is_named),
+    cmocka_unit_test(a_published_model_is_proportional_to_rounding),
+    cmocka_unit_test(no_allocation_is_forgotten),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(audit_damping, tests, NULL, NULL)

@@ -120,16 +120,13 @@ static void digits_of_the_source_are_kept(void **state)
     assert_digits(MASSES, k, 7, NULL, RITZ_WARN, 7.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole_numbers_are_what_they_say),
-        cmocka_unit_test(short_decimals_are_what_they_say),
-        cmocka_unit_test(sums_of_whole_numbers_are_exact),
-        cmocka_unit_test(few_whole_numbers_of_five_digits_pass),
-        cmocka_unit_test(what_was_rounded_warns),
-        cmocka_unit_test(digits_of_the_source_are_kept),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(whole_numbers_are_what_they_say),
+    cmocka_unit_test(short_decimals_are_what_they_say),
+    cmocka_unit_test(sums_of_whole_numbers_are_exact),
+    cmocka_unit_test(few_whole_numbers_of_five_digits_pass),
+    cmocka_unit_test(what_was_rounded_warns),
+    cmocka_unit_test(digits_of_the_source_are_kept),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(audit_digits, tests, NULL, NULL)

@@ -207,18 +207,15 @@ static void no_allocation_failure_leaks(void **state)
     ritz_dense_free(&M);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_oscillator_is_as_stable_as_its_damping),
-        cmocka_unit_test(rigid_motion_is_marginal),
-        cmocka_unit_test(negative_mass_is_unstable_whatever_its_poles),
-        cmocka_unit_test(unsymmetric_damping_is_looked_at),
-        cmocka_unit_test(a_defective_pole_is_not_called_unstable),
-        cmocka_unit_test(a_chain_with_dampers_is_stable),
-        cmocka_unit_test(the_verdict_is_an_estimate),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(an_oscillator_is_as_stable_as_its_damping),
+    cmocka_unit_test(rigid_motion_is_marginal),
+    cmocka_unit_test(negative_mass_is_unstable_whatever_its_poles),
+    cmocka_unit_test(unsymmetric_damping_is_looked_at),
+    cmocka_unit_test(a_defective_pole_is_not_called_unstable),
+    cmocka_unit_test(a_chain_with_dampers_is_stable),
+    cmocka_unit_test(the_verdict_is_an_estimate),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(probe, tests, NULL, NULL)

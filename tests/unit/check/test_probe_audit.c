@@ -530,23 +530,20 @@ static void no_allocation_failure_leaks(void **unused)
     ritz_state_space_free(&space);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_passive_models_pass),
-        cmocka_unit_test(rounding_of_rigid_motion_is_no_negative_stiffness),
-        cmocka_unit_test(without_an_interface_there_is_nothing_to_hold),
-        cmocka_unit_test(a_negative_damper_shows_when_its_neighbour_is_held),
-        cmocka_unit_test(a_negative_damper_without_mass_grows),
-        cmocka_unit_test(negative_mass_stiffness_and_loss_are_named),
-        cmocka_unit_test(few_digits_of_a_free_body_are_unstable),
-        cmocka_unit_test(columns_for_forces_fail_where_they_are_joined),
-        cmocka_unit_test(a_pair_that_is_not_passive_fails_on_a_spring),
-        cmocka_unit_test(a_force_and_its_own_motion_pass),
-        cmocka_unit_test(a_band_that_makes_growth_fails_by_its_pole),
-        cmocka_unit_test(a_pencil_tells_where_energy_begins_to_come_out),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(random_passive_models_pass),
+    cmocka_unit_test(rounding_of_rigid_motion_is_no_negative_stiffness),
+    cmocka_unit_test(without_an_interface_there_is_nothing_to_hold),
+    cmocka_unit_test(a_negative_damper_shows_when_its_neighbour_is_held),
+    cmocka_unit_test(a_negative_damper_without_mass_grows),
+    cmocka_unit_test(negative_mass_stiffness_and_loss_are_named),
+    cmocka_unit_test(few_digits_of_a_free_body_are_unstable),
+    cmocka_unit_test(columns_for_forces_fail_where_they_are_joined),
+    cmocka_unit_test(a_pair_that_is_not_passive_fails_on_a_spring),
+    cmocka_unit_test(a_force_and_its_own_motion_pass),
+    cmocka_unit_test(a_band_that_makes_growth_fails_by_its_pole),
+    cmocka_unit_test(a_pencil_tells_where_energy_begins_to_come_out),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(probe_audit, tests, NULL, NULL)

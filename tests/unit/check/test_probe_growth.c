@@ -204,17 +204,14 @@ static void growth_survives_every_allocation(void **unused)
     ritz_state_space_free(&model);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_is_met_at_fourths_of_octaves),
-        cmocka_unit_test(slow_growth_is_met_beside_a_fast_mode),
-        cmocka_unit_test(growth_that_poles_do_not_explain_warns),
-        cmocka_unit_test(a_coupling_one_way_is_a_matter_of_units),
-        cmocka_unit_test(wide_bands_explain_what_grows),
-        cmocka_unit_test(more_than_400_states_are_bounded_alone),
-        cmocka_unit_test(growth_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(energy_is_met_at_fourths_of_octaves),
+    cmocka_unit_test(slow_growth_is_met_beside_a_fast_mode),
+    cmocka_unit_test(growth_that_poles_do_not_explain_warns),
+    cmocka_unit_test(a_coupling_one_way_is_a_matter_of_units),
+    cmocka_unit_test(wide_bands_explain_what_grows),
+    cmocka_unit_test(more_than_400_states_are_bounded_alone),
+    cmocka_unit_test(growth_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(probe_growth, tests, NULL, NULL)

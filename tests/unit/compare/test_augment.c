@@ -481,22 +481,19 @@ static void no_allocation_failure_of_statics_leaks(void **state)
     release(&f);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(static_gains_are_those_published),
-        cmocka_unit_test(components_with_all_attached_keep_the_gain),
-        cmocka_unit_test(attachment_modes_relieve_inertia),
-        cmocka_unit_test(the_gain_is_exact_at_every_angle_with_all_attached),
-        cmocka_unit_test(answers_of_the_system_are_exact_where_they_were_made),
-        cmocka_unit_test(the_fewest_forces_whose_response_fits_are_chosen),
-        cmocka_unit_test(a_deviation_is_that_of_the_largest_singular_value),
-        cmocka_unit_test(augmentations_that_make_no_sense_are_refused),
-        cmocka_unit_test(a_choice_without_damping_is_refused),
-        cmocka_unit_test(a_body_without_stiffness_or_mass_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-        cmocka_unit_test(no_allocation_failure_of_statics_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(static_gains_are_those_published),
+    cmocka_unit_test(components_with_all_attached_keep_the_gain),
+    cmocka_unit_test(attachment_modes_relieve_inertia),
+    cmocka_unit_test(the_gain_is_exact_at_every_angle_with_all_attached),
+    cmocka_unit_test(answers_of_the_system_are_exact_where_they_were_made),
+    cmocka_unit_test(the_fewest_forces_whose_response_fits_are_chosen),
+    cmocka_unit_test(a_deviation_is_that_of_the_largest_singular_value),
+    cmocka_unit_test(augmentations_that_make_no_sense_are_refused),
+    cmocka_unit_test(a_choice_without_damping_is_refused),
+    cmocka_unit_test(a_body_without_stiffness_or_mass_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+    cmocka_unit_test(no_allocation_failure_of_statics_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(augment, tests, NULL, NULL)

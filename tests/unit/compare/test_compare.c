@@ -286,24 +286,21 @@ static void a_ranking_without_damping_is_refused(void **state)
     assert_non_null(strstr(ritz_error_message(), "hankle"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_stage_has_the_orders_of_its_bases),
-        cmocka_unit_test(kept_modes_are_exact_at_every_listed_angle),
-        cmocka_unit_test(kept_frequencies_are_found_in_the_second_system),
-        cmocka_unit_test(rigid_modes_stay_rigid),
-        cmocka_unit_test(flexible_static_gain_is_exact_after_augmentation),
-        cmocka_unit_test(the_second_stage_removes_vectors),
-        cmocka_unit_test(errors_are_known_between_angles_too),
-        cmocka_unit_test(without_augmentation_the_gain_is_wrong),
-        cmocka_unit_test(a_reference_angle_is_exact_there_alone),
-        cmocka_unit_test(keeping_everything_removes_nothing),
-        cmocka_unit_test(a_looser_tolerance_gives_smaller_bodies),
-        cmocka_unit_test(the_frequency_error_is_the_largest),
-        cmocka_unit_test(what_was_not_measured_is_not_recorded),
-        cmocka_unit_test(a_ranking_without_damping_is_refused),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_first_stage_has_the_orders_of_its_bases),
+    cmocka_unit_test(kept_modes_are_exact_at_every_listed_angle),
+    cmocka_unit_test(kept_frequencies_are_found_in_the_second_system),
+    cmocka_unit_test(rigid_modes_stay_rigid),
+    cmocka_unit_test(flexible_static_gain_is_exact_after_augmentation),
+    cmocka_unit_test(the_second_stage_removes_vectors),
+    cmocka_unit_test(errors_are_known_between_angles_too),
+    cmocka_unit_test(without_augmentation_the_gain_is_wrong),
+    cmocka_unit_test(a_reference_angle_is_exact_there_alone),
+    cmocka_unit_test(keeping_everything_removes_nothing),
+    cmocka_unit_test(a_looser_tolerance_gives_smaller_bodies),
+    cmocka_unit_test(the_frequency_error_is_the_largest),
+    cmocka_unit_test(what_was_not_measured_is_not_recorded),
+    cmocka_unit_test(a_ranking_without_damping_is_refused),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(compare, tests, set_up, tear_down)

@@ -286,18 +286,15 @@ static void ordering_survives_every_allocation(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_modes_of_the_band_are_in_as_many_directions),
-        cmocka_unit_test(directions_are_orthonormal_by_energy),
-        cmocka_unit_test(steps_are_all_directions_of_all_bodies),
-        cmocka_unit_test(steps_go_from_what_carries_most),
-        cmocka_unit_test(bodies_that_are_held_begin_with_one_direction_each),
-        cmocka_unit_test(weights_change_what_comes_first),
-        cmocka_unit_test(without_a_band_it_is_refused),
-        cmocka_unit_test(ordering_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_modes_of_the_band_are_in_as_many_directions),
+    cmocka_unit_test(directions_are_orthonormal_by_energy),
+    cmocka_unit_test(steps_are_all_directions_of_all_bodies),
+    cmocka_unit_test(steps_go_from_what_carries_most),
+    cmocka_unit_test(bodies_that_are_held_begin_with_one_direction_each),
+    cmocka_unit_test(weights_change_what_comes_first),
+    cmocka_unit_test(without_a_band_it_is_refused),
+    cmocka_unit_test(ordering_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(composite_order, tests, NULL, NULL)

@@ -276,18 +276,15 @@ static void no_allocation_failure_leaks(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frequencies_are_those_published),
-        cmocka_unit_test(moments_are_those_published),
-        cmocka_unit_test(the_first_moments_are_kept_and_no_more),
-        cmocka_unit_test(the_sequence_ends_where_its_space_does),
-        cmocka_unit_test(vectors_are_orthonormal_in_stiffness),
-        cmocka_unit_test(rigid_modes_are_kept_beside_the_vectors),
-        cmocka_unit_test(vectors_that_no_input_drives_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(frequencies_are_those_published),
+    cmocka_unit_test(moments_are_those_published),
+    cmocka_unit_test(the_first_moments_are_kept_and_no_more),
+    cmocka_unit_test(the_sequence_ends_where_its_space_does),
+    cmocka_unit_test(vectors_are_orthonormal_in_stiffness),
+    cmocka_unit_test(rigid_modes_are_kept_beside_the_vectors),
+    cmocka_unit_test(vectors_that_no_input_drives_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(krylov_system, tests, NULL, NULL)

@@ -210,15 +210,12 @@ static void reduced_bodies_are_reduced_once_more(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_mixture_of_bases_keeps_its_modes_and_gain),
-        cmocka_unit_test(motions_without_mass_are_kept_whole),
-        cmocka_unit_test(a_mass_that_is_nearly_singular_is_filled_up),
-        cmocka_unit_test(a_motion_without_mass_and_stiffness_is_refused),
-        cmocka_unit_test(reduced_bodies_are_reduced_once_more),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(any_mixture_of_bases_keeps_its_modes_and_gain),
+    cmocka_unit_test(motions_without_mass_are_kept_whole),
+    cmocka_unit_test(a_mass_that_is_nearly_singular_is_filled_up),
+    cmocka_unit_test(a_motion_without_mass_and_stiffness_is_refused),
+    cmocka_unit_test(reduced_bodies_are_reduced_once_more),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(mixtures, tests, NULL, NULL)

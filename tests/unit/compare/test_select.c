@@ -340,21 +340,18 @@ static void no_allocation_failure_leaks(void **state)
     release(&f);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_1_2_3_5_give_table_3_3),
-        cmocka_unit_test(modes_1_2_3_4_bring_an_axial_constraint),
-        cmocka_unit_test(every_kept_mode_is_a_mode_of_the_second_system),
-        cmocka_unit_test(a_band_keeps_what_lies_in_it),
-        cmocka_unit_test(a_ranking_leaves_out_what_no_input_drives),
-        cmocka_unit_test(a_cluster_is_never_split_by_a_list),
-        cmocka_unit_test(extraneous_modes_are_found_and_removed),
-        cmocka_unit_test(modes_that_are_left_keep_their_frequencies),
-        cmocka_unit_test(choices_that_make_no_sense_are_refused),
-        cmocka_unit_test(a_mode_that_is_not_there_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(modes_1_2_3_5_give_table_3_3),
+    cmocka_unit_test(modes_1_2_3_4_bring_an_axial_constraint),
+    cmocka_unit_test(every_kept_mode_is_a_mode_of_the_second_system),
+    cmocka_unit_test(a_band_keeps_what_lies_in_it),
+    cmocka_unit_test(a_ranking_leaves_out_what_no_input_drives),
+    cmocka_unit_test(a_cluster_is_never_split_by_a_list),
+    cmocka_unit_test(extraneous_modes_are_found_and_removed),
+    cmocka_unit_test(modes_that_are_left_keep_their_frequencies),
+    cmocka_unit_test(choices_that_make_no_sense_are_refused),
+    cmocka_unit_test(a_mode_that_is_not_there_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(select, tests, NULL, NULL)

@@ -197,17 +197,14 @@ static void no_allocation_failure_leaks(void **state)
     release(&f);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_angle_that_stands_out_is_to_be_added),
-        cmocka_unit_test(an_error_that_does_not_stand_out_asks_for_nothing),
-        cmocka_unit_test(the_measure_that_stands_out_most_is_told),
-        cmocka_unit_test(without_rows_between_nothing_is_suggested),
-        cmocka_unit_test(a_looser_tolerance_trades_exactness_for_size),
-        cmocka_unit_test(tolerances_beyond_one_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(an_angle_that_stands_out_is_to_be_added),
+    cmocka_unit_test(an_error_that_does_not_stand_out_asks_for_nothing),
+    cmocka_unit_test(the_measure_that_stands_out_most_is_told),
+    cmocka_unit_test(without_rows_between_nothing_is_suggested),
+    cmocka_unit_test(a_looser_tolerance_trades_exactness_for_size),
+    cmocka_unit_test(tolerances_beyond_one_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(suggest, tests, NULL, NULL)

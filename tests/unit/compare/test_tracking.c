@@ -357,21 +357,18 @@ static void no_allocation_failure_leaks(void **state)
     release(&f);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_that_stay_have_a_track_each),
-        cmocka_unit_test(modes_that_change_places_are_reported),
-        cmocka_unit_test(oscillators_that_avoid_each_other_are_reported),
-        cmocka_unit_test(a_repeated_pair_is_one_track),
-        cmocka_unit_test(what_happens_within_a_track_is_no_event),
-        cmocka_unit_test(a_mode_that_is_half_like_two_is_a_near_tie),
-        cmocka_unit_test(a_mode_that_is_like_none_is_lost),
-        cmocka_unit_test(a_configuration_goes_on_from_its_nearest),
-        cmocka_unit_test(modes_of_the_spacecraft_cross_where_they_should),
-        cmocka_unit_test(one_configuration_has_nothing_to_say),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(modes_that_stay_have_a_track_each),
+    cmocka_unit_test(modes_that_change_places_are_reported),
+    cmocka_unit_test(oscillators_that_avoid_each_other_are_reported),
+    cmocka_unit_test(a_repeated_pair_is_one_track),
+    cmocka_unit_test(what_happens_within_a_track_is_no_event),
+    cmocka_unit_test(a_mode_that_is_half_like_two_is_a_near_tie),
+    cmocka_unit_test(a_mode_that_is_like_none_is_lost),
+    cmocka_unit_test(a_configuration_goes_on_from_its_nearest),
+    cmocka_unit_test(modes_of_the_spacecraft_cross_where_they_should),
+    cmocka_unit_test(one_configuration_has_nothing_to_say),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(tracking, tests, NULL, NULL)

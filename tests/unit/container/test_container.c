@@ -633,26 +633,23 @@ static void a_failed_write_leaves_what_was_there(void **state)
     ritz_component_free(&component);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_component_comes_back),
-        cmocka_unit_test(a_basis_comes_back),
-        cmocka_unit_test(a_matrix_of_many_chunks_comes_back),
-        cmocka_unit_test(a_reduced_component_comes_back),
-        cmocka_unit_test(a_system_comes_back),
-        cmocka_unit_test(a_response_comes_back),
-        cmocka_unit_test(a_simulation_comes_back),
-        cmocka_unit_test(a_ranking_comes_back),
-        cmocka_unit_test(a_state_space_comes_back),
-        cmocka_unit_test(what_is_read_and_written_again_has_the_same_bytes),
-        cmocka_unit_test(no_object_has_a_time),
-        cmocka_unit_test(no_library_object_stays_open),
-        cmocka_unit_test(every_container_says_how_it_was_made),
-        cmocka_unit_test(an_empty_list_of_inputs_is_one),
-        cmocka_unit_test(a_command_of_any_length_comes_back),
-        cmocka_unit_test(a_failed_write_leaves_what_was_there),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_component_comes_back),
+    cmocka_unit_test(a_basis_comes_back),
+    cmocka_unit_test(a_matrix_of_many_chunks_comes_back),
+    cmocka_unit_test(a_reduced_component_comes_back),
+    cmocka_unit_test(a_system_comes_back),
+    cmocka_unit_test(a_response_comes_back),
+    cmocka_unit_test(a_simulation_comes_back),
+    cmocka_unit_test(a_ranking_comes_back),
+    cmocka_unit_test(a_state_space_comes_back),
+    cmocka_unit_test(what_is_read_and_written_again_has_the_same_bytes),
+    cmocka_unit_test(no_object_has_a_time),
+    cmocka_unit_test(no_library_object_stays_open),
+    cmocka_unit_test(every_container_says_how_it_was_made),
+    cmocka_unit_test(an_empty_list_of_inputs_is_one),
+    cmocka_unit_test(a_command_of_any_length_comes_back),
+    cmocka_unit_test(a_failed_write_leaves_what_was_there),
+};
 
-    return cmocka_run_group_tests(tests, NULL, tear_down);
-}
+TEST_MODULE(container, tests, NULL, tear_down)

@@ -561,17 +561,14 @@ static void no_allocation_failure_leaks(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(damage_is_found_or_harmless),
-        cmocka_unit_test(a_file_cut_short_is_refused),
-        cmocka_unit_test(a_small_file_cut_at_any_byte_is_refused),
-        cmocka_unit_test(what_does_not_fit_is_refused_with_its_sentence),
-        cmocka_unit_test(links_to_elsewhere_are_not_followed),
-        cmocka_unit_test(other_files_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(damage_is_found_or_harmless),
+    cmocka_unit_test(a_file_cut_short_is_refused),
+    cmocka_unit_test(a_small_file_cut_at_any_byte_is_refused),
+    cmocka_unit_test(what_does_not_fit_is_refused_with_its_sentence),
+    cmocka_unit_test(links_to_elsewhere_are_not_followed),
+    cmocka_unit_test(other_files_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, tear_down);
-}
+TEST_MODULE(container_damage, tests, NULL, tear_down)

@@ -377,19 +377,16 @@ static void estimating_survives_every_allocation(void **state)
     ritz_component_free(&beam);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bounds_hold_on_the_bar_and_are_near),
-        cmocka_unit_test(bounds_hold_on_the_spacecraft),
-        cmocka_unit_test(a_mode_that_is_missing_is_counted_and_skipped),
-        cmocka_unit_test(responses_are_bounded),
-        cmocka_unit_test(what_is_not_proven_is_called_an_estimate),
-        cmocka_unit_test(one_estimator_serves_many_reductions),
-        cmocka_unit_test(massless_dofs_are_no_obstacle),
-        cmocka_unit_test(bands_and_bases_that_do_not_fit_are_refused),
-        cmocka_unit_test(estimating_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(bounds_hold_on_the_bar_and_are_near),
+    cmocka_unit_test(bounds_hold_on_the_spacecraft),
+    cmocka_unit_test(a_mode_that_is_missing_is_counted_and_skipped),
+    cmocka_unit_test(responses_are_bounded),
+    cmocka_unit_test(what_is_not_proven_is_called_an_estimate),
+    cmocka_unit_test(one_estimator_serves_many_reductions),
+    cmocka_unit_test(massless_dofs_are_no_obstacle),
+    cmocka_unit_test(bands_and_bases_that_do_not_fit_are_refused),
+    cmocka_unit_test(estimating_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(estimate, tests, NULL, NULL)

@@ -246,14 +246,11 @@ static void judging_survives_every_allocation(void **state)
     ritz_component_free(&full);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bounds_are_of_what_verify_measures),
-        cmocka_unit_test(a_mode_at_the_end_of_the_band_is_in_it),
-        cmocka_unit_test(damping_at_rounding_is_none),
-        cmocka_unit_test(judging_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(bounds_are_of_what_verify_measures),
+    cmocka_unit_test(a_mode_at_the_end_of_the_band_is_in_it),
+    cmocka_unit_test(damping_at_rounding_is_none),
+    cmocka_unit_test(judging_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(estimate_edge, tests, NULL, NULL)

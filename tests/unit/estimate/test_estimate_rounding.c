@@ -227,14 +227,11 @@ static void modes_that_rounding_exchanges_share_it(void **state)
     ritz_component_free(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(damping_of_soft_rows_is_looked_at_by_itself),
-        cmocka_unit_test(damping_that_couples_modes_is_not_left_out),
-        cmocka_unit_test(a_rigid_motion_hidden_by_rounding_is_no_mode),
-        cmocka_unit_test(modes_that_rounding_exchanges_share_it),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(damping_of_soft_rows_is_looked_at_by_itself),
+    cmocka_unit_test(damping_that_couples_modes_is_not_left_out),
+    cmocka_unit_test(a_rigid_motion_hidden_by_rounding_is_no_mode),
+    cmocka_unit_test(modes_that_rounding_exchanges_share_it),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(estimate_rounding, tests, NULL, NULL)

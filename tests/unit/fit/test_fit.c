@@ -532,25 +532,22 @@ static void fitting_survives_every_allocation(void **state)
     ritz_component_free(&beam);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_clamped_beam_is_fitted_within_one),
-        cmocka_unit_test(estimates_rule_out_candidates_and_change_no_answer),
-        cmocka_unit_test(a_free_beam_is_fitted_within_one),
-        cmocka_unit_test(a_free_truss_is_fitted_within_one),
-        cmocka_unit_test(a_chain_with_dampers_is_fitted_within_one),
-        cmocka_unit_test(random_chains_are_fitted_within_one),
-        cmocka_unit_test(tolerances_are_taken_and_refused_in_words),
-        cmocka_unit_test(what_cannot_be_fitted_is_refused_in_words),
-        cmocka_unit_test(a_tolerance_of_damping_is_not_met_by_missing_modes),
-        cmocka_unit_test(equal_order_is_found_below_what_is_too_large),
-        cmocka_unit_test(a_tolerance_that_no_method_meets_tells_the_nearest),
-        cmocka_unit_test(the_answer_is_nested_and_knows_its_errors),
-        cmocka_unit_test(bounds_stand_beside_errors_and_hold),
-        cmocka_unit_test(a_pole_between_points_is_seen_by_what_confirms),
-        cmocka_unit_test(fitting_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_clamped_beam_is_fitted_within_one),
+    cmocka_unit_test(estimates_rule_out_candidates_and_change_no_answer),
+    cmocka_unit_test(a_free_beam_is_fitted_within_one),
+    cmocka_unit_test(a_free_truss_is_fitted_within_one),
+    cmocka_unit_test(a_chain_with_dampers_is_fitted_within_one),
+    cmocka_unit_test(random_chains_are_fitted_within_one),
+    cmocka_unit_test(tolerances_are_taken_and_refused_in_words),
+    cmocka_unit_test(what_cannot_be_fitted_is_refused_in_words),
+    cmocka_unit_test(a_tolerance_of_damping_is_not_met_by_missing_modes),
+    cmocka_unit_test(equal_order_is_found_below_what_is_too_large),
+    cmocka_unit_test(a_tolerance_that_no_method_meets_tells_the_nearest),
+    cmocka_unit_test(the_answer_is_nested_and_knows_its_errors),
+    cmocka_unit_test(bounds_stand_beside_errors_and_hold),
+    cmocka_unit_test(a_pole_between_points_is_seen_by_what_confirms),
+    cmocka_unit_test(fitting_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(fit, tests, NULL, NULL)

@@ -348,17 +348,14 @@ static void bounds_are_of_the_same_mode_where_none_is_missing(void **state)
     ritz_sparse_free(&full.M);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_system_s_basis_condenses_the_full_system),
-        cmocka_unit_test(a_body_without_its_basis_is_refused),
-        cmocka_unit_test(every_allocation_of_the_basis_may_fail),
-        cmocka_unit_test(bounds_rule_out_what_fails_and_change_no_answer),
-        cmocka_unit_test(the_answer_of_a_scene_is_bounded),
-        cmocka_unit_test(what_is_told_at_least_is_below_the_error),
-        cmocka_unit_test(bounds_are_of_the_same_mode_where_none_is_missing),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_system_s_basis_condenses_the_full_system),
+    cmocka_unit_test(a_body_without_its_basis_is_refused),
+    cmocka_unit_test(every_allocation_of_the_basis_may_fail),
+    cmocka_unit_test(bounds_rule_out_what_fails_and_change_no_answer),
+    cmocka_unit_test(the_answer_of_a_scene_is_bounded),
+    cmocka_unit_test(what_is_told_at_least_is_below_the_error),
+    cmocka_unit_test(bounds_are_of_the_same_mode_where_none_is_missing),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_bounds, tests, folder_make, folder_remove)

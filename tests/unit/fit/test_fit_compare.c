@@ -258,20 +258,17 @@ static void it_survives_every_allocation(void **state)
     answer_free(&a);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(beams_are_fitted_within_one),
-        cmocka_unit_test(of_a_spacecraft_it_is_the_smallest),
-        cmocka_unit_test(its_bodies_are_nested_and_say_so),
-        cmocka_unit_test(it_is_compared_at_equal_order),
-        cmocka_unit_test(it_is_tried_of_a_scene_without_being_named),
-        cmocka_unit_test(its_ladder_ends_with_all_directions),
-        cmocka_unit_test(what_it_cannot_make_it_refuses),
-        cmocka_unit_test(of_a_component_it_is_refused),
-        cmocka_unit_test(methods_are_found_by_name),
-        cmocka_unit_test(it_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(beams_are_fitted_within_one),
+    cmocka_unit_test(of_a_spacecraft_it_is_the_smallest),
+    cmocka_unit_test(its_bodies_are_nested_and_say_so),
+    cmocka_unit_test(it_is_compared_at_equal_order),
+    cmocka_unit_test(it_is_tried_of_a_scene_without_being_named),
+    cmocka_unit_test(its_ladder_ends_with_all_directions),
+    cmocka_unit_test(what_it_cannot_make_it_refuses),
+    cmocka_unit_test(of_a_component_it_is_refused),
+    cmocka_unit_test(methods_are_found_by_name),
+    cmocka_unit_test(it_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_compare, tests, folder_make, folder_remove)

@@ -155,16 +155,13 @@ static void a_ladder_survives_every_allocation(void **state)
     answer_free(&a);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ladder_that_is_too_short_is_made_longer),
-        cmocka_unit_test(it_goes_on_to_the_last_mode),
-        cmocka_unit_test(a_first_stage_that_is_too_poor_is_made_richer),
-        cmocka_unit_test(one_that_is_rich_enough_stays),
-        cmocka_unit_test(it_is_said_what_ended_the_search),
-        cmocka_unit_test(a_ladder_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_ladder_that_is_too_short_is_made_longer),
+    cmocka_unit_test(it_goes_on_to_the_last_mode),
+    cmocka_unit_test(a_first_stage_that_is_too_poor_is_made_richer),
+    cmocka_unit_test(one_that_is_rich_enough_stays),
+    cmocka_unit_test(it_is_said_what_ended_the_search),
+    cmocka_unit_test(a_ladder_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_ladder, tests, folder_make, folder_remove)

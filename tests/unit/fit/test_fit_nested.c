@@ -282,18 +282,15 @@ static void nesting_survives_every_allocation(void **state)
     answer_free(&a);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cut_beams_are_as_far_off_as_the_path_says),
-        cmocka_unit_test(a_cut_spacecraft_is_as_far_off_as_the_path_says),
-        cmocka_unit_test(a_path_leads_from_the_answer_to_what_must_stay),
-        cmocka_unit_test(bodies_note_what_the_system_comes_to),
-        cmocka_unit_test(what_goes_is_what_matters_least),
-        cmocka_unit_test(of_a_body_without_interface_one_column_stays),
-        cmocka_unit_test(of_many_cuts_some_are_measured_and_the_smallest_is),
-        cmocka_unit_test(nesting_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(cut_beams_are_as_far_off_as_the_path_says),
+    cmocka_unit_test(a_cut_spacecraft_is_as_far_off_as_the_path_says),
+    cmocka_unit_test(a_path_leads_from_the_answer_to_what_must_stay),
+    cmocka_unit_test(bodies_note_what_the_system_comes_to),
+    cmocka_unit_test(what_goes_is_what_matters_least),
+    cmocka_unit_test(of_a_body_without_interface_one_column_stays),
+    cmocka_unit_test(of_many_cuts_some_are_measured_and_the_smallest_is),
+    cmocka_unit_test(nesting_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_nested, tests, folder_make, folder_remove)

@@ -90,14 +90,10 @@ a_turning_spacecraft_is_fitted_as_against_its_full_system(void **state)
                           fit_scenes_by(two + 1, 1, "flexible=1e-1"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(beams_are_fitted_as_against_their_full_system),
-        cmocka_unit_test(fine_tolerances_ask_for_a_richer_stage),
-        cmocka_unit_test(
-            a_turning_spacecraft_is_fitted_as_against_its_full_system),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(beams_are_fitted_as_against_their_full_system),
+    cmocka_unit_test(fine_tolerances_ask_for_a_richer_stage),
+    cmocka_unit_test(a_turning_spacecraft_is_fitted_as_against_its_full_system),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_rich, tests, folder_make, folder_remove)

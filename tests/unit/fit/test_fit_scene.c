@@ -55,12 +55,9 @@ static void the_answer_is_a_system_of_nested_bodies(void **state)
     answer_free(&a);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_meets_the_listed_angles_alone_is_caught),
-        cmocka_unit_test(the_answer_is_a_system_of_nested_bodies),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(what_meets_the_listed_angles_alone_is_caught),
+    cmocka_unit_test(the_answer_is_a_system_of_nested_bodies),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_scene, tests, folder_make, folder_remove)

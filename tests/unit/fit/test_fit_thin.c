@@ -216,13 +216,10 @@ static void the_spacecraft_is_fitted_within_one(void **state)
     assert_within_one(fit_scenes_spacecraft, 2, "flexible=1e-2");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_beams_are_fitted_within_one),
-        cmocka_unit_test(three_beams_are_fitted_within_one),
-        cmocka_unit_test(the_spacecraft_is_fitted_within_one),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(two_beams_are_fitted_within_one),
+    cmocka_unit_test(three_beams_are_fitted_within_one),
+    cmocka_unit_test(the_spacecraft_is_fitted_within_one),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_thin, tests, folder_make, folder_remove)

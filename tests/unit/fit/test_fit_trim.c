@@ -136,15 +136,12 @@ static void what_moves_rigidly_stays_whatever_it_is_called(void **state)
     ritz_dense_free(&body.M);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_moves_along_a_beam_driven_across_is_left_out),
-        cmocka_unit_test(what_has_nothing_to_spare_stays),
-        cmocka_unit_test(a_cut_of_another_scene_is_refused),
-        cmocka_unit_test(what_moves_rigidly_stays_whatever_it_is_called),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(what_moves_along_a_beam_driven_across_is_left_out),
+    cmocka_unit_test(what_has_nothing_to_spare_stays),
+    cmocka_unit_test(a_cut_of_another_scene_is_refused),
+    cmocka_unit_test(what_moves_rigidly_stays_whatever_it_is_called),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_trim, tests, folder_make, folder_remove)

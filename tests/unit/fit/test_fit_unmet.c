@@ -88,12 +88,9 @@ static void what_misses_fewer_modes_is_nearer(void **state)
         ritz_fit_candidate_free(&row[k]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_largest_of_a_method_that_fails_is_measured),
-        cmocka_unit_test(what_misses_fewer_modes_is_nearer),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_largest_of_a_method_that_fails_is_measured),
+    cmocka_unit_test(what_misses_fewer_modes_is_nearer),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(fit_unmet, tests, folder_make, folder_remove)

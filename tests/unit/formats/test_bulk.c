@@ -483,23 +483,20 @@ static void every_allocation_may_fail(void **state)
     assert_survives_every_allocation(parse_and_free(DECK));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_chain_of_frames_gives_positions_by_hand),
-        cmocka_unit_test(frames_by_grids_are_resolved_in_any_order),
-        cmocka_unit_test(curved_displacement_axes_follow_the_grid),
-        cmocka_unit_test(sets_list_each_dof_once),
-        cmocka_unit_test(sets_without_grids_stand_for_all_they_name),
-        cmocka_unit_test(the_case_control_chooses_what_acts),
-        cmocka_unit_test(what_a_deck_cannot_mean_is_refused),
-        cmocka_unit_test(includes_are_relative_to_the_file_that_names_them),
-        cmocka_unit_test(includes_are_followed_sixteen_deep),
-        cmocka_unit_test(real_decks_are_read),
-        cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
-        cmocka_unit_test(a_long_chain_of_frames_needs_no_stack),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_chain_of_frames_gives_positions_by_hand),
+    cmocka_unit_test(frames_by_grids_are_resolved_in_any_order),
+    cmocka_unit_test(curved_displacement_axes_follow_the_grid),
+    cmocka_unit_test(sets_list_each_dof_once),
+    cmocka_unit_test(sets_without_grids_stand_for_all_they_name),
+    cmocka_unit_test(the_case_control_chooses_what_acts),
+    cmocka_unit_test(what_a_deck_cannot_mean_is_refused),
+    cmocka_unit_test(includes_are_relative_to_the_file_that_names_them),
+    cmocka_unit_test(includes_are_followed_sixteen_deep),
+    cmocka_unit_test(real_decks_are_read),
+    cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
+    cmocka_unit_test(a_long_chain_of_frames_needs_no_stack),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(bulk, tests, NULL, NULL)

@@ -451,23 +451,20 @@ static void reading_survives_every_allocation(void **state)
     assert_survives_every_allocation(parse_all());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_mpc_is_solved_for_its_first_dof),
-        cmocka_unit_test(mpc_sets_act_as_the_case_control_selects),
-        cmocka_unit_test(an_rbe2_carries_its_grids_along),
-        cmocka_unit_test(every_element_follows_rigid_motion),
-        cmocka_unit_test(an_rbar_names_its_dependents_or_leaves_them_over),
-        cmocka_unit_test(an_rbe3_is_the_mean_of_what_is_around_it),
-        cmocka_unit_test(rotations_weigh_by_the_square_of_the_mean_distance),
-        cmocka_unit_test(nastran_makes_the_same_of_the_outboard_deck),
-        cmocka_unit_test(what_is_not_understood_is_kept_as_a_sentence),
-        cmocka_unit_test(imposed_motion_is_noted_where_it_acts),
-        cmocka_unit_test(
-            many_continuations_are_read_and_repeats_left_to_elimination),
-        cmocka_unit_test(reading_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(an_mpc_is_solved_for_its_first_dof),
+    cmocka_unit_test(mpc_sets_act_as_the_case_control_selects),
+    cmocka_unit_test(an_rbe2_carries_its_grids_along),
+    cmocka_unit_test(every_element_follows_rigid_motion),
+    cmocka_unit_test(an_rbar_names_its_dependents_or_leaves_them_over),
+    cmocka_unit_test(an_rbe3_is_the_mean_of_what_is_around_it),
+    cmocka_unit_test(rotations_weigh_by_the_square_of_the_mean_distance),
+    cmocka_unit_test(nastran_makes_the_same_of_the_outboard_deck),
+    cmocka_unit_test(what_is_not_understood_is_kept_as_a_sentence),
+    cmocka_unit_test(imposed_motion_is_noted_where_it_acts),
+    cmocka_unit_test(
+        many_continuations_are_read_and_repeats_left_to_elimination),
+    cmocka_unit_test(reading_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(bulk_constraints, tests, NULL, NULL)

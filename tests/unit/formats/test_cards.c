@@ -227,19 +227,16 @@ static void every_allocation_may_fail(void **state)
                   "+C,3\n"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_large_and_free_fields_say_the_same),
-        cmocka_unit_test(continuations_are_found_by_marker_or_by_place),
-        cmocka_unit_test(a_small_line_after_one_large_line_leaves_a_gap),
-        cmocka_unit_test(a_marker_may_end_a_free_line_early),
-        cmocka_unit_test(control_sections_are_left_out),
-        cmocka_unit_test(the_case_control_says_which_sets_act),
-        cmocka_unit_test(numbers_are_read_in_nastran_spelling),
-        cmocka_unit_test(what_is_no_card_is_refused_with_its_line),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(small_large_and_free_fields_say_the_same),
+    cmocka_unit_test(continuations_are_found_by_marker_or_by_place),
+    cmocka_unit_test(a_small_line_after_one_large_line_leaves_a_gap),
+    cmocka_unit_test(a_marker_may_end_a_free_line_early),
+    cmocka_unit_test(control_sections_are_left_out),
+    cmocka_unit_test(the_case_control_says_which_sets_act),
+    cmocka_unit_test(numbers_are_read_in_nastran_spelling),
+    cmocka_unit_test(what_is_no_card_is_refused_with_its_line),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(cards, tests, NULL, NULL)

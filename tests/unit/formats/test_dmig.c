@@ -359,20 +359,17 @@ static void included_columns_are_read(void **state)
     remove(folder);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_spellings_give_the_same_bits),
-        cmocka_unit_test(square_ones_stay_as_they_are_given),
-        cmocka_unit_test(polar_values_are_turned),
-        cmocka_unit_test(what_is_no_matrix_is_refused),
-        cmocka_unit_test(only_a_dmig_card_is_recognised),
-        cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(a_punched_model_has_its_published_frequencies),
-        cmocka_unit_test(forms_and_types_of_others_are_read),
-        cmocka_unit_test(included_columns_are_read),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(three_spellings_give_the_same_bits),
+    cmocka_unit_test(square_ones_stay_as_they_are_given),
+    cmocka_unit_test(polar_values_are_turned),
+    cmocka_unit_test(what_is_no_matrix_is_refused),
+    cmocka_unit_test(only_a_dmig_card_is_recognised),
+    cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
+    cmocka_unit_test(every_allocation_may_fail),
+    cmocka_unit_test(a_punched_model_has_its_published_frequencies),
+    cmocka_unit_test(forms_and_types_of_others_are_read),
+    cmocka_unit_test(included_columns_are_read),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(dmig, tests, NULL, NULL)

@@ -665,24 +665,21 @@ static void a_folder_that_is_not_there_is_said(void **state)
     ritz_reduced_free(&reduced);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(terms_of_two_masses_are_what_defines_them),
-        cmocka_unit_test(axes_of_displacements_change_no_term),
-        cmocka_unit_test(rigid_motion_is_left_to_the_frame),
-        cmocka_unit_test(columns_beside_rigid_ones_stay_as_they_are),
-        cmocka_unit_test(a_loose_part_is_refused),
-        cmocka_unit_test(rotations_count_to_zeroth_order),
-        cmocka_unit_test(a_file_written_twice_has_the_same_bytes),
-        cmocka_unit_test(a_file_holds_what_its_reader_asks_for),
-        cmocka_unit_test(invariants_go_through_a_container),
-        cmocka_unit_test(a_second_projection_takes_invariants_along),
-        cmocka_unit_test(what_is_no_body_is_refused),
-        cmocka_unit_test(of_many_columns_no_invariants_are_kept),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(a_folder_that_is_not_there_is_said),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(terms_of_two_masses_are_what_defines_them),
+    cmocka_unit_test(axes_of_displacements_change_no_term),
+    cmocka_unit_test(rigid_motion_is_left_to_the_frame),
+    cmocka_unit_test(columns_beside_rigid_ones_stay_as_they_are),
+    cmocka_unit_test(a_loose_part_is_refused),
+    cmocka_unit_test(rotations_count_to_zeroth_order),
+    cmocka_unit_test(a_file_written_twice_has_the_same_bytes),
+    cmocka_unit_test(a_file_holds_what_its_reader_asks_for),
+    cmocka_unit_test(invariants_go_through_a_container),
+    cmocka_unit_test(a_second_projection_takes_invariants_along),
+    cmocka_unit_test(what_is_no_body_is_refused),
+    cmocka_unit_test(of_many_columns_no_invariants_are_kept),
+    cmocka_unit_test(every_allocation_may_fail),
+    cmocka_unit_test(a_folder_that_is_not_there_is_said),
+};
 
-    return cmocka_run_group_tests_name("exudyn", tests, NULL, NULL);
-}
+TEST_MODULE(exudyn, tests, NULL, NULL)

@@ -160,17 +160,14 @@ static void nas2cam_holds_three_components(void **state)
                  "KAA (3 times)");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_spec_names_file_matrix_and_turn),
-        cmocka_unit_test(a_file_with_a_colon_is_tried_first),
-        cmocka_unit_test(an_unclear_spec_lists_what_the_file_holds),
-        cmocka_unit_test(files_that_are_none_are_refused),
-        cmocka_unit_test(the_file_of_a_spec_is_what_stands_before_the_colon),
-        cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(nas2cam_holds_three_components),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_spec_names_file_matrix_and_turn),
+    cmocka_unit_test(a_file_with_a_colon_is_tried_first),
+    cmocka_unit_test(an_unclear_spec_lists_what_the_file_holds),
+    cmocka_unit_test(files_that_are_none_are_refused),
+    cmocka_unit_test(the_file_of_a_spec_is_what_stands_before_the_colon),
+    cmocka_unit_test(every_allocation_may_fail),
+    cmocka_unit_test(nas2cam_holds_three_components),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(foreign, tests, NULL, NULL)

@@ -254,17 +254,14 @@ static void every_allocation_may_fail(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_libmatio_writes_is_read_to_the_bit),
-        cmocka_unit_test(level_four_is_read_in_either_byte_order),
-        cmocka_unit_test(what_is_no_matrix_is_said_by_name),
-        cmocka_unit_test(integers_singles_and_pairs_keep_what_they_are),
-        cmocka_unit_test(a_wrong_checksum_of_compressed_data_is_found),
-        cmocka_unit_test(sizes_are_held_against_the_bytes_present),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(what_libmatio_writes_is_read_to_the_bit),
+    cmocka_unit_test(level_four_is_read_in_either_byte_order),
+    cmocka_unit_test(what_is_no_matrix_is_said_by_name),
+    cmocka_unit_test(integers_singles_and_pairs_keep_what_they_are),
+    cmocka_unit_test(a_wrong_checksum_of_compressed_data_is_found),
+    cmocka_unit_test(sizes_are_held_against_the_bytes_present),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, mat_samples_make, folder_remove);
-}
+TEST_MODULE(mat, tests, mat_samples_make, folder_remove)

@@ -58,11 +58,8 @@ static void no_cut_and_no_spoiled_byte_is_believed_or_fatal(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_cut_and_no_spoiled_byte_is_believed_or_fatal),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(no_cut_and_no_spoiled_byte_is_believed_or_fatal),
+};
 
-    return cmocka_run_group_tests(tests, mat_samples_make, folder_remove);
-}
+TEST_MODULE(mat_damage, tests, mat_samples_make, folder_remove)

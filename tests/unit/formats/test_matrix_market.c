@@ -343,20 +343,17 @@ static void every_allocation_may_fail(void **state)
     remove(path);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_is_read),
-        cmocka_unit_test(digits_are_those_of_the_longest_number),
-        cmocka_unit_test(what_is_wrong_is_said_with_its_line),
-        cmocka_unit_test(a_long_line_is_quoted_by_its_first_79_letters),
-        cmocka_unit_test(both_triangles_are_taken_once),
-        cmocka_unit_test(what_is_written_is_read_to_the_same_bits),
-        cmocka_unit_test(a_matrix_that_is_not_finite_leaves_no_file),
-        cmocka_unit_test(third_party_files_are_read),
-        cmocka_unit_test(damaged_files_are_answered),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(every_kind_is_read),
+    cmocka_unit_test(digits_are_those_of_the_longest_number),
+    cmocka_unit_test(what_is_wrong_is_said_with_its_line),
+    cmocka_unit_test(a_long_line_is_quoted_by_its_first_79_letters),
+    cmocka_unit_test(both_triangles_are_taken_once),
+    cmocka_unit_test(what_is_written_is_read_to_the_same_bits),
+    cmocka_unit_test(a_matrix_that_is_not_finite_leaves_no_file),
+    cmocka_unit_test(third_party_files_are_read),
+    cmocka_unit_test(damaged_files_are_answered),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(matrix_market, tests, NULL, NULL)

@@ -769,26 +769,23 @@ static void records_of_no_bytes_are_skipped(void **state)
     remove(path);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_spelling_of_text_gives_the_same_matrix),
-        cmocka_unit_test(forms_mean_what_nastran_means_by_them),
-        cmocka_unit_test(ten_million_null_columns_are_read),
-        cmocka_unit_test(what_is_wrong_is_said),
-        cmocka_unit_test(decimals_are_rounded_as_strtod_rounds),
-        cmocka_unit_test(ties_and_odd_spellings_are_read),
-        cmocka_unit_test(what_is_written_is_read_to_the_same_bits),
-        cmocka_unit_test(fewer_digits_are_right_to_half_a_unit),
-        cmocka_unit_test(what_cannot_be_written_leaves_no_file),
-        cmocka_unit_test(records_of_no_bytes_are_skipped),
-        cmocka_unit_test(spellings_of_third_party_files_agree),
-        cmocka_unit_test(all_third_party_files_are_read),
-        cmocka_unit_test(damaged_text_is_answered),
-        cmocka_unit_test(damaged_third_party_files_are_answered),
-        cmocka_unit_test(damaged_files_of_public_solvers_are_answered),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(every_spelling_of_text_gives_the_same_matrix),
+    cmocka_unit_test(forms_mean_what_nastran_means_by_them),
+    cmocka_unit_test(ten_million_null_columns_are_read),
+    cmocka_unit_test(what_is_wrong_is_said),
+    cmocka_unit_test(decimals_are_rounded_as_strtod_rounds),
+    cmocka_unit_test(ties_and_odd_spellings_are_read),
+    cmocka_unit_test(what_is_written_is_read_to_the_same_bits),
+    cmocka_unit_test(fewer_digits_are_right_to_half_a_unit),
+    cmocka_unit_test(what_cannot_be_written_leaves_no_file),
+    cmocka_unit_test(records_of_no_bytes_are_skipped),
+    cmocka_unit_test(spellings_of_third_party_files_agree),
+    cmocka_unit_test(all_third_party_files_are_read),
+    cmocka_unit_test(damaged_text_is_answered),
+    cmocka_unit_test(damaged_third_party_files_are_answered),
+    cmocka_unit_test(damaged_files_of_public_solvers_are_answered),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(output4, tests, NULL, NULL)

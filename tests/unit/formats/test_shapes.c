@@ -190,16 +190,13 @@ static void no_allocation_failure_leaks(void **state)
     assert_int_equal(folder_remove(&none), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_list_chooses_modes_and_names_them),
-        cmocka_unit_test(columns_of_a_basis_are_where_their_dofs_are),
-        cmocka_unit_test(what_has_no_place_is_refused),
-        cmocka_unit_test(elements_with_strange_grids_are_counted),
-        cmocka_unit_test(cells_that_do_not_fit_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_list_chooses_modes_and_names_them),
+    cmocka_unit_test(columns_of_a_basis_are_where_their_dofs_are),
+    cmocka_unit_test(what_has_no_place_is_refused),
+    cmocka_unit_test(elements_with_strange_grids_are_counted),
+    cmocka_unit_test(cells_that_do_not_fit_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(shapes, tests, set_up, tear_down)

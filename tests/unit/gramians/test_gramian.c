@@ -328,17 +328,14 @@ static void gramians_survive_every_allocation(void **unused)
     ritz_modal_free(&modal);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gramians_satisfy_their_lyapunov_equations),
-        cmocka_unit_test(both_gramians_give_one_h2_norm),
-        cmocka_unit_test(one_mode_has_the_textbook_gramian),
-        cmocka_unit_test(a_mode_without_damping_has_no_gramian),
-        cmocka_unit_test(factors_multiply_to_the_gramians),
-        cmocka_unit_test(small_values_are_those_of_hammarlings_factors),
-        cmocka_unit_test(gramians_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(gramians_satisfy_their_lyapunov_equations),
+    cmocka_unit_test(both_gramians_give_one_h2_norm),
+    cmocka_unit_test(one_mode_has_the_textbook_gramian),
+    cmocka_unit_test(a_mode_without_damping_has_no_gramian),
+    cmocka_unit_test(factors_multiply_to_the_gramians),
+    cmocka_unit_test(small_values_are_those_of_hammarlings_factors),
+    cmocka_unit_test(gramians_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(gramian, tests, NULL, NULL)

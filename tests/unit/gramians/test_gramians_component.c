@@ -629,24 +629,21 @@ static void engines_survive_every_allocation(void **unused)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mass_has_the_closed_form_pair),
-        cmocka_unit_test(dense_and_closed_form_agree),
-        cmocka_unit_test(rigid_modes_stand_apart),
-        cmocka_unit_test(factors_satisfy_the_lyapunov_equations),
-        cmocka_unit_test(auto_takes_the_engine_that_damping_allows),
-        cmocka_unit_test(a_damper_within_a_cluster_is_no_coupling),
-        cmocka_unit_test(what_does_not_decay_stands_apart),
-        cmocka_unit_test(modes_up_to_a_frequency_are_all_that_is_taken),
-        cmocka_unit_test(a_band_is_heeded),
-        cmocka_unit_test(the_engines_agree_on_lf10),
-        cmocka_unit_test(what_does_not_fit_an_engine_is_refused),
-        cmocka_unit_test(inputs_and_outputs_are_needed),
-        cmocka_unit_test(rigid_and_large_components_are_refused),
-        cmocka_unit_test(engines_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(one_mass_has_the_closed_form_pair),
+    cmocka_unit_test(dense_and_closed_form_agree),
+    cmocka_unit_test(rigid_modes_stand_apart),
+    cmocka_unit_test(factors_satisfy_the_lyapunov_equations),
+    cmocka_unit_test(auto_takes_the_engine_that_damping_allows),
+    cmocka_unit_test(a_damper_within_a_cluster_is_no_coupling),
+    cmocka_unit_test(what_does_not_decay_stands_apart),
+    cmocka_unit_test(modes_up_to_a_frequency_are_all_that_is_taken),
+    cmocka_unit_test(a_band_is_heeded),
+    cmocka_unit_test(the_engines_agree_on_lf10),
+    cmocka_unit_test(what_does_not_fit_an_engine_is_refused),
+    cmocka_unit_test(inputs_and_outputs_are_needed),
+    cmocka_unit_test(rigid_and_large_components_are_refused),
+    cmocka_unit_test(engines_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(gramians_component, tests, NULL, NULL)

@@ -45,11 +45,8 @@ static void the_rail_has_its_values(void **unused)
     ritz_state_space_free(&model);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_rail_has_its_values),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_rail_has_its_values),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(gramians_rail, tests, NULL, NULL)

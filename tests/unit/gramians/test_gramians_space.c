@@ -669,25 +669,22 @@ static void gramians_survive_every_allocation(void **unused)
     ritz_state_space_free(&model);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stored_hankel_values_are_found),
-        cmocka_unit_test(slicot_publishes_these_hankel_values),
-        cmocka_unit_test(slicot_publishes_this_reduced_model),
-        cmocka_unit_test(small_models_have_their_closed_forms),
-        cmocka_unit_test(an_all_pass_has_equal_values_and_meets_its_bound),
-        cmocka_unit_test(the_error_is_within_its_bound),
-        cmocka_unit_test(what_is_not_stable_stands_apart_exactly),
-        cmocka_unit_test(a_cascade_of_equal_stages_is_stable),
-        cmocka_unit_test(a_rigid_motion_stands_apart),
-        cmocka_unit_test(the_beam_has_its_published_pairs),
-        cmocka_unit_test(a_stiff_beam_agrees_with_the_closed_form),
-        cmocka_unit_test(outputs_are_divided_by_their_limits),
-        cmocka_unit_test(what_has_no_gramians_is_refused_in_words),
-        cmocka_unit_test(a_model_without_stable_poles_has_none_to_balance),
-        cmocka_unit_test(gramians_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(stored_hankel_values_are_found),
+    cmocka_unit_test(slicot_publishes_these_hankel_values),
+    cmocka_unit_test(slicot_publishes_this_reduced_model),
+    cmocka_unit_test(small_models_have_their_closed_forms),
+    cmocka_unit_test(an_all_pass_has_equal_values_and_meets_its_bound),
+    cmocka_unit_test(the_error_is_within_its_bound),
+    cmocka_unit_test(what_is_not_stable_stands_apart_exactly),
+    cmocka_unit_test(a_cascade_of_equal_stages_is_stable),
+    cmocka_unit_test(a_rigid_motion_stands_apart),
+    cmocka_unit_test(the_beam_has_its_published_pairs),
+    cmocka_unit_test(a_stiff_beam_agrees_with_the_closed_form),
+    cmocka_unit_test(outputs_are_divided_by_their_limits),
+    cmocka_unit_test(what_has_no_gramians_is_refused_in_words),
+    cmocka_unit_test(a_model_without_stable_poles_has_none_to_balance),
+    cmocka_unit_test(gramians_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(gramians_space, tests, NULL, NULL)

@@ -451,24 +451,21 @@ static void transposed_solves_are_of_the_transpose(void **state)
     ritz_sparse_free(&A);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_oscillator_has_known_values),
-        cmocka_unit_test(the_equation_is_solved),
-        cmocka_unit_test(several_inputs_and_outputs_agree_with_slicot),
-        cmocka_unit_test(velocities_accelerations_and_limits_count),
-        cmocka_unit_test(dependent_inputs_are_compressed),
-        cmocka_unit_test(rigid_motion_stands_apart),
-        cmocka_unit_test(rigid_motion_alone_has_no_columns),
-        cmocka_unit_test(gyroscopes_agree_with_slicot),
-        cmocka_unit_test(discrete_dampers_count),
-        cmocka_unit_test(dofs_without_mass_follow),
-        cmocka_unit_test(five_hundred_damped_modes_agree_with_closed_form),
-        cmocka_unit_test(five_hundred_light_modes_are_refused),
-        cmocka_unit_test(lf10_agrees_with_slicot),
-        cmocka_unit_test(transposed_solves_are_of_the_transpose),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(an_oscillator_has_known_values),
+    cmocka_unit_test(the_equation_is_solved),
+    cmocka_unit_test(several_inputs_and_outputs_agree_with_slicot),
+    cmocka_unit_test(velocities_accelerations_and_limits_count),
+    cmocka_unit_test(dependent_inputs_are_compressed),
+    cmocka_unit_test(rigid_motion_stands_apart),
+    cmocka_unit_test(rigid_motion_alone_has_no_columns),
+    cmocka_unit_test(gyroscopes_agree_with_slicot),
+    cmocka_unit_test(discrete_dampers_count),
+    cmocka_unit_test(dofs_without_mass_follow),
+    cmocka_unit_test(five_hundred_damped_modes_agree_with_closed_form),
+    cmocka_unit_test(five_hundred_light_modes_are_refused),
+    cmocka_unit_test(lf10_agrees_with_slicot),
+    cmocka_unit_test(transposed_solves_are_of_the_transpose),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(low_rank, tests, NULL, NULL)

@@ -86,14 +86,11 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&body);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(damping_that_is_no_matrix_is_refused),
-        cmocka_unit_test(motion_that_does_not_decay_is_refused),
-        cmocka_unit_test(what_has_no_states_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(damping_that_is_no_matrix_is_refused),
+    cmocka_unit_test(motion_that_does_not_decay_is_refused),
+    cmocka_unit_test(what_has_no_states_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(low_rank_limits, tests, NULL, NULL)

@@ -331,19 +331,15 @@ static void bands_survive_every_allocation(void **unused)
     ritz_modal_free(&modal);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(band_gramians_are_integrals_over_frequency),
-        cmocka_unit_test(bands_add_up_to_the_whole),
-        cmocka_unit_test(factors_multiply_to_the_gramians),
-        cmocka_unit_test(
-            a_band_of_everything_has_the_hankel_values_of_everything),
-        cmocka_unit_test(a_band_around_one_mode_keeps_its_values),
-        cmocka_unit_test(what_is_no_band_is_refused),
-        cmocka_unit_test(what_is_not_reached_has_no_values),
-        cmocka_unit_test(bands_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(band_gramians_are_integrals_over_frequency),
+    cmocka_unit_test(bands_add_up_to_the_whole),
+    cmocka_unit_test(factors_multiply_to_the_gramians),
+    cmocka_unit_test(a_band_of_everything_has_the_hankel_values_of_everything),
+    cmocka_unit_test(a_band_around_one_mode_keeps_its_values),
+    cmocka_unit_test(what_is_no_band_is_refused),
+    cmocka_unit_test(what_is_not_reached_has_no_values),
+    cmocka_unit_test(bands_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(modal_band, tests, NULL, NULL)

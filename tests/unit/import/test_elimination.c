@@ -427,22 +427,19 @@ static void elimination_survives_every_allocation(void **state)
     assert_survives_every_allocation(eliminate_and_recover());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(dependents_follow_what_others_follow),
-        cmocka_unit_test(a_circle_is_a_system_of_its_own),
-        cmocka_unit_test(shares_of_one_dof_add_up_and_zeros_are_none),
-        cmocka_unit_test(contradictions_are_refused_with_both_cards),
-        cmocka_unit_test(one_card_may_not_name_a_dof_twice),
-        cmocka_unit_test(a_chain_may_be_long),
-        cmocka_unit_test(circles_of_many_are_refused),
-        cmocka_unit_test(random_equations_hold_for_every_motion),
-        cmocka_unit_test(sources_are_cited_with_file_and_line),
-        cmocka_unit_test(recovered_dofs_stand_behind_the_others),
-        cmocka_unit_test(a_recovery_that_does_not_fit_is_refused),
-        cmocka_unit_test(elimination_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(dependents_follow_what_others_follow),
+    cmocka_unit_test(a_circle_is_a_system_of_its_own),
+    cmocka_unit_test(shares_of_one_dof_add_up_and_zeros_are_none),
+    cmocka_unit_test(contradictions_are_refused_with_both_cards),
+    cmocka_unit_test(one_card_may_not_name_a_dof_twice),
+    cmocka_unit_test(a_chain_may_be_long),
+    cmocka_unit_test(circles_of_many_are_refused),
+    cmocka_unit_test(random_equations_hold_for_every_motion),
+    cmocka_unit_test(sources_are_cited_with_file_and_line),
+    cmocka_unit_test(recovered_dofs_stand_behind_the_others),
+    cmocka_unit_test(a_recovery_that_does_not_fit_is_refused),
+    cmocka_unit_test(elimination_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(elimination, tests, NULL, NULL)

@@ -673,28 +673,25 @@ static void a_dof_map_names_the_rows_of_the_rotor(void **state)
     ritz_import_report_free(&report);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(grids_ascend_with_six_rows_and_points_with_one),
-        cmocka_unit_test(rows_empty_in_both_are_removed_and_others_stay),
-        cmocka_unit_test(mass_alone_is_a_rigid_component),
-        cmocka_unit_test(rows_that_the_deck_fixes_are_taken_out),
-        cmocka_unit_test(other_sizes_are_the_a_set_or_grids_less_spcs),
-        cmocka_unit_test(constraints_act_on_matrices_that_have_their_dofs),
-        cmocka_unit_test(a_file_of_names_rules),
-        cmocka_unit_test(matrices_that_name_their_rows_are_united),
-        cmocka_unit_test(inputs_and_outputs_act_along_basic_axes),
-        cmocka_unit_test(dampers_lie_along_basic_axes),
-        cmocka_unit_test(wrong_dampers_are_refused),
-        cmocka_unit_test(wrong_ports_are_refused),
-        cmocka_unit_test(wrong_inputs_and_outputs_are_refused),
-        cmocka_unit_test(wrong_matrices_are_refused),
-        cmocka_unit_test(asymmetry_is_refused_unless_it_is_to_be_averaged),
-        cmocka_unit_test(no_allocation_failure_leaks),
-        cmocka_unit_test(real_files_become_components),
-        cmocka_unit_test(a_dof_map_names_the_rows_of_the_rotor),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(grids_ascend_with_six_rows_and_points_with_one),
+    cmocka_unit_test(rows_empty_in_both_are_removed_and_others_stay),
+    cmocka_unit_test(mass_alone_is_a_rigid_component),
+    cmocka_unit_test(rows_that_the_deck_fixes_are_taken_out),
+    cmocka_unit_test(other_sizes_are_the_a_set_or_grids_less_spcs),
+    cmocka_unit_test(constraints_act_on_matrices_that_have_their_dofs),
+    cmocka_unit_test(a_file_of_names_rules),
+    cmocka_unit_test(matrices_that_name_their_rows_are_united),
+    cmocka_unit_test(inputs_and_outputs_act_along_basic_axes),
+    cmocka_unit_test(dampers_lie_along_basic_axes),
+    cmocka_unit_test(wrong_dampers_are_refused),
+    cmocka_unit_test(wrong_ports_are_refused),
+    cmocka_unit_test(wrong_inputs_and_outputs_are_refused),
+    cmocka_unit_test(wrong_matrices_are_refused),
+    cmocka_unit_test(asymmetry_is_refused_unless_it_is_to_be_averaged),
+    cmocka_unit_test(no_allocation_failure_leaks),
+    cmocka_unit_test(real_files_become_components),
+    cmocka_unit_test(a_dof_map_names_the_rows_of_the_rotor),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(import, tests, folder_make, folder_remove)

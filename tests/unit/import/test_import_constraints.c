@@ -771,27 +771,24 @@ static void importing_survives_every_allocation(void **state)
     assert_survives_every_allocation(import_everything());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(another_solver_eliminates_to_the_same_matrices),
-        cmocka_unit_test(sizes_of_the_deck_are_told_apart),
-        cmocka_unit_test(a_mass_on_a_rigid_lever_is_where_it_should_be),
-        cmocka_unit_test(a_leader_needs_no_rows_of_its_own),
-        cmocka_unit_test(what_is_fixed_holds_what_depends_on_it),
-        cmocka_unit_test(decks_that_contradict_themselves_are_refused),
-        cmocka_unit_test(what_is_not_understood_matters_only_where_it_acts),
-        cmocka_unit_test(a_dof_that_depends_cannot_be_attached),
-        cmocka_unit_test(a_rigid_port_is_an_rbe2_from_a_grid_amid),
-        cmocka_unit_test(an_averaged_port_stiffens_nothing),
-        cmocka_unit_test(loads_on_an_averaged_port_are_spread),
-        cmocka_unit_test(ports_that_leave_motion_open_are_refused),
-        cmocka_unit_test(positions_come_from_a_deck),
-        cmocka_unit_test(one_grid_of_six_dofs_is_enough),
-        cmocka_unit_test(averages_see_through_the_elements_of_the_deck),
-        cmocka_unit_test(averaged_ports_may_share_grids),
-        cmocka_unit_test(importing_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(another_solver_eliminates_to_the_same_matrices),
+    cmocka_unit_test(sizes_of_the_deck_are_told_apart),
+    cmocka_unit_test(a_mass_on_a_rigid_lever_is_where_it_should_be),
+    cmocka_unit_test(a_leader_needs_no_rows_of_its_own),
+    cmocka_unit_test(what_is_fixed_holds_what_depends_on_it),
+    cmocka_unit_test(decks_that_contradict_themselves_are_refused),
+    cmocka_unit_test(what_is_not_understood_matters_only_where_it_acts),
+    cmocka_unit_test(a_dof_that_depends_cannot_be_attached),
+    cmocka_unit_test(a_rigid_port_is_an_rbe2_from_a_grid_amid),
+    cmocka_unit_test(an_averaged_port_stiffens_nothing),
+    cmocka_unit_test(loads_on_an_averaged_port_are_spread),
+    cmocka_unit_test(ports_that_leave_motion_open_are_refused),
+    cmocka_unit_test(positions_come_from_a_deck),
+    cmocka_unit_test(one_grid_of_six_dofs_is_enough),
+    cmocka_unit_test(averages_see_through_the_elements_of_the_deck),
+    cmocka_unit_test(averaged_ports_may_share_grids),
+    cmocka_unit_test(importing_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(import_constraints, tests, folder_make, folder_remove)

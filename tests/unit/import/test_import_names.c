@@ -138,14 +138,11 @@ static void every_allocation_may_fail(void **state)
     remove(path);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_named_in_the_order_of_the_file),
-        cmocka_unit_test(what_is_wrong_is_said_with_its_line),
-        cmocka_unit_test(a_file_cut_or_corrupted_anywhere_is_answered),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(rows_are_named_in_the_order_of_the_file),
+    cmocka_unit_test(what_is_wrong_is_said_with_its_line),
+    cmocka_unit_test(a_file_cut_or_corrupted_anywhere_is_answered),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(import_names, tests, NULL, NULL)

@@ -211,16 +211,13 @@ static void every_allocation_may_fail(void **state)
         import_and_drop(list("A=A.mtx,B=B.mtx,C=C.mtx,D=D.mtx,E=E.mtx")));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_matrix_for_each_letter_makes_a_state_space),
-        cmocka_unit_test(d_e_names_and_limits_are_taken),
-        cmocka_unit_test(an_identity_is_no_e),
-        cmocka_unit_test(what_makes_no_state_space_is_refused),
-        cmocka_unit_test(one_file_names_the_matrices_itself),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_matrix_for_each_letter_makes_a_state_space),
+    cmocka_unit_test(d_e_names_and_limits_are_taken),
+    cmocka_unit_test(an_identity_is_no_e),
+    cmocka_unit_test(what_makes_no_state_space_is_refused),
+    cmocka_unit_test(one_file_names_the_matrices_itself),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, set_up, folder_remove);
-}
+TEST_MODULE(import_space, tests, set_up, folder_remove)

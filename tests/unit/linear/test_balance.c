@@ -343,21 +343,18 @@ static void a_factor_without_columns_has_no_values(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_factor_without_columns_has_no_values),
-        cmocka_unit_test(small_values_of_a_product_are_as_good_as_its_factors),
-        cmocka_unit_test(a_product_is_what_its_svd_says),
-        cmocka_unit_test(balancing_makes_both_gramians_equal_and_diagonal),
-        cmocka_unit_test(equal_values_are_kept_or_dropped_whole),
-        cmocka_unit_test(a_value_of_rounding_is_never_balanced),
-        cmocka_unit_test(factors_that_hide_values_in_rounding_give_fewer),
-        cmocka_unit_test(the_bound_counts_a_repeated_value_once),
-        cmocka_unit_test(nothing_reached_is_nothing_balanced),
-        cmocka_unit_test(what_cannot_be_balanced_is_refused_in_words),
-        cmocka_unit_test(balancing_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_factor_without_columns_has_no_values),
+    cmocka_unit_test(small_values_of_a_product_are_as_good_as_its_factors),
+    cmocka_unit_test(a_product_is_what_its_svd_says),
+    cmocka_unit_test(balancing_makes_both_gramians_equal_and_diagonal),
+    cmocka_unit_test(equal_values_are_kept_or_dropped_whole),
+    cmocka_unit_test(a_value_of_rounding_is_never_balanced),
+    cmocka_unit_test(factors_that_hide_values_in_rounding_give_fewer),
+    cmocka_unit_test(the_bound_counts_a_repeated_value_once),
+    cmocka_unit_test(nothing_reached_is_nothing_balanced),
+    cmocka_unit_test(what_cannot_be_balanced_is_refused_in_words),
+    cmocka_unit_test(balancing_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(balance, tests, NULL, NULL)

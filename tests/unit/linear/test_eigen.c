@@ -638,28 +638,25 @@ static void nothing_has_no_modes(void **state)
     ritz_sparse_free(&A);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bars_have_the_modes_of_their_mesh),
-        cmocka_unit_test(a_double_mode_is_never_cut),
-        cmocka_unit_test(a_frequency_finds_every_mode_below),
-        cmocka_unit_test(there_may_be_no_mode),
-        cmocka_unit_test(every_free_body_has_its_rigid_mode),
-        cmocka_unit_test(joints_without_mass_have_no_modes),
-        cmocka_unit_test(a_single_mass_has_a_single_mode),
-        cmocka_unit_test(ten_digits_keep_the_rigid_modes),
-        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(slender_beams_are_not_too_soft),
-        cmocka_unit_test(inertia_counts_modes),
-        cmocka_unit_test(only_a_gap_makes_a_mode_rigid),
-        cmocka_unit_test(heavy_and_light_masses_keep_the_lowest_mode),
-        cmocka_unit_test(hertz_keep_their_sign),
-        cmocka_unit_test(what_is_no_pencil_is_refused),
-        cmocka_unit_test(a_mechanism_without_mass_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-        cmocka_unit_test(nothing_has_no_modes),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(bars_have_the_modes_of_their_mesh),
+    cmocka_unit_test(a_double_mode_is_never_cut),
+    cmocka_unit_test(a_frequency_finds_every_mode_below),
+    cmocka_unit_test(there_may_be_no_mode),
+    cmocka_unit_test(every_free_body_has_its_rigid_mode),
+    cmocka_unit_test(joints_without_mass_have_no_modes),
+    cmocka_unit_test(a_single_mass_has_a_single_mode),
+    cmocka_unit_test(ten_digits_keep_the_rigid_modes),
+    cmocka_unit_test(units_do_not_matter),
+    cmocka_unit_test(slender_beams_are_not_too_soft),
+    cmocka_unit_test(inertia_counts_modes),
+    cmocka_unit_test(only_a_gap_makes_a_mode_rigid),
+    cmocka_unit_test(heavy_and_light_masses_keep_the_lowest_mode),
+    cmocka_unit_test(hertz_keep_their_sign),
+    cmocka_unit_test(what_is_no_pencil_is_refused),
+    cmocka_unit_test(a_mechanism_without_mass_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+    cmocka_unit_test(nothing_has_no_modes),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(eigen, tests, NULL, NULL)

@@ -242,19 +242,16 @@ static void no_allocation_failure_leaks(void **state)
     ritz_sparse_free(&A);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chain_is_as_soft_as_its_springs_in_series),
-        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(full_matrices_are_solved),
-        cmocka_unit_test(free_bodies_are_refused),
-        cmocka_unit_test(the_weak_row_is_named),
-        cmocka_unit_test(long_chains_are_not_singular),
-        cmocka_unit_test(what_is_no_such_matrix_is_refused),
-        cmocka_unit_test(nothing_is_factored_too),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(chain_is_as_soft_as_its_springs_in_series),
+    cmocka_unit_test(units_do_not_matter),
+    cmocka_unit_test(full_matrices_are_solved),
+    cmocka_unit_test(free_bodies_are_refused),
+    cmocka_unit_test(the_weak_row_is_named),
+    cmocka_unit_test(long_chains_are_not_singular),
+    cmocka_unit_test(what_is_no_such_matrix_is_refused),
+    cmocka_unit_test(nothing_is_factored_too),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(factor, tests, NULL, NULL)

@@ -144,16 +144,13 @@ static void no_allocation_failure_leaks(void **state)
     ritz_sparse_free(&A);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(negative_pivots_are_counted),
-        cmocka_unit_test(solutions_are_exact_to_rounding),
-        cmocka_unit_test(singular_matrices_are_refused),
-        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(what_is_no_such_matrix_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(negative_pivots_are_counted),
+    cmocka_unit_test(solutions_are_exact_to_rounding),
+    cmocka_unit_test(singular_matrices_are_refused),
+    cmocka_unit_test(units_do_not_matter),
+    cmocka_unit_test(what_is_no_such_matrix_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(ldl, tests, NULL, NULL)

@@ -152,15 +152,12 @@ static void no_allocation_failure_leaks(void **state)
     assert_survives_every_allocation(factor(A));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_shift_solves_its_own_system),
-        cmocka_unit_test(an_unsymmetric_matrix_is_solved_whole),
-        cmocka_unit_test(undamped_resonance_is_refused),
-        cmocka_unit_test(matrices_of_different_size_are_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(each_shift_solves_its_own_system),
+    cmocka_unit_test(an_unsymmetric_matrix_is_solved_whole),
+    cmocka_unit_test(undamped_resonance_is_refused),
+    cmocka_unit_test(matrices_of_different_size_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(zldl, tests, set_up, tear_down)

@@ -111,14 +111,11 @@ static void bad_values_are_refused(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(words_set_what_they_name),
-        cmocka_unit_test(what_was_given_is_remembered_and_printed),
-        cmocka_unit_test(a_print_that_does_not_fit_is_cut),
-        cmocka_unit_test(bad_values_are_refused),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(words_set_what_they_name),
+    cmocka_unit_test(what_was_given_is_remembered_and_printed),
+    cmocka_unit_test(a_print_that_does_not_fit_is_cut),
+    cmocka_unit_test(bad_values_are_refused),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(choice, tests, NULL, NULL)

@@ -367,23 +367,20 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&bar);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(missing_parts_are_completed),
-        cmocka_unit_test(what_is_no_component_is_refused),
-        cmocka_unit_test(a_little_asymmetry_is_averaged),
-        cmocka_unit_test(a_port_is_found_or_the_nearest_named),
-        cmocka_unit_test(a_port_is_turned_into_basic_axes),
-        cmocka_unit_test(rigid_geometry_follows_its_formula),
-        cmocka_unit_test(mass_properties_are_those_of_two_points),
-        cmocka_unit_test(a_plane_model_shows_its_inertia_in_the_plane),
-        cmocka_unit_test(inputs_and_outputs_are_projected),
-        cmocka_unit_test(rigid_motion_costs_exactly_nothing),
-        cmocka_unit_test(projecting_twice_is_projecting_by_the_product),
-        cmocka_unit_test(a_basis_of_another_size_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(missing_parts_are_completed),
+    cmocka_unit_test(what_is_no_component_is_refused),
+    cmocka_unit_test(a_little_asymmetry_is_averaged),
+    cmocka_unit_test(a_port_is_found_or_the_nearest_named),
+    cmocka_unit_test(a_port_is_turned_into_basic_axes),
+    cmocka_unit_test(rigid_geometry_follows_its_formula),
+    cmocka_unit_test(mass_properties_are_those_of_two_points),
+    cmocka_unit_test(a_plane_model_shows_its_inertia_in_the_plane),
+    cmocka_unit_test(inputs_and_outputs_are_projected),
+    cmocka_unit_test(rigid_motion_costs_exactly_nothing),
+    cmocka_unit_test(projecting_twice_is_projecting_by_the_product),
+    cmocka_unit_test(a_basis_of_another_size_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(component, tests, NULL, NULL)

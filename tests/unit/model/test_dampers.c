@@ -305,21 +305,18 @@ static void no_allocation_is_forgotten(void **state)
     assert_survives_every_allocation(install_all());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_damper_goes_into_the_matrices_where_it_lies),
-        cmocka_unit_test(installing_twice_adds_nothing),
-        cmocka_unit_test(installing_after_a_change_adds_the_difference),
-        cmocka_unit_test(projecting_and_installing_commute),
-        cmocka_unit_test(projecting_once_more_takes_the_dampers_along),
-        cmocka_unit_test(structural_and_gyroscopic_damping_are_projected),
-        cmocka_unit_test(stiffness_must_be_symmetric_and_damping_need_not),
-        cmocka_unit_test(bodies_are_told_apart_by_the_names_of_their_dampers),
-        cmocka_unit_test(bad_dampers_are_refused_in_words),
-        cmocka_unit_test(dampers_of_another_model_are_refused),
-        cmocka_unit_test(no_allocation_is_forgotten),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_damper_goes_into_the_matrices_where_it_lies),
+    cmocka_unit_test(installing_twice_adds_nothing),
+    cmocka_unit_test(installing_after_a_change_adds_the_difference),
+    cmocka_unit_test(projecting_and_installing_commute),
+    cmocka_unit_test(projecting_once_more_takes_the_dampers_along),
+    cmocka_unit_test(structural_and_gyroscopic_damping_are_projected),
+    cmocka_unit_test(stiffness_must_be_symmetric_and_damping_need_not),
+    cmocka_unit_test(bodies_are_told_apart_by_the_names_of_their_dampers),
+    cmocka_unit_test(bad_dampers_are_refused_in_words),
+    cmocka_unit_test(dampers_of_another_model_are_refused),
+    cmocka_unit_test(no_allocation_is_forgotten),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(dampers, tests, NULL, NULL)

@@ -224,21 +224,18 @@ static void a_text_without_end_is_refused(void **state)
                  "1...' is too long");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modal_damping_has_one_ratio),
-        cmocka_unit_test(bands_give_their_ratio_and_none_outside),
-        cmocka_unit_test(a_shared_edge_belongs_to_the_upper_band),
-        cmocka_unit_test(rayleigh_damping_follows_its_hyperbola),
-        cmocka_unit_test(each_mode_has_its_ratio_and_the_last_is_of_all_above),
-        cmocka_unit_test(two_points_of_a_fit_are_met),
-        cmocka_unit_test(a_fit_is_least_squares_with_neither_negative),
-        cmocka_unit_test(no_text_is_no_damping),
-        cmocka_unit_test(printed_text_is_short_and_reads_back),
-        cmocka_unit_test(bad_damping_is_refused_in_words),
-        cmocka_unit_test(a_text_without_end_is_refused),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(modal_damping_has_one_ratio),
+    cmocka_unit_test(bands_give_their_ratio_and_none_outside),
+    cmocka_unit_test(a_shared_edge_belongs_to_the_upper_band),
+    cmocka_unit_test(rayleigh_damping_follows_its_hyperbola),
+    cmocka_unit_test(each_mode_has_its_ratio_and_the_last_is_of_all_above),
+    cmocka_unit_test(two_points_of_a_fit_are_met),
+    cmocka_unit_test(a_fit_is_least_squares_with_neither_negative),
+    cmocka_unit_test(no_text_is_no_damping),
+    cmocka_unit_test(printed_text_is_short_and_reads_back),
+    cmocka_unit_test(bad_damping_is_refused_in_words),
+    cmocka_unit_test(a_text_without_end_is_refused),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(damping, tests, NULL, NULL)

@@ -56,13 +56,10 @@ static void every_allocation_may_fail(void **state)
     ritz_measures_free(&all);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_measure_is_found_by_its_whole_name),
-        cmocka_unit_test(a_copy_takes_the_place_of_what_was_there),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_measure_is_found_by_its_whole_name),
+    cmocka_unit_test(a_copy_takes_the_place_of_what_was_there),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(measures, tests, NULL, NULL)

@@ -350,19 +350,16 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sparse_products_give_what_all_modes_do),
-        cmocka_unit_test(rigid_columns_have_no_stiffness_by_products),
-        cmocka_unit_test(rigid_motion_stands_apart_by_products),
-        cmocka_unit_test(ratios_without_modes_are_refused),
-        cmocka_unit_test(a_perturbed_state_is_what_its_equation_says),
-        cmocka_unit_test(a_basis_of_other_states_is_refused),
-        cmocka_unit_test(the_companion_of_all_dofs_is_the_component),
-        cmocka_unit_test(a_companion_is_of_second_order),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(sparse_products_give_what_all_modes_do),
+    cmocka_unit_test(rigid_columns_have_no_stiffness_by_products),
+    cmocka_unit_test(rigid_motion_stands_apart_by_products),
+    cmocka_unit_test(ratios_without_modes_are_refused),
+    cmocka_unit_test(a_perturbed_state_is_what_its_equation_says),
+    cmocka_unit_test(a_basis_of_other_states_is_refused),
+    cmocka_unit_test(the_companion_of_all_dofs_is_the_component),
+    cmocka_unit_test(a_companion_is_of_second_order),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(state_reduce, tests, NULL, NULL)

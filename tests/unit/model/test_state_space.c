@@ -389,21 +389,18 @@ static void no_allocation_failure_leaks(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(responses_agree_with_second_order_ones),
-        cmocka_unit_test(reduced_components_respond_as_components),
-        cmocka_unit_test(a_descriptor_responds_as_its_states),
-        cmocka_unit_test(massless_dofs_feed_through),
-        cmocka_unit_test(reduction_to_states_keeps_what_feeds_through),
-        cmocka_unit_test(reduction_to_states_keeps_rayleigh_damping),
-        cmocka_unit_test(without_left_vectors_the_right_ones_serve),
-        cmocka_unit_test(refined_grids_meet_the_poles),
-        cmocka_unit_test(structural_damping_and_great_size_are_refused),
-        cmocka_unit_test(what_does_not_fit_is_no_model),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(responses_agree_with_second_order_ones),
+    cmocka_unit_test(reduced_components_respond_as_components),
+    cmocka_unit_test(a_descriptor_responds_as_its_states),
+    cmocka_unit_test(massless_dofs_feed_through),
+    cmocka_unit_test(reduction_to_states_keeps_what_feeds_through),
+    cmocka_unit_test(reduction_to_states_keeps_rayleigh_damping),
+    cmocka_unit_test(without_left_vectors_the_right_ones_serve),
+    cmocka_unit_test(refined_grids_meet_the_poles),
+    cmocka_unit_test(structural_damping_and_great_size_are_refused),
+    cmocka_unit_test(what_does_not_fit_is_no_model),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(state_space, tests, NULL, NULL)

@@ -476,22 +476,18 @@ static void no_allocation_is_forgotten(void **state)
     ritz_scene_free(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_gyroscopic_pair_answers_in_closed_form),
-        cmocka_unit_test(one_sided_coupling_counts),
-        cmocka_unit_test(a_mode_that_creeps_is_not_given_its_neighbour_s_ratio),
-        cmocka_unit_test(damping_of_massless_points_is_in_the_response),
-        cmocka_unit_test(
-            dense_and_direct_agree_with_skew_and_structural_damping),
-        cmocka_unit_test(direct_reads_both_triangles_of_the_damping),
-        cmocka_unit_test(verification_sees_what_dampers_do),
-        cmocka_unit_test(overdamped_models_are_compared_pole_by_pole),
-        cmocka_unit_test(what_creeps_in_one_model_alone_is_wholly_wrong),
-        cmocka_unit_test(a_system_has_the_damping_of_its_bodies),
-        cmocka_unit_test(no_allocation_is_forgotten),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_gyroscopic_pair_answers_in_closed_form),
+    cmocka_unit_test(one_sided_coupling_counts),
+    cmocka_unit_test(a_mode_that_creeps_is_not_given_its_neighbour_s_ratio),
+    cmocka_unit_test(damping_of_massless_points_is_in_the_response),
+    cmocka_unit_test(dense_and_direct_agree_with_skew_and_structural_damping),
+    cmocka_unit_test(direct_reads_both_triangles_of_the_damping),
+    cmocka_unit_test(verification_sees_what_dampers_do),
+    cmocka_unit_test(overdamped_models_are_compared_pole_by_pole),
+    cmocka_unit_test(what_creeps_in_one_model_alone_is_wholly_wrong),
+    cmocka_unit_test(a_system_has_the_damping_of_its_bodies),
+    cmocka_unit_test(no_allocation_is_forgotten),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(damped, tests, folder_make, folder_remove)

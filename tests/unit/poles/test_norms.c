@@ -347,22 +347,18 @@ static void norms_survive_every_allocation(void **unused)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slicot_publishes_this_peak),
-        cmocka_unit_test(
-            slicot_publishes_this_norm_of_stable_and_unstable_parts),
-        cmocka_unit_test(a_mode_has_its_closed_forms),
-        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(feedthrough_counts),
-        cmocka_unit_test(collections_have_these_norms),
-        cmocka_unit_test(large_models_get_a_value_that_is_met),
-        cmocka_unit_test(a_difference_is_what_both_answer_apart),
-        cmocka_unit_test(models_that_differ_in_kind_have_no_difference),
-        cmocka_unit_test(infinite_norms_and_bad_tolerances_are_refused),
-        cmocka_unit_test(norms_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(slicot_publishes_this_peak),
+    cmocka_unit_test(slicot_publishes_this_norm_of_stable_and_unstable_parts),
+    cmocka_unit_test(a_mode_has_its_closed_forms),
+    cmocka_unit_test(units_do_not_matter),
+    cmocka_unit_test(feedthrough_counts),
+    cmocka_unit_test(collections_have_these_norms),
+    cmocka_unit_test(large_models_get_a_value_that_is_met),
+    cmocka_unit_test(a_difference_is_what_both_answer_apart),
+    cmocka_unit_test(models_that_differ_in_kind_have_no_difference),
+    cmocka_unit_test(infinite_norms_and_bad_tolerances_are_refused),
+    cmocka_unit_test(norms_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(norms, tests, NULL, NULL)

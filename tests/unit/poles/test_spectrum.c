@@ -529,27 +529,24 @@ static void no_allocation_of_a_large_one_is_forgotten(void **state)
     ritz_component_free(&chain);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mass_swings_creeps_or_does_neither),
-        cmocka_unit_test(ratios_and_rayleigh_act_on_the_modes),
-        cmocka_unit_test(structural_damping_is_a_complex_stiffness),
-        cmocka_unit_test(a_gyroscopic_pair_splits_and_is_not_damped),
-        cmocka_unit_test(a_damper_between_massless_points_creeps),
-        cmocka_unit_test(massless_points_that_nothing_damps_have_no_pole),
-        cmocka_unit_test(rigid_motion_is_counted_and_creeps_where_it_is_damped),
-        cmocka_unit_test(what_grows_has_a_negative_ratio),
-        cmocka_unit_test(what_cannot_be_answered_is_refused_in_words),
-        cmocka_unit_test(the_chain_has_its_published_poles),
-        cmocka_unit_test(scans_find_the_published_optima),
-        cmocka_unit_test(a_mode_is_followed_past_poles_that_come_between),
-        cmocka_unit_test(bad_scans_are_refused_in_words),
-        cmocka_unit_test(a_large_component_has_the_poles_of_its_dense_matrices),
-        cmocka_unit_test(a_large_component_heeds_given_damping),
-        cmocka_unit_test(no_allocation_is_forgotten),
-        cmocka_unit_test(no_allocation_of_a_large_one_is_forgotten),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(one_mass_swings_creeps_or_does_neither),
+    cmocka_unit_test(ratios_and_rayleigh_act_on_the_modes),
+    cmocka_unit_test(structural_damping_is_a_complex_stiffness),
+    cmocka_unit_test(a_gyroscopic_pair_splits_and_is_not_damped),
+    cmocka_unit_test(a_damper_between_massless_points_creeps),
+    cmocka_unit_test(massless_points_that_nothing_damps_have_no_pole),
+    cmocka_unit_test(rigid_motion_is_counted_and_creeps_where_it_is_damped),
+    cmocka_unit_test(what_grows_has_a_negative_ratio),
+    cmocka_unit_test(what_cannot_be_answered_is_refused_in_words),
+    cmocka_unit_test(the_chain_has_its_published_poles),
+    cmocka_unit_test(scans_find_the_published_optima),
+    cmocka_unit_test(a_mode_is_followed_past_poles_that_come_between),
+    cmocka_unit_test(bad_scans_are_refused_in_words),
+    cmocka_unit_test(a_large_component_has_the_poles_of_its_dense_matrices),
+    cmocka_unit_test(a_large_component_heeds_given_damping),
+    cmocka_unit_test(no_allocation_is_forgotten),
+    cmocka_unit_test(no_allocation_of_a_large_one_is_forgotten),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(spectrum, tests, NULL, NULL)

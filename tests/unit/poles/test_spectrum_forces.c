@@ -67,11 +67,8 @@ static void rigid_motion_is_told_behind_negative_eigenvalues(void **state)
     ritz_dense_free(&M);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_motion_is_told_behind_negative_eigenvalues),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(rigid_motion_is_told_behind_negative_eigenvalues),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(spectrum_forces, tests, NULL, NULL)

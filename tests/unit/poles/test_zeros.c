@@ -515,23 +515,20 @@ static void zeros_survive_every_allocation(void **state)
     chain_free_all(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_masses_have_the_zero_of_the_second_alone),
-        cmocka_unit_test(a_damped_pair_has_the_zeros_of_its_link),
-        cmocka_unit_test(collocated_zeros_are_poles_of_the_held_structure),
-        cmocka_unit_test(zeros_between_are_those_of_both_ends),
-        cmocka_unit_test(a_wave_guide_has_no_zeros_of_rounding),
-        cmocka_unit_test(a_mode_that_is_not_seen_makes_no_zero),
-        cmocka_unit_test(what_the_middle_does_not_see_is_not_summed),
-        cmocka_unit_test(derivatives_have_zeros_at_rest),
-        cmocka_unit_test(both_forms_have_the_same_zeros),
-        cmocka_unit_test(all_channels_collocated_have_poles_of_what_is_held),
-        cmocka_unit_test(a_state_space_has_the_zeros_of_its_numerator),
-        cmocka_unit_test(what_has_no_zeros_is_refused),
-        cmocka_unit_test(zeros_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(two_masses_have_the_zero_of_the_second_alone),
+    cmocka_unit_test(a_damped_pair_has_the_zeros_of_its_link),
+    cmocka_unit_test(collocated_zeros_are_poles_of_the_held_structure),
+    cmocka_unit_test(zeros_between_are_those_of_both_ends),
+    cmocka_unit_test(a_wave_guide_has_no_zeros_of_rounding),
+    cmocka_unit_test(a_mode_that_is_not_seen_makes_no_zero),
+    cmocka_unit_test(what_the_middle_does_not_see_is_not_summed),
+    cmocka_unit_test(derivatives_have_zeros_at_rest),
+    cmocka_unit_test(both_forms_have_the_same_zeros),
+    cmocka_unit_test(all_channels_collocated_have_poles_of_what_is_held),
+    cmocka_unit_test(a_state_space_has_the_zeros_of_its_numerator),
+    cmocka_unit_test(what_has_no_zeros_is_refused),
+    cmocka_unit_test(zeros_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(zeros, tests, NULL, NULL)

@@ -347,17 +347,14 @@ static void free_bodies_survive_every_allocation(void **state)
     bodies_free(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(zeros_of_a_free_root_are_its_arms),
-        cmocka_unit_test(of_all_channels_no_rigid_motion_is_left_over),
-        cmocka_unit_test(true_zeros_near_rest_stay),
-        cmocka_unit_test(a_loaded_rigid_motion_stays),
-        cmocka_unit_test(what_an_output_does_not_see_is_no_zero),
-        cmocka_unit_test(a_rigid_plate_has_none),
-        cmocka_unit_test(free_bodies_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(zeros_of_a_free_root_are_its_arms),
+    cmocka_unit_test(of_all_channels_no_rigid_motion_is_left_over),
+    cmocka_unit_test(true_zeros_near_rest_stay),
+    cmocka_unit_test(a_loaded_rigid_motion_stays),
+    cmocka_unit_test(what_an_output_does_not_see_is_no_zero),
+    cmocka_unit_test(a_rigid_plate_has_none),
+    cmocka_unit_test(free_bodies_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(zeros_free, tests, NULL, NULL)

@@ -403,21 +403,18 @@ static void comparisons_survive_every_allocation(void **state)
     assert_survives_every_allocation(all_once());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ranking_agrees_with_itself_and_not_with_its_reverse),
-        cmocka_unit_test(ties_share_their_place),
-        cmocka_unit_test(the_published_modal_costs_agree_as_the_paper_says),
-        cmocka_unit_test(clusters_are_cut_by_no_depth),
-        cmocka_unit_test(what_has_nothing_in_common_is_refused),
-        cmocka_unit_test(the_largest_value_says_where_it_stands),
-        cmocka_unit_test(several_rankings_come_back_from_a_file),
-        cmocka_unit_test(weights_that_oscillate_are_found_out),
-        cmocka_unit_test(weights_settle_on_what_is_missed),
-        cmocka_unit_test(weights_for_nothing_are_refused),
-        cmocka_unit_test(comparisons_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_ranking_agrees_with_itself_and_not_with_its_reverse),
+    cmocka_unit_test(ties_share_their_place),
+    cmocka_unit_test(the_published_modal_costs_agree_as_the_paper_says),
+    cmocka_unit_test(clusters_are_cut_by_no_depth),
+    cmocka_unit_test(what_has_nothing_in_common_is_refused),
+    cmocka_unit_test(the_largest_value_says_where_it_stands),
+    cmocka_unit_test(several_rankings_come_back_from_a_file),
+    cmocka_unit_test(weights_that_oscillate_are_found_out),
+    cmocka_unit_test(weights_settle_on_what_is_missed),
+    cmocka_unit_test(weights_for_nothing_are_refused),
+    cmocka_unit_test(comparisons_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(agreement, tests, NULL, NULL)

@@ -661,25 +661,22 @@ static void rankers_survive_every_allocation(void **state)
     ritz_reduced_free(&clamped);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mode_has_its_cost_and_its_norm),
-        cmocka_unit_test(modal_costs_sum_to_the_norm_squared),
-        cmocka_unit_test(a_negative_cost_is_said_and_ranked_by_magnitude),
-        cmocka_unit_test(light_costs_are_the_squares_of_the_norms),
-        cmocka_unit_test(a_band_without_ends_gives_the_whole_value),
-        cmocka_unit_test(effective_masses_sum_to_the_mass_that_moves),
-        cmocka_unit_test(a_cantilever_has_the_effective_masses_of_the_books),
-        cmocka_unit_test(interface_masses_sum_to_what_the_interior_carries),
-        cmocka_unit_test(held_modes_are_those_of_the_clamped_beam),
-        cmocka_unit_test(a_joined_system_knows_its_mass_in_rigid_motion),
-        cmocka_unit_test(weights_are_factors_of_costs),
-        cmocka_unit_test(weights_are_refused_in_words),
-        cmocka_unit_test(rankings_say_what_they_lack),
-        cmocka_unit_test(masses_of_other_models_are_refused),
-        cmocka_unit_test(rankers_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(one_mode_has_its_cost_and_its_norm),
+    cmocka_unit_test(modal_costs_sum_to_the_norm_squared),
+    cmocka_unit_test(a_negative_cost_is_said_and_ranked_by_magnitude),
+    cmocka_unit_test(light_costs_are_the_squares_of_the_norms),
+    cmocka_unit_test(a_band_without_ends_gives_the_whole_value),
+    cmocka_unit_test(effective_masses_sum_to_the_mass_that_moves),
+    cmocka_unit_test(a_cantilever_has_the_effective_masses_of_the_books),
+    cmocka_unit_test(interface_masses_sum_to_what_the_interior_carries),
+    cmocka_unit_test(held_modes_are_those_of_the_clamped_beam),
+    cmocka_unit_test(a_joined_system_knows_its_mass_in_rigid_motion),
+    cmocka_unit_test(weights_are_factors_of_costs),
+    cmocka_unit_test(weights_are_refused_in_words),
+    cmocka_unit_test(rankings_say_what_they_lack),
+    cmocka_unit_test(masses_of_other_models_are_refused),
+    cmocka_unit_test(rankers_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(rankers, tests, set_up, tear_down)

@@ -365,21 +365,18 @@ static void ranking_survives_every_allocation(void **state)
     assert_survives_every_allocation(rank_once(*state));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_cantilever_has_the_published_frequencies),
-        cmocka_unit_test(gregory_gives_the_published_values_in_order),
-        cmocka_unit_test(exact_hankel_values_are_the_published_pairs),
-        cmocka_unit_test(one_mode_has_the_closed_form_pair),
-        cmocka_unit_test(hankel_values_are_the_eigenvalues_of_the_product),
-        cmocka_unit_test(a_cluster_has_one_value_whatever_spans_it),
-        cmocka_unit_test(near_modes_are_flagged_and_named),
-        cmocka_unit_test(damping_limits_and_accelerations_are_taken_in),
-        cmocka_unit_test(what_cannot_be_ranked_is_refused_in_words),
-        cmocka_unit_test(rankings_are_found_by_name_or_nearly),
-        cmocka_unit_test(ranking_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_cantilever_has_the_published_frequencies),
+    cmocka_unit_test(gregory_gives_the_published_values_in_order),
+    cmocka_unit_test(exact_hankel_values_are_the_published_pairs),
+    cmocka_unit_test(one_mode_has_the_closed_form_pair),
+    cmocka_unit_test(hankel_values_are_the_eigenvalues_of_the_product),
+    cmocka_unit_test(a_cluster_has_one_value_whatever_spans_it),
+    cmocka_unit_test(near_modes_are_flagged_and_named),
+    cmocka_unit_test(damping_limits_and_accelerations_are_taken_in),
+    cmocka_unit_test(what_cannot_be_ranked_is_refused_in_words),
+    cmocka_unit_test(rankings_are_found_by_name_or_nearly),
+    cmocka_unit_test(ranking_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TEST_MODULE(ranking, tests, set_up, tear_down)

@@ -493,21 +493,18 @@ static void loops_survive_every_allocation(void **state)
     part(&p);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_loop_of_three_lags_has_the_margins_of_the_textbook),
-        cmocka_unit_test(a_gain_beyond_the_margin_makes_it_unstable),
-        cmocka_unit_test(velocity_feedback_is_a_damper),
-        cmocka_unit_test(both_ways_close_the_same_loop),
-        cmocka_unit_test(sensitivity_is_the_inverse_of_the_return_difference),
-        cmocka_unit_test(loops_without_answer_are_refused),
-        cmocka_unit_test(a_peak_is_found_between_points),
-        cmocka_unit_test(the_peak_of_several_channels_is_the_h_infinity_norm),
-        cmocka_unit_test(all_values_are_there_and_descend),
-        cmocka_unit_test(a_peak_that_nothing_damps_is_infinite),
-        cmocka_unit_test(loops_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_loop_of_three_lags_has_the_margins_of_the_textbook),
+    cmocka_unit_test(a_gain_beyond_the_margin_makes_it_unstable),
+    cmocka_unit_test(velocity_feedback_is_a_damper),
+    cmocka_unit_test(both_ways_close_the_same_loop),
+    cmocka_unit_test(sensitivity_is_the_inverse_of_the_return_difference),
+    cmocka_unit_test(loops_without_answer_are_refused),
+    cmocka_unit_test(a_peak_is_found_between_points),
+    cmocka_unit_test(the_peak_of_several_channels_is_the_h_infinity_norm),
+    cmocka_unit_test(all_values_are_there_and_descend),
+    cmocka_unit_test(a_peak_that_nothing_damps_is_infinite),
+    cmocka_unit_test(loops_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(closed_loop, tests, NULL, NULL)

@@ -210,16 +210,13 @@ static void an_interface_on_a_line_is_refused(void **state)
     ritz_component_free(&c);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lund_has_its_eigenvalues),
-        cmocka_unit_test(lf10_has_its_frequencies),
-        cmocka_unit_test(lf10_gives_its_static_gain),
-        cmocka_unit_test(lf10_is_damped_in_proportion),
-        cmocka_unit_test(dmig_pair_has_its_frequencies),
-        cmocka_unit_test(an_interface_on_a_line_is_refused),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(lund_has_its_eigenvalues),
+    cmocka_unit_test(lf10_has_its_frequencies),
+    cmocka_unit_test(lf10_gives_its_static_gain),
+    cmocka_unit_test(lf10_is_damped_in_proportion),
+    cmocka_unit_test(dmig_pair_has_its_frequencies),
+    cmocka_unit_test(an_interface_on_a_line_is_refused),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(pairs, tests, NULL, NULL)

@@ -263,15 +263,12 @@ static void the_rest_survives_every_allocation(void **state)
     ritz_component_free(&bar);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_and_factors_agree_where_damping_is_proportional),
-        cmocka_unit_test(damping_that_leaves_no_series_takes_factors),
-        cmocka_unit_test(damping_of_higher_powers_takes_factors),
-        cmocka_unit_test(a_slow_body_answers_as_a_fast_one_does),
-        cmocka_unit_test(the_rest_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(modes_and_factors_agree_where_damping_is_proportional),
+    cmocka_unit_test(damping_that_leaves_no_series_takes_factors),
+    cmocka_unit_test(damping_of_higher_powers_takes_factors),
+    cmocka_unit_test(a_slow_body_answers_as_a_fast_one_does),
+    cmocka_unit_test(the_rest_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(residual, tests, NULL, NULL)

@@ -431,22 +431,19 @@ static void responses_survive_every_allocation(void **state)
     ritz_component_free(&beam);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_dof_answers_as_the_textbook_says),
-        cmocka_unit_test(a_peak_at_a_ratio_of_1e_4_is_not_missed),
-        cmocka_unit_test(a_grid_ascends_and_stays_in_its_range),
-        cmocka_unit_test(direct_and_modal_agree_with_rayleigh_damping),
-        cmocka_unit_test(direct_and_modal_agree_with_ratios),
-        cmocka_unit_test(dampers_and_ratios_act_together_exactly),
-        cmocka_unit_test(dampers_alone_are_what_the_dense_system_says),
-        cmocka_unit_test(rigid_motion_answers_with_its_mass),
-        cmocka_unit_test(damping_that_couples_modes_is_solved_for),
-        cmocka_unit_test(an_undamped_pole_is_refused_by_its_frequency),
-        cmocka_unit_test(a_range_that_is_none_is_refused),
-        cmocka_unit_test(responses_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(one_dof_answers_as_the_textbook_says),
+    cmocka_unit_test(a_peak_at_a_ratio_of_1e_4_is_not_missed),
+    cmocka_unit_test(a_grid_ascends_and_stays_in_its_range),
+    cmocka_unit_test(direct_and_modal_agree_with_rayleigh_damping),
+    cmocka_unit_test(direct_and_modal_agree_with_ratios),
+    cmocka_unit_test(dampers_and_ratios_act_together_exactly),
+    cmocka_unit_test(dampers_alone_are_what_the_dense_system_says),
+    cmocka_unit_test(rigid_motion_answers_with_its_mass),
+    cmocka_unit_test(damping_that_couples_modes_is_solved_for),
+    cmocka_unit_test(an_undamped_pole_is_refused_by_its_frequency),
+    cmocka_unit_test(a_range_that_is_none_is_refused),
+    cmocka_unit_test(responses_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(response, tests, NULL, NULL)

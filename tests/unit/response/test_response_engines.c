@@ -424,18 +424,15 @@ static void engines_survive_every_allocation(void **state)
     ritz_component_free(&beam);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(krylov_answers_as_the_full_matrices_do),
-        cmocka_unit_test(rational_answers_as_the_full_matrices_do),
-        cmocka_unit_test(interpolation_of_one_mode_takes_few_nodes),
-        cmocka_unit_test(engines_refuse_what_they_are_not_for),
-        cmocka_unit_test(every_engine_refuses_an_undamped_pole),
-        cmocka_unit_test(an_acceleration_on_an_undamped_pole_is_refused),
-        cmocka_unit_test(beyond_its_range_a_responder_says_nothing),
-        cmocka_unit_test(engines_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(krylov_answers_as_the_full_matrices_do),
+    cmocka_unit_test(rational_answers_as_the_full_matrices_do),
+    cmocka_unit_test(interpolation_of_one_mode_takes_few_nodes),
+    cmocka_unit_test(engines_refuse_what_they_are_not_for),
+    cmocka_unit_test(every_engine_refuses_an_undamped_pole),
+    cmocka_unit_test(an_acceleration_on_an_undamped_pole_is_refused),
+    cmocka_unit_test(beyond_its_range_a_responder_says_nothing),
+    cmocka_unit_test(engines_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(response_engines, tests, NULL, NULL)

@@ -274,16 +274,13 @@ static void following_survives_every_allocation(void **state)
     ritz_io_free(&o.io);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_tolerance_holds_at_a_thousand_frequencies),
-        cmocka_unit_test(a_zero_between_points_is_a_point),
-        cmocka_unit_test(a_free_body_is_followed_by_krylov),
-        cmocka_unit_test(cubics_are_exact_for_cubics),
-        cmocka_unit_test(what_cannot_be_followed_is_refused),
-        cmocka_unit_test(following_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_tolerance_holds_at_a_thousand_frequencies),
+    cmocka_unit_test(a_zero_between_points_is_a_point),
+    cmocka_unit_test(a_free_body_is_followed_by_krylov),
+    cmocka_unit_test(cubics_are_exact_for_cubics),
+    cmocka_unit_test(what_cannot_be_followed_is_refused),
+    cmocka_unit_test(following_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(response_follow, tests, NULL, NULL)

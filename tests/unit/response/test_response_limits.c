@@ -416,17 +416,14 @@ static void a_faint_link_between_equals_shows_both_poles(void **state)
     ritz_component_free(&pair);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rest_without_mass_answers_by_its_springs),
-        cmocka_unit_test(a_reference_may_have_no_mass_left),
-        cmocka_unit_test(a_small_gyroscopic_model_is_answered),
-        cmocka_unit_test(where_an_engine_gives_up_direct_answers),
-        cmocka_unit_test(an_output_of_rounding_holds_up_nothing),
-        cmocka_unit_test(points_survive_every_allocation),
-        cmocka_unit_test(a_faint_link_between_equals_shows_both_poles),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_rest_without_mass_answers_by_its_springs),
+    cmocka_unit_test(a_reference_may_have_no_mass_left),
+    cmocka_unit_test(a_small_gyroscopic_model_is_answered),
+    cmocka_unit_test(where_an_engine_gives_up_direct_answers),
+    cmocka_unit_test(an_output_of_rounding_holds_up_nothing),
+    cmocka_unit_test(points_survive_every_allocation),
+    cmocka_unit_test(a_faint_link_between_equals_shows_both_poles),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(response_limits, tests, NULL, NULL)

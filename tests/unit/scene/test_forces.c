@@ -114,15 +114,12 @@ static void no_allocation_failure_leaks(void **state)
     assert_survives_every_allocation(read_anew());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(directions_of_a_list_act_at_once),
-        cmocka_unit_test(a_motor_acts_against_the_other_side),
-        cmocka_unit_test(forces_that_make_no_sense_are_refused),
-        cmocka_unit_test(a_port_without_the_direction_is_refused),
-        cmocka_unit_test(no_allocation_failure_leaks),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(directions_of_a_list_act_at_once),
+    cmocka_unit_test(a_motor_acts_against_the_other_side),
+    cmocka_unit_test(forces_that_make_no_sense_are_refused),
+    cmocka_unit_test(a_port_without_the_direction_is_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(forces, tests, NULL, NULL)

@@ -611,30 +611,27 @@ static void integrators_survive_every_allocation(void **state)
     motions_free(&m);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(periods_err_as_the_scheme_says),
-        cmocka_unit_test(the_trapezoidal_rule_keeps_energy),
-        cmocka_unit_test(generalised_alpha_damps_by_rho_a_step),
-        cmocka_unit_test(orders_are_two_with_dampers_and_inputs),
-        cmocka_unit_test(a_held_input_keeps_second_order),
-        cmocka_unit_test(the_trapezoidal_rule_balances_energies),
-        cmocka_unit_test(an_explicit_step_above_its_limit_is_refused_and_grows),
-        cmocka_unit_test(central_differences_stand_damping_to_their_limit),
-        cmocka_unit_test(a_component_and_its_dense_matrices_answer_alike),
-        cmocka_unit_test(a_component_goes_by_its_modes),
-        cmocka_unit_test(a_dof_without_mass_follows_at_once),
-        cmocka_unit_test(an_impulse_is_a_velocity),
-        cmocka_unit_test(a_state_space_is_simulated),
-        cmocka_unit_test(a_step_is_halved_until_it_is_accurate),
-        cmocka_unit_test(what_makes_no_sense_is_refused),
-        cmocka_unit_test(damping_of_a_dof_without_mass_is_refused),
-        cmocka_unit_test(an_unstable_model_leaves_all_bounds),
-        cmocka_unit_test(signals_are_words_or_tables),
-        cmocka_unit_test(a_table_is_linear_between_its_points),
-        cmocka_unit_test(integrators_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(periods_err_as_the_scheme_says),
+    cmocka_unit_test(the_trapezoidal_rule_keeps_energy),
+    cmocka_unit_test(generalised_alpha_damps_by_rho_a_step),
+    cmocka_unit_test(orders_are_two_with_dampers_and_inputs),
+    cmocka_unit_test(a_held_input_keeps_second_order),
+    cmocka_unit_test(the_trapezoidal_rule_balances_energies),
+    cmocka_unit_test(an_explicit_step_above_its_limit_is_refused_and_grows),
+    cmocka_unit_test(central_differences_stand_damping_to_their_limit),
+    cmocka_unit_test(a_component_and_its_dense_matrices_answer_alike),
+    cmocka_unit_test(a_component_goes_by_its_modes),
+    cmocka_unit_test(a_dof_without_mass_follows_at_once),
+    cmocka_unit_test(an_impulse_is_a_velocity),
+    cmocka_unit_test(a_state_space_is_simulated),
+    cmocka_unit_test(a_step_is_halved_until_it_is_accurate),
+    cmocka_unit_test(what_makes_no_sense_is_refused),
+    cmocka_unit_test(damping_of_a_dof_without_mass_is_refused),
+    cmocka_unit_test(an_unstable_model_leaves_all_bounds),
+    cmocka_unit_test(signals_are_words_or_tables),
+    cmocka_unit_test(a_table_is_linear_between_its_points),
+    cmocka_unit_test(integrators_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(simulate, tests, NULL, NULL)

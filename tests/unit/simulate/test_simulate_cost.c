@@ -180,18 +180,15 @@ static void costs_survive_every_allocation(void **state)
     motions_free(&m);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_are_those_of_the_scheme),
-        cmocka_unit_test(the_explicit_step_heeds_damping),
-        cmocka_unit_test(a_rigid_body_has_no_explicit_limit),
-        cmocka_unit_test(more_coordinates_cost_more),
-        cmocka_unit_test(costs_without_sense_are_refused),
-        cmocka_unit_test(growth_tells_an_unstable_model),
-        cmocka_unit_test(growth_tells_an_unsymmetric_damping),
-        cmocka_unit_test(costs_survive_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(steps_are_those_of_the_scheme),
+    cmocka_unit_test(the_explicit_step_heeds_damping),
+    cmocka_unit_test(a_rigid_body_has_no_explicit_limit),
+    cmocka_unit_test(more_coordinates_cost_more),
+    cmocka_unit_test(costs_without_sense_are_refused),
+    cmocka_unit_test(growth_tells_an_unstable_model),
+    cmocka_unit_test(growth_tells_an_unsymmetric_damping),
+    cmocka_unit_test(costs_survive_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(simulate_cost, tests, NULL, NULL)

@@ -366,20 +366,16 @@ static void modal_survives_every_allocation(void **state)
     motions_free(&m);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_oscillator_is_exact_at_double_and_vanishing_roots),
-        cmocka_unit_test(a_step_response_is_that_of_the_textbook_at_any_step),
-        cmocka_unit_test(
-            modes_that_damping_couples_go_together_as_scipy_has_them),
-        cmocka_unit_test(an_input_is_held_or_linear_over_a_step_as_asked),
-        cmocka_unit_test(a_free_body_is_accelerated),
-        cmocka_unit_test(energies_balance_with_coupled_damping_and_inputs),
-        cmocka_unit_test(an_integral_of_a_form_is_that_of_its_exponential),
-        cmocka_unit_test(a_step_too_long_for_its_states_is_refused),
-        cmocka_unit_test(modal_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(an_oscillator_is_exact_at_double_and_vanishing_roots),
+    cmocka_unit_test(a_step_response_is_that_of_the_textbook_at_any_step),
+    cmocka_unit_test(modes_that_damping_couples_go_together_as_scipy_has_them),
+    cmocka_unit_test(an_input_is_held_or_linear_over_a_step_as_asked),
+    cmocka_unit_test(a_free_body_is_accelerated),
+    cmocka_unit_test(energies_balance_with_coupled_damping_and_inputs),
+    cmocka_unit_test(an_integral_of_a_form_is_that_of_its_exponential),
+    cmocka_unit_test(a_step_too_long_for_its_states_is_refused),
+    cmocka_unit_test(modal_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(simulate_modal, tests, NULL, NULL)

@@ -241,17 +241,14 @@ static void a_search_survives_every_allocation(void **state)
     motions_free(&m);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_output_that_is_rounding_does_not_drive_the_step),
-        cmocka_unit_test(nor_does_one_of_a_state_space),
-        cmocka_unit_test(an_output_that_responds_weakly_is_held),
-        cmocka_unit_test(what_a_step_does_not_resolve_is_no_rounding),
-        cmocka_unit_test(a_sine_is_seen_by_the_first_step),
-        cmocka_unit_test(more_steps_than_are_tried_are_refused),
-        cmocka_unit_test(a_search_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(an_output_that_is_rounding_does_not_drive_the_step),
+    cmocka_unit_test(nor_does_one_of_a_state_space),
+    cmocka_unit_test(an_output_that_responds_weakly_is_held),
+    cmocka_unit_test(what_a_step_does_not_resolve_is_no_rounding),
+    cmocka_unit_test(a_sine_is_seen_by_the_first_step),
+    cmocka_unit_test(more_steps_than_are_tried_are_refused),
+    cmocka_unit_test(a_search_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(simulate_rounding, tests, NULL, NULL)

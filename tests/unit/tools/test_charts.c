@@ -264,23 +264,20 @@ static void a_page_gives_its_own_names_and_colours(void **state)
     free(svg);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(decades_hold_all_values),
-        cmocka_unit_test(zero_and_less_stand_at_the_foot),
-        cmocka_unit_test(nothing_above_the_floor_still_has_an_axis),
-        cmocka_unit_test(a_tight_axis_ends_at_one_two_or_five),
-        cmocka_unit_test(a_linear_axis_holds_one_value_too),
-        cmocka_unit_test(a_decade_is_as_long_as_the_next),
-        cmocka_unit_test(words_do_not_cover_each_other),
-        cmocka_unit_test(a_word_that_must_be_is_written_anywhere),
-        cmocka_unit_test(hostile_text_is_text),
-        cmocka_unit_test(a_picture_is_named_and_its_points_are),
-        cmocka_unit_test(words_have_a_rim_of_paper),
-        cmocka_unit_test(a_tip_that_is_not_there_is_empty),
-        cmocka_unit_test(a_page_gives_its_own_names_and_colours),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(decades_hold_all_values),
+    cmocka_unit_test(zero_and_less_stand_at_the_foot),
+    cmocka_unit_test(nothing_above_the_floor_still_has_an_axis),
+    cmocka_unit_test(a_tight_axis_ends_at_one_two_or_five),
+    cmocka_unit_test(a_linear_axis_holds_one_value_too),
+    cmocka_unit_test(a_decade_is_as_long_as_the_next),
+    cmocka_unit_test(words_do_not_cover_each_other),
+    cmocka_unit_test(a_word_that_must_be_is_written_anywhere),
+    cmocka_unit_test(hostile_text_is_text),
+    cmocka_unit_test(a_picture_is_named_and_its_points_are),
+    cmocka_unit_test(words_have_a_rim_of_paper),
+    cmocka_unit_test(a_tip_that_is_not_there_is_empty),
+    cmocka_unit_test(a_page_gives_its_own_names_and_colours),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(charts, tests, NULL, NULL)

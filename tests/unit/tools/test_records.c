@@ -192,17 +192,14 @@ static void records_that_do_not_compare_are_refused(void **state)
     records_free(&all);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(records_hold_what_lines_say),
-        cmocka_unit_test(methods_are_sorted),
-        cmocka_unit_test(a_line_that_is_repeated_counts_once),
-        cmocka_unit_test(limits_that_are_not_met_are_not),
-        cmocka_unit_test(verified_files_cost_what_made_them),
-        cmocka_unit_test(lines_that_are_no_records_are_named),
-        cmocka_unit_test(records_that_do_not_compare_are_refused),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(records_hold_what_lines_say),
+    cmocka_unit_test(methods_are_sorted),
+    cmocka_unit_test(a_line_that_is_repeated_counts_once),
+    cmocka_unit_test(limits_that_are_not_met_are_not),
+    cmocka_unit_test(verified_files_cost_what_made_them),
+    cmocka_unit_test(lines_that_are_no_records_are_named),
+    cmocka_unit_test(records_that_do_not_compare_are_refused),
+};
 
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
-}
+TEST_MODULE(records, tests, folder_make, folder_remove)

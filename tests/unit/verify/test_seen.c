@@ -247,17 +247,14 @@ static void verifying_a_system_survives_every_allocation(void **state)
     ritz_configuration_free(&at);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inputs_and_outputs_are_scaled_by_their_largest),
-        cmocka_unit_test(only_modes_that_are_seen_decide),
-        cmocka_unit_test(noise_has_no_mac_and_is_counted),
-        cmocka_unit_test(an_output_of_rounding_counts_for_nothing),
-        cmocka_unit_test(modes_that_have_changed_places_are_found),
-        cmocka_unit_test(nothing_is_like_a_mode_that_is_missing),
-        cmocka_unit_test(verifying_a_system_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(inputs_and_outputs_are_scaled_by_their_largest),
+    cmocka_unit_test(only_modes_that_are_seen_decide),
+    cmocka_unit_test(noise_has_no_mac_and_is_counted),
+    cmocka_unit_test(an_output_of_rounding_counts_for_nothing),
+    cmocka_unit_test(modes_that_have_changed_places_are_found),
+    cmocka_unit_test(nothing_is_like_a_mode_that_is_missing),
+    cmocka_unit_test(verifying_a_system_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(seen, tests, NULL, NULL)

@@ -284,19 +284,15 @@ static void verifying_survives_every_allocation(void **state)
     ritz_component_free(&p.beam);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exact_modes_have_no_error_but_in_the_gain),
-        cmocka_unit_test(the_whole_space_has_no_error_at_all),
-        cmocka_unit_test(a_mode_that_was_left_out_is_missing_by_name),
-        cmocka_unit_test(
-            the_gain_of_one_flexible_mode_is_one_over_its_stiffness),
-        cmocka_unit_test(estimates_hold_and_vanish_for_exact_modes),
-        cmocka_unit_test(other_models_are_refused_in_words),
-        cmocka_unit_test(limits_hold_from_the_right_side),
-        cmocka_unit_test(verifying_survives_every_allocation),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(exact_modes_have_no_error_but_in_the_gain),
+    cmocka_unit_test(the_whole_space_has_no_error_at_all),
+    cmocka_unit_test(a_mode_that_was_left_out_is_missing_by_name),
+    cmocka_unit_test(the_gain_of_one_flexible_mode_is_one_over_its_stiffness),
+    cmocka_unit_test(estimates_hold_and_vanish_for_exact_modes),
+    cmocka_unit_test(other_models_are_refused_in_words),
+    cmocka_unit_test(limits_hold_from_the_right_side),
+    cmocka_unit_test(verifying_survives_every_allocation),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(verify, tests, NULL, NULL)

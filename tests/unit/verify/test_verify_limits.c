@@ -298,18 +298,13 @@ static void what_cancels_is_no_response(void **state)
     ritz_component_free(&c);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rigid_motion_that_is_not_there_is_missing),
-        cmocka_unit_test(
-            a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies),
-        cmocka_unit_test(
-            a_response_that_does_not_exist_cannot_be_held_to_a_limit),
-        cmocka_unit_test(the_flexible_response_of_what_is_held_is_all_of_it),
-        cmocka_unit_test(rounding_of_a_ratio_is_no_ratio),
-        cmocka_unit_test(what_cancels_is_no_response),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_rigid_motion_that_is_not_there_is_missing),
+    cmocka_unit_test(a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies),
+    cmocka_unit_test(a_response_that_does_not_exist_cannot_be_held_to_a_limit),
+    cmocka_unit_test(the_flexible_response_of_what_is_held_is_all_of_it),
+    cmocka_unit_test(rounding_of_a_ratio_is_no_ratio),
+    cmocka_unit_test(what_cancels_is_no_response),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(verify_limits, tests, NULL, NULL)

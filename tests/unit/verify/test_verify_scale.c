@@ -103,11 +103,8 @@ static void errors_do_not_know_the_unit_of_time(void **state)
     ritz_measures_free(&once);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_do_not_know_the_unit_of_time),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(errors_do_not_know_the_unit_of_time),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(verify_scale, tests, NULL, NULL)

@@ -232,18 +232,15 @@ static void every_allocation_may_fail(void **state)
     ritz_state_space_free(&reduced);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tenth_missing_is_a_tenth_by_every_measure),
-        cmocka_unit_test(the_error_is_held_to_the_bound_that_came_with_it),
-        cmocka_unit_test(outputs_are_divided_by_their_limits),
-        cmocka_unit_test(rigid_motions_of_both_are_left_out_of_norms),
-        cmocka_unit_test(what_reaches_an_output_at_once_has_no_h2_norm),
-        cmocka_unit_test(growth_fails_unless_the_full_model_grows_too),
-        cmocka_unit_test(models_of_other_names_are_refused),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_tenth_missing_is_a_tenth_by_every_measure),
+    cmocka_unit_test(the_error_is_held_to_the_bound_that_came_with_it),
+    cmocka_unit_test(outputs_are_divided_by_their_limits),
+    cmocka_unit_test(rigid_motions_of_both_are_left_out_of_norms),
+    cmocka_unit_test(what_reaches_an_output_at_once_has_no_h2_norm),
+    cmocka_unit_test(growth_fails_unless_the_full_model_grows_too),
+    cmocka_unit_test(models_of_other_names_are_refused),
+    cmocka_unit_test(every_allocation_may_fail),
+};
 
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MODULE(verify_states, tests, NULL, NULL)
