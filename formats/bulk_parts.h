@@ -3,7 +3,7 @@
 #define RITZ_FORMATS_BULK_PARTS_H
 
 #include "formats/cards.h"
-#include "formats/ties.h"
+#include "model/ties.h"
 
 #include <ritz/bulk.h>
 

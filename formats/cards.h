@@ -8,7 +8,7 @@
 #ifndef RITZ_FORMATS_CARDS_H
 #define RITZ_FORMATS_CARDS_H
 
-#include "formats/room.h"
+#include "base/array.h"
 
 #include <ritz/status.h>
 

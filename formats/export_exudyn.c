@@ -6,7 +6,7 @@
 #include "formats/exudyn.h"
 
 #include "base/draft.h"
-#include "model/h5.h"
+#include "container/h5.h"
 
 /* Exudyn compares `datatype` with str: only text of variable length is one. */
 static hid_t text_type(void)

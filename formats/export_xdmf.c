@@ -5,8 +5,8 @@
  */
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "container/h5.h"
 #include "formats/xml.h"
-#include "model/h5.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -9,7 +9,7 @@
 #include "formats/mat.h"
 
 #include "base/alloc.h"
-#include "formats/room.h"
+#include "base/array.h"
 #include "formats/triplets.h"
 
 #include <inttypes.h>

@@ -8,7 +8,7 @@
 #include "formats/mat.h"
 
 #include "base/alloc.h"
-#include "formats/room.h"
+#include "base/array.h"
 
 #include <inttypes.h>
 #include <stdio.h>

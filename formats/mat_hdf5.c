@@ -10,8 +10,8 @@
 #include "formats/mat.h"
 
 #include "base/alloc.h"
-#include "formats/room.h"
-#include "model/h5.h"
+#include "base/array.h"
+#include "container/h5.h"
 
 #include <inttypes.h>
 #include <stdio.h>

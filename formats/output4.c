@@ -14,7 +14,7 @@
 #include "formats/output4.h"
 
 #include "base/alloc.h"
-#include "formats/room.h"
+#include "base/array.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* ritz-assemble - the components of a scene joined at its configurations. */
-#include "describe.h"
-#include "tracks.h"
+#include "print/describe.h"
+#include "print/tracks.h"
 
 #include <ritz/synthesis.h>
 

@@ -1,7 +1,7 @@
 /* ritz-basis - find the subspace in which a component is reduced. */
-#include "describe.h"
-#include "neighbours.h"
-#include "words.h"
+#include "cli/words.h"
+#include "print/describe.h"
+#include "print/neighbours.h"
 
 #include <ritz/method.h>
 

@@ -1,6 +1,6 @@
 /* ritz-chart - pictures of what other tools found, and one page of them all. */
-#include "chart.h"
-#include "report.h"
+#include "chart/chart.h"
+#include "chart/report.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* ritz-check - audit a component before it is reduced, or probe a small model. */
-#include "checks.h"
+#include "print/checks.h"
 
 #include <ritz/probe.h>
 

@@ -1,5 +1,5 @@
 /* ritz-claims - hold published numbers against what the tools answer. */
-#include "claims.h"
+#include "claims/claims.h"
 
 #include <errno.h>
 #include <ftw.h>

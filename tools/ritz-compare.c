@@ -1,6 +1,6 @@
 /* ritz-compare - two-stage reduction of a scene over all configurations. */
-#include "comparison.h"
-#include "tracks.h"
+#include "print/comparison.h"
+#include "print/tracks.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* ritz-export - a reduced model or a response as a file of others. */
-#include "dampers.h"
-#include "nested.h"
-#include "shapes.h"
-#include "stability.h"
+#include "print/dampers.h"
+#include "print/nested.h"
+#include "print/shapes.h"
+#include "print/stability.h"
 
 #include <ritz/export.h>
 

@@ -1,7 +1,7 @@
 /* ritz-fit - the smallest model that meets a tolerance. */
-#include "dampers.h"
-#include "fit.h"
-#include "words.h"
+#include "cli/words.h"
+#include "print/dampers.h"
+#include "print/fit.h"
 
 #include <stdlib.h>
 #include <string.h>

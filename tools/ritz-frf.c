@@ -1,9 +1,9 @@
 /* ritz-frf - frequency response from inputs to outputs. */
-#include "dampers.h"
-#include "engines.h"
-#include "loops.h"
-#include "nested.h"
-#include "responses.h"
+#include "print/dampers.h"
+#include "print/engines.h"
+#include "print/loops.h"
+#include "print/nested.h"
+#include "print/responses.h"
 
 #include <complex.h>
 #include <math.h>

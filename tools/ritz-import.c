@@ -1,5 +1,5 @@
 /* ritz-import - matrices and geometry of an FE code become a component. */
-#include "describe.h"
+#include "print/describe.h"
 
 #include <ritz/foreign.h>
 #include <ritz/import.h>

@@ -1,5 +1,5 @@
 /* ritz-info - what is in a container, a matrix file or a bulk data deck. */
-#include "describe.h"
+#include "print/describe.h"
 
 #include <stdlib.h>
 #include <string.h>

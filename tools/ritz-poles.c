@@ -1,8 +1,8 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
-#include "dampers.h"
-#include "describe.h"
-#include "nested.h"
-#include "poles.h"
+#include "print/dampers.h"
+#include "print/describe.h"
+#include "print/nested.h"
+#include "print/poles.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
-#include "dampers.h"
-#include "nested.h"
-#include "rankings.h"
-#include "rankings_make.h"
+#include "print/dampers.h"
+#include "print/nested.h"
+#include "print/rankings.h"
+#include "print/rankings_make.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* ritz-reduce - a component in the subspace of a basis, with estimates. */
-#include "dampers.h"
-#include "describe.h"
+#include "print/dampers.h"
+#include "print/describe.h"
 
 #include <ritz/estimate.h>
 #include <ritz/probe.h>

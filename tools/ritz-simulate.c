@@ -1,8 +1,8 @@
 /* ritz-simulate - time responses, and what a simulated second costs. */
-#include "dampers.h"
-#include "describe.h"
-#include "nested.h"
-#include "simulation.h"
+#include "print/dampers.h"
+#include "print/describe.h"
+#include "print/nested.h"
+#include "print/simulation.h"
 
 #include <math.h>
 #include <string.h>

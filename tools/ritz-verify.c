@@ -1,6 +1,6 @@
 /* ritz-verify - full against reduced: every error, pass or fail. */
-#include "dampers.h"
-#include "nested.h"
+#include "print/dampers.h"
+#include "print/nested.h"
 
 #include <math.h>
 

@@ -1,10 +1,16 @@
+#include "model/io.h"
+
 #include "base/alloc.h"
+#include "base/complex.h"
 
 #include <ritz/io.h>
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double pi = 3.14159265358979323846;
 
 ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
                         ritz_io *out)
@@ -72,4 +78,26 @@ void ritz_io_free(ritz_io *io)
     ritz_dense_free(&io->Cv);
     ritz_dense_free(&io->Ca);
     *io = (ritz_io){0};
+}
+
+void ritz_io_respond(const ritz_io *io, double hertz, const double _Complex *X,
+                     double _Complex *H)
+{
+    double w = 2.0 * pi * hertz;
+    int64_t n = io->B.nrow;
+
+    for (int64_t k = 0; k < n; k++) {
+        const double *c = ritz_dense_col(&io->C, k);
+        const double *cv = ritz_dense_col(&io->Cv, k);
+        const double *ca = ritz_dense_col(&io->Ca, k);
+
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            double _Complex s = ritz_complex(c[i] - w * w * ca[i], w * cv[i]);
+
+            if (c[i] == 0.0 && cv[i] == 0.0 && ca[i] == 0.0)
+                continue;
+            for (int64_t j = 0; j < io->num_inputs; j++)
+                H[i * io->num_inputs + j] += s * X[k + j * n];
+        }
+    }
 }

@@ -162,29 +162,3 @@ done:
     ritz_ranking_free(&ranking);
     return status;
 }
-
-void ritz_ranking_free(ritz_ranking *ranking)
-{
-    free(ranking->hertz);
-    free(ranking->zeta);
-    free(ranking->value);
-    free(ranking->order);
-    free(ranking->cluster);
-    free(ranking->part);
-    free(ranking->whole);
-    ritz_dense_free(&ranking->parts);
-    free(ranking->system_value);
-    *ranking = (ritz_ranking){0};
-}
-
-void ritz_rankings_free(ritz_rankings *rankings)
-{
-    for (int64_t k = 0; k < rankings->count; k++) {
-        ritz_ranking_free(&rankings->item[k]);
-        if (rankings->track)
-            free(rankings->track[k]);
-    }
-    free(rankings->item);
-    free(rankings->track);
-    *rankings = (ritz_rankings){0};
-}

@@ -2,7 +2,7 @@
 #include "simulate/motion.h"
 
 #include "base/alloc.h"
-#include "verify/poles.h"
+#include "poles/poles.h"
 
 #include <ritz/eigen.h>
 

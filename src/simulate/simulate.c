@@ -110,18 +110,3 @@ ritz_status ritz_simulation_difference(const ritz_simulation *exact,
 done:
     return status;
 }
-
-void ritz_simulation_free(ritz_simulation *simulation)
-{
-    free(simulation->seconds);
-    free(simulation->input);
-    free(simulation->output);
-    free(simulation->u);
-    free(simulation->y);
-    free(simulation->kinetic);
-    free(simulation->potential);
-    free(simulation->dissipated);
-    free(simulation->work);
-    free(simulation->balance);
-    *simulation = (ritz_simulation){0};
-}

@@ -2,7 +2,7 @@
 #ifndef RITZ_VERIFY_COMPARE_SIDES_H
 #define RITZ_VERIFY_COMPARE_SIDES_H
 
-#include "verify/damped.h"
+#include "poles/damped.h"
 #include "verify/match.h"
 
 #include <ritz/reference.h>

@@ -5,7 +5,7 @@
 #ifndef RITZ_VERIFY_SEEN_H
 #define RITZ_VERIFY_SEEN_H
 
-#include "verify/poles.h"
+#include "poles/poles.h"
 
 #include <ritz/component.h>
 

@@ -6,7 +6,7 @@
 #include "verify/compare_sides.h"
 
 #include "base/alloc.h"
-#include "verify/dense_poles.h"
+#include "poles/dense_poles.h"
 
 #include <ritz/verify.h>
 

@@ -4,10 +4,10 @@
  */
 #include "testing.h"
 
+#include "assembly/turns.h"
 #include "bodies.h"
 #include "folder.h"
 #include "scenes.h"
-#include "synthesis/turns.h"
 
 #include <ritz/eigen.h>
 #include <ritz/synthesis.h>

@@ -8,7 +8,7 @@
 #include "dualspin.h"
 #include "scenes.h"
 
-#include "synthesis/directions.h"
+#include "compare/directions.h"
 
 #include <ritz/compare.h>
 #include <ritz/method.h>

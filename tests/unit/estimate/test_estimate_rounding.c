@@ -2,9 +2,9 @@
 #include "testing.h"
 
 #include "masses.h"
+#include "poles/poles.h"
 #include "project.h"
 #include "spring_chain.h"
-#include "verify/poles.h"
 
 #include <ritz/eigen.h>
 #include <ritz/estimate.h>

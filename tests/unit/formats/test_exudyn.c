@@ -5,8 +5,8 @@
  */
 #include "testing.h"
 
+#include "container/h5.h"
 #include "formats/exudyn.h"
-#include "model/h5.h"
 
 #include <ritz/container.h>
 

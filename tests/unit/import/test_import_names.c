@@ -1,5 +1,5 @@
 /* Files of `GRID COMP` rows, which --dofs names. */
-#include "formats/import.h"
+#include "import/import.h"
 #include "testing.h"
 
 #include <stdio.h>

@@ -3,11 +3,11 @@
 
 #include "folder.h"
 #include "frame.h"
+#include "poles/damped.h"
+#include "poles/dense_poles.h"
 #include "project.h"
 #include "scenes.h"
 #include "spring_chain.h"
-#include "verify/damped.h"
-#include "verify/dense_poles.h"
 
 #include <ritz/synthesis.h>
 #include <ritz/verify.h>

@@ -2,7 +2,7 @@
 
 #include "spaces.h"
 
-#include "verify/poles.h"
+#include "poles/poles.h"
 
 #include <ritz/gramians.h>
 #include <ritz/norms.h>

@@ -1,8 +1,8 @@
 #include "testing.h"
 
+#include "poles/spectrum_parts.h"
 #include "scenes.h"
 #include "spring_chain.h"
-#include "verify/spectrum_parts.h"
 
 #include <complex.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* Zeros: closed forms, poles of held structures, cancellation, pencils. */
 #include "masses.h"
 #include "model/first_order.h"
+#include "poles/channel.h"
 #include "spaces.h"
 #include "testing.h"
-#include "verify/channel.h"
 
 #include <ritz/eigen.h>
 #include <ritz/zeros.h>

@@ -5,8 +5,8 @@
 #include "testing.h"
 
 #include "masses.h"
+#include "response/responder.h"
 #include "verify/compare_sides.h"
-#include "verify/responder.h"
 
 #include <ritz/response.h>
 

@@ -1,10 +1,10 @@
 /* Scales, words and pictures of charts, apart from gnuplot. */
 #include "testing.h"
 
-#include "tools/axis.h"
-#include "tools/chart_place.h"
-#include "tools/html.h"
-#include "tools/svg.h"
+#include "chart/axis.h"
+#include "chart/chart_place.h"
+#include "chart/html.h"
+#include "chart/svg.h"
 
 #include <math.h>
 #include <stdlib.h>

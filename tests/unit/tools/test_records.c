@@ -3,7 +3,7 @@
 
 #include "folder.h"
 
-#include "tools/records.h"
+#include "cli/records.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,266 @@
+/*
+ * Assembly at a configuration: with the coordinates q of all bodies and the
+ * joints' constraints C q = 0, any P of full column rank whose columns span
+ * the null space of C gives
+ *
+ *     M_e = P'MP,   K_e = P'KP,   e = Q - rank(C)
+ *
+ * K and D those of the bodies and of the springs that joints hold.
+ *
+ * The system's modes Phi_e are put into P, so that its coordinates are modal.
+ */
+#include "assembly/dual.h"
+#include "assembly/null_space.h"
+#include "assembly/placement.h"
+#include "assembly/springs.h"
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+#include <ritz/synthesis.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows first..first+count-1 of P. */
+static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
+                              ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(count, P->ncol, out));
+    for (int64_t j = 0; j < P->ncol && count > 0; j++)
+        memcpy(ritz_dense_col(out, j), ritz_dense_col(P, j) + first,
+               (size_t)count * sizeof *P->val);
+done:
+    return status;
+}
+
+/* A_e += P_k' A_k P_k. */
+static ritz_status add_block(const ritz_dense *A, const ritz_dense *P,
+                             ritz_dense *sum)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_project(A, P, &part));
+    for (int64_t k = 0; k < part.nrow * part.ncol; k++)
+        sum->val[k] += part.val[k];
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* M, K and D of the system, sums over bodies and springs; {0} without D. */
+static ritz_status project_all(const ritz_stage *stage,
+                               const ritz_springs *springs, const ritz_dense *P,
+                               ritz_dense *K, ritz_dense *M, ritz_dense *D)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense block = {0};
+    bool damped = ritz_springs_damp(springs);
+
+    for (int64_t k = 0; k < stage->count; k++)
+        damped = damped || stage->body[k].D.val;
+    RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, K));
+    RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, M));
+    if (damped)
+        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, D));
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+
+        RITZ_TRY(take_block(P, stage->first[k], body->K.ncol, &block));
+        RITZ_TRY(add_block(&body->K, &block, K));
+        RITZ_TRY(add_block(&body->M, &block, M));
+        if (body->D.val)
+            RITZ_TRY(add_block(&body->D, &block, D));
+        ritz_dense_free(&block);
+    }
+    RITZ_TRY(ritz_springs_add(springs, P, K, D));
+done:
+    ritz_dense_free(&block);
+    return status;
+}
+
+/* K4 of the system; none if no body has any. */
+static ritz_status project_structural(const ritz_stage *stage,
+                                      const ritz_dense *P, ritz_dense *K4)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense block = {0};
+
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_dense *own = &stage->body[k].K4;
+
+        if (!own->val)
+            continue;
+        if (!K4->val)
+            RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, K4));
+        RITZ_TRY(take_block(P, stage->first[k], own->ncol, &block));
+        RITZ_TRY(add_block(own, &block, K4));
+        ritz_dense_free(&block);
+    }
+done:
+    ritz_dense_free(&block);
+    return status;
+}
+
+/* Whether modes i and j lie apart; rigid ones do not, nor do clusters. */
+static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
+{
+    const double cluster = 1e-6;
+
+    return (i >= rigid || j >= rigid) &&
+           fabs(lambda[i] - lambda[j]) >
+               cluster * fmax(fabs(lambda[i]), fabs(lambda[j]));
+}
+
+/*
+ * The eigensolver errs by eps lambda_max in every mode, which is much for the
+ * low ones and mixes flexible motion into the rigid ones. In modal coordinates
+ * K and M can be had again, each entry to its own rounding; what they lack of
+ * diag(lambda) and I corrects P to first order, P <- P (I + E):
+ *
+ *     E_ij = (K_ij - lambda_j M_ij) / (lambda_j - lambda_i),  modes apart,
+ *     E_ij = -M_ij / 2 within a cluster,  E_jj = (1 - M_jj) / 2
+ *
+ * [OgitaAishima2018]. On return lambda holds the Rayleigh quotients.
+ */
+static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
+                          int64_t rigid, double *lambda, ritz_dense *P)
+{
+    ritz_status status = RITZ_OK;
+    int64_t e = P->ncol;
+    ritz_dense K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
+
+    RITZ_TRY(project_all(stage, springs, P, &K, &M, &D));
+    RITZ_TRY(ritz_dense_new(e, e, &E));
+    for (int64_t j = 0; j < e; j++)
+        lambda[j] = ritz_dense_col(&K, j)[j] / ritz_dense_col(&M, j)[j];
+    for (int64_t j = 0; j < e; j++)
+        for (int64_t i = 0; i < e; i++) {
+            double k = ritz_dense_col(&K, j)[i];
+            double m = ritz_dense_col(&M, j)[i];
+
+            ritz_dense_col(&E, j)[i] =
+                i == j ? 0.5 * (1.0 - m)
+                : lie_apart(lambda, rigid, i, j)
+                    ? (k - lambda[j] * m) / (lambda[j] - lambda[i])
+                    : -0.5 * m;
+        }
+    RITZ_TRY(ritz_dense_mul(P, &E, &correction));
+    for (int64_t k = 0; k < P->nrow * e; k++)
+        P->val[k] += correction.val[k];
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&D);
+    ritz_dense_free(&E);
+    ritz_dense_free(&correction);
+    return status;
+}
+
+/* The system in coordinates P becomes that in its modes; P becomes P Phi. */
+static ritz_status make_modal(const ritz_stage *stage,
+                              const ritz_springs *springs, ritz_dense *P,
+                              ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense K = {0}, M = {0}, D = {0}, Q = {0};
+    ritz_pairs pairs = {0};
+    int64_t e = 0;
+
+    RITZ_TRY(project_all(stage, springs, P, &K, &M, &D));
+    RITZ_TRY_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
+    e = pairs.Phi.ncol;
+    RITZ_TRY(ritz_dense_mul(P, &pairs.Phi, &Q));
+    for (int pass = 0; pass < 2; pass++)
+        RITZ_TRY(refine(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&D);
+    RITZ_TRY(project_all(stage, springs, &Q, &K, &M, &c->D));
+    RITZ_TRY(ritz_dense_new(e, e, &c->K));
+    RITZ_TRY(ritz_dense_new(e, e, &c->M));
+    RITZ_NEW(c->lambda, e);
+    for (int64_t j = 0; j < e; j++) {
+        c->lambda[j] = ritz_dense_col(&c->K, j)[j] = pairs.lambda[j];
+        ritz_dense_col(&c->M, j)[j] = 1.0;
+    }
+    c->num_rigid = pairs.num_rigid;
+    ritz_dense_free(P);
+    *P = Q;
+    Q = (ritz_dense){0};
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&D);
+    ritz_dense_free(&Q);
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* Name, settings, blocks and io of a configuration with modal P. */
+static ritz_status finish(const ritz_stage *stage, const double *setting,
+                          const ritz_dense *P, ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    char(*sweep)[RITZ_NAME_SIZE] = NULL;
+
+    RITZ_NEW(sweep, scene->num_sweeps);
+    RITZ_NEW(c->setting, scene->num_sweeps);
+    c->num_settings = scene->num_sweeps;
+    for (int64_t k = 0; k < scene->num_sweeps; k++) {
+        memcpy(sweep[k], scene->sweep[k].name, RITZ_NAME_SIZE);
+        c->setting[k] = setting[k];
+    }
+    ritz_configuration_name(scene->num_sweeps, sweep, setting, c->at);
+    RITZ_NEW(c->P, stage->count);
+    for (int64_t k = 0; k < stage->count; k++) {
+        c->num_blocks++;
+        RITZ_TRY(
+            take_block(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
+    }
+    RITZ_TRY(ritz_io_project(&stage->io, P, &c->io));
+    RITZ_TRY(ritz_dampers_project(&stage->dampers, P, &c->dampers));
+    RITZ_TRY(project_structural(stage, P, &c->K4));
+    RITZ_TRY(ritz_place_mass(stage, setting, c));
+done:
+    free(sweep);
+    return status;
+}
+
+ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
+                                ritz_configuration *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_configuration c = {0};
+    ritz_springs springs = {0};
+    ritz_dense C = {0}, P = {0};
+    double *scale = NULL;
+
+    RITZ_NEW(scale, stage->num_coordinates);
+    ritz_stage_scale(stage, scale);
+    RITZ_TRY(ritz_stage_constraints(stage, setting, scale, &C));
+    RITZ_TRY(ritz_stage_springs(stage, setting, &springs));
+    if (ritz_dual_is_due(stage)) {
+        RITZ_TRY(ritz_dual_assemble(stage, &springs, &C, scale, &P, &c));
+    } else {
+        RITZ_TRY(ritz_null_space(&C, &c.rank, &P));
+        for (int64_t j = 0; j < P.ncol; j++)
+            for (int64_t i = 0; i < P.nrow; i++)
+                ritz_dense_col(&P, j)[i] *= scale[i];
+        RITZ_TRY(make_modal(stage, &springs, &P, &c));
+    }
+    RITZ_TRY(finish(stage, setting, &P, &c));
+    *out = c;
+    c = (ritz_configuration){0};
+done:
+    free(scale);
+    ritz_springs_free(&springs);
+    ritz_dense_free(&C);
+    ritz_dense_free(&P);
+    ritz_configuration_free(&c);
+    return status;
+}

@@ -1,0 +1,377 @@
+/*
+ * Dual assembly [Rixen2004]: the system of modal coordinates and interface
+ * forces that dual_forces.c states,
+ *
+ *     K_z = X'KX + joint,   M_z = X'MX,   z = [y; mu].
+ *
+ * K_z is indefinite, for a joint that is held by forces in a few static shapes
+ * gives way: there are about as many negative eigenvalues as forces, -1/m of
+ * the order of the residual frequencies squared. They are kept and counted.
+ * Forces without mass are condensed, mu_0 = -K_00^-1 K_0z z, before the modes
+ * are found; those are put in order of |lambda|, rigid ones first.
+ */
+#include "assembly/dual.h"
+
+#include "assembly/dual_forces.h"
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+
+#include <lapacke.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The first body with force columns, -1 if there is none. */
+static int64_t find_body(const ritz_stage *stage)
+{
+    for (int64_t k = 0; k < stage->count; k++)
+        for (int64_t j = 0; j < stage->body[k].columns.count; j++)
+            if (stage->body[k].columns.kind[j] == RITZ_COLUMN_FORCE)
+                return k;
+    return -1;
+}
+
+bool ritz_dual_is_due(const ritz_stage *stage)
+{
+    return find_body(stage) >= 0;
+}
+
+ritz_status ritz_dual_refuse(const ritz_stage *stage)
+{
+    ritz_status status = RITZ_OK;
+    int64_t k = find_body(stage);
+
+    RITZ_FAIL_IF(k >= 0, RITZ_ERR_ARGUMENT,
+                 "component '%s' is reduced by dual-craig-bampton: a system "
+                 "of such has negative eigenvalues, and no modes to choose "
+                 "from; macneal-rubin has the same columns",
+                 stage->scene->component[k].name);
+done:
+    return status;
+}
+
+/* diag(A_1, A_2, ...), bodies without one giving nothing; {0} if none has. */
+static ritz_status stack(const ritz_stage *stage, size_t offset,
+                         const double *scale, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    bool any = false;
+
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_dense *A =
+            (const ritz_dense *)(const void *)((const char *)&stage->body[k] +
+                                               offset);
+        int64_t first = stage->first[k];
+
+        if (!A->val)
+            continue;
+        if (!any)
+            RITZ_TRY(ritz_dense_new(stage->num_coordinates,
+                                    stage->num_coordinates, out));
+        any = true;
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t i = 0; i < A->nrow; i++)
+                ritz_dense_col(out, first + j)[first + i] =
+                    scale[first + i] * scale[first + j] *
+                    ritz_dense_col(A, j)[i];
+    }
+done:
+    return status;
+}
+
+static void mark_forces(const ritz_stage *stage, bool *is_force)
+{
+    for (int64_t k = 0; k < stage->count; k++)
+        for (int64_t j = 0; j < stage->body[k].columns.count; j++)
+            is_force[stage->first[k] + j] =
+                stage->body[k].columns.kind[j] == RITZ_COLUMN_FORCE;
+}
+
+/* K, M of the system and P, from scaled coordinates to those of the bodies. */
+typedef struct pencil {
+    ritz_dense K, M, P;
+} pencil;
+
+static void pencil_free(pencil *of)
+{
+    ritz_dense_free(&of->K);
+    ritz_dense_free(&of->M);
+    ritz_dense_free(&of->P);
+}
+
+/* All of it in new coordinates, z = Z w. */
+static ritz_status change(const ritz_dense *Z, pencil *of)
+{
+    ritz_status status = RITZ_OK;
+    pencil to = {0};
+
+    RITZ_TRY(ritz_dense_congruence(&of->K, Z, &to.K));
+    RITZ_TRY(ritz_dense_congruence(&of->M, Z, &to.M));
+    RITZ_TRY(ritz_dense_mul(&of->P, Z, &to.P));
+    pencil_free(of);
+    *of = to;
+    to = (pencil){0};
+done:
+    pencil_free(&to);
+    return status;
+}
+
+static ritz_status make_pencil(const ritz_stage *stage,
+                               const ritz_springs *springs,
+                               const ritz_dual *dual, const double *scale,
+                               pencil *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense K = {0}, M = {0}, none = {0};
+
+    RITZ_TRY(stack(stage, offsetof(ritz_reduced, K), scale, &K));
+    RITZ_TRY(stack(stage, offsetof(ritz_reduced, M), scale, &M));
+    RITZ_TRY(ritz_dense_congruence(&K, &dual->X, &out->K));
+    RITZ_TRY(ritz_dense_congruence(&M, &dual->X, &out->M));
+    RITZ_TRY(ritz_dense_copy(&dual->X, &out->P));
+    for (int64_t j = 0; j < out->P.ncol; j++)
+        for (int64_t i = 0; i < out->P.nrow; i++)
+            ritz_dense_col(&out->P, j)[i] *= scale[i];
+    for (int64_t k = 0; k < out->K.nrow * out->K.ncol; k++)
+        out->K.val[k] += dual->joint.val[k];
+    RITZ_TRY(ritz_springs_add(springs, &out->P, &out->K, &none));
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    return status;
+}
+
+/*
+ * Z = diag(I, Y): forces by the eigenvectors of their mass, those without any
+ * last; how many these are. Their eigenvalue is rounding of the largest.
+ */
+static ritz_status turn_forces(const ritz_dense *M, int64_t forces,
+                               ritz_dense *Z, int64_t *massless)
+{
+    ritz_status status = RITZ_OK;
+    int64_t y = M->ncol - forces;
+    ritz_dense Y = {0};
+    double *m = NULL;
+
+    *massless = 0;
+    RITZ_NEW(m, forces);
+    RITZ_TRY(ritz_dense_new(forces, forces, &Y));
+    RITZ_TRY(ritz_dense_new(M->ncol, M->ncol, Z));
+    for (int64_t j = 0; j < forces; j++)
+        for (int64_t i = 0; i < forces; i++)
+            ritz_dense_col(&Y, j)[i] = ritz_dense_col(M, y + j)[y + i];
+    RITZ_FAIL_IF(forces > 0 &&
+                     LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)forces,
+                                    Y.val, (int)forces, m) != 0,
+                 RITZ_ERR_CONVERGENCE,
+                 "the mass of interface forces has no eigenvalues");
+    for (int64_t j = 0; j < y; j++)
+        ritz_dense_col(Z, j)[j] = 1.0;
+    for (int64_t j = 0; j < forces; j++) /* dsyevd ascends */
+        memcpy(ritz_dense_col(Z, y + forces - 1 - j) + y, ritz_dense_col(&Y, j),
+               (size_t)forces * sizeof *Y.val);
+    while (*massless < forces && m[*massless] <= 4.0 * (double)forces *
+                                                     DBL_EPSILON *
+                                                     fmax(m[forces - 1], 0.0))
+        (*massless)++;
+done:
+    free(m);
+    ritz_dense_free(&Y);
+    return status;
+}
+
+/* Z = [I; -K_00^-1 K_0z]: the last coordinates, without mass, condensed. */
+static ritz_status condense(int64_t massless, pencil *of)
+{
+    ritz_status status = RITZ_OK;
+    int64_t rest = of->K.ncol - massless;
+    ritz_dense K_00 = {0}, K_0 = {0}, Z = {0};
+    lapack_int *pivot = NULL;
+    int n = (int)massless;
+
+    RITZ_NEW(pivot, massless);
+    RITZ_TRY(ritz_dense_new(massless, massless, &K_00));
+    RITZ_TRY(ritz_dense_new(massless, rest, &K_0));
+    RITZ_TRY(ritz_dense_new(rest + massless, rest, &Z));
+    for (int64_t j = 0; j < rest + massless; j++) {
+        double *to = j < rest ? ritz_dense_col(&K_0, j)
+                              : ritz_dense_col(&K_00, j - rest);
+
+        memcpy(to, ritz_dense_col(&of->K, j) + rest,
+               (size_t)massless * sizeof *to);
+    }
+    RITZ_FAIL_IF(rest > 0 && LAPACKE_dsysv(LAPACK_COL_MAJOR, 'L', n, (int)rest,
+                                           K_00.val, n, pivot, K_0.val, n) != 0,
+                 RITZ_ERR_SINGULAR,
+                 "interface forces without mass have no stiffness");
+    for (int64_t j = 0; j < rest; j++) {
+        ritz_dense_col(&Z, j)[j] = 1.0;
+        for (int64_t i = 0; i < massless; i++)
+            ritz_dense_col(&Z, j)[rest + i] = -ritz_dense_col(&K_0, j)[i];
+    }
+    RITZ_TRY(change(&Z, of));
+done:
+    free(pivot);
+    ritz_dense_free(&K_00);
+    ritz_dense_free(&K_0);
+    ritz_dense_free(&Z);
+    return status;
+}
+
+/* Modes that are found, and where they go: by |lambda|. */
+typedef struct place {
+    double size;
+    int64_t from;
+} place;
+
+static int by_size(const void *left, const void *right)
+{
+    const place *a = left;
+    const place *b = right;
+
+    return a->size != b->size ? (a->size > b->size) - (a->size < b->size)
+                              : (a->from > b->from) - (a->from < b->from);
+}
+
+/* lambda, num_rigid, K and M of the configuration; P becomes P Phi. */
+static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
+                         ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    int64_t e = pairs->Phi.ncol;
+    ritz_dense Phi = {0}, Q = {0};
+    place *at = NULL;
+    double *size = NULL;
+
+    RITZ_NEW(at, e);
+    RITZ_NEW(size, e);
+    RITZ_NEW(c->lambda, e);
+    RITZ_TRY(ritz_dense_new(pairs->Phi.nrow, e, &Phi));
+    RITZ_TRY(ritz_dense_new(e, e, &c->K));
+    RITZ_TRY(ritz_dense_new(e, e, &c->M));
+    for (int64_t j = 0; j < e; j++)
+        at[j] = (place){fabs(pairs->lambda[j]), j};
+    if (e > 0)
+        qsort(at, (size_t)e, sizeof *at, by_size);
+    for (int64_t j = 0; j < e; j++) {
+        size[j] = at[j].size;
+        c->lambda[j] = pairs->lambda[at[j].from];
+        ritz_dense_col(&c->K, j)[j] = c->lambda[j];
+        ritz_dense_col(&c->M, j)[j] = 1.0;
+        memcpy(ritz_dense_col(&Phi, j), ritz_dense_col(&pairs->Phi, at[j].from),
+               (size_t)Phi.nrow * sizeof *Phi.val);
+    }
+    c->num_rigid = ritz_eigen_rigid(e, size, e > 0 ? size[e - 1] : 0.0);
+    RITZ_TRY(ritz_dense_mul(P, &Phi, &Q));
+    ritz_dense_free(P);
+    *P = Q;
+    Q = (ritz_dense){0};
+done:
+    free(at);
+    free(size);
+    ritz_dense_free(&Phi);
+    ritz_dense_free(&Q);
+    return status;
+}
+
+/* How many eigenvalues are negative, and the one that is nearest to 0. */
+static ritz_status report(ritz_configuration *c)
+{
+    int64_t count = 0;
+    int64_t first = -1;
+    char where[RITZ_NAME_SIZE] = "";
+
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        if (c->lambda[k] < 0.0) {
+            first = first < 0 ? k : first;
+            count++;
+        }
+    if (count > 0)
+        snprintf(where, sizeof where, "first: mode %" PRId64 ", %.4g Hz",
+                 first + 1, ritz_eigen_hertz(c->lambda[first]));
+    return ritz_measures_add(&c->errors, "negative-eigenvalues", (double)count,
+                             0.0, where);
+}
+
+/* P'DP, and what springs add; {0} if nothing damps. */
+static ritz_status damp(const ritz_stage *stage, const ritz_springs *springs,
+                        const ritz_dense *P, ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense D = {0}, none = {0};
+    double *one = NULL;
+
+    RITZ_NEW(one, stage->num_coordinates);
+    for (int64_t i = 0; i < stage->num_coordinates; i++)
+        one[i] = 1.0;
+    RITZ_TRY(stack(stage, offsetof(ritz_reduced, D), one, &D));
+    if (D.val)
+        RITZ_TRY(ritz_dense_project(&D, P, &c->D));
+    else if (ritz_springs_damp(springs))
+        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, &c->D));
+    if (c->D.val) {
+        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, &none));
+        RITZ_TRY(ritz_springs_add(springs, P, &none, &c->D));
+    }
+done:
+    free(one);
+    ritz_dense_free(&D);
+    ritz_dense_free(&none);
+    return status;
+}
+
+/* The pencil with its forces turned, and those without mass condensed. */
+static ritz_status prepare(const ritz_stage *stage, const ritz_springs *springs,
+                           const ritz_dense *C, const double *scale, pencil *of,
+                           int64_t *rank)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dual dual = {0};
+    ritz_dense K = {0}, Z = {0};
+    bool *is_force = NULL;
+    int64_t massless = 0;
+
+    RITZ_NEW(is_force, stage->num_coordinates);
+    mark_forces(stage, is_force);
+    RITZ_TRY(stack(stage, offsetof(ritz_reduced, K), scale, &K));
+    RITZ_TRY(ritz_dual_new(&K, C, is_force, &dual));
+    RITZ_TRY(make_pencil(stage, springs, &dual, scale, of));
+    RITZ_TRY(turn_forces(&of->M, dual.num_forces, &Z, &massless));
+    RITZ_TRY(change(&Z, of));
+    if (massless > 0)
+        RITZ_TRY(condense(massless, of));
+    *rank = dual.rank;
+done:
+    free(is_force);
+    ritz_dual_free(&dual);
+    ritz_dense_free(&K);
+    ritz_dense_free(&Z);
+    return status;
+}
+
+ritz_status ritz_dual_assemble(const ritz_stage *stage,
+                               const ritz_springs *springs, const ritz_dense *C,
+                               const double *scale, ritz_dense *P,
+                               ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    pencil of = {0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(prepare(stage, springs, C, scale, &of, &c->rank));
+    RITZ_TRY_IN("system modes", ritz_eigen_dense(&of.K, &of.M, &pairs));
+    RITZ_TRY(order(&pairs, &of.P, c));
+    RITZ_TRY(damp(stage, springs, &of.P, c));
+    RITZ_TRY(report(c));
+    *P = of.P;
+    of.P = (ritz_dense){0};
+done:
+    pencil_free(&of);
+    ritz_pairs_free(&pairs);
+    return status;
+}

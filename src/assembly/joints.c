@@ -1,0 +1,283 @@
+/*
+ * What joints demand of the displacements u and rotations theta of two ports,
+ * each along the basic axes of its own body. At rest a point x_B of the second
+ * body stands at o_A + d + R (x_B - o_B) in the axes of the first, o being the
+ * ports' origins. The two meet where the second body's origin is, to which
+ * either grid has an arm, p_A = o_A + d - x_A and p_B = o_B - x_B, so that
+ * there they part and turn against each other by
+ *
+ *     delta = R (u_B + theta_B x p_B) - (u_A + theta_A x p_A)
+ *     phi   = R theta_B - theta_A
+ *
+ * A joint is six directions e in the first body's axes, three for e'delta and
+ * three for e'phi, each of them locked, free or caged: on a spring and damper.
+ *
+ *     type        R                   d         left are
+ *     hinge       R(a, angle)         0         a'phi
+ *     slider      I                   s a       a'delta
+ *     universal   R(a, one) R(b, two) 0         g_1'phi, g_2'phi
+ *     spherical   I                   0         phi
+ *     bushing     I                   0         delta and phi, caged
+ *     rigid       I                   offset    none
+ *
+ * In a loop R and d are what the other joints leave (placement.c).
+ *
+ * The axes of a universal joint now point along a and c = R b, as b is fixed in
+ * the second body. n = a x c / |a x c| is the direction about which it locks;
+ * angles q_1, q_2 about a and c, phi = a q_1 + c q_2, are those of the dual
+ * basis, q_k = g_k'phi with g_1 = c x n / a'(c x n), g_2 = n x a / c'(n x a).
+ */
+#include "assembly/joints.h"
+
+#include "assembly/turns.h"
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Directions e of a joint: three of translation, then three of rotation. */
+typedef void point(const ritz_joint *joint, const ritz_joint_pose *pose,
+                   double e[6][3]);
+
+static void fill_basic(double e[3][3])
+{
+    memset(e, 0, 9 * sizeof e[0][0]);
+    for (int i = 0; i < 3; i++)
+        e[i][i] = 1.0;
+}
+
+static void point_basic(const ritz_joint *joint, const ritz_joint_pose *pose,
+                        double e[6][3])
+{
+    (void)joint;
+    (void)pose;
+    fill_basic(e);
+    fill_basic(e + 3);
+}
+
+static void point_hinge(const ritz_joint *joint, const ritz_joint_pose *pose,
+                        double e[6][3])
+{
+    (void)pose;
+    fill_basic(e);
+    memcpy(e[3], joint->axis[0], sizeof e[3]);
+    ritz_normals(e[3], e + 4);
+}
+
+static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
+                         double e[6][3])
+{
+    (void)pose;
+    memcpy(e[0], joint->axis[0], sizeof e[0]);
+    ritz_normals(e[0], e + 1);
+    fill_basic(e + 3);
+}
+
+/* g = v / (a'v) */
+static void make_dual(const double *a, const double *v, double *g)
+{
+    for (int i = 0; i < 3; i++)
+        g[i] = v[i] / ritz_dot(a, v);
+}
+
+static void point_universal(const ritz_joint *joint,
+                            const ritz_joint_pose *pose, double e[6][3])
+{
+    const double *a = joint->axis[0];
+    double c[3], v[3];
+
+    fill_basic(e);
+    ritz_turn_apply(pose->R, joint->axis[1], c);
+    ritz_cross(a, c, e[5]);
+    ritz_normalise(e[5]);
+    ritz_cross(c, e[5], v);
+    make_dual(a, v, e[3]);
+    ritz_cross(e[5], a, v);
+    make_dual(c, v, e[4]);
+}
+
+/* The first axis, the second in the plane of both, the third normal to it. */
+static void point_bushing(const ritz_joint *joint, const ritz_joint_pose *pose,
+                          double e[6][3])
+{
+    (void)pose;
+    memcpy(e[0], joint->axis[0], sizeof e[0]);
+    ritz_cross(joint->axis[0], joint->axis[1], e[2]);
+    ritz_normalise(e[2]);
+    ritz_cross(e[2], e[0], e[1]);
+    memcpy(e + 3, e, 3 * sizeof e[0]);
+}
+
+/* Which of the directions are freedoms of the joint: the first of them, ... */
+static const struct {
+    const char *called;
+    point *point;
+    int freedom[6]; /* counted from 1; 0: always locked */
+} kinds[] = {
+    [RITZ_JOINT_FIXED] = {"fixed joint", point_basic, {0}},
+    [RITZ_JOINT_HINGE] = {"hinge", point_hinge, {0, 0, 0, 1, 0, 0}},
+    [RITZ_JOINT_SLIDER] = {"slider", point_slider, {1, 0, 0, 0, 0, 0}},
+    [RITZ_JOINT_UNIVERSAL] = {"universal joint",
+                              point_universal,
+                              {0, 0, 0, 1, 2, 0}},
+    [RITZ_JOINT_SPHERICAL] = {"spherical joint",
+                              point_basic,
+                              {0, 0, 0, 1, 2, 3}},
+    [RITZ_JOINT_BUSHING] = {"bushing", point_bushing, {1, 2, 3, 4, 5, 6}},
+    [RITZ_JOINT_RIGID] = {"rigid joint", point_basic, {0}},
+};
+
+/* Words for what a port lacks to be one six-dof grid. */
+static void list_missing(const ritz_joint_end *end, char text[64])
+{
+    static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (int64_t k = 0; k < 6; k++)
+        if (ritz_joint_direction(end, 0, k + 1) < 0)
+            used += (size_t)snprintf(text + used, 64 - used, "%s%s",
+                                     used > 0 ? ", " : "", words[k]);
+}
+
+/* Port rows of the six directions of a joint's one grid. */
+static ritz_status find_six(const ritz_joint_end *end, const char *called,
+                            int64_t row[static 6])
+{
+    ritz_status status = RITZ_OK;
+    int64_t others = 0;
+    char missing[64];
+
+    for (int64_t k = 0; k < end->count; k++)
+        others +=
+            end->dof[k].component < 1 || end->dof[k].grid != end->dof[0].grid;
+    RITZ_FAIL_IF(end->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
+                 "a %s holds one six-dof grid on each side, '%s/%s' has %s",
+                 called, end->component, end->port,
+                 others > 0 ? "more than one grid, or a scalar point"
+                            : "no grid");
+    list_missing(end, missing);
+    RITZ_FAIL_IF(missing[0], RITZ_ERR_ARGUMENT,
+                 "a %s holds one six-dof grid on each side, grid %" PRId64
+                 " of '%s/%s' has no %s",
+                 called, end->dof[0].grid, end->component, end->port, missing);
+    for (int64_t k = 0; k < 6; k++)
+        row[k] = ritz_joint_direction(end, 0, k + 1);
+done:
+    return status;
+}
+
+/* sum += v'x, x at three port rows; rows that count nothing are left out. */
+static void add_terms(ritz_relation *r, int end, const int64_t *row,
+                      const double *v)
+{
+    for (int i = 0; i < 3; i++)
+        if (v[i] != 0.0) {
+            r->row[end][r->num_terms[end]] = row[i];
+            r->factor[end][r->num_terms[end]++] = v[i];
+        }
+}
+
+/*
+ * e'phi = (R'e)'theta_B - e'theta_A; with e'(theta x p) = (p x e)'theta
+ *
+ * e'delta = (R'e)'u_B + (p_B x R'e)'theta_B - e'u_A - (p_A x e)'theta_A
+ */
+static ritz_relation project(const double *e, bool rotation, const double *R,
+                             const double arm[2][3], const int64_t row[2][6])
+{
+    ritz_relation r = {.rotation = rotation};
+    double turned[3], lever[3];
+    const double *const direction[2] = {e, turned};
+
+    ritz_turn_back(R, e, turned);
+    for (int end = 0; end < 2; end++) {
+        add_terms(&r, end, row[end] + (rotation ? 3 : 0), direction[end]);
+        if (rotation)
+            continue;
+        ritz_cross(arm[end], direction[end], lever);
+        add_terms(&r, end, row[end] + 3, lever);
+    }
+    return r;
+}
+
+/* Arms p from the grids to the place where the bodies meet. */
+static void find_arms(const ritz_joint_end end[static 2],
+                      const ritz_joint_pose *pose, double arm[2][3])
+{
+    for (int i = 0; i < 3; i++) {
+        arm[0][i] = end[0].origin[i] + pose->d[i] - end[0].position[i];
+        arm[1][i] = end[1].origin[i] - end[1].position[i];
+    }
+}
+
+/* The relations of a joint of one grid on each side. */
+static ritz_status relate_six(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose, ritz_relations *list)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_freedom locked = {.state = RITZ_LOCKED};
+    double e[6][3], arm[2][3];
+    int64_t row[2][6];
+
+    for (int k = 0; k < 2; k++)
+        RITZ_TRY(find_six(&end[k], kinds[joint->type].called, row[k]));
+    RITZ_FAIL_IF(joint->type == RITZ_JOINT_BUSHING &&
+                     ritz_joint_distance(end, 0, 0) >
+                         ritz_joint_tolerance(joint, &end[0]),
+                 RITZ_ERR_ARGUMENT,
+                 "a bushing lies between grids at one place, those of "
+                 "'%s/%s' and '%s/%s' lie %.3g apart, %.3g is let pass",
+                 end[0].component, end[0].port, end[1].component, end[1].port,
+                 ritz_joint_distance(end, 0, 0),
+                 ritz_joint_tolerance(joint, &end[0]));
+    kinds[joint->type].point(joint, pose, e);
+    find_arms(end, pose, arm);
+    for (int k = 0; k < 6; k++) {
+        int at = kinds[joint->type].freedom[k];
+        ritz_freedom freedom = at > 0 ? joint->freedom[at - 1] : locked;
+
+        if (freedom.state == RITZ_FREE)
+            continue;
+        list->item[list->count] = project(e[k], k >= 3, pose->R, arm, row);
+        list->item[list->count++].freedom = freedom;
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_joint_relate(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose, ritz_relations *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_relations list = {0};
+
+    RITZ_NEW(list.item, end[0].count + 6);
+    if (joint->type == RITZ_JOINT_FIXED)
+        RITZ_TRY(ritz_joint_pair(joint, end, &list));
+    else
+        RITZ_TRY(relate_six(joint, end, pose, &list));
+    RITZ_FAIL_IF(list.count == 0, RITZ_ERR_ARGUMENT,
+                 "its ports have no direction in common");
+    *out = list;
+    list = (ritz_relations){0};
+done:
+    ritz_relations_free(&list);
+    if (status != RITZ_OK) {
+        char what[RITZ_NAME_SIZE + 40];
+
+        snprintf(what, sizeof what, "joint '%s'", joint->name);
+        status = ritz_context(status, what);
+    }
+    return status;
+}
+
+void ritz_relations_free(ritz_relations *relations)
+{
+    free(relations->item);
+    *relations = (ritz_relations){0};
+}

@@ -1,0 +1,75 @@
+/* What joints say of the motions of two port grids. */
+#ifndef RITZ_ASSEMBLY_JOINTS_H
+#define RITZ_ASSEMBLY_JOINTS_H
+
+#include <ritz/scene.h>
+
+/* One end of a joint: where its port's rows are, whatever they map from. */
+typedef struct ritz_joint_end {
+    const char *component; /* names, for messages */
+    const char *port;
+    const double *origin;   /* 3, of the port */
+    int64_t count;          /* p rows of displacement along basic axes */
+    const ritz_dof *dof;    /* p, what they are */
+    const double *position; /* p x 3, of their grids */
+} ritz_joint_end;
+
+/*
+ * Where the second body stands: a point x_B of it is at o_A + d + R (x_B - o_B)
+ * in the basic axes of the first, o being the origins of the ports.
+ */
+typedef struct ritz_joint_pose {
+    double R[9]; /* row by row */
+    double d[3];
+} ritz_joint_pose;
+
+/*
+ * A relative motion, r = sum_k b[k] u_B[k] - sum_k a[k] u_A[k] over the port
+ * rows: nought where locked, on a spring where caged.
+ */
+typedef struct ritz_relation {
+    bool rotation;
+    ritz_freedom freedom;
+    int64_t num_terms[2];
+    int64_t row[2][6]; /* port rows of either end */
+    double factor[2][6];
+} ritz_relation;
+
+typedef struct ritz_relations {
+    int64_t count;
+    ritz_relation *item;
+} ritz_relations;
+
+/** The pose that a joint's settings give, @p setting being all of the scene. */
+void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
+                        ritz_joint_pose *out);
+
+/**
+ * The relative motions that a joint locks or holds on springs.
+ *
+ * @return RITZ_ERR_ARGUMENT if the ports do not fit: grids without a partner
+ *         within the tolerance, other than one six-dof grid where one is due
+ */
+ritz_status ritz_joint_relate(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose, ritz_relations *out);
+
+/** Those of a fixed joint: grids in pairs; room is that of the first port. */
+ritz_status ritz_joint_pair(const ritz_joint *joint,
+                            const ritz_joint_end end[static 2],
+                            ritz_relations *list);
+
+/** Row of a direction of the grid that starts at port row @p first, or -1. */
+int64_t ritz_joint_direction(const ritz_joint_end *end, int64_t first,
+                             int64_t direction);
+
+/** Distance of two grids, each measured from its port's origin. */
+double ritz_joint_distance(const ritz_joint_end end[static 2], int64_t a,
+                           int64_t b);
+
+/** What a joint lets pass of that distance. */
+double ritz_joint_tolerance(const ritz_joint *joint, const ritz_joint_end *end);
+
+void ritz_relations_free(ritz_relations *relations);
+
+#endif

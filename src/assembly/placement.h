@@ -1,0 +1,57 @@
+/* Where bodies stand at a configuration. */
+#ifndef RITZ_ASSEMBLY_PLACEMENT_H
+#define RITZ_ASSEMBLY_PLACEMENT_H
+
+#include "assembly/joints.h"
+
+#include <ritz/synthesis.h>
+
+/* x_system = R x + t. */
+typedef struct ritz_placement {
+    bool known;
+    double R[9];
+    double t[3];
+} ritz_placement;
+
+/**
+ * Every body placed through the joints, those that nothing holds staying where
+ * they are; a spherical joint turns a body only if no other joint does.
+ *
+ * @param[in]     pose   of each joint
+ * @param[in,out] place  of each body, zero on entry
+ */
+void ritz_place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
+                       ritz_placement *place);
+
+/**
+ * The pose of each joint of the scene at some settings; that of a joint which
+ * closes a loop is what the other joints leave it.
+ *
+ * Refused are joints that form a loop which does not close: bodies that one way
+ * around puts elsewhere than the other.
+ *
+ * @param[out] pose  one for each joint
+ * @return RITZ_ERR_ARGUMENT naming the joint that closes it, and how far from
+ */
+ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
+                              ritz_joint_pose *pose);
+
+/**
+ * Grids of all bodies in the basic frame of the first (of each tree of joints).
+ *
+ * @param[in]  stage  of the same bodies: its ports have the joints' origins
+ * @param[out] add    count, what to add to the grid numbers of each body so
+ *                    that no two are the same
+ */
+ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
+                             int64_t count, const ritz_component *body,
+                             int64_t *add, ritz_grids *out);
+
+/**
+ * Momentum and mass of rigid motion of all bodies where they stand, for a
+ * configuration that has its P; nothing where a body does not know its own.
+ */
+ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
+                            ritz_configuration *configuration);
+
+#endif

@@ -1,0 +1,36 @@
+/* Springs and dampers of caged joints and bushings. */
+#ifndef RITZ_ASSEMBLY_SPRINGS_H
+#define RITZ_ASSEMBLY_SPRINGS_H
+
+#include <ritz/synthesis.h>
+
+/* Spring k stretches by row k of S q: K + sum k_k s_k s_k', and so D. */
+typedef struct ritz_springs {
+    ritz_dense S; /* springs x Q */
+    ritz_freedom *hold;
+} ritz_springs;
+
+/** Those of all joints at some settings, in the coordinates of the stage. */
+ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
+                               ritz_springs *out);
+
+/** Whether one of them damps. */
+bool ritz_springs_damp(const ritz_springs *springs);
+
+/** K += P'S' k S P and, where D is not empty, D += P'S' c S P. */
+ritz_status ritz_springs_add(const ritz_springs *springs, const ritz_dense *P,
+                             ritz_dense *K, ritz_dense *D);
+
+/**
+ * A += S' k S, or with @p damping S' c S, of coordinates that are some of the n
+ * of a full model. {0} stays so where there is nothing to add.
+ *
+ * @param[in] at  Q, where each coordinate is among the n
+ */
+ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
+                                    int64_t n, const int64_t *at,
+                                    ritz_sparse *A);
+
+void ritz_springs_free(ritz_springs *springs);
+
+#endif

@@ -1,0 +1,411 @@
+/* A scene's models, loaded and reduced: the bodies that synthesis joins. */
+#include "assembly/neighbour.h"
+#include "base/alloc.h"
+
+#include <ritz/container.h>
+#include <ritz/method.h>
+#include <ritz/monitor.h>
+#include <ritz/nested.h>
+#include <ritz/synthesis.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Append a port's name to a list with commas, once. */
+static ritz_status append_port(char **list, const char *port)
+{
+    ritz_status status = RITZ_OK;
+    size_t used = *list ? strlen(*list) : 0;
+    size_t length = strlen(port);
+    char *longer = NULL;
+
+    for (const char *at = *list; at && *at;) {
+        size_t word = strcspn(at, ",");
+
+        if (word == length && strncmp(at, port, length) == 0)
+            return RITZ_OK;
+        at += word + (at[word] != '\0');
+    }
+    RITZ_NEW(longer, (int64_t)(used + length + 2));
+    snprintf(longer, used + length + 2, "%s%s%s", used ? *list : "",
+             used ? "," : "", port);
+    free(*list);
+    *list = longer;
+done:
+    return status;
+}
+
+/* The ports of body k that a joint holds or an input drives. */
+static ritz_status used_ports(const ritz_scene *scene, int64_t k, char **out)
+{
+    ritz_status status = RITZ_OK;
+    char *list = NULL;
+
+    RITZ_NEW(list, 1);
+    for (int64_t j = 0; j < scene->num_joints; j++)
+        for (int end = 0; end < 2; end++)
+            if (scene->joint[j].between[end].component == k)
+                RITZ_TRY(append_port(&list, scene->joint[j].between[end].port));
+    for (int64_t j = 0; j < scene->num_inputs; j++)
+        for (int end = 0; end < 2; end++) {
+            const ritz_scene_place *at =
+                end == 0 ? &scene->input[j].at : &scene->input[j].against;
+
+            if (at->component == k && *at->port)
+                RITZ_TRY(append_port(&list, at->port));
+        }
+    *out = list;
+    list = NULL;
+done:
+    free(list);
+    return status;
+}
+
+ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
+                              const ritz_scene_component *item,
+                              const ritz_component *component,
+                              ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_request request = RITZ_REQUEST_NONE;
+    const ritz_method *method = ritz_method_find(item->basis);
+    ritz_neighbour neighbour = {0};
+    ritz_basis basis = {0};
+    char *ports = NULL;
+
+    if (!method) {
+        status = RITZ_ERR_ARGUMENT;
+        goto done;
+    }
+    request.component = component;
+    request.modes = item->modes;
+    request.up_to_hz = item->up_to_hz;
+    request.choice = item->choice;
+    if (!item->attach)
+        RITZ_TRY(used_ports(scene, k, &ports));
+    RITZ_TRY(ritz_component_attached(
+        component, item->attach ? item->attach : ports, &request.attached));
+    if (method->uses & RITZ_USES_NEIGHBOUR) {
+        RITZ_TRY(ritz_scene_neighbour(scene, k, component, &request.attached,
+                                      &neighbour));
+        request.neighbour = &neighbour;
+    }
+    RITZ_TRY(ritz_basis_make(method, &request, &basis));
+    RITZ_TRY(ritz_reduce(component, &basis, out));
+done:
+    ritz_dofs_free(&request.attached);
+    ritz_neighbour_free(&neighbour);
+    ritz_basis_free(&basis);
+    free(ports);
+    return status;
+}
+
+static ritz_status check_io(const ritz_scene *scene, int64_t k,
+                            const ritz_component *component, int64_t count,
+                            const ritz_scene_io *io, const char *kind)
+{
+    for (int64_t j = 0; j < count; j++)
+        for (int end = 0; end < 2; end++) {
+            const ritz_scene_place *at = end == 0 ? &io[j].at : &io[j].against;
+
+            if (at->component == k && *at->port &&
+                !ritz_component_port(component, at->port))
+                return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, io[j].line,
+                                          io[j].column, kind, io[j].name);
+        }
+    return RITZ_OK;
+}
+
+/* The ports that joints, inputs and outputs name are there: said where not. */
+static ritz_status check_ports(const ritz_scene *scene, int64_t k,
+                               const ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t j = 0; j < scene->num_joints; j++) {
+        const ritz_joint *joint = &scene->joint[j];
+
+        for (int end = 0; end < 2; end++)
+            if (joint->between[end].component == k &&
+                !ritz_component_port(component, joint->between[end].port))
+                return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, joint->line,
+                                          joint->column, "joint", joint->name);
+    }
+    RITZ_TRY(check_io(scene, k, component, scene->num_inputs, scene->input,
+                      "input"));
+    RITZ_TRY(check_io(scene, k, component, scene->num_outputs, scene->output,
+                      "output"));
+done:
+    return status;
+}
+
+/* A reduced model, or as many of its columns as the scene takes. */
+static ritz_status read_columns(const ritz_scene_component *item,
+                                ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced whole = {0};
+
+    RITZ_TRY(ritz_container_read_reduced(item->model, &whole));
+    if (item->order > 0) {
+        RITZ_TRY_IN(item->model, ritz_reduced_prefix(&whole, item->order, out));
+    } else {
+        *out = whole;
+        whole = (ritz_reduced){0};
+    }
+done:
+    ritz_reduced_free(&whole);
+    return status;
+}
+
+ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
+                            ritz_component *full, ritz_reduced *reduced)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_component *item = &scene->component[k];
+    ritz_summary summary = {0};
+    ritz_component component = {0};
+    bool known = false;
+
+    RITZ_TRY(ritz_container_summary(item->model, &summary));
+    if (strcmp(summary.kind, "reduced") == 0) {
+        RITZ_FAIL_IF(item->basis[0], RITZ_ERR_ARGUMENT,
+                     "'%s' is reduced already, so it takes no basis",
+                     item->model);
+        RITZ_TRY(read_columns(item, reduced));
+        goto done;
+    }
+    RITZ_FAIL_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
+                 "'%s' is a full model, so a basis is due", item->model);
+    RITZ_TRY(ritz_container_read_component(item->model, &component));
+    status = check_ports(scene, k, &component);
+    known = status != RITZ_OK; /* said where the port is named */
+    RITZ_TRY(status);
+    *full = component;
+    component = (ritz_component){0};
+done:
+    ritz_summary_free(&summary);
+    ritz_component_free(&component);
+    return known ? status
+                 : ritz_scene_context(scene, status, item->line, item->column,
+                                      "component", item->name);
+}
+
+static ritz_status load_body(const ritz_scene *scene, int64_t k,
+                             ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_component *item = &scene->component[k];
+    ritz_component component = {0};
+
+    RITZ_TRY(ritz_stage_load(scene, k, &component, out));
+    if (component.num_dofs > 0)
+        status = ritz_scene_context(
+            scene, ritz_stage_reduce(scene, k, item, &component, out),
+            item->line, item->column, "component", item->name);
+done:
+    ritz_component_free(&component);
+    return status;
+}
+
+/*
+ * The port whose row an input or output of the scene stands for; NULL and a
+ * sentence if there is none, or more than one.
+ */
+static const ritz_port_map *find_row(const ritz_scene_io *io,
+                                     const ritz_reduced *body, int64_t *row)
+{
+    const ritz_port_map *port = ritz_reduced_port(body, io->at.port);
+    int64_t matches = 0;
+
+    for (int64_t k = 0; port && k < port->count; k++)
+        if (port->dof[k].component == io->component &&
+            (io->grid == 0 || port->dof[k].grid == io->grid)) {
+            *row = k;
+            matches++;
+        }
+    if (!port || matches == 1)
+        return port;
+    if (matches == 0)
+        ritz_record("port '%s' has no direction %" PRId64 "%s", port->name,
+                    io->component, io->grid ? " at that grid" : "");
+    else
+        ritz_record("port '%s' has %" PRId64 " grids with direction %" PRId64
+                    ": name one with 'grid'",
+                    port->name, matches, io->component);
+    return NULL;
+}
+
+/* Add a force in one direction at one place, `sign` times its scale. */
+static ritz_status add_force(ritz_stage *stage, int64_t j,
+                             const ritz_scene_place *at, int64_t direction,
+                             double sign)
+{
+    const ritz_scene_io *input = &stage->scene->input[j];
+    ritz_scene_io one = *input;
+    double *b = ritz_dense_col(&stage->io.B, j) + stage->first[at->component];
+    const ritz_port_map *port = NULL;
+    int64_t row = 0;
+
+    one.at = *at;
+    one.component = direction;
+    if (sign < 0.0)
+        one.grid = 0; /* which is of the port that it acts at */
+    port = find_row(&one, &stage->body[at->component], &row);
+    if (!port)
+        return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT, input->line,
+                                  input->column, "input", input->name);
+    for (int64_t i = 0; i < port->map.ncol; i++)
+        b[i] += sign * input->scale * ritz_dense_col(&port->map, i)[row];
+    return RITZ_OK;
+}
+
+static ritz_status set_input(ritz_stage *stage, int64_t j)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene_io *input = &stage->scene->input[j];
+
+    memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
+    for (int64_t d = 0; d <= input->num_also; d++) {
+        int64_t direction = d == 0 ? input->component : input->also[d - 1];
+
+        RITZ_TRY(add_force(stage, j, &input->at, direction, 1.0));
+        if (*input->against.port)
+            RITZ_TRY(add_force(stage, j, &input->against, direction, -1.0));
+    }
+done:
+    return status;
+}
+
+static ritz_status set_output(ritz_stage *stage, int64_t j)
+{
+    const ritz_scene_io *output = &stage->scene->output[j];
+    ritz_dense *const into[] = {&stage->io.C, &stage->io.Cv, &stage->io.Ca};
+    int64_t k = output->at.component;
+    int64_t row = 0;
+    const ritz_port_map *port = find_row(output, &stage->body[k], &row);
+
+    if (!port)
+        return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT, output->line,
+                                  output->column, "output", output->name);
+    memcpy(stage->io.output[j], output->name, RITZ_NAME_SIZE);
+    stage->io.limit[j] = output->limit;
+    for (int64_t i = 0; i < port->map.ncol; i++)
+        ritz_dense_col(into[output->derivative], stage->first[k] + i)[j] =
+            ritz_dense_col(&port->map, i)[row];
+    return RITZ_OK;
+}
+
+/*
+ * Bodies meet with their dampers in them; the influence vectors are kept, so
+ * that a system can be retuned. Installing comes last, as what fails before it
+ * leaves the bodies as they were.
+ */
+static ritz_status install(ritz_stage *stage)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t k = 0; k < stage->count; k++)
+        RITZ_TRY(ritz_dampers_append(
+            &stage->body[k].dampers, stage->scene->component[k].name,
+            stage->num_coordinates, stage->first[k], &stage->dampers));
+    for (int64_t k = 0; k < stage->count; k++)
+        RITZ_TRY(ritz_reduced_install(&stage->body[k]));
+    for (int64_t j = 0; j < stage->dampers.count; j++) {
+        stage->dampers.held_c[j] = stage->dampers.c[j];
+        stage->dampers.held_k[j] = stage->dampers.k[j];
+    }
+done:
+    return status;
+}
+
+/* Count coordinates and set up the scene's inputs and outputs. */
+static ritz_status complete(ritz_stage *stage)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+
+    RITZ_NEW(stage->first, stage->count);
+    for (int64_t k = 0; k < stage->count; k++) {
+        stage->first[k] = stage->num_coordinates;
+        stage->num_coordinates += stage->body[k].K.ncol;
+    }
+    RITZ_TRY(ritz_io_new(stage->num_coordinates, scene->num_inputs,
+                         scene->num_outputs, &stage->io));
+    for (int64_t j = 0; j < scene->num_inputs; j++)
+        RITZ_TRY(set_input(stage, j));
+    for (int64_t j = 0; j < scene->num_outputs; j++)
+        RITZ_TRY(set_output(stage, j));
+    RITZ_TRY(install(stage));
+done:
+    return status;
+}
+
+ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_stage stage = {.scene = scene};
+
+    RITZ_NEW(stage.body, scene->num_components);
+    for (int64_t k = 0; k < scene->num_components; k++) {
+        ritz_monitor_step("component", k, scene->num_components);
+        RITZ_TRY(load_body(scene, k, &stage.body[k]));
+        stage.count++;
+    }
+    RITZ_TRY(complete(&stage));
+    *out = stage;
+    stage = (ritz_stage){0};
+done:
+    ritz_stage_free(&stage);
+    return status;
+}
+
+ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
+                            ritz_stage *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_stage stage = {.scene = scene};
+
+    RITZ_NEW(stage.body, scene->num_components);
+    stage.count = scene->num_components;
+    memcpy(stage.body, body, (size_t)stage.count * sizeof *body);
+    RITZ_TRY(complete(&stage));
+    memset(body, 0, (size_t)stage.count * sizeof *body);
+    *out = stage;
+    stage = (ritz_stage){0};
+done:
+    if (stage.body && stage.count > 0) { /* given back, dampers in or not */
+        memcpy(body, stage.body, (size_t)stage.count * sizeof *body);
+        memset(stage.body, 0, (size_t)stage.count * sizeof *stage.body);
+    }
+    ritz_stage_free(&stage);
+    return status;
+}
+
+void ritz_stage_scale(const ritz_stage *stage, double *scale)
+{
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+
+        for (int64_t j = 0; j < body->K.ncol; j++) {
+            double m = ritz_dense_col(&body->M, j)[j];
+            double own = m > 0.0 ? m : ritz_dense_col(&body->K, j)[j];
+
+            scale[stage->first[k] + j] = own > 0.0 ? 1.0 / sqrt(own) : 1.0;
+        }
+    }
+}
+
+void ritz_stage_free(ritz_stage *stage)
+{
+    for (int64_t k = 0; stage->body && k < stage->count; k++)
+        ritz_reduced_free(&stage->body[k]);
+    free(stage->body);
+    free(stage->first);
+    ritz_io_free(&stage->io);
+    ritz_dampers_free(&stage->dampers);
+    *stage = (ritz_stage){0};
+}

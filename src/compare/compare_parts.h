@@ -1,0 +1,222 @@
+/* The steps of COMPARE's second stage. */
+#ifndef RITZ_COMPARE_COMPARE_PARTS_H
+#define RITZ_COMPARE_COMPARE_PARTS_H
+
+#include <ritz/compare.h>
+
+/* What is settled before stage two is made. */
+typedef struct ritz_plan {
+    double tolerance;     /* of the composite set */
+    ritz_augment augment; /* level of static corrections */
+    int attached;         /* sum of RITZ_ATTACHED_... */
+    bool inputs_too;      /* and those inputs that the scene names alone */
+} ritz_plan;
+
+/* Stage two by one plan: bodies, and the system at listed configurations. */
+typedef struct ritz_trial {
+    int64_t count;   /* of bodies */
+    ritz_dense *V;   /* of each */
+    int64_t vectors; /* before dependent ones were removed */
+    bool removed;
+    ritz_stage second;
+    ritz_system system;
+} ritz_trial;
+
+/* Stage one at all rows: listed configurations, and those between. */
+typedef struct ritz_rows {
+    const ritz_stage *stage;
+    const ritz_system *listed;
+    int64_t num_between;
+    ritz_configuration *between;
+    int64_t num_rows;
+    ritz_compare_row *row;
+} ritz_rows;
+
+/** The stage-1 configuration of row @p k, borrowed. */
+const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
+
+/** Listed configurations, then those half way between neighbours. */
+ritz_status ritz_compare_list(const ritz_scene *scene, int64_t *count,
+                              ritz_compare_row **out);
+
+/** Plan that the scene asks for; `attached` may hold AUTO still. */
+ritz_plan ritz_compare_plan(const ritz_scene *scene);
+
+/** Stage two. */
+ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
+                             ritz_trial *out);
+void ritz_trial_free(ritz_trial *trial);
+
+/**
+ * The least value of a mode that matters: the scene's tolerance times the
+ * largest over all listed configurations. Where modes are not ranked this is
+ * not used.
+ *
+ * @param[in] system  stage one, at all listed configurations
+ */
+ritz_status ritz_compare_threshold(const ritz_scene *scene,
+                                   const ritz_system *system, double *least);
+
+/** Value of each flexible mode in the scene's ranking; 1 where modes are not
+ * ranked. */
+ritz_status ritz_compare_values(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                double *value);
+
+/** Choose the modes of one configuration that matter, or count its vectors. */
+ritz_status ritz_compare_select(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                double least, ritz_compare_row *row);
+
+/**
+ * Krylov vectors of a configuration in its modal coordinates, flexible part:
+ * span of Lambda^-1 R, Lambda^-2 R, ... with R = B, or [B, C'] for @p both;
+ * K-orthonormal, dependent ones deflated.
+ *
+ * @param[in]  vectors  so many at most; fewer if the sequence ends
+ * @param[out] out      e x k, rows of rigid modes zero
+ * @param[out] moments  so many of C Lambda^-i-1 B are kept by the span
+ */
+ritz_status ritz_system_krylov(const ritz_configuration *configuration,
+                               int64_t vectors, bool both, ritz_dense *out,
+                               int64_t *moments);
+
+/* Columns first .. last - 1. */
+typedef struct ritz_range {
+    int64_t first, last;
+} ritz_range;
+
+/* What all configurations give to one body, r_c rows, in order of right. */
+enum {
+    RITZ_GIVEN_RIGID,
+    RITZ_GIVEN_MASSLESS,
+    RITZ_GIVEN_STATIC,
+    RITZ_GIVEN_KEPT, /* modes or Krylov vectors */
+    RITZ_GIVEN
+};
+
+/** Modal coordinates of what a configuration gives to one group. */
+ritz_status ritz_composite_choose(const ritz_scene *scene,
+                                  const ritz_configuration *configuration,
+                                  const ritz_compare_row *row, int group,
+                                  const ritz_plan *plan, ritz_dense *out);
+
+/**
+ * The composite set on each body: rigid modes, static corrections as planned,
+ * kept modes or Krylov vectors of all configurations that count; dependent
+ * columns removed by SVD in the M inner product.
+ *
+ * @param[out] V      stage->count matrices, r_c x s_c, M-orthonormal where M is
+ *                    definite; the identity where s_c would be r_c
+ * @param[out] massless  of each, its columns without mass
+ * @param[out] count     vectors before dependent ones were removed
+ */
+ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
+                                   ritz_dense *V, ritz_range *massless,
+                                   int64_t *count);
+
+/* What a body adds of its own, r rows each. */
+typedef struct ritz_statics {
+    ritz_dense rigid;    /* its rigid modes, M-orthonormal */
+    ritz_dense massless; /* null space of M */
+    ritz_dense answers;  /* to unit forces, inertia relieved */
+} ritz_statics;
+
+/**
+ * Static corrections of body @p k: its rigid modes and what it answers to unit
+ * forces of the planned sets; those that are rounding are left out.
+ *
+ * @return RITZ_ERR_SINGULAR if its stiffness is not definite beside its rigid
+ *         modes
+ */
+ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
+                              const ritz_plan *plan, ritz_statics *out);
+
+/** Motions without mass: null space of M, r x 0 if it is definite. */
+ritz_status ritz_body_massless(const ritz_reduced *body, const double *scale,
+                               ritz_dense *out);
+
+void ritz_statics_free(ritz_statics *statics);
+
+/** Whether static corrections answer input @p j. */
+bool ritz_plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
+                        int64_t j);
+
+/**
+ * Hold the second system against the first at one configuration: strays are
+ * found and, as the scene says, removed from @p second; errors measured.
+ *
+ * @param[in]     V    of every body
+ * @param[in,out] row  kept modes; errors are filled in
+ */
+ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
+                                 const ritz_configuration *first,
+                                 ritz_configuration *second,
+                                 ritz_compare_row *row);
+
+/** X = sum_c P_c' M_c V_c P2_c, modes of the first by modes of the second. */
+ritz_status ritz_compare_correlate(const ritz_stage *stage, const ritz_dense *V,
+                                   const ritz_configuration *first,
+                                   const ritz_configuration *second,
+                                   ritz_dense *X);
+
+/** Flexible modes of stage 2 that stand for no kept mode. */
+ritz_status ritz_compare_strays(const ritz_scene *scene,
+                                const ritz_configuration *first,
+                                const ritz_configuration *second,
+                                const ritz_dense *X, ritz_compare_row *row);
+
+/** Take those marked `removed` out of the second system. */
+ritz_status ritz_compare_remove(const ritz_compare_row *row,
+                                ritz_configuration *second);
+
+/** Error of the flexible static gain: see ritz_gain_error. */
+ritz_status ritz_compare_gain(const ritz_configuration *first,
+                              const ritz_configuration *second, double *out);
+
+/** Worst error of the kept moments, relative to the largest entry of each; NaN
+    if there are none. */
+ritz_status ritz_compare_moments(const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 int64_t count, double *out);
+
+/** Whether a scene has a response: inputs, outputs, a band and damping. */
+bool ritz_compare_responds(const ritz_scene *scene);
+
+/* Responses of two systems at the points of the first. */
+typedef struct ritz_two_responses {
+    int64_t count, num_inputs, num_outputs;
+    double *hertz;
+    double _Complex *one, *two; /* (k * num_outputs + i) * num_inputs + j */
+} ritz_two_responses;
+
+ritz_status ritz_compare_respond(const ritz_scene *scene,
+                                 const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 ritz_two_responses *out);
+void ritz_two_responses_free(ritz_two_responses *responses);
+
+/**
+ * Worst deviation of the largest singular value of H(i w), relative to it at
+ * each point; points more than 60 dB below the mean level of the plot are held
+ * to that level.
+ */
+ritz_status ritz_compare_bode(const ritz_two_responses *responses,
+                              double *deviation, double *hertz);
+
+/**
+ * What each set of attached dofs is worth, where the scene augments components
+ * or leaves the set open; then plan->attached is the one chosen.
+ */
+ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
+                                    int64_t *count, ritz_candidate **out);
+void ritz_candidates_free(int64_t count, ritz_candidate **candidates);
+
+/** Where errors between listed angles are worst, and by which measure. */
+void ritz_compare_suggest(const ritz_comparison *comparison,
+                          ritz_suggestion *out);
+
+/** Into the files of the second system and of every body. */
+ritz_status ritz_compare_record(ritz_comparison *comparison);
+
+#endif

@@ -1,0 +1,231 @@
+/*
+ * Which system modes matter. Values of all configurations are held against one
+ * largest value, so that a mode that matters at one angle alone is kept for it.
+ * A cluster is kept whole, however its members were chosen: within it modes are
+ * any basis of one space, and a part of them is none of the system's.
+ */
+#include "base/alloc.h"
+#include "compare/compare_parts.h"
+
+#include <ritz/eigen.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Relative gap of frequencies within a cluster. */
+static const double near = 1e-6;
+
+/* Values of the flexible modes of one configuration. */
+static ritz_status rank_one(const ritz_scene *scene,
+                            const ritz_configuration *c, ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
+    const ritz_rank_choice choice = {
+        .damping = scene->damping,
+        .band_hz = {scene->band_hz[0], scene->band_hz[1]}};
+    ritz_rank_request request = {0};
+
+    if (!ranker) {
+        status = RITZ_ERR_ARGUMENT;
+        goto done;
+    }
+    RITZ_TRY(ritz_rank_request_of_configuration(c, &choice, ranker->needs,
+                                                &request));
+    request.bare = true;
+    RITZ_TRY(ritz_rank(ranker, &request, ranking));
+    RITZ_FAIL_IF(ranking->count != c->K.ncol - c->num_rigid,
+                 RITZ_ERR_CONVERGENCE,
+                 "%" PRId64 " flexible modes were ranked where there are "
+                 "%" PRId64,
+                 ranking->count, c->K.ncol - c->num_rigid);
+done:
+    ritz_rank_request_free(&request);
+    return ritz_context(status, c->at);
+}
+
+/* Whether there is what its ranking needs. */
+static bool is_ranked(const ritz_scene *scene)
+{
+    const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
+    int needs = ranker ? ranker->needs : RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS;
+
+    return scene->select == RITZ_SELECT_RANKED &&
+           (scene->num_inputs > 0 || !(needs & RITZ_RANK_INPUTS)) &&
+           (scene->num_outputs > 0 || !(needs & RITZ_RANK_OUTPUTS));
+}
+
+ritz_status ritz_compare_values(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                double *value)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_configuration *c = configuration;
+    ritz_ranking ranking = {0};
+
+    for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
+        value[k] = 1.0;
+    if (!is_ranked(scene))
+        return RITZ_OK;
+    RITZ_TRY(rank_one(scene, c, &ranking));
+    for (int64_t k = 0; k < ranking.count; k++)
+        value[k] = fabs(ranking.value[k]);
+done:
+    ritz_ranking_free(&ranking);
+    return status;
+}
+
+ritz_status ritz_compare_threshold(const ritz_scene *scene,
+                                   const ritz_system *system, double *least)
+{
+    ritz_status status = RITZ_OK;
+    ritz_ranking ranking = {0};
+    double largest = 0.0;
+
+    *least = 0.0;
+    if (!is_ranked(scene)) {
+        RITZ_FAIL_IF(scene->select == RITZ_SELECT_RANKED &&
+                         scene->band_hz[1] <= 0.0,
+                     RITZ_ERR_ARGUMENT,
+                     "the scene has neither inputs and outputs to rank modes "
+                     "by nor a band to keep");
+        return RITZ_OK;
+    }
+    for (int64_t k = 0; k < system->num_configurations; k++) {
+        RITZ_TRY(rank_one(scene, &system->configuration[k], &ranking));
+        for (int64_t j = 0; j < ranking.count; j++)
+            largest = fmax(largest, fabs(ranking.value[j]));
+        ritz_ranking_free(&ranking);
+    }
+    RITZ_FAIL_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
+                 "no flexible mode answers any input at any output, so none "
+                 "can be chosen");
+    *least = scene->select_tolerance * largest;
+done:
+    ritz_ranking_free(&ranking);
+    return status;
+}
+
+/* Modes whose value is not below the least. */
+static ritz_status mark_ranked(const ritz_scene *scene,
+                               const ritz_configuration *c, double least,
+                               bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    ritz_ranking ranking = {0};
+
+    RITZ_TRY(rank_one(scene, c, &ranking));
+    for (int64_t k = 0; k < ranking.count; k++)
+        taken[k] = fabs(ranking.value[k]) >= least;
+done:
+    ritz_ranking_free(&ranking);
+    return status;
+}
+
+/* Modes in the band; without inputs or outputs, those below its lower end. */
+static void mark_band(const ritz_scene *scene, const ritz_configuration *c,
+                      bool *taken)
+{
+    double lowest = scene->select == RITZ_SELECT_BAND
+                        ? ritz_eigen_lambda(scene->band_hz[0])
+                        : 0.0;
+    double highest = ritz_eigen_lambda(scene->band_hz[1]);
+
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        taken[k - c->num_rigid] =
+            c->lambda[k] >= lowest && c->lambda[k] <= highest;
+}
+
+static ritz_status mark_listed(const ritz_scene *scene,
+                               const ritz_configuration *c, bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    int64_t flexible = c->K.ncol - c->num_rigid;
+
+    for (int64_t k = 0; k < scene->num_select_modes; k++) {
+        int64_t mode = scene->select_mode[k];
+
+        RITZ_FAIL_IF(mode >= flexible, RITZ_ERR_ARGUMENT,
+                     "mode %" PRId64 " is listed, and there are %" PRId64
+                     " flexible modes%s%s",
+                     mode + 1, flexible, *c->at ? " at " : "", c->at);
+        taken[mode] = true;
+    }
+done:
+    return status;
+}
+
+/* Take the rest of each cluster that has a mode taken; count what that adds. */
+static int64_t complete(const ritz_configuration *c, bool *taken)
+{
+    const double *lambda = c->lambda + c->num_rigid;
+    int64_t flexible = c->K.ncol - c->num_rigid;
+    int64_t added = 0;
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < flexible; first = last) {
+        bool any = taken[first];
+
+        for (last = first + 1; last < flexible; last++) {
+            double w = sqrt(lambda[last]);
+
+            if (w - sqrt(lambda[last - 1]) > near * w)
+                break;
+            any = any || taken[last];
+        }
+        for (int64_t k = first; k < last; k++) {
+            added += any && !taken[k];
+            taken[k] = any;
+        }
+    }
+    return added;
+}
+
+/* No modes: how many vectors stand for them, and moments are kept. */
+static ritz_status count_vectors(const ritz_scene *scene,
+                                 const ritz_configuration *c,
+                                 ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0};
+
+    RITZ_TRY(ritz_system_krylov(c, scene->select_vectors, scene->select_outputs,
+                                &X, &row->num_moments));
+    row->num_vectors = X.ncol;
+    RITZ_FAIL_IF(X.ncol == 0, RITZ_ERR_ARGUMENT,
+                 "no flexible mode answers any input, so there is no Krylov "
+                 "vector%s%s",
+                 *c->at ? " at " : "", c->at);
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+ritz_status ritz_compare_select(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                double least, ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_configuration *c = configuration;
+    int64_t flexible = c->K.ncol - c->num_rigid;
+    bool *taken = NULL;
+
+    RITZ_NEW(row->kept, flexible);
+    if (scene->select == RITZ_SELECT_KRYLOV)
+        return count_vectors(scene, c, row);
+    RITZ_NEW(taken, flexible);
+    if (is_ranked(scene))
+        RITZ_TRY(mark_ranked(scene, c, least, taken));
+    else if (scene->select == RITZ_SELECT_LISTED)
+        RITZ_TRY(mark_listed(scene, c, taken));
+    else
+        mark_band(scene, c, taken);
+    row->num_completed = complete(c, taken);
+    for (int64_t k = 0; k < flexible; k++)
+        if (taken[k])
+            row->kept[row->num_kept++] = k;
+done:
+    free(taken);
+    return status;
+}

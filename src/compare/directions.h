@@ -1,0 +1,52 @@
+/* Independent directions in the mass inner product of a body. */
+#ifndef RITZ_COMPARE_DIRECTIONS_H
+#define RITZ_COMPARE_DIRECTIONS_H
+
+#include <ritz/reduced.h>
+
+#include <stdbool.h>
+
+/**
+ * A lambda of the body's own, the geometric mean of K_jj / M_jj: of stiffness
+ * and mass added by it, neither is rounding.
+ */
+double ritz_typical_lambda(const ritz_reduced *body);
+
+/**
+ * Lower Cholesky factor of the mass, in coordinates scaled to unit diagonal;
+ * where mass is singular, of mass plus stiffness over a lambda of the body's.
+ *
+ * @param[out] mixed  whether stiffness was added
+ * @return RITZ_ERR_SINGULAR if neither is definite
+ */
+ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
+                             ritz_dense *L, bool *mixed);
+
+/**
+ * The same of mass plus stiffness over a lambda, the norm of an energy.
+ *
+ * @return RITZ_ERR_SINGULAR if it is not definite
+ */
+ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
+                              double lambda, ritz_dense *L);
+
+/** Y = L' W, W brought to scaled coordinates: M-products become plain ones. */
+ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
+                                const ritz_dense *W, ritz_dense *Y);
+
+/** U becomes the W whose Y it is. */
+void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U);
+
+/**
+ * Orthonormal directions of Y (destroyed) whose singular values exceed
+ * @p tolerance times *largest, which grows to the largest there is.
+ */
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         ritz_dense *out);
+
+/** The same with their singular values, descending: @p value has room for as
+ * many as @p Y has rows. */
+ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
+                             double *value, ritz_dense *out);
+
+#endif

@@ -1,0 +1,161 @@
+/* What every kind of container begins with, and how it gets its name. */
+#include "container/container_parts.h"
+
+#include "base/alloc.h"
+
+#include <ritz/version.h>
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { FORMAT = 1 };
+
+/* A short command is a plain attribute. */
+static ritz_status set_command(hid_t file, const char *command)
+{
+    ritz_status status = RITZ_OK;
+    char *copy = NULL;
+    size_t size = strlen(command) + 1;
+
+    if (size < RITZ_H5_LONG)
+        return ritz_h5_set_text(file, "command", command);
+    RITZ_NEW(copy, (int64_t)size);
+    memcpy(copy, command, size);
+    RITZ_TRY(ritz_h5_set_texts(file, "command", 1, &copy));
+done:
+    free(copy);
+    return status;
+}
+
+ritz_status ritz_writer_new(const char *path, const char *kind,
+                            const char *units, const ritz_stamp *stamp,
+                            ritz_writer *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_writer writer = {0};
+
+    RITZ_TRY(ritz_draft_new(path, &writer.draft));
+    RITZ_TRY(ritz_h5_create(writer.draft.name, &writer.file));
+    RITZ_TRY(ritz_h5_set_text(writer.file, "ritz_kind", kind));
+    RITZ_TRY(ritz_part_set_whole(writer.file, "ritz_format", FORMAT));
+    RITZ_TRY(ritz_h5_set_text(writer.file, "ritz_version", ritz_version()));
+    RITZ_TRY(set_command(writer.file, stamp->command));
+    RITZ_TRY(ritz_h5_set_texts(writer.file, "inputs", stamp->num_inputs,
+                               stamp->input));
+    RITZ_TRY(ritz_h5_set_text(writer.file, "units", units));
+    *out = writer;
+    writer = (ritz_writer){0};
+done:
+    ritz_writer_free(&writer);
+    return status;
+}
+
+/* What HDF5 still holds back may not fit on the disk: closing can fail. */
+ritz_status ritz_writer_finish(ritz_writer *writer)
+{
+    ritz_status status = RITZ_OK;
+    herr_t closed = H5Fclose(writer->file);
+
+    writer->file = 0;
+    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
+                 "cannot be written to its end, is the disk full?");
+    RITZ_TRY(ritz_draft_publish(&writer->draft));
+done:
+    return status;
+}
+
+void ritz_writer_free(ritz_writer *writer)
+{
+    ritz_h5_close(writer->file);
+    ritz_draft_free(&writer->draft);
+    *writer = (ritz_writer){0};
+}
+
+/* Open a container of any kind that this release reads. */
+static ritz_status open_any(const char *path, char kind[RITZ_NAME_SIZE],
+                            hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t format = 0;
+    hid_t file = 0;
+
+    RITZ_TRY(ritz_h5_open(path, &file));
+    RITZ_FAIL_IF(H5Aexists(file, "ritz_kind") <= 0, RITZ_ERR_FORMAT,
+                 "an HDF5 file, but no container: it has no 'ritz_kind'");
+    RITZ_TRY(ritz_h5_get_text(file, "ritz_kind", RITZ_NAME_SIZE, kind));
+    RITZ_TRY(ritz_part_get_whole(file, "ritz_format", &format));
+    RITZ_FAIL_IF(format != FORMAT, RITZ_ERR_FORMAT,
+                 "is of format %" PRId64 ", this release reads %d", format,
+                 FORMAT);
+    *out = file;
+    file = 0;
+done:
+    ritz_h5_close(file);
+    return status;
+}
+
+ritz_status ritz_part_open(const char *path, const char *kind, hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    char found[RITZ_NAME_SIZE] = "";
+    hid_t file = 0;
+
+    RITZ_TRY(open_any(path, found, &file));
+    RITZ_FAIL_IF(strcmp(found, kind) != 0, RITZ_ERR_FORMAT,
+                 "holds a %s where a %s is due", found, kind);
+    *out = file;
+    file = 0;
+done:
+    ritz_h5_close(file);
+    return status;
+}
+
+bool ritz_container_is(const char *path)
+{
+    struct stat there;
+    hid_t file = -1;
+    bool is = false;
+
+    ritz_h5_begin();
+    if (stat(path, &there) == 0 && S_ISREG(there.st_mode))
+        file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    is = file >= 0 && H5Aexists(file, "ritz_kind") > 0;
+    ritz_h5_close(file);
+    return is;
+}
+
+ritz_status ritz_container_summary(const char *path, ritz_summary *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_summary summary = {0};
+    char **command = NULL;
+    int64_t count = 0;
+    hid_t file = 0;
+
+    RITZ_TRY(open_any(path, summary.kind, &file));
+    RITZ_TRY(ritz_h5_get_text(file, "ritz_version", RITZ_NAME_SIZE,
+                              summary.version));
+    RITZ_TRY(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE, summary.units));
+    RITZ_TRY(ritz_h5_get_texts(file, "command", &count, &command));
+    RITZ_FAIL_IF(count != 1, RITZ_ERR_FORMAT, "'command' is not one text");
+    summary.command = command[0];
+    command[0] = NULL;
+    RITZ_TRY(
+        ritz_h5_get_texts(file, "inputs", &summary.num_inputs, &summary.input));
+    *out = summary;
+    summary = (ritz_summary){0};
+done:
+    ritz_h5_free_texts(count, command);
+    ritz_summary_free(&summary);
+    ritz_h5_close(file);
+    return ritz_context(status, path);
+}
+
+void ritz_summary_free(ritz_summary *summary)
+{
+    free(summary->command);
+    ritz_h5_free_texts(summary->num_inputs, summary->input);
+    *summary = (ritz_summary){0};
+}

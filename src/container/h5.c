@@ -1,0 +1,234 @@
+#include "container/h5.h"
+
+#include "base/alloc.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MANY_ATTRIBUTES = 64 }; /* that an object header holds */
+
+/*
+ * A file that could not be closed, as where the disk is full, stays open inside
+ * HDF5, which would try again on exit and crash. All others are closed by us.
+ */
+void ritz_h5_begin(void)
+{
+    (void)H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+ritz_status ritz_h5_open(const char *path, hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    struct stat there;
+
+    ritz_h5_begin();
+    RITZ_FAIL_IF(stat(path, &there) != 0 || access(path, R_OK) != 0,
+                 RITZ_ERR_FILE, "%s", strerror(errno));
+    RITZ_FAIL_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE, "not a regular file");
+    *out = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FORMAT, "not an HDF5 file, or damaged");
+done:
+    return status;
+}
+
+/* Beyond 8, HDF5 would move attributes to a heap that is checked in part. */
+static hid_t plan_object(hid_t kind)
+{
+    hid_t plan = H5Pcreate(kind);
+
+    H5Pset_obj_track_times(plan, false);
+    H5Pset_attr_phase_change(plan, MANY_ATTRIBUTES, 0);
+    return plan;
+}
+
+ritz_status ritz_h5_create(const char *path, hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    hid_t plan = 0;
+    hid_t bounds = 0;
+
+    ritz_h5_begin();
+    plan = plan_object(H5P_FILE_CREATE);
+    bounds = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
+    *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
+    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);
+done:
+    ritz_h5_close(plan);
+    ritz_h5_close(bounds);
+    return status;
+}
+
+ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    hid_t plan = plan_object(H5P_GROUP_CREATE);
+
+    *out = H5Gcreate2(at, name, H5P_DEFAULT, plan, H5P_DEFAULT);
+    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FILE, "cannot create group '%s'", name);
+done:
+    ritz_h5_close(plan);
+    return status;
+}
+
+bool ritz_h5_has(hid_t at, const char *name)
+{
+    H5L_info_t info = {0};
+
+    return H5Lexists(at, name, H5P_DEFAULT) > 0 &&
+           H5Lget_info(at, name, &info, H5P_DEFAULT) >= 0 &&
+           info.type == H5L_TYPE_HARD;
+}
+
+ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    hid_t group = ritz_h5_has(at, name) ? H5Gopen2(at, name, H5P_DEFAULT) : -1;
+
+    RITZ_FAIL_IF(group < 0, RITZ_ERR_FORMAT, "no group '%s', or it is damaged",
+                 name);
+    *out = group;
+done:
+    return status;
+}
+
+/* What a walk over a group's links has found. */
+typedef struct listing {
+    int64_t count, room;
+    char (*name)[RITZ_NAME_SIZE]; /* NULL: they are only counted */
+} listing;
+
+static herr_t take_link(hid_t group, const char *name, const H5L_info_t *info,
+                        void *data)
+{
+    listing *list = data;
+
+    (void)group;
+    (void)info;
+    if (list->name) {
+        if (list->count == list->room ||
+            ritz_name_copy(name, list->name[list->count]) != RITZ_OK)
+            return -1;
+    }
+    list->count++;
+    return 0;
+}
+
+static ritz_status list_by_name(hid_t group, listing *out)
+{
+    ritz_status status = RITZ_OK;
+    listing list = {0};
+    herr_t result =
+        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, take_link, &list);
+
+    RITZ_FAIL_IF(result < 0, RITZ_ERR_FORMAT, "list of members is damaged");
+    RITZ_NEW(list.name, list.count);
+    list.room = list.count;
+    list.count = 0;
+    result =
+        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, take_link, &list);
+    RITZ_FAIL_IF(result < 0 || list.count != list.room, RITZ_ERR_FORMAT,
+                 "a member has no proper name");
+    *out = list;
+    list = (listing){0};
+done:
+    free(list.name);
+    return status;
+}
+
+/* Attribute `index` of a member; *out is left alone if it has none. */
+static ritz_status index_of(hid_t group, const char *name, int64_t *out)
+{
+    ritz_status status = RITZ_OK;
+    hid_t member = 0;
+
+    RITZ_FAIL_IF(!ritz_h5_has(group, name), RITZ_ERR_FORMAT,
+                 "'%s' is a link to elsewhere", name);
+    member = H5Oopen(group, name, H5P_DEFAULT);
+    RITZ_FAIL_IF(member < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
+    if (H5Aexists(member, "index") > 0)
+        RITZ_TRY_IN(name, ritz_h5_get(member, "index", H5T_STD_I64LE, 1, out));
+done:
+    ritz_h5_close(member);
+    return status;
+}
+
+ritz_status ritz_h5_list(hid_t group, int64_t *count,
+                         char (**out)[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+    listing list = {0};
+    char(*sorted)[RITZ_NAME_SIZE] = NULL;
+    int64_t indexed = 0;
+
+    RITZ_TRY(list_by_name(group, &list));
+    RITZ_NEW(sorted, list.count);
+    for (int64_t k = 0; k < list.count; k++) {
+        int64_t at = -1;
+
+        RITZ_TRY(index_of(group, list.name[k], &at));
+        if (at == -1)
+            continue;
+        RITZ_FAIL_IF(at < 0 || at >= list.count || sorted[at][0],
+                     RITZ_ERR_FORMAT,
+                     "index %" PRId64 " of '%s' is taken, or out of range", at,
+                     list.name[k]);
+        memcpy(sorted[at], list.name[k], RITZ_NAME_SIZE);
+        indexed++;
+    }
+    RITZ_FAIL_IF(indexed != 0 && indexed != list.count, RITZ_ERR_FORMAT,
+                 "some members have an 'index', some do not");
+    *count = list.count;
+    *out = indexed ? sorted : list.name;
+    *(indexed ? &sorted : &list.name) = NULL;
+done:
+    free(sorted);
+    free(list.name);
+    return status;
+}
+
+hid_t ritz_h5_string(size_t size)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+
+    H5Tset_size(type, size);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+}
+
+void ritz_h5_close(hid_t id)
+{
+    if (id > 0)
+        H5Idec_ref(id); /* whatever kind of object it is */
+}
+
+ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
+                          hid_t *memory)
+{
+    ritz_status status = RITZ_OK;
+    H5T_class_t kind = H5Tget_class(type);
+
+    RITZ_FAIL_IF(H5Tget_class(on_file) != kind, RITZ_ERR_FORMAT,
+                 "'%s' holds values of another type", name);
+    if (kind != H5T_STRING) {
+        RITZ_FAIL_IF(H5Tget_size(on_file) > H5Tget_size(type), RITZ_ERR_FORMAT,
+                     "'%s' holds values of more than %zu bytes", name,
+                     H5Tget_size(type));
+        *memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
+        goto done;
+    }
+    RITZ_FAIL_IF(H5Tis_variable_str(on_file) != 0 ||
+                     H5Tget_size(on_file) > H5Tget_size(type),
+                 RITZ_ERR_FORMAT, "'%s' is not text of fixed length, or long",
+                 name);
+    *memory = H5Tcopy(on_file); /* its character set is not converted */
+    H5Tset_size(*memory, H5Tget_size(type));
+    H5Tset_strpad(*memory, H5T_STR_NULLTERM);
+done:
+    return status;
+}

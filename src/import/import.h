@@ -1,0 +1,195 @@
+/*
+ * Parts of ritz_import: matrices that were asked for, names of their rows,
+ * ports, inputs and outputs. Not for users.
+ */
+#ifndef RITZ_IMPORT_IMPORT_H
+#define RITZ_IMPORT_IMPORT_H
+
+#include <ritz/bulk.h>
+#include <ritz/component.h>
+#include <ritz/foreign.h>
+#include <ritz/import.h>
+
+/* A matrix that was asked for, and which one of the component it becomes. */
+typedef struct ritz_part {
+    const char *spec; /* "kgg.op4:KGG", for messages */
+    ritz_matrix matrix;
+    ritz_sparse *becomes;
+    int64_t *place; /* row of the component-to-be of each of its rows */
+} ritz_part;
+
+typedef struct ritz_parts {
+    int64_t count;
+    ritz_part *part;
+} ritz_parts;
+
+/* What the rows of all matrices are, before empty ones are left out. */
+typedef struct ritz_names {
+    int64_t count;
+    ritz_dof *dof;
+    char map[RITZ_NAME_SIZE]; /* where they come from */
+    bool whole; /* all that the deck has, and so its dependent dofs too */
+} ritz_names;
+
+/* Rows by name: sorted, so that a name is found in O(log n). */
+typedef struct ritz_place {
+    ritz_dof dof;
+    int64_t row;
+} ritz_place;
+
+typedef struct ritz_roster {
+    int64_t count;
+    ritz_place *place;
+} ritz_roster;
+
+/** Roster of @p count dofs; a repeated one is refused. */
+ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
+                            ritz_roster *out);
+
+/** Row of a dof, -1 if there is none. */
+int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof);
+
+/** First place whose grid is not below @p grid; count if there is none. */
+int64_t ritz_roster_from(const ritz_roster *roster, int64_t grid);
+
+/** Record that a dof is not there, and what is near; the status to return. */
+ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof);
+void ritz_roster_free(ritz_roster *roster);
+
+/** Name the rows of all parts, and give each part its places. */
+ritz_status ritz_names_find(const ritz_import_request *request,
+                            const ritz_bulk *bulk, ritz_parts *parts,
+                            ritz_names *out);
+
+/** Names that a deck has for @p spec, n rows. @return RITZ_ERR_FORMAT */
+ritz_status ritz_names_of_deck(const ritz_bulk *bulk, int64_t n,
+                               const char *spec, ritz_names *out);
+
+/** Names in a file of `GRID COMP` rows. */
+ritz_status ritz_names_of_file(const char *path, ritz_names *out);
+void ritz_names_free(ritz_names *names);
+
+/** Rows that have an entry other than zero. */
+void ritz_part_mark(const ritz_part *part, bool *taken);
+
+/** Put the parts into the component but for its grids, rows empty in K and M left out. */
+ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_bulk *bulk,
+                              const ritz_names *names,
+                              ritz_component *component,
+                              ritz_import_report *report);
+void ritz_parts_free(ritz_parts *parts);
+
+/** Positions and frames of the grids that are named; the origin for a single
+ * grid without a deck. */
+ritz_status ritz_import_place(const ritz_bulk *bulk, const ritz_names *names,
+                              ritz_component *component);
+
+/* Constraints between the rows, and what becomes of the dofs by them. */
+typedef struct ritz_tying {
+    const ritz_bulk *bulk;
+    ritz_names names;    /* all rows of the matrices and dofs of equations */
+    bool *fixed;         /* of each: u = 0 */
+    bool *alive;         /* has stiffness or mass of its own */
+    bool *outside;       /* is no row, as matrices are without dependents */
+    bool acts;           /* matrices have dependent dofs of the deck */
+    ritz_elimination by; /* the equations of bulk solved */
+} ritz_tying;
+
+/**
+ * Find what constraints do to the rows; add the grids, dofs and equations of
+ * rigid and averaged ports to the deck.
+ *
+ * @param[in,out] bulk   borrowed by @p out
+ * @param[in,out] names  moved into @p out; those of parts are placed anew
+ */
+ritz_status ritz_tying_new(const ritz_import_request *request, ritz_bulk *bulk,
+                           ritz_parts *parts, ritz_names *names,
+                           const ritz_component *component,
+                           ritz_import_report *report, ritz_tying *out);
+
+/** Solve the equations of the deck and of the ports so far. */
+ritz_status ritz_tying_solve(ritz_tying *tying);
+
+/** Add dofs to the names, neither fixed nor alive nor outside. */
+ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
+                              ritz_tying *tying);
+
+/** Tie the ports to grids of their own. */
+ritz_status ritz_tying_ports(const ritz_import_request *request,
+                             ritz_bulk *bulk, ritz_tying *tying,
+                             ritz_import_report *report);
+
+/**
+ * Eliminate: A_nn = G'AG of every part.
+ *
+ * @param[out] kept  names of the rows that stay
+ */
+ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
+                             ritz_names *kept, ritz_import_report *report);
+
+/** What dofs that are gone follow from, among the rows of the component. */
+ritz_status ritz_tying_recover(const ritz_tying *tying,
+                               ritz_component *component,
+                               ritz_import_report *report);
+void ritz_tying_free(ritz_tying *tying);
+
+/*
+ * A component whose recovered dofs stand behind its rows, for what names dofs;
+ * and how these follow: column k of `from` for dof num_rows + k.
+ */
+typedef struct ritz_extended {
+    ritz_component view; /* dof is owned, the rest borrowed */
+    ritz_roster roster;
+    int64_t num_rows;
+    ritz_sparse from;
+    const ritz_equations *equations; /* for messages; NULL: there are none */
+} ritz_extended;
+
+ritz_status ritz_extended_new(const ritz_component *component,
+                              const ritz_equations *equations,
+                              ritz_extended *out);
+void ritz_extended_free(ritz_extended *extended);
+
+/**
+ * One port; its dofs are rows of @p extended, and no recovered ones.
+ *
+ * @param[in] whole  a grid with axes of its own must bring all translations or
+ *                   none, and the same of rotations
+ */
+ritz_status ritz_import_port(const char *text, bool whole,
+                             const ritz_extended *extended, ritz_port *out);
+
+/** Ports as the request states them, and those of grids made for ports. */
+ritz_status ritz_import_ports(const ritz_import_request *request,
+                              const ritz_import_report *report,
+                              const ritz_extended *extended,
+                              ritz_component *component);
+
+/** Inputs and outputs as the request states them. */
+ritz_status ritz_import_io(const ritz_import_request *request,
+                           const ritz_extended *extended,
+                           ritz_component *component);
+
+/** Dampers as the request states them. */
+ritz_status ritz_import_dampers(const ritz_import_request *request,
+                                const ritz_extended *extended,
+                                ritz_component *component);
+
+/** Add @p scale times the row vector of "GRID:COMP", of so many letters. */
+ritz_status ritz_import_aim(const char *text, size_t length,
+                            const ritz_extended *extended, double scale,
+                            double *into);
+
+/**
+ * Take "NAME=REST" apart.
+ *
+ * @param[out] rest  points behind the '='
+ * @return RITZ_ERR_ARGUMENT with @p form, what it should look like
+ */
+ritz_status ritz_import_split(const char *text, const char *form,
+                              char name[RITZ_NAME_SIZE], const char **rest);
+
+/** A label, in which '/' divides: "N/mm". @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE]);
+
+#endif

@@ -1,0 +1,365 @@
+/*
+ * State spaces out of matrix files,
+ *
+ *     E x' = A x + B u,   y = C x + D u
+ *
+ * "A=F,B=F,C=F[,D=F][,E=F]", F as any matrix; or one file, "FILE" or
+ * "FILE:NAME", whose matrices are called so, NAME.A or A of a struct too. D is
+ * zero and E the identity where they are not given. An E that is the identity
+ * is left out, so that nobody solves with it.
+ */
+#include "import/import.h"
+
+#include "base/alloc.h"
+
+#include <ritz/foreign.h>
+#include <ritz/import.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PART_A, PART_B, PART_C, PART_D, PART_E, NUM_PARTS };
+
+static const char letters[] = "ABCDE";
+
+/* Matrices of the five letters; `there` those that were found. */
+typedef struct parts {
+    ritz_matrix matrix[NUM_PARTS];
+    bool there[NUM_PARTS];
+} parts;
+
+static void parts_free(parts *p)
+{
+    for (int k = 0; k < NUM_PARTS; k++)
+        ritz_matrix_free(&p->matrix[k]);
+}
+
+/* Which letter "X=..." begins with, -1: none. */
+static int letter_of(const char *text)
+{
+    const char *found = *text ? strchr(letters, *text) : NULL;
+
+    return found && text[1] == '=' ? (int)(found - letters) : -1;
+}
+
+/* Where the item at `text` ends: at a comma before the next letter. */
+static const char *end_of(const char *text)
+{
+    const char *comma = strchr(text, ',');
+
+    while (comma && letter_of(comma + 1) < 0)
+        comma = strchr(comma + 1, ',');
+    return comma ? comma : text + strlen(text);
+}
+
+bool ritz_import_space_next(const char **at, char *out)
+{
+    const char *from = *at;
+    const char *end = NULL;
+
+    if (!*from)
+        return false;
+    end = end_of(from);
+    if (letter_of(from) >= 0)
+        from += 2;
+    memcpy(out, from, (size_t)(end - from));
+    out[end - from] = '\0';
+    *at = end + (*end != '\0');
+    return true;
+}
+
+/* "A=F,B=F,..." */
+static ritz_status take_listed(const char *text, char *spec, parts *out)
+{
+    ritz_status status = RITZ_OK;
+
+    while (*text) {
+        int k = letter_of(text);
+
+        RITZ_FAIL_IF(k < 0, RITZ_ERR_ARGUMENT,
+                     "'%s' is not of the form A=F,B=F,C=F[,D=F][,E=F]", text);
+        RITZ_FAIL_IF(out->there[k], RITZ_ERR_ARGUMENT, "'%c' is given twice",
+                     letters[k]);
+        ritz_import_space_next(&text, spec);
+        RITZ_TRY(ritz_foreign_select(spec, &out->matrix[k]));
+        out->there[k] = true;
+    }
+done:
+    return status;
+}
+
+static char folded(char c)
+{
+    return (char)(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+}
+
+/* Index of "STEM.A" or "A"; as it stands before other case; -1: none. */
+static int64_t find(const ritz_matrices *all, const char *stem, char letter)
+{
+    int64_t found = -1;
+    size_t length = strlen(stem);
+
+    for (int64_t k = 0; k < all->count; k++) {
+        const char *name = all->matrix[k].name;
+
+        if (strncmp(name, stem, length) != 0)
+            continue;
+        name += length;
+        if (length > 0 && *name++ != '.')
+            continue;
+        if (name[0] && !name[1] && name[0] == letter)
+            return k;
+        if (name[0] && !name[1] && folded(name[0]) == letter && found < 0)
+            found = k;
+    }
+    return found;
+}
+
+/* The stem of "sys.A" if no other struct has an A; "" if there is none. */
+static ritz_status find_stem(const ritz_matrices *all, const char *file,
+                             char stem[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+    int64_t found = 0;
+
+    stem[0] = '\0';
+    if (find(all, "", 'A') >= 0)
+        return RITZ_OK;
+    for (int64_t k = 0; k < all->count; k++) {
+        const char *name = all->matrix[k].name;
+        const char *dot = strrchr(name, '.');
+
+        if (!dot || folded(dot[1]) != 'A' || dot[2])
+            continue;
+        RITZ_FAIL_IF(found++ > 0, RITZ_ERR_ARGUMENT,
+                     "'%s' holds several state spaces: name one, as %s:%s",
+                     file, file, stem);
+        snprintf(stem, RITZ_NAME_SIZE, "%.*s", (int)(dot - name), name);
+    }
+    RITZ_FAIL_IF(found == 0, RITZ_ERR_FORMAT,
+                 "'%s' holds no matrix 'A': name each, as A=FILE:NAME,B=...",
+                 file);
+done:
+    return status;
+}
+
+/* "FILE[:NAME]" */
+static ritz_status take_file(const char *text, parts *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrices all = {0};
+    char stem[RITZ_NAME_SIZE] = "";
+    char *path = NULL;
+
+    RITZ_TRY(ritz_foreign_path(text, &path));
+    RITZ_TRY(ritz_foreign_read(path, &all));
+    if (strlen(path) < strlen(text))
+        snprintf(stem, sizeof stem, "%s", text + strlen(path) + 1);
+    else
+        RITZ_TRY(find_stem(&all, path, stem));
+    for (int k = 0; k < NUM_PARTS; k++) {
+        int64_t at = find(&all, stem, letters[k]);
+
+        if (at < 0)
+            continue;
+        RITZ_FAIL_IF(all.matrix[at].other[0], RITZ_ERR_FORMAT,
+                     "'%s' of '%s' is %s", all.matrix[at].name, path,
+                     all.matrix[at].other);
+        out->matrix[k] = all.matrix[at];
+        all.matrix[at] = (ritz_matrix){0};
+        out->there[k] = true;
+    }
+done:
+    ritz_matrices_free(&all);
+    free(path);
+    return status;
+}
+
+/* A, B and C are there, all are real, and they are as large as A says. */
+static ritz_status check(const parts *p)
+{
+    ritz_status status = RITZ_OK;
+    const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
+    const int64_t n = p->matrix[PART_A].A.nrow;
+    const int64_t sizes[NUM_PARTS][2] = {
+        {n, n},
+        {n, p->matrix[PART_B].A.ncol},
+        {p->matrix[PART_C].A.nrow, n},
+        {p->matrix[PART_C].A.nrow, p->matrix[PART_B].A.ncol},
+        {n, n},
+    };
+
+    for (int k = 0; k <= PART_C; k++)
+        RITZ_FAIL_IF(!p->there[k], RITZ_ERR_ARGUMENT, "there is no '%c'",
+                     letters[k]);
+    for (int k = 0; k < NUM_PARTS; k++) {
+        const ritz_matrix *m = &p->matrix[k];
+
+        if (!p->there[k])
+            continue;
+        RITZ_FAIL_IF(m->imaginary, RITZ_ERR_FORMAT,
+                     "'%c' is complex, a real matrix is due", letters[k]);
+        RITZ_FAIL_IF(m->A.nrow == 0 || m->A.ncol == 0, RITZ_ERR_FORMAT,
+                     "'%c' is empty", letters[k]);
+        RITZ_FAIL_IF(m->A.nrow != sizes[k][0] || m->A.ncol != sizes[k][1],
+                     RITZ_ERR_FORMAT,
+                     "'%c' is %" PRId64 " x %" PRId64 " where %" PRId64
+                     " x %" PRId64 " is due",
+                     letters[k], m->A.nrow, m->A.ncol, sizes[k][0],
+                     sizes[k][1]);
+        RITZ_FAIL_IF(m->A.nrow > most || m->A.ncol > most, RITZ_ERR_ARGUMENT,
+                     "'%c' is %" PRId64 " x %" PRId64
+                     ": state spaces are dense, of at most %" PRId64
+                     " states, inputs and outputs",
+                     letters[k], m->A.nrow, m->A.ncol, most);
+    }
+done:
+    return status;
+}
+
+/* The k-th of "a,b,c", or "u3" if there is no list; false: none so long. */
+static bool take_item(const char *list, char prefix, int64_t k, char *out,
+                      size_t room)
+{
+    size_t length = 0;
+
+    if (!list) {
+        snprintf(out, room, "%c%" PRId64, prefix, k + 1);
+        return true;
+    }
+    for (int64_t i = 0; i < k; i++) {
+        list += strcspn(list, ",");
+        if (!*list)
+            return false;
+        list++;
+    }
+    length = strcspn(list, ",");
+    snprintf(out, room, "%.*s", (int)(length < room ? length : room - 1), list);
+    return true;
+}
+
+static int64_t count_items(const char *list)
+{
+    int64_t count = 1;
+
+    for (; *list; list++)
+        count += *list == ',';
+    return count;
+}
+
+/* "NAME[@LIMIT]": the limit, cut off; where none may be NULL. */
+static ritz_status take_limit(char *item, double *limit)
+{
+    ritz_status status = RITZ_OK;
+    char *at = limit ? strrchr(item, '@') : NULL;
+
+    if (!at)
+        return RITZ_OK;
+    *at = '\0';
+    RITZ_FAIL_IF(!ritz_text_real(at + 1, limit) || !(*limit > 0.0),
+                 RITZ_ERR_ARGUMENT,
+                 "'%s' is no limit, a positive number is due", at + 1);
+done:
+    return status;
+}
+
+/* Names, each once; an output may end in "@LIMIT". */
+static ritz_status name_ends(const char *list, char prefix, int64_t count,
+                             char (*name)[RITZ_NAME_SIZE], double *limit)
+{
+    ritz_status status = RITZ_OK;
+    char item[2 * RITZ_NAME_SIZE];
+
+    RITZ_FAIL_IF(list && count_items(list) != count, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " names are given for %" PRId64, count_items(list),
+                 count);
+    for (int64_t k = 0; k < count; k++) {
+        (void)take_item(list, prefix, k, item, sizeof item);
+        RITZ_TRY(take_limit(item, limit ? &limit[k] : NULL));
+        RITZ_TRY(ritz_name_copy(item, name[k]));
+        for (int64_t i = 0; i < k; i++)
+            RITZ_FAIL_IF(strcmp(name[i], name[k]) == 0, RITZ_ERR_ARGUMENT,
+                         "'%s' is named twice", name[k]);
+    }
+done:
+    return status;
+}
+
+static bool is_identity(const ritz_dense *E)
+{
+    for (int64_t j = 0; j < E->ncol; j++)
+        for (int64_t i = 0; i < E->nrow; i++)
+            if (ritz_dense_col(E, j)[i] != (i == j ? 1.0 : 0.0))
+                return false;
+    return true;
+}
+
+/* Dense matrices in the place of those that are zero. */
+static ritz_status fill(const parts *p, ritz_state_space *model)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense *const into[NUM_PARTS] = {&model->A, &model->B, &model->C,
+                                         &model->D, &model->E};
+
+    for (int k = 0; k < NUM_PARTS; k++) {
+        if (!p->there[k])
+            continue;
+        ritz_dense_free(into[k]);
+        RITZ_TRY(ritz_sparse_dense(&p->matrix[k].A, into[k]));
+    }
+    if (model->E.val && is_identity(&model->E))
+        ritz_dense_free(&model->E);
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_import_space_request *request,
+                        const parts *p, ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = p->matrix[PART_A].A.nrow;
+    ritz_io io = {0};
+
+    RITZ_TRY(ritz_io_new(0, p->matrix[PART_B].A.ncol, p->matrix[PART_C].A.nrow,
+                         &io));
+    RITZ_TRY_IN("--input-names",
+                name_ends(request->inputs, 'u', io.num_inputs, io.input, NULL));
+    RITZ_TRY_IN(
+        "--output-names",
+        name_ends(request->outputs, 'y', io.num_outputs, io.output, io.limit));
+    RITZ_TRY(ritz_state_space_new(n, &io, out));
+    RITZ_TRY(fill(p, out));
+    RITZ_TRY(ritz_state_space_check(out));
+    if (request->units)
+        RITZ_TRY_IN("--units", ritz_import_units(request->units, out->units));
+done:
+    ritz_io_free(&io);
+    return status;
+}
+
+ritz_status ritz_import_state_space(const ritz_import_space_request *request,
+                                    ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space model = {0};
+    parts p = {0};
+    char *spec = NULL;
+
+    RITZ_NEW(spec, (int64_t)strlen(request->matrices) + 1);
+    if (letter_of(request->matrices) >= 0)
+        RITZ_TRY(take_listed(request->matrices, spec, &p));
+    else
+        RITZ_TRY(take_file(request->matrices, &p));
+    RITZ_TRY(check(&p));
+    RITZ_TRY(make(request, &p, &model));
+    *out = model;
+    model = (ritz_state_space){0};
+done:
+    parts_free(&p);
+    free(spec);
+    ritz_state_space_free(&model);
+    return status;
+}

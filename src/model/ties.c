@@ -1,0 +1,235 @@
+/*
+ * Rigid motion of dofs. A point at d from the origin moves by t + r x d, so
+ * that along an axis a
+ *
+ *     u = a . t + (d x a) . r,    a rotation about it is a . r
+ */
+#include "model/ties.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+
+#include <lapacke.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+ritz_status ritz_ties_add(ritz_ties *list, ritz_tie tie)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_ROOM(list->tie, list->count, list->room);
+    list->tie[list->count++] = tie;
+done:
+    return status;
+}
+
+int64_t ritz_ties_dofs(const ritz_ties *list)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < list->count; k++)
+        for (int64_t c = 1; c <= 6; c++)
+            count += ritz_tie_has(&list->tie[k], c);
+    return count;
+}
+
+void ritz_ties_free(ritz_ties *list)
+{
+    free(list->tie);
+    *list = (ritz_ties){0};
+}
+
+void ritz_tie_row(const ritz_grids *grids, int64_t grid, int64_t c,
+                  const double origin[static 3], double out[static 6])
+{
+    const double *a = grids->axes + 9 * grids->frame[grid] + 3 * ((c - 1) % 3);
+    double d[3];
+
+    for (int i = 0; i < 3; i++)
+        d[i] = grids->position[3 * grid + i] - origin[i];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        int k = (i + 2) % 3;
+
+        out[i] = c > 3 ? 0.0 : a[i];
+        out[3 + i] = c > 3 ? a[i] : d[j] * a[k] - d[k] * a[j];
+    }
+}
+
+static int compare_ties(const void *left, const void *right)
+{
+    const ritz_tie *a = left;
+    const ritz_tie *b = right;
+
+    return (a->grid > b->grid) - (a->grid < b->grid);
+}
+
+ritz_status ritz_tie_length(const ritz_grids *grids, const ritz_ties *list,
+                            const double origin[static 3], double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_tie *sorted = NULL;
+    double sum = 0.0;
+    int64_t count = 0;
+
+    RITZ_NEW(sorted, list->count);
+    for (int64_t k = 0; k < list->count; k++)
+        sorted[k] = list->tie[k];
+    qsort(sorted, (size_t)list->count, sizeof *sorted, compare_ties);
+    for (int64_t k = 0; k < list->count; k++) {
+        const double *x = grids->position + 3 * sorted[k].grid;
+
+        if (k > 0 && sorted[k].grid == sorted[k - 1].grid)
+            continue;
+        sum +=
+            hypot(hypot(x[0] - origin[0], x[1] - origin[1]), x[2] - origin[2]);
+        count++;
+    }
+    *out = sum > 0.0 ? sum / (double)count : 1.0;
+done:
+    free(sorted);
+    return status;
+}
+
+/* ---- rigid bodies ------------------------------------------------------ */
+
+/* All six dofs of one grid: with its axes as rows of A, [t; r] = A' u. */
+static bool is_whole(const ritz_ties *from)
+{
+    return from->count == 1 && from->tie[0].mask == 0x7e;
+}
+
+/* Share of u(grid, i) in a dof that moves by `row` about the grid itself. */
+static double share_of(const ritz_grids *grids, int64_t grid, int64_t i,
+                       const double row[static 6])
+{
+    const double *a = grids->axes + 9 * grids->frame[grid] + 3 * ((i - 1) % 3);
+    const double *part = row + (i > 3 ? 3 : 0);
+
+    return a[0] * part[0] + a[1] * part[1] + a[2] * part[2];
+}
+
+static ritz_status follow_grid(const ritz_grids *grids, int64_t leader,
+                               const ritz_ties *to, ritz_equations *equations)
+{
+    ritz_status status = RITZ_OK;
+    const double *origin = grids->position + 3 * leader;
+    double row[6];
+
+    for (int64_t k = 0; k < to->count; k++)
+        for (int64_t c = 1; c <= 6; c++) {
+            if (!ritz_tie_has(&to->tie[k], c))
+                continue;
+            ritz_tie_row(grids, to->tie[k].grid, c, origin, row);
+            RITZ_TRY(ritz_equations_begin(
+                equations, (ritz_dof){grids->id[to->tie[k].grid], c}));
+            for (int64_t i = 1; i <= 6; i++)
+                RITZ_TRY(ritz_equations_add(equations,
+                                            (ritz_dof){grids->id[leader], i},
+                                            share_of(grids, leader, i, row)));
+        }
+done:
+    return status;
+}
+
+void ritz_tie_rows(const ritz_grids *grids, const ritz_ties *list,
+                   const double origin[static 3], double length, ritz_dense *S,
+                   ritz_dof *dof)
+{
+    int64_t at = 0;
+    double row[6];
+
+    for (int64_t k = 0; k < list->count; k++)
+        for (int64_t c = 1; c <= 6; c++) {
+            if (!ritz_tie_has(&list->tie[k], c))
+                continue;
+            dof[at] = (ritz_dof){grids->id[list->tie[k].grid], c};
+            ritz_tie_row(grids, list->tie[k].grid, c, origin, row);
+            for (int64_t j = 0; j < 6; j++)
+                ritz_dense_col(S, j)[at] = (j < 3 ? row[j] : row[j] / length) *
+                                           ritz_tie_scale(dof[at], length);
+            at++;
+        }
+}
+
+/* X' = S_m S_n^-1 by S_n' X = S_m', dofs scaled so that lengths cancel. */
+static ritz_status solve_rigid(ritz_dense *S_n, const ritz_dense *S_m,
+                               ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    lapack_int pivot[6];
+    lapack_int count = (lapack_int)S_m->nrow;
+    double size = LAPACKE_dlange(LAPACK_COL_MAJOR, 'I', 6, 6, S_n->val, 6);
+    double rcond = 0.0;
+
+    RITZ_TRY(ritz_dense_new(6, S_m->nrow, X));
+    for (int64_t j = 0; j < S_m->nrow; j++)
+        for (int64_t i = 0; i < 6; i++)
+            ritz_dense_col(X, j)[i] = ritz_dense_col(S_m, i)[j];
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, 6, 6, S_n->val, 6, pivot) == 0)
+        (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, 'I', 6, S_n->val, 6, size,
+                             &rcond);
+    /* below the root of epsilon a position of half the digits decides */
+    RITZ_FAIL_IF(!(rcond > 1.5e-8), RITZ_ERR_SINGULAR,
+                 "the independent dofs leave it free to move as a rigid body");
+    if (count > 0)
+        RITZ_FAIL_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', 6, count, S_n->val,
+                                    6, pivot, X->val, 6) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+done:
+    return status;
+}
+
+static ritz_status put_rows(const ritz_dense *X, double length,
+                            const ritz_dof *from, const ritz_dof *to,
+                            ritz_equations *equations)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int64_t j = 0; j < X->ncol; j++) {
+        const double *share = ritz_dense_col(X, j);
+        double most = 0.0;
+
+        for (int64_t i = 0; i < 6; i++)
+            most = fmax(most, fabs(share[i]));
+        RITZ_TRY(ritz_equations_begin(equations, to[j]));
+        for (int64_t i = 0; i < 6; i++)
+            if (fabs(share[i]) > RITZ_TIE_ROUNDING * most)
+                RITZ_TRY(ritz_equations_add(
+                    equations, from[i],
+                    share[i] * ritz_tie_scale(from[i], length) /
+                        ritz_tie_scale(to[j], length)));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_tie_rigid(const ritz_grids *grids, const ritz_ties *from,
+                           const ritz_ties *to, ritz_equations *equations)
+{
+    ritz_status status = RITZ_OK;
+    const double *origin = grids->position + 3 * from->tie[0].grid;
+    double length = 0.0;
+    int64_t count = ritz_ties_dofs(to);
+    ritz_dense S_n = {0}, S_m = {0}, X = {0};
+    ritz_dof leaders[6];
+    ritz_dof *names = NULL;
+
+    if (is_whole(from))
+        return follow_grid(grids, from->tie[0].grid, to, equations);
+    RITZ_TRY(ritz_tie_length(grids, from, origin, &length));
+    RITZ_NEW(names, count);
+    RITZ_TRY(ritz_dense_new(6, 6, &S_n));
+    RITZ_TRY(ritz_dense_new(count, 6, &S_m));
+    ritz_tie_rows(grids, from, origin, length, &S_n, leaders);
+    ritz_tie_rows(grids, to, origin, length, &S_m, names);
+    RITZ_TRY(solve_rigid(&S_n, &S_m, &X));
+    RITZ_TRY(put_rows(&X, length, leaders, names, equations));
+done:
+    free(names);
+    ritz_dense_free(&S_n);
+    ritz_dense_free(&S_m);
+    ritz_dense_free(&X);
+    return status;
+}

@@ -1,0 +1,130 @@
+#include "poles/curve.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/* Points that stand out: so many, and no lower than so much of the highest. */
+enum { MOST_PEAKS = 12 };
+static const double worth_climbing = 0.5;
+static const double golden = 0.61803398874989485;
+/* Of a bracket's length when it is done, relative to its frequency. */
+static const double close_enough = 1e-10;
+/* A value that grows by so much while the bracket shrinks from `late` to that
+   does so for want of damping. */
+static const double late = 1e-8;
+static const double still_growing = 1.5;
+
+typedef struct climb {
+    const ritz_curve *curve;
+    double where, best;
+} climb;
+
+static ritz_status look(void *state, double hertz, double *value)
+{
+    climb *c = state;
+    ritz_status status = c->curve->at(c->curve->state, hertz, value);
+
+    if (status == RITZ_ERR_SINGULAR) {
+        *value = HUGE_VAL;
+        status = RITZ_OK;
+    }
+    if (status == RITZ_OK && *value > c->best) {
+        c->best = *value;
+        c->where = hertz;
+    }
+    return status;
+}
+
+ritz_status ritz_curve_between(const ritz_curve *curve, double within,
+                               double *low, double *high, double *most)
+{
+    ritz_status status = RITZ_OK;
+    double a = *high - golden * (*high - *low);
+    double b = *low + golden * (*high - *low);
+    double at_a = 0.0, at_b = 0.0;
+
+    RITZ_TRY(curve->at(curve->state, a, &at_a));
+    RITZ_TRY(curve->at(curve->state, b, &at_b));
+    while (*high - *low > within * *high) {
+        if (at_a > at_b) {
+            *high = b;
+            b = a;
+            at_b = at_a;
+            a = *high - golden * (*high - *low);
+            RITZ_TRY(curve->at(curve->state, a, &at_a));
+        } else {
+            *low = a;
+            a = b;
+            at_a = at_b;
+            b = *low + golden * (*high - *low);
+            RITZ_TRY(curve->at(curve->state, b, &at_b));
+        }
+    }
+    *most = fmax(at_a, at_b);
+done:
+    return status;
+}
+
+/* The most between two frequencies, or that it grows without end. */
+static ritz_status between(climb *c, double low, double high)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_curve seen = {look, c};
+    double before = 0.0, most = 0.0;
+
+    RITZ_TRY(ritz_curve_between(&seen, late, &low, &high, &before));
+    RITZ_TRY(ritz_curve_between(&seen, close_enough, &low, &high, &most));
+    if (most > still_growing * before) {
+        c->best = HUGE_VAL;
+        c->where = (low + high) / 2.0;
+    }
+done:
+    return status;
+}
+
+static bool stands_out(int64_t count, const double *value, int64_t k)
+{
+    return (k == 0 || value[k] >= value[k - 1]) &&
+           (k == count - 1 || value[k] >= value[k + 1]);
+}
+
+/* The highest below the last that stands out, -1 if there is none. */
+static int64_t next_highest(int64_t count, const double *value, double below,
+                            int64_t after)
+{
+    int64_t best = -1;
+
+    for (int64_t k = 0; k < count; k++)
+        if (stands_out(count, value, k) &&
+            (value[k] < below || (value[k] == below && k > after)) &&
+            (best < 0 || value[k] > value[best]))
+            best = k;
+    return best;
+}
+
+ritz_status ritz_curve_peak(int64_t count, const double *hertz,
+                            const double *value, const ritz_curve *curve,
+                            double *where, double *best)
+{
+    ritz_status status = RITZ_OK;
+    climb c = {.curve = curve, .best = -1.0};
+    int64_t k = next_highest(count, value, HUGE_VAL, count);
+
+    if (k >= 0) {
+        c.best = value[k];
+        c.where = hertz[k];
+    }
+    for (int t = 0; curve && k >= 0 && t < MOST_PEAKS; t++) {
+        if (value[k] < worth_climbing * c.best)
+            break;
+        if (k > 0)
+            RITZ_TRY(between(&c, hertz[k - 1], hertz[k]));
+        if (k < count - 1)
+            RITZ_TRY(between(&c, hertz[k], hertz[k + 1]));
+        k = next_highest(count, value, value[k], k);
+    }
+    *where = c.where;
+    *best = c.best;
+done:
+    return status;
+}

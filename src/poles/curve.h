@@ -1,0 +1,37 @@
+/* The most of a function of frequency that is known at points. */
+#ifndef RITZ_POLES_CURVE_H
+#define RITZ_POLES_CURVE_H
+
+#include <ritz/status.h>
+
+#include <stdint.h>
+
+/* A value at one frequency; RITZ_ERR_SINGULAR: it is infinite there. */
+typedef struct ritz_curve {
+    ritz_status (*at)(void *state, double hertz, double *value);
+    void *state;
+} ritz_curve;
+
+/**
+ * The most between two frequencies, as if there were one peak: golden sections
+ * until the bracket is no longer than @p within of its upper end.
+ *
+ * @param[in,out] low,high  the bracket
+ * @param[out]    most      of the last two values
+ */
+ritz_status ritz_curve_between(const ritz_curve *curve, double within,
+                               double *low, double *high, double *most);
+
+/**
+ * Among points and, by golden sections between neighbours, around those that
+ * are higher than theirs and no lower than half the highest.
+ *
+ * @param[in] curve  NULL: points alone
+ * @param[out] best  HUGE_VAL if it still grows where points can no longer be
+ *                   told apart
+ */
+ritz_status ritz_curve_peak(int64_t count, const double *hertz,
+                            const double *value, const ritz_curve *curve,
+                            double *where, double *best);
+
+#endif

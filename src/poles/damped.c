@@ -1,0 +1,279 @@
+/*
+ * Damped modes of poles that D or K4 couples, from the modal matrices; and, as
+ * modes that were left out change what a local damper does, made exact on the
+ * full ones.
+ */
+#include "poles/damped.h"
+
+#include "base/alloc.h"
+#include "poles/refine.h"
+
+#include <ritz/monitor.h>
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The modal matrices as a model. */
+typedef struct modal {
+    ritz_dense K, M, D, K4;
+} modal;
+
+static void modal_free(modal *m)
+{
+    ritz_dense_free(&m->K);
+    ritz_dense_free(&m->M);
+    ritz_dense_free(&m->D);
+    ritz_dense_free(&m->K4);
+}
+
+/* Rows and columns of the modes. */
+static ritz_status lead(const ritz_dense *A, int64_t m, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!A->val)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_new(m, m, out));
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
+done:
+    return status;
+}
+
+static ritz_status modal_new(const ritz_poles *poles, modal *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = poles->count;
+
+    RITZ_TRY(ritz_dense_new(m, m, &out->K));
+    RITZ_TRY(ritz_dense_new(m, m, &out->M));
+    RITZ_TRY(lead(&poles->D, m, &out->D));
+    RITZ_TRY(lead(&poles->K4, m, &out->K4));
+    for (int64_t k = 0; k < m; k++) {
+        ritz_dense_col(&out->K, k)[k] = poles->lambda[k];
+        ritz_dense_col(&out->M, k)[k] = 1.0;
+    }
+done:
+    return status;
+}
+
+/* How much of the shape of pole j is of mode k; 0 of what does not oscillate.*/
+static double share(const ritz_spectrum *spectrum, int64_t k, int64_t j)
+{
+    if (!(cimag(spectrum->s[j]) > 0.0))
+        return 0.0;
+    return hypot(ritz_dense_col(&spectrum->re, j)[k],
+                 ritz_dense_col(&spectrum->im, j)[k]);
+}
+
+/*
+ * The pole that each flexible mode has become, -1 where it does not oscillate
+ * any more. Each pole is of one mode: the largest share decides, then the
+ * largest of what is left; else an overdamped mode would be given the ratio of
+ * a neighbour.
+ */
+static ritz_status assign(const ritz_poles *poles,
+                          const ritz_spectrum *spectrum, int64_t *of)
+{
+    ritz_status status = RITZ_OK;
+    bool *taken = NULL;
+
+    RITZ_NEW(taken, spectrum->count);
+    for (int64_t k = 0; k < poles->count; k++)
+        of[k] = -1;
+    for (int64_t t = poles->num_rigid; t < poles->count; t++) {
+        double best = 0.0;
+        int64_t mode = -1, pole = -1;
+
+        for (int64_t j = 0; j < spectrum->count; j++)
+            for (int64_t k = poles->num_rigid; k < poles->count && !taken[j];
+                 k++)
+                if (of[k] < 0 && share(spectrum, k, j) > best) {
+                    best = share(spectrum, k, j);
+                    mode = k;
+                    pole = j;
+                }
+        if (mode < 0)
+            break;
+        of[mode] = pole;
+        taken[pole] = true;
+    }
+done:
+    free(taken);
+    return status;
+}
+
+/* What D leaves out: given ratios are in the rates, D's in the matrices. */
+static double given_ratio(const ritz_poles *poles, const double *own, int64_t k)
+{
+    return (poles->rate[k] - own[k]) / (2.0 * sqrt(poles->lambda[k]));
+}
+
+/* Diagonal of Phi'D Phi; 0 without D. */
+static ritz_status own_rates(const ritz_sparse *D, const ritz_dense *Phi,
+                             double **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense DPhi = {0};
+    double *own = NULL;
+
+    RITZ_NEW(own, Phi->ncol);
+    if (D->colptr)
+        RITZ_TRY(ritz_sparse_mul(D, Phi, &DPhi));
+    for (int64_t k = 0; DPhi.val && k < Phi->ncol; k++)
+        for (int64_t i = 0; i < Phi->nrow; i++)
+            own[k] += ritz_dense_col(Phi, k)[i] * ritz_dense_col(&DPhi, k)[i];
+    *out = own;
+    own = NULL;
+done:
+    ritz_dense_free(&DPhi);
+    free(own);
+    return status;
+}
+
+/* x = Phi q, n x 2, of modal shape j. */
+static ritz_status shape(const ritz_dense *Phi, const ritz_spectrum *spectrum,
+                         int64_t j, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = Phi->ncol;
+    ritz_dense q = {0};
+
+    RITZ_TRY(ritz_dense_new(m, 2, &q));
+    memcpy(q.val, ritz_dense_col(&spectrum->re, j), (size_t)m * sizeof *q.val);
+    memcpy(q.val + m, ritz_dense_col(&spectrum->im, j),
+           (size_t)m * sizeof *q.val);
+    RITZ_TRY(ritz_dense_mul(Phi, &q, out));
+done:
+    ritz_dense_free(&q);
+    return status;
+}
+
+static bool in_band(const ritz_poles *poles, int64_t k, const double band_hz[2])
+{
+    double hertz = ritz_eigen_hertz(poles->lambda[k]);
+
+    return hertz >= band_hz[0] && hertz <= band_hz[1] * (1.0 + 1e-9);
+}
+
+/* s of ratio zeta and size |s|. */
+static double _Complex pole_of(double size, double zeta)
+{
+    return zeta < 1.0
+               ? ritz_complex(-zeta * size, size * sqrt(1.0 - zeta * zeta))
+               : ritz_complex(nan(""), 0.0);
+}
+
+/* Modes in the band, on the full matrices, from where the modal ones put s. */
+static ritz_status refine_band(const ritz_poles *poles,
+                               const ritz_component *component,
+                               const ritz_pairs *pairs, const double band_hz[2],
+                               const int64_t *of, ritz_damped *damped)
+{
+    ritz_status status = RITZ_OK;
+    ritz_refiner refiner = {0};
+    ritz_dense x = {0};
+    double *own = NULL;
+
+    RITZ_TRY(own_rates(&component->D, &pairs->Phi, &own));
+    RITZ_TRY(ritz_refiner_new(component, true, &refiner));
+    for (int64_t k = poles->num_rigid; k < poles->count; k++) {
+        double _Complex s = 0.0;
+        double zeta = 0.0;
+
+        if (of[k] < 0 || !in_band(poles, k, band_hz))
+            continue;
+        s = damped->listing.s[of[k]];
+        RITZ_TRY(shape(&pairs->Phi, &damped->listing, of[k], &x));
+        RITZ_TRY(ritz_refine(&refiner, &x, &s));
+        ritz_dense_free(&x);
+        zeta = ritz_spectrum_ratio(s) + given_ratio(poles, own, k);
+        damped->zeta[k] = zeta;
+        damped->s[k] = pole_of(cabs(s), zeta);
+        ritz_monitor_step("damped modes", k + 1, poles->count);
+    }
+done:
+    ritz_refiner_free(&refiner);
+    ritz_dense_free(&x);
+    free(own);
+    return status;
+}
+
+static ritz_status take_coupled(const ritz_poles *poles,
+                                const ritz_component *component,
+                                const ritz_pairs *pairs,
+                                const double band_hz[2], ritz_damped *damped)
+{
+    ritz_status status = RITZ_OK;
+    modal m = {0};
+    const ritz_second_order model = {&m.K, &m.M, &m.D, &m.K4, NULL};
+    int64_t *of = NULL;
+
+    RITZ_NEW(of, poles->count);
+    RITZ_TRY(modal_new(poles, &m));
+    RITZ_TRY(ritz_spectrum_dense(&model, NULL, &damped->listing));
+    RITZ_TRY(assign(poles, &damped->listing, of));
+    for (int64_t k = poles->num_rigid; k < poles->count; k++) {
+        damped->s[k] =
+            of[k] < 0 ? ritz_complex(nan(""), 0.0) : damped->listing.s[of[k]];
+        damped->zeta[k] =
+            of[k] < 0 ? nan("") : ritz_spectrum_ratio(damped->s[k]);
+    }
+    if (component && poles->count < component->num_dofs)
+        RITZ_TRY(refine_band(poles, component, pairs, band_hz, of, damped));
+done:
+    modal_free(&m);
+    free(of);
+    return status;
+}
+
+ritz_status ritz_damped_new(const ritz_poles *poles,
+                            const ritz_component *component,
+                            const ritz_pairs *pairs, const double band_hz[2],
+                            ritz_damped *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_damped damped = {0};
+    double *omega = NULL;
+
+    RITZ_TRY(ritz_poles_ratios(poles, &omega, &damped.zeta));
+    RITZ_NEW(damped.s, poles->count);
+    for (int64_t k = 0; k < poles->count; k++)
+        damped.s[k] = omega[k] > 0.0 ? pole_of(omega[k], damped.zeta[k])
+                                     : ritz_complex(nan(""), 0.0);
+    if (poles->coupled && poles->D.val)
+        RITZ_TRY(take_coupled(poles, component, pairs, band_hz, &damped));
+    *out = damped;
+    damped = (ritz_damped){0};
+done:
+    free(omega);
+    ritz_damped_free(&damped);
+    return status;
+}
+
+double _Complex ritz_damped_nearest(const ritz_damped *damped, int64_t count,
+                                    double _Complex s)
+{
+    bool listed = damped->listing.count > 0;
+    const double _Complex *all = listed ? damped->listing.s : damped->s;
+    double _Complex best = ritz_complex(nan(""), 0.0);
+    double least = HUGE_VAL;
+
+    for (int64_t k = 0; k < (listed ? damped->listing.count : count); k++)
+        if (cimag(all[k]) > 0.0 && cabs(all[k] - s) < least) {
+            least = cabs(all[k] - s);
+            best = all[k];
+        }
+    return best;
+}
+
+void ritz_damped_free(ritz_damped *damped)
+{
+    free(damped->zeta);
+    free(damped->s);
+    ritz_spectrum_free(&damped->listing);
+    *damped = (ritz_damped){0};
+}

@@ -1,0 +1,22 @@
+/* Every mode of a dense model, as ritz_response_dense uses them. */
+#ifndef RITZ_POLES_DENSE_POLES_H
+#define RITZ_POLES_DENSE_POLES_H
+
+#include "poles/poles.h"
+
+ritz_status ritz_poles_of_dense(const ritz_second_order *model,
+                                const ritz_damping *damping, ritz_poles *out);
+
+/**
+ * The same of pairs that are known: all modes of finite frequency, `lambda`
+ * with room for as many as there are coordinates.
+ *
+ * @param[in]     beside  take motions without mass as coordinates even where
+ *                        no damping acts on them
+ * @param[in,out] pairs   gets their shapes behind those of its modes
+ */
+ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
+                                const ritz_damping *damping, bool beside,
+                                ritz_pairs *pairs, ritz_poles *out);
+
+#endif

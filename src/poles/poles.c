@@ -1,0 +1,259 @@
+#include "poles/poles.h"
+
+#include "base/alloc.h"
+#include "model/io.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+/* Modal matrices whose other entries are smaller than this, against what
+   stands on the diagonal, are diagonal: the error is of its square. */
+static const double diagonal_within = 1e-9;
+/* Of w^2: nearer to an undamped pole than this there is no answer. */
+static const double pole_within = 1e-12;
+/* Of the product of all modes' shares: what is below is not driven and seen. */
+static const double unseen_below = 1e-10;
+
+/* A skew part beyond rounding, of what was projected: gyroscopic damping. */
+static const double symmetric_within = 1e-12;
+
+static bool couples(const ritz_dense *A)
+{
+    double largest = 0.0;
+
+    for (int64_t k = 0; k < A->ncol; k++)
+        largest = fmax(largest, fabs(ritz_dense_col(A, k)[k]));
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++) {
+            double own = sqrt(fabs(ritz_dense_col(A, i)[i]) *
+                              fabs(ritz_dense_col(A, j)[j]));
+
+            if (i != j && !(fabs(ritz_dense_col(A, j)[i]) <=
+                            diagonal_within * own + 1e-15 * largest))
+                return true;
+        }
+    return false;
+}
+
+static ritz_status copy(const ritz_dense *A, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol, out));
+    memcpy(out->val, A->val, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
+done:
+    return status;
+}
+
+/* K4 is kept whole where there is any: it has no rate. */
+static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
+                                ritz_poles *poles)
+{
+    ritz_status status = RITZ_OK;
+    bool has_k4 = K4 && K4->val;
+
+    if (D && D->val) {
+        for (int64_t k = 0; k < poles->count; k++)
+            poles->rate[k] += ritz_dense_col(D, k)[k];
+        poles->coupled = couples(D);
+        poles->skew = ritz_dense_asymmetry(D) > symmetric_within;
+        RITZ_TRY(copy(D, &poles->D));
+    } else if (has_k4) {
+        RITZ_TRY(ritz_dense_new(poles->count, poles->count, &poles->D));
+    }
+    if (has_k4) {
+        poles->coupled = true;
+        RITZ_TRY(copy(K4, &poles->K4));
+    }
+    for (int64_t k = 0; poles->D.val && k < poles->count; k++)
+        ritz_dense_col(&poles->D, k)[k] = poles->rate[k];
+done:
+    return status;
+}
+
+ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
+                           const ritz_dense *K4, const ritz_io *io,
+                           const ritz_damping *damping, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_poles poles = {.count = pairs->Phi.ncol,
+                        .num_rigid = pairs->num_rigid};
+
+    RITZ_NEW(poles.lambda, poles.count);
+    RITZ_NEW(poles.rate, poles.count);
+    for (int64_t k = 0; k < poles.count; k++) {
+        bool rigid = k < poles.num_rigid;
+        double w = rigid ? 0.0 : sqrt(fmax(pairs->lambda[k], 0.0));
+
+        poles.lambda[k] = w * w;
+        if (damping && !rigid)
+            poles.rate[k] =
+                2.0 * w * ritz_damping_of_mode(damping, k - poles.num_rigid, w);
+        /* a M + b K damps rigid motion too; a ratio does not */
+        if (damping && rigid && ritz_damping_is_rayleigh(damping))
+            poles.rate[k] = damping->a;
+    }
+    RITZ_TRY(add_matrices(D, K4, &poles));
+    RITZ_TRY(ritz_io_project(io, &pairs->Phi, &poles.io));
+    RITZ_NEW(poles.q, poles.count * io->num_inputs);
+    *out = poles;
+    poles = (ritz_poles){0};
+done:
+    ritz_poles_free(&poles);
+    return status;
+}
+
+/* How much output i sees of mode k; a rigid acceleration is no pole. */
+static double seen_of(const ritz_poles *poles, int64_t i, int64_t k)
+{
+    const ritz_io *io = &poles->io;
+    double of_rest = fabs(ritz_dense_col(&io->C, k)[i]) +
+                     fabs(ritz_dense_col(&io->Cv, k)[i]);
+
+    return k < poles->num_rigid ? of_rest
+                                : of_rest + fabs(ritz_dense_col(&io->Ca, k)[i]);
+}
+
+bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
+{
+    const ritz_io *io = &poles->io;
+
+    for (int64_t j = 0; j < io->num_inputs; j++) {
+        const double *b = ritz_dense_col(&io->B, j);
+        double driven = 0.0;
+
+        for (int64_t m = 0; m < poles->count; m++)
+            driven = fmax(driven, fabs(b[m]));
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            double seen = 0.0;
+
+            for (int64_t m = 0; m < poles->count; m++)
+                seen = fmax(seen, seen_of(poles, i, m));
+            if (fabs(b[k]) * seen_of(poles, i, k) >
+                unseen_below * driven * seen)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* One over the pole's factor; 0 where it is infinite and does not matter. */
+static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
+                          double _Complex *out)
+{
+    ritz_status status = RITZ_OK;
+    double w = 2.0 * pi * hertz;
+    double _Complex z =
+        ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
+    bool on_pole = cabs(z) <= pole_within * (poles->lambda[k] + w * w);
+
+    *out = 0.0;
+    if (on_pole) {
+        RITZ_FAIL_IF(ritz_poles_matter(poles, k) && k < poles->num_rigid,
+                     RITZ_ERR_SINGULAR,
+                     "at 0 Hz the response is infinite: a rigid-body motion is "
+                     "driven and seen, begin above 0 Hz");
+        RITZ_FAIL_IF(ritz_poles_matter(poles, k), RITZ_ERR_SINGULAR,
+                     "%.9g Hz is the frequency of an undamped mode: give it "
+                     "damping or leave the point out",
+                     hertz);
+    } else {
+        *out = 1.0 / z;
+    }
+done:
+    return status;
+}
+
+static ritz_status solve_apart(const ritz_poles *poles, double hertz,
+                               double _Complex *q)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex g = 0.0;
+
+    for (int64_t k = 0; k < poles->count; k++) {
+        RITZ_TRY(invert(poles, k, hertz, &g));
+        for (int64_t j = 0; j < poles->io.num_inputs; j++)
+            q[k + j * poles->count] = g * ritz_dense_col(&poles->io.B, j)[k];
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
+                             double _Complex *q)
+{
+    if (poles->count + poles->massless == 0 || poles->io.num_inputs == 0)
+        return RITZ_OK;
+    return poles->coupled ? ritz_poles_together(poles, hertz, q)
+                          : solve_apart(poles, hertz, q);
+}
+
+/*
+ * A rigid mode at 0 Hz has no finite q, but an acceleration: -w^2 q = b, which
+ * ritz_poles_solve leaves to this.
+ */
+static void add_rigid_acceleration(const ritz_poles *poles, double _Complex *H)
+{
+    const ritz_io *io = &poles->io;
+
+    for (int64_t k = 0; k < poles->num_rigid; k++)
+        for (int64_t i = 0; poles->rate[k] == 0.0 && i < io->num_outputs; i++)
+            for (int64_t j = 0; j < io->num_inputs; j++)
+                H[i * io->num_inputs + j] += ritz_dense_col(&io->Ca, k)[i] *
+                                             ritz_dense_col(&io->B, j)[k];
+}
+
+ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
+                           double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_poles_solve(poles, hertz, poles->q));
+    ritz_io_respond(&poles->io, hertz, poles->q, H);
+    if (hertz == 0.0 && !poles->coupled)
+        add_rigid_acceleration(poles, H);
+    ritz_residual_add(&poles->rest, hertz, H);
+done:
+    return status;
+}
+
+ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
+                              double **zeta)
+{
+    ritz_status status = RITZ_OK;
+    double *w = NULL;
+    double *z = NULL;
+
+    RITZ_NEW(w, poles->count);
+    RITZ_NEW(z, poles->count);
+    for (int64_t k = 0; k < poles->count; k++) {
+        double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, k)[k] : 0.0;
+
+        w[k] = sqrt(poles->lambda[k]);
+        if (w[k] > 0.0)
+            z[k] = (poles->rate[k] + k4 / w[k]) / (2.0 * w[k]);
+    }
+    *omega = w;
+    *zeta = z;
+    w = NULL;
+    z = NULL;
+done:
+    free(w);
+    free(z);
+    return status;
+}
+
+void ritz_poles_free(ritz_poles *poles)
+{
+    free(poles->lambda);
+    free(poles->rate);
+    free(poles->q);
+    ritz_dense_free(&poles->D);
+    ritz_dense_free(&poles->K4);
+    ritz_io_free(&poles->io);
+    ritz_residual_free(&poles->rest);
+    *poles = (ritz_poles){0};
+}

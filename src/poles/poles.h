@@ -1,0 +1,126 @@
+/*
+ * Some modes of a model with their share of its inputs and outputs, and the
+ * response they make:
+ *
+ *     (Lambda - w^2 I + i w (d + D) + i K4) q = B u,
+ *     y = (C + i w Cv - w^2 Ca) q
+ */
+#ifndef RITZ_POLES_POLES_H
+#define RITZ_POLES_POLES_H
+
+#include "base/complex.h"
+
+#include <ritz/damping.h>
+#include <ritz/eigen.h>
+#include <ritz/response.h>
+
+/*
+ * What the modes that were left out answer, damped by a M + b K: with K^+ the
+ * inverse of K where they live, R_0 = K^+ B and R_j = K^+ M R_(j-1),
+ *
+ *     X = sum_j mu^j R_j / (1 + i w b),    mu = (w^2 - i w a) / (1 + i w b)
+ *
+ * of it only what the outputs see. No ratio damps them.
+ */
+typedef struct ritz_residual {
+    int64_t count, num_outputs, num_inputs;
+    double a, b;
+    bool known;          /* a and b are all that D and K4 do to them */
+    double unit;         /* of mu: term j is kept times its power j */
+    double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
+                            as ritz_dense */
+} ritz_residual;
+
+typedef struct ritz_poles {
+    int64_t count;
+    int64_t num_rigid;
+    int64_t massless;   /* coordinates behind the modes, without mass, K = I:
+                           what D or K4 acts on of them; then coupled */
+    double *lambda;     /* count, 0 where rigid  [rad^2/s^2]; 1 behind */
+    double *rate;       /* count, 2 zeta w of given ratios and D's diagonal */
+    bool coupled;       /* D or K4 couple modes: below are what to use */
+    bool skew;          /* D is not symmetric */
+    ritz_dense D;       /* count x count, with `rate` on its diagonal, or {0} */
+    ritz_dense K4;      /* count x count, or {0} */
+    ritz_io io;         /* for the modes */
+    ritz_residual rest; /* what motions without mass answer; {0}: none */
+    double _Complex *q; /* count x num_inputs, to work in: one thread */
+} ritz_poles;
+
+/* Modal matrices are borrowed until the call ends; {0} or NULL: none. */
+ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
+                           const ritz_dense *K4, const ritz_io *io,
+                           const ritz_damping *damping, ritz_poles *out);
+
+/**
+ * Modal coordinates at one frequency.
+ *
+ * @param[out] q  count + massless rows, num_inputs columns
+ * @return RITZ_ERR_SINGULAR if that is on an undamped pole, or at 0 Hz where
+ *         rigid modes are driven and seen
+ */
+ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
+                             double _Complex *q);
+
+/**
+ * Whether any output sees, through mode k, any input: more than rounding of
+ * what it sees through all.
+ */
+bool ritz_poles_matter(const ritz_poles *poles, int64_t k);
+
+/**
+ * Add what the modes, and motions without mass, answer to H, num_outputs x
+ * num_inputs, row by row.
+ */
+ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
+                           double _Complex *H);
+
+/** What ritz_poles_solve does where modes are coupled. */
+ritz_status ritz_poles_together(const ritz_poles *poles, double hertz,
+                                double _Complex *q);
+
+/** Damping ratio of each mode, from its rate; 0 where rigid. */
+ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
+                              double **zeta);
+
+void ritz_poles_free(ritz_poles *poles);
+
+/** Whether a grid is one. @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_grid_check(const ritz_grid *grid);
+
+/** Response of zeros at the points of a grid, for these modes. */
+ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
+                              const char *method, const ritz_damping *damping,
+                              ritz_response *out);
+
+/**
+ * Modes of a component up to a frequency, and what they make of its damping.
+ *
+ * @param[out] pairs  may be NULL: not wanted
+ */
+ritz_status ritz_poles_of_component(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    double up_to_hz, ritz_pairs *pairs,
+                                    ritz_poles *out);
+
+/**
+ * What the modes beside @p pairs answer, damped as @p damping, if it is
+ * a M + b K, and D say together. Of a D that is no such sum, of K4, and where
+ * a is so large that there is no series, nothing is heeded.
+ *
+ * @param[in] damping  NULL: none beside D
+ * @param[in] to_hz    where the series is to be good to 1e-12
+ * @param[in] out_hz   all modes up to here are in @p pairs
+ */
+ritz_status ritz_residual_new(const ritz_component *component,
+                              const ritz_damping *damping,
+                              const ritz_pairs *pairs, double to_hz,
+                              double out_hz, ritz_residual *out);
+
+/** H += the residual's share. */
+void ritz_residual_add(const ritz_residual *residual, double hertz,
+                       double _Complex *H);
+
+void ritz_residual_free(ritz_residual *residual);
+
+#endif

@@ -1,0 +1,19 @@
+/* Whether D is a M + b K. */
+#ifndef RITZ_POLES_PROPORTIONAL_H
+#define RITZ_POLES_PROPORTIONAL_H
+
+#include <ritz/component.h>
+
+/* Of |D|: beyond what rounding leaves of matrices in text of few digits. */
+#define RITZ_PROPORTIONAL_WITHIN 1e-6
+
+/**
+ * The a and b for which |D - a M - b K| is least in the Frobenius norm.
+ *
+ * @param[in]  component  with D
+ * @param[out] left       |D - a M - b K| / |D|
+ */
+ritz_status ritz_proportional(const ritz_component *component, double *a,
+                              double *b, double *left);
+
+#endif

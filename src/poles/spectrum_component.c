@@ -1,0 +1,238 @@
+/* Lowest damped poles of a component, made exact on its full matrices. */
+#include "poles/spectrum_parts.h"
+
+#include "base/alloc.h"
+#include "poles/refine.h"
+
+#include <ritz/monitor.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Beyond what is wanted, of modes and of frequencies. */
+enum { MORE_MODES = 8 };
+static const double beyond = 2.0;
+/* Inverse iteration that moves s further than this went somewhere else. */
+static const double near = 0.1;
+/* Poles and shapes nearer than this are one. */
+static const double same = 1e-9;
+static const double same_shape = 0.9;
+
+/* Add a given ratio to a pole: |s| stays. */
+static double _Complex add_ratio(double _Complex s, double ratio)
+{
+    double size = cabs(s);
+    double zeta = ritz_spectrum_ratio(s) + ratio;
+    double _Complex i = (double _Complex)_Complex_I;
+
+    if (!(cimag(s) > 0.0) || ratio == 0.0)
+        return s;
+    return zeta < 1.0 ? -zeta * size + i * (size * sqrt(1.0 - zeta * zeta))
+                      : -size;
+}
+
+/* |x^H y| / (|x||y|) of column j and y, real and imaginary part. */
+static double alike(const ritz_spectrum *spectrum, int64_t j,
+                    const ritz_dense *y)
+{
+    const double *re = ritz_dense_col(&spectrum->re, j);
+    const double *im = ritz_dense_col(&spectrum->im, j);
+    int64_t n = y->nrow;
+    double real = 0.0, imaginary = 0.0, xx = 0.0, yy = 0.0;
+
+    for (int64_t i = 0; i < n; i++) {
+        real += re[i] * y->val[i] + im[i] * y->val[n + i];
+        imaginary += re[i] * y->val[n + i] - im[i] * y->val[i];
+        xx += re[i] * re[i] + im[i] * im[i];
+        yy += y->val[i] * y->val[i] + y->val[n + i] * y->val[n + i];
+    }
+    return hypot(real, imaginary) / sqrt(xx * yy);
+}
+
+/* Whether a pair is one of those before; double poles have shapes apart. */
+static bool is_there(const ritz_spectrum *spectrum, int64_t count,
+                     double _Complex s, const ritz_dense *x)
+{
+    for (int64_t j = 0; j < count; j++)
+        if (cabs(spectrum->s[j] - s) <= same * cabs(s) &&
+            alike(spectrum, j, x) > same_shape)
+            return true;
+    return false;
+}
+
+/* Pole j on the full matrices, where inverse iteration stays near. */
+static ritz_status sharpen(ritz_refiner *refiner, int64_t j,
+                           ritz_spectrum *spectrum)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex s = spectrum->s[j];
+    int64_t n = spectrum->re.nrow;
+    double *re = ritz_dense_col(&spectrum->re, j);
+    double *im = ritz_dense_col(&spectrum->im, j);
+    ritz_dense x = {0}, start = {0};
+
+    RITZ_TRY(ritz_dense_new(n, 2, &x));
+    memcpy(x.val, re, (size_t)n * sizeof *re);
+    memcpy(x.val + n, im, (size_t)n * sizeof *im);
+    RITZ_TRY(ritz_dense_copy(&x, &start));
+    status = ritz_refine(refiner, &x, &s);
+    if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE)
+        goto done;
+    if (status == RITZ_OK && cabs(s - spectrum->s[j]) <= near * cabs(s) &&
+        !is_there(spectrum, j, s, &x)) {
+        spectrum->s[j] = s;
+        memcpy(re, x.val, (size_t)n * sizeof *re);
+        memcpy(im, x.val + n, (size_t)n * sizeof *im);
+        memcpy(start.val, x.val, (size_t)(2 * n) * sizeof *re);
+    }
+    status = ritz_refiner_residual(refiner, &start, spectrum->s[j],
+                                   &spectrum->residual[j]);
+done:
+    ritz_dense_free(&x);
+    ritz_dense_free(&start);
+    return status;
+}
+
+/* The first that are asked for. */
+static void cut(const ritz_span *span, ritz_spectrum *spectrum)
+{
+    double limit = sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + same);
+    int64_t count = 0;
+
+    while (count < spectrum->count &&
+           (span->modes >= 0 ? count < span->modes
+                             : cabs(spectrum->s[count]) <= limit))
+        count++;
+    spectrum->count = spectrum->re.ncol = spectrum->im.ncol = count;
+}
+
+static ritz_status whole(const ritz_component *component,
+                         const ritz_damping *damping, ritz_spectrum *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_whole w = {0};
+
+    RITZ_TRY(ritz_whole_new(component, &w));
+    RITZ_TRY(ritz_spectrum_dense(&w.model, damping, out));
+done:
+    ritz_whole_free(&w);
+    return status;
+}
+
+/* Shapes of the small model become those of the component. */
+static ritz_status expand(const ritz_dense *T, ritz_dense *shapes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense x = {0};
+
+    RITZ_TRY(ritz_dense_mul(T, shapes, &x));
+    ritz_dense_free(shapes);
+    *shapes = x;
+done:
+    return status;
+}
+
+/* Without given ratios. */
+static ritz_status part(const ritz_component *component, const ritz_span *span,
+                        ritz_spectrum *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span wide = {
+        .modes = span->modes < 0
+                     ? -1
+                     : (int64_t)(beyond * (double)span->modes) + MORE_MODES,
+        .up_to_hz = beyond * span->up_to_hz,
+    };
+    ritz_reduced small = {0};
+    const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,
+                                     NULL};
+    ritz_refiner refiner = {0};
+
+    RITZ_TRY(ritz_spectrum_space(component, &wide, &small));
+    RITZ_TRY(ritz_spectrum_dense(&model, NULL, out));
+    cut(span, out);
+    RITZ_TRY(expand(&small.T, &out->re));
+    RITZ_TRY(expand(&small.T, &out->im));
+    RITZ_TRY(ritz_refiner_new(component, true, &refiner));
+    for (int64_t j = 0; j < out->count; j++) {
+        RITZ_TRY(sharpen(&refiner, j, out));
+        ritz_monitor_step("damped modes", j + 1, out->count);
+    }
+    (void)snprintf(out->engine, sizeof out->engine,
+                   "CHOLMOD + ARPACK + inverse iteration");
+done:
+    ritz_refiner_free(&refiner);
+    ritz_reduced_free(&small);
+    return status;
+}
+
+/* a M + b K in D itself: `seen` is the component but for D, which is its own.*/
+static ritz_status add_rayleigh(const ritz_component *component,
+                                const ritz_damping *damping,
+                                ritz_component *seen)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse given = {0};
+
+    *seen = *component;
+    seen->D = (ritz_sparse){0};
+    RITZ_TRY(ritz_sparse_add(damping->a, &component->M, damping->b,
+                             &component->K, &given));
+    if (component->D.colptr) {
+        RITZ_TRY(ritz_sparse_add(1.0, &component->D, 1.0, &given, &seen->D));
+    } else {
+        seen->D = given;
+        given = (ritz_sparse){0};
+    }
+done:
+    ritz_sparse_free(&given);
+    return status;
+}
+
+ritz_status ritz_spectrum_large(const ritz_component *component,
+                                const ritz_damping *damping,
+                                const ritz_span *span, ritz_spectrum *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_component seen = {0};
+    int64_t mode = 0;
+
+    if (damping && ritz_damping_is_rayleigh(damping)) {
+        RITZ_TRY(add_rayleigh(component, damping, &seen));
+        RITZ_TRY(part(&seen, span, out));
+        goto done;
+    }
+    RITZ_TRY(part(component, span, out));
+    for (int64_t j = 0; damping && j < out->count; j++)
+        if (cimag(out->s[j]) > 0.0) {
+            double w = cabs(out->s[j]);
+
+            out->s[j] =
+                add_ratio(out->s[j], ritz_damping_of_mode(damping, mode++, w));
+        }
+done:
+    ritz_sparse_free(&seen.D);
+    return status;
+}
+
+ritz_status ritz_spectrum_component(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    const ritz_span *span, ritz_spectrum *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_spectrum spectrum = {0};
+
+    if (component->num_dofs <= RITZ_WHOLE_DOFS) {
+        RITZ_TRY(whole(component, damping, &spectrum));
+        cut(span, &spectrum);
+    } else {
+        RITZ_TRY(ritz_spectrum_large(component, damping, span, &spectrum));
+    }
+    *out = spectrum;
+    spectrum = (ritz_spectrum){0};
+done:
+    ritz_spectrum_free(&spectrum);
+    return status;
+}

@@ -1,0 +1,311 @@
+#include "poles/state.h"
+
+#include "base/alloc.h"
+
+#include <ritz/eigen.h>
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of what its terms add up to in magnitude, an entry of X'DX is rounding. */
+static const double rounding = 64.0 * DBL_EPSILON;
+/* Square of what an entry of N may err by, of its largest. */
+static const double unseen = 1e-24;
+/* Eigenvalues more negative than this, of the largest, are no rigid motion. */
+static const double unstable = 1e-9;
+
+/* X'AX whose entries are 0 where they are rounding alone. */
+static ritz_status project(const ritz_dense *A, const ritz_dense *X,
+                           ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense most = {0};
+
+    RITZ_TRY(ritz_dense_project(A, X, out));
+    RITZ_TRY(ritz_dense_terms(A, X, &most));
+    for (int64_t i = 0; i < out->nrow * out->ncol; i++)
+        if (fabs(out->val[i]) <= rounding * most.val[i])
+            out->val[i] = 0.0;
+done:
+    ritz_dense_free(&most);
+    return status;
+}
+
+static bool present(const ritz_dense *A)
+{
+    return A && A->val;
+}
+
+/*
+ * The finite modes as X; lambda, 0 where rigid. Of a model with negative
+ * eigenvalues, as columns joined by forces bring with them, rigid motions come
+ * behind those, and are told by what is left; num_rigid counts both.
+ */
+static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
+{
+    ritz_status status = RITZ_OK;
+    double largest = 0.0;
+    int64_t m = 0, negative = 0;
+
+    RITZ_TRY(ritz_eigen_dense(model->K, model->M, pairs));
+    m = pairs->Phi.ncol;
+    for (int64_t j = 0; j < m; j++)
+        largest = fmax(largest, fabs(pairs->lambda[j]));
+    while (negative < m && pairs->lambda[negative] < -unstable * largest)
+        negative++;
+    if (negative > 0)
+        pairs->num_rigid =
+            negative +
+            ritz_eigen_rigid(m - negative, pairs->lambda + negative, largest);
+    for (int64_t j = negative; j < pairs->num_rigid; j++)
+        pairs->lambda[j] = 0.0;
+done:
+    return status;
+}
+
+/* What ratios, or a M + b K, add to D of modes and of N. */
+static void add_given(const ritz_damping *damping, const ritz_pairs *pairs,
+                      ritz_dense *D)
+{
+    bool rayleigh = damping && ritz_damping_is_rayleigh(damping);
+    int64_t m = pairs->Phi.ncol;
+
+    for (int64_t j = 0; damping && j < D->ncol; j++) {
+        double lambda = j < m ? pairs->lambda[j] : 1.0;
+        double w = sqrt(fmax(lambda, 0.0));
+        double *d = &ritz_dense_col(D, j)[j];
+
+        if (rayleigh)
+            *d += (j < m ? damping->a : 0.0) + damping->b * lambda;
+        else if (j < m && w > 0.0)
+            *d += 2.0 * w *
+                  ritz_damping_of_mode(damping, j - pairs->num_rigid, w);
+    }
+}
+
+/*
+ * N turned so that the symmetric part of its D is diagonal and descends; how
+ * many columns it acts on.
+ *
+ * @param[in] floor  what rounding of N makes of N'DN at most
+ */
+static ritz_status turn(const ritz_dense *D, int64_t m, double floor,
+                        ritz_dense *N, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    int64_t k = N->ncol;
+    ritz_dense V = {0}, turned = {0};
+    double *delta = NULL;
+    double largest = 0.0;
+    int info = 0;
+
+    RITZ_NEW(delta, k);
+    RITZ_TRY(ritz_dense_new(k, k, &V));
+    for (int64_t j = 0; j < k; j++)
+        for (int64_t i = 0; i < k; i++) /* negative: descending */
+            ritz_dense_col(&V, j)[i] = -0.5 * (ritz_dense_col(D, m + j)[m + i] +
+                                               ritz_dense_col(D, m + i)[m + j]);
+    info =
+        LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (int)k, V.val, (int)k, delta);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "damping of the motions without mass was not found");
+    for (int64_t j = 0; j < k; j++)
+        largest = fmax(largest, fabs(delta[j]));
+    *count = 0;
+    for (int64_t j = 0; j < k; j++)
+        *count += -delta[j] > fmax(floor, (double)k * rounding * largest);
+    RITZ_TRY(ritz_dense_mul(N, &V, &turned));
+    ritz_dense_free(N);
+    *N = turned;
+    turned = (ritz_dense){0};
+done:
+    free(delta);
+    ritz_dense_free(&V);
+    ritz_dense_free(&turned);
+    return status;
+}
+
+/* The rest of N, columns `from` on of D, must be left alone. */
+static ritz_status check_rest(const ritz_dense *D, int64_t from)
+{
+    ritz_status status = RITZ_OK;
+    double largest = ritz_dense_max(D);
+
+    for (int64_t j = from; j < D->ncol; j++)
+        for (int64_t i = 0; i < D->nrow; i++)
+            RITZ_FAIL_IF(fabs(ritz_dense_col(D, j)[i]) > 1e-8 * largest ||
+                             fabs(ritz_dense_col(D, i)[j]) > 1e-8 * largest,
+                         RITZ_ERR_ARGUMENT,
+                         "the damping matrix couples a motion without mass "
+                         "that it does not damp: are its gyroscopic terms at "
+                         "massless dofs?");
+done:
+    return status;
+}
+
+/* The first `kept` rows and columns. */
+static ritz_status lead(ritz_dense *A, int64_t kept)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_new(kept, kept, &part));
+    for (int64_t j = 0; j < kept; j++)
+        for (int64_t i = 0; i < kept; i++)
+            ritz_dense_col(&part, j)[i] = ritz_dense_col(A, j)[i];
+    ritz_dense_free(A);
+    *A = part;
+done:
+    return status;
+}
+
+/* Put into N what D acts on, into X all that is kept, and D of that. */
+static ritz_status take_massless(const ritz_second_order *model,
+                                 const ritz_damping *damping,
+                                 const ritz_pairs *pairs, ritz_state *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = pairs->Phi.ncol;
+    ritz_dense N = {0};
+
+    if (m < pairs->Phi.nrow)
+        RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    for (int pass = 0; pass < 2; pass++) {
+        ritz_dense_free(&s->X);
+        ritz_dense_free(&s->D);
+        RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &s->X));
+        if (present(model->D))
+            RITZ_TRY(project(model->D, &s->X, &s->D));
+        else
+            RITZ_TRY(ritz_dense_new(s->X.ncol, s->X.ncol, &s->D));
+        add_given(damping, pairs, &s->D);
+        if (N.ncol == 0)
+            break;
+        if (pass == 0)
+            RITZ_TRY(turn(&s->D, m,
+                          present(model->D)
+                              ? unseen * ritz_dense_max(model->D) *
+                                    pow(ritz_dense_max(&N), 2.0)
+                              : 0.0,
+                          &N, &s->k));
+    }
+    RITZ_TRY(check_rest(&s->D, m + s->k));
+    RITZ_TRY(lead(&s->D, m + s->k));
+    if (present(model->K4)) {
+        RITZ_TRY(project(model->K4, &s->X, &s->K4));
+        RITZ_FAIL_IF(
+            N.ncol > 0 && ritz_dense_max(&s->K4) > 0.0, RITZ_ERR_ARGUMENT,
+            "there are motions without mass beside structural damping: "
+            "give it as a modal ratio");
+        if (N.ncol > 0)
+            ritz_dense_free(&s->K4);
+    }
+done:
+    ritz_dense_free(&N);
+    return status;
+}
+
+/* Whether D and K4 leave coordinate j alone. */
+static bool is_free(const ritz_state *s, int64_t j)
+{
+    if (s->lambda[j] != 0.0)
+        return false;
+    for (int64_t i = 0; i < s->D.ncol; i++)
+        if (ritz_dense_col(&s->D, j)[i] != 0.0 ||
+            ritz_dense_col(&s->D, i)[j] != 0.0)
+            return false;
+    for (int64_t i = 0; i < s->K4.ncol; i++)
+        if (ritz_dense_col(&s->K4, j)[i] != 0.0)
+            return false;
+    return true;
+}
+
+/* A := A without the rows and columns that are not kept. */
+static void keep_square(int64_t n, const bool *kept, ritz_dense *A)
+{
+    int64_t at = 0;
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < n; j++)
+        count += kept[j];
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            if (kept[i] && kept[j])
+                A->val[at++] = A->val[i + j * n];
+    A->nrow = A->ncol = count;
+}
+
+/* Leave out rigid motions that nothing damps. */
+static ritz_status drop_free(ritz_state *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t all = s->m + s->k;
+    int64_t n = s->X.nrow;
+    int64_t at = 0;
+    bool *kept = NULL;
+
+    RITZ_NEW(kept, all);
+    for (int64_t j = 0; j < all; j++)
+        kept[j] = j >= s->m || !is_free(s, j);
+    for (int64_t j = 0; j < all; j++) {
+        if (!kept[j])
+            continue;
+        if (j < s->m)
+            s->lambda[at] = s->lambda[j];
+        memmove(s->X.val + at * n, s->X.val + j * n,
+                (size_t)n * sizeof *s->X.val);
+        at++;
+    }
+    keep_square(all, kept, &s->D);
+    if (s->K4.val)
+        keep_square(s->m, kept, &s->K4);
+    s->num_free = all - at;
+    s->m -= s->num_free;
+    s->X.ncol = at;
+done:
+    free(kept);
+    return status;
+}
+
+static bool is_diagonal(const ritz_dense *D)
+{
+    for (int64_t j = 0; j < D->ncol; j++)
+        for (int64_t i = 0; i < D->nrow; i++)
+            if (i != j && ritz_dense_col(D, j)[i] != 0.0)
+                return false;
+    return true;
+}
+
+ritz_status ritz_state_new(const ritz_second_order *model,
+                           const ritz_damping *damping, ritz_state *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state s = {0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(take_modes(model, &pairs));
+    s.m = pairs.Phi.ncol;
+    RITZ_TRY(take_massless(model, damping, &pairs, &s));
+    s.lambda = pairs.lambda;
+    pairs.lambda = NULL;
+    RITZ_TRY(drop_free(&s));
+    s.diagonal = s.k == 0 && !s.K4.val && is_diagonal(&s.D);
+    *out = s;
+    s = (ritz_state){0};
+done:
+    ritz_pairs_free(&pairs);
+    ritz_state_free(&s);
+    return status;
+}
+
+void ritz_state_free(ritz_state *state)
+{
+    free(state->lambda);
+    ritz_dense_free(&state->X);
+    ritz_dense_free(&state->D);
+    ritz_dense_free(&state->K4);
+    *state = (ritz_state){0};
+}

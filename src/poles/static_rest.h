@@ -1,0 +1,17 @@
+/* What motions without mass answer, which no mode of a dense model shows. */
+#ifndef RITZ_POLES_STATIC_REST_H
+#define RITZ_POLES_STATIC_REST_H
+
+#include "poles/poles.h"
+
+/**
+ * The answer of a dense model to its inputs beside that of its modes, at all
+ * frequencies the same: with N of ritz_massless, C N N' B. No term where every
+ * motion has mass; damping of such motions is left out.
+ *
+ * @param[in] pairs  of ritz_eigen_dense: all modes of finite frequency
+ */
+ritz_status ritz_static_rest(const ritz_second_order *model,
+                             const ritz_pairs *pairs, ritz_residual *out);
+
+#endif

@@ -1,0 +1,292 @@
+/*
+ * Response of a full component, one complex symmetric factor a frequency:
+ *
+ *     Z_0 = K + i K4 + i w D - w^2 M,    Rayleigh: (1 + i w b) K, a M too
+ *
+ * Damping ratios act on modes Phi: Z = Z_0 + M Phi E Phi'M with
+ * E = i w diag(2 zeta w_k).
+ *
+ * Without D and K4 the modes come apart from the rest exactly,
+ *
+ *     x = Phi (Lambda - w^2 I + E)^-1 Phi'f + P Z_0^-1 P'f,
+ *     P = I - Phi Phi'M,
+ *
+ * and Z_0 may be near a pole as P'f does not reach it. With them, and
+ * U = M Phi,
+ *
+ *     x = (I - Y (I + E U'Y)^-1 E U') Z_0^-1 f,    Y = Z_0^-1 U
+ */
+#include "response/direct.h"
+
+#include "base/alloc.h"
+#include "model/io.h"
+
+#include <complex.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_MATRICES = 4, MOST_NUDGES = 100 };
+
+static const double pi = 3.14159265358979323846;
+/* How far the rest stays from a pole that was removed, of its lambda: its own
+   error is of this size or less, while the factor loses as many digits in a
+   direction that is projected out. */
+static const double nudge = 1e-9;
+static const double nudge_at_rest = 1e-6;
+
+static ritz_status start(ritz_direct *s)
+{
+    const ritz_component *c = s->component;
+    const ritz_sparse *A[MOST_MATRICES] = {&c->K, &c->M};
+    int64_t count = 2;
+
+    if (c->D.colptr)
+        A[count++] = &c->D;
+    if (c->K4.colptr)
+        A[count++] = &c->K4;
+    return ritz_zldl_new(count, A, &s->Z);
+}
+
+ritz_status ritz_direct_new(const ritz_component *component,
+                            const ritz_damping *damping, double up_to_hz,
+                            ritz_direct *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_direct s = {.component = component,
+                     .n = component->num_dofs,
+                     .inputs = component->io.num_inputs};
+    bool rayleigh = false;
+
+    if (damping)
+        s.damping = *damping;
+    rayleigh = ritz_damping_is_rayleigh(&s.damping);
+    s.ratios = !rayleigh && s.damping.kind != RITZ_DAMPING_NONE;
+    s.apart = !component->D.colptr && !component->K4.colptr && !rayleigh;
+    RITZ_TRY(ritz_poles_of_component(component, damping, up_to_hz, &s.pairs,
+                                     &s.poles));
+    s.m = s.pairs.Phi.ncol;
+    RITZ_TRY(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
+    RITZ_TRY(start(&s));
+    *out = s;
+    s = (ritz_direct){0};
+done:
+    ritz_direct_free(&s);
+    return status;
+}
+
+void ritz_direct_free(ritz_direct *direct)
+{
+    ritz_zldl_free(&direct->Z);
+    ritz_pairs_free(&direct->pairs);
+    ritz_poles_free(&direct->poles);
+    ritz_dense_free(&direct->MPhi);
+    free(direct->X);
+    *direct = (ritz_direct){0};
+}
+
+static ritz_status make_room(ritz_direct *s, int64_t columns)
+{
+    ritz_status status = RITZ_OK;
+
+    if (columns <= s->room)
+        return RITZ_OK;
+    free(s->X);
+    s->room = 0;
+    RITZ_NEW(s->X, s->n * columns);
+    s->room = columns;
+done:
+    return status;
+}
+
+static ritz_status factor(ritz_direct *s, double w, double w2)
+{
+    ritz_status status = RITZ_OK;
+    double a = 0.0;
+    double b = 0.0;
+    double _Complex c[MOST_MATRICES];
+    int64_t count = 2;
+
+    if (ritz_damping_is_rayleigh(&s->damping)) {
+        a = s->damping.a;
+        b = s->damping.b;
+    }
+    c[0] = ritz_complex(1.0, w * b);
+    c[1] = ritz_complex(-w2, w * a);
+    if (s->component->D.colptr)
+        c[count++] = ritz_complex(0.0, w);
+    if (s->component->K4.colptr)
+        c[count] = ritz_complex(0.0, 1.0);
+    s->factors++;
+    status = ritz_zldl_factor(s->Z, c);
+    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                 "the response at %.9g Hz is infinite: an undamped mode, or at "
+                 "0 Hz a rigid-body motion",
+                 w / (2.0 * pi));
+done:
+    return status;
+}
+
+/* y -= A (B'y), columns of y complex, A and B real n x m. */
+static void remove_modes(const ritz_dense *A, const ritz_dense *B,
+                         double _Complex *y)
+{
+    for (int64_t k = 0; k < A->ncol; k++) {
+        const double *a = ritz_dense_col(A, k);
+        const double *b = ritz_dense_col(B, k);
+        double _Complex q = 0.0;
+
+        for (int64_t i = 0; i < A->nrow; i++)
+            q += b[i] * y[i];
+        for (int64_t i = 0; i < A->nrow; i++)
+            y[i] -= a[i] * q;
+    }
+}
+
+/* w^2, or next to it, where no removed mode has its pole. */
+static double beside_poles(const ritz_direct *s, double w2)
+{
+    int64_t r = s->poles.num_rigid;
+    double first = r < s->m ? s->poles.lambda[r] : fabs(s->pairs.sigma);
+    double gap = fmax(nudge * w2, r > 0 ? nudge_at_rest * first : 0.0);
+    bool clear = false;
+
+    for (int t = 0; t < MOST_NUDGES && !clear; t++) {
+        clear = true;
+        for (int64_t k = 0; k < s->m; k++)
+            if (fabs(s->poles.lambda[k] - w2) < gap) {
+                w2 = s->poles.lambda[k] + 1.5 * gap;
+                clear = false;
+            }
+    }
+    return w2;
+}
+
+/* The rest with the modes' share of the load taken away, and of the answer. */
+static ritz_status solve_apart(ritz_direct *s, double w, int64_t k,
+                               double _Complex *X)
+{
+    ritz_status status = RITZ_OK;
+
+    if (s->m >= s->n) {
+        memset(X, 0, (size_t)(s->n * k) * sizeof *X);
+        return RITZ_OK;
+    }
+    for (int64_t j = 0; j < k; j++)
+        remove_modes(&s->MPhi, &s->pairs.Phi, X + j * s->n);
+    RITZ_TRY(factor(s, w, beside_poles(s, w * w)));
+    RITZ_TRY(ritz_zldl_solve(s->Z, k, X));
+    for (int64_t j = 0; j < k; j++)
+        remove_modes(&s->pairs.Phi, &s->MPhi, X + j * s->n);
+done:
+    return status;
+}
+
+/* out = E U'X, m x columns. */
+static void rates(const ritz_direct *s, double w, int64_t columns,
+                  const double _Complex *X, double _Complex *out)
+{
+    for (int64_t j = 0; j < columns; j++)
+        for (int64_t k = 0; k < s->m; k++) {
+            const double *u = ritz_dense_col(&s->MPhi, k);
+            double wk = sqrt(s->poles.lambda[k]);
+            int64_t mode = k - s->poles.num_rigid;
+            double e = 2.0 * wk * ritz_damping_of_mode(&s->damping, mode, wk);
+            double _Complex sum = 0.0;
+
+            for (int64_t i = 0; i < s->n; i++)
+                sum += u[i] * X[i + j * s->n];
+            out[k + j * s->m] =
+                ritz_complex(0.0, k < s->poles.num_rigid ? 0.0 : w * e) * sum;
+        }
+}
+
+/* X := X - Y (I + E U'Y)^-1 E U'X, n x columns; Y n x m. */
+static ritz_status correct(const ritz_direct *s, double w, int64_t columns,
+                           const double _Complex *Y, double _Complex *X)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = s->m;
+    double _Complex *S = NULL;
+    double _Complex *q = NULL;
+    lapack_int *pivot = NULL;
+    int info = 0;
+
+    RITZ_NEW(S, m * m);
+    RITZ_NEW(q, m * columns);
+    RITZ_NEW(pivot, m);
+    rates(s, w, m, Y, S);
+    rates(s, w, columns, X, q);
+    for (int64_t k = 0; k < m; k++)
+        S[k + k * m] += 1.0;
+    if (m > 0)
+        info = LAPACKE_zgesv(LAPACK_COL_MAJOR, (int)m, (int)columns, S, (int)m,
+                             pivot, q, (int)m);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
+                 "the response at %.9g Hz is infinite", w / (2.0 * pi));
+    for (int64_t j = 0; j < columns; j++)
+        for (int64_t k = 0; k < m; k++)
+            for (int64_t i = 0; i < s->n; i++)
+                X[i + j * s->n] -= Y[i + k * s->n] * q[k + j * m];
+done:
+    free(S);
+    free(q);
+    free(pivot);
+    return status;
+}
+
+/* The answers to k loads, and to M Phi if ratios act beside the matrices. */
+static ritz_status solve_together(ritz_direct *s, double hertz, bool transposed,
+                                  int64_t k, double _Complex *X)
+{
+    ritz_status (*solve)(ritz_zldl *, int64_t, double _Complex *) =
+        transposed ? ritz_zldl_solve_transposed : ritz_zldl_solve;
+    ritz_status status = RITZ_OK;
+    double w = 2.0 * pi * hertz;
+    double _Complex *Y = NULL;
+
+    RITZ_FAIL_IF(hertz == 0.0 && s->poles.num_rigid > 0, RITZ_ERR_SINGULAR,
+                 "at 0 Hz the response is infinite: the body is free, begin "
+                 "above 0 Hz");
+    RITZ_TRY(factor(s, w, w * w));
+    RITZ_TRY(solve(s->Z, k, X));
+    if (!s->ratios)
+        goto done;
+    RITZ_NEW(Y, s->n * s->m);
+    for (int64_t i = 0; i < s->n * s->m; i++)
+        Y[i] = s->MPhi.val[i];
+    RITZ_TRY(solve(s->Z, s->m, Y));
+    RITZ_TRY(correct(s, w, k, Y, X));
+done:
+    free(Y);
+    return status;
+}
+
+ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
+                              bool transposed, int64_t k, double _Complex *X)
+{
+    if (direct->apart)
+        return solve_apart(direct, 2.0 * pi * hertz, k, X);
+    return solve_together(direct, hertz, transposed, k, X);
+}
+
+ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
+                           double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &direct->component->io;
+
+    if (direct->inputs == 0)
+        return RITZ_OK;
+    RITZ_TRY(make_room(direct, direct->inputs));
+    for (int64_t i = 0; i < direct->n * direct->inputs; i++)
+        direct->X[i] = io->B.val[i];
+    if (direct->apart)
+        RITZ_TRY(ritz_poles_add(&direct->poles, hertz, H));
+    RITZ_TRY(
+        ritz_direct_solve(direct, hertz, false, direct->inputs, direct->X));
+    ritz_io_respond(io, hertz, direct->X, H);
+done:
+    return status;
+}

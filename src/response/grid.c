@@ -1,0 +1,133 @@
+/*
+ * Where a response is computed. A resonance of ratio zeta at frequency f is
+ * 2 zeta f wide at half its power: an even grid steps over it as soon as its
+ * own step is wider. With `refine` each gets its peak and points on both sides
+ * that lie 1/4 to 8 widths away.
+ */
+#include "poles/poles.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+/* In half-power widths. */
+static const double beside[] = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+enum { BESIDE = sizeof beside / sizeof *beside, AROUND = 2 * BESIDE + 1 };
+/* Points closer than this, relative, are one. */
+static const double same = 1e-13;
+static const int64_t most_points = 100000000;
+
+/* Points that are given ascend, and none is negative. */
+static ritz_status check_points(const ritz_grid *grid)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(grid->count < 1, RITZ_ERR_ARGUMENT,
+                 "a response needs at least one frequency");
+    for (int64_t k = 0; k < grid->count; k++)
+        RITZ_FAIL_IF(!isfinite(grid->hertz[k]) || grid->hertz[k] < 0.0 ||
+                         (k > 0 && grid->hertz[k] <= grid->hertz[k - 1]),
+                     RITZ_ERR_ARGUMENT,
+                     "frequencies do not ascend from 0 Hz at %g",
+                     grid->hertz[k]);
+done:
+    return status;
+}
+
+ritz_status ritz_grid_check(const ritz_grid *grid)
+{
+    ritz_status status = RITZ_OK;
+
+    if (grid->hertz)
+        return check_points(grid);
+    RITZ_FAIL_IF(!isfinite(grid->from_hz) || !isfinite(grid->to_hz) ||
+                     grid->from_hz < 0.0 || grid->from_hz >= grid->to_hz,
+                 RITZ_ERR_ARGUMENT, "a response from %g to %g Hz has no range",
+                 grid->from_hz, grid->to_hz);
+    RITZ_FAIL_IF(grid->count < 2, RITZ_ERR_ARGUMENT,
+                 "a response needs at least two frequencies");
+    RITZ_FAIL_IF(grid->count > most_points, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " frequencies are too many", grid->count);
+    RITZ_FAIL_IF(grid->log && !(grid->from_hz > 0.0), RITZ_ERR_ARGUMENT,
+                 "a logarithmic grid cannot begin at 0 Hz");
+done:
+    return status;
+}
+
+static double even_point(const ritz_grid *grid, int64_t k)
+{
+    double t = (double)k / (double)(grid->count - 1);
+
+    if (grid->hertz)
+        return grid->hertz[k];
+    if (k == 0)
+        return grid->from_hz;
+    if (k == grid->count - 1)
+        return grid->to_hz;
+    return grid->log ? grid->from_hz * pow(grid->to_hz / grid->from_hz, t)
+                     : grid->from_hz + t * (grid->to_hz - grid->from_hz);
+}
+
+/* Peak of 1/|w^2 - x^2 + 2 i zeta w x|, then the points beside it. */
+static void around(double omega, double zeta, double out[static AROUND])
+{
+    double f = omega / (2.0 * pi);
+    double peak = zeta < sqrt(0.5) ? f * sqrt(1.0 - 2.0 * zeta * zeta) : f;
+
+    out[0] = peak;
+    for (int k = 0; k < BESIDE; k++) {
+        out[1 + 2 * k] = peak - beside[k] * 2.0 * zeta * f;
+        out[2 + 2 * k] = peak + beside[k] * 2.0 * zeta * f;
+    }
+}
+
+static int ascending(const void *left, const void *right)
+{
+    double a = *(const double *)left;
+    double b = *(const double *)right;
+
+    return (a > b) - (a < b);
+}
+
+static int64_t distinct(int64_t count, double *f)
+{
+    int64_t kept = 0;
+
+    qsort(f, (size_t)count, sizeof *f, ascending);
+    for (int64_t k = 0; k < count; k++)
+        if (kept == 0 || f[k] - f[kept - 1] > same * f[k])
+            f[kept++] = f[k];
+    return kept;
+}
+
+ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
+                             const double *omega, const double *zeta,
+                             int64_t *count, double **out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = 0;
+    double *f = NULL;
+    double extra[AROUND];
+
+    RITZ_TRY(ritz_grid_check(grid));
+    RITZ_NEW(f, grid->count + (grid->refine ? num_modes * AROUND : 0));
+    for (n = 0; n < grid->count; n++)
+        f[n] = even_point(grid, n);
+    for (int64_t k = 0; grid->refine && !grid->hertz && k < num_modes; k++) {
+        if (!(omega[k] > 0.0 && zeta[k] > 0.0)) /* no width to resolve */
+            continue;
+        around(omega[k], zeta[k], extra);
+        for (int a = 0; a < AROUND; a++)
+            if (extra[a] >= grid->from_hz && extra[a] <= grid->to_hz)
+                f[n++] = extra[a];
+    }
+    *count = grid->hertz ? n : distinct(n, f);
+    *out = f;
+    f = NULL;
+done:
+    free(f);
+    return status;
+}

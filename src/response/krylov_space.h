@@ -1,0 +1,66 @@
+/*
+ * A space in which a component responds, and what its residuals are made of.
+ *
+ * V = [Phi X]: modes, and X with Phi'M X = 0, X'A X = I, A = K + tau M being
+ * definite. With P = I - Phi Phi'M and Galerkin's V'r = 0 a residual has no
+ * part along the modes,
+ *
+ *     r = P'(b - Z V q) = W y,
+ *     W = P'[B, C', Cv', Ca', K X, M X, D V, D'V, K4 V],
+ *
+ * and its size |r|^2 = r^H A^-1 r = y^H G y costs nothing of length n once
+ * G = W'S, S = A^-1 W is known; nor does a correction of the space, A^-1 r =
+ * S y.
+ */
+#ifndef RITZ_RESPONSE_KRYLOV_SPACE_H
+#define RITZ_RESPONSE_KRYLOV_SPACE_H
+
+#include "response/direct.h"
+
+/* What a column of W is. */
+typedef enum ritz_krylov_kind {
+    RITZ_KRYLOV_B,
+    RITZ_KRYLOV_C,
+    RITZ_KRYLOV_CV,
+    RITZ_KRYLOV_CA,
+    RITZ_KRYLOV_K,
+    RITZ_KRYLOV_M,
+    RITZ_KRYLOV_D,
+    RITZ_KRYLOV_DT, /* where D is not symmetric */
+    RITZ_KRYLOV_K4,
+} ritz_krylov_kind;
+
+typedef struct ritz_krylov_column {
+    ritz_krylov_kind kind;
+    int64_t index; /* of the input or output, or of the column of V */
+} ritz_krylov_column;
+
+typedef struct ritz_krylov_space {
+    const ritz_component *component; /* borrowed, as modes are */
+    const ritz_dense *Phi, *MPhi;
+    ritz_sparse A;
+    ritz_factor *F; /* of A */
+    ritz_sparse DT; /* D', {0} if D is symmetric */
+    double tau;
+    ritz_dense V;               /* n x r, with room for V_room */
+    ritz_dense W, S;            /* n x w, with room for W_room */
+    ritz_dense G;               /* w x w */
+    ritz_krylov_column *column; /* W_room */
+    int64_t V_room, W_room;
+} ritz_krylov_space;
+
+/** Phi alone, and the loads in W. @param[in] tau  above 0  [rad^2/s^2] */
+ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
+                                  ritz_krylov_space *out);
+
+/**
+ * Append what is new in some vectors; *added counts it. G is made anew.
+ *
+ * @param[in,out] X  n x k, is used up
+ */
+ritz_status ritz_krylov_space_add(ritz_krylov_space *space, ritz_dense *X,
+                                  int64_t *added);
+
+void ritz_krylov_space_free(ritz_krylov_space *space);
+
+#endif

@@ -1,0 +1,260 @@
+/* What all engines share: points of a grid, names, damped poles. */
+#include "response/responder.h"
+
+#include "base/alloc.h"
+#include "poles/damped.h"
+
+#include <ritz/monitor.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the largest around: a channel below is rounding. */
+static const double audible = 1e-9;
+/* Of the end of the range: rounding. */
+static const double within = 1.0 + 1e-9;
+/* Of the end of the range: so far poles of full matrices are found. */
+static const double beyond = 1.5;
+
+double ritz_response_highest(const ritz_response_request *request)
+{
+    return request->up_to_hz > 0.0 ? request->up_to_hz : 3.0 * request->to_hz;
+}
+
+double ritz_grid_end(const ritz_grid *grid)
+{
+    return grid->hertz && grid->count > 0 ? grid->hertz[grid->count - 1]
+                                          : grid->to_hz;
+}
+
+static ritz_status check(const ritz_response_engine *engine,
+                         const ritz_response_request *request)
+{
+    static const char *const nouns[] = {"a component", "a small dense model",
+                                        "a state space"};
+    ritz_status status = RITZ_OK;
+    int kind = request->component ? 0 : request->matrices ? 1 : 2;
+
+    RITZ_FAIL_IF(!(engine->takes & (1 << kind)), RITZ_ERR_ARGUMENT,
+                 "%s is not for %s", engine->name, nouns[kind]);
+    RITZ_FAIL_IF(!isfinite(request->from_hz) || !isfinite(request->to_hz) ||
+                     request->from_hz < 0.0 ||
+                     request->to_hz < request->from_hz,
+                 RITZ_ERR_ARGUMENT, "a response from %g to %g Hz has no range",
+                 request->from_hz, request->to_hz);
+done:
+    return status;
+}
+
+ritz_status ritz_responder_new(const ritz_response_engine *engine,
+                               const ritz_response_request *request,
+                               ritz_responder **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_responder *r = NULL;
+
+    RITZ_TRY(check(engine, request));
+    RITZ_NEW(r, 1);
+    r->engine = engine;
+    r->component = request->component;
+    r->from_hz = request->from_hz;
+    r->to_hz = request->to_hz;
+    if (request->damping)
+        r->given = *request->damping;
+    ritz_damping_print(&r->given, r->damping);
+    RITZ_TRY(ritz_noise_new(request, &r->noise));
+    RITZ_TRY(engine->make(request, r));
+    *out = r;
+    r = NULL;
+done:
+    ritz_responder_free(&r);
+    return status;
+}
+
+void ritz_responder_free(ritz_responder **responder)
+{
+    if (!*responder)
+        return;
+    if ((*responder)->state)
+        (*responder)->free((*responder)->state);
+    ritz_noise_free(&(*responder)->noise);
+    free(*responder);
+    *responder = NULL;
+}
+
+const char *ritz_responder_remark(const ritz_responder *responder)
+{
+    return responder->remark;
+}
+
+ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
+                              double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &responder->poles->io;
+
+    RITZ_FAIL_IF(responder->component && !(hertz <= responder->to_hz * within),
+                 RITZ_ERR_ARGUMENT,
+                 "%g Hz lies above %g Hz, up to which the response was "
+                 "prepared",
+                 hertz, responder->to_hz);
+    for (int64_t k = 0; k < io->num_outputs * io->num_inputs; k++)
+        H[k] = 0.0;
+    RITZ_TRY(responder->at(responder->state, hertz, H));
+done:
+    return status;
+}
+
+ritz_status ritz_responder_sample(ritz_responder *responder,
+                                  const ritz_grid *grid, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_response r = {0};
+
+    RITZ_TRY(ritz_response_new(grid, responder->poles, responder->engine->name,
+                               NULL, &r));
+    memcpy(r.damping, responder->damping, sizeof r.damping);
+    for (int64_t k = 0; k < r.count; k++) {
+        RITZ_TRY(ritz_responder_at(responder, r.hertz[k],
+                                   r.H + k * r.num_outputs * r.num_inputs));
+        ritz_monitor_step("response", k + 1, r.count);
+    }
+    *out = r;
+    r = (ritz_response){0};
+done:
+    ritz_response_free(&r);
+    return status;
+}
+
+ritz_status ritz_response_once(const ritz_response_engine *engine,
+                               ritz_response_request *request,
+                               const ritz_grid *grid, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_responder *responder = NULL;
+
+    RITZ_TRY(ritz_grid_check(grid));
+    request->from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
+    request->to_hz = ritz_grid_end(grid);
+    RITZ_TRY(ritz_responder_new(engine, request, &responder));
+    RITZ_TRY(ritz_responder_sample(responder, grid, out));
+done:
+    ritz_responder_free(&responder);
+    return status;
+}
+
+ritz_status ritz_response_component(const ritz_component *component,
+                                    const ritz_response_engine *engine,
+                                    const ritz_damping *damping,
+                                    double up_to_hz, double tolerance,
+                                    const ritz_grid *grid, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_responder *responder = NULL;
+    const char *why = NULL;
+    ritz_response_request request = {.component = component,
+                                     .damping = damping,
+                                     .up_to_hz = up_to_hz,
+                                     .tolerance = 0.1 * tolerance};
+
+    RITZ_TRY(ritz_grid_check(grid));
+    request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
+    request.to_hz = ritz_grid_end(grid);
+    if (engine)
+        RITZ_TRY(ritz_responder_new(engine, &request, &responder));
+    else
+        RITZ_TRY(ritz_responder_auto(&request, &why, &responder));
+    if (tolerance > 0.0)
+        RITZ_TRY(ritz_responder_follow(responder, grid, tolerance, out));
+    else
+        RITZ_TRY(ritz_responder_sample(responder, grid, out));
+done:
+    ritz_responder_free(&responder);
+    return status;
+}
+
+/* Both roots of s^2 + rate s + lambda, the conjugate of a pair left out. */
+static void add_roots(double lambda, double rate, int64_t *count,
+                      double _Complex *s)
+{
+    double half = 0.5 * rate;
+    double gap = lambda - half * half;
+
+    if (gap > 0.0) {
+        s[(*count)++] = ritz_complex(-half, sqrt(gap));
+        return;
+    }
+    s[(*count)++] = -(half + sqrt(-gap));
+    s[*count] = s[*count - 1] != 0.0 ? lambda / s[*count - 1] : 0.0;
+    (*count)++;
+}
+
+/* Poles of the full matrices, or else of the modal ones. */
+static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
+                               double _Complex **out)
+{
+    const double band_hz[2] = {r->from_hz, r->to_hz};
+    const ritz_span span = {.modes = -1, .up_to_hz = beyond * r->to_hz};
+    ritz_status status = RITZ_OK;
+    ritz_spectrum own = {0};
+    ritz_damped damped = {0};
+    const ritz_spectrum *all = r->pairs ? &own : &damped.listing;
+    double _Complex *s = NULL;
+    int64_t n = 0;
+
+    if (r->pairs)
+        RITZ_TRY(ritz_spectrum_component(r->component, &r->given, &span, &own));
+    else
+        RITZ_TRY(ritz_damped_new(r->poles, NULL, NULL, band_hz, &damped));
+    RITZ_NEW(s, all->count + all->num_zero);
+    for (int64_t k = 0; k < all->count; k++)
+        s[n++] = all->s[k];
+    for (int64_t k = 0; k < all->num_zero; k++)
+        s[n++] = 0.0;
+    *count = n;
+    *out = s;
+    s = NULL;
+done:
+    free(s);
+    ritz_spectrum_free(&own);
+    ritz_damped_free(&damped);
+    return status;
+}
+
+ritz_status ritz_responder_poles(const ritz_responder *responder,
+                                 int64_t *count, double _Complex **out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_poles *poles = responder->poles;
+    double _Complex *s = NULL;
+    int64_t n = 0;
+
+    if (poles->coupled && poles->D.val)
+        return add_coupled(responder, count, out);
+    RITZ_NEW(s, 2 * poles->count);
+    for (int64_t k = 0; k < poles->count; k++)
+        if (ritz_poles_matter(poles, k))
+            add_roots(poles->lambda[k], poles->rate[k], &n, s);
+    *count = n;
+    *out = s;
+done:
+    return status;
+}
+
+void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
+                         const double *peak, double *scale)
+{
+    for (int64_t i = 0; i < num_outputs; i++)
+        for (int64_t j = 0; j < num_inputs; j++) {
+            double row = 0.0, column = 0.0;
+
+            for (int64_t k = 0; k < num_inputs; k++)
+                row = fmax(row, peak[i * num_inputs + k]);
+            for (int64_t k = 0; k < num_outputs; k++)
+                column = fmax(column, peak[k * num_inputs + j]);
+            scale[i * num_inputs + j] =
+                fmax(peak[i * num_inputs + j], audible * sqrt(row * column));
+        }
+}

@@ -1,0 +1,73 @@
+/* What the engines of responses give, and what all of them share. */
+#ifndef RITZ_RESPONSE_RESPONDER_H
+#define RITZ_RESPONSE_RESPONDER_H
+
+#include "response/noise.h"
+
+enum { RITZ_REMARK_SIZE = 320 };
+
+struct ritz_responder {
+    const ritz_response_engine *engine;
+    /* names, and the modes that a grid is refined around: of the state */
+    const ritz_poles *poles;
+    /* the undamped modes of the component, where there is one */
+    const ritz_component *component;
+    const ritz_pairs *pairs;
+    double from_hz, to_hz;
+    ritz_damping given;              /* beside what matrices hold */
+    char damping[RITZ_DAMPING_SIZE]; /* the same, or what a model says */
+    char remark[RITZ_REMARK_SIZE];
+    ritz_noise noise; /* of what engines answer */
+    void *state;
+    /** H, which is zero before. */
+    ritz_status (*at)(void *state, double hertz, double _Complex *H);
+    void (*free)(void *state); /* and what it owns */
+};
+
+extern const ritz_response_engine ritz_response_engine_direct;
+extern const ritz_response_engine ritz_response_engine_krylov;
+extern const ritz_response_engine ritz_response_engine_modal;
+extern const ritz_response_engine ritz_response_engine_rational;
+extern const ritz_response_engine ritz_response_engine_states;
+
+/**
+ * By an engine; where that does not converge on a component by direct, and the
+ * remark says why.
+ */
+ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
+                                     const ritz_response_request *request,
+                                     ritz_responder **out);
+
+/** The highest mode that a request wants of a component, Hz. */
+double ritz_response_highest(const ritz_response_request *request);
+
+/** Where a grid ends, whatever it is made of. */
+double ritz_grid_end(const ritz_grid *grid);
+
+/** Make an engine ready and respond on a grid. */
+ritz_status ritz_response_once(const ritz_response_engine *engine,
+                               ritz_response_request *request,
+                               const ritz_grid *grid, ritz_response *out);
+
+/**
+ * Damped poles: roots of s^2 + rate s + lambda of modes that nothing couples,
+ * and that any channel shows; else of the full matrices, if there is a
+ * component with its modes, to half as far again as the range; else of the
+ * modal ones. Of a pair the one above the axis; 0 twice for each rigid motion
+ * that nothing holds back.
+ */
+ritz_status ritz_responder_poles(const ritz_responder *responder,
+                                 int64_t *count, double _Complex **out);
+
+/**
+ * What an error of each channel is measured by: the largest |H| of the channel,
+ * but at least a billionth of the geometric mean of the largest in its row and
+ * in its column, below which a channel is rounding.
+ *
+ * @param[in]  peak   num_outputs x num_inputs, largest |H| of each channel
+ * @param[out] scale  the same; may be @p peak
+ */
+void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
+                         const double *peak, double *scale);
+
+#endif

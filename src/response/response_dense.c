@@ -1,0 +1,147 @@
+/* Every mode of a small dense model, for a response by all of them. */
+#include "poles/dense_poles.h"
+#include "poles/state.h"
+#include "poles/static_rest.h"
+
+#include <math.h>
+
+/* Phi'A Phi; {0} of an absent one. */
+static ritz_status project(const ritz_dense *A, const ritz_dense *Phi,
+                           ritz_dense *out)
+{
+    return A && A->val ? ritz_dense_project(A, Phi, out) : RITZ_OK;
+}
+
+/* Far below 0 an eigenvalue is no rounding: -3e-9 of the largest was seen. */
+static ritz_status refuse_unstable(const ritz_pairs *pairs)
+{
+    const double rounding = 1e-6;
+    ritz_status status = RITZ_OK;
+    int64_t m = pairs->Phi.ncol;
+
+    RITZ_FAIL_IF(m > 0 &&
+                     pairs->lambda[0] < -rounding * fabs(pairs->lambda[m - 1]),
+                 RITZ_ERR_ARGUMENT,
+                 "the stiffness has a negative eigenvalue, %.3g where the "
+                 "largest is %.3g: an unstable model has no steady response",
+                 pairs->lambda[0], pairs->lambda[m - 1]);
+done:
+    return status;
+}
+
+/* Whether A moves with any of N, beyond rounding. */
+static ritz_status acts(const ritz_dense *A, const ritz_dense *N, bool *out)
+{
+    const double rounding = 1e-12;
+    ritz_status status = RITZ_OK;
+    ritz_dense AN = {0}, NA = {0};
+
+    if (!A || !A->val || N->ncol == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_mul(A, N, &AN));
+    RITZ_TRY(ritz_dense_mul_tn(A, N, &NA));
+    if (fmax(ritz_dense_max(&AN), ritz_dense_max(&NA)) >
+        rounding * ritz_dense_max(A) * ritz_dense_max(N))
+        *out = true;
+done:
+    ritz_dense_free(&AN);
+    ritz_dense_free(&NA);
+    return status;
+}
+
+/*
+ * Damping of motions without mass couples them with the modes: they are taken
+ * beside them, as X = [Phi N], and their lambda is N'KN = 1.
+ */
+static ritz_status take_massless(const ritz_second_order *model, bool beside,
+                                 ritz_pairs *pairs, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense N = {0}, X = {0};
+    int64_t m = pairs->Phi.ncol;
+    bool damped = beside;
+
+    *count = 0;
+    if (m == pairs->Phi.nrow)
+        return RITZ_OK;
+    RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    RITZ_TRY(acts(model->D, &N, &damped));
+    RITZ_TRY(acts(model->K4, &N, &damped));
+    if (!damped)
+        goto done;
+    RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &X));
+    ritz_dense_free(&pairs->Phi);
+    pairs->Phi = X;
+    *count = N.ncol;
+    for (int64_t j = m; j < X.ncol; j++) /* lambda has room for all rows */
+        pairs->lambda[j] = 1.0;
+done:
+    ritz_dense_free(&N);
+    return status;
+}
+
+/* The last coordinates are no modes: no ratio acts on them. */
+static ritz_status mark_massless(int64_t count, const ritz_dense *D,
+                                 const ritz_damping *damping, ritz_poles *poles)
+{
+    ritz_status status = RITZ_OK;
+    double b = damping && ritz_damping_is_rayleigh(damping) ? damping->b : 0.0;
+
+    poles->count -= count;
+    poles->massless = count;
+    poles->coupled = poles->coupled || count > 0;
+    if (count > 0 && !poles->D.val) /* beside modes that nothing couples */
+        RITZ_TRY(ritz_dense_new(poles->count + count, poles->count + count,
+                                &poles->D));
+    for (int64_t j = 0; j < poles->count && count > 0; j++)
+        ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
+    for (int64_t j = poles->count; j < poles->count + count; j++) {
+        poles->rate[j] = b + (D->val ? ritz_dense_col(D, j)[j] : 0.0);
+        ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
+                                const ritz_damping *damping, bool beside,
+                                ritz_pairs *pairs, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense D = {0};
+    ritz_dense K4 = {0};
+    ritz_residual rest = {0};
+    int64_t massless = 0;
+
+    RITZ_TRY(ritz_static_rest(model, pairs, &rest));
+    RITZ_TRY(take_massless(model, beside, pairs, &massless));
+    RITZ_TRY_IN("D", project(model->D, &pairs->Phi, &D));
+    RITZ_TRY_IN("K4", project(model->K4, &pairs->Phi, &K4));
+    RITZ_TRY(ritz_poles_new(pairs, &D, &K4, model->io, damping, out));
+    RITZ_TRY(mark_massless(massless, &D, damping, out));
+    if (massless == 0) {
+        out->rest = rest;
+        if (damping && ritz_damping_is_rayleigh(damping))
+            out->rest.b = damping->b;
+        rest = (ritz_residual){0};
+    }
+done:
+    ritz_dense_free(&D);
+    ritz_dense_free(&K4);
+    ritz_residual_free(&rest);
+    return status;
+}
+
+ritz_status ritz_poles_of_dense(const ritz_second_order *model,
+                                const ritz_damping *damping, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_eigen_dense(model->K, model->M, &pairs));
+    RITZ_TRY(refuse_unstable(&pairs));
+    RITZ_TRY(ritz_poles_of_pairs(model, damping, false, &pairs, out));
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}

@@ -1,0 +1,263 @@
+/*
+ * Response of a model in first-order form,
+ *
+ *     H = C (i w I - A)^-1 B + D,
+ *
+ * by SLICOT TB05AD: A is scaled and brought to Hessenberg form once, and each
+ * point then costs n^2 operations.
+ */
+#include "base/alloc.h"
+#include "linear/eigenvalues.h"
+#include "linear/frame.h"
+#include "linear/general.h"
+#include "response/responder.h"
+
+#include <ritz/state_space.h>
+
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* The Fortran name; character arguments bring their lengths at the end. */
+void tb05ad_(/* NOLINT: its name */ const char *baleig, const char *inita,
+             const int *n, const int *m, const int *p,
+             const double _Complex *freq, double *A, const int *lda, double *B,
+             const int *ldb, double *C, const int *ldc, double *rcond,
+             double _Complex *G, const int *ldg, double *re, double *im,
+             double _Complex *hinvb, const int *ldhinv, int *iwork,
+             double *work, const int *ldwork, double _Complex *zwork,
+             const int *lzwork, int *info, size_t baleig_length,
+             size_t inita_length);
+
+/* The model as SLICOT leaves it between points, and its work space. */
+typedef struct hessenberg {
+    int n, m, p;
+    bool begun;
+    ritz_dense A, B, C;
+    int *iwork;
+    double *re, *im, *work;
+    double _Complex *G, *X, *zwork; /* p x m; n x m */
+    int room, zroom;
+} hessenberg;
+
+static int at_least_one(int n)
+{
+    return n > 1 ? n : 1;
+}
+
+/* A, B and C in coordinates of the library's own scaling. */
+static ritz_status set_up(const ritz_state_space *model, hessenberg *h)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->A.nrow;
+    ritz_frame frame = {0};
+    ritz_dense one = {0}, back = {0};
+
+    RITZ_TRY(ritz_frame_new(&model->A, &model->E, &frame));
+    RITZ_TRY(ritz_dense_copy(&frame.A, &h->A));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.left, &model->B, &h->B));
+    RITZ_TRY(ritz_general_transpose(&model->C, &one));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
+    RITZ_TRY(ritz_general_transpose(&back, &h->C));
+    if (frame.E.val && n > 0) {
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &h->A));
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &h->B));
+    }
+done:
+    ritz_frame_free(&frame);
+    ritz_dense_free(&one);
+    ritz_dense_free(&back);
+    return status;
+}
+
+static ritz_status start(const ritz_state_space *model, hessenberg *h)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)model->A.nrow;
+
+    h->n = n;
+    h->m = (int)model->num_inputs;
+    h->p = (int)model->num_outputs;
+    h->room = at_least_one(3 * n + (n > h->m ? n : h->m) + h->p);
+    h->zroom = at_least_one(n * n + 2 * n);
+    RITZ_TRY(set_up(model, h));
+    RITZ_NEW(h->iwork, n + 1);
+    RITZ_NEW(h->re, n + 1);
+    RITZ_NEW(h->im, n + 1);
+    RITZ_NEW(h->work, h->room);
+    RITZ_NEW(h->G, (int64_t)h->p * h->m);
+    RITZ_NEW(h->X, (int64_t)n * h->m);
+    RITZ_NEW(h->zwork, h->zroom);
+done:
+    return status;
+}
+
+static void finish(hessenberg *h)
+{
+    ritz_dense_free(&h->A);
+    ritz_dense_free(&h->B);
+    ritz_dense_free(&h->C);
+    free(h->iwork);
+    free(h->re);
+    free(h->im);
+    free(h->work);
+    free(h->G);
+    free(h->X);
+    free(h->zwork);
+}
+
+static ritz_status solve(hessenberg *h, double hertz)
+{
+    ritz_status status = RITZ_OK;
+    const double _Complex s = ritz_complex(0.0, 2.0 * pi * hertz);
+    int ldn = at_least_one(h->n);
+    int ldp = at_least_one(h->p);
+    double rcond = 0.0;
+    int info = 0;
+
+    tb05ad_("C", h->begun ? "H" : "G", &h->n, &h->m, &h->p, &s, h->A.val, &ldn,
+            h->B.val, &ldn, h->C.val, &ldp, &rcond, h->G, &ldp, h->re, h->im,
+            h->X, &ldn, h->iwork, h->work, &h->room, h->zwork, &h->zroom, &info,
+            1, 1);
+    h->begun = true;
+    RITZ_FAIL_IF(info == 2, RITZ_ERR_SINGULAR,
+                 "%.9g Hz is the frequency of a pole: an undamped mode, or at "
+                 "0 Hz a rigid-body motion",
+                 hertz);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "the poles were not found, SLICOT says %d", info);
+done:
+    return status;
+}
+
+ritz_status ritz_state_space_poles(const ritz_state_space *model,
+                                   int64_t *count, double _Complex **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense A = {0};
+    ritz_eigenvalues found = {0};
+    double _Complex *poles = NULL;
+
+    RITZ_TRY(ritz_dense_copy(&model->A, &A));
+    if (model->E.val)
+        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &A));
+    RITZ_TRY(ritz_eigenvalues_of(&A, &found));
+    RITZ_NEW(poles, found.count);
+    for (int64_t k = 0; k < found.count; k++)
+        poles[k] = ritz_complex(found.re[k], found.im[k]);
+    *count = found.count;
+    *out = poles;
+done:
+    ritz_dense_free(&A);
+    ritz_eigenvalues_free(&found);
+    return status;
+}
+
+/* Poles with Im s >= 0 as modes, for a grid that is refined around them. */
+static ritz_status find_poles(const ritz_state_space *model, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+    double _Complex *s = NULL;
+    ritz_poles poles = {0};
+
+    RITZ_TRY(ritz_state_space_poles(model, &count, &s));
+    RITZ_NEW(poles.lambda, count);
+    RITZ_NEW(poles.rate, count);
+    for (int64_t k = 0; k < count; k++) {
+        if (cimag(s[k]) < 0.0)
+            continue;
+        poles.lambda[poles.count] = pow(cabs(s[k]), 2.0);
+        poles.rate[poles.count++] = fmax(-2.0 * creal(s[k]), 0.0);
+    }
+    RITZ_TRY(ritz_io_new(0, model->num_inputs, model->num_outputs, &poles.io));
+    if (model->num_inputs > 0)
+        memcpy(poles.io.input, model->input,
+               (size_t)model->num_inputs * RITZ_NAME_SIZE);
+    if (model->num_outputs > 0)
+        memcpy(poles.io.output, model->output,
+               (size_t)model->num_outputs * RITZ_NAME_SIZE);
+    *out = poles;
+    poles = (ritz_poles){0};
+done:
+    free(s);
+    ritz_poles_free(&poles);
+    return status;
+}
+
+typedef struct states {
+    ritz_poles poles;
+    hessenberg h;
+    const ritz_state_space *model; /* borrowed */
+} states;
+
+static void free_states(void *state)
+{
+    states *s = state;
+
+    ritz_poles_free(&s->poles);
+    finish(&s->h);
+    free(s);
+}
+
+static ritz_status at(void *state, double hertz, double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    states *s = state;
+    hessenberg *h = &s->h;
+
+    RITZ_TRY(solve(h, hertz));
+    for (int i = 0; i < h->p; i++)
+        for (int j = 0; j < h->m; j++)
+            H[i * h->m + j] =
+                h->G[i + j * h->p] + ritz_dense_col(&s->model->D, j)[i];
+done:
+    return status;
+}
+
+static ritz_status make(const ritz_response_request *request,
+                        ritz_responder *out)
+{
+    ritz_status status = RITZ_OK;
+    states *s = NULL;
+
+    RITZ_NEW(s, 1);
+    s->model = request->states;
+    RITZ_TRY(find_poles(s->model, &s->poles));
+    RITZ_TRY(start(s->model, &s->h));
+    memcpy(out->damping, s->model->damping, sizeof out->damping);
+    out->poles = &s->poles;
+    out->at = at;
+    out->free = free_states;
+    out->state = s;
+    s = NULL;
+done:
+    if (s)
+        free_states(s);
+    return status;
+}
+
+const ritz_response_engine ritz_response_engine_states = {
+    .name = "states",
+    .summary = "of a state space, by its Hessenberg form",
+    .reference = "KenneyStubberudLaub1992",
+    .when = "state spaces",
+    .cost = "O(n^3), then O(n^2) a point and input",
+    .holds = "exact to rounding",
+    .fails = "a point on a pole is refused",
+    .takes = RITZ_RESPONDS_STATES,
+    .make = make,
+};
+
+ritz_status ritz_response_states(const ritz_state_space *model,
+                                 const ritz_grid *grid, ritz_response *out)
+{
+    ritz_response_request request = {.states = model};
+
+    return ritz_response_once(&ritz_response_engine_states, &request, grid,
+                              out);
+}

@@ -1,0 +1,124 @@
+/* Singular values of responses, by LAPACK zgesvd of scaled H. */
+#include "poles/curve.h"
+
+#include "base/alloc.h"
+
+#include <ritz/singular.h>
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+static double scale_of(const double *scale, int64_t k)
+{
+    return scale && !isnan(scale[k]) ? scale[k] : 1.0;
+}
+
+static int64_t smaller(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
+                                 const double _Complex *H,
+                                 const ritz_scales *scales, double *sigma)
+{
+    static const ritz_scales none = {0};
+    ritz_status status = RITZ_OK;
+    int p = (int)num_outputs, m = (int)num_inputs, info = 0;
+    double _Complex *A = NULL;
+    double *spare = NULL;
+
+    if (p == 0 || m == 0)
+        return RITZ_OK;
+    scales = scales ? scales : &none;
+    RITZ_NEW(A, num_outputs * num_inputs);
+    RITZ_NEW(spare, smaller(num_outputs, num_inputs));
+    for (int64_t i = 0; i < p; i++)
+        for (int64_t j = 0; j < m; j++)
+            A[i + j * p] = H[i * m + j] * scale_of(scales->input, j) /
+                           scale_of(scales->output, i);
+    info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', p, m, A, p, sigma, NULL,
+                          1, NULL, 1, spare);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "singular values of a response were not found");
+done:
+    free(A);
+    free(spare);
+    return status;
+}
+
+ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)
+{
+    ritz_status status = RITZ_OK;
+    int64_t size = r->num_outputs * r->num_inputs;
+    int64_t width = smaller(r->num_outputs, r->num_inputs);
+    double *sigma = NULL;
+
+    RITZ_NEW(sigma, r->count * width);
+    for (int64_t k = 0; k < r->count; k++)
+        RITZ_TRY(ritz_singular_values(r->num_outputs, r->num_inputs,
+                                      r->H + k * size, scales,
+                                      sigma + k * width));
+    free(r->singular);
+    r->singular = sigma;
+    r->num_singular = width;
+    sigma = NULL;
+done:
+    free(sigma);
+    return status;
+}
+
+/* What the search asks. */
+typedef struct sampler {
+    const ritz_response *response;
+    const ritz_scales *scales;
+    ritz_responder *responder;
+    double _Complex *H;
+    double *sigma;
+} sampler;
+
+static ritz_status largest_at(void *state, double hertz, double *value)
+{
+    ritz_status status = RITZ_OK;
+    sampler *s = state;
+    const ritz_response *r = s->response;
+
+    RITZ_TRY(ritz_responder_at(s->responder, hertz, s->H));
+    RITZ_TRY(ritz_singular_values(r->num_outputs, r->num_inputs, s->H,
+                                  s->scales, s->sigma));
+    *value = s->sigma[0];
+done:
+    return status;
+}
+
+ritz_status ritz_singular_peak(const ritz_response *r,
+                               const ritz_scales *scales,
+                               ritz_responder *responder, double *hertz,
+                               double *value)
+{
+    ritz_status status = RITZ_OK;
+    int64_t size = r->num_outputs * r->num_inputs;
+    sampler s = {.response = r, .scales = scales, .responder = responder};
+    const ritz_curve curve = {largest_at, &s};
+    double *first = NULL;
+
+    *hertz = *value = 0.0;
+    if (size == 0 || r->count == 0)
+        return RITZ_OK;
+    RITZ_NEW(first, r->count);
+    RITZ_NEW(s.H, size);
+    RITZ_NEW(s.sigma, smaller(r->num_outputs, r->num_inputs));
+    for (int64_t k = 0; k < r->count; k++) {
+        RITZ_TRY(ritz_singular_values(r->num_outputs, r->num_inputs,
+                                      r->H + k * size, scales, s.sigma));
+        first[k] = s.sigma[0];
+    }
+    RITZ_TRY(ritz_curve_peak(r->count, r->hertz, first,
+                             responder ? &curve : NULL, hertz, value));
+done:
+    free(first);
+    free(s.H);
+    free(s.sigma);
+    return status;
+}

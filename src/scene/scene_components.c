@@ -1,0 +1,246 @@
+/* Components of a scene, and the places on them that joints and inputs name. */
+#include "scene/scene_parts.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
+                             int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_TRY(ritz_yaml_list(yaml, node, count));
+    RITZ_REFUSE_IF(*count > RITZ_MOST_PARTS, yaml, node,
+                   "%" PRId64 " items are too many, %d can be", *count,
+                   RITZ_MOST_PARTS);
+done:
+    return status;
+}
+
+/* The port of item k, which is none of those before it. */
+static ritz_status read_port(const ritz_yaml *yaml, const yaml_node_t *list,
+                             int64_t k, const char *before,
+                             char port[RITZ_NAME_SIZE])
+{
+    ritz_status status = RITZ_OK;
+    const yaml_node_t *node = ritz_yaml_item(yaml, list, k);
+    ritz_names taken = {"port", k, before, RITZ_NAME_SIZE};
+
+    RITZ_TRY(ritz_yaml_name(yaml, node, port));
+    RITZ_REFUSE_IF(strchr(port, ','), yaml, node,
+                   "'%s' holds a comma, a port cannot", port);
+    RITZ_REFUSE_IF(ritz_names_index(&taken, port) >= 0, yaml, node,
+                   "port '%s' is listed twice", port);
+done:
+    return status;
+}
+
+/* [bearing, scan] is kept as "bearing,scan". */
+static ritz_status take_attach(const ritz_yaml *yaml, const yaml_node_t *node,
+                               void *field)
+{
+    ritz_status status = RITZ_OK;
+    char(*port)[RITZ_NAME_SIZE] = NULL;
+    char *ports = NULL;
+    char **out = (char **)field;
+    int64_t count = 0;
+
+    RITZ_TRY(ritz_scene_count(yaml, node, &count));
+    RITZ_REFUSE_IF(count == 0, yaml, node,
+                   "no port is listed; without 'attach' those that joints and "
+                   "inputs use are attached");
+    RITZ_NEW(port, count);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_TRY(read_port(yaml, node, k, port[0], port[k]));
+    RITZ_NEW(ports, count * RITZ_NAME_SIZE);
+    for (int64_t k = 0, used = 0; k < count; k++) {
+        size_t length = strlen(port[k]);
+
+        if (k > 0)
+            ports[used++] = ',';
+        memcpy(ports + used, port[k], length);
+        used += (int64_t)length;
+    }
+    *out = ports;
+done:
+    free(port);
+    return status;
+}
+
+static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_status status = RITZ_OK;
+    int64_t modes = 0;
+
+    RITZ_TRY(ritz_yaml_whole(yaml, node, &modes));
+    RITZ_REFUSE_IF(modes < 0, yaml, node, "%" PRId64 " modes cannot be kept",
+                   modes);
+    *(int64_t *)field = modes;
+done:
+    return status;
+}
+
+static ritz_status take_order(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_status status = RITZ_OK;
+    int64_t order = 0;
+
+    RITZ_TRY(ritz_yaml_whole(yaml, node, &order));
+    RITZ_REFUSE_IF(order < 1, yaml, node, "%" PRId64 " columns are no model",
+                   order);
+    *(int64_t *)field = order;
+done:
+    return status;
+}
+
+enum { MODEL, BASIS, ORDER, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
+
+static const ritz_yaml_key keys[NUM_KEYS] = {
+    [MODEL] = {"model", true, ritz_yaml_copy,
+               offsetof(ritz_scene_component, model)},
+    [BASIS] = {"basis", false, ritz_yaml_name,
+               offsetof(ritz_scene_component, basis)},
+    [ORDER] = {"order", false, take_order,
+               offsetof(ritz_scene_component, order)},
+    [MODES] = {"modes", false, take_modes,
+               offsetof(ritz_scene_component, modes)},
+    [UP_TO] = {"up_to_hz", false, ritz_yaml_positive,
+               offsetof(ritz_scene_component, up_to_hz)},
+    [ATTACH] = {"attach", false, take_attach,
+                offsetof(ritz_scene_component, attach)},
+};
+
+/* [0, 5] is taken as "0,5", a scalar as it is. */
+static ritz_status take_choice(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const ritz_choice_word *word,
+                               ritz_choice *choice)
+{
+    ritz_status status = RITZ_OK;
+    bool scalar = node->type == YAML_SCALAR_NODE;
+    char text[1024] = "";
+    int64_t count = 1;
+    size_t used = 0;
+
+    if (!scalar)
+        RITZ_TRY(ritz_scene_count(yaml, node, &count));
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *item = scalar ? node : ritz_yaml_item(yaml, node, k);
+        const char *part = NULL;
+
+        RITZ_TRY(ritz_yaml_text(yaml, item, &part));
+        RITZ_REFUSE_IF(used + strlen(part) + 2 > sizeof text, yaml, item,
+                       "the list of '%s' is too long", word->key);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s",
+                                 k > 0 ? "," : "", part);
+    }
+    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_choice_take(word, text, choice)));
+done:
+    return status;
+}
+
+/* The keys above, then the words of a choice. */
+static int64_t list_keys(ritz_yaml_key all[MOST_KEYS])
+{
+    int64_t count = NUM_KEYS;
+
+    memcpy(all, keys, sizeof keys);
+    for (const ritz_choice_word *word = ritz_choice_words; word->key; word++) {
+        all[count] = (ritz_yaml_key){0};
+        snprintf(all[count].name, sizeof all[count].name, "%s", word->key);
+        count++;
+    }
+    return count;
+}
+
+static ritz_status read_component(const ritz_yaml *yaml,
+                                  const yaml_node_t *word,
+                                  const yaml_node_t *node,
+                                  ritz_scene_component *out)
+{
+    ritz_status status = RITZ_OK;
+    const yaml_node_t *value[MOST_KEYS];
+    ritz_yaml_key all[MOST_KEYS];
+    int64_t count = list_keys(all);
+
+    out->modes = -1;
+    out->line = (int64_t)word->start_mark.line + 1;
+    out->column = (int64_t)word->start_mark.column + 1;
+    RITZ_TRY(ritz_yaml_mapping(yaml, node, count, all, out, value));
+    RITZ_REFUSE_IF(value[MODES] && value[UP_TO], yaml, value[UP_TO],
+                   "'modes' and 'up_to_hz' are both given, one decides");
+    RITZ_REFUSE_IF(value[ORDER] && value[BASIS], yaml, value[ORDER],
+                   "'order' is how much of a model that is reduced already to "
+                   "take, and a 'basis' reduces one");
+    for (int64_t k = MODES; k < count; k++)
+        RITZ_REFUSE_IF(value[k] && !value[BASIS], yaml, value[k],
+                       "'%s' says how to reduce, which needs a 'basis' too",
+                       all[k].name);
+    for (int64_t k = NUM_KEYS; k < count; k++)
+        if (value[k])
+            RITZ_TRY(take_choice(yaml, value[k],
+                                 &ritz_choice_words[k - NUM_KEYS],
+                                 &out->choice));
+done:
+    return status;
+}
+
+ritz_status ritz_scene_components(const ritz_yaml *yaml,
+                                  const yaml_node_t *node, ritz_scene *scene)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+
+    RITZ_TRY(ritz_yaml_pairs(yaml, node, &count));
+    RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_PARTS, yaml, node,
+                   "a scene has 1 to %d components, not %" PRId64,
+                   RITZ_MOST_PARTS, count);
+    RITZ_NEW(scene->component, count);
+    scene->num_components = count;
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
+        ritz_scene_component *component = &scene->component[k];
+        ritz_names before = {"component", k, scene->component->name,
+                             sizeof *component};
+
+        RITZ_TRY(ritz_yaml_name(yaml, word, component->name));
+        RITZ_REFUSE_IF(ritz_names_index(&before, component->name) >= 0, yaml,
+                       word, "component '%s' is given twice", component->name);
+        RITZ_TRY(read_component(yaml, word, ritz_yaml_value_at(yaml, node, k),
+                                component));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
+                                  const yaml_node_t *node,
+                                  const ritz_scene *scene,
+                                  ritz_scene_place *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_names components = {"component", scene->num_components,
+                             scene->component->name, sizeof *scene->component};
+    const char *text = NULL;
+    const char *slash = NULL;
+    char component[RITZ_NAME_SIZE] = "";
+    char cut[RITZ_SHORT_SIZE];
+
+    RITZ_TRY(ritz_yaml_text(yaml, node, &text));
+    slash = strchr(text, '/');
+    RITZ_REFUSE_IF(
+        !slash || slash == text || slash - text >= RITZ_NAME_SIZE || !slash[1],
+        yaml, node, "'%s' is not COMPONENT/PORT, such as rotor/bearing",
+        ritz_text_short(text, cut));
+    memcpy(component, text, (size_t)(slash - text));
+    RITZ_TRY(ritz_yaml_at(
+        yaml, node, ritz_words_find(&components, component, &out->component)));
+    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_name_copy(slash + 1, out->port)));
+done:
+    return status;
+}

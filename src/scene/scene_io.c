@@ -1,0 +1,196 @@
+/* Inputs and outputs of a scene. */
+#include "scene/scene_parts.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static ritz_status take_component(const ritz_yaml *yaml,
+                                  const yaml_node_t *node, void *field)
+{
+    ritz_status status = RITZ_OK;
+    int64_t component = 0;
+
+    RITZ_TRY(ritz_yaml_whole(yaml, node, &component));
+    RITZ_REFUSE_IF(component < 1 || component > 6, yaml, node,
+                   "component %" PRId64 " is none of 1-3, along the axes, and "
+                   "4-6, about them",
+                   component);
+    *(int64_t *)field = component;
+done:
+    return status;
+}
+
+/* One direction, or a list of those in which a force acts at once. */
+static ritz_status take_directions(const ritz_yaml *yaml,
+                                   const yaml_node_t *node, ritz_scene_io *io)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+
+    if (node->type != YAML_SEQUENCE_NODE)
+        return take_component(yaml, node, &io->component);
+    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_IF(count < 1 || count > 6, yaml, node,
+                   "1 to 6 directions can be listed, not %" PRId64, count);
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
+        int64_t *into = k == 0 ? &io->component : &io->also[k - 1];
+
+        RITZ_TRY(take_component(yaml, item, into));
+        for (int64_t j = 0; j < k; j++)
+            RITZ_REFUSE_IF(*into == (j == 0 ? io->component : io->also[j - 1]),
+                           yaml, item, "direction %" PRId64 " is listed before",
+                           *into);
+        io->num_also = k;
+    }
+done:
+    return status;
+}
+
+static ritz_status take_grid(const ritz_yaml *yaml, const yaml_node_t *node,
+                             void *field)
+{
+    ritz_status status = RITZ_OK;
+    int64_t grid = 0;
+
+    RITZ_TRY(ritz_yaml_whole(yaml, node, &grid));
+    RITZ_REFUSE_IF(grid < 1, yaml, node, "%" PRId64 " is no grid", grid);
+    *(int64_t *)field = grid;
+done:
+    return status;
+}
+
+static ritz_status take_scale(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_status status = RITZ_OK;
+    double scale = 0.0;
+
+    RITZ_TRY(ritz_yaml_real(yaml, node, &scale));
+    RITZ_REFUSE_IF(scale == 0.0, yaml, node, "a scale of 0 leaves no input");
+    *(double *)field = scale;
+done:
+    return status;
+}
+
+static const char quantities[][16] = {"displacement", "velocity",
+                                      "acceleration"};
+
+static ritz_status take_quantity(const ritz_yaml *yaml, const yaml_node_t *node,
+                                 void *field)
+{
+    ritz_names names = {"quantity", 3, quantities[0], sizeof *quantities};
+
+    return ritz_yaml_word(yaml, node, &names, (int64_t *)field);
+}
+
+enum { NAME, AT, COMPONENT, GRID, NUM_SHARED };
+enum { NUM_INPUT_KEYS = NUM_SHARED + 2, NUM_OUTPUT_KEYS = NUM_SHARED + 2 };
+enum { AGAINST = NUM_SHARED }; /* of an input */
+
+#define SHARED_KEYS                                                            \
+    [NAME] = {"name", true, ritz_yaml_name, offsetof(ritz_scene_io, name)},    \
+    [AT] = {"at", true, NULL, 0}, [COMPONENT] = {"component", true, NULL, 0},  \
+    [GRID] = {"grid", false, take_grid, offsetof(ritz_scene_io, grid)}
+
+static const ritz_yaml_key input_keys[NUM_INPUT_KEYS] = {
+    SHARED_KEYS,
+    [AGAINST] = {"against", false, NULL, 0},
+    {"scale", false, take_scale, offsetof(ritz_scene_io, scale)},
+};
+
+static const ritz_yaml_key output_keys[NUM_OUTPUT_KEYS] = {
+    SHARED_KEYS,
+    {"quantity", false, take_quantity, offsetof(ritz_scene_io, derivative)},
+    {"limit", false, ritz_yaml_positive, offsetof(ritz_scene_io, limit)},
+};
+
+/* What tells inputs from outputs. */
+typedef struct io_side {
+    const char *what;
+    int64_t count;
+    const ritz_yaml_key *keys;
+    bool drives;
+} io_side;
+
+/* Directions and the place of a reaction, which outputs have not. */
+static ritz_status read_force(const ritz_yaml *yaml, const io_side *side,
+                              const yaml_node_t *const *value,
+                              const ritz_scene *scene, ritz_scene_io *io)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!side->drives)
+        return take_component(yaml, value[COMPONENT], &io->component);
+    RITZ_TRY(take_directions(yaml, value[COMPONENT], io));
+    if (!value[AGAINST])
+        return RITZ_OK;
+    RITZ_TRY(ritz_scene_place_read(yaml, value[AGAINST], scene, &io->against));
+    RITZ_REFUSE_IF(io->against.component == io->at.component &&
+                       strcmp(io->against.port, io->at.port) == 0,
+                   yaml, value[AGAINST], "input '%s' acts against itself",
+                   io->name);
+done:
+    return status;
+}
+
+static ritz_status read_list(const ritz_yaml *yaml, const yaml_node_t *list,
+                             const io_side *side, const ritz_scene *scene,
+                             int64_t count, ritz_scene_io *io)
+{
+    ritz_status status = RITZ_OK;
+    const yaml_node_t *value[NUM_OUTPUT_KEYS];
+
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *node = ritz_yaml_item(yaml, list, k);
+        ritz_names before = {side->what, k, io->name, sizeof *io};
+
+        io[k].scale = 1.0;
+        io[k].limit = (double)NAN;
+        io[k].line = (int64_t)node->start_mark.line + 1;
+        io[k].column = (int64_t)node->start_mark.column + 1;
+        RITZ_TRY(ritz_yaml_mapping(yaml, node, side->count, side->keys, &io[k],
+                                   value));
+        RITZ_REFUSE_IF(ritz_names_index(&before, io[k].name) >= 0, yaml,
+                       value[NAME], "%s '%s' is given twice", side->what,
+                       io[k].name);
+        RITZ_TRY(ritz_scene_place_read(yaml, value[AT], scene, &io[k].at));
+        RITZ_TRY(read_force(yaml, side, value, scene, &io[k]));
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_scene_inputs(const ritz_yaml *yaml, const yaml_node_t *node,
+                              ritz_scene *scene)
+{
+    static const io_side inputs = {"input", NUM_INPUT_KEYS, input_keys, true};
+    ritz_status status = RITZ_OK;
+
+    if (node)
+        RITZ_TRY(ritz_scene_count(yaml, node, &scene->num_inputs));
+    RITZ_NEW(scene->input, scene->num_inputs);
+    RITZ_TRY(
+        read_list(yaml, node, &inputs, scene, scene->num_inputs, scene->input));
+done:
+    return status;
+}
+
+ritz_status ritz_scene_outputs(const ritz_yaml *yaml, const yaml_node_t *node,
+                               ritz_scene *scene)
+{
+    static const io_side outputs = {"output", NUM_OUTPUT_KEYS, output_keys,
+                                    false};
+    ritz_status status = RITZ_OK;
+
+    if (node)
+        RITZ_TRY(ritz_scene_count(yaml, node, &scene->num_outputs));
+    RITZ_NEW(scene->output, scene->num_outputs);
+    RITZ_TRY(read_list(yaml, node, &outputs, scene, scene->num_outputs,
+                       scene->output));
+done:
+    return status;
+}

@@ -1,0 +1,71 @@
+/* Parts of a scene, each read by its own file; scene.c puts them together. */
+#ifndef RITZ_SCENE_SCENE_PARTS_H
+#define RITZ_SCENE_SCENE_PARTS_H
+
+#include "scene/yaml.h"
+
+#include <ritz/scene.h>
+
+enum {
+    RITZ_MOST_PARTS = 10000,           /* components, joints, inputs, outputs */
+    RITZ_MOST_SWEEPS = 1000,           /* as looked up for every setting */
+    RITZ_MOST_SETTINGS = 1000000,      /* configurations times sweeps */
+    RITZ_MOST_CONFIGURATIONS = 100000, /* given or combined */
+    RITZ_MOST_REFERENCES = 1000,       /* each sought among all of those */
+};
+
+/*
+ * Each reads the value of one key of the scene, NULL where it is absent; what
+ * it names must have been read: components, joints, configurations, the rest.
+ */
+typedef ritz_status ritz_scene_part(const ritz_yaml *yaml,
+                                    const yaml_node_t *node, ritz_scene *scene);
+ritz_scene_part ritz_scene_components;
+ritz_scene_part ritz_scene_joints;
+ritz_scene_part ritz_scene_configurations;
+ritz_scene_part ritz_scene_inputs;
+ritz_scene_part ritz_scene_outputs;
+ritz_scene_part ritz_scene_select;
+ritz_scene_part ritz_scene_composite;
+ritz_scene_part ritz_scene_augment;
+ritz_scene_part ritz_scene_extraneous;
+
+/* What stands alone; fields band_hz, damping. */
+ritz_yaml_take ritz_scene_band;
+ritz_yaml_take ritz_scene_damping;
+
+/** Number of items of a list of parts, refused if it is too long. */
+ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
+                             int64_t *count);
+
+/** "rotor/bearing", its component one of the scene. */
+ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
+                                  const yaml_node_t *node,
+                                  const ritz_scene *scene,
+                                  ritz_scene_place *out);
+
+/** Nothing set yet of any sweep. */
+void ritz_scene_row_clear(const ritz_scene *scene, double *row);
+
+/**
+ * Put a setting in a row, once.
+ *
+ * @param[in] name  of the sweep: "clock", "wrist.2"
+ * @return RITZ_ERR_ARGUMENT if there is no such sweep or it has its setting
+ */
+ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *name,
+                               double setting, double *row);
+
+/** Sweeps without a setting get their only one; RITZ_ERR_ARGUMENT if it is not.
+ */
+ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row);
+
+/** The row of settings of {clock: 60, slide: 0.5}. */
+ritz_status ritz_scene_row_read(const ritz_yaml *yaml, const yaml_node_t *node,
+                                const ritz_scene *scene, double *row);
+
+/** First of @p count rows of @p n numbers that repeats one before it, or -1. */
+ritz_status ritz_rows_repeated(int64_t count, int64_t n, const double *val,
+                               int64_t *out);
+
+#endif

@@ -1,0 +1,177 @@
+#include "chart/chart.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+const chart_kind chart_kinds[] = {
+    {"pareto", "errors against the time to reduce or to simulate",
+     CHART_RECORDS, "run records", chart_pareto},
+    {"convergence", "errors against order, a line for each method",
+     CHART_RECORDS, "run records", chart_convergence},
+    {"hankel", "values of modes as bars, by configuration or ranking",
+     CHART_RANKING, "rankings", chart_hankel},
+    {"response", "responses over each other, errors below", CHART_RESPONSE,
+     "responses, the reference first", chart_response},
+    {"mac", "how like the modes of two models are", CHART_MODES | CHART_SYSTEM,
+     "two of component, reduced, basis, system", chart_mac},
+    {"tracks", "frequencies of modes over configurations", CHART_TRACKS,
+     "a table of --tracks", chart_tracks},
+    {"simulation", "outputs over time, over each other", CHART_SIMULATION,
+     "time responses", chart_simulation},
+    {0},
+};
+
+static const struct content {
+    int holds, model;
+    const char *noun;
+} contents[] = {
+    {CHART_RECORDS, 0, "run records"},
+    {CHART_TRACKS, 0, "a table of tracks"},
+    {CHART_RANKING, MODEL_RANKING, "a ranking"},
+    {CHART_RESPONSE, MODEL_RESPONSE, "a response"},
+    {CHART_SIMULATION, MODEL_SIMULATION, "a time response"},
+    {CHART_MODES, MODEL_REDUCED, "a reduced component"},
+    {CHART_MODES, MODEL_BASIS, "a basis"},
+    {CHART_MODES, MODEL_COMPONENT, "a component"},
+    {CHART_SYSTEM, MODEL_SYSTEM, "a system"},
+};
+
+enum { NUM_CONTENTS = sizeof contents / sizeof *contents };
+
+static const char tracks_head[] = "track\tconfiguration\tmode\thertz\tmac";
+
+static bool is_tracks(const char *path)
+{
+    char line[sizeof tracks_head] = "";
+    FILE *file = fopen(path, "r");
+    bool is = false;
+
+    if (!file)
+        return false;
+    is = fgets(line, sizeof line, file) && strcmp(line, tracks_head) == 0;
+    fclose(file);
+    return is;
+}
+
+/* Containers of those kinds that charts are made from. */
+static int models_of(int holds)
+{
+    int sum = 0;
+
+    for (int k = 0; k < NUM_CONTENTS; k++)
+        if (contents[k].holds & holds)
+            sum |= contents[k].model;
+    return sum;
+}
+
+/* Of text: what it holds. */
+static const char *noun_of(int found)
+{
+    for (int k = 0; k < NUM_CONTENTS; k++)
+        if (contents[k].holds == found && !contents[k].model)
+            return contents[k].noun;
+    return "";
+}
+
+static ritz_status refuse(const char *path, const char *noun, int holds)
+{
+    char list[160] = "";
+    size_t used = 0;
+
+    for (int k = 0; k < NUM_CONTENTS; k++)
+        if ((contents[k].holds & holds) && used < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
+                                     used > 0 ? " or " : "", contents[k].noun);
+    return ritz_fail(RITZ_ERR_FORMAT, "'%s' holds %s, not %s", path, noun,
+                     list);
+}
+
+static ritz_status check_text(const char *path, int found, int holds)
+{
+    ritz_status status = RITZ_OK;
+    struct stat file = {0};
+
+    RITZ_FAIL_IF(stat(path, &file) != 0, RITZ_ERR_FILE, "cannot open '%s': %s",
+                 path, strerror(errno));
+    RITZ_FAIL_IF(S_ISREG(file.st_mode) && file.st_size == 0, RITZ_ERR_FORMAT,
+                 "'%s' is empty", path);
+    RITZ_FAIL_IF(S_ISDIR(file.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
+                 path);
+    RITZ_FAIL_IF(found == 0, RITZ_ERR_FORMAT,
+                 "'%s' is no container, no table of --tracks, and no file of "
+                 "--record",
+                 path);
+    if (!(found & holds))
+        status = refuse(path, noun_of(found), holds);
+done:
+    return status;
+}
+
+static ritz_status read_model(cli_run *run, int holds, chart_file *file)
+{
+    ritz_status status = RITZ_OK;
+    model_kind kind = MODEL_ANY;
+    const char *noun = NULL;
+
+    RITZ_TRY(model_peek(file->path, &kind, &noun));
+    if (!(models_of(holds) & (int)kind))
+        return refuse(file->path, noun, holds);
+    RITZ_TRY(model_read(run, file->path, (int)kind, &file->model));
+    for (int k = 0; k < NUM_CONTENTS; k++)
+        if (contents[k].model == (int)kind)
+            file->holds = contents[k].holds;
+done:
+    return status;
+}
+
+static ritz_status read_file(cli_run *run, const char *path, int holds,
+                             chart_sources *out, chart_file *file)
+{
+    ritz_status status = RITZ_OK;
+
+    file->path = path;
+    if (ritz_container_is(path))
+        return read_model(run, holds, file);
+    file->holds = is_tracks(path)    ? CHART_TRACKS
+                  : records_is(path) ? CHART_RECORDS
+                                     : 0;
+    RITZ_TRY(check_text(path, file->holds, holds));
+    RITZ_TRY(cli_input(run, path));
+    if (file->holds == CHART_RECORDS)
+        RITZ_TRY(records_read(path, &out->runs));
+    else
+        RITZ_TRY(ritz_text_read(path, &file->text));
+done:
+    return status;
+}
+
+ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
+                       int holds, chart_sources *out)
+{
+    ritz_status status = RITZ_OK;
+
+    out->run = run;
+    out->file = calloc((size_t)count + 1, sizeof *out->file);
+    RITZ_FAIL_IF(!out->file, RITZ_ERR_MEMORY, "no memory for files");
+    for (out->count = 0; out->count < count;) {
+        chart_file *file = &out->file[out->count];
+
+        RITZ_TRY(read_file(run, path[out->count++], holds, out, file));
+    }
+    records_join(&out->runs);
+done:
+    return status;
+}
+
+void chart_sources_free(chart_sources *sources)
+{
+    for (int64_t k = 0; k < sources->count; k++) {
+        model_free(&sources->file[k].model);
+        free(sources->file[k].text);
+    }
+    free(sources->file);
+    records_free(&sources->runs);
+    *sources = (chart_sources){0};
+}

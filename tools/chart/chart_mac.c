@@ -1,0 +1,161 @@
+/*
+ * How like the modes of two models are: at the dofs that both have; of two
+ * configurations of the same bodies by their masses, if these are named; of
+ * anything else with a system by what inputs drive and outputs see.
+ */
+#include "chart/chart_mac.h"
+
+#include <stdlib.h>
+
+enum { MOST_FILES = 70 };
+
+/* What is compared, and by which bodies. */
+typedef struct choice {
+    mac_side side[2];
+    int64_t num_bodies;
+    const chart_file *body[MOST_FILES];
+} choice;
+
+static ritz_status find_at(const chart_file *file, const char *at,
+                           mac_side *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_configuration *found = NULL;
+
+    *out = (mac_side){.file = file};
+    if (file->holds == CHART_SYSTEM)
+        status = ritz_system_find(&file->model.system, at, &found);
+    out->at = found;
+    return ritz_context(status, file->path);
+}
+
+/* Two systems at what --at says once or of each. */
+static ritz_status choose_two(const chart_file *const *system,
+                              const cli_list *at, choice *out)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int k = 0; k < 2; k++)
+        RITZ_TRY(find_at(system[k],
+                         at->count == 0   ? NULL
+                         : at->count == 1 ? at->text[0]
+                                          : at->text[k],
+                         &out->side[k]));
+done:
+    return status;
+}
+
+/* One system: two configurations of it, or one and another model. */
+static ritz_status choose_one(const chart_file *system, const cli_list *at,
+                              choice *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_system *s = &system->model.system;
+
+    if (at->count == 2) {
+        for (int k = 0; k < 2; k++)
+            RITZ_TRY(find_at(system, at->text[k], &out->side[k]));
+    } else if (out->num_bodies == 1) {
+        RITZ_TRY(
+            find_at(system, at->count ? at->text[0] : NULL, &out->side[0]));
+        RITZ_TRY(find_at(out->body[0], NULL, &out->side[1]));
+        out->num_bodies = 0;
+    } else {
+        RITZ_FAIL_IF(at->count == 1 || s->num_configurations != 2,
+                     RITZ_ERR_ARGUMENT,
+                     "MAC is of two: choose two configurations of '%s' by --at "
+                     "and --at again",
+                     system->path);
+        out->side[0] = (mac_side){system, &s->configuration[0]};
+        out->side[1] = (mac_side){system, &s->configuration[1]};
+    }
+done:
+    return status;
+}
+
+static ritz_status choose(const chart_sources *sources, const cli_list *at,
+                          choice *out)
+{
+    ritz_status status = RITZ_OK;
+    const chart_file *system[2] = {NULL, NULL};
+    int64_t num_systems = 0;
+
+    for (int64_t k = 0; k < sources->count; k++) {
+        const chart_file *file = &sources->file[k];
+
+        if (file->holds != CHART_MODES && file->holds != CHART_SYSTEM)
+            continue;
+        RITZ_FAIL_IF(file->holds == CHART_SYSTEM
+                         ? num_systems == 2
+                         : out->num_bodies == MOST_FILES,
+                     RITZ_ERR_ARGUMENT, "MAC is of two models, these are more");
+        if (file->holds == CHART_SYSTEM)
+            system[num_systems++] = file;
+        else
+            out->body[out->num_bodies++] = file;
+    }
+    RITZ_FAIL_IF(at->count > 2, RITZ_ERR_ARGUMENT,
+                 "MAC is of two: --at is there more than twice");
+    if (num_systems == 2)
+        return choose_two(system, at, out);
+    if (num_systems == 1)
+        return choose_one(system[0], at, out);
+    RITZ_FAIL_IF(at->count > 0, RITZ_ERR_ARGUMENT,
+                 "no file is a system, --at has nothing to choose from");
+    RITZ_FAIL_IF(out->num_bodies != 2, RITZ_ERR_ARGUMENT,
+                 "MAC is of two models, %s",
+                 out->num_bodies < 2 ? "this is one" : "these are more");
+    for (int k = 0; k < 2; k++)
+        out->side[k] = (mac_side){.file = out->body[k]};
+    out->num_bodies = 0;
+done:
+    return status;
+}
+
+static ritz_status shapes_of(const choice *chosen, const char **how,
+                             mac_shapes set[2])
+{
+    ritz_status status = RITZ_OK;
+    const bool systems = chosen->side[0].at || chosen->side[1].at;
+
+    *how = chosen->num_bodies > 0 ? "by masses"
+           : systems              ? "by inputs and outputs"
+                                  : "by dofs";
+    for (int64_t k = 0; k < chosen->num_bodies; k++)
+        RITZ_FAIL_IF(chosen->body[k]->model.kind != MODEL_REDUCED,
+                     RITZ_ERR_ARGUMENT,
+                     "'%s' is no reduced component, of which systems are "
+                     "assembled",
+                     chosen->body[k]->path);
+    for (int k = 0; k < 2; k++)
+        if (chosen->num_bodies > 0)
+            RITZ_TRY(mac_shapes_of_bodies(&chosen->side[k], chosen->num_bodies,
+                                          chosen->body, &set[k]));
+        else if (systems)
+            RITZ_TRY(mac_shapes_of_channels(&chosen->side[k], &set[k]));
+        else
+            RITZ_TRY(mac_shapes_of_dofs(&chosen->side[k], &set[k]));
+done:
+    return status;
+}
+
+ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
+                      gnuplot *out)
+{
+    ritz_status status = RITZ_OK;
+    choice chosen = {.num_bodies = 0};
+    mac_shapes set[2] = {{.count = 0}};
+    const char *how = "";
+    int64_t *row = NULL;
+
+    RITZ_TRY(choose(sources, &wish->at, &chosen));
+    RITZ_TRY(shapes_of(&chosen, &how, set));
+    RITZ_TRY(mac_match(&set[0], &set[1], &row));
+    RITZ_TRY(gnuplot_new(wish->path, wish->keep, out));
+    RITZ_TRY(mac_draw(&set[0], &set[1], row, how, out));
+done:
+    free(row);
+    mac_shapes_free(&set[0]);
+    mac_shapes_free(&set[1]);
+    return status;
+}

@@ -1,0 +1,71 @@
+/*
+ * Claims: published numbers, the commands that state them, and how closely.
+ * docs/claims.md has the words of the file.
+ */
+#ifndef RITZ_TOOLS_CLAIMS_CLAIMS_H
+#define RITZ_TOOLS_CLAIMS_CLAIMS_H
+
+#include "cli/cli.h"
+
+#include <limits.h>
+
+enum { CLAIMS_MOST_WORDS = 128 };
+
+/* One line of a claims file, cut into words. */
+typedef struct claims_line {
+    const char *file;
+    int number;
+    int count;
+    char *word[CLAIMS_MOST_WORDS]; /* each of its own; of `room` */
+    char *room;
+} claims_line;
+
+/* What goes on while a file is run. */
+typedef struct claims_state {
+    cli_run *run;
+    char bin[PATH_MAX];    /* the tools are here */
+    char here[PATH_MAX];   /* the claims file is here */
+    char data[PATH_MAX];   /* files of others: $DATA */
+    char folder[PATH_MAX]; /* commands run here */
+    char source[256];      /* of the claims that follow */
+    char command[256];     /* the last one, as written */
+    bool skipping;         /* until the next 'need': a file is absent */
+    char absent[256];
+    int exit_code;  /* of the last command */
+    json_t *answer; /* of the last command; NULL: none */
+    json_t *list;   /* of all claims, for --json */
+    int64_t holds, fails, skipped;
+} claims_state;
+
+/**
+ * Cut a line into words: blanks part them, "..." and '...' keep them together,
+ * a word that begins with # ends the line, $DATA and $HERE stand for folders.
+ *
+ * @return RITZ_ERR_FORMAT for a quote that is not closed
+ */
+ritz_status claims_cut(const claims_state *state, const char *text,
+                       claims_line *line);
+void claims_line_free(claims_line *line);
+
+/** Run all lines of a file. @return RITZ_ERR_FORMAT if it is not understood */
+ritz_status claims_file(claims_state *state, const char *path);
+
+/**
+ * The value at a path such as "configurations[1].frequencies_hz[6]" or
+ * "measures[static-gain].value": an index, or the name of an item of a list.
+ * @p more items further along where the path ends in an index.
+ *
+ * @return NULL if there is none
+ */
+const json_t *claims_find(const json_t *answer, const char *path, int64_t more);
+
+/** Compare the answer with "expect PATH ..." and tell. */
+ritz_status claims_expect(claims_state *state, const claims_line *line);
+
+/**
+ * "beam NAME --elements N ...": NAME.k.mtx, NAME.m.mtx, NAME.bdf and NAME.dofs
+ * of a plane frame in the folder of the state.
+ */
+ritz_status claims_beam(claims_state *state, const claims_line *line);
+
+#endif

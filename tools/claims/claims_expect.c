@@ -1,0 +1,303 @@
+/* What an answer says, held against what was claimed. */
+#include "claims/claims.h"
+
+#include <ritz/text.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Item of a list by its "name" or "at". */
+static const json_t *find_item(const json_t *list, const char *name,
+                               size_t length)
+{
+    static const char *const keys[] = {"name", "at"};
+
+    for (size_t i = 0; i < json_array_size(list); i++)
+        for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+            const json_t *item = json_array_get(list, i);
+            const char *text =
+                json_string_value(json_object_get(item, keys[k]));
+
+            if (text && strlen(text) == length &&
+                strncmp(text, name, length) == 0)
+                return item;
+        }
+    return NULL;
+}
+
+/* What "[3]" or "[static-gain]" leads to. */
+static const json_t *enter(const json_t *list, const char *inside,
+                           size_t length, int64_t more)
+{
+    char text[64] = "";
+    int64_t index = 0;
+
+    if (length >= sizeof text)
+        return NULL;
+    memcpy(text, inside, length);
+    if (!ritz_text_whole(text, &index))
+        return find_item(list, inside, length);
+    index += more;
+    return index < 0 ? NULL : json_array_get(list, (size_t)index);
+}
+
+const json_t *claims_find(const json_t *answer, const char *path, int64_t more)
+{
+    const json_t *at = answer;
+
+    while (at && *path) {
+        size_t length = strcspn(path, ".[");
+        char key[64] = "";
+
+        if (*path == '[') {
+            length = strcspn(path, "]");
+            at = enter(at, path + 1, length - 1,
+                       path[length] && !path[length + 1] ? more : 0);
+            path += length + (path[length] != '\0');
+        } else {
+            if (length >= sizeof key)
+                return NULL;
+            memcpy(key, path, length);
+            at = json_object_get(at, key);
+            path += length;
+        }
+        path += *path == '.';
+    }
+    return at;
+}
+
+/* As what a frequency in Hz was published: "as lambda". */
+static double as_hertz(double hertz)
+{
+    return hertz;
+}
+
+static double as_omega(double hertz)
+{
+    return 2.0 * 3.14159265358979323846 * hertz;
+}
+
+static double as_lambda(double hertz)
+{
+    return as_omega(hertz) * as_omega(hertz);
+}
+
+/* of a beam of E I = rho A = L = 1 */
+static double as_beta(double hertz)
+{
+    return sqrt(as_omega(hertz));
+}
+
+static const struct form {
+    const char *name;
+    double (*of)(double hertz);
+} forms[] = {
+    {"hertz", as_hertz},
+    {"omega", as_omega},
+    {"lambda", as_lambda},
+    {"beta", as_beta},
+};
+
+/* The form of a claim that has "as NAME" behind its path; NULL: unknown. */
+static const struct form *find_form(const claims_line *line)
+{
+    if (line->count < 4 || strcmp(line->word[2], "as") != 0)
+        return &forms[0];
+    for (size_t k = 0; k < sizeof forms / sizeof *forms; k++)
+        if (strcmp(forms[k].name, line->word[3]) == 0)
+            return &forms[k];
+    return NULL;
+}
+
+/* How a value may differ. */
+typedef enum bound_kind { RELATIVE, ABSOLUTE, BELOW, ABOVE } bound_kind;
+
+typedef struct bound {
+    bound_kind kind;
+    double size;
+} bound;
+
+static bool within(double value, double expected, const bound *b)
+{
+    switch (b->kind) {
+    case RELATIVE:
+        return fabs(value - expected) <= b->size * fabs(expected);
+    case ABSOLUTE:
+        return fabs(value - expected) <= b->size;
+    case BELOW:
+        return value < b->size;
+    case ABOVE:
+        return value > b->size;
+    }
+    return false;
+}
+
+/* Count a verdict and tell it: one line of TAP, one object of JSON. */
+static void tell(claims_state *state, const claims_line *line, bool holds,
+                 const char *what, const char *found)
+{
+    int64_t number = state->holds + state->fails + state->skipped + 1;
+    const char *slash = strrchr(line->file, '/');
+    const char *file = slash ? slash + 1 : line->file;
+    bool skipped = state->skipping;
+
+    cli_say(state->run, "%sok %" PRId64 " - %s:%d %s: %s; %s%s%s",
+            skipped || holds ? "" : "not ", number, file, line->number, what,
+            skipped ? "not looked at" : found, state->source,
+            skipped ? " # skip there is no " : "",
+            skipped ? state->absent : "");
+    if (!holds && !skipped)
+        cli_say(state->run, "# after: %s", state->command);
+    state->skipped += skipped;
+    state->holds += holds && !skipped;
+    state->fails += !holds && !skipped;
+    json_array_append_new(
+        state->list, json_pack("{s:s, s:i, s:s, s:s, s:s, s:b, s:b}", "file",
+                               file, "line", line->number, "what", what,
+                               "found", found, "source", state->source, "holds",
+                               holds && !skipped, "skipped", skipped));
+}
+
+/* "expect failure WORDS": status 1 with that sentence. */
+static ritz_status expect_failure(claims_state *state, const claims_line *line)
+{
+    ritz_status status = RITZ_OK;
+    const char *sentence =
+        json_string_value(claims_find(state->answer, "error", 0));
+
+    RITZ_FAIL_IF(line->count != 3, RITZ_ERR_FORMAT,
+                 "'expect failure' takes the words of its sentence, in quotes");
+    tell(state, line,
+         state->exit_code == 1 && sentence && strstr(sentence, line->word[2]),
+         "failure", sentence ? sentence : "it did not fail with a sentence");
+done:
+    return status;
+}
+
+/* "expect PATH is TEXT": of texts, whole numbers and truths. */
+static void expect_text(claims_state *state, const claims_line *line)
+{
+    const json_t *at = claims_find(state->answer, line->word[1], 0);
+    char text[256] = "nothing there";
+
+    if (json_is_string(at))
+        snprintf(text, sizeof text, "%s", json_string_value(at));
+    else if (json_is_integer(at))
+        snprintf(text, sizeof text, "%" JSON_INTEGER_FORMAT,
+                 json_integer_value(at));
+    else if (json_is_boolean(at))
+        snprintf(text, sizeof text, "%s", json_is_true(at) ? "true" : "false");
+    tell(state, line, strcmp(text, line->word[3]) == 0, line->word[1], text);
+}
+
+/* "frequencies_hz[6]" and 2 more: "frequencies_hz[8]". */
+static void name_item(const char *path, int64_t more, size_t size, char *out)
+{
+    const char *bracket = strrchr(path, '[');
+    char digits[24] = "";
+    int64_t index = 0;
+
+    snprintf(out, size, "%s", path);
+    if (bracket)
+        snprintf(digits, sizeof digits, "%.*s", (int)strcspn(bracket + 1, "]"),
+                 bracket + 1);
+    if (more > 0 && ritz_text_whole(digits, &index))
+        snprintf(out, size, "%.*s[%" PRId64 "]", (int)(bracket - path), path,
+                 index + more);
+}
+
+/* One number, `more` items beyond the path. */
+static ritz_status expect_number(claims_state *state, const claims_line *line,
+                                 int64_t more, const char *text,
+                                 const struct form *form, const bound *allowed)
+{
+    ritz_status status = RITZ_OK;
+    const json_t *at = claims_find(state->answer, line->word[1], more);
+    double expected = 0.0;
+    double value = form->of(json_number_value(at));
+    char what[160], found[160];
+
+    RITZ_FAIL_IF(text && !ritz_text_real(text, &expected), RITZ_ERR_FORMAT,
+                 "'%.40s' is not a number", text);
+    name_item(line->word[1], more, sizeof what, what);
+    if (!json_is_number(at))
+        snprintf(found, sizeof found, "nothing there, %s expected",
+                 text ? text : "a number");
+    else if (text)
+        snprintf(found, sizeof found, "%.12g for %s, off %.1e of %.1e%s", value,
+                 text, value - expected, allowed->size,
+                 allowed->kind == RELATIVE ? " relative" : "");
+    else
+        snprintf(found, sizeof found, "%.3e, to be %s %.1e", value,
+                 allowed->kind == BELOW ? "below" : "above", allowed->size);
+    tell(state, line, json_is_number(at) && within(value, expected, allowed),
+         what, found);
+done:
+    return status;
+}
+
+/* "... rel 1e-6": how the line ends, behind `count` words of values. */
+static ritz_status read_bound(const claims_line *line, int count, bound *out)
+{
+    static const char *const words[] = {[RELATIVE] = "rel",
+                                        [ABSOLUTE] = "abs",
+                                        [BELOW] = "below",
+                                        [ABOVE] = "above"};
+    ritz_status status = RITZ_OK;
+    size_t kind = 0;
+
+    RITZ_FAIL_IF(count < 0, RITZ_ERR_FORMAT,
+                 "an expectation is PATH [as FORM] VALUE... rel|abs TOLERANCE, "
+                 "PATH below|above LIMIT, PATH is WORD or failure WORDS");
+    while (kind < sizeof words / sizeof *words &&
+           strcmp(line->word[line->count - 2], words[kind]) != 0)
+        kind++;
+    RITZ_FAIL_IF(kind == sizeof words / sizeof *words, RITZ_ERR_FORMAT,
+                 "'%.40s' is none of rel, abs, below, above",
+                 line->word[line->count - 2]);
+    out->kind = (bound_kind)kind;
+    RITZ_FAIL_IF(!ritz_text_real(line->word[line->count - 1], &out->size),
+                 RITZ_ERR_FORMAT, "'%.40s' is not a number",
+                 line->word[line->count - 1]);
+    RITZ_FAIL_IF((kind >= BELOW) != (count == 0), RITZ_ERR_FORMAT, "%s",
+                 kind >= BELOW ? "a limit stands alone" : "no value is given");
+done:
+    return status;
+}
+
+ritz_status claims_expect(claims_state *state, const claims_line *line)
+{
+    ritz_status status = RITZ_OK;
+    const struct form *form = find_form(line);
+    bool named = line->count > 3 && strcmp(line->word[2], "as") == 0;
+    int first = named ? 4 : 2;
+    int count = line->count - 2 - first;
+    bound allowed = {0};
+
+    RITZ_FAIL_IF(!state->source[0], RITZ_ERR_FORMAT,
+                 "a claim needs a 'source' before it");
+    RITZ_FAIL_IF(line->count < 3, RITZ_ERR_FORMAT, "nothing is expected");
+    if (state->skipping) {
+        tell(state, line, false, "expect", "");
+        return RITZ_OK;
+    }
+    if (strcmp(line->word[1], "failure") == 0)
+        return expect_failure(state, line);
+    if (line->count == 4 && strcmp(line->word[2], "is") == 0) {
+        expect_text(state, line);
+        return RITZ_OK;
+    }
+    RITZ_FAIL_IF(!form, RITZ_ERR_FORMAT,
+                 "'%.40s' is none of hertz, omega, lambda, beta",
+                 line->word[3]);
+    RITZ_TRY(read_bound(line, count, &allowed));
+    if (count == 0)
+        RITZ_TRY(expect_number(state, line, 0, NULL, form, &allowed));
+    for (int k = 0; k < count; k++)
+        RITZ_TRY(expect_number(state, line, k, line->word[first + k], form,
+                               &allowed));
+done:
+    return status;
+}

@@ -1,0 +1,184 @@
+/*
+ * Command lines of the Ritz tools: one table per tool gives the parsing, the
+ * range checks and the --help text with its defaults. What every tool has, -o
+ * -q -h --version --json --record, comes from a table in cli.c; every other
+ * option is long only. Names are never abbreviated: a later release could make
+ * an abbreviation ambiguous.
+ */
+#ifndef RITZ_TOOLS_CLI_CLI_H
+#define RITZ_TOOLS_CLI_CLI_H
+
+#include <ritz/container.h>
+#include <ritz/status.h>
+
+#include <jansson.h>
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum { CLI_MAX_LIST = 256, CLI_MAX_COMMAND = 4096, CLI_MAX_OPERANDS = 3 };
+
+typedef enum cli_kind {
+    CLI_KIND_END,
+    CLI_KIND_ACTION,
+    CLI_KIND_FLAG,
+    CLI_KIND_INT,
+    CLI_KIND_REAL,
+    CLI_KIND_TEXT,
+    CLI_KIND_LIST,
+    CLI_KIND_HELP,
+    CLI_KIND_VERSION,
+} cli_kind;
+
+/* What an option that may be repeated was given, in order. */
+typedef struct cli_list {
+    int count;
+    const char *text[CLI_MAX_LIST];
+} cli_list;
+
+typedef struct cli_option {
+    cli_kind kind;
+    char letter; /* for -o, -q and -h alone */
+    union {      /* where the default is, and then the answer */
+        void (*action)(void);
+        bool *flag;
+        int64_t *whole;
+        double *real;
+        const char **text;
+        cli_list *list;
+    } to;
+    const char *name;
+    const char *argument; /* what --help calls it */
+    double min, max;      /* range of a number; a default outside is none */
+    const char *help;
+} cli_option;
+
+/* Kind and place of an answer, held to each other by the compiler. */
+#define CLI_ACTION(function) .kind = CLI_KIND_ACTION, .to.action = (function)
+#define CLI_FLAG(place)      .kind = CLI_KIND_FLAG, .to.flag = (place)
+#define CLI_INT(place)       .kind = CLI_KIND_INT, .to.whole = (place)
+#define CLI_REAL(place)      .kind = CLI_KIND_REAL, .to.real = (place)
+#define CLI_TEXT(place)      .kind = CLI_KIND_TEXT, .to.text = (place)
+#define CLI_LIST(place)      .kind = CLI_KIND_LIST, .to.list = (place)
+
+typedef struct cli_operand {
+    const char *name; /* "COMPONENT" */
+    const char *help;
+    bool many; /* one or more; the last alone */
+} cli_operand;
+
+typedef struct cli_program {
+    const char *name;
+    cli_operand operands[CLI_MAX_OPERANDS];
+    const char *summary;
+    const char *example;
+    const cli_option *options; /* its own, ended by {0} */
+    const char *output;        /* what -o is */
+    bool output_optional;      /* works without -o */
+    bool threads;              /* does long work: see cli_parse */
+} cli_program;
+
+/* One run: what the command line said, and what is to be reported. */
+typedef struct cli_run {
+    const cli_program *program;
+    int num_operands;
+    char **operand;
+    char **argv;
+    const char *output, *record;
+    bool quiet, json;
+    char command[CLI_MAX_COMMAND]; /* for the file that it makes */
+    json_t *report;                /* of --json; the tool adds its keys */
+    json_t *warnings;
+    json_t *line; /* of --record: method, order, errors */
+    FILE *said;   /* all that cli_say was told, kept in the next two */
+    char *text;
+    size_t text_size;
+    int64_t num_inputs;
+    char **input;  /* "SHA256  NAME" of each file read */
+    int64_t bytes; /* of those files */
+    bool piped;    /* one of them is no regular file */
+    double began;  /* seconds, of the monotonic clock; 0 while parsing */
+} cli_run;
+
+/**
+ * Parse the command line into the variables of the table and into @p run.
+ *
+ * Answers --help, --version and actions itself, and ends the program with
+ * status 2 on a command line that it does not understand. From then on a
+ * signal that ends the program leaves no unfinished file, and long work shows
+ * its progress on a terminal.
+ */
+void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run);
+
+/** End the program with status 2: the command line makes no sense. */
+[[gnu::format(printf, 2, 3)]] _Noreturn void
+cli_refuse(const cli_program *program, const char *format, ...);
+
+/** The same for a name that is none of @p count: "no method 'x', is 'y'
+ * meant?". */
+_Noreturn void cli_refuse_name(const cli_program *program, const char *what,
+                               const char *word, int64_t count,
+                               const char *const *names);
+
+/** "LOW,HIGH" of an option, or the end of the program. */
+void cli_pair(const cli_program *program, const char *option, const char *text,
+              double out[2]);
+
+/**
+ * Remember a file that is about to be read: its SHA-256 goes into what is
+ * written. One that is named again counts once. A pipe, which can be read only
+ * once, has '-' for its sum.
+ *
+ * A program with `threads` starts once more when its inputs are large and
+ * OMP_THREAD_LIMIT is not set, with as many threads as there are cores. So call
+ * this before anything is written or said.
+ */
+ritz_status cli_input(cli_run *run, const char *path);
+
+/**
+ * Whether a file can be made at @p path, before the work that it is to hold:
+ * one is, beside it, and removed. cli_input asks it of -o by itself.
+ */
+ritz_status cli_can_write(const char *path);
+
+/** Command and inputs so far, as containers take them; borrowed from run. */
+ritz_stamp cli_stamp(const cli_run *run);
+
+/** A line for people, on standard output; not with --quiet or --json. */
+[[gnu::format(printf, 2, 3)]] void cli_say(const cli_run *run,
+                                           const char *format, ...);
+
+/** Write all that was said, with --quiet and --json too, to a file. */
+ritz_status cli_save(cli_run *run, const char *path);
+
+/** A line on standard error, and in the report; not fatal. */
+[[gnu::format(printf, 2, 3)]] void cli_warn(cli_run *run, const char *format,
+                                            ...);
+
+/** Values that JSON cannot hold become null, or '?' in a text. */
+json_t *cli_real(double value);
+json_t *cli_string(const char *text);
+
+/** Keys of the report. cli_report_reals leaves out NaN. */
+void cli_report_reals(cli_run *run, const char *key, int64_t count,
+                      const double *values);
+void cli_report_int(cli_run *run, const char *key, int64_t value);
+void cli_report_text(cli_run *run, const char *key, const char *text);
+
+/** Method and order (-1: none) of the line that --record appends. */
+void cli_record(cli_run *run, const char *method, int64_t order);
+void cli_record_error(cli_run *run, const char *name, double value);
+
+/**
+ * Append one further line to the file of --record, now: tool, command and
+ * inputs are added to it. Without --record nothing happens.
+ *
+ * @param[in] line  given away
+ */
+ritz_status cli_record_line(cli_run *run, json_t *line);
+
+/** Exit status for main: report, say why it failed, check standard output. */
+int cli_finish(cli_run *run, ritz_status status);
+
+#endif

@@ -1,0 +1,117 @@
+/* Files that a run reads: their sums, and whether the work is large. */
+#include "cli/cli.h"
+
+#include "base/draft.h"
+
+#include <ritz/text.h>
+
+#include <cblas.h>
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/*
+ * Bytes of input from which more threads than one are worth their price. Below
+ * it threads that wait for each other cost more than they bring: ten times the
+ * whole run where other work keeps the cores busy (measured on data/dualspin).
+ */
+enum { LARGE = 1 << 20 };
+
+/*
+ * As many threads as there are cores, or as the environment allows: a BLAS that
+ * counts on more than OpenMP may start waits for them for ever.
+ */
+static int allowed_threads(void)
+{
+    static const char *const limits[] = {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT"};
+    int64_t threads = sysconf(_SC_NPROCESSORS_ONLN);
+
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
+        const char *text = getenv(limits[k]);
+        int64_t limit = 0;
+
+        if (text && ritz_text_whole(text, &limit) && limit > 0 &&
+            limit < threads)
+            threads = limit;
+    }
+    return threads > 0 ? (int)threads : 1;
+}
+
+/*
+ * Start once more with a limit of threads, where there is none and the inputs
+ * are large. The limit is heeded only if it stands when a process starts;
+ * without it CHOLMOD's own threads crowd out those of the BLAS. If that cannot
+ * be done, it costs only speed. A pipe cannot be read again, and what was said
+ * is not to be said twice.
+ */
+static void limit_threads(cli_run *run, const struct stat *file)
+{
+    char cores[24];
+    char self[CLI_MAX_COMMAND];
+    ssize_t length = 0;
+
+    run->piped = run->piped || !S_ISREG(file->st_mode);
+    run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
+    openblas_set_num_threads(run->bytes < LARGE ? 1 : allowed_threads());
+    if (!run->program->threads || run->bytes < LARGE || run->piped ||
+        json_array_size(run->warnings) > 0 || getenv("OMP_THREAD_LIMIT"))
+        return;
+    length = readlink("/proc/self/exe", self, sizeof self - 1);
+    if (length <= 0)
+        return;
+    self[length] = '\0';
+    snprintf(cores, sizeof cores, "%ld", sysconf(_SC_NPROCESSORS_ONLN));
+    if (setenv("OMP_THREAD_LIMIT", cores, 1) == 0 &&
+        setenv("OMP_NUM_THREADS", cores, 0) == 0 &&
+        setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
+        execv(self, run->argv);
+}
+
+ritz_status cli_input(cli_run *run, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    char digest[RITZ_DIGEST_SIZE] = "-";
+    char *line = NULL;
+    char **more = NULL;
+    struct stat there = {0};
+
+    for (int64_t k = 0; k < run->num_inputs; k++)
+        if (strcmp(strstr(run->input[k], "  ") + 2, path) == 0)
+            return RITZ_OK;
+    if (stat(path, &there) == 0)
+        limit_threads(run, &there);
+    if (S_ISREG(there.st_mode) || there.st_mode == 0)
+        RITZ_TRY(ritz_digest_file(path, digest));
+    RITZ_FAIL_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
+                 path);
+    line = malloc(strlen(digest) + strlen(path) + 3);
+    more =
+        realloc(run->input, (size_t)(run->num_inputs + 1) * sizeof *run->input);
+    if (more)
+        run->input = more;
+    RITZ_FAIL_IF(!line || !more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
+    run->input[run->num_inputs++] = line;
+    line = NULL;
+    if (run->output && run->program->threads && run->num_inputs == 1)
+        RITZ_TRY(cli_can_write(run->output));
+done:
+    free(line);
+    return status;
+}
+
+ritz_status cli_can_write(const char *path)
+{
+    ritz_draft draft = {0};
+    ritz_status status = ritz_draft_new(path, &draft);
+
+    ritz_draft_free(&draft);
+    return ritz_context(status, path);
+}
+
+ritz_stamp cli_stamp(const cli_run *run)
+{
+    return (ritz_stamp){run->command, run->num_inputs, run->input};
+}

@@ -1,0 +1,296 @@
+/* A run and its reports: text for people, JSON, records, exit status. */
+#include "cli/cli.h"
+
+#include "base/draft.h"
+#include "cli/cli_watch.h"
+
+#include <ritz/version.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+void cli_say(const cli_run *run, const char *format, ...)
+{
+    va_list args;
+    va_list again;
+
+    va_start(args, format);
+    va_copy(again, args);
+    vfprintf(run->said, format, again);
+    putc('\n', run->said);
+    va_end(again);
+    if (!run->quiet && !run->json) {
+        cli_watch_clear();
+        vprintf(format, args);
+        putchar('\n');
+    }
+    va_end(args);
+}
+
+ritz_status cli_save(cli_run *run, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_draft draft = {0};
+    FILE *file = NULL;
+    bool whole = false;
+
+    RITZ_FAIL_IF(fflush(run->said) != 0, RITZ_ERR_MEMORY,
+                 "no memory for the report");
+    RITZ_TRY(ritz_draft_new(path, &draft));
+    file = fopen(draft.name, "w");
+    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", draft.name,
+                 strerror(errno));
+    whole = fwrite(run->text, 1, run->text_size, file) == run->text_size;
+    whole = fclose(file) == 0 && whole;
+    RITZ_FAIL_IF(!whole, RITZ_ERR_FILE, "cannot write: %s", strerror(errno));
+    RITZ_TRY(ritz_draft_publish(&draft));
+done:
+    ritz_draft_free(&draft);
+    return ritz_context(status, path);
+}
+
+void cli_warn(cli_run *run, const char *format, ...)
+{
+    char text[512];
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    json_array_append_new(run->warnings, cli_string(text));
+    if (!run->quiet) {
+        cli_watch_clear();
+        fflush(stdout);
+        fprintf(stderr, "%s: warning: %s\n", run->program->name, text);
+    }
+}
+
+json_t *cli_real(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *cli_string(const char *text)
+{
+    json_t *string = json_string(text);
+    char *copy = NULL;
+
+    if (string || !text)
+        return string ? string : json_null();
+    copy = malloc(strlen(text) + 1); /* not UTF-8: a file may be called so */
+    if (!copy)
+        return json_null();
+    memcpy(copy, text, strlen(text) + 1);
+    for (char *c = copy; *c; c++)
+        if ((unsigned char)*c > 127)
+            *c = '?';
+    string = json_string(copy);
+    free(copy);
+    return string ? string : json_null();
+}
+
+void cli_report_reals(cli_run *run, const char *key, int64_t count,
+                      const double *values)
+{
+    json_t *array = json_array();
+
+    for (int64_t k = 0; k < count; k++)
+        if (!isnan(values[k]))
+            json_array_append_new(array, cli_real(values[k]));
+    json_object_set_new(run->report, key, array);
+}
+
+void cli_report_int(cli_run *run, const char *key, int64_t value)
+{
+    json_object_set_new(run->report, key, json_integer(value));
+}
+
+void cli_report_text(cli_run *run, const char *key, const char *text)
+{
+    json_object_set_new(run->report, key, cli_string(text));
+}
+
+void cli_record(cli_run *run, const char *method, int64_t order)
+{
+    if (method && *method)
+        json_object_set_new(run->line, "method", cli_string(method));
+    if (order >= 0)
+        json_object_set_new(run->line, "order", json_integer(order));
+}
+
+void cli_record_error(cli_run *run, const char *name, double value)
+{
+    json_t *errors = json_object_get(run->line, "errors");
+
+    if (!errors) {
+        errors = json_object();
+        json_object_set_new(run->line, "errors", errors);
+    }
+    json_object_set_new(errors, name, cli_real(value));
+}
+
+static void print_report(cli_run *run, ritz_status status)
+{
+    json_t *report = run->report;
+
+    json_object_set_new(report, "ok", json_boolean(status == RITZ_OK));
+    json_object_set_new(report, "output", cli_string(run->output));
+    json_object_set(report, "warnings", run->warnings);
+    if (status != RITZ_OK)
+        json_object_set_new(report, "error", cli_string(ritz_error_message()));
+    json_dumpf(report, stdout, JSON_INDENT(2));
+    putchar('\n');
+}
+
+static void set_missing(json_t *object, const char *key, json_t *value)
+{
+    if (!json_object_get(object, key))
+        json_object_set_new(object, key, value);
+    else
+        json_decref(value);
+}
+
+/* What every line says of the run that it is of. */
+static void sign_line(const cli_run *run, json_t *line)
+{
+    json_t *inputs = json_array();
+
+    for (int64_t k = 0; k < run->num_inputs; k++)
+        json_array_append_new(inputs, cli_string(run->input[k]));
+    json_object_set_new(line, "tool", json_string(run->program->name));
+    json_object_set_new(line, "version", json_string(ritz_version()));
+    json_object_set_new(line, "command", cli_string(run->command));
+    json_object_set_new(line, "inputs", inputs);
+}
+
+/* What there is to say of this run, complete but for what it cost. */
+static void fill_line(cli_run *run, ritz_status status)
+{
+    json_t *line = run->line;
+
+    sign_line(run, line);
+    json_object_set_new(line, "ok", json_boolean(status == RITZ_OK));
+    set_missing(line, "method", json_null());
+    set_missing(line, "order", json_null());
+    set_missing(line, "errors", json_object());
+}
+
+static json_int_t peak_bytes(void)
+{
+    struct rusage usage = {0};
+
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024 * (json_int_t)usage.ru_maxrss;
+}
+
+static void fill_cost(cli_run *run)
+{
+    struct rusage usage = {0};
+    struct timespec now = {0};
+    double cpu = 0.0;
+
+    getrusage(RUSAGE_SELF, &usage);
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+          1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    json_object_set_new(
+        run->line, "seconds",
+        json_pack("{s:f, s:f}", "wall",
+                  (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - run->began,
+                  "cpu", cpu));
+    json_object_set_new(run->line, "peak_bytes", json_integer(peak_bytes()));
+}
+
+/* One line in one write, so that those of parallel tools do not mix. */
+static ritz_status append_line(const cli_run *run, const json_t *line)
+{
+    ritz_status status = RITZ_OK;
+    char *text = NULL;
+    size_t length = 0;
+    int file = -1;
+
+    text = json_dumps(line, JSON_COMPACT | JSON_PRESERVE_ORDER);
+    RITZ_FAIL_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
+    length = strlen(text);
+    text[length] = '\n'; /* in the place of its NUL */
+    file = open(run->record, O_WRONLY | O_CREAT | O_APPEND, 0666);
+    RITZ_FAIL_IF(file < 0, RITZ_ERR_FILE, "cannot open '%s': %s", run->record,
+                 strerror(errno));
+    RITZ_FAIL_IF(write(file, text, length + 1) != (ssize_t)(length + 1),
+                 RITZ_ERR_FILE, "cannot append to '%s': %s", run->record,
+                 strerror(errno));
+done:
+    if (file >= 0)
+        close(file);
+    free(text);
+    return status;
+}
+
+ritz_status cli_record_line(cli_run *run, json_t *line)
+{
+    ritz_status status = RITZ_OK;
+
+    if (run->record) {
+        sign_line(run, line);
+        json_object_set_new(line, "peak_bytes", json_integer(peak_bytes()));
+        status = append_line(run, line);
+    }
+    json_decref(line);
+    return status;
+}
+
+/* Of two failures the first is told, and the second only if there is none. */
+static ritz_status keep_record(cli_run *run, ritz_status outcome)
+{
+    char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());
+    ritz_status recorded = RITZ_OK;
+
+    fill_line(run, outcome);
+    fill_cost(run);
+    recorded = append_line(run, run->line);
+    if (first)
+        ritz_record("%s", first);
+    free(first);
+    return outcome == RITZ_OK ? recorded : outcome;
+}
+
+static void free_run(cli_run *run)
+{
+    for (int64_t k = 0; k < run->num_inputs; k++)
+        free(run->input[k]);
+    free(run->input);
+    free(run->operand);
+    fclose(run->said);
+    free(run->text);
+    json_decref(run->report);
+    json_decref(run->warnings);
+    json_decref(run->line);
+}
+
+int cli_finish(cli_run *run, ritz_status status)
+{
+    const char *name = run->program->name;
+    bool worked = run->began > 0.0; /* not --help or the like */
+
+    cli_watch_clear();
+    if (run->record && worked)
+        status = keep_record(run, status);
+    if (status != RITZ_OK)
+        fprintf(stderr, "%s: %s\n", name, ritz_error_message());
+    if (run->json && worked)
+        print_report(run, status);
+    free_run(run);
+    if (ferror(stdout) || fclose(stdout) != 0) {
+        fprintf(stderr, "%s: cannot write to standard output: %s\n", name,
+                strerror(errno));
+        status = RITZ_ERR_FILE;
+    }
+    return status == RITZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,96 @@
+/*
+ * Run records: the lines of --record, as charts need them. A line of
+ * ritz-verify has the errors of a file; what that file cost is in the lines of
+ * ritz-basis and ritz-reduce that made it, and is found by the files' names.
+ */
+#ifndef RITZ_TOOLS_CLI_RECORDS_H
+#define RITZ_TOOLS_CLI_RECORDS_H
+
+#include <ritz/status.h>
+#include <ritz/text.h>
+
+#include <jansson.h>
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* One line. Texts and values are borrowed from its JSON. */
+typedef struct record {
+    const char *file;
+    int64_t line;
+    json_t *json;
+    const char *tool, *method, *subject; /* "" where there is none */
+    int64_t order;                       /* -1: none */
+    json_t *errors, *tolerance;          /* NULL: none */
+    double cpu;  /* s, to make basis and reduction; NaN: not known */
+    double cost; /* s of processor time for one second simulated; NaN */
+    bool feasible, chosen, runner_up;
+    bool incomplete; /* modes of the band are missing: errors are of the rest */
+} record;
+
+typedef struct records {
+    int64_t count;
+    record *item;
+} records;
+
+/**
+ * Read lines behind those that are there. Empty lines are passed over.
+ *
+ * @param[in] path  kept: it must outlive the records
+ * @return RITZ_ERR_FORMAT naming the line that is no record
+ */
+ritz_status records_read(const char *path, records *all);
+
+/** Whether a file can be one of records: its first letter is a '{'. */
+bool records_is(const char *path);
+
+/**
+ * Costs of what ritz-verify measured, from the lines that made it.
+ */
+void records_join(records *all);
+
+/**
+ * Those that a chart can show: with a method, an order and errors, of one
+ * subject.
+ *
+ * @param[in]  subject  the only one to be taken; NULL: there must be one alone
+ * @param[out] out      borrows from @p all; free its item alone
+ */
+ritz_status records_select(const records *all, const char *subject,
+                           records *out);
+
+/* An error measure as it is drawn, less being better. */
+typedef struct measure {
+    char name[RITZ_NAME_SIZE];
+    char title[RITZ_NAME_SIZE];
+    double tolerance; /* NaN: none */
+} measure;
+
+/** A value of errors, estimates or the like; NaN if there is none. */
+double record_value(const json_t *values, const char *name);
+
+/** An error as it is drawn: of MAC, what it lacks of one. */
+double record_error(const record *r, const char *name);
+
+/**
+ * Measures that can be drawn: those with a tolerance first, then relative
+ * errors by importance.
+ */
+ritz_status records_measures(const records *all, int64_t *count, measure **out);
+
+/* Errors below are rounding of the solvers, and as good as none. */
+#define RECORDS_ROUNDING 1e-9
+
+/** Whether any error of that measure is more than rounding. */
+bool records_matter(const records *all, const measure *m);
+
+/** Whether every record with errors knows what simulating it costs. */
+bool records_cost(const records *all);
+
+/** Methods in order of their names, and of each record which it is. */
+ritz_status records_methods(const records *all, int64_t *count,
+                            const char ***out, int64_t **which);
+
+void records_free(records *all);
+
+#endif

@@ -1,0 +1,207 @@
+#include "print/loops.h"
+
+#include "print/responses.h"
+
+#include <ritz/probe.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void loops_check(const cli_program *program, const loops_wish *asked)
+{
+    static const char *const signs[] = {"negative", "positive"};
+
+    if (!asked->controller && (asked->connect.count > 0 || asked->feedback ||
+                               asked->states || asked->force))
+        cli_refuse(program, "--connect, --feedback, --closed-loop and --force "
+                            "say how a loop is closed: give its --controller");
+    if (asked->feedback && strcmp(asked->feedback, signs[0]) != 0 &&
+        strcmp(asked->feedback, signs[1]) != 0)
+        cli_refuse_name(program, "no feedback", asked->feedback, 2, signs);
+}
+
+static ritz_ends ends_of_io(const ritz_io *io)
+{
+    return (ritz_ends){io->num_inputs, io->num_outputs,
+                       (const char(*)[RITZ_NAME_SIZE])io->input,
+                       (const char(*)[RITZ_NAME_SIZE])io->output};
+}
+
+static ritz_ends ends_of(const model *m)
+{
+    if (m->kind == MODEL_STATES)
+        return (ritz_ends){m->states.num_inputs, m->states.num_outputs,
+                           (const char(*)[RITZ_NAME_SIZE])m->states.input,
+                           (const char(*)[RITZ_NAME_SIZE])m->states.output};
+    return ends_of_io(m->kind == MODEL_COMPONENT ? &m->component.io
+                                                 : model_look(m).matrices.io);
+}
+
+ritz_status loops_read(cli_run *run, const loops_wish *asked, loop_run *out)
+{
+    return asked->controller ? model_read(run, asked->controller, MODEL_STATES,
+                                          &out->controller)
+                             : RITZ_OK;
+}
+
+static ritz_status join(cli_run *run, const loops_wish *asked, const model *m,
+                        loop_run *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_ends plant = ends_of(m), inner;
+
+    inner = ends_of(&out->controller);
+    RITZ_TRY_IN(asked->controller,
+                ritz_loop_match(&plant, &inner, asked->connect.count,
+                                asked->connect.text, &out->loop));
+    out->loop.positive =
+        asked->feedback && strcmp(asked->feedback, "positive") == 0;
+    cli_say(run, "loop with '%s', %s feedback:", asked->controller,
+            out->loop.positive ? "positive" : "negative");
+    for (int64_t k = 0; k < out->loop.num_measured; k++)
+        cli_say(run, "  %s -> controller %s",
+                plant.output[out->loop.measured[k]], inner.input[k]);
+    for (int64_t k = 0; k < out->loop.num_driven; k++)
+        cli_say(run, "  controller %s -> %s", inner.output[k],
+                plant.input[out->loop.driven[k]]);
+done:
+    return status;
+}
+
+/* A response of an unstable loop is the response of nothing. */
+static ritz_status judge(cli_run *run, const ritz_state_space *closed,
+                         bool force)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probe probe = {0};
+    char text[2 * RITZ_NAME_SIZE];
+    const char *verdict = NULL;
+
+    RITZ_TRY(ritz_probe_states(closed, &probe));
+    ritz_probe_print(&probe, text);
+    verdict = ritz_stability_name(probe.verdict);
+    cli_report_text(run, "stability", verdict);
+    cli_say(run, "the loop is %s: %s", verdict, text);
+    RITZ_FAIL_IF(probe.verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
+                 "the loop is unstable, %s: it has no steady response; compute "
+                 "it all the same with --force",
+                 text);
+    if (probe.verdict == RITZ_UNSTABLE)
+        cli_warn(run,
+                 "the loop is unstable, %s: this is the response of nothing",
+                 text);
+done:
+    return status;
+}
+
+/* Poles of the closed loop, if its plant has states. */
+static ritz_status find_poles(cli_run *run, const loops_wish *asked,
+                              const model *m, const ritz_damping *damping,
+                              const loop_run *loop, int64_t *count,
+                              double _Complex **pole)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space made = {0}, closed = {0};
+    const ritz_state_space *plant = NULL;
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY(responses_states(m, damping, &made, &plant));
+    RITZ_FAIL_IF(!plant && asked->states, RITZ_ERR_ARGUMENT,
+                 "--closed-loop: the plant is too large for states, or has "
+                 "structural damping: reduce it");
+    if (!plant) {
+        cli_warn(run, "whether the loop is stable is not known: the plant is "
+                      "too large for that, or has structural damping; reduce "
+                      "it");
+        cli_report_text(run, "stability", "unknown");
+        goto done;
+    }
+    RITZ_TRY(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
+                              &closed));
+    RITZ_TRY(judge(run, &closed, asked->force));
+    RITZ_TRY(ritz_state_space_poles(&closed, count, pole));
+    if (asked->states) {
+        stamp = cli_stamp(run);
+        RITZ_TRY(
+            ritz_container_write_state_space(asked->states, &closed, &stamp));
+        cli_say(run, "%s: the closed loop, %lld states", asked->states,
+                (long long)closed.A.nrow);
+    }
+done:
+    ritz_state_space_free(&made);
+    ritz_state_space_free(&closed);
+    return status;
+}
+
+ritz_status loops_close(cli_run *run, const loops_wish *asked, const model *m,
+                        const ritz_damping *damping, ritz_responder *plant,
+                        const double range_hz[2], loop_run *out)
+{
+    ritz_status status = RITZ_OK;
+    double _Complex *pole = NULL;
+    int64_t count = 0;
+    ritz_response_request request = {.from_hz = range_hz[0],
+                                     .to_hz = range_hz[1]};
+
+    if (!asked->controller)
+        return RITZ_OK;
+    RITZ_TRY(join(run, asked, m, out));
+    RITZ_TRY(find_poles(run, asked, m, damping, out, &count, &pole));
+    request.states = &out->controller.states;
+    RITZ_TRY_IN(asked->controller,
+                ritz_responder_new(ritz_response_engine_find("states"),
+                                   &request, &out->inner));
+    RITZ_TRY(ritz_loop_responder(&out->loop, plant, out->inner, count, pole,
+                                 &out->closed));
+done:
+    free(pole);
+    return status;
+}
+
+static void say(cli_run *run, json_t *keys, const char *key, const char *text,
+                double value, double hertz)
+{
+    json_t *item = json_object();
+
+    json_object_set_new(item, "value", cli_real(value));
+    json_object_set_new(item, "at_hz", cli_real(hertz));
+    json_object_set_new(keys, key, item);
+    if (!isnan(value))
+        cli_say(run, "  %-39s %14.6g %14.7g", text, value, hertz);
+}
+
+ritz_status loops_report(cli_run *run, const loop_run *loop,
+                         ritz_responder *plant, const ritz_response *response)
+{
+    ritz_status status = RITZ_OK;
+    ritz_margins m = {0};
+    json_t *keys = NULL;
+
+    if (!loop->closed)
+        return RITZ_OK;
+    RITZ_TRY(ritz_loop_margins(&loop->loop, plant, loop->inner, response->count,
+                               response->hertz, &m));
+    keys = json_object();
+    json_object_set_new(run->report, "loop", keys);
+    cli_say(run, "loop, in this range: %38s", "at Hz");
+    say(run, keys, "gain", "largest gain of the open loop", m.gain, m.gain_hz);
+    say(run, keys, "sensitivity", "largest sensitivity |(I + F G)^-1|",
+        m.sensitivity, m.sensitivity_hz);
+    say(run, keys, "gain_up", "gain margin, a factor of", m.gain_up,
+        m.gain_up_hz);
+    say(run, keys, "gain_down", "gain margin downwards, a factor of",
+        m.gain_down, m.gain_down_hz);
+    say(run, keys, "phase", "phase margin, degrees", m.phase, m.phase_hz);
+done:
+    return status;
+}
+
+void loop_run_free(loop_run *loop)
+{
+    ritz_responder_free(&loop->closed);
+    ritz_responder_free(&loop->inner);
+    ritz_loop_free(&loop->loop);
+    model_free(&loop->controller);
+    *loop = (loop_run){0};
+}

@@ -1,0 +1,391 @@
+#include "print/rankings_make.h"
+
+#include "print/dampers.h"
+#include "print/nested.h"
+
+#include <ritz/gramians.h>
+
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What one model is ranked with. */
+typedef struct subject {
+    cli_run *run;
+    const rank_wish *asked;
+    model *m;
+    ritz_weights weights;
+    ritz_rank_choice choice; /* with the damping of the group at work */
+    char damping[RITZ_DAMPING_SIZE];
+} subject;
+
+static ritz_status request_of(const subject *s, const ritz_ranker *ranker,
+                              const ritz_configuration *at,
+                              ritz_rank_request *out)
+{
+    return at ? ritz_rank_request_of_configuration(at, &s->choice,
+                                                   ranker->needs, out)
+              : ritz_rank_request_of_reduced(&s->m->reduced, &s->choice,
+                                             ranker->needs, out);
+}
+
+static ritz_status rank_at(const subject *s, const ritz_ranker *ranker,
+                           const ritz_configuration *at, ritz_ranking *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_rank_request request = {0};
+
+    RITZ_TRY(request_of(s, ranker, at, &request));
+    RITZ_TRY(ritz_rank(ranker, &request, out));
+    snprintf(out->damping, sizeof out->damping, "%s", s->damping);
+    if (at)
+        snprintf(out->at, sizeof out->at, "%s", at->at);
+done:
+    ritz_rank_request_free(&request);
+    return at ? ritz_context(status, at->at) : status;
+}
+
+/* At one configuration: at several, each would want weights of its own. */
+static ritz_status reweigh(const subject *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_system *system = &s->m->system;
+    const ritz_configuration *at = s->m->at;
+    ritz_rank_request request = {0};
+    ritz_reweighing found = {0};
+    const rank_wish *asked = s->asked;
+
+    RITZ_FAIL_IF(!at && system->num_configurations > 1, RITZ_ERR_ARGUMENT,
+                 "weights are found at one configuration, --at says which");
+    if (!at && system->num_configurations == 1)
+        at = system->configuration;
+    RITZ_TRY(request_of(s, &ritz_ranker_modal_cost, at, &request));
+    RITZ_TRY(ritz_reweigh(&request, asked->keep, &found));
+    rankings_say_weights(s->run, &request, &found, asked->keep);
+done:
+    ritz_rank_request_free(&request);
+    ritz_reweighing_free(&found);
+    return status;
+}
+
+static void say_group(const subject *s, const ranked *group)
+{
+    const rank_wish *asked = s->asked;
+    bool several = group->all.count > 1 || asked->num_rankers > 1 ||
+                   asked->damping.count > 1;
+
+    for (int64_t k = 0; k < group->all.count; k++) {
+        const ritz_ranking *r = &group->all.item[k];
+
+        cli_say(s->run,
+                "%s%lld flexible modes of '%s'%s%s by %s [%s], damping %s",
+                k > 0 ? "\n" : "", (long long)r->count, s->run->operand[0],
+                *r->at ? " at " : "", r->at, r->by, r->reference,
+                rankings_damping(r));
+        rankings_say(s->run, r, group->all.track ? group->all.track[k] : NULL,
+                     several ? asked->top : INT64_MAX);
+    }
+    if (group->all.count > 1)
+        rankings_say_largest(s->run, group);
+    rankings_warn(s->run, group);
+}
+
+/* One ranking and one damping, at one configuration or all. */
+static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
+                              ranked *out)
+{
+    ritz_status status = RITZ_OK;
+    const model *m = s->m;
+    bool system = m->kind == MODEL_SYSTEM;
+    int64_t count = system && !m->at ? m->system.num_configurations : 1;
+    ritz_rankings *all = &out->all;
+
+    all->item = calloc((size_t)count + 1, sizeof *all->item);
+    RITZ_FAIL_IF(!all->item, RITZ_ERR_MEMORY, "no memory for rankings");
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_configuration *at = m->at    ? m->at
+                                       : system ? &m->system.configuration[k]
+                                                : NULL;
+
+        all->count++;
+        RITZ_TRY(rank_at(s, ranker, at, &all->item[k]));
+    }
+    if (s->asked->tracks)
+        RITZ_TRY(rankings_read_tracks(s->run, s->asked->tracks, all));
+    if (count > 1)
+        RITZ_TRY(ritz_rankings_largest(all, &out->largest, &out->where,
+                                       &out->track));
+done:
+    return status;
+}
+
+/* Dampers of every configuration that is ranked; what is left out is said. */
+static ritz_status prepare(subject *s)
+{
+    ritz_status status = RITZ_OK;
+    model *m = s->m;
+    const char *path = s->run->operand[0];
+    ritz_configuration *chosen = m->at;
+    bool all = m->kind == MODEL_SYSTEM && !chosen;
+    int64_t count = all ? m->system.num_configurations : 1;
+    bool structural = false;
+
+    for (int64_t k = 0; k < count; k++) {
+        if (all)
+            m->at = &m->system.configuration[k];
+        RITZ_TRY_IN(path, dampers_install(m, NULL));
+        structural = structural || model_look(m).matrices.K4->val;
+    }
+    if (structural)
+        cli_warn(s->run,
+                 "the structural damping of '%s' is left out of its ranking",
+                 path);
+done:
+    m->at = chosen;
+    return status;
+}
+
+static ritz_status set_damping(subject *s, const char *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *own = s->m->kind == MODEL_SYSTEM ? s->m->system.damping
+                                                 : s->m->reduced.damping;
+
+    RITZ_TRY_IN(asked ? "--damping" : "damping of the model",
+                ritz_damping_parse(asked ? asked : own, &s->choice.damping));
+    ritz_damping_print(&s->choice.damping, s->damping);
+done:
+    return status;
+}
+
+static ritz_status make_groups(subject *s, rank_result *out)
+{
+    ritz_status status = RITZ_OK;
+    const rank_wish *asked = s->asked;
+    int64_t dampings = asked->damping.count > 0 ? asked->damping.count : 1;
+
+    out->group =
+        calloc((size_t)(asked->num_rankers * dampings) + 1, sizeof *out->group);
+    RITZ_FAIL_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
+    for (int64_t d = 0; d < dampings; d++) {
+        RITZ_TRY(set_damping(
+            s, asked->damping.count > 0 ? asked->damping.text[d] : NULL));
+        for (int64_t r = 0; r < asked->num_rankers; r++) {
+            ranked *group = &out->group[out->count++];
+
+            RITZ_TRY_IN(s->run->operand[0],
+                        make_group(s, asked->ranker[r], group));
+            if (out->count > 1)
+                cli_say(s->run, "%s", "");
+            say_group(s, group);
+        }
+    }
+    if (asked->keep > 0)
+        RITZ_TRY_IN(s->run->operand[0], reweigh(s));
+done:
+    return status;
+}
+
+/* Keys of the report: those of the first group, and all others in a list. */
+static void report_groups(cli_run *run, const rank_result *result)
+{
+    const ranked *first = result->group;
+    json_t *head = rankings_json(ranked_whole(first), ranked_track(first));
+    json_t *list = json_array();
+    const char *key = NULL;
+    json_t *value = NULL;
+
+    json_object_foreach(head, key,
+                        value) if (!json_object_get(run->report, key))
+        json_object_set(run->report, key, value);
+    json_decref(head);
+    json_object_set_new(run->report, "rankings", list);
+    for (int64_t g = 0; g < result->count; g++) {
+        const ritz_rankings *all = &result->group[g].all;
+
+        for (int64_t k = 0; k < all->count; k++)
+            json_array_append_new(
+                list, rankings_json(&all->item[k],
+                                    all->track ? all->track[k] : NULL));
+    }
+    if (first->all.count > 1) {
+        json_t *where = json_array();
+
+        for (int64_t k = 0; k < first->largest.count; k++)
+            json_array_append_new(
+                where, cli_string(first->all.item[first->where[k]].at));
+        json_object_set_new(run->report, "where", where);
+    }
+}
+
+static ritz_status rank_modes(cli_run *run, const rank_wish *asked, model *m,
+                              rank_result *out)
+{
+    ritz_status status = RITZ_OK;
+    subject s = {.run = run, .asked = asked, .m = m};
+    const double *band = asked->band_hz;
+
+    RITZ_FAIL_IF(asked->choice.given, RITZ_ERR_ARGUMENT,
+                 "'%s' is small: its Gramians are in closed form, an engine is "
+                 "chosen for components",
+                 run->operand[0]);
+    if (asked->at)
+        RITZ_TRY(model_at(m, run->operand[0], asked->at));
+    if (m->kind == MODEL_SYSTEM && !(band[1] > 0.0))
+        band = m->system.band_hz;
+    memcpy(s.choice.band_hz, band, sizeof s.choice.band_hz);
+    s.choice.weights = &s.weights;
+    RITZ_TRY(ritz_weights_parse(asked->input_weights, asked->output_weights,
+                                &s.weights));
+    RITZ_TRY(prepare(&s));
+    RITZ_TRY(make_groups(&s, out));
+    report_groups(run, out);
+done:
+    ritz_weights_free(&s.weights);
+    return status;
+}
+
+/* Exact values of what is not in modes. */
+static ritz_status make_gramians(cli_run *run, const rank_wish *asked,
+                                 const model *m, ritz_gramians *gramians)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramians_request request = {.component = &m->component,
+                                     .engine = asked->choice.engine,
+                                     .among_hz = asked->choice.among_hz};
+
+    if (m->kind == MODEL_STATES) {
+        RITZ_FAIL_IF(asked->damping.count > 0 || asked->choice.given,
+                     RITZ_ERR_ARGUMENT,
+                     "a state space has its damping, and one engine for its "
+                     "Gramians");
+        return ritz_gramians_of_space(&m->states, gramians);
+    }
+    RITZ_TRY(model_damping(
+        m, asked->damping.count > 0 ? asked->damping.text[0] : NULL,
+        &request.damping));
+    RITZ_TRY(ritz_gramians_of_component(&request, gramians));
+done:
+    return ritz_context(status, run->operand[0]);
+}
+
+static ritz_status check_values(const rank_wish *asked, const model *m)
+{
+    const char *what =
+        m->kind == MODEL_STATES ? "a state space" : "a component";
+    ritz_status status = RITZ_OK;
+
+    RITZ_FAIL_IF(asked->num_rankers > 1 ||
+                     asked->ranker[0] != &ritz_ranker_hankel,
+                 RITZ_ERR_ARGUMENT,
+                 "%s is not in modes: it has Hankel values, and nothing else "
+                 "ranks it; reduce it to modes first",
+                 what);
+    RITZ_FAIL_IF(asked->at || asked->tracks || asked->keep > 0 ||
+                     asked->chart || asked->damping.count > 1 ||
+                     asked->input_weights || asked->output_weights,
+                 RITZ_ERR_ARGUMENT,
+                 "%s is not in modes: --at, --tracks, --reweigh, --chart, "
+                 "weights and several dampings go with those",
+                 what);
+done:
+    return status;
+}
+
+static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
+                               rank_result *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramians gramians = {0};
+    ritz_ranking *r = NULL;
+
+    RITZ_TRY_IN(run->operand[0], check_values(asked, m));
+    RITZ_TRY(make_gramians(run, asked, m, &gramians));
+    out->group = calloc(1, sizeof *out->group);
+    RITZ_FAIL_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
+    out->count = 1;
+    out->group->all.item = r = calloc(1, sizeof *r);
+    RITZ_FAIL_IF(!r, RITZ_ERR_MEMORY, "no memory for rankings");
+    out->group->all.count = 1;
+    snprintf(r->by, sizeof r->by, "%s", ritz_ranker_hankel.name);
+    snprintf(r->reference, sizeof r->reference, "%s",
+             ritz_ranker_hankel.reference);
+    snprintf(r->damping, sizeof r->damping, "%s",
+             m->kind == MODEL_STATES ? m->states.damping : gramians.damping);
+    r->total = nan("");
+    r->coupling = nan("");
+    RITZ_TRY(ritz_gramians_hankel(&gramians, &r->num_system, &r->system_value));
+    cli_say(run, "%lld Hankel values of '%s', %s, damping %s",
+            (long long)r->num_system, run->operand[0], gramians.engine,
+            rankings_damping(r));
+    if (gramians.T.ncol > 0)
+        cli_say(run,
+                "%lld states that are not damped, or grow, have none and stand "
+                "apart",
+                (long long)gramians.T.ncol);
+    if (gramians.residual[0] > 0.0 || gramians.residual[1] > 0.0)
+        cli_say(run, "residuals of both Gramians %.1e and %.1e",
+                gramians.residual[0], gramians.residual[1]);
+    rankings_say_values(run, r, 40);
+    report_groups(run, out);
+    cli_report_text(run, "engine", gramians.engine);
+done:
+    ritz_gramians_free(&gramians);
+    return status;
+}
+
+ritz_status rank_model(cli_run *run, const rank_wish *asked, rank_result *out)
+{
+    ritz_status status = RITZ_OK;
+    model m = {0};
+
+    RITZ_TRY(model_read(
+        run, run->operand[0],
+        MODEL_REDUCED | MODEL_SYSTEM | MODEL_COMPONENT | MODEL_STATES, &m));
+    RITZ_TRY(nested_take(run->operand[0], asked->order, &m));
+    RITZ_TRY(m.kind == MODEL_REDUCED || m.kind == MODEL_SYSTEM
+                 ? rank_modes(run, asked, &m, out)
+                 : rank_values(run, asked, &m, out));
+done:
+    model_free(&m);
+    return status;
+}
+
+ritz_status rank_read(cli_run *run, rank_result *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = run->num_operands;
+    model m = {0};
+
+    out->group = calloc((size_t)count, sizeof *out->group);
+    out->file = calloc((size_t)count, sizeof *out->file);
+    RITZ_FAIL_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
+                 "no memory for rankings");
+    for (int64_t k = 0; k < count; k++) {
+        RITZ_TRY(model_read(run, run->operand[k], MODEL_RANKING, &m));
+        RITZ_FAIL_IF(m.rankings.count == 0, RITZ_ERR_FORMAT,
+                     "'%s' holds no ranking", run->operand[k]);
+        out->group[k].all = m.rankings;
+        m.rankings = (ritz_rankings){0};
+        snprintf(out->file[k], RITZ_NAME_SIZE, "%.63s", run->operand[k]);
+        out->count++;
+    }
+    RITZ_FAIL_IF(count == 1 && out->group->all.count == 1, RITZ_ERR_ARGUMENT,
+                 "'%s' holds one ranking: name another to compare it with",
+                 run->operand[0]);
+    report_groups(run, out);
+done:
+    model_free(&m);
+    return status;
+}
+
+void rank_result_free(rank_result *result)
+{
+    for (int64_t k = 0; k < result->count; k++)
+        ranked_free(&result->group[k]);
+    free(result->group);
+    free(result->file);
+    *result = (rank_result){0};
+}

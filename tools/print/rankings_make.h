@@ -1,0 +1,49 @@
+/* What ritz-rank is asked, and what it makes of it. */
+#ifndef RITZ_TOOLS_PRINT_RANKINGS_MAKE_H
+#define RITZ_TOOLS_PRINT_RANKINGS_MAKE_H
+
+#include "print/rankings.h"
+
+#include <ritz/choice.h>
+
+enum { RANK_MOST = 16 };
+
+typedef struct rank_wish {
+    int64_t num_rankers;
+    const ritz_ranker *ranker[RANK_MOST];
+    cli_list damping;
+    const char *at, *input_weights, *output_weights, *tracks, *table, *chart;
+    double band_hz[2]; /* [0, 0]: the model's */
+    int64_t keep, top; /* keep 0: weights stay */
+    int64_t order;     /* columns of a nested component; 0: all */
+    bool compare;
+    ritz_choice choice; /* of a component's Gramians */
+} rank_wish;
+
+/* A group for each ranking and each damping, or for each file. */
+typedef struct rank_result {
+    int64_t count;
+    ranked *group;
+    char (*file)[RITZ_NAME_SIZE]; /* of groups that were read; else NULL */
+} rank_result;
+
+/** Rank what the operand holds, and say so. */
+ritz_status rank_model(cli_run *run, const rank_wish *asked, rank_result *out);
+
+/** Read rankings of --compare. */
+ritz_status rank_read(cli_run *run, rank_result *out);
+
+/**
+ * What can be compared: of several groups the whole of each, of one its
+ * configurations in a row; with @p all every ranking there is.
+ */
+ritz_status rank_contest(const rank_result *result, bool all, contest *out);
+void rank_contest_free(contest *all);
+
+/** All rankings in one container. */
+ritz_status rank_write(const char *path, const rank_result *result,
+                       const ritz_stamp *stamp);
+
+void rank_result_free(rank_result *result);
+
+#endif

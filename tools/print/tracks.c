@@ -1,0 +1,208 @@
+#include "print/tracks.h"
+
+#include "cli/cli_table.h"
+
+#include <math.h>
+#include <string.h>
+
+/* So many of each kind are said; JSON and the table have all. */
+enum { MOST_SAID = 12 };
+
+static const char *at_of(const ritz_system *system, int64_t k)
+{
+    const char *at = system->configuration[k].at;
+
+    return *at ? at : "as joined";
+}
+
+/* Frequency of a flexible mode; NaN of none. */
+static double hertz_of(const ritz_tracking *t, int64_t k, int64_t mode)
+{
+    return mode < 0 ? nan("") : t->hertz[t->first[k] + mode];
+}
+
+/* "clock=30": half way, where a mode might still be known. */
+static void name_middle(const ritz_system *system, const ritz_track_event *e,
+                        char out[RITZ_NAME_SIZE])
+{
+    enum { MOST = 1000 };
+    const ritz_configuration *a = &system->configuration[e->from];
+    const ritz_configuration *b = &system->configuration[e->to];
+    double middle[MOST];
+    int64_t count = a->num_settings < MOST ? a->num_settings : MOST;
+
+    for (int64_t k = 0; k < count; k++)
+        middle[k] = 0.5 * (a->setting[k] + b->setting[k]);
+    ritz_configuration_name(count, (const char(*)[RITZ_NAME_SIZE])system->sweep,
+                            middle, out);
+}
+
+static void say_swap(cli_run *run, const ritz_system *system,
+                     const ritz_tracking *t, const ritz_track_event *e)
+{
+    (void)system;
+    cli_say(run,
+            "    modes %lld and %lld (%.5g, %.5g Hz) change places (%.5g, %.5g "
+            "Hz), MAC %.2f and %.2f",
+            (long long)e->mode[0] + 1, (long long)e->mode[1] + 1, e->hertz,
+            hertz_of(t, e->from, e->mode[1]), hertz_of(t, e->to, e->other[0]),
+            hertz_of(t, e->to, e->other[1]), e->mac[0], e->mac[1]);
+}
+
+static void say_tie(cli_run *run, const ritz_system *system,
+                    const ritz_tracking *t, const ritz_track_event *e)
+{
+    (void)system;
+    cli_say(
+        run,
+        "    mode %lld (%.5g Hz) is nearly as like %.5g Hz (MAC %.2f) as %.5g "
+        "Hz (%.2f)",
+        (long long)e->mode[0] + 1, e->hertz, hertz_of(t, e->to, e->other[1]),
+        e->mac[1], hertz_of(t, e->to, e->other[0]), e->mac[0]);
+}
+
+static void say_avoided(cli_run *run, const ritz_system *system,
+                        const ritz_tracking *t, const ritz_track_event *e)
+{
+    (void)system;
+    cli_say(
+        run,
+        "    modes %lld and %lld (%.5g, %.5g Hz) mix as they avoid each other, "
+        "MAC %.2f and %.2f, of their plane %.2f",
+        (long long)e->mode[0] + 1, (long long)e->mode[1] + 1, e->hertz,
+        hertz_of(t, e->from, e->mode[1]), e->mac[0], e->mac[1], e->shared);
+}
+
+static void say_lost(cli_run *run, const ritz_system *system,
+                     const ritz_tracking *t, const ritz_track_event *e)
+{
+    char middle[RITZ_NAME_SIZE];
+
+    (void)t;
+    name_middle(system, e, middle);
+    cli_say(
+        run,
+        "    mode %lld (%.5g Hz) is like none there, best MAC %.2f: too far "
+        "apart, list %s",
+        (long long)e->mode[0] + 1, e->hertz, e->mac[0], middle);
+}
+
+static const struct kind {
+    const char *key;   /* in JSON */
+    const char *title; /* of its lines */
+    void (*say)(cli_run *run, const ritz_system *system, const ritz_tracking *t,
+                const ritz_track_event *e);
+} kinds[] = {
+    [RITZ_TRACK_SWAP] = {"swaps", "changes of order", say_swap},
+    [RITZ_TRACK_TIE] = {"near_ties", "near-ties", say_tie},
+    [RITZ_TRACK_AVOIDED] = {"avoided_crossings", "avoided crossings",
+                            say_avoided},
+    [RITZ_TRACK_LOST] = {"lost", "modes that are lost", say_lost},
+};
+
+enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
+
+static json_t *event_json(const ritz_system *system, const ritz_track_event *e)
+{
+    json_t *item = json_object();
+    json_t *modes = json_array();
+    json_t *others = json_array();
+    json_t *macs = json_array();
+
+    for (int k = 0; k < 2; k++) {
+        if (e->mode[k] >= 0)
+            json_array_append_new(modes, json_integer(e->mode[k] + 1));
+        if (e->other[k] < 0)
+            continue;
+        json_array_append_new(others, json_integer(e->other[k] + 1));
+        json_array_append_new(macs, cli_real(e->mac[k]));
+    }
+    json_object_set_new(item, "from", cli_string(at_of(system, e->from)));
+    json_object_set_new(item, "to", cli_string(at_of(system, e->to)));
+    json_object_set_new(item, "modes", modes);
+    json_object_set_new(item, "become", others);
+    json_object_set_new(item, "mac", macs);
+    json_object_set_new(item, "hertz", cli_real(e->hertz));
+    if (e->kind == RITZ_TRACK_LOST) {
+        char middle[RITZ_NAME_SIZE];
+
+        name_middle(system, e, middle);
+        json_object_set_new(item, "list", cli_string(middle));
+    }
+    return item;
+}
+
+static void say_kind(cli_run *run, const ritz_system *system,
+                     const ritz_tracking *t, int which, json_t *keys)
+{
+    json_t *array = json_array();
+    int64_t count = 0;
+    int64_t from = -1, to = -1;
+
+    json_object_set_new(keys, kinds[which].key, array);
+    for (int64_t k = 0; k < t->num_events; k++) {
+        const ritz_track_event *e = &t->event[k];
+
+        if ((int)e->kind != which)
+            continue;
+        json_array_append_new(array, event_json(system, e));
+        if (++count > MOST_SAID)
+            continue;
+        if (e->from != from || e->to != to)
+            cli_say(run, "  %s to %s, %s:", at_of(system, e->from),
+                    at_of(system, e->to), kinds[which].title);
+        from = e->from;
+        to = e->to;
+        kinds[which].say(run, system, t, e);
+    }
+    if (count > MOST_SAID)
+        cli_say(run, "  and %lld more %s", (long long)(count - MOST_SAID),
+                kinds[which].title);
+}
+
+/* Track, configuration, mode, Hz, MAC with the mode it goes on from. */
+static ritz_status write_table(const char *path, const ritz_system *system,
+                               const ritz_tracking *t)
+{
+    ritz_status status = RITZ_OK;
+    cli_table table = {0};
+
+    RITZ_TRY(cli_table_new(&table));
+    fprintf(table.file, "track\tconfiguration\tmode\thertz\tmac\n");
+    for (int64_t k = 0; k < t->num_configurations; k++)
+        for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
+            fprintf(table.file, "%lld\t%s\t%lld\t%.12g\t%.6g\n",
+                    (long long)t->track[i] + 1, at_of(system, k),
+                    (long long)(i - t->first[k]) + 1, t->hertz[i], t->mac[i]);
+    RITZ_TRY(cli_table_save(&table, path));
+done:
+    cli_table_free(&table);
+    return status;
+}
+
+ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
+                          const ritz_system *system, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_tracking t = {0};
+    json_t *keys = json_object();
+
+    json_object_set_new(run->report, "tracking", keys);
+    RITZ_TRY_IN("tracks", ritz_track(stage, system, system->band_hz[1], &t));
+    json_object_set_new(keys, "tracks", json_integer(t.num_tracks));
+    if (path)
+        RITZ_TRY(write_table(path, system, &t));
+    if (t.num_configurations > 1)
+        cli_say(run,
+                "\nFlexible modes over %lld configurations: %lld tracks by "
+                "MAC%s%s",
+                (long long)t.num_configurations, (long long)t.num_tracks,
+                t.num_events == 0 ? "; none changes places, ties or is lost"
+                                  : "; events",
+                system->band_hz[1] > 0.0 ? " in the band" : "");
+    for (int k = 0; k < NUM_KINDS; k++)
+        say_kind(run, system, &t, k, keys);
+done:
+    ritz_tracking_free(&t);
+    return status;
+}
