@@ -39,17 +39,16 @@ bool ritz_bulk_selects(const ritz_deck *deck, int64_t which, int64_t set)
 /* Members of selected combinations are selected too; these are not nested. */
 static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
 {
-    ritz_status status = RITZ_OK;
     ritz_deck *deck = &all->deck;
     int64_t given = deck->num_selected[which];
     int64_t *list = NULL;
     int64_t count = given;
 
     if (given == 0)
-        goto done;
+        return RITZ_OK;
     qsort(deck->selected[which], (size_t)given, sizeof *deck->selected[which],
           ritz_bulk_compare_ids);
-    RITZ_NEW(list, given + all->num_sums);
+    RITZ_CHECK_NEW(list, given + all->num_sums);
     memcpy(list, deck->selected[which], (size_t)given * sizeof *list);
     for (int64_t k = 0; k < all->num_sums; k++)
         if (all->sum[k].which == which &&
@@ -59,8 +58,7 @@ static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
     free(deck->selected[which]);
     deck->selected[which] = list;
     deck->num_selected[which] = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What is said of an SPC with a motion, once matrices are to obey it. */
@@ -79,7 +77,6 @@ static ritz_status note_imposed(const ritz_deck *deck,
 /* Keep the SPC cards that act, and add what GRID cards hold fixed. */
 static ritz_status settle_fixed(ritz_bulk_cards *all, ritz_bulk *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_ranges *spc = &all->ranges[RITZ_BULK_SPC];
     int64_t kept = 0;
 
@@ -87,7 +84,7 @@ static ritz_status settle_fixed(ritz_bulk_cards *all, ritz_bulk *out)
         if (!ritz_bulk_selects(&all->deck, RITZ_SELECT_SPC, spc->range[k].set))
             continue;
         if (spc->range[k].imposed && !out->imposed)
-            RITZ_TRY(note_imposed(&all->deck, &spc->range[k], out));
+            RITZ_CHECK(note_imposed(&all->deck, &spc->range[k], out));
         spc->range[kept++] = spc->range[k];
     }
     spc->count = kept;
@@ -98,17 +95,14 @@ static ritz_status settle_fixed(ritz_bulk_cards *all, ritz_bulk *out)
 
         if (grid->spc == 0 || !ritz_bulk_mask(grid->spc, &range.mask))
             continue;
-        RITZ_TRY(ritz_bulk_add_range(spc, range));
+        RITZ_CHECK(ritz_bulk_add_range(spc, range));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status name_constraints(const ritz_bulk_cards *all, ritz_bulk *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(out->constraint, all->num_constraints);
+    RITZ_CHECK_NEW(out->constraint, all->num_constraints);
     for (int64_t k = 0; k < all->num_constraints; k++) {
         const ritz_bulk_constraint *one = &all->constraint[k];
 
@@ -118,8 +112,7 @@ static ritz_status name_constraints(const ritz_bulk_cards *all, ritz_bulk *out)
         snprintf(out->constraint[out->num_constraints++],
                  sizeof *out->constraint, "%s %" PRId64, one->name, one->id);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void free_cards(ritz_bulk_cards *all)
@@ -137,26 +130,22 @@ static void free_cards(ritz_bulk_cards *all)
 /* Put together what all cards say. */
 static ritz_status build(ritz_bulk_cards *all, ritz_bulk *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_bulk_settle_grids(all));
-    RITZ_TRY(ritz_bulk_settle_frames(all));
-    RITZ_TRY(ritz_bulk_resolve_frames(all));
-    RITZ_TRY(ritz_bulk_place_grids(all, &out->grids));
-    RITZ_TRY(ritz_bulk_list_points(all, out));
-    RITZ_TRY(complete_selection(all, RITZ_SELECT_SPC));
-    RITZ_TRY(complete_selection(all, RITZ_SELECT_MPC));
-    RITZ_TRY(settle_fixed(all, out));
-    RITZ_TRY(ritz_bulk_list_set(all, &all->ranges[RITZ_BULK_SPC], out,
-                                &out->num_fixed, &out->fixed));
+    RITZ_CHECK(ritz_bulk_settle_grids(all));
+    RITZ_CHECK(ritz_bulk_settle_frames(all));
+    RITZ_CHECK(ritz_bulk_resolve_frames(all));
+    RITZ_CHECK(ritz_bulk_place_grids(all, &out->grids));
+    RITZ_CHECK(ritz_bulk_list_points(all, out));
+    RITZ_CHECK(complete_selection(all, RITZ_SELECT_SPC));
+    RITZ_CHECK(complete_selection(all, RITZ_SELECT_MPC));
+    RITZ_CHECK(settle_fixed(all, out));
+    RITZ_CHECK(ritz_bulk_list_set(all, &all->ranges[RITZ_BULK_SPC], out,
+                                  &out->num_fixed, &out->fixed));
     for (int k = 0; k < 3; k++)
-        RITZ_TRY(ritz_bulk_list_set(all, &all->ranges[k], out,
-                                    &out->num_sets[k], &out->set[k]));
-    RITZ_TRY(name_constraints(all, out));
-    RITZ_TRY(ritz_bulk_list_equations(all, out));
-    RITZ_TRY(ritz_bulk_list_elements(all, out));
-done:
-    return status;
+        RITZ_CHECK(ritz_bulk_list_set(all, &all->ranges[k], out,
+                                      &out->num_sets[k], &out->set[k]));
+    RITZ_CHECK(name_constraints(all, out));
+    RITZ_CHECK(ritz_bulk_list_equations(all, out));
+    return ritz_bulk_list_elements(all, out);
 }
 
 ritz_status ritz_bulk_parse(const char *path, const char *text,

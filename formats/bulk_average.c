@@ -30,15 +30,14 @@ typedef struct average_card {
 static ritz_status take_group(const ritz_bulk_tying *it, int64_t *k,
                               average_card *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_tie tie = {0};
 
-    RITZ_TRY(ritz_card_real(it->card, *k, 0.0, &tie.weight));
+    RITZ_CHECK(ritz_card_real(it->card, *k, 0.0, &tie.weight));
     if (tie.weight < 0.0)
-        RITZ_TRY(ritz_card_refuse(it->card, *k, "a weight from zero on"));
-    RITZ_TRY(ritz_bulk_tying_mask(it, *k + 1, &tie.mask));
+        RITZ_CHECK(ritz_card_refuse(it->card, *k, "a weight from zero on"));
+    RITZ_CHECK(ritz_bulk_tying_mask(it, *k + 1, &tie.mask));
     if (tie.mask == 0)
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_card_refuse(it->card, *k + 1, "a list of directions 1 to 6"));
     for (*k += 2; *k < it->card->count; (*k)++) {
         const char *text = ritz_card_text(it->card, *k);
@@ -48,39 +47,37 @@ static ritz_status take_group(const ritz_bulk_tying *it, int64_t *k,
         if (ritz_bulk_tying_is_real(it, *k) || ritz_bulk_is_word(text, "UM") ||
             ritz_bulk_is_word(text, "ALPHA"))
             break;
-        RITZ_TRY(ritz_bulk_tying_grid(it, *k, &tie.grid));
+        RITZ_CHECK(ritz_bulk_tying_grid(it, *k, &tie.grid));
         if (tie.weight > 0.0)
-            RITZ_TRY(ritz_ties_add(&out->over, tie));
+            RITZ_CHECK(ritz_ties_add(&out->over, tie));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_card(const ritz_bulk_tying *it, average_card *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t k = 4;
 
-    RITZ_TRY(ritz_bulk_tying_grid(it, 2, &out->grid));
-    RITZ_TRY(ritz_bulk_tying_mask(it, 3, &out->mask));
+    RITZ_CHECK(ritz_bulk_tying_grid(it, 2, &out->grid));
+    RITZ_CHECK(ritz_bulk_tying_mask(it, 3, &out->mask));
     if (out->mask == 0)
-        RITZ_TRY(ritz_card_refuse(it->card, 3, "a list of directions 1 to 6"));
+        RITZ_CHECK(
+            ritz_card_refuse(it->card, 3, "a list of directions 1 to 6"));
     while (k < it->card->count) {
         const char *text = ritz_card_text(it->card, k);
 
         if (ritz_bulk_is_word(text, "ALPHA"))
             break;
         if (ritz_bulk_is_word(text, "UM")) {
-            RITZ_TRY(ritz_bulk_tying_pairs(it, k + 1, &out->moved));
+            RITZ_CHECK(ritz_bulk_tying_pairs(it, k + 1, &out->moved));
             break;
         }
         if (*text)
-            RITZ_TRY(take_group(it, &k, out));
+            RITZ_CHECK(take_group(it, &k, out));
         else
             k++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* T A, one row for each direction of REFC. */
@@ -88,7 +85,6 @@ static ritz_status rows_of(const ritz_bulk_tying *it, const average_card *card,
                            const ritz_average *average, ritz_dof *ref,
                            ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &it->built->grids;
     int64_t at = 0;
 
@@ -103,7 +99,7 @@ static ritz_status rows_of(const ritz_bulk_tying *it, const average_card *card,
         ritz_tie_row(grids, card->grid, c, grids->position + 3 * card->grid,
                      row);
         if (!ritz_average_tells(average, row))
-            RITZ_TRY(ritz_bulk_tying_refuse(
+            RITZ_CHECK(ritz_bulk_tying_refuse(
                 it,
                 "cannot tell '%s' from the dofs that it averages: do they "
                 "lie on a line?",
@@ -114,8 +110,7 @@ static ritz_status rows_of(const ritz_bulk_tying *it, const average_card *card,
                     row[i] * ritz_dense_col(&average->A, j)[i];
         at++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* One equation, without the shares that are rounding. */
@@ -123,20 +118,18 @@ static ritz_status put_row(const ritz_dense *A, int64_t row, ritz_dof dependent,
                            const ritz_dof *dof, double length,
                            ritz_equations *out)
 {
-    ritz_status status = RITZ_OK;
     double most = 0.0;
 
     for (int64_t j = 0; j < A->ncol; j++)
         most = fmax(most, fabs(ritz_dense_col(A, j)[row]) /
                               ritz_tie_scale(dof[j], length));
-    RITZ_TRY(ritz_equations_begin(out, dependent));
+    RITZ_CHECK(ritz_equations_begin(out, dependent));
     for (int64_t j = 0; j < A->ncol; j++)
         if (fabs(ritz_dense_col(A, j)[row]) >
             RITZ_TIE_ROUNDING * most * ritz_tie_scale(dof[j], length))
-            RITZ_TRY(
+            RITZ_CHECK(
                 ritz_equations_add(out, dof[j], ritz_dense_col(A, j)[row]));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- UM ---------------------------------------------------------------- */
@@ -146,11 +139,10 @@ static ritz_status join(const ritz_dense *TA, const ritz_dof *ref,
                         const ritz_average *average, double length,
                         ritz_dof **dof, ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = TA->nrow;
 
-    RITZ_NEW(*dof, m + TA->ncol);
-    RITZ_TRY(ritz_dense_new(m, m + TA->ncol, E));
+    RITZ_CHECK_NEW(*dof, m + TA->ncol);
+    RITZ_CHECK(ritz_dense_new(m, m + TA->ncol, E));
     for (int64_t j = 0; j < m + TA->ncol; j++) {
         double *col = ritz_dense_col(E, j);
 
@@ -161,8 +153,7 @@ static ritz_status join(const ritz_dense *TA, const ritz_dof *ref,
                 ritz_tie_scale(ref[i], length) /
                 ritz_tie_scale((*dof)[j], length);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of E that UM names, in front, the others behind them. */
@@ -170,7 +161,6 @@ static ritz_status move_front(const ritz_bulk_tying *it,
                               const average_card *card, ritz_dof *dof,
                               ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
     int64_t at = 0;
     char name[RITZ_DOF_NAME_SIZE];
 
@@ -184,7 +174,7 @@ static ritz_status move_front(const ritz_bulk_tying *it,
             while (j < E->ncol && ritz_dof_compare(&dof[j], &wanted) != 0)
                 j++;
             if (j == E->ncol)
-                RITZ_TRY(ritz_bulk_tying_refuse(
+                RITZ_CHECK(ritz_bulk_tying_refuse(
                     it, "names '%s' by UM, which it does not hold, or twice",
                     ritz_dof_name(wanted, name)));
             dof[j] = dof[at];
@@ -197,14 +187,12 @@ static ritz_status move_front(const ritz_bulk_tying *it,
             }
             at++;
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* E := -E_m^-1 E of the columns behind the first m. */
 static ritz_status solve_moved(const ritz_bulk_tying *it, ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
     lapack_int m = (lapack_int)E->nrow;
     lapack_int rest = (lapack_int)E->ncol - m;
     lapack_int pivot[6];
@@ -214,14 +202,13 @@ static ritz_status solve_moved(const ritz_bulk_tying *it, ritz_dense *E)
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, m, m, E->val, m, pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', m, E->val, m, size, &rcond);
     if (!(rcond > 1.5e-8))
-        RITZ_TRY(ritz_bulk_tying_refuse(
+        RITZ_CHECK(ritz_bulk_tying_refuse(
             it, "cannot be solved for the dofs that UM names"));
     if (rest > 0)
-        RITZ_FAIL_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', m, rest, E->val, m,
-                                    pivot, ritz_dense_col(E, m), m) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
-done:
-    return status;
+        RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', m, rest, E->val, m,
+                                      pivot, ritz_dense_col(E, m), m) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the constraints");
+    return RITZ_OK;
 }
 
 static ritz_status put_moved(const ritz_bulk_tying *it,

@@ -139,7 +139,6 @@ ritz_status ritz_bulk_orient(const ritz_bulk_cards *all,
                              const double A[static 3], const double B[static 3],
                              const double C[static 3], ritz_bulk_frame *frame)
 {
-    ritz_status status = RITZ_OK;
     double *e_x = &frame->axes[0];
     double *e_y = &frame->axes[3];
     double *e_z = &frame->axes[6];
@@ -159,12 +158,11 @@ ritz_status ritz_bulk_orient(const ritz_bulk_cards *all,
     y = norm(e_y);
     /* below the root of epsilon, x would keep less than half its digits */
     if (!(z > 0.0 && y > 1.5e-8 * norm(to_C) && isfinite(z) && isfinite(y)))
-        RITZ_TRY(ritz_deck_refuse(&all->deck, frame->line,
-                                  "the three points of coordinate system "
-                                  "%" PRId64 " lie on a line",
-                                  frame->id));
+        RITZ_CHECK(ritz_deck_refuse(&all->deck, frame->line,
+                                    "the three points of coordinate system "
+                                    "%" PRId64 " lie on a line",
+                                    frame->id));
     divide(e_y, y);
     cross(e_y, e_z, e_x);
-done:
-    return status;
+    return RITZ_OK;
 }

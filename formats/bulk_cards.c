@@ -48,8 +48,6 @@ bool ritz_bulk_is_word(const char *text, const char *word)
 static ritz_status take_list(const ritz_card *card, int64_t k,
                              ritz_bulk_range range, ritz_bulk_ranges *out)
 {
-    ritz_status status = RITZ_OK;
-
     for (; k < card->count; k++) {
         if (!*ritz_card_text(card, k))
             continue;
@@ -57,22 +55,21 @@ static ritz_status take_list(const ritz_card *card, int64_t k,
         range.from = 1;
         range.to = INT64_MAX - 1;
         if (range.each) {
-            RITZ_TRY(ritz_card_id(card, k, &range.from));
+            RITZ_CHECK(ritz_card_id(card, k, &range.from));
             range.to = range.from;
         }
         if (range.each &&
             ritz_bulk_is_word(ritz_card_text(card, k + 1), "THRU")) {
             range.each = false;
             k += 2;
-            RITZ_TRY(ritz_card_id(card, k, &range.to));
+            RITZ_CHECK(ritz_card_id(card, k, &range.to));
             if (range.to < range.from)
-                RITZ_TRY(
+                RITZ_CHECK(
                     ritz_card_refuse(card, k, "at or above where THRU begins"));
         }
-        RITZ_TRY(ritz_bulk_add_range(out, range));
+        RITZ_CHECK(ritz_bulk_add_range(out, range));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_points(ritz_bulk_cards *all, const ritz_card *card,
@@ -90,104 +87,91 @@ static ritz_status take_points(ritz_bulk_cards *all, const ritz_card *card,
 static ritz_status take_directions(const ritz_card *card, int64_t k,
                                    uint8_t *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t digits = 0;
 
-    RITZ_TRY(ritz_card_whole(card, k, 0, &digits));
+    RITZ_CHECK(ritz_card_whole(card, k, 0, &digits));
     if (!ritz_bulk_mask(digits, out))
-        RITZ_TRY(ritz_card_refuse(card, k, "a list of directions 1 to 6"));
-done:
-    return status;
+        RITZ_CHECK(ritz_card_refuse(card, k, "a list of directions 1 to 6"));
+    return RITZ_OK;
 }
 
 /* SPC cards have a set id in front of what those of other sets have. */
 static ritz_status take_sid(const ritz_card *card, int32_t how, int64_t *next,
                             int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-
     *next = 0;
     if (how != RITZ_BULK_SPC)
-        goto done;
-    RITZ_TRY(ritz_card_id(card, 0, out));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_card_id(card, 0, out));
     *next = 1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* ASET: ID C, four times. SPC: SID, then G C D, twice. */
 static ritz_status take_pairs(ritz_bulk_cards *all, const ritz_card *card,
                               int32_t how)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_range range = {.line = card->entry->line, .each = true};
     int64_t width = how == RITZ_BULK_SPC ? 3 : 2;
     int64_t first = 0;
     double motion = 0.0;
 
-    RITZ_TRY(take_sid(card, how, &first, &range.set));
+    RITZ_CHECK(take_sid(card, how, &first, &range.set));
     for (int64_t k = first; k < card->count; k += width) {
         if (!*ritz_card_text(card, k) && !*ritz_card_text(card, k + 1))
             continue;
-        RITZ_TRY(ritz_card_id(card, k, &range.from));
+        RITZ_CHECK(ritz_card_id(card, k, &range.from));
         range.to = range.from;
-        RITZ_TRY(take_directions(card, k + 1, &range.mask));
+        RITZ_CHECK(take_directions(card, k + 1, &range.mask));
         if (how == RITZ_BULK_SPC)
-            RITZ_TRY(ritz_card_real(card, k + 2, 0.0, &motion));
+            RITZ_CHECK(ritz_card_real(card, k + 2, 0.0, &motion));
         range.imposed = motion != 0.0;
-        RITZ_TRY(ritz_bulk_add_range(&all->ranges[how], range));
+        RITZ_CHECK(ritz_bulk_add_range(&all->ranges[how], range));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* ASET1: C, then a list. SPC1: SID C, then a list. */
 static ritz_status take_set(ritz_bulk_cards *all, const ritz_card *card,
                             int32_t how)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_range range = {.line = card->entry->line};
     int64_t first = 0;
 
-    RITZ_TRY(take_sid(card, how, &first, &range.set));
-    RITZ_TRY(take_directions(card, first, &range.mask));
-    RITZ_TRY(take_list(card, first + 1, range, &all->ranges[how]));
-done:
-    return status;
+    RITZ_CHECK(take_sid(card, how, &first, &range.set));
+    RITZ_CHECK(take_directions(card, first, &range.mask));
+    return take_list(card, first + 1, range, &all->ranges[how]);
 }
 
 /* SPCADD, MPCADD: SID, then sets. */
 static ritz_status take_sum(ritz_bulk_cards *all, const ritz_card *card,
                             int32_t how)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_sum sum = {.which = how};
 
-    RITZ_TRY(ritz_card_id(card, 0, &sum.set));
+    RITZ_CHECK(ritz_card_id(card, 0, &sum.set));
     for (int64_t k = 1; k < card->count; k++) {
         if (!*ritz_card_text(card, k))
             continue;
-        RITZ_TRY(ritz_card_id(card, k, &sum.member));
-        RITZ_ROOM(all->sum, all->num_sums, all->sums_room);
+        RITZ_CHECK(ritz_card_id(card, k, &sum.member));
+        RITZ_CHECK_ROOM(all->sum, all->num_sums, all->sums_room);
         all->sum[all->num_sums++] = sum;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_constraint(ritz_bulk_cards *all, const ritz_card *card,
                                    int32_t how)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_constraint new = {.is_set = how,
                                 .entry = card->entry - all->deck.entry};
 
-    RITZ_TRY(ritz_card_id(card, 0, &new.id));
+    RITZ_CHECK(ritz_card_id(card, 0, &new.id));
     memcpy(new.name, card->entry->name, sizeof new.name);
-    RITZ_ROOM(all->constraint, all->num_constraints, all->constraints_room);
+    RITZ_CHECK_ROOM(all->constraint, all->num_constraints,
+                    all->constraints_room);
     all->constraint[all->num_constraints++] = new;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What each card is; sorted by name. */

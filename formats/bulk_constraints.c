@@ -23,14 +23,12 @@
 
 ritz_status ritz_bulk_keep_sentence(char **out)
 {
-    ritz_status status = RITZ_OK;
     const char *said = ritz_error_message();
     size_t size = strlen(said) + 1;
 
-    RITZ_NEW(*out, (int64_t)size);
+    RITZ_CHECK_NEW(*out, (int64_t)size);
     memcpy(*out, said, size);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_tying_refuse(const ritz_bulk_tying *it,
@@ -49,37 +47,35 @@ ritz_status ritz_bulk_tying_refuse(const ritz_bulk_tying *it,
 ritz_status ritz_bulk_tying_grid(const ritz_bulk_tying *it, int64_t k,
                                  int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_bulk *built = it->built;
     int64_t id = 0;
 
-    RITZ_TRY(ritz_card_id(it->card, k, &id));
+    RITZ_CHECK(ritz_card_id(it->card, k, &id));
     *out = ritz_grids_find(&built->grids, id);
     if (*out < 0 && ritz_search(built->num_points, built->point, id) >= 0)
-        RITZ_TRY(ritz_bulk_tying_refuse(it,
-                                        "names '%" PRId64 "', a scalar point: "
-                                        "it is nowhere and cannot turn",
-                                        id));
+        RITZ_CHECK(ritz_bulk_tying_refuse(it,
+                                          "names '%" PRId64
+                                          "', a scalar point: "
+                                          "it is nowhere and cannot turn",
+                                          id));
     if (*out < 0)
-        RITZ_TRY(ritz_bulk_tying_refuse(
+        RITZ_CHECK(ritz_bulk_tying_refuse(
             it, "names grid '%" PRId64 "', which the deck does not define",
             id));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_tying_mask(const ritz_bulk_tying *it, int64_t k,
                                  uint8_t *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t digits = 0;
 
-    RITZ_TRY(ritz_card_whole(it->card, k, 0, &digits));
+    RITZ_CHECK(ritz_card_whole(it->card, k, 0, &digits));
     if (!ritz_bulk_mask(digits, out))
-        RITZ_TRY(ritz_card_refuse(it->card, k, "a list of directions 1 to 6"));
+        RITZ_CHECK(
+            ritz_card_refuse(it->card, k, "a list of directions 1 to 6"));
     *out &= 0x7e; /* bit 0: there are none */
-done:
-    return status;
+    return RITZ_OK;
 }
 
 bool ritz_bulk_tying_is_real(const ritz_bulk_tying *it, int64_t k)
@@ -90,7 +86,6 @@ bool ritz_bulk_tying_is_real(const ritz_bulk_tying *it, int64_t k)
 ritz_status ritz_bulk_tying_pairs(const ritz_bulk_tying *it, int64_t k,
                                   ritz_ties *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_tie tie = {.weight = 1.0};
 
     while (k < it->card->count) {
@@ -100,16 +95,15 @@ ritz_status ritz_bulk_tying_pairs(const ritz_bulk_tying *it, int64_t k,
         }
         if (ritz_bulk_tying_is_real(it, k)) /* thermal expansion */
             break;
-        RITZ_TRY(ritz_bulk_tying_grid(it, k, &tie.grid));
-        RITZ_TRY(ritz_bulk_tying_mask(it, k + 1, &tie.mask));
+        RITZ_CHECK(ritz_bulk_tying_grid(it, k, &tie.grid));
+        RITZ_CHECK(ritz_bulk_tying_mask(it, k + 1, &tie.mask));
         if (tie.mask == 0)
-            RITZ_TRY(ritz_card_refuse(it->card, k + 1,
-                                      "a list of directions 1 to 6"));
-        RITZ_TRY(ritz_ties_add(out, tie));
+            RITZ_CHECK(ritz_card_refuse(it->card, k + 1,
+                                        "a list of directions 1 to 6"));
+        RITZ_CHECK(ritz_ties_add(out, tie));
         k += 2;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- MPC --------------------------------------------------------------- */
@@ -122,30 +116,28 @@ typedef struct term {
 /* G C A at field k; of scalar points C is blank, 0 or 1. */
 static ritz_status take_term(const ritz_bulk_tying *it, int64_t k, term *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_bulk *built = it->built;
     int64_t id = 0;
     int64_t c = 0;
 
-    RITZ_TRY(ritz_card_id(it->card, k, &id));
-    RITZ_TRY(ritz_card_whole(it->card, k + 1, 0, &c));
-    RITZ_TRY(ritz_card_real(it->card, k + 2, nan(""), &out->factor));
+    RITZ_CHECK(ritz_card_id(it->card, k, &id));
+    RITZ_CHECK(ritz_card_whole(it->card, k + 1, 0, &c));
+    RITZ_CHECK(ritz_card_real(it->card, k + 2, nan(""), &out->factor));
     if (isnan(out->factor))
-        RITZ_TRY(ritz_card_refuse(it->card, k + 2, "a factor"));
+        RITZ_CHECK(ritz_card_refuse(it->card, k + 2, "a factor"));
     if (ritz_search(built->num_points, built->point, id) >= 0) {
         if (c < 0 || c > 1)
-            RITZ_TRY(ritz_card_refuse(it->card, k + 1,
-                                      "a direction of a scalar point"));
+            RITZ_CHECK(ritz_card_refuse(it->card, k + 1,
+                                        "a direction of a scalar point"));
         c = 0;
     } else if (ritz_grids_find(&built->grids, id) < 0) {
-        RITZ_TRY(ritz_bulk_tying_refuse(
+        RITZ_CHECK(ritz_bulk_tying_refuse(
             it, "names '%" PRId64 "', which the deck does not define", id));
     } else if (c < 1 || c > 6) {
-        RITZ_TRY(ritz_card_refuse(it->card, k + 1, "a direction 1 to 6"));
+        RITZ_CHECK(ritz_card_refuse(it->card, k + 1, "a direction 1 to 6"));
     }
     out->dof = (ritz_dof){id, c};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Lines have their terms at fields 1 and 4, and nothing at the other two. */
@@ -161,28 +153,26 @@ static ritz_status check_layout(const ritz_bulk_tying *it)
 
 ritz_status ritz_bulk_tie_mpc(const ritz_bulk_tying *it)
 {
-    ritz_status status = RITZ_OK;
     term first = {0};
     term next = {0};
 
-    RITZ_TRY(check_layout(it));
-    RITZ_TRY(take_term(it, 1, &first));
+    RITZ_CHECK(check_layout(it));
+    RITZ_CHECK(take_term(it, 1, &first));
     if (first.factor == 0.0)
-        RITZ_TRY(ritz_bulk_tying_refuse(
+        RITZ_CHECK(ritz_bulk_tying_refuse(
             it, "begins with a factor of zero, and its first dof is the one "
                 "that depends"));
-    RITZ_TRY(ritz_equations_begin(it->out, first.dof));
+    RITZ_CHECK(ritz_equations_begin(it->out, first.dof));
     for (int64_t k = 4; k < it->card->count; k += k % 8 == 4 ? 5 : 3) {
         if (!*ritz_card_text(it->card, k) &&
             !*ritz_card_text(it->card, k + 1) &&
             !*ritz_card_text(it->card, k + 2))
             continue;
-        RITZ_TRY(take_term(it, k, &next));
-        RITZ_TRY(
+        RITZ_CHECK(take_term(it, k, &next));
+        RITZ_CHECK(
             ritz_equations_add(it->out, next.dof, -next.factor / first.factor));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- all of them ------------------------------------------------------- */
@@ -208,27 +198,23 @@ static ritz_status tie(const ritz_bulk_tying *it)
 
 static ritz_status copy_paths(const ritz_deck *deck, ritz_equations *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(out->file, deck->num_files);
+    RITZ_CHECK_NEW(out->file, deck->num_files);
     for (; out->num_files < deck->num_files; out->num_files++) {
         const char *path = deck->file[out->num_files].path;
         size_t size = path ? strlen(path) + 1 : 0;
 
         if (!path)
             continue;
-        RITZ_NEW(out->file[out->num_files], (int64_t)size);
+        RITZ_CHECK_NEW(out->file[out->num_files], (int64_t)size);
         memcpy(out->file[out->num_files], path, size);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status tie_card(const ritz_bulk_cards *all,
                             const ritz_bulk_constraint *one, ritz_card *card,
                             ritz_bulk *built)
 {
-    ritz_status status = RITZ_OK;
     ritz_equation_source from = {.name = ""};
     const ritz_line *line = NULL;
     const ritz_bulk_tying it = {.all = all,
@@ -237,15 +223,13 @@ static ritz_status tie_card(const ritz_bulk_cards *all,
                                 .name = from.name,
                                 .out = &built->equations};
 
-    RITZ_TRY(ritz_deck_card(&all->deck, one->entry, card));
+    RITZ_CHECK(ritz_deck_card(&all->deck, one->entry, card));
     line = &all->deck.line[card->entry->line];
     from.file = line->file;
     from.line = line->number;
     snprintf(from.name, sizeof from.name, "%s %" PRId64, one->name, one->id);
-    RITZ_TRY(ritz_equations_cite_next(&built->equations, from));
-    RITZ_TRY(tie(&it));
-done:
-    return status;
+    RITZ_CHECK(ritz_equations_cite_next(&built->equations, from));
+    return tie(&it);
 }
 
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,

@@ -96,23 +96,21 @@ static int64_t place_of(int64_t kind, int64_t i)
 
 static ritz_status add_cell(int64_t kind, const int64_t *grid, gathering *it)
 {
-    ritz_status status = RITZ_OK;
     ritz_elements *all = &it->elements;
     int64_t size = ritz_cell_size(kind);
 
-    RITZ_ROOM(all->kind, all->count, it->kinds_room);
-    RITZ_ROOM(all->first, it->num_firsts, it->firsts_room);
+    RITZ_CHECK_ROOM(all->kind, all->count, it->kinds_room);
+    RITZ_CHECK_ROOM(all->first, it->num_firsts, it->firsts_room);
     if (it->num_firsts == 0)
         all->first[it->num_firsts++] = 0;
-    RITZ_ROOM(all->first, it->num_firsts, it->firsts_room);
+    RITZ_CHECK_ROOM(all->first, it->num_firsts, it->firsts_room);
     for (int64_t i = 0; i < size; i++) {
-        RITZ_ROOM(all->grid, it->num_grids, it->grids_room);
+        RITZ_CHECK_ROOM(all->grid, it->num_grids, it->grids_room);
         all->grid[it->num_grids++] = grid[place_of(kind, i)];
     }
     all->first[it->num_firsts++] = it->num_grids;
     all->kind[all->count++] = kind;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A spring to the ground joins one grid and is nothing to be seen. */

@@ -28,48 +28,41 @@ static int compare_frames(const void *a, const void *b)
 static ritz_status take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
                                  int64_t from, int32_t kind)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_frame new = {
         .line = card->entry->line, .kind = kind, .by_grids = true};
 
-    RITZ_TRY(ritz_card_id(card, from, &new.id));
+    RITZ_CHECK(ritz_card_id(card, from, &new.id));
     for (int64_t k = 0; k < 3; k++)
-        RITZ_TRY(ritz_card_id(card, from + 1 + k, &new.grid[k]));
-    RITZ_ROOM(all->frame, all->num_frames, all->frames_room);
+        RITZ_CHECK(ritz_card_id(card, from + 1 + k, &new.grid[k]));
+    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
     all->frame[all->num_frames++] = new;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* CORD2: CID RID A B C. */
 static ritz_status take_by_points(ritz_bulk_cards *all, const ritz_card *card,
                                   int32_t kind)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_frame new = {.line = card->entry->line, .kind = kind};
 
-    RITZ_TRY(ritz_card_id(card, 0, &new.id));
-    RITZ_TRY(ritz_card_whole(card, 1, 0, &new.base));
+    RITZ_CHECK(ritz_card_id(card, 0, &new.id));
+    RITZ_CHECK(ritz_card_whole(card, 1, 0, &new.base));
     for (int64_t k = 0; k < 9; k++)
-        RITZ_TRY(ritz_card_real(card, 2 + k, 0.0, &new.point[k]));
-    RITZ_ROOM(all->frame, all->num_frames, all->frames_room);
+        RITZ_CHECK(ritz_card_real(card, 2 + k, 0.0, &new.point[k]));
+    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
     all->frame[all->num_frames++] = new;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
                                  int32_t kind, bool by_grids)
 {
-    ritz_status status = RITZ_OK;
-
     if (!by_grids)
         return take_by_points(all, card, kind);
-    RITZ_TRY(take_by_grids(all, card, 0, kind));
+    RITZ_CHECK(take_by_grids(all, card, 0, kind));
     if (card->count > 4)
-        RITZ_TRY(take_by_grids(all, card, 4, kind));
-done:
-    return status;
+        RITZ_CHECK(take_by_grids(all, card, 4, kind));
+    return RITZ_OK;
 }
 
 static bool same_frame(const ritz_bulk_frame *a, const ritz_bulk_frame *b)
@@ -86,7 +79,6 @@ static bool same_frame(const ritz_bulk_frame *a, const ritz_bulk_frame *b)
 
 ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all)
 {
-    ritz_status status = RITZ_OK;
     int64_t kept = 0;
 
     if (all->num_frames > 1)
@@ -100,14 +92,13 @@ ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all)
             continue;
         }
         if (!same_frame(&all->frame[kept - 1], frame))
-            RITZ_TRY(ritz_deck_refuse(&all->deck, frame->line,
-                                      "coordinate system %" PRId64
-                                      " is defined otherwise before",
-                                      frame->id));
+            RITZ_CHECK(ritz_deck_refuse(&all->deck, frame->line,
+                                        "coordinate system %" PRId64
+                                        " is defined otherwise before",
+                                        frame->id));
     }
     all->num_frames = kept;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_bulk_frame *ritz_bulk_find_frame(const ritz_bulk_cards *all, int64_t id)
@@ -204,26 +195,24 @@ static ritz_status resolve(const ritz_bulk_cards *all, ritz_bulk_frame *frame)
 static ritz_status resolve_from(const ritz_bulk_cards *all, int64_t first,
                                 int64_t *stack)
 {
-    ritz_status status = RITZ_OK;
     int64_t depth = 0;
 
     if (all->frame[first].progress == RESOLVED)
-        goto done;
+        return RITZ_OK;
     all->frame[first].progress = OPEN;
     stack[depth++] = first;
     while (depth > 0) {
         ritz_bulk_frame *below = NULL;
 
-        RITZ_TRY(next_open(all, &all->frame[stack[depth - 1]], &below));
+        RITZ_CHECK(next_open(all, &all->frame[stack[depth - 1]], &below));
         if (below) {
             below->progress = OPEN;
             stack[depth++] = below - all->frame;
         } else {
-            RITZ_TRY(resolve(all, &all->frame[stack[--depth]]));
+            RITZ_CHECK(resolve(all, &all->frame[stack[--depth]]));
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_resolve_frames(ritz_bulk_cards *all)

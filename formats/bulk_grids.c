@@ -16,54 +16,48 @@
 /* CP, CD and PS, at fields 1, 5 and 6 of GRID and of GRDSET. */
 static ritz_status take_frames(const ritz_card *card, ritz_bulk_grid *out)
 {
-    ritz_status status = RITZ_OK;
     uint8_t mask = 0;
 
-    RITZ_TRY(ritz_card_whole(card, 1, RITZ_BULK_BLANK, &out->cp));
-    RITZ_TRY(ritz_card_whole(card, 5, RITZ_BULK_BLANK, &out->cd));
-    RITZ_TRY(ritz_card_whole(card, 6, RITZ_BULK_BLANK, &out->spc));
+    RITZ_CHECK(ritz_card_whole(card, 1, RITZ_BULK_BLANK, &out->cp));
+    RITZ_CHECK(ritz_card_whole(card, 5, RITZ_BULK_BLANK, &out->cd));
+    RITZ_CHECK(ritz_card_whole(card, 6, RITZ_BULK_BLANK, &out->spc));
     if (*ritz_card_text(card, 1) && out->cp < 0)
-        RITZ_TRY(ritz_card_refuse(card, 1, "a coordinate system"));
+        RITZ_CHECK(ritz_card_refuse(card, 1, "a coordinate system"));
     if (*ritz_card_text(card, 5) && out->cd < 0)
-        RITZ_TRY(ritz_card_refuse(card, 5,
-                                  "a coordinate system in which a structure "
-                                  "moves"));
+        RITZ_CHECK(ritz_card_refuse(card, 5,
+                                    "a coordinate system in which a structure "
+                                    "moves"));
     if (out->spc != RITZ_BULK_BLANK &&
         (!ritz_bulk_mask(out->spc, &mask) || (out->spc != 0 && (mask & 1))))
-        RITZ_TRY(ritz_card_refuse(card, 6, "a list of directions 1 to 6"));
-done:
-    return status;
+        RITZ_CHECK(ritz_card_refuse(card, 6, "a list of directions 1 to 6"));
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_grid new = {.line = card->entry->line};
 
-    RITZ_TRY(ritz_card_id(card, 0, &new.id));
-    RITZ_TRY(take_frames(card, &new));
+    RITZ_CHECK(ritz_card_id(card, 0, &new.id));
+    RITZ_CHECK(take_frames(card, &new));
     for (int64_t k = 0; k < 3; k++)
-        RITZ_TRY(ritz_card_real(card, 2 + k, 0.0, &new.x[k]));
-    RITZ_ROOM(all->grid, all->num_grids, all->grids_room);
+        RITZ_CHECK(ritz_card_real(card, 2 + k, 0.0, &new.x[k]));
+    RITZ_CHECK_ROOM(all->grid, all->num_grids, all->grids_room);
     all->grid[all->num_grids++] = new;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all, const ritz_card *card)
 {
-    ritz_status status = RITZ_OK;
     ritz_bulk_grid new = {.line = card->entry->line};
 
-    RITZ_TRY(take_frames(card, &new));
+    RITZ_CHECK(take_frames(card, &new));
     if (all->defaults.line >= 0 &&
         (new.cp != all->defaults.cp || new.cd != all->defaults.cd ||
          new.spc != all->defaults.spc))
-        RITZ_TRY(ritz_deck_refuse(&all->deck, new.line,
-                                  "there is another GRDSET before"));
+        RITZ_CHECK(ritz_deck_refuse(&all->deck, new.line,
+                                    "there is another GRDSET before"));
     all->defaults = new;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int compare_grids(const void *a, const void *b)
@@ -98,7 +92,6 @@ static bool is_sorted(const ritz_bulk_cards *all)
 
 ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all)
 {
-    ritz_status status = RITZ_OK;
     int64_t kept = 0;
 
     if (!is_sorted(all))
@@ -115,13 +108,12 @@ ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all)
             continue;
         }
         if (!same_grid(&all->grid[kept - 1], grid))
-            RITZ_TRY(ritz_deck_refuse(
+            RITZ_CHECK(ritz_deck_refuse(
                 &all->deck, grid->line,
                 "GRID %" PRId64 " is defined otherwise before", grid->id));
     }
     all->num_grids = kept;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
@@ -189,7 +181,6 @@ done:
 
 static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
 {
-    ritz_status status = RITZ_OK;
     const ritz_bulk_grid *grid = &all->grid[k];
     double *position = &build->grids.position[3 * k];
     ritz_bulk_frame *frame = NULL;
@@ -197,28 +188,27 @@ static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
     int64_t *shared = NULL;
 
     build->grids.id[k] = grid->id;
-    RITZ_TRY(frame_of(all, grid, grid->cp, &frame));
+    RITZ_CHECK(frame_of(all, grid, grid->cp, &frame));
     ritz_bulk_position(frame, grid->x, position);
     for (int j = 0; j < 3; j++)
         if (!isfinite(position[j]))
-            RITZ_TRY(ritz_deck_refuse(&all->deck, grid->line,
-                                      "GRID %" PRId64 " is infinitely far away",
-                                      grid->id));
-    RITZ_TRY(frame_of(all, grid, grid->cd, &frame));
+            RITZ_CHECK(ritz_deck_refuse(
+                &all->deck, grid->line,
+                "GRID %" PRId64 " is infinitely far away", grid->id));
+    RITZ_CHECK(frame_of(all, grid, grid->cd, &frame));
     if (!frame)
-        goto done;
+        return RITZ_OK;
     if (frame->kind == RITZ_RECTANGULAR)
         shared = &build->row[frame - all->frame];
     if (shared && *shared) {
         build->grids.frame[k] = *shared;
-        goto done;
+        return RITZ_OK;
     }
     ritz_bulk_axes(frame, position, axes);
-    RITZ_TRY(add_axes(build, axes, &build->grids.frame[k]));
+    RITZ_CHECK(add_axes(build, axes, &build->grids.frame[k]));
     if (shared)
         *shared = build->grids.frame[k];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_place_grids(const ritz_bulk_cards *all, ritz_grids *out)

@@ -34,12 +34,9 @@ bool ritz_bulk_mask(int64_t digits, uint8_t *out)
 
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_ROOM(list->range, list->count, list->room);
+    RITZ_CHECK_ROOM(list->range, list->count, list->room);
     list->range[list->count++] = range;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int compare_ranges(const void *a, const void *b)
@@ -72,18 +69,15 @@ static int64_t merge(int64_t count, ritz_bulk_range *range)
 static ritz_status count_ids(const ritz_deck *deck, int64_t count,
                              const ritz_bulk_range *range, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-
     *out = 0;
     for (int64_t k = 0; k < count; k++) {
         if (range[k].to - range[k].from >= MOST_IDS - *out)
-            RITZ_TRY(ritz_deck_refuse(deck, range[k].line,
-                                      "THRU stands for more than %d points",
-                                      MOST_IDS));
+            RITZ_CHECK(ritz_deck_refuse(deck, range[k].line,
+                                        "THRU stands for more than %d points",
+                                        MOST_IDS));
         *out += range[k].to - range[k].from + 1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out)
@@ -130,12 +124,9 @@ typedef struct dofs {
 
 static ritz_status add_dof(dofs *list, int64_t grid, int64_t component)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_ROOM(list->dof, list->count, list->room);
+    RITZ_CHECK_ROOM(list->dof, list->count, list->room);
     list->dof[list->count++] = (ritz_dof){grid, component};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool has(const ritz_bulk_range *range, int64_t c)
@@ -148,23 +139,21 @@ static ritz_status add_named(const ritz_bulk_cards *all,
                              const ritz_bulk_range *one, const ritz_bulk *built,
                              dofs *list)
 {
-    ritz_status status = RITZ_OK;
     bool point = ritz_search(built->num_points, built->point, one->from) >= 0;
     bool grid = ritz_grids_find(&built->grids, one->from) >= 0;
 
     if (point && (one->mask & ~3U))
-        RITZ_TRY(ritz_deck_refuse(&all->deck, one->line,
-                                  "scalar point %" PRId64 " has no directions",
-                                  one->from));
+        RITZ_CHECK(ritz_deck_refuse(
+            &all->deck, one->line, "scalar point %" PRId64 " has no directions",
+            one->from));
     if (grid && has(one, 0))
-        RITZ_TRY(ritz_deck_refuse(&all->deck, one->line,
-                                  "no directions of GRID %" PRId64 " are given",
-                                  one->from));
+        RITZ_CHECK(ritz_deck_refuse(
+            &all->deck, one->line,
+            "no directions of GRID %" PRId64 " are given", one->from));
     for (int64_t c = 0; c <= 6; c++)
         if (has(one, c))
-            RITZ_TRY(add_dof(list, one->from, point ? 0 : c));
-done:
-    return status;
+            RITZ_CHECK(add_dof(list, one->from, point ? 0 : c));
+    return RITZ_OK;
 }
 
 /* Direction c of what exists in merged ranges. */
@@ -172,29 +161,24 @@ static ritz_status add_existing(int64_t num_ids, const int64_t *ids, int64_t c,
                                 int64_t count, const ritz_bulk_range *range,
                                 dofs *list)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < count; k++)
         for (int64_t at = ritz_lower_bound(num_ids, ids, range[k].from);
              at < num_ids && ids[at] <= range[k].to; at++)
-            RITZ_TRY(add_dof(list, ids[at], c));
-done:
-    return status;
+            RITZ_CHECK(add_dof(list, ids[at], c));
+    return RITZ_OK;
 }
 
 /* Direction c of all in the ranges, where the deck defines no grid at all. */
 static ritz_status add_all(const ritz_bulk_cards *all, int64_t c, int64_t count,
                            const ritz_bulk_range *range, dofs *list)
 {
-    ritz_status status = RITZ_OK;
     int64_t ids = 0;
 
-    RITZ_TRY(count_ids(&all->deck, count, range, &ids));
+    RITZ_CHECK(count_ids(&all->deck, count, range, &ids));
     for (int64_t k = 0; k < count; k++)
         for (int64_t id = range[k].from; id <= range[k].to; id++)
-            RITZ_TRY(add_dof(list, id, c));
-done:
-    return status;
+            RITZ_CHECK(add_dof(list, id, c));
+    return RITZ_OK;
 }
 
 static ritz_status add_direction(const ritz_bulk_cards *all,

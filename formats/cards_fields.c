@@ -8,21 +8,19 @@
 static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
                              int64_t length)
 {
-    ritz_status status = RITZ_OK;
     ritz_field *field = NULL;
 
     ritz_card_trim(&text, &length);
     if (length >= RITZ_CARD_FIELD_SIZE)
-        RITZ_TRY(ritz_deck_refuse(card->deck, line,
-                                  "'%.16s...' in %s is too long for a field",
-                                  text, card->entry->name));
-    RITZ_ROOM(card->field, card->count, card->room);
+        RITZ_CHECK(ritz_deck_refuse(card->deck, line,
+                                    "'%.16s...' in %s is too long for a field",
+                                    text, card->entry->name));
+    RITZ_CHECK_ROOM(card->field, card->count, card->room);
     field = &card->field[card->count++];
     memcpy(field->text, text, (size_t)length);
     field->text[length] = '\0';
     field->line = line;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether anything but blanks stands in a free line after item k. */
@@ -42,7 +40,6 @@ static bool more_items(const ritz_view *line, int64_t k)
 static ritz_status add_free(ritz_card *card, int64_t line,
                             const ritz_view *seen)
 {
-    ritz_status status = RITZ_OK;
     int64_t width = seen->large ? 4 : 8;
     const char *text = "";
     int64_t length = 0;
@@ -56,23 +53,21 @@ static ritz_status add_free(ritz_card *card, int64_t line,
     if ((tenth_length > 0 && !ritz_view_is_marker(tenth, tenth_length) &&
          *tenth != '+') ||
         more_items(seen, width + 1))
-        RITZ_TRY(ritz_deck_refuse(card->deck, line,
-                                  "a line of %s has more than %d fields",
-                                  card->entry->name, (int)width));
+        RITZ_CHECK(ritz_deck_refuse(card->deck, line,
+                                    "a line of %s has more than %d fields",
+                                    card->entry->name, (int)width));
     for (int64_t k = 0; k < width; k++) {
         length = 0;
         if (k < count)
             (void)ritz_view_item(seen, k + 1, &text, &length);
-        RITZ_TRY(add_field(card, line, text, length));
+        RITZ_CHECK(add_field(card, line, text, length));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_fixed(ritz_card *card, int64_t line,
                              const ritz_view *seen)
 {
-    ritz_status status = RITZ_OK;
     int64_t width = seen->large ? 16 : 8;
 
     for (int64_t column = RITZ_CARD_NAME; column < RITZ_CARD_DATA;
@@ -83,33 +78,30 @@ static ritz_status add_fixed(ritz_card *card, int64_t line,
             length = width;
         if (length < 0)
             length = 0;
-        RITZ_TRY(
+        RITZ_CHECK(
             add_field(card, line, length ? seen->text + column : "", length));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The name must fill its field alone, or the columns are not what they seem. */
 static ritz_status check_name(const ritz_card *card, const ritz_view *seen)
 {
-    ritz_status status = RITZ_OK;
     const char *name = NULL;
     int64_t length = 0;
 
     ritz_view_name(seen, &name, &length);
     for (int64_t k = 0; k < length; k++)
         if (ritz_card_is_blank(name[k]) && name[length - 1] != '*')
-            RITZ_TRY(ritz_deck_refuse(card->deck, card->entry->line,
-                                      "'%.*s' is not the name of a card alone",
-                                      (int)(length < 20 ? length : 20), name));
-done:
-    return status;
+            RITZ_CHECK(
+                ritz_deck_refuse(card->deck, card->entry->line,
+                                 "'%.*s' is not the name of a card alone",
+                                 (int)(length < 20 ? length : 20), name));
+    return RITZ_OK;
 }
 
 ritz_status ritz_deck_card(const ritz_deck *deck, int64_t k, ritz_card *card)
 {
-    ritz_status status = RITZ_OK;
     ritz_view seen;
 
     card->deck = deck;
@@ -118,18 +110,17 @@ ritz_status ritz_deck_card(const ritz_deck *deck, int64_t k, ritz_card *card)
     for (int64_t at = card->entry->line; at >= 0; at = deck->line[at].next) {
         ritz_view_look(&deck->line[at], &seen);
         if (at == card->entry->line)
-            RITZ_TRY(check_name(card, &seen));
+            RITZ_CHECK(check_name(card, &seen));
         while (!seen.large && card->count % 8 != 0)
-            RITZ_TRY(add_field(card, at, "", 0));
+            RITZ_CHECK(add_field(card, at, "", 0));
         if (seen.free)
-            RITZ_TRY(add_free(card, at, &seen));
+            RITZ_CHECK(add_free(card, at, &seen));
         else
-            RITZ_TRY(add_fixed(card, at, &seen));
+            RITZ_CHECK(add_fixed(card, at, &seen));
     }
     while (card->count > 0 && !card->field[card->count - 1].text[0])
         card->count--;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_card_free(ritz_card *card)

@@ -17,7 +17,6 @@ enum { MOST_FILES = 10000 };
 static ritz_status include_name(ritz_lines *text, const char *at, char *name,
                                 size_t size)
 {
-    ritz_status status = RITZ_OK;
     const char *end = text->line_end;
     size_t used = 0;
     char quote = '\0';
@@ -37,54 +36,49 @@ static ritz_status include_name(ritz_lines *text, const char *at, char *name,
         if (stop)
             length = stop - at;
         ritz_card_trim(&at, &length);
-        RITZ_FAIL_IF(used + (size_t)length >= size, RITZ_ERR_FORMAT,
-                     "the name that INCLUDE gives is too long");
+        RITZ_REFUSE_IF(used + (size_t)length >= size, RITZ_ERR_FORMAT,
+                       "the name that INCLUDE gives is too long");
         memcpy(name + used, at, (size_t)length);
         used += (size_t)length;
         if (stop || !quote)
             break;
-        RITZ_FAIL_IF(!ritz_lines_next(text), RITZ_ERR_FORMAT,
-                     "the quote of INCLUDE is not closed");
+        RITZ_REFUSE_IF(!ritz_lines_next(text), RITZ_ERR_FORMAT,
+                       "the quote of INCLUDE is not closed");
         at = text->line;
         end = text->line_end;
     }
     name[used] = '\0';
-    RITZ_FAIL_IF(used == 0, RITZ_ERR_FORMAT, "INCLUDE names no file");
-done:
-    return status;
+    RITZ_REFUSE_IF(used == 0, RITZ_ERR_FORMAT, "INCLUDE names no file");
+    return RITZ_OK;
 }
 
 /* folder/name, or name alone if it begins at the root. */
 static ritz_status join_path(const char *folder, const char *name, char **out)
 {
-    ritz_status status = RITZ_OK;
     size_t length = strlen(folder) + strlen(name) + 2;
     char *path = NULL;
 
-    RITZ_NEW(path, (int64_t)length);
+    RITZ_CHECK_NEW(path, (int64_t)length);
     if (*name == '/' || !*folder || strcmp(folder, ".") == 0)
         snprintf(path, length, "%s", name);
     else
         snprintf(path, length, "%s/%s", folder, name);
     *out = path;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_deck_folder(const char *path, char **out)
 {
-    ritz_status status = RITZ_OK;
     const char *slash = strrchr(path, '/');
     size_t length = slash ? (size_t)(slash - path) : 1;
     char *folder = NULL;
 
     if (slash == path)
         length = 1; /* the root */
-    RITZ_NEW(folder, (int64_t)length + 1);
+    RITZ_CHECK_NEW(folder, (int64_t)length + 1);
     memcpy(folder, slash ? path : ".", length);
     *out = folder;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const char *path_of(const ritz_scanner *scan, int level)
@@ -112,20 +106,17 @@ done:
 
 static ritz_status include(ritz_scanner *scan, const char *path)
 {
-    ritz_status status = RITZ_OK;
     char *bytes = NULL;
 
     for (int k = 0; k < scan->depth; k++)
-        RITZ_FAIL_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
-                     RITZ_ERR_FORMAT, "'%s' includes itself", path);
-    RITZ_FAIL_IF(scan->depth > RITZ_DECK_DEEPEST, RITZ_ERR_FORMAT,
-                 "INCLUDE is more than %d files deep", RITZ_DECK_DEEPEST);
-    RITZ_FAIL_IF(scan->deck->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
-                 "INCLUDE reads more than %d files", MOST_FILES);
-    RITZ_TRY(ritz_text_read(path, &bytes));
-    RITZ_TRY(open_file(scan, path, bytes));
-done:
-    return status;
+        RITZ_REFUSE_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
+                       RITZ_ERR_FORMAT, "'%s' includes itself", path);
+    RITZ_REFUSE_IF(scan->depth > RITZ_DECK_DEEPEST, RITZ_ERR_FORMAT,
+                   "INCLUDE is more than %d files deep", RITZ_DECK_DEEPEST);
+    RITZ_REFUSE_IF(scan->deck->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
+                   "INCLUDE reads more than %d files", MOST_FILES);
+    RITZ_CHECK(ritz_text_read(path, &bytes));
+    return open_file(scan, path, bytes);
 }
 
 ritz_status ritz_scanner_include(ritz_scanner *scan, const char *rest)

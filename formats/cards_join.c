@@ -74,13 +74,12 @@ static void trailing_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
 static ritz_status add_entry(ritz_deck *deck, int64_t line,
                              const ritz_view *seen)
 {
-    ritz_status status = RITZ_OK;
     ritz_entry *entry = NULL;
     const char *name = NULL;
     int64_t length = 0;
 
     ritz_view_name(seen, &name, &length);
-    RITZ_ROOM(deck->entry, deck->num_entries, deck->entries_room);
+    RITZ_CHECK_ROOM(deck->entry, deck->num_entries, deck->entries_room);
     entry = &deck->entry[deck->num_entries++];
     *entry = (ritz_entry){.line = line};
     for (int64_t k = 0; k < length && k < RITZ_CARD_NAME_SIZE - 1; k++) {
@@ -88,8 +87,7 @@ static ritz_status add_entry(ritz_deck *deck, int64_t line,
             break;
         entry->name[k] = ritz_card_upper(name[k]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Continuations that no line above them claims. */
@@ -101,19 +99,15 @@ typedef struct strays {
 static ritz_status add_stray(strays *list, int64_t line,
                              const char text[RITZ_CARD_NAME + 1])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_ROOM(list->marker, list->count, list->room);
+    RITZ_CHECK_ROOM(list->marker, list->count, list->room);
     list->marker[list->count] = (marker){.line = line};
     memcpy(list->marker[list->count++].text, text, RITZ_CARD_NAME + 1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Give each continuation to the line above it where the markers allow. */
 static ritz_status join_neighbours(ritz_deck *deck, strays *list)
 {
-    ritz_status status = RITZ_OK;
     char lead[RITZ_CARD_NAME + 1];
     char trail[RITZ_CARD_NAME + 1] = "";
     ritz_view seen;
@@ -121,7 +115,7 @@ static ritz_status join_neighbours(ritz_deck *deck, strays *list)
     for (int64_t k = 0; k < deck->num_lines; k++) {
         ritz_view_look(&deck->line[k], &seen);
         if (!seen.continues) {
-            RITZ_TRY(add_entry(deck, k, &seen));
+            RITZ_CHECK(add_entry(deck, k, &seen));
             trailing_marker(&seen, trail);
             continue;
         }
@@ -129,11 +123,10 @@ static ritz_status join_neighbours(ritz_deck *deck, strays *list)
         if (k > 0 && (!lead[0] || strcmp(lead, trail) == 0))
             deck->line[k - 1].next = k;
         else
-            RITZ_TRY(add_stray(list, k, lead));
+            RITZ_CHECK(add_stray(list, k, lead));
         trailing_marker(&seen, trail);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int compare_markers(const void *a, const void *b)
@@ -147,20 +140,19 @@ static int compare_markers(const void *a, const void *b)
 /* Let the lines whose tenth field has a stray's marker claim it. */
 static ritz_status join_strays(ritz_deck *deck, strays *list)
 {
-    ritz_status status = RITZ_OK;
     marker wanted = {0};
     ritz_view seen;
 
     if (list->count == 0)
-        goto done;
+        return RITZ_OK;
     qsort(list->marker, (size_t)list->count, sizeof *list->marker,
           compare_markers);
     for (int64_t k = 1; k < list->count; k++)
         if (compare_markers(&list->marker[k - 1], &list->marker[k]) == 0)
-            RITZ_TRY(ritz_deck_refuse(deck, list->marker[k].line,
-                                      "another continuation has the marker "
-                                      "'+%s' too",
-                                      list->marker[k].text));
+            RITZ_CHECK(ritz_deck_refuse(deck, list->marker[k].line,
+                                        "another continuation has the marker "
+                                        "'+%s' too",
+                                        list->marker[k].text));
     for (int64_t k = 0; k < deck->num_lines; k++) {
         marker *found = NULL;
 
@@ -173,14 +165,13 @@ static ritz_status join_strays(ritz_deck *deck, strays *list)
         if (!found)
             continue;
         if (found->taken)
-            RITZ_TRY(ritz_deck_refuse(deck, k,
-                                      "another line is continued by '+%s' too",
-                                      wanted.text));
+            RITZ_CHECK(ritz_deck_refuse(
+                deck, k, "another line is continued by '+%s' too",
+                wanted.text));
         found->taken = true;
         deck->line[k].next = found->line;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Every line must be reached from a card: no stray is left, no circle. */

@@ -12,34 +12,31 @@
 static ritz_status take_selection(const ritz_lines *text, const char *word,
                                   int64_t which, ritz_deck *deck)
 {
-    ritz_status status = RITZ_OK;
     const char *end = text->line_end;
     const char *at = NULL;
     int64_t set = 0;
 
     if (!ritz_card_begins(text->line, end - text->line, word, &at))
-        goto done;
+        return RITZ_OK;
     at = memchr(at, '=', (size_t)(end - at));
     if (!at)
-        goto done;
+        return RITZ_OK;
     for (at++; at < end && ritz_card_is_blank(*at); at++)
         ;
     for (; at < end && isdigit((unsigned char)*at) && set < INT64_MAX / 100;
          at++)
         set = 10 * set + (*at - '0');
     if (set == 0)
-        goto done;
-    RITZ_ROOM(deck->selected[which], deck->num_selected[which],
-              deck->selected_room[which]);
+        return RITZ_OK;
+    RITZ_CHECK_ROOM(deck->selected[which], deck->num_selected[which],
+                    deck->selected_room[which]);
     deck->selected[which][deck->num_selected[which]++] = set;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_deck_skip_control(const char *path, ritz_lines *text,
                                    ritz_deck *deck)
 {
-    ritz_status status = RITZ_OK;
     ritz_lines trial = *text;
     const char *rest = NULL;
     bool cases = false;
@@ -53,67 +50,60 @@ ritz_status ritz_deck_skip_control(const char *path, ritz_lines *text,
         begun = ritz_card_begins(trial.line, length, "BEGIN", &rest) &&
                 (cases || ritz_card_begins(rest, end - rest, "BULK", &rest));
     }
-    RITZ_FAIL_IF(cases && !begun, RITZ_ERR_FORMAT,
-                 "'%s' holds CEND but no BEGIN BULK", path ? path : "the deck");
+    RITZ_REFUSE_IF(cases && !begun, RITZ_ERR_FORMAT,
+                   "'%s' holds CEND but no BEGIN BULK",
+                   path ? path : "the deck");
     while (begun && text->number < trial.number) {
         (void)ritz_lines_next(text);
         if (cases) {
-            RITZ_TRY(take_selection(text, "SPC", RITZ_SELECT_SPC, deck));
-            RITZ_TRY(take_selection(text, "MPC", RITZ_SELECT_MPC, deck));
+            RITZ_CHECK(take_selection(text, "SPC", RITZ_SELECT_SPC, deck));
+            RITZ_CHECK(take_selection(text, "MPC", RITZ_SELECT_MPC, deck));
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status copy_text(const char *text, char **out)
 {
-    ritz_status status = RITZ_OK;
     char *copy = NULL;
 
-    RITZ_NEW(copy, (int64_t)strlen(text) + 1);
+    RITZ_CHECK_NEW(copy, (int64_t)strlen(text) + 1);
     memcpy(copy, text, strlen(text) + 1);
     *out = copy;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_deck_add_file(ritz_deck *deck, const char *path, char *text)
 {
-    ritz_status status = RITZ_OK;
     char *copy = NULL;
 
-    RITZ_ROOM(deck->file, deck->num_files, deck->files_room);
+    RITZ_CHECK_ROOM(deck->file, deck->num_files, deck->files_room);
     if (path)
-        RITZ_TRY(copy_text(path, &copy));
+        RITZ_CHECK(copy_text(path, &copy));
     deck->file[deck->num_files].path = copy;
     deck->file[deck->num_files++].text = text;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_line(ritz_deck *deck, int64_t file,
                             const ritz_lines *text, int64_t length)
 {
-    ritz_status status = RITZ_OK;
     ritz_line *line = NULL;
 
-    RITZ_FAIL_IF(length > INT32_MAX, RITZ_ERR_FORMAT,
-                 "line %" PRId64 " is too long", text->number);
-    RITZ_ROOM(deck->line, deck->num_lines, deck->lines_room);
+    RITZ_REFUSE_IF(length > INT32_MAX, RITZ_ERR_FORMAT,
+                   "line %" PRId64 " is too long", text->number);
+    RITZ_CHECK_ROOM(deck->line, deck->num_lines, deck->lines_room);
     line = &deck->line[deck->num_lines++];
     *line = (ritz_line){.text = text->line,
                         .length = (int32_t)length,
                         .file = (int32_t)file,
                         .number = text->number,
                         .next = -1};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_line(ritz_scanner *scan)
 {
-    ritz_status status = RITZ_OK;
     const ritz_source *top = &scan->open[scan->depth - 1];
     const char *line = top->text.line;
     const char *rest = NULL;
@@ -123,15 +113,14 @@ static ritz_status take_line(ritz_scanner *scan)
     while (length > 0 && ritz_card_is_blank(line[length - 1]))
         length--;
     if (length == 0 || ritz_card_begins(line, length, "BEGIN", &rest))
-        goto done;
+        return RITZ_OK;
     if (ritz_card_begins(line, length, "ENDDATA", &rest))
         scan->ended = true;
     else if (ritz_card_begins(line, length, "INCLUDE", &rest))
-        RITZ_TRY(ritz_scanner_include(scan, rest));
+        RITZ_CHECK(ritz_scanner_include(scan, rest));
     else
-        RITZ_TRY(add_line(scan->deck, top->file, &top->text, length));
-done:
-    return status;
+        RITZ_CHECK(add_line(scan->deck, top->file, &top->text, length));
+    return RITZ_OK;
 }
 
 ritz_status ritz_deck_scan(const char *path, const char *folder,

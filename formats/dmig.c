@@ -79,7 +79,6 @@ static void sort_terms(ritz_dmig_cards *all)
 /* No place is given twice, and symmetric ones give one triangle of each. */
 static ritz_status check_terms(const ritz_dmig_cards *all)
 {
-    ritz_status status = RITZ_OK;
     char row[RITZ_DOF_NAME_SIZE];
     char col[RITZ_DOF_NAME_SIZE];
 
@@ -94,20 +93,19 @@ static ritz_status check_terms(const ritz_dmig_cards *all)
             continue;
         if (owner->form == RITZ_DMIG_SYMMETRIC)
             both = "; a symmetric one gives one triangle only";
-        RITZ_TRY(ritz_deck_refuse(&all->deck, one->line,
-                                  "DMIG '%s' gives (%s, %s) twice%s",
-                                  owner->name, ritz_dof_name(one->row, row),
-                                  ritz_dof_name(one->col, col), both));
+        RITZ_CHECK(ritz_deck_refuse(&all->deck, one->line,
+                                    "DMIG '%s' gives (%s, %s) twice%s",
+                                    owner->name, ritz_dof_name(one->row, row),
+                                    ritz_dof_name(one->col, col), both));
     }
     for (int64_t k = 0; k < all->num_headers; k++)
         if (all->header[k].count == 0 && all->deck.num_skipped > 0)
-            RITZ_TRY(
+            RITZ_CHECK(
                 ritz_deck_refuse(&all->deck, all->header[k].line,
                                  "DMIG '%s' has no columns here, and "
                                  "INCLUDE is not followed without a folder",
                                  all->header[k].name));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_dmig(const char *bytes, int64_t size,

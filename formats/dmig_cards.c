@@ -43,57 +43,49 @@ static bool is_header(const ritz_card *card)
 
 static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
 {
-    ritz_status status = RITZ_OK;
     ritz_dmig_header new = {.line = card->entry->line,
                             .rank = all->num_headers};
     int64_t type = 0;
     int64_t polar = 0;
 
-    RITZ_TRY(take_name(card, new.name));
-    RITZ_TRY(ritz_card_whole(card, 2, 0, &new.form));
-    RITZ_TRY(ritz_card_whole(card, 3, 0, &type));
-    RITZ_TRY(ritz_card_whole(card, 5, 0, &polar));
+    RITZ_CHECK(take_name(card, new.name));
+    RITZ_CHECK(ritz_card_whole(card, 2, 0, &new.form));
+    RITZ_CHECK(ritz_card_whole(card, 3, 0, &type));
+    RITZ_CHECK(ritz_card_whole(card, 5, 0, &polar));
     if (new.form != RITZ_DMIG_SQUARE &&new.form != RITZ_DMIG_WIDE &&new.form !=
         RITZ_DMIG_SYMMETRIC &&new.form != RITZ_DMIG_COLUMNS)
-        RITZ_TRY(ritz_card_refuse(card, 2, "a form: 1, 2, 6 or 9"));
+        RITZ_CHECK(ritz_card_refuse(card, 2, "a form: 1, 2, 6 or 9"));
     if (type < 1 || type > 4)
-        RITZ_TRY(ritz_card_refuse(card, 3, "a type: 1, 2, 3 or 4"));
+        RITZ_CHECK(ritz_card_refuse(card, 3, "a type: 1, 2, 3 or 4"));
     if (polar != 0 && polar != 1)
-        RITZ_TRY(ritz_card_refuse(card, 5, "0 or 1 for POLAR"));
+        RITZ_CHECK(ritz_card_refuse(card, 5, "0 or 1 for POLAR"));
     new.complex = type > 2;
     new.polar = polar == 1;
-    RITZ_ROOM(all->header, all->num_headers, all->headers_room);
+    RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
     all->header[all->num_headers++] = new;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status sort_headers(ritz_dmig_cards *all)
 {
-    ritz_status status = RITZ_OK;
-
     if (all->num_headers > 1)
         qsort(all->header, (size_t)all->num_headers, sizeof *all->header,
               compare_names);
     for (int64_t k = 1; k < all->num_headers; k++)
         if (compare_names(&all->header[k - 1], &all->header[k]) == 0)
-            RITZ_TRY(ritz_deck_refuse(&all->deck, all->header[k].line,
-                                      "DMIG '%s' has a second header",
-                                      all->header[k].name));
-done:
-    return status;
+            RITZ_CHECK(ritz_deck_refuse(&all->deck, all->header[k].line,
+                                        "DMIG '%s' has a second header",
+                                        all->header[k].name));
+    return RITZ_OK;
 }
 
 static ritz_status take_dof(const ritz_card *card, int64_t k, ritz_dof *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_card_id(card, k, &out->grid));
-    RITZ_TRY(ritz_card_whole(card, k + 1, 0, &out->component));
+    RITZ_CHECK(ritz_card_id(card, k, &out->grid));
+    RITZ_CHECK(ritz_card_whole(card, k + 1, 0, &out->component));
     if (out->component < 0 || out->component > 6)
-        RITZ_TRY(ritz_card_refuse(card, k + 1, "a direction, 0 to 6"));
-done:
-    return status;
+        RITZ_CHECK(ritz_card_refuse(card, k + 1, "a direction, 0 to 6"));
+    return RITZ_OK;
 }
 
 static bool is_empty_group(const ritz_card *card, int64_t k)
@@ -109,17 +101,16 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
                             const ritz_card *card, int64_t k, ritz_dof col)
 {
     static const double RADIANS = 3.14159265358979323846 / 180.0;
-    ritz_status status = RITZ_OK;
     ritz_dmig_term new = {.col = col, .matrix = owner - all->header};
     double a = 0.0;
     double b = 0.0;
     int64_t digits = 0;
 
-    RITZ_TRY(take_dof(card, k, &new.row));
-    RITZ_TRY(ritz_card_real(card, k + 2, 0.0, &a));
-    RITZ_TRY(ritz_card_real(card, k + 3, 0.0, &b));
+    RITZ_CHECK(take_dof(card, k, &new.row));
+    RITZ_CHECK(ritz_card_real(card, k + 2, 0.0, &a));
+    RITZ_CHECK(ritz_card_real(card, k + 3, 0.0, &b));
     if (!owner->complex && b != 0.0)
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_card_refuse(card, k + 3, "blank, as it is in a real matrix"));
     new.line = card->field[k].line;
     new.re = owner->polar ? a *cos(b * RADIANS) : a;
@@ -129,11 +120,10 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
         if (digits > owner->digits)
             owner->digits = digits;
     }
-    RITZ_ROOM(all->term, all->num_terms, all->terms_room);
+    RITZ_CHECK_ROOM(all->term, all->num_terms, all->terms_room);
     all->term[all->num_terms++] = new;
     owner->count++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
@@ -184,11 +174,7 @@ done:
 
 ritz_status ritz_dmig_take(ritz_dmig_cards *all)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(take_cards(all, true));
-    RITZ_TRY(sort_headers(all));
-    RITZ_TRY(take_cards(all, false));
-done:
-    return status;
+    RITZ_CHECK(take_cards(all, true));
+    RITZ_CHECK(sort_headers(all));
+    return take_cards(all, false);
 }

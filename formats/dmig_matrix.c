@@ -10,11 +10,10 @@
 static ritz_status collect(const ritz_dmig_term *terms, int64_t count,
                            bool rows, bool cols, int64_t *found, ritz_dof **out)
 {
-    ritz_status status = RITZ_OK;
     ritz_dof *dof = NULL;
     int64_t n = 0;
 
-    RITZ_NEW(dof, 2 * count);
+    RITZ_CHECK_NEW(dof, 2 * count);
     for (int64_t k = 0; k < count; k++) {
         if (rows)
             dof[n++] = terms[k].row;
@@ -23,8 +22,7 @@ static ritz_status collect(const ritz_dmig_term *terms, int64_t count,
     }
     *found = ritz_dof_distinct(n, dof);
     *out = dof;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int64_t position(ritz_dof wanted, int64_t count, const ritz_dof *dof)
@@ -41,9 +39,7 @@ static ritz_status list_terms(const ritz_dmig_header *owner,
                               const ritz_dof *row, int64_t ncol,
                               const ritz_dof *col, ritz_triplets *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_triplets_new(2 * owner->count, out));
+    RITZ_CHECK(ritz_triplets_new(2 * owner->count, out));
     for (int64_t k = 0; k < owner->count; k++) {
         const ritz_dmig_term *one = &terms[k];
         int64_t i = position(one->row, nrow, row);
@@ -53,8 +49,7 @@ static ritz_status list_terms(const ritz_dmig_header *owner,
         if (owner->form == RITZ_DMIG_SYMMETRIC && i != j)
             ritz_triplets_put(out, j, i, one->re, one->im);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dmig_matrix(const ritz_dmig_header *owner,

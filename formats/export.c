@@ -26,34 +26,31 @@ const ritz_exporter *ritz_exporter_find(const char *name)
 ritz_status ritz_export_check(const ritz_exporter *exporter,
                               const ritz_export_request *request)
 {
-    ritz_status status = RITZ_OK;
     bool styled = request->text || request->dense || request->digits > 0;
 
-    RITZ_FAIL_IF(request->matrices && !(exporter->uses & RITZ_EXPORT_MATRICES),
-                 RITZ_ERR_ARGUMENT, "%s has no matrices to choose",
-                 exporter->name);
-    RITZ_FAIL_IF(request->matrices && !*request->matrices, RITZ_ERR_ARGUMENT,
-                 "no matrix is named");
-    RITZ_FAIL_IF(request->modes && !(exporter->uses & RITZ_EXPORT_SHAPES),
-                 RITZ_ERR_ARGUMENT,
-                 "%s takes a model whole, without a choice of modes",
-                 exporter->name);
-    RITZ_FAIL_IF(styled && !(exporter->uses & RITZ_EXPORT_STYLE),
-                 RITZ_ERR_ARGUMENT,
-                 "%s has one way of writing, without text, "
-                 "dense or digits",
-                 exporter->name);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        request->matrices && !(exporter->uses & RITZ_EXPORT_MATRICES),
+        RITZ_ERR_ARGUMENT, "%s has no matrices to choose", exporter->name);
+    RITZ_REFUSE_IF(request->matrices && !*request->matrices, RITZ_ERR_ARGUMENT,
+                   "no matrix is named");
+    RITZ_REFUSE_IF(request->modes && !(exporter->uses & RITZ_EXPORT_SHAPES),
+                   RITZ_ERR_ARGUMENT,
+                   "%s takes a model whole, without a choice of modes",
+                   exporter->name);
+    RITZ_REFUSE_IF(styled && !(exporter->uses & RITZ_EXPORT_STYLE),
+                   RITZ_ERR_ARGUMENT,
+                   "%s has one way of writing, without text, "
+                   "dense or digits",
+                   exporter->name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
 {
-    ritz_status status = RITZ_OK;
     char(*more)[256] = NULL;
     va_list args;
 
-    RITZ_NEW(more, report->count + 1);
+    RITZ_CHECK_NEW(more, report->count + 1);
     if (report->count > 0)
         memcpy(more, report->line, (size_t)report->count * sizeof *more);
     va_start(args, format);
@@ -62,8 +59,7 @@ ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
     free(report->line);
     report->line = more;
     report->count++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_export_report_free(ritz_export_report *report)

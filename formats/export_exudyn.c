@@ -55,7 +55,6 @@ done:
 static ritz_status write_values(hid_t file, const ritz_reduced *reduced,
                                 const exudyn_body *b)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = b->modes.V.ncol;
     const int64_t version = 1;
     const int64_t info[6] = {m, b->nodes.count, 3, 4, 7, 7 + m};
@@ -77,17 +76,15 @@ static ritz_status write_values(hid_t file, const ritz_reduced *reduced,
     };
 
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-        RITZ_TRY(ritz_h5_write(file, list[k].name, list[k].type, list[k].shape,
-                               list[k].values));
-        RITZ_TRY(label_set(file, list[k].name, list[k].datatype));
+        RITZ_CHECK(ritz_h5_write(file, list[k].name, list[k].type,
+                                 list[k].shape, list[k].values));
+        RITZ_CHECK(label_set(file, list[k].name, list[k].datatype));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_matrices(hid_t file, const exudyn_body *b)
 {
-    ritz_status status = RITZ_OK;
     const exudyn_terms *t = &b->terms;
     const struct {
         const char *name;
@@ -108,11 +105,10 @@ static ritz_status write_matrices(hid_t file, const exudyn_body *b)
     };
 
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-        RITZ_TRY(ritz_h5_write_dense(file, list[k].name, list[k].A));
-        RITZ_TRY(label_set(file, list[k].name, "ndarray"));
+        RITZ_CHECK(ritz_h5_write_dense(file, list[k].name, list[k].A));
+        RITZ_CHECK(label_set(file, list[k].name, "ndarray"));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_file(hid_t file, const ritz_reduced *reduced,

@@ -147,16 +147,14 @@ static ritz_status put_limits(sheet *s, int64_t count, const double *limit)
 
 static ritz_status sheet_open(const char *path, sheet *out)
 {
-    ritz_status status = RITZ_OK;
     char head[64];
 
-    RITZ_TRY(ritz_draft_new(path, &out->draft));
+    RITZ_CHECK(ritz_draft_new(path, &out->draft));
     snprintf(head, sizeof head, "MATLAB 5.0 MAT-file, written by ritz %s",
              ritz_version());
     out->file = Mat_CreateVer(out->draft.name, head, MAT_FT_MAT5);
-    RITZ_FAIL_IF(!out->file, RITZ_ERR_FILE, "cannot write '%s'", path);
-done:
-    return status;
+    RITZ_REFUSE_IF(!out->file, RITZ_ERR_FILE, "cannot write '%s'", path);
+    return RITZ_OK;
 }
 
 /* Whether the file holds the matrices that were to be written, to the bit. */
@@ -189,15 +187,12 @@ done:
 
 static ritz_status sheet_publish(sheet *s, const ritz_matrices *list)
 {
-    ritz_status status = RITZ_OK;
     int failed = Mat_Close(s->file);
 
     s->file = NULL;
-    RITZ_FAIL_IF(failed != 0, RITZ_ERR_FILE, "cannot write all of it");
-    RITZ_TRY(check(s->draft.name, list));
-    RITZ_TRY(ritz_draft_publish(&s->draft));
-done:
-    return status;
+    RITZ_REFUSE_IF(failed != 0, RITZ_ERR_FILE, "cannot write all of it");
+    RITZ_CHECK(check(s->draft.name, list));
+    return ritz_draft_publish(&s->draft);
 }
 
 static void sheet_free(sheet *s)

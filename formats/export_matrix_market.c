@@ -12,20 +12,18 @@
 /* The output with the matrix' name in the place of its '%', if there is one. */
 static ritz_status name_file(const char *output, const char *name, char **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t room = (int64_t)(strlen(output) + strlen(name)) + 1;
     const char *mark = strchr(output, '%');
     char *path = NULL;
 
-    RITZ_NEW(path, room);
+    RITZ_CHECK_NEW(path, room);
     if (mark)
         snprintf(path, (size_t)room, "%.*s%s%s", (int)(mark - output), output,
                  name, mark + 1);
     else
         snprintf(path, (size_t)room, "%s", output);
     *out = path;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_one(const ritz_matrix *one, const char *method,
@@ -51,16 +49,13 @@ static ritz_status write(const ritz_matrices *list, const char *method,
                          const ritz_export_request *request,
                          ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(list->count != 1 && !strchr(request->output, '%'),
-                 RITZ_ERR_ARGUMENT,
-                 "a Matrix Market file holds one matrix: name it with "
-                 "--matrix, or write '%%' for it in the output's name");
+    RITZ_REFUSE_IF(list->count != 1 && !strchr(request->output, '%'),
+                   RITZ_ERR_ARGUMENT,
+                   "a Matrix Market file holds one matrix: name it with "
+                   "--matrix, or write '%%' for it in the output's name");
     for (int64_t k = 0; k < list->count; k++)
-        RITZ_TRY(write_one(&list->matrix[k], method, request, report));
-done:
-    return status;
+        RITZ_CHECK(write_one(&list->matrix[k], method, request, report));
+    return RITZ_OK;
 }
 
 /* One file takes one matrix, a pattern of names all of them. */

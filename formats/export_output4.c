@@ -5,7 +5,6 @@ static ritz_status write(const ritz_matrices *list,
                          const ritz_export_request *request,
                          ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
     const ritz_output4_style style = {
         .text = request->text,
         .sparse = !request->dense,
@@ -13,19 +12,18 @@ static ritz_status write(const ritz_matrices *list,
     };
 
     for (int64_t k = 0; k < list->count; k++)
-        RITZ_TRY(ritz_export_say(report, "%s  %lld x %lld",
-                                 list->matrix[k].name,
-                                 (long long)list->matrix[k].A.nrow,
-                                 (long long)list->matrix[k].A.ncol));
+        RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld",
+                                   list->matrix[k].name,
+                                   (long long)list->matrix[k].A.nrow,
+                                   (long long)list->matrix[k].A.ncol));
     if (style.text && style.digits < 17)
-        RITZ_TRY(ritz_export_say(report,
-                                 "%lld digits: values are rounded, and a free "
-                                 "body is then not quite free",
-                                 (long long)style.digits));
-    RITZ_TRY(
-        ritz_output4_write(request->output, list->count, list->matrix, &style));
-done:
-    return status;
+        RITZ_CHECK(
+            ritz_export_say(report,
+                            "%lld digits: values are rounded, and a free "
+                            "body is then not quite free",
+                            (long long)style.digits));
+    return ritz_output4_write(request->output, list->count, list->matrix,
+                              &style);
 }
 
 static ritz_status write_reduced(const ritz_reduced *reduced,

@@ -111,30 +111,22 @@ static ritz_status write(const ritz_response *response,
                          const ritz_export_request *request,
                          ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(save(request->output, print_response, response));
-    RITZ_TRY(ritz_export_say(
+    RITZ_CHECK(save(request->output, print_response, response));
+    return ritz_export_say(
         report, "%lld frequencies, %lld outputs, %lld inputs",
         (long long)response->count, (long long)response->num_outputs,
-        (long long)response->num_inputs));
-done:
-    return status;
+        (long long)response->num_inputs);
 }
 
 static ritz_status write_simulation(const ritz_simulation *simulation,
                                     const ritz_export_request *request,
                                     ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(save(request->output, print_simulation, simulation));
-    RITZ_TRY(ritz_export_say(report, "%lld times, %lld outputs, %lld inputs",
-                             (long long)simulation->count,
-                             (long long)simulation->num_outputs,
-                             (long long)simulation->num_inputs));
-done:
-    return status;
+    RITZ_CHECK(save(request->output, print_simulation, simulation));
+    return ritz_export_say(report, "%lld times, %lld outputs, %lld inputs",
+                           (long long)simulation->count,
+                           (long long)simulation->num_outputs,
+                           (long long)simulation->num_inputs);
 }
 
 const ritz_exporter ritz_exporter_tsv = {

@@ -155,38 +155,35 @@ static void print_light(FILE *file, const char *heavy, const ritz_shapes *s,
 static ritz_status write_light(const char *path, const char *heavy,
                                const ritz_shapes *s, int64_t length)
 {
-    ritz_status status = RITZ_OK;
     const char *name = strrchr(heavy, '/');
     bool whole = true;
     FILE *file = fopen(path, "w");
 
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", path,
-                 strerror(errno));
+    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", path,
+                   strerror(errno));
     print_light(file, name ? name + 1 : heavy, s, length);
     whole = !ferror(file);
     whole = fclose(file) == 0 && whole;
-    RITZ_FAIL_IF(!whole, RITZ_ERR_FILE,
-                 "'%s' cannot be written to its end, is the disk full?", path);
-done:
-    return status;
+    RITZ_REFUSE_IF(!whole, RITZ_ERR_FILE,
+                   "'%s' cannot be written to its end, is the disk full?",
+                   path);
+    return RITZ_OK;
 }
 
 /* "shapes.xdmf.h5", in which readers look for the last ':' alone. */
 static ritz_status name_heavy(const char *output, char **out)
 {
-    ritz_status status = RITZ_OK;
     const char *name = strrchr(output, '/');
     char *heavy = NULL;
 
-    RITZ_FAIL_IF(strchr(name ? name + 1 : output, ':'), RITZ_ERR_ARGUMENT,
-                 "'%s' holds ':', which parts file and data set in XDMF",
-                 output);
-    RITZ_NEW(heavy, (int64_t)strlen(output) + 4);
+    RITZ_REFUSE_IF(strchr(name ? name + 1 : output, ':'), RITZ_ERR_ARGUMENT,
+                   "'%s' holds ':', which parts file and data set in XDMF",
+                   output);
+    RITZ_CHECK_NEW(heavy, (int64_t)strlen(output) + 4);
     strcpy(heavy, output); // NOLINT: there is room
     strcat(heavy, ".h5");  // NOLINT
     *out = heavy;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Both drafts are complete before either gets its name. */

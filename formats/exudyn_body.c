@@ -22,60 +22,53 @@ void exudyn_body_free(exudyn_body *b)
 
 static ritz_status check_parts(const ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
-                 "it was reduced --without-basis, which holds the shapes that "
-                 "the file needs");
-    RITZ_FAIL_IF(reduced->grids.count == 0, RITZ_ERR_ARGUMENT,
-                 "no grid has a position: import with --bulk");
-    RITZ_FAIL_IF(!reduced->inertia.known, RITZ_ERR_ARGUMENT,
-                 "the body has no mass");
-    RITZ_FAIL_IF(!reduced->invariants.momentum.val, RITZ_ERR_ARGUMENT,
-                 "it holds no invariants of inertia, which are kept of at most "
-                 "%d columns, and it has %lld",
-                 (int)RITZ_INVARIANT_COLUMNS, (long long)reduced->K.ncol);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        !reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
+        "it was reduced --without-basis, which holds the shapes that "
+        "the file needs");
+    RITZ_REFUSE_IF(reduced->grids.count == 0, RITZ_ERR_ARGUMENT,
+                   "no grid has a position: import with --bulk");
+    RITZ_REFUSE_IF(!reduced->inertia.known, RITZ_ERR_ARGUMENT,
+                   "the body has no mass");
+    RITZ_REFUSE_IF(
+        !reduced->invariants.momentum.val, RITZ_ERR_ARGUMENT,
+        "it holds no invariants of inertia, which are kept of at most "
+        "%d columns, and it has %lld",
+        (int)RITZ_INVARIANT_COLUMNS, (long long)reduced->K.ncol);
+    return RITZ_OK;
 }
 
 static ritz_status check_rows(const ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t i = 0; i < reduced->num_dofs; i++) {
         ritz_dof dof = reduced->dof[i];
 
-        RITZ_FAIL_IF(dof.component == 0, RITZ_ERR_ARGUMENT,
-                     "point %lld is a scalar point, which has no place in a "
-                     "body that moves",
-                     (long long)dof.grid);
-        RITZ_FAIL_IF(ritz_grids_find(&reduced->grids, dof.grid) < 0,
-                     RITZ_ERR_ARGUMENT, "grid %lld has no position",
-                     (long long)dof.grid);
+        RITZ_REFUSE_IF(dof.component == 0, RITZ_ERR_ARGUMENT,
+                       "point %lld is a scalar point, which has no place in a "
+                       "body that moves",
+                       (long long)dof.grid);
+        RITZ_REFUSE_IF(ritz_grids_find(&reduced->grids, dof.grid) < 0,
+                       RITZ_ERR_ARGUMENT, "grid %lld has no position",
+                       (long long)dof.grid);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* An absent translation is zero along its axis, which must be a basic one. */
 static ritz_status check_nodes(const ritz_nodes *nodes)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(nodes->count == 0, RITZ_ERR_ARGUMENT,
-                 "no grid has a translation");
+    RITZ_REFUSE_IF(nodes->count == 0, RITZ_ERR_ARGUMENT,
+                   "no grid has a translation");
     for (int64_t k = 0; k < nodes->count; k++) {
         const int64_t *row = nodes->row + 3 * k;
         bool all = row[0] >= 0 && row[1] >= 0 && row[2] >= 0;
 
-        RITZ_FAIL_IF(!all && !ritz_nodes_basic(nodes, k), RITZ_ERR_ARGUMENT,
-                     "grid %lld has axes of its own and brings only some of "
-                     "its translations",
-                     (long long)nodes->grids->id[nodes->grid[k]]);
+        RITZ_REFUSE_IF(!all && !ritz_nodes_basic(nodes, k), RITZ_ERR_ARGUMENT,
+                       "grid %lld has axes of its own and brings only some of "
+                       "its translations",
+                       (long long)nodes->grids->id[nodes->grid[k]]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -126,14 +119,11 @@ done:
 
 static ritz_status place_nodes(exudyn_body *b)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(b->xRef, 3 * b->nodes.count);
+    RITZ_CHECK_NEW(b->xRef, 3 * b->nodes.count);
     for (int64_t k = 0; k < b->nodes.count; k++)
         memcpy(b->xRef + 3 * k, b->nodes.grids->position + 3 * b->nodes.grid[k],
                3 * sizeof *b->xRef);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Psi: rows x, y, z of each node. */
@@ -210,21 +200,20 @@ static double find_loss(const exudyn_body *b, int64_t *mode)
 static ritz_status say_losses(const ritz_reduced *reduced, const exudyn_body *b,
                               ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
     int64_t mode = 0;
     double loss = find_loss(b, &mode);
     const double *rigid = b->invariants.rigid;
     double m = reduced->inertia.mass;
 
     if (b->num_rotating > 0)
-        RITZ_TRY(ritz_export_say(
+        RITZ_CHECK(ritz_export_say(
             report,
             "rotations of %lld grids left out: they count in mass, inertia and "
             "frequencies, not in shapes",
             (long long)b->num_rotating));
     /* rounding, of modes that 98 columns make: 3e-9, measured */
     if (b->num_rotating > 0 || loss > 1e-6)
-        RITZ_TRY(ritz_export_say(
+        RITZ_CHECK(ritz_export_say(
             report,
             "translations alone change the kinetic energy of a mode by %.2g "
             "at most, of mode %lld",
@@ -232,31 +221,26 @@ static ritz_status say_losses(const ritz_reduced *reduced, const exudyn_body *b,
     /* 1e-6: the asymmetry that import averages away */
     if (fabs(rigid[0] - m) + fabs(rigid[7] - m) + fabs(rigid[14] - m) >
         1e-6 * m)
-        RITZ_TRY(ritz_export_say(report,
-                                 "mass differs by direction, %.6g %.6g %.6g: "
-                                 "are dofs fixed? Their mean is taken",
-                                 rigid[0], rigid[7], rigid[14]));
+        RITZ_CHECK(ritz_export_say(report,
+                                   "mass differs by direction, %.6g %.6g %.6g: "
+                                   "are dofs fixed? Their mean is taken",
+                                   rigid[0], rigid[7], rigid[14]));
     if (reduced->D.val || reduced->K4.val || reduced->damping[0])
-        RITZ_TRY(ritz_export_say(report, "damping left out: the file has no "
-                                         "place for it"));
-done:
-    return status;
+        RITZ_CHECK(ritz_export_say(report, "damping left out: the file has no "
+                                           "place for it"));
+    return RITZ_OK;
 }
 
 ritz_status exudyn_body_say(const ritz_reduced *reduced, const exudyn_body *b,
                             ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_export_say(
+    RITZ_CHECK(ritz_export_say(
         report, "%lld flexible modes, %.6g to %.6g Hz, at %lld nodes",
         (long long)b->modes.V.ncol, b->modes.lowest_hz, b->modes.highest_hz,
         (long long)b->nodes.count));
-    RITZ_TRY(ritz_export_say(
+    RITZ_CHECK(ritz_export_say(
         report, "%lld rigid %s left to the moving frame%s",
         (long long)b->modes.num_rigid, b->modes.kept ? "columns" : "motions",
         b->modes.kept ? "" : ", the modes are eigenvectors of the others"));
-    RITZ_TRY(say_losses(reduced, b, report));
-done:
-    return status;
+    return say_losses(reduced, b, report);
 }

@@ -17,18 +17,16 @@
 static ritz_status select_columns(const ritz_columns *columns, bool rigid,
                                   ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     for (int64_t j = 0; j < columns->count; j++)
         count += (columns->kind[j] == RITZ_COLUMN_RIGID) == rigid;
-    RITZ_TRY(ritz_dense_new(columns->count, count, out));
+    RITZ_CHECK(ritz_dense_new(columns->count, count, out));
     count = 0;
     for (int64_t j = 0; j < columns->count; j++)
         if ((columns->kind[j] == RITZ_COLUMN_RIGID) == rigid)
             ritz_dense_col(out, count++)[j] = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static double dot(int64_t n, const double *x, const double *y)
@@ -113,12 +111,8 @@ done:
 
 static ritz_status project(const ritz_reduced *reduced, exudyn_modes *modes)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_congruence(&reduced->K, &modes->V, &modes->K));
-    RITZ_TRY(ritz_dense_congruence(&reduced->M, &modes->V, &modes->M));
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_congruence(&reduced->K, &modes->V, &modes->K));
+    return ritz_dense_congruence(&reduced->M, &modes->V, &modes->M);
 }
 
 static void note_band(const ritz_pairs *pairs, exudyn_modes *modes)

@@ -48,21 +48,19 @@ static void list_formats(char *text, size_t size)
 static ritz_status parse(const char *bytes, int64_t size, const char *folder,
                          ritz_matrices *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_format *format = NULL;
     char known[128] = "";
 
-    RITZ_FAIL_IF(size == 0, RITZ_ERR_FORMAT, "is empty");
+    RITZ_REFUSE_IF(size == 0, RITZ_ERR_FORMAT, "is empty");
     for (int k = 0; ritz_formats[k] && !format; k++)
         if (ritz_formats[k]->recognise(bytes, size))
             format = ritz_formats[k];
     list_formats(known, sizeof known);
-    RITZ_FAIL_IF(!format, RITZ_ERR_FORMAT,
-                 "holds no matrix in a format that is known: %s", known);
-    RITZ_TRY(format->read(bytes, size, folder, out));
+    RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
+                   "holds no matrix in a format that is known: %s", known);
+    RITZ_CHECK(format->read(bytes, size, folder, out));
     snprintf(out->format, sizeof out->format, "%s", format->name);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 enum { QUOTED = 192 }; /* room for a quoted path */
@@ -161,15 +159,13 @@ static spec split_spec(const char *text)
 
 ritz_status ritz_foreign_path(const char *spec_text, char **out)
 {
-    ritz_status status = RITZ_OK;
     spec s = split_spec(spec_text);
     char *path = NULL;
 
-    RITZ_NEW(path, s.path + 1);
+    RITZ_CHECK_NEW(path, s.path + 1);
     memcpy(path, spec_text, (size_t)s.path);
     *out = path;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* As they stand, or failing that whatever their case. */
@@ -227,7 +223,6 @@ static void list_names(const ritz_matrices *all, char *text, size_t size)
 static ritz_status find(const ritz_matrices *all, const spec *s,
                         const char *file, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     char holds[220];
     const char *first = all->matrix[0].name;
     const char *base = strrchr(file, '/');
@@ -243,24 +238,23 @@ static ritz_status find(const ritz_matrices *all, const spec *s,
             found = k;
     }
     list_names(all, holds, sizeof holds);
-    RITZ_FAIL_IF(!s->name && times > 1, RITZ_ERR_ARGUMENT,
-                 "'%.80s' holds %s: name one, as %.80s:%s%s", base, holds, base,
-                 first, count_name(all, first, 0) > 1 ? "#1" : "");
-    RITZ_FAIL_IF(!s->name && times == 0, RITZ_ERR_FORMAT,
-                 "'%.80s' holds no matrix, but %s", base, holds);
-    RITZ_FAIL_IF(times == 0, RITZ_ERR_ARGUMENT,
-                 "'%.80s' holds no '%.*s', but %s", base, (int)(s->length % 80),
-                 s->name, holds);
-    RITZ_FAIL_IF(s->which > times, RITZ_ERR_ARGUMENT,
-                 "'%.80s' holds %.*s %" PRId64 " times, so that #%" PRId64
-                 " is not among them",
-                 base, (int)(s->length % 80), s->name, times, s->which);
-    RITZ_FAIL_IF(s->which == 0 && times > 1, RITZ_ERR_ARGUMENT,
-                 "'%.80s' holds %s: say which, as %.80s:%.*s#1", base, holds,
-                 base, (int)(s->length % 80), s->name);
+    RITZ_REFUSE_IF(!s->name && times > 1, RITZ_ERR_ARGUMENT,
+                   "'%.80s' holds %s: name one, as %.80s:%s%s", base, holds,
+                   base, first, count_name(all, first, 0) > 1 ? "#1" : "");
+    RITZ_REFUSE_IF(!s->name && times == 0, RITZ_ERR_FORMAT,
+                   "'%.80s' holds no matrix, but %s", base, holds);
+    RITZ_REFUSE_IF(times == 0, RITZ_ERR_ARGUMENT,
+                   "'%.80s' holds no '%.*s', but %s", base,
+                   (int)(s->length % 80), s->name, holds);
+    RITZ_REFUSE_IF(s->which > times, RITZ_ERR_ARGUMENT,
+                   "'%.80s' holds %.*s %" PRId64 " times, so that #%" PRId64
+                   " is not among them",
+                   base, (int)(s->length % 80), s->name, times, s->which);
+    RITZ_REFUSE_IF(s->which == 0 && times > 1, RITZ_ERR_ARGUMENT,
+                   "'%.80s' holds %s: say which, as %.80s:%.*s#1", base, holds,
+                   base, (int)(s->length % 80), s->name);
     *out = found;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_foreign_select(const char *spec_text, ritz_matrix *out)

@@ -86,17 +86,14 @@ double ritz_mat_value(const ritz_mat_values *values, int64_t k)
 static ritz_status add(ritz_mat_list *list, const char *name,
                        ritz_matrix *matrix)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_ROOM(list->all.matrix, list->all.count, list->room);
+    RITZ_CHECK_ROOM(list->all.matrix, list->all.count, list->room);
     snprintf(matrix->name, sizeof matrix->name, "%s", name);
     if (!*matrix->spelling)
         snprintf(matrix->spelling, sizeof matrix->spelling, "%s",
                  list->spelling);
     list->all.matrix[list->all.count++] = *matrix;
     *matrix = (ritz_matrix){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
@@ -196,23 +193,21 @@ static int64_t place(const ritz_mat_values *v, int64_t k, int64_t base,
 static ritz_status spread_starts(const char *name, const ritz_mat_entries *e,
                                  int64_t *col)
 {
-    ritz_status status = RITZ_OK;
     int64_t from = place(&e->col, 0, 0, 1);
 
     for (int64_t j = 0; j < e->ncol; j++) {
         int64_t to = place(&e->col, j + 1, 0, e->count + 1);
 
-        RITZ_FAIL_IF(from < 0 || to < from, RITZ_ERR_FORMAT,
-                     "'%s': the entries of column %" PRId64
-                     " begin and end nowhere",
-                     name, j + 1);
+        RITZ_REFUSE_IF(from < 0 || to < from, RITZ_ERR_FORMAT,
+                       "'%s': the entries of column %" PRId64
+                       " begin and end nowhere",
+                       name, j + 1);
         while (from < to)
             col[from++] = j;
     }
-    RITZ_FAIL_IF(from != e->count, RITZ_ERR_FORMAT,
-                 "'%s' has entries of no column", name);
-done:
-    return status;
+    RITZ_REFUSE_IF(from != e->count, RITZ_ERR_FORMAT,
+                   "'%s' has entries of no column", name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_mat_add_sparse(ritz_mat_list *list, const char *name,

@@ -42,124 +42,108 @@ typedef struct array {
 static ritz_status take(ritz_mat_reader *r, const char *what, int type,
                         int64_t bytes, ritz_mat_element *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_mat_take(r, out));
-    RITZ_FAIL_IF(out->type != type || (bytes >= 0 && out->bytes != bytes),
-                 RITZ_ERR_FORMAT,
-                 "%s are due, not %" PRId64 " bytes of type %d", what,
-                 out->bytes, out->type);
-done:
-    return status;
+    RITZ_CHECK(ritz_mat_take(r, out));
+    RITZ_REFUSE_IF(out->type != type || (bytes >= 0 && out->bytes != bytes),
+                   RITZ_ERR_FORMAT,
+                   "%s are due, not %" PRId64 " bytes of type %d", what,
+                   out->bytes, out->type);
+    return RITZ_OK;
 }
 
 /* Values of any type. */
 static ritz_status take_values(ritz_mat_reader *r, ritz_mat_values *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_element e = {0};
     int64_t size = 0;
 
-    RITZ_TRY(ritz_mat_take(r, &e));
+    RITZ_CHECK(ritz_mat_take(r, &e));
     size = ritz_mat_size(e.type);
-    RITZ_FAIL_IF(size == 0, RITZ_ERR_FORMAT,
-                 "values of type %d, which is none of numbers", e.type);
+    RITZ_REFUSE_IF(size == 0, RITZ_ERR_FORMAT,
+                   "values of type %d, which is none of numbers", e.type);
     *out = (ritz_mat_values){e.at, e.bytes / size, e.type, r->swap};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The name in the file, after what it is a part of. */
 static ritz_status join(const char *outer, const char *name, int64_t length,
                         char out[JOINED])
 {
-    ritz_status status = RITZ_OK;
     char own[RITZ_NAME_SIZE] = "";
     char clean[RITZ_NAME_SIZE] = "";
 
     snprintf(own, sizeof own, "%.*s", (int)(length < 99 ? length : 99), name);
     if (*own)
-        RITZ_TRY(ritz_name_copy(own, clean));
+        RITZ_CHECK(ritz_name_copy(own, clean));
     snprintf(out, JOINED, "%s%s%s", outer, *outer && *clean ? "." : "", clean);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_head(ritz_mat_reader *r, const char *outer, array *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_element e = {0};
     uint64_t flags = 0;
 
-    RITZ_TRY(take(r, "array flags", RITZ_MAT_UINT32, 8, &e));
+    RITZ_CHECK(take(r, "array flags", RITZ_MAT_UINT32, 8, &e));
     flags = ritz_mat_bits(e.at, 4, r->swap);
     out->class = (int)(flags & 0xff);
     out->complex = flags & FLAG_COMPLEX;
     out->nrow = out->ncol = 1;
     if (out->class != CLASS_OPAQUE) {
-        RITZ_TRY(take(r, "dimensions", RITZ_MAT_INT32, -1, &e));
+        RITZ_CHECK(take(r, "dimensions", RITZ_MAT_INT32, -1, &e));
         out->num_dims = (int)(e.bytes / 4);
-        RITZ_FAIL_IF(out->num_dims < 2, RITZ_ERR_FORMAT,
-                     "an array of %d dimensions", out->num_dims);
+        RITZ_REFUSE_IF(out->num_dims < 2, RITZ_ERR_FORMAT,
+                       "an array of %d dimensions", out->num_dims);
         out->nrow = (int32_t)(uint32_t)ritz_mat_bits(e.at, 4, r->swap);
         out->ncol = (int32_t)(uint32_t)ritz_mat_bits(e.at + 4, 4, r->swap);
-        RITZ_FAIL_IF(out->nrow < 0 || out->ncol < 0, RITZ_ERR_FORMAT,
-                     "an array of %" PRId64 " x %" PRId64, out->nrow,
-                     out->ncol);
+        RITZ_REFUSE_IF(out->nrow < 0 || out->ncol < 0, RITZ_ERR_FORMAT,
+                       "an array of %" PRId64 " x %" PRId64, out->nrow,
+                       out->ncol);
     }
-    RITZ_TRY(take(r, "a name's letters", RITZ_MAT_INT8, -1, &e));
-    RITZ_TRY(join(outer, (const char *)e.at, e.bytes, out->name));
-done:
-    return status;
+    RITZ_CHECK(take(r, "a name's letters", RITZ_MAT_INT8, -1, &e));
+    return join(outer, (const char *)e.at, e.bytes, out->name);
 }
 
 static ritz_status read_numbers(ritz_mat_reader *r, const array *a,
                                 ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_values part[2] = {0};
 
     for (int k = 0; k < (a->complex ? 2 : 1); k++) {
-        RITZ_TRY(take_values(r, &part[k]));
-        RITZ_FAIL_IF(
+        RITZ_CHECK(take_values(r, &part[k]));
+        RITZ_REFUSE_IF(
             part[k].count / a->ncol != a->nrow || part[k].count % a->ncol != 0,
             RITZ_ERR_FORMAT,
             "'%s' is %" PRId64 " x %" PRId64 " and has %" PRId64 " values",
             a->name, a->nrow, a->ncol, part[k].count);
     }
-    RITZ_TRY(
-        ritz_mat_add_full(list, a->name, a->nrow, a->ncol, &part[0], &part[1]));
-done:
-    return status;
+    return ritz_mat_add_full(list, a->name, a->nrow, a->ncol, &part[0],
+                             &part[1]);
 }
 
 static ritz_status read_sparse(ritz_mat_reader *r, const array *a,
                                ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_entries e = {.nrow = a->nrow, .ncol = a->ncol, .starts = true};
     double count = 0.0;
 
-    RITZ_TRY(take_values(r, &e.row));
-    RITZ_TRY(take_values(r, &e.col));
-    RITZ_FAIL_IF(e.col.count != a->ncol + 1, RITZ_ERR_FORMAT,
-                 "'%s' has %" PRId64 " columns and %" PRId64
-                 " starts of columns",
-                 a->name, a->ncol, e.col.count);
+    RITZ_CHECK(take_values(r, &e.row));
+    RITZ_CHECK(take_values(r, &e.col));
+    RITZ_REFUSE_IF(e.col.count != a->ncol + 1, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " columns and %" PRId64
+                   " starts of columns",
+                   a->name, a->ncol, e.col.count);
     count = ritz_mat_value(&e.col, a->ncol);
-    RITZ_TRY(take_values(r, &e.re));
+    RITZ_CHECK(take_values(r, &e.re));
     if (a->complex)
-        RITZ_TRY(take_values(r, &e.im));
-    RITZ_FAIL_IF(!(count >= 0.0 && count <= (double)e.row.count &&
-                   count <= (double)e.re.count) ||
-                     (a->complex && count > (double)e.im.count),
-                 RITZ_ERR_FORMAT,
-                 "'%s' declares %g entries, and has %" PRId64 " values",
-                 a->name, count, e.re.count);
+        RITZ_CHECK(take_values(r, &e.im));
+    RITZ_REFUSE_IF(!(count >= 0.0 && count <= (double)e.row.count &&
+                     count <= (double)e.re.count) ||
+                       (a->complex && count > (double)e.im.count),
+                   RITZ_ERR_FORMAT,
+                   "'%s' declares %g entries, and has %" PRId64 " values",
+                   a->name, count, e.re.count);
     e.count = (int64_t)count;
-    RITZ_TRY(ritz_mat_add_sparse(list, a->name, &e));
-done:
-    return status;
+    return ritz_mat_add_sparse(list, a->name, &e);
 }
 
 /* An array that is to be read, and what it is a part of. */
@@ -178,46 +162,42 @@ typedef struct queue {
 static ritz_status take_field(ritz_mat_reader *r, const array *a,
                               const char *name, int64_t length, pending *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_element field = {0};
     char whole[JOINED];
 
-    RITZ_TRY(ritz_mat_take(r, &field));
-    RITZ_FAIL_IF(field.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
-                 "'%s': a field of type %d where an array is due", a->name,
-                 field.type);
-    RITZ_TRY(join(a->name, name, length, whole));
+    RITZ_CHECK(ritz_mat_take(r, &field));
+    RITZ_REFUSE_IF(field.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
+                   "'%s': a field of type %d where an array is due", a->name,
+                   field.type);
+    RITZ_CHECK(join(a->name, name, length, whole));
     snprintf(out->outer, sizeof out->outer, "%.*s", RITZ_NAME_SIZE - 1, whole);
     out->inside =
         (ritz_mat_reader){field.at, field.at, field.at + field.bytes, r->swap};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_struct(ritz_mat_reader *r, const array *a, int depth,
                                queue *fields)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_element names = {0};
     ritz_mat_element size = {0};
     int64_t length = 0;
 
-    RITZ_TRY(take(r, "lengths of names", RITZ_MAT_INT32, 4, &size));
+    RITZ_CHECK(take(r, "lengths of names", RITZ_MAT_INT32, 4, &size));
     length = (int32_t)(uint32_t)ritz_mat_bits(size.at, 4, r->swap);
-    RITZ_TRY(take(r, "names of fields", RITZ_MAT_INT8, -1, &names));
-    RITZ_FAIL_IF(length < 1 || names.bytes % length != 0, RITZ_ERR_FORMAT,
-                 "'%s': %" PRId64 " bytes are no names of %" PRId64 " each",
-                 a->name, names.bytes, length);
+    RITZ_CHECK(take(r, "names of fields", RITZ_MAT_INT8, -1, &names));
+    RITZ_REFUSE_IF(length < 1 || names.bytes % length != 0, RITZ_ERR_FORMAT,
+                   "'%s': %" PRId64 " bytes are no names of %" PRId64 " each",
+                   a->name, names.bytes, length);
     for (int64_t k = 0; k < names.bytes / length; k++) {
         pending field = {.depth = depth + 1};
 
-        RITZ_TRY(take_field(r, a, (const char *)names.at + k * length, length,
-                            &field));
-        RITZ_ROOM(fields->item, fields->count, fields->room);
+        RITZ_CHECK(take_field(r, a, (const char *)names.at + k * length, length,
+                              &field));
+        RITZ_CHECK_ROOM(fields->item, fields->count, fields->room);
         fields->item[fields->count++] = field;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Why an array is no matrix, or NULL. */
@@ -247,7 +227,6 @@ static const char *why_none(const array *a, int depth)
 /* A matrix, what is none, or a struct, whose fields then wait. */
 static ritz_status read_one(pending *p, ritz_mat_list *list, queue *fields)
 {
-    ritz_status status = RITZ_OK;
     ritz_mat_reader *r = &p->inside;
     array a = {0};
     const char *why = NULL;
@@ -255,21 +234,20 @@ static ritz_status read_one(pending *p, ritz_mat_list *list, queue *fields)
     if (r->at == r->end) /* an empty field is nothing but its tag */
         return *p->outer ? ritz_mat_add_other(list, p->outer, "empty")
                          : RITZ_OK;
-    RITZ_TRY(read_head(r, p->outer, &a));
+    RITZ_CHECK(read_head(r, p->outer, &a));
     if (!*a.name)
         return RITZ_OK; /* what MATLAB keeps for itself */
     a.name[RITZ_NAME_SIZE - 1] = '\0';
     why = why_none(&a, p->depth);
     if (why)
-        RITZ_TRY(ritz_mat_add_other(list, a.name, why));
+        RITZ_CHECK(ritz_mat_add_other(list, a.name, why));
     else if (a.class == CLASS_STRUCT)
-        RITZ_TRY(read_struct(r, &a, p->depth, fields));
+        RITZ_CHECK(read_struct(r, &a, p->depth, fields));
     else if (a.class == CLASS_SPARSE)
-        RITZ_TRY(read_sparse(r, &a, list));
+        RITZ_CHECK(read_sparse(r, &a, list));
     else
-        RITZ_TRY(read_numbers(r, &a, list));
-done:
-    return status;
+        RITZ_CHECK(read_numbers(r, &a, list));
+    return RITZ_OK;
 }
 
 ritz_status ritz_mat_read_array(const ritz_mat_reader *reader,

@@ -327,16 +327,14 @@ done:
 static ritz_status add_group(walk *w, hid_t object, const char *whole,
                              int depth)
 {
-    ritz_status status = RITZ_OK;
     group *g = NULL;
 
-    RITZ_ROOM(w->group, w->count, w->room);
+    RITZ_CHECK_ROOM(w->group, w->count, w->room);
     g = &w->group[w->count++];
     *g = (group){.id = object, .depth = depth};
     H5Iinc_ref(object);
     snprintf(g->name, sizeof g->name, "%.*s", (int)sizeof g->name - 1, whole);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_member(walk *w, const group *in, const char *name)

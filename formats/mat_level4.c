@@ -76,22 +76,21 @@ bool ritz_mat_is_level4(const char *bytes, int64_t size)
 static ritz_status add_sparse(ritz_mat_list *list, const char *name,
                               const head *h, const ritz_mat_values *all)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = h->nrow;
     int64_t bytes = ritz_mat_size(h->type);
     ritz_mat_values column[4] = {0};
     ritz_mat_entries e = {.count = n - 1, .base = 1};
     double size[2];
 
-    RITZ_FAIL_IF(n < 1 || h->ncol < 3 || h->ncol > 4 || h->parts > 1,
-                 RITZ_ERR_FORMAT, "'%s' is no sparse matrix", name);
+    RITZ_REFUSE_IF(n < 1 || h->ncol < 3 || h->ncol > 4 || h->parts > 1,
+                   RITZ_ERR_FORMAT, "'%s' is no sparse matrix", name);
     for (int64_t j = 0; j < h->ncol; j++)
         column[j] =
             (ritz_mat_values){all->at + j * n * bytes, n, all->type, all->swap};
     for (int k = 0; k < 2; k++) {
         size[k] = ritz_mat_value(&column[k], n - 1);
-        RITZ_FAIL_IF(!(size[k] >= 0.0 && size[k] < 9e15), RITZ_ERR_FORMAT,
-                     "'%s' has no size", name);
+        RITZ_REFUSE_IF(!(size[k] >= 0.0 && size[k] < 9e15), RITZ_ERR_FORMAT,
+                       "'%s' has no size", name);
     }
     e.nrow = (int64_t)size[0];
     e.ncol = (int64_t)size[1];
@@ -100,17 +99,15 @@ static ritz_status add_sparse(ritz_mat_list *list, const char *name,
     e.re = column[2];
     e.im = column[3];
     if (e.nrow == 0 || e.ncol == 0)
-        RITZ_TRY(ritz_mat_add_other(list, name, "empty"));
+        RITZ_CHECK(ritz_mat_add_other(list, name, "empty"));
     else
-        RITZ_TRY(ritz_mat_add_sparse(list, name, &e));
-done:
-    return status;
+        RITZ_CHECK(ritz_mat_add_sparse(list, name, &e));
+    return RITZ_OK;
 }
 
 static ritz_status add(ritz_mat_list *list, const char *name, const head *h,
                        const char *values)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = h->nrow * h->ncol;
     ritz_mat_values re = {(const unsigned char *)values, count, h->type,
                           h->swap};
@@ -121,21 +118,19 @@ static ritz_status add(ritz_mat_list *list, const char *name, const head *h,
         im.at += count * ritz_mat_size(h->type);
     }
     if (h->form == TEXT)
-        RITZ_TRY(ritz_mat_add_other(list, name, "text"));
+        RITZ_CHECK(ritz_mat_add_other(list, name, "text"));
     else if (count == 0)
-        RITZ_TRY(ritz_mat_add_other(list, name, "empty"));
+        RITZ_CHECK(ritz_mat_add_other(list, name, "empty"));
     else if (h->form == SPARSE)
-        RITZ_TRY(add_sparse(list, name, h, &re));
+        RITZ_CHECK(add_sparse(list, name, h, &re));
     else
-        RITZ_TRY(ritz_mat_add_full(list, name, h->nrow, h->ncol, &re, &im));
-done:
-    return status;
+        RITZ_CHECK(ritz_mat_add_full(list, name, h->nrow, h->ncol, &re, &im));
+    return RITZ_OK;
 }
 
 ritz_status ritz_mat_read_level4(const char *bytes, int64_t size,
                                  ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
     char name[RITZ_NAME_SIZE];
     int64_t at = 0;
     head h;
@@ -144,20 +139,19 @@ ritz_status ritz_mat_read_level4(const char *bytes, int64_t size,
         int64_t left = size - at;
         int64_t values = 0;
 
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             !take_head(bytes + at, left, &h) || left - HEAD < h.name_size ||
                 !take_name(bytes + at + HEAD, h.name_size, name),
             RITZ_ERR_FORMAT, "byte %" PRId64 ": no matrix begins here", at);
         left -= HEAD + h.name_size;
         at += HEAD + h.name_size;
         values = left / (h.parts * ritz_mat_size(h.type));
-        RITZ_FAIL_IF(h.ncol > 0 && h.nrow > values / h.ncol, RITZ_ERR_FORMAT,
-                     "'%s' is %" PRId64 " x %" PRId64 ", but %" PRId64
-                     " bytes are left",
-                     name, h.nrow, h.ncol, left);
-        RITZ_TRY(add(list, name, &h, bytes + at));
+        RITZ_REFUSE_IF(h.ncol > 0 && h.nrow > values / h.ncol, RITZ_ERR_FORMAT,
+                       "'%s' is %" PRId64 " x %" PRId64 ", but %" PRId64
+                       " bytes are left",
+                       name, h.nrow, h.ncol, left);
+        RITZ_CHECK(add(list, name, &h, bytes + at));
         at += h.nrow * h.ncol * h.parts * ritz_mat_size(h.type);
     }
-done:
-    return status;
+    return RITZ_OK;
 }

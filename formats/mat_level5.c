@@ -45,40 +45,38 @@ bool ritz_mat_is_level5(const char *bytes, int64_t size)
 
 ritz_status ritz_mat_take(ritz_mat_reader *r, ritz_mat_element *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t left = r->end - r->at;
     int64_t where = r->at - r->begin;
     uint64_t first = 0;
     int64_t length = 0;
 
-    RITZ_FAIL_IF(left < 8, RITZ_ERR_FORMAT,
-                 "byte %" PRId64 ": an element begins, but %" PRId64
-                 " bytes are left",
-                 where, left);
+    RITZ_REFUSE_IF(left < 8, RITZ_ERR_FORMAT,
+                   "byte %" PRId64 ": an element begins, but %" PRId64
+                   " bytes are left",
+                   where, left);
     first = ritz_mat_bits(r->at, 4, r->swap);
     if (first >> 16) { /* small */
         length = (int64_t)(first >> 16);
-        RITZ_FAIL_IF(length > 4, RITZ_ERR_FORMAT,
-                     "byte %" PRId64 ": an element of %" PRId64
-                     " bytes where 4 have room",
-                     where, length);
+        RITZ_REFUSE_IF(length > 4, RITZ_ERR_FORMAT,
+                       "byte %" PRId64 ": an element of %" PRId64
+                       " bytes where 4 have room",
+                       where, length);
         *out = (ritz_mat_element){(int)(first & 0xffff), r->at + 4, length};
         r->at += 8;
         return RITZ_OK;
     }
     length = (int64_t)ritz_mat_bits(r->at + 4, 4, r->swap);
-    RITZ_FAIL_IF(length > left - 8, RITZ_ERR_FORMAT,
-                 "byte %" PRId64 ": an element of %" PRId64
-                 " bytes begins, but %" PRId64 " are left",
-                 where, length, left - 8);
+    RITZ_REFUSE_IF(length > left - 8, RITZ_ERR_FORMAT,
+                   "byte %" PRId64 ": an element of %" PRId64
+                   " bytes begins, but %" PRId64 " are left",
+                   where, length, left - 8);
     *out = (ritz_mat_element){(int)first, r->at + 8, length};
     r->at += 8 + length;
     if (first != RITZ_MAT_COMPRESSED)
         r->at += (8 - length % 8) % 8;
     if (r->at > r->end)
         r->at = r->end; /* the last one may come without its padding */
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Inflate until `room` bytes stand in out; the number that do. */
@@ -94,7 +92,6 @@ static int64_t inflate_into(z_stream *stream, unsigned char *out, int64_t room)
 static ritz_status inflate_rest(z_stream *stream, unsigned char *out,
                                 int64_t room)
 {
-    ritz_status status = RITZ_OK;
     int64_t done_bytes = 0;
     int last = Z_OK;
 
@@ -107,10 +104,9 @@ static ritz_status inflate_rest(z_stream *stream, unsigned char *out,
         last = inflate(stream, Z_NO_FLUSH);
         done_bytes += piece - (int64_t)stream->avail_out;
     }
-    RITZ_FAIL_IF(last != Z_STREAM_END || done_bytes + 1 != room,
-                 RITZ_ERR_FORMAT, "compressed data are damaged");
-done:
-    return status;
+    RITZ_REFUSE_IF(last != Z_STREAM_END || done_bytes + 1 != room,
+                   RITZ_ERR_FORMAT, "compressed data are damaged");
+    return RITZ_OK;
 }
 
 /* The element that a compressed one holds, whole, with its tag. */
@@ -175,7 +171,6 @@ done:
 ritz_status ritz_mat_read_level5(const char *bytes, int64_t size,
                                  ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
     const unsigned char *begin = (const unsigned char *)bytes;
     ritz_mat_reader r = {begin, begin + HEAD, begin + size, false};
     char where[RITZ_NAME_SIZE];
@@ -185,9 +180,8 @@ ritz_status ritz_mat_read_level5(const char *bytes, int64_t size,
         ritz_mat_element e = {0};
 
         snprintf(where, sizeof where, "byte %" PRId64, (int64_t)(r.at - begin));
-        RITZ_TRY(ritz_mat_take(&r, &e));
-        RITZ_TRY_IN(where, read_element(&e, r.swap, list));
+        RITZ_CHECK(ritz_mat_take(&r, &e));
+        RITZ_CHECK_IN(where, read_element(&e, r.swap, list));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -60,32 +60,30 @@ static ritz_status read_banner(ritz_market *m)
 {
     static const char *const banner[] = {"%%MatrixMarket", NULL};
     static const char *const object[] = {"matrix", NULL};
-    ritz_status status = RITZ_OK;
     const char *at = m->text.at;
     const char *stop = ritz_lines_next(&m->text) ? m->text.line_end : at;
 
-    RITZ_FAIL_IF(take_word(&at, stop, banner) < 0 ||
-                     take_word(&at, stop, object) < 0,
-                 RITZ_ERR_FORMAT, "line 1: not '%%%%MatrixMarket matrix'");
+    RITZ_REFUSE_IF(take_word(&at, stop, banner) < 0 ||
+                       take_word(&at, stop, object) < 0,
+                   RITZ_ERR_FORMAT, "line 1: not '%%%%MatrixMarket matrix'");
     m->layout = take_word(&at, stop, layouts);
-    RITZ_FAIL_IF(m->layout < 0, RITZ_ERR_FORMAT,
-                 "line 1: neither 'coordinate' nor 'array'");
+    RITZ_REFUSE_IF(m->layout < 0, RITZ_ERR_FORMAT,
+                   "line 1: neither 'coordinate' nor 'array'");
     m->field = take_word(&at, stop, fields);
-    RITZ_FAIL_IF(m->field < 0 || (m->field == RITZ_MARKET_PATTERN &&
-                                  m->layout == RITZ_MARKET_ARRAY),
-                 RITZ_ERR_FORMAT,
-                 "line 1: the values are not real, integer, complex or "
-                 "a pattern");
+    RITZ_REFUSE_IF(m->field < 0 || (m->field == RITZ_MARKET_PATTERN &&
+                                    m->layout == RITZ_MARKET_ARRAY),
+                   RITZ_ERR_FORMAT,
+                   "line 1: the values are not real, integer, complex or "
+                   "a pattern");
     m->symmetry = take_word(&at, stop, symmetries);
-    RITZ_FAIL_IF(m->symmetry < 0, RITZ_ERR_FORMAT,
-                 "line 1: not general, symmetric, skew-symmetric or "
-                 "hermitian");
+    RITZ_REFUSE_IF(m->symmetry < 0, RITZ_ERR_FORMAT,
+                   "line 1: not general, symmetric, skew-symmetric or "
+                   "hermitian");
     m->kind = symmetries[m->symmetry];
-    RITZ_FAIL_IF(m->symmetry == RITZ_MARKET_HERMITIAN &&
-                     m->field != RITZ_MARKET_COMPLEX,
-                 RITZ_ERR_FORMAT, "line 1: hermitian, but not complex");
-done:
-    return status;
+    RITZ_REFUSE_IF(m->symmetry == RITZ_MARKET_HERMITIAN &&
+                       m->field != RITZ_MARKET_COMPLEX,
+                   RITZ_ERR_FORMAT, "line 1: hermitian, but not complex");
+    return RITZ_OK;
 }
 
 /* Values of an array, or -1 if there are more than the file has bytes. */
@@ -105,42 +103,40 @@ static int64_t array_values(const ritz_market *m, int64_t bytes)
 /* Sizes, and room for entries: each takes at least two bytes of the file. */
 static ritz_status read_size(ritz_market *m)
 {
-    ritz_status status = RITZ_OK;
     int64_t n[3] = {0};
     int64_t bytes = 0;
 
-    RITZ_FAIL_IF(!ritz_market_next(m), RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": ends before its size", m->text.number);
-    RITZ_FAIL_IF(!ritz_decimal_scan_row(
-                     m->text.line, m->text.line_end,
-                     m->layout == RITZ_MARKET_COORDINATE ? 3 : 2, n) ||
-                     n[0] < 0 || n[1] < 0 || n[2] < 0,
-                 RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' is not a size",
-                 m->text.number,
-                 ritz_lines_quoted(m->text.line, m->text.line_end),
-                 m->text.line);
+    RITZ_REFUSE_IF(!ritz_market_next(m), RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": ends before its size", m->text.number);
+    RITZ_REFUSE_IF(!ritz_decimal_scan_row(
+                       m->text.line, m->text.line_end,
+                       m->layout == RITZ_MARKET_COORDINATE ? 3 : 2, n) ||
+                       n[0] < 0 || n[1] < 0 || n[2] < 0,
+                   RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' is not a size",
+                   m->text.number,
+                   ritz_lines_quoted(m->text.line, m->text.line_end),
+                   m->text.line);
     m->nrow = n[0];
     m->ncol = n[1];
     bytes = m->text.end - m->text.at;
-    RITZ_FAIL_IF(m->symmetry != RITZ_MARKET_GENERAL && m->nrow != m->ncol,
-                 RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": a %s matrix cannot be %" PRId64
-                 " x %" PRId64,
-                 m->text.number, m->kind, m->nrow, m->ncol);
-    RITZ_FAIL_IF(m->nrow - NULL_ROWS > bytes || m->ncol - NULL_ROWS > bytes,
-                 RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": %" PRId64 " x %" PRId64
-                 " is far more than the file can fill",
-                 m->text.number, m->nrow, m->ncol);
+    RITZ_REFUSE_IF(m->symmetry != RITZ_MARKET_GENERAL && m->nrow != m->ncol,
+                   RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": a %s matrix cannot be %" PRId64
+                   " x %" PRId64,
+                   m->text.number, m->kind, m->nrow, m->ncol);
+    RITZ_REFUSE_IF(m->nrow - NULL_ROWS > bytes || m->ncol - NULL_ROWS > bytes,
+                   RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": %" PRId64 " x %" PRId64
+                   " is far more than the file can fill",
+                   m->text.number, m->nrow, m->ncol);
     m->most =
         m->layout == RITZ_MARKET_COORDINATE ? n[2] : array_values(m, bytes);
-    RITZ_FAIL_IF(m->most < 0 || m->most > bytes / 2 + 1, RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": declares more entries than %" PRId64
-                 " bytes can hold",
-                 m->text.number, bytes);
-    RITZ_NEW(m->entry, m->most);
-done:
-    return status;
+    RITZ_REFUSE_IF(m->most < 0 || m->most > bytes / 2 + 1, RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": declares more entries than %" PRId64
+                   " bytes can hold",
+                   m->text.number, bytes);
+    RITZ_CHECK_NEW(m->entry, m->most);
+    return RITZ_OK;
 }
 
 static bool recognise(const char *bytes, int64_t size)

@@ -57,13 +57,12 @@ done:
 
 ritz_status ritz_market_settle(ritz_market *m)
 {
-    ritz_status status = RITZ_OK;
     int64_t kept = 0;
     int64_t run = 0; /* entries at one place */
 
     if (!is_sorted(m)) {
-        RITZ_TRY(sort_by(m, true));
-        RITZ_TRY(sort_by(m, false));
+        RITZ_CHECK(sort_by(m, true));
+        RITZ_CHECK(sort_by(m, false));
     }
     for (int64_t k = 0; k < m->count; k++) {
         const ritz_market_entry *e = &m->entry[k];
@@ -75,17 +74,16 @@ ritz_status ritz_market_settle(ritz_market *m)
             continue;
         }
         run++;
-        RITZ_FAIL_IF(last->flipped == e->flipped || run > 2, RITZ_ERR_FORMAT,
-                     "entry (%" PRId64 ", %" PRId64 ") is given twice",
-                     e->row + 1, e->col + 1);
-        RITZ_FAIL_IF(last->re != e->re || last->im != e->im, RITZ_ERR_FORMAT,
-                     "entries (%" PRId64 ", %" PRId64 ") and (%" PRId64
-                     ", %" PRId64 ") of a %s matrix disagree",
-                     e->row + 1, e->col + 1, e->col + 1, e->row + 1, m->kind);
+        RITZ_REFUSE_IF(last->flipped == e->flipped || run > 2, RITZ_ERR_FORMAT,
+                       "entry (%" PRId64 ", %" PRId64 ") is given twice",
+                       e->row + 1, e->col + 1);
+        RITZ_REFUSE_IF(last->re != e->re || last->im != e->im, RITZ_ERR_FORMAT,
+                       "entries (%" PRId64 ", %" PRId64 ") and (%" PRId64
+                       ", %" PRId64 ") of a %s matrix disagree",
+                       e->row + 1, e->col + 1, e->col + 1, e->row + 1, m->kind);
     }
     m->count = kept;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_zero(const ritz_market_entry *e)

@@ -56,7 +56,6 @@ static void write_comment(FILE *file, const char *comment)
 
 static ritz_status write_market(FILE *file, const void *what)
 {
-    ritz_status status = RITZ_OK;
     const job *all = what;
     const ritz_matrix *m = all->matrix;
     const ritz_sparse *A = &m->A;
@@ -66,7 +65,7 @@ static ritz_status write_market(FILE *file, const void *what)
     bool array = A->ncol > 0 && nnz % A->ncol == 0 && nnz / A->ncol == A->nrow;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_sink_check(m));
+    RITZ_CHECK(ritz_sink_check(m));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             count += !symmetric || A->rowind[p] >= j;
@@ -90,8 +89,7 @@ static ritz_status write_market(FILE *file, const void *what)
                 fprintf(file, " %.16e", m->imaginary[p]);
             fputc('\n', file);
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_matrix_market_write(const char *path,

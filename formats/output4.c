@@ -94,26 +94,24 @@ done:
 /* Room for pointers 0..column + 1, at most of all columns. */
 static ritz_status grow_pointers(ritz_output4_build *build, int64_t column)
 {
-    ritz_status status = RITZ_OK;
     int64_t most = build->header.ncol + 1;
     int64_t room = 2 * build->pointers;
     int64_t *colptr = NULL;
 
     if (column + 2 <= build->pointers)
-        goto done;
+        return RITZ_OK;
     if (room < column + 2)
         room = column + 2;
     if (room > most)
         room = most;
-    RITZ_NEW(colptr, room);
+    RITZ_CHECK_NEW(colptr, room);
     if (build->pointers > 0)
         memcpy(colptr, build->matrix.A.colptr,
                (size_t)build->pointers * sizeof *colptr);
     free(build->matrix.A.colptr);
     build->matrix.A.colptr = colptr;
     build->pointers = room;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_output4_begin(ritz_output4_list *list,
@@ -145,30 +143,23 @@ done:
 /* Columns after the present one up to `column` begin where entries end. */
 static ritz_status close_columns(ritz_output4_build *build, int64_t column)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(grow_pointers(build, column - 1));
+    RITZ_CHECK(grow_pointers(build, column - 1));
     for (int64_t j = build->column + 1; j <= column; j++)
         build->matrix.A.colptr[j] = build->nnz;
     build->column = column;
     build->below = 0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
-                 "'%s' has %" PRId64 " columns, but one is numbered %" PRId64,
-                 build->header.name, build->header.ncol, column);
-    RITZ_FAIL_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
-                 "column %" PRId64 " of '%s' follows column %" PRId64, column,
-                 build->header.name, build->column + 1);
-    RITZ_TRY(close_columns(build, column - 1));
-done:
-    return status;
+    RITZ_REFUSE_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " columns, but one is numbered %" PRId64,
+                   build->header.name, build->header.ncol, column);
+    RITZ_REFUSE_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' follows column %" PRId64, column,
+                   build->header.name, build->column + 1);
+    return close_columns(build, column - 1);
 }
 
 void ritz_output4_rewind(ritz_output4_build *build)
@@ -180,23 +171,20 @@ void ritz_output4_rewind(ritz_output4_build *build)
 ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
                               int64_t count)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(row < build->below, RITZ_ERR_FORMAT,
-                 "rows of column %" PRId64 " of '%s' do not ascend",
-                 build->column + 1, build->header.name);
-    RITZ_FAIL_IF(count > build->header.nrow || row > build->header.nrow - count,
-                 RITZ_ERR_FORMAT,
-                 "column %" PRId64 " of '%s' has %" PRId64
-                 " values from row %" PRId64 ", but the matrix %" PRId64
-                 " rows",
-                 build->column + 1, build->header.name, count, row + 1,
-                 build->header.nrow);
+    RITZ_REFUSE_IF(row < build->below, RITZ_ERR_FORMAT,
+                   "rows of column %" PRId64 " of '%s' do not ascend",
+                   build->column + 1, build->header.name);
+    RITZ_REFUSE_IF(
+        count > build->header.nrow || row > build->header.nrow - count,
+        RITZ_ERR_FORMAT,
+        "column %" PRId64 " of '%s' has %" PRId64 " values from row %" PRId64
+        ", but the matrix %" PRId64 " rows",
+        build->column + 1, build->header.name, count, row + 1,
+        build->header.nrow);
     build->below = row + count;
     if (count > build->room - build->nnz)
-        RITZ_TRY(grow(build, build->nnz + count));
-done:
-    return status;
+        RITZ_CHECK(grow(build, build->nnz + count));
+    return RITZ_OK;
 }
 
 ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row)
@@ -209,15 +197,12 @@ ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row)
 
 ritz_status ritz_output4_end(ritz_output4_list *list, ritz_output4_build *build)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(close_columns(build, build->header.ncol));
-    RITZ_TRY(ritz_output4_obey(list, build));
-    RITZ_ROOM(list->all.matrix, list->all.count, list->room);
+    RITZ_CHECK(close_columns(build, build->header.ncol));
+    RITZ_CHECK(ritz_output4_obey(list, build));
+    RITZ_CHECK_ROOM(list->all.matrix, list->all.count, list->room);
     list->all.matrix[list->all.count++] = build->matrix;
     build->matrix = (ritz_matrix){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_output4_name(const char *bytes, int64_t size,

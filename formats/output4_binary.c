@@ -44,29 +44,26 @@ static ritz_status read_numbers(const ritz_binary *b, ritz_output4_build *build,
                                 const unsigned char *at, int64_t row,
                                 int64_t reals)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = reals / build->numbers;
     bool complex = build->numbers == 2;
 
-    RITZ_TRY(ritz_output4_rows(build, row, count));
+    RITZ_CHECK(ritz_output4_rows(build, row, count));
     for (int64_t k = 0; k < count; k++) {
         double re = load_real(b, at);
         double im = complex ? load_real(b, at + b->real) : 0.0;
 
         if (!isfinite(re) || !isfinite(im))
-            RITZ_TRY(ritz_output4_infinite(build, row + k));
+            RITZ_CHECK(ritz_output4_infinite(build, row + k));
         ritz_output4_put(build, row + k, re, im);
         at += build->numbers * b->real;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The strings that fill `data`, by one reading of their headers. */
 static ritz_status read_strings(const ritz_binary *b, ritz_output4_build *build,
                                 int64_t rule, const ritz_binary_record *data)
 {
-    ritz_status status = RITZ_OK;
     int64_t words = data->size / b->integer;
     int64_t integers = ritz_output4_integers(rule);
     const unsigned char *at = data->at;
@@ -77,20 +74,19 @@ static ritz_status read_strings(const ritz_binary *b, ritz_output4_build *build,
 
         for (int64_t k = 0; k < integers && k < left; k++)
             n[k] = ritz_binary_integer(b, at + k * b->integer, b->integer);
-        RITZ_FAIL_IF(!ritz_output4_decode(build, rule, b->real / b->integer, n,
-                                          left, &string),
-                     RITZ_ERR_FORMAT,
-                     "byte %td: strings of column %" PRId64
-                     " of '%s' do not add up to %" PRId64 " words",
-                     at - b->begin, build->column + 1, build->header.name,
-                     words);
-        RITZ_TRY(read_numbers(b, build, at + integers * b->integer, string.row,
-                              string.reals));
+        RITZ_REFUSE_IF(!ritz_output4_decode(build, rule, b->real / b->integer,
+                                            n, left, &string),
+                       RITZ_ERR_FORMAT,
+                       "byte %td: strings of column %" PRId64
+                       " of '%s' do not add up to %" PRId64 " words",
+                       at - b->begin, build->column + 1, build->header.name,
+                       words);
+        RITZ_CHECK(read_numbers(b, build, at + integers * b->integer,
+                                string.row, string.reals));
         at += string.words * b->integer;
         left -= string.words;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The reading whose strings add up; if none, the first says what is wrong. */
@@ -119,58 +115,55 @@ static ritz_status read_dense(const ritz_binary *b, ritz_output4_build *build,
                               const ritz_binary_record *data, int64_t row,
                               int64_t words)
 {
-    ritz_status status = RITZ_OK;
     int64_t reals = data->size / b->real;
 
-    RITZ_FAIL_IF(data->size % (b->real * build->numbers) != 0, RITZ_ERR_FORMAT,
-                 "column %" PRId64 " of '%s' holds part of a value",
-                 build->column + 1, build->header.name);
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(data->size % (b->real * build->numbers) != 0,
+                   RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' holds part of a value",
+                   build->column + 1, build->header.name);
+    RITZ_REFUSE_IF(
         words != data->size / b->integer && words != reals, RITZ_ERR_FORMAT,
         "column %" PRId64 " of '%s' is said to hold %" PRId64
         " words, but its record %" PRId64,
         build->column + 1, build->header.name, words, data->size / b->integer);
-    RITZ_TRY(read_numbers(b, build, data->at, row, reals));
-done:
-    return status;
+    return read_numbers(b, build, data->at, row, reals);
 }
 
 /* One record after the header; `last` if it ends the matrix. */
 static ritz_status read_column(ritz_binary *b, ritz_output4_build *build,
                                bool *last)
 {
-    ritz_status status = RITZ_OK;
     ritz_binary_record column = {0};
     ritz_binary_record data = {0};
     int64_t n[3] = {0};
 
-    RITZ_TRY(ritz_binary_take(b, &column));
-    RITZ_FAIL_IF(column.size < 0, RITZ_ERR_FORMAT,
-                 "'%s' ends after column %" PRId64 " of %" PRId64,
-                 build->header.name, build->column + 1, build->header.ncol);
-    RITZ_FAIL_IF(column.size < 3 * b->integer, RITZ_ERR_FORMAT,
-                 "byte %td: a record of %" PRId64 " bytes is no column of '%s'",
-                 column.at - b->begin, column.size, build->header.name);
+    RITZ_CHECK(ritz_binary_take(b, &column));
+    RITZ_REFUSE_IF(column.size < 0, RITZ_ERR_FORMAT,
+                   "'%s' ends after column %" PRId64 " of %" PRId64,
+                   build->header.name, build->column + 1, build->header.ncol);
+    RITZ_REFUSE_IF(column.size < 3 * b->integer, RITZ_ERR_FORMAT,
+                   "byte %td: a record of %" PRId64
+                   " bytes is no column of '%s'",
+                   column.at - b->begin, column.size, build->header.name);
     for (int64_t k = 0; k < 3; k++)
         n[k] = ritz_binary_integer(b, column.at + k * b->integer, b->integer);
     data.at = column.at + 3 * b->integer;
     data.size = column.size - 3 * b->integer;
     *last = n[0] == build->header.ncol + 1;
     if (*last)
-        goto done;
-    RITZ_TRY(ritz_output4_column(build, n[0]));
-    RITZ_FAIL_IF(n[1] < 0 || n[1] > build->header.nrow ||
-                     data.size % b->integer != 0,
-                 RITZ_ERR_FORMAT,
-                 "column %" PRId64 " of '%s' begins at row %" PRId64
-                 ", but the matrix has %" PRId64 " rows",
-                 n[0], build->header.name, n[1], build->header.nrow);
+        return RITZ_OK;
+    RITZ_CHECK(ritz_output4_column(build, n[0]));
+    RITZ_REFUSE_IF(n[1] < 0 || n[1] > build->header.nrow ||
+                       data.size % b->integer != 0,
+                   RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' begins at row %" PRId64
+                   ", but the matrix has %" PRId64 " rows",
+                   n[0], build->header.name, n[1], build->header.nrow);
     if (n[1] == 0)
-        RITZ_TRY(read_sparse(b, build, &data));
+        RITZ_CHECK(read_sparse(b, build, &data));
     else
-        RITZ_TRY(read_dense(b, build, &data, n[1] - 1, n[2]));
-done:
-    return status;
+        RITZ_CHECK(read_dense(b, build, &data, n[1] - 1, n[2]));
+    return RITZ_OK;
 }
 
 static ritz_status read_matrix(ritz_binary *b, const ritz_binary_record *first,
@@ -212,17 +205,15 @@ bool ritz_output4_is_binary(const char *bytes, int64_t size)
 ritz_status ritz_output4_read_binary(const char *bytes, int64_t size,
                                      ritz_output4_list *list)
 {
-    ritz_status status = RITZ_OK;
     ritz_binary b = {0};
     ritz_binary_record first = {0};
 
     (void)ritz_binary_spelling(bytes, size, &b);
     for (;;) {
-        RITZ_TRY(ritz_binary_take(&b, &first));
+        RITZ_CHECK(ritz_binary_take(&b, &first));
         if (first.size < 0)
-            goto done;
-        RITZ_TRY(read_matrix(&b, &first, list));
+            return RITZ_OK;
+        RITZ_CHECK(read_matrix(&b, &first, list));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -31,10 +31,9 @@ typedef enum shape { MIRRORED, ON_DIAGONAL, UNIT } shape;
 static ritz_status list_entries(const ritz_matrix *m, shape as, int64_t n,
                                 ritz_triplets *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *A = &m->A;
 
-    RITZ_TRY(ritz_triplets_new(as == UNIT ? n : 2 * A->colptr[A->ncol], out));
+    RITZ_CHECK(ritz_triplets_new(as == UNIT ? n : 2 * A->colptr[A->ncol], out));
     for (int64_t k = 0; as == UNIT && k < n; k++)
         ritz_triplets_put(out, k, k, 1.0, 0.0);
     for (int64_t j = 0; as != UNIT && j < A->ncol; j++)
@@ -50,8 +49,7 @@ static ritz_status list_entries(const ritz_matrix *m, shape as, int64_t n,
             if (as == MIRRORED && i != j)
                 ritz_triplets_put(out, j, i, A->val[p], im);
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* m := the n x n matrix that its entries are a shorthand of. */
@@ -70,7 +68,6 @@ done:
 ritz_status ritz_output4_obey(ritz_output4_list *list,
                               ritz_output4_build *build)
 {
-    ritz_status status = RITZ_OK;
     ritz_matrix *m = &build->matrix;
     int64_t nrow = m->A.nrow;
     int64_t ncol = m->A.ncol;
@@ -79,18 +76,17 @@ ritz_status ritz_output4_obey(ritz_output4_list *list,
     bool vector = form == DIAGONAL && (nrow == 1 || ncol == 1) && n > 1;
     bool unit = form == IDENTITY && nrow == ncol && build->nnz == 0;
 
-    RITZ_FAIL_IF((vector || unit) && n > list->columns, RITZ_ERR_FORMAT,
-                 "'%s' is said to be a diagonal of %" PRId64
-                 " rows, far more than its file can fill",
-                 build->header.name, n);
+    RITZ_REFUSE_IF((vector || unit) && n > list->columns, RITZ_ERR_FORMAT,
+                   "'%s' is said to be a diagonal of %" PRId64
+                   " rows, far more than its file can fill",
+                   build->header.name, n);
     if (vector || unit) {
         list->columns -= n;
-        RITZ_TRY(expand(m, unit ? UNIT : ON_DIAGONAL, n));
+        RITZ_CHECK(expand(m, unit ? UNIT : ON_DIAGONAL, n));
     }
     if (form == SYMMETRIC && nrow == ncol && is_triangle(&m->A))
-        RITZ_TRY(expand(m, MIRRORED, n));
+        RITZ_CHECK(expand(m, MIRRORED, n));
     m->symmetric = m->A.nrow == m->A.ncol &&
                    (form == SYMMETRIC || form == DIAGONAL || form == IDENTITY);
-done:
-    return status;
+    return RITZ_OK;
 }

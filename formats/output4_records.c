@@ -33,7 +33,6 @@ bool ritz_binary_spelling(const char *bytes, int64_t size, ritz_binary *out)
 
 ritz_status ritz_binary_take(ritz_binary *b, ritz_binary_record *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t size = 0;
 
     while (size == 0) {
@@ -41,43 +40,41 @@ ritz_status ritz_binary_take(ritz_binary *b, ritz_binary_record *out)
 
         *out = (ritz_binary_record){.size = -1};
         if (left == 0)
-            goto done;
-        RITZ_FAIL_IF(left < 2 * b->mark, RITZ_ERR_FORMAT,
-                     "byte %td: %" PRId64 " bytes are left, too few for "
-                     "a record",
-                     b->at - b->begin, left);
+            return RITZ_OK;
+        RITZ_REFUSE_IF(left < 2 * b->mark, RITZ_ERR_FORMAT,
+                       "byte %td: %" PRId64 " bytes are left, too few for "
+                       "a record",
+                       b->at - b->begin, left);
         size = ritz_binary_integer(b, b->at, b->mark);
-        RITZ_FAIL_IF(size < 0 || size > left - 2 * b->mark, RITZ_ERR_FORMAT,
-                     "byte %td: a record of %" PRId64
-                     " bytes begins, but %" PRId64 " are left",
-                     b->at - b->begin, size, left - b->mark);
+        RITZ_REFUSE_IF(size < 0 || size > left - 2 * b->mark, RITZ_ERR_FORMAT,
+                       "byte %td: a record of %" PRId64
+                       " bytes begins, but %" PRId64 " are left",
+                       b->at - b->begin, size, left - b->mark);
         *out = (ritz_binary_record){b->at + b->mark, size};
         b->at += size + 2 * b->mark;
-        RITZ_FAIL_IF(ritz_binary_integer(b, b->at - b->mark, b->mark) != size,
-                     RITZ_ERR_FORMAT,
-                     "byte %td: a record of %" PRId64
-                     " bytes ends with another length",
-                     b->at - b->mark - b->begin, size);
+        RITZ_REFUSE_IF(ritz_binary_integer(b, b->at - b->mark, b->mark) != size,
+                       RITZ_ERR_FORMAT,
+                       "byte %td: a record of %" PRId64
+                       " bytes ends with another length",
+                       b->at - b->mark - b->begin, size);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_binary_header(const ritz_binary *b,
                                const ritz_binary_record *from,
                                ritz_output4_header *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_output4_header h = {0};
     int64_t n[4] = {0};
     const void *name = from->at + 4 * b->integer;
 
     for (int64_t k = 0; k < 4 && from->size == 6 * b->integer; k++)
         n[k] = ritz_binary_integer(b, from->at + k * b->integer, b->integer);
-    RITZ_FAIL_IF(n[3] < 1 || n[3] > 4 || n[0] < 0 || n[1] == INT64_MIN,
-                 RITZ_ERR_FORMAT,
-                 "byte %td: a record of %" PRId64 " bytes begins no matrix",
-                 from->at - b->begin, from->size);
+    RITZ_REFUSE_IF(n[3] < 1 || n[3] > 4 || n[0] < 0 || n[1] == INT64_MIN,
+                   RITZ_ERR_FORMAT,
+                   "byte %td: a record of %" PRId64 " bytes begins no matrix",
+                   from->at - b->begin, from->size);
     h.ncol = n[0];
     h.nrow = n[1] < 0 ? -n[1] : n[1];
     h.bigmat = n[1] < 0 || n[1] >= 65536;
@@ -85,8 +82,7 @@ ritz_status ritz_binary_header(const ritz_binary *b,
     h.type = n[3];
     ritz_output4_name(name, 2 * b->integer, h.name);
     *out = h;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_binary_numbers(const ritz_binary *b, int64_t ncol)

@@ -22,62 +22,59 @@ static ritz_status read_number(const ritz_output4_text *t,
                                const ritz_output4_build *build, int64_t k,
                                double *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_decimal number = {0};
     const char *left = t->lines.line + k * t->width;
     const char *end = NULL;
     const char *at = left;
 
-    RITZ_FAIL_IF(left >= t->lines.line_end, RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": column %" PRId64
-                 " of '%s' wants more numbers than the %" PRId64 " here",
-                 t->lines.number, build->column + 1, build->header.name, k);
+    RITZ_REFUSE_IF(left >= t->lines.line_end, RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": column %" PRId64
+                   " of '%s' wants more numbers than the %" PRId64 " here",
+                   t->lines.number, build->column + 1, build->header.name, k);
     end = t->lines.line_end - left > t->width ? left + t->width
                                               : t->lines.line_end;
     at = ritz_decimal_skip(at, end);
-    RITZ_FAIL_IF(!ritz_decimal_scan(&at, end, &number) ||
-                     ritz_decimal_skip(at, end) != end,
-                 RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": '%.*s' in column %" PRId64
-                 " of '%s' is not a number",
-                 t->lines.number, (int)(end - left), left, build->column + 1,
-                 build->header.name);
+    RITZ_REFUSE_IF(!ritz_decimal_scan(&at, end, &number) ||
+                       ritz_decimal_skip(at, end) != end,
+                   RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": '%.*s' in column %" PRId64
+                   " of '%s' is not a number",
+                   t->lines.number, (int)(end - left), left, build->column + 1,
+                   build->header.name);
     *out = number.value;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* `reals` numbers, n to a line, as values from row `row`. */
 static ritz_status read_numbers(ritz_output4_text *t, ritz_output4_build *build,
                                 int64_t row, int64_t reals)
 {
-    ritz_status status = RITZ_OK;
     double number[2] = {0.0, 0.0};
     int64_t held = 0;
 
-    RITZ_FAIL_IF(reals / 2 > t->lines.end - t->lines.at, RITZ_ERR_FORMAT,
-                 "column %" PRId64 " of '%s' wants %" PRId64
-                 " numbers, more than are left in the file",
-                 build->column + 1, build->header.name, reals);
-    RITZ_TRY(ritz_output4_rows(build, row, reals / build->numbers));
+    RITZ_REFUSE_IF(reals / 2 > t->lines.end - t->lines.at, RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' wants %" PRId64
+                   " numbers, more than are left in the file",
+                   build->column + 1, build->header.name, reals);
+    RITZ_CHECK(ritz_output4_rows(build, row, reals / build->numbers));
     for (int64_t done_ = 0; done_ < reals;) {
         int64_t here =
             reals - done_ < t->per_line ? reals - done_ : t->per_line;
 
-        RITZ_FAIL_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
-                     "column %" PRId64 " of '%s' ends after %" PRId64
-                     " of %" PRId64 " numbers",
-                     build->column + 1, build->header.name, done_, reals);
+        RITZ_REFUSE_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
+                       "column %" PRId64 " of '%s' ends after %" PRId64
+                       " of %" PRId64 " numbers",
+                       build->column + 1, build->header.name, done_, reals);
         for (int64_t k = 0; k < here; k++) {
-            RITZ_TRY(read_number(t, build, k, &number[held++]));
+            RITZ_CHECK(read_number(t, build, k, &number[held++]));
             if (held < build->numbers)
                 continue;
             if (!isfinite(number[0]) || !isfinite(number[1]))
-                RITZ_TRY(ritz_output4_infinite(build, row));
+                RITZ_CHECK(ritz_output4_infinite(build, row));
             ritz_output4_put(build, row++, number[0], number[1]);
             held = 0;
         }
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             t->lines.line_end - t->lines.line > here * t->width &&
                 ritz_decimal_skip(t->lines.line + here * t->width,
                                   t->lines.line_end) != t->lines.line_end,
@@ -87,26 +84,23 @@ static ritz_status read_numbers(ritz_output4_text *t, ritz_output4_build *build,
             t->lines.number, build->column + 1, build->header.name, here);
         done_ += here;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The strings of one column by one reading of their headers. */
 static ritz_status read_strings(ritz_output4_text *t, ritz_output4_build *build,
                                 int64_t rule, int64_t wide, int64_t words)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t left = words; left > 0;) {
         ritz_output4_string string = {0};
         int64_t integers[2] = {0};
 
-        RITZ_FAIL_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
-                     "column %" PRId64 " of '%s' ends after %" PRId64
-                     " of %" PRId64 " words",
-                     build->column + 1, build->header.name, words - left,
-                     words);
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
+                       "column %" PRId64 " of '%s' ends after %" PRId64
+                       " of %" PRId64 " words",
+                       build->column + 1, build->header.name, words - left,
+                       words);
+        RITZ_REFUSE_IF(
             !ritz_output4_take_integers(t, ritz_output4_integers(rule),
                                         integers) ||
                 !ritz_output4_decode(build, rule, wide, integers, left,
@@ -117,11 +111,10 @@ static ritz_status read_strings(ritz_output4_text *t, ritz_output4_build *build,
             t->lines.number,
             ritz_lines_quoted(t->lines.line, t->lines.line_end), t->lines.line,
             build->column + 1, build->header.name, left);
-        RITZ_TRY(read_numbers(t, build, string.row, string.reals));
+        RITZ_CHECK(read_numbers(t, build, string.row, string.reals));
         left -= string.words;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -164,54 +157,50 @@ static ritz_status read_sparse(ritz_output4_text *t, ritz_output4_build *build,
 static ritz_status skip_last(ritz_output4_text *t,
                              const ritz_output4_build *build, int64_t count)
 {
-    ritz_status status = RITZ_OK;
     ritz_output4_header header = {0};
     double number = 0.0;
 
-    RITZ_FAIL_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
-                 "the record that ends '%s' is cut short", build->header.name);
-    RITZ_TRY(read_number(t, build, 0, &number));
+    RITZ_REFUSE_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
+                   "the record that ends '%s' is cut short",
+                   build->header.name);
+    RITZ_CHECK(read_number(t, build, 0, &number));
     for (int64_t k = t->per_line; k < count; k += t->per_line) {
         ritz_output4_text ahead = *t;
 
         if (!ritz_output4_take_filled_line(&ahead) ||
             ritz_output4_take_header(&ahead, &header))
-            goto done;
+            return RITZ_OK;
         *t = ahead;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The column whose first line was taken; `last` if it ends the matrix. */
 static ritz_status read_column(ritz_output4_text *t, ritz_output4_build *build,
                                bool *last)
 {
-    ritz_status status = RITZ_OK;
     int64_t n[3] = {0};
     int64_t after = build->header.ncol + 1;
 
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         !ritz_output4_take_integers(t, 3, n) || n[1] < 0 || n[2] < 1,
         RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' begins no column of '%s'",
         t->lines.number, ritz_lines_quoted(t->lines.line, t->lines.line_end),
         t->lines.line, build->header.name);
     *last = n[0] == after;
     if (*last) {
-        RITZ_TRY(skip_last(t, build, n[2]));
-        goto done;
+        RITZ_CHECK(skip_last(t, build, n[2]));
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_output4_column(build, n[0]));
+    RITZ_CHECK(ritz_output4_column(build, n[0]));
     if (n[1] == 0) {
-        RITZ_TRY(read_sparse(t, build, n[2]));
-        goto done;
+        RITZ_CHECK(read_sparse(t, build, n[2]));
+        return RITZ_OK;
     }
-    RITZ_FAIL_IF(n[2] % build->numbers != 0, RITZ_ERR_FORMAT,
-                 "column %" PRId64 " of '%s' has half a complex value", n[0],
-                 build->header.name);
-    RITZ_TRY(read_numbers(t, build, n[1] - 1, n[2]));
-done:
-    return status;
+    RITZ_REFUSE_IF(n[2] % build->numbers != 0, RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' has half a complex value", n[0],
+                   build->header.name);
+    return read_numbers(t, build, n[1] - 1, n[2]);
 }
 
 static ritz_status read_matrix(ritz_output4_text *t, ritz_output4_list *list)
@@ -256,11 +245,9 @@ bool ritz_output4_is_text(const char *bytes, int64_t size)
 ritz_status ritz_output4_read_text(const char *bytes, int64_t size,
                                    ritz_output4_list *list)
 {
-    ritz_status status = RITZ_OK;
     ritz_output4_text t = {.lines = {.at = bytes, .end = bytes + size}};
 
     while (ritz_output4_take_filled_line(&t))
-        RITZ_TRY(read_matrix(&t, list));
-done:
-    return status;
+        RITZ_CHECK(read_matrix(&t, list));
+    return RITZ_OK;
 }

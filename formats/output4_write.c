@@ -51,22 +51,18 @@ static int64_t end_of_run(const ritz_matrix *m, int64_t p, int64_t end)
 static ritz_status begin_column(const ritz_output4_writer *w, int64_t j,
                                 int64_t row, int64_t words)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!w->style.text && words > MOST_RECORD / 4 - 3,
-                 RITZ_ERR_ARGUMENT,
-                 "column %" PRId64 " of '%s' is too long for a record of 2 GiB",
-                 j + 1, w->matrix->name);
+    RITZ_REFUSE_IF(
+        !w->style.text && words > MOST_RECORD / 4 - 3, RITZ_ERR_ARGUMENT,
+        "column %" PRId64 " of '%s' is too long for a record of 2 GiB", j + 1,
+        w->matrix->name);
     ritz_output4_put_mark(w, 4 * (words + 3));
     ritz_output4_put_integers(w, 3, (const int64_t[]){j + 1, row, words});
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_dense(ritz_output4_writer *w, int64_t j, int64_t begin,
                                int64_t end)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *A = &w->matrix->A;
     int64_t first = A->rowind[begin];
     int64_t rows = 0;
@@ -77,19 +73,17 @@ static ritz_status write_dense(ritz_output4_writer *w, int64_t j, int64_t begin,
         end--;
     rows = A->rowind[end - 1] - first + 1;
     words = rows * w->numbers * (w->style.text ? 1 : 2);
-    RITZ_TRY(begin_column(w, j, first + 1, words));
+    RITZ_CHECK(begin_column(w, j, first + 1, words));
     for (int64_t i = first; i < first + rows; i++)
         ritz_output4_put_value(w, A->rowind[p] == i ? p++ : -1);
     ritz_output4_end_line(w);
     ritz_output4_put_mark(w, 4 * (words + 3));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
                                 int64_t begin, int64_t end)
 {
-    ritz_status status = RITZ_OK;
     const ritz_matrix *m = w->matrix;
     int64_t words = 0;
 
@@ -97,7 +91,7 @@ static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
         q = end_of_run(m, p, end);
         words += 2 + 2 * w->numbers * (q - p);
     }
-    RITZ_TRY(begin_column(w, j, 0, words));
+    RITZ_CHECK(begin_column(w, j, 0, words));
     for (int64_t p = begin, q = 0; p < end; p = next_entry(m, q, end)) {
         q = end_of_run(m, p, end);
         ritz_output4_put_integers(
@@ -109,24 +103,20 @@ static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
         ritz_output4_end_line(w);
     }
     ritz_output4_put_mark(w, 4 * (words + 3));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What cannot be written is refused before anything is. */
 static ritz_status check(const ritz_matrix *m, const ritz_output4_style *style)
 {
-    ritz_status status = RITZ_OK;
     int64_t most = INT32_MAX - 1;
 
-    RITZ_FAIL_IF(!style->text && (m->A.nrow > most || m->A.ncol > most),
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is %" PRId64 " x %" PRId64
-                 ", too large for 4-byte integers",
-                 m->name, m->A.nrow, m->A.ncol);
-    RITZ_TRY(ritz_sink_check(m));
-done:
-    return status;
+    RITZ_REFUSE_IF(!style->text && (m->A.nrow > most || m->A.ncol > most),
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is %" PRId64 " x %" PRId64
+                   ", too large for 4-byte integers",
+                   m->name, m->A.nrow, m->A.ncol);
+    return ritz_sink_check(m);
 }
 
 /* Whether its exponent takes three digits once rounded. */
@@ -149,11 +139,10 @@ static int number_width(const ritz_matrix *m, int64_t digits)
 static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
                                 const ritz_output4_style *style)
 {
-    ritz_status status = RITZ_OK;
     ritz_output4_writer w = {.file = file, .matrix = m, .style = *style};
     int64_t last = m->A.ncol;
 
-    RITZ_TRY(check(m, style));
+    RITZ_CHECK(check(m, style));
     w.numbers = m->imaginary ? 2 : 1;
     w.width = number_width(m, style->digits);
     w.integer =
@@ -164,44 +153,38 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
         int64_t begin = next_entry(m, m->A.colptr[j], end);
 
         if (begin < end && style->sparse)
-            RITZ_TRY(write_sparse(&w, j, begin, end));
+            RITZ_CHECK(write_sparse(&w, j, begin, end));
         if (begin < end && !style->sparse)
-            RITZ_TRY(write_dense(&w, j, begin, end));
+            RITZ_CHECK(write_dense(&w, j, begin, end));
     }
-    RITZ_TRY(begin_column(&w, last, 1, style->text ? 1 : 2));
+    RITZ_CHECK(begin_column(&w, last, 1, style->text ? 1 : 2));
     ritz_output4_put_number(&w, sqrt(2.0));
     ritz_output4_end_line(&w);
     ritz_output4_put_mark(&w, 20);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_all(FILE *file, const void *what)
 {
-    ritz_status status = RITZ_OK;
     const job *all = what;
 
     for (int64_t k = 0; k < all->count; k++)
-        RITZ_TRY(write_matrix(file, &all->matrix[k], &all->style));
-done:
-    return status;
+        RITZ_CHECK(write_matrix(file, &all->matrix[k], &all->style));
+    return RITZ_OK;
 }
 
 ritz_status ritz_output4_write(const char *path, int64_t count,
                                const ritz_matrix *matrix,
                                const ritz_output4_style *style)
 {
-    ritz_status status = RITZ_OK;
     job all = {count, matrix, *style};
 
     if (all.style.digits == 0)
         all.style.digits = 17;
-    RITZ_FAIL_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no matrix for '%s'",
-                 path);
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no matrix for '%s'",
+                   path);
+    RITZ_REFUSE_IF(
         all.style.digits < 1 || all.style.digits > 17, RITZ_ERR_ARGUMENT,
         "%" PRId64 " digits cannot be written, 1 to 17 can", all.style.digits);
-    RITZ_TRY(ritz_sink_write(path, write_all, &all));
-done:
-    return status;
+    return ritz_sink_write(path, write_all, &all);
 }

@@ -50,10 +50,9 @@ static const ritz_dense *dense_of(const void *object, const entry *e)
 /* Every entry stored, zeros too. */
 static ritz_status fill(const entry *e, const ritz_dense *A, ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t at = 0;
 
-    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol, A->nrow * A->ncol, &out->A));
+    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, A->nrow * A->ncol, &out->A));
     for (int64_t j = 0; j < A->ncol; j++) {
         for (int64_t i = 0; i < A->nrow; i++) {
             out->A.rowind[at] = i;
@@ -64,8 +63,7 @@ static ritz_status fill(const entry *e, const ritz_dense *A, ritz_matrix *out)
     snprintf(out->name, sizeof out->name, "%s", e->name);
     out->symmetric = e->symmetric && ritz_dense_asymmetry(A) == 0.0;
     out->digits = 17;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const entry *find(const entry *among, const char *name, size_t length)

@@ -15,16 +15,13 @@
 static ritz_status pick(const ritz_dense *from, const shapes_choice *which,
                         ritz_dense *T, ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(from->nrow, which->count, T));
-    RITZ_NEW(out->name, which->count + 1);
+    RITZ_CHECK(ritz_dense_new(from->nrow, which->count, T));
+    RITZ_CHECK_NEW(out->name, which->count + 1);
     out->count = which->count;
     for (int64_t j = 0; j < which->count; j++)
         memcpy(ritz_dense_col(T, j), ritz_dense_col(from, which->at[j]),
                (size_t)T->nrow * sizeof *T->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "mode 7, 12.3 Hz" */
@@ -32,9 +29,7 @@ static ritz_status pick_modes(const ritz_pairs *pairs,
                               const shapes_choice *which, ritz_dense *Phi,
                               ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(pick(&pairs->Phi, which, Phi, out));
+    RITZ_CHECK(pick(&pairs->Phi, which, Phi, out));
     for (int64_t j = 0; j < which->count; j++) {
         int64_t k = which->at[j];
         double hertz =
@@ -43,8 +38,7 @@ static ritz_status pick_modes(const ritz_pairs *pairs,
         snprintf(out->name[j], RITZ_NAME_SIZE, "mode %" PRId64 ", %.4g Hz",
                  k + 1, hertz);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A body that moves by T, with recovered dofs behind its own. */
@@ -165,9 +159,7 @@ static ritz_status pick_columns(const ritz_basis *basis,
                                 const shapes_choice *which, ritz_dense *T,
                                 ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(pick(&basis->T, which, T, out));
+    RITZ_CHECK(pick(&basis->T, which, T, out));
     for (int64_t j = 0; j < which->count; j++) {
         int64_t k = which->at[j];
         const char *kind = ritz_column_name(basis->columns.kind[k]);
@@ -180,8 +172,7 @@ static ritz_status pick_columns(const ritz_basis *basis,
             snprintf(out->name[j], RITZ_NAME_SIZE, "column %" PRId64 " %s",
                      k + 1, kind);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_shapes_of_basis(const ritz_basis *basis,

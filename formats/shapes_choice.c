@@ -30,7 +30,6 @@ static bool read_part(const char *text, size_t length, int64_t *from,
 static ritz_status walk(const char *list, const char *what, int64_t most,
                         shapes_choice *out)
 {
-    ritz_status status = RITZ_OK;
     const char *end = list + strlen(list);
 
     out->count = 0;
@@ -38,24 +37,22 @@ static ritz_status walk(const char *list, const char *what, int64_t most,
         size_t length = strcspn(at, ",");
         int64_t from = 0, to = 0;
 
-        RITZ_FAIL_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
-                     "'%.*s' is no part of a list of modes such as 1,5,10-20",
-                     (int)(length % 64), at);
-        RITZ_FAIL_IF(to > most, RITZ_ERR_ARGUMENT,
-                     "there is no %s %" PRId64 ", there are %" PRId64, what, to,
-                     most);
+        RITZ_REFUSE_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
+                       "'%.*s' is no part of a list of modes such as 1,5,10-20",
+                       (int)(length % 64), at);
+        RITZ_REFUSE_IF(to > most, RITZ_ERR_ARGUMENT,
+                       "there is no %s %" PRId64 ", there are %" PRId64, what,
+                       to, most);
         for (int64_t k = from; k <= to; k++, out->count++)
             if (out->at)
                 out->at[out->count] = k - 1;
         at += length + 1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status shapes_furthest(const char *list, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     const char *end = list + strlen(list);
 
     *out = 0;
@@ -63,14 +60,13 @@ ritz_status shapes_furthest(const char *list, int64_t *out)
         size_t length = strcspn(at, ",");
         int64_t from = 0, to = 0;
 
-        RITZ_FAIL_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
-                     "'%.*s' is no part of a list of modes such as 1,5,10-20",
-                     (int)(length % 64), at);
+        RITZ_REFUSE_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
+                       "'%.*s' is no part of a list of modes such as 1,5,10-20",
+                       (int)(length % 64), at);
         *out = to > *out ? to : *out;
         at += length + 1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status shapes_choose(const char *list, const char *what, int64_t most,

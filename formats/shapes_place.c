@@ -11,7 +11,6 @@
 static ritz_status list_points(const shapes_motion *m, int64_t *index,
                                ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = m->grids;
 
     for (int64_t k = 0; k < grids->count; k++)
@@ -29,10 +28,10 @@ static ritz_status list_points(const shapes_motion *m, int64_t *index,
     for (int64_t k = 0; k < grids->count; k++)
         if (index[k] == 0)
             index[k] = out->num_points++;
-    RITZ_FAIL_IF(out->num_points == 0, RITZ_ERR_ARGUMENT,
-                 "no grid has a position: import with --bulk");
-    RITZ_NEW(out->id, out->num_points);
-    RITZ_NEW(out->position, 3 * out->num_points);
+    RITZ_REFUSE_IF(out->num_points == 0, RITZ_ERR_ARGUMENT,
+                   "no grid has a position: import with --bulk");
+    RITZ_CHECK_NEW(out->id, out->num_points);
+    RITZ_CHECK_NEW(out->position, 3 * out->num_points);
     for (int64_t k = 0; k < grids->count; k++) {
         if (index[k] < 0)
             continue;
@@ -40,8 +39,7 @@ static ritz_status list_points(const shapes_motion *m, int64_t *index,
         memcpy(out->position + 3 * index[k], grids->position + 3 * k,
                3 * sizeof *out->position);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Displacement axis i of a grid brings axes[3 i + j] along basic axis j. */

@@ -21,20 +21,19 @@ void ritz_xml_put(FILE *file, const char *text)
 ritz_status ritz_shapes_say(const ritz_shapes *shapes,
                             ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
     long long cells = shapes->meshed ? (long long)shapes->cells.count : 0;
 
-    RITZ_TRY(ritz_export_say(
+    RITZ_CHECK(ritz_export_say(
         report, "%lld shapes at %lld points, %lld elements%s",
         (long long)shapes->count, (long long)shapes->num_points, cells,
         shapes->turn.val ? "; rotations as fields of their own" : ""));
     if (!shapes->meshed)
-        RITZ_TRY(ritz_export_say(report, "no elements are known: single points "
-                                         "(import with --bulk for them)"));
+        RITZ_CHECK(ritz_export_say(report,
+                                   "no elements are known: single points "
+                                   "(import with --bulk for them)"));
     if (shapes->num_placeless > 0)
-        RITZ_TRY(ritz_export_say(
+        RITZ_CHECK(ritz_export_say(
             report, "%lld points have no position and are left out",
             (long long)shapes->num_placeless));
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -6,7 +6,6 @@
 /* Say all; the sentence of the failure names the first check that fails. */
 static ritz_status judge(cli_run *run, const ritz_audit *audit)
 {
-    ritz_status status = RITZ_OK;
     const ritz_check *first = checks_first(audit);
 
     json_object_set_new(run->report, "checks", checks_json(audit));
@@ -14,14 +13,13 @@ static ritz_status judge(cli_run *run, const ritz_audit *audit)
     for (int64_t k = 0; k < audit->count; k++)
         cli_record_error(run, audit->check[k].name, audit->check[k].value);
     if (run->output)
-        RITZ_TRY(cli_save(run, run->output));
-    RITZ_FAIL_IF(first, RITZ_ERR_FORMAT,
-                 "'%s': %lld of %lld checks fail, first '%s'%s%s",
-                 run->operand[0], (long long)checks_count(audit, RITZ_FAIL),
-                 (long long)audit->count, first->name,
-                 *first->where ? " at " : "", first->where);
-done:
-    return status;
+        RITZ_CHECK(cli_save(run, run->output));
+    RITZ_REFUSE_IF(first, RITZ_ERR_FORMAT,
+                   "'%s': %lld of %lld checks fail, first '%s'%s%s",
+                   run->operand[0], (long long)checks_count(audit, RITZ_FAIL),
+                   (long long)audit->count, first->name,
+                   *first->where ? " at " : "", first->where);
+    return RITZ_OK;
 }
 
 /* A full component is audited, what is small and dense is probed. */

@@ -20,16 +20,14 @@ static int remove_one(const char *path, const struct stat *what, int kind,
 /* The folder of this program, where the other tools are. */
 static ritz_status find_tools(claims_state *state)
 {
-    ritz_status status = RITZ_OK;
     ssize_t length = readlink("/proc/self/exe", state->bin, PATH_MAX - 1);
     char *slash = NULL;
 
     state->bin[length > 0 ? length : 0] = '\0';
     slash = strrchr(state->bin, '/');
-    RITZ_FAIL_IF(!slash, RITZ_ERR_FILE, "the folder of the tools is unknown");
+    RITZ_REFUSE_IF(!slash, RITZ_ERR_FILE, "the folder of the tools is unknown");
     *slash = '\0';
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* An empty folder in which commands run; a data folder that moves with them. */

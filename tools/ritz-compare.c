@@ -10,7 +10,6 @@ enum { MOST_TOLERANCES = 64 };
 static ritz_status write_bodies(cli_run *run, const char *prefix,
                                 const ritz_comparison *comparison)
 {
-    ritz_status status = RITZ_OK;
     const ritz_stage *stage = &comparison->second;
     ritz_stamp stamp = cli_stamp(run);
     json_t *files = json_array();
@@ -21,14 +20,13 @@ static ritz_status write_bodies(cli_run *run, const char *prefix,
         int length = snprintf(path, sizeof path, "%s%s.h5", prefix,
                               stage->scene->component[k].name);
 
-        RITZ_FAIL_IF(length < 0 || length >= (int)sizeof path,
-                     RITZ_ERR_ARGUMENT, "--components '%.40s...' is too long",
-                     prefix);
-        RITZ_TRY(ritz_container_write_reduced(path, &stage->body[k], &stamp));
+        RITZ_REFUSE_IF(length < 0 || length >= (int)sizeof path,
+                       RITZ_ERR_ARGUMENT, "--components '%.40s...' is too long",
+                       prefix);
+        RITZ_CHECK(ritz_container_write_reduced(path, &stage->body[k], &stamp));
         json_array_append_new(files, cli_string(path));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What the command line asks beside the scene. */

@@ -36,7 +36,6 @@ static const ritz_exporter *find(const cli_program *program, const char *word)
 static ritz_status vouch(cli_run *run, const ritz_measures *errors,
                          const ritz_measures *estimates, bool force)
 {
-    ritz_status status = RITZ_OK;
     const char *rests = errors->count > 0      ? "measured"
                         : estimates->count > 0 ? "estimated"
                                                : "unknown";
@@ -45,10 +44,10 @@ static ritz_status vouch(cli_run *run, const ritz_measures *errors,
     cli_report_text(run, "errors_rest_on", rests);
     json_object_set_new(run->report, "errors",
                         model_measures_json(known, rests));
-    RITZ_FAIL_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
-                 "'%s' carries neither estimated nor measured errors: run "
-                 "ritz-verify, or export it all the same with --force",
-                 run->operand[0]);
+    RITZ_REFUSE_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
+                   "'%s' carries neither estimated nor measured errors: run "
+                   "ritz-verify, or export it all the same with --force",
+                   run->operand[0]);
     if (known->count == 0) {
         cli_warn(run, "nothing is known of the errors of '%s'",
                  run->operand[0]);
@@ -63,8 +62,7 @@ static ritz_status vouch(cli_run *run, const ritz_measures *errors,
         if (!ritz_measure_holds(&known->item[k]))
             cli_warn(run, "'%s' does not meet its limit", known->item[k].name);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Other codes join bodies by displacements, as which force columns are those
@@ -75,16 +73,14 @@ static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
     static const char sentence[] =
         "'%s' has columns for a joint by forces, which no other code makes of "
         "them: export the same made by macneal-rubin";
-    ritz_status status = RITZ_OK;
     bool any = false;
 
     for (int64_t k = 0; k < columns->count; k++)
         any = any || columns->kind[k] == RITZ_COLUMN_FORCE;
-    RITZ_FAIL_IF(any && !force, RITZ_ERR_ARGUMENT, sentence, run->operand[0]);
+    RITZ_REFUSE_IF(any && !force, RITZ_ERR_ARGUMENT, sentence, run->operand[0]);
     if (any)
         cli_warn(run, sentence, run->operand[0]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status export_reduced(cli_run *run, model *m,

@@ -31,24 +31,23 @@ typedef struct wish {
  */
 static ritz_status place(const model *m, const wish *asked, ritz_grid *out)
 {
-    ritz_status status = RITZ_OK;
     double from = asked->from_hz;
     double to = asked->to_hz;
 
     if (isnan(to) && m->kind == MODEL_SYSTEM && m->system.band_hz[1] > 0.0)
         to = m->system.band_hz[1];
-    RITZ_FAIL_IF(isnan(to), RITZ_ERR_ARGUMENT,
-                 "the model states no band: give --to-hz");
+    RITZ_REFUSE_IF(isnan(to), RITZ_ERR_ARGUMENT,
+                   "the model states no band: give --to-hz");
     if (isnan(from) && m->kind == MODEL_SYSTEM && m->system.band_hz[0] > 0.0 &&
         m->system.band_hz[0] < to)
         from = m->system.band_hz[0];
     if (isnan(from))
         from = to / 1000.0;
-    RITZ_FAIL_IF(!(from < to), RITZ_ERR_ARGUMENT,
-                 "no band from %g to %g Hz: --from-hz lies above --to-hz", from,
-                 to);
-    RITZ_FAIL_IF(asked->log && !(from > 0.0), RITZ_ERR_ARGUMENT,
-                 "--log needs --from-hz above 0");
+    RITZ_REFUSE_IF(!(from < to), RITZ_ERR_ARGUMENT,
+                   "no band from %g to %g Hz: --from-hz lies above --to-hz",
+                   from, to);
+    RITZ_REFUSE_IF(asked->log && !(from > 0.0), RITZ_ERR_ARGUMENT,
+                   "--log needs --from-hz above 0");
     *out = (ritz_grid){.from_hz = from,
                        .to_hz = to,
                        .count = asked->points > 0                ? asked->points
@@ -56,26 +55,23 @@ static ritz_status place(const model *m, const wish *asked, ritz_grid *out)
                                                                  : first_points,
                        .log = asked->log,
                        .refine = !asked->no_refine};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The points of another response, which can then be subtracted. */
 static ritz_status borrow(cli_run *run, const wish *asked, model *other,
                           ritz_grid *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *r = &other->response;
 
-    RITZ_TRY(model_read(run, asked->points_of, MODEL_RESPONSE, other));
-    RITZ_FAIL_IF(r->count < 1, RITZ_ERR_ARGUMENT, "'%s' has no points",
-                 asked->points_of);
+    RITZ_CHECK(model_read(run, asked->points_of, MODEL_RESPONSE, other));
+    RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT, "'%s' has no points",
+                   asked->points_of);
     *out = (ritz_grid){.from_hz = r->hertz[0],
                        .to_hz = r->hertz[r->count - 1],
                        .count = r->count,
                        .hertz = r->hertz};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The highest point of each response, and where it is. */

@@ -46,20 +46,17 @@ done:
 
 static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(take_matrix(run, request->stiffness));
-    RITZ_TRY(take_matrix(run, request->mass));
-    RITZ_TRY(take_matrix(run, request->damping));
-    RITZ_TRY(take_matrix(run, request->structural_damping));
+    RITZ_CHECK(take_matrix(run, request->stiffness));
+    RITZ_CHECK(take_matrix(run, request->mass));
+    RITZ_CHECK(take_matrix(run, request->damping));
+    RITZ_CHECK(take_matrix(run, request->structural_damping));
     for (int64_t k = 0; k < request->num_loads; k++)
-        RITZ_TRY(take_load(run, request->load[k]));
+        RITZ_CHECK(take_load(run, request->load[k]));
     if (request->bulk)
-        RITZ_TRY(cli_input(run, request->bulk));
+        RITZ_CHECK(cli_input(run, request->bulk));
     if (request->dofs)
-        RITZ_TRY(cli_input(run, request->dofs));
-done:
-    return status;
+        RITZ_CHECK(cli_input(run, request->dofs));
+    return RITZ_OK;
 }
 
 /* Rows that are gone: the first few by name, all of them in JSON. */

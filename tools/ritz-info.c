@@ -107,7 +107,6 @@ done:
 /* Of one file, the keys stand in the report itself too. */
 static ritz_status inform(cli_run *run)
 {
-    ritz_status status = RITZ_OK;
     json_t *files = json_array();
 
     json_object_set_new(run->report, "files", files);
@@ -118,15 +117,14 @@ static ritz_status inform(cli_run *run)
         json_array_append_new(files, keys);
         json_object_set_new(keys, "file", cli_string(path));
         cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
-        RITZ_TRY(ritz_container_is(path) ? container(run, keys, path)
-                                         : foreign(run, keys, path));
+        RITZ_CHECK(ritz_container_is(path) ? container(run, keys, path)
+                                           : foreign(run, keys, path));
         if (run->num_operands == 1)
             json_object_update(run->report, keys);
     }
     if (run->output)
-        RITZ_TRY(cli_save(run, run->output));
-done:
-    return status;
+        RITZ_CHECK(cli_save(run, run->output));
+    return RITZ_OK;
 }
 
 int main(int argc, char **argv)

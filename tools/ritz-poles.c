@@ -47,7 +47,6 @@ done:
 static ritz_status find(const model *m, const wish *asked,
                         const ritz_damping *damping, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_second_order view = model_look(m).matrices;
     bool by_hertz = !isnan(asked->up_to_hz);
     double limit = 6.28318530717958647692 * asked->up_to_hz * (1.0 + 1e-9);
@@ -57,15 +56,14 @@ static ritz_status find(const model *m, const wish *asked,
         span = (ritz_span){.modes = -1, .up_to_hz = asked->up_to_hz};
     if (m->kind == MODEL_COMPONENT)
         return ritz_spectrum_component(&m->component, damping, &span, out);
-    RITZ_TRY(m->kind == MODEL_STATES
-                 ? find_states(&m->states, out)
-                 : ritz_spectrum_dense(&view, damping, out));
+    RITZ_CHECK(m->kind == MODEL_STATES
+                   ? find_states(&m->states, out)
+                   : ritz_spectrum_dense(&view, damping, out));
     while (out->count > 0 &&
            ((asked->modes > 0 && out->count > asked->modes) ||
             (by_hertz && cabs(out->s[out->count - 1]) > limit)))
         out->count--;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status scan(cli_run *run, model *m, const wish *asked,
@@ -94,31 +92,28 @@ done:
 /* Its damping is in A, and its dampers too. */
 static ritz_status check_states(const char *path, const wish *asked)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(asked->damping || asked->scan || asked->damper.count > 0,
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is a state space, damped as it is: --damping, --damper "
-                 "and --scan are not for it",
-                 path);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        asked->damping || asked->scan || asked->damper.count > 0,
+        RITZ_ERR_ARGUMENT,
+        "'%s' is a state space, damped as it is: --damping, --damper "
+        "and --scan are not for it",
+        path);
+    return RITZ_OK;
 }
 
 /* Dampers installed, and the damping beside them. */
 static ritz_status damp(cli_run *run, model *m, const wish *asked,
                         ritz_damping *out)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     char text[RITZ_DAMPING_SIZE] = "";
 
     if (m->kind == MODEL_STATES) {
-        RITZ_TRY(check_states(path, asked));
+        RITZ_CHECK(check_states(path, asked));
         memcpy(text, m->states.damping, sizeof text);
     } else {
-        RITZ_TRY_IN(path, dampers_install(m, &asked->damper));
-        RITZ_TRY(model_damping(m, asked->damping, out));
+        RITZ_CHECK_IN(path, dampers_install(m, &asked->damper));
+        RITZ_CHECK(model_damping(m, asked->damping, out));
         ritz_damping_print(out, text);
     }
     if (!asked->tsv) {
@@ -127,8 +122,7 @@ static ritz_status damp(cli_run *run, model *m, const wish *asked,
         if (m->kind != MODEL_STATES)
             describe_dampers(run, run->report, dampers_of(m));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status poles(cli_run *run, const wish *asked)

@@ -27,11 +27,10 @@ static void drop_basis(ritz_reduced *reduced)
 
 static ritz_status report(cli_run *run, const ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     const ritz_measures *estimates = &reduced->estimates;
 
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_reduced(run, run->report, reduced));
+    RITZ_CHECK(describe_reduced(run, run->report, reduced));
     cli_report_int(run, "vectors", reduced->columns.count);
     cli_report_reals(run, "residuals", reduced->columns.count,
                      reduced->columns.residual);
@@ -39,8 +38,7 @@ static ritz_status report(cli_run *run, const ritz_reduced *reduced)
     for (int64_t k = 0; k < estimates->count; k++)
         cli_record_error(run, estimates->item[k].name,
                          estimates->item[k].value);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status to_matrices(cli_run *run, const ritz_component *full,
@@ -67,18 +65,17 @@ done:
 static ritz_status project(const model *full, const ritz_basis *basis,
                            ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_damping damping = {0};
 
     if (full->kind == MODEL_STATES)
         return ritz_reduce_space(&full->states, basis, out);
-    RITZ_TRY(ritz_damping_parse(basis->damping, &damping));
+    RITZ_CHECK(ritz_damping_parse(basis->damping, &damping));
     if (basis->states)
-        RITZ_TRY(ritz_reduce_states(&full->component, &damping, basis, out));
+        RITZ_CHECK(ritz_reduce_states(&full->component, &damping, basis, out));
     else
-        RITZ_TRY(ritz_reduce_companion(&full->component, &damping, basis, out));
-done:
-    return status;
+        RITZ_CHECK(
+            ritz_reduce_companion(&full->component, &damping, basis, out));
+    return RITZ_OK;
 }
 
 /* Of states it is known whether they are stable and, of some, a bound. */
@@ -116,20 +113,18 @@ done:
 static ritz_status check_rows(const cli_run *run, const model *full,
                               const ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     bool space = full->kind == MODEL_STATES;
     int64_t due = space ? full->states.A.nrow : full->component.num_dofs;
     int64_t rows = basis->T.nrow / (basis->states && !space ? 2 : 1);
 
-    RITZ_FAIL_IF(space && !basis->states, RITZ_ERR_ARGUMENT,
-                 "'%s' is a basis of displacements, '%s' is a state space",
-                 run->operand[1], run->operand[0]);
-    RITZ_FAIL_IF(rows != due, RITZ_ERR_ARGUMENT,
-                 "'%s' is a basis for %lld %s, '%s' has %lld", run->operand[1],
-                 (long long)rows, space ? "states" : "dofs", run->operand[0],
-                 (long long)due);
-done:
-    return status;
+    RITZ_REFUSE_IF(space && !basis->states, RITZ_ERR_ARGUMENT,
+                   "'%s' is a basis of displacements, '%s' is a state space",
+                   run->operand[1], run->operand[0]);
+    RITZ_REFUSE_IF(rows != due, RITZ_ERR_ARGUMENT,
+                   "'%s' is a basis for %lld %s, '%s' has %lld",
+                   run->operand[1], (long long)rows, space ? "states" : "dofs",
+                   run->operand[0], (long long)due);
+    return RITZ_OK;
 }
 
 static ritz_status reduce(cli_run *run, request *asked)

@@ -123,19 +123,17 @@ static ritz_status cost_it(cli_run *run, const wish *asked, const model *m,
                            const ritz_simulated *subject,
                            simulation_drive *drive)
 {
-    ritz_status status = RITZ_OK;
     double band_hz[2];
 
-    RITZ_FAIL_IF(!subject->model, RITZ_ERR_ARGUMENT,
-                 "--cost is of reduced components and systems");
+    RITZ_REFUSE_IF(!subject->model, RITZ_ERR_ARGUMENT,
+                   "--cost is of reduced components and systems");
     find_band(m, asked, band_hz);
-    RITZ_TRY(simulation_costs(run, subject, drive,
-                              asked->input.count > 0 || asked->initial, band_hz,
-                              isnan(asked->seconds) ? 0.0 : asked->seconds));
+    RITZ_CHECK(simulation_costs(
+        run, subject, drive, asked->input.count > 0 || asked->initial, band_hz,
+        isnan(asked->seconds) ? 0.0 : asked->seconds));
     cli_record(run, m->kind == MODEL_REDUCED ? m->reduced.origin.method : "",
                subject->model->K->nrow);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status simulate(cli_run *run, const wish *asked)

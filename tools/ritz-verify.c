@@ -61,7 +61,6 @@ static ritz_status write(cli_run *run, const model *reduced)
 
 static ritz_status judge(cli_run *run, const ritz_measures *measures)
 {
-    ritz_status status = RITZ_OK;
     const ritz_measure *first = NULL;
     int64_t failed = 0;
     int64_t asked = 0;
@@ -78,13 +77,12 @@ static ritz_status judge(cli_run *run, const ritz_measures *measures)
         first = first ? first : m;
         failed++;
     }
-    RITZ_FAIL_IF(first, RITZ_ERR_CONVERGENCE,
-                 "'%s': %lld of %lld limits not met, first '%s', %.3e where "
-                 "%.3e is asked",
-                 run->operand[1], (long long)failed, (long long)asked,
-                 first->name, first->value, first->limit);
-done:
-    return status;
+    RITZ_REFUSE_IF(first, RITZ_ERR_CONVERGENCE,
+                   "'%s': %lld of %lld limits not met, first '%s', %.3e where "
+                   "%.3e is asked",
+                   run->operand[1], (long long)failed, (long long)asked,
+                   first->name, first->value, first->limit);
+    return RITZ_OK;
 }
 
 /* Modes have frequencies and shapes, state spaces have norms. */
@@ -119,16 +117,14 @@ static double limit_of(const wish *asked, size_t k)
 static ritz_status check_limits(const cli_run *run, const wish *asked,
                                 bool states)
 {
-    ritz_status status = RITZ_OK;
     const int of = states ? OF_STATES : OF_MODES;
 
     for (size_t k = 0; k < LIMITS; k++)
-        RITZ_FAIL_IF(!isnan(limit_of(asked, k)) && !(limits[k].of & of),
-                     RITZ_ERR_ARGUMENT,
-                     "'%s' is %s state space, --limit-%s is not for it",
-                     run->operand[1], states ? "a" : "no", limits[k].name);
-done:
-    return status;
+        RITZ_REFUSE_IF(!isnan(limit_of(asked, k)) && !(limits[k].of & of),
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' is %s state space, --limit-%s is not for it",
+                       run->operand[1], states ? "a" : "no", limits[k].name);
+    return RITZ_OK;
 }
 
 /* A limit that nothing was held to is met by nothing being there. */
@@ -146,30 +142,29 @@ static void say_unmeasured(cli_run *run, const wish *asked,
 static ritz_status full_states(const cli_run *run, model *full,
                                const model *reduced, const wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     const char *own = asked->damping;
     ritz_damping damping = {0};
 
-    RITZ_FAIL_IF(asked->damper.count > 0, RITZ_ERR_ARGUMENT,
-                 "'%s' holds its dampers in A: --damper cannot change them",
-                 run->operand[1]);
-    RITZ_FAIL_IF(full->kind == MODEL_STATES && own, RITZ_ERR_ARGUMENT,
-                 "'%s' is damped as it is: --damping is for components", path);
+    RITZ_REFUSE_IF(asked->damper.count > 0, RITZ_ERR_ARGUMENT,
+                   "'%s' holds its dampers in A: --damper cannot change them",
+                   run->operand[1]);
+    RITZ_REFUSE_IF(full->kind == MODEL_STATES && own, RITZ_ERR_ARGUMENT,
+                   "'%s' is damped as it is: --damping is for components",
+                   path);
     if (full->kind == MODEL_STATES)
         return RITZ_OK;
-    RITZ_FAIL_IF(full->component.num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
-                 "'%s' has %lld dofs, of more than %d no norms are taken: "
-                 "compare the responses that ritz-frf gives of both",
-                 path, (long long)full->component.num_dofs,
-                 (int)RITZ_STATE_DOFS);
-    RITZ_TRY_IN(
+    RITZ_REFUSE_IF(
+        full->component.num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+        "'%s' has %lld dofs, of more than %d no norms are taken: "
+        "compare the responses that ritz-frf gives of both",
+        path, (long long)full->component.num_dofs, (int)RITZ_STATE_DOFS);
+    RITZ_CHECK_IN(
         own ? "--damping" : run->operand[1],
         ritz_damping_parse(own ? own : reduced->states.damping, &damping));
-    RITZ_TRY_IN(path, ritz_state_space_of_component(&full->component, &damping,
-                                                    &full->states));
-done:
-    return status;
+    RITZ_CHECK_IN(path, ritz_state_space_of_component(&full->component,
+                                                      &damping, &full->states));
+    return RITZ_OK;
 }
 
 static ritz_status verify_states(cli_run *run, model *full, model *reduced,

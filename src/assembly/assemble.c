@@ -26,14 +26,11 @@
 static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(count, P->ncol, out));
+    RITZ_CHECK(ritz_dense_new(count, P->ncol, out));
     for (int64_t j = 0; j < P->ncol && count > 0; j++)
         memcpy(ritz_dense_col(out, j), ritz_dense_col(P, j) + first,
                (size_t)count * sizeof *P->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A_e += P_k' A_k P_k. */

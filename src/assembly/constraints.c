@@ -146,19 +146,16 @@ static ritz_status count_rows(const ritz_stage *stage,
                               const ritz_relations *list,
                               ritz_freedom_state state, rows *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
-    RITZ_NEW(out->of_joint, stage->scene->num_joints);
+    RITZ_CHECK_NEW(out->of_joint, stage->scene->num_joints);
     for (int64_t j = 0; j < stage->scene->num_joints; j++) {
         out->of_joint[j] = count_state(&list[j], state);
         count += out->of_joint[j];
     }
-    RITZ_NEW(out->rotation, count);
-    RITZ_NEW(out->freedom, count);
-    RITZ_TRY(ritz_dense_new(count, stage->num_coordinates, &out->C));
-done:
-    return status;
+    RITZ_CHECK_NEW(out->rotation, count);
+    RITZ_CHECK_NEW(out->freedom, count);
+    return ritz_dense_new(count, stage->num_coordinates, &out->C);
 }
 
 static ritz_status make_rows(const ritz_stage *stage, const double *setting,

@@ -43,23 +43,20 @@ bool ritz_dual_is_due(const ritz_stage *stage)
 
 ritz_status ritz_dual_refuse(const ritz_stage *stage)
 {
-    ritz_status status = RITZ_OK;
     int64_t k = find_body(stage);
 
-    RITZ_FAIL_IF(k >= 0, RITZ_ERR_ARGUMENT,
-                 "component '%s' is reduced by dual-craig-bampton: a system "
-                 "of such has negative eigenvalues, and no modes to choose "
-                 "from; macneal-rubin has the same columns",
-                 stage->scene->component[k].name);
-done:
-    return status;
+    RITZ_REFUSE_IF(k >= 0, RITZ_ERR_ARGUMENT,
+                   "component '%s' is reduced by dual-craig-bampton: a system "
+                   "of such has negative eigenvalues, and no modes to choose "
+                   "from; macneal-rubin has the same columns",
+                   stage->scene->component[k].name);
+    return RITZ_OK;
 }
 
 /* diag(A_1, A_2, ...), bodies without one giving nothing; {0} if none has. */
 static ritz_status stack(const ritz_stage *stage, size_t offset,
                          const double *scale, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     bool any = false;
 
     for (int64_t k = 0; k < stage->count; k++) {
@@ -71,8 +68,8 @@ static ritz_status stack(const ritz_stage *stage, size_t offset,
         if (!A->val)
             continue;
         if (!any)
-            RITZ_TRY(ritz_dense_new(stage->num_coordinates,
-                                    stage->num_coordinates, out));
+            RITZ_CHECK(ritz_dense_new(stage->num_coordinates,
+                                      stage->num_coordinates, out));
         any = true;
         for (int64_t j = 0; j < A->ncol; j++)
             for (int64_t i = 0; i < A->nrow; i++)
@@ -80,8 +77,7 @@ static ritz_status stack(const ritz_stage *stage, size_t offset,
                     scale[first + i] * scale[first + j] *
                     ritz_dense_col(A, j)[i];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void mark_forces(const ritz_stage *stage, bool *is_force)

@@ -39,19 +39,17 @@ static const double unseen = 1e-9;
 static ritz_status pick(const ritz_dense *A, const bool *flag, bool wanted,
                         ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     for (int64_t j = 0; j < A->ncol; j++)
         count += flag[j] == wanted;
-    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
     count = 0;
     for (int64_t j = 0; j < A->ncol; j++)
         if (flag[j] == wanted && A->nrow > 0)
             memcpy(ritz_dense_col(out, count++), ritz_dense_col(A, j),
                    (size_t)A->nrow * sizeof *A->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* L of K_pp. */

@@ -224,15 +224,12 @@ done:
 
 static ritz_status check_units(const ritz_scene *scene, const ritz_held *p)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 1; k < p->count; k++)
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             strcmp(p->body[k].units, p->body[0].units) != 0, RITZ_ERR_ARGUMENT,
             "'%s' is in units '%s' and '%s' in '%s'", scene->component[0].name,
             p->body[0].units, scene->component[k].name, p->body[k].units);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_assemble_masters(const ritz_scene *scene,

@@ -84,22 +84,19 @@ done:
 
 static ritz_status load(const ritz_scene *scene, ritz_held *p)
 {
-    ritz_status status = RITZ_OK;
-
     p->scene = scene;
-    RITZ_NEW(p->body, scene->num_components);
-    RITZ_NEW(p->held, scene->num_components);
-    RITZ_NEW(p->first, scene->num_components);
+    RITZ_CHECK_NEW(p->body, scene->num_components);
+    RITZ_CHECK_NEW(p->held, scene->num_components);
+    RITZ_CHECK_NEW(p->first, scene->num_components);
     for (int64_t k = 0; k < scene->num_components; k++) {
         p->count++;
         p->first[k] = p->num_dofs;
-        RITZ_TRY_IN(scene->component[k].name,
-                    load_body(scene->component[k].model, &p->body[k]));
+        RITZ_CHECK_IN(scene->component[k].name,
+                      load_body(scene->component[k].model, &p->body[k]));
         p->num_dofs += p->body[k].num_dofs;
-        RITZ_TRY(ritz_component_attached(&p->body[k], NULL, &p->held[k]));
+        RITZ_CHECK(ritz_component_attached(&p->body[k], NULL, &p->held[k]));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The stage of held dofs, and where its coordinates are among all. */

@@ -146,27 +146,26 @@ static void list_missing(const ritz_joint_end *end, char text[64])
 static ritz_status find_six(const ritz_joint_end *end, const char *called,
                             int64_t row[static 6])
 {
-    ritz_status status = RITZ_OK;
     int64_t others = 0;
     char missing[64];
 
     for (int64_t k = 0; k < end->count; k++)
         others +=
             end->dof[k].component < 1 || end->dof[k].grid != end->dof[0].grid;
-    RITZ_FAIL_IF(end->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
-                 "a %s holds one six-dof grid on each side, '%s/%s' has %s",
-                 called, end->component, end->port,
-                 others > 0 ? "more than one grid, or a scalar point"
-                            : "no grid");
+    RITZ_REFUSE_IF(end->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
+                   "a %s holds one six-dof grid on each side, '%s/%s' has %s",
+                   called, end->component, end->port,
+                   others > 0 ? "more than one grid, or a scalar point"
+                              : "no grid");
     list_missing(end, missing);
-    RITZ_FAIL_IF(missing[0], RITZ_ERR_ARGUMENT,
-                 "a %s holds one six-dof grid on each side, grid %" PRId64
-                 " of '%s/%s' has no %s",
-                 called, end->dof[0].grid, end->component, end->port, missing);
+    RITZ_REFUSE_IF(missing[0], RITZ_ERR_ARGUMENT,
+                   "a %s holds one six-dof grid on each side, grid %" PRId64
+                   " of '%s/%s' has no %s",
+                   called, end->dof[0].grid, end->component, end->port,
+                   missing);
     for (int64_t k = 0; k < 6; k++)
         row[k] = ritz_joint_direction(end, 0, k + 1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* sum += v'x, x at three port rows; rows that count nothing are left out. */
@@ -218,22 +217,21 @@ static ritz_status relate_six(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               const ritz_joint_pose *pose, ritz_relations *list)
 {
-    ritz_status status = RITZ_OK;
     const ritz_freedom locked = {.state = RITZ_LOCKED};
     double e[6][3], arm[2][3];
     int64_t row[2][6];
 
     for (int k = 0; k < 2; k++)
-        RITZ_TRY(find_six(&end[k], kinds[joint->type].called, row[k]));
-    RITZ_FAIL_IF(joint->type == RITZ_JOINT_BUSHING &&
-                     ritz_joint_distance(end, 0, 0) >
-                         ritz_joint_tolerance(joint, &end[0]),
-                 RITZ_ERR_ARGUMENT,
-                 "a bushing lies between grids at one place, those of "
-                 "'%s/%s' and '%s/%s' lie %.3g apart, %.3g is let pass",
-                 end[0].component, end[0].port, end[1].component, end[1].port,
-                 ritz_joint_distance(end, 0, 0),
-                 ritz_joint_tolerance(joint, &end[0]));
+        RITZ_CHECK(find_six(&end[k], kinds[joint->type].called, row[k]));
+    RITZ_REFUSE_IF(joint->type == RITZ_JOINT_BUSHING &&
+                       ritz_joint_distance(end, 0, 0) >
+                           ritz_joint_tolerance(joint, &end[0]),
+                   RITZ_ERR_ARGUMENT,
+                   "a bushing lies between grids at one place, those of "
+                   "'%s/%s' and '%s/%s' lie %.3g apart, %.3g is let pass",
+                   end[0].component, end[0].port, end[1].component, end[1].port,
+                   ritz_joint_distance(end, 0, 0),
+                   ritz_joint_tolerance(joint, &end[0]));
     kinds[joint->type].point(joint, pose, e);
     find_arms(end, pose, arm);
     for (int k = 0; k < 6; k++) {
@@ -245,8 +243,7 @@ static ritz_status relate_six(const ritz_joint *joint,
         list->item[list->count] = project(e[k], k >= 3, pose->R, arm, row);
         list->item[list->count++].freedom = freedom;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_joint_relate(const ritz_joint *joint,

@@ -31,12 +31,11 @@ static const double rounding = 1e-13;
 static ritz_status pick(const ritz_dense *A, const ritz_link *of,
                         ritz_freedom_state state, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     for (int64_t k = 0; k < of->count; k++)
         count += of->freedom[k].state == state;
-    RITZ_TRY(ritz_dense_new(count, A->ncol, out));
+    RITZ_CHECK(ritz_dense_new(count, A->ncol, out));
     count = 0;
     for (int64_t k = 0; k < of->count; k++) {
         const ritz_freedom *freedom = &of->freedom[k];
@@ -48,8 +47,7 @@ static ritz_status pick(const ritz_dense *A, const ritz_link *of,
             ritz_dense_col(out, j)[count] = factor * ritz_dense_col(A, j)[k];
         count++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* S = L^+ G and Z: what the locked rows demand of q, and what they leave. */

@@ -44,11 +44,10 @@ typedef struct near_port {
 static ritz_status look(const ritz_component *component, const ritz_port *port,
                         near_port *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &component->grids;
 
-    RITZ_TRY(ritz_port_turn(component, port, &out->turn, &out->dof));
-    RITZ_NEW(out->position, 3 * port->dofs.count);
+    RITZ_CHECK(ritz_port_turn(component, port, &out->turn, &out->dof));
+    RITZ_CHECK_NEW(out->position, 3 * port->dofs.count);
     for (int64_t i = 0; i < port->dofs.count; i++) {
         int64_t k = ritz_grids_find(grids, out->dof[i].grid);
 
@@ -56,8 +55,7 @@ static ritz_status look(const ritz_component *component, const ritz_port *port,
             memcpy(out->position + 3 * i, grids->position + 3 * k,
                    3 * sizeof *out->position);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Row k of a matrix += factor times row i of another. */
@@ -73,13 +71,12 @@ static ritz_status fill_rows(const ritz_relations *list, int near,
                              const ritz_dense *turn, const ritz_dense *map,
                              ritz_link *out)
 {
-    ritz_status status = RITZ_OK;
     int far = 1 - near;
 
     out->count = list->count;
-    RITZ_NEW(out->freedom, list->count);
-    RITZ_TRY(ritz_dense_new(list->count, map->ncol, &out->F));
-    RITZ_TRY(ritz_dense_new(list->count, turn->ncol, &out->G));
+    RITZ_CHECK_NEW(out->freedom, list->count);
+    RITZ_CHECK(ritz_dense_new(list->count, map->ncol, &out->F));
+    RITZ_CHECK(ritz_dense_new(list->count, turn->ncol, &out->G));
     for (int64_t k = 0; k < list->count; k++) {
         const ritz_relation *r = &list->item[k];
 
@@ -89,8 +86,7 @@ static ritz_status fill_rows(const ritz_relations *list, int near,
         for (int64_t t = 0; t < r->num_terms[near]; t++)
             add_row(r->factor[near][t], turn, r->row[near][t], &out->G, k);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status relate(const ritz_joint *joint, const double *setting,
@@ -131,7 +127,6 @@ static ritz_status locate(const ritz_component *component,
                           const ritz_port *port, const ritz_dofs *attached,
                           int64_t *at)
 {
-    ritz_status status = RITZ_OK;
     char name[RITZ_DOF_NAME_SIZE];
 
     for (int64_t j = 0; j < port->dofs.count; j++) {
@@ -139,14 +134,13 @@ static ritz_status locate(const ritz_component *component,
         for (int64_t i = 0; i < attached->count; i++)
             if (attached->at[i] == port->dofs.at[j])
                 at[j] = i;
-        RITZ_FAIL_IF(at[j] < 0, RITZ_ERR_ARGUMENT,
-                     "%s of port '%s' is not attached, so nothing can hang on "
-                     "it",
-                     ritz_dof_name(component->dof[port->dofs.at[j]], name),
-                     port->name);
+        RITZ_REFUSE_IF(
+            at[j] < 0, RITZ_ERR_ARGUMENT,
+            "%s of port '%s' is not attached, so nothing can hang on "
+            "it",
+            ritz_dof_name(component->dof[port->dofs.at[j]], name), port->name);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* sum(at, at) += A. */

@@ -17,7 +17,6 @@
 /* Append a port's name to a list with commas, once. */
 static ritz_status append_port(char **list, const char *port)
 {
-    ritz_status status = RITZ_OK;
     size_t used = *list ? strlen(*list) : 0;
     size_t length = strlen(port);
     char *longer = NULL;
@@ -29,13 +28,12 @@ static ritz_status append_port(char **list, const char *port)
             return RITZ_OK;
         at += word + (at[word] != '\0');
     }
-    RITZ_NEW(longer, (int64_t)(used + length + 2));
+    RITZ_CHECK_NEW(longer, (int64_t)(used + length + 2));
     snprintf(longer, used + length + 2, "%s%s%s", used ? *list : "",
              used ? "," : "", port);
     free(*list);
     *list = longer;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The ports of body k that a joint holds or an input drives. */
@@ -123,8 +121,6 @@ static ritz_status check_io(const ritz_scene *scene, int64_t k,
 static ritz_status check_ports(const ritz_scene *scene, int64_t k,
                                const ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
 
@@ -134,12 +130,10 @@ static ritz_status check_ports(const ritz_scene *scene, int64_t k,
                 return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, joint->line,
                                           joint->column, "joint", joint->name);
     }
-    RITZ_TRY(check_io(scene, k, component, scene->num_inputs, scene->input,
-                      "input"));
-    RITZ_TRY(check_io(scene, k, component, scene->num_outputs, scene->output,
-                      "output"));
-done:
-    return status;
+    RITZ_CHECK(check_io(scene, k, component, scene->num_inputs, scene->input,
+                        "input"));
+    return check_io(scene, k, component, scene->num_outputs, scene->output,
+                    "output");
 }
 
 /* A reduced model, or as many of its columns as the scene takes. */
@@ -265,19 +259,17 @@ static ritz_status add_force(ritz_stage *stage, int64_t j,
 
 static ritz_status set_input(ritz_stage *stage, int64_t j)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene_io *input = &stage->scene->input[j];
 
     memcpy(stage->io.input[j], input->name, RITZ_NAME_SIZE);
     for (int64_t d = 0; d <= input->num_also; d++) {
         int64_t direction = d == 0 ? input->component : input->also[d - 1];
 
-        RITZ_TRY(add_force(stage, j, &input->at, direction, 1.0));
+        RITZ_CHECK(add_force(stage, j, &input->at, direction, 1.0));
         if (*input->against.port)
-            RITZ_TRY(add_force(stage, j, &input->against, direction, -1.0));
+            RITZ_CHECK(add_force(stage, j, &input->against, direction, -1.0));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status set_output(ritz_stage *stage, int64_t j)
@@ -306,42 +298,36 @@ static ritz_status set_output(ritz_stage *stage, int64_t j)
  */
 static ritz_status install(ritz_stage *stage)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < stage->count; k++)
-        RITZ_TRY(ritz_dampers_append(
+        RITZ_CHECK(ritz_dampers_append(
             &stage->body[k].dampers, stage->scene->component[k].name,
             stage->num_coordinates, stage->first[k], &stage->dampers));
     for (int64_t k = 0; k < stage->count; k++)
-        RITZ_TRY(ritz_reduced_install(&stage->body[k]));
+        RITZ_CHECK(ritz_reduced_install(&stage->body[k]));
     for (int64_t j = 0; j < stage->dampers.count; j++) {
         stage->dampers.held_c[j] = stage->dampers.c[j];
         stage->dampers.held_k[j] = stage->dampers.k[j];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Count coordinates and set up the scene's inputs and outputs. */
 static ritz_status complete(ritz_stage *stage)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
 
-    RITZ_NEW(stage->first, stage->count);
+    RITZ_CHECK_NEW(stage->first, stage->count);
     for (int64_t k = 0; k < stage->count; k++) {
         stage->first[k] = stage->num_coordinates;
         stage->num_coordinates += stage->body[k].K.ncol;
     }
-    RITZ_TRY(ritz_io_new(stage->num_coordinates, scene->num_inputs,
-                         scene->num_outputs, &stage->io));
+    RITZ_CHECK(ritz_io_new(stage->num_coordinates, scene->num_inputs,
+                           scene->num_outputs, &stage->io));
     for (int64_t j = 0; j < scene->num_inputs; j++)
-        RITZ_TRY(set_input(stage, j));
+        RITZ_CHECK(set_input(stage, j));
     for (int64_t j = 0; j < scene->num_outputs; j++)
-        RITZ_TRY(set_output(stage, j));
-    RITZ_TRY(install(stage));
-done:
-    return status;
+        RITZ_CHECK(set_output(stage, j));
+    return install(stage);
 }
 
 ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)

@@ -10,7 +10,6 @@
 /* Names, orders, band and damping of the scene. */
 static ritz_status label(const ritz_stage *stage, ritz_system *system)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
 
     memcpy(system->name, scene->name, sizeof system->name);
@@ -18,25 +17,24 @@ static ritz_status label(const ritz_stage *stage, ritz_system *system)
     ritz_damping_print(&scene->damping, system->damping);
     if (stage->count > 0)
         memcpy(system->units, stage->body[0].units, sizeof system->units);
-    RITZ_NEW(system->component, stage->count);
-    RITZ_NEW(system->order, stage->count);
-    RITZ_NEW(system->order_full, stage->count);
+    RITZ_CHECK_NEW(system->component, stage->count);
+    RITZ_CHECK_NEW(system->order, stage->count);
+    RITZ_CHECK_NEW(system->order_full, stage->count);
     system->num_components = stage->count;
     for (int64_t k = 0; k < stage->count; k++) {
         memcpy(system->component[k], scene->component[k].name, RITZ_NAME_SIZE);
         system->order[k] = stage->body[k].K.ncol;
         system->order_full[k] = stage->body[k].num_dofs;
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             strcmp(stage->body[k].units, system->units) != 0, RITZ_ERR_ARGUMENT,
             "'%s' is in units '%s' and '%s' in '%s'", scene->component[0].name,
             system->units, scene->component[k].name, stage->body[k].units);
     }
-    RITZ_NEW(system->sweep, scene->num_sweeps);
+    RITZ_CHECK_NEW(system->sweep, scene->num_sweeps);
     system->num_sweeps = scene->num_sweeps;
     for (int64_t k = 0; k < scene->num_sweeps; k++)
         memcpy(system->sweep[k], scene->sweep[k].name, RITZ_NAME_SIZE);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_assemble(const ritz_stage *stage, const char *at,

@@ -25,4 +25,14 @@ void *ritz_array_grown(void *array, int64_t count, int64_t *room, size_t size);
         (array) = grown_;                                                      \
     } while (0)
 
+/* RITZ_ROOM for a function that owns nothing: it returns at once. */
+#define RITZ_CHECK_ROOM(array, count, room)                                    \
+    do {                                                                       \
+        void *grown_ =                                                         \
+            ritz_array_grown((array), (count), &(room), sizeof *(array));      \
+        if (!grown_)                                                           \
+            return RITZ_ERR_MEMORY;                                            \
+        (array) = grown_;                                                      \
+    } while (0)
+
 #endif

@@ -118,16 +118,13 @@ done:
 
 ritz_status ritz_draft_publish(ritz_draft *draft)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
-                 "cannot replace '%s': %s", draft->path, strerror(errno));
+    RITZ_REFUSE_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
+                   "cannot replace '%s': %s", draft->path, strerror(errno));
     strike(draft->name);
     free(draft->name);
     free(draft->path);
     *draft = (ritz_draft){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_draft_free(ritz_draft *draft)

@@ -13,16 +13,14 @@
 /* Move `used` bytes into a block of `size`, the rest of it zero. */
 static ritz_status grow(char **text, int64_t used, int64_t size)
 {
-    ritz_status status = RITZ_OK;
     char *bigger = NULL;
 
-    RITZ_NEW(bigger, size);
+    RITZ_CHECK_NEW(bigger, size);
     if (used > 0)
         memcpy(bigger, *text, (size_t)used);
     free(*text);
     *text = bigger;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What a regular file says it holds; 0 for a pipe, and where nothing is said. */
@@ -115,26 +113,24 @@ bool ritz_text_whole(const char *text, int64_t *out)
 
 ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
     size_t length = strlen(name);
 
-    RITZ_FAIL_IF(length == 0, RITZ_ERR_ARGUMENT, "a name is empty");
-    RITZ_FAIL_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
-                 "'%.40s...' is longer than %d letters", name,
-                 RITZ_NAME_SIZE - 1);
+    RITZ_REFUSE_IF(length == 0, RITZ_ERR_ARGUMENT, "a name is empty");
+    RITZ_REFUSE_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                   "'%.40s...' is longer than %d letters", name,
+                   RITZ_NAME_SIZE - 1);
     for (const char *c = name; *c; c++)
-        RITZ_FAIL_IF((unsigned char)*c < ' ' || *c == '/' || *c == 127,
-                     RITZ_ERR_ARGUMENT,
-                     "'%s' holds '/' or a control character, a name cannot",
-                     name);
+        RITZ_REFUSE_IF((unsigned char)*c < ' ' || *c == '/' || *c == 127,
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' holds '/' or a control character, a name cannot",
+                       name);
     for (const char *c = name; *c; c += ritz_letter_length(c))
-        RITZ_FAIL_IF(ritz_letter_length(c) == 0, RITZ_ERR_ARGUMENT,
-                     "'%s' is not UTF-8, a name must be", name);
-    RITZ_FAIL_IF(strcmp(name, ".") == 0 || strcmp(name, "..") == 0,
-                 RITZ_ERR_ARGUMENT, "'%s' cannot be a name", name);
+        RITZ_REFUSE_IF(ritz_letter_length(c) == 0, RITZ_ERR_ARGUMENT,
+                       "'%s' is not UTF-8, a name must be", name);
+    RITZ_REFUSE_IF(strcmp(name, ".") == 0 || strcmp(name, "..") == 0,
+                   RITZ_ERR_ARGUMENT, "'%s' cannot be a name", name);
     memcpy(out, name, length + 1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 enum { FAR = 1000, LONGEST = 64 };

@@ -10,34 +10,31 @@
 
 static ritz_status check(const ritz_request *request)
 {
-    ritz_status status = RITZ_OK;
     const int of_components = RITZ_USES_DAMPING | RITZ_USES_AMONG;
     int given = request->choice.given;
     ritz_engine engine = request->choice.engine;
     bool modal = given & (RITZ_USES_AMONG | RITZ_USES_BAND);
 
-    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                 "balanced vectors are asked for by their number, not by a "
-                 "frequency");
-    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                 "no vectors are asked for, one at least is needed");
-    RITZ_FAIL_IF(request->space && (given & of_components), RITZ_ERR_ARGUMENT,
-                 "a state space has neither modes nor any damping beside its "
-                 "matrix");
-    RITZ_FAIL_IF(request->space && engine > RITZ_ENGINE_DENSE,
-                 RITZ_ERR_ARGUMENT,
-                 "a state space is balanced by the dense engine alone");
-    RITZ_FAIL_IF(modal && engine != RITZ_ENGINE_AUTO &&
-                     engine != RITZ_ENGINE_MODAL,
-                 RITZ_ERR_ARGUMENT,
-                 "a choice of modes, or a band, is of the modal engine alone");
-done:
-    return status;
+    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                   "balanced vectors are asked for by their number, not by a "
+                   "frequency");
+    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                   "no vectors are asked for, one at least is needed");
+    RITZ_REFUSE_IF(request->space && (given & of_components), RITZ_ERR_ARGUMENT,
+                   "a state space has neither modes nor any damping beside its "
+                   "matrix");
+    RITZ_REFUSE_IF(request->space && engine > RITZ_ENGINE_DENSE,
+                   RITZ_ERR_ARGUMENT,
+                   "a state space is balanced by the dense engine alone");
+    RITZ_REFUSE_IF(
+        modal && engine != RITZ_ENGINE_AUTO && engine != RITZ_ENGINE_MODAL,
+        RITZ_ERR_ARGUMENT,
+        "a choice of modes, or a band, is of the modal engine alone");
+    return RITZ_OK;
 }
 
 ritz_status ritz_gramians_asked(const ritz_request *request, ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_choice *choice = &request->choice;
     ritz_gramians_request asked = {
         .component = request->component,
@@ -45,15 +42,13 @@ ritz_status ritz_gramians_asked(const ritz_request *request, ritz_gramians *out)
         .among_hz = choice->among_hz,
         .band_hz = {choice->band_hz[0], choice->band_hz[1]}};
 
-    RITZ_TRY(check(request));
+    RITZ_CHECK(check(request));
     if (request->space)
         return ritz_gramians_of_space(request->space, out);
-    RITZ_TRY(ritz_request_damping(request, &asked.damping));
+    RITZ_CHECK(ritz_request_damping(request, &asked.damping));
     if (choice->given & (RITZ_USES_AMONG | RITZ_USES_BAND))
         asked.engine = RITZ_ENGINE_MODAL;
-    RITZ_TRY(ritz_gramians_of_component(&asked, out));
-done:
-    return status;
+    return ritz_gramians_of_component(&asked, out);
 }
 
 ritz_status ritz_balance_asked(const ritz_request *request,
@@ -165,9 +160,7 @@ ritz_status ritz_balanced_note(const ritz_request *request,
                                const ritz_balanced *balanced, bool bounded,
                                const char *what, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(basis->hankel, balanced->count);
+    RITZ_CHECK_NEW(basis->hankel, balanced->count);
     basis->num_hankel = balanced->count;
     memcpy(basis->hankel, balanced->sigma,
            (size_t)balanced->count * sizeof *basis->hankel);
@@ -177,8 +170,7 @@ ritz_status ritz_balanced_note(const ritz_request *request,
     snprintf(basis->origin.engine, sizeof basis->origin.engine, "%s",
              gramians->engine);
     remark(request, gramians, balanced, what, basis);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_balanced_states(const ritz_request *request,

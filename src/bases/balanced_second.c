@@ -58,15 +58,13 @@ static void release(second *s)
 
 static ritz_status rows(const ritz_dense *Z, bool lower, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = Z->nrow / 2;
 
-    RITZ_TRY(ritz_dense_new(n, Z->ncol, out));
+    RITZ_CHECK(ritz_dense_new(n, Z->ncol, out));
     for (int64_t j = 0; j < Z->ncol && n > 0; j++)
         memcpy(ritz_dense_col(out, j), ritz_dense_col(Z, j) + (lower ? n : 0),
                (size_t)n * sizeof *out->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What stands apart must be rigid motion, and nothing else. */
@@ -115,18 +113,15 @@ done:
 static ritz_status cut(const ritz_component *component, ritz_half half,
                        second *s)
 {
-    ritz_status status = RITZ_OK;
     ritz_gramians *to = &s->half;
 
-    RITZ_TRY(rows(&s->states.Zc, half == RITZ_HALF_VELOCITY, &to->Zc));
-    RITZ_TRY(rows(&s->states.Zo, true, &to->Zo));
+    RITZ_CHECK(rows(&s->states.Zc, half == RITZ_HALF_VELOCITY, &to->Zc));
+    RITZ_CHECK(rows(&s->states.Zo, true, &to->Zo));
     for (int twice = 0; twice < 2 && s->Phi.ncol > 0; twice++) {
-        RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zc));
-        RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zo));
+        RITZ_CHECK(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zc));
+        RITZ_CHECK(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zo));
     }
-    RITZ_TRY(ritz_sparse_mul(&component->M, &to->Zc, &to->EZc));
-done:
-    return status;
+    return ritz_sparse_mul(&component->M, &to->Zc, &to->EZc);
 }
 
 /* |X'Y|^2 of Frobenius. */
@@ -148,16 +143,13 @@ done:
 static ritz_status scaled(const ritz_io *io, const ritz_dense *C,
                           ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(C->ncol, C->nrow, out));
+    RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
     for (int64_t i = 0; i < C->nrow; i++)
         for (int64_t j = 0; j < C->ncol; j++)
             ritz_dense_col(out, i)[j] =
                 ritz_dense_col(C, j)[i] /
                 (isnan(io->limit[i]) ? 1.0 : io->limit[i]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -224,15 +216,13 @@ done:
 static ritz_status vectors(const ritz_request *request, const second *s,
                            bool one_sided, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(beside(s, &s->balanced.T, &basis->T));
+    RITZ_CHECK(beside(s, &s->balanced.T, &basis->T));
     if (one_sided)
-        RITZ_TRY(
+        RITZ_CHECK(
             orthonormalise(request->component, request->tolerance, &basis->T));
     else
-        RITZ_TRY(beside(s, &s->balanced.W, &basis->W));
-    RITZ_TRY(ritz_columns_new(basis->T.ncol, &basis->columns));
+        RITZ_CHECK(beside(s, &s->balanced.W, &basis->W));
+    RITZ_CHECK(ritz_columns_new(basis->T.ncol, &basis->columns));
     for (int64_t j = 0; j < basis->T.ncol; j++) {
         bool rigid = j < s->Phi.ncol;
 
@@ -241,8 +231,7 @@ static ritz_status vectors(const ritz_request *request, const second *s,
         if (rigid)
             basis->columns.hertz[j] = 0.0;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_balanced_second(const ritz_request *request, ritz_half half,

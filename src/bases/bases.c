@@ -58,26 +58,24 @@ const ritz_method *ritz_method_find(const char *name)
 ritz_status ritz_request_check(const ritz_method *method,
                                const ritz_request *request)
 {
-    ritz_status status = RITZ_OK;
     bool by_number = request->modes >= 0;
     bool by_frequency = request->up_to_hz > 0.0;
 
     if (method->uses & RITZ_USES_MODES)
-        RITZ_FAIL_IF(by_number == by_frequency, RITZ_ERR_ARGUMENT,
-                     "%s takes either a number of modes or a frequency",
-                     method->name);
+        RITZ_REFUSE_IF(by_number == by_frequency, RITZ_ERR_ARGUMENT,
+                       "%s takes either a number of modes or a frequency",
+                       method->name);
     else
-        RITZ_FAIL_IF(by_number || by_frequency, RITZ_ERR_ARGUMENT,
-                     "%s has no modes to choose", method->name);
+        RITZ_REFUSE_IF(by_number || by_frequency, RITZ_ERR_ARGUMENT,
+                       "%s has no modes to choose", method->name);
     for (const ritz_choice_word *word = ritz_choice_words; word->key; word++)
-        RITZ_FAIL_IF(request->choice.given & word->uses & ~method->uses,
-                     RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",
-                     method->name, word->key);
-    RITZ_FAIL_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
-                 RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",
-                 method->name);
-done:
-    return status;
+        RITZ_REFUSE_IF(request->choice.given & word->uses & ~method->uses,
+                       RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",
+                       method->name, word->key);
+    RITZ_REFUSE_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
+                   RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",
+                   method->name);
+    return RITZ_OK;
 }
 
 static void sign(const ritz_method *method, const ritz_request *request,
@@ -97,11 +95,8 @@ static void sign(const ritz_method *method, const ritz_request *request,
 ritz_status ritz_basis_make(const ritz_method *method,
                             const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_request_check(method, request));
-    RITZ_TRY_IN(method->name, method->make(request, out));
+    RITZ_CHECK(ritz_request_check(method, request));
+    RITZ_CHECK_IN(method->name, method->make(request, out));
     sign(method, request, &out->origin);
-done:
-    return status;
+    return RITZ_OK;
 }

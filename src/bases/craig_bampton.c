@@ -101,13 +101,13 @@ done:
 static ritz_status join(const ritz_partition *s, const ritz_basis *boundary,
                         const ritz_pairs *modes, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_columns *first = &boundary->columns;
     const ritz_dense *T_b = &boundary->T;
     int64_t r = first->count;
     ritz_columns *columns = &out->columns;
 
-    RITZ_TRY(ritz_basis_new(s->component->num_dofs, r + modes->Phi.ncol, out));
+    RITZ_CHECK(
+        ritz_basis_new(s->component->num_dofs, r + modes->Phi.ncol, out));
     for (int64_t j = 0; j < r; j++) {
         columns->kind[j] = first->kind[j];
         columns->dof[j] = first->dof[j];
@@ -123,8 +123,7 @@ static ritz_status join(const ritz_partition *s, const ritz_basis *boundary,
         columns->residual[r + j] = modes->residual[j];
     }
     memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

@@ -106,19 +106,16 @@ static double largest_terms(const ritz_dense *F, const ritz_dense *X)
 /* What loads do to each mode. */
 static ritz_status see_loads(const ritz_dense *X, model *s)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t g = 0; g < s->R->num_groups; g++)
         for (int k = 0; k < 3; k++) {
             const ritz_dense *F = &s->R->group[g].F[k];
 
             if (!F->val)
                 continue;
-            RITZ_TRY(ritz_dense_mul_tn(X, F, &s->F[g][k]));
+            RITZ_CHECK(ritz_dense_mul_tn(X, F, &s->F[g][k]));
             s->terms[g][k] = largest_terms(F, X);
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_model(const ritz_rational *R,
@@ -367,7 +364,6 @@ static void aim(const model *s, const candidate *pole, int64_t g,
 
 static ritz_status list(const model *s, ritz_probes *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_probes probes = {0};
     int64_t poles = 0;
     int64_t groups = 0;
@@ -377,14 +373,13 @@ static ritz_status list(const model *s, ritz_probes *out)
         poles++;
     for (int64_t g = 0; g < s->R->num_groups; g++)
         groups += s->R->group[g].answered;
-    RITZ_TRY(ritz_probes_new(poles * groups, s->R->num_loads, &probes));
+    RITZ_CHECK(ritz_probes_new(poles * groups, s->R->num_loads, &probes));
     for (int64_t k = 0; k < poles; k++)
         for (int64_t g = 0; g < s->R->num_groups; g++)
             if (s->R->group[g].answered)
                 aim(s, &s->pole[k], g, &probes.item[at++]);
     *out = probes;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dominant_probes(const ritz_rational *R,

@@ -170,26 +170,19 @@ void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
 
 ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F)
 {
-    ritz_status status = RITZ_OK;
-
     if (E->Phi.ncol == 0 || F->ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_dense_take_out(&E->MPhi, &E->Phi, F));
-    RITZ_TRY(ritz_dense_take_out(&E->MPhi, &E->Phi, F)); /* twice is enough */
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_take_out(&E->MPhi, &E->Phi, F));
+    RITZ_CHECK(ritz_dense_take_out(&E->MPhi, &E->Phi, F)); /* twice is enough */
+    return RITZ_OK;
 }
 
 static ritz_status take_out_motion(const ritz_elastic *E, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
     if (E->Phi.ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
-    RITZ_TRY(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
+    return ritz_dense_take_out(&E->Phi, &E->MPhi, X);
 }
 
 /* X := S X. */
@@ -215,29 +208,21 @@ done:
 
 ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
     if (X->ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_elastic_forces(E, X));
-    RITZ_TRY(solve_supported(E, X));
-    RITZ_TRY(take_out_motion(E, X));
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(ritz_elastic_forces(E, X));
+    RITZ_CHECK(solve_supported(E, X));
+    return take_out_motion(E, X);
 }
 
 ritz_status ritz_elastic_answer_at(const ritz_elastic *E, ritz_ldl *A,
                                    ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
     if (X->ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_elastic_forces(E, X));
-    RITZ_TRY(ritz_ldl_solve(A, X));
-    RITZ_TRY(take_out_motion(E, X));
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(ritz_elastic_forces(E, X));
+    RITZ_CHECK(ritz_ldl_solve(A, X));
+    return take_out_motion(E, X);
 }
 
 void ritz_elastic_free(ritz_elastic *E)

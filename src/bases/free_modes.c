@@ -21,19 +21,17 @@
 
 static ritz_status find_modes(const ritz_request *request, ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     const ritz_span span = {request->modes, request->up_to_hz};
 
-    RITZ_TRY_IN("free-interface modes",
-                ritz_eigen_sparse(&component->K, &component->M, &span, out));
-    RITZ_FAIL_IF(out->Phi.ncol > 0 && out->num_rigid == 0 &&
-                     out->lambda[0] <= 0.0,
-                 RITZ_ERR_SINGULAR,
-                 "K is not positive semidefinite: an eigenvalue is %.3g",
-                 out->lambda[0]);
-done:
-    return status;
+    RITZ_CHECK_IN("free-interface modes",
+                  ritz_eigen_sparse(&component->K, &component->M, &span, out));
+    RITZ_REFUSE_IF(out->Phi.ncol > 0 && out->num_rigid == 0 &&
+                       out->lambda[0] <= 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "K is not positive semidefinite: an eigenvalue is %.3g",
+                   out->lambda[0]);
+    return RITZ_OK;
 }
 
 ritz_status ritz_free_set_find(const ritz_request *request, int loads,
@@ -90,14 +88,13 @@ ritz_status ritz_free_set_join(const ritz_request *request,
                                const ritz_free_set *set, ritz_column_kind kind,
                                ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_pairs *modes = &set->modes;
     size_t column = (size_t)modes->Phi.nrow * sizeof *modes->Phi.val;
     ritz_columns *columns = &out->columns;
     int64_t k = modes->Phi.ncol;
 
-    RITZ_TRY(ritz_basis_new(request->component->num_dofs,
-                            k + ritz_free_set_kept(set), out));
+    RITZ_CHECK(ritz_basis_new(request->component->num_dofs,
+                              k + ritz_free_set_kept(set), out));
     for (int64_t j = 0; j < k; j++) {
         bool rigid = j < modes->num_rigid;
 
@@ -117,8 +114,7 @@ ritz_status ritz_free_set_join(const ritz_request *request,
     }
     memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
     remark(request, set, kind, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_free_basis(const ritz_request *request, int loads,

@@ -8,21 +8,19 @@ enum { MOST = 5000 }; /* 200 MB of identity, and dense matrices after it */
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = request->component->num_dofs;
 
-    RITZ_FAIL_IF(n > MOST, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " dofs are too many to keep all, %d is the most", n,
-                 MOST);
-    RITZ_TRY(ritz_basis_new(n, n, out));
+    RITZ_REFUSE_IF(n > MOST, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " dofs are too many to keep all, %d is the most",
+                   n, MOST);
+    RITZ_CHECK(ritz_basis_new(n, n, out));
     for (int64_t j = 0; j < n; j++) {
         ritz_dense_col(&out->T, j)[j] = 1.0;
         out->columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
         out->columns.dof[j] = j;
     }
     snprintf(out->origin.engine, sizeof out->origin.engine, "identity");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_full = {

@@ -56,23 +56,21 @@ int64_t ritz_gram_pivots(ritz_dense *G, int64_t most, int64_t *order)
 /* G := L of G = L L', column by column; the upper triangle stays. */
 static ritz_status cholesky(ritz_dense *G)
 {
-    ritz_status status = RITZ_OK;
     int64_t p = G->ncol;
 
     for (int64_t j = 0; j < p; j++) {
         double *g = ritz_dense_col(G, j);
         double d = sqrt(g[j]);
 
-        RITZ_FAIL_IF(!(g[j] > 0.0), RITZ_ERR_CONVERGENCE,
-                     "a block of vectors lost its independence");
+        RITZ_REFUSE_IF(!(g[j] > 0.0), RITZ_ERR_CONVERGENCE,
+                       "a block of vectors lost its independence");
         for (int64_t i = j; i < p; i++)
             g[i] /= d;
         for (int64_t k = j + 1; k < p; k++)
             for (int64_t i = k; i < p; i++)
                 ritz_dense_col(G, k)[i] -= g[i] * g[k];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_gram_normalise(const ritz_sparse *W, ritz_dense *Q,

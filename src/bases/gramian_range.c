@@ -46,14 +46,11 @@ double ritz_gramian_defect(const ritz_dense *A, const ritz_dense *B)
 static ritz_status scaled(const ritz_dense *Z, const double *s, int64_t r,
                           double power, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_columns(Z, 0, r, out));
+    RITZ_CHECK(ritz_dense_columns(Z, 0, r, out));
     for (int64_t j = 0; j < r; j++)
         for (int64_t i = 0; i < Z->nrow; i++)
             ritz_dense_col(out, j)[i] *= pow(s[j], power);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Q, V, A and B of the first r values. */

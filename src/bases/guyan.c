@@ -10,16 +10,15 @@
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_request without_modes = *request;
 
-    RITZ_FAIL_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
-                 "nothing is attached, so nothing would be kept: name a port");
+    RITZ_REFUSE_IF(
+        request->attached.count == 0, RITZ_ERR_ARGUMENT,
+        "nothing is attached, so nothing would be kept: name a port");
     without_modes.modes = 0;
-    RITZ_TRY(ritz_method_craig_bampton.make(&without_modes, out));
+    RITZ_CHECK(ritz_method_craig_bampton.make(&without_modes, out));
     snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_guyan = {

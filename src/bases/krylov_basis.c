@@ -77,28 +77,25 @@ done:
 
 ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const char *W = S->inner == RITZ_INNER_MASS ? "M" : "K";
     double worst = 0.0;
     double bound = 0.0;
 
-    RITZ_TRY(measure(S, &worst, &bound));
+    RITZ_CHECK(measure(S, &worst, &bound));
     ritz_krylov_say(basis, "; |V'%sV - I| is %.1e, %s %.1e", W, worst,
                     worst <= bound ? "within" : "beyond", bound);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *Phi = &S->body->Phi;
     int64_t r = Phi->ncol;
     size_t size = (size_t)Phi->nrow * sizeof *Phi->val;
 
-    RITZ_FAIL_IF(r + S->set.count == 0, RITZ_ERR_ARGUMENT,
-                 "the basis would have no vectors");
-    RITZ_TRY(ritz_basis_new(S->body->K->nrow, r + S->set.count, out));
+    RITZ_REFUSE_IF(r + S->set.count == 0, RITZ_ERR_ARGUMENT,
+                   "the basis would have no vectors");
+    RITZ_CHECK(ritz_basis_new(S->body->K->nrow, r + S->set.count, out));
     for (int64_t j = 0; j < r; j++) {
         memcpy(ritz_dense_col(&out->T, j), ritz_dense_col(Phi, j), size);
         out->columns.kind[j] = RITZ_COLUMN_RIGID;
@@ -112,6 +109,5 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
     }
     snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD%s",
              S->point[S->num_points - 1].A ? " + MUMPS" : "");
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -181,14 +181,11 @@ done:
 static ritz_status take_loads(const ritz_dense *F, int64_t first,
                               ritz_forces *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_columns(F, first, F->ncol - first, &out->G));
-    RITZ_TRY(ritz_dense_copy(&out->G, &out->size));
+    RITZ_CHECK(ritz_dense_columns(F, first, F->ncol - first, &out->G));
+    RITZ_CHECK(ritz_dense_copy(&out->G, &out->size));
     for (int64_t k = 0; k < F->nrow * (F->ncol - first); k++)
         out->size.val[k] = fabs(out->size.val[k]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Inertia forces M Q of the last block of a point. */
@@ -196,14 +193,12 @@ static ritz_status take_inertia(const ritz_krylov *S,
                                 const ritz_krylov_point *point,
                                 ritz_forces *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
 
-    RITZ_TRY(ritz_sparse_mul(S->body->M, &Q, &out->G));
-    RITZ_TRY(ritz_dense_new(Q.nrow, Q.ncol, &out->size));
+    RITZ_CHECK(ritz_sparse_mul(S->body->M, &Q, &out->G));
+    RITZ_CHECK(ritz_dense_new(Q.nrow, Q.ncol, &out->size));
     ritz_krylov_size(S->body->M, &Q, 1.0, &out->size);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Append what a point answers; *added columns. */
@@ -270,7 +265,6 @@ done:
 
 ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
 {
-    ritz_status status = RITZ_OK;
     const int64_t full = S->vectors + S->seeds;
     bool moving = true;
 
@@ -282,16 +276,15 @@ ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
             if (point->ended)
                 continue;
             if (block == 0)
-                RITZ_TRY(start(S, F, seeded, point));
+                RITZ_CHECK(start(S, F, seeded, point));
             else
-                RITZ_TRY(advance(S, point));
+                RITZ_CHECK(advance(S, point));
             point->ended = point->count == 0;
             point->whole += !point->ended && S->set.left == 0;
             moving = moving || !point->ended;
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_forces_free(ritz_forces *forces)

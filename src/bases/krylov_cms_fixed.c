@@ -80,13 +80,12 @@ done:
 static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
                         const ritz_krylov *S, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *b = s->b;
     const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
 
-    RITZ_FAIL_IF(b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
-                 "the basis would have no vectors");
-    RITZ_TRY(ritz_basis_new(s->component->num_dofs, b->count + V.ncol, out));
+    RITZ_REFUSE_IF(b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
+                   "the basis would have no vectors");
+    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count + V.ncol, out));
     ritz_partition_scatter(Psi, &s->i, 0, &out->T);
     ritz_partition_scatter(&V, &s->i, b->count, &out->T);
     for (int64_t j = 0; j < b->count; j++) {
@@ -98,8 +97,7 @@ static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
         out->columns.kind[b->count + j] = RITZ_COLUMN_KRYLOV;
     snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD%s",
              S->point[S->num_points - 1].A ? " + MUMPS" : "");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

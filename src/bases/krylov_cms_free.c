@@ -70,19 +70,15 @@ static ritz_status join(const ritz_request *request, const ritz_krylov *S,
                         const ritz_dense *F_a, const bool *taken,
                         ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_krylov_join(S, out));
-    RITZ_TRY(put_attachment(request, S, F_a, taken, out));
+    RITZ_CHECK(ritz_krylov_join(S, out));
+    RITZ_CHECK(put_attachment(request, S, F_a, taken, out));
     if (S->seeds < F_a->ncol)
         ritz_krylov_say(out,
                         "%" PRId64 " attachment mode(s) left out, dependent or "
                         "nothing but rigid; ",
                         F_a->ncol - S->seeds);
     ritz_krylov_say_blocks(S, request->modes, out);
-    RITZ_TRY(ritz_krylov_say_orthonormal(S, out));
-done:
-    return status;
+    return ritz_krylov_say_orthonormal(S, out);
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

@@ -197,26 +197,22 @@ done:
 /* Of inputs with D, of outputs with D'; one chain where they are the same. */
 static ritz_status start_chains(recurrence *r, int loads)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *D = r->D[0].colptr ? &r->D[0] : NULL;
 
     if (!D || ritz_sparse_asymmetry(D) <= symmetric_within)
         return start_chain(r, 0, D, loads);
-    RITZ_TRY(ritz_sparse_transpose(D, &r->D[1]));
-    RITZ_TRY(start_chain(r, 0, D, loads & ~RITZ_LOADS_OUTPUTS));
-    RITZ_TRY(start_chain(r, 1, &r->D[1], loads & ~RITZ_LOADS_INPUTS));
-done:
-    return status;
+    RITZ_CHECK(ritz_sparse_transpose(D, &r->D[1]));
+    RITZ_CHECK(start_chain(r, 0, D, loads & ~RITZ_LOADS_OUTPUTS));
+    return start_chain(r, 1, &r->D[1], loads & ~RITZ_LOADS_INPUTS);
 }
 
 static ritz_status run(recurrence *r, int loads)
 {
-    ritz_status status = RITZ_OK;
     double omega = 1.0;
     bool moving = true;
 
-    RITZ_TRY(start_chains(r, loads));
-    RITZ_TRY(choose_unit(r, &omega));
+    RITZ_CHECK(start_chains(r, loads));
+    RITZ_CHECK(choose_unit(r, &omega));
     while (moving && r->S.set.count < r->S.vectors) {
         moving = false;
         for (int64_t k = 0; k < r->num_chains; k++) {
@@ -224,13 +220,12 @@ static ritz_status run(recurrence *r, int loads)
 
             if (chain->ended || r->S.set.count == r->S.vectors)
                 continue;
-            RITZ_TRY(ritz_krylov_states_advance(&r->S, omega, chain));
+            RITZ_CHECK(ritz_krylov_states_advance(&r->S, omega, chain));
             moving = moving || !chain->ended;
         }
     }
     r->S.point[0].whole = r->chain[0].whole;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find_basis(recurrence *r, ritz_basis *out)

@@ -19,15 +19,12 @@ static void put_rows(const ritz_dense *A, int64_t at, ritz_dense *Z)
 static ritz_status pick_rows(const ritz_krylov_states *c, int64_t at,
                              int64_t count, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(count, c->count, out));
+    RITZ_CHECK(ritz_dense_new(count, c->count, out));
     for (int64_t j = 0; j < c->count; j++)
         for (int64_t i = 0; i < count; i++)
             ritz_dense_col(out, j)[i] =
                 ritz_dense_col(&c->kept.V, c->first + j)[at + i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

@@ -70,22 +70,20 @@ static void release(one_sided *s)
 static ritz_status start(const ritz_request *request, const ritz_states *states,
                          one_sided *s)
 {
-    ritz_status status = RITZ_OK;
     bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
 
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         (outputs ? states->C.nrow : states->B.ncol) == 0, RITZ_ERR_ARGUMENT,
         "the component has no %s, and the Gramian of %s is none",
         outputs ? "outputs" : "inputs", outputs ? "outputs" : "inputs");
     if (outputs) {
-        RITZ_TRY(ritz_general_transpose(&states->A, &s->A));
-        RITZ_TRY(ritz_general_transpose(&states->C, &s->B));
+        RITZ_CHECK(ritz_general_transpose(&states->A, &s->A));
+        RITZ_CHECK(ritz_general_transpose(&states->C, &s->B));
     } else {
-        RITZ_TRY(ritz_dense_copy(&states->A, &s->A));
-        RITZ_TRY(ritz_dense_copy(&states->B, &s->B));
+        RITZ_CHECK(ritz_dense_copy(&states->A, &s->A));
+        RITZ_CHECK(ritz_dense_copy(&states->B, &s->B));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A Gramian is finite if every pole is stable, those of A less the shift. */
@@ -120,19 +118,17 @@ done:
 /* G and b, where the Gramian is more than rounding. */
 static ritz_status choose_operator(const ritz_request *request, one_sided *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_gramian_range *range = &s->range;
 
-    RITZ_TRY(ritz_gramian_range_new(&s->A, &s->B, request->tolerance,
-                                    small * s->damping, &s->range));
-    RITZ_TRY(ritz_states_operator(&range->A, request->choice.inverse, &s->G));
+    RITZ_CHECK(ritz_gramian_range_new(&s->A, &s->B, request->tolerance,
+                                      small * s->damping, &s->range));
+    RITZ_CHECK(ritz_states_operator(&range->A, request->choice.inverse, &s->G));
     if (request->choice.inverse)
-        RITZ_TRY(ritz_dense_mul(&s->G, &range->B, &s->b));
+        RITZ_CHECK(ritz_dense_mul(&s->G, &range->B, &s->b));
     else
-        RITZ_TRY(ritz_dense_copy(&range->B, &s->b));
+        RITZ_CHECK(ritz_dense_copy(&range->B, &s->b));
     s->rounding = ritz_gramian_defect(&s->G, &s->b);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* P, as many columns as asked for or as there are. */

@@ -63,11 +63,11 @@ static void release(two_sided *t)
 /* All candidates, side by side, each of unit length or zero. */
 static ritz_status gather(const side *s, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *const parts[] = {&s->next, &s->waiting};
     int64_t at = 0;
 
-    RITZ_TRY(ritz_dense_new(s->next.nrow, s->next.ncol + s->waiting.ncol, out));
+    RITZ_CHECK(
+        ritz_dense_new(s->next.nrow, s->next.ncol + s->waiting.ncol, out));
     for (int p = 0; p < 2; p++)
         for (int64_t j = 0; j < parts[p]->ncol; j++, at++) {
             const double *x = ritz_dense_col(parts[p], j);
@@ -78,8 +78,7 @@ static ritz_status gather(const side *s, ritz_dense *out)
             for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
                 ritz_dense_col(out, at)[i] = x[i] / size;
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Candidates less what is spanned, orthonormal; dependent ones left out. */
@@ -156,7 +155,6 @@ done:
 /* G times the last block, on either side. */
 static ritz_status advance(two_sided *t, int64_t joined)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = t->G.nrow;
     const ritz_dense right = {n, joined,
                               ritz_dense_col(&t->right.vectors, t->used)};
@@ -165,11 +163,10 @@ static ritz_status advance(two_sided *t, int64_t joined)
 
     ritz_dense_free(&t->right.next);
     ritz_dense_free(&t->left.next);
-    RITZ_TRY(ritz_dense_mul(&t->G, &right, &t->right.next));
-    RITZ_TRY(ritz_dense_mul_tn(&t->G, &left, &t->left.next));
+    RITZ_CHECK(ritz_dense_mul(&t->G, &right, &t->right.next));
+    RITZ_CHECK(ritz_dense_mul_tn(&t->G, &left, &t->left.next));
     t->used += joined;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status step(double tolerance, two_sided *t, bool *going)
@@ -198,42 +195,39 @@ done:
 static ritz_status start(const ritz_request *request, const ritz_states *states,
                          two_sided *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = states->count;
     int64_t most = request->modes < n ? request->modes : n;
 
-    RITZ_FAIL_IF(states->B.ncol == 0 || states->C.nrow == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no %s, vectors of both sides need some",
-                 states->B.ncol == 0 ? "inputs" : "outputs");
-    RITZ_TRY(ritz_states_operator(&states->A, request->choice.inverse, &t->G));
+    RITZ_REFUSE_IF(states->B.ncol == 0 || states->C.nrow == 0,
+                   RITZ_ERR_ARGUMENT,
+                   "the component has no %s, vectors of both sides need some",
+                   states->B.ncol == 0 ? "inputs" : "outputs");
+    RITZ_CHECK(
+        ritz_states_operator(&states->A, request->choice.inverse, &t->G));
     if (request->choice.inverse)
-        RITZ_TRY(ritz_dense_mul(&t->G, &states->B, &t->right.next));
+        RITZ_CHECK(ritz_dense_mul(&t->G, &states->B, &t->right.next));
     else
-        RITZ_TRY(ritz_dense_copy(&states->B, &t->right.next));
-    RITZ_TRY(ritz_general_transpose(&states->C, &t->left.next));
-    RITZ_TRY(ritz_dense_new(n, most, &t->right.vectors));
-    RITZ_TRY(ritz_dense_new(n, most, &t->left.vectors));
-done:
-    return status;
+        RITZ_CHECK(ritz_dense_copy(&states->B, &t->right.next));
+    RITZ_CHECK(ritz_general_transpose(&states->C, &t->left.next));
+    RITZ_CHECK(ritz_dense_new(n, most, &t->right.vectors));
+    return ritz_dense_new(n, most, &t->left.vectors);
 }
 
 /* Without a first block there is nothing to show. */
 static ritz_status check_start(const ritz_request *request, const two_sided *t)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
-                 "no flexible state is reached by an input and seen by an "
-                 "output");
-    RITZ_FAIL_IF(t->used == 0 && !request->choice.inverse, RITZ_ERR_SINGULAR,
-                 "serious breakdown at the first block: C B is zero, no output "
-                 "moves at once, as those of displacement never do; the "
-                 "inverse operator begins with the static answer");
-    RITZ_FAIL_IF(t->used == 0, RITZ_ERR_SINGULAR,
-                 "serious breakdown at the first block: C A^-1 B is zero, no "
-                 "output has a static answer");
-done:
-    return status;
+    RITZ_REFUSE_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
+                   "no flexible state is reached by an input and seen by an "
+                   "output");
+    RITZ_REFUSE_IF(
+        t->used == 0 && !request->choice.inverse, RITZ_ERR_SINGULAR,
+        "serious breakdown at the first block: C B is zero, no output "
+        "moves at once, as those of displacement never do; the "
+        "inverse operator begins with the static answer");
+    RITZ_REFUSE_IF(t->used == 0, RITZ_ERR_SINGULAR,
+                   "serious breakdown at the first block: C A^-1 B is zero, no "
+                   "output has a static answer");
+    return RITZ_OK;
 }
 
 /* On A^-1: W := G'W (W'G V)^-T, with which W'A V = (W'G V)^-1. */

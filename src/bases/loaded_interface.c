@@ -55,32 +55,31 @@ done:
 
 static ritz_status check(const ritz_request *request)
 {
-    ritz_status status = RITZ_OK;
     const ritz_neighbour *neighbour = request->neighbour;
     int64_t a = request->attached.count;
 
-    RITZ_FAIL_IF(!neighbour, RITZ_ERR_ARGUMENT,
-                 "it is not said what hangs on the interface: name a neighbour "
-                 "with --neighbour, or a joint in a scene");
-    RITZ_FAIL_IF(a == 0, RITZ_ERR_ARGUMENT,
-                 "nothing is attached, so no neighbour hangs on it: name a "
-                 "port");
-    RITZ_FAIL_IF(neighbour->K.nrow != a || neighbour->K.ncol != a ||
-                     neighbour->M.nrow != a || neighbour->M.ncol != a,
-                 RITZ_ERR_ARGUMENT,
-                 "the neighbour has %" PRId64 " dofs, %" PRId64 " are attached",
-                 neighbour->K.nrow, a);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        !neighbour, RITZ_ERR_ARGUMENT,
+        "it is not said what hangs on the interface: name a neighbour "
+        "with --neighbour, or a joint in a scene");
+    RITZ_REFUSE_IF(a == 0, RITZ_ERR_ARGUMENT,
+                   "nothing is attached, so no neighbour hangs on it: name a "
+                   "port");
+    RITZ_REFUSE_IF(neighbour->K.nrow != a || neighbour->K.ncol != a ||
+                       neighbour->M.nrow != a || neighbour->M.ncol != a,
+                   RITZ_ERR_ARGUMENT,
+                   "the neighbour has %" PRId64 " dofs, %" PRId64
+                   " are attached",
+                   neighbour->K.nrow, a);
+    return RITZ_OK;
 }
 
 static ritz_status copy_modes(const ritz_pairs *pairs, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = pairs->Phi.nrow;
     int64_t k = pairs->Phi.ncol;
 
-    RITZ_TRY(ritz_basis_new(n, k, out));
+    RITZ_CHECK(ritz_basis_new(n, k, out));
     for (int64_t j = 0; j < k; j++) {
         bool rigid = j < pairs->num_rigid;
 
@@ -93,8 +92,7 @@ static ritz_status copy_modes(const ritz_pairs *pairs, ritz_basis *out)
         memcpy(out->T.val, pairs->Phi.val,
                (size_t)(n * k) * sizeof *out->T.val);
     memcpy(out->origin.engine, pairs->engine, sizeof out->origin.engine);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

@@ -52,44 +52,38 @@ static void release(search *s)
 
 static ritz_status check(const ritz_request *request)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &request->component->io;
 
-    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                 "the best modes are asked for by their number, not by a "
-                 "frequency: among-hz says which to choose from");
-    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                 "no modes are asked for, one at least is needed");
-    RITZ_FAIL_IF(io->num_inputs == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no inputs: no mode can be reached");
-    RITZ_FAIL_IF(io->num_outputs == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no outputs: no mode can be seen");
+    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                   "the best modes are asked for by their number, not by a "
+                   "frequency: among-hz says which to choose from");
+    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                   "no modes are asked for, one at least is needed");
+    RITZ_REFUSE_IF(io->num_inputs == 0, RITZ_ERR_ARGUMENT,
+                   "the component has no inputs: no mode can be reached");
+    RITZ_REFUSE_IF(io->num_outputs == 0, RITZ_ERR_ARGUMENT,
+                   "the component has no outputs: no mode can be seen");
     for (int64_t i = 0; i < io->num_outputs; i++)
-        RITZ_FAIL_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
-                     "output '%s' has the limit %g, which is not positive",
-                     io->output[i], io->limit[i]);
-done:
-    return status;
+        RITZ_REFUSE_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
+                       "output '%s' has the limit %g, which is not positive",
+                       io->output[i], io->limit[i]);
+    return RITZ_OK;
 }
 
 static ritz_status find_modes(const ritz_request *request, search *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_choice *choice = &request->choice;
     ritz_coupling coupling = {0};
 
     s->asked = (ritz_gramians_request){.component = request->component,
                                        .engine = RITZ_ENGINE_MODAL,
                                        .among_hz = choice->among_hz};
-    RITZ_TRY(ritz_request_damping(request, &s->asked.damping));
-    RITZ_TRY(ritz_gramians_modes(&s->asked, &s->modes));
+    RITZ_CHECK(ritz_request_damping(request, &s->asked.damping));
+    RITZ_CHECK(ritz_gramians_modes(&s->asked, &s->modes));
     if (ritz_modes_coupled(&s->modes, &coupling))
-        RITZ_TRY(ritz_coupling_refuse(
+        RITZ_CHECK(ritz_coupling_refuse(
             &coupling, "modes are ranked one by one: take 'balanced'"));
-    RITZ_TRY(
-        ritz_modal_of_modes(&s->modes, &request->component->io, &s->modal));
-done:
-    return status;
+    return ritz_modal_of_modes(&s->modes, &request->component->io, &s->modal);
 }
 
 /* What modes first .. last - 1 are worth alone; over a band, if there is one. */
@@ -150,17 +144,17 @@ static group *best(search *s)
 /* The best first, until the next does not fit or does nothing. */
 static ritz_status choose(const ritz_request *request, search *s)
 {
-    ritz_status status = RITZ_OK;
     group *next = best(s);
 
-    RITZ_FAIL_IF(!next, RITZ_ERR_ARGUMENT,
-                 "inputs reach no mode that outputs see");
-    RITZ_FAIL_IF(next->last - next->first > request->modes, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " modes at %.6g Hz are one cluster, kept whole or "
-                 "not at all: ask for as many at least",
-                 next->last - next->first,
-                 ritz_eigen_hertz(s->modal.omega[next->first] *
-                                  s->modal.omega[next->first]));
+    RITZ_REFUSE_IF(!next, RITZ_ERR_ARGUMENT,
+                   "inputs reach no mode that outputs see");
+    RITZ_REFUSE_IF(next->last - next->first > request->modes, RITZ_ERR_ARGUMENT,
+                   "%" PRId64
+                   " modes at %.6g Hz are one cluster, kept whole or "
+                   "not at all: ask for as many at least",
+                   next->last - next->first,
+                   ritz_eigen_hertz(s->modal.omega[next->first] *
+                                    s->modal.omega[next->first]));
     for (; next && s->kept + next->last - next->first <= request->modes;
          next = best(s)) {
         next->keep = true;
@@ -168,8 +162,7 @@ static ritz_status choose(const ritz_request *request, search *s)
     }
     for (int64_t k = 0; k < s->count; k++)
         s->bound += s->groups[k].keep ? 0.0 : s->groups[k].bound;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void put(const search *s, int64_t mode, int64_t column,

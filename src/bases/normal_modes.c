@@ -16,7 +16,6 @@
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const int usual = RITZ_LOADS_INPUTS | RITZ_LOADS_DAMPERS;
     bool asked = request->choice.given & RITZ_USES_LOADS;
     int loads = asked ? request->choice.loads : usual;
@@ -24,10 +23,8 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     int64_t *dof = NULL;
 
     if (asked && ritz_loads_count(request, loads) == 0)
-        RITZ_TRY(ritz_loads_collect(request, loads, &F, &dof)); /* says why */
-    RITZ_TRY(ritz_free_basis(request, loads, RITZ_COLUMN_STATIC, out));
-done:
-    return status;
+        RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof)); /* says why */
+    return ritz_free_basis(request, loads, RITZ_COLUMN_STATIC, out);
 }
 
 const ritz_method ritz_method_normal_modes = {

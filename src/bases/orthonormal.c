@@ -164,49 +164,44 @@ static void scale_block(const ritz_sparse *W, block *b)
 /* A with room for `room` columns, of which `count` are kept. */
 static ritz_status widen(ritz_dense *A, int64_t count, int64_t room)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense wide = {0};
 
-    RITZ_TRY(ritz_dense_new(A->nrow, room, &wide));
+    RITZ_CHECK(ritz_dense_new(A->nrow, room, &wide));
     if (A->nrow * count > 0)
         memcpy(wide.val, A->val, (size_t)(A->nrow * count) * sizeof *wide.val);
     ritz_dense_free(A);
     *A = wide;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status reserve(ritz_orthonormal *set, int64_t more)
 {
-    ritz_status status = RITZ_OK;
     int64_t need = set->count + more;
     int64_t room = set->count + set->count / 2 + more;
 
     if (set->V.ncol < need)
-        RITZ_TRY(widen(&set->V, set->count, room));
+        RITZ_CHECK(widen(&set->V, set->count, room));
     if (set->WV.ncol < need)
-        RITZ_TRY(widen(&set->WV, set->count, room));
-done:
-    return status;
+        RITZ_CHECK(widen(&set->WV, set->count, room));
+    return RITZ_OK;
 }
 
 /* Move the strong columns of the block into the set; the others move up. */
 static ritz_status take(ritz_orthonormal *set, block *b, int64_t count,
                         const int64_t *order, bool *taken)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense Q = {0}, WQ = {0};
     int64_t kept = 0;
     size_t size = (size_t)b->R.nrow * sizeof *b->R.val;
 
-    RITZ_TRY(reserve(set, count));
+    RITZ_CHECK(reserve(set, count));
     Q = ritz_dense_part(&set->V, set->count, count);
     WQ = ritz_dense_part(&set->WV, set->count, count);
     for (int64_t k = 0; k < count && size > 0; k++) {
         memcpy(ritz_dense_col(&Q, k), ritz_dense_col(&b->R, order[k]), size);
         memcpy(ritz_dense_col(&WQ, k), ritz_dense_col(&b->WR, order[k]), size);
     }
-    RITZ_TRY(ritz_gram_normalise(set->W, &Q, &WQ));
+    RITZ_CHECK(ritz_gram_normalise(set->W, &Q, &WQ));
     set->count += count;
     for (int64_t j = 0; j < b->R.ncol; j++) {
         bool gone = false;
@@ -224,8 +219,7 @@ static ritz_status take(ritz_orthonormal *set, block *b, int64_t count,
         b->energy[kept++] = b->energy[j];
     }
     b->R.ncol = b->WR.ncol = kept;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* One round: what is left of the block against V, and its strong columns. */

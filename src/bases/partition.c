@@ -41,14 +41,11 @@ done:
 /* -A as a dense matrix: the right-hand sides of the constraint modes. */
 static ritz_status negate(const ritz_sparse *A, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol, out));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             ritz_dense_col(out, j)[A->rowind[p]] = -A->val[p];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_partition_constraint_modes(const ritz_partition *s,

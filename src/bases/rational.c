@@ -23,7 +23,6 @@ static bool is_zero(const ritz_dense *A)
 /* Columns are the rows of C, Cv, Ca, at powers 0, 1, 2 of s. */
 static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
 
     out->count = io->num_outputs;
@@ -32,13 +31,12 @@ static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
 
         if (is_zero(C))
             continue;
-        RITZ_TRY(ritz_dense_new(C->ncol, C->nrow, &out->F[power]));
+        RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, &out->F[power]));
         for (int64_t j = 0; j < C->ncol; j++)
             for (int64_t i = 0; i < C->nrow; i++)
                 ritz_dense_col(&out->F[power], i)[j] = ritz_dense_col(C, j)[i];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_loads(const ritz_request *request, int kind,
@@ -63,7 +61,6 @@ static ritz_status read_groups(const ritz_request *request, int loads,
     static const int kinds[] = {RITZ_LOADS_ATTACHED, RITZ_LOADS_INPUTS,
                                 RITZ_LOADS_OUTPUTS, RITZ_LOADS_DAMPERS};
     const int read = loads | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
-    ritz_status status = RITZ_OK;
     bool any = false;
 
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
@@ -75,14 +72,13 @@ static ritz_status read_groups(const ritz_request *request, int loads,
         group->first = R->num_loads;
         group->answered = loads & kinds[k];
         any = any || group->answered;
-        RITZ_TRY(read_loads(request, kinds[k], group));
+        RITZ_CHECK(read_loads(request, kinds[k], group));
         R->num_loads += group->count;
     }
-    RITZ_FAIL_IF(!any, RITZ_ERR_ARGUMENT,
-                 "there is no load to answer: attach a port, or give the "
-                 "component inputs or outputs");
-done:
-    return status;
+    RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
+                   "there is no load to answer: attach a port, or give the "
+                   "component inputs or outputs");
+    return RITZ_OK;
 }
 
 /* M and K, then D and K4 where they are. */
@@ -173,13 +169,9 @@ static void load(const ritz_rational_loads *group, const ritz_probe *probe,
 static ritz_status answer(ritz_rational *R, const ritz_probe *probe,
                           double _Complex *v)
 {
-    ritz_status status = RITZ_OK;
-
     load(&R->group[probe->group], probe, v);
-    RITZ_TRY(factor(R, probe->s));
-    RITZ_TRY(ritz_zldl_solve(R->Z, 1, v));
-done:
-    return status;
+    RITZ_CHECK(factor(R, probe->s));
+    return ritz_zldl_solve(R->Z, 1, v);
 }
 
 /* w := w / |w|, and |w| in the inner product P. */
@@ -224,27 +216,24 @@ done:
  */
 static ritz_status append(const ritz_rational *R, ritz_dense *w, ritz_dense *Q)
 {
-    ritz_status status = RITZ_OK;
     double size = 0.0;
     double left = 1.0;
 
     for (int pass = 0; pass < 2 && left > R->tolerance; pass++) {
-        RITZ_TRY(take_out(R, Q, w));
-        RITZ_TRY(normalise(R, w, &size));
+        RITZ_CHECK(take_out(R, Q, w));
+        RITZ_CHECK(normalise(R, w, &size));
         left *= size;
     }
     if (left > R->tolerance)
         memcpy(ritz_dense_col(Q, Q->ncol++), w->val,
                (size_t)w->nrow * sizeof *w->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Re v and Im v over the length of v; the larger first. */
 static ritz_status split(const ritz_rational *R, const double _Complex *v,
                          ritz_dense part[2])
 {
-    ritz_status status = RITZ_OK;
     int64_t n = R->component->num_dofs;
     double length[2] = {0.0, 0.0};
     double largest = DBL_MIN;
@@ -257,7 +246,7 @@ static ritz_status split(const ritz_rational *R, const double _Complex *v,
         part[1].val[i] = cimag(v[i]) / largest;
     }
     for (int k = 0; k < 2; k++)
-        RITZ_TRY(normalise(R, &part[k], &length[k]));
+        RITZ_CHECK(normalise(R, &part[k], &length[k]));
     all = fmax(hypot(length[0], length[1]), DBL_MIN);
     for (int k = 0; k < 2; k++)
         for (int64_t i = 0; i < n; i++)
@@ -268,8 +257,7 @@ static ritz_status split(const ritz_rational *R, const double _Complex *v,
         part[0] = part[1];
         part[1] = swap;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Both parts, or none if there may be no room for both. */

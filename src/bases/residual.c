@@ -133,13 +133,10 @@ done:
 static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
                              const ritz_dense *MPhi, ritz_dense *G)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(F, G));
-    RITZ_TRY(ritz_dense_take_out(MPhi, Phi, G));
-    RITZ_TRY(ritz_dense_take_out(MPhi, Phi, G)); /* twice is enough */
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_copy(F, G));
+    RITZ_CHECK(ritz_dense_take_out(MPhi, Phi, G));
+    RITZ_CHECK(ritz_dense_take_out(MPhi, Phi, G)); /* twice is enough */
+    return RITZ_OK;
 }
 
 /*

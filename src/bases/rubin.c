@@ -30,11 +30,10 @@ enum { NAMED = 3 };
 /* The columns of Psi that stay, and the rows they attach. */
 static ritz_status pick(const ritz_free_set *set, ritz_dense *Psi, int64_t *b)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = set->Psi.nrow;
     int64_t k = 0;
 
-    RITZ_TRY(ritz_dense_new(n, ritz_free_set_kept(set), Psi));
+    RITZ_CHECK(ritz_dense_new(n, ritz_free_set_kept(set), Psi));
     for (int64_t j = 0; j < set->Psi.ncol; j++) {
         if (!set->keep[j])
             continue;
@@ -42,8 +41,7 @@ static ritz_status pick(const ritz_free_set *set, ritz_dense *Psi, int64_t *b)
         memcpy(ritz_dense_col(Psi, k++), ritz_dense_col(&set->Psi, j),
                (size_t)n * sizeof *Psi->val);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* G = Psi Psi_bb^-1, Psi_bb = S L L' S with a unit diagonal within. */

@@ -252,20 +252,18 @@ static void remark(const selection *c, ritz_basis *basis)
 
 static ritz_status check(const ritz_request *request, const ritz_pairs *modes)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = modes->Phi.ncol;
     int64_t a = request->attached.count;
 
-    RITZ_FAIL_IF(m == 0, RITZ_ERR_ARGUMENT,
-                 "no mode is kept: there is no rigid one, ask for flexible "
-                 "ones");
-    RITZ_FAIL_IF(m > a, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " attached dof(s) cannot show %" PRId64
-                 " modes, %" PRId64 " rigid ones among them: attach more or "
-                 "keep fewer",
-                 a, m, modes->num_rigid);
-done:
-    return status;
+    RITZ_REFUSE_IF(m == 0, RITZ_ERR_ARGUMENT,
+                   "no mode is kept: there is no rigid one, ask for flexible "
+                   "ones");
+    RITZ_REFUSE_IF(m > a, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " attached dof(s) cannot show %" PRId64
+                   " modes, %" PRId64 " rigid ones among them: attach more or "
+                   "keep fewer",
+                   a, m, modes->num_rigid);
+    return RITZ_OK;
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

@@ -4,16 +4,13 @@ static const double pi = 3.14159265358979323846;
 
 static ritz_status check(const ritz_request *request)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                 "states are asked for by their number, not by a frequency");
-    RITZ_FAIL_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                 "no states are asked for, one at least is needed");
-    RITZ_FAIL_IF(request->choice.num_shifts > 1, RITZ_ERR_ARGUMENT,
-                 "the states are shifted by one frequency, not by several");
-done:
-    return status;
+    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                   "states are asked for by their number, not by a frequency");
+    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                   "no states are asked for, one at least is needed");
+    RITZ_REFUSE_IF(request->choice.num_shifts > 1, RITZ_ERR_ARGUMENT,
+                   "the states are shifted by one frequency, not by several");
+    return RITZ_OK;
 }
 
 ritz_status ritz_request_damping(const ritz_request *request, ritz_damping *out)
@@ -28,15 +25,12 @@ ritz_status ritz_request_damping(const ritz_request *request, ritz_damping *out)
 
 ritz_status ritz_states_asked(const ritz_request *request, ritz_states *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_damping damping = {0};
     double alpha = 0.0;
 
-    RITZ_TRY(check(request));
-    RITZ_TRY(ritz_request_damping(request, &damping));
+    RITZ_CHECK(check(request));
+    RITZ_CHECK(ritz_request_damping(request, &damping));
     if (request->choice.num_shifts > 0)
         alpha = 2.0 * pi * request->choice.shift_hz[0];
-    RITZ_TRY(ritz_states_new(request->component, &damping, alpha, out));
-done:
-    return status;
+    return ritz_states_new(request->component, &damping, alpha, out);
 }

@@ -77,19 +77,17 @@ static void free_search(search *s)
 /* The choice's damping, else the component's, else a usual one. */
 static ritz_status choose_damping(search *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = s->request->component;
     const ritz_choice *choice = &s->request->choice;
 
     s->damping = choice->damping;
     if (!(choice->given & RITZ_USES_DAMPING))
-        RITZ_TRY(ritz_damping_parse(component->damping, &s->damping));
+        RITZ_CHECK(ritz_damping_parse(component->damping, &s->damping));
     s->assumed = s->damping.kind == RITZ_DAMPING_NONE && !component->D.colptr &&
                  !component->K4.colptr && choice->num_shifts == 0;
     if (s->assumed)
         s->damping = assumed;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Flexible modes up to the frequency that was asked for. */
@@ -106,7 +104,6 @@ static int64_t count_modes(const ritz_pairs *modes, double up_to_hz)
 /* Rigid modes, and twice as many flexible ones as there shall be vectors. */
 static ritz_status find_modes(search *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_request *request = s->request;
     const ritz_component *component = request->component;
     int64_t wanted = request->modes;
@@ -119,30 +116,28 @@ static ritz_status find_modes(search *s)
     ritz_pairs *modes = &s->modes;
     int64_t flexible = 0;
 
-    RITZ_TRY_IN("modes to begin with",
-                ritz_eigen_sparse(&component->K, &component->M, &span, modes));
-    RITZ_FAIL_IF(modes->Phi.ncol > 0 && modes->num_rigid == 0 &&
-                     modes->lambda[0] <= 0.0,
-                 RITZ_ERR_SINGULAR,
-                 "K is not positive semidefinite: an eigenvalue is %.3g",
-                 modes->lambda[0]);
+    RITZ_CHECK_IN(
+        "modes to begin with",
+        ritz_eigen_sparse(&component->K, &component->M, &span, modes));
+    RITZ_REFUSE_IF(modes->Phi.ncol > 0 && modes->num_rigid == 0 &&
+                       modes->lambda[0] <= 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "K is not positive semidefinite: an eigenvalue is %.3g",
+                   modes->lambda[0]);
     if (wanted < 0)
         wanted = count_modes(modes, request->up_to_hz);
     flexible = component->num_dofs - modes->num_rigid;
     s->most = wanted < flexible ? wanted : flexible;
     if (modes->Phi.ncol == modes->num_rigid)
         s->most = 0;
-    RITZ_FAIL_IF(s->most + modes->num_rigid == 0, RITZ_ERR_ARGUMENT,
-                 "no vector is asked for, and there is no rigid mode");
-    RITZ_TRY(ritz_dense_columns(&modes->Phi, 0, modes->num_rigid, &s->rigid));
-done:
-    return status;
+    RITZ_REFUSE_IF(s->most + modes->num_rigid == 0, RITZ_ERR_ARGUMENT,
+                   "no vector is asked for, and there is no rigid mode");
+    return ritz_dense_columns(&modes->Phi, 0, modes->num_rigid, &s->rigid);
 }
 
 /* Every load that is answered by itself, at every point that was given. */
 static ritz_status list_given(const search *s, ritz_probes *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_choice *choice = &s->request->choice;
     ritz_probes probes = {0};
     int64_t loads = 0;
@@ -150,7 +145,7 @@ static ritz_status list_given(const search *s, ritz_probes *out)
 
     for (int64_t g = 0; g < s->R.num_groups; g++)
         loads += s->R.group[g].answered ? s->R.group[g].count : 0;
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_probes_new(choice->num_shifts * loads, s->R.num_loads, &probes));
     for (int64_t k = 0; k < choice->num_shifts; k++)
         for (int64_t g = 0; g < s->R.num_groups; g++) {
@@ -166,8 +161,7 @@ static ritz_status list_given(const search *s, ritz_probes *out)
             }
         }
     *out = probes;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* T from probes, of which those that gave nothing are dropped. */
@@ -289,7 +283,6 @@ static int choose_loads(const ritz_request *request)
 
 static ritz_status interpolate(search *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_request *request = s->request;
     int loads = request->choice.loads;
 
@@ -297,17 +290,17 @@ static ritz_status interpolate(search *s)
         return ritz_dense_copy(&s->rigid, &s->T);
     if (loads == 0)
         loads = choose_loads(request);
-    RITZ_TRY(ritz_rational_new(request, loads,
-                               s->modes.lambda[s->modes.num_rigid], &s->R));
-    RITZ_TRY(request->choice.num_shifts > 0 ? take_given(s) : iterate(s));
-    RITZ_FAIL_IF(s->probes.count == 0 && s->left_out > 0 && s->most == 1,
-                 RITZ_ERR_ARGUMENT,
-                 "one vector cannot hold the real and the imaginary part of an "
-                 "answer: ask for 2 or more");
-    RITZ_FAIL_IF(s->probes.count == 0, RITZ_ERR_ARGUMENT,
-                 "the loads drive no flexible mode, or no output reads one");
-done:
-    return status;
+    RITZ_CHECK(ritz_rational_new(request, loads,
+                                 s->modes.lambda[s->modes.num_rigid], &s->R));
+    RITZ_CHECK(request->choice.num_shifts > 0 ? take_given(s) : iterate(s));
+    RITZ_REFUSE_IF(
+        s->probes.count == 0 && s->left_out > 0 && s->most == 1,
+        RITZ_ERR_ARGUMENT,
+        "one vector cannot hold the real and the imaginary part of an "
+        "answer: ask for 2 or more");
+    RITZ_REFUSE_IF(s->probes.count == 0, RITZ_ERR_ARGUMENT,
+                   "the loads drive no flexible mode, or no output reads one");
+    return RITZ_OK;
 }
 
 /* How the points were found, and what should be known of them. */

@@ -10,7 +10,6 @@
 
 ritz_status ritz_audit_damping(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
     double a = 0.0, b = 0.0, left = 0.0;
     double skew = 0.0;
@@ -18,7 +17,7 @@ ritz_status ritz_audit_damping(ritz_auditor *it)
 
     if (!c->D.colptr)
         return RITZ_OK;
-    RITZ_TRY(ritz_proportional(c, &a, &b, &left));
+    RITZ_CHECK(ritz_proportional(c, &a, &b, &left));
     skew = ritz_sparse_skew(&c->D);
     snprintf(where, sizeof where, "a = %.6g, b = %.6g", a, b);
     if (skew > 0.0)
@@ -30,6 +29,5 @@ ritz_status ritz_audit_damping(ritz_auditor *it)
                          left <= RITZ_PROPORTIONAL_WITHIN
                              ? "damping is proportional: D = a M + b K"
                              : "damping is not proportional, it couples modes");
-done:
-    return status;
+    return RITZ_OK;
 }

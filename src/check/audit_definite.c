@@ -163,11 +163,8 @@ done:
 
 ritz_status ritz_audit_definite(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(check_definite(it, &it->component->M, "mass-definite"));
+    RITZ_CHECK(check_definite(it, &it->component->M, "mass-definite"));
     if (!it->rigid)
-        RITZ_TRY(check_definite(it, &it->component->K, "stiffness-definite"));
-done:
-    return status;
+        RITZ_CHECK(check_definite(it, &it->component->K, "stiffness-definite"));
+    return RITZ_OK;
 }

@@ -121,13 +121,12 @@ static bool is_exact(const decimals *d)
 
 ritz_status ritz_audit_digits(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
     decimals d = {0};
     double needed = 17.0;
     bool exact = false;
 
-    RITZ_TRY(look(&c->K, &d));
+    RITZ_CHECK(look(&c->K, &d));
     exact = d.digits < FEW && is_exact(&d);
     if (d.digits < FULL && !exact)
         needed = d.digits;
@@ -135,6 +134,5 @@ ritz_status ritz_audit_digits(ritz_auditor *it)
     it->digits = it->declared ? c->digits : needed;
     if (d.digits < FEW && d.largest <= small_whole * pow(10.0, d.place))
         it->declared = false;
-done:
-    return status;
+    return RITZ_OK;
 }

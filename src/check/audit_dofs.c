@@ -124,11 +124,10 @@ static void name_others(const ritz_auditor *it, char where[RITZ_WHERE_SIZE])
 
 static ritz_status check_parts(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
     char where[RITZ_WHERE_SIZE];
 
-    RITZ_TRY(find_parts(it, &count));
+    RITZ_CHECK(find_parts(it, &count));
     name_others(it, where);
     if (count == 1)
         ritz_auditor_say(it, "separate-bodies", 1.0, 1.0, RITZ_PASS, where,
@@ -139,8 +138,7 @@ static ritz_status check_parts(ritz_auditor *it)
                          "%" PRId64 " parts without connection: the grids "
                          "named lie outside the largest",
                          count);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Flag the rows of A that hold nothing but zeros. */

@@ -85,17 +85,15 @@ static ritz_status translate(ritz_auditor *it)
 
 static ritz_status find_motions(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = it->component->num_dofs;
 
     measure(it);
     if (!it->placed)
         return translate(it);
-    RITZ_TRY(ritz_rigid_geometry(it->component, it->centre, &it->R));
+    RITZ_CHECK(ritz_rigid_geometry(it->component, it->centre, &it->R));
     for (int64_t k = 3 * n; k < 6 * n; k++)
         it->R.val[k] /= it->size;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of V with lambda above 1e-10 of the largest, over sqrt(lambda). */

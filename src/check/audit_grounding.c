@@ -124,19 +124,17 @@ static bool has_turned_axes(const ritz_grids *grids)
 
 ritz_status ritz_audit_forces(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
     const double rounding = 1024.0 * DBL_EPSILON;
     const double single = ldexp(1.0, -24);
     bool turned = has_turned_axes(&it->component->grids);
 
     if (it->rigid)
-        goto done;
-    RITZ_TRY(find_forces(it, 0, turned ? single : rounding, &it->shift));
+        return RITZ_OK;
+    RITZ_CHECK(find_forces(it, 0, turned ? single : rounding, &it->shift));
     if (it->R.ncol == 6)
-        RITZ_TRY(find_forces(it, 3, single, &it->turn));
+        RITZ_CHECK(find_forces(it, 3, single, &it->turn));
     it->rounded = is_rounded(it, &it->shift) || is_rounded(it, &it->turn);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_audit_grounding(ritz_auditor *it)

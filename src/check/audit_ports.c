@@ -158,17 +158,13 @@ done:
 
 ritz_status ritz_audit_ports(ritz_auditor *it)
 {
-    ritz_status status = RITZ_OK;
-
     if (it->component->num_ports == 0)
-        goto done;
+        return RITZ_OK;
     check_count(it);
     if (it->placed)
-        RITZ_TRY(ritz_audit_port_rank(it));
-    RITZ_TRY(check_dependent(it));
+        RITZ_CHECK(ritz_audit_port_rank(it));
+    RITZ_CHECK(check_dependent(it));
     if (it->placed)
         check_places(it);
-    RITZ_TRY(check_disconnected(it));
-done:
-    return status;
+    return check_disconnected(it);
 }

@@ -75,18 +75,16 @@ static void check_symmetry(ritz_auditor *it)
 
 ritz_status ritz_audit_values(ritz_auditor *it, bool *usable)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
 
     it->rigid = !c->K.colptr || c->K.colptr[c->K.ncol] == 0;
-    RITZ_TRY(check_finite(it, usable));
+    RITZ_CHECK(check_finite(it, usable));
     if (!*usable)
-        goto done;
+        return RITZ_OK;
     check_symmetry(it);
     if (it->rigid)
         it->digits = 17.0;
     else
-        RITZ_TRY(ritz_audit_digits(it));
-done:
-    return status;
+        RITZ_CHECK(ritz_audit_digits(it));
+    return RITZ_OK;
 }

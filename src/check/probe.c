@@ -121,10 +121,9 @@ done:
 static ritz_status first_order_matrix(const ritz_first_order *modes,
                                       ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = modes->count;
 
-    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, out));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, out));
     for (int64_t j = 0; j < m; j++) {
         double w = sqrt(fabs(modes->lambda[j]));
         double s = w > 0.0 ? w : 1.0;
@@ -135,8 +134,7 @@ static ritz_status first_order_matrix(const ritz_first_order *modes,
             ritz_dense_col(out, m + j)[m + i] =
                 -ritz_dense_col(&modes->Delta, j)[i];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status probe_modes(const ritz_structure *model,
@@ -180,16 +178,15 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
                                     ritz_probe *out)
 {
     static const ritz_damping no_damping = {0};
-    ritz_status status = RITZ_OK;
     const ritz_structure model = {*K, *M, *D};
     ritz_probe probe = {0};
 
-    RITZ_TRY(probe_mass(M, &probe));
+    RITZ_CHECK(probe_mass(M, &probe));
     if (probe.verdict != RITZ_UNSTABLE)
-        RITZ_TRY(probe_modes(&model, damping ? damping : &no_damping, &probe));
+        RITZ_CHECK(
+            probe_modes(&model, damping ? damping : &no_damping, &probe));
     *out = probe;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_probe_reduced(const ritz_reduced *reduced, ritz_probe *out)

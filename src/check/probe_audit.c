@@ -155,15 +155,12 @@ typedef ritz_status (*probe_check)(ritz_prober *it);
 static ritz_status run(ritz_prober *it, const probe_check *checks,
                        ritz_audit *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(it->audit.check, RITZ_PROBE_MOST);
+    RITZ_CHECK_NEW(it->audit.check, RITZ_PROBE_MOST);
     for (; *checks; checks++)
-        RITZ_TRY((*checks)(it));
+        RITZ_CHECK((*checks)(it));
     *out = it->audit;
     it->audit = (ritz_audit){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_probe_audit_reduced(const ritz_reduced *reduced,

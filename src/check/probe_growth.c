@@ -37,13 +37,12 @@ static const double long_enough = 1e-7 / DBL_EPSILON;
 ritz_status ritz_probe_energy_matrix(const ritz_first_order *modes,
                                      ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = modes->count;
     int64_t r = modes->num_rigid;
     int64_t f = m - r;
     ritz_dense A = {0};
 
-    RITZ_TRY(ritz_dense_new(f + m, f + m, &A));
+    RITZ_CHECK(ritz_dense_new(f + m, f + m, &A));
     for (int64_t k = r; k < m; k++) {
         double w = sqrt(fabs(modes->lambda[k]));
 
@@ -55,8 +54,7 @@ ritz_status ritz_probe_energy_matrix(const ritz_first_order *modes,
             ritz_dense_col(&A, f + j)[f + i] =
                 -ritz_dense_col(&modes->Delta, j)[i];
     *out = A;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static double norm_one(const ritz_dense *A)
@@ -153,7 +151,6 @@ done:
 
 ritz_status ritz_growth_measure(const ritz_dense *A, ritz_growth *out)
 {
-    ritz_status status = RITZ_OK;
     double size = norm_one(A);
 
     *out = (ritz_growth){.met = 1.0, .most = HUGE_VAL, .followed = true};
@@ -161,16 +158,15 @@ ritz_status ritz_growth_measure(const ritz_dense *A, ritz_growth *out)
         out->most = 1.0;
         return RITZ_OK;
     }
-    RITZ_TRY(bound(A, &out->most));
+    RITZ_CHECK(bound(A, &out->most));
     out->followed = A->nrow <= MOST_STATES;
     if (!out->followed)
-        goto done;
+        return RITZ_OK;
     for (int k = 0; k < FOURTHS; k++)
-        RITZ_TRY(follow(A, 0.25 / size * exp2((double)k / FOURTHS),
-                        long_enough / size, out));
+        RITZ_CHECK(follow(A, 0.25 / size * exp2((double)k / FOURTHS),
+                          long_enough / size, out));
     out->most = fmax(out->most, out->met);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_prober_growth(ritz_prober *it, const ritz_growth *found, double limit,

@@ -70,27 +70,22 @@ done:
 static ritz_status copy_model(const ritz_prober *it, const ritz_dense *D,
                               trial *t)
 {
-    ritz_status status = RITZ_OK;
-
     discard(t);
-    RITZ_TRY(ritz_dense_copy(&it->model.K, &t->K));
-    RITZ_TRY(ritz_dense_copy(&it->model.M, &t->M));
-    RITZ_TRY(ritz_dense_copy(D, &t->D));
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_copy(&it->model.K, &t->K));
+    RITZ_CHECK(ritz_dense_copy(&it->model.M, &t->M));
+    return ritz_dense_copy(D, &t->D);
 }
 
 /* Its poles; the largest growth of all trials is remembered with its case. */
 static ritz_status probe_trial(trial *t, const char *where)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe probe = {0};
     double growth = 0.0;
     bool fails = false;
 
     if (t->K.nrow == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_probe_second_order(&t->K, &t->M, &t->D, NULL, &probe));
+    RITZ_CHECK(ritz_probe_second_order(&t->K, &t->M, &t->D, NULL, &probe));
     fails = probe.verdict == RITZ_UNSTABLE;
     growth = probe.radius > 0.0 ? probe.pole[0] / probe.radius : 0.0;
     if (fails < t->fails || (fails == t->fails && growth <= t->growth))
@@ -100,8 +95,7 @@ static ritz_status probe_trial(trial *t, const char *where)
     t->fails = fails;
     snprintf(t->where, sizeof t->where, "%s", where);
     ritz_probe_print(&probe, t->why);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A := A + a sum over a row, or all, of size_i l_i' l_i. */
@@ -151,20 +145,18 @@ static ritz_status try_attached(const ritz_prober *it, const ritz_dense *D,
                                 trial *t)
 {
     static const char *const what[] = {"springs", "masses"};
-    ritz_status status = RITZ_OK;
     char where[RITZ_WHERE_SIZE];
 
     for (int mass = 0; mass < 2; mass++)
         for (int k = 0; k < TIMES; k += 1 + mass) {
-            RITZ_TRY(copy_model(it, D, t));
+            RITZ_CHECK(copy_model(it, D, t));
             attach(&it->L, only, times_own[k], own[mass], mass ? &t->M : &t->K);
             snprintf(where, sizeof where, "%s of %g times its own at %s",
                      what[mass], times_own[k],
                      only < 0 ? "the whole interface" : it->row[only]);
-            RITZ_TRY(probe_trial(t, where));
+            RITZ_CHECK(probe_trial(t, where));
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool proven(ritz_prober *it, const char *name)

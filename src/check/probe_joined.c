@@ -43,34 +43,30 @@ static void discard(joint *j)
 
 static ritz_status find_columns(const ritz_reduced *reduced, joint *j)
 {
-    ritz_status status = RITZ_OK;
     int64_t rest = 0;
 
-    RITZ_NEW(j->force, reduced->columns.count);
-    RITZ_NEW(j->other, reduced->columns.count);
+    RITZ_CHECK_NEW(j->force, reduced->columns.count);
+    RITZ_CHECK_NEW(j->other, reduced->columns.count);
     for (int64_t k = 0; k < reduced->columns.count; k++)
         if (reduced->columns.kind[k] == RITZ_COLUMN_FORCE)
             j->force[j->count++] = k;
         else
             j->other[rest++] = k;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns, or a square part, of A. */
 static ritz_status pick(const ritz_dense *A, int64_t count, const int64_t *at,
                         bool square, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t rows = square ? count : A->nrow;
 
-    RITZ_TRY(ritz_dense_new(rows, count, out));
+    RITZ_CHECK(ritz_dense_new(rows, count, out));
     for (int64_t j = 0; j < count; j++)
         for (int64_t i = 0; i < rows; i++)
             ritz_dense_col(out, j)[i] =
                 ritz_dense_col(A, at[j])[square ? at[i] : i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* C := U'C, U the directions of forces that force columns answer to. */

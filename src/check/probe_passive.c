@@ -81,25 +81,23 @@ static void name_pairs(const ritz_collocated *pairs,
 
 static ritz_status say_passivity(ritz_prober *it, const ritz_collocated *model)
 {
-    ritz_status status = RITZ_OK;
     ritz_passivity found = {0};
     char where[RITZ_WHERE_SIZE] = "";
 
-    RITZ_TRY(ritz_passivity_of(model, &found));
+    RITZ_CHECK(ritz_passivity_of(model, &found));
     if (found.value >= -rounding) {
         if (it->space)
             name_pairs(model, where);
         ritz_prober_say(it, "passivity", found.value, -rounding, RITZ_PASS,
                         where, "no energy comes out at any frequency met");
-        goto done;
+        return RITZ_OK;
     }
     snprintf(where, sizeof where, "%.6g Hz, %s", found.hertz,
              model->name[found.port]);
     ritz_prober_say(it, "passivity", found.value, -rounding, RITZ_WARN, where,
                     "energy comes out of the interface: with some passive "
                     "neighbour it can be unstable");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_probe_passive(ritz_prober *it)

@@ -63,7 +63,6 @@ done:
 /* Matrices of few digits: a rigid motion is held, or driven. */
 static ritz_status say_rigid(ritz_prober *it, bool *said)
 {
-    ritz_status status = RITZ_OK;
     const ritz_first_order *modes = &it->modes;
     int64_t r = modes->num_rigid;
     double softest = r < modes->count ? modes->lambda[r] : HUGE_VAL;
@@ -71,7 +70,7 @@ static ritz_status say_rigid(ritz_prober *it, bool *said)
     int64_t at = 0;
     char where[RITZ_WHERE_SIZE] = "";
 
-    RITZ_TRY(rigid_stiffness(it, &value, &at));
+    RITZ_CHECK(rigid_stiffness(it, &value, &at));
     *said = value < -unnoticed * softest || value > driven * softest;
     if (!*said)
         return RITZ_OK;
@@ -83,13 +82,11 @@ static ritz_status say_rigid(ritz_prober *it, bool *said)
         "%s stiffness of a rigid motion, %.2g of the softest flexible one: too "
         "few digits, a free body is not free",
         value < 0.0 ? "negative" : "positive", value / softest);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status say_stiffness(ritz_prober *it)
 {
-    ritz_status status = RITZ_OK;
     static const char name[] = "stiffness-definite";
     const ritz_first_order *modes = &it->modes;
     int64_t massless = modes->num_dofs - modes->count;
@@ -108,11 +105,11 @@ static ritz_status say_stiffness(ritz_prober *it)
                         "stiffness with a negative eigenvalue, %.4g "
                         "rad^2/s^2",
                         least);
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(say_rigid(it, &said));
+    RITZ_CHECK(say_rigid(it, &said));
     if (said)
-        goto done;
+        return RITZ_OK;
     snprintf(where, sizeof where, "%" PRId64 " rigid", r);
     if (massless > 0)
         ritz_prober_say(it, name, most > 0.0 ? least / most : 0.0, 0.0,
@@ -125,25 +122,22 @@ static ritz_status say_stiffness(ritz_prober *it)
         ritz_prober_say(it, name, most > 0.0 ? least / most : 0.0, 0.0,
                         RITZ_PASS, where,
                         "no negative eigenvalue beyond rigid motion");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_probe_definite_stiffness(ritz_prober *it)
 {
-    ritz_status status = RITZ_OK;
     bool singular = false;
 
     if (!it->usable)
         return RITZ_OK;
-    RITZ_TRY(find_modes(it, &singular));
+    RITZ_CHECK(find_modes(it, &singular));
     if (singular) {
         it->usable = it->definite = false;
         ritz_prober_say(it, "stiffness-definite", nan(""), 0.0, RITZ_FAIL, "",
                         "mass and stiffness that are singular together");
     } else {
-        RITZ_TRY(say_stiffness(it));
+        RITZ_CHECK(say_stiffness(it));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -191,7 +191,6 @@ static int64_t find_set(int64_t count, const ritz_plan *sets,
 ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
                                     int64_t *count, ritz_candidate **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = rows->stage->scene;
     bool open = plan->attached == RITZ_ATTACHED_AUTO;
     ritz_plan sets[MOST_SETS];
@@ -200,20 +199,19 @@ ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
 
     if (plan->augment != RITZ_AUGMENT_COMPONENT && !open)
         return RITZ_OK;
-    RITZ_FAIL_IF(open && !ritz_compare_responds(scene), RITZ_ERR_ARGUMENT,
-                 "they are chosen by frequency responses, which need inputs, "
-                 "outputs, a band and a damping of the scene");
-    RITZ_NEW(*out, most);
+    RITZ_REFUSE_IF(open && !ritz_compare_responds(scene), RITZ_ERR_ARGUMENT,
+                   "they are chosen by frequency responses, which need inputs, "
+                   "outputs, a band and a damping of the scene");
+    RITZ_CHECK_NEW(*out, most);
     *count = most;
     for (int64_t k = 0; k < most; k++) {
         ritz_monitor_step("attached dofs", k, most);
-        RITZ_TRY(try_set(rows, &sets[k], &(*out)[k]));
+        RITZ_CHECK(try_set(rows, &sets[k], &(*out)[k]));
     }
     chosen = open ? pick(scene, most, *out) : find_set(most, sets, plan);
     (*out)[chosen].chosen = true;
     *plan = sets[chosen];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_candidates_free(int64_t count, ritz_candidate **candidates)

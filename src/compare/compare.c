@@ -27,17 +27,15 @@ const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k)
 /* The stage-1 system between listed configurations. */
 static ritz_status assemble_between(ritz_rows *rows)
 {
-    ritz_status status = RITZ_OK;
     int64_t listed = rows->listed->num_configurations;
 
-    RITZ_NEW(rows->between, rows->num_rows - listed);
+    RITZ_CHECK_NEW(rows->between, rows->num_rows - listed);
     for (int64_t k = listed; k < rows->num_rows; k++) {
-        RITZ_TRY(ritz_stage_assemble(rows->stage, rows->row[k].setting,
-                                     &rows->between[k - listed]));
+        RITZ_CHECK(ritz_stage_assemble(rows->stage, rows->row[k].setting,
+                                       &rows->between[k - listed]));
         rows->num_between++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void free_between(ritz_rows *rows)
@@ -51,16 +49,14 @@ static void free_between(ritz_rows *rows)
 /* Choose the modes that matter, between angles those that would. */
 static ritz_status choose(const ritz_rows *rows)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = rows->stage->scene;
     double least = 0.0;
 
-    RITZ_TRY(ritz_compare_threshold(scene, rows->listed, &least));
+    RITZ_CHECK(ritz_compare_threshold(scene, rows->listed, &least));
     for (int64_t k = 0; k < rows->num_rows; k++)
-        RITZ_TRY(ritz_compare_select(scene, ritz_rows_first(rows, k), least,
-                                     &rows->row[k]));
-done:
-    return status;
+        RITZ_CHECK(ritz_compare_select(scene, ritz_rows_first(rows, k), least,
+                                       &rows->row[k]));
+    return RITZ_OK;
 }
 
 /* Errors at every row; between angles the second system is made for it. */

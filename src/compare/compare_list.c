@@ -24,16 +24,14 @@ static ritz_status add_between(const ritz_scene *scene, const double *from,
                                int64_t sweep, double to, int64_t *count,
                                ritz_compare_row *rows)
 {
-    ritz_status status = RITZ_OK;
     ritz_compare_row *row = &rows[*count];
 
     *count += 1;
-    RITZ_NEW(row->setting, scene->num_sweeps);
+    RITZ_CHECK_NEW(row->setting, scene->num_sweeps);
     memcpy(row->setting, from,
            (size_t)scene->num_sweeps * sizeof *row->setting);
     row->setting[sweep] = 0.5 * (from[sweep] + to);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -43,7 +41,6 @@ done:
 static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
                                 ritz_compare_row *row)
 {
-    ritz_status status = RITZ_OK;
     int64_t h = scene->num_sweeps;
     int64_t count = scene->num_configurations;
     const double *first = scene->setting;
@@ -55,39 +52,35 @@ static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
 
         sweep = differs_by(h, a, a + h);
         if (sweep >= 0)
-            RITZ_TRY(add_between(scene, a, sweep, a[h + sweep], rows, row));
+            RITZ_CHECK(add_between(scene, a, sweep, a[h + sweep], rows, row));
     }
     sweep = count > 2 ? differs_by(h, first, last) : -1;
     if (sweep >= 0 && scene->sweep[sweep].turns) {
         double step = first[h + sweep] - first[sweep];
 
         if (fabs(last[sweep] + step - first[sweep] - 360.0) < 1e-9)
-            RITZ_TRY(
+            RITZ_CHECK(
                 add_between(scene, last, sweep, last[sweep] + step, rows, row));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_list(const ritz_scene *scene, int64_t *count,
                               ritz_compare_row **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t h = scene->num_sweeps;
 
-    RITZ_FAIL_IF(scene->num_configurations < 1, RITZ_ERR_ARGUMENT,
-                 "the scene has no configuration");
-    RITZ_NEW(*out, 2 * scene->num_configurations);
+    RITZ_REFUSE_IF(scene->num_configurations < 1, RITZ_ERR_ARGUMENT,
+                   "the scene has no configuration");
+    RITZ_CHECK_NEW(*out, 2 * scene->num_configurations);
     for (int64_t k = 0; k < scene->num_configurations; k++) {
         ritz_compare_row *row = &(*out)[(*count)++];
 
         row->listed = true;
-        RITZ_NEW(row->setting, h);
+        RITZ_CHECK_NEW(row->setting, h);
         if (h > 0)
             memcpy(row->setting, scene->setting + k * h,
                    (size_t)h * sizeof *row->setting);
     }
-    RITZ_TRY(list_between(scene, count, *out));
-done:
-    return status;
+    return list_between(scene, count, *out);
 }

@@ -16,20 +16,18 @@ static ritz_status record_row(const ritz_compare_row *row,
                               ritz_measures *errors)
 {
     static const char against[] = "kept modes against the stage-1 system";
-    ritz_status status = RITZ_OK;
 
-    RITZ_TRY(add(errors, "stage1-frequency-relative", row->frequency_error,
-                 row->allowed, against));
-    RITZ_TRY(add(errors, "stage1-mac", row->mac, nan(""), against));
-    RITZ_TRY(add(errors, "stage1-rigid-hertz", row->rigid_error, nan(""), ""));
-    RITZ_TRY(add(errors, "stage1-static-gain-relative", row->gain_error,
-                 nan(""), ""));
-    RITZ_TRY(
+    RITZ_CHECK(add(errors, "stage1-frequency-relative", row->frequency_error,
+                   row->allowed, against));
+    RITZ_CHECK(add(errors, "stage1-mac", row->mac, nan(""), against));
+    RITZ_CHECK(
+        add(errors, "stage1-rigid-hertz", row->rigid_error, nan(""), ""));
+    RITZ_CHECK(add(errors, "stage1-static-gain-relative", row->gain_error,
+                   nan(""), ""));
+    RITZ_CHECK(
         add(errors, "stage1-moments-relative", row->moment_error, nan(""), ""));
-    RITZ_TRY(add(errors, "stage1-response-relative", row->response_error,
-                 nan(""), ""));
-done:
-    return status;
+    return add(errors, "stage1-response-relative", row->response_error, nan(""),
+               "");
 }
 
 /*
@@ -39,7 +37,6 @@ done:
 static ritz_status record_bodies(ritz_comparison *out)
 {
     static const char worst[] = "worst listed angle, against stage 1";
-    ritz_status status = RITZ_OK;
     double frequency = nan(""), gain = nan(""), response = nan("");
 
     for (int64_t k = 0; k < out->num_rows; k++) {
@@ -54,26 +51,21 @@ static ritz_status record_bodies(ritz_comparison *out)
     for (int64_t c = 0; c < out->second.count; c++) {
         ritz_measures *errors = &out->second.body[c].errors;
 
-        RITZ_TRY(add(errors, "stage1-frequency-relative", frequency, nan(""),
-                     worst));
-        RITZ_TRY(
+        RITZ_CHECK(add(errors, "stage1-frequency-relative", frequency, nan(""),
+                       worst));
+        RITZ_CHECK(
             add(errors, "stage1-static-gain-relative", gain, nan(""), worst));
-        RITZ_TRY(
+        RITZ_CHECK(
             add(errors, "stage1-response-relative", response, nan(""), worst));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_record(ritz_comparison *comparison)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < comparison->second_system.num_configurations; k++)
-        RITZ_TRY(
+        RITZ_CHECK(
             record_row(&comparison->row[k],
                        &comparison->second_system.configuration[k].errors));
-    RITZ_TRY(record_bodies(comparison));
-done:
-    return status;
+    return record_bodies(comparison);
 }

@@ -140,20 +140,18 @@ static void mark_band(const ritz_scene *scene, const ritz_configuration *c,
 static ritz_status mark_listed(const ritz_scene *scene,
                                const ritz_configuration *c, bool *taken)
 {
-    ritz_status status = RITZ_OK;
     int64_t flexible = c->K.ncol - c->num_rigid;
 
     for (int64_t k = 0; k < scene->num_select_modes; k++) {
         int64_t mode = scene->select_mode[k];
 
-        RITZ_FAIL_IF(mode >= flexible, RITZ_ERR_ARGUMENT,
-                     "mode %" PRId64 " is listed, and there are %" PRId64
-                     " flexible modes%s%s",
-                     mode + 1, flexible, *c->at ? " at " : "", c->at);
+        RITZ_REFUSE_IF(mode >= flexible, RITZ_ERR_ARGUMENT,
+                       "mode %" PRId64 " is listed, and there are %" PRId64
+                       " flexible modes%s%s",
+                       mode + 1, flexible, *c->at ? " at " : "", c->at);
         taken[mode] = true;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Take the rest of each cluster that has a mode taken; count what that adds. */

@@ -80,13 +80,10 @@ done:
 
 static ritz_status identity(int64_t r, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(r, r, out));
+    RITZ_CHECK(ritz_dense_new(r, r, out));
     for (int64_t j = 0; j < r; j++)
         ritz_dense_col(out, j)[j] = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of unit norm; those of none are left as they are. */

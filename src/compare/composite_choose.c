@@ -66,27 +66,22 @@ done:
 static ritz_status choose_modes(int64_t e, int64_t count, int64_t first,
                                 const int64_t *which, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(e, count, out));
+    RITZ_CHECK(ritz_dense_new(e, count, out));
     for (int64_t k = 0; k < count; k++)
         ritz_dense_col(out, k)[first + (which ? which[k] : k)] = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status choose_krylov(const ritz_scene *scene,
                                  const ritz_configuration *c, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t moments = 0;
 
-    RITZ_TRY(ritz_system_krylov(c, scene->select_vectors, scene->select_outputs,
-                                out, &moments));
+    RITZ_CHECK(ritz_system_krylov(c, scene->select_vectors,
+                                  scene->select_outputs, out, &moments));
     for (int64_t j = 0; j < out->ncol; j++)
         (void)normalise(c, ritz_dense_col(out, j));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_composite_choose(const ritz_scene *scene,

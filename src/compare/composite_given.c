@@ -16,7 +16,6 @@
 /* Values of all modes, the largest of all is 1. */
 static ritz_status weigh(ritz_givens *g)
 {
-    ritz_status status = RITZ_OK;
     double largest = 0.0;
 
     for (int64_t k = 0; k < g->system.num_configurations; k++) {
@@ -24,8 +23,8 @@ static ritz_status weigh(ritz_givens *g)
         int64_t flexible = at->K.ncol - at->num_rigid;
 
         g->each[k].at = at;
-        RITZ_NEW(g->each[k].value, flexible);
-        RITZ_TRY(ritz_compare_values(g->stage->scene, at, g->each[k].value));
+        RITZ_CHECK_NEW(g->each[k].value, flexible);
+        RITZ_CHECK(ritz_compare_values(g->stage->scene, at, g->each[k].value));
         for (int64_t j = 0; j < flexible; j++)
             largest = fmax(largest, g->each[k].value[j]);
     }
@@ -34,25 +33,22 @@ static ritz_status weigh(ritz_givens *g)
              j++)
             g->each[k].value[j - g->each[k].at->num_rigid] /=
                 largest > 0.0 ? largest : 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of flexible modes up to some lambda, so long. */
 static ritz_status choose_modes(const ritz_configuration *at, double highest,
                                 const double *length, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_dense_new(at->K.ncol, at->K.ncol - at->num_rigid, out));
+    RITZ_CHECK(ritz_dense_new(at->K.ncol, at->K.ncol - at->num_rigid, out));
     for (int64_t k = at->num_rigid; k < at->K.ncol; k++)
         if (at->lambda[k] <= highest)
             ritz_dense_col(out, count++)[k] =
                 length ? length[k - at->num_rigid] : 1.0;
     out->ncol = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status give(const ritz_givens *g, ritz_given *to)

@@ -61,33 +61,29 @@ static bool factor(ritz_dense *L, double least)
 ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
                               double lambda, ritz_dense *L)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(body->M.ncol, body->M.ncol, L));
+    RITZ_CHECK(ritz_dense_new(body->M.ncol, body->M.ncol, L));
     fill(body, scale, 1.0 / lambda, L);
-    RITZ_FAIL_IF(!factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
-                 "a motion has neither mass nor stiffness, or the reduced mass "
-                 "is not positive");
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        !factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
+        "a motion has neither mass nor stiffness, or the reduced mass "
+        "is not positive");
+    return RITZ_OK;
 }
 
 ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
                              ritz_dense *L, bool *mixed)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = body->M.ncol;
 
     *mixed = false;
-    RITZ_TRY(ritz_dense_new(r, r, L));
+    RITZ_CHECK(ritz_dense_new(r, r, L));
     fill(body, scale, 0.0, L);
     if (factor(L, well_conditioned))
         return RITZ_OK;
     *mixed = true;
     ritz_dense_free(L);
     return ritz_mixed_factor(body, scale, ritz_typical_lambda(body), L);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U)
@@ -105,9 +101,7 @@ void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U)
 ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
                                 const ritz_dense *W, ritz_dense *Y)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(W, Y));
+    RITZ_CHECK(ritz_dense_copy(W, Y));
     for (int64_t j = 0; j < Y->ncol; j++)
         for (int64_t i = 0; i < Y->nrow; i++)
             ritz_dense_col(Y, j)[i] /= scale[i];
@@ -115,8 +109,7 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
         cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, (int)Y->nrow, (int)Y->ncol, 1.0, L->val,
                     (int)Y->nrow, Y->val, (int)Y->nrow);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,

@@ -68,20 +68,18 @@ static void solve(const ritz_configuration *c, const double *r, int64_t stride,
 static ritz_status start(const ritz_configuration *c, bool both,
                          ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &c->io;
     const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
     int64_t m = 0;
 
-    RITZ_TRY(ritz_dense_new(
+    RITZ_CHECK(ritz_dense_new(
         c->K.ncol, io->num_inputs + (both ? 3 * io->num_outputs : 0), out));
     for (int64_t j = 0; j < io->num_inputs; j++)
         solve(c, ritz_dense_col(&io->B, j), 1, ritz_dense_col(out, m++));
     for (int k = 0; k < 3 && both; k++)
         for (int64_t i = 0; i < io->num_outputs; i++)
             solve(c, C[k]->val + i, io->num_outputs, ritz_dense_col(out, m++));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

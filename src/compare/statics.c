@@ -98,10 +98,9 @@ done:
 static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
                           double *scale, ritz_dense *L)
 {
-    ritz_status status = RITZ_OK;
     int r = (int)body->K.ncol;
 
-    RITZ_TRY(ritz_dense_copy(&body->K, L));
+    RITZ_CHECK(ritz_dense_copy(&body->K, L));
     if (MR->ncol > 0)
         cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, r, (int)MR->ncol,
                     ritz_typical_lambda(body), MR->val, r, 1.0, L->val, r);
@@ -113,12 +112,12 @@ static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
     for (int j = 0; j < r; j++)
         for (int i = j; i < r; i++)
             ritz_dense_col(L, j)[i] *= scale[i] * scale[j];
-    RITZ_FAIL_IF(r > 0 && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, L->val, r),
-                 RITZ_ERR_SINGULAR,
-                 "the stiffness of motions that are not rigid is not definite, "
-                 "so it answers no static force");
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        r > 0 && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, L->val, r),
+        RITZ_ERR_SINGULAR,
+        "the stiffness of motions that are not rigid is not definite, "
+        "so it answers no static force");
+    return RITZ_OK;
 }
 
 /*

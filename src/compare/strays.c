@@ -57,10 +57,9 @@ ritz_status ritz_compare_strays(const ritz_scene *scene,
                                 const ritz_configuration *second,
                                 const ritz_dense *X, ritz_compare_row *row)
 {
-    ritz_status status = RITZ_OK;
     const double half = 0.5;
 
-    RITZ_NEW(row->stray, second->K.ncol);
+    RITZ_CHECK_NEW(row->stray, second->K.ncol);
     if (scene->select == RITZ_SELECT_KRYLOV)
         return RITZ_OK; /* no mode was kept, so none is beside them */
     for (int64_t j = second->num_rigid; j < second->K.ncol; j++) {
@@ -72,8 +71,7 @@ ritz_status ritz_compare_strays(const ritz_scene *scene,
             describe(scene, first, second->lambda[j], x);
         row->stray[row->num_strays++].mode = j - second->num_rigid;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns `keep` of A. */
@@ -117,28 +115,25 @@ done:
 static ritz_status truncate(int64_t count, const int64_t *keep,
                             ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < c->num_blocks; k++)
-        RITZ_TRY(take_columns(count, keep, &c->P[k]));
-    RITZ_TRY(take_columns(count, keep, &c->io.C));
-    RITZ_TRY(take_columns(count, keep, &c->io.Cv));
-    RITZ_TRY(take_columns(count, keep, &c->io.Ca));
+        RITZ_CHECK(take_columns(count, keep, &c->P[k]));
+    RITZ_CHECK(take_columns(count, keep, &c->io.C));
+    RITZ_CHECK(take_columns(count, keep, &c->io.Cv));
+    RITZ_CHECK(take_columns(count, keep, &c->io.Ca));
     if (c->momentum.val)
-        RITZ_TRY(take_columns(count, keep, &c->momentum));
-    RITZ_TRY(take_rows(count, keep, false, &c->io.B));
-    RITZ_TRY(take_rows(count, keep, true, &c->K));
-    RITZ_TRY(take_rows(count, keep, true, &c->M));
+        RITZ_CHECK(take_columns(count, keep, &c->momentum));
+    RITZ_CHECK(take_rows(count, keep, false, &c->io.B));
+    RITZ_CHECK(take_rows(count, keep, true, &c->K));
+    RITZ_CHECK(take_rows(count, keep, true, &c->M));
     if (c->D.val)
-        RITZ_TRY(take_rows(count, keep, true, &c->D));
+        RITZ_CHECK(take_rows(count, keep, true, &c->D));
     if (c->K4.val)
-        RITZ_TRY(take_rows(count, keep, true, &c->K4));
+        RITZ_CHECK(take_rows(count, keep, true, &c->K4));
     if (c->dampers.B.val)
-        RITZ_TRY(take_rows(count, keep, false, &c->dampers.B));
+        RITZ_CHECK(take_rows(count, keep, false, &c->dampers.B));
     for (int64_t j = 0; j < count; j++) /* keep[j] >= j */
         c->lambda[j] = c->lambda[keep[j]];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_remove(const ritz_compare_row *row,

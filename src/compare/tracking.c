@@ -48,13 +48,12 @@ static int64_t find_before(const ritz_system *system, int64_t k)
 /* Room for all modes, their frequencies and clusters. */
 static ritz_status lay_out(const ritz_system *system, ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = system->num_configurations;
     int64_t total = 0;
 
     t->num_configurations = count;
-    RITZ_NEW(t->before, count);
-    RITZ_NEW(t->first, count + 1);
+    RITZ_CHECK_NEW(t->before, count);
+    RITZ_CHECK_NEW(t->first, count + 1);
     for (int64_t k = 0; k < count; k++) {
         const ritz_configuration *c = &system->configuration[k];
 
@@ -63,10 +62,10 @@ static ritz_status lay_out(const ritz_system *system, ritz_tracking *t)
         total += c->K.ncol - c->num_rigid;
     }
     t->first[count] = total;
-    RITZ_NEW(t->track, total);
-    RITZ_NEW(t->cluster, total);
-    RITZ_NEW(t->hertz, total);
-    RITZ_NEW(t->mac, total);
+    RITZ_CHECK_NEW(t->track, total);
+    RITZ_CHECK_NEW(t->cluster, total);
+    RITZ_CHECK_NEW(t->hertz, total);
+    RITZ_CHECK_NEW(t->mac, total);
     for (int64_t k = 0; k < count; k++) {
         const ritz_configuration *c = &system->configuration[k];
         int64_t *cluster = t->cluster + t->first[k];
@@ -79,8 +78,7 @@ static ritz_status lay_out(const ritz_system *system, ritz_tracking *t)
                 cluster[j] = cluster[j - 1];
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The track that stands for one that was joined to it. */

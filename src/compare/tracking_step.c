@@ -135,11 +135,10 @@ static double mac_of(const ritz_track_step *step, int64_t i, int64_t j)
 static ritz_status add_event(const ritz_track_step *step,
                              const ritz_track_event *event, ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
     ritz_track_event *more = NULL;
 
     if ((t->num_events & (t->num_events - 1)) == 0) { /* a power of two, or 0 */
-        RITZ_NEW(more, t->num_events > 0 ? 2 * t->num_events : 1);
+        RITZ_CHECK_NEW(more, t->num_events > 0 ? 2 * t->num_events : 1);
         if (t->num_events > 0)
             memcpy(more, t->event, (size_t)t->num_events * sizeof *more);
         free(t->event);
@@ -150,8 +149,7 @@ static ritz_status add_event(const ritz_track_step *step,
     t->event[t->num_events].to = step->to;
     t->event[t->num_events].hertz = step->hertz[0][event->mode[0]];
     t->num_events++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether mode j is what a mode of i's cluster becomes. */
@@ -188,7 +186,6 @@ static void find_best(const ritz_track_step *step, int64_t i, int64_t best[2])
 static ritz_status judge_one(const ritz_track_step *step, int64_t i,
                              ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t best[2] = {-1, -1};
     ritz_track_event event = {.mode = {i, -1}, .shared = nan("")};
 
@@ -199,13 +196,12 @@ static ritz_status judge_one(const ritz_track_step *step, int64_t i,
     }
     if (step->partner[i] < 0) {
         event.kind = RITZ_TRACK_LOST;
-        RITZ_TRY(add_event(step, &event, t));
+        RITZ_CHECK(add_event(step, &event, t));
     } else if (best[1] >= 0 && event.mac[0] - event.mac[1] < clear) {
         event.kind = RITZ_TRACK_TIE;
-        RITZ_TRY(add_event(step, &event, t));
+        RITZ_CHECK(add_event(step, &event, t));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -215,7 +211,6 @@ done:
 static ritz_status judge_two(const ritz_track_step *step, int64_t i, int64_t j,
                              ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t p = step->partner[i];
     int64_t q = step->partner[j];
     double own[2] = {mac_of(step, i, p), mac_of(step, j, q)};
@@ -228,15 +223,14 @@ static ritz_status judge_two(const ritz_track_step *step, int64_t i, int64_t j,
 
     if (p > q) {
         event.kind = RITZ_TRACK_SWAP;
-        RITZ_TRY(add_event(step, &event, t));
+        RITZ_CHECK(add_event(step, &event, t));
     }
     if (j == i + 1 && shared >= plane && fmin(crossed[0], crossed[1]) > mixed) {
         event.kind = RITZ_TRACK_AVOIDED;
         event.shared = shared;
-        RITZ_TRY(add_event(step, &event, t));
+        RITZ_CHECK(add_event(step, &event, t));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether two modes, or what they became, are of one cluster. */
@@ -252,18 +246,16 @@ static bool are_one(const ritz_track_step *step, int64_t i, int64_t j)
 ritz_status ritz_track_events(const ritz_track_step *step, double up_to_hz,
                               ritz_tracking *tracking)
 {
-    ritz_status status = RITZ_OK;
     double most = up_to_hz > 0.0 ? up_to_hz : HUGE_VAL;
 
     for (int64_t i = 0; i < step->num_from; i++) {
         if (step->hertz[0][i] > most)
             break;
-        RITZ_TRY(judge_one(step, i, tracking));
+        RITZ_CHECK(judge_one(step, i, tracking));
         for (int64_t j = i + 1; j < step->num_from; j++)
             if (step->partner[i] >= 0 && step->partner[j] >= 0 &&
                 !are_one(step, i, j))
-                RITZ_TRY(judge_two(step, i, j, tracking));
+                RITZ_CHECK(judge_two(step, i, j, tracking));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -55,15 +55,12 @@ done:
 /* What HDF5 still holds back may not fit on the disk: closing can fail. */
 ritz_status ritz_writer_finish(ritz_writer *writer)
 {
-    ritz_status status = RITZ_OK;
     herr_t closed = H5Fclose(writer->file);
 
     writer->file = 0;
-    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
-                 "cannot be written to its end, is the disk full?");
-    RITZ_TRY(ritz_draft_publish(&writer->draft));
-done:
-    return status;
+    RITZ_REFUSE_IF(closed < 0, RITZ_ERR_FILE,
+                   "cannot be written to its end, is the disk full?");
+    return ritz_draft_publish(&writer->draft);
 }
 
 void ritz_writer_free(ritz_writer *writer)

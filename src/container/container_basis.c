@@ -5,67 +5,59 @@
 /* A basis of states says so by its attribute `states`. */
 static ritz_status write_states(hid_t file, const ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_write_dense(file, "W", &basis->W));
+    RITZ_CHECK(ritz_part_write_dense(file, "W", &basis->W));
     if (basis->num_hankel > 0) {
-        RITZ_TRY(ritz_h5_write(file, "hankel", H5T_IEEE_F64LE,
-                               ritz_h5_vector(basis->num_hankel),
-                               basis->hankel));
-        RITZ_TRY(ritz_part_set_real(file, "bound", 1, &basis->bound));
+        RITZ_CHECK(ritz_h5_write(file, "hankel", H5T_IEEE_F64LE,
+                                 ritz_h5_vector(basis->num_hankel),
+                                 basis->hankel));
+        RITZ_CHECK(ritz_part_set_real(file, "bound", 1, &basis->bound));
     }
     if (basis->states)
-        RITZ_TRY(ritz_part_set_whole(file, "states", 1));
+        RITZ_CHECK(ritz_part_set_whole(file, "states", 1));
     if (!basis->states && !basis->W.val)
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_set_text(file, "damping", basis->damping));
+    RITZ_CHECK(ritz_h5_set_text(file, "damping", basis->damping));
     if (basis->among_hz > 0.0)
-        RITZ_TRY(ritz_part_set_real(file, "among_hz", 1, &basis->among_hz));
-done:
-    return status;
+        RITZ_CHECK(ritz_part_set_real(file, "among_hz", 1, &basis->among_hz));
+    return RITZ_OK;
 }
 
 static ritz_status read_hankel(hid_t file, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
-
     if (!ritz_h5_has(file, "hankel"))
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_count(file, "hankel", &basis->num_hankel));
-    RITZ_NEW(basis->hankel, basis->num_hankel);
-    RITZ_TRY(ritz_h5_read_real(file, "hankel",
-                               ritz_h5_vector(basis->num_hankel), false,
-                               basis->hankel));
+    RITZ_CHECK(ritz_h5_count(file, "hankel", &basis->num_hankel));
+    RITZ_CHECK_NEW(basis->hankel, basis->num_hankel);
+    RITZ_CHECK(ritz_h5_read_real(file, "hankel",
+                                 ritz_h5_vector(basis->num_hankel), false,
+                                 basis->hankel));
     for (int64_t k = 0; k < basis->num_hankel; k++)
-        RITZ_FAIL_IF(basis->hankel[k] < 0.0 ||
-                         (k > 0 && basis->hankel[k] > basis->hankel[k - 1]),
-                     RITZ_ERR_FORMAT, "'hankel' does not descend to zero");
-    RITZ_TRY(ritz_part_get_real(file, "bound", true, 1, &basis->bound));
-    RITZ_FAIL_IF(basis->bound < 0.0, RITZ_ERR_FORMAT,
-                 "'bound' is %g, which bounds no error", basis->bound);
-done:
-    return status;
+        RITZ_REFUSE_IF(basis->hankel[k] < 0.0 ||
+                           (k > 0 && basis->hankel[k] > basis->hankel[k - 1]),
+                       RITZ_ERR_FORMAT, "'hankel' does not descend to zero");
+    RITZ_CHECK(ritz_part_get_real(file, "bound", true, 1, &basis->bound));
+    RITZ_REFUSE_IF(basis->bound < 0.0, RITZ_ERR_FORMAT,
+                   "'bound' is %g, which bounds no error", basis->bound);
+    return RITZ_OK;
 }
 
 static ritz_status read_states(hid_t file, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *T = &basis->T;
     int64_t one = 0;
 
-    RITZ_TRY(ritz_part_read_dense(file, "W", T->nrow, T->ncol, &basis->W));
-    RITZ_TRY(read_hankel(file, basis));
+    RITZ_CHECK(ritz_part_read_dense(file, "W", T->nrow, T->ncol, &basis->W));
+    RITZ_CHECK(read_hankel(file, basis));
     basis->states = H5Aexists(file, "states") > 0;
     if (basis->states)
-        RITZ_TRY(ritz_part_get_size(file, "states", 1, 1, &one));
+        RITZ_CHECK(ritz_part_get_size(file, "states", 1, 1, &one));
     if (basis->states || basis->W.val)
-        RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof basis->damping,
-                                  basis->damping));
+        RITZ_CHECK(ritz_h5_get_text(file, "damping", sizeof basis->damping,
+                                    basis->damping));
     if (H5Aexists(file, "among_hz") > 0)
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_part_get_real(file, "among_hz", false, 1, &basis->among_hz));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_container_read_basis(const char *path, ritz_basis *out)

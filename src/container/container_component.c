@@ -168,43 +168,39 @@ done:
 
 static ritz_status read_matrices(hid_t file, ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(read_sparse(file, "K", &component->K));
-    RITZ_TRY(read_sparse(file, "M", &component->M));
-    RITZ_TRY(read_sparse(file, "D", &component->D));
-    RITZ_TRY(read_sparse(file, "K4", &component->K4));
-    RITZ_TRY(read_loads(file, component));
-done:
-    return status;
+    RITZ_CHECK(read_sparse(file, "K", &component->K));
+    RITZ_CHECK(read_sparse(file, "M", &component->M));
+    RITZ_CHECK(read_sparse(file, "D", &component->D));
+    RITZ_CHECK(read_sparse(file, "K4", &component->K4));
+    return read_loads(file, component);
 }
 
 static ritz_status read_all(hid_t file, ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
     double asymmetry = 0.0;
 
-    RITZ_TRY(ritz_h5_get_text(file, "units", sizeof component->units,
-                              component->units));
-    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof component->damping,
-                              component->damping));
-    RITZ_TRY(ritz_part_get_real(file, "asymmetry", false, 1, &asymmetry));
-    RITZ_TRY(ritz_part_get_real(file, "digits", false, 1, &component->digits));
-    RITZ_TRY(ritz_part_read_dofs(file, &component->num_dofs, &component->dof));
-    RITZ_TRY(read_matrices(file, component));
-    RITZ_TRY(ritz_part_read_grids(file, &component->grids));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_h5_get_text(file, "units", sizeof component->units,
+                                component->units));
+    RITZ_CHECK(ritz_h5_get_text(file, "damping", sizeof component->damping,
+                                component->damping));
+    RITZ_CHECK(ritz_part_get_real(file, "asymmetry", false, 1, &asymmetry));
+    RITZ_CHECK(
+        ritz_part_get_real(file, "digits", false, 1, &component->digits));
+    RITZ_CHECK(
+        ritz_part_read_dofs(file, &component->num_dofs, &component->dof));
+    RITZ_CHECK(read_matrices(file, component));
+    RITZ_CHECK(ritz_part_read_grids(file, &component->grids));
+    RITZ_CHECK(
         ritz_part_read_elements(file, &component->grids, &component->elements));
-    RITZ_TRY(read_ports(file, component));
-    RITZ_TRY(ritz_part_read_io(file, component->num_dofs, &component->io));
-    RITZ_TRY(ritz_part_read_recovery(file, component->num_dofs, component->dof,
-                                     &component->recovery));
-    RITZ_TRY(
+    RITZ_CHECK(read_ports(file, component));
+    RITZ_CHECK(ritz_part_read_io(file, component->num_dofs, &component->io));
+    RITZ_CHECK(ritz_part_read_recovery(file, component->num_dofs,
+                                       component->dof, &component->recovery));
+    RITZ_CHECK(
         ritz_part_read_dampers(file, component->num_dofs, &component->dampers));
-    RITZ_TRY(ritz_component_settle(component, false));
+    RITZ_CHECK(ritz_component_settle(component, false));
     component->asymmetry = fmax(component->asymmetry, asymmetry);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_container_read_component(const char *path, ritz_component *out)

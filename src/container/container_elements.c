@@ -28,33 +28,31 @@ done:
 /* Sizes of cells are checked before any grid is looked up by them. */
 static ritz_status read_cells(hid_t group, ritz_elements *elements)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = 0, grids = 0, first = 0;
 
-    RITZ_TRY(ritz_h5_count(group, "kind", &n));
-    RITZ_TRY(ritz_h5_count(group, "first", &first));
-    RITZ_TRY(ritz_h5_count(group, "grids", &grids));
-    RITZ_FAIL_IF(n == 0 || first != n + 1, RITZ_ERR_FORMAT,
-                 "'first' has %" PRId64 " values for %" PRId64 " elements",
-                 first, n);
-    RITZ_NEW(elements->kind, n);
-    RITZ_NEW(elements->first, n + 1);
-    RITZ_NEW(elements->grid, grids);
+    RITZ_CHECK(ritz_h5_count(group, "kind", &n));
+    RITZ_CHECK(ritz_h5_count(group, "first", &first));
+    RITZ_CHECK(ritz_h5_count(group, "grids", &grids));
+    RITZ_REFUSE_IF(n == 0 || first != n + 1, RITZ_ERR_FORMAT,
+                   "'first' has %" PRId64 " values for %" PRId64 " elements",
+                   first, n);
+    RITZ_CHECK_NEW(elements->kind, n);
+    RITZ_CHECK_NEW(elements->first, n + 1);
+    RITZ_CHECK_NEW(elements->grid, grids);
     elements->count = n;
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_part_read_whole(group, "kind", n, 1, INT64_MAX, elements->kind));
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_part_read_whole(group, "first", n + 1, 0, grids, elements->first));
-    RITZ_TRY(ritz_part_read_whole(group, "grids", grids, INT64_MIN, INT64_MAX,
-                                  elements->grid));
+    RITZ_CHECK(ritz_part_read_whole(group, "grids", grids, INT64_MIN, INT64_MAX,
+                                    elements->grid));
     for (int64_t k = 0; k < n; k++)
-        RITZ_FAIL_IF(elements->first[k + 1] < elements->first[k],
-                     RITZ_ERR_FORMAT, "'first' does not ascend");
-    RITZ_FAIL_IF(elements->first[n] != grids, RITZ_ERR_FORMAT,
-                 "'first' ends at %" PRId64 " of %" PRId64 " grids",
-                 elements->first[n], grids);
-done:
-    return status;
+        RITZ_REFUSE_IF(elements->first[k + 1] < elements->first[k],
+                       RITZ_ERR_FORMAT, "'first' does not ascend");
+    RITZ_REFUSE_IF(elements->first[n] != grids, RITZ_ERR_FORMAT,
+                   "'first' ends at %" PRId64 " of %" PRId64 " grids",
+                   elements->first[n], grids);
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_read_elements(hid_t at, const ritz_grids *grids,

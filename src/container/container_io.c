@@ -41,14 +41,11 @@ done:
 
 ritz_status ritz_part_write_io(hid_t at, const ritz_io *io)
 {
-    ritz_status status = RITZ_OK;
-
     if (io->num_inputs > 0)
-        RITZ_TRY(write_inputs(at, io));
+        RITZ_CHECK(write_inputs(at, io));
     if (io->num_outputs > 0)
-        RITZ_TRY(write_outputs(at, io));
-done:
-    return status;
+        RITZ_CHECK(write_outputs(at, io));
+    return RITZ_OK;
 }
 
 /* Number of names in a group that need not be there. */
@@ -136,14 +133,11 @@ typedef struct table {
 
 static ritz_status new_table(int64_t count, table *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(out->name, count);
-    RITZ_NEW(out->where, count);
-    RITZ_NEW(out->value, count);
-    RITZ_NEW(out->limit, count);
-done:
-    return status;
+    RITZ_CHECK_NEW(out->name, count);
+    RITZ_CHECK_NEW(out->where, count);
+    RITZ_CHECK_NEW(out->value, count);
+    RITZ_CHECK_NEW(out->limit, count);
+    return RITZ_OK;
 }
 
 static void free_table(table *t)
@@ -187,20 +181,17 @@ done:
 
 static ritz_status read_table(hid_t group, int64_t count, table *t)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape shape = ritz_h5_vector(count);
 
-    RITZ_TRY(new_table(count, t));
-    RITZ_TRY(ritz_part_read_words(group, "name", count, t->name));
-    RITZ_TRY(ritz_part_read_words(group, "where", count, t->where));
-    RITZ_TRY(ritz_h5_read(group, "value", H5T_IEEE_F64LE, shape, t->value));
+    RITZ_CHECK(new_table(count, t));
+    RITZ_CHECK(ritz_part_read_words(group, "name", count, t->name));
+    RITZ_CHECK(ritz_part_read_words(group, "where", count, t->where));
+    RITZ_CHECK(ritz_h5_read(group, "value", H5T_IEEE_F64LE, shape, t->value));
     for (int64_t k = 0; k < count; k++) /* infinite: a bound that bounds none */
-        RITZ_FAIL_IF(isnan(t->value[k]) || t->value[k] == -HUGE_VAL,
-                     RITZ_ERR_FORMAT, "value %" PRId64 " of 'value' is none",
-                     k + 1);
-    RITZ_TRY(ritz_h5_read_real(group, "limit", shape, true, t->limit));
-done:
-    return status;
+        RITZ_REFUSE_IF(isnan(t->value[k]) || t->value[k] == -HUGE_VAL,
+                       RITZ_ERR_FORMAT, "value %" PRId64 " of 'value' is none",
+                       k + 1);
+    return ritz_h5_read_real(group, "limit", shape, true, t->limit);
 }
 
 ritz_status ritz_part_read_measures(hid_t at, const char *name,

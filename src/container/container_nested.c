@@ -34,18 +34,16 @@ done:
 
 static ritz_status read_orders(hid_t group, int64_t r, ritz_nested *nested)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_get_size(group, "smallest", 1, r, &nested->smallest));
-    RITZ_TRY(ritz_h5_count(group, "order", &nested->count));
-    RITZ_NEW(nested->order, nested->count);
-    RITZ_TRY(ritz_part_read_whole(group, "order", nested->count,
-                                  nested->smallest, r, nested->order));
+    RITZ_CHECK(ritz_part_get_size(group, "smallest", 1, r, &nested->smallest));
+    RITZ_CHECK(ritz_h5_count(group, "order", &nested->count));
+    RITZ_CHECK_NEW(nested->order, nested->count);
+    RITZ_CHECK(ritz_part_read_whole(group, "order", nested->count,
+                                    nested->smallest, r, nested->order));
     for (int64_t k = 1; k < nested->count; k++)
-        RITZ_FAIL_IF(nested->order[k] <= nested->order[k - 1], RITZ_ERR_FORMAT,
-                     "'order' does not ascend at value %" PRId64, k + 1);
-done:
-    return status;
+        RITZ_REFUSE_IF(nested->order[k] <= nested->order[k - 1],
+                       RITZ_ERR_FORMAT,
+                       "'order' does not ascend at value %" PRId64, k + 1);
+    return RITZ_OK;
 }
 
 static ritz_status read_errors(hid_t group, ritz_nested *nested)

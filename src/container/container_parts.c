@@ -11,25 +11,19 @@
 ritz_status ritz_part_set_members(hid_t at, const ritz_text_member *member,
                                   const void *object)
 {
-    ritz_status status = RITZ_OK;
-
     for (; member->name; member++)
-        RITZ_TRY(ritz_h5_set_text(at, member->name,
-                                  (const char *)object + member->offset));
-done:
-    return status;
+        RITZ_CHECK(ritz_h5_set_text(at, member->name,
+                                    (const char *)object + member->offset));
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_get_members(hid_t at, const ritz_text_member *member,
                                   void *object)
 {
-    ritz_status status = RITZ_OK;
-
     for (; member->name; member++)
-        RITZ_TRY(ritz_h5_get_text(at, member->name, RITZ_NAME_SIZE,
-                                  (char *)object + member->offset));
-done:
-    return status;
+        RITZ_CHECK(ritz_h5_get_text(at, member->name, RITZ_NAME_SIZE,
+                                    (char *)object + member->offset));
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_set_whole(hid_t at, const char *name, int64_t value)
@@ -53,27 +47,22 @@ ritz_status ritz_part_set_real(hid_t at, const char *name, int64_t count,
 ritz_status ritz_part_get_real(hid_t at, const char *name, bool nan_allowed,
                                int64_t count, double *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_h5_get(at, name, H5T_IEEE_F64LE, count, out));
+    RITZ_CHECK(ritz_h5_get(at, name, H5T_IEEE_F64LE, count, out));
     for (int64_t k = 0; k < count; k++)
-        RITZ_FAIL_IF(!isfinite(out[k]) && !(nan_allowed && isnan(out[k])),
-                     RITZ_ERR_FORMAT, "attribute '%s' is not finite", name);
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(out[k]) && !(nan_allowed && isnan(out[k])),
+                       RITZ_ERR_FORMAT, "attribute '%s' is not finite", name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_get_size(hid_t at, const char *name, int64_t least,
                                int64_t most, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_get_whole(at, name, out));
-    RITZ_FAIL_IF(*out < least || *out > most, RITZ_ERR_FORMAT,
-                 "attribute '%s' is %" PRId64 ", not in %" PRId64 "..%" PRId64,
-                 name, *out, least, most);
-done:
-    return status;
+    RITZ_CHECK(ritz_part_get_whole(at, name, out));
+    RITZ_REFUSE_IF(*out < least || *out > most, RITZ_ERR_FORMAT,
+                   "attribute '%s' is %" PRId64 ", not in %" PRId64
+                   "..%" PRId64,
+                   name, *out, least, most);
+    return RITZ_OK;
 }
 
 static int compare(const void *a, const void *b)
@@ -134,38 +123,29 @@ ritz_status ritz_part_read_words(hid_t at, const char *name, int64_t count,
 ritz_status ritz_part_write_names(hid_t at, const char *name, int64_t count,
                                   const ritz_name *names)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY_IN(name, check_names(count, names));
-    RITZ_TRY(ritz_part_write_words(at, name, count, names));
-done:
-    return status;
+    RITZ_CHECK_IN(name, check_names(count, names));
+    return ritz_part_write_words(at, name, count, names);
 }
 
 ritz_status ritz_part_read_names(hid_t at, const char *name, int64_t count,
                                  ritz_name *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_read_words(at, name, count, out));
-    RITZ_TRY_IN(name, check_names(count, out));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_read_words(at, name, count, out));
+    RITZ_CHECK_IN(name, check_names(count, out));
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_read_whole(hid_t at, const char *name, int64_t count,
                                  int64_t least, int64_t most, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_h5_read(at, name, H5T_STD_I64LE, ritz_h5_vector(count), out));
+    RITZ_CHECK(
+        ritz_h5_read(at, name, H5T_STD_I64LE, ritz_h5_vector(count), out));
     for (int64_t k = 0; k < count; k++)
-        RITZ_FAIL_IF(out[k] < least || out[k] > most, RITZ_ERR_FORMAT,
-                     "value %" PRId64 " of '%s' is %" PRId64 ", not in %" PRId64
-                     "..%" PRId64,
-                     k + 1, name, out[k], least, most);
-done:
-    return status;
+        RITZ_REFUSE_IF(out[k] < least || out[k] > most, RITZ_ERR_FORMAT,
+                       "value %" PRId64 " of '%s' is %" PRId64
+                       ", not in %" PRId64 "..%" PRId64,
+                       k + 1, name, out[k], least, most);
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_write_dense(hid_t at, const char *name,

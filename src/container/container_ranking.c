@@ -40,55 +40,47 @@ done:
 /* Modes that are coupled, if any pair was found. */
 static ritz_status read_coupling(hid_t at, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_get_real(at, "coupling", true, 1, &ranking->coupling));
-    RITZ_TRY(ritz_h5_get(at, "coupled", H5T_STD_I64LE, 2, ranking->coupled));
+    RITZ_CHECK(ritz_part_get_real(at, "coupling", true, 1, &ranking->coupling));
+    RITZ_CHECK(ritz_h5_get(at, "coupled", H5T_STD_I64LE, 2, ranking->coupled));
     for (int k = 0; k < 2; k++)
-        RITZ_FAIL_IF(!isnan(ranking->coupling) && ranking->coupling > 0.0 &&
-                         (ranking->coupled[k] < 0 ||
-                          ranking->coupled[k] >= ranking->count),
-                     RITZ_ERR_FORMAT, "'coupled' is not a pair of modes");
-done:
-    return status;
+        RITZ_REFUSE_IF(!isnan(ranking->coupling) && ranking->coupling > 0.0 &&
+                           (ranking->coupled[k] < 0 ||
+                            ranking->coupled[k] >= ranking->count),
+                       RITZ_ERR_FORMAT, "'coupled' is not a pair of modes");
+    return RITZ_OK;
 }
 
 /* Without any, each mode is by itself. Those of one follow each other. */
 static ritz_status read_clusters(hid_t at, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = ranking->count;
 
-    RITZ_NEW(ranking->cluster, m);
+    RITZ_CHECK_NEW(ranking->cluster, m);
     for (int64_t k = 0; k < m; k++)
         ranking->cluster[k] = k;
     if (ritz_h5_has(at, "cluster"))
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_part_read_whole(at, "cluster", m, 0, m - 1, ranking->cluster));
     for (int64_t k = 0; k < m; k++)
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             ranking->cluster[k] != k &&
                 (k == 0 || ranking->cluster[k] != ranking->cluster[k - 1]),
             RITZ_ERR_FORMAT, "'cluster' does not name the first mode");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Attributes that are later than the first such files. */
 static ritz_status get_later(hid_t at, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-
     ranking->total = nan("");
     if (H5Aexists(at, "at") > 0)
-        RITZ_TRY(ritz_h5_get_text(at, "at", sizeof ranking->at, ranking->at));
+        RITZ_CHECK(ritz_h5_get_text(at, "at", sizeof ranking->at, ranking->at));
     if (H5Aexists(at, "damping") > 0)
-        RITZ_TRY(ritz_h5_get_text(at, "damping", sizeof ranking->damping,
-                                  ranking->damping));
+        RITZ_CHECK(ritz_h5_get_text(at, "damping", sizeof ranking->damping,
+                                    ranking->damping));
     if (H5Aexists(at, "total") > 0)
-        RITZ_TRY(ritz_part_get_real(at, "total", true, 1, &ranking->total));
-done:
-    return status;
+        RITZ_CHECK(ritz_part_get_real(at, "total", true, 1, &ranking->total));
+    return RITZ_OK;
 }
 
 static ritz_status read_parts(hid_t at, ritz_ranking *ranking)
@@ -116,53 +108,47 @@ done:
 
 static ritz_status read_one(hid_t at, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape modes;
     int64_t m = 0;
 
-    RITZ_TRY(ritz_part_get_members(at, members, ranking));
-    RITZ_TRY(get_later(at, ranking));
-    RITZ_TRY(ritz_h5_count(at, "hertz", &m));
+    RITZ_CHECK(ritz_part_get_members(at, members, ranking));
+    RITZ_CHECK(get_later(at, ranking));
+    RITZ_CHECK(ritz_h5_count(at, "hertz", &m));
     ranking->count = m;
     modes = ritz_h5_vector(m);
-    RITZ_NEW(ranking->hertz, m);
-    RITZ_NEW(ranking->zeta, m);
-    RITZ_NEW(ranking->value, m);
-    RITZ_NEW(ranking->order, m);
-    RITZ_TRY(ritz_h5_read_real(at, "hertz", modes, false, ranking->hertz));
-    RITZ_TRY(ritz_h5_read_real(at, "zeta", modes, false, ranking->zeta));
-    RITZ_TRY(ritz_h5_read_real(at, "value", modes, false, ranking->value));
-    RITZ_TRY(ritz_part_read_whole(at, "order", m, 0, m - 1, ranking->order));
-    RITZ_TRY(check_order(ranking));
-    RITZ_TRY(read_clusters(at, ranking));
-    RITZ_TRY(read_parts(at, ranking));
-    RITZ_TRY(ritz_h5_count(at, "system_value", &ranking->num_system));
-    RITZ_NEW(ranking->system_value, ranking->num_system);
-    RITZ_TRY(ritz_h5_read_real(at, "system_value",
-                               ritz_h5_vector(ranking->num_system), false,
-                               ranking->system_value));
-    RITZ_TRY(read_coupling(at, ranking));
-done:
-    return status;
+    RITZ_CHECK_NEW(ranking->hertz, m);
+    RITZ_CHECK_NEW(ranking->zeta, m);
+    RITZ_CHECK_NEW(ranking->value, m);
+    RITZ_CHECK_NEW(ranking->order, m);
+    RITZ_CHECK(ritz_h5_read_real(at, "hertz", modes, false, ranking->hertz));
+    RITZ_CHECK(ritz_h5_read_real(at, "zeta", modes, false, ranking->zeta));
+    RITZ_CHECK(ritz_h5_read_real(at, "value", modes, false, ranking->value));
+    RITZ_CHECK(ritz_part_read_whole(at, "order", m, 0, m - 1, ranking->order));
+    RITZ_CHECK(check_order(ranking));
+    RITZ_CHECK(read_clusters(at, ranking));
+    RITZ_CHECK(read_parts(at, ranking));
+    RITZ_CHECK(ritz_h5_count(at, "system_value", &ranking->num_system));
+    RITZ_CHECK_NEW(ranking->system_value, ranking->num_system);
+    RITZ_CHECK(ritz_h5_read_real(at, "system_value",
+                                 ritz_h5_vector(ranking->num_system), false,
+                                 ranking->system_value));
+    return read_coupling(at, ranking);
 }
 
 /* Numbers by which modes are followed; all rankings have them, or none. */
 static ritz_status read_track(hid_t at, int64_t k, ritz_rankings *all)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = all->item[k].count;
     bool there = ritz_h5_has(at, "track");
 
     if (there && k == 0)
-        RITZ_NEW(all->track, all->count);
-    RITZ_FAIL_IF(there != !!all->track, RITZ_ERR_FORMAT,
-                 "some rankings have 'track' and some do not");
+        RITZ_CHECK_NEW(all->track, all->count);
+    RITZ_REFUSE_IF(there != !!all->track, RITZ_ERR_FORMAT,
+                   "some rankings have 'track' and some do not");
     if (!there)
         return RITZ_OK;
-    RITZ_NEW(all->track[k], m);
-    RITZ_TRY(ritz_part_read_whole(at, "track", m, 0, INT32_MAX, all->track[k]));
-done:
-    return status;
+    RITZ_CHECK_NEW(all->track[k], m);
+    return ritz_part_read_whole(at, "track", m, 0, INT32_MAX, all->track[k]);
 }
 
 static ritz_status read_several(hid_t file, ritz_rankings *all)
@@ -249,23 +235,18 @@ done:
 
 static ritz_status set_attributes(hid_t at, const ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_set_members(at, members, ranking));
-    RITZ_TRY(ritz_h5_set_text(at, "at", ranking->at));
-    RITZ_TRY(ritz_h5_set_text(at, "damping", ranking->damping));
-    RITZ_TRY(ritz_part_set_real(at, "total", 1, &ranking->total));
-    RITZ_TRY(ritz_part_set_real(at, "coupling", 1, &ranking->coupling));
-    RITZ_TRY(ritz_h5_set(at, "coupled", H5T_STD_I64LE, ritz_h5_vector(2),
-                         ranking->coupled));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_set_members(at, members, ranking));
+    RITZ_CHECK(ritz_h5_set_text(at, "at", ranking->at));
+    RITZ_CHECK(ritz_h5_set_text(at, "damping", ranking->damping));
+    RITZ_CHECK(ritz_part_set_real(at, "total", 1, &ranking->total));
+    RITZ_CHECK(ritz_part_set_real(at, "coupling", 1, &ranking->coupling));
+    return ritz_h5_set(at, "coupled", H5T_STD_I64LE, ritz_h5_vector(2),
+                       ranking->coupled);
 }
 
 static ritz_status write_one(hid_t at, const ritz_ranking *ranking,
                              const int64_t *track)
 {
-    ritz_status status = RITZ_OK;
     const ritz_h5_shape modes = ritz_h5_vector(ranking->count);
     const struct {
         const char *name;
@@ -280,20 +261,18 @@ static ritz_status write_one(hid_t at, const ritz_ranking *ranking,
                   {"cluster", ranking->count > 0 ? ranking->cluster : NULL},
                   {"track", track}};
 
-    RITZ_TRY(set_attributes(at, ranking));
+    RITZ_CHECK(set_attributes(at, ranking));
     for (size_t k = 0; k < sizeof reals / sizeof *reals; k++)
-        RITZ_TRY(ritz_h5_write(at, reals[k].name, H5T_IEEE_F64LE, modes,
-                               reals[k].values));
+        RITZ_CHECK(ritz_h5_write(at, reals[k].name, H5T_IEEE_F64LE, modes,
+                                 reals[k].values));
     for (size_t k = 0; k < sizeof wholes / sizeof *wholes; k++)
         if (wholes[k].values || k == 0)
-            RITZ_TRY(ritz_h5_write(at, wholes[k].name, H5T_STD_I64LE, modes,
-                                   wholes[k].values));
-    RITZ_TRY(write_parts(at, ranking));
-    RITZ_TRY(ritz_h5_write(at, "system_value", H5T_IEEE_F64LE,
-                           ritz_h5_vector(ranking->num_system),
-                           ranking->system_value));
-done:
-    return status;
+            RITZ_CHECK(ritz_h5_write(at, wholes[k].name, H5T_STD_I64LE, modes,
+                                     wholes[k].values));
+    RITZ_CHECK(write_parts(at, ranking));
+    return ritz_h5_write(at, "system_value", H5T_IEEE_F64LE,
+                         ritz_h5_vector(ranking->num_system),
+                         ranking->system_value);
 }
 
 static ritz_status write_several(hid_t file, const ritz_rankings *all)
@@ -341,11 +320,8 @@ ritz_status ritz_container_write_ranking(const char *path,
                                          const ritz_ranking *ranking,
                                          const ritz_stamp *stamp)
 {
-    ritz_status status = RITZ_OK;
     ritz_ranking one = *ranking; /* borrowed */
     const ritz_rankings all = {.count = 1, .item = &one};
 
-    RITZ_TRY(ritz_container_write_rankings(path, &all, stamp));
-done:
-    return status;
+    return ritz_container_write_rankings(path, &all, stamp);
 }

@@ -83,32 +83,24 @@ done:
 
 static ritz_status write_invariants(hid_t group, const ritz_invariants *of)
 {
-    ritz_status status = RITZ_OK;
-
     if (!of->momentum.val)
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_write(group, "rigid", H5T_IEEE_F64LE, ritz_h5_table(6, 6),
-                           of->rigid));
-    RITZ_TRY(ritz_h5_write_dense(group, "momentum", &of->momentum));
-    RITZ_TRY(ritz_h5_write_dense(group, "position", &of->position));
-    RITZ_TRY(ritz_h5_write_dense(group, "product", &of->product));
-done:
-    return status;
+    RITZ_CHECK(ritz_h5_write(group, "rigid", H5T_IEEE_F64LE,
+                             ritz_h5_table(6, 6), of->rigid));
+    RITZ_CHECK(ritz_h5_write_dense(group, "momentum", &of->momentum));
+    RITZ_CHECK(ritz_h5_write_dense(group, "position", &of->position));
+    return ritz_h5_write_dense(group, "product", &of->product);
 }
 
 static ritz_status read_invariants(hid_t group, int64_t r, ritz_invariants *of)
 {
-    ritz_status status = RITZ_OK;
-
     if (!ritz_h5_has(group, "momentum"))
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_read_real(group, "rigid", ritz_h5_table(6, 6), false,
-                               of->rigid));
-    RITZ_TRY(ritz_h5_read_dense(group, "momentum", 6, r, &of->momentum));
-    RITZ_TRY(ritz_h5_read_dense(group, "position", 3, 3 * r, &of->position));
-    RITZ_TRY(ritz_h5_read_dense(group, "product", 3 * r, 3 * r, &of->product));
-done:
-    return status;
+    RITZ_CHECK(ritz_h5_read_real(group, "rigid", ritz_h5_table(6, 6), false,
+                                 of->rigid));
+    RITZ_CHECK(ritz_h5_read_dense(group, "momentum", 6, r, &of->momentum));
+    RITZ_CHECK(ritz_h5_read_dense(group, "position", 3, 3 * r, &of->position));
+    return ritz_h5_read_dense(group, "product", 3 * r, 3 * r, &of->product);
 }
 
 static ritz_status write_inertia(hid_t file, const ritz_reduced *reduced)
@@ -157,56 +149,50 @@ done:
 /* What is known of the full component: all of it, or only its size. */
 static ritz_status read_full(hid_t file, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_part_get_size(file, "num_dofs", 0, INT64_MAX, &reduced->num_dofs));
-    RITZ_TRY(ritz_part_read_dense(file, "T", reduced->num_dofs, reduced->K.ncol,
-                                  &reduced->T));
-    RITZ_TRY(ritz_part_read_grids(file, &reduced->grids));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_part_read_dense(file, "T", reduced->num_dofs,
+                                    reduced->K.ncol, &reduced->T));
+    RITZ_CHECK(ritz_part_read_grids(file, &reduced->grids));
+    RITZ_CHECK(
         ritz_part_read_elements(file, &reduced->grids, &reduced->elements));
     if (!ritz_h5_has(file, "dofs"))
         return RITZ_OK;
-    RITZ_TRY(ritz_part_read_dofs(file, &count, &reduced->dof));
-    RITZ_FAIL_IF(count != reduced->num_dofs, RITZ_ERR_FORMAT,
-                 "'dofs' names %" PRId64 " rows of %" PRId64, count,
-                 reduced->num_dofs);
-    RITZ_TRY(
-        ritz_part_read_recovery(file, count, reduced->dof, &reduced->recovery));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_read_dofs(file, &count, &reduced->dof));
+    RITZ_REFUSE_IF(count != reduced->num_dofs, RITZ_ERR_FORMAT,
+                   "'dofs' names %" PRId64 " rows of %" PRId64, count,
+                   reduced->num_dofs);
+    return ritz_part_read_recovery(file, count, reduced->dof,
+                                   &reduced->recovery);
 }
 
 static ritz_status read_all(hid_t file, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = 0;
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_h5_get_text(file, "units", sizeof reduced->units, reduced->units));
-    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof reduced->damping,
-                              reduced->damping));
-    RITZ_TRY(ritz_part_get_origin(file, &reduced->origin));
-    RITZ_TRY(ritz_h5_read_dense(file, "K", -1, -1, &reduced->K));
+    RITZ_CHECK(ritz_h5_get_text(file, "damping", sizeof reduced->damping,
+                                reduced->damping));
+    RITZ_CHECK(ritz_part_get_origin(file, &reduced->origin));
+    RITZ_CHECK(ritz_h5_read_dense(file, "K", -1, -1, &reduced->K));
     r = reduced->K.ncol;
-    RITZ_FAIL_IF(reduced->K.nrow != r, RITZ_ERR_FORMAT, "'K' is not square");
-    RITZ_TRY(ritz_h5_read_dense(file, "M", r, r, &reduced->M));
-    RITZ_TRY(ritz_part_read_dense(file, "D", r, r, &reduced->D));
-    RITZ_TRY(ritz_part_read_dense(file, "K4", r, r, &reduced->K4));
-    RITZ_TRY(ritz_part_read_dampers(file, r, &reduced->dampers));
-    RITZ_TRY(read_full(file, reduced));
-    RITZ_TRY(
+    RITZ_REFUSE_IF(reduced->K.nrow != r, RITZ_ERR_FORMAT, "'K' is not square");
+    RITZ_CHECK(ritz_h5_read_dense(file, "M", r, r, &reduced->M));
+    RITZ_CHECK(ritz_part_read_dense(file, "D", r, r, &reduced->D));
+    RITZ_CHECK(ritz_part_read_dense(file, "K4", r, r, &reduced->K4));
+    RITZ_CHECK(ritz_part_read_dampers(file, r, &reduced->dampers));
+    RITZ_CHECK(read_full(file, reduced));
+    RITZ_CHECK(
         ritz_part_read_columns(file, reduced->num_dofs, r, &reduced->columns));
-    RITZ_TRY(read_ports(file, reduced));
-    RITZ_TRY(ritz_part_read_io(file, r, &reduced->io));
-    RITZ_TRY(read_inertia(file, reduced));
-    RITZ_TRY(ritz_part_read_measures(file, "estimates", &reduced->estimates));
-    RITZ_TRY(ritz_part_read_measures(file, "errors", &reduced->errors));
-    RITZ_TRY(ritz_part_read_nested(file, r, &reduced->nested));
-done:
-    return status;
+    RITZ_CHECK(read_ports(file, reduced));
+    RITZ_CHECK(ritz_part_read_io(file, r, &reduced->io));
+    RITZ_CHECK(read_inertia(file, reduced));
+    RITZ_CHECK(ritz_part_read_measures(file, "estimates", &reduced->estimates));
+    RITZ_CHECK(ritz_part_read_measures(file, "errors", &reduced->errors));
+    return ritz_part_read_nested(file, r, &reduced->nested);
 }
 
 ritz_status ritz_container_read_reduced(const char *path, ritz_reduced *out)
@@ -227,31 +213,28 @@ done:
 
 static ritz_status write_all(hid_t file, const ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_h5_set_text(file, "damping", reduced->damping));
-    RITZ_TRY(ritz_part_set_origin(file, &reduced->origin));
-    RITZ_TRY(ritz_part_set_whole(file, "num_dofs", reduced->num_dofs));
-    RITZ_TRY(ritz_h5_write_dense(file, "K", &reduced->K));
-    RITZ_TRY(ritz_h5_write_dense(file, "M", &reduced->M));
-    RITZ_TRY(ritz_part_write_dense(file, "D", &reduced->D));
-    RITZ_TRY(ritz_part_write_dense(file, "K4", &reduced->K4));
-    RITZ_TRY(ritz_part_write_dampers(file, &reduced->dampers));
-    RITZ_TRY(ritz_part_write_dense(file, "T", &reduced->T));
-    RITZ_TRY(ritz_part_write_grids(file, &reduced->grids));
-    RITZ_TRY(ritz_part_write_elements(file, &reduced->elements));
+    RITZ_CHECK(ritz_h5_set_text(file, "damping", reduced->damping));
+    RITZ_CHECK(ritz_part_set_origin(file, &reduced->origin));
+    RITZ_CHECK(ritz_part_set_whole(file, "num_dofs", reduced->num_dofs));
+    RITZ_CHECK(ritz_h5_write_dense(file, "K", &reduced->K));
+    RITZ_CHECK(ritz_h5_write_dense(file, "M", &reduced->M));
+    RITZ_CHECK(ritz_part_write_dense(file, "D", &reduced->D));
+    RITZ_CHECK(ritz_part_write_dense(file, "K4", &reduced->K4));
+    RITZ_CHECK(ritz_part_write_dampers(file, &reduced->dampers));
+    RITZ_CHECK(ritz_part_write_dense(file, "T", &reduced->T));
+    RITZ_CHECK(ritz_part_write_grids(file, &reduced->grids));
+    RITZ_CHECK(ritz_part_write_elements(file, &reduced->elements));
     if (reduced->dof)
-        RITZ_TRY(ritz_part_write_dofs(file, reduced->num_dofs, reduced->dof));
-    RITZ_TRY(ritz_part_write_recovery(file, &reduced->recovery));
-    RITZ_TRY(ritz_part_write_columns(file, &reduced->columns));
-    RITZ_TRY(write_ports(file, reduced));
-    RITZ_TRY(ritz_part_write_io(file, &reduced->io));
-    RITZ_TRY(write_inertia(file, reduced));
-    RITZ_TRY(ritz_part_write_measures(file, "estimates", &reduced->estimates));
-    RITZ_TRY(ritz_part_write_measures(file, "errors", &reduced->errors));
-    RITZ_TRY(ritz_part_write_nested(file, &reduced->nested));
-done:
-    return status;
+        RITZ_CHECK(ritz_part_write_dofs(file, reduced->num_dofs, reduced->dof));
+    RITZ_CHECK(ritz_part_write_recovery(file, &reduced->recovery));
+    RITZ_CHECK(ritz_part_write_columns(file, &reduced->columns));
+    RITZ_CHECK(write_ports(file, reduced));
+    RITZ_CHECK(ritz_part_write_io(file, &reduced->io));
+    RITZ_CHECK(write_inertia(file, reduced));
+    RITZ_CHECK(
+        ritz_part_write_measures(file, "estimates", &reduced->estimates));
+    RITZ_CHECK(ritz_part_write_measures(file, "errors", &reduced->errors));
+    return ritz_part_write_nested(file, &reduced->nested);
 }
 
 ritz_status ritz_container_write_reduced(const char *path,

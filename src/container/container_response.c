@@ -87,42 +87,36 @@ done:
 
 static ritz_status write_singular(hid_t file, const ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
-
     if (response->num_singular == 0)
         return RITZ_OK;
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_h5_write(file, "singular_values", H5T_IEEE_F64LE,
                       ritz_h5_table(response->count, response->num_singular),
                       response->singular));
     if (response->singular_peak[1] > 0.0)
-        RITZ_TRY(ritz_part_set_real(file, "singular_peak", 2,
-                                    response->singular_peak));
-done:
-    return status;
+        RITZ_CHECK(ritz_part_set_real(file, "singular_peak", 2,
+                                      response->singular_peak));
+    return RITZ_OK;
 }
 
 /* An infinite one is that of a pole which nothing damps. */
 static ritz_status read_peak(hid_t file, ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
     double peak[2] = {0.0, 0.0};
 
     if (H5Aexists(file, "singular_peak") <= 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_get(file, "singular_peak", H5T_NATIVE_DOUBLE, 2, peak));
-    RITZ_FAIL_IF(!(peak[0] >= 0.0) || isinf(peak[0]) || !(peak[1] > 0.0),
-                 RITZ_ERR_FORMAT,
-                 "'singular_peak' is no frequency and no value above 0");
+    RITZ_CHECK(ritz_h5_get(file, "singular_peak", H5T_NATIVE_DOUBLE, 2, peak));
+    RITZ_REFUSE_IF(!(peak[0] >= 0.0) || isinf(peak[0]) || !(peak[1] > 0.0),
+                   RITZ_ERR_FORMAT,
+                   "'singular_peak' is no frequency and no value above 0");
     response->singular_peak[0] = peak[0];
     response->singular_peak[1] = peak[1];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_singular(hid_t file, ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape found = {0};
     int64_t most = response->num_outputs < response->num_inputs
                        ? response->num_outputs
@@ -130,77 +124,67 @@ static ritz_status read_singular(hid_t file, ritz_response *response)
 
     if (!ritz_h5_has(file, "singular_values"))
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_shape_of(file, "singular_values", 2, &found));
-    RITZ_FAIL_IF(found.dims[0] != (hsize_t)response->count ||
-                     found.dims[1] != (hsize_t)most,
-                 RITZ_ERR_FORMAT,
-                 "'singular_values' is not hertz x the fewer of outputs and "
-                 "inputs");
-    RITZ_NEW(response->singular, response->count * most);
-    RITZ_TRY(ritz_h5_read_real(file, "singular_values", found, false,
-                               response->singular));
+    RITZ_CHECK(ritz_h5_shape_of(file, "singular_values", 2, &found));
+    RITZ_REFUSE_IF(found.dims[0] != (hsize_t)response->count ||
+                       found.dims[1] != (hsize_t)most,
+                   RITZ_ERR_FORMAT,
+                   "'singular_values' is not hertz x the fewer of outputs and "
+                   "inputs");
+    RITZ_CHECK_NEW(response->singular, response->count * most);
+    RITZ_CHECK(ritz_h5_read_real(file, "singular_values", found, false,
+                                 response->singular));
     response->num_singular = most;
-    RITZ_TRY(read_peak(file, response));
-done:
-    return status;
+    return read_peak(file, response);
 }
 
 /* How to go between points, where they were chosen for it. */
 static ritz_status write_between(hid_t file, const ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
-
     if (!response->interpolation[0])
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_set_text(file, "interpolation", response->interpolation));
-    RITZ_TRY(ritz_h5_set(file, "tolerance", H5T_IEEE_F64LE, ritz_h5_scalar(),
-                         &response->tolerance));
-done:
-    return status;
+    RITZ_CHECK(
+        ritz_h5_set_text(file, "interpolation", response->interpolation));
+    return ritz_h5_set(file, "tolerance", H5T_IEEE_F64LE, ritz_h5_scalar(),
+                       &response->tolerance);
 }
 
 static ritz_status read_between(hid_t file, ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
     double tolerance = 0.0;
 
     if (H5Aexists(file, "interpolation") <= 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_get_text(file, "interpolation",
-                              sizeof response->interpolation,
-                              response->interpolation));
-    RITZ_TRY(ritz_h5_get(file, "tolerance", H5T_NATIVE_DOUBLE, 1, &tolerance));
-    RITZ_FAIL_IF(!(tolerance >= 0.0) || !(tolerance < 1.0), RITZ_ERR_FORMAT,
-                 "'tolerance' is %g, not between 0 and 1", tolerance);
+    RITZ_CHECK(ritz_h5_get_text(file, "interpolation",
+                                sizeof response->interpolation,
+                                response->interpolation));
+    RITZ_CHECK(
+        ritz_h5_get(file, "tolerance", H5T_NATIVE_DOUBLE, 1, &tolerance));
+    RITZ_REFUSE_IF(!(tolerance >= 0.0) || !(tolerance < 1.0), RITZ_ERR_FORMAT,
+                   "'tolerance' is %g, not between 0 and 1", tolerance);
     response->tolerance = tolerance;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_all(hid_t file, ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_get_members(file, members, response));
-    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof response->damping,
-                              response->damping));
-    RITZ_TRY(ritz_h5_count(file, "hertz", &response->count));
-    RITZ_NEW(response->hertz, response->count);
-    RITZ_TRY(ritz_h5_read_real(file, "hertz", ritz_h5_vector(response->count),
-                               false, response->hertz));
+    RITZ_CHECK(ritz_part_get_members(file, members, response));
+    RITZ_CHECK(ritz_h5_get_text(file, "damping", sizeof response->damping,
+                                response->damping));
+    RITZ_CHECK(ritz_h5_count(file, "hertz", &response->count));
+    RITZ_CHECK_NEW(response->hertz, response->count);
+    RITZ_CHECK(ritz_h5_read_real(file, "hertz", ritz_h5_vector(response->count),
+                                 false, response->hertz));
     for (int64_t k = 1; k < response->count; k++)
-        RITZ_FAIL_IF(response->hertz[k] < response->hertz[k - 1],
-                     RITZ_ERR_FORMAT, "'hertz' descends at value %" PRId64,
-                     k + 1);
-    RITZ_TRY(ritz_part_read_group_names(file, "inputs", &response->num_inputs,
-                                        &response->input));
-    RITZ_TRY(ritz_part_read_group_names(file, "outputs", &response->num_outputs,
-                                        &response->output));
-    RITZ_TRY(read_values(file, response));
-    RITZ_TRY(read_between(file, response));
-    RITZ_TRY(read_singular(file, response));
-done:
-    return status;
+        RITZ_REFUSE_IF(response->hertz[k] < response->hertz[k - 1],
+                       RITZ_ERR_FORMAT, "'hertz' descends at value %" PRId64,
+                       k + 1);
+    RITZ_CHECK(ritz_part_read_group_names(file, "inputs", &response->num_inputs,
+                                          &response->input));
+    RITZ_CHECK(ritz_part_read_group_names(
+        file, "outputs", &response->num_outputs, &response->output));
+    RITZ_CHECK(read_values(file, response));
+    RITZ_CHECK(read_between(file, response));
+    return read_singular(file, response);
 }
 
 ritz_status ritz_container_read_response(const char *path, ritz_response *out)

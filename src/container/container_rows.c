@@ -107,16 +107,13 @@ done:
 
 static ritz_status check_grids(const ritz_grids *grids)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 1; k < grids->count; k++)
-        RITZ_FAIL_IF(grids->id[k - 1] >= grids->id[k], RITZ_ERR_FORMAT,
-                     "'id' does not ascend at grid %" PRId64, grids->id[k]);
+        RITZ_REFUSE_IF(grids->id[k - 1] >= grids->id[k], RITZ_ERR_FORMAT,
+                       "'id' does not ascend at grid %" PRId64, grids->id[k]);
     for (int k = 0; k < 9; k++)
-        RITZ_FAIL_IF(fabs(grids->axes[k] - (k % 4 == 0 ? 1.0 : 0.0)) > 0.0,
-                     RITZ_ERR_FORMAT, "frame 0 is not the basic frame");
-done:
-    return status;
+        RITZ_REFUSE_IF(fabs(grids->axes[k] - (k % 4 == 0 ? 1.0 : 0.0)) > 0.0,
+                       RITZ_ERR_FORMAT, "frame 0 is not the basic frame");
+    return RITZ_OK;
 }
 
 ritz_status ritz_part_read_grids(hid_t at, ritz_grids *out)
@@ -158,24 +155,15 @@ done:
 ritz_status ritz_part_set_place(hid_t at, const double origin[static 3],
                                 const double axes[static 9])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_set_real(at, "origin", 3, origin));
-    RITZ_TRY(
-        ritz_h5_set(at, "axes", H5T_IEEE_F64LE, ritz_h5_table(3, 3), axes));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_set_real(at, "origin", 3, origin));
+    return ritz_h5_set(at, "axes", H5T_IEEE_F64LE, ritz_h5_table(3, 3), axes);
 }
 
 ritz_status ritz_part_get_place(hid_t at, double origin[static 3],
                                 double axes[static 9])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_get_real(at, "origin", false, 3, origin));
-    RITZ_TRY(ritz_part_get_real(at, "axes", false, 9, axes));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_get_real(at, "origin", false, 3, origin));
+    return ritz_part_get_real(at, "axes", false, 9, axes);
 }
 
 ritz_status ritz_part_write_columns(hid_t at, const ritz_columns *columns)

@@ -68,43 +68,37 @@ done:
 static ritz_status read_table(hid_t file, const char *name, int64_t rows,
                               int64_t columns, double **out)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape found = {0};
 
-    RITZ_TRY(ritz_h5_shape_of(file, name, 2, &found));
-    RITZ_FAIL_IF(found.dims[0] != (hsize_t)rows ||
-                     found.dims[1] != (hsize_t)columns,
-                 RITZ_ERR_FORMAT, "'%s' does not fit times and names", name);
-    RITZ_NEW(*out, rows * columns);
-    RITZ_TRY(ritz_h5_read_real(file, name, found, false, *out));
-done:
-    return status;
+    RITZ_CHECK(ritz_h5_shape_of(file, name, 2, &found));
+    RITZ_REFUSE_IF(found.dims[0] != (hsize_t)rows ||
+                       found.dims[1] != (hsize_t)columns,
+                   RITZ_ERR_FORMAT, "'%s' does not fit times and names", name);
+    RITZ_CHECK_NEW(*out, rows * columns);
+    return ritz_h5_read_real(file, name, found, false, *out);
 }
 
 static ritz_status read_all(hid_t file, ritz_simulation *s)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_get_members(file, members, s));
-    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof s->damping, s->damping));
-    RITZ_TRY(ritz_part_get_real(file, "step", false, 1, &s->step));
-    RITZ_TRY(ritz_part_get_size(file, "order", 0, INT64_MAX, &s->order));
-    RITZ_TRY(ritz_h5_count(file, "seconds", &s->count));
-    RITZ_NEW(s->seconds, s->count);
-    RITZ_TRY(ritz_h5_read_real(file, "seconds", ritz_h5_vector(s->count), false,
-                               s->seconds));
+    RITZ_CHECK(ritz_part_get_members(file, members, s));
+    RITZ_CHECK(
+        ritz_h5_get_text(file, "damping", sizeof s->damping, s->damping));
+    RITZ_CHECK(ritz_part_get_real(file, "step", false, 1, &s->step));
+    RITZ_CHECK(ritz_part_get_size(file, "order", 0, INT64_MAX, &s->order));
+    RITZ_CHECK(ritz_h5_count(file, "seconds", &s->count));
+    RITZ_CHECK_NEW(s->seconds, s->count);
+    RITZ_CHECK(ritz_h5_read_real(file, "seconds", ritz_h5_vector(s->count),
+                                 false, s->seconds));
     for (int64_t k = 1; k < s->count; k++)
-        RITZ_FAIL_IF(s->seconds[k] <= s->seconds[k - 1], RITZ_ERR_FORMAT,
-                     "'seconds' does not ascend at value %" PRId64, k + 1);
-    RITZ_TRY(
+        RITZ_REFUSE_IF(s->seconds[k] <= s->seconds[k - 1], RITZ_ERR_FORMAT,
+                       "'seconds' does not ascend at value %" PRId64, k + 1);
+    RITZ_CHECK(
         ritz_part_read_group_names(file, "inputs", &s->num_inputs, &s->input));
-    RITZ_TRY(ritz_part_read_group_names(file, "outputs", &s->num_outputs,
-                                        &s->output));
-    RITZ_TRY(read_table(file, "u", s->count, s->num_inputs, &s->u));
-    RITZ_TRY(read_table(file, "y", s->count, s->num_outputs, &s->y));
-    RITZ_TRY(read_energies(file, s));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_read_group_names(file, "outputs", &s->num_outputs,
+                                          &s->output));
+    RITZ_CHECK(read_table(file, "u", s->count, s->num_inputs, &s->u));
+    RITZ_CHECK(read_table(file, "y", s->count, s->num_outputs, &s->y));
+    return read_energies(file, s);
 }
 
 ritz_status ritz_container_read_simulation(const char *path,

@@ -53,41 +53,34 @@ done:
 
 static ritz_status read_matrices(hid_t file, ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = 0;
 
-    RITZ_TRY(ritz_h5_read_dense(file, "A", -1, -1, &model->A));
+    RITZ_CHECK(ritz_h5_read_dense(file, "A", -1, -1, &model->A));
     n = model->A.ncol;
-    RITZ_FAIL_IF(model->A.nrow != n, RITZ_ERR_FORMAT, "'A' is not square");
-    RITZ_TRY(ritz_h5_read_dense(file, "B", n, model->num_inputs, &model->B));
-    RITZ_TRY(ritz_h5_read_dense(file, "C", model->num_outputs, n, &model->C));
-    RITZ_TRY(ritz_h5_read_dense(file, "D", model->num_outputs,
-                                model->num_inputs, &model->D));
-    RITZ_TRY(ritz_part_read_dense(file, "E", n, n, &model->E));
-done:
-    return status;
+    RITZ_REFUSE_IF(model->A.nrow != n, RITZ_ERR_FORMAT, "'A' is not square");
+    RITZ_CHECK(ritz_h5_read_dense(file, "B", n, model->num_inputs, &model->B));
+    RITZ_CHECK(ritz_h5_read_dense(file, "C", model->num_outputs, n, &model->C));
+    RITZ_CHECK(ritz_h5_read_dense(file, "D", model->num_outputs,
+                                  model->num_inputs, &model->D));
+    return ritz_part_read_dense(file, "E", n, n, &model->E);
 }
 
 static ritz_status read_all(hid_t file, ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_h5_get_text(file, "units", sizeof model->units, model->units));
-    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof model->damping,
-                              model->damping));
-    RITZ_TRY(ritz_part_get_origin(file, &model->origin));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_h5_get_text(file, "damping", sizeof model->damping,
+                                model->damping));
+    RITZ_CHECK(ritz_part_get_origin(file, &model->origin));
+    RITZ_CHECK(
         read_group(file, "inputs", &model->num_inputs, &model->input, NULL));
-    RITZ_TRY(read_group(file, "outputs", &model->num_outputs, &model->output,
-                        &model->limit));
-    RITZ_TRY(read_matrices(file, model));
-    RITZ_TRY(ritz_part_read_columns(file, 0, model->A.ncol, &model->columns));
-    RITZ_TRY(ritz_part_read_measures(file, "estimates", &model->estimates));
-    RITZ_TRY(ritz_part_read_measures(file, "errors", &model->errors));
-    RITZ_TRY(ritz_state_space_check(model));
-done:
-    return status;
+    RITZ_CHECK(read_group(file, "outputs", &model->num_outputs, &model->output,
+                          &model->limit));
+    RITZ_CHECK(read_matrices(file, model));
+    RITZ_CHECK(ritz_part_read_columns(file, 0, model->A.ncol, &model->columns));
+    RITZ_CHECK(ritz_part_read_measures(file, "estimates", &model->estimates));
+    RITZ_CHECK(ritz_part_read_measures(file, "errors", &model->errors));
+    return ritz_state_space_check(model);
 }
 
 ritz_status ritz_container_read_state_space(const char *path,
@@ -109,24 +102,20 @@ done:
 
 static ritz_status write_all(hid_t file, const ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_h5_set_text(file, "damping", model->damping));
-    RITZ_TRY(ritz_part_set_origin(file, &model->origin));
-    RITZ_TRY(ritz_h5_write_dense(file, "A", &model->A));
-    RITZ_TRY(ritz_h5_write_dense(file, "B", &model->B));
-    RITZ_TRY(ritz_h5_write_dense(file, "C", &model->C));
-    RITZ_TRY(ritz_h5_write_dense(file, "D", &model->D));
-    RITZ_TRY(ritz_part_write_dense(file, "E", &model->E));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_h5_set_text(file, "damping", model->damping));
+    RITZ_CHECK(ritz_part_set_origin(file, &model->origin));
+    RITZ_CHECK(ritz_h5_write_dense(file, "A", &model->A));
+    RITZ_CHECK(ritz_h5_write_dense(file, "B", &model->B));
+    RITZ_CHECK(ritz_h5_write_dense(file, "C", &model->C));
+    RITZ_CHECK(ritz_h5_write_dense(file, "D", &model->D));
+    RITZ_CHECK(ritz_part_write_dense(file, "E", &model->E));
+    RITZ_CHECK(
         write_group(file, "inputs", model->num_inputs, model->input, NULL));
-    RITZ_TRY(write_group(file, "outputs", model->num_outputs, model->output,
-                         model->limit));
-    RITZ_TRY(ritz_part_write_columns(file, &model->columns));
-    RITZ_TRY(ritz_part_write_measures(file, "estimates", &model->estimates));
-    RITZ_TRY(ritz_part_write_measures(file, "errors", &model->errors));
-done:
-    return status;
+    RITZ_CHECK(write_group(file, "outputs", model->num_outputs, model->output,
+                           model->limit));
+    RITZ_CHECK(ritz_part_write_columns(file, &model->columns));
+    RITZ_CHECK(ritz_part_write_measures(file, "estimates", &model->estimates));
+    return ritz_part_write_measures(file, "errors", &model->errors);
 }
 
 ritz_status ritz_container_write_state_space(const char *path,

@@ -122,84 +122,68 @@ done:
 /* What rigid motions of the whole carry; absent where a body's is not known. */
 static ritz_status write_mass(hid_t at, const ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-
     if (!c->momentum.val)
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_write_dense(at, "momentum", &c->momentum));
-    RITZ_TRY(ritz_h5_write(at, "rigid", H5T_IEEE_F64LE, ritz_h5_table(6, 6),
-                           c->rigid));
-done:
-    return status;
+    RITZ_CHECK(ritz_h5_write_dense(at, "momentum", &c->momentum));
+    return ritz_h5_write(at, "rigid", H5T_IEEE_F64LE, ritz_h5_table(6, 6),
+                         c->rigid);
 }
 
 static ritz_status read_mass(hid_t at, ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-
     if (!ritz_h5_has(at, "momentum"))
         return RITZ_OK;
-    RITZ_TRY(ritz_h5_read_dense(at, "momentum", 6, c->K.ncol, &c->momentum));
-    RITZ_TRY(
-        ritz_h5_read_real(at, "rigid", ritz_h5_table(6, 6), false, c->rigid));
-done:
-    return status;
+    RITZ_CHECK(ritz_h5_read_dense(at, "momentum", 6, c->K.ncol, &c->momentum));
+    return ritz_h5_read_real(at, "rigid", ritz_h5_table(6, 6), false, c->rigid);
 }
 
 static ritz_status write_configuration(hid_t at, const ritz_system *system,
                                        const ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_part_set_members(at, configuration_members, c));
-    RITZ_TRY(ritz_part_set_whole(at, "rank", c->rank));
-    RITZ_TRY(ritz_part_set_whole(at, "num_rigid", c->num_rigid));
-    RITZ_TRY(ritz_h5_write(at, "settings", H5T_IEEE_F64LE,
-                           ritz_h5_vector(c->num_settings), c->setting));
-    RITZ_TRY(ritz_h5_write_dense(at, "K", &c->K));
-    RITZ_TRY(ritz_h5_write_dense(at, "M", &c->M));
-    RITZ_TRY(ritz_part_write_dense(at, "D", &c->D));
-    RITZ_TRY(ritz_part_write_dense(at, "K4", &c->K4));
-    RITZ_TRY(ritz_part_write_dampers(at, &c->dampers));
-    RITZ_TRY(ritz_h5_write(at, "lambda", H5T_IEEE_F64LE,
-                           ritz_h5_vector(c->K.ncol), c->lambda));
-    RITZ_TRY(ritz_part_write_io(at, &c->io));
-    RITZ_TRY(write_maps(at, system, c));
-    RITZ_TRY(write_mass(at, c));
-    RITZ_TRY(ritz_part_write_measures(at, "errors", &c->errors));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_set_members(at, configuration_members, c));
+    RITZ_CHECK(ritz_part_set_whole(at, "rank", c->rank));
+    RITZ_CHECK(ritz_part_set_whole(at, "num_rigid", c->num_rigid));
+    RITZ_CHECK(ritz_h5_write(at, "settings", H5T_IEEE_F64LE,
+                             ritz_h5_vector(c->num_settings), c->setting));
+    RITZ_CHECK(ritz_h5_write_dense(at, "K", &c->K));
+    RITZ_CHECK(ritz_h5_write_dense(at, "M", &c->M));
+    RITZ_CHECK(ritz_part_write_dense(at, "D", &c->D));
+    RITZ_CHECK(ritz_part_write_dense(at, "K4", &c->K4));
+    RITZ_CHECK(ritz_part_write_dampers(at, &c->dampers));
+    RITZ_CHECK(ritz_h5_write(at, "lambda", H5T_IEEE_F64LE,
+                             ritz_h5_vector(c->K.ncol), c->lambda));
+    RITZ_CHECK(ritz_part_write_io(at, &c->io));
+    RITZ_CHECK(write_maps(at, system, c));
+    RITZ_CHECK(write_mass(at, c));
+    return ritz_part_write_measures(at, "errors", &c->errors);
 }
 
 static ritz_status read_configuration(hid_t at, const ritz_system *system,
                                       ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
     int64_t e = 0;
 
-    RITZ_TRY(ritz_part_get_members(at, configuration_members, c));
-    RITZ_TRY(ritz_h5_read_dense(at, "K", -1, -1, &c->K));
+    RITZ_CHECK(ritz_part_get_members(at, configuration_members, c));
+    RITZ_CHECK(ritz_h5_read_dense(at, "K", -1, -1, &c->K));
     e = c->K.ncol;
-    RITZ_FAIL_IF(c->K.nrow != e, RITZ_ERR_FORMAT, "'K' is not square");
-    RITZ_TRY(ritz_h5_read_dense(at, "M", e, e, &c->M));
-    RITZ_TRY(ritz_part_read_dense(at, "D", e, e, &c->D));
-    RITZ_TRY(ritz_part_read_dense(at, "K4", e, e, &c->K4));
-    RITZ_TRY(ritz_part_read_dampers(at, e, &c->dampers));
-    RITZ_TRY(ritz_part_get_size(at, "rank", 0, INT64_MAX, &c->rank));
-    RITZ_TRY(ritz_part_get_size(at, "num_rigid", 0, e, &c->num_rigid));
-    RITZ_NEW(c->setting, system->num_sweeps);
+    RITZ_REFUSE_IF(c->K.nrow != e, RITZ_ERR_FORMAT, "'K' is not square");
+    RITZ_CHECK(ritz_h5_read_dense(at, "M", e, e, &c->M));
+    RITZ_CHECK(ritz_part_read_dense(at, "D", e, e, &c->D));
+    RITZ_CHECK(ritz_part_read_dense(at, "K4", e, e, &c->K4));
+    RITZ_CHECK(ritz_part_read_dampers(at, e, &c->dampers));
+    RITZ_CHECK(ritz_part_get_size(at, "rank", 0, INT64_MAX, &c->rank));
+    RITZ_CHECK(ritz_part_get_size(at, "num_rigid", 0, e, &c->num_rigid));
+    RITZ_CHECK_NEW(c->setting, system->num_sweeps);
     c->num_settings = system->num_sweeps;
-    RITZ_TRY(ritz_h5_read_real(at, "settings", ritz_h5_vector(c->num_settings),
-                               false, c->setting));
-    RITZ_NEW(c->lambda, e);
-    RITZ_TRY(
+    RITZ_CHECK(ritz_h5_read_real(
+        at, "settings", ritz_h5_vector(c->num_settings), false, c->setting));
+    RITZ_CHECK_NEW(c->lambda, e);
+    RITZ_CHECK(
         ritz_h5_read_real(at, "lambda", ritz_h5_vector(e), false, c->lambda));
-    RITZ_TRY(ritz_part_read_io(at, e, &c->io));
-    RITZ_TRY(read_maps(at, system, c));
-    RITZ_TRY(read_mass(at, c));
-    RITZ_TRY(ritz_part_read_measures(at, "errors", &c->errors));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_read_io(at, e, &c->io));
+    RITZ_CHECK(read_maps(at, system, c));
+    RITZ_CHECK(read_mass(at, c));
+    return ritz_part_read_measures(at, "errors", &c->errors);
 }
 
 static ritz_status write_configurations(hid_t file, const ritz_system *system)
@@ -261,22 +245,18 @@ done:
 
 static ritz_status read_all(hid_t file, ritz_system *system)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_h5_get_text(file, "units", sizeof system->units, system->units));
-    RITZ_TRY(ritz_part_get_members(file, members, system));
-    RITZ_TRY(ritz_h5_get_text(file, "damping", sizeof system->damping,
-                              system->damping));
-    RITZ_TRY(ritz_part_get_real(file, "band_hz", false, 2, system->band_hz));
-    RITZ_TRY(ritz_h5_count(file, "sweeps", &system->num_sweeps));
-    RITZ_NEW(system->sweep, system->num_sweeps);
-    RITZ_TRY(ritz_part_read_names(file, "sweeps", system->num_sweeps,
-                                  system->sweep));
-    RITZ_TRY(read_blocks(file, system));
-    RITZ_TRY(read_configurations(file, system));
-done:
-    return status;
+    RITZ_CHECK(ritz_part_get_members(file, members, system));
+    RITZ_CHECK(ritz_h5_get_text(file, "damping", sizeof system->damping,
+                                system->damping));
+    RITZ_CHECK(ritz_part_get_real(file, "band_hz", false, 2, system->band_hz));
+    RITZ_CHECK(ritz_h5_count(file, "sweeps", &system->num_sweeps));
+    RITZ_CHECK_NEW(system->sweep, system->num_sweeps);
+    RITZ_CHECK(ritz_part_read_names(file, "sweeps", system->num_sweeps,
+                                    system->sweep));
+    RITZ_CHECK(read_blocks(file, system));
+    return read_configurations(file, system);
 }
 
 ritz_status ritz_container_read_system(const char *path, ritz_system *out)

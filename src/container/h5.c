@@ -23,17 +23,16 @@ void ritz_h5_begin(void)
 
 ritz_status ritz_h5_open(const char *path, hid_t *out)
 {
-    ritz_status status = RITZ_OK;
     struct stat there;
 
     ritz_h5_begin();
-    RITZ_FAIL_IF(stat(path, &there) != 0 || access(path, R_OK) != 0,
-                 RITZ_ERR_FILE, "%s", strerror(errno));
-    RITZ_FAIL_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE, "not a regular file");
+    RITZ_REFUSE_IF(stat(path, &there) != 0 || access(path, R_OK) != 0,
+                   RITZ_ERR_FILE, "%s", strerror(errno));
+    RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
+                   "not a regular file");
     *out = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FORMAT, "not an HDF5 file, or damaged");
-done:
-    return status;
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FORMAT, "not an HDF5 file, or damaged");
+    return RITZ_OK;
 }
 
 /* Beyond 8, HDF5 would move attributes to a heap that is checked in part. */
@@ -87,14 +86,12 @@ bool ritz_h5_has(hid_t at, const char *name)
 
 ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out)
 {
-    ritz_status status = RITZ_OK;
     hid_t group = ritz_h5_has(at, name) ? H5Gopen2(at, name, H5P_DEFAULT) : -1;
 
-    RITZ_FAIL_IF(group < 0, RITZ_ERR_FORMAT, "no group '%s', or it is damaged",
-                 name);
+    RITZ_REFUSE_IF(group < 0, RITZ_ERR_FORMAT,
+                   "no group '%s', or it is damaged", name);
     *out = group;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What a walk over a group's links has found. */
@@ -210,25 +207,24 @@ void ritz_h5_close(hid_t id)
 ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
                           hid_t *memory)
 {
-    ritz_status status = RITZ_OK;
     H5T_class_t kind = H5Tget_class(type);
 
-    RITZ_FAIL_IF(H5Tget_class(on_file) != kind, RITZ_ERR_FORMAT,
-                 "'%s' holds values of another type", name);
+    RITZ_REFUSE_IF(H5Tget_class(on_file) != kind, RITZ_ERR_FORMAT,
+                   "'%s' holds values of another type", name);
     if (kind != H5T_STRING) {
-        RITZ_FAIL_IF(H5Tget_size(on_file) > H5Tget_size(type), RITZ_ERR_FORMAT,
-                     "'%s' holds values of more than %zu bytes", name,
-                     H5Tget_size(type));
+        RITZ_REFUSE_IF(H5Tget_size(on_file) > H5Tget_size(type),
+                       RITZ_ERR_FORMAT,
+                       "'%s' holds values of more than %zu bytes", name,
+                       H5Tget_size(type));
         *memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_FAIL_IF(H5Tis_variable_str(on_file) != 0 ||
-                     H5Tget_size(on_file) > H5Tget_size(type),
-                 RITZ_ERR_FORMAT, "'%s' is not text of fixed length, or long",
-                 name);
+    RITZ_REFUSE_IF(H5Tis_variable_str(on_file) != 0 ||
+                       H5Tget_size(on_file) > H5Tget_size(type),
+                   RITZ_ERR_FORMAT, "'%s' is not text of fixed length, or long",
+                   name);
     *memory = H5Tcopy(on_file); /* its character set is not converted */
     H5Tset_size(*memory, H5Tget_size(type));
     H5Tset_strpad(*memory, H5T_STR_NULLTERM);
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -39,31 +39,27 @@ static bool is_chunked(hid_t set)
 ritz_status ritz_h5_seal(hid_t set, const char *name, int64_t bytes,
                          const void *values)
 {
-    ritz_status status = RITZ_OK;
     int64_t checksum = 0;
 
     if (!is_chunked(set))
         return RITZ_OK;
     checksum = sum(bytes, values);
-    RITZ_TRY_IN(name, ritz_h5_set(set, "checksum", H5T_STD_I64LE,
-                                  ritz_h5_scalar(), &checksum));
-done:
-    return status;
+    RITZ_CHECK_IN(name, ritz_h5_set(set, "checksum", H5T_STD_I64LE,
+                                    ritz_h5_scalar(), &checksum));
+    return RITZ_OK;
 }
 
 /* What a script wrote has none. */
 ritz_status ritz_h5_verify(hid_t set, const char *name, int64_t bytes,
                            const void *values)
 {
-    ritz_status status = RITZ_OK;
     int64_t checksum = 0;
 
     if (H5Aexists(set, "checksum") <= 0)
         return RITZ_OK;
-    RITZ_TRY_IN(name,
-                ritz_h5_get(set, "checksum", H5T_STD_I64LE, 1, &checksum));
-    RITZ_FAIL_IF(checksum != sum(bytes, values), RITZ_ERR_FORMAT,
-                 "'%s' is damaged: its checksum does not fit", name);
-done:
-    return status;
+    RITZ_CHECK_IN(name,
+                  ritz_h5_get(set, "checksum", H5T_STD_I64LE, 1, &checksum));
+    RITZ_REFUSE_IF(checksum != sum(bytes, values), RITZ_ERR_FORMAT,
+                   "'%s' is damaged: its checksum does not fit", name);
+    return RITZ_OK;
 }

@@ -114,14 +114,11 @@ done:
 
 static ritz_status check_dense(const ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        RITZ_FAIL_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
-                     "entry (%" PRId64 ", %" PRId64 ") is not finite",
-                     k % A->nrow + 1, k / A->nrow + 1);
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
+                       "entry (%" PRId64 ", %" PRId64 ") is not finite",
+                       k % A->nrow + 1, k / A->nrow + 1);
+    return RITZ_OK;
 }
 
 ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
@@ -190,16 +187,14 @@ done:
 
 static ritz_status read_columns(hid_t group, int64_t nnz, ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape entries = ritz_h5_vector(nnz);
 
-    RITZ_TRY(ritz_h5_read(group, "data", H5T_IEEE_F64LE, entries, A->val));
-    RITZ_TRY(ritz_h5_read(group, "indices", H5T_STD_I64LE, entries, A->rowind));
-    RITZ_TRY(ritz_h5_read(group, "indptr", H5T_STD_I64LE,
-                          ritz_h5_vector(A->ncol + 1), A->colptr));
-    RITZ_TRY(ritz_sparse_check(A, nnz));
-done:
-    return status;
+    RITZ_CHECK(ritz_h5_read(group, "data", H5T_IEEE_F64LE, entries, A->val));
+    RITZ_CHECK(
+        ritz_h5_read(group, "indices", H5T_STD_I64LE, entries, A->rowind));
+    RITZ_CHECK(ritz_h5_read(group, "indptr", H5T_STD_I64LE,
+                            ritz_h5_vector(A->ncol + 1), A->colptr));
+    return ritz_sparse_check(A, nnz);
 }
 
 ritz_status ritz_h5_read_sparse(hid_t at, const char *name, ritz_sparse *out)

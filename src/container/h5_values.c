@@ -85,14 +85,13 @@ done:
 ritz_status ritz_h5_read_real(hid_t at, const char *name, ritz_h5_shape shape,
                               bool nan_allowed, double *values)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
 
-    RITZ_TRY(ritz_h5_read(at, name, H5T_IEEE_F64LE, shape, values));
+    RITZ_CHECK(ritz_h5_read(at, name, H5T_IEEE_F64LE, shape, values));
     for (int64_t k = 0; k < count; k++)
-        RITZ_FAIL_IF(!isfinite(values[k]) && !(nan_allowed && isnan(values[k])),
-                     RITZ_ERR_FORMAT, "value %" PRId64 " of '%s' is not finite",
-                     k + 1, name);
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(values[k]) &&
+                           !(nan_allowed && isnan(values[k])),
+                       RITZ_ERR_FORMAT,
+                       "value %" PRId64 " of '%s' is not finite", k + 1, name);
+    return RITZ_OK;
 }

@@ -22,20 +22,18 @@ ritz_status ritz_estimator_new(const ritz_component *full,
                                const ritz_estimate_request *request,
                                ritz_estimator **out)
 {
-    ritz_status status = RITZ_OK;
     const double *band = request->band_hz;
     ritz_estimator *made = NULL;
 
-    RITZ_FAIL_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
-                     (band[1] != 0.0 && band[0] >= band[1]),
-                 RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none", band[0],
-                 band[1]);
-    RITZ_NEW(made, 1);
+    RITZ_REFUSE_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
+                       (band[1] != 0.0 && band[0] >= band[1]),
+                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
+                   band[0], band[1]);
+    RITZ_CHECK_NEW(made, 1);
     made->component = full;
     made->request = *request;
     *out = made;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_estimator_free(ritz_estimator **estimator)
@@ -108,25 +106,21 @@ static ritz_status begin(ritz_estimator *estimator, const ritz_basis *basis,
                          const ritz_reduced *reduced, bool *response,
                          ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(basis->T.nrow != estimator->component->num_dofs ||
-                     basis->T.ncol != reduced->K.nrow,
-                 RITZ_ERR_ARGUMENT, "the basis is not that of the reduction");
-    RITZ_TRY(ritz_eigen_dense(&reduced->K, &reduced->M, &m->pairs));
+    RITZ_REFUSE_IF(basis->T.nrow != estimator->component->num_dofs ||
+                       basis->T.ncol != reduced->K.nrow,
+                   RITZ_ERR_ARGUMENT, "the basis is not that of the reduction");
+    RITZ_CHECK(ritz_eigen_dense(&reduced->K, &reduced->M, &m->pairs));
     m->T = &basis->T;
     choose_modes(estimator, basis, m);
     *response = *response &&
                 ritz_response_boundable(estimator, reduced, m->pairs.Phi.ncol);
     if (!(m->band_hz[1] > 0.0))
-        goto done;
-    RITZ_TRY(ritz_estimator_open(estimator,
-                                 -shift * ritz_eigen_lambda(m->band_hz[1])));
-    RITZ_TRY(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
-                              count_trial(m, *response), &m->trial));
-    RITZ_TRY(ritz_skip_rounded(estimator, m));
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(ritz_estimator_open(estimator,
+                                   -shift * ritz_eigen_lambda(m->band_hz[1])));
+    RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
+                                count_trial(m, *response), &m->trial));
+    return ritz_skip_rounded(estimator, m);
 }
 
 ritz_status ritz_estimator_measure(ritz_estimator *estimator,

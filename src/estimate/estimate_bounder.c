@@ -136,12 +136,11 @@ static double rigid_sin2(const ritz_bounder *r)
 /* sin^2 of each full mode against the trial modes of numbers up to N. */
 static ritz_status turn(ritz_bounder *r)
 {
-    ritz_status status = RITZ_OK;
     const ritz_lehmann *trial = r->trial;
     const ritz_enclosure *e = r->e;
     double sum = 0.0;
 
-    RITZ_NEW(r->sin2, e->count);
+    RITZ_CHECK_NEW(r->sin2, e->count);
     for (int64_t p = 0; p < e->count; p++)
         r->sin2[p] = 1.0;
     for (int64_t N = 1; N < e->count && N <= trial->count; N++) {
@@ -159,8 +158,7 @@ static ritz_status turn(ritz_bounder *r)
     }
     for (int64_t p = 0; p < r->num_rigid && p < e->count; p++)
         r->sin2[p] = fmin(r->sin2[p], rigid_sin2(r));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* How much faster w d grows with an eigenvalue than that does itself. */
@@ -198,19 +196,16 @@ double ritz_bounder_rounding(const ritz_bounder *r, double w,
 static ritz_status side_new(const ritz_bounder *r, int64_t count,
                             ritz_side **out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, count);
+    RITZ_CHECK_NEW(*out, count);
     for (int64_t k = 0; k < count; k++) {
-        RITZ_NEW((*out)[k].alpha, r->size);
-        RITZ_NEW((*out)[k].modal, r->trial->count);
-        RITZ_NEW((*out)[k].eta, r->trial->count);
-        RITZ_NEW((*out)[k].slope, r->size);
-        RITZ_NEW((*out)[k].first, r->trial->count);
-        RITZ_NEW((*out)[k].second, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].alpha, r->size);
+        RITZ_CHECK_NEW((*out)[k].modal, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].eta, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].slope, r->size);
+        RITZ_CHECK_NEW((*out)[k].first, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].second, r->trial->count);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void side_free(int64_t count, ritz_side *sides)
@@ -244,24 +239,22 @@ void ritz_bounder_free(ritz_bounder *r)
 
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = r->io;
     const ritz_dense *X = &r->trial->X;
 
     r->size = (r->coupled ? 3 : 1) * r->trial->count + io->num_inputs +
               KINDS * io->num_outputs;
-    RITZ_TRY(form(estimator, r));
-    RITZ_TRY(turn(r));
-    RITZ_TRY(ritz_dense_mul_tn(X, &io->B, &r->B));
-    RITZ_TRY(ritz_dense_mul(&io->C, X, &r->C[0]));
-    RITZ_TRY(ritz_dense_mul(&io->Cv, X, &r->C[1]));
-    RITZ_TRY(ritz_dense_mul(&io->Ca, X, &r->C[2]));
-    RITZ_TRY(side_new(r, io->num_inputs, &r->in));
-    RITZ_TRY(side_new(r, io->num_outputs, &r->out));
-    RITZ_NEW(r->GV, r->size);
-    RITZ_NEW(r->QV, r->size);
+    RITZ_CHECK(form(estimator, r));
+    RITZ_CHECK(turn(r));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &r->B));
+    RITZ_CHECK(ritz_dense_mul(&io->C, X, &r->C[0]));
+    RITZ_CHECK(ritz_dense_mul(&io->Cv, X, &r->C[1]));
+    RITZ_CHECK(ritz_dense_mul(&io->Ca, X, &r->C[2]));
+    RITZ_CHECK(side_new(r, io->num_inputs, &r->in));
+    RITZ_CHECK(side_new(r, io->num_outputs, &r->out));
+    RITZ_CHECK_NEW(r->GV, r->size);
+    RITZ_CHECK_NEW(r->QV, r->size);
     if (r->coupled)
-        RITZ_TRY(ritz_coupled_open(estimator->component, r));
-done:
-    return status;
+        RITZ_CHECK(ritz_coupled_open(estimator->component, r));
+    return RITZ_OK;
 }

@@ -27,20 +27,18 @@ static ritz_status form(const ritz_sparse *A, const ritz_dense *X,
 
 ritz_status ritz_coupled_open(const ritz_component *full, ritz_bounder *r)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = r->trial->count;
     int64_t sides = r->io->num_inputs + r->io->num_outputs;
     const double *rates = r->given;
 
-    RITZ_TRY(form(&full->D, &r->trial->X, &r->D));
-    RITZ_TRY(form(&full->K4, &r->trial->X, &r->K4));
+    RITZ_CHECK(form(&full->D, &r->trial->X, &r->D));
+    RITZ_CHECK(form(&full->K4, &r->trial->X, &r->K4));
     for (int64_t j = r->num_rigid; j < m; j++)
         ritz_dense_col(&r->D, j)[j] += rates[j] - r->matrices[j];
-    RITZ_NEW(r->Z, m * m);
-    RITZ_NEW(r->answers, m * sides);
-    RITZ_NEW(r->pivot, m);
-done:
-    return status;
+    RITZ_CHECK_NEW(r->Z, m * m);
+    RITZ_CHECK_NEW(r->answers, m * sides);
+    RITZ_CHECK_NEW(r->pivot, m);
+    return RITZ_OK;
 }
 
 /* eta of one side, and alpha of what it leaves. */

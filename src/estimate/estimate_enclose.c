@@ -204,22 +204,20 @@ static void settle(const ritz_estimator *estimator, const ritz_lehmann *trial,
 static ritz_status add_trial(const ritz_estimator *estimator,
                              const ritz_lehmann *trial, ritz_enclosure *e)
 {
-    ritz_status status = RITZ_OK;
     const ritz_counted *counted = estimator->count;
 
-    RITZ_TRY(improve(trial, e));
+    RITZ_CHECK(improve(trial, e));
     for (int64_t s = 0; s < estimator->num_counts; s++) {
         int64_t below = 0;
 
         while (below < trial->count && trial->theta[below] < counted[s].rho)
             below++;
         if (below > 0)
-            RITZ_TRY(enclose(trial, &counted[s], false, e));
+            RITZ_CHECK(enclose(trial, &counted[s], false, e));
         if (below < trial->count && counted[s].below > below)
-            RITZ_TRY(enclose(trial, &counted[s], true, e));
+            RITZ_CHECK(enclose(trial, &counted[s], true, e));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Some kappa is within eps / t of 1 / t, eps = |R|_(A^-1) / |x|_A. */

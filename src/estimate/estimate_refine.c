@@ -69,19 +69,16 @@ done:
 /* One more far above the band: the further, the less the rest answers. */
 static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     double rho = ritz_propose_above(estimator, &m->trial,
                                     ritz_eigen_lambda(m->band_hz[1]));
     bool end = isnan(rho) || estimator->num_counts == RITZ_MOST_COUNTS;
 
     if (end)
         return RITZ_OK;
-    RITZ_TRY(count_at(estimator, rho, &end));
+    RITZ_CHECK(count_at(estimator, rho, &end));
     ritz_enclosure_free(&m->enclosure);
-    RITZ_TRY(
-        ritz_enclosure_new(estimator, &m->trial, &m->polished, &m->enclosure));
-done:
-    return status;
+    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
+                              &m->enclosure);
 }
 
 /* Where to count modes of the band: at its end, or in a gap behind. */
@@ -101,7 +98,6 @@ static double end_of_band(const ritz_measuring *m, int64_t gap)
  */
 static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     double at = 0.0;
     bool end = false;
 
@@ -109,9 +105,8 @@ static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
                           ritz_missing_modes(estimator, m, &at) != 0 && !end &&
                           estimator->num_counts < RITZ_MOST_COUNTS;
          gap++)
-        RITZ_TRY(count_at(estimator, end_of_band(m, gap), &end));
-done:
-    return status;
+        RITZ_CHECK(count_at(estimator, end_of_band(m, gap), &end));
+    return RITZ_OK;
 }
 
 static ritz_status enclose(const ritz_estimator *estimator, ritz_measuring *m)
@@ -124,70 +119,64 @@ static ritz_status enclose(const ritz_estimator *estimator, ritz_measuring *m)
 /* Which full modes are in the band is told by a count at its end. */
 static ritz_status count_ends(ritz_estimator *estimator, ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     double end = ritz_eigen_lambda(m->band_hz[1]);
     bool none = false;
 
     if ((!m->matched.known || m->matched.astride) &&
         estimator->num_counts < RITZ_MOST_COUNTS)
-        RITZ_TRY(count_at(estimator, end * (1.0 + behind), &none));
+        RITZ_CHECK(count_at(estimator, end * (1.0 + behind), &none));
     if (m->matched.slow && estimator->num_counts < RITZ_MOST_COUNTS)
-        RITZ_TRY(count_at(estimator, slow * end, &none));
-    RITZ_TRY(enclose(estimator, m));
-    RITZ_TRY(ritz_measuring_judge(estimator, m, &m->matched));
+        RITZ_CHECK(count_at(estimator, slow * end, &none));
+    RITZ_CHECK(enclose(estimator, m));
+    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
     if (m->matched.full > m->reach)
         m->reach = m->matched.full;
     if (m->reach > m->trial.count)
         m->reach = m->trial.count;
     if (m->reach > m->last) {
-        RITZ_TRY(refine(estimator, m));
-        RITZ_TRY(ritz_measuring_judge(estimator, m, &m->matched));
+        RITZ_CHECK(refine(estimator, m));
+        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* One more inverse iteration, of what there is. */
 static ritz_status iterate(ritz_estimator *estimator, ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     ritz_lehmann next = {0};
 
-    RITZ_TRY(ritz_lehmann_polish(
+    RITZ_CHECK(ritz_lehmann_polish(
         estimator, m->polished.X.val ? &m->polished : &m->trial, &next));
     ritz_lehmann_free(&m->polished);
     m->polished = next;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_measuring_refine(ritz_estimator *estimator, bool response,
                                   ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     int iterations = 0, counts = 0;
 
     m->reach = m->last;
-    RITZ_TRY(refine(estimator, m));
+    RITZ_CHECK(refine(estimator, m));
     if (response)
-        RITZ_TRY(count_above(estimator, m));
-    RITZ_TRY(count_band(estimator, m));
-    RITZ_TRY(enclose(estimator, m));
-    RITZ_TRY(ritz_measuring_judge(estimator, m, &m->matched));
-    RITZ_TRY(count_ends(estimator, m));
+        RITZ_CHECK(count_above(estimator, m));
+    RITZ_CHECK(count_band(estimator, m));
+    RITZ_CHECK(enclose(estimator, m));
+    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+    RITZ_CHECK(count_ends(estimator, m));
     while (m->matched.open || m->matched.unsettled) {
         bool none = false;
 
         if (!isnan(m->matched.rho) && counts++ < MOST_BESIDE &&
             estimator->num_counts < RITZ_MOST_COUNTS)
-            RITZ_TRY(count_at(estimator, m->matched.rho, &none));
+            RITZ_CHECK(count_at(estimator, m->matched.rho, &none));
         else if (iterations++ < ITERATIONS)
-            RITZ_TRY(iterate(estimator, m));
+            RITZ_CHECK(iterate(estimator, m));
         else
             break;
-        RITZ_TRY(enclose(estimator, m));
-        RITZ_TRY(ritz_measuring_judge(estimator, m, &m->matched));
+        RITZ_CHECK(enclose(estimator, m));
+        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

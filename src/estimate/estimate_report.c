@@ -43,7 +43,6 @@ static double least_of(const ritz_measuring *m, int64_t k)
 ritz_status ritz_report_least(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     double band = ritz_eigen_lambda(m->band_hz[1]);
     double most = 0.0;
     char where[RITZ_NAME_SIZE] = "";
@@ -61,10 +60,9 @@ ritz_status ritz_report_least(const ritz_estimator *estimator,
                        ritz_eigen_hertz(theta));
     }
     if (most > 0.0)
-        RITZ_TRY(ritz_measures_add(out, "frequency-relative-least", most,
-                                   nan(""), where));
-done:
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, "frequency-relative-least", most,
+                                     nan(""), where));
+    return RITZ_OK;
 }
 
 /* The same claim of the mode of its own number, if anything is known of it, and
@@ -87,7 +85,6 @@ static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
 static ritz_status list_modes(const ritz_estimator *estimator,
                               const ritz_measuring *m, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
     double at = 0.0;
     /* where none is missing all are the full model's by their numbers */
@@ -105,10 +102,9 @@ static ritz_status list_modes(const ritz_estimator *estimator,
             claim = own(m, k, claim);
         (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
         say_where(&claim, k, theta, where);
-        RITZ_TRY(ritz_measures_add(out, name, claim.bound, nan(""), where));
+        RITZ_CHECK(ritz_measures_add(out, name, claim.bound, nan(""), where));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Of a pair: "mode 7, 3.41 Hz, full mode 8". */

@@ -159,15 +159,12 @@ done:
 /* E = A^-1 R and G = R'E. */
 static ritz_status answer(ritz_estimator *estimator, ritz_lehmann *trial)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(&trial->R, &trial->E));
+    RITZ_CHECK(ritz_dense_copy(&trial->R, &trial->E));
     if (trial->count > 0)
-        RITZ_TRY(ritz_factor_solve(estimator->A, &trial->E));
-    RITZ_TRY(ritz_dense_mul_tn(&trial->R, &trial->E, &trial->G));
+        RITZ_CHECK(ritz_factor_solve(estimator->A, &trial->E));
+    RITZ_CHECK(ritz_dense_mul_tn(&trial->R, &trial->E, &trial->G));
     ritz_dense_symmetrise(&trial->G);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,

@@ -15,18 +15,16 @@ bool ritz_fit_was_made(const ritz_fit_candidate *c)
 
 ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
     ritz_fit_candidate *more = NULL;
 
-    RITZ_NEW(more, fit->count + 1);
+    RITZ_CHECK_NEW(more, fit->count + 1);
     if (fit->count > 0)
         memcpy(more, fit->candidate, (size_t)fit->count * sizeof *more);
     free(fit->candidate);
     fit->candidate = more;
     more[fit->count++] = *candidate;
     *candidate = (ritz_fit_candidate){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_same(const ritz_fit_candidate *c, const ritz_method *method,

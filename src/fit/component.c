@@ -81,17 +81,14 @@ ritz_status ritz_fit_make(const ritz_fitter *fitter,
                           const ritz_fit_candidate *candidate,
                           ritz_basis *basis, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     ritz_request request = RITZ_REQUEST_NONE;
 
     request.component = fitter->component;
     request.modes = candidate->modes[0];
     request.choice = ritz_fit_choose(fitter, candidate->method);
     request.attached = fitter->attached; /* borrowed */
-    RITZ_TRY(ritz_basis_make(candidate->method, &request, basis));
-    RITZ_TRY(ritz_reduce(fitter->component, basis, reduced));
-done:
-    return status;
+    RITZ_CHECK(ritz_basis_make(candidate->method, &request, basis));
+    return ritz_reduce(fitter->component, basis, reduced);
 }
 
 static double seconds(clockid_t clock)
@@ -120,11 +117,10 @@ ritz_status ritz_fit_probe(const ritz_second_order *model,
                            const ritz_damping *damping,
                            ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe found = {0};
     char why[2 * RITZ_NAME_SIZE];
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_probe_second_order(model->K, model->M, model->D, damping, &found));
     if (found.verdict == RITZ_UNSTABLE) {
         ritz_probe_print(&found, why);
@@ -133,8 +129,7 @@ ritz_status ritz_fit_probe(const ritz_second_order *model,
         candidate->feasible = false;
         candidate->excess = HUGE_VAL;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_price(const ritz_fitter *fitter,
@@ -171,33 +166,31 @@ int ritz_fit_places(const ritz_reference *reference,
 ritz_status ritz_fit_measure(ritz_fitter *fitter, ritz_reduced *reduced,
                              ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
     const ritz_verify_request *limits = &fitter->request.tolerance;
     const ritz_reference *reference = fitter->place[0].reference;
     const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
                                      NULL, &reduced->io};
     int where = 0;
 
-    RITZ_TRY(ritz_reduced_install(reduced));
+    RITZ_CHECK(ritz_reduced_install(reduced));
     if (!candidate->held) {
-        RITZ_TRY(ritz_reference_measure(reference, reduced, limits, 0,
-                                        &candidate->errors));
+        RITZ_CHECK(ritz_reference_measure(reference, reduced, limits, 0,
+                                          &candidate->errors));
         ritz_fit_judge(limits, candidate);
         if (!candidate->feasible)
             return RITZ_OK;
     }
     where = ritz_fit_places(reference, &candidate->errors);
     ritz_measures_free(&candidate->errors);
-    RITZ_TRY(ritz_reference_measure(reference, reduced, limits, where,
-                                    &candidate->errors));
+    RITZ_CHECK(ritz_reference_measure(reference, reduced, limits, where,
+                                      &candidate->errors));
     ritz_fit_judge(limits, candidate);
     candidate->caught = !candidate->feasible;
     if (candidate->feasible)
-        RITZ_TRY(ritz_fit_probe(&model, &limits->damping, candidate));
+        RITZ_CHECK(ritz_fit_probe(&model, &limits->damping, candidate));
     if (candidate->feasible)
-        RITZ_TRY(ritz_fit_price(fitter, &model, candidate));
-done:
-    return status;
+        RITZ_CHECK(ritz_fit_price(fitter, &model, candidate));
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_try_component(ritz_fitter *fitter,

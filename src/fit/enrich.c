@@ -59,7 +59,6 @@ static int64_t count_to(const ritz_fitter *f, double hertz)
 /* The frequency to which a richer stage has modes. */
 static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
 {
-    ritz_status status = RITZ_OK;
     const double from = f->second.rich_hz;
     int64_t count = 0, more = 0;
 
@@ -71,15 +70,14 @@ static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
              more <= f->num_steps) ||
             *end != RITZ_FIT_END_NONE)
             break;
-        RITZ_TRY(ritz_fit_extend(f, end));
+        RITZ_CHECK(ritz_fit_extend(f, end));
     }
     if (count == f->num_steps)
         return RITZ_OK;
     *end = RITZ_FIT_END_NONE;
     more = more < f->num_steps ? more : f->num_steps;
     *hertz = fmax(farther * from, f->step_hz[more - 1] * (1.0 + 1e-9));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)

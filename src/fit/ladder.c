@@ -81,7 +81,6 @@ static bool in_reach(const ladder *l, int64_t at)
  */
 static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
 {
-    ritz_status status = RITZ_OK;
     int64_t refused = 0, at = 0, wall = l->top + 1, before = -1;
 
     *low = *high = l->last = l->earlier = -1;
@@ -89,7 +88,7 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
     for (int64_t t = 0; t < wall && *high < 0;) {
         const ritz_fit_candidate *c = NULL;
 
-        RITZ_TRY(rung(l, t, &at));
+        RITZ_CHECK(rung(l, t, &at));
         c = get(l, at);
         if (c->feasible) {
             *high = t;
@@ -120,7 +119,7 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
         t = *low + (wall - *low) / 2;
         if (wall > l->top) /* all that was tried was made */
             break;
-        RITZ_TRY(rung(l, t, &at));
+        RITZ_CHECK(rung(l, t, &at));
         if (get(l, at)->feasible)
             *high = t;
         else if (ritz_fit_was_made(get(l, at)))
@@ -128,8 +127,7 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
         else
             wall = t;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether one comes nearer than another of fewer modes; what bounds no longer
@@ -165,25 +163,23 @@ static int64_t top_of(const ladder *l)
 /* Up, as long as the ladder is by itself. */
 static ritz_status climb_first(ladder *l, int64_t *low, int64_t *high)
 {
-    ritz_status status = RITZ_OK;
     const ritz_method *method = l->fit->method[l->method];
     const bool composite = method == &ritz_fit_compare;
     ritz_fit_end whole = RITZ_FIT_END_NONE;
 
     if (l->fitter->scene && composite)
-        RITZ_TRY(ritz_fit_enrich(l->fitter, &whole));
+        RITZ_CHECK(ritz_fit_enrich(l->fitter, &whole));
     l->length =
         composite ? ritz_fit_rungs(l->fitter, method) : l->fitter->num_first;
     l->top = top_of(l);
-    RITZ_TRY(climb(l, low, high));
+    RITZ_CHECK(climb(l, low, high));
     if (l->end == RITZ_FIT_END_NONE && l->top == l->length)
         l->end = whole;
     if (l->end == RITZ_FIT_END_NONE && l->fitter->component &&
         (method->uses & RITZ_USES_MODES) && l->top == l->fitter->largest)
         l->end = l->top < l->fitter->component->num_dofs ? RITZ_FIT_END_LARGEST
                                                          : RITZ_FIT_END_WHOLE;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether it is worth while to go on beyond the ladder's end. */
@@ -200,23 +196,20 @@ static bool goes_on(const ladder *l)
 /* Twice as long, of what is there or can be had. */
 static ritz_status lengthen(ladder *l)
 {
-    ritz_status status = RITZ_OK;
     const int64_t twice = 2 * l->length + BESIDE;
 
     if (l->fitter->num_steps < twice)
-        RITZ_TRY(ritz_fit_extend(l->fitter, &l->end));
+        RITZ_CHECK(ritz_fit_extend(l->fitter, &l->end));
     if (l->fitter->num_steps > l->length)
         l->end = RITZ_FIT_END_NONE;
     l->length = twice < l->fitter->num_steps ? twice : l->fitter->num_steps;
     l->top = top_of(l);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Up, on a ladder that is made longer while nothing is met and errors fall. */
 static ritz_status climb_on(ladder *l, int64_t *low, int64_t *high)
 {
-    ritz_status status = RITZ_OK;
     int64_t flat = 0;
 
     while (*high < 0 && goes_on(l)) {
@@ -227,34 +220,31 @@ static ritz_status climb_on(ladder *l, int64_t *low, int64_t *high)
             l->end = RITZ_FIT_END_FLAT;
             break;
         }
-        RITZ_TRY(lengthen(l));
+        RITZ_CHECK(lengthen(l));
         if (l->end == RITZ_FIT_END_NONE)
-            RITZ_TRY(climb(l, low, high));
+            RITZ_CHECK(climb(l, low, high));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Between, and then below. */
 static ritz_status descend(const ladder *l, int64_t low, int64_t high)
 {
-    ritz_status status = RITZ_OK;
     int64_t below = l->fitter->scene ? SCENE_BELOW : COMPONENT_BELOW;
     int64_t at = 0;
 
     while (high - low > 1) {
         int64_t t = low + (high - low) / 2;
 
-        RITZ_TRY(rung(l, t, &at));
+        RITZ_CHECK(rung(l, t, &at));
         *(get(l, at)->feasible ? &high : &low) = t;
     }
     for (int64_t t = high - 1; t >= 0 && t >= high - below; t--) {
-        RITZ_TRY(rung(l, t, &at));
+        RITZ_CHECK(rung(l, t, &at));
         if (get(l, at)->feasible)
             high = t;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

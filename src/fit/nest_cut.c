@@ -150,19 +150,17 @@ done:
 ritz_status ritz_fit_judge_cut(const ritz_fit_nesting *n, int64_t count,
                                const int64_t *column, ritz_fit_candidate *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reference *reference = n->f->place[0].reference;
     int where = ritz_fit_places(reference, &out->errors);
 
     if (!(where & RITZ_AT_OTHER_POLES)) { /* unless there is need of them */
-        RITZ_TRY(measure(n, count, column, 0, out));
+        RITZ_CHECK(measure(n, count, column, 0, out));
         where = ritz_fit_places(reference, &out->errors);
         ritz_measures_free(&out->errors);
     }
     if (out->refusal[0] == '\0')
-        RITZ_TRY(measure(n, count, column, where, out));
+        RITZ_CHECK(measure(n, count, column, where, out));
     if (out->refusal[0])
         ritz_measures_free(&out->errors);
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -71,7 +71,6 @@ done:
 static ritz_status note(const ritz_measures *errors, int64_t order,
                         ritz_reduced *body)
 {
-    ritz_status status = RITZ_OK;
     char name[RITZ_NAME_SIZE];
 
     for (int64_t j = 0; j < errors->count; j++) {
@@ -80,13 +79,12 @@ static ritz_status note(const ritz_measures *errors, int64_t order,
         (void)snprintf(name, sizeof name, "system-%.50s", m->name);
         if (!isfinite(m->value))
             continue;
-        RITZ_TRY(ritz_nested_note(body, order, name, m->value));
+        RITZ_CHECK(ritz_nested_note(body, order, name, m->value));
         if (order == body->K.ncol)
-            RITZ_TRY(ritz_measures_add(&body->errors, name, m->value, nan(""),
-                                       m->where)); /* no limit is its own */
+            RITZ_CHECK(ritz_measures_add(&body->errors, name, m->value, nan(""),
+                                         m->where)); /* no limit is its own */
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A row of the path that cuts this body alone, to so many columns. */

@@ -98,11 +98,9 @@ static ritz_status without(const ritz_fit_order *o, int64_t left, int64_t which,
 
 ritz_status ritz_fit_order_alone(ritz_fit_order *o)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = o->fixed; k < o->count && o->count > 1; k++) {
         ritz_monitor_step("columns alone", k, o->count);
-        RITZ_TRY(without(o, o->count, k, HUGE_VAL, &o->alone[o->column[k]]));
+        RITZ_CHECK(without(o, o->count, k, HUGE_VAL, &o->alone[o->column[k]]));
     }
     for (int64_t k = o->fixed + 1; k < o->count; k++)
         for (int64_t i = k; i > o->fixed; i--) {
@@ -113,14 +111,12 @@ ritz_status ritz_fit_order_alone(ritz_fit_order *o)
             o->column[i] = o->column[i - 1];
             o->column[i - 1] = here;
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Of the last few of those that are left, the one that goes to the end. */
 static ritz_status drop(ritz_fit_order *o, int64_t left)
 {
-    ritz_status status = RITZ_OK;
     double least = HUGE_VAL;
     int64_t worst = left - 1;
     int64_t here = 0;
@@ -128,7 +124,7 @@ static ritz_status drop(ritz_fit_order *o, int64_t left)
     for (int64_t t = 0; t < TRIED && left - 1 - t >= o->fixed; t++) {
         double excess = 0.0;
 
-        RITZ_TRY(without(o, left, left - 1 - t, least, &excess));
+        RITZ_CHECK(without(o, left, left - 1 - t, least, &excess));
         if (excess < least) {
             least = excess;
             worst = left - 1 - t;
@@ -138,21 +134,17 @@ static ritz_status drop(ritz_fit_order *o, int64_t left)
     memmove(o->column + worst, o->column + worst + 1,
             (size_t)(left - 1 - worst) * sizeof *o->column);
     o->column[left - 1] = here;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_order_drop(ritz_fit_order *o)
 {
-    ritz_status status = RITZ_OK;
-
     /* the one that matters least alone is the first to go */
     for (int64_t left = o->count - 1; left > o->fixed + 1; left--) {
         ritz_monitor_step("columns in order", o->count - left, o->count);
-        RITZ_TRY(drop(o, left));
+        RITZ_CHECK(drop(o, left));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_fit_order_free(ritz_fit_order *order)

@@ -201,10 +201,6 @@ done:
 
 ritz_status ritz_fit_bodies(ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(load_bodies(f));
-    RITZ_TRY(make_ladder(f));
-done:
-    return status;
+    RITZ_CHECK(load_bodies(f));
+    return make_ladder(f);
 }

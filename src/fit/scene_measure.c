@@ -14,7 +14,6 @@
 ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
                            ritz_measures *worst)
 {
-    ritz_status status = RITZ_OK;
     char where[RITZ_NAME_SIZE];
 
     for (int64_t k = 0; k < more->count; k++) {
@@ -25,15 +24,14 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
         (void)snprintf(where, sizeof where, "%.28s%s%.32s", at,
                        at[0] && m->where[0] ? ": " : "", m->where);
         if (!old) {
-            RITZ_TRY(
+            RITZ_CHECK(
                 ritz_measures_add(worst, m->name, m->value, m->limit, where));
         } else if (least ? m->value < old->value : m->value > old->value) {
             old->value = m->value;
             memcpy(old->where, where, sizeof where);
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether all bodies have their T. */
@@ -132,19 +130,18 @@ done:
 ritz_status ritz_fit_measure_scene(ritz_fitter *f, const ritz_stage *stage,
                                    ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
     bool bounds =
         !f->request.thorough && f->place[0].estimator && has_bases(stage);
     const int64_t first = f->hardest;
     double worst = 0.0;
     int where = 0;
 
-    RITZ_TRY(look_at(f, stage, &f->place[first], 0, bounds, candidate));
+    RITZ_CHECK(look_at(f, stage, &f->place[first], 0, bounds, candidate));
     worst = candidate->excess;
     for (int64_t k = 0; k < f->num_places && !candidate->screened; k++) {
         if (!f->place[k].listed || k == first)
             continue;
-        RITZ_TRY(look_at(f, stage, &f->place[k], 0, false, candidate));
+        RITZ_CHECK(look_at(f, stage, &f->place[k], 0, false, candidate));
         if (candidate->excess > worst)
             f->hardest = k;
         worst = candidate->excess;
@@ -154,10 +151,9 @@ ritz_status ritz_fit_measure_scene(ritz_fitter *f, const ritz_stage *stage,
     where = ritz_fit_places(f->place[0].reference, &candidate->errors);
     ritz_measures_free(&candidate->errors);
     for (int64_t k = 0; k < f->num_places && candidate->refusal[0] == '\0'; k++)
-        RITZ_TRY(look_at(f, stage, &f->place[k], where, false, candidate));
+        RITZ_CHECK(look_at(f, stage, &f->place[k], where, false, candidate));
     candidate->caught = !candidate->feasible && candidate->refusal[0] == '\0';
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What was said of a candidate while it was sought was of one place. Its errors

@@ -26,16 +26,15 @@ static const double rich_most = 32.0;
 /* Listed settings, and random ones between a listed one and the next. */
 static ritz_status make_places(ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = f->scene;
     const int64_t h = scene->num_sweeps;
     const int64_t listed = scene->num_configurations;
     int64_t between = listed > 1 ? f->request.num_between : 0;
     uint64_t seed = f->request.seed;
 
-    RITZ_FAIL_IF(listed < 1, RITZ_ERR_ARGUMENT,
-                 "the scene has no configuration");
-    RITZ_NEW(f->place, listed + between);
+    RITZ_REFUSE_IF(listed < 1, RITZ_ERR_ARGUMENT,
+                   "the scene has no configuration");
+    RITZ_CHECK_NEW(f->place, listed + between);
     for (int64_t k = 0; k < listed + between; k++) {
         ritz_fit_place *place = &f->place[f->num_places++];
         double at = (double)(listed - 1) * ritz_random_next(&seed);
@@ -43,15 +42,14 @@ static ritz_status make_places(ritz_fitter *f)
         const double *a = scene->setting + from * h;
 
         place->listed = k < listed;
-        RITZ_NEW(place->setting, h);
+        RITZ_CHECK_NEW(place->setting, h);
         for (int64_t j = 0; j < h; j++)
             place->setting[j] =
                 place->listed ? a[j]
                               : a[j] + (at - (double)from) * (a[h + j] - a[j]);
         (void)snprintf(place->at, sizeof place->at, "as joined");
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "clock=60,cone=0" of each place. */
@@ -178,38 +176,34 @@ done:
 
 static ritz_status full_systems(ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < f->num_places; k++) {
         ritz_fit_place *place = &f->place[k];
 
         ritz_monitor_step("full system", k, f->num_places);
-        RITZ_TRY_IN(place->at,
-                    ritz_assemble_masters(f->scene, place->setting,
-                                          &place->full, &place->master));
-        RITZ_TRY_IN(place->at, ritz_component_install(&place->full));
+        RITZ_CHECK_IN(place->at,
+                      ritz_assemble_masters(f->scene, place->setting,
+                                            &place->full, &place->master));
+        RITZ_CHECK_IN(place->at, ritz_component_install(&place->full));
         if (place->listed)
-            RITZ_TRY(ritz_fit_estimator(f, &place->full, place));
+            RITZ_CHECK(ritz_fit_estimator(f, &place->full, place));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status refer(ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
     int64_t dofs = 0;
 
     for (int64_t k = 0; k < f->num_bodies; k++)
         dofs += f->model[k].num_dofs;
     f->rich = f->rich || dofs > f->request.most_full;
-    RITZ_TRY(f->rich ? rich_systems(f) : full_systems(f));
+    RITZ_CHECK(f->rich ? rich_systems(f) : full_systems(f));
     for (int64_t k = 0; k < f->num_places; k++) {
         ritz_monitor_step("modes of the full system", k, f->num_places);
-        RITZ_TRY_IN(f->place[k].at, ritz_fit_refer(&f->request, &f->place[k]));
+        RITZ_CHECK_IN(f->place[k].at,
+                      ritz_fit_refer(&f->request, &f->place[k]));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fitter_scene(const ritz_scene *scene,

@@ -52,18 +52,15 @@ done:
 /* Each listed configuration with its errors; they are the first places. */
 static ritz_status measure(ritz_fitter *f, ritz_system *system)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < system->num_configurations; k++) {
         ritz_configuration *at = &system->configuration[k];
 
         ritz_measures_free(&at->errors);
-        RITZ_TRY(ritz_reference_measure_at(
+        RITZ_CHECK(ritz_reference_measure_at(
             f->place[k].reference, at, &f->request.tolerance,
             RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM, &at->errors));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fitter_system(ritz_fitter *f,

@@ -28,7 +28,6 @@ static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
 /* What is asked, or all that is usual: of joined bodies `compare` too. */
 static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
 {
-    ritz_status status = RITZ_OK;
     const ritz_fit_request *asked = &fitter->request;
     bool joined = fitter->scene && fitter->scene->num_components > 1;
     int64_t all = 0;
@@ -37,10 +36,11 @@ static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
         all++;
     if (asked->num_methods > 0)
         all = asked->num_methods;
-    RITZ_NEW(fit->method, all + 1); /* NOLINT: an array of pointers is meant */
-    RITZ_NEW(fit->best, all + 1);
-    RITZ_NEW(fit->reached, all + 1);
-    RITZ_NEW(fit->end, all + 1);
+    RITZ_CHECK_NEW(fit->method,
+                   all + 1); /* NOLINT: an array of pointers is meant */
+    RITZ_CHECK_NEW(fit->best, all + 1);
+    RITZ_CHECK_NEW(fit->reached, all + 1);
+    RITZ_CHECK_NEW(fit->end, all + 1);
     for (int64_t k = 0; k < all; k++)
         if (asked->num_methods > 0)
             fit->method[fit->num_methods++] = asked->methods[k];
@@ -51,10 +51,9 @@ static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
     for (int64_t m = 0; m < fit->num_methods; m++) {
         fit->best[m] = fit->reached[m] = -1;
         if (fitter->scene && fit->method[m] == &ritz_fit_compare)
-            RITZ_TRY(ritz_fit_second_make(fitter));
+            RITZ_CHECK(ritz_fit_second_make(fitter));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The best of all methods, and the best of the others. */
@@ -79,14 +78,12 @@ static void choose(ritz_fit *fit)
 /* How wrong the two best can be, wherever a scene is listed. */
 static ritz_status bound(ritz_fitter *fitter, ritz_fit *fit)
 {
-    ritz_status status = RITZ_OK;
     const int64_t both[] = {fit->chosen, fit->runner_up};
 
     for (int t = 0; t < 2; t++)
         if (both[t] >= 0)
-            RITZ_TRY(ritz_fit_bound(fitter, &fit->candidate[both[t]]));
-done:
-    return status;
+            RITZ_CHECK(ritz_fit_bound(fitter, &fit->candidate[both[t]]));
+    return RITZ_OK;
 }
 
 /* Columns that matter to nothing are left out of one method's best. */
@@ -113,7 +110,6 @@ static const double within_reach = 1.5;
 
 static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
 {
-    ritz_status status = RITZ_OK;
     double most = 0.0;
 
     if (fit->chosen >= 0)
@@ -123,13 +119,12 @@ static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
 
         if (at >= 0 &&
             ((double)fit->candidate[at].order <= most || at == fit->runner_up))
-            RITZ_TRY(trim_one(fitter, at, fit));
+            RITZ_CHECK(trim_one(fitter, at, fit));
     }
     for (int64_t m = 0; m < fit->num_methods; m++)
         ritz_fit_conclude(fit, m);
     choose(fit);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
@@ -160,7 +155,6 @@ done:
 static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
                             int64_t *modes, ritz_fit *fit)
 {
-    ritz_status status = RITZ_OK;
     const ritz_method *asked = fit->method[method];
     bool met = false;
     int64_t low = -1, at = 0;
@@ -173,7 +167,7 @@ static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
         const ritz_fit_candidate *c = NULL;
 
         ritz_fit_rung(fitter, asked, t, modes);
-        RITZ_TRY(ritz_fit_visit(fitter, fit, method, modes, &at));
+        RITZ_CHECK(ritz_fit_visit(fitter, fit, method, modes, &at));
         c = &fit->candidate[at];
         if (ritz_fit_was_made(c) && c->order <= order) {
             low = t;
@@ -184,8 +178,7 @@ static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
             low = t; /* refused for being too small, perhaps */
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,

@@ -24,7 +24,6 @@ typedef struct thinning {
 static ritz_status move(thinning *t, int64_t i, int64_t less, int64_t j,
                         int64_t more)
 {
-    ritz_status status = RITZ_OK;
     const ritz_fit_candidate *all = NULL;
     int64_t at = 0;
 
@@ -33,36 +32,30 @@ static ritz_status move(thinning *t, int64_t i, int64_t less, int64_t j,
     memcpy(t->modes, t->from, (size_t)t->fitter->num_bodies * sizeof *t->modes);
     t->modes[i] -= less;
     t->modes[j] += more;
-    RITZ_TRY(ritz_fit_visit(t->fitter, t->fit, t->method, t->modes, &at));
+    RITZ_CHECK(ritz_fit_visit(t->fitter, t->fit, t->method, t->modes, &at));
     all = t->fit->candidate;
     if (all[at].feasible && ritz_fit_is_better(&all[at], &all[t->best]))
         t->best = at;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take(thinning *t)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t i = 0; i < t->fitter->num_bodies; i++)
-        RITZ_TRY(move(t, i, 1, i, 0));
-done:
-    return status;
+        RITZ_CHECK(move(t, i, 1, i, 0));
+    return RITZ_OK;
 }
 
 static ritz_status exchange(thinning *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t bodies = t->fitter->num_bodies;
 
     for (int64_t given = 1; given <= MOST_GIVEN; given++)
         for (int64_t i = 0; i < bodies; i++)
             for (int64_t j = 0; j < bodies; j++)
                 if (i != j)
-                    RITZ_TRY(move(t, i, given + 1, j, given));
-done:
-    return status;
+                    RITZ_CHECK(move(t, i, given + 1, j, given));
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_thin(ritz_fitter *fitter, ritz_fit *fit, int64_t method,

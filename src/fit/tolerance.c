@@ -58,7 +58,6 @@ static const word *find(const char *name)
 
 static ritz_status take_item(const char *item, ritz_verify_request *limits)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strchr(item, '=');
     char name[RITZ_NAME_SIZE] = "response";
     const word *w = NULL;
@@ -69,35 +68,32 @@ static ritz_status take_item(const char *item, ritz_verify_request *limits)
     w = find(name);
     if (!w)
         return RITZ_ERR_ARGUMENT;
-    RITZ_FAIL_IF(!isnan(value_of(limits, w)), RITZ_ERR_ARGUMENT,
-                 "'%s' is given twice", name);
-    RITZ_FAIL_IF(!ritz_text_real(equals ? equals + 1 : item, &value) ||
-                     value < 0.0 || value > w->most ||
-                     (value == 0.0 && w->most == 1.0),
-                 RITZ_ERR_ARGUMENT, "'%s' is no tolerance of '%s'",
-                 equals ? equals + 1 : item, name);
+    RITZ_REFUSE_IF(!isnan(value_of(limits, w)), RITZ_ERR_ARGUMENT,
+                   "'%s' is given twice", name);
+    RITZ_REFUSE_IF(!ritz_text_real(equals ? equals + 1 : item, &value) ||
+                       value < 0.0 || value > w->most ||
+                       (value == 0.0 && w->most == 1.0),
+                   RITZ_ERR_ARGUMENT, "'%s' is no tolerance of '%s'",
+                   equals ? equals + 1 : item, name);
     *place_of(limits, w) = value;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits)
 {
-    ritz_status status = RITZ_OK;
     char item[2 * RITZ_NAME_SIZE];
 
     for (const char *at = text; at;) {
         size_t length = strcspn(at, ",");
 
-        RITZ_FAIL_IF(length == 0 || length >= sizeof item, RITZ_ERR_ARGUMENT,
-                     "'%s' is no list of tolerances", text);
+        RITZ_REFUSE_IF(length == 0 || length >= sizeof item, RITZ_ERR_ARGUMENT,
+                       "'%s' is no list of tolerances", text);
         memcpy(item, at, length);
         item[length] = '\0';
-        RITZ_TRY(take_item(item, limits));
+        RITZ_CHECK(take_item(item, limits));
         at = at[length] ? at + length + 1 : NULL;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_tolerance_print(const ritz_verify_request *limits, int64_t size,
@@ -134,7 +130,6 @@ double ritz_fit_limit(const ritz_verify_request *limits, const char *measure)
 ritz_status ritz_fit_check(const ritz_verify_request *limits,
                            const ritz_component *full)
 {
-    ritz_status status = RITZ_OK;
     bool any = false;
 
     for (int k = 0; k < WORDS; k++) {
@@ -142,22 +137,22 @@ ritz_status ritz_fit_check(const ritz_verify_request *limits,
             continue;
         any = any || strcmp(words[k].word, "missing") != 0 ||
               value_of(limits, &words[k]) == 0.0;
-        RITZ_FAIL_IF(words[k].responds && (full->io.num_inputs == 0 ||
-                                           full->io.num_outputs == 0),
-                     RITZ_ERR_ARGUMENT,
-                     "a tolerance of '%s' needs inputs and outputs, and there "
-                     "are %" PRId64 " and %" PRId64,
-                     words[k].word, full->io.num_inputs, full->io.num_outputs);
+        RITZ_REFUSE_IF(
+            words[k].responds &&
+                (full->io.num_inputs == 0 || full->io.num_outputs == 0),
+            RITZ_ERR_ARGUMENT,
+            "a tolerance of '%s' needs inputs and outputs, and there "
+            "are %" PRId64 " and %" PRId64,
+            words[k].word, full->io.num_inputs, full->io.num_outputs);
     }
-    RITZ_FAIL_IF(!any, RITZ_ERR_ARGUMENT,
-                 "no tolerance is given: which measure, how far off");
-    RITZ_FAIL_IF(!isnan(limits->limit_damping) &&
-                     limits->damping.kind == RITZ_DAMPING_NONE &&
-                     !full->damping[0] && !full->D.colptr && !full->K4.colptr,
-                 RITZ_ERR_ARGUMENT,
-                 "a tolerance of 'damping' needs a model that is damped");
-done:
-    return status;
+    RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
+                   "no tolerance is given: which measure, how far off");
+    RITZ_REFUSE_IF(!isnan(limits->limit_damping) &&
+                       limits->damping.kind == RITZ_DAMPING_NONE &&
+                       !full->damping[0] && !full->D.colptr && !full->K4.colptr,
+                   RITZ_ERR_ARGUMENT,
+                   "a tolerance of 'damping' needs a model that is damped");
+    return RITZ_OK;
 }
 
 void ritz_fit_settle(const ritz_reference *reference,

@@ -35,31 +35,24 @@ static void free_bodies(const ritz_fitter *f, bodies *b)
 static ritz_status lay_out(ritz_fitter *f, const ritz_fit_candidate *candidate,
                            bodies *b)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(b->whole, f->num_bodies);
-    RITZ_NEW(b->all, f->scene->num_components);
+    RITZ_CHECK_NEW(b->whole, f->num_bodies);
+    RITZ_CHECK_NEW(b->all, f->scene->num_components);
     for (int64_t k = 0; k < f->num_bodies; k++)
-        RITZ_TRY(ritz_fit_body(f, candidate->method, k, candidate->modes[k],
-                               &b->whole[k]));
-    RITZ_TRY(ritz_fit_nest_scene(f, b->whole, false, b->all, &b->path));
-done:
-    return status;
+        RITZ_CHECK(ritz_fit_body(f, candidate->method, k, candidate->modes[k],
+                                 &b->whole[k]));
+    return ritz_fit_nest_scene(f, b->whole, false, b->all, &b->path);
 }
 
 /* Bodies as a row of the path cuts them, no longer nested. */
 static ritz_status cut(const ritz_fitter *f, const ritz_fit_row *row,
                        const ritz_reduced *nested, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < f->num_bodies; k++) {
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_reduced_prefix(&nested[f->body[k]], row->first[k], &out[k]));
         ritz_nested_free(&out[k].nested);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_make_bodies(ritz_fitter *f,

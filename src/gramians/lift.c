@@ -8,10 +8,9 @@
 static ritz_status pick(const ritz_dense *Z, int64_t first, int64_t step,
                         const double *scale, bool over, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = Z->nrow / 2;
 
-    RITZ_TRY(ritz_dense_new(m, Z->ncol, out));
+    RITZ_CHECK(ritz_dense_new(m, Z->ncol, out));
     for (int64_t j = 0; j < Z->ncol; j++) {
         const double *from = ritz_dense_col(Z, j) + first;
         double *to = ritz_dense_col(out, j);
@@ -22,8 +21,7 @@ static ritz_status pick(const ritz_dense *Z, int64_t first, int64_t step,
             to[k] = over ? from[k * step] / s : from[k * step] * s;
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* [top Q; bottom V], Q and V the positions and the velocities in Z. */

@@ -67,28 +67,26 @@ static void free_sweep(ritz_low_rank_sweep *sweep)
 static ritz_status start(const ritz_gramians_request *request,
                          ritz_low_rank_sweep *sweep)
 {
-    ritz_status status = RITZ_OK;
     ritz_low_rank_model *model = &sweep->model;
     const ritz_sparse *const A[] = {&model->M, &model->K, &model->D};
 
-    RITZ_FAIL_IF(!(request->tolerance >= 0.0 && request->tolerance < 1.0),
-                 RITZ_ERR_ARGUMENT, "a tolerance is between 0 and 1, not %g",
-                 request->tolerance);
+    RITZ_REFUSE_IF(!(request->tolerance >= 0.0 && request->tolerance < 1.0),
+                   RITZ_ERR_ARGUMENT, "a tolerance is between 0 and 1, not %g",
+                   request->tolerance);
     sweep->tolerance =
         request->tolerance > 0.0 ? request->tolerance : default_tolerance;
     sweep->least = 1.0;
-    RITZ_TRY(ritz_low_rank_model_new(request, model));
+    RITZ_CHECK(ritz_low_rank_model_new(request, model));
     for (int side = 0; side < RITZ_SIDES; side++) {
-        RITZ_TRY(ritz_low_rank_size(model, side, &sweep->first[side]));
+        RITZ_CHECK(ritz_low_rank_size(model, side, &sweep->first[side]));
         sweep->open[side] = model->num_starts > 0 &&
                             sweep->first[side] > nothing * model->whole[side];
         sweep->residual[side] = sweep->open[side] ? 1.0 : 0.0;
     }
-    RITZ_TRY(ritz_low_rank_window_new(model, &sweep->window));
-    RITZ_TRY(ritz_zldl_new(3, A, &sweep->F));
+    RITZ_CHECK(ritz_low_rank_window_new(model, &sweep->window));
+    RITZ_CHECK(ritz_zldl_new(3, A, &sweep->F));
     ritz_zldl_definite(sweep->F);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_open(const ritz_low_rank_sweep *sweep)
@@ -99,23 +97,20 @@ static bool is_open(const ritz_low_rank_sweep *sweep)
 /* Residuals after a step, and factors that grew compressed. */
 static ritz_status settle(ritz_low_rank_sweep *sweep)
 {
-    ritz_status status = RITZ_OK;
-
     for (int side = 0; side < RITZ_SIDES; side++) {
         ritz_low_rank_columns *Z = &sweep->Z[side];
         double size = 0.0;
 
         if (!sweep->open[side])
             continue;
-        RITZ_TRY(ritz_low_rank_size(&sweep->model, side, &size));
+        RITZ_CHECK(ritz_low_rank_size(&sweep->model, side, &size));
         sweep->residual[side] = size / sweep->first[side];
         sweep->open[side] = sweep->residual[side] > sweep->tolerance;
         if (Z->count > 2 * Z->settled + GROWN_BY)
-            RITZ_TRY(ritz_low_rank_compress(&sweep->model, side, Z));
+            RITZ_CHECK(ritz_low_rank_compress(&sweep->model, side, Z));
     }
     ritz_monitor_step("shifts", sweep->shifts, 0);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static double worst(const ritz_low_rank_sweep *sweep)
@@ -142,7 +137,6 @@ static double expected(const ritz_low_rank_sweep *sweep, const double *history)
 static ritz_status judge(const ritz_low_rank_sweep *sweep,
                          const double *history)
 {
-    ritz_status status = RITZ_OK;
     bool small = sweep->model.n < RITZ_LOW_RANK_SHIFTS;
     double total = 0.0;
 
@@ -152,19 +146,17 @@ static ritz_status judge(const ritz_low_rank_sweep *sweep,
             (!small || patiences[k].after == RITZ_LOW_RANK_SHIFTS))
             total = fmax(total,
                          expected(sweep, history) / (double)patiences[k].total);
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         total > 1.0, RITZ_ERR_CONVERGENCE,
         "the Gramians have no low rank: after %" PRId64
         " shifts the residual is %.1e, and the lightest damping they "
         "met is a ratio of about %.0e: take engine 'modal', or more damping",
         sweep->shifts, worst(sweep), sweep->least);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status run(ritz_low_rank_sweep *sweep)
 {
-    ritz_status status = RITZ_OK;
     double history[RITZ_LOW_RANK_SHIFTS + 1] = {1.0};
     double _Complex shift[TOGETHER];
     int64_t starts = sweep->model.num_starts;
@@ -175,34 +167,31 @@ static ritz_status run(ritz_low_rank_sweep *sweep)
         if (sweep->shifts < starts)
             shift[0] = sweep->model.start[sweep->shifts];
         else
-            RITZ_TRY(ritz_low_rank_shifts(&sweep->model, &sweep->window,
-                                          sweep->open, TOGETHER, &count,
-                                          shift));
+            RITZ_CHECK(ritz_low_rank_shifts(&sweep->model, &sweep->window,
+                                            sweep->open, TOGETHER, &count,
+                                            shift));
         for (int64_t k = 0; k < count && is_open(sweep); k++) {
-            RITZ_TRY(ritz_low_rank_step(sweep, shift[k]));
-            RITZ_TRY(settle(sweep));
-            RITZ_TRY(judge(sweep, history));
+            RITZ_CHECK(ritz_low_rank_step(sweep, shift[k]));
+            RITZ_CHECK(settle(sweep));
+            RITZ_CHECK(judge(sweep, history));
             history[sweep->shifts] = worst(sweep);
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Z as a matrix of its own columns. */
 static ritz_status take(ritz_low_rank_sweep *sweep, int side, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_low_rank_columns *Z = &sweep->Z[side];
 
-    RITZ_TRY(ritz_low_rank_compress(&sweep->model, side, Z));
+    RITZ_CHECK(ritz_low_rank_compress(&sweep->model, side, Z));
     if (!Z->val)
         return ritz_dense_new(2 * sweep->model.n, 0, out);
     *out = (ritz_dense){
         .nrow = 2 * sweep->model.n, .ncol = Z->count, .val = Z->val};
     *Z = (ritz_low_rank_columns){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows first.. of columns from.. of @p to := X */
@@ -236,17 +225,16 @@ done:
 
 static ritz_status finish(ritz_low_rank_sweep *sweep, ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_low_rank_model *model = &sweep->model;
     int64_t n = model->n;
     int64_t a = model->Phi.ncol;
 
     ritz_zldl_free(&sweep->F);
-    RITZ_TRY(take(sweep, RITZ_REACHED, &out->Zc));
-    RITZ_TRY(take(sweep, RITZ_SEEN, &out->Zo));
-    RITZ_TRY(by_mass(model, &out->Zc, &out->EZc));
-    RITZ_TRY(ritz_dense_new(2 * n, 2 * a, &out->T));
-    RITZ_TRY(ritz_dense_new(2 * n, 2 * a, &out->W));
+    RITZ_CHECK(take(sweep, RITZ_REACHED, &out->Zc));
+    RITZ_CHECK(take(sweep, RITZ_SEEN, &out->Zo));
+    RITZ_CHECK(by_mass(model, &out->Zc, &out->EZc));
+    RITZ_CHECK(ritz_dense_new(2 * n, 2 * a, &out->T));
+    RITZ_CHECK(ritz_dense_new(2 * n, 2 * a, &out->W));
     put(&model->Phi, 0, 0, &out->T);
     put(&model->Phi, n, a, &out->T);
     put(&model->MPhi, 0, 0, &out->W);
@@ -255,8 +243,7 @@ static ritz_status finish(ritz_low_rank_sweep *sweep, ritz_gramians *out)
     out->residual[1] = sweep->residual[RITZ_SEEN];
     snprintf(out->engine, sizeof out->engine, "ADI, %" PRId64 " shifts",
              sweep->shifts);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,

@@ -24,7 +24,6 @@ enum { ROOM = 64 };
 ritz_status ritz_low_rank_reserve(int64_t n, int64_t more,
                                   ritz_low_rank_columns *Z)
 {
-    ritz_status status = RITZ_OK;
     int64_t room = Z->room > 0 ? Z->room : ROOM;
     double *val = NULL;
 
@@ -32,20 +31,20 @@ ritz_status ritz_low_rank_reserve(int64_t n, int64_t more,
         return RITZ_OK;
     while (room < Z->count + more)
         room += room / 2;
-    RITZ_FAIL_IF((double)(2 * n) * (double)(Z->count + more) * 8.0 > most_bytes,
-                 RITZ_ERR_CONVERGENCE,
-                 "the Gramians have no low rank: %" PRId64
-                 " columns of a factor are more than memory shall hold, take "
-                 "engine 'modal' or fewer inputs and outputs",
-                 Z->count + more);
-    RITZ_NEW(val, 2 * n * room);
+    RITZ_REFUSE_IF((double)(2 * n) * (double)(Z->count + more) * 8.0 >
+                       most_bytes,
+                   RITZ_ERR_CONVERGENCE,
+                   "the Gramians have no low rank: %" PRId64
+                   " columns of a factor are more than memory shall hold, take "
+                   "engine 'modal' or fewer inputs and outputs",
+                   Z->count + more);
+    RITZ_CHECK_NEW(val, 2 * n * room);
     if (Z->count > 0)
         memcpy(val, Z->val, (size_t)(2 * n * Z->count) * sizeof *val);
     free(Z->val);
     Z->val = val;
     Z->room = room;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Row i of the upper half: W_c has displacements there, W_o forces. */

@@ -25,16 +25,13 @@ static const double unseen = 1e-10;
 static ritz_status turn_outputs(const ritz_io *io, const ritz_dense *C,
                                 ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(C->ncol, C->nrow, out));
+    RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
     for (int64_t i = 0; i < C->nrow; i++)
         for (int64_t j = 0; j < C->ncol; j++)
             ritz_dense_col(out, i)[j] =
                 ritz_dense_col(C, j)[i] /
                 (isnan(io->limit[i]) ? 1.0 : io->limit[i]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows @p to of A += f X. */
@@ -57,12 +54,9 @@ static void clear_rows(const ritz_dofs *rows, ritz_dense *A)
 static ritz_status hold(const ritz_low_rank_model *model, ritz_factor *F,
                         const ritz_dense *A, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_rows(A, model->massless.count, model->massless.at, X));
-    RITZ_TRY(ritz_factor_solve(F, X));
-done:
-    return status;
+    RITZ_CHECK(
+        ritz_dense_rows(A, model->massless.count, model->massless.at, X));
+    return ritz_factor_solve(F, X);
 }
 
 /* A := T'A */

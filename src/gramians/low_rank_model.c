@@ -82,42 +82,36 @@ static bool is_zero_column(const ritz_sparse *A, int64_t j)
 static ritz_status split_dofs(const ritz_component *component,
                               ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
     char name[RITZ_DOF_NAME_SIZE];
 
-    RITZ_NEW(model->massless.at, model->n);
+    RITZ_CHECK_NEW(model->massless.at, model->n);
     for (int64_t j = 0; j < model->n; j++) {
         if (!is_zero_column(&model->M, j))
             continue;
-        RITZ_FAIL_IF(!is_zero_column(&model->D, j) ||
-                         (model->Dt.colptr && !is_zero_column(&model->Dt, j)),
-                     RITZ_ERR_ARGUMENT,
-                     "%s has no mass but is damped, and has no state of its "
-                     "own: condense it first, or damp it otherwise",
-                     ritz_dof_name(component->dof[j], name));
+        RITZ_REFUSE_IF(!is_zero_column(&model->D, j) ||
+                           (model->Dt.colptr && !is_zero_column(&model->Dt, j)),
+                       RITZ_ERR_ARGUMENT,
+                       "%s has no mass but is damped, and has no state of its "
+                       "own: condense it first, or damp it otherwise",
+                       ritz_dof_name(component->dof[j], name));
         model->massless.at[count++] = j;
     }
     model->massless.count = count;
-    RITZ_TRY(ritz_dofs_complement(&model->massless, model->n, &model->massive));
-done:
-    return status;
+    return ritz_dofs_complement(&model->massless, model->n, &model->massive);
 }
 
 /* What a dof has of stiffness and mass: units that residuals are told in. */
 static ritz_status weigh_dofs(double lambda, ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(model->stiff, model->n);
-    RITZ_NEW(model->mass, model->n);
+    RITZ_CHECK_NEW(model->stiff, model->n);
+    RITZ_CHECK_NEW(model->mass, model->n);
     for (int64_t j = 0; j < model->n; j++) {
         model->mass[j] = ritz_sparse_diagonal(&model->M, j);
         model->stiff[j] =
             fabs(ritz_sparse_diagonal(&model->K, j)) + lambda * model->mass[j];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* |D Phi - M Phi (Phi'D Phi)| of a rigid motion against |D||Phi|. */

@@ -198,8 +198,6 @@ done:
 static ritz_status choose(small *s, int64_t most, int64_t *count,
                           double _Complex *out)
 {
-    ritz_status status = RITZ_OK;
-
     for (*count = 0; *count < most; (*count)++) {
         int64_t best = -1;
         double size = 0.0;
@@ -210,19 +208,19 @@ static ritz_status choose(small *s, int64_t most, int64_t *count,
         if (best < 0)
             break;
         size = hypot(s->re[best], s->im[best]);
-        RITZ_FAIL_IF(!(s->re[best] < -undamped * size), RITZ_ERR_ARGUMENT,
-                     "a motion near %.4g Hz is not damped, or even fed, by D: "
-                     "it has no Gramian",
-                     size / (2.0 * acos(-1.0)));
+        RITZ_REFUSE_IF(
+            !(s->re[best] < -undamped * size), RITZ_ERR_ARGUMENT,
+            "a motion near %.4g Hz is not damped, or even fed, by D: "
+            "it has no Gramian",
+            size / (2.0 * acos(-1.0)));
         out[*count] = s->re[best];
         if (fabs(s->im[best]) > nearly_real * fabs(s->re[best]))
             out[*count] += fabs(s->im[best]) * (double _Complex)_Complex_I;
         s->share[best] = 0.0;
     }
-    RITZ_FAIL_IF(*count == 0, RITZ_ERR_CONVERGENCE,
-                 "there is no shift for what the Gramians still miss");
-done:
-    return status;
+    RITZ_REFUSE_IF(*count == 0, RITZ_ERR_CONVERGENCE,
+                   "there is no shift for what the Gramians still miss");
+    return RITZ_OK;
 }
 
 ritz_status ritz_low_rank_shifts(const ritz_low_rank_model *model,

@@ -44,13 +44,10 @@ static int solved(int side)
 static ritz_status combine(double a, const ritz_dense *X, double b,
                            const ritz_dense *Y, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(X->nrow, X->ncol, out));
+    RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, out));
     for (int64_t k = 0; k < X->nrow * X->ncol; k++)
         out->val[k] = a * X->val[k] + b * Y->val[k];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* x := (p M - D) W_1 - W_2 of what is reached. */
@@ -84,39 +81,35 @@ static void load_seen(const ritz_low_rank_model *model, double _Complex p,
 static ritz_status part(const ritz_low_rank_model *model, int64_t columns,
                         const double _Complex *x, int half, block *v)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense *re = &v->re[half];
     ritz_dense *im = &v->im[half];
 
-    RITZ_TRY(ritz_dense_new(model->n, columns, re));
-    RITZ_TRY(ritz_dense_new(model->n, columns, im));
+    RITZ_CHECK(ritz_dense_new(model->n, columns, re));
+    RITZ_CHECK(ritz_dense_new(model->n, columns, im));
     for (int64_t k = 0; k < model->n * columns; k++) {
         re->val[k] = creal(x[k]);
         im->val[k] = cimag(x[k]);
     }
     if (model->Phi.ncol > 0) {
-        RITZ_TRY(ritz_dense_take_out(&model->Phi, &model->MPhi, re));
-        RITZ_TRY(ritz_dense_take_out(&model->Phi, &model->MPhi, im));
+        RITZ_CHECK(ritz_dense_take_out(&model->Phi, &model->MPhi, re));
+        RITZ_CHECK(ritz_dense_take_out(&model->Phi, &model->MPhi, im));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* v_2 = W_1 - p v_1 */
 static ritz_status finish_reached(const ritz_low_rank_model *model,
                                   double _Complex p, block *v)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *W = &model->W[RITZ_REACHED][RITZ_ABOVE];
     const ritz_dense *re = &v->re[RITZ_ABOVE];
     const ritz_dense *im = &v->im[RITZ_ABOVE];
 
-    RITZ_TRY(combine(-creal(p), re, cimag(p), im, &v->re[RITZ_BELOW]));
-    RITZ_TRY(combine(-creal(p), im, -cimag(p), re, &v->im[RITZ_BELOW]));
+    RITZ_CHECK(combine(-creal(p), re, cimag(p), im, &v->re[RITZ_BELOW]));
+    RITZ_CHECK(combine(-creal(p), im, -cimag(p), re, &v->im[RITZ_BELOW]));
     for (int64_t k = 0; k < W->nrow * W->ncol; k++)
         v->re[RITZ_BELOW].val[k] += W->val[k];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* v_1 = W_2 - p M v_2 + D'v_2 */

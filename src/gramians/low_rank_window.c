@@ -106,16 +106,14 @@ done:
 /* A = V diag(e) V', V over A. */
 static ritz_status symmetric_modes(ritz_dense *A, double *e)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
     int info = 0;
 
     if (n > 0)
         info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, A->val, n, e);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the latest displacements have no modes");
-done:
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "the latest displacements have no modes");
+    return RITZ_OK;
 }
 
 /* F with F'GF = I, G = X'MX, of what is independent in X. */

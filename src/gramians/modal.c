@@ -61,15 +61,12 @@ done:
 static ritz_status check(const ritz_dense *K, const ritz_dense *D,
                          const ritz_io *io)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(io->B.nrow != K->nrow || io->C.ncol != K->nrow,
-                 RITZ_ERR_ARGUMENT,
-                 "inputs and outputs are those of another model");
-    RITZ_FAIL_IF(D && D->val && D->nrow != K->nrow, RITZ_ERR_ARGUMENT,
-                 "the damping matrix is that of another model");
-done:
-    return status;
+    RITZ_REFUSE_IF(io->B.nrow != K->nrow || io->C.ncol != K->nrow,
+                   RITZ_ERR_ARGUMENT,
+                   "inputs and outputs are those of another model");
+    RITZ_REFUSE_IF(D && D->val && D->nrow != K->nrow, RITZ_ERR_ARGUMENT,
+                   "the damping matrix is that of another model");
+    return RITZ_OK;
 }
 
 /* All modes with mass, and with them damping, inputs and outputs. */

@@ -94,9 +94,7 @@ static double applied(const response *S, bool transposed, const ritz_dense *W,
 static ritz_status filter(const response *S, bool transposed,
                           const ritz_dense *W, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(W->nrow, W->ncol, out));
+    RITZ_CHECK(ritz_dense_new(W->nrow, W->ncol, out));
     for (int64_t j = 0; j < W->ncol; j++)
         for (int64_t i = 0; i <= j; i++) {
             double x = applied(S, transposed, W, i, j) +
@@ -105,8 +103,7 @@ static ritz_status filter(const response *S, bool transposed,
             ritz_dense_col(out, j)[i] = x;
             ritz_dense_col(out, i)[j] = x;
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Band Gramians with the magnitudes that they are sums of. */
@@ -137,15 +134,12 @@ done:
 
 static ritz_status check_band(const double band_hz[static 2])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!(band_hz[0] >= 0.0 && band_hz[1] > band_hz[0]) ||
-                     isinf(band_hz[0]),
-                 RITZ_ERR_ARGUMENT,
-                 "a band is from 0 Hz or more to more, not from %g to %g",
-                 band_hz[0], band_hz[1]);
-done:
-    return status;
+    RITZ_REFUSE_IF(!(band_hz[0] >= 0.0 && band_hz[1] > band_hz[0]) ||
+                       isinf(band_hz[0]),
+                   RITZ_ERR_ARGUMENT,
+                   "a band is from 0 Hz or more to more, not from %g to %g",
+                   band_hz[0], band_hz[1]);
+    return RITZ_OK;
 }
 
 static ritz_status band_gramians(const ritz_modal *modal,
@@ -196,18 +190,15 @@ done:
 /* Roots of the diagonal, 0 where that is rounding. */
 static ritz_status roots(const filtered *f, double *root)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < f->W.nrow; k++) {
         double own = ritz_dense_col(&f->W, k)[k];
         double rounding = few * ritz_dense_col(&f->terms, k)[k];
 
-        RITZ_FAIL_IF(!(own >= -rounding), RITZ_ERR_CONVERGENCE,
-                     "the Gramian of a band is negative beyond rounding");
+        RITZ_REFUSE_IF(!(own >= -rounding), RITZ_ERR_CONVERGENCE,
+                       "the Gramian of a band is negative beyond rounding");
         root[k] = own > rounding ? sqrt(own) : 0.0;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A(i,j) / (root_i root_j); returns its largest sum of a column. */
@@ -234,7 +225,6 @@ static double scale(ritz_dense *A, const double *root)
 static ritz_status put(const ritz_dense *V, const double *s, const double *root,
                        ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = V->nrow;
     int64_t first = 0;
     double rounding = (double)n * DBL_EPSILON;
@@ -243,13 +233,12 @@ static ritz_status put(const ritz_dense *V, const double *s, const double *root,
         rounding = fmax(rounding, -s[0]);
     while (first < n && s[first] <= rounding)
         first++;
-    RITZ_TRY(ritz_dense_new(n, n - first, out));
+    RITZ_CHECK(ritz_dense_new(n, n - first, out));
     for (int64_t j = first; j < n; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(out, j - first)[i] =
                 root[i] * ritz_dense_col(V, j)[i] * sqrt(s[j]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Overwrites both matrices. */

@@ -47,15 +47,11 @@ static void release(sparse_structure *s)
 static ritz_status install(const ritz_component *component,
                            sparse_structure *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_sparse_copy(&component->K, &out->K));
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &out->K));
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_copy(&component->D, &out->D));
-    RITZ_TRY(ritz_dampers_copy(&component->dampers, &out->dampers));
-    RITZ_TRY(ritz_dampers_install_sparse(&out->dampers, &out->K, &out->D));
-done:
-    return status;
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &out->D));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &out->dampers));
+    return ritz_dampers_install_sparse(&out->dampers, &out->K, &out->D);
 }
 
 static ritz_status modes_up_to(const ritz_gramians_request *request,
@@ -97,17 +93,13 @@ done:
 ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
                                 ritz_first_order *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(request->among_hz > 0.0 ? modes_up_to(request, out)
-                                     : all_modes(request, out));
-    RITZ_FAIL_IF(out->count == out->num_rigid, RITZ_ERR_ARGUMENT,
-                 "the component has no flexible modes%s: its rigid modes are "
-                 "all there is",
-                 request->among_hz > 0.0 ? " up to that frequency" : "");
-    RITZ_TRY(ritz_modes_turn(out));
-done:
-    return status;
+    RITZ_CHECK(request->among_hz > 0.0 ? modes_up_to(request, out)
+                                       : all_modes(request, out));
+    RITZ_REFUSE_IF(out->count == out->num_rigid, RITZ_ERR_ARGUMENT,
+                   "the component has no flexible modes%s: its rigid modes are "
+                   "all there is",
+                   request->among_hz > 0.0 ? " up to that frequency" : "");
+    return ritz_modes_turn(out);
 }
 
 /* Of modes that damping does not couple. */

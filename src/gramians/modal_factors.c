@@ -112,23 +112,21 @@ static void measure(elimination *e)
 static ritz_status start(const ritz_energy *model, const ritz_dense *F,
                          elimination *e)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = model->count;
 
     e->model = model;
-    RITZ_NEW(e->units, 2 * m);
+    RITZ_CHECK_NEW(e->units, 2 * m);
     for (int64_t k = 0; k < m; k++)
         add_units(e, k);
-    RITZ_TRY(ritz_dense_copy(F, &e->B));
-    RITZ_TRY(ritz_dense_new(2, F->ncol, &e->row));
-    RITZ_TRY(ritz_dense_new(2 * m, 2, &e->G));
-    RITZ_TRY(ritz_dense_new(2 * m, 2, &e->X));
-    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &e->Z));
+    RITZ_CHECK(ritz_dense_copy(F, &e->B));
+    RITZ_CHECK(ritz_dense_new(2, F->ncol, &e->row));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2, &e->G));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2, &e->X));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &e->Z));
     measure(e);
     for (int64_t u = 0; u < e->num_units; u++)
         e->units[u].first = e->units[u].left;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The unit of which most is left; NULL where that is rounding. */
@@ -265,10 +263,9 @@ done:
 static ritz_status spread(const ritz_dense *Z, const double *t, double sign,
                           ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = Z->nrow / 2;
 
-    RITZ_TRY(ritz_dense_new(2 * m, Z->ncol, out));
+    RITZ_CHECK(ritz_dense_new(2 * m, Z->ncol, out));
     for (int64_t j = 0; j < Z->ncol; j++) {
         const double *from = ritz_dense_col(Z, j);
         double *to = ritz_dense_col(out, j);
@@ -278,8 +275,7 @@ static ritz_status spread(const ritz_dense *Z, const double *t, double sign,
             to[2 * k + 1] = sign * from[m + k];
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_modal_factors(const ritz_modal *modal, ritz_dense *Zc,

@@ -17,21 +17,18 @@
 
 static ritz_status check(const ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_state_space_check(model));
-    RITZ_FAIL_IF(model->A.nrow == 0, RITZ_ERR_ARGUMENT,
-                 "the model has no states, and no Gramians");
-    RITZ_FAIL_IF(model->num_inputs == 0, RITZ_ERR_ARGUMENT,
-                 "the model has no inputs: nothing of it can be reached");
-    RITZ_FAIL_IF(model->num_outputs == 0, RITZ_ERR_ARGUMENT,
-                 "the model has no outputs: nothing of it can be seen");
+    RITZ_CHECK(ritz_state_space_check(model));
+    RITZ_REFUSE_IF(model->A.nrow == 0, RITZ_ERR_ARGUMENT,
+                   "the model has no states, and no Gramians");
+    RITZ_REFUSE_IF(model->num_inputs == 0, RITZ_ERR_ARGUMENT,
+                   "the model has no inputs: nothing of it can be reached");
+    RITZ_REFUSE_IF(model->num_outputs == 0, RITZ_ERR_ARGUMENT,
+                   "the model has no outputs: nothing of it can be seen");
     for (int64_t i = 0; i < model->num_outputs; i++)
-        RITZ_FAIL_IF(model->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
-                     "output '%s' has the limit %g, which is not positive",
-                     model->output[i], model->limit[i]);
-done:
-    return status;
+        RITZ_REFUSE_IF(model->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
+                       "output '%s' has the limit %g, which is not positive",
+                       model->output[i], model->limit[i]);
+    return RITZ_OK;
 }
 
 /* X'C', its columns over the limits. */

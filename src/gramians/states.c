@@ -23,12 +23,11 @@ static int64_t count_apart(const ritz_first_order *modes)
 
 static ritz_status choose_scale(ritz_states *states)
 {
-    ritz_status status = RITZ_OK;
     const ritz_first_order *modes = &states->modes;
     int64_t half = modes->count - states->num_apart;
     double least = 0.0;
 
-    RITZ_NEW(states->scale, half);
+    RITZ_CHECK_NEW(states->scale, half);
     for (int64_t k = 0; k < half; k++) {
         double w = sqrt(fabs(modes->lambda[states->num_apart + k]));
 
@@ -39,22 +38,20 @@ static ritz_status choose_scale(ritz_states *states)
     for (int64_t k = 0; k < half; k++)
         if (states->scale[k] == 0.0)
             states->scale[k] = least > 0.0 ? least : 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A = [0 S; -Lambda S^-1 -Delta] - alpha I,  B = [0; B],  C = [C S^-1 Cv] */
 static ritz_status fill(ritz_states *states)
 {
-    ritz_status status = RITZ_OK;
     const ritz_first_order *modes = &states->modes;
     int64_t r = states->num_apart;
     int64_t m = modes->count - r;
 
     states->count = 2 * m;
-    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &states->A));
-    RITZ_TRY(ritz_dense_new(2 * m, modes->B.ncol, &states->B));
-    RITZ_TRY(ritz_dense_new(modes->C.nrow, 2 * m, &states->C));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &states->A));
+    RITZ_CHECK(ritz_dense_new(2 * m, modes->B.ncol, &states->B));
+    RITZ_CHECK(ritz_dense_new(modes->C.nrow, 2 * m, &states->C));
     for (int64_t j = 0; j < m; j++) {
         double *q = ritz_dense_col(&states->A, j);
         double *v = ritz_dense_col(&states->A, m + j);
@@ -77,8 +74,7 @@ static ritz_status fill(ritz_states *states)
         for (int64_t i = 0; i < m; i++)
             ritz_dense_col(&states->B, j)[m + i] =
                 ritz_dense_col(&modes->B, j)[r + i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_states_new(const ritz_component *component,

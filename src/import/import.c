@@ -12,62 +12,54 @@
 
 static ritz_status check_matrix(const ritz_part *part)
 {
-    ritz_status status = RITZ_OK;
     const ritz_matrix *A = &part->matrix;
 
-    RITZ_FAIL_IF(A->A.nrow != A->A.ncol, RITZ_ERR_FORMAT,
-                 "'%s' is %" PRId64 " x %" PRId64 ", a square matrix is due",
-                 part->spec, A->A.nrow, A->A.ncol);
-    RITZ_FAIL_IF(A->imaginary, RITZ_ERR_FORMAT,
-                 "'%s' is complex, a real matrix is due", part->spec);
-done:
-    return status;
+    RITZ_REFUSE_IF(A->A.nrow != A->A.ncol, RITZ_ERR_FORMAT,
+                   "'%s' is %" PRId64 " x %" PRId64 ", a square matrix is due",
+                   part->spec, A->A.nrow, A->A.ncol);
+    RITZ_REFUSE_IF(A->imaginary, RITZ_ERR_FORMAT,
+                   "'%s' is complex, a real matrix is due", part->spec);
+    return RITZ_OK;
 }
 
 /* Read a matrix, if one is asked for. */
 static ritz_status take_part(const char *spec, ritz_sparse *becomes,
                              ritz_parts *parts)
 {
-    ritz_status status = RITZ_OK;
     ritz_part *part = &parts->part[parts->count];
 
     if (!spec)
-        goto done;
+        return RITZ_OK;
     *part = (ritz_part){.spec = spec, .becomes = becomes};
-    RITZ_TRY(ritz_foreign_select(spec, &part->matrix));
+    RITZ_CHECK(ritz_foreign_select(spec, &part->matrix));
     parts->count++;
-    RITZ_TRY(check_matrix(part));
-done:
-    return status;
+    return check_matrix(part);
 }
 
 /* "F@LOAD": geometric stiffness of a unit load. */
 static ritz_status take_load(const char *text, ritz_component *component,
                              char **spec, ritz_parts *parts)
 {
-    ritz_status status = RITZ_OK;
     ritz_load *load = &component->load[component->num_loads];
     const char *at = strrchr(text, '@');
 
-    RITZ_FAIL_IF(!at || at == text, RITZ_ERR_ARGUMENT,
-                 "'%s' is not of the form FILE@LOAD", text);
-    RITZ_TRY(ritz_name_copy(at + 1, load->name));
+    RITZ_REFUSE_IF(!at || at == text, RITZ_ERR_ARGUMENT,
+                   "'%s' is not of the form FILE@LOAD", text);
+    RITZ_CHECK(ritz_name_copy(at + 1, load->name));
     for (int64_t k = 0; k < component->num_loads; k++)
-        RITZ_FAIL_IF(strcmp(component->load[k].name, load->name) == 0,
-                     RITZ_ERR_ARGUMENT, "there are two loads '%s'", load->name);
-    RITZ_NEW(*spec, at - text + 1);
+        RITZ_REFUSE_IF(strcmp(component->load[k].name, load->name) == 0,
+                       RITZ_ERR_ARGUMENT, "there are two loads '%s'",
+                       load->name);
+    RITZ_CHECK_NEW(*spec, at - text + 1);
     memcpy(*spec, text, (size_t)(at - text));
     component->num_loads++;
-    RITZ_TRY(take_part(*spec, &load->KG, parts));
-done:
-    return status;
+    return take_part(*spec, &load->KG, parts);
 }
 
 static ritz_status take_parts(const ritz_import_request *request,
                               ritz_component *component, char **specs,
                               ritz_parts *parts)
 {
-    ritz_status status = RITZ_OK;
     const struct {
         const char *option, *spec;
         ritz_sparse *becomes;
@@ -79,18 +71,17 @@ static ritz_status take_parts(const ritz_import_request *request,
     };
     int64_t most = (int64_t)(sizeof table / sizeof *table);
 
-    RITZ_FAIL_IF(!request->mass, RITZ_ERR_ARGUMENT,
-                 "no mass matrix is given, without one nothing can move");
-    RITZ_NEW(parts->part, most + request->num_loads);
-    RITZ_NEW(component->load, request->num_loads);
+    RITZ_REFUSE_IF(!request->mass, RITZ_ERR_ARGUMENT,
+                   "no mass matrix is given, without one nothing can move");
+    RITZ_CHECK_NEW(parts->part, most + request->num_loads);
+    RITZ_CHECK_NEW(component->load, request->num_loads);
     for (int64_t k = 0; k < most; k++)
-        RITZ_TRY_IN(table[k].option,
-                    take_part(table[k].spec, table[k].becomes, parts));
+        RITZ_CHECK_IN(table[k].option,
+                      take_part(table[k].spec, table[k].becomes, parts));
     for (int64_t k = 0; k < request->num_loads; k++)
-        RITZ_TRY_IN("geometric stiffness",
-                    take_load(request->load[k], component, &specs[k], parts));
-done:
-    return status;
+        RITZ_CHECK_IN("geometric stiffness",
+                      take_load(request->load[k], component, &specs[k], parts));
+    return RITZ_OK;
 }
 
 /*
@@ -105,17 +96,14 @@ static double source_digits(const ritz_parts *parts)
 
 ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(strlen(text) >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
-                 "'%.40s...' is longer than %d letters", text,
-                 RITZ_NAME_SIZE - 1);
+    RITZ_REFUSE_IF(strlen(text) >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                   "'%.40s...' is longer than %d letters", text,
+                   RITZ_NAME_SIZE - 1);
     for (const char *c = text; *c; c += ritz_letter_length(c))
-        RITZ_FAIL_IF(ritz_letter_length(c) == 0, RITZ_ERR_ARGUMENT,
-                     "'%s' is not one line of UTF-8", text);
+        RITZ_REFUSE_IF(ritz_letter_length(c) == 0, RITZ_ERR_ARGUMENT,
+                       "'%s' is not one line of UTF-8", text);
     memcpy(out, text, strlen(text) + 1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Grids of rows and of recovered dofs are placed. */

@@ -18,12 +18,11 @@
 /* Grids and points in one ascending order. */
 static ritz_status list_all(const ritz_bulk *bulk, ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &bulk->grids;
     int64_t g = 0;
     int64_t p = 0;
 
-    RITZ_NEW(out->dof, 6 * grids->count + bulk->num_points);
+    RITZ_CHECK_NEW(out->dof, 6 * grids->count + bulk->num_points);
     while (g < grids->count || p < bulk->num_points) {
         bool point = g == grids->count ||
                      (p < bulk->num_points && bulk->point[p] < grids->id[g]);
@@ -38,22 +37,19 @@ static ritz_status list_all(const ritz_bulk *bulk, ritz_names *out)
     }
     snprintf(out->map, sizeof out->map, "grids ascending");
     out->whole = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Dofs that constraint elements eliminate, sorted. */
 static ritz_status list_dependents(const ritz_bulk *bulk, ritz_dof **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *equations = &bulk->equations;
 
-    RITZ_NEW(*out, equations->count);
+    RITZ_CHECK_NEW(*out, equations->count);
     for (int64_t k = 0; k < equations->count; k++)
         (*out)[k] = equations->dependent[k];
     qsort(*out, (size_t)equations->count, sizeof **out, ritz_dof_compare);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_in(ritz_dof dof, int64_t count, const ritz_dof *sorted)
@@ -98,19 +94,17 @@ done:
 /* The union of the sets that the deck states; empty if it states none. */
 static ritz_status list_sets(const ritz_bulk *bulk, ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t total = 0;
 
     for (int s = 0; s < 3; s++)
         total += bulk->num_sets[s];
-    RITZ_NEW(out->dof, total);
+    RITZ_CHECK_NEW(out->dof, total);
     for (int s = 0; s < 3; s++)
         for (int64_t k = 0; k < bulk->num_sets[s]; k++)
             out->dof[out->count++] = bulk->set[s][k];
     out->count = ritz_dof_distinct(total, out->dof);
     snprintf(out->map, sizeof out->map, "A-set");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool same_names(const ritz_names *a, const ritz_names *b)
@@ -152,29 +146,28 @@ static void explain(const ritz_bulk *bulk, const ritz_names *list, size_t size,
 static ritz_status choose(const ritz_bulk *bulk, int64_t n, const char *spec,
                           const ritz_names *list, int *chosen)
 {
-    ritz_status status = RITZ_OK;
     char sizes[320];
 
     *chosen = -1;
     for (int k = 0; k < KINDS && *chosen != ALL; k++) {
         if (list[k].count != n || n == 0)
             continue;
-        RITZ_FAIL_IF(*chosen >= 0 && !same_names(&list[*chosen], &list[k]),
-                     RITZ_ERR_FORMAT,
-                     "'%s' has %" PRId64 " rows, as the deck's %s has and its "
-                     "%s have: --dofs must say which",
-                     spec, n, WORDS[*chosen], WORDS[k]);
+        RITZ_REFUSE_IF(*chosen >= 0 && !same_names(&list[*chosen], &list[k]),
+                       RITZ_ERR_FORMAT,
+                       "'%s' has %" PRId64
+                       " rows, as the deck's %s has and its "
+                       "%s have: --dofs must say which",
+                       spec, n, WORDS[*chosen], WORDS[k]);
         if (*chosen < 0)
             *chosen = k;
     }
     if (*chosen < 0) {
         explain(bulk, list, sizeof sizes, sizes);
-        RITZ_FAIL_IF(true, RITZ_ERR_FORMAT,
-                     "'%s' has %" PRId64 " rows; the deck explains %s", spec, n,
-                     sizes);
+        RITZ_REFUSE_IF(true, RITZ_ERR_FORMAT,
+                       "'%s' has %" PRId64 " rows; the deck explains %s", spec,
+                       n, sizes);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_names_of_deck(const ritz_bulk *bulk, int64_t n,
@@ -202,7 +195,6 @@ done:
 static ritz_status take_line(const char *path, int64_t number, char *line,
                              ritz_names *names)
 {
-    ritz_status status = RITZ_OK;
     const char *const blanks = " \t\r";
     const char *field[3] = {NULL, NULL, NULL};
     int count = 0;
@@ -219,21 +211,20 @@ static ritz_status take_line(const char *path, int64_t number, char *line,
         at += strspn(at, blanks);
     }
     if (count == 0)
-        goto done;
-    RITZ_FAIL_IF(count != 2 || !ritz_text_whole(field[0], &dof.grid) ||
-                     !ritz_text_whole(field[1], &dof.component),
-                 RITZ_ERR_FORMAT,
-                 "'%s', line %" PRId64 ": a grid and its direction are due, "
-                 "such as '101 3'",
-                 path, number);
-    RITZ_FAIL_IF(dof.grid < 1 || dof.component < 0 || dof.component > 6,
-                 RITZ_ERR_FORMAT,
-                 "'%s', line %" PRId64 ": '%s %s' is no dof: grids are from 1 "
-                 "on, directions 1 to 6, and 0 for a scalar point",
-                 path, number, field[0], field[1]);
+        return RITZ_OK;
+    RITZ_REFUSE_IF(count != 2 || !ritz_text_whole(field[0], &dof.grid) ||
+                       !ritz_text_whole(field[1], &dof.component),
+                   RITZ_ERR_FORMAT,
+                   "'%s', line %" PRId64 ": a grid and its direction are due, "
+                   "such as '101 3'",
+                   path, number);
+    RITZ_REFUSE_IF(
+        dof.grid < 1 || dof.component < 0 || dof.component > 6, RITZ_ERR_FORMAT,
+        "'%s', line %" PRId64 ": '%s %s' is no dof: grids are from 1 "
+        "on, directions 1 to 6, and 0 for a scalar point",
+        path, number, field[0], field[1]);
     names->dof[names->count++] = dof;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Say at which lines a dof stands twice: lines hold the places of names. */

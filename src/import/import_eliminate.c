@@ -65,10 +65,9 @@ done:
 static ritz_status list_kept(const ritz_tying *tying, int64_t *column,
                              ritz_names *kept)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *by = &tying->by.kept;
 
-    RITZ_NEW(kept->dof, by->count);
+    RITZ_CHECK_NEW(kept->dof, by->count);
     for (int64_t j = 0; j < by->count; j++) {
         column[j] = -1;
         if (tying->outside[by->at[j]])
@@ -77,8 +76,7 @@ static ritz_status list_kept(const ritz_tying *tying, int64_t *column,
         kept->dof[kept->count++] = tying->names.dof[by->at[j]];
     }
     memcpy(kept->map, tying->names.map, sizeof kept->map);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether every row of G that a part has is one of the identity. */

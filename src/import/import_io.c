@@ -87,7 +87,6 @@ static void add_aim(const ritz_extended *extended, const aim *to, double scale,
 /* "GRID:COMP" of `length` letters. */
 static ritz_status take_dof(const char *text, size_t length, ritz_dof *out)
 {
-    ritz_status status = RITZ_OK;
     char copy[48] = "";
     char *colon = NULL;
     bool good = length < sizeof copy;
@@ -103,49 +102,45 @@ static ritz_status take_dof(const char *text, size_t length, ritz_dof *out)
                ritz_text_whole(colon + 1, &out->component) &&
                out->component >= 0 && out->component <= 6;
     }
-    RITZ_FAIL_IF(!good, RITZ_ERR_ARGUMENT,
-                 "'%.*s' is no grid and direction such as 101:3 (0 for a "
-                 "scalar point)",
-                 (int)length, text);
-done:
-    return status;
+    RITZ_REFUSE_IF(!good, RITZ_ERR_ARGUMENT,
+                   "'%.*s' is no grid and direction such as 101:3 (0 for a "
+                   "scalar point)",
+                   (int)length, text);
+    return RITZ_OK;
 }
 
 /* A number behind `mark`, if that is there; the text is cut before it. */
 static ritz_status take_number(const char *text, char mark, size_t *length,
                                double *out)
 {
-    ritz_status status = RITZ_OK;
     const char *at = strchr(text, mark);
 
     if (!at)
-        goto done;
-    RITZ_FAIL_IF(!ritz_text_real(at + 1, out) || *out == 0.0, RITZ_ERR_ARGUMENT,
-                 "'%s' is no number other than zero", at + 1);
+        return RITZ_OK;
+    RITZ_REFUSE_IF(!ritz_text_real(at + 1, out) || *out == 0.0,
+                   RITZ_ERR_ARGUMENT, "'%s' is no number other than zero",
+                   at + 1);
     *length = (size_t)(at - text);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_input(const char *text, const ritz_extended *extended,
                               int64_t k, ritz_io *io)
 {
-    ritz_status status = RITZ_OK;
     const char *rest = NULL;
     size_t length = 0;
     double scale = 1.0;
     ritz_dof dof = {0};
     aim to = {0};
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_import_split(text, "NAME=GRID:COMP[*SCALE]", io->input[k], &rest));
     length = strlen(rest);
-    RITZ_TRY(take_number(rest, '*', &length, &scale));
-    RITZ_TRY(take_dof(rest, length, &dof));
-    RITZ_TRY(take_aim(extended, dof, &to));
+    RITZ_CHECK(take_number(rest, '*', &length, &scale));
+    RITZ_CHECK(take_dof(rest, length, &dof));
+    RITZ_CHECK(take_aim(extended, dof, &to));
     add_aim(extended, &to, scale, 1, ritz_dense_col(&io->B, k));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What is put out: displacement unless a word behind '/' says otherwise. */
@@ -179,40 +174,36 @@ static ritz_status take_quantity(const char *text, size_t *length, ritz_io *io,
 static ritz_status make_output(const char *text, const ritz_extended *extended,
                                int64_t k, ritz_io *io)
 {
-    ritz_status status = RITZ_OK;
     const char *rest = NULL;
     size_t length = 0;
     ritz_dof dof = {0};
     ritz_dense *C = NULL;
     aim to = {0};
 
-    RITZ_TRY(ritz_import_split(text, "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
-                               io->output[k], &rest));
+    RITZ_CHECK(ritz_import_split(text, "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
+                                 io->output[k], &rest));
     length = strlen(rest);
-    RITZ_TRY(take_number(rest, '@', &length, &io->limit[k]));
-    RITZ_FAIL_IF(io->limit[k] < 0.0, RITZ_ERR_ARGUMENT,
-                 "a limit is positive, '%g' is not", io->limit[k]);
-    RITZ_TRY(take_quantity(rest, &length, io, &C));
-    RITZ_TRY(take_dof(rest, length, &dof));
-    RITZ_TRY(take_aim(extended, dof, &to));
+    RITZ_CHECK(take_number(rest, '@', &length, &io->limit[k]));
+    RITZ_REFUSE_IF(io->limit[k] < 0.0, RITZ_ERR_ARGUMENT,
+                   "a limit is positive, '%g' is not", io->limit[k]);
+    RITZ_CHECK(take_quantity(rest, &length, io, &C));
+    RITZ_CHECK(take_dof(rest, length, &dof));
+    RITZ_CHECK(take_aim(extended, dof, &to));
     add_aim(extended, &to, 1.0, C->nrow, C->val + k);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_import_aim(const char *text, size_t length,
                             const ritz_extended *extended, double scale,
                             double *into)
 {
-    ritz_status status = RITZ_OK;
     ritz_dof dof = {0};
     aim to = {0};
 
-    RITZ_TRY(take_dof(text, length, &dof));
-    RITZ_TRY(take_aim(extended, dof, &to));
+    RITZ_CHECK(take_dof(text, length, &dof));
+    RITZ_CHECK(take_aim(extended, dof, &to));
     add_aim(extended, &to, scale, 1, into);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_new(const char (*name)[RITZ_NAME_SIZE], int64_t k,
@@ -229,23 +220,21 @@ ritz_status ritz_import_io(const ritz_import_request *request,
                            const ritz_extended *extended,
                            ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
     ritz_io *io = &component->io;
 
-    RITZ_TRY(ritz_io_new(component->num_dofs, request->num_inputs,
-                         request->num_outputs, io));
+    RITZ_CHECK(ritz_io_new(component->num_dofs, request->num_inputs,
+                           request->num_outputs, io));
     for (int64_t k = 0; k < request->num_inputs; k++) {
-        RITZ_TRY_IN(request->input[k],
-                    make_input(request->input[k], extended, k, io));
-        RITZ_TRY(
+        RITZ_CHECK_IN(request->input[k],
+                      make_input(request->input[k], extended, k, io));
+        RITZ_CHECK(
             check_new((const char(*)[RITZ_NAME_SIZE])io->input, k, "inputs"));
     }
     for (int64_t k = 0; k < request->num_outputs; k++) {
-        RITZ_TRY_IN(request->output[k],
-                    make_output(request->output[k], extended, k, io));
-        RITZ_TRY(
+        RITZ_CHECK_IN(request->output[k],
+                      make_output(request->output[k], extended, k, io));
+        RITZ_CHECK(
             check_new((const char(*)[RITZ_NAME_SIZE])io->output, k, "outputs"));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -11,19 +11,16 @@
 /* Without a deck: grids 1, 2, ... with six rows each. */
 static ritz_status number_grids(int64_t n, const char *spec, ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(n == 0 || n % 6 != 0, RITZ_ERR_FORMAT,
-                 "'%s' has %" PRId64 " rows, which is not six for each grid: "
-                 "--dofs or --bulk must say what they are",
-                 spec, n);
-    RITZ_NEW(out->dof, n);
+    RITZ_REFUSE_IF(n == 0 || n % 6 != 0, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " rows, which is not six for each grid: "
+                   "--dofs or --bulk must say what they are",
+                   spec, n);
+    RITZ_CHECK_NEW(out->dof, n);
     out->count = n;
     for (int64_t k = 0; k < n; k++)
         out->dof[k] = (ritz_dof){k / 6 + 1, k % 6 + 1};
     snprintf(out->map, sizeof out->map, "grids ascending");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The first part that does not name its rows; NULL if all do. */
@@ -38,48 +35,45 @@ static const ritz_part *first_unnamed(const ritz_parts *parts)
 /* All rows that any file names, ascending by grid and direction. */
 static ritz_status unite(const ritz_parts *parts, ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t total = 0;
 
     for (int64_t k = 0; k < parts->count; k++)
         total += parts->part[k].matrix.A.nrow;
-    RITZ_NEW(out->dof, total);
+    RITZ_CHECK_NEW(out->dof, total);
     for (int64_t k = 0; k < parts->count; k++)
         for (int64_t i = 0; i < parts->part[k].matrix.A.nrow; i++)
             out->dof[out->count++] = parts->part[k].matrix.row[i];
     out->count = ritz_dof_distinct(total, out->dof);
     snprintf(out->map, sizeof out->map, "file");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows that --dofs names: files that name theirs otherwise must agree. */
 static ritz_status name_by_file(const char *path, ritz_parts *parts,
                                 ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_part *first = NULL;
 
-    RITZ_TRY(ritz_names_of_file(path, out));
+    RITZ_CHECK(ritz_names_of_file(path, out));
     for (int64_t k = 0; k < parts->count; k++) {
         const ritz_part *part = &parts->part[k];
         int64_t n = part->matrix.A.nrow;
 
-        RITZ_FAIL_IF(out->count != n, RITZ_ERR_FORMAT,
-                     "'%s' names %" PRId64 " dofs, '%s' has %" PRId64 " rows",
-                     path, out->count, part->spec, n);
+        RITZ_REFUSE_IF(out->count != n, RITZ_ERR_FORMAT,
+                       "'%s' names %" PRId64 " dofs, '%s' has %" PRId64 " rows",
+                       path, out->count, part->spec, n);
         if (!part->matrix.row)
             continue;
-        RITZ_FAIL_IF(first && memcmp(first->matrix.row, part->matrix.row,
-                                     (size_t)n * sizeof *part->matrix.row) != 0,
-                     RITZ_ERR_FORMAT,
-                     "'%s' and '%s' hold different dofs, one --dofs cannot "
-                     "name the rows of both",
-                     first->spec, part->spec);
+        RITZ_REFUSE_IF(first &&
+                           memcmp(first->matrix.row, part->matrix.row,
+                                  (size_t)n * sizeof *part->matrix.row) != 0,
+                       RITZ_ERR_FORMAT,
+                       "'%s' and '%s' hold different dofs, one --dofs cannot "
+                       "name the rows of both",
+                       first->spec, part->spec);
         first = part;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_size(const ritz_part *part, int64_t due,
@@ -96,42 +90,38 @@ static ritz_status check_size(const ritz_part *part, int64_t due,
 static ritz_status place_rows(ritz_part *part, const ritz_names *names,
                               const ritz_roster *roster, const ritz_dof *row)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = part->matrix.A.nrow;
     char name[RITZ_DOF_NAME_SIZE];
 
-    RITZ_NEW(part->place, n);
+    RITZ_CHECK_NEW(part->place, n);
     for (int64_t i = 0; i < n; i++) {
         part->place[i] = row ? ritz_roster_row(roster, row[i]) : i;
-        RITZ_FAIL_IF(part->place[i] < 0, RITZ_ERR_FORMAT,
-                     "'%s' names '%s', which is not among the %" PRId64
-                     " rows of the other matrices",
-                     part->spec, ritz_dof_name(row[i], name), names->count);
+        RITZ_REFUSE_IF(part->place[i] < 0, RITZ_ERR_FORMAT,
+                       "'%s' names '%s', which is not among the %" PRId64
+                       " rows of the other matrices",
+                       part->spec, ritz_dof_name(row[i], name), names->count);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status choose_names(const ritz_import_request *request,
                                 const ritz_bulk *bulk, ritz_parts *parts,
                                 ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_part *unnamed = first_unnamed(parts);
     int64_t n = unnamed ? unnamed->matrix.A.nrow : 0;
 
     if (request->dofs)
-        RITZ_TRY(name_by_file(request->dofs, parts, out));
+        RITZ_CHECK(name_by_file(request->dofs, parts, out));
     else if (!unnamed)
-        RITZ_TRY(unite(parts, out));
+        RITZ_CHECK(unite(parts, out));
     else if (request->bulk)
-        RITZ_TRY(ritz_names_of_deck(bulk, n, unnamed->spec, out));
+        RITZ_CHECK(ritz_names_of_deck(bulk, n, unnamed->spec, out));
     else
-        RITZ_TRY(number_grids(n, unnamed->spec, out));
+        RITZ_CHECK(number_grids(n, unnamed->spec, out));
     if (request->bulk && (request->dofs || !unnamed))
         out->whole = out->count >= 6 * bulk->grids.count + bulk->num_points;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_names_find(const ritz_import_request *request,

@@ -11,20 +11,18 @@
 ritz_status ritz_import_split(const char *text, const char *form,
                               char name[RITZ_NAME_SIZE], const char **rest)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strchr(text, '=');
     char copy[RITZ_NAME_SIZE] = "";
 
-    RITZ_FAIL_IF(!equals || !equals[1], RITZ_ERR_ARGUMENT,
-                 "'%.80s' is not of the form %s", text, form);
-    RITZ_FAIL_IF((size_t)(equals - text) >= sizeof copy, RITZ_ERR_ARGUMENT,
-                 "'%.40s...': a name has at most %d letters", text,
-                 RITZ_NAME_SIZE - 1);
+    RITZ_REFUSE_IF(!equals || !equals[1], RITZ_ERR_ARGUMENT,
+                   "'%.80s' is not of the form %s", text, form);
+    RITZ_REFUSE_IF((size_t)(equals - text) >= sizeof copy, RITZ_ERR_ARGUMENT,
+                   "'%.40s...': a name has at most %d letters", text,
+                   RITZ_NAME_SIZE - 1);
     memcpy(copy, text, (size_t)(equals - text));
-    RITZ_TRY(ritz_name_copy(copy, name));
+    RITZ_CHECK(ritz_name_copy(copy, name));
     *rest = equals + 1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* One port as it is put together. */
@@ -41,24 +39,22 @@ typedef struct draft {
 /* The digits behind the last ':': 1 to 6, or 0 for scalar points. */
 static ritz_status take_components(const char *text, draft *it)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!*text, RITZ_ERR_ARGUMENT, "no directions follow ':'");
+    RITZ_REFUSE_IF(!*text, RITZ_ERR_ARGUMENT, "no directions follow ':'");
     for (const char *c = text; *c; c++) {
         int k = *c - '0';
 
-        RITZ_FAIL_IF(k < 0 || k > 6 || it->want[k], RITZ_ERR_ARGUMENT,
-                     "'%s' are not directions: digits 1 to 6, each once, or 0 "
-                     "for scalar points",
-                     text);
+        RITZ_REFUSE_IF(
+            k < 0 || k > 6 || it->want[k], RITZ_ERR_ARGUMENT,
+            "'%s' are not directions: digits 1 to 6, each once, or 0 "
+            "for scalar points",
+            text);
         it->want[k] = true;
     }
-    RITZ_FAIL_IF(it->want[0] && text[1], RITZ_ERR_ARGUMENT,
-                 "'%s' are not directions: 0, for scalar points, goes alone",
-                 text);
+    RITZ_REFUSE_IF(it->want[0] && text[1], RITZ_ERR_ARGUMENT,
+                   "'%s' are not directions: 0, for scalar points, goes alone",
+                   text);
     it->choosy = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A dof that follows others cannot be held: say what it follows. */
@@ -165,7 +161,6 @@ done:
 /* Grids from..to that exist, or points if directions are 0. */
 static ritz_status add_range(int64_t from, int64_t to, draft *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_roster *roster = &it->extended->roster;
     int64_t before = it->port.dofs.count;
     int64_t last = from - 1;
@@ -177,19 +172,17 @@ static ritz_status add_range(int64_t from, int64_t to, draft *it)
 
         if (dof.grid == last || !fits)
             continue;
-        RITZ_TRY(add_grid(dof.grid, it));
+        RITZ_CHECK(add_grid(dof.grid, it));
         last = dof.grid;
     }
-    RITZ_FAIL_IF(it->port.dofs.count == before, RITZ_ERR_ARGUMENT,
-                 "there is nothing from %" PRId64 " to %" PRId64, from, to);
-done:
-    return status;
+    RITZ_REFUSE_IF(it->port.dofs.count == before, RITZ_ERR_ARGUMENT,
+                   "there is nothing from %" PRId64 " to %" PRId64, from, to);
+    return RITZ_OK;
 }
 
 /* "5" must exist; of "10-20" those are taken that do. */
 static ritz_status add_part(const char *text, size_t length, draft *it)
 {
-    ritz_status status = RITZ_OK;
     char part[48] = "";
     char *dash = NULL;
     int64_t from = 0;
@@ -204,39 +197,35 @@ static ritz_status add_part(const char *text, size_t length, draft *it)
         good = ritz_text_whole(part, &from) && from > 0 &&
                (!dash || (ritz_text_whole(dash, &to) && to >= from));
     }
-    RITZ_FAIL_IF(!good, RITZ_ERR_ARGUMENT,
-                 "'%.*s' is no part of a list of grids such as 1,5,10-20",
-                 (int)length, text);
-    RITZ_TRY(dash ? add_range(from, to, it) : add_grid(from, it));
-done:
-    return status;
+    RITZ_REFUSE_IF(!good, RITZ_ERR_ARGUMENT,
+                   "'%.*s' is no part of a list of grids such as 1,5,10-20",
+                   (int)length, text);
+    return dash ? add_range(from, to, it) : add_grid(from, it);
 }
 
 static ritz_status fill(const char *text, draft *it)
 {
-    ritz_status status = RITZ_OK;
     const char *grids = NULL;
     const char *colon = NULL;
     const char *end = NULL;
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_import_split(text, "NAME=GRIDS[:COMPS]", it->port.name, &grids));
-    RITZ_FAIL_IF(strchr(it->port.name, ','), RITZ_ERR_ARGUMENT,
-                 "'%s' holds ',', the name of a port cannot", it->port.name);
+    RITZ_REFUSE_IF(strchr(it->port.name, ','), RITZ_ERR_ARGUMENT,
+                   "'%s' holds ',', the name of a port cannot", it->port.name);
     colon = strchr(grids, ':');
     end = colon ? colon : grids + strlen(grids);
     if (colon)
-        RITZ_TRY(take_components(colon + 1, it));
+        RITZ_CHECK(take_components(colon + 1, it));
     for (const char *at = grids; at <= end;) {
         size_t length = strcspn(at, ",:");
 
-        RITZ_TRY(add_part(at, length, it));
+        RITZ_CHECK(add_part(at, length, it));
         at += length + 1;
     }
     for (int64_t i = 0; i < 3; i++)
         it->port.axes[4 * i] = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A port's list has room for all rows until it is known; then it is cut. */
@@ -274,13 +263,10 @@ done:
 static ritz_status make_tied(const ritz_import_grid *grid,
                              const ritz_extended *extended, ritz_port *out)
 {
-    ritz_status status = RITZ_OK;
     char text[RITZ_NAME_SIZE + 32];
 
     snprintf(text, sizeof text, "%s=%" PRId64 ":123456", grid->port, grid->id);
-    RITZ_TRY(ritz_import_port(text, true, extended, out));
-done:
-    return status;
+    return ritz_import_port(text, true, extended, out);
 }
 
 static ritz_status add_port(ritz_port *port, ritz_component *component)
@@ -302,20 +288,18 @@ ritz_status ritz_import_ports(const ritz_import_request *request,
                               const ritz_extended *extended,
                               ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
     ritz_port port = {0};
 
-    RITZ_NEW(component->port, request->num_ports + report->num_grids);
+    RITZ_CHECK_NEW(component->port, request->num_ports + report->num_grids);
     for (int64_t k = 0; k < request->num_ports; k++) {
-        RITZ_TRY_IN(request->port[k],
-                    ritz_import_port(request->port[k], true, extended, &port));
-        RITZ_TRY(add_port(&port, component));
+        RITZ_CHECK_IN(request->port[k], ritz_import_port(request->port[k], true,
+                                                         extended, &port));
+        RITZ_CHECK(add_port(&port, component));
     }
     for (int64_t k = 0; k < report->num_grids; k++) {
-        RITZ_TRY_IN(report->grid[k].port,
-                    make_tied(&report->grid[k], extended, &port));
-        RITZ_TRY(add_port(&port, component));
+        RITZ_CHECK_IN(report->grid[k].port,
+                      make_tied(&report->grid[k], extended, &port));
+        RITZ_CHECK(add_port(&port, component));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -66,12 +66,10 @@ static ritz_status find_presence(const ritz_parts *parts, const ritz_bulk *bulk,
                                  const ritz_names *names,
                                  const ritz_component *component, presence *at)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(at->K, names->count);
-    RITZ_NEW(at->M, names->count);
-    RITZ_NEW(at->other, names->count);
-    RITZ_NEW(at->fixed, names->count);
+    RITZ_CHECK_NEW(at->K, names->count);
+    RITZ_CHECK_NEW(at->M, names->count);
+    RITZ_CHECK_NEW(at->other, names->count);
+    RITZ_CHECK_NEW(at->fixed, names->count);
     for (int64_t k = 0; k < parts->count; k++) {
         const ritz_part *part = &parts->part[k];
 
@@ -86,8 +84,7 @@ static ritz_status find_presence(const ritz_parts *parts, const ritz_bulk *bulk,
         at->fixed[k] =
             bsearch(&names->dof[k], bulk->fixed, (size_t)bulk->num_fixed,
                     sizeof *bulk->fixed, ritz_dof_compare) != NULL;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Sort the rows: stays[k] is the new row, -1 if it is left out. */
@@ -95,7 +92,6 @@ static ritz_status sort_rows(const presence *at, const ritz_names *names,
                              bool rigid, int64_t *stays,
                              ritz_import_report *report, ritz_component *to)
 {
-    ritz_status status = RITZ_OK;
     char name[RITZ_DOF_NAME_SIZE];
 
     for (int64_t k = 0; k < names->count; k++) {
@@ -106,10 +102,10 @@ static ritz_status sort_rows(const presence *at, const ritz_names *names,
             report->fixed[report->num_fixed++] = names->dof[k];
             continue;
         }
-        RITZ_FAIL_IF(empty && at->other[k], RITZ_ERR_FORMAT,
-                     "'%s' has damping or geometric stiffness, but neither "
-                     "stiffness nor mass",
-                     ritz_dof_name(names->dof[k], name));
+        RITZ_REFUSE_IF(empty && at->other[k], RITZ_ERR_FORMAT,
+                       "'%s' has damping or geometric stiffness, but neither "
+                       "stiffness nor mass",
+                       ritz_dof_name(names->dof[k], name));
         if (empty) {
             report->removed[report->num_removed++] = names->dof[k];
             continue;
@@ -119,10 +115,9 @@ static ritz_status sort_rows(const presence *at, const ritz_names *names,
         stays[k] = to->num_dofs;
         to->dof[to->num_dofs++] = names->dof[k];
     }
-    RITZ_FAIL_IF(to->num_dofs == 0, RITZ_ERR_FORMAT,
-                 "no row that is free to move has stiffness or mass");
-done:
-    return status;
+    RITZ_REFUSE_IF(to->num_dofs == 0, RITZ_ERR_FORMAT,
+                   "no row that is free to move has stiffness or mass");
+    return RITZ_OK;
 }
 
 /* Positions and frames of the grids that have rows in the matrices. */

@@ -74,21 +74,18 @@ bool ritz_import_space_next(const char **at, char *out)
 /* "A=F,B=F,..." */
 static ritz_status take_listed(const char *text, char *spec, parts *out)
 {
-    ritz_status status = RITZ_OK;
-
     while (*text) {
         int k = letter_of(text);
 
-        RITZ_FAIL_IF(k < 0, RITZ_ERR_ARGUMENT,
-                     "'%s' is not of the form A=F,B=F,C=F[,D=F][,E=F]", text);
-        RITZ_FAIL_IF(out->there[k], RITZ_ERR_ARGUMENT, "'%c' is given twice",
-                     letters[k]);
+        RITZ_REFUSE_IF(k < 0, RITZ_ERR_ARGUMENT,
+                       "'%s' is not of the form A=F,B=F,C=F[,D=F][,E=F]", text);
+        RITZ_REFUSE_IF(out->there[k], RITZ_ERR_ARGUMENT, "'%c' is given twice",
+                       letters[k]);
         ritz_import_space_next(&text, spec);
-        RITZ_TRY(ritz_foreign_select(spec, &out->matrix[k]));
+        RITZ_CHECK(ritz_foreign_select(spec, &out->matrix[k]));
         out->there[k] = true;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static char folded(char c)
@@ -122,7 +119,6 @@ static int64_t find(const ritz_matrices *all, const char *stem, char letter)
 static ritz_status find_stem(const ritz_matrices *all, const char *file,
                              char stem[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
     int64_t found = 0;
 
     stem[0] = '\0';
@@ -134,16 +130,15 @@ static ritz_status find_stem(const ritz_matrices *all, const char *file,
 
         if (!dot || folded(dot[1]) != 'A' || dot[2])
             continue;
-        RITZ_FAIL_IF(found++ > 0, RITZ_ERR_ARGUMENT,
-                     "'%s' holds several state spaces: name one, as %s:%s",
-                     file, file, stem);
+        RITZ_REFUSE_IF(found++ > 0, RITZ_ERR_ARGUMENT,
+                       "'%s' holds several state spaces: name one, as %s:%s",
+                       file, file, stem);
         snprintf(stem, RITZ_NAME_SIZE, "%.*s", (int)(dot - name), name);
     }
-    RITZ_FAIL_IF(found == 0, RITZ_ERR_FORMAT,
-                 "'%s' holds no matrix 'A': name each, as A=FILE:NAME,B=...",
-                 file);
-done:
-    return status;
+    RITZ_REFUSE_IF(found == 0, RITZ_ERR_FORMAT,
+                   "'%s' holds no matrix 'A': name each, as A=FILE:NAME,B=...",
+                   file);
+    return RITZ_OK;
 }
 
 /* "FILE[:NAME]" */
@@ -181,7 +176,6 @@ done:
 /* A, B and C are there, all are real, and they are as large as A says. */
 static ritz_status check(const parts *p)
 {
-    ritz_status status = RITZ_OK;
     const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
     const int64_t n = p->matrix[PART_A].A.nrow;
     const int64_t sizes[NUM_PARTS][2] = {
@@ -193,31 +187,30 @@ static ritz_status check(const parts *p)
     };
 
     for (int k = 0; k <= PART_C; k++)
-        RITZ_FAIL_IF(!p->there[k], RITZ_ERR_ARGUMENT, "there is no '%c'",
-                     letters[k]);
+        RITZ_REFUSE_IF(!p->there[k], RITZ_ERR_ARGUMENT, "there is no '%c'",
+                       letters[k]);
     for (int k = 0; k < NUM_PARTS; k++) {
         const ritz_matrix *m = &p->matrix[k];
 
         if (!p->there[k])
             continue;
-        RITZ_FAIL_IF(m->imaginary, RITZ_ERR_FORMAT,
-                     "'%c' is complex, a real matrix is due", letters[k]);
-        RITZ_FAIL_IF(m->A.nrow == 0 || m->A.ncol == 0, RITZ_ERR_FORMAT,
-                     "'%c' is empty", letters[k]);
-        RITZ_FAIL_IF(m->A.nrow != sizes[k][0] || m->A.ncol != sizes[k][1],
-                     RITZ_ERR_FORMAT,
-                     "'%c' is %" PRId64 " x %" PRId64 " where %" PRId64
-                     " x %" PRId64 " is due",
-                     letters[k], m->A.nrow, m->A.ncol, sizes[k][0],
-                     sizes[k][1]);
-        RITZ_FAIL_IF(m->A.nrow > most || m->A.ncol > most, RITZ_ERR_ARGUMENT,
-                     "'%c' is %" PRId64 " x %" PRId64
-                     ": state spaces are dense, of at most %" PRId64
-                     " states, inputs and outputs",
-                     letters[k], m->A.nrow, m->A.ncol, most);
+        RITZ_REFUSE_IF(m->imaginary, RITZ_ERR_FORMAT,
+                       "'%c' is complex, a real matrix is due", letters[k]);
+        RITZ_REFUSE_IF(m->A.nrow == 0 || m->A.ncol == 0, RITZ_ERR_FORMAT,
+                       "'%c' is empty", letters[k]);
+        RITZ_REFUSE_IF(m->A.nrow != sizes[k][0] || m->A.ncol != sizes[k][1],
+                       RITZ_ERR_FORMAT,
+                       "'%c' is %" PRId64 " x %" PRId64 " where %" PRId64
+                       " x %" PRId64 " is due",
+                       letters[k], m->A.nrow, m->A.ncol, sizes[k][0],
+                       sizes[k][1]);
+        RITZ_REFUSE_IF(m->A.nrow > most || m->A.ncol > most, RITZ_ERR_ARGUMENT,
+                       "'%c' is %" PRId64 " x %" PRId64
+                       ": state spaces are dense, of at most %" PRId64
+                       " states, inputs and outputs",
+                       letters[k], m->A.nrow, m->A.ncol, most);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The k-th of "a,b,c", or "u3" if there is no list; false: none so long. */
@@ -253,39 +246,35 @@ static int64_t count_items(const char *list)
 /* "NAME[@LIMIT]": the limit, cut off; where none may be NULL. */
 static ritz_status take_limit(char *item, double *limit)
 {
-    ritz_status status = RITZ_OK;
     char *at = limit ? strrchr(item, '@') : NULL;
 
     if (!at)
         return RITZ_OK;
     *at = '\0';
-    RITZ_FAIL_IF(!ritz_text_real(at + 1, limit) || !(*limit > 0.0),
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is no limit, a positive number is due", at + 1);
-done:
-    return status;
+    RITZ_REFUSE_IF(!ritz_text_real(at + 1, limit) || !(*limit > 0.0),
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is no limit, a positive number is due", at + 1);
+    return RITZ_OK;
 }
 
 /* Names, each once; an output may end in "@LIMIT". */
 static ritz_status name_ends(const char *list, char prefix, int64_t count,
                              char (*name)[RITZ_NAME_SIZE], double *limit)
 {
-    ritz_status status = RITZ_OK;
     char item[2 * RITZ_NAME_SIZE];
 
-    RITZ_FAIL_IF(list && count_items(list) != count, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " names are given for %" PRId64, count_items(list),
-                 count);
+    RITZ_REFUSE_IF(list && count_items(list) != count, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " names are given for %" PRId64,
+                   count_items(list), count);
     for (int64_t k = 0; k < count; k++) {
         (void)take_item(list, prefix, k, item, sizeof item);
-        RITZ_TRY(take_limit(item, limit ? &limit[k] : NULL));
-        RITZ_TRY(ritz_name_copy(item, name[k]));
+        RITZ_CHECK(take_limit(item, limit ? &limit[k] : NULL));
+        RITZ_CHECK(ritz_name_copy(item, name[k]));
         for (int64_t i = 0; i < k; i++)
-            RITZ_FAIL_IF(strcmp(name[i], name[k]) == 0, RITZ_ERR_ARGUMENT,
-                         "'%s' is named twice", name[k]);
+            RITZ_REFUSE_IF(strcmp(name[i], name[k]) == 0, RITZ_ERR_ARGUMENT,
+                           "'%s' is named twice", name[k]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_identity(const ritz_dense *E)
@@ -300,7 +289,6 @@ static bool is_identity(const ritz_dense *E)
 /* Dense matrices in the place of those that are zero. */
 static ritz_status fill(const parts *p, ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense *const into[NUM_PARTS] = {&model->A, &model->B, &model->C,
                                          &model->D, &model->E};
 
@@ -308,12 +296,11 @@ static ritz_status fill(const parts *p, ritz_state_space *model)
         if (!p->there[k])
             continue;
         ritz_dense_free(into[k]);
-        RITZ_TRY(ritz_sparse_dense(&p->matrix[k].A, into[k]));
+        RITZ_CHECK(ritz_sparse_dense(&p->matrix[k].A, into[k]));
     }
     if (model->E.val && is_identity(&model->E))
         ritz_dense_free(&model->E);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make(const ritz_import_space_request *request,

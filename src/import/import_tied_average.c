@@ -133,55 +133,49 @@ static ritz_status check_open(const reach *over, int64_t open)
 /* A := Q' A with A_p = Q R in front, by pivoting among the free columns. */
 static ritz_status factor(reach *over, lapack_int *order, double *tau)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense *A = &over->A;
     int64_t k = over->num_free;
 
-    RITZ_TRY(check_open(over, k < SIX ? SIX - k : 0));
+    RITZ_CHECK(check_open(over, k < SIX ? SIX - k : 0));
     for (int64_t j = k; j < A->ncol; j++)
         order[j] = (lapack_int)j + 1;
-    RITZ_FAIL_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, SIX, (lapack_int)k, A->val,
-                                SIX, order, tau) != 0,
-                 RITZ_ERR_MEMORY, "no memory for the average");
+    RITZ_REFUSE_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, SIX, (lapack_int)k, A->val,
+                                  SIX, order, tau) != 0,
+                   RITZ_ERR_MEMORY, "no memory for the average");
     if (A->ncol > k)
-        RITZ_FAIL_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', SIX,
-                                    (lapack_int)(A->ncol - k), SIX, A->val, SIX,
-                                    tau, ritz_dense_col(A, k), SIX) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the average");
-    RITZ_TRY(check_open(over, count_open(A)));
-done:
-    return status;
+        RITZ_REFUSE_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', SIX,
+                                      (lapack_int)(A->ncol - k), SIX, A->val,
+                                      SIX, tau, ritz_dense_col(A, k), SIX) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the average");
+    return check_open(over, count_open(A));
 }
 
 /* X = R_p^-1 [Q', -R_r]: u_p = X [q; u_r]. */
 static ritz_status pivot(reach *over, lapack_int *order, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *A = &over->A;
     lapack_int k = (lapack_int)A->ncol;
     double tau[SIX];
 
-    RITZ_TRY(factor(over, order, tau));
-    RITZ_TRY(ritz_dense_new(SIX, k, X));
+    RITZ_CHECK(factor(over, order, tau));
+    RITZ_CHECK(ritz_dense_new(SIX, k, X));
     for (int64_t j = 0; j < SIX; j++)
         ritz_dense_col(X, j)[j] = 1.0;
-    RITZ_FAIL_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', SIX, SIX, SIX,
-                                A->val, SIX, tau, X->val, SIX) != 0,
-                 RITZ_ERR_MEMORY, "no memory for the average");
+    RITZ_REFUSE_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', SIX, SIX, SIX,
+                                  A->val, SIX, tau, X->val, SIX) != 0,
+                   RITZ_ERR_MEMORY, "no memory for the average");
     for (int64_t j = SIX; j < k; j++)
         for (int64_t i = 0; i < SIX; i++)
             ritz_dense_col(X, j)[i] = -ritz_dense_col(A, j)[i];
-    RITZ_FAIL_IF(LAPACKE_dtrtrs(LAPACK_COL_MAJOR, 'U', 'N', 'N', SIX, k, A->val,
-                                SIX, X->val, SIX) != 0,
-                 RITZ_ERR_SINGULAR, "the average is singular");
-done:
-    return status;
+    RITZ_REFUSE_IF(LAPACKE_dtrtrs(LAPACK_COL_MAJOR, 'U', 'N', 'N', SIX, k,
+                                  A->val, SIX, X->val, SIX) != 0,
+                   RITZ_ERR_SINGULAR, "the average is singular");
+    return RITZ_OK;
 }
 
 static ritz_status put(const ritz_tied *it, const ritz_dense *X,
                        const ritz_dof *dof, const lapack_int *order)
 {
-    ritz_status status = RITZ_OK;
     ritz_equations *eq = &it->bulk->equations;
     double length = it->average.length;
 
@@ -189,7 +183,7 @@ static ritz_status put(const ritz_tied *it, const ritz_dense *X,
         ritz_dof dependent = dof[order[i] - 1];
         double most = 0.0;
 
-        RITZ_TRY(ritz_equations_begin(eq, dependent));
+        RITZ_CHECK(ritz_equations_begin(eq, dependent));
         for (int64_t j = 0; j < X->ncol; j++)
             most = fmax(most, fabs(ritz_dense_col(X, j)[i]));
         for (int64_t j = 0; j < X->ncol; j++) {
@@ -198,14 +192,13 @@ static ritz_status put(const ritz_tied *it, const ritz_dense *X,
             double share = ritz_dense_col(X, j)[i];
 
             if (fabs(share) > RITZ_TIE_ROUNDING * most)
-                RITZ_TRY(
+                RITZ_CHECK(
                     ritz_equations_add(eq, of,
                                        share * ritz_tie_scale(of, length) /
                                            ritz_tie_scale(dependent, length)));
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_tied_average(const ritz_tied *it, const ritz_sparse *turned)

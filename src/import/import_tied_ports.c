@@ -83,7 +83,6 @@ done:
 
 static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &it->bulk->grids;
     ritz_tie tie = {.weight = 1.0};
 
@@ -91,20 +90,19 @@ static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
         ritz_dof dof = extended->view.dof[it->port.dofs.at[i]];
         int64_t k = ritz_grids_find(grids, dof.grid);
 
-        RITZ_FAIL_IF(k < 0 || dof.component == 0, RITZ_ERR_ARGUMENT,
-                     "'%" PRId64 "' has no position: those of grids are known "
-                     "from the deck alone (--bulk)",
-                     dof.grid);
+        RITZ_REFUSE_IF(k < 0 || dof.component == 0, RITZ_ERR_ARGUMENT,
+                       "'%" PRId64
+                       "' has no position: those of grids are known "
+                       "from the deck alone (--bulk)",
+                       dof.grid);
         if (i > 0 && k != tie.grid) {
-            RITZ_TRY(ritz_ties_add(&it->over, tie));
+            RITZ_CHECK(ritz_ties_add(&it->over, tie));
             tie.mask = 0;
         }
         tie.grid = k;
         tie.mask |= (uint8_t)(1U << (unsigned)dof.component);
     }
-    RITZ_TRY(ritz_ties_add(&it->over, tie));
-done:
-    return status;
+    return ritz_ties_add(&it->over, tie);
 }
 
 /* ---- the new grid ------------------------------------------------------ */
@@ -277,10 +275,9 @@ ritz_status ritz_tying_ports(const ritz_import_request *request,
                              ritz_bulk *bulk, ritz_tying *tying,
                              ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = request->num_rigid_ports + request->num_averaged_ports;
 
-    RITZ_NEW(report->grid, count);
+    RITZ_CHECK_NEW(report->grid, count);
     for (int64_t k = 0; k < count; k++) {
         int64_t j = k - request->num_rigid_ports;
         ritz_tied it = {.text = j < 0 ? request->rigid_port[k]
@@ -290,8 +287,7 @@ ritz_status ritz_tying_ports(const ritz_import_request *request,
                         .bulk = bulk,
                         .tying = tying};
 
-        RITZ_TRY(add_port(&it, report));
+        RITZ_CHECK(add_port(&it, report));
     }
-done:
-    return status;
+    return RITZ_OK;
 }

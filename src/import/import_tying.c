@@ -56,13 +56,12 @@ static ritz_status list_missing(const ritz_bulk *bulk,
                                 const ritz_roster *roster, int64_t *count,
                                 ritz_dof **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = &bulk->equations;
     int64_t terms = eq->count > 0 ? eq->first[eq->count] : 0;
     ritz_dof *list = NULL;
     int64_t found = 0;
 
-    RITZ_NEW(list, eq->count + terms);
+    RITZ_CHECK_NEW(list, eq->count + terms);
     for (int64_t e = 0; e < eq->count; e++)
         if (ritz_roster_row(roster, eq->dependent[e]) < 0)
             list[found++] = eq->dependent[e];
@@ -71,8 +70,7 @@ static ritz_status list_missing(const ritz_bulk *bulk,
             list[found++] = eq->dof[k];
     *count = ritz_dof_distinct(found, list);
     *out = list;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_ascending(const ritz_names *names)
@@ -163,33 +161,30 @@ done:
 static ritz_status heed_refusal(ritz_bulk *bulk, const ritz_tying *it,
                                 ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
     ritz_equations *eq = &bulk->equations;
 
     if (!eq->refused)
-        goto done;
-    RITZ_FAIL_IF(it->acts, RITZ_ERR_FORMAT,
-                 "%s; the matrices still hold its dofs, and matrices of the "
-                 "a-set would not",
-                 eq->refused);
+        return RITZ_OK;
+    RITZ_REFUSE_IF(it->acts, RITZ_ERR_FORMAT,
+                   "%s; the matrices still hold its dofs, and matrices of the "
+                   "a-set would not",
+                   eq->refused);
     report->unknown = eq->refused;
     eq->refused = NULL;
     ritz_equations_free(eq);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A dof is in the a-set or depends, not both. */
 static ritz_status check_sets(const ritz_bulk *bulk)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = &bulk->equations;
     char name[RITZ_DOF_NAME_SIZE];
     char cited[RITZ_CITATION_SIZE];
 
     for (int64_t e = 0; e < eq->count; e++)
         for (int s = 0; s < 3; s++)
-            RITZ_FAIL_IF(
+            RITZ_REFUSE_IF(
                 bulk->num_sets[s] > 0 &&
                     bsearch(&eq->dependent[e], bulk->set[s],
                             (size_t)bulk->num_sets[s], sizeof *bulk->set[s],
@@ -198,18 +193,15 @@ static ritz_status check_sets(const ritz_bulk *bulk)
                 "'%s' depends on %s and is in the a-set: it cannot be both",
                 ritz_dof_name(eq->dependent[e], name),
                 ritz_equations_cite(eq, eq->source[e], cited));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status name_constraints(const ritz_bulk *bulk,
                                     ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-
     if (report->unknown)
-        goto done;
-    RITZ_NEW(report->constraint, bulk->num_constraints);
+        return RITZ_OK;
+    RITZ_CHECK_NEW(report->constraint, bulk->num_constraints);
     for (int64_t k = 0; k < bulk->num_constraints; k++) {
         int64_t at = report->num_constraints;
 
@@ -221,8 +213,7 @@ static ritz_status name_constraints(const ritz_bulk *bulk,
                sizeof *report->constraint);
         report->num_constraints++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_tying_solve(ritz_tying *tying)

@@ -67,16 +67,15 @@ static ritz_status solve(const ritz_shifted *S, const double *x, double *y)
 
 static ritz_status allocate(const ritz_shifted *S, int64_t k, lanczos *L)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = S->M->nrow;
     int64_t ncv = 2 * k + 1 > k + 20 ? 2 * k + 1 : k + 20;
     uint64_t seed = 1998;
 
     ncv = ncv < n ? ncv : n;
-    RITZ_FAIL_IF(n > INT_MAX / 3 || ncv > 40000 || k >= ncv, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " modes of %" PRId64
-                 " dofs are more than ARPACK can find",
-                 k, n);
+    RITZ_REFUSE_IF(
+        n > INT_MAX / 3 || ncv > 40000 || k >= ncv, RITZ_ERR_ARGUMENT,
+        "%" PRId64 " modes of %" PRId64 " dofs are more than ARPACK can find",
+        k, n);
     L->n = (a_int)n;
     L->nev = (a_int)k;
     L->ncv = (a_int)ncv;
@@ -85,18 +84,16 @@ static ritz_status allocate(const ritz_shifted *S, int64_t k, lanczos *L)
     L->iparam[0] = 1;
     L->iparam[2] = RESTARTS;
     L->iparam[6] = 3;
-    RITZ_NEW(L->resid, n);
-    RITZ_NEW(L->workd, 3 * n);
-    RITZ_NEW(L->workl, L->lworkl);
-    RITZ_NEW(L->d, ncv);
-    RITZ_NEW(L->select, ncv);
-    RITZ_TRY(ritz_dense_new(n, ncv, &L->V));
+    RITZ_CHECK_NEW(L->resid, n);
+    RITZ_CHECK_NEW(L->workd, 3 * n);
+    RITZ_CHECK_NEW(L->workl, L->lworkl);
+    RITZ_CHECK_NEW(L->d, ncv);
+    RITZ_CHECK_NEW(L->select, ncv);
+    RITZ_CHECK(ritz_dense_new(n, ncv, &L->V));
     for (int64_t i = 0; i < n; i++)
         L->resid[i] = noise(&seed);
-    RITZ_TRY(multiply(S->M, &(ritz_dense){n, 1, L->resid}, L->resid));
-    RITZ_TRY(solve(S, L->resid, L->resid));
-done:
-    return status;
+    RITZ_CHECK(multiply(S->M, &(ritz_dense){n, 1, L->resid}, L->resid));
+    return solve(S, L->resid, L->resid);
 }
 
 static void release(lanczos *L)
@@ -112,7 +109,6 @@ static void release(lanczos *L)
 /* Do what ARPACK asks for until it asks no more. */
 static ritz_status iterate(const ritz_shifted *S, lanczos *L)
 {
-    ritz_status status = RITZ_OK;
     a_int ido = 0;
     int64_t solves = 0;
 
@@ -126,18 +122,17 @@ static ritz_status iterate(const ritz_shifted *S, lanczos *L)
         X.val = L->workd + L->ipntr[0] - 1;
         y = L->workd + L->ipntr[1] - 1;
         if (ido == 2) {
-            RITZ_TRY(multiply(S->M, &X, y));
+            RITZ_CHECK(multiply(S->M, &X, y));
             continue;
         }
         if (ido != 1 && ido != -1)
             break;
         ritz_monitor_step("eigenvectors", ++solves, 0);
         if (ido == -1)
-            RITZ_TRY(multiply(S->M, &X, y));
-        RITZ_TRY(solve(S, ido == 1 ? L->workd + L->ipntr[2] - 1 : y, y));
+            RITZ_CHECK(multiply(S->M, &X, y));
+        RITZ_CHECK(solve(S, ido == 1 ? L->workd + L->ipntr[2] - 1 : y, y));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The k-th largest |nu| ARPACK came to, as an eigenvalue. */
@@ -157,16 +152,13 @@ static double reach_of(const lanczos *L, double sigma)
 
 static ritz_status extract(const ritz_shifted *S, lanczos *L)
 {
-    ritz_status status = RITZ_OK;
-
     dseupd_c(1, "A", L->select, L->d, L->V.val, L->n, S->sigma, "G", L->n, "LM",
              L->nev, tolerance, L->resid, L->ncv, L->V.val, L->n, L->iparam,
              L->ipntr, L->workd, L->workl, L->lworkl, &L->info);
-    RITZ_FAIL_IF(L->info != 0, RITZ_ERR_CONVERGENCE,
-                 "the eigenvectors cannot be found, ARPACK says %d",
-                 (int)L->info);
-done:
-    return status;
+    RITZ_REFUSE_IF(L->info != 0, RITZ_ERR_CONVERGENCE,
+                   "the eigenvectors cannot be found, ARPACK says %d",
+                   (int)L->info);
+    return RITZ_OK;
 }
 
 ritz_status ritz_lanczos_lowest(const ritz_shifted *S, int64_t k, ritz_dense *X,

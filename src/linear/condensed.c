@@ -15,19 +15,18 @@
 /* G := G^-1, symmetric positive definite. */
 static ritz_status invert(ritz_dense *G)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)G->nrow;
     int info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, G->val, n);
 
     if (info == 0)
         info = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', n, G->val, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
-                 "stiffness condensed to the masses is not positive definite");
+    RITZ_REFUSE_IF(
+        info != 0, RITZ_ERR_SINGULAR,
+        "stiffness condensed to the masses is not positive definite");
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < j; i++)
             G->val[i + j * n] = G->val[j + i * n];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* M_hh. */

@@ -12,31 +12,27 @@ static const double equal_within = 1e-9;
 
 ritz_status ritz_dense_new(int64_t nrow, int64_t ncol, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
-    RITZ_FAIL_IF(nrow < 0 || ncol < 0 || nrow > INT_MAX || ncol > INT_MAX,
-                 RITZ_ERR_ARGUMENT,
-                 "a dense matrix cannot be %" PRId64 " x %" PRId64, nrow, ncol);
+    RITZ_REFUSE_IF(nrow < 0 || ncol < 0 || nrow > INT_MAX || ncol > INT_MAX,
+                   RITZ_ERR_ARGUMENT,
+                   "a dense matrix cannot be %" PRId64 " x %" PRId64, nrow,
+                   ncol);
     count = nrow * ncol;
-    RITZ_NEW(out->val, count);
+    RITZ_CHECK_NEW(out->val, count);
     out->nrow = nrow;
     out->ncol = ncol;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
                                int64_t count, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
     if (A->nrow * count > 0)
         memcpy(out->val, ritz_dense_col(A, first),
                (size_t)(A->nrow * count) * sizeof *out->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count)
@@ -47,30 +43,25 @@ ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count)
 ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
                             const int64_t *row, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(count, A->ncol, out));
+    RITZ_CHECK(ritz_dense_new(count, A->ncol, out));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < count; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[row[i]];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t a = A->nrow * A->ncol;
     int64_t b = B->nrow * B->ncol;
 
-    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol + B->ncol, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol + B->ncol, out));
     if (a > 0)
         memcpy(out->val, A->val, (size_t)a * sizeof *out->val);
     if (b > 0)
         memcpy(out->val + a, B->val, (size_t)b * sizeof *out->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out)
@@ -80,13 +71,10 @@ ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out)
 
 ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(A, out));
+    RITZ_CHECK(ritz_dense_copy(A, out));
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         out->val[k] = fabs(out->val[k]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_dense_symmetrise(ritz_dense *A)

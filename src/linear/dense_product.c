@@ -9,21 +9,19 @@ static ritz_status multiply(CBLAS_TRANSPOSE left, const ritz_dense *A,
                             CBLAS_TRANSPOSE right, const ritz_dense *B,
                             ritz_dense *C)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = left == CblasTrans ? A->ncol : A->nrow;
     int64_t p = left == CblasTrans ? A->nrow : A->ncol;
     int64_t rows = right == CblasTrans ? B->ncol : B->nrow;
     int64_t q = right == CblasTrans ? B->nrow : B->ncol;
 
-    RITZ_FAIL_IF(p != rows, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " columns meet %" PRId64 " rows", p, rows);
-    RITZ_TRY(ritz_dense_new(m, q, C));
+    RITZ_REFUSE_IF(p != rows, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " columns meet %" PRId64 " rows", p, rows);
+    RITZ_CHECK(ritz_dense_new(m, q, C));
     if (m > 0 && p > 0 && q > 0)
         cblas_dgemm(CblasColMajor, left, right, (int)m, (int)q, (int)p, 1.0,
                     A->val, (int)A->nrow, B->val, (int)B->nrow, 0.0, C->val,
                     (int)m);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_mul(const ritz_dense *A, const ritz_dense *B,

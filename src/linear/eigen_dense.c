@@ -98,18 +98,16 @@ done:
 static ritz_status solve(const ritz_dense *K, const ritz_dense *M,
                          double *lambda, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0, low = 0;
 
-    RITZ_TRY(ritz_eigen_dense_once(K, M, lambda, X));
+    RITZ_CHECK(ritz_eigen_dense_once(K, M, lambda, X));
     count = X->ncol;
     for (low = count_low(count, lambda); low > 0 && low < count;
          low = count_low(count, lambda)) {
-        RITZ_TRY(settle(K, M, low, lambda, X));
+        RITZ_CHECK(settle(K, M, low, lambda, X));
         count = low;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,

@@ -29,75 +29,65 @@ static const double well_conditioned = 1e-8;
 /* out = S A S, exactly symmetric. */
 static ritz_status scale(const ritz_dense *A, const double *s, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = A->nrow;
 
-    RITZ_TRY(ritz_dense_new(n, n, out));
+    RITZ_CHECK(ritz_dense_new(n, n, out));
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++) {
             double mean = (A->val[i + j * n] + A->val[j + i * n]) / 2.0;
 
-            RITZ_FAIL_IF(!isfinite(mean), RITZ_ERR_ARGUMENT,
-                         "entry (%" PRId64 ", %" PRId64
-                         ") of a matrix is not finite",
-                         i, j);
+            RITZ_REFUSE_IF(!isfinite(mean), RITZ_ERR_ARGUMENT,
+                           "entry (%" PRId64 ", %" PRId64
+                           ") of a matrix is not finite",
+                           i, j);
             out->val[i + j * n] = s[i] * mean * s[j];
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* s = M_jj^-1/2; where there is no mass, K_jj^-1/2 does as well. */
 static ritz_status choose_scale(const ritz_dense *K, const ritz_dense *M,
                                 double *s)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t j = 0; j < M->nrow; j++) {
         double m = ritz_dense_col(M, j)[j];
         double k = ritz_dense_col(K, j)[j];
 
-        RITZ_FAIL_IF(m < 0.0, RITZ_ERR_SINGULAR,
-                     "mass is not positive definite: entry (%" PRId64
-                     ", %" PRId64 ") is %g",
-                     j, j, m);
+        RITZ_REFUSE_IF(m < 0.0, RITZ_ERR_SINGULAR,
+                       "mass is not positive definite: entry (%" PRId64
+                       ", %" PRId64 ") is %g",
+                       j, j, m);
         s[j] = m > 0.0 ? 1.0 / sqrt(m) : 1.0 / sqrt(k > 0.0 ? k : 1.0);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status lapack_status(int info)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(info == LAPACK_WORK_MEMORY_ERROR ||
-                     info == LAPACK_TRANSPOSE_MEMORY_ERROR,
-                 RITZ_ERR_MEMORY, "no memory for the eigenvectors");
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "dense eigenvalues did not converge, LAPACK says %d", info);
-done:
-    return status;
+    RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR ||
+                       info == LAPACK_TRANSPOSE_MEMORY_ERROR,
+                   RITZ_ERR_MEMORY, "no memory for the eigenvectors");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "dense eigenvalues did not converge, LAPACK says %d", info);
+    return RITZ_OK;
 }
 
 /* Is M = C C' with a good condition number? C is written over M if so. */
 static ritz_status is_definite(const ritz_dense *M, ritz_dense *C, bool *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)M->nrow;
     double norm = 0.0;
     double rcond = 0.0;
 
     *out = false;
-    RITZ_TRY(ritz_dense_copy(M, C));
+    RITZ_CHECK(ritz_dense_copy(M, C));
     norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', n, M->val, n);
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, C->val, n) != 0)
-        goto done;
-    RITZ_TRY(lapack_status(
+        return RITZ_OK;
+    RITZ_CHECK(lapack_status(
         LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, C->val, n, norm, &rcond)));
     *out = rcond > well_conditioned;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* K := eigenvectors of K. */
@@ -114,16 +104,14 @@ static ritz_status standard(ritz_dense *K, double *lambda)
 static ritz_status by_cholesky(const ritz_dense *C, ritz_dense *K,
                                double *lambda)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)K->nrow;
 
-    RITZ_TRY(lapack_status(
+    RITZ_CHECK(lapack_status(
         LAPACKE_dsygst(LAPACK_COL_MAJOR, 1, 'L', n, K->val, n, C->val, n)));
-    RITZ_TRY(standard(K, lambda));
+    RITZ_CHECK(standard(K, lambda));
     cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit,
                 n, n, 1.0, C->val, n, K->val, n);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* T, n x rank, written over the last columns of Q; see the head. */

@@ -117,23 +117,21 @@ static ritz_status shift_near(search *s, double sigma)
 /* s->found from the vectors in X, which it takes. */
 static ritz_status refine(search *s, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     const double limit = 1e-11;
     double worst = HUGE_VAL;
 
     ritz_pairs_free(&s->found);
     s->found.Phi = *X;
     *X = (ritz_dense){0};
-    RITZ_NEW(s->found.lambda, s->found.Phi.ncol);
-    RITZ_NEW(s->found.residual, s->found.Phi.ncol);
+    RITZ_CHECK_NEW(s->found.lambda, s->found.Phi.ncol);
+    RITZ_CHECK_NEW(s->found.residual, s->found.Phi.ncol);
     for (int k = 0; k < POLISHES && !(worst <= limit); k++) {
-        RITZ_TRY(ritz_shifted_polish(&s->S, &s->found.Phi, s->found.lambda));
+        RITZ_CHECK(ritz_shifted_polish(&s->S, &s->found.Phi, s->found.lambda));
         worst = ritz_shifted_assess(&s->S, &s->found);
     }
-    RITZ_FAIL_IF(!(worst <= limit), RITZ_ERR_CONVERGENCE,
-                 "a residual of %.1e stays above %.0e", worst, limit);
-done:
-    return status;
+    RITZ_REFUSE_IF(!(worst <= limit), RITZ_ERR_CONVERGENCE,
+                   "a residual of %.1e stays above %.0e", worst, limit);
+    return RITZ_OK;
 }
 
 /* Where to look instead, once it is known how far the modes reach. */
@@ -187,15 +185,13 @@ done:
  */
 static ritz_status come_closer(search *s, bool *moved)
 {
-    ritz_status status = RITZ_OK;
     const ritz_pairs *P = &s->found;
     double first = P->num_rigid < P->Phi.ncol ? P->lambda[P->num_rigid] : 0.0;
 
     *moved = first > 0.0 && s->S.sigma < -blurred * first && first > s->broken;
     if (*moved)
-        RITZ_TRY(shift_near(s, -first));
-done:
-    return status;
+        RITZ_CHECK(shift_near(s, -first));
+    return RITZ_OK;
 }
 
 /* The widest relative gap at or behind @p end, to count modes below it. */
@@ -241,20 +237,17 @@ static ritz_status count_below(const search *s, int64_t k, int64_t *out)
 /* Ask for more, as so many were missed or are needed to see a gap behind. */
 static ritz_status ask_more(search *s, int64_t more)
 {
-    ritz_status status = RITZ_OK;
     double hertz = ritz_eigen_hertz(s->found.lambda[s->found.Phi.ncol - 1]);
 
-    RITZ_FAIL_IF(s->all || s->misses > MISSES, RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " modes below %g Hz are not found", more, hertz);
+    RITZ_REFUSE_IF(s->all || s->misses > MISSES, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " modes below %g Hz are not found", more, hertz);
     s->ask += more + SPARE;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* By number: is the end of what was asked for seen, and none missed? */
 static ritz_status prove_number(search *s, int64_t *end, bool *done)
 {
-    ritz_status status = RITZ_OK;
     const ritz_pairs *P = &s->found;
     int64_t count = 0;
     int64_t at = 0;
@@ -262,72 +255,67 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
     *end = wanted(P, s->span, 0.0);
     if (*end >= P->Phi.ncol && !s->all) {
         s->ask += P->num_rigid + SPARE; /* there is no end of rigid modes yet */
-        goto done;
+        return RITZ_OK;
     }
     at = s->all ? *end : widest_gap(P, *end);
     if (P->Phi.ncol > 0)
-        RITZ_TRY(count_below(s, at, &count));
-    RITZ_FAIL_IF(count < at, RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " modes were found where there are %" PRId64, at,
-                 count);
+        RITZ_CHECK(count_below(s, at, &count));
+    RITZ_REFUSE_IF(count < at, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " modes were found where there are %" PRId64, at,
+                   count);
     *done = count == at;
     s->found.proven_to =
         P->Phi.ncol > 0 ? between(P, *end, lowest_part) : HUGE_VAL;
     if (!*done) {
         s->misses++;
-        RITZ_TRY(ask_more(s, count - at));
+        RITZ_CHECK(ask_more(s, count - at));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* By frequency: are there as many as counted before? */
 static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
 {
-    ritz_status status = RITZ_OK;
     const ritz_pairs *P = &s->found;
     int64_t below = 0;
 
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;
     *end = wanted(P, s->span, s->limit);
-    RITZ_FAIL_IF(below > s->target, RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " modes were found where there are %" PRId64, below,
-                 s->target);
+    RITZ_REFUSE_IF(below > s->target, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " modes were found where there are %" PRId64,
+                   below, s->target);
     *done = below == s->target;
     s->found.proven_to = s->limit;
     if (!*done) {
         s->misses++;
-        RITZ_TRY(ask_more(s, s->target - below));
+        RITZ_CHECK(ask_more(s, s->target - below));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Search until what was found is proven; *end of the pairs are wanted. */
 static ritz_status search_proven(search *s, int64_t *end)
 {
-    ritz_status status = RITZ_OK;
     bool done = false;
     bool moved = false;
 
     for (int k = 0; k < ATTEMPTS && !done; k++) {
-        RITZ_TRY(look(s));
+        RITZ_CHECK(look(s));
         if (!s->found.lambda)
             continue;
-        RITZ_TRY(come_closer(s, &moved));
+        RITZ_CHECK(come_closer(s, &moved));
         if (moved)
             continue;
         if (s->span->modes < 0)
-            RITZ_TRY(prove_frequency(s, end, &done));
+            RITZ_CHECK(prove_frequency(s, end, &done));
         else
-            RITZ_TRY(prove_number(s, end, &done));
+            RITZ_CHECK(prove_number(s, end, &done));
     }
-    RITZ_FAIL_IF(!done, RITZ_ERR_CONVERGENCE,
-                 "the iteration for %" PRId64 " modes does not converge",
-                 s->ask);
-done:
-    return status;
+    RITZ_REFUSE_IF(!done, RITZ_ERR_CONVERGENCE,
+                   "the iteration for %" PRId64 " modes does not converge",
+                   s->ask);
+    return RITZ_OK;
 }
 
 /* Modes up to the frequency, counted a little above it lest one lie there. */
@@ -346,20 +334,17 @@ static ritz_status count_target(search *s)
 
 static ritz_status begin(search *s)
 {
-    ritz_status status = RITZ_OK;
     double sigma = 0.0;
 
-    RITZ_TRY(ritz_shifted_survey(s->S.K, s->S.M, &s->seen));
+    RITZ_CHECK(ritz_shifted_survey(s->S.K, s->S.M, &s->seen));
     sigma = first_shift * s->seen.typical;
     s->ask = BODY + s->span->modes + s->span->modes / 10 + SPARE;
     if (s->span->modes < 0) {
-        RITZ_TRY(count_target(s));
+        RITZ_CHECK(count_target(s));
         s->ask = s->target + SPARE;
         sigma = fmax(fmin(sigma, 0.1 * s->limit), 1e-6 * sigma);
     }
-    RITZ_TRY(shift_near(s, -sigma));
-done:
-    return status;
+    return shift_near(s, -sigma);
 }
 
 static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
@@ -416,24 +401,22 @@ done:
 ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
                               const ritz_span *span, ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = K->nrow;
 
-    RITZ_FAIL_IF(K->ncol != n || M->nrow != n || M->ncol != n,
-                 RITZ_ERR_ARGUMENT,
-                 "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                 " x %" PRId64,
-                 K->nrow, K->ncol, M->nrow, M->ncol);
-    RITZ_FAIL_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " modes cannot be asked for", span->modes);
-    RITZ_FAIL_IF(span->modes < 0 &&
-                     !(span->up_to_hz > 0.0 && isfinite(span->up_to_hz)),
-                 RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
-                 span->up_to_hz);
+    RITZ_REFUSE_IF(K->ncol != n || M->nrow != n || M->ncol != n,
+                   RITZ_ERR_ARGUMENT,
+                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                   " x %" PRId64,
+                   K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_REFUSE_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " modes cannot be asked for", span->modes);
+    RITZ_REFUSE_IF(span->modes < 0 &&
+                       !(span->up_to_hz > 0.0 && isfinite(span->up_to_hz)),
+                   RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
+                   span->up_to_hz);
     if (n <= SMALL || (n <= MEDIUM && span->modes > n / 4))
-        RITZ_TRY(by_lapack(K, M, span, out));
+        RITZ_CHECK(by_lapack(K, M, span, out));
     else
-        RITZ_TRY(by_lanczos(K, M, span, out));
-done:
-    return status;
+        RITZ_CHECK(by_lanczos(K, M, span, out));
+    return RITZ_OK;
 }

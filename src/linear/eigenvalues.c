@@ -31,16 +31,13 @@ static int by_magnitude(const void *left, const void *right)
 
 static ritz_status check(const ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
-                 "a matrix of %lld x %lld has no eigenvalues",
-                 (long long)A->nrow, (long long)A->ncol);
+    RITZ_REFUSE_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
+                   "a matrix of %lld x %lld has no eigenvalues",
+                   (long long)A->nrow, (long long)A->ncol);
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        RITZ_FAIL_IF(!isfinite(A->val[k]), RITZ_ERR_ARGUMENT,
-                     "a matrix whose eigenvalues are wanted is not finite");
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_ARGUMENT,
+                       "a matrix whose eigenvalues are wanted is not finite");
+    return RITZ_OK;
 }
 
 static ritz_status find(const ritz_dense *A, value *out)

@@ -73,18 +73,15 @@ static cholmod_dense view_dense(int64_t nrow, int64_t ncol, double *val)
 
 static ritz_status copy_diagonal(const ritz_sparse *A, double *a)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            RITZ_FAIL_IF(!isfinite(A->val[p]), RITZ_ERR_ARGUMENT,
-                         "entry (%" PRId64 ", %" PRId64 ") is not finite",
-                         A->rowind[p], j);
+            RITZ_REFUSE_IF(!isfinite(A->val[p]), RITZ_ERR_ARGUMENT,
+                           "entry (%" PRId64 ", %" PRId64 ") is not finite",
+                           A->rowind[p], j);
             if (A->rowind[p] == j)
                 a[j] = A->val[p];
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* d(k) = L(k,k) of a supernodal factor: blocks of columns with common rows. */
@@ -254,22 +251,20 @@ ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
 
 ritz_status ritz_factor_solve(ritz_factor *F, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = (int64_t)F->L->n;
 
-    RITZ_FAIL_IF(X->nrow != n, RITZ_ERR_ARGUMENT,
-                 "a factor of %" PRId64 " rows meets %" PRId64, n, X->nrow);
+    RITZ_REFUSE_IF(X->nrow != n, RITZ_ERR_ARGUMENT,
+                   "a factor of %" PRId64 " rows meets %" PRId64, n, X->nrow);
     for (int64_t j = 0; n > 0 && j < X->ncol; j += BLOCK) {
         int64_t k = X->ncol - j < BLOCK ? X->ncol - j : BLOCK;
         cholmod_dense B = view_dense(n, k, ritz_dense_col(X, j));
         int solved = cholmod_l_solve2(CHOLMOD_A, F->L, &B, NULL, &F->X, NULL,
                                       &F->Y, &F->E, &F->common);
 
-        RITZ_FAIL_IF(!solved, RITZ_ERR_MEMORY, "no memory to solve");
+        RITZ_REFUSE_IF(!solved, RITZ_ERR_MEMORY, "no memory to solve");
         memcpy(B.x, F->X->x, (size_t)(n * k) * sizeof *X->val);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_factor_free(ritz_factor **F)

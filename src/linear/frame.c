@@ -97,7 +97,6 @@ static double least_of(int64_t count, const double *value)
 
 static ritz_status scale(ritz_frame *f)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)f->A.nrow;
     lapack_int low = 0, high = 0;
     int info = 0;
@@ -108,12 +107,11 @@ static ritz_status scale(ritz_frame *f)
     else
         info = LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, f->A.val, n, &low,
                               &high, f->right);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_ARGUMENT,
-                 "a matrix whose poles are wanted is not finite");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_ARGUMENT,
+                   "a matrix whose poles are wanted is not finite");
     for (int64_t i = 0; i < n && !f->E.val; i++)
         f->left[i] = 1.0 / f->right[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -185,9 +183,7 @@ void ritz_frame_turn_back(const ritz_frame *f, const double *scale,
 ritz_status ritz_frame_forward(const ritz_frame *f, const double *scale,
                                const ritz_dense *V, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(V, out));
+    RITZ_CHECK(ritz_dense_copy(V, out));
     if (f->L.val && V->ncol > 0)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans,
                     CblasNonUnit, (int)V->nrow, (int)V->ncol, 1.0, f->L.val,
@@ -195,8 +191,7 @@ ritz_status ritz_frame_forward(const ritz_frame *f, const double *scale,
     for (int64_t j = 0; j < V->ncol; j++)
         for (int64_t i = 0; i < V->nrow; i++)
             ritz_dense_col(out, j)[i] *= scale[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_frame_free(ritz_frame *f)

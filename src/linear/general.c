@@ -52,14 +52,11 @@ done:
 
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(A->ncol, A->nrow, out));
+    RITZ_CHECK(ritz_dense_new(A->ncol, A->nrow, out));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(out, i)[j] = ritz_dense_col(A, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_general_svd(const ritz_dense *A, ritz_dense *U, double **s,
@@ -99,16 +96,14 @@ done:
 
 ritz_status ritz_general_singular(ritz_dense *A, double *sigma)
 {
-    ritz_status status = RITZ_OK;
     int info = 0;
 
     if (A->nrow > 0 && A->ncol > 0)
         info = LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', (int)A->nrow, (int)A->ncol,
                               A->val, (int)A->nrow, sigma, NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values did not converge");
-done:
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "singular values did not converge");
+    return RITZ_OK;
 }
 
 ritz_status ritz_general_norm(ritz_dense *A, double *out)

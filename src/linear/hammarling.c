@@ -47,58 +47,49 @@ static void discard(equation *e)
 
 static ritz_status identity(int64_t n, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(n, n, out));
+    RITZ_CHECK(ritz_dense_new(n, n, out));
     for (int64_t i = 0; i < n; i++)
         ritz_dense_col(out, i)[i] = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status copy_right_side(const ritz_dense *B, equation *e)
 {
-    ritz_status status = RITZ_OK;
     int64_t wide = e->m > e->n ? e->m : e->n;
 
     e->ldb = e->transposed ? (int)wide : e->n;
-    RITZ_TRY(ritz_dense_new(e->ldb, wide, &e->B));
+    RITZ_CHECK(ritz_dense_new(e->ldb, wide, &e->B));
     for (int64_t j = 0; j < B->ncol; j++)
         for (int64_t i = 0; i < B->nrow; i++)
             if (e->transposed)
                 ritz_dense_col(&e->B, i)[j] = ritz_dense_col(B, j)[i];
             else
                 ritz_dense_col(&e->B, j)[i] = ritz_dense_col(B, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status prepare(const ritz_dense *S, const ritz_dense *P,
                            const ritz_dense *B, equation *e)
 {
-    ritz_status status = RITZ_OK;
-
     e->n = (int)S->nrow;
     e->m = (int)B->ncol;
     e->room = 64 * (e->n + e->m) + 64;
-    RITZ_TRY(ritz_dense_copy(S, &e->S));
-    RITZ_TRY(identity(e->n, &e->Q));
+    RITZ_CHECK(ritz_dense_copy(S, &e->S));
+    RITZ_CHECK(identity(e->n, &e->Q));
     if (P->val) {
-        RITZ_TRY(ritz_dense_copy(P, &e->P));
-        RITZ_TRY(identity(e->n, &e->Z));
+        RITZ_CHECK(ritz_dense_copy(P, &e->P));
+        RITZ_CHECK(identity(e->n, &e->Z));
     }
-    RITZ_TRY(copy_right_side(B, e));
-    RITZ_NEW(e->re, e->n);
-    RITZ_NEW(e->im, e->n);
-    RITZ_NEW(e->beta, e->n);
-    RITZ_NEW(e->work, e->room);
-done:
-    return status;
+    RITZ_CHECK(copy_right_side(B, e));
+    RITZ_CHECK_NEW(e->re, e->n);
+    RITZ_CHECK_NEW(e->im, e->n);
+    RITZ_CHECK_NEW(e->beta, e->n);
+    RITZ_CHECK_NEW(e->work, e->room);
+    return RITZ_OK;
 }
 
 static ritz_status solve(equation *e)
 {
-    ritz_status status = RITZ_OK;
     const char *trans = e->transposed ? "N" : "T";
     int n = e->n;
     int unstable = e->P.val ? 5 : 3;
@@ -112,20 +103,18 @@ static ritz_status solve(equation *e)
         sb03od_("C", "F", trans, &n, &e->m, e->S.val, &n, e->Q.val, &n,
                 e->B.val, &e->ldb, &e->scale, e->re, e->im, e->work, &e->room,
                 &info, 1, 1, 1);
-    RITZ_FAIL_IF(info == unstable || (!e->P.val && info == 2),
-                 RITZ_ERR_ARGUMENT,
-                 "a Gramian is infinite: a pole is not stable");
-    RITZ_FAIL_IF(info < 0 || info > 1 || e->scale == 0.0, RITZ_ERR_CONVERGENCE,
-                 "the Lyapunov equation was not solved, SLICOT says %d", info);
-done:
-    return status;
+    RITZ_REFUSE_IF(info == unstable || (!e->P.val && info == 2),
+                   RITZ_ERR_ARGUMENT,
+                   "a Gramian is infinite: a pole is not stable");
+    RITZ_REFUSE_IF(
+        info < 0 || info > 1 || e->scale == 0.0, RITZ_ERR_CONVERGENCE,
+        "the Lyapunov equation was not solved, SLICOT says %d", info);
+    return RITZ_OK;
 }
 
 static ritz_status take_triangle(const equation *e, ritz_dense *F)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(e->n, e->n, F));
+    RITZ_CHECK(ritz_dense_new(e->n, e->n, F));
     for (int64_t j = 0; j < e->n; j++)
         for (int64_t i = 0; i <= j; i++) {
             double u = ritz_dense_col(&e->B, j)[i] / e->scale;
@@ -135,8 +124,7 @@ static ritz_status take_triangle(const equation *e, ritz_dense *F)
             else
                 ritz_dense_col(F, j)[i] = u;
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,

@@ -49,26 +49,23 @@ static ritz_mumps view(ritz_ldl *F)
 /* Values of the lower triangle, in the order ritz_mumps_unite left them. */
 static ritz_status copy_values(const ritz_sparse *A, int64_t nnz, double **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t k = 0;
 
-    RITZ_NEW(*out, nnz);
+    RITZ_CHECK_NEW(*out, nnz);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             if (A->rowind[p] >= j)
                 (*out)[k++] = A->val[p];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status factorise(ritz_ldl *F)
 {
-    ritz_status status = RITZ_OK;
     ritz_mumps mumps = view(F);
 
     F->id.sym = 2;
     F->id.par = 1;
-    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
+    RITZ_CHECK(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
     F->started = true;
     ritz_mumps_configure(&mumps);
     F->id.n = (MUMPS_INT)F->pattern.n;
@@ -76,11 +73,9 @@ static ritz_status factorise(ritz_ldl *F)
     F->id.irn = F->pattern.row;
     F->id.jcn = F->pattern.col;
     F->id.a = F->val;
-    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_ANALYSE));
-    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
-    RITZ_TRY(ritz_mumps_judge(&mumps, &F->pattern, F->val));
-done:
-    return status;
+    RITZ_CHECK(ritz_mumps_run(&mumps, RITZ_MUMPS_ANALYSE));
+    RITZ_CHECK(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
+    return ritz_mumps_judge(&mumps, &F->pattern, F->val);
 }
 
 ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
@@ -105,15 +100,12 @@ done:
 
 ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     ritz_mumps mumps = view(F);
 
-    RITZ_FAIL_IF(X->nrow != F->pattern.n, RITZ_ERR_ARGUMENT,
-                 "a factor of %" PRId64 " rows meets %" PRId64, F->pattern.n,
-                 X->nrow);
-    RITZ_TRY(ritz_mumps_solve(&mumps, X->nrow, X->ncol, X->val));
-done:
-    return status;
+    RITZ_REFUSE_IF(X->nrow != F->pattern.n, RITZ_ERR_ARGUMENT,
+                   "a factor of %" PRId64 " rows meets %" PRId64, F->pattern.n,
+                   X->nrow);
+    return ritz_mumps_solve(&mumps, X->nrow, X->ncol, X->val);
 }
 
 void ritz_ldl_free(ritz_ldl **F)

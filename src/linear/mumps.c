@@ -39,21 +39,19 @@ enum {
 static ritz_status check_sizes(int64_t count, const ritz_sparse *const *A,
                                int64_t *room)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(count < 1, RITZ_ERR_ARGUMENT, "no matrix to factor");
+    RITZ_REFUSE_IF(count < 1, RITZ_ERR_ARGUMENT, "no matrix to factor");
     for (int64_t k = 0; k < count; k++) {
-        RITZ_FAIL_IF(A[k]->nrow != A[0]->nrow || A[k]->ncol != A[0]->nrow,
-                     RITZ_ERR_ARGUMENT,
-                     "a %" PRId64 " x %" PRId64 " matrix stands beside %" PRId64
-                     " rows",
-                     A[k]->nrow, A[k]->ncol, A[0]->nrow);
+        RITZ_REFUSE_IF(A[k]->nrow != A[0]->nrow || A[k]->ncol != A[0]->nrow,
+                       RITZ_ERR_ARGUMENT,
+                       "a %" PRId64 " x %" PRId64
+                       " matrix stands beside %" PRId64 " rows",
+                       A[k]->nrow, A[k]->ncol, A[0]->nrow);
         *room += A[k]->colptr[A[k]->ncol];
     }
-    RITZ_FAIL_IF(A[0]->nrow > INT_MAX - 1, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " rows are more than MUMPS can count", A[0]->nrow);
-done:
-    return status;
+    RITZ_REFUSE_IF(A[0]->nrow > INT_MAX - 1, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " rows are more than MUMPS can count",
+                   A[0]->nrow);
+    return RITZ_OK;
 }
 
 /* Add column j of A to P, unless `whole` without what lies above the diagonal;
@@ -61,21 +59,18 @@ done:
 static ritz_status unite_column(const ritz_sparse *A, int64_t j, bool whole,
                                 int64_t *mark, ritz_mumps_pattern *P)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
         int64_t i = A->rowind[p];
 
-        RITZ_FAIL_IF(!isfinite(A->val[p]), RITZ_ERR_ARGUMENT,
-                     "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
+        RITZ_REFUSE_IF(!isfinite(A->val[p]), RITZ_ERR_ARGUMENT,
+                       "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
         if ((i < j && !whole) || mark[i] == j + 1)
             continue;
         mark[i] = j + 1;
         P->row[P->nnz] = (MUMPS_INT)(i + 1);
         P->col[P->nnz++] = (MUMPS_INT)(j + 1);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
@@ -161,8 +156,6 @@ static ritz_status report(const MUMPS_INT *infog)
 
 ritz_status ritz_mumps_run(const ritz_mumps *mumps, int job)
 {
-    ritz_status status = RITZ_OK;
-
     *mumps->job = job;
     mumps->call(mumps->id);
     for (int k = 0; k < MORE_ROOM && (mumps->infog[OUTCOME] == -8 ||
@@ -172,12 +165,12 @@ ritz_status ritz_mumps_run(const ritz_mumps *mumps, int job)
         *mumps->job = job;
         mumps->call(mumps->id);
     }
-    RITZ_TRY(report(mumps->infog));
-    RITZ_FAIL_IF(job == RITZ_MUMPS_FACTOR && mumps->infog[NUM_NULL_PIVOTS] > 0,
-                 RITZ_ERR_SINGULAR, "the matrix is singular, %d times",
-                 (int)mumps->infog[NUM_NULL_PIVOTS]);
-done:
-    return status;
+    RITZ_CHECK(report(mumps->infog));
+    RITZ_REFUSE_IF(job == RITZ_MUMPS_FACTOR &&
+                       mumps->infog[NUM_NULL_PIVOTS] > 0,
+                   RITZ_ERR_SINGULAR, "the matrix is singular, %d times",
+                   (int)mumps->infog[NUM_NULL_PIVOTS]);
+    return RITZ_OK;
 }
 
 static double magnitude(const double *val, int64_t k, int width)
@@ -217,17 +210,13 @@ done:
 ritz_status ritz_mumps_solve(const ritz_mumps *mumps, int64_t n, int64_t k,
                              void *x)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(k < 0 || k > INT_MAX, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " right-hand sides are more than MUMPS can count",
-                 k);
+    RITZ_REFUSE_IF(k < 0 || k > INT_MAX, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " right-hand sides are more than MUMPS can count",
+                   k);
     if (n == 0 || k == 0)
-        goto done;
+        return RITZ_OK;
     mumps->set_rhs(mumps->id, (int)n, (int)k, x);
-    RITZ_TRY(ritz_mumps_run(mumps, RITZ_MUMPS_SOLVE));
-done:
-    return status;
+    return ritz_mumps_run(mumps, RITZ_MUMPS_SOLVE);
 }
 
 /* Every entry counts, none equal: no eigenvector is likely to be missed. */

@@ -41,50 +41,43 @@ static void discard(pivoted *f)
 
 static ritz_status check(const ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        RITZ_FAIL_IF(!isfinite(A->val[k]), RITZ_ERR_ARGUMENT,
-                     "a factor of a product is not finite");
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_ARGUMENT,
+                       "a factor of a product is not finite");
+    return RITZ_OK;
 }
 
 /* Of f->A. */
 static ritz_status factor(pivoted *f)
 {
-    ritz_status status = RITZ_OK;
     int m = (int)f->A.nrow;
     int n = (int)f->A.ncol;
 
     f->rank = m < n ? m : n;
-    RITZ_NEW(f->tau, f->rank);
-    RITZ_NEW(f->at, n);
+    RITZ_CHECK_NEW(f->tau, f->rank);
+    RITZ_CHECK_NEW(f->at, n);
     if (f->rank > 0)
-        RITZ_FAIL_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, m, n, f->A.val, m, f->at,
-                                    f->tau) != 0,
-                     RITZ_ERR_ARGUMENT, "a product is not finite");
-done:
-    return status;
+        RITZ_REFUSE_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, m, n, f->A.val, m,
+                                      f->at, f->tau) != 0,
+                       RITZ_ERR_ARGUMENT, "a product is not finite");
+    return RITZ_OK;
 }
 
 /* Q V, V of as many rows as R has. */
 static ritz_status turn(const pivoted *f, const ritz_dense *V, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int m = (int)f->A.nrow;
 
-    RITZ_TRY(ritz_dense_new(m, V->ncol, out));
+    RITZ_CHECK(ritz_dense_new(m, V->ncol, out));
     for (int64_t j = 0; j < V->ncol; j++)
         for (int64_t i = 0; i < V->nrow; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(V, j)[i];
     if (V->ncol > 0)
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', m, (int)V->ncol,
                            (int)V->nrow, f->A.val, m, f->tau, out->val, m) != 0,
             RITZ_ERR_CONVERGENCE, "vectors of a product were not found");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* D of X */
@@ -108,14 +101,11 @@ done:
 static ritz_status scale(const ritz_dense *Y, const double *length,
                          ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(Y->ncol, Y->nrow, out));
+    RITZ_CHECK(ritz_dense_new(Y->ncol, Y->nrow, out));
     for (int64_t j = 0; j < Y->ncol; j++)
         for (int64_t i = 0; i < Y->nrow; i++)
             ritz_dense_col(out, i)[j] = length[i] * ritz_dense_col(Y, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* F = (P' D^-1 X)' R' */
@@ -149,7 +139,6 @@ done:
 /* G = P_F R_F', as far as R_F is not negligible. */
 static ritz_status compress(pivoted *of_F, ritz_dense *G)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *R = &of_F->A;
     int64_t r = of_F->rank;
 
@@ -157,38 +146,35 @@ static ritz_status compress(pivoted *of_F, ritz_dense *G)
                       negligible * fabs(R->val[0])))
         r--;
     of_F->rank = r;
-    RITZ_TRY(ritz_dense_new(R->ncol, r, G));
+    RITZ_CHECK(ritz_dense_new(R->ncol, r, G));
     for (int64_t i = 0; i < R->ncol; i++)
         for (int64_t j = 0; j <= i && j < r; j++)
             ritz_dense_col(G, j)[of_F->at[i] - 1] = ritz_dense_col(R, i)[j];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* G = U diag(s) V'; LAPACK scales values that would over- or underflow. */
 static ritz_status rotate(ritz_dense *G, bool vectors, double *s, ritz_dense *U,
                           ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
     int q = (int)G->nrow;
     int r = (int)G->ncol;
     double stat[7] = {0};
     lapack_int istat[3] = {0};
     int info = 0;
 
-    RITZ_TRY(ritz_dense_new(q, vectors ? r : 0, U));
-    RITZ_TRY(ritz_dense_new(r, vectors ? r : 0, V));
+    RITZ_CHECK(ritz_dense_new(q, vectors ? r : 0, U));
+    RITZ_CHECK(ritz_dense_new(r, vectors ? r : 0, V));
     if (r > 0)
         info = LAPACKE_dgejsv(LAPACK_COL_MAJOR, 'C', vectors ? 'U' : 'N',
                               vectors ? 'V' : 'N', 'R', 'N', 'N', q, r, G->val,
                               q, s, U->val, q, V->val, r, stat, istat);
-    RITZ_FAIL_IF(info < 0, RITZ_ERR_ARGUMENT, "a product is not finite");
-    RITZ_FAIL_IF(info > 0, RITZ_ERR_CONVERGENCE,
-                 "singular values of a product did not converge");
+    RITZ_REFUSE_IF(info < 0, RITZ_ERR_ARGUMENT, "a product is not finite");
+    RITZ_REFUSE_IF(info > 0, RITZ_ERR_CONVERGENCE,
+                   "singular values of a product did not converge");
     for (int i = 0; i < r && stat[0] != stat[1] && stat[1] != 0.0; i++)
         s[i] *= stat[0] / stat[1];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Y has no more columns than X. */

@@ -35,13 +35,12 @@ static void discard(vectors *v)
 
 static ritz_status find_vectors(ritz_schur *schur, vectors *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)schur->count;
     lapack_int found = 0;
     int info = 0;
 
-    RITZ_TRY(ritz_dense_new(n, n, &out->left));
-    RITZ_TRY(ritz_dense_new(n, n, &out->right));
+    RITZ_CHECK(ritz_dense_new(n, n, &out->left));
+    RITZ_CHECK(ritz_dense_new(n, n, &out->right));
     if (schur->T.val)
         info = LAPACKE_dtgevc(LAPACK_COL_MAJOR, 'B', 'A', NULL, n, schur->S.val,
                               n, schur->T.val, n, out->left.val, n,
@@ -50,13 +49,12 @@ static ritz_status find_vectors(ritz_schur *schur, vectors *out)
         info =
             LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'A', NULL, n, schur->S.val, n,
                            out->left.val, n, out->right.val, n, n, &found);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "eigenvectors of a Schur "
-                 "form were not found");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "eigenvectors of a Schur "
+                   "form were not found");
     if (schur->T.val)
-        RITZ_TRY(ritz_dense_mul(&schur->T, &out->right, &out->Eright));
-done:
-    return status;
+        RITZ_CHECK(ritz_dense_mul(&schur->T, &out->right, &out->Eright));
+    return RITZ_OK;
 }
 
 /* |y'E x| / |x| |y| of column k, or of the pair that begins there. */
@@ -107,7 +105,6 @@ done:
 /* A symmetric matrix has its eigenvectors for Schur vectors. */
 static ritz_status diagonalise(ritz_schur *schur)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)schur->count;
     double size = frobenius(&schur->S);
 
@@ -115,48 +112,42 @@ static ritz_status diagonalise(ritz_schur *schur)
         schur->Q.val[k] = schur->S.val[k];
         schur->S.val[k] = 0.0;
     }
-    RITZ_FAIL_IF(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, schur->Q.val, n,
-                                schur->re) != 0,
-                 RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_REFUSE_IF(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, schur->Q.val,
+                                  n, schur->re) != 0,
+                   RITZ_ERR_CONVERGENCE, "poles were not found");
     for (int64_t k = 0; k < schur->count; k++) {
         ritz_dense_col(&schur->S, k)[k] = schur->re[k];
         schur->error[k] = DBL_EPSILON * size;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status factor(ritz_schur *schur)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)schur->count;
     lapack_int none = 0;
 
     if (ritz_dense_asymmetry(&schur->S) == 0.0)
         return diagonalise(schur);
-    RITZ_FAIL_IF(LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n,
-                               schur->S.val, n, &none, schur->re, schur->im,
-                               schur->Q.val, n) != 0,
-                 RITZ_ERR_CONVERGENCE, "poles were not found");
-    RITZ_TRY(find_errors(schur));
-done:
-    return status;
+    RITZ_REFUSE_IF(LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n,
+                                 schur->S.val, n, &none, schur->re, schur->im,
+                                 schur->Q.val, n) != 0,
+                   RITZ_ERR_CONVERGENCE, "poles were not found");
+    return find_errors(schur);
 }
 
 /* lambda = alpha / beta, beta the diagonal of T. */
 static ritz_status divide(ritz_schur *schur, const double *beta)
 {
-    ritz_status status = RITZ_OK;
     double least = DBL_EPSILON * frobenius(&schur->T);
 
     for (int64_t k = 0; k < schur->count; k++) {
-        RITZ_FAIL_IF(!(fabs(beta[k]) > least), RITZ_ERR_SINGULAR,
-                     "E is singular to working accuracy");
+        RITZ_REFUSE_IF(!(fabs(beta[k]) > least), RITZ_ERR_SINGULAR,
+                       "E is singular to working accuracy");
         schur->re[k] /= beta[k];
         schur->im[k] /= beta[k];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status factor_pair(const ritz_dense *E, ritz_schur *schur)

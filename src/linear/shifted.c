@@ -9,14 +9,12 @@
 /* X := X Q. */
 static ritz_status rotate(const ritz_dense *Q, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense XQ = {0};
 
-    RITZ_TRY(ritz_dense_mul(X, Q, &XQ));
+    RITZ_CHECK(ritz_dense_mul(X, Q, &XQ));
     ritz_dense_free(X);
     *X = XQ;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A_r := (A_r + A_r') / 2, with unit diagonal of M_r: Y_j / |Y_j|_M. */

@@ -189,44 +189,38 @@ static void merge_column(double alpha, const ritz_sparse *A, double beta,
 ritz_status ritz_sparse_add(double alpha, const ritz_sparse *A, double beta,
                             const ritz_sparse *B, ritz_sparse *C)
 {
-    ritz_status status = RITZ_OK;
     int64_t at = 0;
 
-    RITZ_FAIL_IF(A->nrow != B->nrow || A->ncol != B->ncol, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " x %" PRId64 " meets %" PRId64 " x %" PRId64,
-                 A->nrow, A->ncol, B->nrow, B->ncol);
-    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol,
-                             A->colptr[A->ncol] + B->colptr[B->ncol], C));
+    RITZ_REFUSE_IF(A->nrow != B->nrow || A->ncol != B->ncol, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " x %" PRId64 " meets %" PRId64 " x %" PRId64,
+                   A->nrow, A->ncol, B->nrow, B->ncol);
+    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol,
+                               A->colptr[A->ncol] + B->colptr[B->ncol], C));
     for (int64_t j = 0; j < A->ncol; j++)
         merge_column(alpha, A, beta, B, j, C, &at);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t nnz = A->colptr[A->ncol];
 
-    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol, nnz, out));
+    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, nnz, out));
     memcpy(out->colptr, A->colptr, (size_t)(A->ncol + 1) * sizeof *A->colptr);
     if (nnz > 0) {
         memcpy(out->rowind, A->rowind, (size_t)nnz * sizeof *A->rowind);
         memcpy(out->val, A->val, (size_t)nnz * sizeof *A->val);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
                             ritz_dense *Y)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
-                 "A has %" PRId64 " columns but X has %" PRId64 " rows",
-                 A->ncol, X->nrow);
-    RITZ_TRY(ritz_dense_new(A->nrow, X->ncol, Y));
+    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
+                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
+                   A->ncol, X->nrow);
+    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
     for (int64_t k = 0; k < X->ncol; k++) {
         const double *x = ritz_dense_col(X, k);
         double *y = ritz_dense_col(Y, k);
@@ -235,41 +229,35 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
             for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
                 y[A->rowind[p]] += A->val[p] * x[j];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_column(const ritz_sparse *A, int64_t j)
 {
-    ritz_status status = RITZ_OK;
     int64_t above = -1;
 
     for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
         int64_t i = A->rowind[p];
 
-        RITZ_FAIL_IF(i <= above || i >= A->nrow, RITZ_ERR_FORMAT,
-                     "rows of column %" PRId64 " do not ascend", j);
-        RITZ_FAIL_IF(!isfinite(A->val[p]), RITZ_ERR_FORMAT,
-                     "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
+        RITZ_REFUSE_IF(i <= above || i >= A->nrow, RITZ_ERR_FORMAT,
+                       "rows of column %" PRId64 " do not ascend", j);
+        RITZ_REFUSE_IF(!isfinite(A->val[p]), RITZ_ERR_FORMAT,
+                       "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
         above = i;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(A->colptr[0] != 0 || A->colptr[A->ncol] != nnz,
-                 RITZ_ERR_FORMAT, "column pointers and entries disagree");
+    RITZ_REFUSE_IF(A->colptr[0] != 0 || A->colptr[A->ncol] != nnz,
+                   RITZ_ERR_FORMAT, "column pointers and entries disagree");
     for (int64_t j = 0; j < A->ncol; j++)
-        RITZ_FAIL_IF(A->colptr[j] > A->colptr[j + 1], RITZ_ERR_FORMAT,
-                     "column pointers descend at column %" PRId64, j);
+        RITZ_REFUSE_IF(A->colptr[j] > A->colptr[j + 1], RITZ_ERR_FORMAT,
+                       "column pointers descend at column %" PRId64, j);
     for (int64_t j = 0; j < A->ncol; j++)
-        RITZ_TRY(check_column(A, j));
-done:
-    return status;
+        RITZ_CHECK(check_column(A, j));
+    return RITZ_OK;
 }
 
 /* A(i,j), 0 where nothing is stored. */

@@ -143,26 +143,20 @@ done:
 ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
                                  ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(condense(A, T, out));
+    RITZ_CHECK(condense(A, T, out));
     ritz_dense_symmetrise(out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
                                 ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
     if (!A->colptr)
         return RITZ_OK;
-    RITZ_TRY(condense(A, T, out));
+    RITZ_CHECK(condense(A, T, out));
     if (ritz_sparse_asymmetry(A) == 0.0)
         ritz_dense_symmetrise(out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,

@@ -57,7 +57,6 @@ done:
 
 static ritz_status choose_stable(const ritz_schur *schur, bool *stable)
 {
-    ritz_status status = RITZ_OK;
     bool all_left = true, doubt = false, proven = false;
 
     for (int64_t k = 0; k < schur->count; k++) {
@@ -66,18 +65,16 @@ static ritz_status choose_stable(const ritz_schur *schur, bool *stable)
         doubt = doubt || !stable[k];
     }
     if (doubt && all_left)
-        RITZ_TRY(prove(schur, &proven));
+        RITZ_CHECK(prove(schur, &proven));
     for (int64_t k = 0; k < schur->count && proven; k++)
         stable[k] = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* R and G of m stable poles and the others. */
 static ritz_status decouple(const ritz_schur *schur, int64_t m, ritz_dense *R,
                             ritz_dense *G)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)schur->count;
     int a = n - (int)m;
     int info = 0;
@@ -85,28 +82,27 @@ static ritz_status decouple(const ritz_schur *schur, int64_t m, ritz_dense *R,
     const double *S = schur->S.val, *P = schur->T.val;
     int64_t at = m * n; /* of the blocks 12, and m further down 22 */
 
-    RITZ_TRY(ritz_dense_new(m, a, R));
-    RITZ_TRY(ritz_dense_new(m, a, G));
+    RITZ_CHECK(ritz_dense_new(m, a, R));
+    RITZ_CHECK(ritz_dense_new(m, a, G));
     for (int64_t j = 0; j < a; j++)
         for (int64_t i = 0; i < m; i++) {
             ritz_dense_col(R, j)[i] = -S[at + i + j * n];
             ritz_dense_col(G, j)[i] = P ? -P[at + i + j * n] : 0.0;
         }
     if (m == 0 || a == 0)
-        goto done;
+        return RITZ_OK;
     info = P ? LAPACKE_dtgsyl(LAPACK_COL_MAJOR, 'N', 0, (int)m, a, S, n,
                               S + at + m, n, R->val, (int)m, P, n, P + at + m,
                               n, G->val, (int)m, &scale, &unused)
              : LAPACKE_dtrsyl(LAPACK_COL_MAJOR, 'N', 'N', -1, (int)m, a, S, n,
                               S + at + m, n, R->val, (int)m, &scale);
-    RITZ_FAIL_IF(info != 0 || scale == 0.0, RITZ_ERR_CONVERGENCE,
-                 "stable poles and others are too close to be told apart");
+    RITZ_REFUSE_IF(info != 0 || scale == 0.0, RITZ_ERR_CONVERGENCE,
+                   "stable poles and others are too close to be told apart");
     for (int64_t k = 0; k < m * a; k++) {
         R->val[k] /= scale;
         G->val[k] = P ? G->val[k] / scale : R->val[k];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* out = base + sign factor, of the same size. */
@@ -149,14 +145,11 @@ done:
 
 static ritz_status leading(const ritz_dense *A, int64_t m, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(m, m, out));
+    RITZ_CHECK(ritz_dense_new(m, m, out));
     for (int64_t j = 0; j < m; j++)
         for (int64_t i = 0; i < m; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,

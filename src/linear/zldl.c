@@ -57,12 +57,11 @@ static ritz_mumps view(ritz_zldl *F)
 
 static ritz_status analyse(ritz_zldl *F)
 {
-    ritz_status status = RITZ_OK;
     ritz_mumps mumps = view(F);
 
     F->id.sym = F->whole ? 0 : 2;
     F->id.par = 1;
-    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
+    RITZ_CHECK(ritz_mumps_run(&mumps, RITZ_MUMPS_START));
     F->started = true;
     ritz_mumps_configure(&mumps);
     F->id.n = (MUMPS_INT)F->pattern.n;
@@ -70,9 +69,7 @@ static ritz_status analyse(ritz_zldl *F)
     F->id.irn = F->pattern.row;
     F->id.jcn = F->pattern.col;
     F->id.a = (void *)F->val; /* two doubles each, for both */
-    RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_ANALYSE));
-done:
-    return status;
+    return ritz_mumps_run(&mumps, RITZ_MUMPS_ANALYSE);
 }
 
 ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
@@ -123,36 +120,31 @@ static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
 
 ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
 {
-    ritz_status status = RITZ_OK;
     ritz_mumps mumps = view(F);
 
     F->factored = false;
     memset(F->val, 0, (size_t)F->pattern.nnz * sizeof *F->val);
     for (int64_t k = 0; k < F->count; k++) {
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             !isfinite(creal(c[k])) || !isfinite(cimag(c[k])), RITZ_ERR_ARGUMENT,
             "coefficient %" PRId64 " of the matrices is not finite", k + 1);
         add(&F->A[k], c[k], F);
     }
     if (F->pattern.n > 0) {
-        RITZ_TRY(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
-        RITZ_TRY(ritz_mumps_judge(&mumps, &F->pattern, (double *)F->val));
+        RITZ_CHECK(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
+        RITZ_CHECK(ritz_mumps_judge(&mumps, &F->pattern, (double *)F->val));
     }
     F->factored = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X)
 {
-    ritz_status status = RITZ_OK;
     ritz_mumps mumps = view(F);
 
-    RITZ_FAIL_IF(!F->factored, RITZ_ERR_ARGUMENT,
-                 "a solve needs a factor first");
-    RITZ_TRY(ritz_mumps_solve(&mumps, F->pattern.n, k, X));
-done:
-    return status;
+    RITZ_REFUSE_IF(!F->factored, RITZ_ERR_ARGUMENT,
+                   "a solve needs a factor first");
+    return ritz_mumps_solve(&mumps, F->pattern.n, k, X);
 }
 
 ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,

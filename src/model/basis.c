@@ -46,11 +46,10 @@ done:
 
 ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_columns copy = {0};
     size_t r = (size_t)columns->count;
 
-    RITZ_TRY(ritz_columns_new(columns->count, &copy));
+    RITZ_CHECK(ritz_columns_new(columns->count, &copy));
     if (r > 0) {
         memcpy(copy.kind, columns->kind, r * sizeof *copy.kind);
         memcpy(copy.dof, columns->dof, r * sizeof *copy.dof);
@@ -58,8 +57,7 @@ ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out)
         memcpy(copy.residual, columns->residual, r * sizeof *copy.residual);
     }
     *out = copy;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out)

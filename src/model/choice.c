@@ -29,7 +29,6 @@ static ritz_status take_word(const char *what, const char *text, int64_t count,
 
 static ritz_status take_shifts(const char *text, ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
     char word[RITZ_SHORT_SIZE];
     int64_t count = 0;
 
@@ -37,40 +36,37 @@ static ritz_status take_shifts(const char *text, ritz_choice *choice)
         double hertz = 0.0;
 
         at = next_word(at, word);
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             !ritz_text_real(word, &hertz) || hertz < 0.0, RITZ_ERR_ARGUMENT,
             "expansion point '%s' is not a frequency of 0 Hz or above", word);
-        RITZ_FAIL_IF(count == RITZ_MOST_SHIFTS, RITZ_ERR_ARGUMENT,
-                     "there can be %d expansion points, not more",
-                     RITZ_MOST_SHIFTS);
+        RITZ_REFUSE_IF(count == RITZ_MOST_SHIFTS, RITZ_ERR_ARGUMENT,
+                       "there can be %d expansion points, not more",
+                       RITZ_MOST_SHIFTS);
         for (int64_t k = 0; k < count; k++)
-            RITZ_FAIL_IF(choice->shift_hz[k] == hertz, RITZ_ERR_ARGUMENT,
-                         "expansion point %g Hz is given twice", hertz);
+            RITZ_REFUSE_IF(choice->shift_hz[k] == hertz, RITZ_ERR_ARGUMENT,
+                           "expansion point %g Hz is given twice", hertz);
         choice->shift_hz[count++] = hertz;
     }
     choice->num_shifts = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const char loads[][16] = {"attached", "inputs", "outputs", "dampers"};
 
 static ritz_status take_loads(const char *text, ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
     char word[RITZ_SHORT_SIZE];
     int64_t at = 0;
     int sum = 0;
 
     for (const char *rest = text; rest;) {
         rest = next_word(rest, word);
-        RITZ_TRY(
+        RITZ_CHECK(
             take_word("load", word, sizeof loads / sizeof *loads, loads, &at));
         sum |= 1 << at;
     }
     choice->loads = sum;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const char inners[][16] = {
@@ -89,16 +85,15 @@ static ritz_status take_inner(const char *text, ritz_choice *choice)
 
 static ritz_status take_interface_modes(const char *text, ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
     char cut[RITZ_SHORT_SIZE];
     int64_t count = 0;
 
-    RITZ_FAIL_IF(!ritz_text_whole(text, &count) || count < 1, RITZ_ERR_ARGUMENT,
-                 "'%s' is no number of interface modes, 1 or more",
-                 ritz_text_short(text, cut));
+    RITZ_REFUSE_IF(!ritz_text_whole(text, &count) || count < 1,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is no number of interface modes, 1 or more",
+                   ritz_text_short(text, cut));
     choice->interface_modes = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const char gramians[][16] = {
@@ -150,21 +145,18 @@ static ritz_status take_engine(const char *text, ritz_choice *choice)
 
 static ritz_status take_among(const char *text, ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
     char cut[RITZ_SHORT_SIZE];
     double hertz = 0.0;
 
-    RITZ_FAIL_IF(!ritz_text_real(text, &hertz) || !(hertz > 0.0),
-                 RITZ_ERR_ARGUMENT, "'%s' is no frequency above 0 Hz",
-                 ritz_text_short(text, cut));
+    RITZ_REFUSE_IF(!ritz_text_real(text, &hertz) || !(hertz > 0.0),
+                   RITZ_ERR_ARGUMENT, "'%s' is no frequency above 0 Hz",
+                   ritz_text_short(text, cut));
     choice->among_hz = hertz;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_band(const char *text, ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
     char word[2][RITZ_SHORT_SIZE] = {"", ""};
     char cut[RITZ_SHORT_SIZE];
     const char *rest = next_word(text, word[0]);
@@ -172,16 +164,15 @@ static ritz_status take_band(const char *text, ritz_choice *choice)
 
     if (rest)
         rest = next_word(rest, word[1]);
-    RITZ_FAIL_IF(rest || !ritz_text_real(word[0], &hertz[0]) ||
-                     !ritz_text_real(word[1], &hertz[1]) ||
-                     !(hertz[0] >= 0.0 && hertz[1] > hertz[0]),
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is no band: two ascending frequencies, 0 Hz or above",
-                 ritz_text_short(text, cut));
+    RITZ_REFUSE_IF(rest || !ritz_text_real(word[0], &hertz[0]) ||
+                       !ritz_text_real(word[1], &hertz[1]) ||
+                       !(hertz[0] >= 0.0 && hertz[1] > hertz[0]),
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is no band: two ascending frequencies, 0 Hz or above",
+                   ritz_text_short(text, cut));
     choice->band_hz[0] = hertz[0];
     choice->band_hz[1] = hertz[1];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const char remainders[][16] = {"dropped", "static"};
@@ -238,12 +229,9 @@ const ritz_choice_word ritz_choice_words[] = {
 ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
                              ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(word->take(text, choice));
+    RITZ_CHECK(word->take(text, choice));
     choice->given |= word->uses;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Append to what stands in out. */

@@ -12,34 +12,28 @@ static const double symmetric_within = 1e-6;
 
 static ritz_status check_matrix(const ritz_sparse *A, int64_t n)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(A->nrow != n || A->ncol != n, RITZ_ERR_FORMAT,
-                 "%" PRId64 " x %" PRId64 " where %" PRId64 " x %" PRId64
-                 " is due",
-                 A->nrow, A->ncol, n, n);
-    RITZ_TRY(ritz_sparse_check(A, A->colptr[n]));
-done:
-    return status;
+    RITZ_REFUSE_IF(A->nrow != n || A->ncol != n, RITZ_ERR_FORMAT,
+                   "%" PRId64 " x %" PRId64 " where %" PRId64 " x %" PRId64
+                   " is due",
+                   A->nrow, A->ncol, n, n);
+    return ritz_sparse_check(A, A->colptr[n]);
 }
 
 static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
                                  double *worst)
 {
-    ritz_status status = RITZ_OK;
     double asymmetry = 0.0;
 
-    RITZ_TRY(check_matrix(A, n));
+    RITZ_CHECK(check_matrix(A, n));
     asymmetry = ritz_sparse_asymmetry(A);
-    RITZ_FAIL_IF(asymmetry > symmetric_within && !symmetrise, RITZ_ERR_FORMAT,
-                 "unsymmetric by %.1e of its largest entry, %.0e is let pass "
-                 "(--symmetrise averages it away)",
-                 asymmetry, symmetric_within);
+    RITZ_REFUSE_IF(asymmetry > symmetric_within && !symmetrise, RITZ_ERR_FORMAT,
+                   "unsymmetric by %.1e of its largest entry, %.0e is let pass "
+                   "(--symmetrise averages it away)",
+                   asymmetry, symmetric_within);
     if (asymmetry > 0.0)
-        RITZ_TRY(ritz_sparse_symmetrise(A));
+        RITZ_CHECK(ritz_sparse_symmetrise(A));
     *worst = fmax(*worst, asymmetry);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A matrix that may be absent: then it is left so, or made empty. */
@@ -58,37 +52,32 @@ static ritz_status settle_optional(ritz_sparse *A, int64_t n, bool complete,
 static ritz_status settle_damping(ritz_sparse *D, int64_t n, bool symmetrise,
                                   double *worst)
 {
-    ritz_status status = RITZ_OK;
-
     if (!D->colptr)
         return RITZ_OK;
-    RITZ_TRY(check_matrix(D, n));
+    RITZ_CHECK(check_matrix(D, n));
     if (symmetrise || ritz_sparse_asymmetry(D) <= symmetric_within)
-        RITZ_TRY(settle_matrix(D, n, symmetrise, worst));
-done:
-    return status;
+        RITZ_CHECK(settle_matrix(D, n, symmetrise, worst));
+    return RITZ_OK;
 }
 
 static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = component->num_dofs;
     double worst = 0.0;
 
-    RITZ_FAIL_IF(!component->M.colptr, RITZ_ERR_FORMAT, "there is no mass");
-    RITZ_TRY_IN("M", settle_matrix(&component->M, n, symmetrise, &worst));
-    RITZ_TRY_IN("K",
-                settle_optional(&component->K, n, true, symmetrise, &worst));
-    RITZ_TRY_IN("D", settle_damping(&component->D, n, symmetrise, &worst));
-    RITZ_TRY_IN("K4",
-                settle_optional(&component->K4, n, false, symmetrise, &worst));
+    RITZ_REFUSE_IF(!component->M.colptr, RITZ_ERR_FORMAT, "there is no mass");
+    RITZ_CHECK_IN("M", settle_matrix(&component->M, n, symmetrise, &worst));
+    RITZ_CHECK_IN("K",
+                  settle_optional(&component->K, n, true, symmetrise, &worst));
+    RITZ_CHECK_IN("D", settle_damping(&component->D, n, symmetrise, &worst));
+    RITZ_CHECK_IN(
+        "K4", settle_optional(&component->K4, n, false, symmetrise, &worst));
     for (int64_t k = 0; k < component->num_loads; k++)
-        RITZ_TRY_IN(component->load[k].name,
-                    settle_optional(&component->load[k].KG, n, true, symmetrise,
-                                    &worst));
+        RITZ_CHECK_IN(component->load[k].name,
+                      settle_optional(&component->load[k].KG, n, true,
+                                      symmetrise, &worst));
     component->asymmetry = worst;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_dofs(const ritz_component *component)
@@ -121,80 +110,70 @@ done:
 
 static ritz_status check_grids(const ritz_grids *grids)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < grids->count; k++) {
-        RITZ_FAIL_IF(k > 0 && grids->id[k - 1] >= grids->id[k], RITZ_ERR_FORMAT,
-                     "grids do not ascend at %" PRId64, grids->id[k]);
-        RITZ_FAIL_IF(grids->frame[k] < 0 ||
-                         grids->frame[k] >= grids->num_frames,
-                     RITZ_ERR_FORMAT, "grid %" PRId64 " has no such frame",
-                     grids->id[k]);
+        RITZ_REFUSE_IF(k > 0 && grids->id[k - 1] >= grids->id[k],
+                       RITZ_ERR_FORMAT, "grids do not ascend at %" PRId64,
+                       grids->id[k]);
+        RITZ_REFUSE_IF(grids->frame[k] < 0 ||
+                           grids->frame[k] >= grids->num_frames,
+                       RITZ_ERR_FORMAT, "grid %" PRId64 " has no such frame",
+                       grids->id[k]);
         for (int i = 0; i < 3; i++)
-            RITZ_FAIL_IF(!isfinite(grids->position[3 * k + i]), RITZ_ERR_FORMAT,
-                         "grid %" PRId64 " is nowhere", grids->id[k]);
+            RITZ_REFUSE_IF(!isfinite(grids->position[3 * k + i]),
+                           RITZ_ERR_FORMAT, "grid %" PRId64 " is nowhere",
+                           grids->id[k]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_ports(const ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < component->num_ports; k++) {
         const ritz_port *port = &component->port[k];
 
         for (int64_t j = 0; j < k; j++)
-            RITZ_FAIL_IF(strcmp(component->port[j].name, port->name) == 0,
-                         RITZ_ERR_FORMAT, "there are two ports '%s'",
-                         port->name);
+            RITZ_REFUSE_IF(strcmp(component->port[j].name, port->name) == 0,
+                           RITZ_ERR_FORMAT, "there are two ports '%s'",
+                           port->name);
         for (int64_t i = 0; i < port->dofs.count; i++)
-            RITZ_FAIL_IF(port->dofs.at[i] < 0 ||
-                             port->dofs.at[i] >= component->num_dofs,
-                         RITZ_ERR_FORMAT,
-                         "port '%s' holds dof %" PRId64
-                         ", which is not among the %" PRId64,
-                         port->name, port->dofs.at[i], component->num_dofs);
+            RITZ_REFUSE_IF(port->dofs.at[i] < 0 ||
+                               port->dofs.at[i] >= component->num_dofs,
+                           RITZ_ERR_FORMAT,
+                           "port '%s' holds dof %" PRId64
+                           ", which is not among the %" PRId64,
+                           port->name, port->dofs.at[i], component->num_dofs);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status settle_io(ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
     ritz_io *io = &component->io;
     int64_t n = component->num_dofs;
 
     if (!io->B.val)
         return ritz_io_new(n, 0, 0, io);
-    RITZ_FAIL_IF(io->B.nrow != n || io->B.ncol != io->num_inputs,
-                 RITZ_ERR_FORMAT, "inputs are of another size");
-    RITZ_FAIL_IF(io->C.ncol != n || io->C.nrow != io->num_outputs ||
-                     io->Cv.ncol != n || io->Cv.nrow != io->num_outputs ||
-                     io->Ca.ncol != n || io->Ca.nrow != io->num_outputs,
-                 RITZ_ERR_FORMAT, "outputs are of another size");
-done:
-    return status;
+    RITZ_REFUSE_IF(io->B.nrow != n || io->B.ncol != io->num_inputs,
+                   RITZ_ERR_FORMAT, "inputs are of another size");
+    RITZ_REFUSE_IF(io->C.ncol != n || io->C.nrow != io->num_outputs ||
+                       io->Cv.ncol != n || io->Cv.nrow != io->num_outputs ||
+                       io->Ca.ncol != n || io->Ca.nrow != io->num_outputs,
+                   RITZ_ERR_FORMAT, "outputs are of another size");
+    return RITZ_OK;
 }
 
 ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(check_dofs(component));
-    RITZ_TRY(settle_matrices(component, symmetrise));
-    RITZ_TRY(check_grids(&component->grids));
-    RITZ_TRY(ritz_elements_check(&component->elements, component->grids.count,
-                                 component->grids.id));
-    RITZ_TRY(check_ports(component));
-    RITZ_TRY(settle_io(component));
-    RITZ_TRY(ritz_recovery_check(&component->recovery, component->num_dofs,
-                                 component->dof));
-    RITZ_TRY(ritz_dampers_check(&component->dampers, component->num_dofs));
-done:
-    return status;
+    RITZ_CHECK(check_dofs(component));
+    RITZ_CHECK(settle_matrices(component, symmetrise));
+    RITZ_CHECK(check_grids(&component->grids));
+    RITZ_CHECK(ritz_elements_check(&component->elements, component->grids.count,
+                                   component->grids.id));
+    RITZ_CHECK(check_ports(component));
+    RITZ_CHECK(settle_io(component));
+    RITZ_CHECK(ritz_recovery_check(&component->recovery, component->num_dofs,
+                                   component->dof));
+    return ritz_dampers_check(&component->dampers, component->num_dofs);
 }
 
 ritz_status ritz_component_install(ritz_component *component)

@@ -76,16 +76,15 @@ done:
 /* "owner/name" */
 static ritz_status own(const char *owner, char name[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
     char whole[2 * RITZ_NAME_SIZE + 2];
     int length = snprintf(whole, sizeof whole, "%s/%s", owner, name);
 
-    RITZ_FAIL_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
-                 "the damper '%s' of '%s' gets a name of more than %d letters",
-                 name, owner, RITZ_NAME_SIZE - 1);
+    RITZ_REFUSE_IF(
+        length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+        "the damper '%s' of '%s' gets a name of more than %d letters", name,
+        owner, RITZ_NAME_SIZE - 1);
     memcpy(name, whole, (size_t)length + 1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
@@ -122,39 +121,36 @@ done:
 
 ritz_status ritz_dampers_check(const ritz_dampers *dampers, int64_t n)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(dampers->count > 0 && (dampers->B.nrow != n ||
-                                        dampers->B.ncol != dampers->count),
-                 RITZ_ERR_FORMAT,
-                 "influence vectors of dampers are %" PRId64 " x %" PRId64
-                 ", not %" PRId64 " x %" PRId64,
-                 dampers->B.nrow, dampers->B.ncol, n, dampers->count);
+    RITZ_REFUSE_IF(dampers->count > 0 && (dampers->B.nrow != n ||
+                                          dampers->B.ncol != dampers->count),
+                   RITZ_ERR_FORMAT,
+                   "influence vectors of dampers are %" PRId64 " x %" PRId64
+                   ", not %" PRId64 " x %" PRId64,
+                   dampers->B.nrow, dampers->B.ncol, n, dampers->count);
     for (int64_t j = 0; j < dampers->count; j++) {
         const char *name = dampers->name[j];
 
-        RITZ_FAIL_IF(!name[0], RITZ_ERR_FORMAT,
-                     "damper %" PRId64 " has no name", j + 1);
+        RITZ_REFUSE_IF(!name[0], RITZ_ERR_FORMAT,
+                       "damper %" PRId64 " has no name", j + 1);
         for (int64_t i = 0; i < j; i++)
-            RITZ_FAIL_IF(strcmp(dampers->name[i], name) == 0, RITZ_ERR_FORMAT,
-                         "there are two dampers '%s'", name);
-        RITZ_FAIL_IF(!(dampers->c[j] >= 0.0) || !isfinite(dampers->c[j]) ||
-                         !isfinite(dampers->k[j]),
-                     RITZ_ERR_FORMAT,
-                     "damper '%s' has c = %g and k = %g: c is not negative, "
-                     "and both are finite",
-                     name, dampers->c[j], dampers->k[j]);
-        RITZ_FAIL_IF(
+            RITZ_REFUSE_IF(strcmp(dampers->name[i], name) == 0, RITZ_ERR_FORMAT,
+                           "there are two dampers '%s'", name);
+        RITZ_REFUSE_IF(!(dampers->c[j] >= 0.0) || !isfinite(dampers->c[j]) ||
+                           !isfinite(dampers->k[j]),
+                       RITZ_ERR_FORMAT,
+                       "damper '%s' has c = %g and k = %g: c is not negative, "
+                       "and both are finite",
+                       name, dampers->c[j], dampers->k[j]);
+        RITZ_REFUSE_IF(
             !isfinite(dampers->held_c[j]) || !isfinite(dampers->held_k[j]),
             RITZ_ERR_FORMAT,
             "what the matrices hold of damper '%s' is not finite", name);
         for (int64_t i = 0; i < n; i++)
-            RITZ_FAIL_IF(
+            RITZ_REFUSE_IF(
                 !isfinite(ritz_dense_col(&dampers->B, j)[i]), RITZ_ERR_FORMAT,
                 "the influence vector of damper '%s' is not finite", name);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_dampers_find(const ritz_dampers *dampers, const char *name)

@@ -54,19 +54,18 @@ static void add(const ritz_dampers *dampers,
 ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
                                  ritz_dense *D)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = K->nrow;
 
-    RITZ_FAIL_IF(dampers->count > 0 && dampers->B.nrow != n, RITZ_ERR_ARGUMENT,
-                 "dampers of %" PRId64 " coordinates in a model of %" PRId64,
-                 dampers->B.nrow, n);
+    RITZ_REFUSE_IF(dampers->count > 0 && dampers->B.nrow != n,
+                   RITZ_ERR_ARGUMENT,
+                   "dampers of %" PRId64 " coordinates in a model of %" PRId64,
+                   dampers->B.nrow, n);
     if (any(dampers, more_c) && !D->val)
-        RITZ_TRY(ritz_dense_new(n, n, D));
+        RITZ_CHECK(ritz_dense_new(n, n, D));
     add(dampers, more_c, D);
     add(dampers, more_k, K);
     settle(dampers);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int64_t count_entries(const ritz_dense *B, int64_t j)
@@ -152,15 +151,12 @@ done:
 ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
                                         ritz_sparse *D)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(dampers->count > 0 && dampers->B.nrow != K->nrow,
-                 RITZ_ERR_ARGUMENT,
-                 "dampers of %" PRId64 " coordinates in a model of %" PRId64,
-                 dampers->B.nrow, K->nrow);
-    RITZ_TRY(add_sparse(dampers, more_c, D));
-    RITZ_TRY(add_sparse(dampers, more_k, K));
+    RITZ_REFUSE_IF(dampers->count > 0 && dampers->B.nrow != K->nrow,
+                   RITZ_ERR_ARGUMENT,
+                   "dampers of %" PRId64 " coordinates in a model of %" PRId64,
+                   dampers->B.nrow, K->nrow);
+    RITZ_CHECK(add_sparse(dampers, more_c, D));
+    RITZ_CHECK(add_sparse(dampers, more_k, K));
     settle(dampers);
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -16,14 +16,12 @@ static_assert(16 + 25 * MOST_NUMBERS <= RITZ_DAMPING_SIZE, "the text fits");
 
 static ritz_status check_ratio(double zeta)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!(zeta > 0.0), RITZ_ERR_ARGUMENT,
-                 "damping ratio %g is not above 0", zeta);
-    RITZ_FAIL_IF(!(zeta < 1.0), RITZ_ERR_ARGUMENT,
-                 "damping ratio %g is overdamped, it must stay below 1", zeta);
-done:
-    return status;
+    RITZ_REFUSE_IF(!(zeta > 0.0), RITZ_ERR_ARGUMENT,
+                   "damping ratio %g is not above 0", zeta);
+    RITZ_REFUSE_IF(!(zeta < 1.0), RITZ_ERR_ARGUMENT,
+                   "damping ratio %g is overdamped, it must stay below 1",
+                   zeta);
+    return RITZ_OK;
 }
 
 static ritz_status check_none(const ritz_damping *damping)
@@ -39,83 +37,74 @@ static ritz_status check_modal(const ritz_damping *damping)
 
 static ritz_status check_bands(const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(damping->count < 1 || damping->count > RITZ_MAX_BANDS,
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " damping bands are given, 1 to %d can be",
-                 damping->count, RITZ_MAX_BANDS);
+    RITZ_REFUSE_IF(damping->count < 1 || damping->count > RITZ_MAX_BANDS,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " damping bands are given, 1 to %d can be",
+                   damping->count, RITZ_MAX_BANDS);
     for (int64_t k = 0; k < damping->count; k++) {
         const double *band = damping->band[k];
         double below = k > 0 ? damping->band[k - 1][1] : 0.0;
 
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             !(band[0] >= 0.0 && band[1] > band[0] && isfinite(band[1])),
             RITZ_ERR_ARGUMENT,
             "damping band %g to %g Hz does not ascend from 0 or above", band[0],
             band[1]);
-        RITZ_FAIL_IF(band[0] < below, RITZ_ERR_ARGUMENT,
-                     "damping band %g to %g Hz begins before %g Hz, where the "
-                     "one before it ends",
-                     band[0], band[1], below);
-        RITZ_TRY(check_ratio(band[2]));
+        RITZ_REFUSE_IF(
+            band[0] < below, RITZ_ERR_ARGUMENT,
+            "damping band %g to %g Hz begins before %g Hz, where the "
+            "one before it ends",
+            band[0], band[1], below);
+        RITZ_CHECK(check_ratio(band[2]));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_rayleigh(const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!(damping->a >= 0.0 && damping->b >= 0.0 &&
-                   isfinite(damping->a) && isfinite(damping->b)),
-                 RITZ_ERR_ARGUMENT,
-                 "rayleigh damping %g %g is negative or not finite", damping->a,
-                 damping->b);
-    RITZ_FAIL_IF(damping->a == 0.0 && damping->b == 0.0, RITZ_ERR_ARGUMENT,
-                 "rayleigh damping 0 0 is none");
-done:
-    return status;
+    RITZ_REFUSE_IF(!(damping->a >= 0.0 && damping->b >= 0.0 &&
+                     isfinite(damping->a) && isfinite(damping->b)),
+                   RITZ_ERR_ARGUMENT,
+                   "rayleigh damping %g %g is negative or not finite",
+                   damping->a, damping->b);
+    RITZ_REFUSE_IF(damping->a == 0.0 && damping->b == 0.0, RITZ_ERR_ARGUMENT,
+                   "rayleigh damping 0 0 is none");
+    return RITZ_OK;
 }
 
 static ritz_status check_modes(const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(damping->count < 1 || damping->count > RITZ_MOST_RATIOS,
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " ratios of modes are given, 1 to %d can be",
-                 damping->count, RITZ_MOST_RATIOS);
+    RITZ_REFUSE_IF(damping->count < 1 || damping->count > RITZ_MOST_RATIOS,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " ratios of modes are given, 1 to %d can be",
+                   damping->count, RITZ_MOST_RATIOS);
     for (int64_t k = 0; k < damping->count; k++)
-        RITZ_TRY(check_ratio(damping->ratio[k]));
-done:
-    return status;
+        RITZ_CHECK(check_ratio(damping->ratio[k]));
+    return RITZ_OK;
 }
 
 static ritz_status check_fit(const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
     bool differ = false;
 
-    RITZ_FAIL_IF(damping->count < 2 || damping->count > RITZ_MOST_POINTS,
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " points of a fit are given, 2 to %d can be",
-                 damping->count, RITZ_MOST_POINTS);
+    RITZ_REFUSE_IF(damping->count < 2 || damping->count > RITZ_MOST_POINTS,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " points of a fit are given, 2 to %d can be",
+                   damping->count, RITZ_MOST_POINTS);
     for (int64_t k = 0; k < damping->count; k++) {
         const double *point = damping->point[k];
 
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             !(point[0] > 0.0) || !isfinite(point[0]), RITZ_ERR_ARGUMENT,
             "a damping fit at %g Hz: its frequencies are above 0", point[0]);
-        RITZ_TRY(check_ratio(point[1]));
+        RITZ_CHECK(check_ratio(point[1]));
         differ = differ || point[0] != damping->point[0][0];
     }
-    RITZ_FAIL_IF(!differ, RITZ_ERR_ARGUMENT,
-                 "a damping fit needs two different frequencies, all are %g Hz",
-                 damping->point[0][0]);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        !differ, RITZ_ERR_ARGUMENT,
+        "a damping fit needs two different frequencies, all are %g Hz",
+        damping->point[0][0]);
+    return RITZ_OK;
 }
 
 /* The numbers behind the word, in the order of the text; how many. */
@@ -265,23 +254,19 @@ static int64_t split(char *text, int64_t most, char *word[])
 static ritz_status read_numbers(const struct form *form, int64_t count,
                                 char *word[], double number[MOST_NUMBERS])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(count < form->least || count > form->most ||
-                     (count - form->least) % form->step != 0,
-                 RITZ_ERR_ARGUMENT,
-                 "damping '%s' with %" PRId64 " numbers is not such as '%s'",
-                 form->name, count, form->example);
+    RITZ_REFUSE_IF(count < form->least || count > form->most ||
+                       (count - form->least) % form->step != 0,
+                   RITZ_ERR_ARGUMENT,
+                   "damping '%s' with %" PRId64 " numbers is not such as '%s'",
+                   form->name, count, form->example);
     for (int64_t k = 0; k < count; k++)
-        RITZ_FAIL_IF(!ritz_text_real(word[k], &number[k]), RITZ_ERR_ARGUMENT,
-                     "'%.40s' in a damping is not a finite number", word[k]);
-done:
-    return status;
+        RITZ_REFUSE_IF(!ritz_text_real(word[k], &number[k]), RITZ_ERR_ARGUMENT,
+                       "'%.40s' in a damping is not a finite number", word[k]);
+    return RITZ_OK;
 }
 
 ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_damping damping = {0};
     char copy[RITZ_DAMPING_SIZE];
     char *word[MOST_NUMBERS + 2] = {0};
@@ -289,26 +274,25 @@ ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
     int64_t count = 0;
     int kind = 0;
 
-    RITZ_FAIL_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
-                 "the damping '%.40s...' is too long", text);
+    RITZ_REFUSE_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
+                   "the damping '%.40s...' is too long", text);
     memcpy(copy, text, strlen(text) + 1);
     count = split(copy, MOST_NUMBERS + 2, word);
     while (count > 0 && kind < NUM_FORMS &&
            strcmp(word[0], forms[kind].name) != 0)
         kind++;
-    RITZ_FAIL_IF(kind == NUM_FORMS, RITZ_ERR_ARGUMENT,
-                 "unknown damping '%.40s', there is modal, modes, bands, "
-                 "rayleigh, fit",
-                 word[0]);
+    RITZ_REFUSE_IF(kind == NUM_FORMS, RITZ_ERR_ARGUMENT,
+                   "unknown damping '%.40s', there is modal, modes, bands, "
+                   "rayleigh, fit",
+                   word[0]);
     if (count > 0) {
         damping.kind = (ritz_damping_kind)kind;
-        RITZ_TRY(read_numbers(&forms[kind], count - 1, word + 1, number));
+        RITZ_CHECK(read_numbers(&forms[kind], count - 1, word + 1, number));
         forms[kind].take(number, count - 1, &damping);
     }
-    RITZ_TRY(ritz_damping_check(&damping));
+    RITZ_CHECK(ritz_damping_check(&damping));
     if (damping.kind == RITZ_DAMPING_FIT)
         ritz_damping_fit(&damping);
     *out = damping;
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -39,16 +39,14 @@ done:
 
 ritz_status ritz_dofs_copy(const ritz_dofs *set, ritz_dofs *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_dofs copy = {0};
 
-    RITZ_NEW(copy.at, set->count);
+    RITZ_CHECK_NEW(copy.at, set->count);
     copy.count = set->count;
     if (set->count > 0)
         memcpy(copy.at, set->at, (size_t)set->count * sizeof *set->at);
     *out = copy;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const char *ritz_dof_name(ritz_dof dof, char text[RITZ_DOF_NAME_SIZE])

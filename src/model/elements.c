@@ -118,29 +118,26 @@ int64_t ritz_elements_keep(ritz_elements *elements, int64_t count,
 ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
                                 const int64_t *id)
 {
-    ritz_status status = RITZ_OK;
-
     if (elements->count == 0)
         return RITZ_OK;
-    RITZ_FAIL_IF(elements->first[0] != 0, RITZ_ERR_FORMAT,
-                 "elements do not begin at their first grid");
+    RITZ_REFUSE_IF(elements->first[0] != 0, RITZ_ERR_FORMAT,
+                   "elements do not begin at their first grid");
     for (int64_t k = 0; k < elements->count; k++) {
         int64_t size = elements->first[k + 1] - elements->first[k];
 
-        RITZ_FAIL_IF(ritz_cell_size(elements->kind[k]) == 0, RITZ_ERR_FORMAT,
-                     "element %" PRId64 " is of kind %" PRId64
-                     ", which is not known",
-                     k + 1, elements->kind[k]);
-        RITZ_FAIL_IF(size != ritz_cell_size(elements->kind[k]), RITZ_ERR_FORMAT,
-                     "element %" PRId64 " has %" PRId64
-                     " grids, its kind has %" PRId64,
-                     k + 1, size, ritz_cell_size(elements->kind[k]));
-        RITZ_FAIL_IF(!all_there(elements, k, count, id), RITZ_ERR_FORMAT,
-                     "element %" PRId64 " has a grid without a position",
-                     k + 1);
+        RITZ_REFUSE_IF(ritz_cell_size(elements->kind[k]) == 0, RITZ_ERR_FORMAT,
+                       "element %" PRId64 " is of kind %" PRId64
+                       ", which is not known",
+                       k + 1, elements->kind[k]);
+        RITZ_REFUSE_IF(
+            size != ritz_cell_size(elements->kind[k]), RITZ_ERR_FORMAT,
+            "element %" PRId64 " has %" PRId64 " grids, its kind has %" PRId64,
+            k + 1, size, ritz_cell_size(elements->kind[k]));
+        RITZ_REFUSE_IF(!all_there(elements, k, count, id), RITZ_ERR_FORMAT,
+                       "element %" PRId64 " has a grid without a position",
+                       k + 1);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_elements_free(ritz_elements *elements)

@@ -32,20 +32,18 @@ static int compare_places(const void *left, const void *right)
 static ritz_status find_place(const ritz_eliminator *s, const place *sorted,
                               ritz_dof dof, int64_t source, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     const place wanted = {.dof = dof};
     const place *found = bsearch(&wanted, sorted, (size_t)s->num_all,
                                  sizeof *sorted, compare_places);
     char name[RITZ_DOF_NAME_SIZE];
     char cited[RITZ_CITATION_SIZE];
 
-    RITZ_FAIL_IF(!found, RITZ_ERR_FORMAT,
-                 "%s names '%s', which is not among the dofs",
-                 ritz_equations_cite(s->equations, source, cited),
-                 ritz_dof_name(dof, name));
+    RITZ_REFUSE_IF(!found, RITZ_ERR_FORMAT,
+                   "%s names '%s', which is not among the dofs",
+                   ritz_equations_cite(s->equations, source, cited),
+                   ritz_dof_name(dof, name));
     *out = found->row;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status refuse_second(const ritz_eliminator *s, int64_t first,
@@ -70,7 +68,6 @@ static ritz_status refuse_second(const ritz_eliminator *s, int64_t first,
 static ritz_status name_dependents(ritz_eliminator *s, const place *sorted,
                                    const bool *fixed)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
     char name[RITZ_DOF_NAME_SIZE];
     char cited[RITZ_CITATION_SIZE];
@@ -78,18 +75,17 @@ static ritz_status name_dependents(ritz_eliminator *s, const place *sorted,
     for (int64_t e = 0; e < eq->count; e++) {
         int64_t k = 0;
 
-        RITZ_TRY(find_place(s, sorted, eq->dependent[e], eq->source[e], &k));
+        RITZ_CHECK(find_place(s, sorted, eq->dependent[e], eq->source[e], &k));
         if (s->equation[k] >= 0)
-            RITZ_TRY(refuse_second(s, s->equation[k], e));
-        RITZ_FAIL_IF(fixed && fixed[k], RITZ_ERR_FORMAT,
-                     "'%s' depends on %s and is fixed by the deck: it cannot "
-                     "be both",
-                     ritz_dof_name(eq->dependent[e], name),
-                     ritz_equations_cite(eq, eq->source[e], cited));
+            RITZ_CHECK(refuse_second(s, s->equation[k], e));
+        RITZ_REFUSE_IF(fixed && fixed[k], RITZ_ERR_FORMAT,
+                       "'%s' depends on %s and is fixed by the deck: it cannot "
+                       "be both",
+                       ritz_dof_name(eq->dependent[e], name),
+                       ritz_equations_cite(eq, eq->source[e], cited));
         s->equation[k] = e;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status name_terms(ritz_eliminator *s, const bool *fixed)
@@ -156,21 +152,19 @@ static int64_t advance(const ritz_eliminator *s, int64_t e, walk *w)
 
 static ritz_status leave(ritz_eliminator *s, int64_t e, walk *w)
 {
-    ritz_status status = RITZ_OK;
     int64_t from = w->height;
 
     w->depth--;
     if (w->depth > 0 && w->low[e] < w->low[w->path[w->depth - 1]])
         w->low[w->path[w->depth - 1]] = w->low[e];
     if (w->low[e] < w->index[e])
-        goto done;
+        return RITZ_OK;
     do
         w->waiting[w->stack[--from]] = false;
     while (w->stack[from] != e);
-    RITZ_TRY(ritz_eliminator_settle(s, w->height - from, w->stack + from));
+    RITZ_CHECK(ritz_eliminator_settle(s, w->height - from, w->stack + from));
     w->height = from;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status settle_all(ritz_eliminator *s)
@@ -215,10 +209,8 @@ done:
 static ritz_status split(const ritz_eliminator *s, int64_t *column,
                          ritz_elimination *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(out->kept.at, s->num_all - s->equations->count);
-    RITZ_NEW(out->gone.at, s->equations->count);
+    RITZ_CHECK_NEW(out->kept.at, s->num_all - s->equations->count);
+    RITZ_CHECK_NEW(out->gone.at, s->equations->count);
     for (int64_t k = 0; k < s->num_all; k++) {
         bool stays = s->equation[k] < 0;
 
@@ -228,8 +220,7 @@ static ritz_status split(const ritz_eliminator *s, int64_t *column,
         else
             out->gone.at[out->gone.count++] = k;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status build(const ritz_eliminator *s, ritz_elimination *out)

@@ -56,15 +56,12 @@ static void clear(ritz_eliminator *s)
 
 static ritz_status count_entries(ritz_eliminator *s, int64_t count)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(count > MOST_ENTRIES - s->num_kept, RITZ_ERR_FORMAT,
-                 "the constraints spread over more than %d entries: a chain "
-                 "of them sums up too much",
-                 MOST_ENTRIES);
+    RITZ_REFUSE_IF(count > MOST_ENTRIES - s->num_kept, RITZ_ERR_FORMAT,
+                   "the constraints spread over more than %d entries: a chain "
+                   "of them sums up too much",
+                   MOST_ENTRIES);
     s->num_kept += count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What lies in `sum`, or in column i of X by the places in `sum`, as a row. */

@@ -29,13 +29,11 @@ static const double unseen = 1e-8;
 
 static ritz_status refuse_structural(bool there)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(there, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no states, "
-                 "give it as a modal ratio");
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        there, RITZ_ERR_ARGUMENT,
+        "structural damping is of harmonic motion and has no states, "
+        "give it as a modal ratio");
+    return RITZ_OK;
 }
 
 /* K and D with the dampers that are kept apart. */
@@ -274,14 +272,10 @@ ritz_status ritz_first_order_drive(const ritz_io *io,
                                    const ritz_damping *damping,
                                    ritz_first_order *modes)
 {
-    ritz_status status = RITZ_OK;
-
     if (!modes->Delta.val)
-        RITZ_TRY(ritz_dense_new(modes->count, modes->count, &modes->Delta));
+        RITZ_CHECK(ritz_dense_new(modes->count, modes->count, &modes->Delta));
     add_damping(damping, modes);
-    RITZ_TRY(project_io(io, modes));
-done:
-    return status;
+    return project_io(io, modes);
 }
 
 ritz_status ritz_first_order_new(const ritz_structure *model, const ritz_io *io,

@@ -68,16 +68,15 @@ static ritz_status turn_triple(const member *grid, int first,
                                const double *axes, ritz_dense *turn,
                                int64_t *row, ritz_dof *label)
 {
-    ritz_status status = RITZ_OK;
     const int64_t *place = grid->place + first;
     bool plain = is_basic(axes);
     bool all = place[0] >= 0 && place[1] >= 0 && place[2] >= 0;
     bool none = place[0] < 0 && place[1] < 0 && place[2] < 0;
 
-    RITZ_FAIL_IF(!plain && !all && !none, RITZ_ERR_ARGUMENT,
-                 "grid %" PRId64 " has axes of its own and brings only some "
-                 "of its %s",
-                 grid->grid, first == 0 ? "translations" : "rotations");
+    RITZ_REFUSE_IF(!plain && !all && !none, RITZ_ERR_ARGUMENT,
+                   "grid %" PRId64 " has axes of its own and brings only some "
+                   "of its %s",
+                   grid->grid, first == 0 ? "translations" : "rotations");
     for (int i = 0; i < 3; i++) {
         if (place[i] < 0)
             continue;
@@ -87,8 +86,7 @@ static ritz_status turn_triple(const member *grid, int first,
         label[*row] = (ritz_dof){grid->grid, first + i + 1};
         (*row)++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_port_turn(const ritz_component *component,
@@ -152,11 +150,10 @@ static void fill_row(const double *a, const double *d, bool rotation,
 ritz_status ritz_rigid_geometry(const ritz_component *component,
                                 const double origin[static 3], ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &component->grids;
     ritz_dense R = {0};
 
-    RITZ_TRY(ritz_dense_new(component->num_dofs, 6, &R));
+    RITZ_CHECK(ritz_dense_new(component->num_dofs, 6, &R));
     for (int64_t row = 0; row < component->num_dofs; row++) {
         ritz_dof dof = component->dof[row];
         int64_t k = dof.component == 0 ? -1 : ritz_grids_find(grids, dof.grid);
@@ -171,8 +168,7 @@ ritz_status ritz_rigid_geometry(const ritz_component *component,
                  d, dof.component > 3, row, &R);
     }
     *out = R;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_grids_free(ritz_grids *grids)

@@ -129,15 +129,12 @@ done:
 
 static ritz_status positions(const ritz_nodes *nodes, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(nodes->count, 3, out));
+    RITZ_CHECK(ritz_dense_new(nodes->count, 3, out));
     for (int a = 0; a < 3; a++)
         for (int64_t i = 0; i < nodes->count; i++)
             ritz_dense_col(out, a)[i] =
                 nodes->grids->position[3 * nodes->grid[i] + a];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Put A at (row, col) of `out`, and A' at (col, row) if that is asked. */
@@ -220,13 +217,10 @@ done:
 /* I3 (x) V, which T V does to the three blocks of columns. */
 static ritz_status thrice(const ritz_dense *V, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(3 * V->nrow, 3 * V->ncol, out));
+    RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, out));
     for (int b = 0; b < 3; b++)
         put(V, b * V->nrow, b * V->ncol, false, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,

@@ -19,15 +19,12 @@ static void clear_massless(const ritz_columns *columns, ritz_dense *A)
 /* T of what has mass, for the invariants to be of the same body as M. */
 ritz_status ritz_mass_columns(const ritz_basis *basis, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(&basis->T, out));
+    RITZ_CHECK(ritz_dense_copy(&basis->T, out));
     for (int64_t j = 0; j < out->ncol; j++)
         if (basis->columns.kind[j] == RITZ_COLUMN_MASSLESS)
             memset(ritz_dense_col(out, j), 0,
                    (size_t)out->nrow * sizeof *out->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

@@ -10,11 +10,10 @@
 ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
                               double value, double limit, const char *where)
 {
-    ritz_status status = RITZ_OK;
     ritz_measure *more = NULL;
     ritz_measure *last = NULL;
 
-    RITZ_NEW(more, measures->count + 1);
+    RITZ_CHECK_NEW(more, measures->count + 1);
     if (measures->count > 0)
         memcpy(more, measures->item, (size_t)measures->count * sizeof *more);
     last = &more[measures->count];
@@ -25,8 +24,7 @@ ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
     free(measures->item);
     measures->item = more;
     measures->count++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_measure *ritz_measures_find(const ritz_measures *measures,
@@ -47,17 +45,15 @@ double ritz_measures_value(const ritz_measures *measures, const char *name)
 
 ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_measures made = {0};
 
-    RITZ_NEW(made.item, from->count);
+    RITZ_CHECK_NEW(made.item, from->count);
     made.count = from->count;
     if (from->count > 0)
         memcpy(made.item, from->item, (size_t)made.count * sizeof *made.item);
     ritz_measures_free(out);
     *out = made;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_measures_free(ritz_measures *measures)

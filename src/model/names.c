@@ -38,7 +38,6 @@ static const char *list(const ritz_names *names, char *out, size_t size)
 ritz_status ritz_words_find(const ritz_names *names, const char *word,
                             int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t at = ritz_names_index(names, word);
     const char *near = NULL;
     char text[RITZ_SHORT_SIZE];
@@ -47,14 +46,13 @@ ritz_status ritz_words_find(const ritz_names *names, const char *word,
     if (at < 0)
         near =
             ritz_text_nearest(word, names->count, names->first, names->stride);
-    RITZ_FAIL_IF(near, RITZ_ERR_ARGUMENT, "unknown %s '%s', is '%s' meant?",
-                 names->what, ritz_text_short(word, text), near);
-    RITZ_FAIL_IF(at < 0, RITZ_ERR_ARGUMENT, "unknown %s '%s', there is %s",
-                 names->what, ritz_text_short(word, text),
-                 list(names, all, sizeof all));
+    RITZ_REFUSE_IF(near, RITZ_ERR_ARGUMENT, "unknown %s '%s', is '%s' meant?",
+                   names->what, ritz_text_short(word, text), near);
+    RITZ_REFUSE_IF(at < 0, RITZ_ERR_ARGUMENT, "unknown %s '%s', there is %s",
+                   names->what, ritz_text_short(word, text),
+                   list(names, all, sizeof all));
     *out = at;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const char *ritz_text_short(const char *text, char out[RITZ_SHORT_SIZE])

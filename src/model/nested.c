@@ -19,14 +19,11 @@
 static ritz_status pick_columns(const ritz_dense *A, int64_t count,
                                 const int64_t *at, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
     for (int64_t j = 0; j < count && A->nrow > 0; j++)
         memcpy(ritz_dense_col(out, j), ritz_dense_col(A, at[j]),
                (size_t)A->nrow * sizeof *out->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns b r + k for the three axes b. */
@@ -144,12 +141,11 @@ done:
 static ritz_status shorten(const ritz_nested *in, int64_t order,
                            ritz_nested *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     while (count < in->count && in->order[count] <= order)
         count++;
-    RITZ_TRY(ritz_nested_new(in->smallest, count, in->num_errors, out));
+    RITZ_CHECK(ritz_nested_new(in->smallest, count, in->num_errors, out));
     for (int64_t k = 0; k < count; k++)
         out->order[k] = in->order[k];
     for (int64_t j = 0; j < in->num_errors; j++) {
@@ -158,8 +154,7 @@ static ritz_status shorten(const ritz_nested *in, int64_t order,
             ritz_dense_col(&out->value, j)[k] =
                 ritz_dense_col(&in->value, j)[k];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_bound(const char *name)
@@ -174,7 +169,6 @@ static bool is_bound(const char *name)
 /* What was noted of just this order. */
 static ritz_status vouch(int64_t order, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     const ritz_nested *n = &reduced->nested;
     int64_t row = n->count - 1;
     char where[RITZ_NAME_SIZE];
@@ -187,12 +181,11 @@ static ritz_status vouch(int64_t order, ritz_reduced *reduced)
         double value = ritz_dense_col(&n->value, j)[row];
 
         if (!isnan(value))
-            RITZ_TRY(ritz_measures_add(
+            RITZ_CHECK(ritz_measures_add(
                 is_bound(n->error[j]) ? &reduced->estimates : &reduced->errors,
                 n->error[j], value, nan(""), where));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,

@@ -36,29 +36,24 @@ done:
 
 ritz_status ritz_nested_check(const ritz_reduced *in, int64_t order)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(in->nested.smallest == 0, RITZ_ERR_ARGUMENT,
-                 "it is not nested: its %" PRId64
-                 " columns are one model, and some of them are none",
-                 in->K.ncol);
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(in->nested.smallest == 0, RITZ_ERR_ARGUMENT,
+                   "it is not nested: its %" PRId64
+                   " columns are one model, and some of them are none",
+                   in->K.ncol);
+    RITZ_REFUSE_IF(
         order < in->nested.smallest || order > in->K.ncol, RITZ_ERR_ARGUMENT,
         "there is no prefix of %" PRId64 " columns, there are those of "
         "%" PRId64 " to %" PRId64,
         order, in->nested.smallest, in->K.ncol);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A place for an order and a name, each where it belongs. */
 static ritz_status widen(const ritz_nested *in, int64_t row, bool new_row,
                          int64_t col, bool new_col, ritz_nested *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_nested_new(in->smallest, in->count + new_row,
-                             in->num_errors + new_col, out));
+    RITZ_CHECK(ritz_nested_new(in->smallest, in->count + new_row,
+                               in->num_errors + new_col, out));
     for (int64_t k = 0; k < in->count; k++)
         out->order[k + (new_row && k >= row)] = in->order[k];
     for (int64_t j = 0; j < in->num_errors; j++) {
@@ -69,8 +64,7 @@ static ritz_status widen(const ritz_nested *in, int64_t row, bool new_row,
             ritz_dense_col(&out->value, to)[k + (new_row && k >= row)] =
                 ritz_dense_col(&in->value, j)[k];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,

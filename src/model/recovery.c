@@ -11,17 +11,15 @@
 static ritz_status join_names(const ritz_recovery *recovery, int64_t n,
                               const ritz_dof *dof, ritz_dof **out)
 {
-    ritz_status status = RITZ_OK;
     ritz_dof *all = NULL;
 
-    RITZ_NEW(all, n + recovery->count);
+    RITZ_CHECK_NEW(all, n + recovery->count);
     if (n > 0)
         memcpy(all, dof, (size_t)n * sizeof *all);
     if (recovery->count > 0)
         memcpy(all + n, recovery->dof, (size_t)recovery->count * sizeof *all);
     *out = all;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_names(const ritz_recovery *recovery, int64_t n,
@@ -54,20 +52,17 @@ done:
 ritz_status ritz_recovery_check(const ritz_recovery *recovery, int64_t n,
                                 const ritz_dof *dof)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *G = &recovery->G;
 
     if (recovery->count == 0)
-        goto done;
-    RITZ_FAIL_IF(!G->colptr || G->nrow != recovery->count || G->ncol != n,
-                 RITZ_ERR_FORMAT,
-                 "recovered dofs are of another size: %" PRId64 " x %" PRId64
-                 " where %" PRId64 " x %" PRId64 " is due",
-                 G->nrow, G->ncol, recovery->count, n);
-    RITZ_TRY(ritz_sparse_check(G, G->colptr[n]));
-    RITZ_TRY(check_names(recovery, n, dof));
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_REFUSE_IF(!G->colptr || G->nrow != recovery->count || G->ncol != n,
+                   RITZ_ERR_FORMAT,
+                   "recovered dofs are of another size: %" PRId64 " x %" PRId64
+                   " where %" PRId64 " x %" PRId64 " is due",
+                   G->nrow, G->ncol, recovery->count, n);
+    RITZ_CHECK(ritz_sparse_check(G, G->colptr[n]));
+    return check_names(recovery, n, dof);
 }
 
 ritz_status ritz_recovery_copy(const ritz_recovery *recovery,

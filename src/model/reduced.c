@@ -68,15 +68,13 @@ done:
 
 static ritz_status copy_dofs(int64_t n, const ritz_dof *dof, ritz_dof **out)
 {
-    ritz_status status = RITZ_OK;
     ritz_dof *copy = NULL;
 
-    RITZ_NEW(copy, n);
+    RITZ_CHECK_NEW(copy, n);
     if (n > 0)
         memcpy(copy, dof, (size_t)n * sizeof *copy);
     *out = copy;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows `at` of T. */
@@ -113,16 +111,13 @@ done:
 static ritz_status map_ports(const ritz_component *component,
                              const ritz_dense *T, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(reduced->port, component->num_ports);
+    RITZ_CHECK_NEW(reduced->port, component->num_ports);
     for (int64_t k = 0; k < component->num_ports; k++) {
         reduced->num_ports++;
-        RITZ_TRY(
+        RITZ_CHECK(
             map_port(component, &component->port[k], T, &reduced->port[k]));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status keep_names(const ritz_component *component,
@@ -187,9 +182,7 @@ done:
 static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
                                  ritz_reduced *to)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(to->port, from->num_ports);
+    RITZ_CHECK_NEW(to->port, from->num_ports);
     for (int64_t k = 0; k < from->num_ports; k++) {
         const ritz_port_map *port = &from->port[k];
         ritz_port_map *copy = &to->port[k];
@@ -199,15 +192,14 @@ static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
         copy->dof = NULL;
         copy->position = NULL;
         copy->map = (ritz_dense){0};
-        RITZ_TRY(copy_dofs(port->count, port->dof, &copy->dof));
-        RITZ_NEW(copy->position, 3 * port->count);
+        RITZ_CHECK(copy_dofs(port->count, port->dof, &copy->dof));
+        RITZ_CHECK_NEW(copy->position, 3 * port->count);
         if (port->count > 0)
             memcpy(copy->position, port->position,
                    3 * (size_t)port->count * sizeof *copy->position);
-        RITZ_TRY(ritz_dense_mul(&port->map, V, &copy->map));
+        RITZ_CHECK(ritz_dense_mul(&port->map, V, &copy->map));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_reduced_project(const ritz_reduced *reduced,

@@ -16,39 +16,36 @@
 static ritz_status check(const ritz_component *component,
                          const ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = &basis->W;
 
-    RITZ_FAIL_IF(basis->states || !W->val, RITZ_ERR_ARGUMENT,
-                 "the basis of '%s' is not of displacements with left vectors",
-                 basis->origin.method);
-    RITZ_FAIL_IF(T->nrow != component->num_dofs || W->nrow != T->nrow ||
-                     W->ncol != T->ncol,
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " x %" PRId64 " left and %" PRId64 " x %" PRId64
-                 " right vectors do not fit %" PRId64 " dofs",
-                 W->nrow, W->ncol, T->nrow, T->ncol, component->num_dofs);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        basis->states || !W->val, RITZ_ERR_ARGUMENT,
+        "the basis of '%s' is not of displacements with left vectors",
+        basis->origin.method);
+    RITZ_REFUSE_IF(T->nrow != component->num_dofs || W->nrow != T->nrow ||
+                       W->ncol != T->ncol,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " x %" PRId64 " left and %" PRId64 " x %" PRId64
+                   " right vectors do not fit %" PRId64 " dofs",
+                   W->nrow, W->ncol, T->nrow, T->ncol, component->num_dofs);
+    return RITZ_OK;
 }
 
 /* out = [upper 0; 0 lower] */
 static ritz_status stack(const ritz_dense *upper, const ritz_dense *lower,
                          ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = upper->nrow;
     size_t size = (size_t)n * sizeof *out->val;
 
-    RITZ_TRY(ritz_dense_new(2 * n, 2 * upper->ncol, out));
+    RITZ_CHECK(ritz_dense_new(2 * n, 2 * upper->ncol, out));
     for (int64_t j = 0; j < upper->ncol && n > 0; j++) {
         memcpy(ritz_dense_col(out, j), ritz_dense_col(upper, j), size);
         memcpy(ritz_dense_col(out, upper->ncol + j) + n,
                ritz_dense_col(lower, j), size);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status to_states(const ritz_component *component,

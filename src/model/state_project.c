@@ -45,15 +45,13 @@ static void release(large *m)
 
 static ritz_status half(const ritz_dense *T, int64_t first, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = T->nrow / 2;
 
-    RITZ_TRY(ritz_dense_new(n, T->ncol, out));
+    RITZ_CHECK(ritz_dense_new(n, T->ncol, out));
     for (int64_t j = 0; j < T->ncol; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(T, j)[first + i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status install(const ritz_component *component, large *m)
@@ -83,14 +81,11 @@ static bool is_rigid(const large *m, int64_t j)
 static ritz_status stiffness_times(const large *m, const ritz_dense *X,
                                    ritz_dense *Y)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_sparse_mul(&m->K, X, Y));
+    RITZ_CHECK(ritz_sparse_mul(&m->K, X, Y));
     for (int64_t j = 0; j < Y->ncol; j++)
         for (int64_t i = 0; i < Y->nrow && is_rigid(m, j); i++)
             ritz_dense_col(Y, j)[i] = 0.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A := A + factor B */
@@ -278,20 +273,19 @@ done:
 /* What massless dofs answer at once would need more than the vectors. */
 static ritz_status refuse_massless_inputs(const ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
 
     for (int64_t j = 0; j < io->num_inputs; j++)
         for (int64_t i = 0; i < component->num_dofs; i++)
-            RITZ_FAIL_IF(ritz_dense_col(&io->B, j)[i] != 0.0 &&
-                             ritz_sparse_diagonal(&component->M, i) == 0.0,
-                         RITZ_ERR_ARGUMENT,
-                         "input '%s' drives a dof without mass, and there are "
-                         "too many dofs for what it answers at once: condense "
-                         "it first",
-                         io->input[j]);
-done:
-    return status;
+            RITZ_REFUSE_IF(
+                ritz_dense_col(&io->B, j)[i] != 0.0 &&
+                    ritz_sparse_diagonal(&component->M, i) == 0.0,
+                RITZ_ERR_ARGUMENT,
+                "input '%s' drives a dof without mass, and there are "
+                "too many dofs for what it answers at once: condense "
+                "it first",
+                io->input[j]);
+    return RITZ_OK;
 }
 
 ritz_status ritz_states_project(const ritz_component *component,

@@ -68,15 +68,12 @@ static ritz_status restoring(const ritz_first_order *modes,
                              const ritz_dense *T_q, const ritz_dense *T_v,
                              ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_mul(&modes->Delta, T_v, out));
+    RITZ_CHECK(ritz_dense_mul(&modes->Delta, T_v, out));
     for (int64_t j = 0; j < T_q->ncol; j++)
         for (int64_t i = 0; i < T_q->nrow; i++)
             ritz_dense_col(out, j)[i] +=
                 modes->lambda[i] * ritz_dense_col(T_q, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* C T_q + Cv T_v, and what feeds through. */
@@ -140,12 +137,9 @@ static ritz_status take_settled(const ritz_first_order *modes,
                                 const ritz_dense *A, const ritz_dense *X,
                                 int64_t first, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(take(A, X, first, out));
+    RITZ_CHECK(take(A, X, first, out));
     settle_rigid(modes, columns, A, X, first, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status project(const ritz_first_order *modes,
@@ -201,23 +195,21 @@ done:
 static ritz_status check(const ritz_component *component,
                          const ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = &basis->W;
 
-    RITZ_FAIL_IF(!basis->states, RITZ_ERR_ARGUMENT,
-                 "the basis is of displacements, not of states");
-    RITZ_FAIL_IF(T->nrow != 2 * component->num_dofs, RITZ_ERR_ARGUMENT,
-                 "the basis has %" PRId64
-                 " rows, the component has 2 x %" PRId64 " states",
-                 T->nrow, component->num_dofs);
-    RITZ_FAIL_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
-                 " x %" PRId64 " right ones",
-                 W->nrow, W->ncol, T->nrow, T->ncol);
-done:
-    return status;
+    RITZ_REFUSE_IF(!basis->states, RITZ_ERR_ARGUMENT,
+                   "the basis is of displacements, not of states");
+    RITZ_REFUSE_IF(T->nrow != 2 * component->num_dofs, RITZ_ERR_ARGUMENT,
+                   "the basis has %" PRId64
+                   " rows, the component has 2 x %" PRId64 " states",
+                   T->nrow, component->num_dofs);
+    RITZ_REFUSE_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
+                   " x %" PRId64 " right ones",
+                   W->nrow, W->ncol, T->nrow, T->ncol);
+    return RITZ_OK;
 }
 
 ritz_status ritz_reduce_states(const ritz_component *component,

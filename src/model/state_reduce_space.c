@@ -7,23 +7,21 @@
 
 static ritz_status check(const ritz_state_space *full, const ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = &basis->W;
 
-    RITZ_FAIL_IF(!basis->states, RITZ_ERR_ARGUMENT,
-                 "the basis is of displacements, and a state space has none");
-    RITZ_FAIL_IF(T->nrow != full->A.nrow, RITZ_ERR_ARGUMENT,
-                 "the basis is for %" PRId64
-                 " states, the state space has %" PRId64,
-                 T->nrow, full->A.nrow);
-    RITZ_FAIL_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
-                 " x %" PRId64 " right ones",
-                 W->nrow, W->ncol, T->nrow, T->ncol);
-done:
-    return status;
+    RITZ_REFUSE_IF(!basis->states, RITZ_ERR_ARGUMENT,
+                   "the basis is of displacements, and a state space has none");
+    RITZ_REFUSE_IF(T->nrow != full->A.nrow, RITZ_ERR_ARGUMENT,
+                   "the basis is for %" PRId64
+                   " states, the state space has %" PRId64,
+                   T->nrow, full->A.nrow);
+    RITZ_REFUSE_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
+                   " x %" PRId64 " right ones",
+                   W->nrow, W->ncol, T->nrow, T->ncol);
+    return RITZ_OK;
 }
 
 /* W'A T */

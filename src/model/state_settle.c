@@ -35,28 +35,25 @@ static void paste(const ritz_dense *G, int64_t row, int64_t col, ritz_dense *A)
 
 static ritz_status join(const ritz_state_space *model, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = model->A.nrow;
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_dense_new(n + model->num_outputs, n + model->num_inputs, out));
     copy(&model->A, 0, 0, out);
     copy(&model->B, 0, n, out);
     copy(&model->C, n, 0, out);
     copy(&model->D, n, n, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Numbers below @p count of those that stay: states, and all that follow. */
 static ritz_status choose(const ritz_columns *columns, int64_t count,
                           bool perturbed, int64_t *kept, int64_t **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t *at = NULL;
     int64_t next = 0;
 
-    RITZ_NEW(at, count);
+    RITZ_CHECK_NEW(at, count);
     for (int64_t k = 0; k < count; k++) {
         bool is =
             k < columns->count && columns->kind[k] == RITZ_COLUMN_PERTURBED;
@@ -66,22 +63,18 @@ static ritz_status choose(const ritz_columns *columns, int64_t count,
     }
     *kept = next;
     *out = at;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows and columns of G. */
 static ritz_status pick(const ritz_dense *G, int64_t nrow, const int64_t *rows,
                         int64_t ncol, const int64_t *cols, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(nrow, ncol, out));
+    RITZ_CHECK(ritz_dense_new(nrow, ncol, out));
     for (int64_t j = 0; j < ncol; j++)
         for (int64_t i = 0; i < nrow; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(G, cols[j])[rows[i]];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* G11 - G12 G22^-1 G21, with the states of kind perturbed second. */
@@ -125,11 +118,10 @@ done:
 static ritz_status keep_columns(const ritz_columns *columns, int64_t kept,
                                 ritz_columns *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_columns stay = {0};
     int64_t next = 0;
 
-    RITZ_TRY(ritz_columns_new(kept, &stay));
+    RITZ_CHECK(ritz_columns_new(kept, &stay));
     for (int64_t k = 0; k < columns->count; k++) {
         if (columns->kind[k] == RITZ_COLUMN_PERTURBED)
             continue;
@@ -140,8 +132,7 @@ static ritz_status keep_columns(const ritz_columns *columns, int64_t kept,
     }
     ritz_columns_free(out);
     *out = stay;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status perturb(const ritz_columns *columns, ritz_state_space *model)
@@ -184,22 +175,20 @@ static ritz_status note_bound(const ritz_basis *basis, ritz_state_space *model)
 ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
                                ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
     bool whole = true;
 
-    RITZ_TRY_IN("left against right vectors",
-                ritz_general_solve(E, false, &model->A));
-    RITZ_TRY(ritz_general_solve(E, false, &model->B));
+    RITZ_CHECK_IN("left against right vectors",
+                  ritz_general_solve(E, false, &model->A));
+    RITZ_CHECK(ritz_general_solve(E, false, &model->B));
     for (int64_t k = 0; k < basis->columns.count; k++)
         whole = whole && basis->columns.kind[k] != RITZ_COLUMN_PERTURBED;
     if (whole) {
         ritz_columns_free(&model->columns);
-        RITZ_TRY(ritz_columns_copy(&basis->columns, &model->columns));
+        RITZ_CHECK(ritz_columns_copy(&basis->columns, &model->columns));
     } else {
-        RITZ_TRY(perturb(&basis->columns, model));
+        RITZ_CHECK(perturb(&basis->columns, model));
     }
-    RITZ_TRY(note_bound(basis, model));
+    RITZ_CHECK(note_bound(basis, model));
     model->origin = basis->origin;
-done:
-    return status;
+    return RITZ_OK;
 }

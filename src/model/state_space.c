@@ -21,13 +21,10 @@
 static ritz_status copy_names(int64_t count, const char (*from)[RITZ_NAME_SIZE],
                               char (**out)[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, count);
+    RITZ_CHECK_NEW(*out, count);
     if (count > 0)
         memcpy(*out, from, (size_t)count * RITZ_NAME_SIZE);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
@@ -59,17 +56,14 @@ done:
 static ritz_status check_matrix(const char *name, const ritz_dense *A,
                                 int64_t nrow, int64_t ncol)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(A->nrow != nrow || A->ncol != ncol, RITZ_ERR_FORMAT,
-                 "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
-                 " x %" PRId64 " is due",
-                 name, A->nrow, A->ncol, nrow, ncol);
+    RITZ_REFUSE_IF(A->nrow != nrow || A->ncol != ncol, RITZ_ERR_FORMAT,
+                   "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
+                   " x %" PRId64 " is due",
+                   name, A->nrow, A->ncol, nrow, ncol);
     for (int64_t k = 0; k < nrow * ncol; k++)
-        RITZ_FAIL_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
-                     "'%s' is not finite", name);
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
+                       "'%s' is not finite", name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_space_check(const ritz_state_space *model)
@@ -153,7 +147,6 @@ static ritz_status fill(const ritz_dense *K, const ritz_dense *D,
                         const ritz_dense *B, const ritz_io *io,
                         ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = K->nrow;
 
     for (int64_t j = 0; j < n; j++) {
@@ -171,12 +164,10 @@ static ritz_status fill(const ritz_dense *K, const ritz_dense *D,
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(&out->B, j)[n + i] = ritz_dense_col(B, j)[i];
     if (ritz_dense_max(&io->Ca) == 0.0)
-        goto done;
-    RITZ_TRY(add_product(-1.0, &io->Ca, K, 0, &out->C));
-    RITZ_TRY(add_product(-1.0, &io->Ca, D, n, &out->C));
-    RITZ_TRY(add_product(1.0, &io->Ca, B, 0, &out->D));
-done:
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(add_product(-1.0, &io->Ca, K, 0, &out->C));
+    RITZ_CHECK(add_product(-1.0, &io->Ca, D, n, &out->C));
+    return add_product(1.0, &io->Ca, B, 0, &out->D);
 }
 
 /* x = [u; u']; RITZ_ERR_SINGULAR if M is. */

@@ -27,25 +27,23 @@ void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
 static ritz_status read_part(const ritz_system *system, const char *part,
                              double *wanted)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strchr(part, '=');
     size_t length = equals ? (size_t)(equals - part) : 0;
     double setting = 0.0;
 
-    RITZ_FAIL_IF(!equals || !ritz_text_real(equals + 1, &setting),
-                 RITZ_ERR_ARGUMENT, "'%s' is not JOINT=SETTING", part);
+    RITZ_REFUSE_IF(!equals || !ritz_text_real(equals + 1, &setting),
+                   RITZ_ERR_ARGUMENT, "'%s' is not JOINT=SETTING", part);
     for (int64_t k = 0; k < system->num_sweeps; k++)
         if (strlen(system->sweep[k]) == length &&
             strncmp(system->sweep[k], part, length) == 0) {
-            RITZ_FAIL_IF(!isnan(wanted[k]), RITZ_ERR_ARGUMENT,
-                         "joint '%s' is named twice", system->sweep[k]);
+            RITZ_REFUSE_IF(!isnan(wanted[k]), RITZ_ERR_ARGUMENT,
+                           "joint '%s' is named twice", system->sweep[k]);
             wanted[k] = setting;
             return RITZ_OK;
         }
-    RITZ_FAIL_IF(true, RITZ_ERR_ARGUMENT, "there is no joint '%.*s' to set",
-                 (int)length, part);
-done:
-    return status;
+    RITZ_REFUSE_IF(true, RITZ_ERR_ARGUMENT, "there is no joint '%.*s' to set",
+                   (int)length, part);
+    return RITZ_OK;
 }
 
 static bool matches(const ritz_configuration *c, const double *wanted)
@@ -60,7 +58,6 @@ static bool matches(const ritz_configuration *c, const double *wanted)
 static ritz_status read_wanted(const ritz_system *system, const char *at,
                                double *wanted)
 {
-    ritz_status status = RITZ_OK;
     char part[2 * RITZ_NAME_SIZE];
 
     for (int64_t k = 0; k < system->num_sweeps; k++)
@@ -68,17 +65,16 @@ static ritz_status read_wanted(const ritz_system *system, const char *at,
     while (at && *at) {
         size_t length = strcspn(at, ",");
 
-        RITZ_FAIL_IF(length >= sizeof part, RITZ_ERR_ARGUMENT,
-                     "'%.40s...' is not JOINT=SETTING", at);
+        RITZ_REFUSE_IF(length >= sizeof part, RITZ_ERR_ARGUMENT,
+                       "'%.40s...' is not JOINT=SETTING", at);
         memcpy(part, at, length);
         part[length] = '\0';
-        RITZ_TRY(read_part(system, part, wanted));
-        RITZ_FAIL_IF(strcmp(at + length, ",") == 0, RITZ_ERR_ARGUMENT,
-                     "nothing follows the last ',' of '%s'", at);
+        RITZ_CHECK(read_part(system, part, wanted));
+        RITZ_REFUSE_IF(strcmp(at + length, ",") == 0, RITZ_ERR_ARGUMENT,
+                       "nothing follows the last ',' of '%s'", at);
         at += length + (at[length] != '\0');
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_system_find(const ritz_system *system, const char *at,

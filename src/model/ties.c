@@ -16,12 +16,9 @@
 
 ritz_status ritz_ties_add(ritz_ties *list, ritz_tie tie)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_ROOM(list->tie, list->count, list->room);
+    RITZ_CHECK_ROOM(list->tie, list->count, list->room);
     list->tie[list->count++] = tie;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_ties_dofs(const ritz_ties *list)
@@ -113,7 +110,6 @@ static double share_of(const ritz_grids *grids, int64_t grid, int64_t i,
 static ritz_status follow_grid(const ritz_grids *grids, int64_t leader,
                                const ritz_ties *to, ritz_equations *equations)
 {
-    ritz_status status = RITZ_OK;
     const double *origin = grids->position + 3 * leader;
     double row[6];
 
@@ -122,15 +118,14 @@ static ritz_status follow_grid(const ritz_grids *grids, int64_t leader,
             if (!ritz_tie_has(&to->tie[k], c))
                 continue;
             ritz_tie_row(grids, to->tie[k].grid, c, origin, row);
-            RITZ_TRY(ritz_equations_begin(
+            RITZ_CHECK(ritz_equations_begin(
                 equations, (ritz_dof){grids->id[to->tie[k].grid], c}));
             for (int64_t i = 1; i <= 6; i++)
-                RITZ_TRY(ritz_equations_add(equations,
-                                            (ritz_dof){grids->id[leader], i},
-                                            share_of(grids, leader, i, row)));
+                RITZ_CHECK(ritz_equations_add(equations,
+                                              (ritz_dof){grids->id[leader], i},
+                                              share_of(grids, leader, i, row)));
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_tie_rows(const ritz_grids *grids, const ritz_ties *list,
@@ -157,13 +152,12 @@ void ritz_tie_rows(const ritz_grids *grids, const ritz_ties *list,
 static ritz_status solve_rigid(ritz_dense *S_n, const ritz_dense *S_m,
                                ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     lapack_int pivot[6];
     lapack_int count = (lapack_int)S_m->nrow;
     double size = LAPACKE_dlange(LAPACK_COL_MAJOR, 'I', 6, 6, S_n->val, 6);
     double rcond = 0.0;
 
-    RITZ_TRY(ritz_dense_new(6, S_m->nrow, X));
+    RITZ_CHECK(ritz_dense_new(6, S_m->nrow, X));
     for (int64_t j = 0; j < S_m->nrow; j++)
         for (int64_t i = 0; i < 6; i++)
             ritz_dense_col(X, j)[i] = ritz_dense_col(S_m, i)[j];
@@ -171,38 +165,35 @@ static ritz_status solve_rigid(ritz_dense *S_n, const ritz_dense *S_m,
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, 'I', 6, S_n->val, 6, size,
                              &rcond);
     /* below the root of epsilon a position of half the digits decides */
-    RITZ_FAIL_IF(!(rcond > 1.5e-8), RITZ_ERR_SINGULAR,
-                 "the independent dofs leave it free to move as a rigid body");
+    RITZ_REFUSE_IF(
+        !(rcond > 1.5e-8), RITZ_ERR_SINGULAR,
+        "the independent dofs leave it free to move as a rigid body");
     if (count > 0)
-        RITZ_FAIL_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', 6, count, S_n->val,
-                                    6, pivot, X->val, 6) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
-done:
-    return status;
+        RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', 6, count, S_n->val,
+                                      6, pivot, X->val, 6) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the constraints");
+    return RITZ_OK;
 }
 
 static ritz_status put_rows(const ritz_dense *X, double length,
                             const ritz_dof *from, const ritz_dof *to,
                             ritz_equations *equations)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t j = 0; j < X->ncol; j++) {
         const double *share = ritz_dense_col(X, j);
         double most = 0.0;
 
         for (int64_t i = 0; i < 6; i++)
             most = fmax(most, fabs(share[i]));
-        RITZ_TRY(ritz_equations_begin(equations, to[j]));
+        RITZ_CHECK(ritz_equations_begin(equations, to[j]));
         for (int64_t i = 0; i < 6; i++)
             if (fabs(share[i]) > RITZ_TIE_ROUNDING * most)
-                RITZ_TRY(ritz_equations_add(
+                RITZ_CHECK(ritz_equations_add(
                     equations, from[i],
                     share[i] * ritz_tie_scale(from[i], length) /
                         ritz_tie_scale(to[j], length)));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_tie_rigid(const ritz_grids *grids, const ritz_ties *from,

@@ -50,10 +50,9 @@ static ritz_status multiply(const ritz_ties *over, const ritz_dense *U,
                             int64_t rank, const double *sigma, const double *Vt,
                             ritz_average *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t at = 0;
 
-    RITZ_TRY(ritz_dense_new(SIX, U->nrow, &out->A));
+    RITZ_CHECK(ritz_dense_new(SIX, U->nrow, &out->A));
     for (int64_t k = 0; k < over->count; k++)
         for (int64_t c = 1; c <= SIX; c++) {
             double scale = c > 3 ? out->length : 1.0;
@@ -70,8 +69,7 @@ static ritz_status multiply(const ritz_ties *over, const ritz_dense *U,
                               (i < 3 ? scale : scale / out->length);
             at++;
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,

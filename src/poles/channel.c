@@ -18,27 +18,26 @@ static ritz_status one_row(const ritz_dense *A, int64_t row, ritz_dense *out)
 static ritz_status cut(const ritz_io *io, int64_t output, int64_t input,
                        ritz_io *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense *parts[] = {&out->C, &out->Cv, &out->Ca};
     const ritz_dense *from[] = {&io->C, &io->Cv, &io->Ca};
 
     if (output == RITZ_ALL_CHANNELS) {
-        RITZ_TRY(ritz_io_new(io->B.nrow, io->num_inputs, io->num_outputs, out));
+        RITZ_CHECK(
+            ritz_io_new(io->B.nrow, io->num_inputs, io->num_outputs, out));
         memcpy(out->B.val, io->B.val,
                (size_t)(io->B.nrow * io->B.ncol) * sizeof *io->B.val);
         for (int k = 0; k < 3; k++)
             memcpy(parts[k]->val, from[k]->val,
                    (size_t)(from[k]->nrow * from[k]->ncol) *
                        sizeof *from[k]->val);
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_io_new(io->B.nrow, 1, 1, out));
+    RITZ_CHECK(ritz_io_new(io->B.nrow, 1, 1, out));
     ritz_dense_free(&out->B);
-    RITZ_TRY(ritz_dense_columns(&io->B, input, 1, &out->B));
+    RITZ_CHECK(ritz_dense_columns(&io->B, input, 1, &out->B));
     for (int k = 0; k < 3; k++)
-        RITZ_TRY(one_row(from[k], output, parts[k]));
-done:
-    return status;
+        RITZ_CHECK(one_row(from[k], output, parts[k]));
+    return RITZ_OK;
 }
 
 /* Of a velocity alone, or an acceleration, the displacement; how many

@@ -22,15 +22,14 @@ static double weight(double lambda)
 static ritz_status fill_apart(int64_t m, const ritz_channel_row *rows,
                               bool squared, double feed, ritz_channel *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = squared ? m : 2 * m;
 
     out->squared = squared;
     out->blocks = !squared;
-    RITZ_TRY(ritz_dense_new(n, n, &out->A));
-    RITZ_TRY(ritz_dense_new(n, 1, &out->B));
-    RITZ_TRY(ritz_dense_new(1, n, &out->C));
-    RITZ_TRY(ritz_dense_new(1, 1, &out->D));
+    RITZ_CHECK(ritz_dense_new(n, n, &out->A));
+    RITZ_CHECK(ritz_dense_new(n, 1, &out->B));
+    RITZ_CHECK(ritz_dense_new(1, n, &out->C));
+    RITZ_CHECK(ritz_dense_new(1, 1, &out->D));
     out->D.val[0] = feed;
     for (int64_t k = 0; k < m; k++) {
         const ritz_channel_row *r = &rows[k];
@@ -47,8 +46,7 @@ static ritz_status fill_apart(int64_t m, const ritz_channel_row *rows,
         ritz_dense_col(&out->A, k)[m + k] = -r->lambda / w;
         ritz_dense_col(&out->A, m + k)[m + k] = -r->rate;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status by_rows(int64_t count, const ritz_channel_row *rows,
@@ -64,13 +62,12 @@ static ritz_status by_rows(int64_t count, const ritz_channel_row *rows,
 /* All of it, in the same coordinates. */
 static ritz_status by_states(const ritz_first_order *f, ritz_channel *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = f->count;
 
-    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &out->A));
-    RITZ_TRY(ritz_dense_new(2 * m, f->B.ncol, &out->B));
-    RITZ_TRY(ritz_dense_new(f->C.nrow, 2 * m, &out->C));
-    RITZ_TRY(ritz_dense_copy(&f->feed, &out->D));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &out->A));
+    RITZ_CHECK(ritz_dense_new(2 * m, f->B.ncol, &out->B));
+    RITZ_CHECK(ritz_dense_new(f->C.nrow, 2 * m, &out->C));
+    RITZ_CHECK(ritz_dense_copy(&f->feed, &out->D));
     for (int64_t k = 0; k < m; k++) {
         double w = weight(f->lambda[k]);
 
@@ -86,24 +83,19 @@ static ritz_status by_states(const ritz_first_order *f, ritz_channel *out)
             ritz_dense_col(&out->C, m + k)[i] = ritz_dense_col(&f->Cv, k)[i];
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The same without damping, of several outputs and inputs. */
 static ritz_status by_squares(const ritz_first_order *f, ritz_channel *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->squared = true;
-    RITZ_TRY(ritz_dense_new(f->count, f->count, &out->A));
+    RITZ_CHECK(ritz_dense_new(f->count, f->count, &out->A));
     for (int64_t k = 0; k < f->count; k++)
         ritz_dense_col(&out->A, k)[k] = -f->lambda[k];
-    RITZ_TRY(ritz_dense_copy(&f->B, &out->B));
-    RITZ_TRY(ritz_dense_copy(&f->C, &out->C));
-    RITZ_TRY(ritz_dense_copy(&f->feed, &out->D));
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_copy(&f->B, &out->B));
+    RITZ_CHECK(ritz_dense_copy(&f->C, &out->C));
+    return ritz_dense_copy(&f->feed, &out->D);
 }
 
 ritz_status ritz_channel_of_modes(const ritz_first_order *modes,

@@ -176,12 +176,11 @@ done:
 /* [L N 0; 0 0 I] */
 static ritz_status basis_of(const sieve *s, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *part[] = {&s->loaded, &s->left};
     int64_t m = s->modes->count, at = 0;
     ritz_dense T = {0};
 
-    RITZ_TRY(ritz_dense_new(m, s->loaded.ncol + s->left.ncol + m - s->r, &T));
+    RITZ_CHECK(ritz_dense_new(m, s->loaded.ncol + s->left.ncol + m - s->r, &T));
     for (int k = 0; k < 2; k++)
         for (int64_t j = 0; j < part[k]->ncol; j++)
             memcpy(ritz_dense_col(&T, at++), ritz_dense_col(part[k], j),
@@ -189,8 +188,7 @@ static ritz_status basis_of(const sieve *s, ritz_dense *out)
     for (int64_t k = s->r; k < m; k++)
         ritz_dense_col(&T, at++)[k] = 1.0;
     *out = T;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Delta of what is left free is zero, not rounding. */

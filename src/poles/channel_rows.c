@@ -94,22 +94,20 @@ double ritz_channel_mixing(const ritz_first_order *modes, int64_t j, int64_t k)
 static ritz_status open_eyes(const ritz_first_order *modes, const ritz_dense *D,
                              const ritz_io *io, sight *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = modes->count;
     const double *a[KINDS] = {io->B.val, io->C.val, io->Cv.val, io->Ca.val};
 
     *s = eyes_on(modes);
-    RITZ_TRY(ritz_dense_new(m, KINDS, &s->value));
-    RITZ_TRY(ritz_dense_new(m, KINDS, &s->doubt));
+    RITZ_CHECK(ritz_dense_new(m, KINDS, &s->value));
+    RITZ_CHECK(ritz_dense_new(m, KINDS, &s->doubt));
     if (D->val)
-        RITZ_TRY(ritz_dense_terms(D, &modes->Phi, &s->most));
+        RITZ_CHECK(ritz_dense_terms(D, &modes->Phi, &s->most));
     else
-        RITZ_TRY(ritz_dense_new(m, m, &s->most));
+        RITZ_CHECK(ritz_dense_new(m, m, &s->most));
     for (int kind = 0; kind < KINDS; kind++)
         see(s, a[kind], ritz_dense_col(&s->value, kind),
             ritz_dense_col(&s->doubt, kind));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_coupled(const sight *s)

@@ -7,23 +7,21 @@
 ritz_status ritz_channel_check(int64_t outputs, int64_t inputs, int64_t output,
                                int64_t input)
 {
-    ritz_status status = RITZ_OK;
-
     if (output == RITZ_ALL_CHANNELS && input == RITZ_ALL_CHANNELS) {
-        RITZ_FAIL_IF(outputs != inputs || outputs == 0, RITZ_ERR_ARGUMENT,
-                     "zeros of all channels at once are of as many outputs as "
-                     "inputs, not of %lld and %lld",
-                     (long long)outputs, (long long)inputs);
-        goto done;
+        RITZ_REFUSE_IF(
+            outputs != inputs || outputs == 0, RITZ_ERR_ARGUMENT,
+            "zeros of all channels at once are of as many outputs as "
+            "inputs, not of %lld and %lld",
+            (long long)outputs, (long long)inputs);
+        return RITZ_OK;
     }
-    RITZ_FAIL_IF(output < 0 || output >= outputs, RITZ_ERR_ARGUMENT,
-                 "there is no output %lld, there are %lld",
-                 (long long)output + 1, (long long)outputs);
-    RITZ_FAIL_IF(input < 0 || input >= inputs, RITZ_ERR_ARGUMENT,
-                 "there is no input %lld, there are %lld", (long long)input + 1,
-                 (long long)inputs);
-done:
-    return status;
+    RITZ_REFUSE_IF(output < 0 || output >= outputs, RITZ_ERR_ARGUMENT,
+                   "there is no output %lld, there are %lld",
+                   (long long)output + 1, (long long)outputs);
+    RITZ_REFUSE_IF(input < 0 || input >= inputs, RITZ_ERR_ARGUMENT,
+                   "there is no input %lld, there are %lld",
+                   (long long)input + 1, (long long)inputs);
+    return RITZ_OK;
 }
 
 /* In coordinates of the library's own scaling, E divided out. */

@@ -38,48 +38,44 @@ static ritz_status look(void *state, double hertz, double *value)
 ritz_status ritz_curve_between(const ritz_curve *curve, double within,
                                double *low, double *high, double *most)
 {
-    ritz_status status = RITZ_OK;
     double a = *high - golden * (*high - *low);
     double b = *low + golden * (*high - *low);
     double at_a = 0.0, at_b = 0.0;
 
-    RITZ_TRY(curve->at(curve->state, a, &at_a));
-    RITZ_TRY(curve->at(curve->state, b, &at_b));
+    RITZ_CHECK(curve->at(curve->state, a, &at_a));
+    RITZ_CHECK(curve->at(curve->state, b, &at_b));
     while (*high - *low > within * *high) {
         if (at_a > at_b) {
             *high = b;
             b = a;
             at_b = at_a;
             a = *high - golden * (*high - *low);
-            RITZ_TRY(curve->at(curve->state, a, &at_a));
+            RITZ_CHECK(curve->at(curve->state, a, &at_a));
         } else {
             *low = a;
             a = b;
             at_a = at_b;
             b = *low + golden * (*high - *low);
-            RITZ_TRY(curve->at(curve->state, b, &at_b));
+            RITZ_CHECK(curve->at(curve->state, b, &at_b));
         }
     }
     *most = fmax(at_a, at_b);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The most between two frequencies, or that it grows without end. */
 static ritz_status between(climb *c, double low, double high)
 {
-    ritz_status status = RITZ_OK;
     const ritz_curve seen = {look, c};
     double before = 0.0, most = 0.0;
 
-    RITZ_TRY(ritz_curve_between(&seen, late, &low, &high, &before));
-    RITZ_TRY(ritz_curve_between(&seen, close_enough, &low, &high, &most));
+    RITZ_CHECK(ritz_curve_between(&seen, late, &low, &high, &before));
+    RITZ_CHECK(ritz_curve_between(&seen, close_enough, &low, &high, &most));
     if (most > still_growing * before) {
         c->best = HUGE_VAL;
         c->where = (low + high) / 2.0;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool stands_out(int64_t count, const double *value, int64_t k)
@@ -106,7 +102,6 @@ ritz_status ritz_curve_peak(int64_t count, const double *hertz,
                             const double *value, const ritz_curve *curve,
                             double *where, double *best)
 {
-    ritz_status status = RITZ_OK;
     climb c = {.curve = curve, .best = -1.0};
     int64_t k = next_highest(count, value, HUGE_VAL, count);
 
@@ -118,13 +113,12 @@ ritz_status ritz_curve_peak(int64_t count, const double *hertz,
         if (value[k] < worth_climbing * c.best)
             break;
         if (k > 0)
-            RITZ_TRY(between(&c, hertz[k - 1], hertz[k]));
+            RITZ_CHECK(between(&c, hertz[k - 1], hertz[k]));
         if (k < count - 1)
-            RITZ_TRY(between(&c, hertz[k], hertz[k + 1]));
+            RITZ_CHECK(between(&c, hertz[k], hertz[k + 1]));
         k = next_highest(count, value, value[k], k);
     }
     *where = c.where;
     *best = c.best;
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -31,33 +31,28 @@ static void modal_free(modal *m)
 /* Rows and columns of the modes. */
 static ritz_status lead(const ritz_dense *A, int64_t m, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
     if (!A->val)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_new(m, m, out));
+    RITZ_CHECK(ritz_dense_new(m, m, out));
     for (int64_t j = 0; j < m; j++)
         for (int64_t i = 0; i < m; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status modal_new(const ritz_poles *poles, modal *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = poles->count;
 
-    RITZ_TRY(ritz_dense_new(m, m, &out->K));
-    RITZ_TRY(ritz_dense_new(m, m, &out->M));
-    RITZ_TRY(lead(&poles->D, m, &out->D));
-    RITZ_TRY(lead(&poles->K4, m, &out->K4));
+    RITZ_CHECK(ritz_dense_new(m, m, &out->K));
+    RITZ_CHECK(ritz_dense_new(m, m, &out->M));
+    RITZ_CHECK(lead(&poles->D, m, &out->D));
+    RITZ_CHECK(lead(&poles->K4, m, &out->K4));
     for (int64_t k = 0; k < m; k++) {
         ritz_dense_col(&out->K, k)[k] = poles->lambda[k];
         ritz_dense_col(&out->M, k)[k] = 1.0;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* How much of the shape of pole j is of mode k; 0 of what does not oscillate.*/

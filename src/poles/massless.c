@@ -18,7 +18,6 @@
 static ritz_status factor(const ritz_second_order *model, int64_t m,
                           const double *lambda, ritz_dense *C)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)model->K->nrow;
     double alpha = 0.0;
     int info = 0;
@@ -27,14 +26,13 @@ static ritz_status factor(const ritz_second_order *model, int64_t m,
         alpha = fmax(alpha, 2.0 * fabs(lambda[k]));
     if (alpha == 0.0)
         alpha = 1.0;
-    RITZ_TRY(ritz_dense_copy(model->K, C));
+    RITZ_CHECK(ritz_dense_copy(model->K, C));
     for (int64_t i = 0; i < C->nrow * C->ncol; i++)
         C->val[i] += alpha * model->M->val[i];
     info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, C->val, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
-                 "neither mass nor stiffness holds a motion");
-done:
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_SINGULAR,
+                   "neither mass nor stiffness holds a motion");
+    return RITZ_OK;
 }
 
 /* The last n - m columns of an orthonormal basis whose first span B's. */

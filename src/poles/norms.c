@@ -68,18 +68,16 @@ static void divide(double by, ritz_dense *A)
 
 static ritz_status take_stable(const ritz_state_space *model, stable *s)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_state_space_check(model));
-    RITZ_TRY(ritz_split_new(&model->A, &model->E, &s->split));
-    RITZ_FAIL_IF(s->split.T.ncol > 0, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " of %" PRId64
-                 " poles are not left of the imaginary axis: a norm of the "
-                 "response is infinite",
-                 s->split.T.ncol, model->A.nrow);
-    RITZ_TRY(ritz_dense_mul_tn(&s->split.Y, &model->B, &s->B));
-    RITZ_TRY(ritz_dense_mul(&model->C, &s->split.X, &s->C));
-    RITZ_TRY(ritz_dense_copy(&model->D, &s->D));
+    RITZ_CHECK(ritz_state_space_check(model));
+    RITZ_CHECK(ritz_split_new(&model->A, &model->E, &s->split));
+    RITZ_REFUSE_IF(s->split.T.ncol > 0, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " of %" PRId64
+                   " poles are not left of the imaginary axis: a norm of the "
+                   "response is infinite",
+                   s->split.T.ncol, model->A.nrow);
+    RITZ_CHECK(ritz_dense_mul_tn(&s->split.Y, &model->B, &s->B));
+    RITZ_CHECK(ritz_dense_mul(&model->C, &s->split.X, &s->C));
+    RITZ_CHECK(ritz_dense_copy(&model->D, &s->D));
     s->size = length(&s->B) * length(&s->C);
     divide(length(&s->B), &s->B);
     divide(length(&s->C), &s->C);
@@ -87,8 +85,7 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
         divide(s->size, &s->D);
     else
         s->size = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What AB13DD is given, and its work space. */
@@ -113,18 +110,14 @@ static void free_hamiltonian(hamiltonian *h)
 
 static ritz_status copy(const stable *s, hamiltonian *h)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(&s->split.S, &h->S));
+    RITZ_CHECK(ritz_dense_copy(&s->split.S, &h->S));
     if (s->split.P.val)
-        RITZ_TRY(ritz_dense_copy(&s->split.P, &h->P));
+        RITZ_CHECK(ritz_dense_copy(&s->split.P, &h->P));
     else
-        RITZ_TRY(ritz_dense_new(1, 1, &h->P));
-    RITZ_TRY(ritz_dense_copy(&s->B, &h->B));
-    RITZ_TRY(ritz_dense_copy(&s->C, &h->C));
-    RITZ_TRY(ritz_dense_copy(&s->D, &h->D));
-done:
-    return status;
+        RITZ_CHECK(ritz_dense_new(1, 1, &h->P));
+    RITZ_CHECK(ritz_dense_copy(&s->B, &h->B));
+    RITZ_CHECK(ritz_dense_copy(&s->C, &h->C));
+    return ritz_dense_copy(&s->D, &h->D);
 }
 
 /* Peak and its frequency, from @p w on; false if it did not come to an end. */

@@ -117,24 +117,22 @@ static void respond(ritz_peak *s, double w)
 
 ritz_status ritz_peak_at(ritz_peak *peak, double w, double *value)
 {
-    ritz_status status = RITZ_OK;
     int info = 0;
 
     *value = 0.0;
     if (peak->m == 0 || peak->p == 0)
-        goto done;
+        return RITZ_OK;
     respond(peak, w);
     info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', peak->p, peak->m, peak->H,
                           peak->p, peak->sigma, NULL, 1, NULL, 1, peak->spare);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values of a response were not found");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "singular values of a response were not found");
     *value = peak->sigma[0];
     if (*value > peak->value) {
         peak->value = *value;
         peak->w = w;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int ascending(const void *left, const void *right)
@@ -205,17 +203,14 @@ static int64_t next_highest(int64_t count, const double *value)
  */
 static ritz_status climb_around(ritz_peak *s, const double *w, int64_t k)
 {
-    ritz_status status = RITZ_OK;
     double low = k > 0 ? w[k - 1] : w[k];
     double high = w[k + 1];
 
-    RITZ_TRY(climb(s, low, w[k]));
-    RITZ_TRY(climb(s, w[k], high));
+    RITZ_CHECK(climb(s, low, w[k]));
+    RITZ_CHECK(climb(s, w[k], high));
     low = fmax(low, w[k] * 0.99);
     high = fmin(high, w[k] * 1.01);
-    RITZ_TRY(climb(s, low, high));
-done:
-    return status;
+    return climb(s, low, high);
 }
 
 ritz_status ritz_peak_search(ritz_peak *peak)

@@ -40,19 +40,15 @@ static bool couples(const ritz_dense *A)
 
 static ritz_status copy(const ritz_dense *A, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(A->nrow, A->ncol, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol, out));
     memcpy(out->val, A->val, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* K4 is kept whole where there is any: it has no rate. */
 static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
                                 ritz_poles *poles)
 {
-    ritz_status status = RITZ_OK;
     bool has_k4 = K4 && K4->val;
 
     if (D && D->val) {
@@ -60,18 +56,17 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
             poles->rate[k] += ritz_dense_col(D, k)[k];
         poles->coupled = couples(D);
         poles->skew = ritz_dense_asymmetry(D) > symmetric_within;
-        RITZ_TRY(copy(D, &poles->D));
+        RITZ_CHECK(copy(D, &poles->D));
     } else if (has_k4) {
-        RITZ_TRY(ritz_dense_new(poles->count, poles->count, &poles->D));
+        RITZ_CHECK(ritz_dense_new(poles->count, poles->count, &poles->D));
     }
     if (has_k4) {
         poles->coupled = true;
-        RITZ_TRY(copy(K4, &poles->K4));
+        RITZ_CHECK(copy(K4, &poles->K4));
     }
     for (int64_t k = 0; poles->D.val && k < poles->count; k++)
         ritz_dense_col(&poles->D, k)[k] = poles->rate[k];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
@@ -144,7 +139,6 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
 static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
                           double _Complex *out)
 {
-    ritz_status status = RITZ_OK;
     double w = 2.0 * pi * hertz;
     double _Complex z =
         ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
@@ -152,34 +146,32 @@ static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
 
     *out = 0.0;
     if (on_pole) {
-        RITZ_FAIL_IF(ritz_poles_matter(poles, k) && k < poles->num_rigid,
-                     RITZ_ERR_SINGULAR,
-                     "at 0 Hz the response is infinite: a rigid-body motion is "
-                     "driven and seen, begin above 0 Hz");
-        RITZ_FAIL_IF(ritz_poles_matter(poles, k), RITZ_ERR_SINGULAR,
-                     "%.9g Hz is the frequency of an undamped mode: give it "
-                     "damping or leave the point out",
-                     hertz);
+        RITZ_REFUSE_IF(
+            ritz_poles_matter(poles, k) && k < poles->num_rigid,
+            RITZ_ERR_SINGULAR,
+            "at 0 Hz the response is infinite: a rigid-body motion is "
+            "driven and seen, begin above 0 Hz");
+        RITZ_REFUSE_IF(ritz_poles_matter(poles, k), RITZ_ERR_SINGULAR,
+                       "%.9g Hz is the frequency of an undamped mode: give it "
+                       "damping or leave the point out",
+                       hertz);
     } else {
         *out = 1.0 / z;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status solve_apart(const ritz_poles *poles, double hertz,
                                double _Complex *q)
 {
-    ritz_status status = RITZ_OK;
     double _Complex g = 0.0;
 
     for (int64_t k = 0; k < poles->count; k++) {
-        RITZ_TRY(invert(poles, k, hertz, &g));
+        RITZ_CHECK(invert(poles, k, hertz, &g));
         for (int64_t j = 0; j < poles->io.num_inputs; j++)
             q[k + j * poles->count] = g * ritz_dense_col(&poles->io.B, j)[k];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
@@ -209,15 +201,12 @@ static void add_rigid_acceleration(const ritz_poles *poles, double _Complex *H)
 ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_poles_solve(poles, hertz, poles->q));
+    RITZ_CHECK(ritz_poles_solve(poles, hertz, poles->q));
     ritz_io_respond(&poles->io, hertz, poles->q, H);
     if (hertz == 0.0 && !poles->coupled)
         add_rigid_acceleration(poles, H);
     ritz_residual_add(&poles->rest, hertz, H);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,

@@ -53,29 +53,23 @@ done:
 /* a and b; b = 0 without stiffness, or where K is a multiple of M. */
 static ritz_status fit(const ritz_component *c, double *a, double *b)
 {
-    ritz_status status = RITZ_OK;
     double mm = 0.0, mk = 0.0, kk = 0.0, md = 0.0, kd = 0.0;
     double ee = 0.0;
 
-    RITZ_TRY(inner(&c->M, &c->M, &mm));
-    RITZ_TRY(inner(&c->M, &c->K, &mk));
-    RITZ_TRY(inner(&c->K, &c->K, &kk));
-    RITZ_TRY(inner(&c->M, &c->D, &md));
-    RITZ_TRY(inner(&c->K, &c->D, &kd));
+    RITZ_CHECK(inner(&c->M, &c->M, &mm));
+    RITZ_CHECK(inner(&c->M, &c->K, &mk));
+    RITZ_CHECK(inner(&c->K, &c->K, &kk));
+    RITZ_CHECK(inner(&c->M, &c->D, &md));
+    RITZ_CHECK(inner(&c->K, &c->D, &kd));
     ee = mm > 0.0 ? kk - mk * (mk / mm) : kk;
     *b = ee > 1e-12 * kk ? (kd - (mm > 0.0 ? md * (mk / mm) : 0.0)) / ee : 0.0;
     *a = mm > 0.0 ? (md - *b * mk) / mm : 0.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_proportional(const ritz_component *component, double *a,
                               double *b, double *left)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(fit(component, a, b));
-    RITZ_TRY(residual(component, *a, *b, left));
-done:
-    return status;
+    RITZ_CHECK(fit(component, a, b));
+    return residual(component, *a, *b, left);
 }

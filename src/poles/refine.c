@@ -17,7 +17,6 @@ static const double beside = 1e-9;
 ritz_status ritz_refiner_new(const ritz_component *component, bool structural,
                              ritz_refiner *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *A[MOST_MATRICES] = {&component->K, &component->M};
     int64_t count = 2;
     ritz_refiner r = {.component = component};
@@ -28,10 +27,9 @@ ritz_status ritz_refiner_new(const ritz_component *component, bool structural,
         A[count++] = &component->D;
     if (r.K4)
         A[count++] = r.K4;
-    RITZ_TRY(ritz_zldl_new(count, A, &r.Z));
+    RITZ_CHECK(ritz_zldl_new(count, A, &r.Z));
     *out = r;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static double norm(const ritz_dense *x)

@@ -74,12 +74,11 @@ done:
 static ritz_status take_damping(const ritz_component *component,
                                 const ritz_damping *damping, ritz_residual *r)
 {
-    ritz_status status = RITZ_OK;
     double left = 0.0;
 
     r->known = !component->K4.colptr;
     if (component->D.colptr && component->D.colptr[component->D.ncol] > 0)
-        RITZ_TRY(ritz_proportional(component, &r->a, &r->b, &left));
+        RITZ_CHECK(ritz_proportional(component, &r->a, &r->b, &left));
     if (left > RITZ_PROPORTIONAL_WITHIN) {
         r->a = r->b = 0.0;
         r->known = false;
@@ -88,8 +87,7 @@ static ritz_status take_damping(const ritz_component *component,
         r->a += damping->a;
         r->b += damping->b;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

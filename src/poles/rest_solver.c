@@ -143,12 +143,8 @@ static void judge(const ritz_rest_solver *s, const ritz_dense *R,
 static ritz_status take_out(const ritz_dense *left, const ritz_dense *right,
                             ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_take_out(left, right, X));
-    RITZ_TRY(ritz_dense_take_out(left, right, X));
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_take_out(left, right, X));
+    return ritz_dense_take_out(left, right, X);
 }
 
 ritz_status ritz_rest_solve(ritz_rest_solver *s, ritz_dense *f, ritz_dense *out)

@@ -11,27 +11,24 @@ static const int64_t most_points = 100000;
 
 static ritz_status check(const ritz_scan_request *request, int64_t *count)
 {
-    ritz_status status = RITZ_OK;
     double steps = (request->to - request->from) / request->step;
 
-    RITZ_FAIL_IF(!(request->from >= 0.0) || !(request->to > request->from) ||
-                     !(request->step > 0.0) || !isfinite(request->to),
-                 RITZ_ERR_ARGUMENT,
-                 "a scan from %g to %g in steps of %g has no range",
-                 request->from, request->to, request->step);
-    RITZ_FAIL_IF(!(steps < (double)most_points), RITZ_ERR_ARGUMENT,
-                 "%.0f steps of a scan are too many", steps);
+    RITZ_REFUSE_IF(!(request->from >= 0.0) || !(request->to > request->from) ||
+                       !(request->step > 0.0) || !isfinite(request->to),
+                   RITZ_ERR_ARGUMENT,
+                   "a scan from %g to %g in steps of %g has no range",
+                   request->from, request->to, request->step);
+    RITZ_REFUSE_IF(!(steps < (double)most_points), RITZ_ERR_ARGUMENT,
+                   "%.0f steps of a scan are too many", steps);
     /* an end that rounding puts a hair beyond the last step belongs to it */
     *count = (int64_t)floor(steps * (1.0 + 1e-12) + 1e-9) + 1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The mode-th oscillating pole. */
 static ritz_status begin(const ritz_spectrum *spectrum, int64_t mode,
                          double _Complex *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t seen = 0;
     bool found = false;
 
@@ -42,12 +39,11 @@ static ritz_status begin(const ritz_spectrum *spectrum, int64_t mode,
         *out = spectrum->s[j];
         seen++;
     }
-    RITZ_FAIL_IF(!found, RITZ_ERR_ARGUMENT,
-                 "there is no mode %" PRId64 ", %" PRId64
-                 " poles oscillate where the scan begins",
-                 mode + 1, seen);
-done:
-    return status;
+    RITZ_REFUSE_IF(!found, RITZ_ERR_ARGUMENT,
+                   "there is no mode %" PRId64 ", %" PRId64
+                   " poles oscillate where the scan begins",
+                   mode + 1, seen);
+    return RITZ_OK;
 }
 
 static double _Complex nearest(const ritz_spectrum *spectrum, double _Complex s)
@@ -80,31 +76,24 @@ static void bench_free(bench *b)
 static ritz_status bench_new(const ritz_second_order *model,
                              const ritz_dampers *dampers, bench *b)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(model->K, &b->K));
+    RITZ_CHECK(ritz_dense_copy(model->K, &b->K));
     if (model->D && model->D->val)
-        RITZ_TRY(ritz_dense_copy(model->D, &b->D));
-    RITZ_TRY(ritz_dampers_copy(dampers, &b->dampers));
+        RITZ_CHECK(ritz_dense_copy(model->D, &b->D));
+    RITZ_CHECK(ritz_dampers_copy(dampers, &b->dampers));
     b->model = *model;
     b->model.K = &b->K;
     b->model.D = &b->D;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status poles_at(bench *b, const ritz_scan_request *request,
                             const ritz_damping *damping, double c,
                             ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t j = 0; j < request->count; j++)
         b->dampers.c[request->damper[j]] = c;
-    RITZ_TRY(ritz_dampers_install(&b->dampers, &b->K, &b->D));
-    RITZ_TRY(ritz_spectrum_dense(&b->model, damping, out));
-done:
-    return status;
+    RITZ_CHECK(ritz_dampers_install(&b->dampers, &b->K, &b->D));
+    return ritz_spectrum_dense(&b->model, damping, out);
 }
 
 ritz_status ritz_scan_dampers(const ritz_second_order *model,

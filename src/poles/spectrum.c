@@ -29,13 +29,10 @@ static void found_free(found *f)
 
 static ritz_status found_new(int64_t size, found *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->count = out->size = size;
-    RITZ_NEW(out->s, size);
-    RITZ_NEW(out->y, size * size);
-done:
-    return status;
+    RITZ_CHECK_NEW(out->s, size);
+    RITZ_CHECK_NEW(out->y, size * size);
+    return RITZ_OK;
 }
 
 double ritz_spectrum_ratio(double _Complex s)
@@ -47,10 +44,9 @@ double ritz_spectrum_ratio(double _Complex s)
  * p = 1, so that y = [W; s]. */
 static ritz_status solve_diagonal(const ritz_state *state, found *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = state->m;
 
-    RITZ_TRY(found_new(2 * m, out));
+    RITZ_CHECK(found_new(2 * m, out));
     for (int64_t j = 0; j < m; j++) {
         double d = ritz_dense_col(&state->D, j)[j];
         double lambda = state->lambda[j];
@@ -70,8 +66,7 @@ static ritz_status solve_diagonal(const ritz_state *state, found *out)
             out->y[m + j + t * 2 * m] = out->s[t];
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status solve_real(const ritz_state *state, found *out)
@@ -232,15 +227,12 @@ static void shape(const ritz_state *state, const double _Complex *y, double *re,
 static ritz_status pick(const found *f, int64_t count, const place *order,
                         double (*part)(double _Complex), ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(f->size, count, out));
+    RITZ_CHECK(ritz_dense_new(f->size, count, out));
     for (int64_t j = 0; j < count; j++)
         for (int64_t i = 0; i < f->size; i++)
             ritz_dense_col(out, j)[i] =
                 part(f->y[i + order[j].index * f->size]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What K4 adds to A: rows m .. 2m - 1 of its imaginary part. */

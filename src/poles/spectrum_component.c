@@ -124,14 +124,12 @@ done:
 /* Shapes of the small model become those of the component. */
 static ritz_status expand(const ritz_dense *T, ritz_dense *shapes)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense x = {0};
 
-    RITZ_TRY(ritz_dense_mul(T, shapes, &x));
+    RITZ_CHECK(ritz_dense_mul(T, shapes, &x));
     ritz_dense_free(shapes);
     *shapes = x;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Without given ratios. */

@@ -27,16 +27,14 @@ enum { LEAST_MODES = 20, EACH_MODE = 2 };
 static ritz_status norm(const ritz_sparse *A, const ritz_dense *x,
                         ritz_dense *Ax, double *out)
 {
-    ritz_status status = RITZ_OK;
     double sum = 0.0;
 
     ritz_dense_free(Ax);
-    RITZ_TRY(ritz_sparse_mul(A, x, Ax));
+    RITZ_CHECK(ritz_sparse_mul(A, x, Ax));
     for (int64_t i = 0; i < x->nrow; i++)
         sum += x->val[i] * Ax->val[i];
     *out = sqrt(fmax(sum, 0.0));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* x -= T T'A x, twice, and divide by what is left; `fresh` if there is any. */
@@ -143,17 +141,14 @@ done:
 
 ritz_status ritz_whole_new(const ritz_component *component, ritz_whole *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_sparse_dense(&component->K, &out->K));
-    RITZ_TRY(ritz_sparse_dense(&component->M, &out->M));
+    RITZ_CHECK(ritz_sparse_dense(&component->K, &out->K));
+    RITZ_CHECK(ritz_sparse_dense(&component->M, &out->M));
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_dense(&component->D, &out->D));
+        RITZ_CHECK(ritz_sparse_dense(&component->D, &out->D));
     if (component->K4.colptr)
-        RITZ_TRY(ritz_sparse_dense(&component->K4, &out->K4));
+        RITZ_CHECK(ritz_sparse_dense(&component->K4, &out->K4));
     out->model = (ritz_second_order){&out->K, &out->M, &out->D, &out->K4, NULL};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_whole_free(ritz_whole *whole)

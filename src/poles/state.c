@@ -46,11 +46,10 @@ static bool present(const ritz_dense *A)
  */
 static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
 {
-    ritz_status status = RITZ_OK;
     double largest = 0.0;
     int64_t m = 0, negative = 0;
 
-    RITZ_TRY(ritz_eigen_dense(model->K, model->M, pairs));
+    RITZ_CHECK(ritz_eigen_dense(model->K, model->M, pairs));
     m = pairs->Phi.ncol;
     for (int64_t j = 0; j < m; j++)
         largest = fmax(largest, fabs(pairs->lambda[j]));
@@ -62,8 +61,7 @@ static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
             ritz_eigen_rigid(m - negative, pairs->lambda + negative, largest);
     for (int64_t j = negative; j < pairs->num_rigid; j++)
         pairs->lambda[j] = 0.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What ratios, or a M + b K, add to D of modes and of N. */
@@ -131,35 +129,31 @@ done:
 /* The rest of N, columns `from` on of D, must be left alone. */
 static ritz_status check_rest(const ritz_dense *D, int64_t from)
 {
-    ritz_status status = RITZ_OK;
     double largest = ritz_dense_max(D);
 
     for (int64_t j = from; j < D->ncol; j++)
         for (int64_t i = 0; i < D->nrow; i++)
-            RITZ_FAIL_IF(fabs(ritz_dense_col(D, j)[i]) > 1e-8 * largest ||
-                             fabs(ritz_dense_col(D, i)[j]) > 1e-8 * largest,
-                         RITZ_ERR_ARGUMENT,
-                         "the damping matrix couples a motion without mass "
-                         "that it does not damp: are its gyroscopic terms at "
-                         "massless dofs?");
-done:
-    return status;
+            RITZ_REFUSE_IF(fabs(ritz_dense_col(D, j)[i]) > 1e-8 * largest ||
+                               fabs(ritz_dense_col(D, i)[j]) > 1e-8 * largest,
+                           RITZ_ERR_ARGUMENT,
+                           "the damping matrix couples a motion without mass "
+                           "that it does not damp: are its gyroscopic terms at "
+                           "massless dofs?");
+    return RITZ_OK;
 }
 
 /* The first `kept` rows and columns. */
 static ritz_status lead(ritz_dense *A, int64_t kept)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense part = {0};
 
-    RITZ_TRY(ritz_dense_new(kept, kept, &part));
+    RITZ_CHECK(ritz_dense_new(kept, kept, &part));
     for (int64_t j = 0; j < kept; j++)
         for (int64_t i = 0; i < kept; i++)
             ritz_dense_col(&part, j)[i] = ritz_dense_col(A, j)[i];
     ritz_dense_free(A);
     *A = part;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Put into N what D acts on, into X all that is kept, and D of that. */

@@ -8,13 +8,10 @@
 
 ritz_status ritz_widen(const ritz_dense *A, double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, A->nrow * A->ncol);
+    RITZ_CHECK_NEW(*out, A->nrow * A->ncol);
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         (*out)[k] = A->val[k];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_turn(int n, int m, int p, const double _Complex *Q,

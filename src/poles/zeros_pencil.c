@@ -52,46 +52,40 @@ static void discard(pencil *s)
 /* The same with largest entry 1, unless it is zero; what it was. */
 static ritz_status scaled(const ritz_dense *A, double *size, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(A, out));
+    RITZ_CHECK(ritz_dense_copy(A, out));
     *size = ritz_dense_max(A);
     if (*size == 0.0)
         *size = 1.0;
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         out->val[k] /= *size;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status start(const ritz_channel *c, pencil *s)
 {
-    ritz_status status = RITZ_OK;
     double b = 1.0, seen = 1.0;
 
     s->n = (int)c->A.nrow;
     s->m = (int)c->B.ncol;
     s->p = (int)c->C.nrow;
-    RITZ_TRY(scaled(&c->A, &s->speed, &s->A));
-    RITZ_TRY(scaled(&c->B, &b, &s->B));
-    RITZ_TRY(scaled(&c->C, &seen, &s->C));
-    RITZ_TRY(ritz_dense_copy(&c->D, &s->D));
+    RITZ_CHECK(scaled(&c->A, &s->speed, &s->A));
+    RITZ_CHECK(scaled(&c->B, &b, &s->B));
+    RITZ_CHECK(scaled(&c->C, &seen, &s->C));
+    RITZ_CHECK(ritz_dense_copy(&c->D, &s->D));
     for (int64_t k = 0; k < s->D.nrow * s->D.ncol; k++)
         s->D.val[k] *= s->speed / (b * seen);
-    RITZ_TRY(ritz_dense_new(s->n + s->m, s->n + (s->m < s->p ? s->m : s->p),
-                            &s->Af));
-    RITZ_TRY(ritz_dense_new(s->n + s->p, s->n + s->m, &s->Bf));
-    RITZ_NEW(s->infz, s->n);
-    RITZ_NEW(s->kronr, (int64_t)s->n + s->m + 1);
-    RITZ_NEW(s->kronl, (int64_t)s->n + s->p + 1);
-    RITZ_NEW(s->iwork, (int64_t)s->m + s->p);
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_new(s->n + s->m, s->n + (s->m < s->p ? s->m : s->p),
+                              &s->Af));
+    RITZ_CHECK(ritz_dense_new(s->n + s->p, s->n + s->m, &s->Bf));
+    RITZ_CHECK_NEW(s->infz, s->n);
+    RITZ_CHECK_NEW(s->kronr, (int64_t)s->n + s->m + 1);
+    RITZ_CHECK_NEW(s->kronl, (int64_t)s->n + s->p + 1);
+    RITZ_CHECK_NEW(s->iwork, (int64_t)s->m + s->p);
+    return RITZ_OK;
 }
 
 static ritz_status deflate(pencil *s)
 {
-    ritz_status status = RITZ_OK;
     int room = 64 * (s->n + s->m + s->p + 1);
     int lda = s->n > 1 ? s->n : 1;
     int ldp = s->p > 1 ? s->p : 1;
@@ -99,21 +93,20 @@ static ritz_status deflate(pencil *s)
     int dinfz = 0, nkror = 0, nkrol = 0, info = 0;
     double tolerance = 0.0; /* its own: sqrt((n + p)(n + m)) eps */
 
-    RITZ_NEW(s->work, room);
+    RITZ_CHECK_NEW(s->work, room);
     ab08nd_("N", &s->n, &s->m, &s->p, s->A.val, &lda, s->B.val, &lda, s->C.val,
             &ldp, s->D.val, &ldp, &s->nu, &s->rank, &dinfz, &nkror, &nkrol,
             s->infz, s->kronr, s->kronl, s->Af.val, &ldaf, s->Bf.val, &ldbf,
             &tolerance, s->iwork, s->work, &room, &info, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the zeros were not found, SLICOT says %d", info);
-    RITZ_FAIL_IF(s->rank < s->m || s->rank < s->p, RITZ_ERR_SINGULAR,
-                 s->m == 1 && s->p == 1
-                     ? "nothing passes from that input to that output"
-                     : "what passes through all channels has not as many "
-                       "dimensions as there are of them: zeros are "
-                       "everywhere");
-done:
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "the zeros were not found, SLICOT says %d", info);
+    RITZ_REFUSE_IF(s->rank < s->m || s->rank < s->p, RITZ_ERR_SINGULAR,
+                   s->m == 1 && s->p == 1
+                       ? "nothing passes from that input to that output"
+                       : "what passes through all channels has not as many "
+                         "dimensions as there are of them: zeros are "
+                         "everywhere");
+    return RITZ_OK;
 }
 
 ritz_status ritz_channel_pencil(const ritz_channel *channel, int64_t *count,

@@ -200,12 +200,11 @@ static ritz_status set_overlaps(const side s[static 2], ritz_agreement *out)
 {
     static const int64_t step[] = {1, 2, 5};
     enum { MOST = 3 * 18 };
-    ritz_status status = RITZ_OK;
     int64_t n = s[0].ranking->count, m = s[1].ranking->count;
     int64_t most = n > m ? n : m;
     int64_t ten = 1;
 
-    RITZ_NEW(out->overlap, MOST);
+    RITZ_CHECK_NEW(out->overlap, MOST);
     for (int64_t i = 0; i < MOST && out->num_overlaps < MOST; i++) {
         int64_t k = step[i % 3] * ten;
 
@@ -214,8 +213,7 @@ static ritz_status set_overlaps(const side s[static 2], ritz_agreement *out)
         out->overlap[out->num_overlaps++] = (ritz_overlap){k, share(s, k)};
         ten *= i % 3 == 2 ? 10 : 1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,

@@ -23,12 +23,11 @@ ritz_status ritz_mass_parts(const ritz_rank_request *request,
 {
     static const char *const direction[RITZ_MASS_PARTS] = {
         "x", "y", "z", "about x", "about y", "about z"};
-    ritz_status status = RITZ_OK;
     const ritz_dense *L = &request->momentum;
 
-    RITZ_TRY(ritz_ranking_parts(RITZ_MASS_PARTS, ranking));
+    RITZ_CHECK(ritz_ranking_parts(RITZ_MASS_PARTS, ranking));
     for (int64_t d = 0; d < RITZ_MASS_PARTS; d++) {
-        RITZ_TRY(ritz_name_copy(direction[d], ranking->part[d]));
+        RITZ_CHECK(ritz_name_copy(direction[d], ranking->part[d]));
         ranking->whole[d] = request->rigid[7 * d];
         for (int64_t k = 0; k < L->ncol; k++) {
             double l = ritz_dense_col(L, k)[d];
@@ -36,8 +35,7 @@ ritz_status ritz_mass_parts(const ritz_rank_request *request,
             ritz_dense_col(&ranking->parts, d)[k] = l * l;
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Largest share of mode k; of a cluster the parts are summed up before. */
@@ -58,12 +56,11 @@ static double share(const ritz_ranking *ranking, int64_t first, int64_t last)
 
 static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = request->modal.count;
     int64_t last = 0;
     double largest = 0.0;
 
-    RITZ_TRY(ritz_mass_parts(request, ranking));
+    RITZ_CHECK(ritz_mass_parts(request, ranking));
     ritz_ranking_clusters(&request->modal, ranking->cluster);
     for (int64_t first = 0; first < m; first = last) {
         for (last = first + 1; last < m && ranking->cluster[last] == first;)
@@ -72,13 +69,12 @@ static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
             ranking->value[k] = share(ranking, first, last);
         largest = fmax(largest, ranking->value[first]);
     }
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         !(largest > nothing), RITZ_ERR_ARGUMENT,
         "rigid modes carry all of the mass of a free model, flexible ones "
         "none: hold it, or take effective-interface-mass of fixed-interface "
         "modes");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_ranker ritz_ranker_effective_mass = {

@@ -16,27 +16,26 @@ static int64_t number_of(const ritz_rankings *all, int64_t item, int64_t mode)
 
 static ritz_status check(const ritz_rankings *all, int64_t *numbers)
 {
-    ritz_status status = RITZ_OK;
     const ritz_ranking *first = all->item;
 
-    RITZ_FAIL_IF(all->count == 0, RITZ_ERR_ARGUMENT, "there is no ranking");
+    RITZ_REFUSE_IF(all->count == 0, RITZ_ERR_ARGUMENT, "there is no ranking");
     *numbers = 0;
     for (int64_t k = 0; k < all->count; k++) {
         const ritz_ranking *r = &all->item[k];
 
-        RITZ_FAIL_IF(strcmp(r->by, first->by) != 0, RITZ_ERR_ARGUMENT,
-                     "values by '%s' and by '%s' have no largest one",
-                     first->by, r->by);
-        RITZ_FAIL_IF(!all->track && r->count != first->count, RITZ_ERR_ARGUMENT,
-                     "%" PRId64 " modes at '%s' and %" PRId64
-                     " at '%s': only tracks say which is which",
-                     first->count, first->at, r->count, r->at);
+        RITZ_REFUSE_IF(strcmp(r->by, first->by) != 0, RITZ_ERR_ARGUMENT,
+                       "values by '%s' and by '%s' have no largest one",
+                       first->by, r->by);
+        RITZ_REFUSE_IF(!all->track && r->count != first->count,
+                       RITZ_ERR_ARGUMENT,
+                       "%" PRId64 " modes at '%s' and %" PRId64
+                       " at '%s': only tracks say which is which",
+                       first->count, first->at, r->count, r->at);
         for (int64_t i = 0; i < r->count; i++)
             if (number_of(all, k, i) >= *numbers)
                 *numbers = number_of(all, k, i) + 1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Where each number has its largest value: ranking and mode, -1 if nowhere. */
@@ -74,22 +73,19 @@ static void take_clusters(const ritz_rankings *all, const int64_t *item,
 static ritz_status empty(const ritz_ranking *like, int64_t count,
                          ritz_ranking *out)
 {
-    ritz_status status = RITZ_OK;
-
     memcpy(out->by, like->by, sizeof out->by);
     memcpy(out->reference, like->reference, sizeof out->reference);
     memcpy(out->damping, like->damping, sizeof out->damping);
     out->count = count;
     out->total = nan("");
     out->coupling = nan("");
-    RITZ_NEW(out->hertz, count);
-    RITZ_NEW(out->zeta, count);
-    RITZ_NEW(out->value, count);
-    RITZ_NEW(out->order, count);
-    RITZ_NEW(out->cluster, count);
-    RITZ_NEW(out->system_value, 1);
-done:
-    return status;
+    RITZ_CHECK_NEW(out->hertz, count);
+    RITZ_CHECK_NEW(out->zeta, count);
+    RITZ_CHECK_NEW(out->value, count);
+    RITZ_CHECK_NEW(out->order, count);
+    RITZ_CHECK_NEW(out->cluster, count);
+    RITZ_CHECK_NEW(out->system_value, 1);
+    return RITZ_OK;
 }
 
 /* Numbers that no ranking has are passed over. */

@@ -28,14 +28,11 @@ static double seen(const ritz_modal *modal, int64_t i, int64_t a)
 /* [c_i1 c_i2 ...]' of all outputs: 2m x p. */
 static ritz_status transposed(const ritz_modal *modal, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(2 * modal->count, modal->C.nrow, out));
+    RITZ_CHECK(ritz_dense_new(2 * modal->count, modal->C.nrow, out));
     for (int64_t i = 0; i < out->ncol; i++)
         for (int64_t a = 0; a < out->nrow; a++)
             ritz_dense_col(out, i)[a] = seen(modal, i, a);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out)

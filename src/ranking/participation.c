@@ -48,12 +48,11 @@ static void fill_parts(const ritz_dense *B, int64_t first, int64_t last,
 
 static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *B = &request->modal.B;
     int64_t m = request->modal.count;
     int64_t last = 0;
 
-    RITZ_TRY(ritz_ranking_parts(B->ncol, ranking));
+    RITZ_CHECK(ritz_ranking_parts(B->ncol, ranking));
     ritz_ranking_clusters(&request->modal, ranking->cluster);
     for (int64_t j = 0; j < B->ncol; j++) {
         ritz_ranking_name_part(request->input, "u", j, ranking->part[j]);
@@ -62,13 +61,12 @@ static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
     for (int64_t first = 0; first < m; first = last) {
         for (last = first + 1; last < m && ranking->cluster[last] == first;)
             last++;
-        RITZ_TRY(largest(B, first, last, &ranking->value[first]));
+        RITZ_CHECK(largest(B, first, last, &ranking->value[first]));
         for (int64_t k = first + 1; k < last; k++)
             ranking->value[k] = ranking->value[first];
         fill_parts(B, first, last, &ranking->parts);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_ranker ritz_ranker_participation = {

@@ -45,14 +45,11 @@ const ritz_ranker *ritz_ranker_find(const char *name)
 
 ritz_status ritz_ranking_parts(int64_t count, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(ranking->part, count);
-    RITZ_NEW(ranking->whole, count);
-    RITZ_TRY(ritz_dense_new(ranking->count, count, &ranking->parts));
+    RITZ_CHECK_NEW(ranking->part, count);
+    RITZ_CHECK_NEW(ranking->whole, count);
+    RITZ_CHECK(ritz_dense_new(ranking->count, count, &ranking->parts));
     ranking->num_parts = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status ranking_new(const ritz_ranker *ranker,
@@ -61,7 +58,6 @@ static ritz_status ranking_new(const ritz_ranker *ranker,
 {
     static const double pi = 3.14159265358979323846;
     const ritz_modal *modal = &request->modal;
-    ritz_status status = RITZ_OK;
     int64_t m = modal->count;
 
     (void)snprintf(out->by, RITZ_NAME_SIZE, "%s", ranker->name);
@@ -69,19 +65,18 @@ static ritz_status ranking_new(const ritz_ranker *ranker,
     out->count = m;
     out->total = nan("");
     out->coupling = nan("");
-    RITZ_NEW(out->hertz, m);
-    RITZ_NEW(out->zeta, m);
-    RITZ_NEW(out->value, m);
-    RITZ_NEW(out->order, m);
-    RITZ_NEW(out->cluster, m);
-    RITZ_NEW(out->system_value, 2 * m);
+    RITZ_CHECK_NEW(out->hertz, m);
+    RITZ_CHECK_NEW(out->zeta, m);
+    RITZ_CHECK_NEW(out->value, m);
+    RITZ_CHECK_NEW(out->order, m);
+    RITZ_CHECK_NEW(out->cluster, m);
+    RITZ_CHECK_NEW(out->system_value, 2 * m);
     for (int64_t k = 0; k < m; k++) {
         out->hertz[k] = modal->omega[k] / (2.0 * pi);
         out->zeta[k] = request->undamped ? 0.0 : modal->zeta[k];
     }
     ritz_ranking_clusters(modal, out->cluster);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What a ranker needs and a request may lack, with the sentence for it. */
@@ -108,13 +103,11 @@ static ritz_status check(const ritz_ranker *ranker, const ritz_rank_request *r)
         {RITZ_RANK_INTERFACE, r->interface.ncol > 0,
          "these are not modes of an interface that is held"},
     };
-    ritz_status status = RITZ_OK;
 
     for (size_t k = 0; k < sizeof wants / sizeof *wants; k++)
-        RITZ_FAIL_IF((ranker->needs & wants[k].need) && !wants[k].there,
-                     RITZ_ERR_ARGUMENT, "%s", wants[k].sentence);
-done:
-    return status;
+        RITZ_REFUSE_IF((ranker->needs & wants[k].need) && !wants[k].there,
+                       RITZ_ERR_ARGUMENT, "%s", wants[k].sentence);
+    return RITZ_OK;
 }
 
 /* One value for each cluster; a sum is shared out evenly. */
@@ -131,17 +124,14 @@ static void join(const ritz_ranker *ranker, const ritz_modal *modal,
 static ritz_status stand_beside(const ritz_rank_request *request,
                                 ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal *modal = &request->modal;
 
     if (request->bare || request->undamped || modal->B.ncol == 0 ||
         modal->C.nrow == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_modal_hankel(modal, ranking->system_value));
+    RITZ_CHECK(ritz_modal_hankel(modal, ranking->system_value));
     ranking->num_system = 2 * modal->count;
-    RITZ_TRY(ritz_ranking_coupling(modal, ranking));
-done:
-    return status;
+    return ritz_ranking_coupling(modal, ranking);
 }
 
 ritz_status ritz_rank(const ritz_ranker *ranker,

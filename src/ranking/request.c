@@ -102,13 +102,10 @@ done:
 static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
                               char (**out)[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, count);
+    RITZ_CHECK_NEW(*out, count);
     for (int64_t k = 0; k < count; k++)
         memcpy((*out)[k], names[k], RITZ_NAME_SIZE);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -153,10 +150,9 @@ done:
 static ritz_status find_columns(const ritz_columns *columns, bool interface,
                                 int64_t *count, int64_t **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = 0;
 
-    RITZ_NEW(*out, columns->count);
+    RITZ_CHECK_NEW(*out, columns->count);
     for (int64_t k = 0; k < columns->count; k++) {
         ritz_column_kind kind = columns->kind[k];
         bool fits = interface ? kind == RITZ_COLUMN_CONSTRAINT ||
@@ -166,48 +162,42 @@ static ritz_status find_columns(const ritz_columns *columns, bool interface,
         if (fits)
             (*out)[n++] = k;
     }
-    RITZ_FAIL_IF(n == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no %s: its basis must be craig-bampton or "
-                 "like it",
-                 interface ? "constraint modes" : "fixed-interface modes");
+    RITZ_REFUSE_IF(
+        n == 0, RITZ_ERR_ARGUMENT,
+        "the component has no %s: its basis must be craig-bampton or "
+        "like it",
+        interface ? "constraint modes" : "fixed-interface modes");
     *count = n;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A(row, col). */
 static ritz_status block(const ritz_dense *A, int64_t n, const int64_t *row,
                          int64_t m, const int64_t *col, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(n, m, out));
+    RITZ_CHECK(ritz_dense_new(n, m, out));
     for (int64_t j = 0; j < m; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(A, col[j])[row[i]];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Of modes whose interface is held, K_bn is zero. */
 static ritz_status check_clamped(const ritz_dense *K, int64_t p,
                                  const int64_t *b, int64_t m, const int64_t *n)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t j = 0; j < m; j++)
         for (int64_t i = 0; i < p; i++) {
             double own = sqrt(fabs(ritz_dense_col(K, b[i])[b[i]] *
                                    ritz_dense_col(K, n[j])[n[j]]));
 
-            RITZ_FAIL_IF(
+            RITZ_REFUSE_IF(
                 !(fabs(ritz_dense_col(K, n[j])[b[i]]) <= clamped * own),
                 RITZ_ERR_ARGUMENT,
                 "normal modes and constraint modes share stiffness: the "
                 "interface was not held when they were made");
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The interface drives fixed-interface modes by -M_nb u_b''; none reads them.*/
@@ -284,13 +274,10 @@ ritz_rank_request_of_configuration(const ritz_configuration *configuration,
 {
     const ritz_configuration *c = configuration;
     const subject s = {&c->K, &c->M, &c->D, &c->io, &c->momentum, c->rigid};
-    ritz_status status = RITZ_OK;
 
-    RITZ_FAIL_IF(needs & RITZ_RANK_INTERFACE, RITZ_ERR_ARGUMENT,
-                 "a system has no interface to hold: rank its components");
-    RITZ_TRY(make(&s, choice, needs, out));
-done:
-    return status;
+    RITZ_REFUSE_IF(needs & RITZ_RANK_INTERFACE, RITZ_ERR_ARGUMENT,
+                   "a system has no interface to hold: rank its components");
+    return make(&s, choice, needs, out);
 }
 
 void ritz_rank_request_free(ritz_rank_request *request)

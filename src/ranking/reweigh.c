@@ -40,28 +40,25 @@ static trial *at_round(loop *l, int64_t r)
 static ritz_status loop_new(const ritz_rank_request *request, int64_t keep,
                             loop *l)
 {
-    ritz_status status = RITZ_OK;
-
     l->modal = &request->modal;
     l->m = l->modal->count;
     l->p = l->modal->C.nrow;
     l->keep = keep;
-    RITZ_TRY(ritz_modal_costs(l->modal, &l->V));
-    RITZ_NEW(l->Y, l->p);
-    RITZ_NEW(l->value, l->m);
-    RITZ_NEW(l->order, l->m);
-    RITZ_NEW(l->cluster, l->m);
+    RITZ_CHECK(ritz_modal_costs(l->modal, &l->V));
+    RITZ_CHECK_NEW(l->Y, l->p);
+    RITZ_CHECK_NEW(l->value, l->m);
+    RITZ_CHECK_NEW(l->order, l->m);
+    RITZ_CHECK_NEW(l->cluster, l->m);
     for (int k = 0; k <= LONGEST; k++) {
-        RITZ_NEW(l->past[k].taken, l->m);
-        RITZ_NEW(l->past[k].q, l->p);
-        RITZ_NEW(l->past[k].d, l->p);
+        RITZ_CHECK_NEW(l->past[k].taken, l->m);
+        RITZ_CHECK_NEW(l->past[k].q, l->p);
+        RITZ_CHECK_NEW(l->past[k].d, l->p);
     }
     for (int64_t i = 0; i < l->p; i++)
         for (int64_t k = 0; k < l->m; k++)
             l->Y[i] += ritz_dense_col(&l->V, i)[k];
     ritz_ranking_clusters(l->modal, l->cluster);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void loop_free(loop *l)
@@ -81,7 +78,6 @@ static void loop_free(loop *l)
 /* The modes of largest cost, clusters whole. */
 static ritz_status choose(loop *l, trial *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = 0;
 
     for (int64_t k = 0; k < l->m; k++) {
@@ -91,7 +87,7 @@ static ritz_status choose(loop *l, trial *t)
             l->value[k] += t->q[i] * ritz_dense_col(&l->V, i)[k];
     }
     ritz_ranking_share(l->modal, l->value);
-    RITZ_TRY(ritz_ranking_sort(l->m, l->value, l->order));
+    RITZ_CHECK(ritz_ranking_sort(l->m, l->value, l->order));
     for (; n < l->m; n++) {
         bool rest =
             n > 0 && l->cluster[l->order[n]] == l->cluster[l->order[n - 1]];
@@ -100,8 +96,7 @@ static ritz_status choose(loop *l, trial *t)
             break;
         t->taken[l->order[n]] = true;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The modes that are taken as a model of their own. */
@@ -232,18 +227,17 @@ static void list_others(loop *l, int64_t round, const trial *best,
 static ritz_status report(loop *l, int64_t round, int64_t period,
                           ritz_reweighing *out)
 {
-    ritz_status status = RITZ_OK;
     const trial *best = best_of(l, round, period);
     size_t size = (size_t)l->p * sizeof(double);
 
     out->num_outputs = l->p;
     out->rounds = round + 1;
     out->period = period;
-    RITZ_NEW(out->weight, l->p);
-    RITZ_NEW(out->cost, l->p);
-    RITZ_NEW(out->missed, l->p);
-    RITZ_NEW(out->kept, l->m);
-    RITZ_NEW(out->other, l->m);
+    RITZ_CHECK_NEW(out->weight, l->p);
+    RITZ_CHECK_NEW(out->cost, l->p);
+    RITZ_CHECK_NEW(out->missed, l->p);
+    RITZ_CHECK_NEW(out->kept, l->m);
+    RITZ_CHECK_NEW(out->other, l->m);
     memcpy(out->weight, best->q, size);
     memcpy(out->cost, l->Y, size);
     memcpy(out->missed, best->d, size);
@@ -251,8 +245,7 @@ static ritz_status report(loop *l, int64_t round, int64_t period,
         if (best->taken[k])
             out->kept[out->num_kept++] = k;
     list_others(l, round, best, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,

@@ -12,25 +12,23 @@
 /* "torque=4", the text of which ends at `end`. */
 static ritz_status take_one(const char *text, const char *end, ritz_weight *out)
 {
-    ritz_status status = RITZ_OK;
     const char *equal = memchr(text, '=', (size_t)(end - text));
     char name[RITZ_NAME_SIZE];
     char number[RITZ_NAME_SIZE];
 
-    RITZ_FAIL_IF(!equal || equal - text >= RITZ_NAME_SIZE ||
-                     end - equal > RITZ_NAME_SIZE,
-                 RITZ_ERR_ARGUMENT, "'%.*s' is not NAME=WEIGHT",
-                 (int)(end - text < 60 ? end - text : 60), text);
+    RITZ_REFUSE_IF(!equal || equal - text >= RITZ_NAME_SIZE ||
+                       end - equal > RITZ_NAME_SIZE,
+                   RITZ_ERR_ARGUMENT, "'%.*s' is not NAME=WEIGHT",
+                   (int)(end - text < 60 ? end - text : 60), text);
     (void)snprintf(name, sizeof name, "%.*s", (int)(equal - text), text);
     (void)snprintf(number, sizeof number, "%.*s", (int)(end - equal - 1),
                    equal + 1);
-    RITZ_TRY(ritz_name_copy(name, out->name));
-    RITZ_FAIL_IF(!ritz_text_real(number, &out->value) || out->value < 0.0,
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is no weight of '%s': a number, not negative", number,
-                 name);
-done:
-    return status;
+    RITZ_CHECK(ritz_name_copy(name, out->name));
+    RITZ_REFUSE_IF(!ritz_text_real(number, &out->value) || out->value < 0.0,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is no weight of '%s': a number, not negative", number,
+                   name);
+    return RITZ_OK;
 }
 
 static ritz_status take_all(const char *text, int64_t *count, ritz_weight **out)
@@ -91,7 +89,6 @@ static ritz_status find(const ritz_weight *weight, const char *kind,
                         int64_t count, char (*name)[RITZ_NAME_SIZE],
                         int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     const char *near = NULL;
 
     for (int64_t k = 0; k < count; k++)
@@ -101,31 +98,29 @@ static ritz_status find(const ritz_weight *weight, const char *kind,
         }
     if (count > 0)
         near = ritz_text_nearest(weight->name, count, name[0], RITZ_NAME_SIZE);
-    RITZ_FAIL_IF(true, RITZ_ERR_ARGUMENT, "there is no %s '%s' to weigh%s%s%s",
-                 kind, weight->name, near ? ", is '" : "", near ? near : "",
-                 near ? "' meant?" : "");
-done:
-    return status;
+    RITZ_REFUSE_IF(true, RITZ_ERR_ARGUMENT,
+                   "there is no %s '%s' to weigh%s%s%s", kind, weight->name,
+                   near ? ", is '" : "", near ? near : "",
+                   near ? "' meant?" : "");
+    return RITZ_OK;
 }
 
 ritz_status ritz_weights_apply(const ritz_weights *weights, ritz_io *io)
 {
-    ritz_status status = RITZ_OK;
     int64_t at = 0;
 
     for (int64_t k = 0; k < weights->num_inputs; k++) {
         const ritz_weight *w = &weights->input[k];
 
-        RITZ_TRY(find(w, "input", io->num_inputs, io->input, &at));
+        RITZ_CHECK(find(w, "input", io->num_inputs, io->input, &at));
         for (int64_t i = 0; i < io->B.nrow; i++)
             ritz_dense_col(&io->B, at)[i] *= sqrt(w->value);
     }
     for (int64_t k = 0; k < weights->num_outputs; k++) {
         const ritz_weight *w = &weights->output[k];
 
-        RITZ_TRY(find(w, "output", io->num_outputs, io->output, &at));
+        RITZ_CHECK(find(w, "output", io->num_outputs, io->output, &at));
         io->limit[at] = 1.0 / sqrt(w->value); /* of 0, infinite */
     }
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -27,14 +27,11 @@ typedef struct signals {
 static ritz_status pick(const ritz_dense *A, int64_t count, const int64_t *at,
                         ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(A->nrow, count, out));
+    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
     for (int64_t j = 0; j < count && A->nrow > 0; j++)
         memcpy(ritz_dense_col(out, j), ritz_dense_col(A, at[j]),
                (size_t)A->nrow * sizeof *out->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* to(row.., col..) += factor A */
@@ -144,12 +141,11 @@ done:
 static ritz_status join_masses(const ritz_state_space *p,
                                const ritz_state_space *c, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = p->A.nrow, m = c->A.nrow;
 
     if (!p->E.val && !c->E.val)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_new(n + m, n + m, out));
+    RITZ_CHECK(ritz_dense_new(n + m, n + m, out));
     for (int64_t k = 0; k < n + m; k++)
         if (!(k < n ? &p->E : &c->E)->val)
             ritz_dense_col(out, k)[k] = 1.0;
@@ -157,35 +153,32 @@ static ritz_status join_masses(const ritz_state_space *p,
         add_block(1.0, &p->E, 0, 0, out);
     if (c->E.val)
         add_block(1.0, &c->E, n, n, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status name(const ritz_state_space *p, const ritz_state_space *c,
                         ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = p->A.nrow, m = c->A.nrow;
 
     out->num_inputs = p->num_inputs;
     out->num_outputs = p->num_outputs;
-    RITZ_NEW(out->input, p->num_inputs);
-    RITZ_NEW(out->output, p->num_outputs);
-    RITZ_NEW(out->limit, p->num_outputs);
+    RITZ_CHECK_NEW(out->input, p->num_inputs);
+    RITZ_CHECK_NEW(out->output, p->num_outputs);
+    RITZ_CHECK_NEW(out->limit, p->num_outputs);
     if (p->num_inputs > 0)
         memcpy(out->input, p->input, (size_t)p->num_inputs * RITZ_NAME_SIZE);
     for (int64_t k = 0; k < p->num_outputs; k++) {
         memcpy(out->output[k], p->output[k], RITZ_NAME_SIZE);
         out->limit[k] = p->limit[k];
     }
-    RITZ_TRY(ritz_columns_new(n + m, &out->columns));
+    RITZ_CHECK(ritz_columns_new(n + m, &out->columns));
     for (int64_t k = 0; k < n + m; k++)
         out->columns.kind[k] =
             k < n ? p->columns.kind[k] : c->columns.kind[k - n];
     memcpy(out->damping, p->damping, sizeof out->damping);
     memcpy(out->units, p->units, sizeof out->units);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_closed_loop(const ritz_state_space *plant,

@@ -88,16 +88,13 @@ void ritz_direct_free(ritz_direct *direct)
 
 static ritz_status make_room(ritz_direct *s, int64_t columns)
 {
-    ritz_status status = RITZ_OK;
-
     if (columns <= s->room)
         return RITZ_OK;
     free(s->X);
     s->room = 0;
-    RITZ_NEW(s->X, s->n * columns);
+    RITZ_CHECK_NEW(s->X, s->n * columns);
     s->room = columns;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status factor(ritz_direct *s, double w, double w2)
@@ -167,20 +164,17 @@ static double beside_poles(const ritz_direct *s, double w2)
 static ritz_status solve_apart(ritz_direct *s, double w, int64_t k,
                                double _Complex *X)
 {
-    ritz_status status = RITZ_OK;
-
     if (s->m >= s->n) {
         memset(X, 0, (size_t)(s->n * k) * sizeof *X);
         return RITZ_OK;
     }
     for (int64_t j = 0; j < k; j++)
         remove_modes(&s->MPhi, &s->pairs.Phi, X + j * s->n);
-    RITZ_TRY(factor(s, w, beside_poles(s, w * w)));
-    RITZ_TRY(ritz_zldl_solve(s->Z, k, X));
+    RITZ_CHECK(factor(s, w, beside_poles(s, w * w)));
+    RITZ_CHECK(ritz_zldl_solve(s->Z, k, X));
     for (int64_t j = 0; j < k; j++)
         remove_modes(&s->pairs.Phi, &s->MPhi, X + j * s->n);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* out = E U'X, m x columns. */
@@ -274,19 +268,17 @@ ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
 ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
                            double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &direct->component->io;
 
     if (direct->inputs == 0)
         return RITZ_OK;
-    RITZ_TRY(make_room(direct, direct->inputs));
+    RITZ_CHECK(make_room(direct, direct->inputs));
     for (int64_t i = 0; i < direct->n * direct->inputs; i++)
         direct->X[i] = io->B.val[i];
     if (direct->apart)
-        RITZ_TRY(ritz_poles_add(&direct->poles, hertz, H));
-    RITZ_TRY(
+        RITZ_CHECK(ritz_poles_add(&direct->poles, hertz, H));
+    RITZ_CHECK(
         ritz_direct_solve(direct, hertz, false, direct->inputs, direct->X));
     ritz_io_respond(io, hertz, direct->X, H);
-done:
-    return status;
+    return RITZ_OK;
 }

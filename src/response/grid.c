@@ -23,38 +23,33 @@ static const int64_t most_points = 100000000;
 /* Points that are given ascend, and none is negative. */
 static ritz_status check_points(const ritz_grid *grid)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(grid->count < 1, RITZ_ERR_ARGUMENT,
-                 "a response needs at least one frequency");
+    RITZ_REFUSE_IF(grid->count < 1, RITZ_ERR_ARGUMENT,
+                   "a response needs at least one frequency");
     for (int64_t k = 0; k < grid->count; k++)
-        RITZ_FAIL_IF(!isfinite(grid->hertz[k]) || grid->hertz[k] < 0.0 ||
-                         (k > 0 && grid->hertz[k] <= grid->hertz[k - 1]),
-                     RITZ_ERR_ARGUMENT,
-                     "frequencies do not ascend from 0 Hz at %g",
-                     grid->hertz[k]);
-done:
-    return status;
+        RITZ_REFUSE_IF(!isfinite(grid->hertz[k]) || grid->hertz[k] < 0.0 ||
+                           (k > 0 && grid->hertz[k] <= grid->hertz[k - 1]),
+                       RITZ_ERR_ARGUMENT,
+                       "frequencies do not ascend from 0 Hz at %g",
+                       grid->hertz[k]);
+    return RITZ_OK;
 }
 
 ritz_status ritz_grid_check(const ritz_grid *grid)
 {
-    ritz_status status = RITZ_OK;
-
     if (grid->hertz)
         return check_points(grid);
-    RITZ_FAIL_IF(!isfinite(grid->from_hz) || !isfinite(grid->to_hz) ||
-                     grid->from_hz < 0.0 || grid->from_hz >= grid->to_hz,
-                 RITZ_ERR_ARGUMENT, "a response from %g to %g Hz has no range",
-                 grid->from_hz, grid->to_hz);
-    RITZ_FAIL_IF(grid->count < 2, RITZ_ERR_ARGUMENT,
-                 "a response needs at least two frequencies");
-    RITZ_FAIL_IF(grid->count > most_points, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " frequencies are too many", grid->count);
-    RITZ_FAIL_IF(grid->log && !(grid->from_hz > 0.0), RITZ_ERR_ARGUMENT,
-                 "a logarithmic grid cannot begin at 0 Hz");
-done:
-    return status;
+    RITZ_REFUSE_IF(!isfinite(grid->from_hz) || !isfinite(grid->to_hz) ||
+                       grid->from_hz < 0.0 || grid->from_hz >= grid->to_hz,
+                   RITZ_ERR_ARGUMENT,
+                   "a response from %g to %g Hz has no range", grid->from_hz,
+                   grid->to_hz);
+    RITZ_REFUSE_IF(grid->count < 2, RITZ_ERR_ARGUMENT,
+                   "a response needs at least two frequencies");
+    RITZ_REFUSE_IF(grid->count > most_points, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " frequencies are too many", grid->count);
+    RITZ_REFUSE_IF(grid->log && !(grid->from_hz > 0.0), RITZ_ERR_ARGUMENT,
+                   "a logarithmic grid cannot begin at 0 Hz");
+    return RITZ_OK;
 }
 
 static double even_point(const ritz_grid *grid, int64_t k)

@@ -30,17 +30,15 @@ ritz_status ritz_interpolant_cancel(ritz_interpolant *interpolant,
                                     int64_t channel, int64_t num_zeros,
                                     const double _Complex *zero)
 {
-    ritz_status status = RITZ_OK;
     double _Complex *z = NULL;
 
-    RITZ_NEW(z, num_zeros);
+    RITZ_CHECK_NEW(z, num_zeros);
     for (int64_t k = 0; k < num_zeros; k++)
         z[k] = zero[k] / interpolant->unit;
     free(interpolant->zero[channel]);
     interpolant->zero[channel] = z;
     interpolant->num_zeros[channel] = num_zeros;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_room(ritz_interpolant *f)
@@ -94,19 +92,17 @@ static double _Complex quotient(double _Complex s, int64_t above,
 ritz_status ritz_interpolant_add(ritz_interpolant *interpolant,
                                  double _Complex s, const double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     ritz_interpolant *f = interpolant;
     double _Complex x = s / f->unit;
 
-    RITZ_TRY(make_room(f));
+    RITZ_CHECK(make_room(f));
     f->weight[f->count] = quotient(x, f->num_poles, f->pole, f->count, f->node);
     for (int64_t k = 0; k < f->count; k++)
         f->weight[k] /= f->node[k] - x;
     f->node[f->count] = x;
     memcpy(f->H + f->count * f->values, H, (size_t)f->values * sizeof *H);
     f->count++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_interpolant_at(const ritz_interpolant *interpolant, double _Complex s,

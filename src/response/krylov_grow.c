@@ -30,14 +30,10 @@ static bool takes_part(const ritz_krylov *k, int64_t index)
 /* Project anew and measure. */
 static ritz_status renew(ritz_krylov *k, ritz_dense *X, int64_t *added)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_krylov_space_add(&k->space, X, added));
+    RITZ_CHECK(ritz_krylov_space_add(&k->space, X, added));
     ritz_krylov_small_free(&k->small);
-    RITZ_TRY(ritz_krylov_small_new(&k->full, &k->space, &k->small));
-    RITZ_TRY(ritz_krylov_measure(k));
-done:
-    return status;
+    RITZ_CHECK(ritz_krylov_small_new(&k->full, &k->space, &k->small));
+    return ritz_krylov_measure(k);
 }
 
 /* X += real and imaginary part of S y, as columns. */
@@ -121,16 +117,13 @@ static void put_loads(const ritz_krylov *k, double w, double _Complex *X)
 static ritz_status split(int64_t n, int64_t columns, const double _Complex *Z,
                          ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(n, 2 * columns, X));
+    RITZ_CHECK(ritz_dense_new(n, 2 * columns, X));
     for (int64_t j = 0; j < columns; j++)
         for (int64_t i = 0; i < n; i++) {
             ritz_dense_col(X, 2 * j)[i] = creal(Z[i + j * n]);
             ritz_dense_col(X, 2 * j + 1)[i] = cimag(Z[i + j * n]);
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

@@ -41,12 +41,11 @@ static double clear(const ritz_krylov *k, double f)
 /* Even ones; where modes are coupled, each resonance and between them too. */
 static ritz_status place(ritz_krylov *k, double low, double high)
 {
-    ritz_status status = RITZ_OK;
     double before = low;
     int64_t m = k->full.m;
     int64_t stride = 1 + m / MOST_MODES;
 
-    RITZ_NEW(k->hertz, EVEN + 2 * m);
+    RITZ_CHECK_NEW(k->hertz, EVEN + 2 * m);
     for (int j = 0; j < EVEN; j++)
         k->hertz[k->count++] = clear(k, low + (high - low) * j / (EVEN - 1));
     k->num_even = k->count;
@@ -59,33 +58,26 @@ static ritz_status place(ritz_krylov *k, double low, double high)
         k->hertz[k->count++] = clear(k, 0.5 * (before + mode));
         before = mode;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_room(ritz_krylov *k)
 {
-    ritz_status status = RITZ_OK;
-    RITZ_NEW(k->size, k->inputs + k->outputs);
-    RITZ_NEW(k->load, k->inputs + k->outputs);
-    RITZ_NEW(k->error, k->count * k->values);
-    RITZ_NEW(k->trial, k->values);
-    RITZ_NEW(k->noise, k->values);
-    RITZ_NEW(k->peak, k->values);
-    RITZ_NEW(k->allowed, k->values);
-    RITZ_NEW(k->H, k->values);
-done:
-    return status;
+    RITZ_CHECK_NEW(k->size, k->inputs + k->outputs);
+    RITZ_CHECK_NEW(k->load, k->inputs + k->outputs);
+    RITZ_CHECK_NEW(k->error, k->count * k->values);
+    RITZ_CHECK_NEW(k->trial, k->values);
+    RITZ_CHECK_NEW(k->noise, k->values);
+    RITZ_CHECK_NEW(k->peak, k->values);
+    RITZ_CHECK_NEW(k->allowed, k->values);
+    RITZ_CHECK_NEW(k->H, k->values);
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_place(ritz_krylov *k, double from_hz, double to_hz)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(place(k, fmax(from_hz, above_rest * to_hz), to_hz));
-    RITZ_TRY(make_room(k));
-done:
-    return status;
+    RITZ_CHECK(place(k, fmax(from_hz, above_rest * to_hz), to_hz));
+    return make_room(k);
 }
 
 /* Residual `index`, inputs before outputs, of what was solved last. */
@@ -100,12 +92,11 @@ void ritz_krylov_take(ritz_krylov *k, double hertz, int64_t index)
 /* Sizes of all residuals at a point; of loads, of which they are the rest. */
 ritz_status ritz_krylov_judge(ritz_krylov *k, double hertz, double *error)
 {
-    ritz_status status = RITZ_OK;
     double w2 = ritz_eigen_lambda(hertz);
     double gap = fmax(k->lambda_h - w2, least_gap * k->lambda_h);
     double most = k->amplify * (k->lambda_h + k->space.tau) / gap;
 
-    RITZ_TRY(ritz_krylov_small_solve(&k->small, hertz));
+    RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
     for (int64_t j = 0; j < k->inputs + k->outputs; j++) {
         ritz_krylov_take(k, hertz, j);
         k->size[j] = ritz_krylov_space_norm(&k->space, k->y);
@@ -118,20 +109,16 @@ ritz_status ritz_krylov_judge(ritz_krylov *k, double hertz, double *error)
         for (int64_t j = 0; j < k->inputs; j++)
             error[i * k->inputs + j] =
                 most * k->size[k->inputs + i] * k->size[j];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status see_peaks(ritz_krylov *k, double hertz)
 {
-    ritz_status status = RITZ_OK;
-
     memset(k->H, 0, (size_t)k->values * sizeof *k->H);
-    RITZ_TRY(ritz_poles_add(&k->small.poles, hertz, k->H));
+    RITZ_CHECK(ritz_poles_add(&k->small.poles, hertz, k->H));
     for (int64_t v = 0; v < k->values; v++)
         k->peak[v] = fmax(k->peak[v], cabs(k->H[v]));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What each channel may err. */
@@ -151,14 +138,12 @@ static void allow(ritz_krylov *k)
 /* Every point: the worst of them, against what is allowed. */
 ritz_status ritz_krylov_measure(ritz_krylov *k)
 {
-    ritz_status status = RITZ_OK;
-
     free(k->y);
-    RITZ_NEW(k->y, k->space.W.ncol);
+    RITZ_CHECK_NEW(k->y, k->space.W.ncol);
     for (int64_t c = 0; c < k->count; c++) {
-        RITZ_TRY(ritz_krylov_judge(k, k->hertz[c], k->error + c * k->values));
+        RITZ_CHECK(ritz_krylov_judge(k, k->hertz[c], k->error + c * k->values));
         if (c < k->num_even)
-            RITZ_TRY(see_peaks(k, k->hertz[c]));
+            RITZ_CHECK(see_peaks(k, k->hertz[c]));
     }
     allow(k);
     k->worst = 0.0;
@@ -172,6 +157,5 @@ ritz_status ritz_krylov_measure(ritz_krylov *k)
             }
         }
     k->unmet = k->worst;
-done:
-    return status;
+    return RITZ_OK;
 }

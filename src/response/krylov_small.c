@@ -29,17 +29,15 @@ static void matrices_free(matrices *a)
 static ritz_status beneath(int64_t m, const double *leading,
                            const ritz_dense *block, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = m + block->nrow;
 
-    RITZ_TRY(ritz_dense_new(r, m + block->ncol, out));
+    RITZ_CHECK(ritz_dense_new(r, m + block->ncol, out));
     for (int64_t k = 0; k < m; k++)
         ritz_dense_col(out, k)[k] = leading ? leading[k] : 1.0;
     for (int64_t j = 0; j < block->ncol; j++)
         memcpy(ritz_dense_col(out, m + j) + m, ritz_dense_col(block, j),
                (size_t)block->nrow * sizeof *block->val);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Modes keep their own numbers, so that resonances keep their digits. */
@@ -47,20 +45,17 @@ static ritz_status project(const ritz_direct *direct,
                            const ritz_krylov_space *space, matrices *out,
                            ritz_dense *K_x, ritz_dense *M_x)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = space->component;
     int64_t m = direct->m;
     const ritz_dense X = ritz_dense_part(&space->V, m, space->V.ncol - m);
 
-    RITZ_TRY(ritz_sparse_condense(&c->K, &X, K_x));
-    RITZ_TRY(ritz_sparse_condense(&c->M, &X, M_x));
-    RITZ_TRY(beneath(m, direct->poles.lambda, K_x, &out->K));
-    RITZ_TRY(beneath(m, NULL, M_x, &out->M));
-    RITZ_TRY(ritz_sparse_project(&c->D, &space->V, &out->D));
-    RITZ_TRY(ritz_sparse_project(&c->K4, &space->V, &out->K4));
-    RITZ_TRY(ritz_io_project(&c->io, &space->V, &out->io));
-done:
-    return status;
+    RITZ_CHECK(ritz_sparse_condense(&c->K, &X, K_x));
+    RITZ_CHECK(ritz_sparse_condense(&c->M, &X, M_x));
+    RITZ_CHECK(beneath(m, direct->poles.lambda, K_x, &out->K));
+    RITZ_CHECK(beneath(m, NULL, M_x, &out->M));
+    RITZ_CHECK(ritz_sparse_project(&c->D, &space->V, &out->D));
+    RITZ_CHECK(ritz_sparse_project(&c->K4, &space->V, &out->K4));
+    return ritz_io_project(&c->io, &space->V, &out->io);
 }
 
 /* Pairs of the whole: modes as they are, and those of (K_x, M_x). */
@@ -101,16 +96,13 @@ static void take_ratios(const ritz_direct *direct, ritz_poles *poles)
 
 static ritz_status transpose(const ritz_dense *A, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
     if (!A->val)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_new(A->ncol, A->nrow, out));
+    RITZ_CHECK(ritz_dense_new(A->ncol, A->nrow, out));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(out, i)[j] = ritz_dense_col(A, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The transposed system, loaded by what the outputs see. */
@@ -202,19 +194,17 @@ static void back(const ritz_dense *T, int64_t columns, const double _Complex *z,
 
 ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz)
 {
-    ritz_status status = RITZ_OK;
     double w = 2.0 * pi * hertz;
     int64_t rp = small->r * small->outputs;
     double _Complex *z = small->z;
 
-    RITZ_TRY(ritz_poles_solve(&small->poles, hertz, z));
+    RITZ_CHECK(ritz_poles_solve(&small->poles, hertz, z));
     back(&small->T, small->inputs, z, small->q);
-    RITZ_TRY(ritz_poles_solve(&small->dual, hertz, z));
+    RITZ_CHECK(ritz_poles_solve(&small->dual, hertz, z));
     for (int64_t k = 0; k < rp; k++)
         z[k] += ritz_complex(0.0, w) * z[rp + k] - w * w * z[2 * rp + k];
     back(&small->T, small->outputs, z, small->p);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Factors of the kinds of W: of loads in c's residual, of terms in Z. */

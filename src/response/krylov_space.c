@@ -12,12 +12,11 @@ static const double dependent = 1e-10;
 /* A gets `more` behind its columns; room is doubled where there is none. */
 static ritz_status append(ritz_dense *A, int64_t *room, const ritz_dense *more)
 {
-    ritz_status status = RITZ_OK;
     int64_t ncol = A->ncol + more->ncol;
     double *val = NULL;
 
     if (ncol > *room) {
-        RITZ_NEW(val, more->nrow * 2 * ncol);
+        RITZ_CHECK_NEW(val, more->nrow * 2 * ncol);
         if (A->ncol > 0)
             memcpy(val, A->val, (size_t)(A->nrow * A->ncol) * sizeof *val);
         free(A->val);
@@ -29,8 +28,7 @@ static ritz_status append(ritz_dense *A, int64_t *room, const ritz_dense *more)
         memcpy(A->val + A->nrow * A->ncol, more->val,
                (size_t)(more->nrow * more->ncol) * sizeof *val);
     A->ncol = ncol;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of one kind into W, their modal part taken out, and into S. */
@@ -113,24 +111,17 @@ done:
 static ritz_status add_damping(ritz_krylov_space *s, int64_t first,
                                const ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(add_product(s, RITZ_KRYLOV_D, &s->component->D, first, X));
-    RITZ_TRY(add_product(s, RITZ_KRYLOV_DT, &s->DT, first, X));
-    RITZ_TRY(add_product(s, RITZ_KRYLOV_K4, &s->component->K4, first, X));
-done:
-    return status;
+    RITZ_CHECK(add_product(s, RITZ_KRYLOV_D, &s->component->D, first, X));
+    RITZ_CHECK(add_product(s, RITZ_KRYLOV_DT, &s->DT, first, X));
+    return add_product(s, RITZ_KRYLOV_K4, &s->component->K4, first, X);
 }
 
 static ritz_status weigh(ritz_krylov_space *s)
 {
-    ritz_status status = RITZ_OK;
-
     ritz_dense_free(&s->G);
-    RITZ_TRY(ritz_dense_mul_tn(&s->W, &s->S, &s->G));
+    RITZ_CHECK(ritz_dense_mul_tn(&s->W, &s->S, &s->G));
     ritz_dense_symmetrise(&s->G);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
@@ -184,7 +175,6 @@ done:
 /* One vector; twice is enough for orthogonality. */
 static ritz_status add_one(ritz_krylov_space *s, ritz_dense *x, bool *added)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = s->Phi->ncol;
     const ritz_dense none = {.nrow = x->nrow};
     ritz_dense X = ritz_dense_part(&s->V, m, s->V.ncol - m);
@@ -193,24 +183,22 @@ static ritz_status add_one(ritz_krylov_space *s, ritz_dense *x, bool *added)
     *added = false;
     if (s->V.ncol >= x->nrow)
         return RITZ_OK;
-    RITZ_TRY(turn(s, &none, x, &before));
+    RITZ_CHECK(turn(s, &none, x, &before));
     for (int pass = 0; pass < 2; pass++) {
-        RITZ_TRY(turn(s, &X, x, &length));
+        RITZ_CHECK(turn(s, &X, x, &length));
         if (!(length > dependent * before) || !isfinite(length))
             return RITZ_OK;
     }
     for (int64_t i = 0; i < x->nrow; i++)
         x->val[i] /= length;
-    RITZ_TRY(append(&s->V, &s->V_room, x));
+    RITZ_CHECK(append(&s->V, &s->V_room, x));
     *added = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_space_add(ritz_krylov_space *space, ritz_dense *X,
                                   int64_t *added)
 {
-    ritz_status status = RITZ_OK;
     int64_t first = space->V.ncol;
     ritz_dense fresh = {0};
 
@@ -218,18 +206,16 @@ ritz_status ritz_krylov_space_add(ritz_krylov_space *space, ritz_dense *X,
         ritz_dense x = ritz_dense_part(X, k, 1);
         bool one = false;
 
-        RITZ_TRY(add_one(space, &x, &one));
+        RITZ_CHECK(add_one(space, &x, &one));
     }
     *added = space->V.ncol - first;
     fresh = ritz_dense_part(&space->V, first, *added);
-    RITZ_TRY(
+    RITZ_CHECK(
         add_product(space, RITZ_KRYLOV_K, &space->component->K, first, &fresh));
-    RITZ_TRY(
+    RITZ_CHECK(
         add_product(space, RITZ_KRYLOV_M, &space->component->M, first, &fresh));
-    RITZ_TRY(add_damping(space, first, &fresh));
-    RITZ_TRY(weigh(space));
-done:
-    return status;
+    RITZ_CHECK(add_damping(space, first, &fresh));
+    return weigh(space);
 }
 
 void ritz_krylov_space_free(ritz_krylov_space *space)

@@ -43,15 +43,12 @@ static void discard(room *r)
 static ritz_status make_room(const ritz_loop *loop, int64_t p, int64_t q,
                              room *r)
 {
-    ritz_status status = RITZ_OK;
-
     *r = (room){.c = loop->num_driven, .m = loop->num_measured, .p = p, .q = q};
-    RITZ_NEW(r->L, r->c * r->c);
-    RITZ_NEW(r->X, r->c * (q + r->c));
-    RITZ_NEW(r->sigma, r->c);
-    RITZ_NEW(r->pivot, r->c);
-done:
-    return status;
+    RITZ_CHECK_NEW(r->L, r->c * r->c);
+    RITZ_CHECK_NEW(r->X, r->c * (q + r->c));
+    RITZ_CHECK_NEW(r->sigma, r->c);
+    RITZ_CHECK_NEW(r->pivot, r->c);
+    return RITZ_OK;
 }
 
 /* (F S_y G)(i, j) with the sign of negative feedback. */
@@ -68,14 +65,11 @@ static double _Complex around(const ritz_loop *loop, const room *r,
 
 static ritz_status measure_gain(room *r, ritz_loop_values *values)
 {
-    ritz_status status = RITZ_OK;
-
     values->gain =
         r->c == 1 && r->m == 1 ? r->L[0] : ritz_complex(nan(""), nan(""));
-    RITZ_TRY(ritz_singular_values(r->c, r->c, r->L, NULL, r->sigma));
+    RITZ_CHECK(ritz_singular_values(r->c, r->c, r->L, NULL, r->sigma));
     values->largest_gain = r->sigma[0];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_loop_at(const ritz_loop *loop, int64_t num_outputs,
@@ -138,17 +132,14 @@ static void free_closed(void *state)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     closed *s = state;
     const ritz_io *io = &s->poles.io;
     ritz_loop_values values = {0};
 
-    RITZ_TRY_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
-    RITZ_TRY_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
-    RITZ_TRY(ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F,
-                          H, &values));
-done:
-    return status;
+    RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
+    RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
+    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F, H,
+                        &values);
 }
 
 /* Poles above the axis or on it, as s^2 + rate s + lambda; those of the open
@@ -168,14 +159,13 @@ static void add_poles(int64_t count, const double _Complex *pole,
 static ritz_status open_poles(const ritz_responder *of, int64_t *count,
                               double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_poles *p = of->poles;
     double _Complex *s = NULL;
     int64_t n = 0;
 
     if (p->coupled)
         return ritz_responder_poles(of, count, out);
-    RITZ_NEW(s, p->count);
+    RITZ_CHECK_NEW(s, p->count);
     for (int64_t k = 0; k < p->count; k++) {
         double half = 0.5 * p->rate[k];
 
@@ -185,17 +175,15 @@ static ritz_status open_poles(const ritz_responder *of, int64_t *count,
     }
     *count = n;
     *out = s;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Every pole is driven and seen, as far as is known. */
 static ritz_status name_ends(const ritz_io *io, ritz_poles *poles)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = poles->count;
 
-    RITZ_TRY(ritz_io_new(n, io->num_inputs, io->num_outputs, &poles->io));
+    RITZ_CHECK(ritz_io_new(n, io->num_inputs, io->num_outputs, &poles->io));
     memcpy(poles->io.input, io->input,
            (size_t)io->num_inputs * sizeof *io->input);
     memcpy(poles->io.output, io->output,
@@ -204,8 +192,7 @@ static ritz_status name_ends(const ritz_io *io, ritz_poles *poles)
         poles->io.B.val[k] = 1.0;
     for (int64_t k = 0; k < n * io->num_outputs; k++)
         poles->io.C.val[k] = 1.0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status gather(closed *s, int64_t num_poles,

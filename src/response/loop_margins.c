@@ -30,27 +30,22 @@ typedef struct prober {
 
 static ritz_status probe(prober *s, double hertz, ritz_loop_values *values)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &s->plant->poles->io;
 
-    RITZ_TRY_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
-    RITZ_TRY_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
-    RITZ_TRY(ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F,
-                          NULL, values));
-done:
-    return status;
+    RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
+    RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
+    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F,
+                        NULL, values);
 }
 
 static ritz_status value_at(void *state, double hertz, double *value)
 {
-    ritz_status status = RITZ_OK;
     prober *s = state;
     ritz_loop_values values = {0};
 
-    RITZ_TRY(probe(s, hertz, &values));
+    RITZ_CHECK(probe(s, hertz, &values));
     *value = s->want == GAIN ? values.largest_gain : values.sensitivity;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What is zero at a crossing: Im L, or |L| - 1. */
@@ -68,13 +63,12 @@ static ritz_status bisect(prober *s, double (*zero)(double _Complex),
                           double low, double high, double _Complex at_low,
                           double *hertz, double _Complex *L)
 {
-    ritz_status status = RITZ_OK;
     ritz_loop_values values = {.gain = at_low};
     double middle = low;
 
     for (int k = 0; k < MOST_HALVES && high - low > 1e-14 * high; k++) {
         middle = low + (high - low) / 2.0;
-        RITZ_TRY(probe(s, middle, &values));
+        RITZ_CHECK(probe(s, middle, &values));
         if (zero(values.gain) * zero(at_low) > 0.0)
             low = middle;
         else
@@ -82,8 +76,7 @@ static ritz_status bisect(prober *s, double (*zero)(double _Complex),
     }
     *hertz = middle;
     *L = values.gain;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void heed_gain(double hertz, double _Complex L, ritz_margins *out)
@@ -115,7 +108,6 @@ static void heed_phase(double hertz, double _Complex L, ritz_margins *out)
 static ritz_status cross(prober *s, int64_t count, const double *hertz,
                          ritz_margins *out)
 {
-    ritz_status status = RITZ_OK;
     double at = 0.0;
     double _Complex L = 0.0;
 
@@ -123,32 +115,28 @@ static ritz_status cross(prober *s, int64_t count, const double *hertz,
         double _Complex a = s->gain[k], b = s->gain[k + 1];
 
         if (of_phase(a) * of_phase(b) < 0.0) {
-            RITZ_TRY(bisect(s, of_phase, hertz[k], hertz[k + 1], a, &at, &L));
+            RITZ_CHECK(bisect(s, of_phase, hertz[k], hertz[k + 1], a, &at, &L));
             heed_gain(at, L, out);
         }
         if (of_size(a) * of_size(b) < 0.0) {
-            RITZ_TRY(bisect(s, of_size, hertz[k], hertz[k + 1], a, &at, &L));
+            RITZ_CHECK(bisect(s, of_size, hertz[k], hertz[k + 1], a, &at, &L));
             heed_phase(at, L, out);
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find_peaks(prober *s, int64_t count, const double *hertz,
                               ritz_margins *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_curve curve = {value_at, s};
 
     s->want = GAIN;
-    RITZ_TRY(ritz_curve_peak(count, hertz, s->largest, &curve, &out->gain_hz,
-                             &out->gain));
+    RITZ_CHECK(ritz_curve_peak(count, hertz, s->largest, &curve, &out->gain_hz,
+                               &out->gain));
     s->want = SENSITIVITY;
-    RITZ_TRY(ritz_curve_peak(count, hertz, s->sensitivity, &curve,
-                             &out->sensitivity_hz, &out->sensitivity));
-done:
-    return status;
+    return ritz_curve_peak(count, hertz, s->sensitivity, &curve,
+                           &out->sensitivity_hz, &out->sensitivity);
 }
 
 ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,

@@ -19,38 +19,32 @@ static int64_t find(int64_t count, const char (*name)[RITZ_NAME_SIZE],
 ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
                             const ritz_ends *controller)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(loop->num_measured != controller->num_inputs ||
-                     loop->num_driven != controller->num_outputs,
-                 RITZ_ERR_ARGUMENT,
-                 "a loop of %" PRId64 " measured and %" PRId64
-                 " driven signals is not of this controller",
-                 loop->num_measured, loop->num_driven);
+    RITZ_REFUSE_IF(loop->num_measured != controller->num_inputs ||
+                       loop->num_driven != controller->num_outputs,
+                   RITZ_ERR_ARGUMENT,
+                   "a loop of %" PRId64 " measured and %" PRId64
+                   " driven signals is not of this controller",
+                   loop->num_measured, loop->num_driven);
     for (int64_t k = 0; k < loop->num_measured; k++)
-        RITZ_FAIL_IF(loop->measured[k] < 0 ||
-                         loop->measured[k] >= plant->num_outputs,
-                     RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
-                     loop->measured[k] + 1);
+        RITZ_REFUSE_IF(loop->measured[k] < 0 ||
+                           loop->measured[k] >= plant->num_outputs,
+                       RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
+                       loop->measured[k] + 1);
     for (int64_t k = 0; k < loop->num_driven; k++)
-        RITZ_FAIL_IF(loop->driven[k] < 0 ||
-                         loop->driven[k] >= plant->num_inputs,
-                     RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
-                     loop->driven[k] + 1);
-done:
-    return status;
+        RITZ_REFUSE_IF(loop->driven[k] < 0 ||
+                           loop->driven[k] >= plant->num_inputs,
+                       RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
+                       loop->driven[k] + 1);
+    return RITZ_OK;
 }
 
 /* One place is taken once. */
 static ritz_status put(int64_t *place, int64_t index, const char *name)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(*place >= 0, RITZ_ERR_ARGUMENT,
-                 "'%s' of the controller is connected twice", name);
+    RITZ_REFUSE_IF(*place >= 0, RITZ_ERR_ARGUMENT,
+                   "'%s' of the controller is connected twice", name);
     *place = index;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "OUT=IN", in whichever direction there are such names. */
@@ -96,7 +90,6 @@ static ritz_status fill(int64_t count, const char (*name)[RITZ_NAME_SIZE],
                         int64_t others, const char (*other)[RITZ_NAME_SIZE],
                         const char *what, int64_t *place)
 {
-    ritz_status status = RITZ_OK;
     const char *near = NULL;
 
     for (int64_t k = 0; k < count; k++) {
@@ -108,16 +101,15 @@ static ritz_status fill(int64_t count, const char (*name)[RITZ_NAME_SIZE],
         near = others > 0 ? ritz_text_nearest(name[k], others, other[0],
                                               RITZ_NAME_SIZE)
                           : NULL;
-        RITZ_FAIL_IF(near != NULL, RITZ_ERR_ARGUMENT,
-                     "the plant has no %s '%s' for the controller, is '%s' "
-                     "meant?",
-                     what, name[k], near);
-        RITZ_FAIL_IF(near == NULL, RITZ_ERR_ARGUMENT,
-                     "the plant has no %s '%s' for the controller", what,
-                     name[k]);
+        RITZ_REFUSE_IF(near != NULL, RITZ_ERR_ARGUMENT,
+                       "the plant has no %s '%s' for the controller, is '%s' "
+                       "meant?",
+                       what, name[k], near);
+        RITZ_REFUSE_IF(near == NULL, RITZ_ERR_ARGUMENT,
+                       "the plant has no %s '%s' for the controller", what,
+                       name[k]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,

@@ -16,14 +16,11 @@ static const double same = 1e-9;
 
 ritz_status ritz_mesh_ask(ritz_mesh *mesh, double hertz)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_responder_at(mesh->responder, hertz, mesh->row));
+    RITZ_CHECK(ritz_responder_at(mesh->responder, hertz, mesh->row));
     for (int64_t v = 0; v < mesh->values; v++)
         mesh->peak[v] = fmax(mesh->peak[v], cabs(mesh->row[v]));
     ritz_noise_heed(&mesh->responder->noise, hertz, mesh->row, mesh->level);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_room(ritz_mesh *mesh, int64_t room)
@@ -125,11 +122,10 @@ done:
 ritz_status ritz_mesh_insert(ritz_mesh *mesh, int64_t count,
                              const double *hertz, const double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     int64_t from = mesh->count - 1;
     int64_t add = count - 1;
 
-    RITZ_TRY(make_room(mesh, mesh->count + count));
+    RITZ_CHECK(make_room(mesh, mesh->count + count));
     for (int64_t to = mesh->count + count - 1; add >= 0; to--) {
         if (from >= 0 && mesh->hertz[from] > hertz[add]) {
             place(mesh, to, mesh->hertz[from], mesh->open[from],
@@ -143,8 +139,7 @@ ritz_status ritz_mesh_insert(ritz_mesh *mesh, int64_t count,
     }
     mesh->count += count;
     close_up(mesh);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_mesh_free(ritz_mesh *mesh)

@@ -69,7 +69,6 @@ static double _Complex cubic_at(const ritz_mesh *mesh, int64_t v, int64_t k,
 static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
                           double _Complex slope, finds *f)
 {
-    ritz_status status = RITZ_OK;
     double w = 0.5 * (low + high);
     double before = 0.0;
     double _Complex H = 0.0, z = 0.0;
@@ -78,7 +77,7 @@ static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
     for (int t = 0; t < MOST_STEPS && !still; t++) {
         double _Complex last = H;
 
-        RITZ_TRY(ritz_mesh_ask(mesh, w));
+        RITZ_CHECK(ritz_mesh_ask(mesh, w));
         H = mesh->row[v];
         if (t > 0 && w != before)
             slope = (H - last) / (w - before);
@@ -93,17 +92,15 @@ static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
             return RITZ_OK;
     }
     if (!still)
-        RITZ_TRY(ritz_mesh_ask(mesh, w));
+        RITZ_CHECK(ritz_mesh_ask(mesh, w));
     if (fabs(cimag(z)) <= high - low)
-        RITZ_TRY(keep(f, w, mesh->row));
-done:
-    return status;
+        RITZ_CHECK(keep(f, w, mesh->row));
+    return RITZ_OK;
 }
 
 /* Where the cubics of one channel are least among their neighbours. */
 static ritz_status search(ritz_mesh *mesh, int64_t v, finds *f)
 {
-    ritz_status status = RITZ_OK;
     double w[3] = {0.0, 0.0, 0.0};
     double size[3] = {0.0, 0.0, 0.0};
     double _Complex H[3] = {0.0, 0.0, 0.0};
@@ -120,12 +117,11 @@ static ritz_status search(ritz_mesh *mesh, int64_t v, finds *f)
             size[2] = cabs(H[2]);
             if (n < 2 || size[1] > size[0] || size[1] > size[2])
                 continue;
-            RITZ_TRY(
+            RITZ_CHECK(
                 pursue(mesh, v, w[0], w[2], (H[2] - H[0]) / (w[2] - w[0]), f));
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 typedef struct place {

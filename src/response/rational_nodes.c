@@ -114,20 +114,17 @@ static int64_t next(const ritz_nodes *s)
 
 static ritz_status add_node(ritz_nodes *s, double hertz)
 {
-    ritz_status status = RITZ_OK;
     const double _Complex at = ritz_complex(0.0, 2.0 * pi * hertz);
 
-    RITZ_TRY(ritz_interpolant_add(&s->poles, at, s->H));
-    RITZ_TRY(ritz_interpolant_add(&s->both, at, s->H));
+    RITZ_CHECK(ritz_interpolant_add(&s->poles, at, s->H));
+    RITZ_CHECK(ritz_interpolant_add(&s->both, at, s->H));
     s->nodes++;
     if (!s->mirror || hertz == 0.0)
-        goto done;
+        return RITZ_OK;
     for (int64_t v = 0; v < s->values; v++)
         s->H[v] = conj(s->H[v]);
-    RITZ_TRY(ritz_interpolant_add(&s->poles, -at, s->H));
-    RITZ_TRY(ritz_interpolant_add(&s->both, -at, s->H));
-done:
-    return status;
+    RITZ_CHECK(ritz_interpolant_add(&s->poles, -at, s->H));
+    return ritz_interpolant_add(&s->both, -at, s->H);
 }
 
 /* What either interpolant missed at a new node; whether one did not. */
@@ -164,23 +161,21 @@ static bool judge(ritz_nodes *s, double hertz, double tolerance)
 
 ritz_status ritz_nodes_converge(ritz_nodes *s, double tolerance)
 {
-    ritz_status status = RITZ_OK;
     bool near = false;
 
     while (!near) {
         int64_t k = next(s);
 
-        RITZ_FAIL_IF(k < 0 || s->nodes >= MOST_NODES, RITZ_ERR_CONVERGENCE,
-                     "%" PRId64 " nodes do not interpolate to %.1e of the "
-                     "largest response: krylov may",
-                     s->nodes, tolerance);
+        RITZ_REFUSE_IF(k < 0 || s->nodes >= MOST_NODES, RITZ_ERR_CONVERGENCE,
+                       "%" PRId64 " nodes do not interpolate to %.1e of the "
+                       "largest response: krylov may",
+                       s->nodes, tolerance);
         s->used[k] = true;
         memset(s->H, 0, (size_t)s->values * sizeof *s->H);
-        RITZ_TRY(ritz_direct_at(&s->full, s->hertz[k], s->H));
+        RITZ_CHECK(ritz_direct_at(&s->full, s->hertz[k], s->H));
         near = judge(s, s->hertz[k], tolerance);
-        RITZ_TRY(add_node(s, s->hertz[k]));
+        RITZ_CHECK(add_node(s, s->hertz[k]));
         ritz_monitor_step("nodes", s->nodes, 0);
     }
-done:
-    return status;
+    return RITZ_OK;
 }

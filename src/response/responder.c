@@ -34,18 +34,16 @@ static ritz_status check(const ritz_response_engine *engine,
 {
     static const char *const nouns[] = {"a component", "a small dense model",
                                         "a state space"};
-    ritz_status status = RITZ_OK;
     int kind = request->component ? 0 : request->matrices ? 1 : 2;
 
-    RITZ_FAIL_IF(!(engine->takes & (1 << kind)), RITZ_ERR_ARGUMENT,
-                 "%s is not for %s", engine->name, nouns[kind]);
-    RITZ_FAIL_IF(!isfinite(request->from_hz) || !isfinite(request->to_hz) ||
-                     request->from_hz < 0.0 ||
-                     request->to_hz < request->from_hz,
-                 RITZ_ERR_ARGUMENT, "a response from %g to %g Hz has no range",
-                 request->from_hz, request->to_hz);
-done:
-    return status;
+    RITZ_REFUSE_IF(!(engine->takes & (1 << kind)), RITZ_ERR_ARGUMENT,
+                   "%s is not for %s", engine->name, nouns[kind]);
+    RITZ_REFUSE_IF(
+        !isfinite(request->from_hz) || !isfinite(request->to_hz) ||
+            request->from_hz < 0.0 || request->to_hz < request->from_hz,
+        RITZ_ERR_ARGUMENT, "a response from %g to %g Hz has no range",
+        request->from_hz, request->to_hz);
+    return RITZ_OK;
 }
 
 ritz_status ritz_responder_new(const ritz_response_engine *engine,
@@ -92,19 +90,17 @@ const char *ritz_responder_remark(const ritz_responder *responder)
 ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
                               double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &responder->poles->io;
 
-    RITZ_FAIL_IF(responder->component && !(hertz <= responder->to_hz * within),
-                 RITZ_ERR_ARGUMENT,
-                 "%g Hz lies above %g Hz, up to which the response was "
-                 "prepared",
-                 hertz, responder->to_hz);
+    RITZ_REFUSE_IF(responder->component &&
+                       !(hertz <= responder->to_hz * within),
+                   RITZ_ERR_ARGUMENT,
+                   "%g Hz lies above %g Hz, up to which the response was "
+                   "prepared",
+                   hertz, responder->to_hz);
     for (int64_t k = 0; k < io->num_outputs * io->num_inputs; k++)
         H[k] = 0.0;
-    RITZ_TRY(responder->at(responder->state, hertz, H));
-done:
-    return status;
+    return responder->at(responder->state, hertz, H);
 }
 
 ritz_status ritz_responder_sample(ritz_responder *responder,
@@ -226,21 +222,19 @@ done:
 ritz_status ritz_responder_poles(const ritz_responder *responder,
                                  int64_t *count, double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_poles *poles = responder->poles;
     double _Complex *s = NULL;
     int64_t n = 0;
 
     if (poles->coupled && poles->D.val)
         return add_coupled(responder, count, out);
-    RITZ_NEW(s, 2 * poles->count);
+    RITZ_CHECK_NEW(s, 2 * poles->count);
     for (int64_t k = 0; k < poles->count; k++)
         if (ritz_poles_matter(poles, k))
             add_roots(poles->lambda[k], poles->rate[k], &n, s);
     *count = n;
     *out = s;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,

@@ -15,12 +15,9 @@ static const int64_t most_values = INT64_C(1) << 31;
 static ritz_status copy_names(int64_t count, const char (*from)[RITZ_NAME_SIZE],
                               char (**out)[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_NEW(*out, count);
+    RITZ_CHECK_NEW(*out, count);
     memcpy(*out, from, (size_t)count * RITZ_NAME_SIZE);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,

@@ -57,7 +57,6 @@ static int64_t interval(const ritz_response *r, double hertz)
 ritz_status ritz_response_at(const ritz_response *response, double hertz,
                              double _Complex *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *r = response;
     int64_t values = r->num_outputs * r->num_inputs;
     double weight[CUBIC];
@@ -65,19 +64,19 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
     int points = 0;
     double beside = 0.0;
 
-    RITZ_FAIL_IF(r->count < 1, RITZ_ERR_ARGUMENT, "the response has no points");
+    RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT,
+                   "the response has no points");
     beside = rounding * r->hertz[r->count - 1];
-    RITZ_FAIL_IF(!(hertz >= r->hertz[0] - beside) ||
-                     !(hertz <= r->hertz[r->count - 1] + beside),
-                 RITZ_ERR_ARGUMENT,
-                 "%g Hz is outside the response, which is from %g to %g Hz",
-                 hertz, r->hertz[0], r->hertz[r->count - 1]);
+    RITZ_REFUSE_IF(!(hertz >= r->hertz[0] - beside) ||
+                       !(hertz <= r->hertz[r->count - 1] + beside),
+                   RITZ_ERR_ARGUMENT,
+                   "%g Hz is outside the response, which is from %g to %g Hz",
+                   hertz, r->hertz[0], r->hertz[r->count - 1]);
     points = ritz_cubic(r->count, r->hertz, interval(r, hertz), hertz, &first,
                         weight);
     for (int i = 0; i < points; i++)
-        RITZ_FAIL_IF(!isfinite(weight[i]), RITZ_ERR_ARGUMENT,
-                     "the response has %g Hz twice", hertz);
+        RITZ_REFUSE_IF(!isfinite(weight[i]), RITZ_ERR_ARGUMENT,
+                       "the response has %g Hz twice", hertz);
     ritz_cubic_mix(points, weight, values, r->H + first * values, out);
-done:
-    return status;
+    return RITZ_OK;
 }

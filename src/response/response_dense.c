@@ -16,17 +16,15 @@ static ritz_status project(const ritz_dense *A, const ritz_dense *Phi,
 static ritz_status refuse_unstable(const ritz_pairs *pairs)
 {
     const double rounding = 1e-6;
-    ritz_status status = RITZ_OK;
     int64_t m = pairs->Phi.ncol;
 
-    RITZ_FAIL_IF(m > 0 &&
-                     pairs->lambda[0] < -rounding * fabs(pairs->lambda[m - 1]),
-                 RITZ_ERR_ARGUMENT,
-                 "the stiffness has a negative eigenvalue, %.3g where the "
-                 "largest is %.3g: an unstable model has no steady response",
-                 pairs->lambda[0], pairs->lambda[m - 1]);
-done:
-    return status;
+    RITZ_REFUSE_IF(m > 0 && pairs->lambda[0] <
+                                -rounding * fabs(pairs->lambda[m - 1]),
+                   RITZ_ERR_ARGUMENT,
+                   "the stiffness has a negative eigenvalue, %.3g where the "
+                   "largest is %.3g: an unstable model has no steady response",
+                   pairs->lambda[0], pairs->lambda[m - 1]);
+    return RITZ_OK;
 }
 
 /* Whether A moves with any of N, beyond rounding. */
@@ -84,23 +82,21 @@ done:
 static ritz_status mark_massless(int64_t count, const ritz_dense *D,
                                  const ritz_damping *damping, ritz_poles *poles)
 {
-    ritz_status status = RITZ_OK;
     double b = damping && ritz_damping_is_rayleigh(damping) ? damping->b : 0.0;
 
     poles->count -= count;
     poles->massless = count;
     poles->coupled = poles->coupled || count > 0;
     if (count > 0 && !poles->D.val) /* beside modes that nothing couples */
-        RITZ_TRY(ritz_dense_new(poles->count + count, poles->count + count,
-                                &poles->D));
+        RITZ_CHECK(ritz_dense_new(poles->count + count, poles->count + count,
+                                  &poles->D));
     for (int64_t j = 0; j < poles->count && count > 0; j++)
         ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
     for (int64_t j = poles->count; j < poles->count + count; j++) {
         poles->rate[j] = b + (D->val ? ritz_dense_col(D, j)[j] : 0.0);
         ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_poles_of_pairs(const ritz_second_order *model,

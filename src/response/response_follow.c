@@ -79,25 +79,23 @@ static bool agrees(ritz_mesh *mesh, int64_t k, double hertz, double allowed)
 static ritz_status test(ritz_mesh *mesh, int64_t k, double allowed,
                         double *hertz, double _Complex *H, bool *needed)
 {
-    ritz_status status = RITZ_OK;
     double low = mesh->hertz[k];
     double step = mesh->hertz[k + 1] - low;
 
     *hertz = low + 0.5 * step;
-    RITZ_TRY(ritz_mesh_ask(mesh, *hertz));
+    RITZ_CHECK(ritz_mesh_ask(mesh, *hertz));
     memcpy(H, mesh->row, (size_t)mesh->values * sizeof *H);
     *needed = !agrees(mesh, k, *hertz, allowed);
     if (!*needed) {
-        RITZ_TRY(ritz_mesh_ask(mesh, low + quarter * step));
+        RITZ_CHECK(ritz_mesh_ask(mesh, low + quarter * step));
         *needed = !agrees(mesh, k, low + quarter * step, allowed);
     }
-    RITZ_FAIL_IF(*needed && step <= shortest * mesh->hertz[k + 1],
-                 RITZ_ERR_CONVERGENCE,
-                 "the response does not settle at %.9g Hz: is there a mode "
-                 "without damping, or a tolerance beneath its rounding",
-                 *hertz);
-done:
-    return status;
+    RITZ_REFUSE_IF(*needed && step <= shortest * mesh->hertz[k + 1],
+                   RITZ_ERR_CONVERGENCE,
+                   "the response does not settle at %.9g Hz: is there a mode "
+                   "without damping, or a tolerance beneath its rounding",
+                   *hertz);
+    return RITZ_OK;
 }
 
 /* Halve what is open and does not hold; *added how many. */
@@ -135,14 +133,13 @@ done:
 static ritz_status hand_over(ritz_mesh *mesh, const ritz_grid *grid,
                              double tolerance, ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_responder *responder = mesh->responder;
     const ritz_grid ends = {
         .from_hz = grid->from_hz, .to_hz = grid->to_hz, .count = 2};
     ritz_response r = {0};
 
-    RITZ_TRY(ritz_response_new(&ends, responder->poles, responder->engine->name,
-                               NULL, &r));
+    RITZ_CHECK(ritz_response_new(&ends, responder->poles,
+                                 responder->engine->name, NULL, &r));
     free(r.hertz);
     free(r.H);
     r.count = mesh->count;
@@ -154,8 +151,7 @@ static ritz_status hand_over(ritz_mesh *mesh, const ritz_grid *grid,
     (void)snprintf(r.interpolation, sizeof r.interpolation, "cubic");
     r.tolerance = tolerance;
     *out = r;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_responder_follow(ritz_responder *responder,

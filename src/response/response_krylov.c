@@ -68,7 +68,6 @@ static void krylov_free(ritz_krylov *k)
  */
 static ritz_status grow(ritz_krylov *k, bool *held)
 {
-    ritz_status status = RITZ_OK;
     bool pay = true;
     int64_t added = 1;
 
@@ -78,18 +77,17 @@ static ritz_status grow(ritz_krylov *k, bool *held)
         double was = HUGE_VAL;
 
         if (pay) {
-            RITZ_TRY(ritz_krylov_correct(k, &added));
+            RITZ_CHECK(ritz_krylov_correct(k, &added));
             pay = added > 0 && k->worst <= pays * before;
             added = 1;
         } else {
-            RITZ_TRY(ritz_krylov_expand(k, k->hertz[k->at], &added, &was));
+            RITZ_CHECK(ritz_krylov_expand(k, k->hertz[k->at], &added, &was));
             pay = added > 0;
         }
         *held = k->worst <= 1.0 || was <= 1.0;
         ritz_monitor_step("space of the response", k->space.V.ncol, 0);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The frequency of the pole that is damped least, or beside it where that has
@@ -126,42 +124,38 @@ done:
 static ritz_status confirm(ritz_krylov *k, const ritz_response_request *request,
                            bool *held)
 {
-    ritz_status status = RITZ_OK;
     double hertz = k->hertz[k->at];
     double was = 0.0;
     int64_t added = 0;
 
     for (int t = 0; t < 2 && hertz > 0.0; t++) {
-        RITZ_TRY(ritz_krylov_expand(k, hertz, &added, &was));
+        RITZ_CHECK(ritz_krylov_expand(k, hertz, &added, &was));
         *held = was <= 1.0;
         if (!*held)
             break;
-        RITZ_TRY(find_quietest(k, request, &hertz));
+        RITZ_CHECK(find_quietest(k, request, &hertz));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status converge(ritz_krylov *k,
                             const ritz_response_request *request)
 {
-    ritz_status status = RITZ_OK;
     bool held = false;
 
-    RITZ_TRY(ritz_krylov_begin(k));
+    RITZ_CHECK(ritz_krylov_begin(k));
     for (int t = 0; t < MOST_CONFIRMED && !held; t++) {
-        RITZ_TRY(grow(k, &held));
+        RITZ_CHECK(grow(k, &held));
         if (!held)
             break;
         if (ritz_krylov_couples(k))
-            RITZ_TRY(confirm(k, request, &held));
+            RITZ_CHECK(confirm(k, request, &held));
     }
-    RITZ_FAIL_IF(!held, RITZ_ERR_CONVERGENCE,
-                 "a space of %" PRId64
-                 " vectors errs by %.1e of the largest response, not %.1e",
-                 k->space.V.ncol, k->unmet * k->tolerance, k->tolerance);
-done:
-    return status;
+    RITZ_REFUSE_IF(!held, RITZ_ERR_CONVERGENCE,
+                   "a space of %" PRId64
+                   " vectors errs by %.1e of the largest response, not %.1e",
+                   k->space.V.ncol, k->unmet * k->tolerance, k->tolerance);
+    return RITZ_OK;
 }
 
 /* Ratios act on the modes that all engines give them; else fewer are found. */
@@ -178,13 +172,12 @@ static double highest_of(const ritz_response_request *request)
 
 static ritz_status start(const ritz_response_request *request, ritz_krylov *k)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &request->component->io;
     double highest = highest_of(request);
 
-    RITZ_FAIL_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                 "modes up to %g Hz cannot give a response up to %g Hz",
-                 highest, request->to_hz);
+    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
+                   "modes up to %g Hz cannot give a response up to %g Hz",
+                   highest, request->to_hz);
     k->tolerance =
         request->tolerance > 0.0 ? request->tolerance : usual_tolerance;
     k->tolerance = fmax(k->tolerance, least_tolerance);
@@ -193,14 +186,12 @@ static ritz_status start(const ritz_response_request *request, ritz_krylov *k)
     k->outputs = io->num_outputs;
     k->inputs = io->num_inputs;
     k->values = k->outputs * k->inputs;
-    RITZ_TRY(ritz_direct_new(request->component, request->damping, highest,
-                             &k->full));
-    RITZ_TRY(ritz_krylov_space_new(&k->full, ritz_eigen_lambda(request->to_hz),
-                                   &k->space));
-    RITZ_TRY(ritz_krylov_place(k, request->from_hz, request->to_hz));
-    RITZ_TRY(converge(k, request));
-done:
-    return status;
+    RITZ_CHECK(ritz_direct_new(request->component, request->damping, highest,
+                               &k->full));
+    RITZ_CHECK(ritz_krylov_space_new(
+        &k->full, ritz_eigen_lambda(request->to_hz), &k->space));
+    RITZ_CHECK(ritz_krylov_place(k, request->from_hz, request->to_hz));
+    return converge(k, request);
 }
 
 static ritz_status at(void *state, double hertz, double _Complex *H)

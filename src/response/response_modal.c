@@ -30,29 +30,24 @@ static void finish(void *state)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     const modal *m = state;
 
-    RITZ_TRY(ritz_poles_add(&m->poles, hertz, H));
+    RITZ_CHECK(ritz_poles_add(&m->poles, hertz, H));
     ritz_residual_add(&m->residual, hertz, H);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status of_component(const ritz_response_request *request, modal *m)
 {
-    ritz_status status = RITZ_OK;
     double highest = ritz_response_highest(request);
 
-    RITZ_FAIL_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                 "modes up to %g Hz cannot give a response up to %g Hz",
-                 highest, request->to_hz);
-    RITZ_TRY(ritz_poles_of_component(request->component, request->damping,
-                                     highest, &m->pairs, &m->poles));
-    RITZ_TRY(ritz_residual_new(request->component, request->damping, &m->pairs,
-                               request->to_hz, highest, &m->residual));
-done:
-    return status;
+    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
+                   "modes up to %g Hz cannot give a response up to %g Hz",
+                   highest, request->to_hz);
+    RITZ_CHECK(ritz_poles_of_component(request->component, request->damping,
+                                       highest, &m->pairs, &m->poles));
+    return ritz_residual_new(request->component, request->damping, &m->pairs,
+                             request->to_hz, highest, &m->residual);
 }
 
 static ritz_status make(const ritz_response_request *request,

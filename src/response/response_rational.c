@@ -51,7 +51,6 @@ static void rational_free(ritz_nodes *s)
 static ritz_status start(const ritz_response_request *request,
                          const ritz_responder *out, ritz_nodes *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &request->component->io;
     double unit = 2.0 * pi * request->to_hz;
     double low = request->from_hz;
@@ -61,64 +60,59 @@ static ritz_status start(const ritz_response_request *request,
     s->mirror = !request->component->K4.colptr;
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = above_rest * request->to_hz;
-    RITZ_TRY(ritz_nodes_find_poles(s, out));
-    RITZ_TRY(ritz_interpolant_new(s->values, unit, s->num_poles, s->pole,
-                                  &s->poles));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_nodes_find_poles(s, out));
+    RITZ_CHECK(ritz_interpolant_new(s->values, unit, s->num_poles, s->pole,
+                                    &s->poles));
+    RITZ_CHECK(
         ritz_interpolant_new(s->values, unit, s->num_poles, s->pole, &s->both));
-    RITZ_NEW(s->with_zeros, s->values);
-    RITZ_NEW(s->missed, 2 * s->values);
-    RITZ_NEW(s->miss, 2 * s->values * RITZ_RATIONAL_ENOUGH);
-    RITZ_NEW(s->peak, s->values);
-    RITZ_NEW(s->level, s->values);
-    RITZ_NEW(s->scale, s->values);
-    RITZ_NEW(s->H, s->values);
-    RITZ_NEW(s->guess, s->values);
-    RITZ_NEW(s->other, s->values);
+    RITZ_CHECK_NEW(s->with_zeros, s->values);
+    RITZ_CHECK_NEW(s->missed, 2 * s->values);
+    RITZ_CHECK_NEW(s->miss, 2 * s->values * RITZ_RATIONAL_ENOUGH);
+    RITZ_CHECK_NEW(s->peak, s->values);
+    RITZ_CHECK_NEW(s->level, s->values);
+    RITZ_CHECK_NEW(s->scale, s->values);
+    RITZ_CHECK_NEW(s->H, s->values);
+    RITZ_CHECK_NEW(s->guess, s->values);
+    RITZ_CHECK_NEW(s->other, s->values);
     if (s->mirror && s->small && s->values <= most_channels)
-        RITZ_TRY(ritz_nodes_find_zeros(s));
-    RITZ_TRY(ritz_nodes_place(s, low, request->to_hz));
-    RITZ_TRY(ritz_nodes_converge(
-        s, request->tolerance > 0.0 ? request->tolerance : usual_tolerance));
-done:
-    return status;
+        RITZ_CHECK(ritz_nodes_find_zeros(s));
+    RITZ_CHECK(ritz_nodes_place(s, low, request->to_hz));
+    return ritz_nodes_converge(s, request->tolerance > 0.0 ? request->tolerance
+                                                           : usual_tolerance);
 }
 
 /* An undamped pole that was cancelled has no response. */
 static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
 {
-    ritz_status status = RITZ_OK;
     double w = 2.0 * pi * hertz;
 
     for (int64_t k = 0; k < s->num_poles; k++) {
         bool on = cabs(ritz_complex(0.0, w) - s->pole[k]) <=
                   pole_within * (w + cabs(s->pole[k]));
 
-        RITZ_FAIL_IF(on && s->pole[k] == 0.0, RITZ_ERR_SINGULAR,
-                     "at 0 Hz the response is infinite: a rigid-body motion is "
-                     "driven and seen, begin above 0 Hz");
-        RITZ_FAIL_IF(on, RITZ_ERR_SINGULAR,
-                     "%.9g Hz is the frequency of an undamped mode: give it "
-                     "damping or leave the point out",
-                     hertz);
+        RITZ_REFUSE_IF(
+            on && s->pole[k] == 0.0, RITZ_ERR_SINGULAR,
+            "at 0 Hz the response is infinite: a rigid-body motion is "
+            "driven and seen, begin above 0 Hz");
+        RITZ_REFUSE_IF(on, RITZ_ERR_SINGULAR,
+                       "%.9g Hz is the frequency of an undamped mode: give it "
+                       "damping or leave the point out",
+                       hertz);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     ritz_nodes *s = state;
     const double _Complex at = ritz_complex(0.0, 2.0 * pi * hertz);
 
-    RITZ_TRY(refuse_pole(s, hertz));
+    RITZ_CHECK(refuse_pole(s, hertz));
     ritz_interpolant_at(&s->poles, at, s->guess);
     ritz_interpolant_at(&s->both, at, s->other);
     for (int64_t v = 0; v < s->values; v++)
         H[v] = s->with_zeros[v] ? s->other[v] : s->guess[v];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void finish(void *state)

@@ -76,7 +76,6 @@ done:
 
 static ritz_status start(const ritz_state_space *model, hessenberg *h)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)model->A.nrow;
 
     h->n = n;
@@ -84,16 +83,15 @@ static ritz_status start(const ritz_state_space *model, hessenberg *h)
     h->p = (int)model->num_outputs;
     h->room = at_least_one(3 * n + (n > h->m ? n : h->m) + h->p);
     h->zroom = at_least_one(n * n + 2 * n);
-    RITZ_TRY(set_up(model, h));
-    RITZ_NEW(h->iwork, n + 1);
-    RITZ_NEW(h->re, n + 1);
-    RITZ_NEW(h->im, n + 1);
-    RITZ_NEW(h->work, h->room);
-    RITZ_NEW(h->G, (int64_t)h->p * h->m);
-    RITZ_NEW(h->X, (int64_t)n * h->m);
-    RITZ_NEW(h->zwork, h->zroom);
-done:
-    return status;
+    RITZ_CHECK(set_up(model, h));
+    RITZ_CHECK_NEW(h->iwork, n + 1);
+    RITZ_CHECK_NEW(h->re, n + 1);
+    RITZ_CHECK_NEW(h->im, n + 1);
+    RITZ_CHECK_NEW(h->work, h->room);
+    RITZ_CHECK_NEW(h->G, (int64_t)h->p * h->m);
+    RITZ_CHECK_NEW(h->X, (int64_t)n * h->m);
+    RITZ_CHECK_NEW(h->zwork, h->zroom);
+    return RITZ_OK;
 }
 
 static void finish(hessenberg *h)
@@ -112,7 +110,6 @@ static void finish(hessenberg *h)
 
 static ritz_status solve(hessenberg *h, double hertz)
 {
-    ritz_status status = RITZ_OK;
     const double _Complex s = ritz_complex(0.0, 2.0 * pi * hertz);
     int ldn = at_least_one(h->n);
     int ldp = at_least_one(h->p);
@@ -124,14 +121,14 @@ static ritz_status solve(hessenberg *h, double hertz)
             h->X, &ldn, h->iwork, h->work, &h->room, h->zwork, &h->zroom, &info,
             1, 1);
     h->begun = true;
-    RITZ_FAIL_IF(info == 2, RITZ_ERR_SINGULAR,
-                 "%.9g Hz is the frequency of a pole: an undamped mode, or at "
-                 "0 Hz a rigid-body motion",
-                 hertz);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the poles were not found, SLICOT says %d", info);
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        info == 2, RITZ_ERR_SINGULAR,
+        "%.9g Hz is the frequency of a pole: an undamped mode, or at "
+        "0 Hz a rigid-body motion",
+        hertz);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "the poles were not found, SLICOT says %d", info);
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_space_poles(const ritz_state_space *model,
@@ -206,17 +203,15 @@ static void free_states(void *state)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    ritz_status status = RITZ_OK;
     states *s = state;
     hessenberg *h = &s->h;
 
-    RITZ_TRY(solve(h, hertz));
+    RITZ_CHECK(solve(h, hertz));
     for (int i = 0; i < h->p; i++)
         for (int j = 0; j < h->m; j++)
             H[i * h->m + j] =
                 h->G[i + j * h->p] + ritz_dense_col(&s->model->D, j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make(const ritz_response_request *request,

@@ -80,16 +80,14 @@ typedef struct sampler {
 
 static ritz_status largest_at(void *state, double hertz, double *value)
 {
-    ritz_status status = RITZ_OK;
     sampler *s = state;
     const ritz_response *r = s->response;
 
-    RITZ_TRY(ritz_responder_at(s->responder, hertz, s->H));
-    RITZ_TRY(ritz_singular_values(r->num_outputs, r->num_inputs, s->H,
-                                  s->scales, s->sigma));
+    RITZ_CHECK(ritz_responder_at(s->responder, hertz, s->H));
+    RITZ_CHECK(ritz_singular_values(r->num_outputs, r->num_inputs, s->H,
+                                    s->scales, s->sigma));
     *value = s->sigma[0];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_singular_peak(const ritz_response *r,

@@ -87,19 +87,17 @@ done:
 /* A relative model is found from the folder, the first letters of a path. */
 static ritz_status place_model(const char *path, size_t folder, char **model)
 {
-    ritz_status status = RITZ_OK;
     size_t length = strlen(*model);
     char *placed = NULL;
 
     if ((*model)[0] == '/' || folder == 0)
         return RITZ_OK;
-    RITZ_NEW(placed, (int64_t)(folder + length + 1));
+    RITZ_CHECK_NEW(placed, (int64_t)(folder + length + 1));
     memcpy(placed, path, folder);
     memcpy(placed + folder, *model, length);
     free(*model);
     *model = placed;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_read(const char *path, ritz_scene *out)

@@ -11,14 +11,11 @@
 ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
                              int64_t *count)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_yaml_list(yaml, node, count));
-    RITZ_REFUSE_IF(*count > RITZ_MOST_PARTS, yaml, node,
+    RITZ_CHECK(ritz_yaml_list(yaml, node, count));
+    RITZ_REFUSE_AT(*count > RITZ_MOST_PARTS, yaml, node,
                    "%" PRId64 " items are too many, %d can be", *count,
                    RITZ_MOST_PARTS);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The port of item k, which is none of those before it. */
@@ -26,17 +23,15 @@ static ritz_status read_port(const ritz_yaml *yaml, const yaml_node_t *list,
                              int64_t k, const char *before,
                              char port[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
     const yaml_node_t *node = ritz_yaml_item(yaml, list, k);
     ritz_names taken = {"port", k, before, RITZ_NAME_SIZE};
 
-    RITZ_TRY(ritz_yaml_name(yaml, node, port));
-    RITZ_REFUSE_IF(strchr(port, ','), yaml, node,
+    RITZ_CHECK(ritz_yaml_name(yaml, node, port));
+    RITZ_REFUSE_AT(strchr(port, ','), yaml, node,
                    "'%s' holds a comma, a port cannot", port);
-    RITZ_REFUSE_IF(ritz_names_index(&taken, port) >= 0, yaml, node,
+    RITZ_REFUSE_AT(ritz_names_index(&taken, port) >= 0, yaml, node,
                    "port '%s' is listed twice", port);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* [bearing, scan] is kept as "bearing,scan". */
@@ -50,9 +45,10 @@ static ritz_status take_attach(const ritz_yaml *yaml, const yaml_node_t *node,
     int64_t count = 0;
 
     RITZ_TRY(ritz_scene_count(yaml, node, &count));
-    RITZ_REFUSE_IF(count == 0, yaml, node,
-                   "no port is listed; without 'attach' those that joints and "
-                   "inputs use are attached");
+    RITZ_YAML_FAIL_IF(
+        count == 0, yaml, node,
+        "no port is listed; without 'attach' those that joints and "
+        "inputs use are attached");
     RITZ_NEW(port, count);
     for (int64_t k = 0; k < count; k++)
         RITZ_TRY(read_port(yaml, node, k, port[0], port[k]));
@@ -74,29 +70,25 @@ done:
 static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
                               void *field)
 {
-    ritz_status status = RITZ_OK;
     int64_t modes = 0;
 
-    RITZ_TRY(ritz_yaml_whole(yaml, node, &modes));
-    RITZ_REFUSE_IF(modes < 0, yaml, node, "%" PRId64 " modes cannot be kept",
+    RITZ_CHECK(ritz_yaml_whole(yaml, node, &modes));
+    RITZ_REFUSE_AT(modes < 0, yaml, node, "%" PRId64 " modes cannot be kept",
                    modes);
     *(int64_t *)field = modes;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_order(const ritz_yaml *yaml, const yaml_node_t *node,
                               void *field)
 {
-    ritz_status status = RITZ_OK;
     int64_t order = 0;
 
-    RITZ_TRY(ritz_yaml_whole(yaml, node, &order));
-    RITZ_REFUSE_IF(order < 1, yaml, node, "%" PRId64 " columns are no model",
+    RITZ_CHECK(ritz_yaml_whole(yaml, node, &order));
+    RITZ_REFUSE_AT(order < 1, yaml, node, "%" PRId64 " columns are no model",
                    order);
     *(int64_t *)field = order;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 enum { MODEL, BASIS, ORDER, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
@@ -121,27 +113,24 @@ static ritz_status take_choice(const ritz_yaml *yaml, const yaml_node_t *node,
                                const ritz_choice_word *word,
                                ritz_choice *choice)
 {
-    ritz_status status = RITZ_OK;
     bool scalar = node->type == YAML_SCALAR_NODE;
     char text[1024] = "";
     int64_t count = 1;
     size_t used = 0;
 
     if (!scalar)
-        RITZ_TRY(ritz_scene_count(yaml, node, &count));
+        RITZ_CHECK(ritz_scene_count(yaml, node, &count));
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = scalar ? node : ritz_yaml_item(yaml, node, k);
         const char *part = NULL;
 
-        RITZ_TRY(ritz_yaml_text(yaml, item, &part));
-        RITZ_REFUSE_IF(used + strlen(part) + 2 > sizeof text, yaml, item,
+        RITZ_CHECK(ritz_yaml_text(yaml, item, &part));
+        RITZ_REFUSE_AT(used + strlen(part) + 2 > sizeof text, yaml, item,
                        "the list of '%s' is too long", word->key);
         used += (size_t)snprintf(text + used, sizeof text - used, "%s%s",
                                  k > 0 ? "," : "", part);
     }
-    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_choice_take(word, text, choice)));
-done:
-    return status;
+    return ritz_yaml_at(yaml, node, ritz_choice_take(word, text, choice));
 }
 
 /* The keys above, then the words of a choice. */
@@ -163,7 +152,6 @@ static ritz_status read_component(const ritz_yaml *yaml,
                                   const yaml_node_t *node,
                                   ritz_scene_component *out)
 {
-    ritz_status status = RITZ_OK;
     const yaml_node_t *value[MOST_KEYS];
     ritz_yaml_key all[MOST_KEYS];
     int64_t count = list_keys(all);
@@ -171,36 +159,34 @@ static ritz_status read_component(const ritz_yaml *yaml,
     out->modes = -1;
     out->line = (int64_t)word->start_mark.line + 1;
     out->column = (int64_t)word->start_mark.column + 1;
-    RITZ_TRY(ritz_yaml_mapping(yaml, node, count, all, out, value));
-    RITZ_REFUSE_IF(value[MODES] && value[UP_TO], yaml, value[UP_TO],
+    RITZ_CHECK(ritz_yaml_mapping(yaml, node, count, all, out, value));
+    RITZ_REFUSE_AT(value[MODES] && value[UP_TO], yaml, value[UP_TO],
                    "'modes' and 'up_to_hz' are both given, one decides");
-    RITZ_REFUSE_IF(value[ORDER] && value[BASIS], yaml, value[ORDER],
+    RITZ_REFUSE_AT(value[ORDER] && value[BASIS], yaml, value[ORDER],
                    "'order' is how much of a model that is reduced already to "
                    "take, and a 'basis' reduces one");
     for (int64_t k = MODES; k < count; k++)
-        RITZ_REFUSE_IF(value[k] && !value[BASIS], yaml, value[k],
+        RITZ_REFUSE_AT(value[k] && !value[BASIS], yaml, value[k],
                        "'%s' says how to reduce, which needs a 'basis' too",
                        all[k].name);
     for (int64_t k = NUM_KEYS; k < count; k++)
         if (value[k])
-            RITZ_TRY(take_choice(yaml, value[k],
-                                 &ritz_choice_words[k - NUM_KEYS],
-                                 &out->choice));
-done:
-    return status;
+            RITZ_CHECK(take_choice(yaml, value[k],
+                                   &ritz_choice_words[k - NUM_KEYS],
+                                   &out->choice));
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_components(const ritz_yaml *yaml,
                                   const yaml_node_t *node, ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_yaml_pairs(yaml, node, &count));
-    RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_PARTS, yaml, node,
+    RITZ_CHECK(ritz_yaml_pairs(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0 || count > RITZ_MOST_PARTS, yaml, node,
                    "a scene has 1 to %d components, not %" PRId64,
                    RITZ_MOST_PARTS, count);
-    RITZ_NEW(scene->component, count);
+    RITZ_CHECK_NEW(scene->component, count);
     scene->num_components = count;
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
@@ -208,14 +194,13 @@ ritz_status ritz_scene_components(const ritz_yaml *yaml,
         ritz_names before = {"component", k, scene->component->name,
                              sizeof *component};
 
-        RITZ_TRY(ritz_yaml_name(yaml, word, component->name));
-        RITZ_REFUSE_IF(ritz_names_index(&before, component->name) >= 0, yaml,
+        RITZ_CHECK(ritz_yaml_name(yaml, word, component->name));
+        RITZ_REFUSE_AT(ritz_names_index(&before, component->name) >= 0, yaml,
                        word, "component '%s' is given twice", component->name);
-        RITZ_TRY(read_component(yaml, word, ritz_yaml_value_at(yaml, node, k),
-                                component));
+        RITZ_CHECK(read_component(yaml, word, ritz_yaml_value_at(yaml, node, k),
+                                  component));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
@@ -223,7 +208,6 @@ ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
                                   const ritz_scene *scene,
                                   ritz_scene_place *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_names components = {"component", scene->num_components,
                              scene->component->name, sizeof *scene->component};
     const char *text = NULL;
@@ -231,16 +215,14 @@ ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
     char component[RITZ_NAME_SIZE] = "";
     char cut[RITZ_SHORT_SIZE];
 
-    RITZ_TRY(ritz_yaml_text(yaml, node, &text));
+    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
     slash = strchr(text, '/');
-    RITZ_REFUSE_IF(
+    RITZ_REFUSE_AT(
         !slash || slash == text || slash - text >= RITZ_NAME_SIZE || !slash[1],
         yaml, node, "'%s' is not COMPONENT/PORT, such as rotor/bearing",
         ritz_text_short(text, cut));
     memcpy(component, text, (size_t)(slash - text));
-    RITZ_TRY(ritz_yaml_at(
+    RITZ_CHECK(ritz_yaml_at(
         yaml, node, ritz_words_find(&components, component, &out->component)));
-    RITZ_TRY(ritz_yaml_at(yaml, node, ritz_name_copy(slash + 1, out->port)));
-done:
-    return status;
+    return ritz_yaml_at(yaml, node, ritz_name_copy(slash + 1, out->port));
 }

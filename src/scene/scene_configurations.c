@@ -58,32 +58,29 @@ done:
 static ritz_status make_room(const ritz_yaml *yaml, const yaml_node_t *node,
                              double count, ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = scene->num_sweeps;
 
-    RITZ_REFUSE_IF(count > RITZ_MOST_CONFIGURATIONS ||
+    RITZ_REFUSE_AT(count > RITZ_MOST_CONFIGURATIONS ||
                        count * (double)n > RITZ_MOST_SETTINGS,
                    yaml, node,
                    "%.6g configurations of %" PRId64
                    " settings are too many: list those wanted under "
                    "'configurations'",
                    count, n);
-    RITZ_NEW(scene->setting, (int64_t)count * n);
+    RITZ_CHECK_NEW(scene->setting, (int64_t)count * n);
     scene->num_configurations = (int64_t)count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Row c counts with one digit for each sweep, the last one fastest. */
 static ritz_status combine(const ritz_yaml *yaml, ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = scene->num_sweeps;
     double count = 1.0;
 
     for (int64_t k = 0; k < n; k++)
         count *= (double)scene->sweep[k].count;
-    RITZ_TRY(make_room(yaml, ritz_yaml_root(yaml), count, scene));
+    RITZ_CHECK(make_room(yaml, ritz_yaml_root(yaml), count, scene));
     for (int64_t c = 0; c < scene->num_configurations; c++) {
         int64_t rest = c;
 
@@ -94,34 +91,31 @@ static ritz_status combine(const ritz_yaml *yaml, ritz_scene *scene)
             rest /= sweep->count;
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_configurations(const ritz_yaml *yaml,
                                       const yaml_node_t *node,
                                       ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = scene->num_sweeps;
     int64_t count = 0;
     int64_t again = -1;
 
     if (!node)
         return combine(yaml, scene);
-    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_IF(count == 0, yaml, node,
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0, yaml, node,
                    "no configuration is listed; without 'configurations' every "
                    "combination of settings is one");
-    RITZ_TRY(make_room(yaml, node, (double)count, scene));
+    RITZ_CHECK(make_room(yaml, node, (double)count, scene));
     for (int64_t c = 0; c < count; c++)
-        RITZ_TRY(ritz_scene_row_read(yaml, ritz_yaml_item(yaml, node, c), scene,
-                                     scene->setting + c * n));
-    RITZ_TRY(ritz_rows_repeated(count, n, scene->setting, &again));
-    RITZ_REFUSE_IF(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
+        RITZ_CHECK(ritz_scene_row_read(yaml, ritz_yaml_item(yaml, node, c),
+                                       scene, scene->setting + c * n));
+    RITZ_CHECK(ritz_rows_repeated(count, n, scene->setting, &again));
+    RITZ_REFUSE_AT(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
                    "this configuration is listed before");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static bool rows_agree(int64_t n, const double *a, const double *b)
@@ -137,22 +131,20 @@ static ritz_status find_reference(const ritz_yaml *yaml,
                                   const yaml_node_t *node, double *row,
                                   ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = scene->num_sweeps;
     int64_t c = 0;
 
-    RITZ_TRY(ritz_scene_row_read(yaml, node, scene, row));
+    RITZ_CHECK(ritz_scene_row_read(yaml, node, scene, row));
     while (c < scene->num_configurations &&
            !rows_agree(n, row, scene->setting + c * n))
         c++;
-    RITZ_REFUSE_IF(c == scene->num_configurations, yaml, node,
+    RITZ_REFUSE_AT(c == scene->num_configurations, yaml, node,
                    "this is none of the scene's configurations");
     for (int64_t k = 0; k < scene->num_reference; k++)
-        RITZ_REFUSE_IF(scene->reference[k] == c, yaml, node,
+        RITZ_REFUSE_AT(scene->reference[k] == c, yaml, node,
                        "this reference is listed before");
     scene->reference[scene->num_reference++] = c;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_reference(const ritz_yaml *yaml,
@@ -163,9 +155,9 @@ static ritz_status read_reference(const ritz_yaml *yaml,
     int64_t count = 0;
 
     RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_REFERENCES, yaml, node,
-                   "1 to %d references can be listed, not %" PRId64,
-                   RITZ_MOST_REFERENCES, count);
+    RITZ_YAML_FAIL_IF(count == 0 || count > RITZ_MOST_REFERENCES, yaml, node,
+                      "1 to %d references can be listed, not %" PRId64,
+                      RITZ_MOST_REFERENCES, count);
     RITZ_NEW(row, scene->num_sweeps);
     RITZ_NEW(scene->reference, count);
     for (int64_t k = 0; k < count; k++)
@@ -188,17 +180,15 @@ ritz_status ritz_scene_composite(const ritz_yaml *yaml, const yaml_node_t *node,
                                  ritz_scene *scene)
 {
     static const char words[][8] = {"union"};
-    ritz_status status = RITZ_OK;
     ritz_names names = {"composite", 1, words[0], sizeof *words};
     const yaml_node_t *value[NUM_KEYS] = {0};
     int64_t at = 0;
 
     if (node && node->type == YAML_SCALAR_NODE)
-        RITZ_TRY(ritz_yaml_word(yaml, node, &names, &at));
+        RITZ_CHECK(ritz_yaml_word(yaml, node, &names, &at));
     else if (node)
-        RITZ_TRY(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, scene, value));
+        RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, scene, value));
     if (value[REFERENCE])
-        RITZ_TRY(read_reference(yaml, value[REFERENCE], scene));
-done:
-    return status;
+        RITZ_CHECK(read_reference(yaml, value[REFERENCE], scene));
+    return RITZ_OK;
 }

@@ -10,70 +10,62 @@
 static ritz_status take_component(const ritz_yaml *yaml,
                                   const yaml_node_t *node, void *field)
 {
-    ritz_status status = RITZ_OK;
     int64_t component = 0;
 
-    RITZ_TRY(ritz_yaml_whole(yaml, node, &component));
-    RITZ_REFUSE_IF(component < 1 || component > 6, yaml, node,
+    RITZ_CHECK(ritz_yaml_whole(yaml, node, &component));
+    RITZ_REFUSE_AT(component < 1 || component > 6, yaml, node,
                    "component %" PRId64 " is none of 1-3, along the axes, and "
                    "4-6, about them",
                    component);
     *(int64_t *)field = component;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* One direction, or a list of those in which a force acts at once. */
 static ritz_status take_directions(const ritz_yaml *yaml,
                                    const yaml_node_t *node, ritz_scene_io *io)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     if (node->type != YAML_SEQUENCE_NODE)
         return take_component(yaml, node, &io->component);
-    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_IF(count < 1 || count > 6, yaml, node,
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count < 1 || count > 6, yaml, node,
                    "1 to 6 directions can be listed, not %" PRId64, count);
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
         int64_t *into = k == 0 ? &io->component : &io->also[k - 1];
 
-        RITZ_TRY(take_component(yaml, item, into));
+        RITZ_CHECK(take_component(yaml, item, into));
         for (int64_t j = 0; j < k; j++)
-            RITZ_REFUSE_IF(*into == (j == 0 ? io->component : io->also[j - 1]),
+            RITZ_REFUSE_AT(*into == (j == 0 ? io->component : io->also[j - 1]),
                            yaml, item, "direction %" PRId64 " is listed before",
                            *into);
         io->num_also = k;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_grid(const ritz_yaml *yaml, const yaml_node_t *node,
                              void *field)
 {
-    ritz_status status = RITZ_OK;
     int64_t grid = 0;
 
-    RITZ_TRY(ritz_yaml_whole(yaml, node, &grid));
-    RITZ_REFUSE_IF(grid < 1, yaml, node, "%" PRId64 " is no grid", grid);
+    RITZ_CHECK(ritz_yaml_whole(yaml, node, &grid));
+    RITZ_REFUSE_AT(grid < 1, yaml, node, "%" PRId64 " is no grid", grid);
     *(int64_t *)field = grid;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_scale(const ritz_yaml *yaml, const yaml_node_t *node,
                               void *field)
 {
-    ritz_status status = RITZ_OK;
     double scale = 0.0;
 
-    RITZ_TRY(ritz_yaml_real(yaml, node, &scale));
-    RITZ_REFUSE_IF(scale == 0.0, yaml, node, "a scale of 0 leaves no input");
+    RITZ_CHECK(ritz_yaml_real(yaml, node, &scale));
+    RITZ_REFUSE_AT(scale == 0.0, yaml, node, "a scale of 0 leaves no input");
     *(double *)field = scale;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static const char quantities[][16] = {"displacement", "velocity",
@@ -129,10 +121,10 @@ static ritz_status read_force(const ritz_yaml *yaml, const io_side *side,
     if (!value[AGAINST])
         return RITZ_OK;
     RITZ_TRY(ritz_scene_place_read(yaml, value[AGAINST], scene, &io->against));
-    RITZ_REFUSE_IF(io->against.component == io->at.component &&
-                       strcmp(io->against.port, io->at.port) == 0,
-                   yaml, value[AGAINST], "input '%s' acts against itself",
-                   io->name);
+    RITZ_YAML_FAIL_IF(io->against.component == io->at.component &&
+                          strcmp(io->against.port, io->at.port) == 0,
+                      yaml, value[AGAINST], "input '%s' acts against itself",
+                      io->name);
 done:
     return status;
 }
@@ -141,7 +133,6 @@ static ritz_status read_list(const ritz_yaml *yaml, const yaml_node_t *list,
                              const io_side *side, const ritz_scene *scene,
                              int64_t count, ritz_scene_io *io)
 {
-    ritz_status status = RITZ_OK;
     const yaml_node_t *value[NUM_OUTPUT_KEYS];
 
     for (int64_t k = 0; k < count; k++) {
@@ -152,31 +143,27 @@ static ritz_status read_list(const ritz_yaml *yaml, const yaml_node_t *list,
         io[k].limit = (double)NAN;
         io[k].line = (int64_t)node->start_mark.line + 1;
         io[k].column = (int64_t)node->start_mark.column + 1;
-        RITZ_TRY(ritz_yaml_mapping(yaml, node, side->count, side->keys, &io[k],
-                                   value));
-        RITZ_REFUSE_IF(ritz_names_index(&before, io[k].name) >= 0, yaml,
+        RITZ_CHECK(ritz_yaml_mapping(yaml, node, side->count, side->keys,
+                                     &io[k], value));
+        RITZ_REFUSE_AT(ritz_names_index(&before, io[k].name) >= 0, yaml,
                        value[NAME], "%s '%s' is given twice", side->what,
                        io[k].name);
-        RITZ_TRY(ritz_scene_place_read(yaml, value[AT], scene, &io[k].at));
-        RITZ_TRY(read_force(yaml, side, value, scene, &io[k]));
+        RITZ_CHECK(ritz_scene_place_read(yaml, value[AT], scene, &io[k].at));
+        RITZ_CHECK(read_force(yaml, side, value, scene, &io[k]));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_inputs(const ritz_yaml *yaml, const yaml_node_t *node,
                               ritz_scene *scene)
 {
     static const io_side inputs = {"input", NUM_INPUT_KEYS, input_keys, true};
-    ritz_status status = RITZ_OK;
 
     if (node)
-        RITZ_TRY(ritz_scene_count(yaml, node, &scene->num_inputs));
-    RITZ_NEW(scene->input, scene->num_inputs);
-    RITZ_TRY(
-        read_list(yaml, node, &inputs, scene, scene->num_inputs, scene->input));
-done:
-    return status;
+        RITZ_CHECK(ritz_scene_count(yaml, node, &scene->num_inputs));
+    RITZ_CHECK_NEW(scene->input, scene->num_inputs);
+    return read_list(yaml, node, &inputs, scene, scene->num_inputs,
+                     scene->input);
 }
 
 ritz_status ritz_scene_outputs(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -184,13 +171,10 @@ ritz_status ritz_scene_outputs(const ritz_yaml *yaml, const yaml_node_t *node,
 {
     static const io_side outputs = {"output", NUM_OUTPUT_KEYS, output_keys,
                                     false};
-    ritz_status status = RITZ_OK;
 
     if (node)
-        RITZ_TRY(ritz_scene_count(yaml, node, &scene->num_outputs));
-    RITZ_NEW(scene->output, scene->num_outputs);
-    RITZ_TRY(read_list(yaml, node, &outputs, scene, scene->num_outputs,
-                       scene->output));
-done:
-    return status;
+        RITZ_CHECK(ritz_scene_count(yaml, node, &scene->num_outputs));
+    RITZ_CHECK_NEW(scene->output, scene->num_outputs);
+    return read_list(yaml, node, &outputs, scene, scene->num_outputs,
+                     scene->output);
 }

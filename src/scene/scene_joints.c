@@ -95,29 +95,24 @@ const ritz_joint_kind *ritz_joint_kind_of(ritz_joint_type type)
 static ritz_status take_type(const ritz_yaml *yaml, const yaml_node_t *node,
                              void *field)
 {
-    ritz_status status = RITZ_OK;
     ritz_names names = {"joint type", sizeof kinds / sizeof *kinds,
                         kinds[0].name, sizeof *kinds};
     int64_t at = 0;
 
-    RITZ_TRY(ritz_yaml_word(yaml, node, &names, &at));
+    RITZ_CHECK(ritz_yaml_word(yaml, node, &names, &at));
     *(ritz_joint_type *)field = (ritz_joint_type)at;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Joints are named in "clock=60,slide=0.5". */
 static ritz_status take_name(const ritz_yaml *yaml, const yaml_node_t *node,
                              void *field)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_yaml_name(yaml, node, field));
-    RITZ_REFUSE_IF(strpbrk((const char *)field, ",="), yaml, node,
+    RITZ_CHECK(ritz_yaml_name(yaml, node, field));
+    RITZ_REFUSE_AT(strpbrk((const char *)field, ",="), yaml, node,
                    "'%s' holds ',' or '=', the name of a joint cannot",
                    (const char *)field);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_yaml_key ritz_joint_keys[RITZ_NUM_JOINT_KEYS] = {
@@ -146,47 +141,43 @@ static ritz_status read_between(const ritz_yaml *yaml, const yaml_node_t *node,
                                 const ritz_scene *scene,
                                 ritz_scene_place between[2])
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
     int64_t both = 0;
 
-    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_IF(count != 2, yaml, node,
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count != 2, yaml, node,
                    "a joint is between 2 ports, not %" PRId64, count);
     for (int k = 0; k < 2; k++)
-        RITZ_TRY(ritz_scene_place_read(yaml, ritz_yaml_item(yaml, node, k),
-                                       scene, &between[k]));
+        RITZ_CHECK(ritz_scene_place_read(yaml, ritz_yaml_item(yaml, node, k),
+                                         scene, &between[k]));
     both = between[0].component;
-    RITZ_REFUSE_IF(both == between[1].component, yaml, node,
+    RITZ_REFUSE_AT(both == between[1].component, yaml, node,
                    "component '%s' is joined to itself",
                    scene->component[both].name);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The settings under one key; without a list there is 0 alone. */
 static ritz_status read_settings(const ritz_yaml *yaml, const yaml_node_t *node,
                                  const char *called, ritz_sweep *sweep)
 {
-    ritz_status status = RITZ_OK;
     const char *what = sweep->turns ? "angle" : "position";
     int64_t count = 1;
     int64_t again = -1;
 
     if (node)
-        RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_IF(count == 0 || count > RITZ_MOST_CONFIGURATIONS, yaml, node,
+        RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0 || count > RITZ_MOST_CONFIGURATIONS, yaml, node,
                    "a %s has 1 to %d %ss, not %" PRId64, called,
                    RITZ_MOST_CONFIGURATIONS, what, count);
-    RITZ_NEW(sweep->setting, count);
+    RITZ_CHECK_NEW(sweep->setting, count);
     sweep->count = count;
     if (node)
-        RITZ_TRY(ritz_yaml_reals(yaml, node, count, sweep->setting));
-    RITZ_TRY(ritz_rows_repeated(count, 1, sweep->setting, &again));
-    RITZ_REFUSE_IF(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
+        RITZ_CHECK(ritz_yaml_reals(yaml, node, count, sweep->setting));
+    RITZ_CHECK(ritz_rows_repeated(count, 1, sweep->setting, &again));
+    RITZ_REFUSE_AT(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
                    "%s %g is listed twice", what, sweep->setting[again]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What a joint is set to is named after it: "wrist", "wrist.2". */
@@ -195,11 +186,10 @@ static ritz_status read_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
                                ritz_joint *joint, ritz_scene *scene)
 {
     static const char *const endings[] = {"", ".2"};
-    ritz_status status = RITZ_OK;
     const ritz_joint_kind *kind = &kinds[joint->type];
 
     joint->sweep = scene->num_sweeps;
-    RITZ_REFUSE_IF(kind->sweeps > 1 &&
+    RITZ_REFUSE_AT(kind->sweeps > 1 &&
                        strlen(joint->name) + strlen(".2") >= RITZ_NAME_SIZE,
                    yaml, node,
                    "'%s' is longer than %zu bytes, the name of a %s cannot "
@@ -216,11 +206,10 @@ static ritz_status read_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
         memcpy(sweep->name, joint->name, sizeof sweep->name);
         memcpy(sweep->name + strlen(joint->name), endings[k],
                strlen(endings[k]) + 1);
-        RITZ_TRY(read_settings(yaml, value[kind->sweep_key[k]], kind->called,
-                               sweep));
+        RITZ_CHECK(read_settings(yaml, value[kind->sweep_key[k]], kind->called,
+                                 sweep));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Which keys a type of joint has; one that it ignored would mislead. */
@@ -228,88 +217,78 @@ static ritz_status check_keys(const ritz_yaml *yaml, const yaml_node_t *node,
                               const ritz_joint *joint,
                               const yaml_node_t *const *value)
 {
-    ritz_status status = RITZ_OK;
     const ritz_joint_kind *kind = &kinds[joint->type];
 
     for (int k = RITZ_JOINT_KEY_TYPE + 1; k < RITZ_NUM_JOINT_KEYS; k++)
-        RITZ_REFUSE_IF(value[k] && !(kind->keys >> k & 1), yaml, value[k],
+        RITZ_REFUSE_AT(value[k] && !(kind->keys >> k & 1), yaml, value[k],
                        "'%s' does not belong to a %s", ritz_joint_keys[k].name,
                        kind->called);
     for (int k = 0; k < RITZ_NUM_JOINT_KEYS; k++)
-        RITZ_REFUSE_IF(!value[k] && (kind->required >> k & 1), yaml, node,
+        RITZ_REFUSE_AT(!value[k] && (kind->required >> k & 1), yaml, node,
                        "%s '%s' has no %s", kind->called, joint->name,
                        ritz_joint_keys[k].name);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_joint(const ritz_yaml *yaml, const yaml_node_t *node,
                               ritz_scene *scene, ritz_joint *joint)
 {
-    ritz_status status = RITZ_OK;
     const yaml_node_t *value[RITZ_NUM_JOINT_KEYS];
 
     joint->line = (int64_t)node->start_mark.line + 1;
     joint->column = (int64_t)node->start_mark.column + 1;
     joint->axis[0][0] = joint->axis[1][1] = 1.0;
-    RITZ_TRY(ritz_yaml_mapping(yaml, node, RITZ_NUM_JOINT_KEYS, ritz_joint_keys,
-                               joint, value));
-    RITZ_TRY(read_between(yaml, value[RITZ_JOINT_KEY_BETWEEN], scene,
-                          joint->between));
-    RITZ_TRY(check_keys(yaml, node, joint, value));
+    RITZ_CHECK(ritz_yaml_mapping(yaml, node, RITZ_NUM_JOINT_KEYS,
+                                 ritz_joint_keys, joint, value));
+    RITZ_CHECK(read_between(yaml, value[RITZ_JOINT_KEY_BETWEEN], scene,
+                            joint->between));
+    RITZ_CHECK(check_keys(yaml, node, joint, value));
     joint->num_freedoms = kinds[joint->type].freedoms;
-    RITZ_TRY(ritz_joint_read_freedoms(yaml, node, value, joint));
-    RITZ_TRY(read_sweeps(yaml, node, value, joint, scene));
-done:
-    return status;
+    RITZ_CHECK(ritz_joint_read_freedoms(yaml, node, value, joint));
+    return read_sweeps(yaml, node, value, joint, scene);
 }
 
 /* No joint is called what a second axis of another is; not too many sweeps. */
 static ritz_status check_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
                                 const ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     const ritz_names joints = {"joint", scene->num_joints,
                                (const char *)scene->joint,
                                sizeof *scene->joint};
 
-    RITZ_REFUSE_IF(scene->num_sweeps > RITZ_MOST_SWEEPS, yaml, node,
+    RITZ_REFUSE_AT(scene->num_sweeps > RITZ_MOST_SWEEPS, yaml, node,
                    "%" PRId64 " settings of joints are too many, %d can be",
                    scene->num_sweeps, RITZ_MOST_SWEEPS);
     for (int64_t k = 0; k < scene->num_sweeps; k++) {
         const ritz_sweep *sweep = &scene->sweep[k];
         int64_t at = ritz_names_index(&joints, sweep->name);
 
-        RITZ_REFUSE_IF(at >= 0 && at != sweep->joint, yaml,
+        RITZ_REFUSE_AT(at >= 0 && at != sweep->joint, yaml,
                        ritz_yaml_item(yaml, node, at),
                        "joint '%s' has the name of the second axis of '%s'",
                        sweep->name, scene->joint[sweep->joint].name);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_joints(const ritz_yaml *yaml, const yaml_node_t *node,
                               ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     if (node)
-        RITZ_TRY(ritz_scene_count(yaml, node, &count));
-    RITZ_NEW(scene->joint, count);
-    RITZ_NEW(scene->sweep, 2 * count);
+        RITZ_CHECK(ritz_scene_count(yaml, node, &count));
+    RITZ_CHECK_NEW(scene->joint, count);
+    RITZ_CHECK_NEW(scene->sweep, 2 * count);
     scene->num_joints = count;
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
         ritz_joint *joint = &scene->joint[k];
         ritz_names before = {"joint", k, scene->joint->name, sizeof *joint};
 
-        RITZ_TRY(read_joint(yaml, item, scene, joint));
-        RITZ_REFUSE_IF(ritz_names_index(&before, joint->name) >= 0, yaml, item,
+        RITZ_CHECK(read_joint(yaml, item, scene, joint));
+        RITZ_REFUSE_AT(ritz_names_index(&before, joint->name) >= 0, yaml, item,
                        "joint '%s' is given twice", joint->name);
     }
-    RITZ_TRY(check_sweeps(yaml, node, scene));
-done:
-    return status;
+    return check_sweeps(yaml, node, scene);
 }

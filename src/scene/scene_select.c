@@ -32,66 +32,60 @@ static ritz_status take_by(const ritz_yaml *yaml, const yaml_node_t *node,
         const char *word;
         ritz_selection select;
     } others[] = {{"band", RITZ_SELECT_BAND}, {"krylov", RITZ_SELECT_KRYLOV}};
-    ritz_status status = RITZ_OK;
     char word[RITZ_NAME_SIZE];
 
-    RITZ_TRY(ritz_yaml_name(yaml, node, word));
+    RITZ_CHECK(ritz_yaml_name(yaml, node, word));
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
         if (strcmp(word, others[k].word) == 0) {
             scene->select = others[k].select;
             return RITZ_OK;
         }
     if (!ritz_ranker_find(word))
-        RITZ_TRY(ritz_yaml_at(yaml, node, RITZ_ERR_ARGUMENT));
+        RITZ_CHECK(ritz_yaml_at(yaml, node, RITZ_ERR_ARGUMENT));
     memcpy(scene->select_by, word, sizeof word);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Put mode `number` where it belongs among those before it. */
 static ritz_status insert(const ritz_yaml *yaml, const yaml_node_t *node,
                           int64_t number, ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t *mode = scene->select_mode;
     int64_t at = scene->num_select_modes;
 
     while (at > 0 && mode[at - 1] > number)
         at--;
-    RITZ_REFUSE_IF(at > 0 && mode[at - 1] == number, yaml, node,
+    RITZ_REFUSE_AT(at > 0 && mode[at - 1] == number, yaml, node,
                    "mode %" PRId64 " is listed before", number + 1);
     memmove(mode + at + 1, mode + at,
             (size_t)(scene->num_select_modes - at) * sizeof *mode);
     mode[at] = number;
     scene->num_select_modes++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
                               ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_IF(count == 0 || count > MOST_MODES, yaml, node,
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0 || count > MOST_MODES, yaml, node,
                    "1 to %d modes can be listed, not %" PRId64, MOST_MODES,
                    count);
-    RITZ_NEW(scene->select_mode, count);
+    RITZ_CHECK_NEW(scene->select_mode, count);
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
         int64_t number = 0;
 
-        RITZ_TRY(ritz_yaml_whole(yaml, item, &number));
-        RITZ_REFUSE_IF(number < 1, yaml, item,
+        RITZ_CHECK(ritz_yaml_whole(yaml, item, &number));
+        RITZ_REFUSE_AT(number < 1, yaml, item,
                        "%" PRId64 " is no flexible mode, the first is 1",
                        number);
-        RITZ_TRY(insert(yaml, item, number - 1, scene));
+        RITZ_CHECK(insert(yaml, item, number - 1, scene));
     }
     scene->select = RITZ_SELECT_LISTED;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_krylov(const ritz_yaml *yaml,
@@ -100,19 +94,17 @@ static ritz_status take_krylov(const ritz_yaml *yaml,
 {
     static const char words[][8] = {"inputs", "both"};
     const ritz_names names = {"start", 2, words[0], sizeof *words};
-    ritz_status status = RITZ_OK;
     int64_t at = 0;
 
-    RITZ_TRY(ritz_yaml_whole(yaml, value[VECTORS], &scene->select_vectors));
-    RITZ_REFUSE_IF(
+    RITZ_CHECK(ritz_yaml_whole(yaml, value[VECTORS], &scene->select_vectors));
+    RITZ_REFUSE_AT(
         scene->select_vectors < 1 || scene->select_vectors > MOST_VECTORS, yaml,
         value[VECTORS], "1 to %d Krylov vectors can be made, not %" PRId64,
         MOST_VECTORS, scene->select_vectors);
     if (value[START])
-        RITZ_TRY(ritz_yaml_word(yaml, value[START], &names, &at));
+        RITZ_CHECK(ritz_yaml_word(yaml, value[START], &names, &at));
     scene->select_outputs = at == 1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Each key says something of one way to select alone. */
@@ -120,48 +112,44 @@ static ritz_status check(const ritz_yaml *yaml, const yaml_node_t *node,
                          const yaml_node_t *const *value,
                          const ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     bool krylov = scene->select == RITZ_SELECT_KRYLOV;
 
-    RITZ_REFUSE_IF(value[MODES] && value[BY], yaml, value[BY],
+    RITZ_REFUSE_AT(value[MODES] && value[BY], yaml, value[BY],
                    "modes are chosen by a list or by something, not both");
-    RITZ_REFUSE_IF(value[TOLERANCE] && scene->select != RITZ_SELECT_RANKED,
+    RITZ_REFUSE_AT(value[TOLERANCE] && scene->select != RITZ_SELECT_RANKED,
                    yaml, value[TOLERANCE],
                    "a tolerance goes with a ranking alone");
-    RITZ_REFUSE_IF(krylov && !value[VECTORS], yaml, node,
+    RITZ_REFUSE_AT(krylov && !value[VECTORS], yaml, node,
                    "by krylov wants to know how many 'vectors'");
-    RITZ_REFUSE_IF(!krylov && value[VECTORS], yaml, value[VECTORS],
+    RITZ_REFUSE_AT(!krylov && value[VECTORS], yaml, value[VECTORS],
                    "'vectors' goes with 'by: krylov' alone");
-    RITZ_REFUSE_IF(!krylov && value[START], yaml, value[START],
+    RITZ_REFUSE_AT(!krylov && value[START], yaml, value[START],
                    "'start' goes with 'by: krylov' alone");
-    RITZ_REFUSE_IF(krylov && scene->num_inputs == 0, yaml, node,
+    RITZ_REFUSE_AT(krylov && scene->num_inputs == 0, yaml, node,
                    "Krylov vectors begin with what inputs do, and there are "
                    "none");
-    RITZ_REFUSE_IF(scene->select == RITZ_SELECT_BAND &&
+    RITZ_REFUSE_AT(scene->select == RITZ_SELECT_BAND &&
                        !(scene->band_hz[1] > 0.0),
                    yaml, node,
                    "modes are chosen by a band and there is no "
                    "'band_hz'");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_select(const ritz_yaml *yaml, const yaml_node_t *node,
                               ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
     const yaml_node_t *value[NUM_KEYS] = {0};
 
     if (!node)
         return RITZ_OK;
-    RITZ_TRY(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, scene, value));
+    RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, scene, value));
     if (value[BY])
-        RITZ_TRY(take_by(yaml, value[BY], scene));
+        RITZ_CHECK(take_by(yaml, value[BY], scene));
     if (value[MODES] && !value[BY])
-        RITZ_TRY(take_modes(yaml, value[MODES], scene));
-    RITZ_TRY(check(yaml, node, value, scene));
+        RITZ_CHECK(take_modes(yaml, value[MODES], scene));
+    RITZ_CHECK(check(yaml, node, value, scene));
     if (scene->select == RITZ_SELECT_KRYLOV)
-        RITZ_TRY(take_krylov(yaml, value, scene));
-done:
-    return status;
+        RITZ_CHECK(take_krylov(yaml, value, scene));
+    return RITZ_OK;
 }

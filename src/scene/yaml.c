@@ -120,8 +120,8 @@ ritz_status ritz_yaml_load(const char *path, const char *text, ritz_yaml *out)
     RITZ_FAIL_IF(!ritz_yaml_root(&yaml), RITZ_ERR_FORMAT,
                  "%s:1:1: the file is empty", path);
     RITZ_TRY(load(&parser, text, &second));
-    RITZ_REFUSE_IF(ritz_yaml_root(&second), &second, ritz_yaml_root(&second),
-                   "a second document begins here, a scene is one");
+    RITZ_YAML_FAIL_IF(ritz_yaml_root(&second), &second, ritz_yaml_root(&second),
+                      "a second document begins here, a scene is one");
     *out = yaml;
     yaml = (ritz_yaml){0};
 done:
@@ -171,29 +171,24 @@ static const char *const plain_tag[] = {
 static ritz_status expect(const ritz_yaml *yaml, const yaml_node_t *node,
                           yaml_node_type_t type)
 {
-    ritz_status status = RITZ_OK;
     const char *tag = (const char *)node->tag;
     char text[RITZ_SHORT_SIZE];
 
-    RITZ_REFUSE_IF(node->type != type, yaml, node,
+    RITZ_REFUSE_AT(node->type != type, yaml, node,
                    "%s is expected here, not %s", kind_name[type],
                    kind_name[node->type]);
-    RITZ_REFUSE_IF(strcmp(tag, plain_tag[type]) != 0, yaml, node,
+    RITZ_REFUSE_AT(strcmp(tag, plain_tag[type]) != 0, yaml, node,
                    "the tag '%s' means nothing here",
                    ritz_text_short(tag, text));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_yaml_list(const ritz_yaml *yaml, const yaml_node_t *node,
                            int64_t *count)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(expect(yaml, node, YAML_SEQUENCE_NODE));
+    RITZ_CHECK(expect(yaml, node, YAML_SEQUENCE_NODE));
     *count = node->data.sequence.items.top - node->data.sequence.items.start;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const yaml_node_t *ritz_yaml_item(const ritz_yaml *yaml,
@@ -205,12 +200,9 @@ const yaml_node_t *ritz_yaml_item(const ritz_yaml *yaml,
 ritz_status ritz_yaml_pairs(const ritz_yaml *yaml, const yaml_node_t *node,
                             int64_t *count)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(expect(yaml, node, YAML_MAPPING_NODE));
+    RITZ_CHECK(expect(yaml, node, YAML_MAPPING_NODE));
     *count = node->data.mapping.pairs.top - node->data.mapping.pairs.start;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 const yaml_node_t *ritz_yaml_key_at(const ritz_yaml *yaml,
@@ -228,18 +220,16 @@ const yaml_node_t *ritz_yaml_value_at(const ritz_yaml *yaml,
 ritz_status ritz_yaml_text(const ritz_yaml *yaml, const yaml_node_t *node,
                            const char **out)
 {
-    ritz_status status = RITZ_OK;
     const char *text = NULL;
 
-    RITZ_TRY(expect(yaml, node, YAML_SCALAR_NODE));
+    RITZ_CHECK(expect(yaml, node, YAML_SCALAR_NODE));
     text = (const char *)node->data.scalar.value;
-    RITZ_REFUSE_IF(node->data.scalar.length == 0, yaml, node,
+    RITZ_REFUSE_AT(node->data.scalar.length == 0, yaml, node,
                    "a name or value is missing here");
-    RITZ_REFUSE_IF(node->data.scalar.length != strlen(text), yaml, node,
+    RITZ_REFUSE_AT(node->data.scalar.length != strlen(text), yaml, node,
                    "a NUL character stands in a text");
     *out = text;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_yaml_free(ritz_yaml *yaml)

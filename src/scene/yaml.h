@@ -44,14 +44,21 @@ const yaml_node_t *ritz_yaml_root(const ritz_yaml *yaml);
 ritz_status ritz_yaml_at(const ritz_yaml *yaml, const yaml_node_t *node,
                          ritz_status status);
 
-/* RITZ_FAIL_IF with the place of a node before the sentence. */
-#define RITZ_REFUSE_IF(condition, yaml, node, ...)                             \
+/* RITZ_FAIL_IF and RITZ_REFUSE_IF with a node's place before the sentence. */
+#define RITZ_YAML_FAIL_IF(condition, yaml, node, ...)                          \
     do {                                                                       \
         if (condition) {                                                       \
             status = ritz_yaml_at((yaml), (node),                              \
                                   ritz_fail(RITZ_ERR_FORMAT, __VA_ARGS__));    \
             goto done;                                                         \
         }                                                                      \
+    } while (0)
+
+#define RITZ_REFUSE_AT(condition, yaml, node, ...)                             \
+    do {                                                                       \
+        if (condition)                                                         \
+            return ritz_yaml_at((yaml), (node),                                \
+                                ritz_fail(RITZ_ERR_FORMAT, __VA_ARGS__));      \
     } while (0)
 
 /** Number of items of a list, which @p node must be; and one of them. */

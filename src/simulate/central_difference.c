@@ -17,17 +17,14 @@ static ritz_status start(const ritz_motion *motion, double step, double rho,
                          ritz_march *out)
 {
     const ritz_newmark weights = {0.0, 0.0, 0.0, 0.5};
-    ritz_status status = RITZ_OK;
     double omega = sqrt(motion->highest);
 
     (void)rho;
-    RITZ_FAIL_IF(!motion->any_step && step * omega >= 2.0, RITZ_ERR_ARGUMENT,
-                 "a step of %g s is not stable: the highest frequency, %.6g "
-                 "Hz, limits it to %.6g s",
-                 step, 0.5 * omega / 3.14159265358979323846, 2.0 / omega);
-    RITZ_TRY(ritz_newmark_start(motion, step, &weights, out));
-done:
-    return status;
+    RITZ_REFUSE_IF(!motion->any_step && step * omega >= 2.0, RITZ_ERR_ARGUMENT,
+                   "a step of %g s is not stable: the highest frequency, %.6g "
+                   "Hz, limits it to %.6g s",
+                   step, 0.5 * omega / 3.14159265358979323846, 2.0 / omega);
+    return ritz_newmark_start(motion, step, &weights, out);
 }
 
 const ritz_integrator ritz_integrator_central_difference = {

@@ -77,36 +77,32 @@ done:
 static ritz_status take_steps(ritz_march *march, int64_t steps, const double *u,
                               double *out)
 {
-    ritz_status status = RITZ_OK;
     double began = processor_seconds();
 
     for (int64_t k = 0; k < steps; k++)
-        RITZ_TRY(march->advance(march, u, u));
+        RITZ_CHECK(march->advance(march, u, u));
     *out = processor_seconds() - began;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Fewer at first: until they take long enough to be measured. */
 static ritz_status measure(ritz_march *march, const double *u, double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t steps = FIRST_STEPS;
     double spent = 0.0, least = HUGE_VAL;
 
-    RITZ_TRY(take_steps(march, steps, u, &spent));
+    RITZ_CHECK(take_steps(march, steps, u, &spent));
     while (spent < long_enough) {
         steps *= 2;
-        RITZ_TRY(take_steps(march, steps, u, &spent));
+        RITZ_CHECK(take_steps(march, steps, u, &spent));
     }
     least = spent;
     for (int k = 1; k < MEASUREMENTS; k++) {
-        RITZ_TRY(take_steps(march, steps, u, &spent));
+        RITZ_CHECK(take_steps(march, steps, u, &spent));
         least = fmin(least, spent);
     }
     *out = least / (double)steps;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
@@ -171,20 +167,18 @@ done:
 static ritz_status factors(const ritz_dense *A, int64_t count, ritz_dense *work,
                            double *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
     size_t size = (size_t)(A->nrow * A->ncol) * sizeof *A->val;
     double began = processor_seconds();
 
     for (int64_t k = 0; k < count; k++) {
         memcpy(work->val, A->val, size);
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, work->val, n) != 0,
             RITZ_ERR_SINGULAR, "a factor broke down");
     }
     *out = processor_seconds() - began;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)

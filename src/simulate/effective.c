@@ -69,14 +69,13 @@ void ritz_motion_damping(const ritz_motion *motion, double alpha,
 static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
                                 double k, ritz_effective *F)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)F->n;
     double norm = 0.0, rcond = 0.0;
 
     if (n == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_new(n, n, &F->LU));
-    RITZ_NEW(F->pivot, n);
+    RITZ_CHECK(ritz_dense_new(n, n, &F->LU));
+    RITZ_CHECK_NEW(F->pivot, n);
     for (int64_t i = 0; i < F->n * F->n; i++)
         F->LU.val[i] = m * motion->M.val[i] + k * motion->K.val[i] +
                        (motion->D.val ? d * motion->D.val[i] : 0.0);
@@ -84,10 +83,9 @@ static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, F->LU.val, n, F->pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, F->LU.val, n, norm,
                              &rcond);
-    RITZ_FAIL_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
-                 "the matrix of a step is singular to working accuracy");
-done:
-    return status;
+    RITZ_REFUSE_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
+                   "the matrix of a step is singular to working accuracy");
+    return RITZ_OK;
 }
 
 /* The sum of the sparse matrices. */
@@ -169,20 +167,16 @@ done:
 /* A real right side of the complex factor. */
 static ritz_status solve_general(ritz_effective *F, double *x)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < F->n; k++)
         F->z[k] = x[k];
-    RITZ_TRY(ritz_zldl_solve(F->general, 1, F->z));
+    RITZ_CHECK(ritz_zldl_solve(F->general, 1, F->z));
     for (int64_t k = 0; k < F->n; k++)
         x[k] = creal(F->z[k]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)F->n;
     ritz_dense X = {F->n, columns, x}; /* borrowed */
 
@@ -198,9 +192,8 @@ ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
         return RITZ_OK;
     }
     for (int64_t j = 0; j < columns; j++)
-        RITZ_TRY(solve_general(F, x + j * F->n));
-done:
-    return status;
+        RITZ_CHECK(solve_general(F, x + j * F->n));
+    return RITZ_OK;
 }
 
 void ritz_effective_free(ritz_effective *F)

@@ -45,15 +45,13 @@ static void replace(ritz_dense *A, ritz_dense *by)
 /* A := D^-1 A D with D = diag(d) of powers of two. */
 static ritz_status balance(ritz_dense *A, double *d)
 {
-    ritz_status status = RITZ_OK;
     lapack_int low = 0, high = 0;
     int n = (int)A->nrow;
 
-    RITZ_FAIL_IF(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, A->val, n, &low,
-                                &high, d) != 0,
-                 RITZ_ERR_ARGUMENT, "a matrix of states is not finite");
-done:
-    return status;
+    RITZ_REFUSE_IF(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, A->val, n, &low,
+                                  &high, d) != 0,
+                   RITZ_ERR_ARGUMENT, "a matrix of states is not finite");
+    return RITZ_OK;
 }
 
 /* A(i,j) *= d(i)^row d(j)^col, powers being 1 or -1. */

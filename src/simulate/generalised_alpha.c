@@ -14,21 +14,18 @@
 static ritz_status start(const ritz_motion *motion, double step, double rho,
                          ritz_march *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_newmark w = {0};
 
-    RITZ_FAIL_IF(!(rho >= 0.0 && rho <= 1.0), RITZ_ERR_ARGUMENT,
-                 "the spectral radius at infinite frequency is between 0 and "
-                 "1, not %g",
-                 rho);
+    RITZ_REFUSE_IF(!(rho >= 0.0 && rho <= 1.0), RITZ_ERR_ARGUMENT,
+                   "the spectral radius at infinite frequency is between 0 and "
+                   "1, not %g",
+                   rho);
     w.alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
     w.alpha_f = rho / (rho + 1.0);
     w.gamma = 0.5 - w.alpha_m + w.alpha_f;
     w.beta =
         0.25 * (1.0 - w.alpha_m + w.alpha_f) * (1.0 - w.alpha_m + w.alpha_f);
-    RITZ_TRY(ritz_newmark_start(motion, step, &w, out));
-done:
-    return status;
+    return ritz_newmark_start(motion, step, &w, out);
 }
 
 const ritz_integrator ritz_integrator_generalised_alpha = {

@@ -52,16 +52,12 @@ static ritz_status from_modes(const ritz_motion *modes,
                               const ritz_motion *motion, ritz_effective *mass,
                               const double *q, double *x)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < motion->n; k++)
         x[k] = motion->to.val ? q[k] : 0.0;
     if (motion->to.val)
         return RITZ_OK;
     ritz_motion_gemv(&modes->to, 1.0, q, x);
-    RITZ_TRY(ritz_effective_solve(mass, 1, x));
-done:
-    return status;
+    return ritz_effective_solve(mass, 1, x);
 }
 
 typedef struct trial {
@@ -73,7 +69,6 @@ typedef struct trial {
 static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
                                uint64_t *seed, double *worst)
 {
-    ritz_status status = RITZ_OK;
     double start = 0.0;
 
     for (int64_t k = 0; k < t->modes->n; k++) {
@@ -83,21 +78,20 @@ static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
         t->v[k] = noise(seed);
     }
     start = energy(t->modes, t->q, t->v);
-    RITZ_TRY(from_modes(t->modes, t->motion, &t->mass, t->q, march->x));
-    RITZ_TRY(from_modes(t->modes, t->motion, &t->mass, t->v, march->v));
+    RITZ_CHECK(from_modes(t->modes, t->motion, &t->mass, t->q, march->x));
+    RITZ_CHECK(from_modes(t->modes, t->motion, &t->mass, t->v, march->v));
     if (march->settle)
-        RITZ_TRY(march->settle(march, t->u));
+        RITZ_CHECK(march->settle(march, t->u));
     for (int64_t k = 0; k < steps && *worst < enough; k++) {
         double now = 0.0;
 
-        RITZ_TRY(march->advance(march, t->u, t->u));
+        RITZ_CHECK(march->advance(march, t->u, t->u));
         to_modes(t->modes, t->motion, march->x, t->q);
         to_modes(t->modes, t->motion, march->v, t->v);
         now = energy(t->modes, t->q, t->v) / start;
         *worst = isfinite(now) ? fmax(*worst, now) : HUGE_VAL;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status run_all(trial *t, const ritz_integrator *integrator,

@@ -96,11 +96,10 @@ done:
 static ritz_status forms(const ritz_motion *m, const group *part,
                          const ritz_dense *A, ritz_dense Q[2])
 {
-    ritz_status status = RITZ_OK;
     int64_t g = part->count;
 
-    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &Q[0]));
-    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &Q[1]));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, &Q[0]));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, &Q[1]));
     for (int64_t j = 0; j < g; j++)
         for (int64_t i = 0; i < g; i++)
             ritz_dense_col(&Q[0], g + j)[g + i] =
@@ -111,8 +110,7 @@ static ritz_status forms(const ritz_motion *m, const group *part,
             ritz_dense_col(&Q[1], j)[i] = 0.5 * ritz_dense_col(A, j)[i];
             ritz_dense_col(&Q[1], i)[j] = 0.5 * ritz_dense_col(A, j)[i];
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status prepare(const ritz_motion *m, double h, group *part)

@@ -25,14 +25,11 @@ static bool present(const ritz_dense *A)
 /* A += alpha X; A of zeros if it is {0}. */
 static ritz_status add(double alpha, const ritz_dense *X, ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-
     if (!A->val)
-        RITZ_TRY(ritz_dense_new(X->nrow, X->ncol, A));
+        RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, A));
     for (int64_t k = 0; k < X->nrow * X->ncol; k++)
         A->val[k] += alpha * X->val[k];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* D += M Phi Delta Phi'M of ratios alone, or a M + b K. */
@@ -105,26 +102,20 @@ done:
 /* B, C, Cv, feed and push of full matrices. */
 static ritz_status drive(const ritz_io *io, ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(&io->B, &m->B));
-    RITZ_TRY(ritz_dense_copy(&io->C, &m->C));
-    RITZ_TRY(ritz_dense_copy(&io->Cv, &m->Cv));
-    RITZ_TRY(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
-    RITZ_TRY(ritz_dense_copy(&io->B, &m->push));
-    RITZ_TRY_IN("M", ritz_general_solve(&m->M, false, &m->push));
-    RITZ_TRY(write_out(&io->Ca, m));
-done:
-    return status;
+    RITZ_CHECK(ritz_dense_copy(&io->B, &m->B));
+    RITZ_CHECK(ritz_dense_copy(&io->C, &m->C));
+    RITZ_CHECK(ritz_dense_copy(&io->Cv, &m->Cv));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
+    RITZ_CHECK(ritz_dense_copy(&io->B, &m->push));
+    RITZ_CHECK_IN("M", ritz_general_solve(&m->M, false, &m->push));
+    return write_out(&io->Ca, m);
 }
 
 /* Lambda and I as matrices. */
 static ritz_status fill_out(ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(m->n, m->n, &m->K));
-    RITZ_TRY(ritz_dense_new(m->n, m->n, &m->M));
+    RITZ_CHECK(ritz_dense_new(m->n, m->n, &m->K));
+    RITZ_CHECK(ritz_dense_new(m->n, m->n, &m->M));
     for (int64_t j = 0; j < m->n; j++) {
         ritz_dense_col(&m->K, j)[j] = m->lambda[j];
         ritz_dense_col(&m->M, j)[j] = 1.0;
@@ -132,25 +123,20 @@ static ritz_status fill_out(ritz_motion *m)
     if (ritz_dense_max(&m->D) == 0.0)
         ritz_dense_free(&m->D);
     m->form = RITZ_FORM_DENSE;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status fill_dense(const ritz_structure *s, const ritz_io *io,
                               const ritz_damping *damping, ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-
     m->form = RITZ_FORM_DENSE;
     m->n = m->original = s->K.nrow;
-    RITZ_TRY(ritz_dense_copy(&s->K, &m->K));
-    RITZ_TRY(ritz_dense_copy(&s->M, &m->M));
+    RITZ_CHECK(ritz_dense_copy(&s->K, &m->K));
+    RITZ_CHECK(ritz_dense_copy(&s->M, &m->M));
     if (s->D.val)
-        RITZ_TRY(ritz_dense_copy(&s->D, &m->D));
-    RITZ_TRY(add_damping(s, damping, &m->D));
-    RITZ_TRY(drive(io, m));
-done:
-    return status;
+        RITZ_CHECK(ritz_dense_copy(&s->D, &m->D));
+    RITZ_CHECK(add_damping(s, damping, &m->D));
+    return drive(io, m);
 }
 
 ritz_status ritz_motion_dense(const ritz_second_order *model,
@@ -214,15 +200,14 @@ ritz_status ritz_motion_new(const ritz_simulated *subject,
                             const ritz_simulation_request *request,
                             ritz_motion *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_integrator *integrator = request->integrator;
     bool modal = integrator == &ritz_integrator_modal;
 
     if (subject->states) {
-        RITZ_FAIL_IF(!integrator->takes_states, RITZ_ERR_ARGUMENT,
-                     "'%s' is of second-order models, a state space goes by "
-                     "modal or trapezoidal",
-                     integrator->name);
+        RITZ_REFUSE_IF(!integrator->takes_states, RITZ_ERR_ARGUMENT,
+                       "'%s' is of second-order models, a state space goes by "
+                       "modal or trapezoidal",
+                       integrator->name);
         return ritz_motion_states(subject->states, out);
     }
     if (subject->model)
@@ -230,13 +215,12 @@ ritz_status ritz_motion_new(const ritz_simulated *subject,
     if (modal)
         return ritz_motion_modes(subject->component, subject->damping,
                                  request->up_to_hz, out);
-    RITZ_FAIL_IF(!integrator->takes_sparse, RITZ_ERR_ARGUMENT,
-                 "'%s' is of small dense models: a full component goes by "
-                 "modal, trapezoidal or generalised-alpha",
-                 integrator->name);
+    RITZ_REFUSE_IF(!integrator->takes_sparse, RITZ_ERR_ARGUMENT,
+                   "'%s' is of small dense models: a full component goes by "
+                   "modal, trapezoidal or generalised-alpha",
+                   integrator->name);
     return ritz_motion_sparse(subject->component, subject->damping, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_motion_free(ritz_motion *motion)

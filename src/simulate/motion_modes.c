@@ -10,24 +10,20 @@
 
 ritz_status ritz_motion_refuse_structural(bool there)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(there, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion alone, in time it "
-                 "would answer before it is driven: give it as a modal ratio");
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        there, RITZ_ERR_ARGUMENT,
+        "structural damping is of harmonic motion alone, in time it "
+        "would answer before it is driven: give it as a modal ratio");
+    return RITZ_OK;
 }
 
 ritz_status ritz_motion_take_modes(ritz_first_order *modes, ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-
     m->form = RITZ_FORM_MODAL;
     m->n = modes->count;
     m->original = modes->num_dofs;
     m->num_rigid = modes->num_rigid;
-    RITZ_TRY(ritz_dense_copy(&modes->B, &m->push));
+    RITZ_CHECK(ritz_dense_copy(&modes->B, &m->push));
     m->lambda = modes->lambda;
     m->D = modes->Delta;
     m->B = modes->B;
@@ -38,8 +34,7 @@ ritz_status ritz_motion_take_modes(ritz_first_order *modes, ritz_motion *m)
     modes->lambda = NULL;
     modes->Delta = modes->B = modes->C = (ritz_dense){0};
     modes->Cv = modes->feed = modes->MPhi = (ritz_dense){0};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What K leaves to modes above, as the first term of their series. */

@@ -25,34 +25,33 @@ static ritz_status check(const ritz_component *component,
                          const ritz_damping *damping, const bool *massless,
                          const ritz_sparse *D)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
 
-    RITZ_TRY(ritz_motion_refuse_structural(
+    RITZ_CHECK(ritz_motion_refuse_structural(
         component->K4.colptr && ritz_sparse_max(&component->K4) > 0.0));
-    RITZ_FAIL_IF(damping->kind != RITZ_DAMPING_NONE &&
-                     !ritz_damping_is_rayleigh(damping),
-                 RITZ_ERR_ARGUMENT,
-                 "damping ratios are of modes, which an implicit integrator "
-                 "does not find: use modal, or rayleigh damping");
+    RITZ_REFUSE_IF(damping->kind != RITZ_DAMPING_NONE &&
+                       !ritz_damping_is_rayleigh(damping),
+                   RITZ_ERR_ARGUMENT,
+                   "damping ratios are of modes, which an implicit integrator "
+                   "does not find: use modal, or rayleigh damping");
     for (int64_t k = 0; D->colptr && k < D->colptr[D->ncol]; k++) {
         char name[RITZ_DOF_NAME_SIZE];
 
-        RITZ_FAIL_IF(D->val[k] != 0.0 && massless[D->rowind[k]],
-                     RITZ_ERR_ARGUMENT,
-                     "%s has damping and no mass: condense it first",
-                     ritz_dof_name(component->dof[D->rowind[k]], name));
+        RITZ_REFUSE_IF(D->val[k] != 0.0 && massless[D->rowind[k]],
+                       RITZ_ERR_ARGUMENT,
+                       "%s has damping and no mass: condense it first",
+                       ritz_dof_name(component->dof[D->rowind[k]], name));
     }
     for (int64_t j = 0; j < component->num_dofs; j++)
         for (int64_t i = 0; massless[j] && i < io->num_outputs; i++)
-            RITZ_FAIL_IF(ritz_dense_col(&io->Cv, j)[i] != 0.0 ||
-                             ritz_dense_col(&io->Ca, j)[i] != 0.0,
-                         RITZ_ERR_ARGUMENT,
-                         "output '%s' is the velocity or acceleration of a dof "
-                         "without mass",
-                         io->output[i]);
-done:
-    return status;
+            RITZ_REFUSE_IF(
+                ritz_dense_col(&io->Cv, j)[i] != 0.0 ||
+                    ritz_dense_col(&io->Ca, j)[i] != 0.0,
+                RITZ_ERR_ARGUMENT,
+                "output '%s' is the velocity or acceleration of a dof "
+                "without mass",
+                io->output[i]);
+    return RITZ_OK;
 }
 
 /* C - Ca M^-1 K and so on: Z = M^-1 Ca', C -= Z'K. */
@@ -93,16 +92,12 @@ done:
 /* Dofs without mass do not jump by an impulse. */
 static ritz_status find_push(ritz_effective *mass, ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_copy(&m->B, &m->push));
+    RITZ_CHECK(ritz_dense_copy(&m->B, &m->push));
     for (int64_t j = 0; j < m->push.ncol; j++)
         for (int64_t k = 0; k < m->n; k++)
             if (m->massless[k])
                 ritz_dense_col(&m->push, j)[k] = 0.0;
-    RITZ_TRY(ritz_effective_solve(mass, m->push.ncol, m->push.val));
-done:
-    return status;
+    return ritz_effective_solve(mass, m->push.ncol, m->push.val);
 }
 
 static ritz_status fill(const ritz_component *component,

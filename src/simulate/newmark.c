@@ -143,7 +143,6 @@ static void account(ritz_march *march, const double *u0, const double *u1,
 static ritz_status advance(ritz_march *march, const double *u0,
                            const double *u1)
 {
-    ritz_status status = RITZ_OK;
     const ritz_motion *m = march->motion;
     newmark *s = march->own;
 
@@ -151,13 +150,12 @@ static ritz_status advance(ritz_march *march, const double *u0,
     if (m->energies)
         memcpy(s->x0, march->x, (size_t)m->n * sizeof *s->x0);
     load(march, u0, u1, s);
-    RITZ_TRY(ritz_effective_solve(&s->F, 1, s->rhs));
+    RITZ_CHECK(ritz_effective_solve(&s->F, 1, s->rhs));
     move(march, s);
     if (m->energies)
         account(march, u0, u1, s);
     memcpy(s->last, u1, (size_t)m->B.ncol * sizeof *u1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_newmark_start(const ritz_motion *motion, double step,

@@ -20,28 +20,25 @@ static const double close = 1e-6;
 ritz_status ritz_request_steps(const ritz_simulation_request *request,
                                int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     double steps = request->seconds / request->step;
 
-    RITZ_FAIL_IF(!isfinite(request->seconds) || request->seconds <= 0.0,
-                 RITZ_ERR_ARGUMENT, "there are no %g seconds to simulate",
-                 request->seconds);
-    RITZ_FAIL_IF(!isfinite(request->step) || request->step <= 0.0,
-                 RITZ_ERR_ARGUMENT, "%g s is no step", request->step);
-    RITZ_FAIL_IF(steps > most_steps, RITZ_ERR_ARGUMENT, "%g steps are too many",
-                 steps);
+    RITZ_REFUSE_IF(!isfinite(request->seconds) || request->seconds <= 0.0,
+                   RITZ_ERR_ARGUMENT, "there are no %g seconds to simulate",
+                   request->seconds);
+    RITZ_REFUSE_IF(!isfinite(request->step) || request->step <= 0.0,
+                   RITZ_ERR_ARGUMENT, "%g s is no step", request->step);
+    RITZ_REFUSE_IF(steps > most_steps, RITZ_ERR_ARGUMENT,
+                   "%g steps are too many", steps);
     *out = (int64_t)ceil(steps - close);
     if (*out < 1)
         *out = 1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_room(const ritz_motion *motion,
                              const ritz_simulation_request *request,
                              int64_t steps, ritz_simulation *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t every = request->every > 0 ? request->every : 1;
     int64_t values = 0;
 
@@ -51,27 +48,26 @@ static ritz_status make_room(const ritz_motion *motion,
     s->step = request->step;
     s->order = motion->n;
     values = s->num_inputs + s->num_outputs + 8;
-    RITZ_FAIL_IF(s->count > most_values / values, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " times are too many to write: give --every",
-                 s->count);
-    RITZ_NEW(s->seconds, s->count);
-    RITZ_NEW(s->u, s->count * s->num_inputs);
-    RITZ_NEW(s->y, s->count * s->num_outputs);
-    RITZ_NEW(s->input, s->num_inputs);
-    RITZ_NEW(s->output, s->num_outputs);
+    RITZ_REFUSE_IF(s->count > most_values / values, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " times are too many to write: give --every",
+                   s->count);
+    RITZ_CHECK_NEW(s->seconds, s->count);
+    RITZ_CHECK_NEW(s->u, s->count * s->num_inputs);
+    RITZ_CHECK_NEW(s->y, s->count * s->num_outputs);
+    RITZ_CHECK_NEW(s->input, s->num_inputs);
+    RITZ_CHECK_NEW(s->output, s->num_outputs);
     if (motion->form != RITZ_FORM_STATES && motion->energies) {
-        RITZ_NEW(s->kinetic, s->count);
-        RITZ_NEW(s->potential, s->count);
-        RITZ_NEW(s->dissipated, s->count);
-        RITZ_NEW(s->work, s->count);
-        RITZ_NEW(s->balance, s->count);
+        RITZ_CHECK_NEW(s->kinetic, s->count);
+        RITZ_CHECK_NEW(s->potential, s->count);
+        RITZ_CHECK_NEW(s->dissipated, s->count);
+        RITZ_CHECK_NEW(s->work, s->count);
+        RITZ_CHECK_NEW(s->balance, s->count);
     }
     (void)snprintf(s->integrator, sizeof s->integrator, "%s",
                    request->integrator->name);
     (void)snprintf(s->hold, sizeof s->hold, "%s",
                    request->hold == RITZ_HOLD_ZERO ? "zero" : "first");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void inputs_at(const ritz_simulation_request *request, int64_t step,
@@ -190,21 +186,19 @@ static ritz_status begin(const ritz_motion *motion,
                          const ritz_simulation_request *request,
                          const double *u, ritz_march *march, double *energy)
 {
-    ritz_status status = RITZ_OK;
     double kinetic = 0.0, potential = 0.0;
 
     place(motion, request->x0, march->x);
     if (march->v)
         place(motion, request->v0, march->v);
-    RITZ_TRY(balance_massless(motion, u, march->x));
+    RITZ_CHECK(balance_massless(motion, u, march->x));
     if (march->v)
         ritz_march_energy(march, &kinetic, &potential);
     *energy = kinetic + potential;
     push(motion, request, march);
     if (march->settle)
-        RITZ_TRY(march->settle(march, u));
-done:
-    return status;
+        RITZ_CHECK(march->settle(march, u));
+    return RITZ_OK;
 }
 
 ritz_status ritz_run(const ritz_motion *motion,

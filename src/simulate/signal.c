@@ -65,22 +65,21 @@ static bool numbers(char *text, int count, double *out)
 static ritz_status parse_word(const struct word *word, const char *text,
                               ritz_signal *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_signal signal = {.kind = word->kind, .amplitude = 1.0};
     char copy[TEXT_SIZE];
     char *star = NULL;
     char *colon = NULL;
 
-    RITZ_FAIL_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
-                 "'%s' is no signal", text);
+    RITZ_REFUSE_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
+                   "'%s' is no signal", text);
     (void)snprintf(copy, sizeof copy, "%s", text);
     star = strchr(copy, '*');
     if (star)
         *star = '\0';
-    RITZ_FAIL_IF(star && !ritz_text_real(star + 1, &signal.amplitude),
-                 RITZ_ERR_ARGUMENT, "'%s' has no amplitude behind '*'", text);
+    RITZ_REFUSE_IF(star && !ritz_text_real(star + 1, &signal.amplitude),
+                   RITZ_ERR_ARGUMENT, "'%s' has no amplitude behind '*'", text);
     colon = strchr(copy, ':');
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         (colon != NULL) != (word->numbers > 0) ||
             (colon && !numbers(colon + 1, word->numbers, signal.hertz)),
         RITZ_ERR_ARGUMENT, "'%s': %s is followed by %s", text, word->name,
@@ -88,8 +87,7 @@ static ritz_status parse_word(const struct word *word, const char *text,
         : word->numbers == 1 ? "':' and a frequency in Hz"
                              : "':' and two frequencies in Hz");
     *out = signal;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* One line into time and value; false at a comment or an empty line. */
@@ -97,7 +95,6 @@ static ritz_status parse_line(char *line, int64_t number, bool *any,
                               double value[2])
 {
     static const char blank[] = " \t\r,;";
-    ritz_status status = RITZ_OK;
     char *place = NULL;
     int found = 0;
 
@@ -106,16 +103,15 @@ static ritz_status parse_line(char *line, int64_t number, bool *any,
          word = strtok_r(NULL, blank, &place)) {
         if (found == 0 && word[0] == '#')
             return RITZ_OK;
-        RITZ_FAIL_IF(found == 2 || !ritz_text_real(word, &value[found]),
-                     RITZ_ERR_FORMAT,
-                     "line %" PRId64 " is not a time and a value", number);
+        RITZ_REFUSE_IF(found == 2 || !ritz_text_real(word, &value[found]),
+                       RITZ_ERR_FORMAT,
+                       "line %" PRId64 " is not a time and a value", number);
         found++;
     }
-    RITZ_FAIL_IF(found == 1, RITZ_ERR_FORMAT,
-                 "line %" PRId64 " has a time and no value", number);
+    RITZ_REFUSE_IF(found == 1, RITZ_ERR_FORMAT,
+                   "line %" PRId64 " has a time and no value", number);
     *any = found == 2;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int64_t count_lines(const char *text)

@@ -11,19 +11,17 @@
 static ritz_status check(const ritz_simulated *subject,
                          const ritz_simulation_request *request)
 {
-    ritz_status status = RITZ_OK;
     int64_t steps = 0;
 
-    RITZ_FAIL_IF((subject->model != NULL) + (subject->component != NULL) +
-                         (subject->states != NULL) !=
-                     1,
-                 RITZ_ERR_ARGUMENT, "there is not one thing to simulate");
-    RITZ_TRY(ritz_request_steps(request, &steps));
-    RITZ_FAIL_IF(subject->states && subject->damping &&
-                     subject->damping->kind != RITZ_DAMPING_NONE,
-                 RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
-done:
-    return status;
+    RITZ_REFUSE_IF((subject->model != NULL) + (subject->component != NULL) +
+                           (subject->states != NULL) !=
+                       1,
+                   RITZ_ERR_ARGUMENT, "there is not one thing to simulate");
+    RITZ_CHECK(ritz_request_steps(request, &steps));
+    RITZ_REFUSE_IF(subject->states && subject->damping &&
+                       subject->damping->kind != RITZ_DAMPING_NONE,
+                   RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
+    return RITZ_OK;
 }
 
 static void take_names(const ritz_simulated *subject, ritz_simulation *s)
@@ -84,16 +82,16 @@ ritz_status ritz_simulation_difference(const ritz_simulation *exact,
                                        const ritz_simulation *other,
                                        double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t p = exact->num_outputs;
     double worst = 0.0;
 
-    RITZ_FAIL_IF(exact->count != other->count || p != other->num_outputs,
-                 RITZ_ERR_ARGUMENT, "two simulations do not fit each other");
+    RITZ_REFUSE_IF(exact->count != other->count || p != other->num_outputs,
+                   RITZ_ERR_ARGUMENT, "two simulations do not fit each other");
     for (int64_t k = 0; k < exact->count; k++)
-        RITZ_FAIL_IF(fabs(exact->seconds[k] - other->seconds[k]) >
-                         1e-9 * exact->seconds[exact->count - 1],
-                     RITZ_ERR_ARGUMENT, "two simulations have different times");
+        RITZ_REFUSE_IF(fabs(exact->seconds[k] - other->seconds[k]) >
+                           1e-9 * exact->seconds[exact->count - 1],
+                       RITZ_ERR_ARGUMENT,
+                       "two simulations have different times");
     for (int64_t i = 0; i < p; i++) {
         double size = 0.0, off = 0.0;
 
@@ -107,6 +105,5 @@ ritz_status ritz_simulation_difference(const ritz_simulation *exact,
             worst = fmax(worst, off / size);
     }
     *out = worst;
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -79,15 +79,12 @@ static void hand_over(states **s, ritz_march *out)
 static ritz_status block(const ritz_dense *A, int64_t n, int64_t first,
                          int64_t count, double factor, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_dense_new(n, count, out));
+    RITZ_CHECK(ritz_dense_new(n, count, out));
     for (int64_t j = 0; j < count; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(out, j)[i] =
                 factor * ritz_dense_col(A, first + j)[i];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_states_exact(const ritz_motion *motion, double step,

@@ -102,21 +102,19 @@ static int64_t count_unseen(const ritz_sides *sides)
 static ritz_status add_mac(const ritz_sides *sides, double limit, extreme found,
                            ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t unseen = sides->outputs ? count_unseen(sides) : 0;
     char *where = NULL;
     size_t used = 0;
 
     if (found.mode < 0 || !(sides->shapes || sides->outputs))
         return RITZ_OK;
-    RITZ_TRY(add(sides, "mac", limit, found, out));
+    RITZ_CHECK(add(sides, "mac", limit, found, out));
     where = out->item[out->count - 1].where;
     used = strlen(where);
     if (unseen > 0)
         (void)snprintf(where + used, RITZ_NAME_SIZE - used,
                        ", %" PRId64 " not seen", unseen);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A count, and the first that was counted. */
@@ -173,7 +171,6 @@ static ritz_status add_rigid(const ritz_sides *sides,
                              const ritz_verify_request *request, double limit,
                              ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_poles *full = &sides->full->poles;
     const int64_t rigid = full->num_rigid;
     const int64_t there = sides->small.Phi.ncol;
@@ -195,18 +192,15 @@ static ritz_status add_rigid(const ritz_sides *sides,
     }
     if (lost > 0)
         (void)snprintf(where, sizeof where, "of %" PRId64, rigid);
-    RITZ_TRY(ritz_measures_add(out, "rigid-hertz", largest, nan(""), ""));
-    RITZ_TRY(ritz_measures_add(out, "missing-rigid-modes", (double)lost, limit,
-                               where));
-done:
-    return status;
+    RITZ_CHECK(ritz_measures_add(out, "rigid-hertz", largest, nan(""), ""));
+    return ritz_measures_add(out, "missing-rigid-modes", (double)lost, limit,
+                             where);
 }
 
 ritz_status ritz_sides_modes(const ritz_sides *sides,
                              const ritz_verify_request *request,
                              ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_match *match = &sides->match;
     extreme frequency = {0.0, -1};
     extreme mac = {0.0, -1};
@@ -232,14 +226,12 @@ ritz_status ritz_sides_modes(const ritz_sides *sides,
         if (!sides->full->assumed)
             keep(&damping, 1.0, damping_error(sides, nothing, k, r), k);
     }
-    RITZ_TRY(add(sides, "frequency-relative", request->limit_frequency,
-                 frequency, out));
-    RITZ_TRY(add_mac(sides, request->limit_mac, mac, out));
-    RITZ_TRY(
+    RITZ_CHECK(add(sides, "frequency-relative", request->limit_frequency,
+                   frequency, out));
+    RITZ_CHECK(add_mac(sides, request->limit_mac, mac, out));
+    RITZ_CHECK(
         add(sides, "damping-relative", request->limit_damping, damping, out));
-    RITZ_TRY(add_rigid(sides, request, none_rigid, out));
-    RITZ_TRY(add_missing(sides, none_missing, out));
-    RITZ_TRY(add_extra(sides, out));
-done:
-    return status;
+    RITZ_CHECK(add_rigid(sides, request, none_rigid, out));
+    RITZ_CHECK(add_missing(sides, none_missing, out));
+    return add_extra(sides, out);
 }

@@ -124,18 +124,16 @@ typedef struct both {
 static ritz_status take(double _Complex H, double _Complex H_r, double hertz,
                         extreme *found)
 {
-    ritz_status status = RITZ_OK;
     double error = cabs(H - H_r);
 
-    RITZ_FAIL_IF(!isfinite(error), RITZ_ERR_CONVERGENCE,
-                 "the response at %.6g Hz leaves all bounds", hertz);
+    RITZ_REFUSE_IF(!isfinite(error), RITZ_ERR_CONVERGENCE,
+                   "the response at %.6g Hz leaves all bounds", hertz);
     found->largest = fmax(found->largest, cabs(H));
     if (error > found->error) {
         found->error = error;
         found->error_hz = hertz;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -144,7 +142,6 @@ done:
  */
 static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
 {
-    ritz_status status = RITZ_OK;
     const int64_t values = s->full->values;
     double least = sides->reduced.num_rigid > 0
                        ? above_rest * sides->full->band_hz[1] * (1.0 - 1e-9)
@@ -152,7 +149,7 @@ static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
 
     found->flexible = fmax(found->flexible, s->full->flexible);
     found->heard = found->heard || s->full->heard;
-    RITZ_NEW(s->reduced, s->full->count * values);
+    RITZ_CHECK_NEW(s->reduced, s->full->count * values);
     for (int64_t k = 0; k < s->full->count; k++) {
         double hertz = s->full->hertz[k];
         const double _Complex *H = s->full->full + k * values;
@@ -162,13 +159,12 @@ static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
             memcpy(H_r, H, (size_t)values * sizeof *H);
             continue;
         }
-        RITZ_TRY_IN("reduced model",
-                    ritz_poles_add(&sides->reduced, hertz, H_r));
+        RITZ_CHECK_IN("reduced model",
+                      ritz_poles_add(&sides->reduced, hertz, H_r));
         for (int64_t i = 0; i < values; i++)
-            RITZ_TRY(take(H[i], H_r[i], hertz, found));
+            RITZ_CHECK(take(H[i], H_r[i], hertz, found));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Levels mean something above a part of the largest |H|, once that is known. */
@@ -204,26 +200,23 @@ static ritz_status add_response(const ritz_sides *sides, const extreme *found,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const bool rigid = sides->full->poles.num_rigid > 0;
     char where[RITZ_NAME_SIZE];
 
     if (!found->heard) /* no output sees any input */
         return RITZ_OK;
     say_where(sides->full, found->error_hz, where);
-    RITZ_TRY(ritz_measures_add(
+    RITZ_CHECK(ritz_measures_add(
         out, "response-relative", found->error / found->largest,
         rigid ? request->limit_response
               : fmin(request->limit_response, request->limit_flexible),
         where));
     if (rigid && found->flexible > RITZ_AUDIBLE * found->error)
-        RITZ_TRY(ritz_measures_add(out, "flexible-response-relative",
-                                   found->error / found->flexible,
-                                   request->limit_flexible, where));
+        RITZ_CHECK(ritz_measures_add(out, "flexible-response-relative",
+                                     found->error / found->flexible,
+                                     request->limit_flexible, where));
     say_where(sides->full, found->db_hz, where);
-    RITZ_TRY(ritz_measures_add(out, "response-db", found->db, nan(""), where));
-done:
-    return status;
+    return ritz_measures_add(out, "response-db", found->db, nan(""), where);
 }
 
 /* Every sweep that was asked for. */
@@ -263,29 +256,25 @@ done:
 static ritz_status add_gain(const ritz_sides *sides, double limit,
                             ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     double error = 0.0;
 
-    RITZ_TRY(ritz_gain_error(&sides->full->gain, &sides->gain_reduced, &error));
+    RITZ_CHECK(
+        ritz_gain_error(&sides->full->gain, &sides->gain_reduced, &error));
     if (!isnan(error))
-        RITZ_TRY(ritz_measures_add(out, "static-gain-relative", error, limit,
-                                   "largest singular value"));
-done:
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, "static-gain-relative", error, limit,
+                                     "largest singular value"));
+    return RITZ_OK;
 }
 
 ritz_status ritz_sides_responses(const ritz_sides *sides,
                                  const ritz_verify_request *request,
                                  ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &sides->full->poles.io;
 
     if (io->num_inputs == 0 || io->num_outputs == 0)
         return RITZ_OK;
     if (sides->full->own.count > 0)
-        RITZ_TRY(compare(sides, request, out));
-    RITZ_TRY(add_gain(sides, request->limit_gain, out));
-done:
-    return status;
+        RITZ_CHECK(compare(sides, request, out));
+    return add_gain(sides, request->limit_gain, out);
 }

@@ -8,18 +8,15 @@ static ritz_status check_names(const char *what, int64_t a, int64_t b,
                                const char (*of_a)[RITZ_NAME_SIZE],
                                const char (*of_b)[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(a != b, RITZ_ERR_ARGUMENT,
-                 "the models differ in %ss: %" PRId64 " and %" PRId64, what, a,
-                 b);
+    RITZ_REFUSE_IF(a != b, RITZ_ERR_ARGUMENT,
+                   "the models differ in %ss: %" PRId64 " and %" PRId64, what,
+                   a, b);
     for (int64_t k = 0; k < a; k++)
-        RITZ_FAIL_IF(strcmp(of_a[k], of_b[k]) != 0, RITZ_ERR_ARGUMENT,
-                     "%s %" PRId64 " is '%s' of one model and '%s' of the "
-                     "other",
-                     what, k + 1, of_a[k], of_b[k]);
-done:
-    return status;
+        RITZ_REFUSE_IF(strcmp(of_a[k], of_b[k]) != 0, RITZ_ERR_ARGUMENT,
+                       "%s %" PRId64 " is '%s' of one model and '%s' of the "
+                       "other",
+                       what, k + 1, of_a[k], of_b[k]);
+    return RITZ_OK;
 }
 
 /* to(row.., col..) = sign from */
@@ -45,18 +42,16 @@ static void put_descriptor(const ritz_dense *E, int64_t n, int64_t first,
 static ritz_status like(const ritz_state_space *model, int64_t states,
                         ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_io io = {.num_inputs = model->num_inputs,
                   .num_outputs = model->num_outputs,
                   .input = model->input,
                   .output = model->output,
                   .limit = model->limit};
 
-    RITZ_TRY(ritz_state_space_new(states, &io, out));
+    RITZ_CHECK(ritz_state_space_new(states, &io, out));
     memcpy(out->damping, model->damping, sizeof out->damping);
     memcpy(out->units, model->units, sizeof out->units);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_space_difference(const ritz_state_space *a,

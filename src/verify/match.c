@@ -12,19 +12,16 @@ static const double partner_above = 0.5;
 ritz_status ritz_match_new(const ritz_poles *full, const ritz_poles *reduced,
                            ritz_match *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->count = full->count;
     out->num_reduced = reduced->count;
-    RITZ_NEW(out->partner, full->count);
-    RITZ_NEW(out->mac, full->count);
-    RITZ_NEW(out->taken, reduced->count);
+    RITZ_CHECK_NEW(out->partner, full->count);
+    RITZ_CHECK_NEW(out->mac, full->count);
+    RITZ_CHECK_NEW(out->taken, reduced->count);
     for (int64_t k = 0; k < full->count; k++) {
         out->partner[k] = -1;
         out->mac[k] = nan("");
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* How much of the space of modes first .. last - 1 reduced mode r holds. */
@@ -90,7 +87,6 @@ static int ascending(const void *left, const void *right)
 static ritz_status match_cluster(const ritz_dense *Q, const ritz_poles *reduced,
                                  int64_t first, int64_t last, ritz_match *match)
 {
-    ritz_status status = RITZ_OK;
     const int64_t range[2] = {first, last};
     int64_t found = first;
     double best = 1.0;
@@ -106,11 +102,10 @@ static ritz_status match_cluster(const ritz_dense *Q, const ritz_poles *reduced,
     qsort(match->partner + first, (size_t)(found - first),
           sizeof *match->partner, ascending);
     if (found == last)
-        RITZ_TRY(subspace_mac(Q, first, last, match->partner, &best));
+        RITZ_CHECK(subspace_mac(Q, first, last, match->partner, &best));
     for (int64_t k = first; k < last; k++)
         match->mac[k] = fmin(best, 1.0);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,

@@ -49,14 +49,12 @@ static double pair_cost(const ritz_seen *seen, const ritz_poles *full,
 static ritz_status pairing_new(const ritz_seen *seen, const ritz_poles *full,
                                const ritz_poles *reduced, pairing *p)
 {
-    ritz_status status = RITZ_OK;
-
     p->m = full->count - full->num_rigid;
     p->n = reduced->count - reduced->num_rigid;
-    RITZ_NEW(p->cost, p->m * p->n);
-    RITZ_NEW(p->total, (p->m + 1) * (p->n + 1));
-    RITZ_NEW(p->of, p->m);
-    RITZ_NEW(p->by, p->n);
+    RITZ_CHECK_NEW(p->cost, p->m * p->n);
+    RITZ_CHECK_NEW(p->total, (p->m + 1) * (p->n + 1));
+    RITZ_CHECK_NEW(p->of, p->m);
+    RITZ_CHECK_NEW(p->by, p->n);
     for (int64_t k = 0; k < p->m; k++)
         for (int64_t r = 0; r < p->n; r++)
             p->cost[k * p->n + r] = pair_cost(seen, full, full->num_rigid + k,
@@ -65,8 +63,7 @@ static ritz_status pairing_new(const ritz_seen *seen, const ritz_poles *full,
         p->of[k] = -1;
     for (int64_t r = 0; r < p->n; r++)
         p->by[r] = -1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*

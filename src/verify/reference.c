@@ -57,11 +57,10 @@ void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
 /* The flexible gain C Phi Lambda^-1 Phi'B of the modes, and of the rest. */
 static ritz_status full_gain(ritz_reference *r)
 {
-    ritz_status status = RITZ_OK;
     const ritz_poles *poles = &r->poles;
     int64_t p = poles->io.num_outputs;
 
-    RITZ_TRY(ritz_dense_new(p, poles->io.num_inputs, &r->gain));
+    RITZ_CHECK(ritz_dense_new(p, poles->io.num_inputs, &r->gain));
     for (int64_t j = 0; j < poles->io.num_inputs; j++)
         for (int64_t i = 0; i < p; i++) {
             double *g = &ritz_dense_col(&r->gain, j)[i];
@@ -71,8 +70,7 @@ static ritz_status full_gain(ritz_reference *r)
                 *g += ritz_dense_col(&poles->io.C, k)[i] *
                       ritz_dense_col(&poles->io.B, j)[k] / poles->lambda[k];
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 bool ritz_reference_factors(const ritz_reference *reference)
@@ -97,48 +95,43 @@ done:
 
 static ritz_status open_modes(ritz_reference *r)
 {
-    ritz_status status = RITZ_OK;
-
     r->modes_hz = beyond * r->band_hz[1];
-    RITZ_TRY(take_modes(r->modes_hz, r));
+    RITZ_CHECK(take_modes(r->modes_hz, r));
     if (ritz_reference_factors(r) && r->component->num_dofs <= SMALL) {
         ritz_pairs_free(&r->pairs);
         ritz_poles_free(&r->poles);
         ritz_residual_free(&r->residual);
-        RITZ_TRY(take_modes(all_modes, r));
+        RITZ_CHECK(take_modes(all_modes, r));
     }
-    RITZ_TRY_IN("full model",
-                ritz_damped_new(&r->poles, r->component, &r->pairs, r->band_hz,
-                                &r->damped));
-    RITZ_TRY_IN("full model", ritz_seen_new(r->component, &r->pairs, &r->poles,
-                                            r->band_hz, &r->seen));
-    RITZ_TRY_IN("full model", full_gain(r));
-done:
-    return status;
+    RITZ_CHECK_IN("full model",
+                  ritz_damped_new(&r->poles, r->component, &r->pairs,
+                                  r->band_hz, &r->damped));
+    RITZ_CHECK_IN("full model", ritz_seen_new(r->component, &r->pairs,
+                                              &r->poles, r->band_hz, &r->seen));
+    RITZ_CHECK_IN("full model", full_gain(r));
+    return RITZ_OK;
 }
 
 /* Responses where every reduction is compared. */
 static ritz_status open_sweeps(const ritz_reference_request *request,
                                ritz_reference *r)
 {
-    ritz_status status = RITZ_OK;
     double band[2] = {r->band_hz[0], r->band_hz[1]};
 
     if (r->poles.io.num_inputs == 0 || r->poles.io.num_outputs == 0 ||
         !(band[1] > band[0]))
         return RITZ_OK;
-    RITZ_TRY(ritz_sweep_points(r, &r->poles, &r->damped, EVEN_POINTS, &r->own));
-    RITZ_TRY(ritz_reference_respond(r, &r->own));
+    RITZ_CHECK(
+        ritz_sweep_points(r, &r->poles, &r->damped, EVEN_POINTS, &r->own));
+    RITZ_CHECK(ritz_reference_respond(r, &r->own));
     if (request->num_random < 1)
         return RITZ_OK;
     if (r->poles.num_rigid > 0)
         band[0] = fmax(band[0], above_rest * band[1]);
     r->random.count = request->num_random;
-    RITZ_NEW(r->random.hertz, r->random.count);
+    RITZ_CHECK_NEW(r->random.hertz, r->random.count);
     ritz_random_hertz(request->seed, band, r->random.count, r->random.hertz);
-    RITZ_TRY(ritz_reference_respond(r, &r->random));
-done:
-    return status;
+    return ritz_reference_respond(r, &r->random);
 }
 
 ritz_status ritz_reference_open(const ritz_component *full,
@@ -167,24 +160,22 @@ ritz_status ritz_reference_new(const ritz_component *full,
                                const ritz_reference_request *request,
                                ritz_reference **out)
 {
-    ritz_status status = RITZ_OK;
     ritz_reference_request own = *request;
     bool assumed = false;
 
-    RITZ_FAIL_IF(!(own.band_hz[0] >= 0.0) || !isfinite(own.band_hz[1]) ||
-                     !(own.band_hz[0] < own.band_hz[1]),
-                 RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                 own.band_hz[0], own.band_hz[1]);
+    RITZ_REFUSE_IF(!(own.band_hz[0] >= 0.0) || !isfinite(own.band_hz[1]) ||
+                       !(own.band_hz[0] < own.band_hz[1]),
+                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
+                   own.band_hz[0], own.band_hz[1]);
     if (own.damping.kind == RITZ_DAMPING_NONE && full->damping[0])
-        RITZ_TRY_IN("damping", ritz_damping_parse(full->damping, &own.damping));
+        RITZ_CHECK_IN("damping",
+                      ritz_damping_parse(full->damping, &own.damping));
     if (own.damping.kind == RITZ_DAMPING_NONE && !full->D.colptr &&
         !full->K4.colptr) {
         own.damping = assumed_damping;
         assumed = true;
     }
-    RITZ_TRY(ritz_reference_open(full, &own, assumed, out));
-done:
-    return status;
+    return ritz_reference_open(full, &own, assumed, out);
 }
 
 /* Measures of a dense model, made with the T that may be there. */
@@ -193,14 +184,10 @@ static ritz_status measure(const ritz_reference *reference,
                            const ritz_verify_request *limits, ritz_sides *sides,
                            ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(ritz_sides_check(&reference->component->io, model->io));
-    RITZ_TRY(ritz_sides_open(model, &reference->damping, sides));
+    RITZ_CHECK(ritz_sides_check(&reference->component->io, model->io));
+    RITZ_CHECK(ritz_sides_open(model, &reference->damping, sides));
     sides->full = reference;
-    RITZ_TRY(ritz_sides_measure(model, T, limits, sides, out));
-done:
-    return status;
+    return ritz_sides_measure(model, T, limits, sides, out);
 }
 
 ritz_status ritz_reference_measure(const ritz_reference *reference,

@@ -27,18 +27,16 @@ static ritz_status choose_damping(const ritz_component *full,
                                   const ritz_verify_request *request,
                                   ritz_damping *out, bool *is_assumed)
 {
-    ritz_status status = RITZ_OK;
     const char *text = full->damping[0] ? full->damping : reduced_text;
     bool matrices = full->D.colptr || full->K4.colptr;
 
     *out = request->damping;
     if (out->kind == RITZ_DAMPING_NONE && text[0])
-        RITZ_TRY_IN("damping", ritz_damping_parse(text, out));
+        RITZ_CHECK_IN("damping", ritz_damping_parse(text, out));
     *is_assumed = out->kind == RITZ_DAMPING_NONE && !matrices;
     if (*is_assumed)
         *out = assumed;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -78,43 +76,37 @@ static void choose_band(const ritz_poles *reduced, double highest,
 
 ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *io)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(full->num_inputs != io->num_inputs ||
-                     full->num_outputs != io->num_outputs,
-                 RITZ_ERR_ARGUMENT,
-                 "the full model has %" PRId64 " inputs and %" PRId64
-                 " outputs, the reduced one %" PRId64 " and %" PRId64,
-                 full->num_inputs, full->num_outputs, io->num_inputs,
-                 io->num_outputs);
+    RITZ_REFUSE_IF(full->num_inputs != io->num_inputs ||
+                       full->num_outputs != io->num_outputs,
+                   RITZ_ERR_ARGUMENT,
+                   "the full model has %" PRId64 " inputs and %" PRId64
+                   " outputs, the reduced one %" PRId64 " and %" PRId64,
+                   full->num_inputs, full->num_outputs, io->num_inputs,
+                   io->num_outputs);
     for (int64_t k = 0; k < io->num_inputs; k++)
-        RITZ_FAIL_IF(strcmp(full->input[k], io->input[k]) != 0,
-                     RITZ_ERR_ARGUMENT,
-                     "input %" PRId64 " is '%s' in the full model and '%s' in "
-                     "the reduced one",
-                     k + 1, full->input[k], io->input[k]);
+        RITZ_REFUSE_IF(
+            strcmp(full->input[k], io->input[k]) != 0, RITZ_ERR_ARGUMENT,
+            "input %" PRId64 " is '%s' in the full model and '%s' in "
+            "the reduced one",
+            k + 1, full->input[k], io->input[k]);
     for (int64_t k = 0; k < io->num_outputs; k++)
-        RITZ_FAIL_IF(strcmp(full->output[k], io->output[k]) != 0,
-                     RITZ_ERR_ARGUMENT,
-                     "output %" PRId64 " is '%s' in the full model and '%s' in "
-                     "the reduced one",
-                     k + 1, full->output[k], io->output[k]);
-done:
-    return status;
+        RITZ_REFUSE_IF(
+            strcmp(full->output[k], io->output[k]) != 0, RITZ_ERR_ARGUMENT,
+            "output %" PRId64 " is '%s' in the full model and '%s' in "
+            "the reduced one",
+            k + 1, full->output[k], io->output[k]);
+    return RITZ_OK;
 }
 
 static ritz_status check_band(const ritz_verify_request *request)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(!(request->band_hz[0] >= 0.0) ||
-                     !isfinite(request->band_hz[1]) ||
-                     (request->band_hz[1] != 0.0 &&
-                      request->band_hz[0] >= request->band_hz[1]),
-                 RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                 request->band_hz[0], request->band_hz[1]);
-done:
-    return status;
+    RITZ_REFUSE_IF(!(request->band_hz[0] >= 0.0) ||
+                       !isfinite(request->band_hz[1]) ||
+                       (request->band_hz[1] != 0.0 &&
+                        request->band_hz[0] >= request->band_hz[1]),
+                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
+                   request->band_hz[0], request->band_hz[1]);
+    return RITZ_OK;
 }
 
 bool ritz_in_band(const double band_hz[2], double lambda)
@@ -129,14 +121,11 @@ bool ritz_in_band(const double band_hz[2], double lambda)
 ritz_status ritz_sides_open(const ritz_second_order *model,
                             const ritz_damping *damping, ritz_sides *sides)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY_IN("reduced model",
-                ritz_poles_of_dense(model, damping, &sides->reduced));
-    RITZ_TRY_IN("reduced model",
-                ritz_eigen_dense(model->K, model->M, &sides->small));
-done:
-    return status;
+    RITZ_CHECK_IN("reduced model",
+                  ritz_poles_of_dense(model, damping, &sides->reduced));
+    RITZ_CHECK_IN("reduced model",
+                  ritz_eigen_dense(model->K, model->M, &sides->small));
+    return RITZ_OK;
 }
 
 /* Q = Phi_full' M (T Phi_reduced) */
@@ -213,7 +202,6 @@ typedef struct other {
 static ritz_status check_limits(const ritz_io *io,
                                 const ritz_verify_request *request)
 {
-    ritz_status status = RITZ_OK;
     const struct {
         const char *measure;
         double limit;
@@ -224,14 +212,14 @@ static ritz_status check_limits(const ritz_io *io,
     };
 
     for (size_t k = 0; k < sizeof of_responses / sizeof *of_responses; k++)
-        RITZ_FAIL_IF(!isnan(of_responses[k].limit) &&
-                         (io->num_inputs == 0 || io->num_outputs == 0),
-                     RITZ_ERR_ARGUMENT,
-                     "a limit of '%s' needs inputs and outputs, and there are "
-                     "%" PRId64 " and %" PRId64,
-                     of_responses[k].measure, io->num_inputs, io->num_outputs);
-done:
-    return status;
+        RITZ_REFUSE_IF(
+            !isnan(of_responses[k].limit) &&
+                (io->num_inputs == 0 || io->num_outputs == 0),
+            RITZ_ERR_ARGUMENT,
+            "a limit of '%s' needs inputs and outputs, and there are "
+            "%" PRId64 " and %" PRId64,
+            of_responses[k].measure, io->num_inputs, io->num_outputs);
+    return RITZ_OK;
 }
 
 static ritz_status verify(const ritz_component *full, const other *o,
@@ -266,20 +254,17 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const other o = {
         {&reduced->K, &reduced->M, &reduced->D, &reduced->K4, &reduced->io},
         &reduced->columns,
         &reduced->T,
         reduced->damping};
 
-    RITZ_FAIL_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
-                 "the reduced model comes from %" PRId64
-                 " dofs, the full one has %" PRId64,
-                 reduced->num_dofs, full->num_dofs);
-    RITZ_TRY(verify(full, &o, request, out));
-done:
-    return status;
+    RITZ_REFUSE_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
+                   "the reduced model comes from %" PRId64
+                   " dofs, the full one has %" PRId64,
+                   reduced->num_dofs, full->num_dofs);
+    return verify(full, &o, request, out);
 }
 
 ritz_status ritz_verify_system(const ritz_component *full,

@@ -82,20 +82,17 @@ static void divide_row(double limit, int64_t i, ritz_dense *A)
 static ritz_status scale(const ritz_state_space *model, const double *limit,
                          ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(like(model, model->A.nrow, out));
-    RITZ_TRY(put(&model->A, &out->A));
-    RITZ_TRY(put(&model->B, &out->B));
-    RITZ_TRY(put(&model->C, &out->C));
-    RITZ_TRY(put(&model->D, &out->D));
-    RITZ_TRY(put(&model->E, &out->E));
+    RITZ_CHECK(like(model, model->A.nrow, out));
+    RITZ_CHECK(put(&model->A, &out->A));
+    RITZ_CHECK(put(&model->B, &out->B));
+    RITZ_CHECK(put(&model->C, &out->C));
+    RITZ_CHECK(put(&model->D, &out->D));
+    RITZ_CHECK(put(&model->E, &out->E));
     for (int64_t i = 0; i < model->num_outputs; i++) {
         divide_row(limit[i], i, &out->C);
         divide_row(limit[i], i, &out->D);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* What belongs to poles left of the axis: Y'A X, Y'E X, Y'B, C X. */
@@ -174,50 +171,47 @@ static ritz_status add_infinity(const pair *p, const ritz_state_space *apart,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_norm full = {0}, error = {0};
     char where[RITZ_NAME_SIZE] = "";
     double slack = 0.0;
 
-    RITZ_TRY_IN("full model",
-                ritz_norm_infinity(&p->stable[0], norm_tolerance, &full));
-    RITZ_TRY_IN("difference",
-                ritz_norm_infinity(apart, norm_tolerance, &error));
+    RITZ_CHECK_IN("full model",
+                  ritz_norm_infinity(&p->stable[0], norm_tolerance, &full));
+    RITZ_CHECK_IN("difference",
+                  ritz_norm_infinity(apart, norm_tolerance, &error));
     say_where(p, &error, where);
-    RITZ_TRY(ritz_measures_add(out, "h-infinity", error.value, nan(""), where));
+    RITZ_CHECK(
+        ritz_measures_add(out, "h-infinity", error.value, nan(""), where));
     if (full.value > 0.0)
-        RITZ_TRY(ritz_measures_add(out, "h-infinity-relative",
-                                   error.value / full.value,
-                                   request->limit_infinity, where));
+        RITZ_CHECK(ritz_measures_add(out, "h-infinity-relative",
+                                     error.value / full.value,
+                                     request->limit_infinity, where));
     slack = norm_tolerance * bound +
             rounding * (double)p->model[0].A.nrow * DBL_EPSILON * full.value;
     if (!isnan(bound))
-        RITZ_TRY(ritz_measures_add(out, "h-infinity-bound", error.value,
-                                   bound + slack, where));
-done:
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, "h-infinity-bound", error.value,
+                                     bound + slack, where));
+    return RITZ_OK;
 }
 
 static ritz_status add_two(const pair *p, const ritz_state_space *apart,
                            double limit, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_norm full = {0}, error = {0};
 
     if (ritz_dense_max(&p->model[0].D) > 0.0 ||
         ritz_dense_max(&p->model[1].D) > 0.0) {
-        RITZ_FAIL_IF(!isnan(limit), RITZ_ERR_ARGUMENT,
-                     "--limit-h2: an input reaches an output at once (D is "
-                     "not 0), there is no H2 norm");
+        RITZ_REFUSE_IF(!isnan(limit), RITZ_ERR_ARGUMENT,
+                       "--limit-h2: an input reaches an output at once (D is "
+                       "not 0), there is no H2 norm");
         return RITZ_OK;
     }
-    RITZ_TRY_IN("full model", ritz_norm_two(&p->stable[0], &full));
-    RITZ_TRY_IN("difference", ritz_norm_two(apart, &error));
+    RITZ_CHECK_IN("full model", ritz_norm_two(&p->stable[0], &full));
+    RITZ_CHECK_IN("difference", ritz_norm_two(apart, &error));
     if (full.value > 0.0)
-        RITZ_TRY(ritz_measures_add(out, "h2-relative", error.value / full.value,
-                                   limit, NULL));
-done:
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, "h2-relative",
+                                     error.value / full.value, limit, NULL));
+    return RITZ_OK;
 }
 
 static ritz_status add_norms(const pair *p, double bound,
@@ -284,7 +278,6 @@ static ritz_status add_response(const pair *p,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_grid grid = {.from_hz = request->band_hz[0],
                       .to_hz = request->band_hz[1],
                       .count = EVEN_POINTS,
@@ -293,37 +286,34 @@ static ritz_status add_response(const pair *p,
     char where[RITZ_NAME_SIZE];
 
     if (grid.to_hz == 0.0) {
-        RITZ_FAIL_IF(!isnan(request->limit_response), RITZ_ERR_ARGUMENT,
-                     "--limit-response of a state space needs --band-hz");
+        RITZ_REFUSE_IF(!isnan(request->limit_response), RITZ_ERR_ARGUMENT,
+                       "--limit-response of a state space needs --band-hz");
         return RITZ_OK;
     }
     if (!p->has_gain)
         grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
     for (int k = 0; k < 2; k++)
-        RITZ_TRY(compare_at(p, k, &grid, &found));
+        RITZ_CHECK(compare_at(p, k, &grid, &found));
     snprintf(where, sizeof where, "%.6g Hz", found.hertz);
     if (found.full > 0.0)
-        RITZ_TRY(ritz_measures_add(out, "response-relative",
-                                   found.error / found.full,
-                                   request->limit_response, where));
-done:
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, "response-relative",
+                                     found.error / found.full,
+                                     request->limit_response, where));
+    return RITZ_OK;
 }
 
 static ritz_status add_gain(const pair *p, double limit, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     double error = nan("");
 
     if (p->has_gain)
-        RITZ_TRY(ritz_gain_error(&p->gain[0], &p->gain[1], &error));
-    RITZ_FAIL_IF(isnan(error) && !isnan(limit), RITZ_ERR_ARGUMENT,
-                 "--limit-gain: there is no static gain, a pole is at 0");
+        RITZ_CHECK(ritz_gain_error(&p->gain[0], &p->gain[1], &error));
+    RITZ_REFUSE_IF(isnan(error) && !isnan(limit), RITZ_ERR_ARGUMENT,
+                   "--limit-gain: there is no static gain, a pole is at 0");
     if (!isnan(error))
-        RITZ_TRY(ritz_measures_add(out, "static-gain-relative", error, limit,
-                                   "largest singular value"));
-done:
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, "static-gain-relative", error, limit,
+                                     "largest singular value"));
+    return RITZ_OK;
 }
 
 /* Growth is held to rounding unless the full model grows too. */
@@ -331,33 +321,30 @@ static ritz_status add_growth(const ritz_state_space *full,
                               const ritz_state_space *reduced,
                               ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe probe[2] = {0};
 
-    RITZ_TRY_IN("full model", ritz_probe_states(full, &probe[0]));
-    RITZ_TRY_IN("reduced model", ritz_probe_states(reduced, &probe[1]));
-    RITZ_TRY(ritz_probe_record(&probe[1], out));
+    RITZ_CHECK_IN("full model", ritz_probe_states(full, &probe[0]));
+    RITZ_CHECK_IN("reduced model", ritz_probe_states(reduced, &probe[1]));
+    RITZ_CHECK(ritz_probe_record(&probe[1], out));
     if (probe[0].verdict == RITZ_UNSTABLE)
         out->item[out->count - 1].limit = nan("");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check(const ritz_state_space *full,
                          const ritz_verify_request *request)
 {
-    ritz_status status = RITZ_OK;
     const double *band = request->band_hz;
 
-    RITZ_FAIL_IF(full->num_inputs == 0 || full->num_outputs == 0,
-                 RITZ_ERR_ARGUMENT, "there are no %s, nothing can be compared",
-                 full->num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_FAIL_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
-                     (band[1] != 0.0 && band[0] >= band[1]),
-                 RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none", band[0],
-                 band[1]);
-done:
-    return status;
+    RITZ_REFUSE_IF(full->num_inputs == 0 || full->num_outputs == 0,
+                   RITZ_ERR_ARGUMENT,
+                   "there are no %s, nothing can be compared",
+                   full->num_inputs == 0 ? "inputs" : "outputs");
+    RITZ_REFUSE_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
+                       (band[1] != 0.0 && band[0] >= band[1]),
+                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
+                   band[0], band[1]);
+    return RITZ_OK;
 }
 
 ritz_status ritz_verify_states(const ritz_state_space *full,

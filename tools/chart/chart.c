@@ -111,58 +111,50 @@ done:
 
 static ritz_status read_model(cli_run *run, int holds, chart_file *file)
 {
-    ritz_status status = RITZ_OK;
     model_kind kind = MODEL_ANY;
     const char *noun = NULL;
 
-    RITZ_TRY(model_peek(file->path, &kind, &noun));
+    RITZ_CHECK(model_peek(file->path, &kind, &noun));
     if (!(models_of(holds) & (int)kind))
         return refuse(file->path, noun, holds);
-    RITZ_TRY(model_read(run, file->path, (int)kind, &file->model));
+    RITZ_CHECK(model_read(run, file->path, (int)kind, &file->model));
     for (int k = 0; k < NUM_CONTENTS; k++)
         if (contents[k].model == (int)kind)
             file->holds = contents[k].holds;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_file(cli_run *run, const char *path, int holds,
                              chart_sources *out, chart_file *file)
 {
-    ritz_status status = RITZ_OK;
-
     file->path = path;
     if (ritz_container_is(path))
         return read_model(run, holds, file);
     file->holds = is_tracks(path)    ? CHART_TRACKS
                   : records_is(path) ? CHART_RECORDS
                                      : 0;
-    RITZ_TRY(check_text(path, file->holds, holds));
-    RITZ_TRY(cli_input(run, path));
+    RITZ_CHECK(check_text(path, file->holds, holds));
+    RITZ_CHECK(cli_input(run, path));
     if (file->holds == CHART_RECORDS)
-        RITZ_TRY(records_read(path, &out->runs));
+        RITZ_CHECK(records_read(path, &out->runs));
     else
-        RITZ_TRY(ritz_text_read(path, &file->text));
-done:
-    return status;
+        RITZ_CHECK(ritz_text_read(path, &file->text));
+    return RITZ_OK;
 }
 
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
                        int holds, chart_sources *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->run = run;
     out->file = calloc((size_t)count + 1, sizeof *out->file);
-    RITZ_FAIL_IF(!out->file, RITZ_ERR_MEMORY, "no memory for files");
+    RITZ_REFUSE_IF(!out->file, RITZ_ERR_MEMORY, "no memory for files");
     for (out->count = 0; out->count < count;) {
         chart_file *file = &out->file[out->count];
 
-        RITZ_TRY(read_file(run, path[out->count++], holds, out, file));
+        RITZ_CHECK(read_file(run, path[out->count++], holds, out, file));
     }
     records_join(&out->runs);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void chart_sources_free(chart_sources *sources)

@@ -107,7 +107,6 @@ static void put_table(const chart_errors_work *w)
 
 static ritz_status compose(chart_errors_work *w)
 {
-    ritz_status status = RITZ_OK;
     int64_t columns = w->num_measures > 1 ? 2 : 1;
     int64_t rows = (w->num_measures + columns - 1) / columns;
     double wide = (double)columns * CHART_CELL_WIDE;
@@ -128,8 +127,8 @@ static ritz_status compose(chart_errors_work *w)
     for (int64_t k = 0; k < w->num_measures; k++) {
         int64_t column = k % columns, row = rows - 1 - k / columns;
 
-        RITZ_TRY(chart_errors_area(w, k, (double)(column * CHART_CELL_WIDE),
-                                   foot + (double)(row * CHART_CELL_HIGH)));
+        RITZ_CHECK(chart_errors_area(w, k, (double)(column * CHART_CELL_WIDE),
+                                     foot + (double)(row * CHART_CELL_HIGH)));
         fprintf(w->picture->plot.file, "\n");
     }
     chart_canvas(w->picture);
@@ -141,8 +140,7 @@ static ritz_status compose(chart_errors_work *w)
     put_notes(w, 12.0);
     fprintf(w->picture->plot.file, "plot NaN notitle\nunset multiplot\n");
     put_table(w);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Measures of which every error is rounding have nothing to show. */
@@ -178,10 +176,9 @@ static ritz_status not_there(const chart_errors_work *w, const char *asked,
 /* Measures that are asked for, or all. */
 static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
 {
-    ritz_status status = RITZ_OK;
     int64_t kept = 0;
 
-    RITZ_TRY(records_measures(&w->all, &w->num_measures, &w->measure));
+    RITZ_CHECK(records_measures(&w->all, &w->num_measures, &w->measure));
     if (asked->count == 0)
         drop_rounding(w);
     for (int a = 0; a < asked->count; a++) {
@@ -199,8 +196,7 @@ static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
     }
     if (asked->count > 0)
         w->num_measures = kept;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status chart_errors_draw(const chart_sources *sources,

@@ -207,7 +207,6 @@ static void put_plot(const chart_errors_work *w, int64_t panel)
 ritz_status chart_errors_area(chart_errors_work *w, int64_t panel, double left,
                               double bottom)
 {
-    ritz_status status = RITZ_OK;
     const measure *m = &w->measure[panel];
     int64_t count[2];
     chart_area area = {.left = left + CHART_LEFT,
@@ -222,9 +221,8 @@ ritz_status chart_errors_area(chart_errors_work *w, int64_t panel, double left,
     if (w->form->seconds)
         chart_tics_seconds(w->picture, &area.x);
     chart_errors_levels(w, m, &area);
-    RITZ_TRY(chart_errors_words(w, m, &area));
-    RITZ_TRY(put_points(w, panel));
+    RITZ_CHECK(chart_errors_words(w, m, &area));
+    RITZ_CHECK(put_points(w, panel));
     put_plot(w, panel);
-done:
-    return status;
+    return RITZ_OK;
 }

@@ -8,25 +8,22 @@
 /* Rankings as ritz-rank holds them; they stay the sources'. */
 static ritz_status borrow(const chart_sources *sources, rank_result *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->group = calloc((size_t)sources->count + 1, sizeof *out->group);
     out->file = calloc((size_t)sources->count + 1, sizeof *out->file);
-    RITZ_FAIL_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
-                 "no memory for rankings");
+    RITZ_REFUSE_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
+                   "no memory for rankings");
     for (int64_t k = 0; k < sources->count; k++) {
         const chart_file *file = &sources->file[k];
 
         if (file->holds != CHART_RANKING)
             continue;
-        RITZ_FAIL_IF(file->model.rankings.count == 0, RITZ_ERR_FORMAT,
-                     "'%s' holds no ranking", file->path);
+        RITZ_REFUSE_IF(file->model.rankings.count == 0, RITZ_ERR_FORMAT,
+                       "'%s' holds no ranking", file->path);
         out->group[out->count].all = file->model.rankings;
         snprintf(out->file[out->count++], RITZ_NAME_SIZE, "%.63s",
                  chart_base(file->path));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status chart_hankel(const chart_sources *sources, const chart_wish *wish,

@@ -33,50 +33,44 @@ static ritz_status find_at(const chart_file *file, const char *at,
 static ritz_status choose_two(const chart_file *const *system,
                               const cli_list *at, choice *out)
 {
-    ritz_status status = RITZ_OK;
-
     for (int k = 0; k < 2; k++)
-        RITZ_TRY(find_at(system[k],
-                         at->count == 0   ? NULL
-                         : at->count == 1 ? at->text[0]
-                                          : at->text[k],
-                         &out->side[k]));
-done:
-    return status;
+        RITZ_CHECK(find_at(system[k],
+                           at->count == 0   ? NULL
+                           : at->count == 1 ? at->text[0]
+                                            : at->text[k],
+                           &out->side[k]));
+    return RITZ_OK;
 }
 
 /* One system: two configurations of it, or one and another model. */
 static ritz_status choose_one(const chart_file *system, const cli_list *at,
                               choice *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_system *s = &system->model.system;
 
     if (at->count == 2) {
         for (int k = 0; k < 2; k++)
-            RITZ_TRY(find_at(system, at->text[k], &out->side[k]));
+            RITZ_CHECK(find_at(system, at->text[k], &out->side[k]));
     } else if (out->num_bodies == 1) {
-        RITZ_TRY(
+        RITZ_CHECK(
             find_at(system, at->count ? at->text[0] : NULL, &out->side[0]));
-        RITZ_TRY(find_at(out->body[0], NULL, &out->side[1]));
+        RITZ_CHECK(find_at(out->body[0], NULL, &out->side[1]));
         out->num_bodies = 0;
     } else {
-        RITZ_FAIL_IF(at->count == 1 || s->num_configurations != 2,
-                     RITZ_ERR_ARGUMENT,
-                     "MAC is of two: choose two configurations of '%s' by --at "
-                     "and --at again",
-                     system->path);
+        RITZ_REFUSE_IF(
+            at->count == 1 || s->num_configurations != 2, RITZ_ERR_ARGUMENT,
+            "MAC is of two: choose two configurations of '%s' by --at "
+            "and --at again",
+            system->path);
         out->side[0] = (mac_side){system, &s->configuration[0]};
         out->side[1] = (mac_side){system, &s->configuration[1]};
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status choose(const chart_sources *sources, const cli_list *at,
                           choice *out)
 {
-    ritz_status status = RITZ_OK;
     const chart_file *system[2] = {NULL, NULL};
     int64_t num_systems = 0;
 
@@ -85,58 +79,55 @@ static ritz_status choose(const chart_sources *sources, const cli_list *at,
 
         if (file->holds != CHART_MODES && file->holds != CHART_SYSTEM)
             continue;
-        RITZ_FAIL_IF(file->holds == CHART_SYSTEM
-                         ? num_systems == 2
-                         : out->num_bodies == MOST_FILES,
-                     RITZ_ERR_ARGUMENT, "MAC is of two models, these are more");
+        RITZ_REFUSE_IF(
+            file->holds == CHART_SYSTEM ? num_systems == 2
+                                        : out->num_bodies == MOST_FILES,
+            RITZ_ERR_ARGUMENT, "MAC is of two models, these are more");
         if (file->holds == CHART_SYSTEM)
             system[num_systems++] = file;
         else
             out->body[out->num_bodies++] = file;
     }
-    RITZ_FAIL_IF(at->count > 2, RITZ_ERR_ARGUMENT,
-                 "MAC is of two: --at is there more than twice");
+    RITZ_REFUSE_IF(at->count > 2, RITZ_ERR_ARGUMENT,
+                   "MAC is of two: --at is there more than twice");
     if (num_systems == 2)
         return choose_two(system, at, out);
     if (num_systems == 1)
         return choose_one(system[0], at, out);
-    RITZ_FAIL_IF(at->count > 0, RITZ_ERR_ARGUMENT,
-                 "no file is a system, --at has nothing to choose from");
-    RITZ_FAIL_IF(out->num_bodies != 2, RITZ_ERR_ARGUMENT,
-                 "MAC is of two models, %s",
-                 out->num_bodies < 2 ? "this is one" : "these are more");
+    RITZ_REFUSE_IF(at->count > 0, RITZ_ERR_ARGUMENT,
+                   "no file is a system, --at has nothing to choose from");
+    RITZ_REFUSE_IF(out->num_bodies != 2, RITZ_ERR_ARGUMENT,
+                   "MAC is of two models, %s",
+                   out->num_bodies < 2 ? "this is one" : "these are more");
     for (int k = 0; k < 2; k++)
         out->side[k] = (mac_side){.file = out->body[k]};
     out->num_bodies = 0;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status shapes_of(const choice *chosen, const char **how,
                              mac_shapes set[2])
 {
-    ritz_status status = RITZ_OK;
     const bool systems = chosen->side[0].at || chosen->side[1].at;
 
     *how = chosen->num_bodies > 0 ? "by masses"
            : systems              ? "by inputs and outputs"
                                   : "by dofs";
     for (int64_t k = 0; k < chosen->num_bodies; k++)
-        RITZ_FAIL_IF(chosen->body[k]->model.kind != MODEL_REDUCED,
-                     RITZ_ERR_ARGUMENT,
-                     "'%s' is no reduced component, of which systems are "
-                     "assembled",
-                     chosen->body[k]->path);
+        RITZ_REFUSE_IF(chosen->body[k]->model.kind != MODEL_REDUCED,
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' is no reduced component, of which systems are "
+                       "assembled",
+                       chosen->body[k]->path);
     for (int k = 0; k < 2; k++)
         if (chosen->num_bodies > 0)
-            RITZ_TRY(mac_shapes_of_bodies(&chosen->side[k], chosen->num_bodies,
-                                          chosen->body, &set[k]));
+            RITZ_CHECK(mac_shapes_of_bodies(
+                &chosen->side[k], chosen->num_bodies, chosen->body, &set[k]));
         else if (systems)
-            RITZ_TRY(mac_shapes_of_channels(&chosen->side[k], &set[k]));
+            RITZ_CHECK(mac_shapes_of_channels(&chosen->side[k], &set[k]));
         else
-            RITZ_TRY(mac_shapes_of_dofs(&chosen->side[k], &set[k]));
-done:
-    return status;
+            RITZ_CHECK(mac_shapes_of_dofs(&chosen->side[k], &set[k]));
+    return RITZ_OK;
 }
 
 ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,

@@ -111,7 +111,6 @@ done:
 ritz_status mac_shapes_of_bodies(const mac_side *side, int64_t count,
                                  const chart_file *const *body, mac_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_system *s = &side->file->model.system;
     const ritz_configuration *at = side->at;
     const ritz_reduced *of[MOST_BODIES] = {NULL};
@@ -119,24 +118,22 @@ ritz_status mac_shapes_of_bodies(const mac_side *side, int64_t count,
 
     snprintf(out->name, sizeof out->name, "%.80s, %.80s",
              chart_base(side->file->path), at->at);
-    RITZ_TRY(assign(side, count, body, of));
+    RITZ_CHECK(assign(side, count, body, of));
     for (int64_t c = 0; c < s->num_components; c++)
         n += s->order[c];
     out->count = at->K.ncol - at->num_rigid;
     out->count = out->count < MAC_MOST_MODES ? out->count : MAC_MOST_MODES;
-    RITZ_FAIL_IF(out->count < 1, RITZ_ERR_ARGUMENT,
-                 "%s: there is no flexible mode", side->file->path);
-    RITZ_TRY(ritz_dense_new(n, out->count, &out->U));
-    RITZ_TRY(ritz_dense_new(n, out->count, &out->MU));
+    RITZ_REFUSE_IF(out->count < 1, RITZ_ERR_ARGUMENT,
+                   "%s: there is no flexible mode", side->file->path);
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->MU));
     out->hertz = calloc((size_t)out->count, sizeof *out->hertz);
-    RITZ_FAIL_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
+    RITZ_REFUSE_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
     for (int64_t k = 0; k < out->count; k++)
         out->hertz[k] = ritz_eigen_hertz(at->lambda[at->num_rigid + k]);
     for (int64_t c = 0; c < s->num_components; c++) {
-        RITZ_TRY(put_block(&at->P[c], &of[c]->M, at->num_rigid, first, out));
+        RITZ_CHECK(put_block(&at->P[c], &of[c]->M, at->num_rigid, first, out));
         first += s->order[c];
     }
-    RITZ_TRY(check_mass(side, out));
-done:
-    return status;
+    return check_mass(side, out);
 }

@@ -150,7 +150,6 @@ static void put_note(const mac_shapes *a, const mac_shapes *b, gnuplot *out)
 ritz_status mac_draw(const mac_shapes *a, const mac_shapes *b,
                      const int64_t *row, const char *how, gnuplot *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t most = a->count > b->count ? a->count : b->count;
     double cell = most <= NUMBERED ? 34.0 : 640.0 / (double)most;
     chart_area area = {.left = 44.0 + wide_of(a),
@@ -172,9 +171,7 @@ ritz_status mac_draw(const mac_shapes *a, const mac_shapes *b,
     put_scale(&area, out);
     put_data(a, b, row, out);
     put_plot(a, b, out);
-    RITZ_TRY(gnuplot_draw(out, title,
-                          "likeness of mode shapes: 1 the same, 0 nothing in "
-                          "common"));
-done:
-    return status;
+    return gnuplot_draw(out, title,
+                        "likeness of mode shapes: 1 the same, 0 nothing in "
+                        "common");
 }

@@ -39,7 +39,6 @@ static void divide_row(mac_shapes *s, int64_t row, double by)
 /* Each input and output counts as much as any other, whatever its unit. */
 static ritz_status level(mac_shapes *a, mac_shapes *b, const int64_t *row)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
 
     for (int64_t k = 0; k < a->U.nrow; k++) {
@@ -52,15 +51,15 @@ static ritz_status level(mac_shapes *a, mac_shapes *b, const int64_t *row)
         divide_row(b, row[k], most);
         count++;
     }
-    RITZ_FAIL_IF(count < 2, RITZ_ERR_ARGUMENT,
-                 "'%s' and '%s' have %s in common by which modes could be told "
-                 "apart; configurations of the same bodies can be compared by "
-                 "their masses: name their reduced components too",
-                 a->name, b->name,
-                 count == 0 ? "no input or output" : "but one input or output");
+    RITZ_REFUSE_IF(
+        count < 2, RITZ_ERR_ARGUMENT,
+        "'%s' and '%s' have %s in common by which modes could be told "
+        "apart; configurations of the same bodies can be compared by "
+        "their masses: name their reduced components too",
+        a->name, b->name,
+        count == 0 ? "no input or output" : "but one input or output");
     a->num_seen = b->num_seen = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status mac_match(mac_shapes *a, mac_shapes *b, int64_t **out)

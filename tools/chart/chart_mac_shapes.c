@@ -21,38 +21,34 @@ static void free_modes(modes *m)
 
 static ritz_status keep_flexible(const ritz_pairs *pairs, modes *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t first = pairs->num_rigid;
     int64_t count = pairs->Phi.ncol - first;
 
     count = count < MAC_MOST_MODES ? count : MAC_MOST_MODES;
-    RITZ_FAIL_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no flexible mode");
-    RITZ_TRY(ritz_dense_columns(&pairs->Phi, first, count, &out->Phi));
+    RITZ_REFUSE_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no flexible mode");
+    RITZ_CHECK(ritz_dense_columns(&pairs->Phi, first, count, &out->Phi));
     out->hertz = calloc((size_t)count, sizeof *out->hertz);
-    RITZ_FAIL_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
+    RITZ_REFUSE_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
     for (int64_t k = 0; k < count; k++)
         out->hertz[k] = ritz_eigen_hertz(pairs->lambda[first + k]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Coordinates of a configuration are its modes, rigid ones first. */
 static ritz_status modes_at(const ritz_configuration *at, modes *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t e = at->K.ncol, first = at->num_rigid;
     int64_t count = e - first < MAC_MOST_MODES ? e - first : MAC_MOST_MODES;
 
-    RITZ_FAIL_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no flexible mode");
-    RITZ_TRY(ritz_dense_new(e, count, &out->Phi));
+    RITZ_REFUSE_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no flexible mode");
+    RITZ_CHECK(ritz_dense_new(e, count, &out->Phi));
     out->hertz = calloc((size_t)count, sizeof *out->hertz);
-    RITZ_FAIL_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
+    RITZ_REFUSE_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
     for (int64_t k = 0; k < count; k++) {
         ritz_dense_col(&out->Phi, k)[first + k] = 1.0;
         out->hertz[k] = ritz_eigen_hertz(at->lambda[first + k]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status modes_of(const mac_side *side, modes *out)
@@ -84,17 +80,15 @@ static void name_side(const mac_side *side, mac_shapes *out)
 
 static ritz_status columns_of(const ritz_basis *b, mac_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = b->T.ncol < MAC_MOST_MODES ? b->T.ncol : MAC_MOST_MODES;
 
-    RITZ_TRY(ritz_dense_columns(&b->T, 0, count, &out->U));
+    RITZ_CHECK(ritz_dense_columns(&b->T, 0, count, &out->U));
     out->hertz = calloc((size_t)count + 1, sizeof *out->hertz);
-    RITZ_FAIL_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
+    RITZ_REFUSE_IF(!out->hertz, RITZ_ERR_MEMORY, "no memory for modes");
     for (int64_t k = 0; k < count; k++)
         out->hertz[k] = b->columns.hertz[k];
     out->count = count;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status mac_shapes_of_dofs(const mac_side *side, mac_shapes *out)
@@ -130,12 +124,11 @@ static ritz_status stack(const ritz_io *io, mac_shapes *out)
 {
     static const char *const kind[] = {"output", "velocity", "acceleration"};
     const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
-    ritz_status status = RITZ_OK;
     int64_t n = io->num_inputs + 3 * io->num_outputs, row = 0;
 
-    RITZ_TRY(ritz_dense_new(n, out->count, &out->U));
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
     out->seen = calloc((size_t)n + 1, sizeof *out->seen);
-    RITZ_FAIL_IF(!out->seen, RITZ_ERR_MEMORY, "no memory for modes");
+    RITZ_REFUSE_IF(!out->seen, RITZ_ERR_MEMORY, "no memory for modes");
     for (int64_t j = 0; j < io->num_inputs; j++, row++) {
         snprintf(out->seen[row], MAC_LABEL, "input %s", io->input[j]);
         for (int64_t k = 0; k < out->count; k++)
@@ -148,8 +141,7 @@ static ritz_status stack(const ritz_io *io, mac_shapes *out)
             for (int64_t k = 0; k < out->count; k++)
                 ritz_dense_col(&out->U, k)[row] = ritz_dense_col(C[t], k)[i];
         }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status mac_shapes_of_channels(const mac_side *side, mac_shapes *out)

@@ -20,7 +20,6 @@ int64_t chart_response_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
 static ritz_status take_responses(const chart_sources *sources,
                                   chart_overlay *o)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *first = NULL;
 
     for (int64_t k = 0; k < sources->count; k++) {
@@ -29,59 +28,55 @@ static ritz_status take_responses(const chart_sources *sources,
 
         if (file->holds != CHART_RESPONSE)
             continue;
-        RITZ_FAIL_IF(o->count == CHART_MOST_RESPONSES, RITZ_ERR_ARGUMENT,
-                     "more than %d responses cannot be told apart",
-                     (int)CHART_MOST_RESPONSES);
-        RITZ_FAIL_IF(r->count < 2, RITZ_ERR_ARGUMENT,
-                     "'%s' has fewer than two points", file->path);
+        RITZ_REFUSE_IF(o->count == CHART_MOST_RESPONSES, RITZ_ERR_ARGUMENT,
+                       "more than %d responses cannot be told apart",
+                       (int)CHART_MOST_RESPONSES);
+        RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
+                       "'%s' has fewer than two points", file->path);
         first = first ? first : r;
         for (int64_t i = 0; i < first->num_outputs; i++)
-            RITZ_FAIL_IF(chart_response_name(r->num_outputs, r->output,
-                                             first->output[i]) < 0,
-                         RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
-                         file->path, first->output[i]);
+            RITZ_REFUSE_IF(chart_response_name(r->num_outputs, r->output,
+                                               first->output[i]) < 0,
+                           RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
+                           file->path, first->output[i]);
         for (int64_t i = 0; i < first->num_inputs; i++)
-            RITZ_FAIL_IF(chart_response_name(r->num_inputs, r->input,
-                                             first->input[i]) < 0,
-                         RITZ_ERR_ARGUMENT, "'%s' has no input '%s'",
-                         file->path, first->input[i]);
+            RITZ_REFUSE_IF(chart_response_name(r->num_inputs, r->input,
+                                               first->input[i]) < 0,
+                           RITZ_ERR_ARGUMENT, "'%s' has no input '%s'",
+                           file->path, first->input[i]);
         o->curve[o->count++] =
             (chart_curve){.r = r, .name = chart_base(file->path)};
     }
-    RITZ_FAIL_IF(o->count == 0, RITZ_ERR_ARGUMENT, "there is no response");
-done:
-    return status;
+    RITZ_REFUSE_IF(o->count == 0, RITZ_ERR_ARGUMENT, "there is no response");
+    return RITZ_OK;
 }
 
 /* Singular values, of which all files hold as many. */
 static ritz_status add_singular(chart_overlay *o)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *first = o->curve[0].r;
 
     for (int64_t w = 0; w < o->count; w++) {
         const ritz_response *r = o->curve[w].r;
 
-        RITZ_FAIL_IF(r->num_singular == 0, RITZ_ERR_ARGUMENT,
-                     "'%s' holds no singular values: ritz-frf "
-                     "--singular-values stores them",
-                     o->curve[w].name);
-        RITZ_FAIL_IF(r->num_inputs != first->num_inputs ||
-                         r->num_outputs != first->num_outputs,
-                     RITZ_ERR_ARGUMENT,
-                     "'%s' has more inputs or outputs than '%s', their "
-                     "singular values do not compare",
-                     o->curve[w].name, o->curve[0].name);
+        RITZ_REFUSE_IF(r->num_singular == 0, RITZ_ERR_ARGUMENT,
+                       "'%s' holds no singular values: ritz-frf "
+                       "--singular-values stores them",
+                       o->curve[w].name);
+        RITZ_REFUSE_IF(r->num_inputs != first->num_inputs ||
+                           r->num_outputs != first->num_outputs,
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' has more inputs or outputs than '%s', their "
+                       "singular values do not compare",
+                       o->curve[w].name, o->curve[0].name);
     }
     o->output[o->num_channels] = CHART_SINGULAR;
     o->input[o->num_channels++] = CHART_SINGULAR;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_channel(chart_overlay *o, const char *text)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *r = o->curve[0].r;
     const char *slash = strchr(text, '/');
     char output[RITZ_NAME_SIZE] = "";
@@ -92,31 +87,30 @@ static ritz_status add_channel(chart_overlay *o, const char *text)
         i = chart_response_name(r->num_outputs, r->output, output);
         j = chart_response_name(r->num_inputs, r->input, slash + 1);
     }
-    RITZ_FAIL_IF(o->num_channels == CHART_MOST_CHANNELS, RITZ_ERR_ARGUMENT,
-                 "more than %d channels do not fit", (int)CHART_MOST_CHANNELS);
+    RITZ_REFUSE_IF(o->num_channels == CHART_MOST_CHANNELS, RITZ_ERR_ARGUMENT,
+                   "more than %d channels do not fit",
+                   (int)CHART_MOST_CHANNELS);
     if (strcmp(text, CHART_SINGULAR_WORD) == 0)
         return add_singular(o);
-    RITZ_FAIL_IF(i < 0 || j < 0, RITZ_ERR_ARGUMENT,
-                 "no channel '%s': say OUTPUT/INPUT, such as '%s/%s', or "
-                 "'" CHART_SINGULAR_WORD "'",
-                 text, r->output[0], r->input[0]);
+    RITZ_REFUSE_IF(i < 0 || j < 0, RITZ_ERR_ARGUMENT,
+                   "no channel '%s': say OUTPUT/INPUT, such as '%s/%s', or "
+                   "'" CHART_SINGULAR_WORD "'",
+                   text, r->output[0], r->input[0]);
     o->output[o->num_channels] = i;
     o->input[o->num_channels++] = j;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status choose_channels(const cli_list *asked, chart_overlay *o)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *r = o->curve[0].r;
 
     if (!r)
         return RITZ_OK;
-    RITZ_FAIL_IF(r->num_outputs < 1 || r->num_inputs < 1, RITZ_ERR_ARGUMENT,
-                 "'%s' has no channel", o->curve[0].name);
+    RITZ_REFUSE_IF(r->num_outputs < 1 || r->num_inputs < 1, RITZ_ERR_ARGUMENT,
+                   "'%s' has no channel", o->curve[0].name);
     for (int k = 0; k < asked->count; k++)
-        RITZ_TRY(add_channel(o, asked->text[k]));
+        RITZ_CHECK(add_channel(o, asked->text[k]));
     for (int64_t c = 0; asked->count == 0 && c < r->num_outputs * r->num_inputs;
          c++) {
         if (o->num_channels == CHART_MOST_CHANNELS) {
@@ -126,8 +120,7 @@ static ritz_status choose_channels(const cli_list *asked, chart_overlay *o)
         o->output[o->num_channels] = c / r->num_inputs;
         o->input[o->num_channels++] = c % r->num_inputs;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int64_t list_signs(const chart_overlay *o, chart_sign signs[MOST_SIGNS])
@@ -179,7 +172,6 @@ static void put_head(const chart_overlay *o)
 
 static ritz_status compose(const chart_overlay *o)
 {
-    ritz_status status = RITZ_OK;
     int64_t columns = o->num_channels > 1 ? 2 : 1;
     int64_t rows = (o->num_channels + columns - 1) / columns;
     chart_sign signs[MOST_SIGNS];
@@ -212,17 +204,14 @@ static ritz_status compose(const chart_overlay *o)
                    "font ',11' tc rgb '" SVG_MUTED "'");
     }
     fprintf(o->picture->plot.file, "plot NaN notitle\nunset multiplot\n");
-    RITZ_TRY(gnuplot_draw(o->picture, "Frequency responses",
-                          "magnitudes or singular values over each other, and "
-                          "below them how far they are from the first"));
-done:
-    return status;
+    return gnuplot_draw(o->picture, "Frequency responses",
+                        "magnitudes or singular values over each other, and "
+                        "below them how far they are from the first");
 }
 
 ritz_status chart_response(const chart_sources *sources, const chart_wish *wish,
                            gnuplot *out)
 {
-    ritz_status status = RITZ_OK;
     chart_overlay o = {.picture = out, .high = OVERLAY_HIGH};
     const char *error = wish->error ? wish->error : "relative";
 
@@ -230,10 +219,8 @@ ritz_status chart_response(const chart_sources *sources, const chart_wish *wish,
     o.strip[CHART_DECIBELS] = strcmp(error, "relative") != 0;
     if (o.strip[CHART_RELATIVE] && o.strip[CHART_DECIBELS])
         o.high += OVERLAY_STRIP;
-    RITZ_TRY(take_responses(sources, &o));
-    RITZ_TRY(choose_channels(&wish->channel, &o));
-    RITZ_TRY(gnuplot_new(wish->path, wish->keep, out));
-    RITZ_TRY(compose(&o));
-done:
-    return status;
+    RITZ_CHECK(take_responses(sources, &o));
+    RITZ_CHECK(choose_channels(&wish->channel, &o));
+    RITZ_CHECK(gnuplot_new(wish->path, wish->keep, out));
+    return compose(&o);
 }

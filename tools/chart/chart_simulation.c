@@ -34,31 +34,28 @@ static int64_t find_output(const ritz_simulation *s, const char *name)
 
 static ritz_status take_runs(const chart_sources *sources, runs *out)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < sources->count; k++) {
         const chart_file *file = &sources->file[k];
         const ritz_simulation *s = &file->model.simulation;
 
         if (file->holds != CHART_SIMULATION)
             continue;
-        RITZ_FAIL_IF(out->count == MOST_RUNS, RITZ_ERR_ARGUMENT,
-                     "more than %d simulations cannot be told apart",
-                     (int)MOST_RUNS);
-        RITZ_FAIL_IF(s->count < 2 || s->num_outputs < 1, RITZ_ERR_ARGUMENT,
-                     "'%s' has no output over time", file->path);
+        RITZ_REFUSE_IF(out->count == MOST_RUNS, RITZ_ERR_ARGUMENT,
+                       "more than %d simulations cannot be told apart",
+                       (int)MOST_RUNS);
+        RITZ_REFUSE_IF(s->count < 2 || s->num_outputs < 1, RITZ_ERR_ARGUMENT,
+                       "'%s' has no output over time", file->path);
         for (int64_t i = 0; i < out->num_outputs; i++)
-            RITZ_FAIL_IF(find_output(s, out->run[0]->output[i]) < 0,
-                         RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
-                         file->path, out->run[0]->output[i]);
+            RITZ_REFUSE_IF(find_output(s, out->run[0]->output[i]) < 0,
+                           RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
+                           file->path, out->run[0]->output[i]);
         if (out->count == 0)
             out->num_outputs =
                 s->num_outputs < MOST_OUTPUTS ? s->num_outputs : MOST_OUTPUTS;
         out->name[out->count] = chart_base(file->path);
         out->run[out->count++] = s;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Lines of one output; the least and the largest of each few points stay. */
@@ -150,7 +147,6 @@ static void put_output(const runs *all, int64_t i, double bottom)
 
 static ritz_status compose(const runs *all)
 {
-    ritz_status status = RITZ_OK;
     chart_sign signs[MOST_RUNS];
     double foot = 0.0;
 
@@ -175,21 +171,16 @@ static ritz_status compose(const runs *all)
     chart_legend(all->picture, all->count, signs, LEFT, foot - 4.0,
                  WIDE - RIGHT, true);
     fprintf(all->picture->plot.file, "plot NaN notitle\nunset multiplot\n");
-    RITZ_TRY(gnuplot_draw(all->picture, "Time responses",
-                          "outputs over time, one below the other"));
-done:
-    return status;
+    return gnuplot_draw(all->picture, "Time responses",
+                        "outputs over time, one below the other");
 }
 
 ritz_status chart_simulation(const chart_sources *sources,
                              const chart_wish *wish, gnuplot *out)
 {
-    ritz_status status = RITZ_OK;
     runs all = {.picture = out};
 
-    RITZ_TRY(take_runs(sources, &all));
-    RITZ_TRY(gnuplot_new(wish->path, wish->keep, out));
-    RITZ_TRY(compose(&all));
-done:
-    return status;
+    RITZ_CHECK(take_runs(sources, &all));
+    RITZ_CHECK(gnuplot_new(wish->path, wish->keep, out));
+    return compose(&all);
 }

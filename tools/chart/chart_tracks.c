@@ -94,7 +94,6 @@ static void set_areas(const track_table *t, chart_area *area)
 
 static ritz_status draw(const track_table *t, gnuplot *out)
 {
-    ritz_status status = RITZ_OK;
     chart_area area = {.left = 62, .bottom = 84, .right = 702, .top = 446};
     bool doubts = has_doubts(t);
     const chart_sign signs[] = {
@@ -114,10 +113,8 @@ static ritz_status draw(const track_table *t, gnuplot *out)
         chart_legend(out, 1, signs, area.left, 26, area.right, true);
     put_data(t, out);
     put_plot(t, out, doubts);
-    RITZ_TRY(gnuplot_draw(out, "Modes over configurations",
-                          "frequency of each mode, followed by its shape"));
-done:
-    return status;
+    return gnuplot_draw(out, "Modes over configurations",
+                        "frequency of each mode, followed by its shape");
 }
 
 ritz_status chart_tracks(const chart_sources *sources, const chart_wish *wish,

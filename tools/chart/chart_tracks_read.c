@@ -54,39 +54,35 @@ static int64_t number_of(track_table *t, const char *name)
 /* Room for as many rows as a text has lines, and a copy of it to cut up. */
 static ritz_status make_room(const char *text, track_table *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t lines = 1;
 
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
-    RITZ_FAIL_IF(lines > MOST_ROWS, RITZ_ERR_FORMAT,
-                 "more than %d lines cannot be told apart", (int)MOST_ROWS);
+    RITZ_REFUSE_IF(lines > MOST_ROWS, RITZ_ERR_FORMAT,
+                   "more than %d lines cannot be told apart", (int)MOST_ROWS);
     t->text = strdup(text);
     t->row = calloc((size_t)lines, sizeof *t->row);
     t->at = calloc((size_t)lines, sizeof *t->at);
     t->x = calloc((size_t)lines, sizeof *t->x);
-    RITZ_FAIL_IF(!t->text || !t->row || !t->at || !t->x, RITZ_ERR_MEMORY,
-                 "no memory for tracks");
-done:
-    return status;
+    RITZ_REFUSE_IF(!t->text || !t->row || !t->at || !t->x, RITZ_ERR_MEMORY,
+                   "no memory for tracks");
+    return RITZ_OK;
 }
 
 /* A row, unless its frequency is above. */
 static ritz_status put_row(char *line, int64_t number, double up_to_hz,
                            track_table *t)
 {
-    ritz_status status = RITZ_OK;
     track_row *r = &t->row[t->count];
 
-    RITZ_FAIL_IF(!take_row(line, r), RITZ_ERR_FORMAT,
-                 "line %lld is no row of tracks", (long long)number);
+    RITZ_REFUSE_IF(!take_row(line, r), RITZ_ERR_FORMAT,
+                   "line %lld is no row of tracks", (long long)number);
     if (!(r->hertz <= up_to_hz))
         return RITZ_OK;
     r->at = number_of(t, r->name);
     t->num_tracks = r->track > t->num_tracks ? r->track : t->num_tracks;
     t->count++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Value of "name=VALUE" at place k of "a=1,b=2"; false: there is none. */
@@ -147,11 +143,10 @@ void track_table_place(track_table *t)
 
 ritz_status track_table_read(const char *text, double up_to_hz, track_table *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t number = 1;
     char *line = NULL;
 
-    RITZ_TRY(make_room(text, t));
+    RITZ_CHECK(make_room(text, t));
     line = strchr(t->text, '\n'); /* behind the names of columns */
     while (line && *++line) {
         char *end = line + strcspn(line, "\n");
@@ -161,15 +156,14 @@ ritz_status track_table_read(const char *text, double up_to_hz, track_table *t)
         line[strcspn(line, "\r")] = '\0';
         number++;
         if (*line)
-            RITZ_TRY(put_row(line, number, up_to_hz, t));
+            RITZ_CHECK(put_row(line, number, up_to_hz, t));
         line = more ? end : NULL;
     }
-    RITZ_FAIL_IF(t->count == 0, RITZ_ERR_FORMAT, "no mode is in it");
-    RITZ_FAIL_IF(t->num_tracks > MOST_TRACKS, RITZ_ERR_FORMAT,
-                 "%lld tracks, more than %d cannot be told apart",
-                 (long long)t->num_tracks, (int)MOST_TRACKS);
-done:
-    return status;
+    RITZ_REFUSE_IF(t->count == 0, RITZ_ERR_FORMAT, "no mode is in it");
+    RITZ_REFUSE_IF(t->num_tracks > MOST_TRACKS, RITZ_ERR_FORMAT,
+                   "%lld tracks, more than %d cannot be told apart",
+                   (long long)t->num_tracks, (int)MOST_TRACKS);
+    return RITZ_OK;
 }
 
 void track_table_free(track_table *t)

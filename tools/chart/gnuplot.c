@@ -15,21 +15,19 @@ enum { NO_PROGRAM = 127, TIP_SIZE = 2000 };
 
 ritz_status gnuplot_new(const char *path, bool keep, gnuplot *out)
 {
-    ritz_status status = RITZ_OK;
     size_t length = strlen(path);
 
-    RITZ_FAIL_IF(keep && (length < 5 || strcmp(path + length - 4, ".svg") != 0),
-                 RITZ_ERR_ARGUMENT,
-                 "a chart is an SVG, '%s' does not end in '.svg'", path);
-    RITZ_FAIL_IF(length + 8 >= GNUPLOT_PATH, RITZ_ERR_ARGUMENT,
-                 "the name of a chart is too long");
+    RITZ_REFUSE_IF(keep &&
+                       (length < 5 || strcmp(path + length - 4, ".svg") != 0),
+                   RITZ_ERR_ARGUMENT,
+                   "a chart is an SVG, '%s' does not end in '.svg'", path);
+    RITZ_REFUSE_IF(length + 8 >= GNUPLOT_PATH, RITZ_ERR_ARGUMENT,
+                   "the name of a chart is too long");
     snprintf(out->path, sizeof out->path, "%s", path);
     out->keep = keep;
-    RITZ_TRY(cli_table_new(&out->data));
-    RITZ_TRY(cli_table_new(&out->plot));
-    RITZ_TRY(cli_table_new(&out->table));
-done:
-    return status;
+    RITZ_CHECK(cli_table_new(&out->data));
+    RITZ_CHECK(cli_table_new(&out->plot));
+    return cli_table_new(&out->table);
 }
 
 static const char *base_of(const char *path)
@@ -95,22 +93,20 @@ int64_t gnuplot_tip(gnuplot *picture, const char *format, ...)
 static ritz_status assign(const char *name, const char *value, size_t size,
                           char *out)
 {
-    ritz_status status = RITZ_OK;
     size_t used = (size_t)snprintf(out, size, "%s='", name);
 
     for (; *value && used + 4 < size; value++)
         used += (size_t)snprintf(out + used, size - used,
                                  *value == '\'' ? "''" : "%c", *value);
-    RITZ_FAIL_IF(*value, RITZ_ERR_ARGUMENT, "the name of a chart is too long");
+    RITZ_REFUSE_IF(*value, RITZ_ERR_ARGUMENT,
+                   "the name of a chart is too long");
     snprintf(out + used, size - used, "'");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status run_gnuplot(const char *script, const char *data,
                                const char *out)
 {
-    ritz_status status = RITZ_OK;
     static char program[] = "gnuplot", option[] = "-e";
     char set_out[GNUPLOT_PATH + 8], set_data[GNUPLOT_PATH + 8];
     char file[GNUPLOT_PATH];
@@ -120,24 +116,23 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     pid_t child = -1;
 
     snprintf(file, sizeof file, "%s", script);
-    RITZ_TRY(assign("out", out, sizeof set_out, set_out));
-    RITZ_TRY(assign("data", data, sizeof set_data, set_data));
+    RITZ_CHECK(assign("out", out, sizeof set_out, set_out));
+    RITZ_CHECK(assign("data", data, sizeof set_data, set_data));
     child = fork();
     if (child == 0) {
         execvp(program, argv);
         _exit(NO_PROGRAM);
     }
-    RITZ_FAIL_IF(child < 0, RITZ_ERR_FILE, "cannot start gnuplot: %s",
-                 strerror(errno));
+    RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE, "cannot start gnuplot: %s",
+                   strerror(errno));
     while (waitpid(child, &outcome, 0) < 0 && errno == EINTR)
         ;
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         WIFEXITED(outcome) && WEXITSTATUS(outcome) == NO_PROGRAM, RITZ_ERR_FILE,
         "gnuplot is not installed: '%s' is there to be drawn by it", script);
-    RITZ_FAIL_IF(!WIFEXITED(outcome) || WEXITSTATUS(outcome) != 0,
-                 RITZ_ERR_FILE, "gnuplot could not draw '%s'", script);
-done:
-    return status;
+    RITZ_REFUSE_IF(!WIFEXITED(outcome) || WEXITSTATUS(outcome) != 0,
+                   RITZ_ERR_FILE, "gnuplot could not draw '%s'", script);
+    return RITZ_OK;
 }
 
 /* Beside the picture, to stay or until the draft is freed. */
@@ -145,18 +140,14 @@ static ritz_status put_beside(const gnuplot *picture, cli_table *table,
                               const char *ending, ritz_draft *draft,
                               char out[GNUPLOT_PATH])
 {
-    ritz_status status = RITZ_OK;
-
     if (picture->keep) {
         snprintf(out, GNUPLOT_PATH, "%.*s%s", GNUPLOT_PATH - 8, picture->path,
                  ending);
         return cli_table_save(table, out);
     }
-    RITZ_TRY(ritz_draft_new(picture->path, draft));
+    RITZ_CHECK(ritz_draft_new(picture->path, draft));
     snprintf(out, GNUPLOT_PATH, "%s", draft->name);
-    RITZ_TRY(cli_table_write(table, out));
-done:
-    return status;
+    return cli_table_write(table, out);
 }
 
 static ritz_status publish(const gnuplot *picture)

@@ -54,11 +54,10 @@ static double height(const contest *all, int64_t c, int64_t number, bool mixed)
 static ritz_status pick(const contest *all, int64_t most, int64_t *count,
                         int64_t **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t *number = calloc((size_t)(all->count * most) + 1, sizeof *number);
     int64_t n = 0;
 
-    RITZ_FAIL_IF(!number, RITZ_ERR_MEMORY, "no memory for a chart");
+    RITZ_REFUSE_IF(!number, RITZ_ERR_MEMORY, "no memory for a chart");
     for (int64_t c = 0; c < all->count; c++)
         for (int64_t k = 0; k < all->ranking[c]->count && k < most; k++) {
             int64_t wanted = number_of(all, c, all->ranking[c]->order[k]);
@@ -75,8 +74,7 @@ static ritz_status pick(const contest *all, int64_t most, int64_t *count,
         }
     *count = n;
     *out = number;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static double hertz_of(const contest *all, int64_t number)

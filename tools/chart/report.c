@@ -111,10 +111,8 @@ static void put_head(FILE *file, const chart_sources *sources)
 
 static ritz_status put_page(FILE *file, report_page *p)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_FAIL_IF(fflush(p->body.file) != 0 || fflush(p->links.file) != 0,
-                 RITZ_ERR_MEMORY, "no memory for the page");
+    RITZ_REFUSE_IF(fflush(p->body.file) != 0 || fflush(p->links.file) != 0,
+                   RITZ_ERR_MEMORY, "no memory for the page");
     put_head(file, p->sources);
     fprintf(file, "<body>\n<a class=\"skip\" href=\"#main\">Skip to what was "
                   "found</a>\n<header>\n<div class=\"top\">\n<h1>");
@@ -127,8 +125,7 @@ static ritz_status put_page(FILE *file, report_page *p)
             p->links.text, p->body.text);
     put_lines(file, report_script);
     fprintf(file, "</script>\n</body>\n</html>\n");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status report_write(const chart_sources *sources, const chart_wish *wish)

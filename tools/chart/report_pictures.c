@@ -101,28 +101,24 @@ static bool have_singular(int64_t count, const chart_file *file)
 static ritz_status put_picture(report_page *p, const struct part *part,
                                const chart_sources *some)
 {
-    ritz_status status = RITZ_OK;
     chart_wish wish = report_wish(p);
     char names[400], caption[500];
 
     name_files(some->count, some->file, sizeof names, names);
-    RITZ_TRY(
+    RITZ_CHECK(
         report_figure(p, some, &wish, report_kind(part->kind)->draw, names));
     if (wish.channel.count > 0 || !have_singular(some->count, some->file))
         return RITZ_OK;
     wish.channel = (cli_list){.count = 1, .text = {CHART_SINGULAR_WORD}};
     snprintf(caption, sizeof caption, "singular values: %s", names);
-    RITZ_TRY(
-        report_figure(p, some, &wish, report_kind(part->kind)->draw, caption));
-done:
-    return status;
+    return report_figure(p, some, &wish, report_kind(part->kind)->draw,
+                         caption);
 }
 
 /* A section of pictures of one kind, if there are files for it. */
 static ritz_status put_part(report_page *p, const struct part *part,
                             bool *taken, chart_file *room)
 {
-    ritz_status status = RITZ_OK;
     bool begun = false;
 
     for (int64_t k = 0; k < p->sources->count; k++) {
@@ -139,14 +135,13 @@ static ritz_status put_part(report_page *p, const struct part *part,
             fprintf(p->body.file, "<div class=\"figures\">\n");
         }
         begun = true;
-        RITZ_TRY(put_picture(p, part, &some));
+        RITZ_CHECK(put_picture(p, part, &some));
     }
     if (begun) {
         fprintf(p->body.file, "</div>\n");
         report_end(p);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status report_pictures(report_page *p)

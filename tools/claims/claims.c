@@ -16,17 +16,15 @@ static const char answer_name[] = "answer.json";
 
 static ritz_status set_source(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     size_t used = 0;
 
-    RITZ_FAIL_IF(line->count < 2, RITZ_ERR_FORMAT, "a source is not named");
+    RITZ_REFUSE_IF(line->count < 2, RITZ_ERR_FORMAT, "a source is not named");
     state->source[0] = '\0';
     for (int k = 1; k < line->count && used < sizeof state->source; k++)
         used +=
             (size_t)snprintf(state->source + used, sizeof state->source - used,
                              "%s%s", k > 1 ? " " : "", line->word[k]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "need FILE...": what follows is skipped while one of them is absent. */
@@ -90,19 +88,19 @@ static void remember(claims_state *state, const claims_line *line)
 /* "try TOOL ARGUMENT...", whatever becomes of it. */
 static ritz_status try_tool(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     char tool[2 * PATH_MAX];
     char *argv[CLAIMS_MOST_WORDS + 2] = {NULL};
     static char json[] = "--json";
     int outcome = 0;
     pid_t child = -1;
 
-    RITZ_FAIL_IF(line->count < 2 || strncmp(line->word[1], "ritz-", 5) != 0 ||
-                     strchr(line->word[1], '/'),
-                 RITZ_ERR_FORMAT, "what is run is a tool, such as ritz-basis");
+    RITZ_REFUSE_IF(line->count < 2 || strncmp(line->word[1], "ritz-", 5) != 0 ||
+                       strchr(line->word[1], '/'),
+                   RITZ_ERR_FORMAT,
+                   "what is run is a tool, such as ritz-basis");
     snprintf(tool, sizeof tool, "%s/%s", state->bin, line->word[1]);
-    RITZ_FAIL_IF(access(tool, X_OK) != 0, RITZ_ERR_FORMAT,
-                 "there is no tool '%.40s'", line->word[1]);
+    RITZ_REFUSE_IF(access(tool, X_OK) != 0, RITZ_ERR_FORMAT,
+                   "there is no tool '%.40s'", line->word[1]);
     memcpy(argv, line->word + 1, (size_t)(line->count - 1) * sizeof *argv);
     argv[line->count - 1] = json;
     remember(state, line);
@@ -112,29 +110,25 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
     child = fork();
     if (child == 0)
         become(state, tool, argv);
-    RITZ_FAIL_IF(child < 0, RITZ_ERR_FILE, "cannot start '%.40s': %s",
-                 line->word[1], strerror(errno));
+    RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE, "cannot start '%.40s': %s",
+                   line->word[1], strerror(errno));
     while (waitpid(child, &outcome, 0) < 0 && errno == EINTR)
         ;
     state->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
-    RITZ_TRY(read_answer(state));
-done:
-    return status;
+    return read_answer(state);
 }
 
 /* "run TOOL ARGUMENT...", which must succeed. */
 static ritz_status run_tool(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     const char *sentence = NULL;
 
-    RITZ_TRY(try_tool(state, line));
+    RITZ_CHECK(try_tool(state, line));
     sentence = json_string_value(json_object_get(state->answer, "error"));
-    RITZ_FAIL_IF(state->exit_code != 0, RITZ_ERR_FORMAT,
-                 "'%.60s' ended with %d: %.300s", state->command,
-                 state->exit_code, sentence ? sentence : "it says nothing");
-done:
-    return status;
+    RITZ_REFUSE_IF(state->exit_code != 0, RITZ_ERR_FORMAT,
+                   "'%.60s' ended with %d: %.300s", state->command,
+                   state->exit_code, sentence ? sentence : "it says nothing");
+    return RITZ_OK;
 }
 
 /* "rows NAME N [COMPS]": what --dofs reads, N grids or N scalar points. */
@@ -176,20 +170,19 @@ static const struct statement {
 
 static ritz_status run_line(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     const size_t count = sizeof statements / sizeof *statements;
     size_t k = 0;
 
     while (k < count && strcmp(statements[k].word, line->word[0]) != 0)
         k++;
-    RITZ_FAIL_IF(k == count, RITZ_ERR_FORMAT,
-                 "'%.40s' is none of source, need, beam, rows, text, run, try, "
-                 "expect",
-                 line->word[0]);
+    RITZ_REFUSE_IF(
+        k == count, RITZ_ERR_FORMAT,
+        "'%.40s' is none of source, need, beam, rows, text, run, try, "
+        "expect",
+        line->word[0]);
     if (statements[k].always || !state->skipping)
-        RITZ_TRY(statements[k].run(state, line));
-done:
-    return status;
+        RITZ_CHECK(statements[k].run(state, line));
+    return RITZ_OK;
 }
 
 /* "text NAME": the lines that follow, indented as the first of them, become

@@ -43,7 +43,6 @@ static const struct option {
 
 static ritz_status take_option(const char *name, const char *value, beam *b)
 {
-    ritz_status status = RITZ_OK;
     const size_t count = sizeof options / sizeof *options;
     size_t k = 0;
     void *place = NULL;
@@ -51,7 +50,7 @@ static ritz_status take_option(const char *name, const char *value, beam *b)
 
     while (k < count && strcmp(options[k].name, name) != 0)
         k++;
-    RITZ_FAIL_IF(k == count, RITZ_ERR_FORMAT, "a beam has no '%.40s'", name);
+    RITZ_REFUSE_IF(k == count, RITZ_ERR_FORMAT, "a beam has no '%.40s'", name);
     place = (char *)b + options[k].place;
     switch (options[k].kind) {
     case WHOLE:
@@ -64,37 +63,34 @@ static ritz_status take_option(const char *name, const char *value, beam *b)
         *(const char **)place = value;
         break;
     }
-    RITZ_FAIL_IF(!good, RITZ_ERR_FORMAT, "'%.40s' is no number for %s", value,
-                 name);
-done:
-    return status;
+    RITZ_REFUSE_IF(!good, RITZ_ERR_FORMAT, "'%.40s' is no number for %s", value,
+                   name);
+    return RITZ_OK;
 }
 
 static ritz_status read_beam(const claims_line *line, beam *b)
 {
     static const char *const ends[] = {"none", "left", "right", "both"};
-    ritz_status status = RITZ_OK;
     bool known = false;
 
-    RITZ_FAIL_IF(line->count < 2 || strchr(line->word[1], '/') ||
-                     line->count % 2 != 0,
-                 RITZ_ERR_FORMAT, "a beam has a name, then options and values");
+    RITZ_REFUSE_IF(
+        line->count < 2 || strchr(line->word[1], '/') || line->count % 2 != 0,
+        RITZ_ERR_FORMAT, "a beam has a name, then options and values");
     for (int k = 2; k < line->count; k += 2)
-        RITZ_TRY(take_option(line->word[k], line->word[k + 1], b));
-    RITZ_FAIL_IF(b->elements < 1 || b->elements > 100000, RITZ_ERR_FORMAT,
-                 "a beam has 1 to 100000 elements");
-    RITZ_FAIL_IF(!b->directions[0] ||
-                     strspn(b->directions, "126") != strlen(b->directions) ||
-                     strlen(b->directions) > NODE,
-                 RITZ_ERR_FORMAT, "directions are some of 126, not '%.40s'",
-                 b->directions);
+        RITZ_CHECK(take_option(line->word[k], line->word[k + 1], b));
+    RITZ_REFUSE_IF(b->elements < 1 || b->elements > 100000, RITZ_ERR_FORMAT,
+                   "a beam has 1 to 100000 elements");
+    RITZ_REFUSE_IF(!b->directions[0] ||
+                       strspn(b->directions, "126") != strlen(b->directions) ||
+                       strlen(b->directions) > NODE,
+                   RITZ_ERR_FORMAT, "directions are some of 126, not '%.40s'",
+                   b->directions);
     for (size_t k = 0; k < sizeof ends / sizeof *ends; k++)
         known = known || strcmp(b->clamp, ends[k]) == 0;
-    RITZ_FAIL_IF(!known, RITZ_ERR_FORMAT,
-                 "a beam is clamped none, left, right or both, not '%.40s'",
-                 b->clamp);
-done:
-    return status;
+    RITZ_REFUSE_IF(!known, RITZ_ERR_FORMAT,
+                   "a beam is clamped none, left, right or both, not '%.40s'",
+                   b->clamp);
+    return RITZ_OK;
 }
 
 /* K and M of one element, rows u v theta of its ends. */
@@ -262,7 +258,6 @@ done:
 
 ritz_status claims_beam(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     beam b = {.first = 1,
               .length = 1.0,
               .modulus = 1.0,
@@ -273,11 +268,9 @@ ritz_status claims_beam(claims_state *state, const claims_line *line)
               .directions = "126"};
     double K[SIDE][SIDE], M[SIDE][SIDE];
 
-    RITZ_TRY(read_beam(line, &b));
+    RITZ_CHECK(read_beam(line, &b));
     fill(&b, K, M);
-    RITZ_TRY(put_matrix(state, line->word[1], false, &b, K));
-    RITZ_TRY(put_matrix(state, line->word[1], true, &b, M));
-    RITZ_TRY(put_names(state, line->word[1], &b));
-done:
-    return status;
+    RITZ_CHECK(put_matrix(state, line->word[1], false, &b, K));
+    RITZ_CHECK(put_matrix(state, line->word[1], true, &b, M));
+    return put_names(state, line->word[1], &b);
 }

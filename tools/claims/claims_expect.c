@@ -163,17 +163,16 @@ static void tell(claims_state *state, const claims_line *line, bool holds,
 /* "expect failure WORDS": status 1 with that sentence. */
 static ritz_status expect_failure(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     const char *sentence =
         json_string_value(claims_find(state->answer, "error", 0));
 
-    RITZ_FAIL_IF(line->count != 3, RITZ_ERR_FORMAT,
-                 "'expect failure' takes the words of its sentence, in quotes");
+    RITZ_REFUSE_IF(
+        line->count != 3, RITZ_ERR_FORMAT,
+        "'expect failure' takes the words of its sentence, in quotes");
     tell(state, line,
          state->exit_code == 1 && sentence && strstr(sentence, line->word[2]),
          "failure", sentence ? sentence : "it did not fail with a sentence");
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "expect PATH is TEXT": of texts, whole numbers and truths. */
@@ -213,14 +212,13 @@ static ritz_status expect_number(claims_state *state, const claims_line *line,
                                  int64_t more, const char *text,
                                  const struct form *form, const bound *allowed)
 {
-    ritz_status status = RITZ_OK;
     const json_t *at = claims_find(state->answer, line->word[1], more);
     double expected = 0.0;
     double value = form->of(json_number_value(at));
     char what[160], found[160];
 
-    RITZ_FAIL_IF(text && !ritz_text_real(text, &expected), RITZ_ERR_FORMAT,
-                 "'%.40s' is not a number", text);
+    RITZ_REFUSE_IF(text && !ritz_text_real(text, &expected), RITZ_ERR_FORMAT,
+                   "'%.40s' is not a number", text);
     name_item(line->word[1], more, sizeof what, what);
     if (!json_is_number(at))
         snprintf(found, sizeof found, "nothing there, %s expected",
@@ -234,8 +232,7 @@ static ritz_status expect_number(claims_state *state, const claims_line *line,
                  allowed->kind == BELOW ? "below" : "above", allowed->size);
     tell(state, line, json_is_number(at) && within(value, expected, allowed),
          what, found);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "... rel 1e-6": how the line ends, behind `count` words of values. */
@@ -245,40 +242,39 @@ static ritz_status read_bound(const claims_line *line, int count, bound *out)
                                         [ABSOLUTE] = "abs",
                                         [BELOW] = "below",
                                         [ABOVE] = "above"};
-    ritz_status status = RITZ_OK;
     size_t kind = 0;
 
-    RITZ_FAIL_IF(count < 0, RITZ_ERR_FORMAT,
-                 "an expectation is PATH [as FORM] VALUE... rel|abs TOLERANCE, "
-                 "PATH below|above LIMIT, PATH is WORD or failure WORDS");
+    RITZ_REFUSE_IF(
+        count < 0, RITZ_ERR_FORMAT,
+        "an expectation is PATH [as FORM] VALUE... rel|abs TOLERANCE, "
+        "PATH below|above LIMIT, PATH is WORD or failure WORDS");
     while (kind < sizeof words / sizeof *words &&
            strcmp(line->word[line->count - 2], words[kind]) != 0)
         kind++;
-    RITZ_FAIL_IF(kind == sizeof words / sizeof *words, RITZ_ERR_FORMAT,
-                 "'%.40s' is none of rel, abs, below, above",
-                 line->word[line->count - 2]);
+    RITZ_REFUSE_IF(kind == sizeof words / sizeof *words, RITZ_ERR_FORMAT,
+                   "'%.40s' is none of rel, abs, below, above",
+                   line->word[line->count - 2]);
     out->kind = (bound_kind)kind;
-    RITZ_FAIL_IF(!ritz_text_real(line->word[line->count - 1], &out->size),
-                 RITZ_ERR_FORMAT, "'%.40s' is not a number",
-                 line->word[line->count - 1]);
-    RITZ_FAIL_IF((kind >= BELOW) != (count == 0), RITZ_ERR_FORMAT, "%s",
-                 kind >= BELOW ? "a limit stands alone" : "no value is given");
-done:
-    return status;
+    RITZ_REFUSE_IF(!ritz_text_real(line->word[line->count - 1], &out->size),
+                   RITZ_ERR_FORMAT, "'%.40s' is not a number",
+                   line->word[line->count - 1]);
+    RITZ_REFUSE_IF((kind >= BELOW) != (count == 0), RITZ_ERR_FORMAT, "%s",
+                   kind >= BELOW ? "a limit stands alone"
+                                 : "no value is given");
+    return RITZ_OK;
 }
 
 ritz_status claims_expect(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     const struct form *form = find_form(line);
     bool named = line->count > 3 && strcmp(line->word[2], "as") == 0;
     int first = named ? 4 : 2;
     int count = line->count - 2 - first;
     bound allowed = {0};
 
-    RITZ_FAIL_IF(!state->source[0], RITZ_ERR_FORMAT,
-                 "a claim needs a 'source' before it");
-    RITZ_FAIL_IF(line->count < 3, RITZ_ERR_FORMAT, "nothing is expected");
+    RITZ_REFUSE_IF(!state->source[0], RITZ_ERR_FORMAT,
+                   "a claim needs a 'source' before it");
+    RITZ_REFUSE_IF(line->count < 3, RITZ_ERR_FORMAT, "nothing is expected");
     if (state->skipping) {
         tell(state, line, false, "expect", "");
         return RITZ_OK;
@@ -289,15 +285,14 @@ ritz_status claims_expect(claims_state *state, const claims_line *line)
         expect_text(state, line);
         return RITZ_OK;
     }
-    RITZ_FAIL_IF(!form, RITZ_ERR_FORMAT,
-                 "'%.40s' is none of hertz, omega, lambda, beta",
-                 line->word[3]);
-    RITZ_TRY(read_bound(line, count, &allowed));
+    RITZ_REFUSE_IF(!form, RITZ_ERR_FORMAT,
+                   "'%.40s' is none of hertz, omega, lambda, beta",
+                   line->word[3]);
+    RITZ_CHECK(read_bound(line, count, &allowed));
     if (count == 0)
-        RITZ_TRY(expect_number(state, line, 0, NULL, form, &allowed));
+        RITZ_CHECK(expect_number(state, line, 0, NULL, form, &allowed));
     for (int k = 0; k < count; k++)
-        RITZ_TRY(expect_number(state, line, k, line->word[first + k], form,
-                               &allowed));
-done:
-    return status;
+        RITZ_CHECK(expect_number(state, line, k, line->word[first + k], form,
+                                 &allowed));
+    return RITZ_OK;
 }

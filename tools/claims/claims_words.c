@@ -62,23 +62,21 @@ static size_t need(const char *text)
 ritz_status claims_cut(const claims_state *state, const char *text,
                        claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     char *out = malloc(need(text));
 
     line->room = out;
     line->count = 0;
-    RITZ_FAIL_IF(!out, RITZ_ERR_MEMORY, "no memory for a line");
+    RITZ_REFUSE_IF(!out, RITZ_ERR_MEMORY, "no memory for a line");
     for (text += strspn(text, " \t"); *text && *text != '#';
          text += strspn(text, " \t")) {
-        RITZ_FAIL_IF(line->count == CLAIMS_MOST_WORDS, RITZ_ERR_FORMAT,
-                     "more than %d words", CLAIMS_MOST_WORDS);
+        RITZ_REFUSE_IF(line->count == CLAIMS_MOST_WORDS, RITZ_ERR_FORMAT,
+                       "more than %d words", CLAIMS_MOST_WORDS);
         line->word[line->count] = out;
         text = take(state, text, out);
-        RITZ_FAIL_IF(!text, RITZ_ERR_FORMAT, "a quote is not closed");
+        RITZ_REFUSE_IF(!text, RITZ_ERR_FORMAT, "a quote is not closed");
         out += strlen(line->word[line->count++]) + 1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void claims_line_free(claims_line *line)

@@ -9,30 +9,25 @@
 
 ritz_status cli_table_new(cli_table *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->file = open_memstream(&out->text, &out->size);
-    RITZ_FAIL_IF(!out->file, RITZ_ERR_MEMORY, "no memory for a table");
-done:
-    return status;
+    RITZ_REFUSE_IF(!out->file, RITZ_ERR_MEMORY, "no memory for a table");
+    return RITZ_OK;
 }
 
 ritz_status cli_table_write(cli_table *table, const char *path)
 {
-    ritz_status status = RITZ_OK;
     FILE *file = NULL;
     bool whole = false;
 
-    RITZ_FAIL_IF(ferror(table->file) || fflush(table->file) != 0,
-                 RITZ_ERR_MEMORY, "no memory for a table");
+    RITZ_REFUSE_IF(ferror(table->file) || fflush(table->file) != 0,
+                   RITZ_ERR_MEMORY, "no memory for a table");
     file = fopen(path, "w");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
-                 strerror(errno));
+    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                   strerror(errno));
     whole = fwrite(table->text, 1, table->size, file) == table->size;
     whole = fclose(file) == 0 && whole;
-    RITZ_FAIL_IF(!whole, RITZ_ERR_FILE, "cannot write: %s", strerror(errno));
-done:
-    return status;
+    RITZ_REFUSE_IF(!whole, RITZ_ERR_FILE, "cannot write: %s", strerror(errno));
+    return RITZ_OK;
 }
 
 ritz_status cli_table_save(cli_table *table, const char *path)

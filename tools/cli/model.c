@@ -150,17 +150,15 @@ done:
 
 ritz_status model_at(model *m, const char *path, const char *at)
 {
-    ritz_status status = RITZ_OK;
     const ritz_configuration *found = NULL;
 
-    RITZ_FAIL_IF(at && m->kind != MODEL_SYSTEM, RITZ_ERR_ARGUMENT,
-                 "'%s' is no system, --at has nothing to choose from", path);
+    RITZ_REFUSE_IF(at && m->kind != MODEL_SYSTEM, RITZ_ERR_ARGUMENT,
+                   "'%s' is no system, --at has nothing to choose from", path);
     if (m->kind != MODEL_SYSTEM)
         return RITZ_OK;
-    RITZ_TRY_IN(path, ritz_system_find(&m->system, at, &found));
+    RITZ_CHECK_IN(path, ritz_system_find(&m->system, at, &found));
     m->at = m->system.configuration + (found - m->system.configuration);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 model_view model_look(const model *m)

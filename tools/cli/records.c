@@ -40,21 +40,19 @@ static const char *text_of(const json_t *line, const char *key)
 /* null is as good as absent: JSON has no NaN. */
 static ritz_status check_values(const json_t *line, const char *key)
 {
-    ritz_status status = RITZ_OK;
     json_t *values = json_object_get(line, key);
     json_t *value = NULL;
     const char *name = NULL;
 
     if (!values || json_is_null(values))
         return RITZ_OK;
-    RITZ_FAIL_IF(!json_is_object(values), RITZ_ERR_FORMAT,
-                 "'%s' is no object of names and numbers", key);
-    json_object_foreach(values, name, value) RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(!json_is_object(values), RITZ_ERR_FORMAT,
+                   "'%s' is no object of names and numbers", key);
+    json_object_foreach(values, name, value) RITZ_REFUSE_IF(
         !json_is_number(value) && !json_is_null(value) &&
             strcmp(key, "cost") != 0,
         RITZ_ERR_FORMAT, "'%.60s' of '%s' is no number", name, key);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_line(const json_t *line)
@@ -62,22 +60,21 @@ static ritz_status check_line(const json_t *line)
     static const char *const objects[] = {"errors", "estimates", "tolerance",
                                           "seconds", "cost"};
     static const char *const texts[] = {"tool", "method", "subject", "command"};
-    ritz_status status = RITZ_OK;
     const json_t *order = json_object_get(line, "order");
 
     for (size_t k = 0; k < sizeof objects / sizeof *objects; k++)
-        RITZ_TRY(check_values(line, objects[k]));
+        RITZ_CHECK(check_values(line, objects[k]));
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
         const json_t *text = json_object_get(line, texts[k]);
 
-        RITZ_FAIL_IF(text && !json_is_string(text) && !json_is_null(text),
-                     RITZ_ERR_FORMAT, "'%s' is no text", texts[k]);
+        RITZ_REFUSE_IF(text && !json_is_string(text) && !json_is_null(text),
+                       RITZ_ERR_FORMAT, "'%s' is no text", texts[k]);
     }
-    RITZ_FAIL_IF(order && !json_is_null(order) &&
-                     (!json_is_integer(order) || json_integer_value(order) < 0),
-                 RITZ_ERR_FORMAT, "'order' is no whole number");
-done:
-    return status;
+    RITZ_REFUSE_IF(
+        order && !json_is_null(order) &&
+            (!json_is_integer(order) || json_integer_value(order) < 0),
+        RITZ_ERR_FORMAT, "'order' is no whole number");
+    return RITZ_OK;
 }
 
 /* Whether errors keep the tolerance, where a line does not say so itself. */
@@ -114,14 +111,13 @@ static json_t *object_of(const json_t *line, const char *key)
 static ritz_status take(json_t *line, const char *path, int64_t number,
                         records *all)
 {
-    ritz_status status = RITZ_OK;
     const json_t *order = json_object_get(line, "order");
     record r = {.file = path, .line = number, .json = line};
     record *more = NULL;
 
-    RITZ_TRY(check_line(line));
-    RITZ_FAIL_IF(all->count == MOST_RECORDS, RITZ_ERR_FORMAT,
-                 "these are more than %d records", (int)MOST_RECORDS);
+    RITZ_CHECK(check_line(line));
+    RITZ_REFUSE_IF(all->count == MOST_RECORDS, RITZ_ERR_FORMAT,
+                   "these are more than %d records", (int)MOST_RECORDS);
     r.tool = text_of(line, "tool");
     r.method = text_of(line, "method");
     r.subject = text_of(line, "subject");
@@ -136,13 +132,12 @@ static ritz_status take(json_t *line, const char *path, int64_t number,
     r.runner_up = json_is_true(json_object_get(line, "runner_up"));
     if (all->count % 256 == 0) {
         more = realloc(all->item, (size_t)(all->count + 256) * sizeof *more);
-        RITZ_FAIL_IF(!more, RITZ_ERR_MEMORY, "no memory for records");
+        RITZ_REFUSE_IF(!more, RITZ_ERR_MEMORY, "no memory for records");
         all->item = more;
     }
     all->item[all->count++] = r;
     json_incref(line);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_line(const char *text, size_t length, const char *path,

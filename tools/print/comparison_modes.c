@@ -61,16 +61,13 @@ static void mark_kept(const ritz_compare_row *row,
 
 static ritz_status new_column(const char *title, int64_t count, column *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->hertz = calloc((size_t)count + 1, sizeof *out->hertz);
     out->kept = calloc((size_t)count + 1, sizeof *out->kept);
-    RITZ_FAIL_IF(!out->hertz || !out->kept, RITZ_ERR_MEMORY,
-                 "no memory for the report");
+    RITZ_REFUSE_IF(!out->hertz || !out->kept, RITZ_ERR_MEMORY,
+                   "no memory for the report");
     out->count = count;
     snprintf(out->title, sizeof out->title, "%s", title);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status body_column(const char *name, const ritz_reduced *body,
@@ -93,18 +90,16 @@ done:
 static ritz_status system_column(int64_t number, const ritz_comparison *c,
                                  column *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_configuration *first = &c->first_system.configuration[number];
     const ritz_configuration *second = &c->second_system.configuration[number];
     char title[32];
 
     snprintf(title, sizeof title, "#%lld", (long long)number + 1);
-    RITZ_TRY(new_column(title, second->K.nrow - second->num_rigid, out));
+    RITZ_CHECK(new_column(title, second->K.nrow - second->num_rigid, out));
     for (int64_t k = 0; k < out->count; k++)
         out->hertz[k] = ritz_eigen_hertz(second->lambda[second->num_rigid + k]);
     mark_kept(&c->row[number], first, second, out);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void say_column_line(cli_run *run, int64_t mode, int64_t count,

@@ -9,43 +9,34 @@ ritz_dampers *dampers_of(model *m)
 
 ritz_status dampers_tune(model *m, const cli_list *texts)
 {
-    ritz_status status = RITZ_OK;
-
     for (int k = 0; texts && k < texts->count; k++)
-        RITZ_TRY_IN("--damper",
-                    ritz_dampers_tune(dampers_of(m), texts->text[k]));
-done:
-    return status;
+        RITZ_CHECK_IN("--damper",
+                      ritz_dampers_tune(dampers_of(m), texts->text[k]));
+    return RITZ_OK;
 }
 
 ritz_status dampers_install(model *m, const cli_list *texts)
 {
-    ritz_status status = RITZ_OK;
-
-    RITZ_TRY(dampers_tune(m, texts));
+    RITZ_CHECK(dampers_tune(m, texts));
     if (m->kind == MODEL_COMPONENT)
-        RITZ_TRY(ritz_component_install(&m->component));
+        RITZ_CHECK(ritz_component_install(&m->component));
     else if (m->at)
-        RITZ_TRY(ritz_configuration_install(m->at));
+        RITZ_CHECK(ritz_configuration_install(m->at));
     else
-        RITZ_TRY(ritz_reduced_install(&m->reduced));
-done:
-    return status;
+        RITZ_CHECK(ritz_reduced_install(&m->reduced));
+    return RITZ_OK;
 }
 
 ritz_status dampers_keep(const model *m, dampers_bare *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reduced *r = &m->reduced;
 
     if (m->kind != MODEL_REDUCED)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_copy(&r->K, &out->K));
+    RITZ_CHECK(ritz_dense_copy(&r->K, &out->K));
     if (r->D.val)
-        RITZ_TRY(ritz_dense_copy(&r->D, &out->D));
-    RITZ_TRY(ritz_dampers_copy(&r->dampers, &out->dampers));
-done:
-    return status;
+        RITZ_CHECK(ritz_dense_copy(&r->D, &out->D));
+    return ritz_dampers_copy(&r->dampers, &out->dampers);
 }
 
 void dampers_restore(model *m, dampers_bare *bare)

@@ -382,7 +382,6 @@ done:
 ritz_status describe_system(const cli_run *run, json_t *keys,
                             const ritz_system *s)
 {
-    ritz_status status = RITZ_OK;
     json_t *components = json_array();
     json_t *sums = json_object();
 
@@ -418,14 +417,13 @@ ritz_status describe_system(const cli_run *run, json_t *keys,
         const ritz_configuration *c = &s->configuration[k];
         char name[2][RITZ_NAME_SIZE + 4];
 
-        RITZ_TRY(configuration(run, keys, c));
+        RITZ_CHECK(configuration(run, keys, c));
         snprintf(name[0], sizeof name[0], "%s/K", c->at);
         snprintf(name[1], sizeof name[1], "%s/M", c->at);
         dense(run, sums, name[0], &c->K);
         dense(run, sums, name[1], &c->M);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void describe_response(const cli_run *run, json_t *keys, const ritz_response *r)

@@ -58,24 +58,22 @@ static ritz_status choose(cli_run *run, const model *m, const char *method,
                           const ritz_response_request *request,
                           const ritz_response_engine **out)
 {
-    ritz_status status = RITZ_OK;
     const char *why = NULL;
     int kind = kind_of(m);
 
     *out = strcmp(method, "auto") == 0
                ? ritz_response_engine_choose(request, &why)
                : ritz_response_engine_find(method);
-    RITZ_FAIL_IF(!((*out)->takes & kind) && kind == RITZ_RESPONDS_COMPONENT,
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is a component: --method %s is not for it",
-                 run->operand[0], method);
-    RITZ_FAIL_IF(!((*out)->takes & kind), RITZ_ERR_ARGUMENT,
-                 "'%s' is small and dense: --method %s is for components",
-                 run->operand[0], method);
+    RITZ_REFUSE_IF(!((*out)->takes & kind) && kind == RITZ_RESPONDS_COMPONENT,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is a component: --method %s is not for it",
+                   run->operand[0], method);
+    RITZ_REFUSE_IF(!((*out)->takes & kind), RITZ_ERR_ARGUMENT,
+                   "'%s' is small and dense: --method %s is for components",
+                   run->operand[0], method);
     if (why && kind == RITZ_RESPONDS_COMPONENT)
         cli_say(run, "method %s: %s", (*out)->name, why);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status engines_start(cli_run *run, const model *m,
@@ -83,7 +81,6 @@ ritz_status engines_start(cli_run *run, const model *m,
                           const ritz_damping *damping, const ritz_grid *grid,
                           const ritz_second_order *view, ritz_responder **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response_engine *engine = NULL;
     const char *why = NULL; /* said before */
     ritz_response_request request = {
@@ -99,7 +96,7 @@ ritz_status engines_start(cli_run *run, const model *m,
         request.component = &m->component;
     else
         request.matrices = view;
-    RITZ_TRY(choose(run, m, asked->method, &request, &engine));
+    RITZ_CHECK(choose(run, m, asked->method, &request, &engine));
     if (request.component && strcmp(asked->method, "modal") == 0 &&
         (m->component.D.colptr || m->component.K4.colptr))
         cli_warn(run,
@@ -107,15 +104,14 @@ ritz_status engines_start(cli_run *run, const model *m,
                  "summed alone, --method krylov leaves out nothing",
                  run->operand[0]);
     if (strcmp(asked->method, "auto") == 0)
-        RITZ_TRY(ritz_responder_auto(&request, &why, out));
+        RITZ_CHECK(ritz_responder_auto(&request, &why, out));
     else
-        RITZ_TRY(ritz_responder_new(engine, &request, out));
+        RITZ_CHECK(ritz_responder_new(engine, &request, out));
     if (ritz_responder_remark(*out)[0]) {
         cli_say(run, "  %s", ritz_responder_remark(*out));
         cli_report_text(run, "note", ritz_responder_remark(*out));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status engines_respond(ritz_responder *responder,

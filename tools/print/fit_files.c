@@ -7,40 +7,35 @@
 
 ritz_status fit_files_add(fit_files *files, const char *path)
 {
-    ritz_status status = RITZ_OK;
     fit_file *more = NULL;
     struct stat there;
 
-    RITZ_TRY(cli_can_write(path));
+    RITZ_CHECK(cli_can_write(path));
     more = realloc(files->file, (size_t)(files->count + 1) * sizeof *more);
-    RITZ_FAIL_IF(!more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    RITZ_REFUSE_IF(!more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
     files->file = more;
     more[files->count] = (fit_file){strdup(path), lstat(path, &there) == 0};
-    RITZ_FAIL_IF(!more[files->count].path, RITZ_ERR_MEMORY,
-                 "no memory for '%s'", path);
+    RITZ_REFUSE_IF(!more[files->count].path, RITZ_ERR_MEMORY,
+                   "no memory for '%s'", path);
     files->count++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status fit_files_foresee(const cli_run *run, const char *prefix,
                               const char *report, const ritz_scene *scene,
                               fit_files *out)
 {
-    ritz_status status = RITZ_OK;
-
     if (run->output)
-        RITZ_TRY(fit_files_add(out, run->output));
+        RITZ_CHECK(fit_files_add(out, run->output));
     if (report)
-        RITZ_TRY(fit_files_add(out, report));
+        RITZ_CHECK(fit_files_add(out, report));
     for (int64_t k = 0; prefix && scene && k < scene->num_components; k++) {
         char path[FIT_PATH];
 
-        RITZ_TRY(fit_body_path(prefix, scene->component[k].name, path));
-        RITZ_TRY(fit_files_add(out, path));
+        RITZ_CHECK(fit_body_path(prefix, scene->component[k].name, path));
+        RITZ_CHECK(fit_files_add(out, path));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void fit_files_discard(const fit_files *files)

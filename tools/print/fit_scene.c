@@ -108,32 +108,28 @@ static void say_path(cli_run *run, const ritz_fitter *fitter,
 ritz_status fit_body_path(const char *prefix, const char *name,
                           char out[FIT_PATH])
 {
-    ritz_status status = RITZ_OK;
     int length = snprintf(out, FIT_PATH, "%s%s.h5", prefix, name);
 
-    RITZ_FAIL_IF(length < 0 || length >= FIT_PATH, RITZ_ERR_ARGUMENT,
-                 "--components '%.40s...' is too long", prefix);
-done:
-    return status;
+    RITZ_REFUSE_IF(length < 0 || length >= FIT_PATH, RITZ_ERR_ARGUMENT,
+                   "--components '%.40s...' is too long", prefix);
+    return RITZ_OK;
 }
 
 static ritz_status write_bodies(cli_run *run, const char *prefix,
                                 const ritz_scene *scene,
                                 const ritz_reduced *body)
 {
-    ritz_status status = RITZ_OK;
     ritz_stamp stamp = cli_stamp(run);
     json_t *files = json_array();
     char path[FIT_PATH];
 
     json_object_set_new(run->report, "component_files", files);
     for (int64_t k = 0; prefix && k < scene->num_components; k++) {
-        RITZ_TRY(fit_body_path(prefix, scene->component[k].name, path));
-        RITZ_TRY(ritz_container_write_reduced(path, &body[k], &stamp));
+        RITZ_CHECK(fit_body_path(prefix, scene->component[k].name, path));
+        RITZ_CHECK(ritz_container_write_reduced(path, &body[k], &stamp));
         json_array_append_new(files, cli_string(path));
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status fit_write_scene(cli_run *run, const char *prefix,

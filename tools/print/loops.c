@@ -48,13 +48,12 @@ ritz_status loops_read(cli_run *run, const loops_wish *asked, loop_run *out)
 static ritz_status join(cli_run *run, const loops_wish *asked, const model *m,
                         loop_run *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_ends plant = ends_of(m), inner;
 
     inner = ends_of(&out->controller);
-    RITZ_TRY_IN(asked->controller,
-                ritz_loop_match(&plant, &inner, asked->connect.count,
-                                asked->connect.text, &out->loop));
+    RITZ_CHECK_IN(asked->controller,
+                  ritz_loop_match(&plant, &inner, asked->connect.count,
+                                  asked->connect.text, &out->loop));
     out->loop.positive =
         asked->feedback && strcmp(asked->feedback, "positive") == 0;
     cli_say(run, "loop with '%s', %s feedback:", asked->controller,
@@ -65,34 +64,32 @@ static ritz_status join(cli_run *run, const loops_wish *asked, const model *m,
     for (int64_t k = 0; k < out->loop.num_driven; k++)
         cli_say(run, "  controller %s -> %s", inner.output[k],
                 plant.input[out->loop.driven[k]]);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A response of an unstable loop is the response of nothing. */
 static ritz_status judge(cli_run *run, const ritz_state_space *closed,
                          bool force)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
     const char *verdict = NULL;
 
-    RITZ_TRY(ritz_probe_states(closed, &probe));
+    RITZ_CHECK(ritz_probe_states(closed, &probe));
     ritz_probe_print(&probe, text);
     verdict = ritz_stability_name(probe.verdict);
     cli_report_text(run, "stability", verdict);
     cli_say(run, "the loop is %s: %s", verdict, text);
-    RITZ_FAIL_IF(probe.verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
-                 "the loop is unstable, %s: it has no steady response; compute "
-                 "it all the same with --force",
-                 text);
+    RITZ_REFUSE_IF(
+        probe.verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
+        "the loop is unstable, %s: it has no steady response; compute "
+        "it all the same with --force",
+        text);
     if (probe.verdict == RITZ_UNSTABLE)
         cli_warn(run,
                  "the loop is unstable, %s: this is the response of nothing",
                  text);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Poles of the closed loop, if its plant has states. */
@@ -174,14 +171,13 @@ static void say(cli_run *run, json_t *keys, const char *key, const char *text,
 ritz_status loops_report(cli_run *run, const loop_run *loop,
                          ritz_responder *plant, const ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
     ritz_margins m = {0};
     json_t *keys = NULL;
 
     if (!loop->closed)
         return RITZ_OK;
-    RITZ_TRY(ritz_loop_margins(&loop->loop, plant, loop->inner, response->count,
-                               response->hertz, &m));
+    RITZ_CHECK(ritz_loop_margins(&loop->loop, plant, loop->inner,
+                                 response->count, response->hertz, &m));
     keys = json_object();
     json_object_set_new(run->report, "loop", keys);
     cli_say(run, "loop, in this range: %38s", "at Hz");
@@ -193,8 +189,7 @@ ritz_status loops_report(cli_run *run, const loop_run *loop,
     say(run, keys, "gain_down", "gain margin downwards, a factor of",
         m.gain_down, m.gain_down_hz);
     say(run, keys, "phase", "phase margin, degrees", m.phase, m.phase_hz);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void loop_run_free(loop_run *loop)

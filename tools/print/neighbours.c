@@ -13,22 +13,20 @@ typedef struct neighbour {
 /* "PORT=FILE:PORT": the last ':' ends the file's name. */
 static ritz_status split(const char *text, neighbour *out)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strchr(text, '=');
     const char *colon = strrchr(text, ':');
     size_t length = equals ? (size_t)(equals - text) : 0;
     size_t path = equals && colon > equals ? (size_t)(colon - equals - 1) : 0;
 
-    RITZ_FAIL_IF(length == 0 || path == 0 || colon[1] == '\0',
-                 RITZ_ERR_ARGUMENT, "'%s' is not PORT=FILE:PORT", text);
-    RITZ_FAIL_IF(length >= sizeof out->port || path >= sizeof out->path ||
-                     strlen(colon + 1) >= sizeof out->other,
-                 RITZ_ERR_ARGUMENT, "'%.60s...' has too long a name", text);
+    RITZ_REFUSE_IF(length == 0 || path == 0 || colon[1] == '\0',
+                   RITZ_ERR_ARGUMENT, "'%s' is not PORT=FILE:PORT", text);
+    RITZ_REFUSE_IF(length >= sizeof out->port || path >= sizeof out->path ||
+                       strlen(colon + 1) >= sizeof out->other,
+                   RITZ_ERR_ARGUMENT, "'%.60s...' has too long a name", text);
     snprintf(out->port, sizeof out->port, "%.*s", (int)length, text);
     snprintf(out->path, sizeof out->path, "%.*s", (int)path, equals + 1);
     snprintf(out->other, sizeof out->other, "%s", colon + 1);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add(cli_run *run, const char *text,

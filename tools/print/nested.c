@@ -7,20 +7,18 @@
 
 ritz_status nested_take(const char *path, int64_t order, model *m)
 {
-    ritz_status status = RITZ_OK;
     ritz_reduced prefix = {0};
 
     if (order == 0)
         return RITZ_OK;
-    RITZ_FAIL_IF(m->kind != MODEL_REDUCED, RITZ_ERR_ARGUMENT,
-                 "'%s' is no reduced component, --order has no columns to "
-                 "choose from",
-                 path);
-    RITZ_TRY_IN(path, ritz_reduced_prefix(&m->reduced, order, &prefix));
+    RITZ_REFUSE_IF(m->kind != MODEL_REDUCED, RITZ_ERR_ARGUMENT,
+                   "'%s' is no reduced component, --order has no columns to "
+                   "choose from",
+                   path);
+    RITZ_CHECK_IN(path, ritz_reduced_prefix(&m->reduced, order, &prefix));
     ritz_reduced_free(&m->reduced);
     m->reduced = prefix;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A row a measure and a column an order, some orders at a time. */

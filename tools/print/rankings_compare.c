@@ -171,20 +171,17 @@ static void warn_numbers(cli_run *run, const contest *all)
 
 static ritz_status check(const contest *all)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < all->count; k++) {
-        RITZ_FAIL_IF(all->ranking[k]->count == 0, RITZ_ERR_ARGUMENT,
-                     "'%s' has exact values and no modes: nothing to compare",
-                     all->name[k]);
-        RITZ_FAIL_IF(!all->track[k] != !all->track[0], RITZ_ERR_ARGUMENT,
-                     "'%s' has tracks and '%s' has none: modes cannot be "
-                     "matched",
-                     all->name[all->track[k] ? k : 0],
-                     all->name[all->track[k] ? 0 : k]);
+        RITZ_REFUSE_IF(all->ranking[k]->count == 0, RITZ_ERR_ARGUMENT,
+                       "'%s' has exact values and no modes: nothing to compare",
+                       all->name[k]);
+        RITZ_REFUSE_IF(!all->track[k] != !all->track[0], RITZ_ERR_ARGUMENT,
+                       "'%s' has tracks and '%s' has none: modes cannot be "
+                       "matched",
+                       all->name[all->track[k] ? k : 0],
+                       all->name[all->track[k] ? 0 : k]);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top)

@@ -6,15 +6,12 @@
 
 static ritz_status contest_new(int64_t count, contest *out)
 {
-    ritz_status status = RITZ_OK;
-
     out->ranking = calloc((size_t)count + 1, sizeof(void *));
     out->track = calloc((size_t)count + 1, sizeof(void *));
     out->name = calloc((size_t)count + 1, sizeof *out->name);
-    RITZ_FAIL_IF(!out->ranking || !out->track || !out->name, RITZ_ERR_MEMORY,
-                 "no memory for rankings");
-done:
-    return status;
+    RITZ_REFUSE_IF(!out->ranking || !out->track || !out->name, RITZ_ERR_MEMORY,
+                   "no memory for rankings");
+    return RITZ_OK;
 }
 
 static void add(const ritz_ranking *ranking, const int64_t *track,

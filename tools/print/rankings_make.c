@@ -96,29 +96,27 @@ static void say_group(const subject *s, const ranked *group)
 static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
                               ranked *out)
 {
-    ritz_status status = RITZ_OK;
     const model *m = s->m;
     bool system = m->kind == MODEL_SYSTEM;
     int64_t count = system && !m->at ? m->system.num_configurations : 1;
     ritz_rankings *all = &out->all;
 
     all->item = calloc((size_t)count + 1, sizeof *all->item);
-    RITZ_FAIL_IF(!all->item, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_REFUSE_IF(!all->item, RITZ_ERR_MEMORY, "no memory for rankings");
     for (int64_t k = 0; k < count; k++) {
         const ritz_configuration *at = m->at    ? m->at
                                        : system ? &m->system.configuration[k]
                                                 : NULL;
 
         all->count++;
-        RITZ_TRY(rank_at(s, ranker, at, &all->item[k]));
+        RITZ_CHECK(rank_at(s, ranker, at, &all->item[k]));
     }
     if (s->asked->tracks)
-        RITZ_TRY(rankings_read_tracks(s->run, s->asked->tracks, all));
+        RITZ_CHECK(rankings_read_tracks(s->run, s->asked->tracks, all));
     if (count > 1)
-        RITZ_TRY(ritz_rankings_largest(all, &out->largest, &out->where,
-                                       &out->track));
-done:
-    return status;
+        RITZ_CHECK(ritz_rankings_largest(all, &out->largest, &out->where,
+                                         &out->track));
+    return RITZ_OK;
 }
 
 /* Dampers of every configuration that is ranked; what is left out is said. */
@@ -149,43 +147,39 @@ done:
 
 static ritz_status set_damping(subject *s, const char *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *own = s->m->kind == MODEL_SYSTEM ? s->m->system.damping
                                                  : s->m->reduced.damping;
 
-    RITZ_TRY_IN(asked ? "--damping" : "damping of the model",
-                ritz_damping_parse(asked ? asked : own, &s->choice.damping));
+    RITZ_CHECK_IN(asked ? "--damping" : "damping of the model",
+                  ritz_damping_parse(asked ? asked : own, &s->choice.damping));
     ritz_damping_print(&s->choice.damping, s->damping);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_groups(subject *s, rank_result *out)
 {
-    ritz_status status = RITZ_OK;
     const rank_wish *asked = s->asked;
     int64_t dampings = asked->damping.count > 0 ? asked->damping.count : 1;
 
     out->group =
         calloc((size_t)(asked->num_rankers * dampings) + 1, sizeof *out->group);
-    RITZ_FAIL_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_REFUSE_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
     for (int64_t d = 0; d < dampings; d++) {
-        RITZ_TRY(set_damping(
+        RITZ_CHECK(set_damping(
             s, asked->damping.count > 0 ? asked->damping.text[d] : NULL));
         for (int64_t r = 0; r < asked->num_rankers; r++) {
             ranked *group = &out->group[out->count++];
 
-            RITZ_TRY_IN(s->run->operand[0],
-                        make_group(s, asked->ranker[r], group));
+            RITZ_CHECK_IN(s->run->operand[0],
+                          make_group(s, asked->ranker[r], group));
             if (out->count > 1)
                 cli_say(s->run, "%s", "");
             say_group(s, group);
         }
     }
     if (asked->keep > 0)
-        RITZ_TRY_IN(s->run->operand[0], reweigh(s));
-done:
-    return status;
+        RITZ_CHECK_IN(s->run->operand[0], reweigh(s));
+    return RITZ_OK;
 }
 
 /* Keys of the report: those of the first group, and all others in a list. */
@@ -275,23 +269,21 @@ static ritz_status check_values(const rank_wish *asked, const model *m)
 {
     const char *what =
         m->kind == MODEL_STATES ? "a state space" : "a component";
-    ritz_status status = RITZ_OK;
 
-    RITZ_FAIL_IF(asked->num_rankers > 1 ||
-                     asked->ranker[0] != &ritz_ranker_hankel,
-                 RITZ_ERR_ARGUMENT,
-                 "%s is not in modes: it has Hankel values, and nothing else "
-                 "ranks it; reduce it to modes first",
-                 what);
-    RITZ_FAIL_IF(asked->at || asked->tracks || asked->keep > 0 ||
-                     asked->chart || asked->damping.count > 1 ||
-                     asked->input_weights || asked->output_weights,
-                 RITZ_ERR_ARGUMENT,
-                 "%s is not in modes: --at, --tracks, --reweigh, --chart, "
-                 "weights and several dampings go with those",
-                 what);
-done:
-    return status;
+    RITZ_REFUSE_IF(asked->num_rankers > 1 ||
+                       asked->ranker[0] != &ritz_ranker_hankel,
+                   RITZ_ERR_ARGUMENT,
+                   "%s is not in modes: it has Hankel values, and nothing else "
+                   "ranks it; reduce it to modes first",
+                   what);
+    RITZ_REFUSE_IF(asked->at || asked->tracks || asked->keep > 0 ||
+                       asked->chart || asked->damping.count > 1 ||
+                       asked->input_weights || asked->output_weights,
+                   RITZ_ERR_ARGUMENT,
+                   "%s is not in modes: --at, --tracks, --reweigh, --chart, "
+                   "weights and several dampings go with those",
+                   what);
+    return RITZ_OK;
 }
 
 static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,

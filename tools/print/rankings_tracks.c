@@ -37,11 +37,10 @@ static int64_t find(const ritz_rankings *all, const char *at)
 
 static ritz_status put(const char *line, int64_t most, ritz_rankings *all)
 {
-    ritz_status status = RITZ_OK;
     char field[FIELDS][FIELD];
     int64_t track = 0, mode = 0, at = -1;
 
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         !take_line(line, field) || !ritz_text_whole(field[0], &track) ||
             !ritz_text_whole(field[2], &mode) || track < 1 || track > most ||
             mode < 1,
@@ -49,44 +48,37 @@ static ritz_status put(const char *line, int64_t most, ritz_rankings *all)
     at = find(all, field[1]);
     if (at < 0)
         return RITZ_OK;
-    RITZ_FAIL_IF(mode > all->item[at].count, RITZ_ERR_FORMAT,
-                 "mode %lld at '%s' is not there: the tracks are those of "
-                 "another system",
-                 (long long)mode, field[1]);
+    RITZ_REFUSE_IF(mode > all->item[at].count, RITZ_ERR_FORMAT,
+                   "mode %lld at '%s' is not there: the tracks are those of "
+                   "another system",
+                   (long long)mode, field[1]);
     all->track[at][mode - 1] = track - 1;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check(const ritz_rankings *all)
 {
-    ritz_status status = RITZ_OK;
-
     for (int64_t k = 0; k < all->count; k++)
         for (int64_t i = 0; i < all->item[k].count; i++)
-            RITZ_FAIL_IF(all->track[k][i] < 0, RITZ_ERR_FORMAT,
-                         "mode %lld at '%s' has no track", (long long)i + 1,
-                         all->item[k].at);
-done:
-    return status;
+            RITZ_REFUSE_IF(all->track[k][i] < 0, RITZ_ERR_FORMAT,
+                           "mode %lld at '%s' has no track", (long long)i + 1,
+                           all->item[k].at);
+    return RITZ_OK;
 }
 
 static ritz_status make_room(ritz_rankings *all)
 {
-    ritz_status status = RITZ_OK;
-
     all->track = calloc((size_t)all->count + 1, sizeof *all->track);
-    RITZ_FAIL_IF(!all->track, RITZ_ERR_MEMORY, "no memory for tracks");
+    RITZ_REFUSE_IF(!all->track, RITZ_ERR_MEMORY, "no memory for tracks");
     for (int64_t k = 0; k < all->count; k++) {
         size_t m = (size_t)all->item[k].count;
 
         all->track[k] = malloc((m + 1) * sizeof **all->track);
-        RITZ_FAIL_IF(!all->track[k], RITZ_ERR_MEMORY, "no memory for tracks");
+        RITZ_REFUSE_IF(!all->track[k], RITZ_ERR_MEMORY, "no memory for tracks");
         for (size_t i = 0; i < m; i++)
             all->track[k][i] = -1;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status rankings_read_tracks(cli_run *run, const char *path,

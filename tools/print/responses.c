@@ -18,12 +18,11 @@ static const double pi = 3.14159265358979323846;
 static ritz_status take_size(const ritz_response *r, const char *text,
                              double *size)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strrchr(text, '=');
     double value = 0.0;
     int64_t found = -1;
 
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         !equals || !ritz_text_real(equals + 1, &value) || !(value > 0.0),
         RITZ_ERR_ARGUMENT,
         "--input-size: '%s' is not of the form NAME=X with X above 0", text);
@@ -31,12 +30,11 @@ static ritz_status take_size(const ritz_response *r, const char *text,
         if (strlen(r->input[j]) == (size_t)(equals - text) &&
             strncmp(r->input[j], text, (size_t)(equals - text)) == 0)
             found = j;
-    RITZ_FAIL_IF(found < 0, RITZ_ERR_ARGUMENT,
-                 "--input-size: there is no input '%.*s'", (int)(equals - text),
-                 text);
+    RITZ_REFUSE_IF(found < 0, RITZ_ERR_ARGUMENT,
+                   "--input-size: there is no input '%.*s'",
+                   (int)(equals - text), text);
     size[found] = value;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Limits of the outputs; NULL if the model has no place for any. */
@@ -52,22 +50,20 @@ static ritz_status find_scales(const responses_wish *asked, const model *m,
                                const ritz_response *r, double *size,
                                ritz_scales *out)
 {
-    ritz_status status = RITZ_OK;
     const double *limit = limits_of(m);
     bool any = false;
 
     for (int64_t j = 0; j < r->num_inputs; j++)
         size[j] = 1.0;
     for (int k = 0; k < asked->input_size.count; k++)
-        RITZ_TRY(take_size(r, asked->input_size.text[k], size));
+        RITZ_CHECK(take_size(r, asked->input_size.text[k], size));
     for (int64_t i = 0; asked->over_limits && limit && i < r->num_outputs; i++)
         any = any || !isnan(limit[i]);
-    RITZ_FAIL_IF(asked->over_limits && !any, RITZ_ERR_ARGUMENT,
-                 "--over-limits: no output of the model has a limit");
+    RITZ_REFUSE_IF(asked->over_limits && !any, RITZ_ERR_ARGUMENT,
+                   "--over-limits: no output of the model has a limit");
     *out = (ritz_scales){.output = asked->over_limits ? limit : NULL,
                          .input = size};
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void add_measure(cli_run *run, const char *name, double value,
@@ -119,7 +115,6 @@ ritz_status responses_states(const model *m, const ritz_damping *damping,
                              ritz_state_space *made,
                              const ritz_state_space **out)
 {
-    ritz_status status = RITZ_OK;
     ritz_second_order view = {0};
     ritz_reduced bare = {0}; /* borrowed; dampers are in K and D already */
 
@@ -131,7 +126,7 @@ ritz_status responses_states(const model *m, const ritz_damping *damping,
     if (m->kind == MODEL_COMPONENT) {
         if (m->component.num_dofs > MOST_DOFS || m->component.K4.colptr)
             return RITZ_OK;
-        RITZ_TRY(ritz_state_space_of_component(&m->component, damping, made));
+        RITZ_CHECK(ritz_state_space_of_component(&m->component, damping, made));
     } else {
         view = model_look(m).matrices;
         if (view.K4 && view.K4->val)
@@ -141,11 +136,10 @@ ritz_status responses_states(const model *m, const ritz_damping *damping,
         bare.io = *view.io;
         if (view.D)
             bare.D = *view.D;
-        RITZ_TRY(ritz_state_space_of_reduced(&bare, damping, made));
+        RITZ_CHECK(ritz_state_space_of_reduced(&bare, damping, made));
     }
     *out = made;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static json_t *say_zeros(cli_run *run, int64_t count,
@@ -238,21 +232,19 @@ done:
 ritz_status responses_zeros(cli_run *run, const responses_wish *asked,
                             const model *m, const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *whole = &m->component;
     json_t *zeros = NULL;
 
     if (!asked->zeros)
         return RITZ_OK;
-    RITZ_FAIL_IF(m->kind == MODEL_COMPONENT &&
-                     (whole->num_dofs > MOST_DOFS || whole->K4.colptr),
-                 RITZ_ERR_ARGUMENT,
-                 "--zeros: of a component with structural damping, or of more "
-                 "than %d dofs, there are none to be had: reduce it",
-                 MOST_DOFS);
+    RITZ_REFUSE_IF(
+        m->kind == MODEL_COMPONENT &&
+            (whole->num_dofs > MOST_DOFS || whole->K4.colptr),
+        RITZ_ERR_ARGUMENT,
+        "--zeros: of a component with structural damping, or of more "
+        "than %d dofs, there are none to be had: reduce it",
+        MOST_DOFS);
     zeros = json_array();
     json_object_set_new(run->report, "zeros", zeros);
-    RITZ_TRY(list(run, m, damping, zeros));
-done:
-    return status;
+    return list(run, m, damping, zeros);
 }

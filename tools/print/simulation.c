@@ -37,15 +37,14 @@ static int64_t coordinates(const ritz_simulated *s)
 static ritz_status take_input(cli_run *run, const ritz_simulated *subject,
                               const char *text, simulation_drive *drive)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
     const char(*name)[RITZ_NAME_SIZE] = input_names(subject, &drive->count);
     char word[RITZ_NAME_SIZE] = "";
     int64_t j = 0;
 
-    RITZ_FAIL_IF(!equals || length == 0 || length >= sizeof word,
-                 RITZ_ERR_ARGUMENT, "'%s' is not NAME=SIGNAL", text);
+    RITZ_REFUSE_IF(!equals || length == 0 || length >= sizeof word,
+                   RITZ_ERR_ARGUMENT, "'%s' is not NAME=SIGNAL", text);
     memcpy(word, text, length);
     while (j < drive->count && strcmp(name[j], word) != 0)
         j++;
@@ -62,50 +61,45 @@ static ritz_status take_input(cli_run *run, const ritz_simulated *subject,
                          nearest ? ", is '" : "", nearest ? nearest : "",
                          nearest ? "' meant?" : "");
     }
-    RITZ_FAIL_IF(drive->signal[j].kind != RITZ_SIGNAL_ZERO, RITZ_ERR_ARGUMENT,
-                 "input '%s' is given twice", word);
-    RITZ_TRY(ritz_signal_parse(equals + 1, &drive->signal[j]));
+    RITZ_REFUSE_IF(drive->signal[j].kind != RITZ_SIGNAL_ZERO, RITZ_ERR_ARGUMENT,
+                   "input '%s' is given twice", word);
+    RITZ_CHECK(ritz_signal_parse(equals + 1, &drive->signal[j]));
     if (ritz_signal_is_file(equals + 1))
-        RITZ_TRY(cli_input(run, equals + 1));
-done:
-    return status;
+        RITZ_CHECK(cli_input(run, equals + 1));
+    return RITZ_OK;
 }
 
 ritz_status simulation_inputs(cli_run *run, const ritz_simulated *subject,
                               const cli_list *texts, simulation_drive *drive)
 {
-    ritz_status status = RITZ_OK;
-
     (void)input_names(subject, &drive->count);
     drive->signal = calloc((size_t)drive->count + 1, sizeof *drive->signal);
-    RITZ_FAIL_IF(!drive->signal, RITZ_ERR_MEMORY, "no memory for inputs");
+    RITZ_REFUSE_IF(!drive->signal, RITZ_ERR_MEMORY, "no memory for inputs");
     for (int k = 0; k < texts->count; k++)
-        RITZ_TRY_IN("--input", take_input(run, subject, texts->text[k], drive));
-done:
-    return status;
+        RITZ_CHECK_IN("--input",
+                      take_input(run, subject, texts->text[k], drive));
+    return RITZ_OK;
 }
 
 /* "K" or "K*A" */
 static ritz_status parse_mode(const char *text, int64_t *mode, double *amount)
 {
-    ritz_status status = RITZ_OK;
     char word[RITZ_NAME_SIZE];
     char *star = NULL;
 
     *amount = 1.0;
-    RITZ_FAIL_IF(strlen(text) >= sizeof word, RITZ_ERR_ARGUMENT,
-                 "'%s' is no mode", text);
+    RITZ_REFUSE_IF(strlen(text) >= sizeof word, RITZ_ERR_ARGUMENT,
+                   "'%s' is no mode", text);
     (void)snprintf(word, sizeof word, "%s", text);
     star = strchr(word, '*');
     if (star)
         *star = '\0';
-    RITZ_FAIL_IF(!ritz_text_whole(word, mode) || *mode < 1 ||
-                     (star && !ritz_text_real(star + 1, amount)),
-                 RITZ_ERR_ARGUMENT,
-                 "'mode:%s' is not a mode and an amplitude, as mode:7*0.1",
-                 text);
-done:
-    return status;
+    RITZ_REFUSE_IF(!ritz_text_whole(word, mode) || *mode < 1 ||
+                       (star && !ritz_text_real(star + 1, amount)),
+                   RITZ_ERR_ARGUMENT,
+                   "'mode:%s' is not a mode and an amplitude, as mode:7*0.1",
+                   text);
+    return RITZ_OK;
 }
 
 static ritz_status take_mode(const ritz_simulated *s, const char *text,
@@ -179,21 +173,18 @@ ritz_status simulation_initial(cli_run *run, const ritz_simulated *subject,
                                const char *text, simulation_drive *drive)
 {
     static const char mode[] = "mode:";
-    ritz_status status = RITZ_OK;
     int64_t n = coordinates(subject);
 
     if (!text)
         return RITZ_OK;
     drive->x0 = calloc((size_t)n + 1, sizeof *drive->x0);
     drive->v0 = calloc((size_t)n + 1, sizeof *drive->v0);
-    RITZ_FAIL_IF(!drive->x0 || !drive->v0, RITZ_ERR_MEMORY,
-                 "no memory for initial values");
+    RITZ_REFUSE_IF(!drive->x0 || !drive->v0, RITZ_ERR_MEMORY,
+                   "no memory for initial values");
     if (strncmp(text, mode, sizeof mode - 1) == 0)
         return take_mode(subject, text + sizeof mode - 1, drive);
-    RITZ_TRY(cli_input(run, text));
-    RITZ_TRY(take_values(text, n, drive));
-done:
-    return status;
+    RITZ_CHECK(cli_input(run, text));
+    return take_values(text, n, drive);
 }
 
 void simulation_free(simulation_drive *drive)

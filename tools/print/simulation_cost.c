@@ -27,15 +27,14 @@ done:
 static ritz_status say_row(cli_run *run, const ritz_simulated *subject,
                            ritz_simulation_request request, json_t *rows)
 {
-    ritz_status status = RITZ_OK;
     const ritz_integrator *integrator = request.integrator;
     json_t *item = json_object();
     double spent = 0.0, error = 0.0;
 
     json_array_append_new(rows, item);
-    RITZ_TRY(ritz_simulate_step_cost(subject->model, subject->damping,
-                                     integrator, request.step, &spent));
-    RITZ_TRY(difference(subject, request, &error));
+    RITZ_CHECK(ritz_simulate_step_cost(subject->model, subject->damping,
+                                       integrator, request.step, &spent));
+    RITZ_CHECK(difference(subject, request, &error));
     cli_say(run, "%-20s %12.4g %14.3g %12.2e", integrator->name, request.step,
             spent / request.step, error);
     json_object_set_new(item, "name", cli_string(integrator->name));
@@ -43,19 +42,17 @@ static ritz_status say_row(cli_run *run, const ritz_simulated *subject,
     json_object_set_new(item, "seconds_per_second",
                         cli_real(spent / request.step));
     json_object_set_new(item, "error", cli_real(error));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A simulator that makes and factors its mass matrix at each step. */
 static ritz_status say_anew(cli_run *run, const ritz_cost *cost)
 {
-    ritz_status status = RITZ_OK;
     double factor = 0.0, total = 0.0;
 
     if (cost->order < 1)
         return RITZ_OK;
-    RITZ_TRY(ritz_simulate_refactor_cost(cost->order, &factor));
+    RITZ_CHECK(ritz_simulate_refactor_cost(cost->order, &factor));
     total = cost->seconds_per_second + factor / cost->step;
     cli_say(run,
             "\na simulator that factors the mass matrix anew at each such step "
@@ -64,8 +61,7 @@ static ritz_status say_anew(cli_run *run, const ritz_cost *cost)
             cost->integrator, total);
     json_object_set_new(run->report, "seconds_per_second_refactored_estimate",
                         cli_real(total));
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static void say_head(const cli_run *run, const ritz_cost *cost)
@@ -99,13 +95,12 @@ ritz_status simulation_costs(cli_run *run, const ritz_simulated *subject,
                              simulation_drive *drive, bool driven,
                              const double band_hz[2], double seconds)
 {
-    ritz_status status = RITZ_OK;
     ritz_cost cost = {0};
     json_t *rows = json_array();
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
 
     json_object_set_new(run->report, "integrators", rows);
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_simulate_cost(subject->model, subject->damping, band_hz, &cost));
     json_object_set_new(run->report, "cost", model_cost_json(&cost));
     json_object_set_new(run->line, "cost", model_cost_json(&cost));
@@ -122,24 +117,20 @@ ritz_status simulation_costs(cli_run *run, const ritz_simulated *subject,
         request.step = cost.step_accurate;
         if ((*i)->is_explicit)
             request.step = fmin(request.step, margin * cost.step_explicit);
-        RITZ_TRY_IN((*i)->name, say_row(run, subject, request, rows));
+        RITZ_CHECK_IN((*i)->name, say_row(run, subject, request, rows));
     }
-    RITZ_TRY(say_anew(run, &cost));
-done:
-    return status;
+    return say_anew(run, &cost);
 }
 
 ritz_status simulation_record_cost(cli_run *run, const ritz_simulated *subject,
                                    const double band_hz[2])
 {
-    ritz_status status = RITZ_OK;
     ritz_cost cost = {0};
 
     if (!run->record || !subject->model)
         return RITZ_OK;
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_simulate_cost(subject->model, subject->damping, band_hz, &cost));
     json_object_set_new(run->line, "cost", model_cost_json(&cost));
-done:
-    return status;
+    return RITZ_OK;
 }

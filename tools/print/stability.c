@@ -104,7 +104,6 @@ ritz_status stability_check(cli_run *run, const ritz_audit *audit,
                             const char *method, bool force)
 {
     static const char unproven[] = "lanczos-two-sided";
-    ritz_status status = RITZ_OK;
     bool fails = checks_first(audit) != NULL;
     const char *verdict = NULL;
     char text[SUM_SIZE];
@@ -113,13 +112,13 @@ ritz_status stability_check(cli_run *run, const ritz_audit *audit,
     cli_report_text(run, "stability", verdict);
     json_object_set_new(run->report, "probe", checks_json(audit));
     checks_say(run, audit);
-    RITZ_FAIL_IF(fails && !force, RITZ_ERR_ARGUMENT,
-                 "'%s' is unstable: %s; export it all the same with --force",
-                 run->operand[0], text);
-    RITZ_FAIL_IF(strcmp(method, unproven) == 0 && !force, RITZ_ERR_ARGUMENT,
-                 "'%s' was made by %s, which promises no stability (now %s: "
-                 "%s); export it all the same with --force",
-                 run->operand[0], method, verdict, text);
+    RITZ_REFUSE_IF(fails && !force, RITZ_ERR_ARGUMENT,
+                   "'%s' is unstable: %s; export it all the same with --force",
+                   run->operand[0], text);
+    RITZ_REFUSE_IF(strcmp(method, unproven) == 0 && !force, RITZ_ERR_ARGUMENT,
+                   "'%s' was made by %s, which promises no stability (now %s: "
+                   "%s); export it all the same with --force",
+                   run->operand[0], method, verdict, text);
     if (fails)
         cli_warn(run, "'%s' is unstable: %s", run->operand[0], text);
     else
@@ -128,6 +127,5 @@ ritz_status stability_check(cli_run *run, const ritz_audit *audit,
         if (audit->check[k].verdict == RITZ_WARN)
             cli_warn(run, "%s (%s, %s)", audit->check[k].says,
                      audit->check[k].name, audit->check[k].where);
-done:
-    return status;
+    return RITZ_OK;
 }
