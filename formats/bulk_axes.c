@@ -15,6 +15,8 @@
  */
 #include "formats/bulk_parts.h"
 
+#include "base/tolerances.h"
+
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -42,7 +44,7 @@ static void divide(double a[static 3], double by)
 static void turn(double degrees, double *sine, double *cosine)
 {
     static const double EXACT[] = {0.0, 1.0, 0.0, -1.0, 0.0};
-    double angle = degrees * (3.14159265358979323846 / 180.0);
+    double angle = degrees * (RITZ_PI / 180.0);
     double quarters = degrees / 90.0;
     int quarter = 0;
 

@@ -1,6 +1,8 @@
 /* DMIG cards one by one: headers by name, and the terms of their columns. */
 #include "formats/dmig_parts.h"
 
+#include "base/tolerances.h"
+
 #include <ctype.h>
 #include <math.h>
 
@@ -100,7 +102,7 @@ static bool is_empty_group(const ritz_card *card, int64_t k)
 static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
                             const ritz_card *card, int64_t k, ritz_dof col)
 {
-    static const double RADIANS = 3.14159265358979323846 / 180.0;
+    static const double RADIANS = RITZ_PI / 180.0;
     ritz_dmig_term new = {.col = col, .matrix = owner - all->header};
     double a = 0.0;
     double b = 0.0;

@@ -3,6 +3,8 @@
    outputs, energies. */
 #include "base/draft.h"
 
+#include "base/tolerances.h"
+
 #include <ritz/export.h>
 
 #include <errno.h>
@@ -24,7 +26,7 @@ static void print_head(FILE *file, const ritz_response *response)
 
 static void print_rows(FILE *file, const ritz_response *response)
 {
-    const double degree = 180.0 / 3.14159265358979323846;
+    const double degree = 180.0 / RITZ_PI;
     int64_t size = response->num_outputs * response->num_inputs;
 
     for (int64_t k = 0; k < response->count; k++) {

@@ -1,20 +1,22 @@
 #include "assembly/turns.h"
 
+#include "base/tolerances.h"
+
 #include <math.h>
 #include <stdint.h>
 
 void ritz_turn_about(const double axis[static 3], double degrees,
                      double R[static 9])
 {
-    const double pi = 3.14159265358979323846;
     /* quarter turns are exact, so that 90 degrees swaps axes and no more */
     double quarter = fmod(degrees, 90.0) == 0.0
                          ? fmod(fmod(degrees / 90.0, 4.0) + 4.0, 4.0)
                          : -1.0;
     static const double sines[] = {0.0, 1.0, 0.0, -1.0, 0.0};
-    double s = quarter >= 0.0 ? sines[(int)quarter] : sin(degrees * pi / 180.0);
-    double c =
-        quarter >= 0.0 ? sines[(int)quarter + 1] : cos(degrees * pi / 180.0);
+    double s =
+        quarter >= 0.0 ? sines[(int)quarter] : sin(degrees * RITZ_PI / 180.0);
+    double c = quarter >= 0.0 ? sines[(int)quarter + 1]
+                              : cos(degrees * RITZ_PI / 180.0);
     const double skew[9] = {0.0,      -axis[2], axis[1], axis[2], 0.0,
                             -axis[0], -axis[1], axis[0], 0.0};
 

@@ -26,6 +26,7 @@
  * of them has one pole far out).
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "bases/gramian_range.h"
 #include "bases/orthonormal.h"
 #include "bases/states_asked.h"
@@ -38,7 +39,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 /* Of the least damping: rounding above this is not small. */
 static const double small = 1e-3;
 /* How much rounding a pole must be left of. */
@@ -105,11 +105,11 @@ static ritz_status check_poles(const ritz_states *states, one_sided *s)
                  RITZ_ERR_ARGUMENT,
                  "a pole grows at %.4g rad/s (%.4g Hz), the Gramian is "
                  "infinite: shift by more than that",
-                 growth, growth / (2.0 * pi));
+                 growth, growth / (2.0 * RITZ_PI));
     RITZ_FAIL_IF(s->damping <= rounding, RITZ_ERR_ARGUMENT,
                  "the Gramian is infinite: motion at %.4g Hz has no damping, "
                  "give some or a shift above 0 Hz",
-                 hypot(poles.re[k], poles.im[k]) / (2.0 * pi));
+                 hypot(poles.re[k], poles.im[k]) / (2.0 * RITZ_PI));
 done:
     ritz_eigenvalues_free(&poles);
     return status;

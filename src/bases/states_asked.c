@@ -1,6 +1,6 @@
 #include "bases/states_asked.h"
 
-static const double pi = 3.14159265358979323846;
+#include "base/tolerances.h"
 
 static ritz_status check(const ritz_request *request)
 {
@@ -31,6 +31,6 @@ ritz_status ritz_states_asked(const ritz_request *request, ritz_states *out)
     RITZ_CHECK(check(request));
     RITZ_CHECK(ritz_request_damping(request, &damping));
     if (request->choice.num_shifts > 0)
-        alpha = 2.0 * pi * request->choice.shift_hz[0];
+        alpha = 2.0 * RITZ_PI * request->choice.shift_hz[0];
     return ritz_states_new(request->component, &damping, alpha, out);
 }

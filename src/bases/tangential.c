@@ -25,6 +25,7 @@
 #include "bases/tangential.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "bases/dominant.h"
 #include "bases/loads.h"
 
@@ -45,8 +46,6 @@ enum {
 /* Relative change of points: interpolation is exact where they stand, and an
    optimum is flat. */
 static const double settled = 1e-6;
-
-static const double pi = 3.14159265358979323846;
 
 static const ritz_damping assumed = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
 
@@ -155,7 +154,7 @@ static ritz_status list_given(const search *s, ritz_probes *out)
                 ritz_probe *probe = &probes.item[at++];
 
                 probe->s = (double _Complex)_Complex_I *
-                           (2.0 * pi * choice->shift_hz[k]);
+                           (2.0 * RITZ_PI * choice->shift_hz[k]);
                 probe->group = g;
                 probe->b[group->first + j] = 1.0;
             }

@@ -9,6 +9,7 @@
 #include <ritz/probe.h>
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/probe_parts.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
@@ -19,7 +20,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 static const double times = RITZ_PROBE_TIMES;
 
 ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
@@ -234,7 +234,7 @@ void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
         snprintf(beside, sizeof beside, " +- %.5gi", probe->pole[1]);
     snprintf(out, (size_t)2 * RITZ_NAME_SIZE, "pole at %+.5g%s rad/s (%.5g Hz)",
              probe->pole[0], beside,
-             hypot(probe->pole[0], probe->pole[1]) / (2.0 * pi));
+             hypot(probe->pole[0], probe->pole[1]) / (2.0 * RITZ_PI));
 }
 
 ritz_status ritz_probe_record(const ritz_probe *probe, ritz_measures *estimates)

@@ -10,13 +10,13 @@
 #include "check/probe_parts.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/eigenvalues.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 static const double golden = 0.61803398874989485;
 /* Widths beside a pole, of |Re s| or, where that is less, of |s| / 1000. */
 static const double beside[] = {0.25, 1.0, 4.0};
@@ -112,7 +112,7 @@ static double meet(search *s, double w)
     value = s->lambda[0] / size;
     if (value < s->found.value) {
         s->found.value = value;
-        s->found.hertz = w / (2.0 * pi);
+        s->found.hertz = w / (2.0 * RITZ_PI);
         s->found.port = 0;
         for (int64_t i = 1; i < p; i++)
             if (cabs(s->H[i]) > cabs(s->H[s->found.port]))

@@ -20,6 +20,7 @@
  * [GawronskiJuang1990]
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/modal.h>
 
@@ -29,7 +30,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 /* Of the magnitudes of a sum: roundings on the way to it. */
 static const double few = 8.0 * DBL_EPSILON;
 
@@ -72,8 +72,8 @@ static double turned(double wk, double d, const double w[static 2])
 static response response_of(double wk, double zeta, const double w[static 2])
 {
     double d = 2.0 * zeta * wk;
-    double p = turned(wk, d, w) / (2.0 * pi);
-    double g = (slope(wk, d, w[1]) - slope(wk, d, w[0])) / (2.0 * pi);
+    double p = turned(wk, d, w) / (2.0 * RITZ_PI);
+    double g = (slope(wk, d, w[1]) - slope(wk, d, w[0])) / (2.0 * RITZ_PI);
 
     return (response){{{p + g * d / 2.0, g}, {-g * wk * wk, p - g * d / 2.0}}};
 }
@@ -147,7 +147,8 @@ static ritz_status band_gramians(const ritz_modal *modal,
                                  filtered out[static 2])
 {
     ritz_status status = RITZ_OK;
-    const double w[2] = {2.0 * pi * band_hz[0], 2.0 * pi * band_hz[1]};
+    const double w[2] = {2.0 * RITZ_PI * band_hz[0],
+                         2.0 * RITZ_PI * band_hz[1]};
     ritz_dense Wc = {0}, Wo = {0};
     response *S = NULL, *size = NULL;
 

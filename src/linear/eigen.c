@@ -1,5 +1,6 @@
 /* What all eigensolvers share: counts, rigid modes, units. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/shifted.h"
 
 #include <ritz/monitor.h>
@@ -8,8 +9,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const double pi = 3.14159265358979323846;
 
 ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
                              double tau, int64_t *out)
@@ -83,12 +82,12 @@ int64_t ritz_eigen_rigid(int64_t count, const double *lambda, double lambda_max)
 
 double ritz_eigen_hertz(double lambda)
 {
-    return copysign(sqrt(fabs(lambda)), lambda) / (2.0 * pi);
+    return copysign(sqrt(fabs(lambda)), lambda) / (2.0 * RITZ_PI);
 }
 
 double ritz_eigen_lambda(double hertz)
 {
-    double omega = 2.0 * pi * hertz;
+    double omega = 2.0 * RITZ_PI * hertz;
 
     return copysign(omega * omega, hertz);
 }

@@ -8,16 +8,16 @@
  * negative it is held to 0 and the other, fitted alone, is positive: the least
  * squares of a, b >= 0.
  */
+#include "base/tolerances.h"
+
 #include <ritz/damping.h>
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Columns 1 / (2 w) and w / 2 of a point, and its ratio. */
 static void equation(const double point[2], double row[3])
 {
-    double w = 2.0 * pi * point[0];
+    double w = 2.0 * RITZ_PI * point[0];
 
     row[0] = 0.5 / w;
     row[1] = 0.5 * w;
@@ -90,7 +90,7 @@ double ritz_damping_misfit(const ritz_damping *damping, int64_t *at)
     *at = 0;
     for (int64_t k = 0; damping->kind == RITZ_DAMPING_FIT && k < damping->count;
          k++) {
-        double w = 2.0 * pi * damping->point[k][0];
+        double w = 2.0 * RITZ_PI * damping->point[k][0];
         double off =
             fabs(ritz_damping_ratio(damping, w) - damping->point[k][1]);
 
@@ -104,7 +104,7 @@ double ritz_damping_misfit(const ritz_damping *damping, int64_t *at)
 
 double ritz_damping_ratio(const ritz_damping *damping, double omega)
 {
-    double hertz = omega / (2.0 * pi);
+    double hertz = omega / (2.0 * RITZ_PI);
 
     switch (damping->kind) {
     case RITZ_DAMPING_NONE:

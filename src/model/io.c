@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/complex.h"
+#include "base/tolerances.h"
 
 #include <ritz/io.h>
 
@@ -9,8 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
                         ritz_io *out)
@@ -83,7 +82,7 @@ void ritz_io_free(ritz_io *io)
 void ritz_io_respond(const ritz_io *io, double hertz, const double _Complex *X,
                      double _Complex *H)
 {
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
     int64_t n = io->B.nrow;
 
     for (int64_t k = 0; k < n; k++) {

@@ -10,6 +10,7 @@
  * [Bruinsma1990], [Hammarling1982]
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 #include "linear/split.h"
 #include "poles/peak.h"
@@ -22,7 +23,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 /* Beyond this many states no Hamiltonian is made. */
 enum { MOST_STATES = 600 };
 
@@ -169,10 +169,10 @@ static ritz_status find(const stable *s, double tolerance, ritz_norm *out)
              found ? "SLICOT AB13DD" : "search at poles, a lower bound");
     out->lower = s->size * peak.value;
     out->value = out->lower;
-    out->hertz = peak.w / (2.0 * pi);
+    out->hertz = peak.w / (2.0 * RITZ_PI);
     if (found && s->size * value > out->value) {
         out->value = s->size * value;
-        out->hertz = w / (2.0 * pi);
+        out->hertz = w / (2.0 * RITZ_PI);
     }
 done:
     ritz_peak_free(&peak);

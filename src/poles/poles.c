@@ -1,6 +1,7 @@
 #include "poles/poles.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "model/io.h"
 
 #include <complex.h>
@@ -8,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 /* Modal matrices whose other entries are smaller than this, against what
    stands on the diagonal, are diagonal: the error is of its square. */
 static const double diagonal_within = 1e-9;
@@ -139,7 +139,7 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
 static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
                           double _Complex *out)
 {
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
     double _Complex z =
         ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
     bool on_pole = cabs(z) <= pole_within * (poles->lambda[k] + w * w);

@@ -2,13 +2,12 @@
 #include "poles/poles.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <complex.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* Z = Lambda - w^2 I + i (w D + K4), both triangles. */
 static void assemble(const ritz_poles *poles, double w, double _Complex *Z)
@@ -75,7 +74,7 @@ ritz_status ritz_poles_together(const ritz_poles *poles, double hertz,
     RITZ_NEW(Z, m * m);
     RITZ_NEW(s, m);
     RITZ_NEW(pivot, m);
-    assemble(poles, 2.0 * pi * hertz, Z);
+    assemble(poles, 2.0 * RITZ_PI * hertz, Z);
     for (int64_t k = 0; k < m * inputs; k++)
         q[k] = poles->io.B.val[k];
     equilibrate(m, inputs, Z, q, s);

@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "ranking/costs.h"
 #include "ranking/coupling.h"
 
@@ -56,7 +57,6 @@ static ritz_status ranking_new(const ritz_ranker *ranker,
                                const ritz_rank_request *request,
                                ritz_ranking *out)
 {
-    static const double pi = 3.14159265358979323846;
     const ritz_modal *modal = &request->modal;
     int64_t m = modal->count;
 
@@ -72,7 +72,7 @@ static ritz_status ranking_new(const ritz_ranker *ranker,
     RITZ_CHECK_NEW(out->cluster, m);
     RITZ_CHECK_NEW(out->system_value, 2 * m);
     for (int64_t k = 0; k < m; k++) {
-        out->hertz[k] = modal->omega[k] / (2.0 * pi);
+        out->hertz[k] = modal->omega[k] / (2.0 * RITZ_PI);
         out->zeta[k] = request->undamped ? 0.0 : modal->zeta[k];
     }
     ritz_ranking_clusters(modal, out->cluster);

@@ -19,6 +19,7 @@
 #include "response/direct.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "model/io.h"
 
 #include <complex.h>
@@ -29,7 +30,6 @@
 
 enum { MOST_MATRICES = 4, MOST_NUDGES = 100 };
 
-static const double pi = 3.14159265358979323846;
 /* How far the rest stays from a pole that was removed, of its lambda: its own
    error is of this size or less, while the factor loses as many digits in a
    direction that is projected out. */
@@ -120,7 +120,7 @@ static ritz_status factor(ritz_direct *s, double w, double w2)
     RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
                  "the response at %.9g Hz is infinite: an undamped mode, or at "
                  "0 Hz a rigid-body motion",
-                 w / (2.0 * pi));
+                 w / (2.0 * RITZ_PI));
 done:
     return status;
 }
@@ -218,7 +218,7 @@ static ritz_status correct(const ritz_direct *s, double w, int64_t columns,
         info = LAPACKE_zgesv(LAPACK_COL_MAJOR, (int)m, (int)columns, S, (int)m,
                              pivot, q, (int)m);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
-                 "the response at %.9g Hz is infinite", w / (2.0 * pi));
+                 "the response at %.9g Hz is infinite", w / (2.0 * RITZ_PI));
     for (int64_t j = 0; j < columns; j++)
         for (int64_t k = 0; k < m; k++)
             for (int64_t i = 0; i < s->n; i++)
@@ -237,7 +237,7 @@ static ritz_status solve_together(ritz_direct *s, double hertz, bool transposed,
     ritz_status (*solve)(ritz_zldl *, int64_t, double _Complex *) =
         transposed ? ritz_zldl_solve_transposed : ritz_zldl_solve;
     ritz_status status = RITZ_OK;
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
     double _Complex *Y = NULL;
 
     RITZ_FAIL_IF(hertz == 0.0 && s->poles.num_rigid > 0, RITZ_ERR_SINGULAR,
@@ -261,7 +261,7 @@ ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
                               bool transposed, int64_t k, double _Complex *X)
 {
     if (direct->apart)
-        return solve_apart(direct, 2.0 * pi * hertz, k, X);
+        return solve_apart(direct, 2.0 * RITZ_PI * hertz, k, X);
     return solve_together(direct, hertz, transposed, k, X);
 }
 

@@ -5,6 +5,7 @@
  *     |c'Z^-1 b - computed| <= some eps |y|'|Z||x|
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "response/direct.h"
 
 #include <complex.h>
@@ -12,7 +13,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 /* What sums of rounding come to, measured: 2 to 5. */
 static const double some = 16.0;
 
@@ -35,7 +35,7 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
     ritz_status status = RITZ_OK;
     const ritz_component *c = direct->component;
     bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
     double a = rayleigh ? fabs(direct->damping.a) : 0.0;
     double b = rayleigh ? fabs(direct->damping.b) : 0.0;
     int64_t n = direct->n;

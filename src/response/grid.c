@@ -7,12 +7,12 @@
 #include "poles/poles.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 /* In half-power widths. */
 static const double beside[] = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 enum { BESIDE = sizeof beside / sizeof *beside, AROUND = 2 * BESIDE + 1 };
@@ -69,7 +69,7 @@ static double even_point(const ritz_grid *grid, int64_t k)
 /* Peak of 1/|w^2 - x^2 + 2 i zeta w x|, then the points beside it. */
 static void around(double omega, double zeta, double out[static AROUND])
 {
-    double f = omega / (2.0 * pi);
+    double f = omega / (2.0 * RITZ_PI);
     double peak = zeta < sqrt(0.5) ? f * sqrt(1.0 - 2.0 * zeta * zeta) : f;
 
     out[0] = peak;

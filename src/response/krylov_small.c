@@ -1,14 +1,13 @@
 #include "response/krylov_small.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/dense_poles.h"
 
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* The projected matrices, in coordinates of V. */
 typedef struct matrices {
@@ -194,7 +193,7 @@ static void back(const ritz_dense *T, int64_t columns, const double _Complex *z,
 
 ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz)
 {
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
     int64_t rp = small->r * small->outputs;
     double _Complex *z = small->z;
 
@@ -235,7 +234,7 @@ void ritz_krylov_residual(const ritz_direct *direct,
     const double _Complex *x = (dual ? small->p : small->q) + index * small->r;
     double _Complex f[RITZ_KRYLOV_K4 + 1];
 
-    factors(direct, space, 2.0 * pi * hertz, dual, f);
+    factors(direct, space, 2.0 * RITZ_PI * hertz, dual, f);
     for (int64_t k = 0; k < space->W.ncol; k++) {
         ritz_krylov_column c = space->column[k];
         bool load = c.kind <= RITZ_KRYLOV_CA;

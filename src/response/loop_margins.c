@@ -4,6 +4,7 @@
  * loop the most of |L| and of |(I + L)^-1|.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/curve.h"
 #include "response/responder.h"
 
@@ -12,7 +13,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 enum { MOST_HALVES = 60 };
 /* A sign that changes through infinity is no crossing. */
 static const double real_within = 1e-6;
@@ -97,7 +97,7 @@ static void heed_gain(double hertz, double _Complex L, ritz_margins *out)
 
 static void heed_phase(double hertz, double _Complex L, ritz_margins *out)
 {
-    double angle = fabs(carg(-L)) * 180.0 / pi;
+    double angle = fabs(carg(-L)) * 180.0 / RITZ_PI;
 
     if (fabs(cabs(L) - 1.0) > real_within || angle >= out->phase)
         return;

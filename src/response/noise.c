@@ -1,13 +1,12 @@
 #include "response/noise.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "response/responder.h"
 
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const double pi = 3.14159265358979323846;
 
 enum { KINDS = 3 };
 
@@ -85,7 +84,7 @@ static double output_of(const ritz_noise *noise, double w, int64_t i)
 void ritz_noise_heed(const ritz_noise *noise, double hertz,
                      const double _Complex *H, double *level)
 {
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
     int64_t p = noise->num_outputs;
     int64_t m = noise->num_inputs;
     double gain = 0.0;

@@ -2,13 +2,13 @@
 #include "response/rational.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/zeros.h>
 
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 /* Poles are cancelled up to here, of the end. */
 static const double cancelled_to = 1.5;
 /* Of |s|: poles nearer than this are one. */
@@ -98,7 +98,7 @@ ritz_status ritz_nodes_find_poles(ritz_nodes *s,
                                   const ritz_responder *responder)
 {
     ritz_status status = RITZ_OK;
-    double most = 2.0 * pi * cancelled_to * responder->to_hz;
+    double most = 2.0 * RITZ_PI * cancelled_to * responder->to_hz;
     double _Complex *found = NULL;
     int64_t count = 0;
 

@@ -2,6 +2,7 @@
 #include "response/rational.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/monitor.h>
 
@@ -12,7 +13,6 @@
 
 enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
 
-static const double pi = 3.14159265358979323846;
 /* Of its frequency: nodes begin so far beside an undamped pole, and keep so far
    off all poles and zeros. */
 static const double beside = 1e-4;
@@ -33,7 +33,7 @@ static bool is_on(double _Complex s, int64_t count, const double _Complex *at,
 /* A frequency where a node may be: on no pole and on no zero. */
 static void add_candidate(ritz_nodes *s, double hertz, double low, double high)
 {
-    const double _Complex at = ritz_complex(0.0, 2.0 * pi * hertz);
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     bool on = !(hertz >= low && hertz <= high) ||
               is_on(at, s->num_poles, s->pole, 1.0);
 
@@ -63,13 +63,14 @@ ritz_status ritz_nodes_place(ritz_nodes *s, double low, double high)
     RITZ_NEW(at, s->num_poles + 2);
     RITZ_NEW(s->hertz, EVEN + (s->num_poles + 2) * (BETWEEN + 1 + 2 * OFFSETS));
     for (int k = 1; k < EVEN; k++)
-        add_candidate(s, 0.5 * (low + high - (high - low) * cos(pi * k / EVEN)),
-                      low, high);
+        add_candidate(
+            s, 0.5 * (low + high - (high - low) * cos(RITZ_PI * k / EVEN)), low,
+            high);
     at[n++] = low;
     at[n++] = high;
     for (int64_t k = 0; k < s->num_poles; k++) {
-        double hertz = cimag(s->pole[k]) / (2.0 * pi);
-        double width = -creal(s->pole[k]) / (2.0 * pi);
+        double hertz = cimag(s->pole[k]) / (2.0 * RITZ_PI);
+        double width = -creal(s->pole[k]) / (2.0 * RITZ_PI);
 
         if (hertz <= low || hertz >= high)
             continue;
@@ -99,7 +100,7 @@ static int64_t next(const ritz_nodes *s)
     int64_t best = -1;
 
     for (int64_t k = 0; k < s->count; k++) {
-        double w = 2.0 * pi * s->hertz[k];
+        double w = 2.0 * RITZ_PI * s->hertz[k];
         double need =
             s->used[k] ? -HUGE_VAL
                        : ritz_interpolant_need(&s->poles, ritz_complex(0.0, w));
@@ -114,7 +115,7 @@ static int64_t next(const ritz_nodes *s)
 
 static ritz_status add_node(ritz_nodes *s, double hertz)
 {
-    const double _Complex at = ritz_complex(0.0, 2.0 * pi * hertz);
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
     RITZ_CHECK(ritz_interpolant_add(&s->poles, at, s->H));
     RITZ_CHECK(ritz_interpolant_add(&s->both, at, s->H));
@@ -130,7 +131,7 @@ static ritz_status add_node(ritz_nodes *s, double hertz)
 /* What either interpolant missed at a new node; whether one did not. */
 static bool judge(ritz_nodes *s, double hertz, double tolerance)
 {
-    const double _Complex at = ritz_complex(0.0, 2.0 * pi * hertz);
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     const ritz_io *io = &s->full.component->io;
     double *miss = s->miss + s->nodes % RITZ_RATIONAL_ENOUGH * 2 * s->values;
     bool near = s->nodes >= RITZ_RATIONAL_ENOUGH;

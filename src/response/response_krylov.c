@@ -21,6 +21,7 @@
 #include "response/krylov.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/damped.h"
 #include "response/responder.h"
 
@@ -34,7 +35,6 @@
 
 enum { MOST_ROUNDS = 60, MOST_CONFIRMED = 12 };
 
-static const double pi = 3.14159265358979323846;
 /* Of ratios' modes as all engines have it; without them fewer will do. */
 static const double modes_beyond = 1.5;
 static const double usual_tolerance = 1e-9;
@@ -105,7 +105,7 @@ static ritz_status find_quietest(const ritz_krylov *k,
     RITZ_TRY(ritz_damped_new(&k->small.poles, NULL, NULL, band_hz, &damped));
     for (int64_t j = 0; j < damped.listing.count; j++) {
         double _Complex s = damped.listing.s[j];
-        double hertz = cimag(s) / (2.0 * pi);
+        double hertz = cimag(s) / (2.0 * RITZ_PI);
         double zeta = ritz_spectrum_ratio(s);
 
         if (hertz > band_hz[0] && hertz < band_hz[1] && zeta < least) {

@@ -14,12 +14,12 @@
 #include "response/rational.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
 static const double usual_tolerance = 1e-9;
 /* Of the end: a free body has its first node so far above 0 Hz. */
 static const double above_rest = 1e-4;
@@ -52,7 +52,7 @@ static ritz_status start(const ritz_response_request *request,
                          const ritz_responder *out, ritz_nodes *s)
 {
     const ritz_io *io = &request->component->io;
-    double unit = 2.0 * pi * request->to_hz;
+    double unit = 2.0 * RITZ_PI * request->to_hz;
     double low = request->from_hz;
 
     s->values = io->num_outputs * io->num_inputs;
@@ -84,7 +84,7 @@ static ritz_status start(const ritz_response_request *request,
 /* An undamped pole that was cancelled has no response. */
 static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
 {
-    double w = 2.0 * pi * hertz;
+    double w = 2.0 * RITZ_PI * hertz;
 
     for (int64_t k = 0; k < s->num_poles; k++) {
         bool on = cabs(ritz_complex(0.0, w) - s->pole[k]) <=
@@ -105,7 +105,7 @@ static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
     ritz_nodes *s = state;
-    const double _Complex at = ritz_complex(0.0, 2.0 * pi * hertz);
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
     RITZ_CHECK(refuse_pole(s, hertz));
     ritz_interpolant_at(&s->poles, at, s->guess);

@@ -7,6 +7,7 @@
  * point then costs n^2 operations.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/eigenvalues.h"
 #include "linear/frame.h"
 #include "linear/general.h"
@@ -19,8 +20,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* The Fortran name; character arguments bring their lengths at the end. */
 void tb05ad_(/* NOLINT: its name */ const char *baleig, const char *inita,
@@ -110,7 +109,7 @@ static void finish(hessenberg *h)
 
 static ritz_status solve(hessenberg *h, double hertz)
 {
-    const double _Complex s = ritz_complex(0.0, 2.0 * pi * hertz);
+    const double _Complex s = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     int ldn = at_least_one(h->n);
     int ldp = at_least_one(h->p);
     double rcond = 0.0;

@@ -11,6 +11,8 @@
  */
 #include "simulate/newmark.h"
 
+#include "base/tolerances.h"
+
 #include <math.h>
 
 static ritz_status start(const ritz_motion *motion, double step, double rho,
@@ -23,7 +25,7 @@ static ritz_status start(const ritz_motion *motion, double step, double rho,
     RITZ_REFUSE_IF(!motion->any_step && step * omega >= 2.0, RITZ_ERR_ARGUMENT,
                    "a step of %g s is not stable: the highest frequency, %.6g "
                    "Hz, limits it to %.6g s",
-                   step, 0.5 * omega / 3.14159265358979323846, 2.0 / omega);
+                   step, 0.5 * omega / RITZ_PI, 2.0 / omega);
     return ritz_newmark_start(motion, step, &weights, out);
 }
 

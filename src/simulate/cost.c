@@ -12,6 +12,7 @@
 #include "simulate/run.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 
@@ -23,7 +24,6 @@
 #include <string.h>
 #include <time.h>
 
-static const double pi = 3.14159265358979323846;
 static const double elongation = 1e-3;
 /* Least processor time of one measurement, and how many there are. */
 static const double long_enough = 2e-3;
@@ -145,11 +145,11 @@ ritz_status ritz_simulate_cost(const ritz_second_order *model,
                  "a band to %g Hz makes no sense", end);
     RITZ_TRY(ritz_motion_dense(model, damping, true, &modes));
     RITZ_TRY(fastest(&modes, &root));
-    cost.highest_hz = sqrt(modes.highest) / (2.0 * pi);
+    cost.highest_hz = sqrt(modes.highest) / (2.0 * RITZ_PI);
     cost.step_explicit = root > 0.0 ? 2.0 / root : HUGE_VAL;
     if (end <= 0.0)
         end = cost.highest_hz > 0.0 ? cost.highest_hz : 1.0;
-    cost.step_accurate = sqrt(12.0 * elongation) / (2.0 * pi * end);
+    cost.step_accurate = sqrt(12.0 * elongation) / (2.0 * RITZ_PI * end);
     cost.step = cost.step_accurate;
     (void)snprintf(cost.integrator, sizeof cost.integrator, "%s",
                    ritz_integrator_trapezoidal.name);

@@ -2,6 +2,7 @@
 #include <ritz/simulate.h>
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/text.h>
 
@@ -11,8 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 enum { WORD_SIZE = 32, TEXT_SIZE = 128 };
 
@@ -210,10 +209,10 @@ double ritz_signal_at(const ritz_signal *signal, double t, double seconds)
     case RITZ_SIGNAL_STEP:
         return signal->amplitude;
     case RITZ_SIGNAL_SINE:
-        return signal->amplitude * sin(2.0 * pi * f[0] * t);
+        return signal->amplitude * sin(2.0 * RITZ_PI * f[0] * t);
     case RITZ_SIGNAL_CHIRP:
         return signal->amplitude *
-               sin(2.0 * pi *
+               sin(2.0 * RITZ_PI *
                    (f[0] * t + 0.5 * (f[1] - f[0]) * t * t / seconds));
     case RITZ_SIGNAL_TABLE:
         return signal->amplitude * look_up(signal, t);

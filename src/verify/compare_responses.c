@@ -2,6 +2,7 @@
 #include "verify/compare_sides.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <complex.h>
 #include <math.h>
@@ -9,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 /* A free body has no response at 0 Hz: begin at this part of the band. */
 static const double above_rest = 1e-3;
 
@@ -52,7 +52,7 @@ static double flexible_part(const ritz_poles *poles, const ritz_sweep *s)
     double largest = 0.0;
 
     for (int64_t e = 0; e < s->count * s->values; e++) {
-        double w = 2.0 * pi * s->hertz[e / s->values];
+        double w = 2.0 * RITZ_PI * s->hertz[e / s->values];
         int64_t i = e % s->values / io->num_inputs;
         int64_t j = e % io->num_inputs;
         double _Complex H = s->full[e];

@@ -2,12 +2,11 @@
 #include "verify/compare_sides.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* A mode's largest entry of B, and of C, Cv and Ca, each by any channel. */
 enum { SHARES = 4 };
@@ -48,7 +47,7 @@ ritz_status ritz_sweep_hear(const ritz_poles *poles, ritz_sweep *s)
             most[t] = fmax(most[t], share[SHARES * k + t]);
     }
     for (int64_t p = 0; p < s->count && !s->heard; p++) {
-        double w = 2.0 * pi * s->hertz[p];
+        double w = 2.0 * RITZ_PI * s->hertz[p];
         double c_most = most[1] + w * (most[2] + w * most[3]);
         double sum = 0.0;
 

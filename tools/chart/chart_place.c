@@ -1,5 +1,7 @@
 #include "chart/chart_place.h"
 
+#include "base/tolerances.h"
+
 #include <math.h>
 #include <stddef.h>
 
@@ -154,7 +156,7 @@ static double burden(const chart_places *p, const chart_word *w)
 void chart_place_around(const chart_places *p, chart_word *word)
 {
     enum { TURNS = 24, RINGS = 40 };
-    const double turn = 2.0 * 3.14159265358979323846 / TURNS, step = 7.0;
+    const double turn = 2.0 * RITZ_PI / TURNS, step = 7.0;
     double least = HUGE_VAL;
     chart_word best = *word;
 

@@ -1,6 +1,8 @@
 /* What an answer says, held against what was claimed. */
 #include "claims/claims.h"
 
+#include "base/tolerances.h"
+
 #include <ritz/text.h>
 
 #include <inttypes.h>
@@ -76,7 +78,7 @@ static double as_hertz(double hertz)
 
 static double as_omega(double hertz)
 {
-    return 2.0 * 3.14159265358979323846 * hertz;
+    return 2.0 * RITZ_PI * hertz;
 }
 
 static double as_lambda(double hertz)

@@ -1,6 +1,8 @@
 /* What is in a model in first-order form: matrices, poles, verdict. */
 #include "print/describe.h"
 
+#include "base/tolerances.h"
+
 #include "print/checksum.h"
 
 #include <ritz/probe.h>
@@ -78,7 +80,7 @@ static void poles(const cli_run *run, json_t *keys, int64_t count,
         if (im < 0.0 || shown++ >= SHOWN)
             continue;
         cli_say(run, "  %-14s %14.6g %14.6g %12.6g %10.4g", "", re, im,
-                w / (2.0 * 3.14159265358979323846), w > 0.0 ? -re / w : 0.0);
+                w / (2.0 * RITZ_PI), w > 0.0 ? -re / w : 0.0);
     }
     if (shown > SHOWN)
         cli_say(run, "  %-14s and %lld faster ones", "",

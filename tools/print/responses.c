@@ -1,5 +1,7 @@
 #include "print/responses.h"
 
+#include "base/tolerances.h"
+
 #include <ritz/zeros.h>
 
 #include <complex.h>
@@ -11,8 +13,6 @@
 /* Of a component with more dofs no first-order model is made just to be asked
    for its poles or zeros. */
 enum { MOST_DOFS = 400 };
-
-static const double pi = 3.14159265358979323846;
 
 /* "NAME=X" of --input-size. */
 static ritz_status take_size(const ritz_response *r, const char *text,
@@ -153,13 +153,13 @@ static json_t *say_zeros(cli_run *run, int64_t count,
 
         json_object_set_new(item, "re", cli_real(creal(zero[k])));
         json_object_set_new(item, "im", cli_real(cimag(zero[k])));
-        json_object_set_new(item, "hz", cli_real(size / (2.0 * pi)));
+        json_object_set_new(item, "hz", cli_real(size / (2.0 * RITZ_PI)));
         json_array_append_new(list, item);
         if (k > 0 && zero[k] == conj(zero[k - 1]) && cimag(zero[k]) != 0.0)
             continue; /* said with the other of the pair */
-        cli_say(run, "  %14.7g Hz  %12.5g %s %.7g i rad/s", size / (2.0 * pi),
-                creal(zero[k]), cimag(zero[k]) != 0.0 ? "+-" : "+",
-                fabs(cimag(zero[k])));
+        cli_say(run, "  %14.7g Hz  %12.5g %s %.7g i rad/s",
+                size / (2.0 * RITZ_PI), creal(zero[k]),
+                cimag(zero[k]) != 0.0 ? "+-" : "+", fabs(cimag(zero[k])));
     }
     if (count == 0)
         cli_say(run, "  none is finite");
