@@ -1,15 +1,7 @@
-/*
- * A loop closed in frequency. With G_yu what the controller sees of what it
- * drives, L = F G_yu (its sign turned by positive feedback), and F_u, F_y wider
- * by rows and columns of zeros,
- *
- *     y = G w + G_u v',   v' = -F e,   e = G_y w + G_yu v',
- *
- *     H = G - G_u (I + L)^-1 F G_y
- *
- * which costs no more than the signals of the loop do [Sirlin1992].
- */
+/* Which signals of a plant and a controller meet. */
 #include "base/alloc.h"
+
+#include "base/tolerances.h"
 #include "poles/curve.h"
 #include "response/responder.h"
 
@@ -22,6 +14,353 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static int64_t find(int64_t count, const char (*name)[RITZ_NAME_SIZE],
+                    const char *word)
+{
+    for (int64_t k = 0; k < count; k++)
+        if (strcmp(name[k], word) == 0)
+            return k;
+    return -1;
+}
+
+ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
+                            const ritz_ends *controller)
+{
+    RITZ_REFUSE_IF(loop->num_measured != controller->num_inputs ||
+                       loop->num_driven != controller->num_outputs,
+                   RITZ_ERR_ARGUMENT,
+                   "a loop of %" PRId64 " measured and %" PRId64
+                   " driven signals is not of this controller",
+                   loop->num_measured, loop->num_driven);
+    for (int64_t k = 0; k < loop->num_measured; k++)
+        RITZ_REFUSE_IF(loop->measured[k] < 0 ||
+                           loop->measured[k] >= plant->num_outputs,
+                       RITZ_ERR_ARGUMENT, "the plant has no output %" PRId64,
+                       loop->measured[k] + 1);
+    for (int64_t k = 0; k < loop->num_driven; k++)
+        RITZ_REFUSE_IF(loop->driven[k] < 0 ||
+                           loop->driven[k] >= plant->num_inputs,
+                       RITZ_ERR_ARGUMENT, "the plant has no input %" PRId64,
+                       loop->driven[k] + 1);
+    return RITZ_OK;
+}
+
+/* One place is taken once. */
+static ritz_status put(int64_t *place, int64_t index, const char *name)
+{
+    RITZ_REFUSE_IF(*place >= 0, RITZ_ERR_ARGUMENT,
+                   "'%s' of the controller is connected twice", name);
+    *place = index;
+    return RITZ_OK;
+}
+
+/* "OUT=IN", in whichever direction there are such names. */
+static ritz_status take_pair(const ritz_ends *plant, const ritz_ends *control,
+                             const char *pair, ritz_loop *loop)
+{
+    ritz_status status = RITZ_OK;
+    const char *equals = strchr(pair, '=');
+    const char *in = equals ? equals + 1 : "";
+    char out[RITZ_NAME_SIZE] = "";
+    int64_t from = -1, to = -1, back_from = -1, back_to = -1;
+
+    RITZ_FAIL_IF(!equals || equals == pair || !*in ||
+                     equals - pair >= RITZ_NAME_SIZE,
+                 RITZ_ERR_ARGUMENT, "'%.80s' is not of the form OUT=IN", pair);
+    memcpy(out, pair, (size_t)(equals - pair));
+    from = find(plant->num_outputs, plant->output, out);
+    to = find(control->num_inputs, control->input, in);
+    back_from = find(control->num_outputs, control->output, out);
+    back_to = find(plant->num_inputs, plant->input, in);
+    RITZ_FAIL_IF(from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0,
+                 RITZ_ERR_ARGUMENT,
+                 "'%s' can be read both ways: plant and controller have both "
+                 "names",
+                 pair);
+    if (from >= 0 && to >= 0)
+        RITZ_TRY(put(&loop->measured[to], from, control->input[to]));
+    else if (back_from >= 0 && back_to >= 0)
+        RITZ_TRY(
+            put(&loop->driven[back_from], back_to, control->output[back_from]));
+    else
+        status = ritz_fail(
+            RITZ_ERR_ARGUMENT,
+            "'%s' joins no output of the plant to an input of the controller, "
+            "nor one of the controller to one of the plant",
+            pair);
+done:
+    return status;
+}
+
+/* What no pair named, by its own name. */
+static ritz_status fill(int64_t count, const char (*name)[RITZ_NAME_SIZE],
+                        int64_t others, const char (*other)[RITZ_NAME_SIZE],
+                        const char *what, int64_t *place)
+{
+    const char *near = NULL;
+
+    for (int64_t k = 0; k < count; k++) {
+        if (place[k] >= 0)
+            continue;
+        place[k] = find(others, other, name[k]);
+        if (place[k] >= 0)
+            continue;
+        near = others > 0 ? ritz_text_nearest(name[k], others, other[0],
+                                              RITZ_NAME_SIZE)
+                          : NULL;
+        RITZ_REFUSE_IF(near != NULL, RITZ_ERR_ARGUMENT,
+                       "the plant has no %s '%s' for the controller, is '%s' "
+                       "meant?",
+                       what, name[k], near);
+        RITZ_REFUSE_IF(near == NULL, RITZ_ERR_ARGUMENT,
+                       "the plant has no %s '%s' for the controller", what,
+                       name[k]);
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
+                            int64_t num_pairs, const char *const *pair,
+                            ritz_loop *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_loop loop = {.num_measured = controller->num_inputs,
+                      .num_driven = controller->num_outputs};
+
+    RITZ_FAIL_IF(loop.num_measured == 0 || loop.num_driven == 0,
+                 RITZ_ERR_ARGUMENT, "the controller has no %s: it is none",
+                 loop.num_measured == 0 ? "inputs" : "outputs");
+    RITZ_NEW(loop.measured, loop.num_measured);
+    RITZ_NEW(loop.driven, loop.num_driven);
+    for (int64_t k = 0; k < loop.num_measured; k++)
+        loop.measured[k] = -1;
+    for (int64_t k = 0; k < loop.num_driven; k++)
+        loop.driven[k] = -1;
+    for (int64_t k = 0; k < num_pairs; k++)
+        RITZ_TRY(take_pair(plant, controller, pair[k], &loop));
+    RITZ_TRY(fill(loop.num_measured, controller->input, plant->num_outputs,
+                  plant->output, "output", loop.measured));
+    RITZ_TRY(fill(loop.num_driven, controller->output, plant->num_inputs,
+                  plant->input, "input", loop.driven));
+    *out = loop;
+    loop = (ritz_loop){0};
+done:
+    ritz_loop_free(&loop);
+    return status;
+}
+
+void ritz_loop_free(ritz_loop *loop)
+{
+    free(loop->measured);
+    free(loop->driven);
+    *loop = (ritz_loop){0};
+}
+
+/*
+ * Margins of a loop: for L = F G of one signal, factors -1 / L where L is real
+ * and negative, and the angle from L to -1 where |L| = 1; of every
+ * loop the most of |L| and of |(I + L)^-1|.
+ */
+
+enum { MOST_HALVES = 60 };
+
+/* A sign that changes through infinity is no crossing. */
+static const double real_within = 1e-6;
+
+typedef enum which { GAIN, SENSITIVITY } which;
+
+typedef struct prober {
+    const ritz_loop *loop;
+    ritz_responder *plant, *controller;
+    double _Complex *G, *F;
+    which want;
+    double *largest, *sensitivity; /* at the points */
+    double _Complex *gain;
+} prober;
+
+static ritz_status probe(prober *s, double hertz, ritz_loop_values *values)
+{
+    const ritz_io *io = &s->plant->poles->io;
+
+    RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
+    RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
+    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F,
+                        NULL, values);
+}
+
+static ritz_status value_at(void *state, double hertz, double *value)
+{
+    prober *s = state;
+    ritz_loop_values values = {0};
+
+    RITZ_CHECK(probe(s, hertz, &values));
+    *value = s->want == GAIN ? values.largest_gain : values.sensitivity;
+    return RITZ_OK;
+}
+
+/* What is zero at a crossing: Im L, or |L| - 1. */
+static double of_phase(double _Complex L)
+{
+    return cimag(L);
+}
+
+static double of_size(double _Complex L)
+{
+    return cabs(L) - 1.0;
+}
+
+static ritz_status bisect(prober *s, double (*zero)(double _Complex),
+                          double low, double high, double _Complex at_low,
+                          double *hertz, double _Complex *L)
+{
+    ritz_loop_values values = {.gain = at_low};
+    double middle = low;
+
+    for (int k = 0; k < MOST_HALVES && high - low > 1e-14 * high; k++) {
+        middle = low + (high - low) / 2.0;
+        RITZ_CHECK(probe(s, middle, &values));
+        if (zero(values.gain) * zero(at_low) > 0.0)
+            low = middle;
+        else
+            high = middle;
+    }
+    *hertz = middle;
+    *L = values.gain;
+    return RITZ_OK;
+}
+
+static void heed_gain(double hertz, double _Complex L, ritz_margins *out)
+{
+    double factor = -1.0 / creal(L);
+
+    if (!(creal(L) < 0.0) || fabs(cimag(L)) > real_within * fabs(creal(L)))
+        return;
+    if (factor >= 1.0 && !(factor >= out->gain_up)) {
+        out->gain_up = factor;
+        out->gain_up_hz = hertz;
+    }
+    if (factor <= 1.0 && !(factor <= out->gain_down)) {
+        out->gain_down = factor;
+        out->gain_down_hz = hertz;
+    }
+}
+
+static void heed_phase(double hertz, double _Complex L, ritz_margins *out)
+{
+    double angle = fabs(carg(-L)) * 180.0 / RITZ_PI;
+
+    if (fabs(cabs(L) - 1.0) > real_within || angle >= out->phase)
+        return;
+    out->phase = angle;
+    out->phase_hz = hertz;
+}
+
+/* The closed loop that responds. */
+typedef struct closed {
+    const ritz_loop *loop;
+    ritz_responder *plant, *controller;
+    ritz_poles poles; /* of all three, and the names */
+    double _Complex *G, *F;
+} closed;
+
+static ritz_status at(void *state, double hertz, double _Complex *H)
+{
+    closed *s = state;
+    const ritz_io *io = &s->poles.io;
+    ritz_loop_values values = {0};
+
+    RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
+    RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
+    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F, H,
+                        &values);
+}
+
+static ritz_status cross(prober *s, int64_t count, const double *hertz,
+                         ritz_margins *out)
+{
+    double at = 0.0;
+    double _Complex L = 0.0;
+
+    for (int64_t k = 0; k + 1 < count; k++) {
+        double _Complex a = s->gain[k], b = s->gain[k + 1];
+
+        if (of_phase(a) * of_phase(b) < 0.0) {
+            RITZ_CHECK(bisect(s, of_phase, hertz[k], hertz[k + 1], a, &at, &L));
+            heed_gain(at, L, out);
+        }
+        if (of_size(a) * of_size(b) < 0.0) {
+            RITZ_CHECK(bisect(s, of_size, hertz[k], hertz[k + 1], a, &at, &L));
+            heed_phase(at, L, out);
+        }
+    }
+    return RITZ_OK;
+}
+
+static ritz_status find_peaks(prober *s, int64_t count, const double *hertz,
+                              ritz_margins *out)
+{
+    const ritz_curve curve = {value_at, s};
+
+    s->want = GAIN;
+    RITZ_CHECK(ritz_curve_peak(count, hertz, s->largest, &curve, &out->gain_hz,
+                               &out->gain));
+    s->want = SENSITIVITY;
+    return ritz_curve_peak(count, hertz, s->sensitivity, &curve,
+                           &out->sensitivity_hz, &out->sensitivity);
+}
+
+ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,
+                              ritz_responder *controller, int64_t count,
+                              const double *hertz, ritz_margins *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &plant->poles->io;
+    const double none = nan("");
+    ritz_margins m = {none, none, none, none, HUGE_VAL,
+                      none, none, none, none, none};
+    prober s = {.loop = loop, .plant = plant, .controller = controller};
+
+    RITZ_NEW(s.G, io->num_outputs * io->num_inputs);
+    RITZ_NEW(s.F, loop->num_driven * loop->num_measured);
+    RITZ_NEW(s.largest, count);
+    RITZ_NEW(s.sensitivity, count);
+    RITZ_NEW(s.gain, count);
+    for (int64_t k = 0; k < count; k++) {
+        ritz_loop_values values = {0};
+
+        RITZ_TRY(probe(&s, hertz[k], &values));
+        s.gain[k] = values.gain;
+        s.largest[k] = values.largest_gain;
+        s.sensitivity[k] = values.sensitivity;
+    }
+    if (count > 0)
+        RITZ_TRY(find_peaks(&s, count, hertz, &m));
+    if (loop->num_driven == 1 && loop->num_measured == 1)
+        RITZ_TRY(cross(&s, count, hertz, &m));
+    if (isinf(m.phase))
+        m.phase = none;
+    *out = m;
+done:
+    free(s.G);
+    free(s.F);
+    free(s.largest);
+    free(s.sensitivity);
+    free(s.gain);
+    return status;
+}
+
+/*
+ * A loop closed in frequency. With G_yu what the controller sees of what it
+ * drives, L = F G_yu (its sign turned by positive feedback), and F_u, F_y wider
+ * by rows and columns of zeros,
+ *
+ *     y = G w + G_u v',   v' = -F e,   e = G_y w + G_yu v',
+ *
+ *     H = G - G_u (I + L)^-1 F G_y
+ *
+ * which costs no more than the signals of the loop do [Sirlin1992].
+ */
 
 /* Matrices of one frequency, by columns; c signals are driven, m measured. */
 typedef struct room {
@@ -112,14 +451,6 @@ done:
     return status;
 }
 
-/* The closed loop that responds. */
-typedef struct closed {
-    const ritz_loop *loop;
-    ritz_responder *plant, *controller;
-    ritz_poles poles; /* of all three, and the names */
-    double _Complex *G, *F;
-} closed;
-
 static void free_closed(void *state)
 {
     closed *s = state;
@@ -128,18 +459,6 @@ static void free_closed(void *state)
     free(s->G);
     free(s->F);
     free(s);
-}
-
-static ritz_status at(void *state, double hertz, double _Complex *H)
-{
-    closed *s = state;
-    const ritz_io *io = &s->poles.io;
-    ritz_loop_values values = {0};
-
-    RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
-    RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
-    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F, H,
-                        &values);
 }
 
 /* Poles above the axis or on it, as s^2 + rate s + lambda; those of the open

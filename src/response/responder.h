@@ -2,7 +2,39 @@
 #ifndef RITZ_RESPONSE_RESPONDER_H
 #define RITZ_RESPONSE_RESPONDER_H
 
-#include "response/noise.h"
+#include "poles/poles.h"
+
+/*
+ * What of a response is rounding. In coordinates that make the diagonal of
+ * K + tau M one, tau of the end of the range, which knows no units,
+ *
+ *     |H_ij| = |c_i'Z^-1 b_j| <= |c_i| |Z^-1| |b_j|,
+ *
+ * and what solves with Z leave of zero is eps of the right-hand side or more.
+ * |Z^-1| is at least the largest |H_ij| / (|c_i| |b_j|) of all channels.
+ */
+
+typedef struct ritz_noise {
+    int64_t num_outputs, num_inputs;
+    double *output; /* 3 x num_outputs: of C, Cv and Ca; NULL: not known */
+    double *input;
+} ritz_noise;
+
+/**
+ * Raise @p level, num_outputs x num_inputs, to |c_i| |Z^-1| |b_j| at a
+ * frequency.
+ */
+void ritz_noise_heed(const ritz_noise *noise, double hertz,
+                     const double _Complex *H, double *level);
+
+/**
+ * What errors within @p tolerance are measured by: ritz_channel_scales, and
+ * more where that is beneath rounding. A channel that is nowhere more than
+ * 1e-12 of its level is rounding, and may err by as much as that.
+ */
+void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
+                       double tolerance, const double *peak,
+                       const double *level, double *scale);
 
 enum { RITZ_REMARK_SIZE = 320 };
 
@@ -40,9 +72,6 @@ ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
 
 /** The highest mode that a request wants of a component, Hz. */
 double ritz_response_highest(const ritz_response_request *request);
-
-/** Where a grid ends, whatever it is made of. */
-double ritz_grid_end(const ritz_grid *grid);
 
 /** Make an engine ready and respond on a grid. */
 ritz_status ritz_response_once(const ritz_response_engine *engine,

@@ -1,9 +1,128 @@
-/* Every mode of a small dense model, for a response by all of them. */
+/*
+ * Response by modes: all of a small dense model; of a full component its lowest
+ * ones and the residual of the rest.
+ */
+#include "base/alloc.h"
+
 #include "poles/dense_poles.h"
 #include "poles/state.h"
 #include "poles/static_rest.h"
+#include "response/responder.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+/* `pairs` and `residual` of a component alone. */
+typedef struct modal {
+    ritz_pairs pairs;
+    ritz_poles poles;
+    ritz_residual residual;
+} modal;
+
+static void modal_free(modal *m)
+{
+    ritz_pairs_free(&m->pairs);
+    ritz_poles_free(&m->poles);
+    ritz_residual_free(&m->residual);
+}
+
+static void finish(void *state)
+{
+    modal_free(state);
+    free(state);
+}
+
+static ritz_status at(void *state, double hertz, double _Complex *H)
+{
+    const modal *m = state;
+
+    RITZ_CHECK(ritz_poles_add(&m->poles, hertz, H));
+    ritz_residual_add(&m->residual, hertz, H);
+    return RITZ_OK;
+}
+
+static ritz_status of_component(const ritz_response_request *request, modal *m)
+{
+    double highest = ritz_response_highest(request);
+
+    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
+                   "modes up to %g Hz cannot give a response up to %g Hz",
+                   highest, request->to_hz);
+    RITZ_CHECK(ritz_poles_of_component(request->component, request->damping,
+                                       highest, &m->pairs, &m->poles));
+    return ritz_residual_new(request->component, request->damping, &m->pairs,
+                             request->to_hz, highest, &m->residual);
+}
+
+static ritz_status make(const ritz_response_request *request,
+                        ritz_responder *out)
+{
+    ritz_status status = RITZ_OK;
+    modal *m = NULL;
+
+    RITZ_NEW(m, 1);
+    if (request->component)
+        RITZ_TRY(of_component(request, m));
+    else
+        RITZ_TRY(ritz_poles_of_dense(request->matrices, request->damping,
+                                     &m->poles));
+    out->poles = &m->poles;
+    out->at = at;
+    out->free = finish;
+    out->state = m;
+    m = NULL;
+done:
+    if (m)
+        finish(m);
+    return status;
+}
+
+const ritz_response_engine ritz_response_engine_modal = {
+    .name = "modal",
+    .summary = "a sum of modes, and of a component the series of the rest",
+    .reference = "Sirlin1992",
+    .when = "reduced components and systems; components with damping ratios",
+    .cost = "the modes; then O(modes) a point, O(modes^3) where D or K4 "
+            "couples them",
+    .holds = "exact for dense models; of components without K4, and with no D "
+             "but a M + b K, to 1e-12",
+    .fails = "of components, K4 and any other D act on the modes that are "
+             "summed alone",
+    .takes = RITZ_RESPONDS_COMPONENT | RITZ_RESPONDS_MATRICES,
+    .make = make,
+};
+
+ritz_status ritz_response_modal(const ritz_component *component,
+                                const ritz_damping *damping, double up_to_hz,
+                                const ritz_grid *grid, ritz_response *out)
+{
+    ritz_response_request request = {
+        .component = component, .damping = damping, .up_to_hz = up_to_hz};
+
+    return ritz_response_once(&ritz_response_engine_modal, &request, grid, out);
+}
+
+ritz_status ritz_response_second_order(const ritz_second_order *model,
+                                       const ritz_damping *damping,
+                                       const ritz_grid *grid,
+                                       ritz_response *out)
+{
+    ritz_response_request request = {.matrices = model, .damping = damping};
+
+    return ritz_response_once(&ritz_response_engine_modal, &request, grid, out);
+}
+
+ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
+                                const ritz_dense *D, const ritz_io *io,
+                                const ritz_damping *damping,
+                                const ritz_grid *grid, ritz_response *out)
+{
+    const ritz_second_order model = {.K = K, .M = M, .D = D, .io = io};
+
+    return ritz_response_second_order(&model, damping, grid, out);
+}
+
+/* Every mode of a small dense model, for a response by all of them. */
 
 /* Phi'A Phi; {0} of an absent one. */
 static ritz_status project(const ritz_dense *A, const ritz_dense *Phi,

@@ -1,0 +1,627 @@
+#include "response/responder.h"
+
+#include "base/alloc.h"
+
+#include <ritz/monitor.h>
+
+#include <complex.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A response while its points are being chosen. */
+
+typedef struct ritz_mesh {
+    ritz_responder *responder; /* borrowed */
+    int64_t values;            /* a point: outputs x inputs */
+    int64_t count, room;
+    double *hertz;      /* count, ascending */
+    double _Complex *H; /* count x values */
+    bool *open;         /* count: from this point to the next is not settled */
+    double *peak;       /* values, largest |H| that was met */
+    double *level;      /* values, of ritz_noise_heed */
+    double *scale;      /* values, of ritz_noise_scales */
+    double _Complex *row, *between; /* values, to work in */
+} ritz_mesh;
+
+/* H of more values than this is a mistake in the request. */
+static const int64_t most_values = INT64_C(1) << 28;
+
+/* Points closer than this, relative, are one: a cubic through two of them
+   divides the rounding of H by their distance. */
+static const double same = 1e-9;
+
+/* H into mesh->row, the peaks heeded. */
+static ritz_status mesh_ask(ritz_mesh *mesh, double hertz)
+{
+    RITZ_CHECK(ritz_responder_at(mesh->responder, hertz, mesh->row));
+    for (int64_t v = 0; v < mesh->values; v++)
+        mesh->peak[v] = fmax(mesh->peak[v], cabs(mesh->row[v]));
+    ritz_noise_heed(&mesh->responder->noise, hertz, mesh->row, mesh->level);
+    return RITZ_OK;
+}
+
+static ritz_status make_room(ritz_mesh *mesh, int64_t room)
+{
+    ritz_status status = RITZ_OK;
+    double *hertz = NULL;
+    double _Complex *H = NULL;
+    bool *open = NULL;
+    size_t count = (size_t)mesh->count;
+
+    if (room <= mesh->room)
+        return RITZ_OK;
+    room += room / 2;
+    RITZ_FAIL_IF(room > most_values / (mesh->values > 0 ? mesh->values : 1),
+                 RITZ_ERR_CONVERGENCE,
+                 "%" PRId64 " points do not keep the tolerance: ask for less, "
+                 "or for a shorter range",
+                 mesh->count);
+    RITZ_NEW(hertz, room);
+    RITZ_NEW(H, room * mesh->values);
+    RITZ_NEW(open, room);
+    if (count > 0) {
+        memcpy(hertz, mesh->hertz, count * sizeof *hertz);
+        memcpy(H, mesh->H, count * (size_t)mesh->values * sizeof *H);
+        memcpy(open, mesh->open, count * sizeof *open);
+    }
+    free(mesh->hertz);
+    free(mesh->H);
+    free(mesh->open);
+    mesh->hertz = hertz;
+    mesh->H = H;
+    mesh->open = open;
+    mesh->room = room;
+    hertz = NULL;
+    H = NULL;
+    open = NULL;
+done:
+    free(hertz);
+    free(H);
+    free(open);
+    return status;
+}
+
+static void set_point(ritz_mesh *mesh, int64_t to, double hertz, bool open,
+                      const double _Complex *H)
+{
+    mesh->hertz[to] = hertz;
+    mesh->open[to] = open;
+    memmove(mesh->H + to * mesh->values, H, (size_t)mesh->values * sizeof *H);
+}
+
+/* Those that are at a point, or beside it by rounding, are taken out. */
+static void close_up(ritz_mesh *mesh)
+{
+    int64_t kept = 0;
+
+    for (int64_t k = 0; k < mesh->count; k++) {
+        if (kept > 0 &&
+            mesh->hertz[k] - mesh->hertz[kept - 1] <= same * mesh->hertz[k]) {
+            mesh->open[kept - 1] = mesh->open[kept - 1] || mesh->open[k];
+            continue;
+        }
+        set_point(mesh, kept++, mesh->hertz[k], mesh->open[k],
+                  mesh->H + k * mesh->values);
+    }
+    mesh->count = kept;
+}
+
+static void free_mesh(ritz_mesh *mesh)
+{
+    free(mesh->hertz);
+    free(mesh->H);
+    free(mesh->open);
+    free(mesh->peak);
+    free(mesh->level);
+    free(mesh->scale);
+    free(mesh->row);
+    free(mesh->between);
+    *mesh = (ritz_mesh){0};
+}
+
+/* Of given points, which ascend; all is open. */
+static ritz_status new_mesh(ritz_responder *responder, int64_t count,
+                            const double *hertz, ritz_mesh *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &responder->poles->io;
+    ritz_mesh mesh = {.responder = responder,
+                      .values = io->num_outputs * io->num_inputs};
+
+    RITZ_NEW(mesh.peak, mesh.values);
+    RITZ_NEW(mesh.level, mesh.values);
+    RITZ_NEW(mesh.scale, mesh.values);
+    RITZ_NEW(mesh.row, mesh.values);
+    RITZ_NEW(mesh.between, mesh.values);
+    RITZ_TRY(make_room(&mesh, count));
+    for (int64_t k = 0; k < count; k++) {
+        RITZ_TRY(mesh_ask(&mesh, hertz[k]));
+        mesh.hertz[k] = hertz[k];
+        mesh.open[k] = true;
+        memcpy(mesh.H + k * mesh.values, mesh.row,
+               (size_t)mesh.values * sizeof *mesh.row);
+    }
+    mesh.count = count;
+    close_up(&mesh);
+    *out = mesh;
+    mesh = (ritz_mesh){0};
+done:
+    free_mesh(&mesh);
+    return status;
+}
+
+/*
+ * Put points among the others, those that are there already left out.
+ *
+ * @param[in] hertz  ascending
+ * @param[in] H      count x values
+ */
+static ritz_status mesh_insert(ritz_mesh *mesh, int64_t count,
+                               const double *hertz, const double _Complex *H)
+{
+    int64_t from = mesh->count - 1;
+    int64_t add = count - 1;
+
+    RITZ_CHECK(make_room(mesh, mesh->count + count));
+    for (int64_t to = mesh->count + count - 1; add >= 0; to--) {
+        if (from >= 0 && mesh->hertz[from] > hertz[add]) {
+            set_point(mesh, to, mesh->hertz[from], mesh->open[from],
+                      mesh->H + from * mesh->values);
+            from--;
+        } else {
+            set_point(mesh, to, hertz[add], from < 0 || mesh->open[from],
+                      H + add * mesh->values);
+            add--;
+        }
+    }
+    mesh->count += count;
+    close_up(mesh);
+    return RITZ_OK;
+}
+
+/* Zeros of each channel that are near enough to the axis to make it dip. */
+
+enum { PARTS = 8, MOST_STEPS = 5 };
+
+/* Of the frequency: where a step is smaller, it was the last. */
+static const double settled = 1e-9;
+
+/* Of what its errors are measured by: a channel beneath is rounding. */
+static const double heard = 0.5;
+
+/* Points that were found, in the order of channels. */
+typedef struct finds {
+    int64_t count, room, values;
+    double *hertz;
+    double _Complex *H;
+} finds;
+
+static ritz_status keep(finds *f, double hertz, const double _Complex *H)
+{
+    ritz_status status = RITZ_OK;
+    finds more = {
+        .count = f->count, .room = 2 * f->room + 16, .values = f->values};
+
+    if (f->count == f->room) {
+        RITZ_NEW(more.hertz, more.room);
+        RITZ_NEW(more.H, more.room * more.values);
+        if (f->count > 0) {
+            memcpy(more.hertz, f->hertz, (size_t)f->count * sizeof *f->hertz);
+            memcpy(more.H, f->H, (size_t)(f->count * f->values) * sizeof *f->H);
+        }
+        free(f->hertz);
+        free(f->H);
+        *f = more;
+        more = (finds){0};
+    }
+    f->hertz[f->count] = hertz;
+    memcpy(f->H + f->count * f->values, H, (size_t)f->values * sizeof *H);
+    f->count++;
+done:
+    free(more.hertz);
+    free(more.H);
+    return status;
+}
+
+/* What a response says between its points: see ritz_response_at. */
+
+enum { CUBIC = 4 };
+
+/*
+ * Weights of the points first, first + 1, ... for the cubic at @p at, which
+ * lies between points k and k + 1.
+ *
+ * @return how many, 4 or fewer
+ */
+static int cubic(int64_t count, const double *x, int64_t k, double at,
+                 int64_t *first, double weight[static 4])
+{
+    int points = count < CUBIC ? (int)count : CUBIC;
+    int64_t from = k - 1;
+
+    if (from > count - points)
+        from = count - points;
+    if (from < 0)
+        from = 0;
+    for (int i = 0; i < points; i++) {
+        weight[i] = 1.0;
+        for (int j = 0; j < points; j++)
+            if (j != i)
+                weight[i] *= (at - x[from + j]) / (x[from + i] - x[from + j]);
+    }
+    *first = from;
+    return points;
+}
+
+/* Channel v of the cubics at a point of interval k. */
+static double _Complex cubic_at(const ritz_mesh *mesh, int64_t v, int64_t k,
+                                double hertz)
+{
+    double _Complex sum = 0.0;
+    double weight[4];
+    int64_t first = 0;
+    int points = cubic(mesh->count, mesh->hertz, k, hertz, &first, weight);
+
+    for (int i = 0; i < points; i++)
+        sum += weight[i] * mesh->H[(first + i) * mesh->values + v];
+    return sum;
+}
+
+/*
+ * From a dip in (low, high): where H is a (w - z), one step is at Re z. A zero
+ * farther off the axis than the dip is wide makes none.
+ */
+static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
+                          double _Complex slope, finds *f)
+{
+    double w = 0.5 * (low + high);
+    double before = 0.0;
+    double _Complex H = 0.0, z = 0.0;
+    bool still = false;
+
+    for (int t = 0; t < MOST_STEPS && !still; t++) {
+        double _Complex last = H;
+
+        RITZ_CHECK(mesh_ask(mesh, w));
+        H = mesh->row[v];
+        if (t > 0 && w != before)
+            slope = (H - last) / (w - before);
+        if (!(cabs(slope) > 0.0))
+            return RITZ_OK;
+        z = w - H / slope;
+        before = w;
+        still = H == 0.0 || fabs(creal(z) - w) <= settled * w;
+        if (!still)
+            w = creal(z);
+        if (!(w > low && w < high))
+            return RITZ_OK;
+    }
+    if (!still)
+        RITZ_CHECK(mesh_ask(mesh, w));
+    if (fabs(cimag(z)) <= high - low)
+        RITZ_CHECK(keep(f, w, mesh->row));
+    return RITZ_OK;
+}
+
+/* Where the cubics of one channel are least among their neighbours. */
+static ritz_status search(ritz_mesh *mesh, int64_t v, finds *f)
+{
+    double w[3] = {0.0, 0.0, 0.0};
+    double size[3] = {0.0, 0.0, 0.0};
+    double _Complex H[3] = {0.0, 0.0, 0.0};
+    int64_t n = 0;
+
+    for (int64_t k = 0; k + 1 < mesh->count; k++) {
+        double step = (mesh->hertz[k + 1] - mesh->hertz[k]) / PARTS;
+
+        for (int part = 0; part < PARTS; part++, n++) {
+            w[0] = w[1], H[0] = H[1], size[0] = size[1];
+            w[1] = w[2], H[1] = H[2], size[1] = size[2];
+            w[2] = mesh->hertz[k] + part * step;
+            H[2] = cubic_at(mesh, v, k, w[2]);
+            size[2] = cabs(H[2]);
+            if (n < 2 || size[1] > size[0] || size[1] > size[2])
+                continue;
+            RITZ_CHECK(
+                pursue(mesh, v, w[0], w[2], (H[2] - H[0]) / (w[2] - w[0]), f));
+        }
+    }
+    return RITZ_OK;
+}
+
+typedef struct point_within {
+    double hertz;
+    int64_t at;
+} point_within;
+
+static int ascending(const void *left, const void *right)
+{
+    const point_within *a = left;
+    const point_within *b = right;
+
+    return (a->hertz > b->hertz) - (a->hertz < b->hertz);
+}
+
+/* Into the mesh, in order. */
+static ritz_status merge(ritz_mesh *mesh, const finds *f)
+{
+    ritz_status status = RITZ_OK;
+    point_within *order = NULL;
+    double *hertz = NULL;
+    double _Complex *H = NULL;
+
+    RITZ_NEW(order, f->count);
+    RITZ_NEW(hertz, f->count);
+    RITZ_NEW(H, f->count * f->values);
+    for (int64_t k = 0; k < f->count; k++)
+        order[k] = (point_within){f->hertz[k], k};
+    qsort(order, (size_t)f->count, sizeof *order, ascending);
+    for (int64_t k = 0; k < f->count; k++) {
+        hertz[k] = order[k].hertz;
+        memcpy(H + k * f->values, f->H + order[k].at * f->values,
+               (size_t)f->values * sizeof *H);
+    }
+    RITZ_TRY(mesh_insert(mesh, f->count, hertz, H));
+done:
+    free(order);
+    free(hertz);
+    free(H);
+    return status;
+}
+
+/*
+ * Add the points where a channel has a zero near the axis: where the cubics
+ * dip, and from there by w := Re(w - H / H') [each step one response].
+ */
+static ritz_status mesh_add_dips(ritz_mesh *mesh)
+{
+    ritz_status status = RITZ_OK;
+    finds f = {.values = mesh->values};
+
+    for (int64_t v = 0; v < mesh->values; v++)
+        if (mesh->peak[v] > heard * mesh->scale[v])
+            RITZ_TRY(search(mesh, v, &f));
+    RITZ_TRY(merge(mesh, &f));
+done:
+    free(f.hertz);
+    free(f.H);
+    return status;
+}
+
+/* Of the last frequency: so far beside the range is in it. */
+static const double rounding = 1e-12;
+
+/* out = sum of weighted rows. */
+static void cubic_mix(int points, const double *weight, int64_t values,
+                      const double _Complex *H, double _Complex *out)
+{
+    for (int64_t v = 0; v < values; v++) {
+        out[v] = 0.0;
+        for (int i = 0; i < points; i++)
+            out[v] += weight[i] * H[i * values + v];
+    }
+}
+
+/* The last point at or before `hertz`, but for that at the end. */
+static int64_t interval(const ritz_response *r, double hertz)
+{
+    int64_t low = 0;
+    int64_t high = r->count - 1;
+
+    while (high - low > 1) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (r->hertz[middle] <= hertz)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+ritz_status ritz_response_at(const ritz_response *response, double hertz,
+                             double _Complex *out)
+{
+    const ritz_response *r = response;
+    int64_t values = r->num_outputs * r->num_inputs;
+    double weight[CUBIC];
+    int64_t first = 0;
+    int points = 0;
+    double beside = 0.0;
+
+    RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT,
+                   "the response has no points");
+    beside = rounding * r->hertz[r->count - 1];
+    RITZ_REFUSE_IF(!(hertz >= r->hertz[0] - beside) ||
+                       !(hertz <= r->hertz[r->count - 1] + beside),
+                   RITZ_ERR_ARGUMENT,
+                   "%g Hz is outside the response, which is from %g to %g Hz",
+                   hertz, r->hertz[0], r->hertz[r->count - 1]);
+    points =
+        cubic(r->count, r->hertz, interval(r, hertz), hertz, &first, weight);
+    for (int i = 0; i < points; i++)
+        RITZ_REFUSE_IF(!isfinite(weight[i]), RITZ_ERR_ARGUMENT,
+                       "the response has %g Hz twice", hertz);
+    cubic_mix(points, weight, values, r->H + first * values, out);
+    return RITZ_OK;
+}
+
+/*
+ * Points chosen until the cubics between them keep a tolerance. Where poles are
+ * is known, so that none is passed over: each adds its peak and points beside
+ * it, and from there intervals are halved,
+ *
+ *     |H - cubic| <= half the tolerance x the channel's largest |H|
+ *
+ * at their middle and at a quarter of them.
+ */
+
+enum { MOST_ROUNDS = 60 };
+
+/* Of its frequency: an interval this short is not halved. */
+static const double shortest = 4e-9;
+
+/* An undamped pole is a point, at which the responder says what is wrong. */
+static const double least_ratio = 1e-15;
+
+/* What is measured at a few places is held to this part. */
+static const double margin = 0.5;
+
+static const double quarter = 0.25;
+
+/* The points of a grid, of all peaks and beside them. */
+static ritz_status begin(const ritz_responder *responder, const ritz_grid *grid,
+                         int64_t *count, double **out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = 0, num_modes = 0;
+    double _Complex *s = NULL;
+    double *omega = NULL, *zeta = NULL;
+    ritz_grid wide = *grid;
+
+    wide.refine = true;
+    RITZ_TRY(ritz_responder_poles(responder, &n, &s));
+    RITZ_NEW(omega, n);
+    RITZ_NEW(zeta, n);
+    for (int64_t k = 0; k < n; k++) {
+        double size = cabs(s[k]);
+
+        if (!(size > 0.0) || !(cimag(s[k]) > 0.0))
+            continue;
+        omega[num_modes] = size;
+        zeta[num_modes++] = fmax(-creal(s[k]) / size, least_ratio);
+    }
+    RITZ_TRY(ritz_grid_points(&wide, num_modes, omega, zeta, count, out));
+done:
+    free(s);
+    free(omega);
+    free(zeta);
+    return status;
+}
+
+/* Whether the cubics of interval k say what mesh->row is. */
+static bool agrees(ritz_mesh *mesh, int64_t k, double hertz, double allowed)
+{
+    double weight[4];
+    int64_t first = 0;
+    int points = cubic(mesh->count, mesh->hertz, k, hertz, &first, weight);
+
+    cubic_mix(points, weight, mesh->values, mesh->H + first * mesh->values,
+              mesh->between);
+    for (int64_t v = 0; v < mesh->values; v++)
+        if (!(cabs(mesh->between[v] - mesh->row[v]) <=
+              allowed * mesh->scale[v]))
+            return false;
+    return true;
+}
+
+/* Interval k: its middle in hertz and H, and whether that is needed. */
+static ritz_status test(ritz_mesh *mesh, int64_t k, double allowed,
+                        double *hertz, double _Complex *H, bool *needed)
+{
+    double low = mesh->hertz[k];
+    double step = mesh->hertz[k + 1] - low;
+
+    *hertz = low + 0.5 * step;
+    RITZ_CHECK(mesh_ask(mesh, *hertz));
+    memcpy(H, mesh->row, (size_t)mesh->values * sizeof *H);
+    *needed = !agrees(mesh, k, *hertz, allowed);
+    if (!*needed) {
+        RITZ_CHECK(mesh_ask(mesh, low + quarter * step));
+        *needed = !agrees(mesh, k, low + quarter * step, allowed);
+    }
+    RITZ_REFUSE_IF(*needed && step <= shortest * mesh->hertz[k + 1],
+                   RITZ_ERR_CONVERGENCE,
+                   "the response does not settle at %.9g Hz: is there a mode "
+                   "without damping, or a tolerance beneath its rounding",
+                   *hertz);
+    return RITZ_OK;
+}
+
+/* Halve what is open and does not hold; *added how many. */
+static ritz_status halve(ritz_mesh *mesh, double allowed, int64_t *added)
+{
+    ritz_status status = RITZ_OK;
+    double *hertz = NULL;
+    double _Complex *H = NULL;
+    int64_t last = mesh->count - 1, num_open = 0, n = 0;
+
+    for (int64_t k = 0; k < last; k++)
+        num_open += mesh->open[k];
+    RITZ_NEW(hertz, num_open);
+    RITZ_NEW(H, num_open * mesh->values);
+    for (int64_t k = 0; k < last; k++) {
+        bool needed = false;
+
+        if (!mesh->open[k])
+            continue;
+        RITZ_TRY(
+            test(mesh, k, allowed, &hertz[n], H + n * mesh->values, &needed));
+        mesh->open[k] = needed;
+        n += needed;
+        ritz_monitor_step("points", mesh->count + n, 0);
+    }
+    RITZ_TRY(mesh_insert(mesh, n, hertz, H));
+    *added = n;
+done:
+    free(hertz);
+    free(H);
+    return status;
+}
+
+/* A response of no points, then those of the mesh. */
+static ritz_status hand_over(ritz_mesh *mesh, const ritz_grid *grid,
+                             double tolerance, ritz_response *out)
+{
+    const ritz_responder *responder = mesh->responder;
+    const ritz_grid ends = {
+        .from_hz = grid->from_hz, .to_hz = grid->to_hz, .count = 2};
+    ritz_response r = {0};
+
+    RITZ_CHECK(ritz_response_new(&ends, responder->poles,
+                                 responder->engine->name, NULL, &r));
+    free(r.hertz);
+    free(r.H);
+    r.count = mesh->count;
+    r.hertz = mesh->hertz;
+    r.H = mesh->H;
+    mesh->hertz = NULL;
+    mesh->H = NULL;
+    memcpy(r.damping, responder->damping, sizeof r.damping);
+    (void)snprintf(r.interpolation, sizeof r.interpolation, "cubic");
+    r.tolerance = tolerance;
+    *out = r;
+    return RITZ_OK;
+}
+
+ritz_status ritz_responder_follow(ritz_responder *responder,
+                                  const ritz_grid *grid, double tolerance,
+                                  ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &responder->poles->io;
+    double *hertz = NULL;
+    int64_t count = 0, added = 1;
+    ritz_mesh mesh = {0};
+
+    RITZ_FAIL_IF(!(tolerance > 0.0) || !(tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                 "a tolerance of %g is not between 0 and 1", tolerance);
+    RITZ_FAIL_IF(grid->hertz, RITZ_ERR_ARGUMENT,
+                 "points that are given cannot be chosen by a tolerance");
+    RITZ_TRY(begin(responder, grid, &count, &hertz));
+    RITZ_TRY(new_mesh(responder, count, hertz, &mesh));
+    for (int round = 0; round < MOST_ROUNDS && added > 0; round++) {
+        ritz_noise_scales(io->num_outputs, io->num_inputs, margin * tolerance,
+                          mesh.peak, mesh.level, mesh.scale);
+        RITZ_TRY(halve(&mesh, margin * tolerance, &added));
+    }
+    RITZ_TRY(mesh_add_dips(&mesh));
+    RITZ_TRY(hand_over(&mesh, grid, tolerance, out));
+done:
+    free(hertz);
+    free_mesh(&mesh);
+    return status;
+}

@@ -1,0 +1,703 @@
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "poles/spectrum_parts.h"
+#include "response/direct.h"
+#include "response/responder.h"
+#include <complex.h>
+#include <ritz/status.h>
+#include <stdint.h>
+
+#include <ritz/monitor.h>
+#include <ritz/zeros.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The rational engine while its nodes are chosen: see response_rational.c. */
+
+/*
+ * Rational interpolation with poles and zeros cancelled: through nodes s_m,
+ *
+ *     H(s) = Z(s)/D(s) sum_m H_m D(s_m)/Z(s_m)
+ *                      prod_(l != m) (s - s_l)/(s_m - s_l)
+ *     D(s) = prod (s - pole),    Z(s) = prod (s - zero) of the channel
+ *
+ * [KenneyStubberudLaub1992, (40)] in Lagrange's form: one polynomial through
+ * the same values, but where Newton's coefficients of many cancelled poles are
+ * differences of what is large, here every term is of the size of H.
+ */
+
+typedef struct ritz_interpolant {
+    int64_t values; /* channels */
+    double unit;    /* rad/s that count as one, against overflow */
+    int64_t num_poles;
+    double _Complex *pole; /* in units, as all that follow */
+    int64_t *num_zeros;    /* of each channel */
+    double _Complex **zero;
+    int64_t count, room;
+    double _Complex *node;
+    double _Complex *weight; /* D(s_m) / prod (s_m - s_l) */
+    double _Complex *H;      /* room x values */
+} ritz_interpolant;
+
+/* So many nodes in a row are within the tolerance at the end. */
+enum { RITZ_RATIONAL_ENOUGH = 3 };
+
+typedef struct ritz_nodes {
+    ritz_direct full;
+    ritz_interpolant poles; /* those alone are cancelled */
+    ritz_interpolant both;  /* and zeros, where there are any */
+    int64_t num_poles;
+    double _Complex *pole; /* all, conjugates too */
+    bool mirror;           /* nodes count at -i w too */
+    int64_t values;
+    int64_t count; /* of candidates */
+    double *hertz;
+    bool *used;
+    bool *with_zeros;        /* values: which of the two is nearer */
+    double *missed;          /* 2 x values: most by either at the last nodes */
+    double *miss;            /* 2 x values of each of those */
+    const ritz_noise *noise; /* of the responder */
+    double *peak, *level, *scale;
+    double _Complex *H, *guess, *other;
+    int64_t nodes;
+    bool small; /* `whole` is there */
+    ritz_whole whole;
+} ritz_nodes;
+
+static void free_interpolant(ritz_interpolant *interpolant)
+{
+    for (int64_t v = 0; interpolant->zero && v < interpolant->values; v++)
+        free(interpolant->zero[v]);
+    free(interpolant->pole);
+    free(interpolant->num_zeros);
+    free(interpolant->zero);
+    free(interpolant->node);
+    free(interpolant->weight);
+    free(interpolant->H);
+    *interpolant = (ritz_interpolant){0};
+}
+
+/* @param[in] pole  all, conjugates too  [rad/s] */
+static ritz_status new_interpolant(int64_t values, double unit,
+                                   int64_t num_poles,
+                                   const double _Complex *pole,
+                                   ritz_interpolant *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_interpolant f = {
+        .values = values, .unit = unit, .num_poles = num_poles};
+
+    RITZ_NEW(f.pole, num_poles);
+    for (int64_t k = 0; k < num_poles; k++)
+        f.pole[k] = pole[k] / unit;
+    RITZ_NEW(f.num_zeros, values);
+    RITZ_NEW(f.zero, values);
+    *out = f;
+    f = (ritz_interpolant){0};
+done:
+    free_interpolant(&f);
+    return status;
+}
+
+/* Zeros of a channel, conjugates too; before there are nodes. */
+static ritz_status cancel_interpolant(ritz_interpolant *interpolant,
+                                      int64_t channel, int64_t num_zeros,
+                                      const double _Complex *zero)
+{
+    double _Complex *z = NULL;
+
+    RITZ_CHECK_NEW(z, num_zeros);
+    for (int64_t k = 0; k < num_zeros; k++)
+        z[k] = zero[k] / interpolant->unit;
+    free(interpolant->zero[channel]);
+    interpolant->zero[channel] = z;
+    interpolant->num_zeros[channel] = num_zeros;
+    return RITZ_OK;
+}
+
+static ritz_status make_room(ritz_interpolant *f)
+{
+    ritz_status status = RITZ_OK;
+    int64_t room = 2 * f->room + 16;
+    double _Complex *node = NULL, *weight = NULL, *H = NULL;
+    size_t count = (size_t)f->count;
+
+    if (f->count < f->room)
+        return RITZ_OK;
+    RITZ_NEW(node, room);
+    RITZ_NEW(weight, room);
+    RITZ_NEW(H, room * f->values);
+    if (count > 0) {
+        memcpy(node, f->node, count * sizeof *node);
+        memcpy(weight, f->weight, count * sizeof *weight);
+        memcpy(H, f->H, count * (size_t)f->values * sizeof *H);
+    }
+    free(f->node);
+    free(f->weight);
+    free(f->H);
+    f->node = node;
+    f->weight = weight;
+    f->H = H;
+    f->room = room;
+    node = weight = H = NULL;
+done:
+    free(node);
+    free(weight);
+    free(H);
+    return status;
+}
+
+/* Factors above and below the line in turn, so that nothing overflows. */
+static double _Complex quotient(double _Complex s, int64_t above,
+                                const double _Complex *top, int64_t below,
+                                const double _Complex *bottom)
+{
+    double _Complex value = 1.0;
+
+    for (int64_t k = 0; k < above || k < below; k++) {
+        if (k < above)
+            value *= s - top[k];
+        if (k < below)
+            value /= s - bottom[k];
+    }
+    return value;
+}
+
+/* One node more, on neither a pole nor a zero, nor at another node. */
+static ritz_status add_interpolant(ritz_interpolant *interpolant,
+                                   double _Complex s, const double _Complex *H)
+{
+    ritz_interpolant *f = interpolant;
+    double _Complex x = s / f->unit;
+
+    RITZ_CHECK(make_room(f));
+    f->weight[f->count] = quotient(x, f->num_poles, f->pole, f->count, f->node);
+    for (int64_t k = 0; k < f->count; k++)
+        f->weight[k] /= f->node[k] - x;
+    f->node[f->count] = x;
+    memcpy(f->H + f->count * f->values, H, (size_t)f->values * sizeof *H);
+    f->count++;
+    return RITZ_OK;
+}
+
+/* H at s; on an undamped pole not finite. @cost O(nodes + poles) a channel */
+static void interpolant_at(const ritz_interpolant *interpolant,
+                           double _Complex s, double _Complex *H)
+{
+    const ritz_interpolant *f = interpolant;
+    double _Complex x = s / f->unit;
+    double _Complex all = quotient(x, f->count, f->node, f->num_poles, f->pole);
+
+    for (int64_t v = 0; v < f->values; v++)
+        H[v] = 0.0;
+    for (int64_t m = 0; m < f->count; m++) {
+        double _Complex share = f->weight[m] * all / (x - f->node[m]);
+
+        if (x == f->node[m]) {
+            memcpy(H, f->H + m * f->values, (size_t)f->values * sizeof *H);
+            return;
+        }
+        for (int64_t v = 0; v < f->values; v++) {
+            double _Complex zeros = 1.0;
+
+            for (int64_t k = 0; k < f->num_zeros[v]; k++)
+                zeros *= (x - f->zero[v][k]) / (f->node[m] - f->zero[v][k]);
+            H[v] += share * zeros * f->H[m * f->values + v];
+        }
+    }
+}
+
+/* log |prod (s - s_m) / D(s)|: where it is largest a node helps most. */
+static double need_interpolant(const ritz_interpolant *interpolant,
+                               double _Complex s)
+{
+    double _Complex x = s / interpolant->unit;
+    double need = 0.0;
+
+    for (int64_t m = 0; m < interpolant->count; m++)
+        need += log(cabs(x - interpolant->node[m]));
+    for (int64_t k = 0; k < interpolant->num_poles; k++)
+        need -= log(cabs(x - interpolant->pole[k]));
+    return need;
+}
+
+/* Where nodes may be, which comes next, and when there are enough. */
+
+enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
+
+/* Of its frequency: nodes begin so far beside an undamped pole, and keep so far
+   off all poles and zeros. */
+static const double beside = 1e-4;
+
+static const double clear = 1e-6;
+
+/* Beside a pole, in half-power widths. */
+static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
+
+/* Of w^2: nearer to an undamped pole than this there is no answer. */
+static const double pole_within = 1e-12;
+
+/* An undamped pole that was cancelled has no response. */
+static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
+{
+    double w = 2.0 * RITZ_PI * hertz;
+
+    for (int64_t k = 0; k < s->num_poles; k++) {
+        bool on = cabs(ritz_complex(0.0, w) - s->pole[k]) <=
+                  pole_within * (w + cabs(s->pole[k]));
+
+        RITZ_REFUSE_IF(
+            on && s->pole[k] == 0.0, RITZ_ERR_SINGULAR,
+            "at 0 Hz the response is infinite: a rigid-body motion is "
+            "driven and seen, begin above 0 Hz");
+        RITZ_REFUSE_IF(on, RITZ_ERR_SINGULAR,
+                       "%.9g Hz is the frequency of an undamped mode: give it "
+                       "damping or leave the point out",
+                       hertz);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status at(void *state, double hertz, double _Complex *H)
+{
+    ritz_nodes *s = state;
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+
+    RITZ_CHECK(refuse_pole(s, hertz));
+    interpolant_at(&s->poles, at, s->guess);
+    interpolant_at(&s->both, at, s->other);
+    for (int64_t v = 0; v < s->values; v++)
+        H[v] = s->with_zeros[v] ? s->other[v] : s->guess[v];
+    return RITZ_OK;
+}
+
+/* Whether s is on, or by rounding beside, one of some points. */
+static bool is_on(double _Complex s, int64_t count, const double _Complex *at,
+                  double unit)
+{
+    for (int64_t k = 0; k < count; k++)
+        if (cabs(s - at[k] * unit) <= clear * cabs(s))
+            return true;
+    return false;
+}
+
+/* A frequency where a node may be: on no pole and on no zero. */
+static void add_candidate(ritz_nodes *s, double hertz, double low, double high)
+{
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+    bool on = !(hertz >= low && hertz <= high) ||
+              is_on(at, s->num_poles, s->pole, 1.0);
+
+    for (int64_t v = 0; v < s->values; v++)
+        on = on ||
+             is_on(at, s->both.num_zeros[v], s->both.zero[v], s->both.unit);
+    if (!on)
+        s->hertz[s->count++] = hertz;
+}
+
+static int ascending(const void *left, const void *right)
+{
+    const double *a = left;
+    const double *b = right;
+
+    return (*a > *b) - (*a < *b);
+}
+
+/* Beside resonances, between them, and so many towards both ends that among
+ * them are Leja points, which gather there. */
+static ritz_status place_nodes(ritz_nodes *s, double low, double high)
+{
+    ritz_status status = RITZ_OK;
+    double *at = NULL;
+    int64_t n = 0;
+
+    RITZ_NEW(at, s->num_poles + 2);
+    RITZ_NEW(s->hertz, EVEN + (s->num_poles + 2) * (BETWEEN + 1 + 2 * OFFSETS));
+    for (int k = 1; k < EVEN; k++)
+        add_candidate(
+            s, 0.5 * (low + high - (high - low) * cos(RITZ_PI * k / EVEN)), low,
+            high);
+    at[n++] = low;
+    at[n++] = high;
+    for (int64_t k = 0; k < s->num_poles; k++) {
+        double hertz = cimag(s->pole[k]) / (2.0 * RITZ_PI);
+        double width = -creal(s->pole[k]) / (2.0 * RITZ_PI);
+
+        if (hertz <= low || hertz >= high)
+            continue;
+        at[n++] = hertz;
+        width = fmax(width, beside * hertz);
+        for (int o = 0; o < OFFSETS; o++) {
+            add_candidate(s, hertz - offset[o] * width, low, high);
+            add_candidate(s, hertz + offset[o] * width, low, high);
+        }
+    }
+    qsort(at, (size_t)n, sizeof *at, ascending);
+    for (int64_t k = 0; k + 1 < n; k++)
+        for (int part = 0; part <= BETWEEN; part++)
+            if (part < BETWEEN || k + 2 == n)
+                add_candidate(s, at[k] + (at[k + 1] - at[k]) * part / BETWEEN,
+                              low, high);
+    RITZ_NEW(s->used, s->count);
+done:
+    free(at);
+    return status;
+}
+
+/* The candidate that helps most, -1 if none is left. */
+static int64_t next(const ritz_nodes *s)
+{
+    double most = -HUGE_VAL;
+    int64_t best = -1;
+
+    for (int64_t k = 0; k < s->count; k++) {
+        double w = 2.0 * RITZ_PI * s->hertz[k];
+        double need = s->used[k]
+                          ? -HUGE_VAL
+                          : need_interpolant(&s->poles, ritz_complex(0.0, w));
+
+        if (need > most) {
+            most = need;
+            best = k;
+        }
+    }
+    return best;
+}
+
+static ritz_status add_node(ritz_nodes *s, double hertz)
+{
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+
+    RITZ_CHECK(add_interpolant(&s->poles, at, s->H));
+    RITZ_CHECK(add_interpolant(&s->both, at, s->H));
+    s->nodes++;
+    if (!s->mirror || hertz == 0.0)
+        return RITZ_OK;
+    for (int64_t v = 0; v < s->values; v++)
+        s->H[v] = conj(s->H[v]);
+    RITZ_CHECK(add_interpolant(&s->poles, -at, s->H));
+    return add_interpolant(&s->both, -at, s->H);
+}
+
+/* What either interpolant missed at a new node; whether one did not. */
+static bool judge(ritz_nodes *s, double hertz, double tolerance)
+{
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+    const ritz_io *io = &s->full.component->io;
+    double *miss = s->miss + s->nodes % RITZ_RATIONAL_ENOUGH * 2 * s->values;
+    bool near = s->nodes >= RITZ_RATIONAL_ENOUGH;
+
+    interpolant_at(&s->poles, at, s->guess);
+    interpolant_at(&s->both, at, s->other);
+    for (int64_t v = 0; v < s->values; v++)
+        s->peak[v] = fmax(s->peak[v], cabs(s->H[v]));
+    ritz_noise_heed(s->noise, hertz, s->H, s->level);
+    ritz_noise_scales(io->num_outputs, io->num_inputs, tolerance, s->peak,
+                      s->level, s->scale);
+    for (int64_t v = 0; v < s->values; v++) {
+        miss[v] = cabs(s->guess[v] - s->H[v]);
+        miss[s->values + v] = cabs(s->other[v] - s->H[v]);
+    }
+    for (int64_t k = 0; k < 2 * s->values; k++) {
+        s->missed[k] = 0.0;
+        for (int64_t t = 0; t < RITZ_RATIONAL_ENOUGH; t++)
+            s->missed[k] = fmax(s->missed[k], s->miss[t * 2 * s->values + k]);
+    }
+    for (int64_t v = 0; v < s->values; v++) {
+        s->with_zeros[v] = s->missed[s->values + v] < s->missed[v];
+        near = near && fmin(s->missed[v], s->missed[s->values + v]) <=
+                           tolerance * s->scale[v];
+    }
+    return near;
+}
+
+/* Nodes until the last were within the tolerance. */
+static ritz_status converge_nodes(ritz_nodes *s, double tolerance)
+{
+    bool near = false;
+
+    while (!near) {
+        int64_t k = next(s);
+
+        RITZ_REFUSE_IF(k < 0 || s->nodes >= MOST_NODES, RITZ_ERR_CONVERGENCE,
+                       "%" PRId64 " nodes do not interpolate to %.1e of the "
+                       "largest response: krylov may",
+                       s->nodes, tolerance);
+        s->used[k] = true;
+        memset(s->H, 0, (size_t)s->values * sizeof *s->H);
+        RITZ_CHECK(ritz_direct_at(&s->full, s->hertz[k], s->H));
+        near = judge(s, s->hertz[k], tolerance);
+        RITZ_CHECK(add_node(s, s->hertz[k]));
+        ritz_monitor_step("nodes", s->nodes, 0);
+    }
+    return RITZ_OK;
+}
+
+/* What is cancelled: poles and, of small components, zeros. */
+
+/* Poles are cancelled up to here, of the end. */
+static const double cancelled_to = 1.5;
+
+/* Of |s|: poles nearer than this are one. */
+static const double same = 1e-9;
+
+/* A pole that is there is added once more, and then not again: 0 is double, and
+   what couples two equal modes a little is seen through both. */
+static void add_pole(ritz_nodes *s, double _Complex pole)
+{
+    int64_t there = 0;
+
+    for (int64_t k = 0; k < s->num_poles; k++)
+        there += cabs(s->pole[k] - pole) <= same * cabs(pole);
+    if (there < 2)
+        s->pole[s->num_poles++] = pole;
+}
+
+/* A small component as a dense model, ratios in D as the modes have them. */
+static ritz_status take_whole(ritz_nodes *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_direct *full = &s->full;
+    ritz_dense *D = &s->whole.D;
+    ritz_dense scaled = {0}, given = {0};
+
+    RITZ_TRY(ritz_whole_new(full->component, &s->whole));
+    s->whole.model.io = &full->component->io;
+    s->small = true;
+    if (!full->ratios)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_copy(&full->MPhi, &scaled));
+    for (int64_t k = 0; k < full->m; k++) {
+        double w = sqrt(full->poles.lambda[k]);
+        int64_t mode = k - full->poles.num_rigid;
+        double rate =
+            mode < 0 ? 0.0
+                     : 2.0 * w * ritz_damping_of_mode(&full->damping, mode, w);
+
+        for (int64_t i = 0; i < full->n; i++)
+            ritz_dense_col(&scaled, k)[i] *= rate;
+    }
+    RITZ_TRY(ritz_dense_mul_nt(&scaled, &full->MPhi, &given));
+    if (!D->val)
+        RITZ_TRY(ritz_dense_new(full->n, full->n, D));
+    for (int64_t i = 0; i < full->n * full->n; i++)
+        D->val[i] += given.val[i];
+done:
+    ritz_dense_free(&scaled);
+    ritz_dense_free(&given);
+    return status;
+}
+
+/* What acts beside that model's D. */
+static const ritz_damping *rest_of(const ritz_nodes *s)
+{
+    return s->full.ratios ? NULL : &s->full.damping;
+}
+
+/* Poles as the responder knows them; of a small coupled one by itself. */
+static ritz_status list_poles(const ritz_nodes *s,
+                              const ritz_responder *responder, int64_t *count,
+                              double _Complex **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_spectrum all = {0};
+    double _Complex *found = NULL;
+
+    if (!s->small || !s->full.poles.coupled)
+        return ritz_responder_poles(responder, count, out);
+    RITZ_TRY(ritz_spectrum_dense(&s->whole.model, rest_of(s), &all));
+    RITZ_NEW(found, all.count + all.num_zero);
+    for (int64_t k = 0; k < all.count; k++)
+        found[k] = all.s[k];
+    *count = all.count + all.num_zero;
+    *out = found;
+done:
+    ritz_spectrum_free(&all);
+    return status;
+}
+
+/*
+ * Those that any channel shows, and their conjugates; with K4 their partners
+ * below the axis, which are - s but for damping by D, and far enough away for
+ * that to do.
+ */
+static ritz_status nodes_find_poles(ritz_nodes *s,
+                                    const ritz_responder *responder)
+{
+    ritz_status status = RITZ_OK;
+    double most = 2.0 * RITZ_PI * cancelled_to * responder->to_hz;
+    double _Complex *found = NULL;
+    int64_t count = 0;
+
+    if (s->full.n <= RITZ_WHOLE_DOFS)
+        RITZ_TRY(take_whole(s));
+    RITZ_TRY(list_poles(s, responder, &count, &found));
+    RITZ_NEW(s->pole, 2 * count);
+    for (int64_t k = 0; k < count; k++) {
+        if (cabs(found[k]) > most)
+            continue;
+        add_pole(s, found[k]);
+        if (cimag(found[k]) > 0.0)
+            add_pole(s, s->mirror ? conj(found[k]) : -found[k]);
+    }
+done:
+    free(found);
+    return status;
+}
+
+/* Zeros of each channel of that model. */
+static ritz_status nodes_find_zeros(ritz_nodes *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t inputs = s->full.component->io.num_inputs;
+    double _Complex *z = NULL, *all = NULL;
+
+    for (int64_t v = 0; v < s->values; v++) {
+        int64_t count = 0, n = 0;
+
+        status = ritz_zeros_dense(&s->whole.model, rest_of(s), v / inputs,
+                                  v % inputs, &count, &z);
+        if (status == RITZ_ERR_MEMORY)
+            goto done;
+        if (status != RITZ_OK) /* nothing passes, or they are not to be had */
+            continue;
+        RITZ_NEW(all, 2 * count);
+        for (int64_t k = 0; k < count; k++)
+            if (cabs(z[k]) <= cancelled_to * s->both.unit)
+                all[n++] = z[k];
+        RITZ_TRY(cancel_interpolant(&s->both, v, n, all));
+        free(z);
+        free(all);
+        z = all = NULL;
+    }
+    status = RITZ_OK;
+done:
+    free(z);
+    free(all);
+    return status;
+}
+
+/*
+ * Response by rational interpolation [KenneyStubberudLaub1992]: a factor of the
+ * full matrices at a few nodes, and between them a polynomial for what is left
+ * of H once the poles that the eigensolver found, in the range and half as far
+ * again, are cancelled; of small components the zeros too, in those channels
+ * that they help. As H(-i w) is the conjugate of H(i w), unless there is K4,
+ * each node counts twice.
+ *
+ * The next node is where prod |s - s_m| / prod |s - pole| is largest: near
+ * resonances, but never on a pole or zero, beside which candidates begin at a
+ * half-power width. What the interpolant errs there is known before it is
+ * added; three nodes in a row within the tolerance are the end.
+ */
+
+static const double usual_tolerance = 1e-9;
+
+/* Of the end: a free body has its first node so far above 0 Hz. */
+static const double above_rest = 1e-4;
+
+/* Of channels: of more, zeros take longer than nodes. */
+static const int64_t most_channels = 9;
+
+static void rational_free(ritz_nodes *s)
+{
+    ritz_direct_free(&s->full);
+    ritz_whole_free(&s->whole);
+    free_interpolant(&s->poles);
+    free_interpolant(&s->both);
+    free(s->pole);
+    free(s->hertz);
+    free(s->used);
+    free(s->with_zeros);
+    free(s->missed);
+    free(s->miss);
+    free(s->peak);
+    free(s->level);
+    free(s->scale);
+    free(s->H);
+    free(s->guess);
+    free(s->other);
+}
+
+static ritz_status start(const ritz_response_request *request,
+                         const ritz_responder *out, ritz_nodes *s)
+{
+    const ritz_io *io = &request->component->io;
+    double unit = 2.0 * RITZ_PI * request->to_hz;
+    double low = request->from_hz;
+
+    s->values = io->num_outputs * io->num_inputs;
+    s->noise = &out->noise;
+    s->mirror = !request->component->K4.colptr;
+    if (s->full.poles.num_rigid > 0 && low == 0.0)
+        low = above_rest * request->to_hz;
+    RITZ_CHECK(nodes_find_poles(s, out));
+    RITZ_CHECK(
+        new_interpolant(s->values, unit, s->num_poles, s->pole, &s->poles));
+    RITZ_CHECK(
+        new_interpolant(s->values, unit, s->num_poles, s->pole, &s->both));
+    RITZ_CHECK_NEW(s->with_zeros, s->values);
+    RITZ_CHECK_NEW(s->missed, 2 * s->values);
+    RITZ_CHECK_NEW(s->miss, 2 * s->values * RITZ_RATIONAL_ENOUGH);
+    RITZ_CHECK_NEW(s->peak, s->values);
+    RITZ_CHECK_NEW(s->level, s->values);
+    RITZ_CHECK_NEW(s->scale, s->values);
+    RITZ_CHECK_NEW(s->H, s->values);
+    RITZ_CHECK_NEW(s->guess, s->values);
+    RITZ_CHECK_NEW(s->other, s->values);
+    if (s->mirror && s->small && s->values <= most_channels)
+        RITZ_CHECK(nodes_find_zeros(s));
+    RITZ_CHECK(place_nodes(s, low, request->to_hz));
+    return converge_nodes(s, request->tolerance > 0.0 ? request->tolerance
+                                                      : usual_tolerance);
+}
+
+static void finish(void *state)
+{
+    rational_free(state);
+    free(state);
+}
+
+static ritz_status make(const ritz_response_request *request,
+                        ritz_responder *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_nodes *s = NULL;
+
+    RITZ_NEW(s, 1);
+    RITZ_TRY(ritz_direct_new(request->component, request->damping,
+                             ritz_response_highest(request), &s->full));
+    out->poles = &s->full.poles;
+    out->pairs = &s->full.pairs;
+    RITZ_TRY(start(request, out, s));
+    (void)snprintf(out->remark, sizeof out->remark,
+                   "%" PRId64 " factors at nodes, %" PRId64 " poles cancelled",
+                   s->nodes, s->num_poles);
+    out->at = at;
+    out->free = finish;
+    out->state = s;
+    s = NULL;
+done:
+    if (s)
+        finish(s);
+    return status;
+}
+
+const ritz_response_engine ritz_response_engine_rational = {
+    .name = "rational",
+    .summary = "interpolation between factored nodes, poles cancelled",
+    .reference = "KenneyStubberudLaub1992",
+    .when = "a range with few modes, few inputs and outputs; no space is kept",
+    .cost = "about a factor for each mode that shows and ten more, then "
+            "O(nodes) a point and channel",
+    .holds = "what the nodes that came last showed, three in a row",
+    .fails = "many modes: krylov needs fewer factors; D or K4 of a large "
+             "component, whose poles take factors too",
+    .takes = RITZ_RESPONDS_COMPONENT,
+    .make = make,
+};
