@@ -9,7 +9,7 @@
 #include "check/probe_parts.h"
 
 #include "base/alloc.h"
-#include "poles/state.h"
+#include "poles/massless.h"
 
 #include <float.h>
 #include <lapacke.h>

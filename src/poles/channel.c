@@ -1,22 +1,228 @@
+/* A channel of a first-order model. */
+#include "poles/channel.h"
+
+#include "linear/frame.h"
+#include "linear/general.h"
+#include "poles/channel_modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Whether there is such a channel, or all at once can be asked for. */
+static ritz_status channel_check(int64_t outputs, int64_t inputs,
+                                 int64_t output, int64_t input)
+{
+    if (output == RITZ_ALL_CHANNELS && input == RITZ_ALL_CHANNELS) {
+        RITZ_REFUSE_IF(
+            outputs != inputs || outputs == 0, RITZ_ERR_ARGUMENT,
+            "zeros of all channels at once are of as many outputs as "
+            "inputs, not of %lld and %lld",
+            (long long)outputs, (long long)inputs);
+        return RITZ_OK;
+    }
+    RITZ_REFUSE_IF(output < 0 || output >= outputs, RITZ_ERR_ARGUMENT,
+                   "there is no output %lld, there are %lld",
+                   (long long)output + 1, (long long)outputs);
+    RITZ_REFUSE_IF(input < 0 || input >= inputs, RITZ_ERR_ARGUMENT,
+                   "there is no input %lld, there are %lld",
+                   (long long)input + 1, (long long)inputs);
+    return RITZ_OK;
+}
+
+/* In coordinates of the library's own scaling, E divided out. */
+static ritz_status scale_states(const ritz_state_space *model,
+                                ritz_channel *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_frame frame = {0};
+    ritz_dense one = {0}, back = {0};
+
+    RITZ_TRY(ritz_frame_new(&model->A, &model->E, &frame));
+    RITZ_TRY(ritz_dense_copy(&frame.A, &out->A));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.left, &model->B, &out->B));
+    RITZ_TRY(ritz_general_transpose(&model->C, &one));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
+    RITZ_TRY(ritz_general_transpose(&back, &out->C));
+    RITZ_TRY(ritz_dense_copy(&model->D, &out->D));
+    if (frame.E.val && model->A.nrow > 0) {
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &out->A));
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &out->B));
+    }
+done:
+    ritz_frame_free(&frame);
+    ritz_dense_free(&one);
+    ritz_dense_free(&back);
+    return status;
+}
+
+ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
+                                int64_t input, ritz_channel *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_channel all = {0}, made = {0};
+
+    RITZ_TRY(
+        channel_check(model->num_outputs, model->num_inputs, output, input));
+    RITZ_TRY(scale_states(model, &all));
+    if (output == RITZ_ALL_CHANNELS) {
+        *out = all;
+        all = (ritz_channel){0};
+        goto done;
+    }
+    RITZ_TRY(ritz_dense_columns(&all.B, input, 1, &made.B));
+    RITZ_TRY(ritz_dense_rows(&all.C, 1, &output, &made.C));
+    RITZ_TRY(ritz_dense_new(1, 1, &made.D));
+    made.D.val[0] = ritz_dense_col(&all.D, input)[output];
+    made.A = all.A;
+    all.A = (ritz_dense){0};
+    *out = made;
+    made = (ritz_channel){0};
+done:
+    ritz_channel_free(&all);
+    ritz_channel_free(&made);
+    return status;
+}
+
+/*
+ * A channel of a second-order model, by its modes: with W = |Lambda|^1/2, or 1
+ * where Lambda is 0,
+ *
+ *     x = [W p; p'],   x' = [ 0          W     ] x + [ 0      ] u
+ *                           [ -Lambda/W  -Delta ]    [ Phi'B ]
+ *
+ * which holds slow poles apart from fast ones. Without damping
+ * p'' = -Lambda p + Phi'B u stands for itself.
+ */
+
+static double weight_of(double lambda)
+{
+    return lambda != 0.0 ? sqrt(fabs(lambda)) : 1.0;
+}
+
+/* A = -Lambda, or blocks of two. */
+static ritz_status fill_decoupled(int64_t m, const ritz_channel_row *rows,
+                                  bool squared, double feed, ritz_channel *out)
+{
+    int64_t n = squared ? m : 2 * m;
+
+    out->squared = squared;
+    out->blocks = !squared;
+    RITZ_CHECK(ritz_dense_new(n, n, &out->A));
+    RITZ_CHECK(ritz_dense_new(n, 1, &out->B));
+    RITZ_CHECK(ritz_dense_new(1, n, &out->C));
+    RITZ_CHECK(ritz_dense_new(1, 1, &out->D));
+    out->D.val[0] = feed;
+    for (int64_t k = 0; k < m; k++) {
+        const ritz_channel_row *r = &rows[k];
+        double w = weight_of(r->lambda);
+
+        out->B.val[n - m + k] = 1.0;
+        out->C.val[k] = squared ? r->c : r->c / w;
+        if (squared) {
+            ritz_dense_col(&out->A, k)[k] = -r->lambda;
+            continue;
+        }
+        out->C.val[m + k] = r->cv;
+        ritz_dense_col(&out->A, m + k)[k] = w;
+        ritz_dense_col(&out->A, k)[m + k] = -r->lambda / w;
+        ritz_dense_col(&out->A, m + k)[m + k] = -r->rate;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status channel_of_rows(int64_t count, const ritz_channel_row *rows,
+                                   double feed, ritz_channel *out)
+{
+    bool squared = true;
+
+    for (int64_t k = 0; k < count; k++)
+        squared = squared && rows[k].rate == 0.0 && rows[k].cv == 0.0;
+    return fill_decoupled(count, rows, squared, feed, out);
+}
+
+/* All of it, in the same coordinates. */
+static ritz_status channel_of_coupled(const ritz_first_order *f,
+                                      ritz_channel *out)
+{
+    int64_t m = f->count;
+
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &out->A));
+    RITZ_CHECK(ritz_dense_new(2 * m, f->B.ncol, &out->B));
+    RITZ_CHECK(ritz_dense_new(f->C.nrow, 2 * m, &out->C));
+    RITZ_CHECK(ritz_dense_copy(&f->feed, &out->D));
+    for (int64_t k = 0; k < m; k++) {
+        double w = weight_of(f->lambda[k]);
+
+        ritz_dense_col(&out->A, m + k)[k] = w;
+        ritz_dense_col(&out->A, k)[m + k] = -f->lambda[k] / w;
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(&out->A, m + k)[m + i] =
+                -ritz_dense_col(&f->Delta, k)[i];
+        for (int64_t j = 0; j < f->B.ncol; j++)
+            ritz_dense_col(&out->B, j)[m + k] = ritz_dense_col(&f->B, j)[k];
+        for (int64_t i = 0; i < f->C.nrow; i++) {
+            ritz_dense_col(&out->C, k)[i] = ritz_dense_col(&f->C, k)[i] / w;
+            ritz_dense_col(&out->C, m + k)[i] = ritz_dense_col(&f->Cv, k)[i];
+        }
+    }
+    return RITZ_OK;
+}
+
+/* The same without damping, of several outputs and inputs. */
+static ritz_status channel_of_undamped(const ritz_first_order *f,
+                                       ritz_channel *out)
+{
+    out->squared = true;
+    RITZ_CHECK(ritz_dense_new(f->count, f->count, &out->A));
+    for (int64_t k = 0; k < f->count; k++)
+        ritz_dense_col(&out->A, k)[k] = -f->lambda[k];
+    RITZ_CHECK(ritz_dense_copy(&f->B, &out->B));
+    RITZ_CHECK(ritz_dense_copy(&f->C, &out->C));
+    return ritz_dense_copy(&f->feed, &out->D);
+}
+
+/* @param[in] single  whether @p io is of one input and one output */
+static ritz_status channel_of_modes(const ritz_first_order *modes,
+                                    const ritz_dense *D, const ritz_io *io,
+                                    bool single, ritz_channel *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_channel_row *rows = NULL;
+    ritz_first_order moved = {0};
+    int64_t count = -1;
+
+    if (single)
+        RITZ_TRY(ritz_channel_rows(modes, D, io, &count, &rows));
+    if (count >= 0) {
+        RITZ_TRY(channel_of_rows(count, rows, modes->feed.val[0], out));
+        goto done;
+    }
+    RITZ_TRY(ritz_channel_moved(modes, D, io, &moved));
+    if (ritz_dense_max(&moved.Delta) == 0.0 && ritz_dense_max(&moved.Cv) == 0.0)
+        RITZ_TRY(channel_of_undamped(&moved, out));
+    else
+        RITZ_TRY(channel_of_coupled(&moved, out));
+done:
+    free(rows);
+    ritz_first_order_free(&moved);
+    return status;
+}
+
 /*
  * A channel of a second-order model. An output that is a derivative as a whole
  * is taken without it.
  */
-#include "poles/channel.h"
 
-#include "poles/channel_modes.h"
-
-#include <string.h>
-
-static ritz_status one_row(const ritz_dense *A, int64_t row, ritz_dense *out)
+static ritz_status take_row(const ritz_dense *A, int64_t row, ritz_dense *out)
 {
     ritz_dense_free(out);
     return ritz_dense_rows(A, 1, &row, out);
 }
 
 /* One channel as an io of its own, or all of it. */
-static ritz_status cut(const ritz_io *io, int64_t output, int64_t input,
-                       ritz_io *out)
+static ritz_status take_channel(const ritz_io *io, int64_t output,
+                                int64_t input, ritz_io *out)
 {
     ritz_dense *parts[] = {&out->C, &out->Cv, &out->Ca};
     const ritz_dense *from[] = {&io->C, &io->Cv, &io->Ca};
@@ -36,13 +242,13 @@ static ritz_status cut(const ritz_io *io, int64_t output, int64_t input,
     ritz_dense_free(&out->B);
     RITZ_CHECK(ritz_dense_columns(&io->B, input, 1, &out->B));
     for (int k = 0; k < 3; k++)
-        RITZ_CHECK(one_row(from[k], output, parts[k]));
+        RITZ_CHECK(take_row(from[k], output, parts[k]));
     return RITZ_OK;
 }
 
 /* Of a velocity alone, or an acceleration, the displacement; how many
    derivatives that was. */
-static int64_t integrate(ritz_io *io)
+static int64_t integrate_outputs(ritz_io *io)
 {
     ritz_dense *kind[] = {&io->C, &io->Cv, &io->Ca};
     ritz_dense kept = {0};
@@ -74,19 +280,19 @@ ritz_status ritz_channel_dense(const ritz_second_order *model,
     ritz_io io = {0};
     bool single = output != RITZ_ALL_CHANNELS;
 
-    RITZ_TRY(ritz_channel_check(model->io->num_outputs, model->io->num_inputs,
-                                output, input));
+    RITZ_TRY(channel_check(model->io->num_outputs, model->io->num_inputs,
+                           output, input));
     RITZ_FAIL_IF(model->K4 && model->K4->val, RITZ_ERR_ARGUMENT,
                  "structural damping is of harmonic motion and has no zeros, "
                  "give it as a modal ratio");
     if (model->D)
         structure.D = *model->D;
-    RITZ_TRY(cut(model->io, output, input, &io));
+    RITZ_TRY(take_channel(model->io, output, input, &io));
     if (single)
-        made.derivative = integrate(&io);
+        made.derivative = integrate_outputs(&io);
     RITZ_TRY(ritz_first_order_new(&structure, &io, damping ? damping : &none,
                                   &modes));
-    RITZ_TRY(ritz_channel_of_modes(&modes, &structure.D, &io, single, &made));
+    RITZ_TRY(channel_of_modes(&modes, &structure.D, &io, single, &made));
     *out = made;
     made = (ritz_channel){0};
 done:

@@ -25,14 +25,6 @@ ritz_status ritz_channel_rows(const ritz_first_order *modes,
                               const ritz_dense *D, const ritz_io *io,
                               int64_t *count, ritz_channel_row **out);
 
-/** a'phi_k of every mode, and what rounding may make of it; added to what is
- * there. */
-void ritz_channel_see(const ritz_first_order *modes, const double *a,
-                      double *value, double *doubt);
-
-/** What rounding of K and M may bring of mode j into mode k. */
-double ritz_channel_mixing(const ritz_first_order *modes, int64_t j, int64_t k);
-
 /**
  * Without the free rigid motions that no input drives or no output sees.
  *
@@ -42,10 +34,5 @@ double ritz_channel_mixing(const ritz_first_order *modes, int64_t j, int64_t k);
 ritz_status ritz_channel_moved(const ritz_first_order *modes,
                                const ritz_dense *D, const ritz_io *io,
                                ritz_first_order *out);
-
-/** @param[in] single  whether @p io is of one input and one output */
-ritz_status ritz_channel_of_modes(const ritz_first_order *modes,
-                                  const ritz_dense *D, const ritz_io *io,
-                                  bool single, ritz_channel *out);
 
 #endif

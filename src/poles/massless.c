@@ -4,9 +4,13 @@
  *
  *     N'AN = I,   Phi'AN = (Lambda + alpha) Phi'MN = 0,   so M N = 0
  */
-#include "poles/state.h"
+#include "poles/massless.h"
 
 #include "base/alloc.h"
+#include "linear/general.h"
+
+#include <ritz/eigen.h>
+#include <ritz/verify.h>
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -15,8 +19,8 @@
 #include <string.h>
 
 /* C, lower triangle, of K + alpha M; alpha beyond all |lambda|. */
-static ritz_status factor(const ritz_second_order *model, int64_t m,
-                          const double *lambda, ritz_dense *C)
+static ritz_status factor_shifted(const ritz_second_order *model, int64_t m,
+                                  const double *lambda, ritz_dense *C)
 {
     int n = (int)model->K->nrow;
     double alpha = 0.0;
@@ -36,7 +40,7 @@ static ritz_status factor(const ritz_second_order *model, int64_t m,
 }
 
 /* The last n - m columns of an orthonormal basis whose first span B's. */
-static ritz_status complete(ritz_dense *B, ritz_dense *out)
+static ritz_status complete_basis(ritz_dense *B, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int n = (int)B->nrow;
@@ -68,12 +72,12 @@ ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
     int m = (int)Phi->ncol;
     ritz_dense C = {0}, B = {0}, N = {0};
 
-    RITZ_TRY(factor(model, m, lambda, &C));
+    RITZ_TRY(factor_shifted(model, m, lambda, &C));
     RITZ_TRY(ritz_dense_copy(Phi, &B));
     if (m > 0)
         cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, n, m, 1.0, C.val, n, B.val, n);
-    RITZ_TRY(complete(&B, &N));
+    RITZ_TRY(complete_basis(&B, &N));
     if (n > m)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, n, n - m, 1.0, C.val, n, N.val, n);
@@ -83,5 +87,113 @@ done:
     ritz_dense_free(&C);
     ritz_dense_free(&B);
     ritz_dense_free(&N);
+    return status;
+}
+
+/* out = C N (N'B), num_outputs x num_inputs. */
+static ritz_status put_static(const ritz_dense *C, const ritz_dense *N,
+                              const ritz_dense *NB, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense CN = {0}, H = {0};
+
+    RITZ_TRY(ritz_dense_mul(C, N, &CN));
+    RITZ_TRY(ritz_dense_mul(&CN, NB, &H));
+    memcpy(out, H.val, (size_t)(H.nrow * H.ncol) * sizeof *out);
+done:
+    ritz_dense_free(&CN);
+    ritz_dense_free(&H);
+    return status;
+}
+
+ritz_status ritz_static_rest(const ritz_second_order *model,
+                             const ritz_pairs *pairs, ritz_residual *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = model->io;
+    int64_t size = io->num_outputs * io->num_inputs;
+    ritz_residual found = {.num_outputs = io->num_outputs,
+                           .num_inputs = io->num_inputs,
+                           .known = true};
+    ritz_dense N = {0}, NB = {0};
+
+    if (pairs->Phi.ncol == model->K->ncol || size == 0)
+        return RITZ_OK;
+    found.count = 1;
+    RITZ_NEW(found.C, size);
+    RITZ_NEW(found.Cv, size);
+    RITZ_NEW(found.Ca, size);
+    RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    RITZ_TRY(ritz_dense_mul_tn(&N, &io->B, &NB));
+    RITZ_TRY(put_static(&io->C, &N, &NB, found.C));
+    RITZ_TRY(put_static(&io->Cv, &N, &NB, found.Cv));
+    RITZ_TRY(put_static(&io->Ca, &N, &NB, found.Ca));
+    *out = found;
+    found = (ritz_residual){0};
+done:
+    ritz_dense_free(&N);
+    ritz_dense_free(&NB);
+    ritz_residual_free(&found);
+    return status;
+}
+
+/*
+ * Static gain of the flexible part, which rigid motion does not make infinite:
+ *
+ *     G = C Phi_f Lambda_f^-1 Phi_f' B
+ *
+ * and what motions without mass add to it.
+ */
+
+/* A gain this much smaller than its error is rounding. */
+static const double no_gain = 1e-14;
+
+ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
+                             const ritz_io *io, int64_t num_rigid,
+                             ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_second_order model = {.K = K, .M = M, .io = io};
+    ritz_pairs pairs = {0};
+    ritz_io modes = {0};
+    ritz_residual rest = {0};
+
+    RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
+    if (num_rigid < pairs.num_rigid)
+        num_rigid = pairs.num_rigid;
+    RITZ_TRY(ritz_io_project(io, &pairs.Phi, &modes));
+    for (int64_t j = 0; j < modes.num_inputs; j++)
+        for (int64_t k = 0; k < pairs.Phi.ncol; k++)
+            ritz_dense_col(&modes.B, j)[k] *=
+                k < num_rigid ? 0.0 : 1.0 / pairs.lambda[k];
+    RITZ_TRY(ritz_static_rest(&model, &pairs, &rest));
+    RITZ_TRY(ritz_dense_mul(&modes.C, &modes.B, out));
+    for (int64_t k = 0; rest.count > 0 && k < out->nrow * out->ncol; k++)
+        out->val[k] += rest.C[k];
+done:
+    ritz_residual_free(&rest);
+    ritz_pairs_free(&pairs);
+    ritz_io_free(&modes);
+    return status;
+}
+
+ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
+                            double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense G = {0}, apart = {0};
+    double size = 0.0;
+    double error = 0.0;
+
+    RITZ_TRY(ritz_dense_copy(full, &G));
+    RITZ_TRY(ritz_dense_copy(reduced, &apart));
+    for (int64_t k = 0; k < G.nrow * G.ncol; k++)
+        apart.val[k] -= G.val[k];
+    RITZ_TRY_IN("static gain", ritz_general_norm(&G, &size));
+    RITZ_TRY_IN("static gain", ritz_general_norm(&apart, &error));
+    *out = error == 0.0 ? 0.0 : size > no_gain * error ? error / size : nan("");
+done:
+    ritz_dense_free(&G);
+    ritz_dense_free(&apart);
     return status;
 }

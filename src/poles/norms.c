@@ -1,4 +1,278 @@
 /*
+ * A real Schur form is brought to a complex triangle once, after which a point
+ * costs one triangular solve. Peaks lie near poles: they are where the search
+ * begins, and a golden section between neighbours ends it.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "linear/general.h"
+#include "linear/split.h"
+#include "poles/curve.h"
+#include "poles/poles.h"
+#include "poles/widen.h"
+
+#include <ritz/norms.h>
+
+#include <cblas.h>
+#include <complex.h>
+#include <inttypes.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* C (i w P - S)^-1 B + D, S and P complex triangular. */
+typedef struct ritz_peak {
+    int n, m, p;
+    double _Complex *S, *P, *B, *C, *D; /* P NULL: the identity */
+    double _Complex *T, *X, *H;         /* to work in */
+    bool begun;                         /* T has its triangle */
+    double *sigma, *spare;
+    double w, value; /* the largest that was met, and where */
+} ritz_peak;
+
+/* Points that stand out: so many, and no lower than so much of the highest. */
+enum { MOST_PEAKS = 8 };
+static const double worth_climbing = 0.5;
+/* Of a bracket's length when it is done, relative to its frequency. */
+static const double close_enough = 1e-9;
+
+/* Blocks of two, which stand for a pair, become triangles. */
+static ritz_status triangularise_peak(ritz_peak *s)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = s->n;
+    double _Complex *Q = NULL, *Z = NULL, *alpha = NULL, *beta = NULL;
+    int info = 0;
+
+    RITZ_NEW(Q, n * n);
+    RITZ_NEW(Z, n * n);
+    RITZ_NEW(alpha, n);
+    RITZ_NEW(beta, n);
+    if (s->P)
+        info =
+            LAPACKE_zhgeqz(LAPACK_COL_MAJOR, 'S', 'I', 'I', s->n, 1, s->n, s->S,
+                           s->n, s->P, s->n, alpha, beta, Q, s->n, Z, s->n);
+    else
+        info = LAPACKE_zhseqr(LAPACK_COL_MAJOR, 'S', 'I', s->n, 1, s->n, s->S,
+                              s->n, alpha, Q, s->n);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_TRY(ritz_turn(s->n, s->m, s->p, Q, s->P ? Z : Q, &s->B, &s->C));
+done:
+    free(Q);
+    free(Z);
+    free(alpha);
+    free(beta);
+    return status;
+}
+
+static void peak_free(ritz_peak *peak)
+{
+    free(peak->S);
+    free(peak->P);
+    free(peak->B);
+    free(peak->C);
+    free(peak->D);
+    free(peak->T);
+    free(peak->X);
+    free(peak->H);
+    free(peak->sigma);
+    free(peak->spare);
+    *peak = (ritz_peak){0};
+}
+
+static ritz_status peak_new(const ritz_split *split, const ritz_dense *B,
+                            const ritz_dense *C, const ritz_dense *D,
+                            ritz_peak *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_peak s = {.n = (int)B->nrow, .m = (int)B->ncol, .p = (int)C->nrow};
+    int64_t least = s.m < s.p ? s.m : s.p;
+
+    RITZ_TRY(ritz_widen(&split->S, &s.S));
+    if (split->P.val)
+        RITZ_TRY(ritz_widen(&split->P, &s.P));
+    RITZ_TRY(ritz_widen(B, &s.B));
+    RITZ_TRY(ritz_widen(C, &s.C));
+    RITZ_TRY(ritz_widen(D, &s.D));
+    RITZ_NEW(s.T, (int64_t)s.n * s.n);
+    RITZ_NEW(s.X, (int64_t)s.n * s.m);
+    RITZ_NEW(s.H, (int64_t)s.p * s.m);
+    RITZ_NEW(s.sigma, least);
+    RITZ_NEW(s.spare, least);
+    if (s.n > 0 && least > 0)
+        RITZ_TRY(triangularise_peak(&s));
+    *out = s;
+    s = (ritz_peak){0};
+done:
+    peak_free(&s);
+    return status;
+}
+
+/* T = i w P - S; without P its diagonal is all that changes. */
+static void shift_triangle(ritz_peak *s, double w)
+{
+    const double _Complex value_at = ritz_complex(0.0, w);
+    int64_t n = s->n;
+
+    for (int64_t j = 0; j < n; j++) {
+        int64_t diagonal = j + j * n;
+
+        for (int64_t i = s->P || !s->begun ? 0 : j; i <= j; i++)
+            s->T[i + j * n] =
+                (s->P ? value_at * s->P[i + j * n] : 0.0) - s->S[i + j * n];
+        if (!s->P)
+            s->T[diagonal] += value_at;
+    }
+    s->begun = true;
+}
+
+/* H = D + C (i w P - S)^-1 B */
+static void respond_at(ritz_peak *s, double w)
+{
+    const double _Complex one = 1.0;
+    size_t item = sizeof *s->X;
+    int64_t n = s->n;
+
+    memcpy(s->H, s->D, (size_t)((int64_t)s->p * s->m) * item);
+    if (n == 0 || isinf(w))
+        return;
+    shift_triangle(s, w);
+    memcpy(s->X, s->B, (size_t)(n * s->m) * item);
+    cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
+                CblasNonUnit, s->n, s->m, &one, s->T, s->n, s->X, s->n);
+    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, s->p, s->m, s->n,
+                &one, s->C, s->p, s->X, s->n, &one, s->H, s->p);
+}
+
+static ritz_status peak_at(ritz_peak *peak, double w, double *value)
+{
+    int info = 0;
+
+    *value = 0.0;
+    if (peak->m == 0 || peak->p == 0)
+        return RITZ_OK;
+    respond_at(peak, w);
+    info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', peak->p, peak->m, peak->H,
+                          peak->p, peak->sigma, NULL, 1, NULL, 1, peak->spare);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "singular values of a response were not found");
+    *value = peak->sigma[0];
+    if (*value > peak->value) {
+        peak->value = *value;
+        peak->w = w;
+    }
+    return RITZ_OK;
+}
+
+static int ascending(const void *left, const void *right)
+{
+    const double *a = left;
+    const double *b = right;
+
+    return (*a > *b) - (*a < *b);
+}
+
+/* 0 and, of every pole, where it alone answers most, else its magnitude. */
+static ritz_status choose_frequencies(const ritz_peak *s, int64_t *count,
+                                      double **out)
+{
+    ritz_status status = RITZ_OK;
+    double *w = NULL;
+    int64_t kept = 0;
+
+    RITZ_NEW(w, s->n + 2);
+    for (int64_t k = 0; k < s->n; k++) {
+        int64_t value_at = k + k * s->n;
+        double _Complex pole =
+            s->P ? s->S[value_at] / s->P[value_at] : s->S[value_at];
+        double gap = cimag(pole) * cimag(pole) - creal(pole) * creal(pole);
+
+        w[k + 1] = gap > 0.0 ? sqrt(gap) : cabs(pole);
+    }
+    qsort(w, (size_t)s->n + 1, sizeof *w, ascending);
+    for (int64_t k = 0; k <= s->n; k++)
+        if (kept == 0 || w[k] - w[kept - 1] > close_enough * w[k])
+            w[kept++] = w[k];
+    w[kept] = 2.0 * w[kept - 1] + 1.0; /* the last bracket ends there */
+    *count = kept;
+    *out = w;
+    w = NULL;
+done:
+    free(w);
+    return status;
+}
+
+static ritz_status value_at(void *state, double w, double *value)
+{
+    return peak_at(state, w, value);
+}
+
+/* What is met is remembered by the peak. */
+static ritz_status climb_between(ritz_peak *s, double low, double high)
+{
+    const ritz_curve curve = {value_at, s};
+    double most = 0.0;
+
+    return ritz_curve_between(&curve, close_enough, &low, &high, &most);
+}
+
+/* Index of the largest that was not yet taken, -1 if there is none. */
+static int64_t next_highest_point(int64_t count, const double *value)
+{
+    int64_t best = -1;
+
+    for (int64_t k = 0; k < count; k++)
+        if (value[k] >= 0.0 && (best < 0 || value[k] > value[best]))
+            best = k;
+    return best;
+}
+
+/*
+ * Between a point and a neighbour on either side; a narrow peak is in the half
+ * width around the point, whatever is between it and the next.
+ */
+static ritz_status climb_around(ritz_peak *s, const double *w, int64_t k)
+{
+    double low = k > 0 ? w[k - 1] : w[k];
+    double high = w[k + 1];
+
+    RITZ_CHECK(climb_between(s, low, w[k]));
+    RITZ_CHECK(climb_between(s, w[k], high));
+    low = fmax(low, w[k] * 0.99);
+    high = fmin(high, w[k] * 1.01);
+    return climb_between(s, low, high);
+}
+
+static ritz_status peak_search(ritz_peak *peak)
+{
+    ritz_status status = RITZ_OK;
+    double *w = NULL, *value = NULL;
+    double at_infinity = 0.0;
+    int64_t count = 0;
+
+    RITZ_TRY(choose_frequencies(peak, &count, &w));
+    RITZ_NEW(value, count);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_TRY(peak_at(peak, w[k], &value[k]));
+    RITZ_TRY(peak_at(peak, HUGE_VAL, &at_infinity));
+    for (int t = 0; t < MOST_PEAKS; t++) {
+        int64_t k = next_highest_point(count, value);
+
+        if (k < 0 || value[k] < worth_climbing * peak->value)
+            break;
+        value[k] = -1.0;
+        RITZ_TRY(climb_around(peak, w, k));
+    }
+done:
+    free(w);
+    free(value);
+    return status;
+}
+
+/*
  * Norms of what stable poles answer, in the Schur form that tells them apart:
  *
  *     |G|_inf = max_w sigma_1(C (i w P - S)^-1 B + D),
@@ -9,19 +283,6 @@
  * units. Its peak is compared with values that are met at every pole.
  * [Bruinsma1990], [Hammarling1982]
  */
-#include "base/alloc.h"
-#include "base/tolerances.h"
-#include "linear/general.h"
-#include "linear/split.h"
-#include "poles/peak.h"
-
-#include <ritz/norms.h>
-
-#include <inttypes.h>
-#include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 /* Beyond this many states no Hamiltonian is made. */
 enum { MOST_STATES = 600 };
@@ -37,14 +298,14 @@ void ab13dd_(/* NOLINT: its name */ const char *dico, const char *jobe,
              size_t dico_length, size_t jobe_length, size_t equil_length,
              size_t jobd_length);
 
-/* The stable part, its inputs and outputs of length one. */
+/* The stable part, its inputs and outputs of norm_of one. */
 typedef struct stable {
     ritz_split split;
     ritz_dense B, C, D;
     double size; /* of B times that of C: what was divided by */
 } stable;
 
-static void discard(stable *s)
+static void stable_free(stable *s)
 {
     ritz_split_free(&s->split);
     ritz_dense_free(&s->B);
@@ -52,7 +313,7 @@ static void discard(stable *s)
     ritz_dense_free(&s->D);
 }
 
-static double length(const ritz_dense *A)
+static double norm_of(const ritz_dense *A)
 {
     if (A->nrow == 0 || A->ncol == 0)
         return 0.0;
@@ -60,7 +321,7 @@ static double length(const ritz_dense *A)
                           A->val, (int)A->nrow);
 }
 
-static void divide(double by, ritz_dense *A)
+static void divide_by(double by, ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol && by > 0.0; k++)
         A->val[k] /= by;
@@ -78,11 +339,11 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
     RITZ_CHECK(ritz_dense_mul_tn(&s->split.Y, &model->B, &s->B));
     RITZ_CHECK(ritz_dense_mul(&model->C, &s->split.X, &s->C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &s->D));
-    s->size = length(&s->B) * length(&s->C);
-    divide(length(&s->B), &s->B);
-    divide(length(&s->C), &s->C);
+    s->size = norm_of(&s->B) * norm_of(&s->C);
+    divide_by(norm_of(&s->B), &s->B);
+    divide_by(norm_of(&s->C), &s->C);
     if (s->size > 0.0)
-        divide(s->size, &s->D);
+        divide_by(s->size, &s->D);
     else
         s->size = 1.0;
     return RITZ_OK;
@@ -96,7 +357,7 @@ typedef struct hamiltonian {
     double _Complex *cwork;
 } hamiltonian;
 
-static void free_hamiltonian(hamiltonian *h)
+static void hamiltonian_free(hamiltonian *h)
 {
     ritz_dense_free(&h->S);
     ritz_dense_free(&h->P);
@@ -108,7 +369,7 @@ static void free_hamiltonian(hamiltonian *h)
     free(h->cwork);
 }
 
-static ritz_status copy(const stable *s, hamiltonian *h)
+static ritz_status hamiltonian_new(const stable *s, hamiltonian *h)
 {
     RITZ_CHECK(ritz_dense_copy(&s->split.S, &h->S));
     if (s->split.P.val)
@@ -121,8 +382,8 @@ static ritz_status copy(const stable *s, hamiltonian *h)
 }
 
 /* Peak and its frequency, from @p w on; false if it did not come to an end. */
-static ritz_status bisect(const stable *s, double tolerance, double *w,
-                          double *value, bool *found)
+static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
+                               double *value, bool *found)
 {
     ritz_status status = RITZ_OK;
     hamiltonian h = {0};
@@ -135,7 +396,7 @@ static ritz_status bisect(const stable *s, double tolerance, double *w,
     double gain[2] = {0.0, 1.0};
     int info = 0;
 
-    RITZ_TRY(copy(s, &h));
+    RITZ_TRY(hamiltonian_new(s, &h));
     RITZ_NEW(h.iwork, n);
     RITZ_NEW(h.work, room);
     RITZ_NEW(h.cwork, croom);
@@ -147,24 +408,24 @@ static ritz_status bisect(const stable *s, double tolerance, double *w,
     *w = frequency[1] > 0.0 ? frequency[0] : HUGE_VAL;
     *value = gain[0];
 done:
-    free_hamiltonian(&h);
+    hamiltonian_free(&h);
     return status;
 }
 
-static ritz_status find(const stable *s, double tolerance, ritz_norm *out)
+static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
 {
     ritz_status status = RITZ_OK;
     ritz_peak peak = {0};
     double direct = 0.0, w = 0.0, value = 0.0;
     bool found = false;
 
-    RITZ_TRY(ritz_peak_new(&s->split, &s->B, &s->C, &s->D, &peak));
-    RITZ_TRY(ritz_peak_search(&peak));
+    RITZ_TRY(peak_new(&s->split, &s->B, &s->C, &s->D, &peak));
+    RITZ_TRY(peak_search(&peak));
     w = peak.w;
     if (peak.n > 0 && peak.n <= MOST_STATES && peak.value > 0.0)
-        RITZ_TRY(bisect(s, tolerance, &w, &value, &found));
+        RITZ_TRY(bisect_peak(s, tolerance, &w, &value, &found));
     if (found && isfinite(w))
-        RITZ_TRY(ritz_peak_at(&peak, w, &direct));
+        RITZ_TRY(peak_at(&peak, w, &direct));
     snprintf(out->engine, sizeof out->engine,
              found ? "SLICOT AB13DD" : "search at poles, a lower bound");
     out->lower = s->size * peak.value;
@@ -175,7 +436,7 @@ static ritz_status find(const stable *s, double tolerance, ritz_norm *out)
         out->hertz = w / (2.0 * RITZ_PI);
     }
 done:
-    ritz_peak_free(&peak);
+    peak_free(&peak);
     return status;
 }
 
@@ -190,10 +451,10 @@ ritz_status ritz_norm_infinity(const ritz_state_space *model, double tolerance,
                  "the tolerance of a norm is %g, it must be between 0 and 1",
                  tolerance);
     RITZ_TRY_IN("H-infinity norm", take_stable(model, &s));
-    RITZ_TRY_IN("H-infinity norm", find(&s, tolerance, &norm));
+    RITZ_TRY_IN("H-infinity norm", find_peak(&s, tolerance, &norm));
     *out = norm;
 done:
-    discard(&s);
+    stable_free(&s);
     return status;
 }
 
@@ -210,12 +471,12 @@ ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out)
     RITZ_TRY_IN("H2 norm", ritz_general_hammarling(&s.split.S, &s.split.P,
                                                    false, &s.B, &F));
     RITZ_TRY(ritz_dense_mul(&s.C, &F, &CF));
-    *out = (ritz_norm){.value = s.size * length(&CF)};
+    *out = (ritz_norm){.value = s.size * norm_of(&CF)};
     out->lower = out->value;
     snprintf(out->engine, sizeof out->engine, "SLICOT %s",
              s.split.P.val ? "SG03BD" : "SB03OD");
 done:
-    discard(&s);
+    stable_free(&s);
     ritz_dense_free(&F);
     ritz_dense_free(&CF);
     return status;

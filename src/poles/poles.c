@@ -1,3 +1,4 @@
+/* Modal coordinates that D or K4 couples: one dense solve a point. */
 #include "poles/poles.h"
 
 #include "base/alloc.h"
@@ -5,9 +6,100 @@
 #include "model/io.h"
 
 #include <complex.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Z = Lambda - w^2 I + i (w D + K4), both triangles. */
+static void assemble_coupled(const ritz_poles *poles, double w,
+                             double _Complex *Z)
+{
+    int64_t m = poles->count + poles->massless;
+
+    for (int64_t j = 0; j < m; j++) {
+        double own = poles->lambda[j] - (j < poles->count ? w * w : 0.0);
+
+        for (int64_t i = 0; i < m; i++) {
+            double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, j)[i] : 0.0;
+            double d = w * ritz_dense_col(&poles->D, j)[i];
+
+            Z[i + j * m] = ritz_complex(i == j ? own : 0.0, d + k4);
+        }
+    }
+}
+
+/* S Z S and S q, of unit diagonal: w^2 of rigid motion is small beside Lambda
+ * where nothing is wrong. */
+static void equilibrate(int64_t m, int64_t inputs, double _Complex *Z,
+                        double _Complex *q, double *s)
+{
+    for (int64_t j = 0; j < m; j++) {
+        double own = cabs(Z[j + j * m]);
+
+        s[j] = own > 0.0 ? 1.0 / sqrt(own) : 1.0;
+    }
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++)
+            Z[i + j * m] *= s[i] * s[j];
+    for (int64_t j = 0; j < inputs; j++)
+        for (int64_t i = 0; i < m; i++)
+            q[i + j * m] *= s[i];
+}
+
+/* Z := its factors, complex symmetric or not; LAPACK's info. */
+static int factor(bool skew, int m, double _Complex *Z, lapack_int *pivot,
+                  double *rcond)
+{
+    double norm = LAPACKE_zlange(LAPACK_COL_MAJOR, '1', m, m, Z, m);
+    int info = skew ? LAPACKE_zgetrf(LAPACK_COL_MAJOR, m, m, Z, m, pivot)
+                    : LAPACKE_zsytrf(LAPACK_COL_MAJOR, 'L', m, Z, m, pivot);
+
+    if (info != 0)
+        return info;
+    return skew ? LAPACKE_zgecon(LAPACK_COL_MAJOR, '1', m, Z, m, norm, rcond)
+                : LAPACKE_zsycon(LAPACK_COL_MAJOR, 'L', m, Z, m, pivot, norm,
+                                 rcond);
+}
+
+static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
+                                 double _Complex *q)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = poles->count + poles->massless;
+    int64_t inputs = poles->io.num_inputs;
+    double _Complex *Z = NULL;
+    double *s = NULL;
+    lapack_int *pivot = NULL;
+    double rcond = 0.0;
+    int info = 0;
+
+    RITZ_NEW(Z, m * m);
+    RITZ_NEW(s, m);
+    RITZ_NEW(pivot, m);
+    assemble_coupled(poles, 2.0 * RITZ_PI * hertz, Z);
+    for (int64_t k = 0; k < m * inputs; k++)
+        q[k] = poles->io.B.val[k];
+    equilibrate(m, inputs, Z, q, s);
+    info = factor(poles->skew, (int)m, Z, pivot, &rcond);
+    RITZ_FAIL_IF(info != 0 || !(rcond > 1e-16), RITZ_ERR_SINGULAR,
+                 "the response at %.9g Hz is infinite: an undamped mode, or at "
+                 "0 Hz a rigid-body motion",
+                 hertz);
+    if (poles->skew)
+        (void)LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', (int)m, (int)inputs, Z,
+                             (int)m, pivot, q, (int)m);
+    else
+        (void)LAPACKE_zsytrs(LAPACK_COL_MAJOR, 'L', (int)m, (int)inputs, Z,
+                             (int)m, pivot, q, (int)m);
+    for (int64_t k = 0; k < m * inputs; k++)
+        q[k] *= s[k % m];
+done:
+    free(Z);
+    free(s);
+    free(pivot);
+    return status;
+}
 
 /* Modal matrices whose other entries are smaller than this, against what
    stands on the diagonal, are diagonal: the error is of its square. */
@@ -20,7 +112,7 @@ static const double unseen_below = 1e-10;
 /* A skew part beyond rounding, of what was projected: gyroscopic damping. */
 static const double symmetric_within = 1e-12;
 
-static bool couples(const ritz_dense *A)
+static bool couples_modes(const ritz_dense *A)
 {
     double largest = 0.0;
 
@@ -38,7 +130,7 @@ static bool couples(const ritz_dense *A)
     return false;
 }
 
-static ritz_status copy(const ritz_dense *A, ritz_dense *out)
+static ritz_status copy_dense(const ritz_dense *A, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol, out));
     memcpy(out->val, A->val, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
@@ -54,15 +146,15 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
     if (D && D->val) {
         for (int64_t k = 0; k < poles->count; k++)
             poles->rate[k] += ritz_dense_col(D, k)[k];
-        poles->coupled = couples(D);
+        poles->coupled = couples_modes(D);
         poles->skew = ritz_dense_asymmetry(D) > symmetric_within;
-        RITZ_CHECK(copy(D, &poles->D));
+        RITZ_CHECK(copy_dense(D, &poles->D));
     } else if (has_k4) {
         RITZ_CHECK(ritz_dense_new(poles->count, poles->count, &poles->D));
     }
     if (has_k4) {
         poles->coupled = true;
-        RITZ_CHECK(copy(K4, &poles->K4));
+        RITZ_CHECK(copy_dense(K4, &poles->K4));
     }
     for (int64_t k = 0; poles->D.val && k < poles->count; k++)
         ritz_dense_col(&poles->D, k)[k] = poles->rate[k];
@@ -102,7 +194,7 @@ done:
 }
 
 /* How much output i sees of mode k; a rigid acceleration is no pole. */
-static double seen_of(const ritz_poles *poles, int64_t i, int64_t k)
+static double participation_of(const ritz_poles *poles, int64_t i, int64_t k)
 {
     const ritz_io *io = &poles->io;
     double of_rest = fabs(ritz_dense_col(&io->C, k)[i]) +
@@ -126,8 +218,8 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
             double seen = 0.0;
 
             for (int64_t m = 0; m < poles->count; m++)
-                seen = fmax(seen, seen_of(poles, i, m));
-            if (fabs(b[k]) * seen_of(poles, i, k) >
+                seen = fmax(seen, participation_of(poles, i, m));
+            if (fabs(b[k]) * participation_of(poles, i, k) >
                 unseen_below * driven * seen)
                 return true;
         }
@@ -136,8 +228,8 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
 }
 
 /* One over the pole's factor; 0 where it is infinite and does not matter. */
-static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
-                          double _Complex *out)
+static ritz_status invert_mode(const ritz_poles *poles, int64_t k, double hertz,
+                               double _Complex *out)
 {
     double w = 2.0 * RITZ_PI * hertz;
     double _Complex z =
@@ -161,13 +253,13 @@ static ritz_status invert(const ritz_poles *poles, int64_t k, double hertz,
     return RITZ_OK;
 }
 
-static ritz_status solve_apart(const ritz_poles *poles, double hertz,
-                               double _Complex *q)
+static ritz_status solve_decoupled(const ritz_poles *poles, double hertz,
+                                   double _Complex *q)
 {
     double _Complex g = 0.0;
 
     for (int64_t k = 0; k < poles->count; k++) {
-        RITZ_CHECK(invert(poles, k, hertz, &g));
+        RITZ_CHECK(invert_mode(poles, k, hertz, &g));
         for (int64_t j = 0; j < poles->io.num_inputs; j++)
             q[k + j * poles->count] = g * ritz_dense_col(&poles->io.B, j)[k];
     }
@@ -179,8 +271,8 @@ ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
 {
     if (poles->count + poles->massless == 0 || poles->io.num_inputs == 0)
         return RITZ_OK;
-    return poles->coupled ? ritz_poles_together(poles, hertz, q)
-                          : solve_apart(poles, hertz, q);
+    return poles->coupled ? solve_coupled(poles, hertz, q)
+                          : solve_decoupled(poles, hertz, q);
 }
 
 /*
@@ -245,4 +337,30 @@ void ritz_poles_free(ritz_poles *poles)
     ritz_io_free(&poles->io);
     ritz_residual_free(&poles->rest);
     *poles = (ritz_poles){0};
+}
+
+ritz_status ritz_poles_of_component(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    double up_to_hz, ritz_pairs *pairs,
+                                    ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span span = {.modes = -1, .up_to_hz = up_to_hz};
+    ritz_pairs found = {0};
+    ritz_dense D = {0};
+    ritz_dense K4 = {0};
+
+    RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, &span, &found));
+    RITZ_TRY(ritz_sparse_project(&component->D, &found.Phi, &D));
+    RITZ_TRY(ritz_sparse_project(&component->K4, &found.Phi, &K4));
+    RITZ_TRY(ritz_poles_new(&found, &D, &K4, &component->io, damping, out));
+    if (pairs) {
+        *pairs = found;
+        found = (ritz_pairs){0};
+    }
+done:
+    ritz_pairs_free(&found);
+    ritz_dense_free(&D);
+    ritz_dense_free(&K4);
+    return status;
 }

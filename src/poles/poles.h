@@ -75,10 +75,6 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k);
 ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H);
 
-/** What ritz_poles_solve does where modes are coupled. */
-ritz_status ritz_poles_together(const ritz_poles *poles, double hertz,
-                                double _Complex *q);
-
 /** Damping ratio of each mode, from its rate; 0 where rigid. */
 ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
                               double **zeta);

@@ -1,15 +1,193 @@
-/* Lowest damped poles of a component, made exact on its full matrices. */
-#include "poles/spectrum_parts.h"
-
+/*
+ * The space in which damped poles of a large component are sought. Undamped
+ * modes alone mislead where dampers are discrete: the motion that a truncated
+ * set leaves across a damper is far from the true one, and so is the ratio.
+ * With the static answers X to a force along each influence vector beside them
+ * the small model is near enough for inverse iteration to settle on what is
+ * sought.
+ *
+ *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
+ */
 #include "base/alloc.h"
 #include "poles/refine.h"
+#include "poles/spectrum_parts.h"
 
+#include <ritz/factor.h>
 #include <ritz/monitor.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* A column of which less than this is new adds nothing. */
+static const double dependent = 1e-8;
+/* Undamped modes to scan with, at least; and for each mode before the one. */
+enum { LEAST_MODES = 20, EACH_MODE = 2 };
+
+/* |x|_A; Ax is written. */
+static ritz_status norm_of(const ritz_sparse *A, const ritz_dense *x,
+                           ritz_dense *Ax, double *out)
+{
+    double sum = 0.0;
+
+    ritz_dense_free(Ax);
+    RITZ_CHECK(ritz_sparse_mul(A, x, Ax));
+    for (int64_t i = 0; i < x->nrow; i++)
+        sum += x->val[i] * Ax->val[i];
+    *out = sqrt(fmax(sum, 0.0));
+    return RITZ_OK;
+}
+
+/* x -= T T'A x, twice, and divide by what is left; `fresh` if there is any. */
+static ritz_status orthogonalise(const ritz_sparse *A, const ritz_dense *T,
+                                 int64_t count, ritz_dense *x, bool *fresh)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Ax = {0};
+    double before = 0.0, left = 0.0;
+
+    RITZ_TRY(norm_of(A, x, &Ax, &before));
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t j = 0; j < count; j++) {
+            const double *t = ritz_dense_col(T, j);
+            double q = 0.0;
+
+            for (int64_t i = 0; i < x->nrow; i++)
+                q += t[i] * Ax.val[i];
+            for (int64_t i = 0; i < x->nrow; i++)
+                x->val[i] -= q * t[i];
+        }
+        RITZ_TRY(norm_of(A, x, &Ax, &left));
+    }
+    *fresh = left > dependent * before && left > 0.0;
+    for (int64_t i = 0; *fresh && i < x->nrow; i++)
+        x->val[i] /= left;
+done:
+    ritz_dense_free(&Ax);
+    return status;
+}
+
+/* Append to T, of which `count` columns are there, what X adds. */
+static ritz_status append_columns(const ritz_sparse *A, const ritz_dense *X,
+                                  ritz_dense *T, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense x = {0};
+    bool fresh = false;
+
+    for (int64_t j = 0; j < X->ncol; j++) {
+        RITZ_TRY(ritz_dense_columns(X, j, 1, &x));
+        RITZ_TRY(orthogonalise(A, T, *count, &x, &fresh));
+        if (fresh)
+            memcpy(ritz_dense_col(T, (*count)++), x.val,
+                   (size_t)x.nrow * sizeof *x.val);
+        ritz_dense_free(&x);
+    }
+done:
+    ritz_dense_free(&x);
+    return status;
+}
+
+/* T = [Phi X], its columns named. */
+static ritz_status span_space(const ritz_component *component,
+                              const ritz_pairs *pairs, ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = pairs->Phi.ncol;
+    double sigma = pairs->sigma < 0.0 ? pairs->sigma : -1.0;
+    ritz_sparse A = {0};
+    ritz_factor *F = NULL;
+    ritz_dense X = {0};
+    ritz_basis basis = {0};
+    int64_t count = 0;
+
+    RITZ_TRY(ritz_sparse_add(1.0, &component->K, -sigma, &component->M, &A));
+    RITZ_TRY(ritz_basis_new(component->num_dofs, m + component->dampers.count,
+                            &basis));
+    RITZ_TRY(append_columns(&A, &pairs->Phi, &basis.T, &count));
+    if (component->dampers.count > 0) {
+        RITZ_TRY(ritz_dense_copy(&component->dampers.B, &X));
+        RITZ_TRY_IN("static answer", ritz_factor_spd(&A, &F));
+        RITZ_TRY(ritz_factor_solve(F, &X));
+        RITZ_TRY(append_columns(&A, &X, &basis.T, &count));
+    }
+    for (int64_t j = 0; j < pairs->num_rigid && j < count; j++)
+        basis.columns.kind[j] = RITZ_COLUMN_RIGID;
+    basis.T.ncol = basis.columns.count = count;
+    *out = basis;
+    basis = (ritz_basis){0};
+done:
+    ritz_factor_free(&F);
+    ritz_sparse_free(&A);
+    ritz_dense_free(&X);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+ritz_status ritz_spectrum_space(const ritz_component *component,
+                                const ritz_span *span, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs pairs = {0};
+    ritz_basis basis = {0};
+
+    RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, span, &pairs));
+    RITZ_TRY(span_space(component, &pairs, &basis));
+    RITZ_TRY(ritz_reduce(component, &basis, out));
+done:
+    ritz_pairs_free(&pairs);
+    ritz_basis_free(&basis);
+    return status;
+}
+
+ritz_status ritz_whole_new(const ritz_component *component, ritz_whole *out)
+{
+    RITZ_CHECK(ritz_sparse_dense(&component->K, &out->K));
+    RITZ_CHECK(ritz_sparse_dense(&component->M, &out->M));
+    if (component->D.colptr)
+        RITZ_CHECK(ritz_sparse_dense(&component->D, &out->D));
+    if (component->K4.colptr)
+        RITZ_CHECK(ritz_sparse_dense(&component->K4, &out->K4));
+    out->model = (ritz_second_order){&out->K, &out->M, &out->D, &out->K4, NULL};
+    return RITZ_OK;
+}
+
+void ritz_whole_free(ritz_whole *whole)
+{
+    ritz_dense_free(&whole->K);
+    ritz_dense_free(&whole->M);
+    ritz_dense_free(&whole->D);
+    ritz_dense_free(&whole->K4);
+}
+
+ritz_status ritz_scan_component(const ritz_component *component,
+                                const ritz_damping *damping,
+                                const ritz_scan_request *request,
+                                ritz_scan *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_span span = {.modes = EACH_MODE * (request->mode + 1) + LEAST_MODES};
+    ritz_whole w = {0};
+    ritz_reduced small = {0};
+    const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,
+                                     NULL};
+
+    if (component->num_dofs <= RITZ_WHOLE_DOFS) {
+        RITZ_TRY(ritz_whole_new(component, &w));
+        RITZ_TRY(ritz_scan_dampers(&w.model, &component->dampers, damping,
+                                   request, out));
+        goto done;
+    }
+    RITZ_TRY(ritz_spectrum_space(component, &span, &small));
+    RITZ_TRY(ritz_scan_dampers(&model, &small.dampers, damping, request, out));
+done:
+    ritz_whole_free(&w);
+    ritz_reduced_free(&small);
+    return status;
+}
+
+/* Lowest damped poles of a component, made exact on its full matrices. */
 
 /* Beyond what is wanted, of modes and of frequencies. */
 enum { MORE_MODES = 8 };
@@ -33,9 +211,9 @@ static double _Complex add_ratio(double _Complex s, double ratio)
                       : -size;
 }
 
-/* |x^H y| / (|x||y|) of column j and y, real and imaginary part. */
-static double alike(const ritz_spectrum *spectrum, int64_t j,
-                    const ritz_dense *y)
+/* |x^H y| / (|x||y|) of column j and y, real and imaginary solve_projected. */
+static double correlation(const ritz_spectrum *spectrum, int64_t j,
+                          const ritz_dense *y)
 {
     const double *re = ritz_dense_col(&spectrum->re, j);
     const double *im = ritz_dense_col(&spectrum->im, j);
@@ -52,19 +230,19 @@ static double alike(const ritz_spectrum *spectrum, int64_t j,
 }
 
 /* Whether a pair is one of those before; double poles have shapes apart. */
-static bool is_there(const ritz_spectrum *spectrum, int64_t count,
-                     double _Complex s, const ritz_dense *x)
+static bool is_listed(const ritz_spectrum *spectrum, int64_t count,
+                      double _Complex s, const ritz_dense *x)
 {
     for (int64_t j = 0; j < count; j++)
         if (cabs(spectrum->s[j] - s) <= same * cabs(s) &&
-            alike(spectrum, j, x) > same_shape)
+            correlation(spectrum, j, x) > same_shape)
             return true;
     return false;
 }
 
 /* Pole j on the full matrices, where inverse iteration stays near. */
-static ritz_status sharpen(ritz_refiner *refiner, int64_t j,
-                           ritz_spectrum *spectrum)
+static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
+                               ritz_spectrum *spectrum)
 {
     ritz_status status = RITZ_OK;
     double _Complex s = spectrum->s[j];
@@ -81,7 +259,7 @@ static ritz_status sharpen(ritz_refiner *refiner, int64_t j,
     if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE)
         goto done;
     if (status == RITZ_OK && cabs(s - spectrum->s[j]) <= near * cabs(s) &&
-        !is_there(spectrum, j, s, &x)) {
+        !is_listed(spectrum, j, s, &x)) {
         spectrum->s[j] = s;
         memcpy(re, x.val, (size_t)n * sizeof *re);
         memcpy(im, x.val + n, (size_t)n * sizeof *im);
@@ -96,7 +274,7 @@ done:
 }
 
 /* The first that are asked for. */
-static void cut(const ritz_span *span, ritz_spectrum *spectrum)
+static void keep_first(const ritz_span *span, ritz_spectrum *spectrum)
 {
     double limit = sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + same);
     int64_t count = 0;
@@ -108,8 +286,8 @@ static void cut(const ritz_span *span, ritz_spectrum *spectrum)
     spectrum->count = spectrum->re.ncol = spectrum->im.ncol = count;
 }
 
-static ritz_status whole(const ritz_component *component,
-                         const ritz_damping *damping, ritz_spectrum *out)
+static ritz_status solve_whole(const ritz_component *component,
+                               const ritz_damping *damping, ritz_spectrum *out)
 {
     ritz_status status = RITZ_OK;
     ritz_whole w = {0};
@@ -122,7 +300,7 @@ done:
 }
 
 /* Shapes of the small model become those of the component. */
-static ritz_status expand(const ritz_dense *T, ritz_dense *shapes)
+static ritz_status expand_shapes(const ritz_dense *T, ritz_dense *shapes)
 {
     ritz_dense x = {0};
 
@@ -133,8 +311,8 @@ static ritz_status expand(const ritz_dense *T, ritz_dense *shapes)
 }
 
 /* Without given ratios. */
-static ritz_status part(const ritz_component *component, const ritz_span *span,
-                        ritz_spectrum *out)
+static ritz_status solve_projected(const ritz_component *component,
+                                   const ritz_span *span, ritz_spectrum *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_span wide = {
@@ -150,12 +328,12 @@ static ritz_status part(const ritz_component *component, const ritz_span *span,
 
     RITZ_TRY(ritz_spectrum_space(component, &wide, &small));
     RITZ_TRY(ritz_spectrum_dense(&model, NULL, out));
-    cut(span, out);
-    RITZ_TRY(expand(&small.T, &out->re));
-    RITZ_TRY(expand(&small.T, &out->im));
+    keep_first(span, out);
+    RITZ_TRY(expand_shapes(&small.T, &out->re));
+    RITZ_TRY(expand_shapes(&small.T, &out->im));
     RITZ_TRY(ritz_refiner_new(component, true, &refiner));
     for (int64_t j = 0; j < out->count; j++) {
-        RITZ_TRY(sharpen(&refiner, j, out));
+        RITZ_TRY(refine_pole(&refiner, j, out));
         ritz_monitor_step("damped modes", j + 1, out->count);
     }
     (void)snprintf(out->engine, sizeof out->engine,
@@ -199,10 +377,10 @@ ritz_status ritz_spectrum_large(const ritz_component *component,
 
     if (damping && ritz_damping_is_rayleigh(damping)) {
         RITZ_TRY(add_rayleigh(component, damping, &seen));
-        RITZ_TRY(part(&seen, span, out));
+        RITZ_TRY(solve_projected(&seen, span, out));
         goto done;
     }
-    RITZ_TRY(part(component, span, out));
+    RITZ_TRY(solve_projected(component, span, out));
     for (int64_t j = 0; damping && j < out->count; j++)
         if (cimag(out->s[j]) > 0.0) {
             double w = cabs(out->s[j]);
@@ -223,8 +401,8 @@ ritz_status ritz_spectrum_component(const ritz_component *component,
     ritz_spectrum spectrum = {0};
 
     if (component->num_dofs <= RITZ_WHOLE_DOFS) {
-        RITZ_TRY(whole(component, damping, &spectrum));
-        cut(span, &spectrum);
+        RITZ_TRY(solve_whole(component, damping, &spectrum));
+        keep_first(span, &spectrum);
     } else {
         RITZ_TRY(ritz_spectrum_large(component, damping, span, &spectrum));
     }

@@ -1,6 +1,7 @@
 #include "poles/state.h"
 
 #include "base/alloc.h"
+#include "poles/massless.h"
 
 #include <ritz/eigen.h>
 
@@ -10,6 +11,76 @@
 #include <stdlib.h>
 #include <string.h>
 
+double ritz_state_weight(const ritz_state *state, int64_t j)
+{
+    return state->lambda[j] == 0.0 ? 1.0 : sqrt(fabs(state->lambda[j]));
+}
+
+/* G = D_aa^-1 [D_ap I], k x (m + k). */
+static ritz_status solve_massless(const ritz_state *s, ritz_dense *G)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = s->m, k = s->k;
+    ritz_dense A = {0};
+    lapack_int *pivot = NULL;
+    int info = 0;
+
+    RITZ_NEW(pivot, k);
+    RITZ_TRY(ritz_dense_new(k, k, &A));
+    RITZ_TRY(ritz_dense_new(k, m + k, G));
+    for (int64_t i = 0; i < k; i++) {
+        for (int64_t j = 0; j < k; j++)
+            ritz_dense_col(&A, j)[i] = ritz_dense_col(&s->D, m + j)[m + i];
+        for (int64_t j = 0; j < m; j++)
+            ritz_dense_col(G, j)[i] = ritz_dense_col(&s->D, j)[m + i];
+        ritz_dense_col(G, m + i)[i] = 1.0;
+    }
+    if (k > 0)
+        info = LAPACKE_dgesv(LAPACK_COL_MAJOR, (int)k, (int)(m + k), A.val,
+                             (int)k, pivot, G->val, (int)k);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
+                 "damping of the motions without mass is singular");
+done:
+    free(pivot);
+    ritz_dense_free(&A);
+    return status;
+}
+
+ritz_status ritz_state_matrix(const ritz_state *s, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = s->m, k = s->k;
+    ritz_dense A = {0}, G = {0};
+
+    RITZ_TRY(ritz_dense_new(2 * m + k, 2 * m + k, &A));
+    RITZ_TRY(solve_massless(s, &G));
+    for (int64_t j = 0; j < m; j++) {
+        double w = ritz_state_weight(s, j);
+
+        ritz_dense_col(&A, m + j)[j] = w;
+        ritz_dense_col(&A, j)[m + j] = -s->lambda[j] / w;
+    }
+    for (int64_t j = 0; j < m + k; j++)
+        for (int64_t i = 0; i < m + k; i++) {
+            double *a = &ritz_dense_col(&A, m + j)[m + i];
+
+            if (i >= m) {
+                *a = -ritz_dense_col(&G, j)[i - m];
+                continue;
+            }
+            *a = j < m ? -ritz_dense_col(&s->D, j)[i] : 0.0;
+            for (int64_t t = 0; t < k; t++) /* D_pa G */
+                *a +=
+                    ritz_dense_col(&s->D, m + t)[i] * ritz_dense_col(&G, j)[t];
+        }
+    *out = A;
+    A = (ritz_dense){0};
+done:
+    ritz_dense_free(&A);
+    ritz_dense_free(&G);
+    return status;
+}
+
 /* Of what its terms add up to in magnitude, an entry of X'DX is rounding. */
 static const double rounding = 64.0 * DBL_EPSILON;
 /* Square of what an entry of N may err by, of its largest. */
@@ -18,8 +89,8 @@ static const double unseen = 1e-24;
 static const double unstable = 1e-9;
 
 /* X'AX whose entries are 0 where they are rounding alone. */
-static ritz_status project(const ritz_dense *A, const ritz_dense *X,
-                           ritz_dense *out)
+static ritz_status project_above_rounding(const ritz_dense *A,
+                                          const ritz_dense *X, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense most = {0};
@@ -34,7 +105,7 @@ done:
     return status;
 }
 
-static bool present(const ritz_dense *A)
+static bool is_present(const ritz_dense *A)
 {
     return A && A->val;
 }
@@ -90,8 +161,8 @@ static void add_given(const ritz_damping *damping, const ritz_pairs *pairs,
  *
  * @param[in] floor  what rounding of N makes of N'DN at most
  */
-static ritz_status turn(const ritz_dense *D, int64_t m, double floor,
-                        ritz_dense *N, int64_t *count)
+static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
+                                 ritz_dense *N, int64_t *count)
 {
     ritz_status status = RITZ_OK;
     int64_t k = N->ncol;
@@ -143,7 +214,7 @@ static ritz_status check_rest(const ritz_dense *D, int64_t from)
 }
 
 /* The first `kept` rows and columns. */
-static ritz_status lead(ritz_dense *A, int64_t kept)
+static ritz_status keep_leading(ritz_dense *A, int64_t kept)
 {
     ritz_dense part = {0};
 
@@ -171,25 +242,25 @@ static ritz_status take_massless(const ritz_second_order *model,
         ritz_dense_free(&s->X);
         ritz_dense_free(&s->D);
         RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &s->X));
-        if (present(model->D))
-            RITZ_TRY(project(model->D, &s->X, &s->D));
+        if (is_present(model->D))
+            RITZ_TRY(project_above_rounding(model->D, &s->X, &s->D));
         else
             RITZ_TRY(ritz_dense_new(s->X.ncol, s->X.ncol, &s->D));
         add_given(damping, pairs, &s->D);
         if (N.ncol == 0)
             break;
         if (pass == 0)
-            RITZ_TRY(turn(&s->D, m,
-                          present(model->D)
-                              ? unseen * ritz_dense_max(model->D) *
-                                    pow(ritz_dense_max(&N), 2.0)
-                              : 0.0,
-                          &N, &s->k));
+            RITZ_TRY(turn_massless(&s->D, m,
+                                   is_present(model->D)
+                                       ? unseen * ritz_dense_max(model->D) *
+                                             pow(ritz_dense_max(&N), 2.0)
+                                       : 0.0,
+                                   &N, &s->k));
     }
     RITZ_TRY(check_rest(&s->D, m + s->k));
-    RITZ_TRY(lead(&s->D, m + s->k));
-    if (present(model->K4)) {
-        RITZ_TRY(project(model->K4, &s->X, &s->K4));
+    RITZ_TRY(keep_leading(&s->D, m + s->k));
+    if (is_present(model->K4)) {
+        RITZ_TRY(project_above_rounding(model->K4, &s->X, &s->K4));
         RITZ_FAIL_IF(
             N.ncol > 0 && ritz_dense_max(&s->K4) > 0.0, RITZ_ERR_ARGUMENT,
             "there are motions without mass beside structural damping: "

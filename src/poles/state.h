@@ -47,12 +47,4 @@ double ritz_state_weight(const ritz_state *state, int64_t j);
 
 void ritz_state_free(ritz_state *state);
 
-/**
- * N, n x (n - m), given the m finite pairs of the model.
- *
- * @return RITZ_ERR_SINGULAR if K does not hold the motions without mass
- */
-ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
-                          const double *lambda, ritz_dense *out);
-
 #endif

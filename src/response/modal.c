@@ -5,8 +5,7 @@
 #include "base/alloc.h"
 
 #include "poles/dense_poles.h"
-#include "poles/state.h"
-#include "poles/static_rest.h"
+#include "poles/massless.h"
 #include "response/responder.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
-/* What motions without mass answer, which no mode of a dense model shows. */
-#ifndef RITZ_POLES_STATIC_REST_H
-#define RITZ_POLES_STATIC_REST_H
+/* Motions without mass, which no mode of a dense model shows. */
+#ifndef RITZ_POLES_MASSLESS_H
+#define RITZ_POLES_MASSLESS_H
 
 #include "poles/poles.h"
 
@@ -13,5 +13,13 @@
  */
 ritz_status ritz_static_rest(const ritz_second_order *model,
                              const ritz_pairs *pairs, ritz_residual *out);
+
+/**
+ * N, n x (n - m), given the m finite pairs of the model.
+ *
+ * @return RITZ_ERR_SINGULAR if K does not hold the motions without mass
+ */
+ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
+                          const double *lambda, ritz_dense *out);
 
 #endif
