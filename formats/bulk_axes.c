@@ -160,10 +160,10 @@ ritz_status ritz_bulk_orient(const ritz_bulk_cards *all,
     y = norm(e_y);
     /* below the root of epsilon, x would keep less than half its digits */
     if (!(z > 0.0 && y > 1.5e-8 * norm(to_C) && isfinite(z) && isfinite(y)))
-        RITZ_CHECK(ritz_deck_refuse(&all->deck, frame->line,
-                                    "the three points of coordinate system "
-                                    "%" PRId64 " lie on a line",
-                                    frame->id));
+        RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
+                                     "the three points of coordinate system "
+                                     "%" PRId64 " lie on a line",
+                                     frame->id));
     divide(e_y, y);
     cross(e_y, e_z, e_x);
     return RITZ_OK;

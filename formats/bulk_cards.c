@@ -164,7 +164,7 @@ static ritz_status take_constraint(ritz_bulk_cards *all, const ritz_card *card,
                                    int32_t how)
 {
     ritz_bulk_constraint new = {.is_set = how,
-                                .entry = card->entry - all->deck.entry};
+                                .entry = card->entry - all->cards.entry};
 
     RITZ_CHECK(ritz_card_id(card, 0, &new.id));
     memcpy(new.name, card->entry->name, sizeof new.name);
@@ -239,14 +239,14 @@ ritz_status ritz_bulk_take_cards(ritz_bulk_cards *all)
     ritz_status status = RITZ_OK;
     ritz_card card = {0};
 
-    for (int64_t k = 0; k < all->deck.num_entries; k++) {
+    for (int64_t k = 0; k < all->cards.num_entries; k++) {
         const struct kind *kind =
-            bsearch(all->deck.entry[k].name, KINDS,
+            bsearch(all->cards.entry[k].name, KINDS,
                     sizeof KINDS / sizeof *KINDS, sizeof *KINDS, compare_name);
 
         if (!kind)
             continue;
-        RITZ_TRY(ritz_deck_card(&all->deck, k, &card));
+        RITZ_TRY(ritz_card_take(&all->cards, k, &card));
         RITZ_TRY(kind->take(all, &card, kind->how));
     }
 done:

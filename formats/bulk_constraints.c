@@ -40,14 +40,14 @@ ritz_status ritz_bulk_tying_refuse(const ritz_bulk_tying *it,
     va_start(args, format);
     vsnprintf(sentence, sizeof sentence, format, args);
     va_end(args);
-    return ritz_deck_refuse(&it->all->deck, it->card->entry->line, "%s %s",
-                            it->name, sentence);
+    return ritz_cards_refuse(&it->all->cards, it->card->entry->line, "%s %s",
+                             it->name, sentence);
 }
 
 ritz_status ritz_bulk_tying_grid(const ritz_bulk_tying *it, int64_t k,
                                  int64_t *out)
 {
-    const ritz_bulk *built = it->built;
+    const ritz_deck *built = it->built;
     int64_t id = 0;
 
     RITZ_CHECK(ritz_card_id(it->card, k, &id));
@@ -116,7 +116,7 @@ typedef struct term {
 /* G C A at field k; of scalar points C is blank, 0 or 1. */
 static ritz_status take_term(const ritz_bulk_tying *it, int64_t k, term *out)
 {
-    const ritz_bulk *built = it->built;
+    const ritz_deck *built = it->built;
     int64_t id = 0;
     int64_t c = 0;
 
@@ -196,11 +196,11 @@ static ritz_status tie(const ritz_bulk_tying *it)
         it, "is not understood: MPC, RBAR, RBE1, RBE2, RBE3 and RTRPLT are");
 }
 
-static ritz_status copy_paths(const ritz_deck *deck, ritz_equations *out)
+static ritz_status copy_paths(const ritz_cards *cards, ritz_equations *out)
 {
-    RITZ_CHECK_NEW(out->file, deck->num_files);
-    for (; out->num_files < deck->num_files; out->num_files++) {
-        const char *path = deck->file[out->num_files].path;
+    RITZ_CHECK_NEW(out->file, cards->num_files);
+    for (; out->num_files < cards->num_files; out->num_files++) {
+        const char *path = cards->file[out->num_files].path;
         size_t size = path ? strlen(path) + 1 : 0;
 
         if (!path)
@@ -213,7 +213,7 @@ static ritz_status copy_paths(const ritz_deck *deck, ritz_equations *out)
 
 static ritz_status tie_card(const ritz_bulk_cards *all,
                             const ritz_bulk_constraint *one, ritz_card *card,
-                            ritz_bulk *built)
+                            ritz_deck *built)
 {
     ritz_equation_source from = {.name = ""};
     const ritz_line *line = NULL;
@@ -223,8 +223,8 @@ static ritz_status tie_card(const ritz_bulk_cards *all,
                                 .name = from.name,
                                 .out = &built->equations};
 
-    RITZ_CHECK(ritz_deck_card(&all->deck, one->entry, card));
-    line = &all->deck.line[card->entry->line];
+    RITZ_CHECK(ritz_card_take(&all->cards, one->entry, card));
+    line = &all->cards.line[card->entry->line];
     from.file = line->file;
     from.line = line->number;
     snprintf(from.name, sizeof from.name, "%s %" PRId64, one->name, one->id);
@@ -233,19 +233,19 @@ static ritz_status tie_card(const ritz_bulk_cards *all,
 }
 
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
-                                     ritz_bulk *built)
+                                     ritz_deck *built)
 {
     ritz_status status = RITZ_OK;
     ritz_card card = {0};
 
     if (all->num_constraints == 0)
         goto done;
-    RITZ_TRY(copy_paths(&all->deck, &built->equations));
+    RITZ_TRY(copy_paths(&all->cards, &built->equations));
     for (int64_t k = 0; k < all->num_constraints; k++) {
         const ritz_bulk_constraint *one = &all->constraint[k];
 
         if (one->is_set &&
-            !ritz_bulk_selects(&all->deck, RITZ_SELECT_MPC, one->id))
+            !ritz_bulk_selects(&all->cards, RITZ_SELECT_MPC, one->id))
             continue;
         status = tie_card(all, one, &card, built);
         if (status == RITZ_ERR_FORMAT) {

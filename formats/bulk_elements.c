@@ -132,22 +132,22 @@ static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
                     it);
 }
 
-ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_bulk *out)
+ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_deck *deck = &all->deck;
+    const ritz_cards *cards = &all->cards;
     gathering it = {0};
     ritz_card card = {0};
     int64_t strange = 0;
 
-    for (int64_t k = 0; k < deck->num_entries; k++) {
+    for (int64_t k = 0; k < cards->num_entries; k++) {
         const ritz_bulk_cell *cell =
-            bsearch(deck->entry[k].name, cells, sizeof cells / sizeof *cells,
+            bsearch(cards->entry[k].name, cells, sizeof cells / sizeof *cells,
                     sizeof *cells, compare_name);
 
         if (!cell)
             continue;
-        status = ritz_deck_card(deck, k, &card);
+        status = ritz_card_take(cards, k, &card);
         if (status == RITZ_OK)
             status = take_cell(&card, cell, &it, &strange);
         else if (status == RITZ_ERR_FORMAT) {

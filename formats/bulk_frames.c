@@ -92,10 +92,10 @@ ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all)
             continue;
         }
         if (!same_frame(&all->frame[kept - 1], frame))
-            RITZ_CHECK(ritz_deck_refuse(&all->deck, frame->line,
-                                        "coordinate system %" PRId64
-                                        " is defined otherwise before",
-                                        frame->id));
+            RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
+                                         "coordinate system %" PRId64
+                                         " is defined otherwise before",
+                                         frame->id));
     }
     all->num_frames = kept;
     return RITZ_OK;
@@ -124,11 +124,11 @@ static ritz_status rests_on(const ritz_bulk_cards *all,
     }
     grid = ritz_bulk_find_grid(all, frame->grid[k]);
     if (!grid)
-        return ritz_deck_refuse(&all->deck, frame->line,
-                                "coordinate system %" PRId64
-                                " is defined by grid %" PRId64
-                                ", which there is not",
-                                frame->id, frame->grid[k]);
+        return ritz_cards_refuse(&all->cards, frame->line,
+                                 "coordinate system %" PRId64
+                                 " is defined by grid %" PRId64
+                                 ", which there is not",
+                                 frame->id, frame->grid[k]);
     *out = grid->cp;
     return RITZ_OK;
 }
@@ -151,17 +151,17 @@ static ritz_status next_open(const ritz_bulk_cards *all,
         below = ritz_bulk_find_frame(all, id);
         if (!below) {
             status =
-                ritz_deck_refuse(&all->deck, frame->line,
-                                 "coordinate system %" PRId64
-                                 " rests on %" PRId64 ", which there is not",
-                                 frame->id, id);
+                ritz_cards_refuse(&all->cards, frame->line,
+                                  "coordinate system %" PRId64
+                                  " rests on %" PRId64 ", which there is not",
+                                  frame->id, id);
             goto done;
         }
         if (below->progress == OPEN)
-            RITZ_TRY(ritz_deck_refuse(&all->deck, frame->line,
-                                      "coordinate system %" PRId64
-                                      " rests on itself by way of %" PRId64,
-                                      frame->id, id));
+            RITZ_TRY(ritz_cards_refuse(&all->cards, frame->line,
+                                       "coordinate system %" PRId64
+                                       " rests on itself by way of %" PRId64,
+                                       frame->id, id));
         if (below->progress == UNTOUCHED)
             *out = below;
     }

@@ -54,8 +54,8 @@ ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all, const ritz_card *card)
     if (all->defaults.line >= 0 &&
         (new.cp != all->defaults.cp || new.cd != all->defaults.cd ||
          new.spc != all->defaults.spc))
-        RITZ_CHECK(ritz_deck_refuse(&all->deck, new.line,
-                                    "there is another GRDSET before"));
+        RITZ_CHECK(ritz_cards_refuse(&all->cards, new.line,
+                                     "there is another GRDSET before"));
     all->defaults = new;
     return RITZ_OK;
 }
@@ -108,8 +108,8 @@ ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all)
             continue;
         }
         if (!same_grid(&all->grid[kept - 1], grid))
-            RITZ_CHECK(ritz_deck_refuse(
-                &all->deck, grid->line,
+            RITZ_CHECK(ritz_cards_refuse(
+                &all->cards, grid->line,
                 "GRID %" PRId64 " is defined otherwise before", grid->id));
     }
     all->num_grids = kept;
@@ -133,11 +133,11 @@ static ritz_status frame_of(const ritz_bulk_cards *all,
 {
     *out = id ? ritz_bulk_find_frame(all, id) : NULL;
     if (id && !*out)
-        return ritz_deck_refuse(&all->deck, grid->line,
-                                "GRID %" PRId64
-                                " uses coordinate system %" PRId64
-                                ", which there is not",
-                                grid->id, id);
+        return ritz_cards_refuse(&all->cards, grid->line,
+                                 "GRID %" PRId64
+                                 " uses coordinate system %" PRId64
+                                 ", which there is not",
+                                 grid->id, id);
     return RITZ_OK;
 }
 
@@ -192,8 +192,8 @@ static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
     ritz_bulk_position(frame, grid->x, position);
     for (int j = 0; j < 3; j++)
         if (!isfinite(position[j]))
-            RITZ_CHECK(ritz_deck_refuse(
-                &all->deck, grid->line,
+            RITZ_CHECK(ritz_cards_refuse(
+                &all->cards, grid->line,
                 "GRID %" PRId64 " is infinitely far away", grid->id));
     RITZ_CHECK(frame_of(all, grid, grid->cd, &frame));
     if (!frame)

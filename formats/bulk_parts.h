@@ -5,7 +5,7 @@
 #include "formats/cards.h"
 #include "model/ties.h"
 
-#include <ritz/bulk.h>
+#include <ritz/deck.h>
 
 /* GRID as it is written. */
 typedef struct ritz_bulk_grid {
@@ -65,7 +65,7 @@ enum { RITZ_BULK_SPC = 3, RITZ_BULK_SETS = 4 }; /* after RITZ_SET_A, B, Q */
 
 /* Everything that the cards say, before it is put together. */
 typedef struct ritz_bulk_cards {
-    ritz_deck deck;
+    ritz_cards cards;
     int64_t num_grids, grids_room;
     ritz_bulk_grid *grid; /* sorted by id, each once, once settled */
     int64_t num_frames, frames_room;
@@ -130,7 +130,7 @@ bool ritz_bulk_mask(int64_t digits, uint8_t *out);
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range);
 
 /** The scalar points, ascending. */
-ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out);
+ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out);
 
 /**
  * The dofs of some ranges, sorted, each once.
@@ -139,17 +139,17 @@ ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out);
  */
 ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_bulk_ranges *list,
-                               const ritz_bulk *built, int64_t *count,
+                               const ritz_deck *built, int64_t *count,
                                ritz_dof **out);
 
 /** Copy the sentence of the latest failure. */
 ritz_status ritz_bulk_keep_sentence(char **out);
 
 /** Which grids elements join. */
-ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_bulk *out);
+ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out);
 
 /** Whether a set of SPC or MPC cards acts. */
-bool ritz_bulk_selects(const ritz_deck *deck, int64_t which, int64_t set);
+bool ritz_bulk_selects(const ritz_cards *cards, int64_t which, int64_t set);
 
 /**
  * The equations of all constraint elements that act.
@@ -157,12 +157,12 @@ bool ritz_bulk_selects(const ritz_deck *deck, int64_t which, int64_t set);
  * @param[in,out] built  its grids and points are there already
  */
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
-                                     ritz_bulk *built);
+                                     ritz_deck *built);
 
 /* A constraint element as it becomes equations. */
 typedef struct ritz_bulk_tying {
     const ritz_bulk_cards *all;
-    const ritz_bulk *built;
+    const ritz_deck *built;
     const ritz_card *card;
     const char *name; /* "RBE2 600" */
     ritz_equations *out;

@@ -66,21 +66,21 @@ static int64_t merge(int64_t count, ritz_bulk_range *range)
 }
 
 /* How many ids the ranges stand for, refused if too many. */
-static ritz_status count_ids(const ritz_deck *deck, int64_t count,
+static ritz_status count_ids(const ritz_cards *cards, int64_t count,
                              const ritz_bulk_range *range, int64_t *out)
 {
     *out = 0;
     for (int64_t k = 0; k < count; k++) {
         if (range[k].to - range[k].from >= MOST_IDS - *out)
-            RITZ_CHECK(ritz_deck_refuse(deck, range[k].line,
-                                        "THRU stands for more than %d points",
-                                        MOST_IDS));
+            RITZ_CHECK(ritz_cards_refuse(cards, range[k].line,
+                                         "THRU stands for more than %d points",
+                                         MOST_IDS));
         *out += range[k].to - range[k].from + 1;
     }
     return RITZ_OK;
 }
 
-ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out)
+ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
 {
     ritz_status status = RITZ_OK;
     ritz_bulk_range *range = NULL;
@@ -93,16 +93,16 @@ ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_bulk *out)
         memcpy(range, all->points.range,
                (size_t)all->points.count * sizeof *range);
     count = merge(all->points.count, range);
-    RITZ_TRY(count_ids(&all->deck, count, range, &num));
+    RITZ_TRY(count_ids(&all->cards, count, range, &num));
     RITZ_NEW(point, num);
     num = 0;
     for (int64_t k = 0; k < count; k++)
         for (int64_t id = range[k].from; id <= range[k].to; id++) {
             if (ritz_bulk_find_grid(all, id))
-                RITZ_TRY(ritz_deck_refuse(&all->deck, range[k].line,
-                                          "%" PRId64 " is a GRID and an "
-                                          "SPOINT",
-                                          id));
+                RITZ_TRY(ritz_cards_refuse(&all->cards, range[k].line,
+                                           "%" PRId64 " is a GRID and an "
+                                           "SPOINT",
+                                           id));
             point[num++] = id;
         }
     out->point = point;
@@ -136,19 +136,19 @@ static bool has(const ritz_bulk_range *range, int64_t c)
 
 /* The dofs of a grid or point that is named. */
 static ritz_status add_named(const ritz_bulk_cards *all,
-                             const ritz_bulk_range *one, const ritz_bulk *built,
+                             const ritz_bulk_range *one, const ritz_deck *built,
                              dofs *list)
 {
     bool point = ritz_search(built->num_points, built->point, one->from) >= 0;
     bool grid = ritz_grids_find(&built->grids, one->from) >= 0;
 
     if (point && (one->mask & ~3U))
-        RITZ_CHECK(ritz_deck_refuse(
-            &all->deck, one->line, "scalar point %" PRId64 " has no directions",
-            one->from));
+        RITZ_CHECK(ritz_cards_refuse(
+            &all->cards, one->line,
+            "scalar point %" PRId64 " has no directions", one->from));
     if (grid && has(one, 0))
-        RITZ_CHECK(ritz_deck_refuse(
-            &all->deck, one->line,
+        RITZ_CHECK(ritz_cards_refuse(
+            &all->cards, one->line,
             "no directions of GRID %" PRId64 " are given", one->from));
     for (int64_t c = 0; c <= 6; c++)
         if (has(one, c))
@@ -174,7 +174,7 @@ static ritz_status add_all(const ritz_bulk_cards *all, int64_t c, int64_t count,
 {
     int64_t ids = 0;
 
-    RITZ_CHECK(count_ids(&all->deck, count, range, &ids));
+    RITZ_CHECK(count_ids(&all->cards, count, range, &ids));
     for (int64_t k = 0; k < count; k++)
         for (int64_t id = range[k].from; id <= range[k].to; id++)
             RITZ_CHECK(add_dof(list, id, c));
@@ -183,7 +183,7 @@ static ritz_status add_all(const ritz_bulk_cards *all, int64_t c, int64_t count,
 
 static ritz_status add_direction(const ritz_bulk_cards *all,
                                  const ritz_bulk_ranges *given,
-                                 const ritz_bulk *built, int64_t c, dofs *list)
+                                 const ritz_deck *built, int64_t c, dofs *list)
 {
     ritz_status status = RITZ_OK;
     ritz_bulk_range *range = NULL;
@@ -209,7 +209,7 @@ done:
 
 ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_bulk_ranges *list,
-                               const ritz_bulk *built, int64_t *count,
+                               const ritz_deck *built, int64_t *count,
                                ritz_dof **out)
 {
     ritz_status status = RITZ_OK;

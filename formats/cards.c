@@ -8,11 +8,11 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-ritz_status ritz_deck_refuse(const ritz_deck *deck, int64_t line,
-                             const char *format, ...)
+ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
+                              const char *format, ...)
 {
-    const ritz_line *at = &deck->line[line];
-    const char *path = deck->file[at->file].path;
+    const ritz_line *at = &cards->line[line];
+    const char *path = cards->file[at->file].path;
     char sentence[400];
     va_list args;
 
@@ -26,32 +26,32 @@ ritz_status ritz_deck_refuse(const ritz_deck *deck, int64_t line,
                      sentence);
 }
 
-ritz_status ritz_deck_parse(const char *path, const char *text, int64_t size,
-                            const char *folder, ritz_deck *out)
+ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
+                             const char *folder, ritz_cards *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_deck deck = {0};
+    ritz_cards cards = {0};
     ritz_lines whole = {.at = text, .end = text + size};
 
-    RITZ_TRY(ritz_deck_scan(path, folder, whole, &deck));
-    RITZ_TRY(ritz_deck_join(&deck));
-    *out = deck;
-    deck = (ritz_deck){0};
+    RITZ_TRY(ritz_cards_scan(path, folder, whole, &cards));
+    RITZ_TRY(ritz_cards_join(&cards));
+    *out = cards;
+    cards = (ritz_cards){0};
 done:
-    ritz_deck_free(&deck);
+    ritz_cards_free(&cards);
     return status;
 }
 
-void ritz_deck_free(ritz_deck *deck)
+void ritz_cards_free(ritz_cards *cards)
 {
-    for (int64_t k = 0; k < deck->num_files; k++) {
-        free(deck->file[k].path);
-        free(deck->file[k].text);
+    for (int64_t k = 0; k < cards->num_files; k++) {
+        free(cards->file[k].path);
+        free(cards->file[k].text);
     }
-    free(deck->file);
-    free(deck->line);
-    free(deck->entry);
-    free(deck->selected[0]);
-    free(deck->selected[1]);
-    *deck = (ritz_deck){0};
+    free(cards->file);
+    free(cards->line);
+    free(cards->entry);
+    free(cards->selected[0]);
+    free(cards->selected[1]);
+    *cards = (ritz_cards){0};
 }

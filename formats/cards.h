@@ -24,17 +24,17 @@ enum {
 
 /* A line of bulk data that is neither blank nor a comment. */
 typedef struct ritz_line {
-    const char *text; /* in a ritz_deck_file, without comment and line end */
+    const char *text; /* in a ritz_cards_file, without comment and line end */
     int32_t length;
-    int32_t file;   /* index of the ritz_deck_file */
+    int32_t file;   /* index of the ritz_cards_file */
     int64_t number; /* from 1 */
     int64_t next;   /* the line that continues it, -1 if none does */
 } ritz_line;
 
-typedef struct ritz_deck_file {
+typedef struct ritz_cards_file {
     char *path;
     char *text; /* NULL if borrowed */
-} ritz_deck_file;
+} ritz_cards_file;
 
 /* Where a card is and what it is called, "GRID" for GRID*. */
 typedef struct ritz_entry {
@@ -42,19 +42,19 @@ typedef struct ritz_entry {
     int64_t line;
 } ritz_entry;
 
-typedef struct ritz_deck {
+typedef struct ritz_cards {
     int64_t num_files;
     int64_t num_lines;
     int64_t num_entries;
     int64_t files_room, lines_room, entries_room;
-    ritz_deck_file *file;
+    ritz_cards_file *file;
     ritz_line *line;
     ritz_entry *entry;   /* in the order of the file */
     int64_t num_skipped; /* INCLUDE lines, where these are not followed */
     int64_t num_selected[2];
     int64_t selected_room[2];
     int64_t *selected[2]; /* sets of SPC and of MPC in the case control */
-} ritz_deck;
+} ritz_cards;
 
 enum { RITZ_SELECT_SPC, RITZ_SELECT_MPC };
 
@@ -65,7 +65,7 @@ typedef struct ritz_field {
 
 /* A card taken apart; {0} at first, and reused from card to card. */
 typedef struct ritz_card {
-    const ritz_deck *deck;
+    const ritz_cards *cards;
     const ritz_entry *entry;
     int64_t count; /* up to the last field that is not blank */
     int64_t room;
@@ -87,11 +87,11 @@ typedef struct ritz_card {
  *         circle or too deep; RITZ_ERR_FILE if an included file is missing
  * @cost   O(size), and O(n log n) in continuations that are out of order
  */
-ritz_status ritz_deck_parse(const char *path, const char *text, int64_t size,
-                            const char *folder, ritz_deck *out);
+ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
+                             const char *folder, ritz_cards *out);
 
 /** Take the @p k -th card apart. @return RITZ_ERR_FORMAT, naming the line */
-ritz_status ritz_deck_card(const ritz_deck *deck, int64_t k, ritz_card *card);
+ritz_status ritz_card_take(const ritz_cards *cards, int64_t k, ritz_card *card);
 
 /** Field @p k of a card, from 0; "" behind its end. */
 const char *ritz_card_text(const ritz_card *card, int64_t k);
@@ -113,16 +113,14 @@ int64_t ritz_card_digits(const char *text);
 
 /** Fail with file and line before the sentence. */
 [[gnu::format(printf, 3, 4)]] ritz_status
-ritz_deck_refuse(const ritz_deck *deck, int64_t line, const char *format, ...);
+ritz_cards_refuse(const ritz_cards *cards, int64_t line, const char *format,
+                  ...);
 
 /** Fail about field @p k of a card. */
 ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
                              const char *wanted);
 
 void ritz_card_free(ritz_card *card);
-void ritz_deck_free(ritz_deck *deck);
-
-/** The folder of a path: "." if it names none. */
-ritz_status ritz_deck_folder(const char *path, char **out);
+void ritz_cards_free(ritz_cards *cards);
 
 #endif

@@ -12,9 +12,9 @@ static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
 
     ritz_card_trim(&text, &length);
     if (length >= RITZ_CARD_FIELD_SIZE)
-        RITZ_CHECK(ritz_deck_refuse(card->deck, line,
-                                    "'%.16s...' in %s is too long for a field",
-                                    text, card->entry->name));
+        RITZ_CHECK(ritz_cards_refuse(card->cards, line,
+                                     "'%.16s...' in %s is too long for a field",
+                                     text, card->entry->name));
     RITZ_CHECK_ROOM(card->field, card->count, card->room);
     field = &card->field[card->count++];
     memcpy(field->text, text, (size_t)length);
@@ -53,9 +53,9 @@ static ritz_status add_free(ritz_card *card, int64_t line,
     if ((tenth_length > 0 && !ritz_view_is_marker(tenth, tenth_length) &&
          *tenth != '+') ||
         more_items(seen, width + 1))
-        RITZ_CHECK(ritz_deck_refuse(card->deck, line,
-                                    "a line of %s has more than %d fields",
-                                    card->entry->name, (int)width));
+        RITZ_CHECK(ritz_cards_refuse(card->cards, line,
+                                     "a line of %s has more than %d fields",
+                                     card->entry->name, (int)width));
     for (int64_t k = 0; k < width; k++) {
         length = 0;
         if (k < count)
@@ -94,21 +94,21 @@ static ritz_status check_name(const ritz_card *card, const ritz_view *seen)
     for (int64_t k = 0; k < length; k++)
         if (ritz_card_is_blank(name[k]) && name[length - 1] != '*')
             RITZ_CHECK(
-                ritz_deck_refuse(card->deck, card->entry->line,
-                                 "'%.*s' is not the name of a card alone",
-                                 (int)(length < 20 ? length : 20), name));
+                ritz_cards_refuse(card->cards, card->entry->line,
+                                  "'%.*s' is not the name of a card alone",
+                                  (int)(length < 20 ? length : 20), name));
     return RITZ_OK;
 }
 
-ritz_status ritz_deck_card(const ritz_deck *deck, int64_t k, ritz_card *card)
+ritz_status ritz_card_take(const ritz_cards *cards, int64_t k, ritz_card *card)
 {
     ritz_view seen;
 
-    card->deck = deck;
-    card->entry = &deck->entry[k];
+    card->cards = cards;
+    card->entry = &cards->entry[k];
     card->count = 0;
-    for (int64_t at = card->entry->line; at >= 0; at = deck->line[at].next) {
-        ritz_view_look(&deck->line[at], &seen);
+    for (int64_t at = card->entry->line; at >= 0; at = cards->line[at].next) {
+        ritz_view_look(&cards->line[at], &seen);
         if (at == card->entry->line)
             RITZ_CHECK(check_name(card, &seen));
         while (!seen.large && card->count % 8 != 0)

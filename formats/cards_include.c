@@ -5,6 +5,7 @@
 #include "formats/cards_parts.h"
 
 #include "base/alloc.h"
+#include "base/path.h"
 
 #include <ritz/text.h>
 
@@ -67,23 +68,9 @@ static ritz_status join_path(const char *folder, const char *name, char **out)
     return RITZ_OK;
 }
 
-ritz_status ritz_deck_folder(const char *path, char **out)
-{
-    const char *slash = strrchr(path, '/');
-    size_t length = slash ? (size_t)(slash - path) : 1;
-    char *folder = NULL;
-
-    if (slash == path)
-        length = 1; /* the root */
-    RITZ_CHECK_NEW(folder, (int64_t)length + 1);
-    memcpy(folder, slash ? path : ".", length);
-    *out = folder;
-    return RITZ_OK;
-}
-
 static const char *path_of(const ritz_scanner *scan, int level)
 {
-    return scan->deck->file[scan->open[level].file].path;
+    return scan->cards->file[scan->open[level].file].path;
 }
 
 /* Go on with a file before the one that includes it; takes `bytes`. */
@@ -91,14 +78,14 @@ static ritz_status open_file(ritz_scanner *scan, const char *path, char *bytes)
 {
     ritz_status status = RITZ_OK;
     ritz_source new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
-                       .file = scan->deck->num_files};
+                       .file = scan->cards->num_files};
 
-    status = ritz_deck_add_file(scan->deck, path, bytes);
+    status = ritz_cards_add_file(scan->cards, path, bytes);
     if (status != RITZ_OK)
         free(bytes);
     RITZ_TRY(status);
-    RITZ_TRY(ritz_deck_skip_control(path, &new.text, scan->deck));
-    RITZ_TRY(ritz_deck_folder(path, &new.folder));
+    RITZ_TRY(ritz_cards_skip_control(path, &new.text, scan->cards));
+    RITZ_TRY(ritz_path_folder(path, &new.folder));
     scan->open[scan->depth++] = new;
 done:
     return status;
@@ -111,9 +98,9 @@ static ritz_status include(ritz_scanner *scan, const char *path)
     for (int k = 0; k < scan->depth; k++)
         RITZ_REFUSE_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
                        RITZ_ERR_FORMAT, "'%s' includes itself", path);
-    RITZ_REFUSE_IF(scan->depth > RITZ_DECK_DEEPEST, RITZ_ERR_FORMAT,
-                   "INCLUDE is more than %d files deep", RITZ_DECK_DEEPEST);
-    RITZ_REFUSE_IF(scan->deck->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(scan->depth > RITZ_CARDS_DEEPEST, RITZ_ERR_FORMAT,
+                   "INCLUDE is more than %d files deep", RITZ_CARDS_DEEPEST);
+    RITZ_REFUSE_IF(scan->cards->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
                    "INCLUDE reads more than %d files", MOST_FILES);
     RITZ_CHECK(ritz_text_read(path, &bytes));
     return open_file(scan, path, bytes);
@@ -136,7 +123,7 @@ ritz_status ritz_scanner_include(ritz_scanner *scan, const char *rest)
         snprintf(where, sizeof where, "line %" PRId64, number);
     RITZ_TRY_IN(where, include_name(&top->text, rest, name, sizeof name));
     if (!top->folder) {
-        scan->deck->num_skipped++;
+        scan->cards->num_skipped++;
         goto done;
     }
     RITZ_TRY(join_path(top->folder, name, &path));

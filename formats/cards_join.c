@@ -71,7 +71,7 @@ static void trailing_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
     copy_marker(text, length, out);
 }
 
-static ritz_status add_entry(ritz_deck *deck, int64_t line,
+static ritz_status add_entry(ritz_cards *cards, int64_t line,
                              const ritz_view *seen)
 {
     ritz_entry *entry = NULL;
@@ -79,8 +79,8 @@ static ritz_status add_entry(ritz_deck *deck, int64_t line,
     int64_t length = 0;
 
     ritz_view_name(seen, &name, &length);
-    RITZ_CHECK_ROOM(deck->entry, deck->num_entries, deck->entries_room);
-    entry = &deck->entry[deck->num_entries++];
+    RITZ_CHECK_ROOM(cards->entry, cards->num_entries, cards->entries_room);
+    entry = &cards->entry[cards->num_entries++];
     *entry = (ritz_entry){.line = line};
     for (int64_t k = 0; k < length && k < RITZ_CARD_NAME_SIZE - 1; k++) {
         if (name[k] == '*' || ritz_card_is_blank(name[k]))
@@ -106,22 +106,22 @@ static ritz_status add_stray(strays *list, int64_t line,
 }
 
 /* Give each continuation to the line above it where the markers allow. */
-static ritz_status join_neighbours(ritz_deck *deck, strays *list)
+static ritz_status join_neighbours(ritz_cards *cards, strays *list)
 {
     char lead[RITZ_CARD_NAME + 1];
     char trail[RITZ_CARD_NAME + 1] = "";
     ritz_view seen;
 
-    for (int64_t k = 0; k < deck->num_lines; k++) {
-        ritz_view_look(&deck->line[k], &seen);
+    for (int64_t k = 0; k < cards->num_lines; k++) {
+        ritz_view_look(&cards->line[k], &seen);
         if (!seen.continues) {
-            RITZ_CHECK(add_entry(deck, k, &seen));
+            RITZ_CHECK(add_entry(cards, k, &seen));
             trailing_marker(&seen, trail);
             continue;
         }
         leading_marker(&seen, lead);
         if (k > 0 && (!lead[0] || strcmp(lead, trail) == 0))
-            deck->line[k - 1].next = k;
+            cards->line[k - 1].next = k;
         else
             RITZ_CHECK(add_stray(list, k, lead));
         trailing_marker(&seen, trail);
@@ -138,7 +138,7 @@ static int compare_markers(const void *a, const void *b)
 }
 
 /* Let the lines whose tenth field has a stray's marker claim it. */
-static ritz_status join_strays(ritz_deck *deck, strays *list)
+static ritz_status join_strays(ritz_cards *cards, strays *list)
 {
     marker wanted = {0};
     ritz_view seen;
@@ -149,64 +149,64 @@ static ritz_status join_strays(ritz_deck *deck, strays *list)
           compare_markers);
     for (int64_t k = 1; k < list->count; k++)
         if (compare_markers(&list->marker[k - 1], &list->marker[k]) == 0)
-            RITZ_CHECK(ritz_deck_refuse(deck, list->marker[k].line,
-                                        "another continuation has the marker "
-                                        "'+%s' too",
-                                        list->marker[k].text));
-    for (int64_t k = 0; k < deck->num_lines; k++) {
+            RITZ_CHECK(ritz_cards_refuse(cards, list->marker[k].line,
+                                         "another continuation has the marker "
+                                         "'+%s' too",
+                                         list->marker[k].text));
+    for (int64_t k = 0; k < cards->num_lines; k++) {
         marker *found = NULL;
 
-        ritz_view_look(&deck->line[k], &seen);
+        ritz_view_look(&cards->line[k], &seen);
         trailing_marker(&seen, wanted.text);
-        if (!wanted.text[0] || deck->line[k].next >= 0)
+        if (!wanted.text[0] || cards->line[k].next >= 0)
             continue;
         found = bsearch(&wanted, list->marker, (size_t)list->count,
                         sizeof wanted, compare_markers);
         if (!found)
             continue;
         if (found->taken)
-            RITZ_CHECK(ritz_deck_refuse(
-                deck, k, "another line is continued by '+%s' too",
+            RITZ_CHECK(ritz_cards_refuse(
+                cards, k, "another line is continued by '+%s' too",
                 wanted.text));
         found->taken = true;
-        deck->line[k].next = found->line;
+        cards->line[k].next = found->line;
     }
     return RITZ_OK;
 }
 
 /* Every line must be reached from a card: no stray is left, no circle. */
-static ritz_status check_reach(const ritz_deck *deck)
+static ritz_status check_reach(const ritz_cards *cards)
 {
     ritz_status status = RITZ_OK;
     bool *reached = NULL;
 
-    RITZ_NEW(reached, deck->num_lines);
-    for (int64_t k = 0; k < deck->num_entries; k++)
-        for (int64_t at = deck->entry[k].line; at >= 0;
-             at = deck->line[at].next)
+    RITZ_NEW(reached, cards->num_lines);
+    for (int64_t k = 0; k < cards->num_entries; k++)
+        for (int64_t at = cards->entry[k].line; at >= 0;
+             at = cards->line[at].next)
             reached[at] = true;
-    for (int64_t k = 0; k < deck->num_lines; k++)
+    for (int64_t k = 0; k < cards->num_lines; k++)
         if (!reached[k])
-            RITZ_TRY(ritz_deck_refuse(deck, k,
-                                      "the continuation '%.*s' belongs to no "
-                                      "card",
-                                      deck->line[k].length < RITZ_CARD_NAME
-                                          ? (int)deck->line[k].length
-                                          : RITZ_CARD_NAME,
-                                      deck->line[k].text));
+            RITZ_TRY(ritz_cards_refuse(cards, k,
+                                       "the continuation '%.*s' belongs to no "
+                                       "card",
+                                       cards->line[k].length < RITZ_CARD_NAME
+                                           ? (int)cards->line[k].length
+                                           : RITZ_CARD_NAME,
+                                       cards->line[k].text));
 done:
     free(reached);
     return status;
 }
 
-ritz_status ritz_deck_join(ritz_deck *deck)
+ritz_status ritz_cards_join(ritz_cards *cards)
 {
     ritz_status status = RITZ_OK;
     strays list = {0};
 
-    RITZ_TRY(join_neighbours(deck, &list));
-    RITZ_TRY(join_strays(deck, &list));
-    RITZ_TRY(check_reach(deck));
+    RITZ_TRY(join_neighbours(cards, &list));
+    RITZ_TRY(join_strays(cards, &list));
+    RITZ_TRY(check_reach(cards));
 done:
     free(list.marker);
     return status;

@@ -69,7 +69,7 @@ int64_t ritz_view_items(const ritz_view *line, int64_t *mark);
 
 /* ---- the deck ----------------------------------------------------------- */
 
-enum { RITZ_DECK_DEEPEST = 16 };
+enum { RITZ_CARDS_DEEPEST = 16 };
 
 /* A file that is being gone through. */
 typedef struct ritz_source {
@@ -80,10 +80,10 @@ typedef struct ritz_source {
 
 /* The file on top, below it those whose INCLUDE led there. */
 typedef struct ritz_scanner {
-    ritz_deck *deck;
+    ritz_cards *cards;
     bool ended; /* by ENDDATA */
     int depth;
-    ritz_source open[RITZ_DECK_DEEPEST + 1];
+    ritz_source open[RITZ_CARDS_DEEPEST + 1];
 } ritz_scanner;
 
 /** Follow an INCLUDE; @p rest is what stands behind the word. */
@@ -94,17 +94,18 @@ ritz_status ritz_scanner_include(ritz_scanner *scan, const char *rest);
  * CEND came before it, at the start where there is neither; keep the sets that
  * the case control selects.
  */
-ritz_status ritz_deck_skip_control(const char *path, ritz_lines *text,
-                                   ritz_deck *deck);
+ritz_status ritz_cards_skip_control(const char *path, ritz_lines *text,
+                                    ritz_cards *cards);
 
 /** Append a file; @p text becomes the deck's, unless the call fails. */
-ritz_status ritz_deck_add_file(ritz_deck *deck, const char *path, char *text);
+ritz_status ritz_cards_add_file(ritz_cards *cards, const char *path,
+                                char *text);
 
 /** Keep the lines of a file, and of what it includes, up to ENDDATA. */
-ritz_status ritz_deck_scan(const char *path, const char *folder,
-                           ritz_lines text, ritz_deck *deck);
+ritz_status ritz_cards_scan(const char *path, const char *folder,
+                            ritz_lines text, ritz_cards *cards);
 
 /** Find the cards; give every continuation to the line that it continues. */
-ritz_status ritz_deck_join(ritz_deck *deck);
+ritz_status ritz_cards_join(ritz_cards *cards);
 
 #endif

@@ -10,7 +10,7 @@
 
 /* SPC = 5 in the case control: remember which set is meant. */
 static ritz_status take_selection(const ritz_lines *text, const char *word,
-                                  int64_t which, ritz_deck *deck)
+                                  int64_t which, ritz_cards *cards)
 {
     const char *end = text->line_end;
     const char *at = NULL;
@@ -28,14 +28,14 @@ static ritz_status take_selection(const ritz_lines *text, const char *word,
         set = 10 * set + (*at - '0');
     if (set == 0)
         return RITZ_OK;
-    RITZ_CHECK_ROOM(deck->selected[which], deck->num_selected[which],
-                    deck->selected_room[which]);
-    deck->selected[which][deck->num_selected[which]++] = set;
+    RITZ_CHECK_ROOM(cards->selected[which], cards->num_selected[which],
+                    cards->selected_room[which]);
+    cards->selected[which][cards->num_selected[which]++] = set;
     return RITZ_OK;
 }
 
-ritz_status ritz_deck_skip_control(const char *path, ritz_lines *text,
-                                   ritz_deck *deck)
+ritz_status ritz_cards_skip_control(const char *path, ritz_lines *text,
+                                    ritz_cards *cards)
 {
     ritz_lines trial = *text;
     const char *rest = NULL;
@@ -56,8 +56,8 @@ ritz_status ritz_deck_skip_control(const char *path, ritz_lines *text,
     while (begun && text->number < trial.number) {
         (void)ritz_lines_next(text);
         if (cases) {
-            RITZ_CHECK(take_selection(text, "SPC", RITZ_SELECT_SPC, deck));
-            RITZ_CHECK(take_selection(text, "MPC", RITZ_SELECT_MPC, deck));
+            RITZ_CHECK(take_selection(text, "SPC", RITZ_SELECT_SPC, cards));
+            RITZ_CHECK(take_selection(text, "MPC", RITZ_SELECT_MPC, cards));
         }
     }
     return RITZ_OK;
@@ -73,27 +73,27 @@ static ritz_status copy_text(const char *text, char **out)
     return RITZ_OK;
 }
 
-ritz_status ritz_deck_add_file(ritz_deck *deck, const char *path, char *text)
+ritz_status ritz_cards_add_file(ritz_cards *cards, const char *path, char *text)
 {
     char *copy = NULL;
 
-    RITZ_CHECK_ROOM(deck->file, deck->num_files, deck->files_room);
+    RITZ_CHECK_ROOM(cards->file, cards->num_files, cards->files_room);
     if (path)
         RITZ_CHECK(copy_text(path, &copy));
-    deck->file[deck->num_files].path = copy;
-    deck->file[deck->num_files++].text = text;
+    cards->file[cards->num_files].path = copy;
+    cards->file[cards->num_files++].text = text;
     return RITZ_OK;
 }
 
-static ritz_status add_line(ritz_deck *deck, int64_t file,
+static ritz_status add_line(ritz_cards *cards, int64_t file,
                             const ritz_lines *text, int64_t length)
 {
     ritz_line *line = NULL;
 
     RITZ_REFUSE_IF(length > INT32_MAX, RITZ_ERR_FORMAT,
                    "line %" PRId64 " is too long", text->number);
-    RITZ_CHECK_ROOM(deck->line, deck->num_lines, deck->lines_room);
-    line = &deck->line[deck->num_lines++];
+    RITZ_CHECK_ROOM(cards->line, cards->num_lines, cards->lines_room);
+    line = &cards->line[cards->num_lines++];
     *line = (ritz_line){.text = text->line,
                         .length = (int32_t)length,
                         .file = (int32_t)file,
@@ -119,19 +119,19 @@ static ritz_status take_line(ritz_scanner *scan)
     else if (ritz_card_begins(line, length, "INCLUDE", &rest))
         RITZ_CHECK(ritz_scanner_include(scan, rest));
     else
-        RITZ_CHECK(add_line(scan->deck, top->file, &top->text, length));
+        RITZ_CHECK(add_line(scan->cards, top->file, &top->text, length));
     return RITZ_OK;
 }
 
-ritz_status ritz_deck_scan(const char *path, const char *folder,
-                           ritz_lines text, ritz_deck *deck)
+ritz_status ritz_cards_scan(const char *path, const char *folder,
+                            ritz_lines text, ritz_cards *cards)
 {
     ritz_status status = RITZ_OK;
-    ritz_scanner scan = {.deck = deck};
+    ritz_scanner scan = {.cards = cards};
     char *copy = NULL;
 
-    RITZ_TRY(ritz_deck_add_file(deck, path, NULL));
-    RITZ_TRY(ritz_deck_skip_control(path, &text, deck));
+    RITZ_TRY(ritz_cards_add_file(cards, path, NULL));
+    RITZ_TRY(ritz_cards_skip_control(path, &text, cards));
     if (folder)
         RITZ_TRY(copy_text(folder, &copy));
     scan.open[scan.depth++] = (ritz_source){.text = text, .folder = copy};

@@ -19,11 +19,11 @@ ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
     int64_t line = k < card->count ? card->field[k].line : card->entry->line;
 
     if (!*text)
-        return ritz_deck_refuse(card->deck, line,
-                                "a field of %s is blank where %s must be",
-                                card->entry->name, wanted);
-    return ritz_deck_refuse(card->deck, line, "'%s' in %s is not %s", text,
-                            card->entry->name, wanted);
+        return ritz_cards_refuse(card->cards, line,
+                                 "a field of %s is blank where %s must be",
+                                 card->entry->name, wanted);
+    return ritz_cards_refuse(card->cards, line, "'%s' in %s is not %s", text,
+                             card->entry->name, wanted);
 }
 
 ritz_status ritz_card_whole(const ritz_card *card, int64_t k, int64_t blank,

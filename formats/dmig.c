@@ -93,18 +93,18 @@ static ritz_status check_terms(const ritz_dmig_cards *all)
             continue;
         if (owner->form == RITZ_DMIG_SYMMETRIC)
             both = "; a symmetric one gives one triangle only";
-        RITZ_CHECK(ritz_deck_refuse(&all->deck, one->line,
-                                    "DMIG '%s' gives (%s, %s) twice%s",
-                                    owner->name, ritz_dof_name(one->row, row),
-                                    ritz_dof_name(one->col, col), both));
+        RITZ_CHECK(ritz_cards_refuse(&all->cards, one->line,
+                                     "DMIG '%s' gives (%s, %s) twice%s",
+                                     owner->name, ritz_dof_name(one->row, row),
+                                     ritz_dof_name(one->col, col), both));
     }
     for (int64_t k = 0; k < all->num_headers; k++)
-        if (all->header[k].count == 0 && all->deck.num_skipped > 0)
+        if (all->header[k].count == 0 && all->cards.num_skipped > 0)
             RITZ_CHECK(
-                ritz_deck_refuse(&all->deck, all->header[k].line,
-                                 "DMIG '%s' has no columns here, and "
-                                 "INCLUDE is not followed without a folder",
-                                 all->header[k].name));
+                ritz_cards_refuse(&all->cards, all->header[k].line,
+                                  "DMIG '%s' has no columns here, and "
+                                  "INCLUDE is not followed without a folder",
+                                  all->header[k].name));
     return RITZ_OK;
 }
 
@@ -115,7 +115,7 @@ static ritz_status read_dmig(const char *bytes, int64_t size,
     ritz_dmig_cards all = {0};
     ritz_matrices new = {0};
 
-    RITZ_TRY(ritz_deck_parse(NULL, bytes, size, folder, &all.deck));
+    RITZ_TRY(ritz_cards_parse(NULL, bytes, size, folder, &all.cards));
     RITZ_TRY(ritz_dmig_take(&all));
     RITZ_FAIL_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                  "there is no DMIG card in the bulk data");
@@ -132,7 +132,7 @@ static ritz_status read_dmig(const char *bytes, int64_t size,
     *out = new;
     new = (ritz_matrices){0};
 done:
-    ritz_deck_free(&all.deck);
+    ritz_cards_free(&all.cards);
     free(all.header);
     free(all.term);
     ritz_matrices_free(&new);

@@ -75,9 +75,9 @@ static ritz_status sort_headers(ritz_dmig_cards *all)
               compare_names);
     for (int64_t k = 1; k < all->num_headers; k++)
         if (compare_names(&all->header[k - 1], &all->header[k]) == 0)
-            RITZ_CHECK(ritz_deck_refuse(&all->deck, all->header[k].line,
-                                        "DMIG '%s' has a second header",
-                                        all->header[k].name));
+            RITZ_CHECK(ritz_cards_refuse(&all->cards, all->header[k].line,
+                                         "DMIG '%s' has a second header",
+                                         all->header[k].name));
     return RITZ_OK;
 }
 
@@ -140,8 +140,8 @@ static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
         owner = bsearch(&wanted, all->header, (size_t)all->num_headers,
                         sizeof wanted, compare_names);
     if (!owner) {
-        status = ritz_deck_refuse(&all->deck, card->entry->line,
-                                  "DMIG '%s' has no header", wanted.name);
+        status = ritz_cards_refuse(&all->cards, card->entry->line,
+                                   "DMIG '%s' has no header", wanted.name);
         goto done;
     }
     RITZ_TRY(take_dof(card, 1, &col));
@@ -158,10 +158,10 @@ static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
     ritz_status status = RITZ_OK;
     ritz_card card = {0};
 
-    for (int64_t k = 0; k < all->deck.num_entries; k++) {
-        if (strcmp(all->deck.entry[k].name, "DMIG") != 0)
+    for (int64_t k = 0; k < all->cards.num_entries; k++) {
+        if (strcmp(all->cards.entry[k].name, "DMIG") != 0)
             continue;
-        RITZ_TRY(ritz_deck_card(&all->deck, k, &card));
+        RITZ_TRY(ritz_card_take(&all->cards, k, &card));
         if (is_header(&card) != headers)
             continue;
         if (headers)

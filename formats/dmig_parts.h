@@ -33,7 +33,7 @@ typedef struct ritz_dmig_term {
 } ritz_dmig_term;
 
 typedef struct ritz_dmig_cards {
-    ritz_deck deck;
+    ritz_cards cards;
     int64_t num_headers, headers_room;
     int64_t num_terms, terms_room;
     ritz_dmig_header *header; /* sorted by name once taken */

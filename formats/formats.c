@@ -1,6 +1,6 @@
 /* The table of foreign formats, and what a user may ask of a file. */
 #include "base/alloc.h"
-#include "formats/cards.h"
+#include "base/path.h"
 
 #include <ritz/foreign.h>
 
@@ -92,7 +92,7 @@ ritz_status ritz_foreign_read(const char *path, ritz_matrices *out)
     int64_t size = 0;
 
     RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
-    RITZ_TRY(ritz_deck_folder(path, &folder));
+    RITZ_TRY(ritz_path_folder(path, &folder));
     quote(path, what);
     RITZ_TRY_IN(what, parse(bytes, size, folder, out));
 done:

@@ -71,7 +71,7 @@ static ritz_status foreign(cli_run *run, json_t *keys, const char *path)
 {
     ritz_status status = RITZ_OK;
     ritz_matrices matrices = {0};
-    ritz_bulk bulk = {0};
+    ritz_deck deck = {0};
     char *bytes = NULL;
     int64_t size = 0;
 
@@ -83,24 +83,24 @@ static ritz_status foreign(cli_run *run, json_t *keys, const char *path)
         goto done;
     }
     RITZ_FAIL_IF(size == 0, RITZ_ERR_FORMAT, "'%s' is empty", path);
-    RITZ_FAIL_IF(strlen(bytes) != (size_t)size, RITZ_ERR_FORMAT,
+    RITZ_FAIL_IF(!ritz_deck_recognise(bytes, size), RITZ_ERR_FORMAT,
                  "'%s' is neither a container nor a matrix file nor text",
                  path);
-    RITZ_TRY(ritz_bulk_read(path, &bulk));
-    RITZ_FAIL_IF(bulk.grids.count + bulk.num_points + bulk.num_fixed +
-                         bulk.num_constraints + bulk.num_sets[RITZ_SET_A] +
-                         bulk.num_sets[RITZ_SET_B] +
-                         bulk.num_sets[RITZ_SET_Q] ==
+    RITZ_TRY(ritz_deck_read(path, &deck));
+    RITZ_FAIL_IF(deck.grids.count + deck.num_points + deck.num_fixed +
+                         deck.num_constraints + deck.num_sets[RITZ_SET_A] +
+                         deck.num_sets[RITZ_SET_B] +
+                         deck.num_sets[RITZ_SET_Q] ==
                      0,
                  RITZ_ERR_FORMAT,
                  "'%s' is no container, no matrix file that Ritz knows, and "
                  "no bulk data with grids",
                  path);
-    describe_bulk(run, keys, &bulk);
+    describe_deck(run, keys, &deck);
 done:
     free(bytes);
     ritz_matrices_free(&matrices);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&deck);
     return status;
 }
 

@@ -10,8 +10,8 @@ typedef struct ritz_import_request {
     const char *stiffness, *mass, *damping, *structural_damping;
     int64_t num_loads;
     const char *const *load; /* "F@LOAD" */
-    const char *bulk;
-    const char *dofs; /* file of `GRID COMP` rows */
+    const char *bulk;        /* file of a deck, see deck.h */
+    const char *dofs;        /* file of `GRID COMP` rows */
     int64_t num_ports;
     const char *const *port; /* "NAME=GRIDS[:COMPS]" */
     int64_t num_rigid_ports, num_averaged_ports;
@@ -63,13 +63,13 @@ typedef struct ritz_import_report {
  * ports, inputs and outputs, and settle the component.
  *
  * Rows are named by, in this order: --dofs; the map in the file (DMIG); the
- * deck, if its grids (six rows each, ascending, scalar points one) or its
- * a-set, or grids less its SPCs, fit the size; without a deck a size that is a
+ * deck, if its dofs (of NASTRAN six for each grid, ascending, one for scalar
+ * points) or its a-set, or dofs less its SPCs, fit the size; without a deck a size that is a
  * multiple of six: grids 1..n/6. A size that does not fit is refused. Matrices
  * that name their rows may hold different ones: the component has all of them.
  *
- * Whatever names them, rows that the deck fixes (ritz_bulk.fixed) are taken
- * out. Constraint elements (ritz_bulk.equations) are applied if the matrices
+ * Whatever names them, rows that the deck fixes (ritz_deck.fixed) are taken
+ * out. Constraint elements (ritz_deck.equations) are applied if the matrices
  * have rows of their dependent dofs, u = G u_n and K_nn = G'KG; otherwise they
  * have been eliminated already. In both cases the dependent dofs go to the
  * component's recovery.

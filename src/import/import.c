@@ -107,7 +107,7 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 }
 
 /* Grids of rows and of recovered dofs are placed. */
-static ritz_status place_grids(const ritz_bulk *bulk, const ritz_names *kept,
+static ritz_status place_grids(const ritz_deck *deck, const ritz_names *kept,
                                ritz_component *component)
 {
     ritz_status status = RITZ_OK;
@@ -116,7 +116,7 @@ static ritz_status place_grids(const ritz_bulk *bulk, const ritz_names *kept,
 
     RITZ_TRY(ritz_recovery_extend(recovery, kept->count, kept->dof, NULL,
                                   &all.dof, NULL));
-    RITZ_TRY(ritz_import_place(bulk, &all, component));
+    RITZ_TRY(ritz_import_place(deck, &all, component));
 done:
     ritz_names_free(&all);
     return status;
@@ -124,7 +124,7 @@ done:
 
 /* Rows, with the dofs eliminated that constraints make depend on others. */
 static ritz_status settle_rows(const ritz_import_request *request,
-                               ritz_parts *parts, ritz_bulk *bulk,
+                               ritz_parts *parts, ritz_deck *deck,
                                ritz_names *names, ritz_component *component,
                                ritz_import_report *report)
 {
@@ -133,39 +133,39 @@ static ritz_status settle_rows(const ritz_import_request *request,
     ritz_tying tying = {0};
 
     RITZ_TRY(
-        ritz_tying_new(request, bulk, parts, names, component, report, &tying));
+        ritz_tying_new(request, deck, parts, names, component, report, &tying));
     RITZ_TRY(ritz_tying_apply(&tying, parts, &kept, report));
-    RITZ_TRY(ritz_parts_settle(parts, bulk, &kept, component, report));
+    RITZ_TRY(ritz_parts_settle(parts, deck, &kept, component, report));
     RITZ_TRY(ritz_tying_recover(&tying, component, report));
-    RITZ_TRY(place_grids(bulk, &kept, component));
+    RITZ_TRY(place_grids(deck, &kept, component));
 done:
     ritz_names_free(&kept);
     ritz_tying_free(&tying);
     return status;
 }
 
-static bool has_ties(const ritz_import_request *request, const ritz_bulk *bulk)
+static bool has_ties(const ritz_import_request *request, const ritz_deck *deck)
 {
-    return bulk->num_constraints > 0 || request->num_rigid_ports > 0 ||
+    return deck->num_constraints > 0 || request->num_rigid_ports > 0 ||
            request->num_averaged_ports > 0;
 }
 
 /* Elements whose grids are all there, out of the deck. */
-static void take_elements(ritz_bulk *bulk, ritz_component *component,
+static void take_elements(ritz_deck *deck, ritz_component *component,
                           ritz_import_report *report)
 {
     const ritz_grids *grids = &component->grids;
 
-    component->elements = bulk->elements;
-    bulk->elements = (ritz_elements){0};
+    component->elements = deck->elements;
+    deck->elements = (ritz_elements){0};
     report->num_hidden =
-        bulk->num_strange +
+        deck->num_strange +
         ritz_elements_keep(&component->elements, grids->count, grids->id);
 }
 
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
-                                  ritz_parts *parts, ritz_bulk *bulk,
+                                  ritz_parts *parts, ritz_deck *deck,
                                   ritz_component *component,
                                   ritz_import_report *report)
 {
@@ -173,16 +173,16 @@ static ritz_status make_component(const ritz_import_request *request,
     ritz_names names = {0};
 
     if (request->bulk)
-        RITZ_TRY(ritz_bulk_read(request->bulk, bulk));
-    RITZ_FAIL_IF(bulk->imposed, RITZ_ERR_FORMAT, "%s", bulk->imposed);
-    RITZ_TRY(ritz_names_find(request, bulk, parts, &names));
-    if (has_ties(request, bulk)) {
-        RITZ_TRY(settle_rows(request, parts, bulk, &names, component, report));
+        RITZ_TRY(ritz_deck_read(request->bulk, deck));
+    RITZ_FAIL_IF(deck->imposed, RITZ_ERR_FORMAT, "%s", deck->imposed);
+    RITZ_TRY(ritz_names_find(request, deck, parts, &names));
+    if (has_ties(request, deck)) {
+        RITZ_TRY(settle_rows(request, parts, deck, &names, component, report));
     } else {
-        RITZ_TRY(ritz_parts_settle(parts, bulk, &names, component, report));
-        RITZ_TRY(place_grids(bulk, &names, component));
+        RITZ_TRY(ritz_parts_settle(parts, deck, &names, component, report));
+        RITZ_TRY(place_grids(deck, &names, component));
     }
-    take_elements(bulk, component, report);
+    take_elements(deck, component, report);
     component->digits = source_digits(parts);
     if (request->units)
         RITZ_TRY_IN("--units",
@@ -194,14 +194,14 @@ done:
 
 /* Ports, inputs and outputs find their rows by name. */
 static ritz_status attach(const ritz_import_request *request,
-                          const ritz_bulk *bulk,
+                          const ritz_deck *deck,
                           const ritz_import_report *report,
                           ritz_component *component)
 {
     ritz_status status = RITZ_OK;
     ritz_extended extended = {0};
 
-    RITZ_TRY(ritz_extended_new(component, &bulk->equations, &extended));
+    RITZ_TRY(ritz_extended_new(component, &deck->equations, &extended));
     RITZ_TRY_IN("port",
                 ritz_import_ports(request, report, &extended, component));
     RITZ_TRY(ritz_import_io(request, &extended, component));
@@ -218,14 +218,14 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     ritz_component component = {0};
     ritz_import_report done_what = {0};
     ritz_parts parts = {0};
-    ritz_bulk bulk = {0};
+    ritz_deck deck = {0};
     char **specs = NULL; /* of loads, cut before '@' */
 
     RITZ_NEW(specs, request->num_loads);
     RITZ_TRY(take_parts(request, &component, specs, &parts));
-    RITZ_TRY(make_component(request, &parts, &bulk, &component, &done_what));
+    RITZ_TRY(make_component(request, &parts, &deck, &component, &done_what));
     ritz_parts_free(&parts); /* the larger half of the memory, done with */
-    RITZ_TRY(attach(request, &bulk, &done_what, &component));
+    RITZ_TRY(attach(request, &deck, &done_what, &component));
     RITZ_TRY(ritz_component_settle(&component, request->symmetrise));
     *out = component;
     component = (ritz_component){0};
@@ -236,7 +236,7 @@ done:
         free(specs[k]);
     free(specs);
     ritz_parts_free(&parts);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&deck);
     ritz_component_free(&component);
     ritz_import_report_free(&done_what);
     return status;

@@ -5,8 +5,8 @@
 #ifndef RITZ_IMPORT_IMPORT_H
 #define RITZ_IMPORT_IMPORT_H
 
-#include <ritz/bulk.h>
 #include <ritz/component.h>
+#include <ritz/deck.h>
 #include <ritz/foreign.h>
 #include <ritz/import.h>
 
@@ -58,11 +58,11 @@ void ritz_roster_free(ritz_roster *roster);
 
 /** Name the rows of all parts, and give each part its places. */
 ritz_status ritz_names_find(const ritz_import_request *request,
-                            const ritz_bulk *bulk, ritz_parts *parts,
+                            const ritz_deck *deck, ritz_parts *parts,
                             ritz_names *out);
 
 /** Names that a deck has for @p spec, n rows. @return RITZ_ERR_FORMAT */
-ritz_status ritz_names_of_deck(const ritz_bulk *bulk, int64_t n,
+ritz_status ritz_names_of_deck(const ritz_deck *deck, int64_t n,
                                const char *spec, ritz_names *out);
 
 /** Names in a file of `GRID COMP` rows. */
@@ -73,7 +73,7 @@ void ritz_names_free(ritz_names *names);
 void ritz_part_mark(const ritz_part *part, bool *taken);
 
 /** Put the parts into the component but for its grids, rows empty in K and M left out. */
-ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_bulk *bulk,
+ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_deck *deck,
                               const ritz_names *names,
                               ritz_component *component,
                               ritz_import_report *report);
@@ -81,28 +81,28 @@ void ritz_parts_free(ritz_parts *parts);
 
 /** Positions and frames of the grids that are named; the origin for a single
  * grid without a deck. */
-ritz_status ritz_import_place(const ritz_bulk *bulk, const ritz_names *names,
+ritz_status ritz_import_place(const ritz_deck *deck, const ritz_names *names,
                               ritz_component *component);
 
 /* Constraints between the rows, and what becomes of the dofs by them. */
 typedef struct ritz_tying {
-    const ritz_bulk *bulk;
+    const ritz_deck *deck;
     ritz_names names;    /* all rows of the matrices and dofs of equations */
     bool *fixed;         /* of each: u = 0 */
     bool *alive;         /* has stiffness or mass of its own */
     bool *outside;       /* is no row, as matrices are without dependents */
     bool acts;           /* matrices have dependent dofs of the deck */
-    ritz_elimination by; /* the equations of bulk solved */
+    ritz_elimination by; /* the equations of the deck solved */
 } ritz_tying;
 
 /**
  * Find what constraints do to the rows; add the grids, dofs and equations of
  * rigid and averaged ports to the deck.
  *
- * @param[in,out] bulk   borrowed by @p out
+ * @param[in,out] deck   borrowed by @p out
  * @param[in,out] names  moved into @p out; those of parts are placed anew
  */
-ritz_status ritz_tying_new(const ritz_import_request *request, ritz_bulk *bulk,
+ritz_status ritz_tying_new(const ritz_import_request *request, ritz_deck *deck,
                            ritz_parts *parts, ritz_names *names,
                            const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out);
@@ -116,7 +116,7 @@ ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
 
 /** Tie the ports to grids of their own. */
 ritz_status ritz_tying_ports(const ritz_import_request *request,
-                             ritz_bulk *bulk, ritz_tying *tying,
+                             ritz_deck *deck, ritz_tying *tying,
                              ritz_import_report *report);
 
 /**

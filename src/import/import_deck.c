@@ -1,10 +1,9 @@
 /*
  * Names that a deck or a file of names has for the rows of a matrix.
  *
- * A deck explains these sizes: all its grids with six rows each and its scalar
- * points with one, in ascending order of id; the same without what its SPCs
- * and GRID field 8 fix, without what its constraint elements make depend on
- * others, or without both; its a-set, the union of ASET, BSET and QSET.
+ * A deck explains these sizes: all its dofs, in its own order; the same without
+ * those that its supports fix, without those that its constraints make depend
+ * on others, or without both; its a-set, the union of its sets.
  */
 #include "import/import.h"
 
@@ -15,35 +14,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Grids and points in one ascending order. */
-static ritz_status list_all(const ritz_bulk *bulk, ritz_names *out)
+/* All dofs of the deck, in its own order. */
+static ritz_status list_all(const ritz_deck *deck, ritz_names *out)
 {
-    const ritz_grids *grids = &bulk->grids;
-    int64_t g = 0;
-    int64_t p = 0;
-
-    RITZ_CHECK_NEW(out->dof, 6 * grids->count + bulk->num_points);
-    while (g < grids->count || p < bulk->num_points) {
-        bool point = g == grids->count ||
-                     (p < bulk->num_points && bulk->point[p] < grids->id[g]);
-
-        if (point) {
-            out->dof[out->count++] = (ritz_dof){bulk->point[p++], 0};
-            continue;
-        }
-        for (int64_t i = 1; i <= 6; i++)
-            out->dof[out->count++] = (ritz_dof){grids->id[g], i};
-        g++;
-    }
+    RITZ_CHECK_NEW(out->dof, deck->num_dofs);
+    if (deck->num_dofs > 0)
+        memcpy(out->dof, deck->dof, (size_t)deck->num_dofs * sizeof *out->dof);
+    out->count = deck->num_dofs;
     snprintf(out->map, sizeof out->map, "grids ascending");
     out->whole = true;
     return RITZ_OK;
 }
 
 /* Dofs that constraint elements eliminate, sorted. */
-static ritz_status list_dependents(const ritz_bulk *bulk, ritz_dof **out)
+static ritz_status list_dependents(const ritz_deck *deck, ritz_dof **out)
 {
-    const ritz_equations *equations = &bulk->equations;
+    const ritz_equations *equations = &deck->equations;
 
     RITZ_CHECK_NEW(*out, equations->count);
     for (int64_t k = 0; k < equations->count; k++)
@@ -69,19 +55,19 @@ static void leave_out(int64_t count, const ritz_dof *sorted, ritz_names *names)
     names->count = kept;
 }
 
-static ritz_status list_less(const ritz_bulk *bulk, bool fixed, bool dependents,
+static ritz_status list_less(const ritz_deck *deck, bool fixed, bool dependents,
                              ritz_names *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dof *tied = NULL;
 
-    RITZ_TRY(list_all(bulk, out));
+    RITZ_TRY(list_all(deck, out));
     out->whole = !dependents;
     if (fixed)
-        leave_out(bulk->num_fixed, bulk->fixed, out);
+        leave_out(deck->num_fixed, deck->fixed, out);
     if (dependents) {
-        RITZ_TRY(list_dependents(bulk, &tied));
-        leave_out(bulk->equations.count, tied, out);
+        RITZ_TRY(list_dependents(deck, &tied));
+        leave_out(deck->equations.count, tied, out);
     }
     snprintf(out->map, sizeof out->map, "grids less %s%s%s",
              fixed ? "SPCs" : "", fixed && dependents ? " and " : "",
@@ -92,16 +78,16 @@ done:
 }
 
 /* The union of the sets that the deck states; empty if it states none. */
-static ritz_status list_sets(const ritz_bulk *bulk, ritz_names *out)
+static ritz_status list_sets(const ritz_deck *deck, ritz_names *out)
 {
     int64_t total = 0;
 
-    for (int s = 0; s < 3; s++)
-        total += bulk->num_sets[s];
+    for (int s = 0; s < RITZ_NUM_SETS; s++)
+        total += deck->num_sets[s];
     RITZ_CHECK_NEW(out->dof, total);
-    for (int s = 0; s < 3; s++)
-        for (int64_t k = 0; k < bulk->num_sets[s]; k++)
-            out->dof[out->count++] = bulk->set[s][k];
+    for (int s = 0; s < RITZ_NUM_SETS; s++)
+        for (int64_t k = 0; k < deck->num_sets[s]; k++)
+            out->dof[out->count++] = deck->set[s][k];
     out->count = ritz_dof_distinct(total, out->dof);
     snprintf(out->map, sizeof out->map, "A-set");
     return RITZ_OK;
@@ -122,15 +108,15 @@ static const char *const WORDS[KINDS] = {"", "a-set", "grids less SPCs",
                                          "grids less SPCs and dependents"};
 
 /* "156 (26 grids)"; sizes that say nothing new are left out. */
-static void explain(const ritz_bulk *bulk, const ritz_names *list, size_t size,
+static void explain(const ritz_deck *deck, const ritz_names *list, size_t size,
                     char *text)
 {
     int used = snprintf(text, size, "%" PRId64 " (%" PRId64 " grids",
-                        list[ALL].count, bulk->grids.count);
+                        list[ALL].count, deck->grids.count);
 
-    if (bulk->num_points > 0)
+    if (deck->num_points > 0)
         used += snprintf(text + used, size - (size_t)used,
-                         ", %" PRId64 " points", bulk->num_points);
+                         ", %" PRId64 " points", deck->num_points);
     used += snprintf(text + used, size - (size_t)used, ")");
     for (int k = SETS; k < KINDS; k++) {
         bool news = list[k].count > 0;
@@ -143,7 +129,7 @@ static void explain(const ritz_bulk *bulk, const ritz_names *list, size_t size,
     }
 }
 
-static ritz_status choose(const ritz_bulk *bulk, int64_t n, const char *spec,
+static ritz_status choose(const ritz_deck *deck, int64_t n, const char *spec,
                           const ritz_names *list, int *chosen)
 {
     char sizes[320];
@@ -162,7 +148,7 @@ static ritz_status choose(const ritz_bulk *bulk, int64_t n, const char *spec,
             *chosen = k;
     }
     if (*chosen < 0) {
-        explain(bulk, list, sizeof sizes, sizes);
+        explain(deck, list, sizeof sizes, sizes);
         RITZ_REFUSE_IF(true, RITZ_ERR_FORMAT,
                        "'%s' has %" PRId64 " rows; the deck explains %s", spec,
                        n, sizes);
@@ -170,19 +156,19 @@ static ritz_status choose(const ritz_bulk *bulk, int64_t n, const char *spec,
     return RITZ_OK;
 }
 
-ritz_status ritz_names_of_deck(const ritz_bulk *bulk, int64_t n,
+ritz_status ritz_names_of_deck(const ritz_deck *deck, int64_t n,
                                const char *spec, ritz_names *out)
 {
     ritz_status status = RITZ_OK;
     ritz_names list[KINDS] = {0};
     int chosen = -1;
 
-    RITZ_TRY(list_all(bulk, &list[ALL]));
-    RITZ_TRY(list_sets(bulk, &list[SETS]));
-    RITZ_TRY(list_less(bulk, true, false, &list[FREE]));
-    RITZ_TRY(list_less(bulk, false, true, &list[LESS]));
-    RITZ_TRY(list_less(bulk, true, true, &list[LEAST]));
-    RITZ_TRY(choose(bulk, n, spec, list, &chosen));
+    RITZ_TRY(list_all(deck, &list[ALL]));
+    RITZ_TRY(list_sets(deck, &list[SETS]));
+    RITZ_TRY(list_less(deck, true, false, &list[FREE]));
+    RITZ_TRY(list_less(deck, false, true, &list[LESS]));
+    RITZ_TRY(list_less(deck, true, true, &list[LEAST]));
+    RITZ_TRY(choose(deck, n, spec, list, &chosen));
     *out = list[chosen];
     list[chosen] = (ritz_names){0};
 done:

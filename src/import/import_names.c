@@ -105,7 +105,7 @@ static ritz_status place_rows(ritz_part *part, const ritz_names *names,
 }
 
 static ritz_status choose_names(const ritz_import_request *request,
-                                const ritz_bulk *bulk, ritz_parts *parts,
+                                const ritz_deck *deck, ritz_parts *parts,
                                 ritz_names *out)
 {
     const ritz_part *unnamed = first_unnamed(parts);
@@ -116,16 +116,16 @@ static ritz_status choose_names(const ritz_import_request *request,
     else if (!unnamed)
         RITZ_CHECK(unite(parts, out));
     else if (request->bulk)
-        RITZ_CHECK(ritz_names_of_deck(bulk, n, unnamed->spec, out));
+        RITZ_CHECK(ritz_names_of_deck(deck, n, unnamed->spec, out));
     else
         RITZ_CHECK(number_grids(n, unnamed->spec, out));
     if (request->bulk && (request->dofs || !unnamed))
-        out->whole = out->count >= 6 * bulk->grids.count + bulk->num_points;
+        out->whole = out->count >= deck->num_dofs;
     return RITZ_OK;
 }
 
 ritz_status ritz_names_find(const ritz_import_request *request,
-                            const ritz_bulk *bulk, ritz_parts *parts,
+                            const ritz_deck *deck, ritz_parts *parts,
                             ritz_names *out)
 {
     ritz_status status = RITZ_OK;
@@ -137,7 +137,7 @@ ritz_status ritz_names_find(const ritz_import_request *request,
         if (!parts->part[k].matrix.row)
             RITZ_TRY(check_size(&parts->part[k], unnamed->matrix.A.nrow,
                                 unnamed->spec));
-    RITZ_TRY(choose_names(request, bulk, parts, &names));
+    RITZ_TRY(choose_names(request, deck, parts, &names));
     RITZ_TRY(ritz_roster_new(names.count, names.dof, &roster));
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_part *part = &parts->part[k];

@@ -62,7 +62,7 @@ typedef struct presence {
     bool *K, *M, *other, *fixed;
 } presence;
 
-static ritz_status find_presence(const ritz_parts *parts, const ritz_bulk *bulk,
+static ritz_status find_presence(const ritz_parts *parts, const ritz_deck *deck,
                                  const ritz_names *names,
                                  const ritz_component *component, presence *at)
 {
@@ -80,10 +80,10 @@ static ritz_status find_presence(const ritz_parts *parts, const ritz_bulk *bulk,
         else
             ritz_part_mark(part, at->other);
     }
-    for (int64_t k = 0; bulk->num_fixed > 0 && k < names->count; k++)
+    for (int64_t k = 0; deck->num_fixed > 0 && k < names->count; k++)
         at->fixed[k] =
-            bsearch(&names->dof[k], bulk->fixed, (size_t)bulk->num_fixed,
-                    sizeof *bulk->fixed, ritz_dof_compare) != NULL;
+            bsearch(&names->dof[k], deck->fixed, (size_t)deck->num_fixed,
+                    sizeof *deck->fixed, ritz_dof_compare) != NULL;
     return RITZ_OK;
 }
 
@@ -178,22 +178,22 @@ done:
     return status;
 }
 
-ritz_status ritz_import_place(const ritz_bulk *bulk, const ritz_names *names,
+ritz_status ritz_import_place(const ritz_deck *deck, const ritz_names *names,
                               ritz_component *component)
 {
     ritz_status status = RITZ_OK;
     ritz_roster roster = {0};
 
-    if (bulk->grids.count == 0)
+    if (deck->grids.count == 0)
         return place_alone(names, &component->grids);
     RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
-    RITZ_TRY(keep_grids(&bulk->grids, &roster, &component->grids));
+    RITZ_TRY(keep_grids(&deck->grids, &roster, &component->grids));
 done:
     ritz_roster_free(&roster);
     return status;
 }
 
-ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_bulk *bulk,
+ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_deck *deck,
                               const ritz_names *names,
                               ritz_component *component,
                               ritz_import_report *report)
@@ -209,7 +209,7 @@ ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_bulk *bulk,
     RITZ_NEW(component->dof, names->count);
     RITZ_NEW(report->removed, names->count);
     RITZ_NEW(report->fixed, names->count);
-    RITZ_TRY(find_presence(parts, bulk, names, component, &at));
+    RITZ_TRY(find_presence(parts, deck, names, component, &at));
     RITZ_TRY(sort_rows(&at, names, rigid, stays, report, component));
     for (int64_t k = 0; k < parts->count; k++)
         RITZ_TRY(scatter(&parts->part[k], stays, component->num_dofs,

@@ -10,7 +10,7 @@ typedef struct ritz_tied {
     const char *text;
     bool rigid;
     const ritz_import_request *request;
-    ritz_bulk *bulk;
+    ritz_deck *deck;
     ritz_tying *tying;
     ritz_port port;
     bool *held; /* dofs of all names that ports hold */

@@ -176,7 +176,7 @@ static ritz_status pivot(reach *over, lapack_int *order, ritz_dense *X)
 static ritz_status put(const ritz_tied *it, const ritz_dense *X,
                        const ritz_dof *dof, const lapack_int *order)
 {
-    ritz_equations *eq = &it->bulk->equations;
+    ritz_equations *eq = &it->deck->equations;
     double length = it->average.length;
 
     for (int64_t i = 0; i < SIX; i++) {

@@ -64,7 +64,7 @@ static ritz_status list_present(const ritz_tying *tying,
     bool *present = NULL;
     ritz_extended new = {0};
 
-    new.view.grids = tying->bulk->grids;
+    new.view.grids = tying->deck->grids;
     RITZ_NEW(present, tying->names.count);
     RITZ_NEW(new.view.dof, tying->names.count);
     RITZ_TRY(find_present(tying, turned, present));
@@ -83,7 +83,7 @@ done:
 
 static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
 {
-    const ritz_grids *grids = &it->bulk->grids;
+    const ritz_grids *grids = &it->deck->grids;
     ritz_tie tie = {.weight = 1.0};
 
     for (int64_t i = 0; i < it->port.dofs.count; i++) {
@@ -107,17 +107,17 @@ static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
 
 /* ---- the new grid ------------------------------------------------------ */
 
-static int64_t largest_id(const ritz_bulk *bulk, const ritz_names *names)
+static int64_t largest_id(const ritz_deck *deck, const ritz_names *names)
 {
     int64_t most = 0;
 
     for (int64_t k = 0; k < names->count; k++)
         if (names->dof[k].grid > most)
             most = names->dof[k].grid;
-    if (bulk->num_points > 0 && bulk->point[bulk->num_points - 1] > most)
-        most = bulk->point[bulk->num_points - 1];
-    if (bulk->grids.id[bulk->grids.count - 1] > most)
-        most = bulk->grids.id[bulk->grids.count - 1];
+    if (deck->num_points > 0 && deck->point[deck->num_points - 1] > most)
+        most = deck->point[deck->num_points - 1];
+    if (deck->grids.id[deck->grids.count - 1] > most)
+        most = deck->grids.id[deck->grids.count - 1];
     return most;
 }
 
@@ -125,13 +125,13 @@ static int64_t largest_id(const ritz_bulk *bulk, const ritz_names *names)
 static ritz_status add_grid(ritz_tied *it)
 {
     ritz_status status = RITZ_OK;
-    ritz_grids *grids = &it->bulk->grids;
+    ritz_grids *grids = &it->deck->grids;
     int64_t n = grids->count;
     int64_t *id = NULL, *frame = NULL;
     double *position = NULL;
     ritz_dof dof[SIX];
 
-    it->id = largest_id(it->bulk, &it->tying->names);
+    it->id = largest_id(it->deck, &it->tying->names);
     RITZ_FAIL_IF(it->id >= INT64_MAX - 1, RITZ_ERR_ARGUMENT,
                  "no id is left for its grid");
     it->id++;
@@ -170,19 +170,19 @@ ritz_status ritz_tied_cite(const ritz_tied *it)
 
     snprintf(from.name, sizeof from.name, "%s port %.44s",
              it->rigid ? "rigid" : "averaged", it->port.name);
-    return ritz_equations_cite_next(&it->bulk->equations, from);
+    return ritz_equations_cite_next(&it->deck->equations, from);
 }
 
 static ritz_status tie_rigid(ritz_tied *it)
 {
     ritz_status status = RITZ_OK;
-    const ritz_tie whole = {it->bulk->grids.count - 1, 0x7e, 1.0};
+    const ritz_tie whole = {it->deck->grids.count - 1, 0x7e, 1.0};
     ritz_ties from = {0};
 
     RITZ_TRY(ritz_ties_add(&from, whole));
     RITZ_TRY(ritz_tied_cite(it));
-    RITZ_TRY(ritz_tie_rigid(&it->bulk->grids, &from, &it->over,
-                            &it->bulk->equations));
+    RITZ_TRY(ritz_tie_rigid(&it->deck->grids, &from, &it->over,
+                            &it->deck->equations));
 done:
     ritz_ties_free(&from);
     return status;
@@ -233,14 +233,14 @@ static ritz_status tie(ritz_tied *it, const ritz_import_report *report)
     ritz_extended present = {0};
     ritz_sparse turned = {0};
 
-    RITZ_FAIL_IF(it->bulk->grids.count == 0, RITZ_ERR_ARGUMENT,
+    RITZ_FAIL_IF(it->deck->grids.count == 0, RITZ_ERR_ARGUMENT,
                  "positions of its grids are known from a deck alone: --bulk");
     RITZ_TRY(ritz_sparse_transpose(&it->tying->by.G, &turned));
     RITZ_TRY(list_present(it->tying, &turned, &present));
     RITZ_TRY(ritz_import_port(it->text, false, &present, &it->port));
     RITZ_TRY(find_held(&present, report, it));
     RITZ_TRY(group_dofs(&present, it));
-    RITZ_TRY(ritz_average_new(&it->bulk->grids, &it->over, it->port.origin,
+    RITZ_TRY(ritz_average_new(&it->deck->grids, &it->over, it->port.origin,
                               &it->average));
     if (it->average.num_loose > 0)
         RITZ_TRY(ritz_tied_refuse(it->average.num_loose));
@@ -272,7 +272,7 @@ done:
 }
 
 ritz_status ritz_tying_ports(const ritz_import_request *request,
-                             ritz_bulk *bulk, ritz_tying *tying,
+                             ritz_deck *deck, ritz_tying *tying,
                              ritz_import_report *report)
 {
     int64_t count = request->num_rigid_ports + request->num_averaged_ports;
@@ -284,7 +284,7 @@ ritz_status ritz_tying_ports(const ritz_import_request *request,
                                       : request->averaged_port[j],
                         .rigid = j < 0,
                         .request = request,
-                        .bulk = bulk,
+                        .deck = deck,
                         .tying = tying};
 
         RITZ_CHECK(add_port(&it, report));

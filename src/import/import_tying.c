@@ -52,11 +52,11 @@ done:
 }
 
 /* Dofs of the equations that are no rows, each once. */
-static ritz_status list_missing(const ritz_bulk *bulk,
+static ritz_status list_missing(const ritz_deck *deck,
                                 const ritz_roster *roster, int64_t *count,
                                 ritz_dof **out)
 {
-    const ritz_equations *eq = &bulk->equations;
+    const ritz_equations *eq = &deck->equations;
     int64_t terms = eq->count > 0 ? eq->first[eq->count] : 0;
     ritz_dof *list = NULL;
     int64_t found = 0;
@@ -106,7 +106,7 @@ done:
 }
 
 /* Rows for dofs that only equations name; what is fixed and what is alive. */
-static ritz_status find_rows(const ritz_bulk *bulk, ritz_parts *parts,
+static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
                              const ritz_component *component, ritz_tying *it)
 {
     ritz_status status = RITZ_OK;
@@ -117,7 +117,7 @@ static ritz_status find_rows(const ritz_bulk *bulk, ritz_parts *parts,
     int64_t count = 0;
 
     RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
-    RITZ_TRY(list_missing(bulk, &roster, &count, &missing));
+    RITZ_TRY(list_missing(deck, &roster, &count, &missing));
     RITZ_TRY(ritz_tying_append(count, missing, it));
     if (sorted)
         RITZ_TRY(sort_names(names, parts));
@@ -129,9 +129,9 @@ static ritz_status find_rows(const ritz_bulk *bulk, ritz_parts *parts,
         bool row = ritz_roster_row(&roster, names->dof[k]) >= 0;
 
         it->fixed[k] =
-            bulk->num_fixed > 0 &&
-            bsearch(&names->dof[k], bulk->fixed, (size_t)bulk->num_fixed,
-                    sizeof *bulk->fixed, ritz_dof_compare) != NULL;
+            deck->num_fixed > 0 &&
+            bsearch(&names->dof[k], deck->fixed, (size_t)deck->num_fixed,
+                    sizeof *deck->fixed, ritz_dof_compare) != NULL;
         it->outside[k] = !row && !it->acts;
     }
 done:
@@ -142,13 +142,13 @@ done:
 
 /* ---- whether constraints act ------------------------------------------- */
 
-static ritz_status find_action(const ritz_bulk *bulk, ritz_tying *it)
+static ritz_status find_action(const ritz_deck *deck, ritz_tying *it)
 {
     ritz_status status = RITZ_OK;
-    const ritz_equations *eq = &bulk->equations;
+    const ritz_equations *eq = &deck->equations;
     ritz_roster roster = {0};
 
-    it->acts = bulk->num_constraints > 0 && it->names.whole;
+    it->acts = deck->num_constraints > 0 && it->names.whole;
     RITZ_TRY(ritz_roster_new(it->names.count, it->names.dof, &roster));
     for (int64_t e = 0; e < eq->count && !it->acts; e++)
         it->acts = ritz_roster_row(&roster, eq->dependent[e]) >= 0;
@@ -158,10 +158,10 @@ done:
 }
 
 /* What is not understood matters where the dofs are still there. */
-static ritz_status heed_refusal(ritz_bulk *bulk, const ritz_tying *it,
+static ritz_status heed_refusal(ritz_deck *deck, const ritz_tying *it,
                                 ritz_import_report *report)
 {
-    ritz_equations *eq = &bulk->equations;
+    ritz_equations *eq = &deck->equations;
 
     if (!eq->refused)
         return RITZ_OK;
@@ -176,18 +176,18 @@ static ritz_status heed_refusal(ritz_bulk *bulk, const ritz_tying *it,
 }
 
 /* A dof is in the a-set or depends, not both. */
-static ritz_status check_sets(const ritz_bulk *bulk)
+static ritz_status check_sets(const ritz_deck *deck)
 {
-    const ritz_equations *eq = &bulk->equations;
+    const ritz_equations *eq = &deck->equations;
     char name[RITZ_DOF_NAME_SIZE];
     char cited[RITZ_CITATION_SIZE];
 
     for (int64_t e = 0; e < eq->count; e++)
-        for (int s = 0; s < 3; s++)
+        for (int s = 0; s < RITZ_NUM_SETS; s++)
             RITZ_REFUSE_IF(
-                bulk->num_sets[s] > 0 &&
-                    bsearch(&eq->dependent[e], bulk->set[s],
-                            (size_t)bulk->num_sets[s], sizeof *bulk->set[s],
+                deck->num_sets[s] > 0 &&
+                    bsearch(&eq->dependent[e], deck->set[s],
+                            (size_t)deck->num_sets[s], sizeof *deck->set[s],
                             ritz_dof_compare),
                 RITZ_ERR_FORMAT,
                 "'%s' depends on %s and is in the a-set: it cannot be both",
@@ -196,20 +196,20 @@ static ritz_status check_sets(const ritz_bulk *bulk)
     return RITZ_OK;
 }
 
-static ritz_status name_constraints(const ritz_bulk *bulk,
+static ritz_status name_constraints(const ritz_deck *deck,
                                     ritz_import_report *report)
 {
     if (report->unknown)
         return RITZ_OK;
-    RITZ_CHECK_NEW(report->constraint, bulk->num_constraints);
-    for (int64_t k = 0; k < bulk->num_constraints; k++) {
+    RITZ_CHECK_NEW(report->constraint, deck->num_constraints);
+    for (int64_t k = 0; k < deck->num_constraints; k++) {
         int64_t at = report->num_constraints;
 
         /* cards of one MPC set have one name, and mostly follow each other */
         if (at > 0 &&
-            strcmp(bulk->constraint[k], report->constraint[at - 1]) == 0)
+            strcmp(deck->constraint[k], report->constraint[at - 1]) == 0)
             continue;
-        memcpy(report->constraint[at], bulk->constraint[k],
+        memcpy(report->constraint[at], deck->constraint[k],
                sizeof *report->constraint);
         report->num_constraints++;
     }
@@ -219,30 +219,30 @@ static ritz_status name_constraints(const ritz_bulk *bulk,
 ritz_status ritz_tying_solve(ritz_tying *tying)
 {
     ritz_elimination_free(&tying->by);
-    return ritz_elimination_new(&tying->bulk->equations, tying->names.count,
+    return ritz_elimination_new(&tying->deck->equations, tying->names.count,
                                 tying->names.dof, tying->fixed, &tying->by);
 }
 
-ritz_status ritz_tying_new(const ritz_import_request *request, ritz_bulk *bulk,
+ritz_status ritz_tying_new(const ritz_import_request *request, ritz_deck *deck,
                            ritz_parts *parts, ritz_names *names,
                            const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_tying new = {.bulk = bulk, .names = *names};
+    ritz_tying new = {.deck = deck, .names = *names};
 
     *names = (ritz_names){0};
-    RITZ_TRY(find_action(bulk, &new));
-    RITZ_TRY(heed_refusal(bulk, &new, report));
+    RITZ_TRY(find_action(deck, &new));
+    RITZ_TRY(heed_refusal(deck, &new, report));
     RITZ_NEW(new.fixed, new.names.count);
     RITZ_NEW(new.alive, new.names.count);
     RITZ_NEW(new.outside, new.names.count);
-    RITZ_TRY(find_rows(bulk, parts, component, &new));
+    RITZ_TRY(find_rows(deck, parts, component, &new));
     if (new.acts)
-        RITZ_TRY(check_sets(bulk));
-    RITZ_TRY(name_constraints(bulk, report));
+        RITZ_TRY(check_sets(deck));
+    RITZ_TRY(name_constraints(deck, report));
     RITZ_TRY(ritz_tying_solve(&new));
-    RITZ_TRY(ritz_tying_ports(request, bulk, &new, report));
+    RITZ_TRY(ritz_tying_ports(request, deck, &new, report));
     *out = new;
     new = (ritz_tying){0};
 done:

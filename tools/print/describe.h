@@ -4,7 +4,7 @@
 
 #include "cli/model.h"
 
-#include <ritz/bulk.h>
+#include <ritz/deck.h>
 #include <ritz/foreign.h>
 
 /* Each says it in lines and sets keys of @p keys. */
@@ -25,7 +25,7 @@ ritz_status describe_states(const cli_run *run, json_t *keys,
                             const ritz_state_space *states);
 void describe_matrices(const cli_run *run, json_t *keys,
                        const ritz_matrices *matrices);
-void describe_bulk(const cli_run *run, json_t *keys, const ritz_bulk *bulk);
+void describe_deck(const cli_run *run, json_t *keys, const ritz_deck *deck);
 
 /** Text form of a damping, and of a fit what it came to. */
 void describe_damping(const cli_run *run, json_t *keys, const char *text);

@@ -1,4 +1,4 @@
-/* Matrix files and bulk data of other codes. */
+/* Matrix files and decks of other codes. */
 #include "print/checksum.h"
 #include "print/describe.h"
 
@@ -84,42 +84,42 @@ void describe_matrices(const cli_run *run, json_t *keys, const ritz_matrices *m)
     json_object_set_new(keys, "checksums", sums);
 }
 
-void describe_bulk(const cli_run *run, json_t *keys, const ritz_bulk *b)
+void describe_deck(const cli_run *run, json_t *keys, const ritz_deck *deck)
 {
     static const char *const name[] = {"a_set", "b_set", "q_set"};
     static const char *const title[] = {"a-set", "b-set", "q-set"};
     json_t *constraints = json_array();
 
-    cli_say(run, "  %-14s NASTRAN bulk data", "kind");
+    cli_say(run, "  %-14s %s", "kind", deck->format->title);
     cli_say(run, "  %-14s %lld, in %lld displacement frames", "grids",
-            (long long)b->grids.count, (long long)b->grids.num_frames);
-    cli_say(run, "  %-14s %lld", "scalar points", (long long)b->num_points);
-    cli_say(run, "  %-14s %lld dofs", "fixed", (long long)b->num_fixed);
-    set_text(keys, "kind", "bulk");
-    set_int(keys, "grids", b->grids.count);
-    set_int(keys, "frames", b->grids.num_frames);
-    set_int(keys, "scalar_points", b->num_points);
-    set_int(keys, "fixed", b->num_fixed);
+            (long long)deck->grids.count, (long long)deck->grids.num_frames);
+    cli_say(run, "  %-14s %lld", "scalar points", (long long)deck->num_points);
+    cli_say(run, "  %-14s %lld dofs", "fixed", (long long)deck->num_fixed);
+    set_text(keys, "kind", deck->format->name);
+    set_int(keys, "grids", deck->grids.count);
+    set_int(keys, "frames", deck->grids.num_frames);
+    set_int(keys, "scalar_points", deck->num_points);
+    set_int(keys, "fixed", deck->num_fixed);
     for (int k = RITZ_SET_A; k <= RITZ_SET_Q; k++) {
-        set_int(keys, name[k], b->num_sets[k]);
-        if (b->num_sets[k] > 0)
+        set_int(keys, name[k], deck->num_sets[k]);
+        if (deck->num_sets[k] > 0)
             cli_say(run, "  %-14s %lld dofs", title[k],
-                    (long long)b->num_sets[k]);
+                    (long long)deck->num_sets[k]);
     }
-    for (int64_t k = 0; k < b->num_constraints; k++) {
-        json_array_append_new(constraints, cli_string(b->constraint[k]));
+    for (int64_t k = 0; k < deck->num_constraints; k++) {
+        json_array_append_new(constraints, cli_string(deck->constraint[k]));
         if (k < 10)
             cli_say(run, "  %-14s %s", k > 0 ? "" : "constraints",
-                    b->constraint[k]);
+                    deck->constraint[k]);
     }
-    if (b->num_constraints > 10)
+    if (deck->num_constraints > 10)
         cli_say(run, "  %-14s and %lld more", "",
-                (long long)(b->num_constraints - 10));
+                (long long)(deck->num_constraints - 10));
     json_object_set_new(keys, "constraints", constraints);
-    if (b->num_constraints > 0)
+    if (deck->num_constraints > 0)
         cli_say(run, "  %-14s %lld dofs, by these", "dependent",
-                (long long)b->equations.count);
-    if (b->equations.refused)
-        cli_say(run, "  %-14s %s", "", b->equations.refused);
-    set_int(keys, "dependent", b->equations.count);
+                (long long)deck->equations.count);
+    if (deck->equations.refused)
+        cli_say(run, "  %-14s %s", "", deck->equations.refused);
+    set_int(keys, "dependent", deck->equations.count);
 }

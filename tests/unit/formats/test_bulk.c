@@ -1,16 +1,16 @@
 /* Bulk data: positions and axes by hand, sets, includes, refusals. */
 #include "testing.h"
 
-#include <ritz/bulk.h>
+#include <ritz/deck.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static ritz_status parse(const char *text, ritz_bulk *out)
+static ritz_status parse(const char *text, ritz_deck *out)
 {
-    return ritz_bulk_parse("t.dat", text, ".", out);
+    return ritz_deck_parse("t.dat", text, ".", out);
 }
 
 static void assert_vector(const double *actual, double x, double y, double z,
@@ -22,7 +22,7 @@ static void assert_vector(const double *actual, double x, double y, double z,
 }
 
 /* Axis i of the k-th grid. */
-static const double *axis(const ritz_bulk *bulk, int64_t k, int i)
+static const double *axis(const ritz_deck *bulk, int64_t k, int i)
 {
     return bulk->grids.axes + 9 * bulk->grids.frame[k] + 3 * (int64_t)i;
 }
@@ -37,7 +37,7 @@ static void a_chain_of_frames_gives_positions_by_hand(void **state)
         "GRID,7,3,2.,60.,4.\n"
         "GRID,1,2,2.,90.,0.\n"
         "GRID,5,2,2.,60.,90.\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     double s = sqrt(3.0);
     double o[3]; /* of frame 3, in the rectangular axes of 2 */
     double e_z[3];
@@ -79,7 +79,7 @@ static void a_chain_of_frames_gives_positions_by_hand(void **state)
         p[k] = o[k] + 1.0 * e_x[k] + s * e_y[k] + 4.0 * e_z[k];
     assert_vector(&bulk.grids.position[6], 10.0 + p[2], 20.0 + p[0],
                   30.0 + p[1], 3e-14);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void frames_by_grids_are_resolved_in_any_order(void **state)
@@ -89,7 +89,7 @@ static void frames_by_grids_are_resolved_in_any_order(void **state)
         "CORD1R,5,2,3,4,6,2,3,4\n" /* two on a card */
         "CORD2R,7,0,1.,0.,0.,1.,0.,1.\n,1.,1.,0.\n"
         "GRID,2,7\nGRID,3,7,1.\nGRID,4,,1.,1.,1.\nGRID,10,6,1.\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
@@ -97,7 +97,7 @@ static void frames_by_grids_are_resolved_in_any_order(void **state)
      * grid 3 - grid 2 = y, x along (1,1,1) - (1,0,0) less its y = z, y = x */
     assert_vector(&bulk.grids.position[9], 3.0, 3.0, 1.0, 1e-14);
     assert_vector(&bulk.grids.position[12], 1.0, 0.0, 1.0, 1e-14);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void curved_displacement_axes_follow_the_grid(void **state)
@@ -113,7 +113,7 @@ static void curved_displacement_axes_follow_the_grid(void **state)
         "GRID,4,2,2.,0.,0.,2\n" /* on the polar axis */
         "GRID,5,,,,,3\nGRID,6,,1.,,,3\n"
         "GRID,7,,1.,,,4\nGRID,8,,1.,,,0\n"; /* 4 has the basic axes */
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     double c = sqrt(3.0) / 2.0;
 
     (void)state;
@@ -134,7 +134,7 @@ static void curved_displacement_axes_follow_the_grid(void **state)
     assert_int_equal(bulk.grids.frame[6], 0);
     assert_int_equal(bulk.grids.frame[7], 0);
     assert_int_equal(bulk.grids.num_frames, 4);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /* Dofs as "5.1 5.2 9.0". */
@@ -162,7 +162,7 @@ static void sets_list_each_dof_once(void **state)
         "BSET1,4,ALL\nBNDFIX,1,5\n"
         "QSET1,0,ALL\nQSET,12,1\n"
         "SPC1,5,2,2\nSPC,5,4,6,0.1,11,0\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
@@ -176,17 +176,17 @@ static void sets_list_each_dof_once(void **state)
     assert_dofs(bulk.num_sets[RITZ_SET_Q], bulk.set[RITZ_SET_Q],
                 "11.0 12.0 13.0 20.0");
     assert_dofs(bulk.num_fixed, bulk.fixed, "1.6 2.2 4.1 4.3 4.6 11.0");
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void sets_without_grids_stand_for_all_they_name(void **state)
 {
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse("ASET1,3,5,THRU,7\n", &bulk));
     assert_dofs(bulk.num_sets[RITZ_SET_A], bulk.set[RITZ_SET_A], "5.3 6.3 7.3");
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void the_case_control_chooses_what_acts(void **state)
@@ -196,7 +196,7 @@ static void the_case_control_chooses_what_acts(void **state)
                                "SPC1,1,1,5\nSPC1,2,2,5\nSPC1,3,3,5\n"
                                "MPC,4,5,1,1.\nMPC,6,5,2,1.\n"
                                "RBE2,77,1,1,2\nCONM2,1,1,,2.\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
@@ -204,11 +204,11 @@ static void the_case_control_chooses_what_acts(void **state)
     assert_int_equal(bulk.num_constraints, 2);
     assert_string_equal(bulk.constraint[0], "MPC 4");
     assert_string_equal(bulk.constraint[1], "RBE2 77");
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     assert_ok(parse(strstr(TEXT, "SPCADD"), &bulk));
     assert_dofs(bulk.num_fixed, bulk.fixed, "5.1 5.2 5.3");
     assert_int_equal(bulk.num_constraints, 3);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void what_a_deck_cannot_mean_is_refused(void **state)
@@ -248,7 +248,7 @@ static void what_a_deck_cannot_mean_is_refused(void **state)
         {"INCLUDE\n", "INCLUDE names no file"},
         {"INCLUDE 'abc\n", "line 1: the quote of INCLUDE is not closed"},
     };
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
@@ -276,12 +276,12 @@ static void write_file(const char *folder, const char *name, const char *text)
 }
 
 static ritz_status read_file(const char *folder, const char *name,
-                             ritz_bulk *out)
+                             ritz_deck *out)
 {
     char path[200];
 
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    return ritz_bulk_read(path, out);
+    return ritz_deck_read(path, out);
 }
 
 static void remove_files(const char *folder, int count,
@@ -303,7 +303,7 @@ static void includes_are_relative_to_the_file_that_names_them(void **state)
                                         "in"};
     char folder[] = "/tmp/ritz_bulk_XXXXXX";
     char path[64];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_non_null(mkdtemp(folder));
@@ -319,7 +319,7 @@ static void includes_are_relative_to_the_file_that_names_them(void **state)
     write_file(folder, NAMES[5], "\nINCLUDE 'part one.blk'\nGRID,2,,5.\n");
     assert_ok(read_file(folder, "top.dat", &bulk));
     assert_int_equal(bulk.grids.count, 4);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     assert_fails(read_file(folder, "loop.dat", &bulk), RITZ_ERR_FORMAT,
                  "includes itself");
     assert_fails(read_file(folder, "bad.dat", &bulk), RITZ_ERR_FORMAT,
@@ -334,7 +334,7 @@ static void includes_are_followed_sixteen_deep(void **state)
     char name[FILES][16];
     const char *names[FILES];
     char text[64];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_non_null(mkdtemp(folder));
@@ -349,7 +349,7 @@ static void includes_are_followed_sixteen_deep(void **state)
     }
     assert_ok(read_file(folder, "d1", &bulk)); /* d2 to d17 within it */
     assert_int_equal(bulk.grids.count, 17);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     assert_fails(read_file(folder, "d0", &bulk), RITZ_ERR_FORMAT,
                  "d16', line 2: INCLUDE is more than 16 files deep");
     remove_files(folder, FILES, names);
@@ -372,7 +372,7 @@ static void real_decks_are_read(void **state)
     };
     const char *data = getenv("RITZ_EXTERNAL_DATA");
     char folder[500];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     snprintf(folder, sizeof folder, "%s/nastran", data ? data : "");
@@ -384,7 +384,7 @@ static void real_decks_are_read(void **state)
         char path[600];
 
         snprintf(path, sizeof path, "%s/%s", folder, DECKS[k].name);
-        assert_ok(ritz_bulk_read(path, &bulk));
+        assert_ok(ritz_deck_read(path, &bulk));
         assert_int_equal(bulk.grids.count, DECKS[k].grids);
         assert_int_equal(bulk.num_points, DECKS[k].points);
         assert_int_equal(bulk.num_sets[RITZ_SET_A], DECKS[k].a);
@@ -402,7 +402,7 @@ static void real_decks_are_read(void **state)
         }
         if (DECKS[k].constraints)
             assert_string_equal(bulk.constraint[2], "MPC 602");
-        ritz_bulk_free(&bulk);
+        ritz_deck_free(&bulk);
     }
 }
 
@@ -422,11 +422,11 @@ static const char DECK[] = "CEND\nSPC=1\nBEGIN BULK\nGRDSET,,,,,,,6\n"
 
 static ritz_status parse_and_free(const char *text)
 {
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     ritz_status status = parse(text, &bulk);
 
     if (status == RITZ_OK)
-        ritz_bulk_free(&bulk);
+        ritz_deck_free(&bulk);
     else
         assert_null(bulk.grids.id);
     return status;
@@ -462,7 +462,7 @@ static void a_long_chain_of_frames_needs_no_stack(void **state)
     enum { LINKS = 20000, LONGEST = 80 };
     char *text = malloc((size_t)LINKS * LONGEST);
     size_t used = 0;
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_non_null(text);
@@ -473,7 +473,7 @@ static void a_long_chain_of_frames_needs_no_stack(void **state)
     snprintf(text + used, LONGEST, "GRID,1,1\n");
     assert_ok(parse(text, &bulk));
     assert_vector(bulk.grids.position, LINKS, 0.0, 0.0, 0.0); /* integers */
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     free(text);
 }
 

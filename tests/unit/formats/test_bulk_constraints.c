@@ -1,20 +1,20 @@
 /* Constraint elements of bulk data as equations. */
 #include "testing.h"
 
-#include <ritz/bulk.h>
+#include <ritz/deck.h>
 #include <ritz/foreign.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-static ritz_status parse(const char *text, ritz_bulk *out)
+static ritz_status parse(const char *text, ritz_deck *out)
 {
-    return ritz_bulk_parse("deck.bdf", text, NULL, out);
+    return ritz_deck_parse("deck.bdf", text, NULL, out);
 }
 
 /* The sum of shares of a dof in the equation of another; NaN if there is none. */
-static double share(const ritz_bulk *bulk, ritz_dof dependent, ritz_dof on)
+static double share(const ritz_deck *bulk, ritz_dof dependent, ritz_dof on)
 {
     const ritz_equations *eq = &bulk->equations;
     int64_t e = ritz_equations_find(eq, dependent);
@@ -29,7 +29,7 @@ static double share(const ritz_bulk *bulk, ritz_dof dependent, ritz_dof on)
 }
 
 /* u(dof) of the rigid motion q = [t; r] about the basic origin. */
-static double rigid(const ritz_bulk *bulk, ritz_dof dof, const double q[6])
+static double rigid(const ritz_deck *bulk, ritz_dof dof, const double q[6])
 {
     const ritz_grids *g = &bulk->grids;
     int64_t k = ritz_grids_find(g, dof.grid);
@@ -44,7 +44,7 @@ static double rigid(const ritz_bulk *bulk, ritz_dof dof, const double q[6])
 }
 
 /* Every equation holds for the six rigid motions, to `bound`. */
-static void assert_rigid(const ritz_bulk *bulk, double bound)
+static void assert_rigid(const ritz_deck *bulk, double bound)
 {
     const ritz_equations *eq = &bulk->equations;
 
@@ -65,7 +65,7 @@ static void assert_rigid(const ritz_bulk *bulk, double bound)
 
 static void an_mpc_is_solved_for_its_first_dof(void **state)
 {
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse("GRID,1\nGRID,2\nSPOINT,5,6\n"
@@ -79,7 +79,7 @@ static void an_mpc_is_solved_for_its_first_dof(void **state)
     assert_near(share(&bulk, (ritz_dof){1, 3}, (ritz_dof){2, 2}), -0.5, 0.0);
     assert_string_equal(bulk.equations.from[0].name, "MPC 4");
     assert_int_equal(bulk.equations.from[0].line, 4);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void mpc_sets_act_as_the_case_control_selects(void **state)
@@ -87,21 +87,21 @@ static void mpc_sets_act_as_the_case_control_selects(void **state)
     static const char TEXT[] = "CEND\nMPC = 8\nBEGIN BULK\nGRID,1\nGRID,2\n"
                                "MPCADD,8,4,5\nMPC,4,1,1,1.,2,1,-1.\n"
                                "MPC,5,1,2,1.,2,2,-1.\nMPC,6,1,3,1.,2,3,-1.\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
     assert_int_equal(bulk.equations.count, 2);
     assert_int_equal(bulk.equations.dependent[1].component, 2);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     assert_ok(parse(strstr(TEXT, "GRID"), &bulk)); /* none selected: all act */
     assert_int_equal(bulk.equations.count, 3);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void an_rbe2_carries_its_grids_along(void **state)
 {
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     /* grid 2 two to the right of grid 1: u_y = u1_y + 2 r1_z */
@@ -117,7 +117,7 @@ static void an_rbe2_carries_its_grids_along(void **state)
     assert_true(isnan(share(&bulk, (ritz_dof){2, 4}, (ritz_dof){1, 4})));
     /* along basic axes nothing but what is written above: no rounding */
     assert_int_equal(bulk.equations.first[8], 1 + 2 + 2 + 1 + 2 + 1 + 2 + 1);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static const char FRAMES[] = "CORD2R,4,,0.,0.,0.,0.3,0.1,1.0\n,1.0,0.4,0.\n"
@@ -143,7 +143,7 @@ static void every_element_follows_rigid_motion(void **state)
         "RBE3,9,,1,123456,1.0,123,2,3\n,4,5\n,um,2,12,3,1,1,126\n",
     };
     char text[1024];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     for (size_t k = 0; k < sizeof cards / sizeof *cards; k++) {
@@ -154,13 +154,13 @@ static void every_element_follows_rigid_motion(void **state)
         /* positions up to 4, shares up to some 50 where six dofs hold the
          * body badly: eps times that and the terms of a row, measured 2e-14 */
         assert_rigid(&bulk, 1e-12);
-        ritz_bulk_free(&bulk);
+        ritz_deck_free(&bulk);
     }
 }
 
 static void an_rbar_names_its_dependents_or_leaves_them_over(void **state)
 {
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse("GRID,1\nGRID,2,,0.,0.,5.\nRBAR,3,1,2,123456,,,12\n"
@@ -173,7 +173,7 @@ static void an_rbar_names_its_dependents_or_leaves_them_over(void **state)
     assert_non_null(strstr(bulk.equations.refused,
                            "'deck.bdf', line 5: RBAR 5 is left free to move by "
                            "its six independent dofs"));
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /* Four grids around the fifth: what symmetry demands. */
@@ -184,7 +184,7 @@ static void an_rbe3_is_the_mean_of_what_is_around_it(void **state)
                                  "GRID,500\n";
     const double eps = 4.0 * 0x1p-52; /* a few products of numbers up to 1 */
     char text[400];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     snprintf(text, sizeof text,
@@ -204,7 +204,7 @@ static void an_rbe3_is_the_mean_of_what_is_around_it(void **state)
                 eps);
     /* 12 shares of translations, 2 + 2 + 4 of rotations, none of rounding */
     assert_int_equal(bulk.equations.first[6], 20);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     /* a weight of three pulls the mean: (3 u + u) / 4 along the line */
     snprintf(text, sizeof text, "%sRBE3,1,,500,2,3.0,123,100,1.0\n,123,300\n",
              AROUND);
@@ -212,7 +212,7 @@ static void an_rbe3_is_the_mean_of_what_is_around_it(void **state)
     /* about the reference, amid the two: by least squares the motion is that
      * of the line through both, at its middle */
     assert_near(share(&bulk, (ritz_dof){500, 2}, (ritz_dof){100, 2}), 0.5, eps);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /*
@@ -223,7 +223,7 @@ static void an_rbe3_is_the_mean_of_what_is_around_it(void **state)
 static void rotations_weigh_by_the_square_of_the_mean_distance(void **state)
 {
     const double L = 8.0;
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse("GRID,1,,-8.,0.,0.\nGRID,2,,8.,0.,0.\nGRID,3\n"
@@ -232,7 +232,7 @@ static void rotations_weigh_by_the_square_of_the_mean_distance(void **state)
     assert_near(share(&bulk, (ritz_dof){3, 6}, (ritz_dof){2, 2}), 0.25 / L,
                 1e-16); /* eps of the numbers beside */
     assert_near(share(&bulk, (ritz_dof){3, 6}, (ritz_dof){1, 6}), 0.25, 1e-15);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /* ---- what a commercial NASTRAN made of it ------------------------------ */
@@ -247,7 +247,7 @@ static const char *data_file(const char *name, size_t size, char *path)
 }
 
 /* Rows of all dofs of outboard.dat: 27 grids ascending, 22 points. */
-static int64_t list_dofs(const ritz_bulk *bulk, ritz_dof *dof)
+static int64_t list_dofs(const ritz_deck *bulk, ritz_dof *dof)
 {
     int64_t n = 0;
 
@@ -265,7 +265,7 @@ static void nastran_makes_the_same_of_the_outboard_deck(void **state)
 {
     enum { ALL = 27 * 6 + 22, DEPENDENT = 4 };
     char deck[500], matrix[500], spec[510];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     ritz_elimination e = {0};
     ritz_matrix gm = {0};
     ritz_dense G = {0}, GM = {0};
@@ -278,7 +278,7 @@ static void nastran_makes_the_same_of_the_outboard_deck(void **state)
         skip();
     }
     snprintf(spec, sizeof spec, "%s:GM", matrix);
-    assert_ok(ritz_bulk_read(deck, &bulk));
+    assert_ok(ritz_deck_read(deck, &bulk));
     assert_int_equal(list_dofs(&bulk, dof), ALL);
     assert_ok(ritz_elimination_new(&bulk.equations, ALL, dof, NULL, &e));
     assert_int_equal(e.gone.count, DEPENDENT);
@@ -297,7 +297,7 @@ static void nastran_makes_the_same_of_the_outboard_deck(void **state)
     ritz_dense_free(&GM);
     ritz_matrix_free(&gm);
     ritz_elimination_free(&e);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /* ---- refusals ---------------------------------------------------------- */
@@ -359,7 +359,7 @@ static const struct {
 static void what_is_not_understood_is_kept_as_a_sentence(void **state)
 {
     char text[300];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     for (size_t k = 0; k < sizeof misread / sizeof *misread; k++) {
@@ -370,7 +370,7 @@ static void what_is_not_understood_is_kept_as_a_sentence(void **state)
             fail_msg("%s: '%s'", misread[k].card,
                      bulk.equations.refused ? bulk.equations.refused : "");
         assert_int_equal(bulk.num_constraints, 1);
-        ritz_bulk_free(&bulk);
+        ritz_deck_free(&bulk);
     }
 }
 
@@ -378,18 +378,18 @@ static void imposed_motion_is_noted_where_it_acts(void **state)
 {
     static const char TEXT[] = "CEND\nSPC = 2\nBEGIN BULK\nGRID,1\n"
                                "SPC,1,1,3,0.5\nSPC,2,1,2,0.0\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
     assert_null(bulk.imposed);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     assert_ok(parse(strstr(TEXT, "GRID"), &bulk)); /* none selected: all act */
     assert_non_null(strstr(bulk.imposed,
                            "'deck.bdf', line 2: SPC 1 moves '1' by what is "
                            "not zero: imposed motion is no part"));
     assert_int_equal(bulk.num_fixed, 2);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /* ---- hostile ----------------------------------------------------------- */
@@ -403,7 +403,7 @@ many_continuations_are_read_and_repeats_left_to_elimination(void **state)
     size_t size = 64 + LINES * sizeof line;
     char *text = malloc(size);
     size_t used = 0;
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     ritz_elimination e = {0};
     static const ritz_dof dof[] = {{1, 1}, {1, 2}, {1, 3}, {1, 4},
                                    {1, 5}, {1, 6}, {2, 1}, {3, 1}};
@@ -422,7 +422,7 @@ many_continuations_are_read_and_repeats_left_to_elimination(void **state)
                                       dof, NULL, &e),
                  RITZ_ERR_FORMAT,
                  "'grid 2 T1' depends on RBE2 9 ('deck.bdf', line 4) twice");
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     free(text);
 }
 
@@ -430,7 +430,7 @@ static ritz_status parse_all(void)
 {
     ritz_status status = RITZ_OK;
     char text[1024];
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     snprintf(text, sizeof text,
              "%sSPOINT,7\nRBE2,9,1,123456,2\nRBAR,10,1,3,1234,23\n"
@@ -441,7 +441,7 @@ static ritz_status parse_all(void)
     RITZ_FAIL_IF(!bulk.equations.refused || !bulk.imposed, RITZ_ERR_ARGUMENT,
                  "a sentence is missing");
 done:
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
     return status;
 }
 

@@ -5,27 +5,27 @@
 
 #include <stdio.h>
 
-static ritz_status parse(const char *text, ritz_deck *out)
+static ritz_status parse(const char *text, ritz_cards *out)
 {
-    return ritz_deck_parse("t.dat", text, (int64_t)strlen(text), NULL, out);
+    return ritz_cards_parse("t.dat", text, (int64_t)strlen(text), NULL, out);
 }
 
 /* Fields of the k-th card with '|' behind each, for comparison at a glance. */
 static void fields_of(const char *text, int64_t k, char *out, size_t size)
 {
-    ritz_deck deck = {0};
+    ritz_cards cards = {0};
     ritz_card card = {0};
     size_t used = 0;
 
-    assert_ok(parse(text, &deck));
-    assert_true(k < deck.num_entries);
-    assert_ok(ritz_deck_card(&deck, k, &card));
+    assert_ok(parse(text, &cards));
+    assert_true(k < cards.num_entries);
+    assert_ok(ritz_card_take(&cards, k, &card));
     used = (size_t)snprintf(out, size, "%s:", card.entry->name);
     for (int64_t j = 0; j < card.count; j++)
         used += (size_t)snprintf(out + used, size - used, "%s|",
                                  ritz_card_text(&card, j));
     ritz_card_free(&card);
-    ritz_deck_free(&deck);
+    ritz_cards_free(&cards);
 }
 
 static void assert_fields(const char *text, const char *expected)
@@ -117,11 +117,11 @@ static void control_sections_are_left_out(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof DECKS / sizeof *DECKS; k++) {
-        ritz_deck deck = {0};
+        ritz_cards cards = {0};
 
-        assert_ok(parse(DECKS[k], &deck));
-        assert_int_equal(deck.num_entries, 1);
-        ritz_deck_free(&deck);
+        assert_ok(parse(DECKS[k], &cards));
+        assert_int_equal(cards.num_entries, 1);
+        ritz_cards_free(&cards);
         fields_of(DECKS[k], 0, found, sizeof found);
         assert_string_equal(found, "GRID:1|");
     }
@@ -129,18 +129,18 @@ static void control_sections_are_left_out(void **state)
 
 static void the_case_control_says_which_sets_act(void **state)
 {
-    ritz_deck deck = {0};
+    ritz_cards cards = {0};
 
     (void)state;
     assert_ok(parse("SPC = 9\nCEND\n  spc=5\nMPC = 7 $ x\nMPCFORCES = 3\n"
                     "SUBCASE 1\nSPC(X) = 6\nBEGIN BULK\n",
-                    &deck));
-    assert_int_equal(deck.num_selected[RITZ_SELECT_SPC], 3);
-    assert_int_equal(deck.selected[RITZ_SELECT_SPC][1], 5);
-    assert_int_equal(deck.selected[RITZ_SELECT_SPC][2], 6);
-    assert_int_equal(deck.num_selected[RITZ_SELECT_MPC], 1);
-    assert_int_equal(deck.selected[RITZ_SELECT_MPC][0], 7);
-    ritz_deck_free(&deck);
+                    &cards));
+    assert_int_equal(cards.num_selected[RITZ_SELECT_SPC], 3);
+    assert_int_equal(cards.selected[RITZ_SELECT_SPC][1], 5);
+    assert_int_equal(cards.selected[RITZ_SELECT_SPC][2], 6);
+    assert_int_equal(cards.num_selected[RITZ_SELECT_MPC], 1);
+    assert_int_equal(cards.selected[RITZ_SELECT_MPC][0], 7);
+    ritz_cards_free(&cards);
 }
 
 static void numbers_are_read_in_nastran_spelling(void **state)
@@ -181,15 +181,15 @@ static void numbers_are_read_in_nastran_spelling(void **state)
 static ritz_status parse_all(const char *text)
 {
     ritz_status status = RITZ_OK;
-    ritz_deck deck = {0};
+    ritz_cards cards = {0};
     ritz_card card = {0};
 
-    RITZ_TRY(parse(text, &deck));
-    for (int64_t k = 0; k < deck.num_entries; k++)
-        RITZ_TRY(ritz_deck_card(&deck, k, &card));
+    RITZ_TRY(parse(text, &cards));
+    for (int64_t k = 0; k < cards.num_entries; k++)
+        RITZ_TRY(ritz_card_take(&cards, k, &card));
 done:
     ritz_card_free(&card);
-    ritz_deck_free(&deck);
+    ritz_cards_free(&cards);
     return status;
 }
 

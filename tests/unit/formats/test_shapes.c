@@ -7,7 +7,7 @@
 #include "bodies.h"
 #include "folder.h"
 
-#include <ritz/bulk.h>
+#include <ritz/deck.h>
 #include <ritz/export.h>
 #include <ritz/method.h>
 #include <ritz/shapes.h>
@@ -114,10 +114,10 @@ static void elements_with_strange_grids_are_counted(void **state)
                                "CTRIA3,4,1,1,2\n"
                                "CHEXA,5,1,1,2,1,2,1,2\n,1,2,9\n"
                                "ENDDATA\n";
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
 
     (void)state;
-    assert_ok(ritz_bulk_parse("a.bdf", deck, ".", &bulk));
+    assert_ok(ritz_deck_parse("a.bdf", deck, ".", &bulk));
     assert_int_equal(bulk.elements.count, 2);
     /* one grid of a bar is a spring to the ground, of a triangle nothing */
     assert_int_equal(bulk.num_strange, 1);
@@ -125,7 +125,7 @@ static void elements_with_strange_grids_are_counted(void **state)
     assert_int_equal(bulk.elements.first[2], 10);
     assert_int_equal(ritz_elements_keep(&bulk.elements, 1, (int64_t[]){1}), 2);
     assert_int_equal(bulk.elements.count, 0);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 static void cells_that_do_not_fit_are_refused(void **state)
@@ -173,12 +173,12 @@ static void no_allocation_failure_leaks(void **state)
                                "GRID,2,,1.,0.,0.\nCBAR,1,1,1,2\nENDDATA\n";
     fixture *f = *state;
     void *none = NULL;
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     ritz_shapes shapes = {0};
 
     assert_survives_every_allocation(
-        ritz_bulk_parse("a.bdf", deck, ".", &bulk));
-    ritz_bulk_free(&bulk);
+        ritz_deck_parse("a.bdf", deck, ".", &bulk));
+    ritz_deck_free(&bulk);
     assert_survives_every_allocation(
         ritz_shapes_of_basis(&f->basis, &f->body, "1", &shapes));
     ritz_shapes_free(&shapes);

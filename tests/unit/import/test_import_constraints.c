@@ -4,7 +4,7 @@
 #include "folder.h"
 #include "matrices.h"
 
-#include <ritz/bulk.h>
+#include <ritz/deck.h>
 #include <ritz/eigen.h>
 #include <ritz/import.h>
 #include <ritz/reduced.h>
@@ -351,13 +351,13 @@ static const double corner[CORNERS][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0},
 /* Displacement axes of grid 6, from the deck. */
 static void find_axes(double A[9])
 {
-    ritz_bulk bulk = {0};
+    ritz_deck bulk = {0};
     int64_t k = 0;
 
-    assert_ok(ritz_bulk_parse(NULL, CUBE, NULL, &bulk));
+    assert_ok(ritz_deck_parse(NULL, CUBE, NULL, &bulk));
     k = ritz_grids_find(&bulk.grids, 6);
     memcpy(A, bulk.grids.axes + 9 * bulk.grids.frame[k], 9 * sizeof *A);
-    ritz_bulk_free(&bulk);
+    ritz_deck_free(&bulk);
 }
 
 /* Springs between all corners, stiffness by the pair; masses 1 to 8. */

@@ -1,0 +1,65 @@
+/* Decks of any format: recognised by content, then read by their format. */
+#include "base/path.h"
+
+#include <ritz/deck.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size)
+{
+    for (int k = 0; ritz_decks[k]; k++)
+        if (ritz_decks[k]->recognise(bytes, size))
+            return ritz_decks[k];
+    return NULL;
+}
+
+static ritz_status parse_bytes(const char *path, const char *bytes,
+                               int64_t size, const char *folder, ritz_deck *out)
+{
+    const ritz_deck_format *format = ritz_deck_recognise(bytes, size);
+
+    RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
+                   "'%s' is not a text file, as all decks are that Ritz knows",
+                   path ? path : "the deck");
+    RITZ_CHECK(format->parse(path, bytes, size, folder, out));
+    out->format = format;
+    return RITZ_OK;
+}
+
+ritz_status ritz_deck_parse(const char *path, const char *text,
+                            const char *folder, ritz_deck *out)
+{
+    return parse_bytes(path, text, (int64_t)strlen(text), folder, out);
+}
+
+ritz_status ritz_deck_read(const char *path, ritz_deck *out)
+{
+    ritz_status status = RITZ_OK;
+    char *bytes = NULL;
+    char *folder = NULL;
+    int64_t size = 0;
+
+    RITZ_TRY(ritz_path_folder(path, &folder));
+    RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
+    RITZ_TRY(parse_bytes(path, bytes, size, folder, out));
+done:
+    free(bytes);
+    free(folder);
+    return status;
+}
+
+void ritz_deck_free(ritz_deck *deck)
+{
+    ritz_grids_free(&deck->grids);
+    free(deck->point);
+    free(deck->dof);
+    free(deck->fixed);
+    for (int k = 0; k < RITZ_NUM_SETS; k++)
+        free(deck->set[k]);
+    free(deck->constraint);
+    ritz_equations_free(&deck->equations);
+    ritz_elements_free(&deck->elements);
+    free(deck->imposed);
+    *deck = (ritz_deck){0};
+}

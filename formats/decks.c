@@ -1,0 +1,7 @@
+/* The table of decks. NASTRAN stays last: it takes any text. */
+#include <ritz/deck.h>
+
+const ritz_deck_format *const ritz_decks[] = {
+    &ritz_deck_nastran,
+    NULL,
+};

@@ -1,0 +1,61 @@
+/* Decks as the rest of the house sees them, whatever format they are in. */
+#include "testing.h"
+
+#include <ritz/deck.h>
+
+#include <stdio.h>
+#include <unistd.h>
+
+static void each_format_of_decks_says_what_it_is(void **state)
+{
+    (void)state;
+    for (int k = 0; ritz_decks[k]; k++) {
+        assert_true(*ritz_decks[k]->name && *ritz_decks[k]->title);
+        assert_true(*ritz_decks[k]->reference);
+        assert_non_null(ritz_decks[k]->recognise);
+        assert_non_null(ritz_decks[k]->parse);
+    }
+    assert_ptr_equal(ritz_deck_recognise("GRID,1\n", 7), &ritz_deck_nastran);
+    assert_null(ritz_deck_recognise("GRID\0", 5));
+}
+
+static void a_deck_names_its_format_and_all_its_dofs(void **state)
+{
+    const ritz_dof last = {7, 6};
+    ritz_deck deck = {0};
+    (void)state;
+
+    assert_ok(
+        ritz_deck_parse("a.bdf", "GRID,7\nGRID,2\nSPOINT,5\n", ".", &deck));
+    assert_ptr_equal(deck.format, &ritz_deck_nastran);
+    assert_int_equal(deck.num_dofs, 13);
+    for (int64_t k = 1; k < deck.num_dofs; k++)
+        assert_true(ritz_dof_compare(&deck.dof[k - 1], &deck.dof[k]) < 0);
+    assert_int_equal(deck.dof[6].grid, 5);
+    assert_int_equal(deck.dof[6].component, 0);
+    assert_int_equal(ritz_dof_compare(&deck.dof[12], &last), 0);
+    ritz_deck_free(&deck);
+}
+
+static void bytes_that_are_no_deck_are_refused(void **state)
+{
+    ritz_deck deck = {0};
+    FILE *file = fopen("none.bdf", "wb");
+    (void)state;
+
+    assert_non_null(file);
+    assert_int_equal(fwrite("GRID\0", 1, 5, file), 5);
+    assert_int_equal(fclose(file), 0);
+    assert_fails(ritz_deck_read("none.bdf", &deck), RITZ_ERR_FORMAT,
+                 "'none.bdf' is not a text file");
+    assert_int_equal(unlink("none.bdf"), 0);
+    assert_fails(ritz_deck_read("none.bdf", &deck), RITZ_ERR_FILE, "none.bdf");
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(each_format_of_decks_says_what_it_is),
+    cmocka_unit_test(a_deck_names_its_format_and_all_its_dofs),
+    cmocka_unit_test(bytes_that_are_no_deck_are_refused),
+};
+
+TEST_MODULE(decks, tests, NULL, NULL)
