@@ -16,6 +16,7 @@
 #include <ritz/reduced.h>
 #include <ritz/response.h>
 #include <ritz/simulate.h>
+#include <ritz/source.h>
 #include <ritz/state_space.h>
 #include <ritz/system.h>
 
@@ -35,6 +36,9 @@ typedef struct ritz_summary {
     int64_t num_inputs;
     char **input;
 } ritz_summary;
+
+/* Models by the paths of their containers. */
+extern const ritz_source ritz_container_source;
 
 /** Whether a file is a container at all (HDF5 with a `ritz_kind`). */
 bool ritz_container_is(const char *path);

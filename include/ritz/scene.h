@@ -9,6 +9,7 @@
 #include <ritz/choice.h>
 #include <ritz/damping.h>
 #include <ritz/dofs.h>
+#include <ritz/source.h>
 #include <ritz/text.h>
 
 typedef struct ritz_scene_component {
@@ -160,6 +161,7 @@ typedef struct ritz_scene {
     int64_t *attached_input;
     double attached_tolerance; /* auto: of the largest singular value, 1e-3 */
     ritz_extraneous extraneous;
+    const ritz_source *source; /* of the models; containers after reading */
 } ritz_scene;
 
 /**

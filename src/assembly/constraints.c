@@ -1,18 +1,143 @@
+#include "assembly/constraints.h"
+
+#include "assembly/joints.h"
+#include "assembly/placement.h"
+#include "base/alloc.h"
+
+#include <ritz/synthesis.h>
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool ritz_springs_damp(const ritz_springs *springs)
+{
+    for (int64_t k = 0; k < springs->S.nrow; k++)
+        if (springs->hold[k].damping > 0.0)
+            return true;
+    return false;
+}
+
+/* A += sum_k s[k] R(k,:)' R(k,:), s the stiffnesses or the dampings. */
+static void add_rows(const ritz_dense *R, const ritz_freedom *hold,
+                     bool damping, ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++) {
+            double sum = 0.0;
+
+            for (int64_t k = 0; k < R->nrow; k++)
+                sum += (damping ? hold[k].damping : hold[k].stiffness) *
+                       (ritz_dense_col(R, i)[k] * ritz_dense_col(R, j)[k]);
+            ritz_dense_col(A, j)[i] += sum;
+        }
+}
+
+ritz_status ritz_springs_add(const ritz_springs *springs, const ritz_dense *P,
+                             ritz_dense *K, ritz_dense *D)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense R = {0};
+
+    if (springs->S.nrow == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_mul(&springs->S, P, &R));
+    add_rows(&R, springs->hold, false, K);
+    if (D->val)
+        add_rows(&R, springs->hold, true, D);
+done:
+    ritz_dense_free(&R);
+    return status;
+}
+
+/* The coordinates that a row has. */
+static int64_t list_entries(const ritz_dense *S, int64_t row, int64_t *column)
+{
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < S->ncol; j++)
+        if (ritz_dense_col(S, j)[row] != 0.0)
+            column[count++] = j;
+    return count;
+}
+
+/* sum_k s[k] S(k,:)' S(k,:) over n. */
+static ritz_status make_matrix(const ritz_springs *springs, bool damping,
+                               int64_t n, const int64_t *at, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *S = &springs->S;
+    int64_t *column = NULL, *row = NULL, *col = NULL;
+    double *val = NULL;
+    int64_t count = 0, most = 0;
+
+    RITZ_NEW(column, S->ncol);
+    for (int64_t k = 0; k < S->nrow; k++) {
+        int64_t entries = list_entries(S, k, column);
+
+        most += entries * entries;
+    }
+    RITZ_NEW(row, most);
+    RITZ_NEW(col, most);
+    RITZ_NEW(val, most);
+    for (int64_t k = 0; k < S->nrow; k++) {
+        const ritz_freedom *hold = &springs->hold[k];
+        int64_t entries = list_entries(S, k, column);
+
+        for (int64_t e = 0; e < entries * entries; e++) {
+            int64_t i = column[e % entries];
+            int64_t j = column[e / entries];
+
+            row[count] = at[i];
+            col[count] = at[j];
+            val[count++] = (damping ? hold->damping : hold->stiffness) *
+                           (ritz_dense_col(S, i)[k] * ritz_dense_col(S, j)[k]);
+        }
+    }
+    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, val, out));
+done:
+    free(column);
+    free(row);
+    free(col);
+    free(val);
+    return status;
+}
+
+ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
+                                    int64_t n, const int64_t *at,
+                                    ritz_sparse *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse own = {0}, sum = {0};
+
+    if (springs->S.nrow == 0 || (damping && !ritz_springs_damp(springs)))
+        return RITZ_OK;
+    RITZ_TRY(make_matrix(springs, damping, n, at, &own));
+    if (A->colptr)
+        RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &own, &sum));
+    else
+        RITZ_TRY(ritz_sparse_copy(&own, &sum));
+    ritz_sparse_free(A);
+    *A = sum;
+done:
+    ritz_sparse_free(&own);
+    return status;
+}
+
+void ritz_springs_free(ritz_springs *springs)
+{
+    ritz_dense_free(&springs->S);
+    free(springs->hold);
+    *springs = (ritz_springs){0};
+}
+
 /*
  * The rows of C q = 0, all that joints lock, and those of S, S q being how far
  * the springs of joints are stretched. In C coordinates are scaled to unit mass
  * and the rows of one joint and kind by the largest among them, so that
  * rounding stays small beside what is a constraint.
  */
-#include "assembly/joints.h"
-#include "assembly/placement.h"
-#include "assembly/springs.h"
-#include "base/alloc.h"
-
-#include <ritz/synthesis.h>
-
-#include <math.h>
-#include <stdlib.h>
 
 static ritz_joint_end describe_end(const ritz_stage *stage,
                                    const ritz_scene_place *place,
@@ -228,5 +353,85 @@ ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
 done:
     free_rows(&r);
     free(one);
+    return status;
+}
+
+/*
+ * The rank of constraints is what counts: a row that is rounding and no
+ * constraint would give a wrong system [McDaniel2000, table 3.3]. C' = Q_1 R
+ * and a singular value decomposition of the small R show what is which.
+ */
+
+/* Singular values below this, relative to the largest, are rounding. */
+static const double rank_tolerance = 1e-9;
+
+/* How many singular values are more than rounding. */
+static int64_t count_rank(int64_t count, const double *sigma)
+{
+    int64_t rank = 0;
+
+    while (rank < count && sigma[rank] > rank_tolerance * sigma[0])
+        rank++;
+    return rank;
+}
+
+/*
+ * N = Q_1 [U_2, 0; 0, I] with C' = Q_1 [R; 0], R = U S W', U_2 the left vectors
+ * of no singular value: orthonormal, spans the null space of C.
+ */
+ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = C->ncol;
+    int64_t c = C->nrow < n ? C->nrow : n;
+    ritz_dense F = {0}, R = {0}, U = {0}, N = {0};
+    double *tau = NULL, *sigma = NULL, *work = NULL;
+
+    RITZ_NEW(tau, c);
+    RITZ_NEW(sigma, c);
+    RITZ_NEW(work, c);
+    RITZ_TRY(ritz_dense_new(n, C->nrow, &F));
+    RITZ_TRY(ritz_dense_new(c, C->nrow, &R));
+    RITZ_TRY(ritz_dense_new(c, c, &U));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < C->nrow; i++)
+            ritz_dense_col(&F, i)[j] = ritz_dense_col(C, j)[i];
+    *rank = 0;
+    if (c > 0) {
+        RITZ_FAIL_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)n, (int)C->nrow,
+                                    F.val, (int)n, tau) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+        for (int64_t j = 0; j < C->nrow; j++)
+            for (int64_t i = 0; i <= j && i < c; i++)
+                ritz_dense_col(&R, j)[i] = ritz_dense_col(&F, j)[i];
+        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', (int)c,
+                                    (int)C->nrow, R.val, (int)c, sigma, U.val,
+                                    (int)c, NULL, 1, work) != 0,
+                     RITZ_ERR_CONVERGENCE,
+                     "singular values of the constraints do not converge");
+        *rank = count_rank(c, sigma);
+    }
+    RITZ_TRY(ritz_dense_new(n, n - *rank, &N));
+    for (int64_t j = *rank; j < n; j++)
+        if (j < c)
+            memcpy(ritz_dense_col(&N, j - *rank), ritz_dense_col(&U, j),
+                   (size_t)c * sizeof *N.val);
+        else
+            ritz_dense_col(&N, j - *rank)[j] = 1.0;
+    if (c > 0 && N.ncol > 0)
+        RITZ_FAIL_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', (int)n,
+                                    (int)N.ncol, (int)c, F.val, (int)n, tau,
+                                    N.val, (int)n) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+    *out = N;
+    N = (ritz_dense){0};
+done:
+    free(tau);
+    free(sigma);
+    free(work);
+    ritz_dense_free(&F);
+    ritz_dense_free(&R);
+    ritz_dense_free(&U);
+    ritz_dense_free(&N);
     return status;
 }

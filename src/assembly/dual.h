@@ -2,7 +2,7 @@
 #ifndef RITZ_ASSEMBLY_DUAL_H
 #define RITZ_ASSEMBLY_DUAL_H
 
-#include "assembly/springs.h"
+#include "assembly/constraints.h"
 
 /** Whether a body of the stage has columns of kind force. */
 bool ritz_dual_is_due(const ritz_stage *stage);

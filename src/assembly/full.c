@@ -1,3 +1,242 @@
+
+#include "assembly/placement.h"
+#include "assembly/constraints.h"
+#include "base/alloc.h"
+#include <ritz/dense.h>
+
+#include <ritz/synthesis.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/*
+ * Full models of a scene of which synthesis sees only the dofs of their ports.
+ */
+
+/* The bodies, and the dofs at which they may meet. */
+typedef struct ritz_held {
+    const ritz_scene *scene;
+    int64_t count;
+    ritz_component *body;
+    ritz_dofs *held;  /* dofs of all ports of each body */
+    int64_t *first;   /* of each body's dofs among all N */
+    int64_t num_dofs; /* N */
+    ritz_stage stage; /* whose coordinates are the held dofs */
+    int64_t *row;     /* of each such coordinate among all N */
+} ritz_held;
+
+/* Slaves and masters of constraints. */
+
+/* Where held dof `dof` of a body comes among those held. */
+static int64_t find_held(const ritz_dofs *held, int64_t dof)
+{
+    int64_t k = 0;
+
+    while (held->at[k] != dof)
+        k++;
+    return k;
+}
+
+/* A port's rows from the held dofs alone. */
+static ritz_status hold_port(const ritz_component *component,
+                             const ritz_port *port, const ritz_dofs *held,
+                             ritz_port_map *map)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense turn = {0};
+
+    memcpy(map->name, port->name, sizeof map->name);
+    memcpy(map->origin, port->origin, sizeof map->origin);
+    map->count = port->dofs.count;
+    RITZ_TRY(ritz_port_turn(component, port, &turn, &map->dof));
+    RITZ_NEW(map->position, 3 * map->count);
+    for (int64_t i = 0; i < map->count; i++) {
+        int64_t k = ritz_grids_find(&component->grids, map->dof[i].grid);
+
+        if (k >= 0)
+            memcpy(map->position + 3 * i, component->grids.position + 3 * k,
+                   3 * sizeof *map->position);
+    }
+    RITZ_TRY(ritz_dense_new(map->count, held->count, &map->map));
+    for (int64_t j = 0; j < map->count; j++)
+        memcpy(ritz_dense_col(&map->map, find_held(held, port->dofs.at[j])),
+               ritz_dense_col(&turn, j), (size_t)map->count * sizeof *turn.val);
+done:
+    ritz_dense_free(&turn);
+    return status;
+}
+
+/* A body of which only the held dofs are seen. */
+static ritz_status hold_body(const ritz_component *component,
+                             const ritz_dofs *held, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced body = {.num_dofs = component->num_dofs};
+
+    RITZ_TRY(ritz_dense_new(held->count, held->count, &body.K));
+    RITZ_TRY(ritz_dense_new(held->count, held->count, &body.M));
+    RITZ_NEW(body.port, component->num_ports);
+    for (int64_t k = 0; k < component->num_ports; k++) {
+        body.num_ports++;
+        RITZ_TRY(
+            hold_port(component, &component->port[k], held, &body.port[k]));
+    }
+    *out = body;
+    body = (ritz_reduced){0};
+done:
+    ritz_reduced_free(&body);
+    return status;
+}
+
+static ritz_status load_body(const ritz_source *source, const char *model,
+                             ritz_component *out)
+{
+    char kind[RITZ_NAME_SIZE];
+
+    RITZ_CHECK(source->kind(source->state, model, kind));
+    RITZ_REFUSE_IF(strcmp(kind, "reduced") == 0, RITZ_ERR_ARGUMENT,
+                   "'%s' is reduced already, its full model is wanted", model);
+    return source->component(source->state, model, out);
+}
+
+static ritz_status load(const ritz_scene *scene, ritz_held *p)
+{
+    p->scene = scene;
+    RITZ_CHECK_NEW(p->body, scene->num_components);
+    RITZ_CHECK_NEW(p->held, scene->num_components);
+    RITZ_CHECK_NEW(p->first, scene->num_components);
+    for (int64_t k = 0; k < scene->num_components; k++) {
+        p->count++;
+        p->first[k] = p->num_dofs;
+        RITZ_CHECK_IN(scene->component[k].name,
+                      load_body(scene->source, scene->component[k].model,
+                              &p->body[k]));
+        p->num_dofs += p->body[k].num_dofs;
+        RITZ_CHECK(ritz_component_attached(&p->body[k], NULL, &p->held[k]));
+    }
+    return RITZ_OK;
+}
+
+/* The stage of held dofs, and where its coordinates are among all. */
+static ritz_status hold(ritz_held *p)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced *body = NULL;
+
+    RITZ_NEW(body, p->count);
+    for (int64_t k = 0; k < p->count; k++)
+        RITZ_TRY_IN(p->scene->component[k].name,
+                    hold_body(&p->body[k], &p->held[k], &body[k]));
+    RITZ_TRY(ritz_stage_from(p->scene, body, &p->stage));
+    RITZ_NEW(p->row, p->stage.num_coordinates);
+    for (int64_t k = 0; k < p->count; k++)
+        for (int64_t j = 0; j < p->held[k].count; j++)
+            p->row[p->stage.first[k] + j] = p->first[k] + p->held[k].at[j];
+done:
+    for (int64_t k = 0; body && k < p->count; k++)
+        ritz_reduced_free(&body[k]);
+    free(body);
+    return status;
+}
+
+static void free_held(ritz_held *p)
+{
+    for (int64_t k = 0; k < p->count; k++) {
+        if (p->body)
+            ritz_component_free(&p->body[k]);
+        if (p->held)
+            ritz_dofs_free(&p->held[k]);
+    }
+    free(p->body);
+    free(p->held);
+    free(p->first);
+    free(p->row);
+    ritz_stage_free(&p->stage);
+}
+
+/* Load the full models and find where they are held. */
+static ritz_status load_held(const ritz_scene *scene, ritz_held *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_held held = {0};
+
+    RITZ_TRY(load(scene, &held));
+    RITZ_TRY(hold(&held));
+    *out = held;
+    held = (ritz_held){0};
+done:
+    free_held(&held);
+    return status;
+}
+
+static const double pivot_tolerance = 1e-9; /* of rows of largest norm 1 */
+
+/* Row and column of the largest entry left; later columns win ties. */
+static double find_pivot(const ritz_dense *C, int64_t from,
+                         const int64_t *pivot_of, int64_t *row, int64_t *col)
+{
+    double best = 0.0;
+
+    for (int64_t j = C->ncol - 1; j >= 0; j--)
+        for (int64_t i = from; i < C->nrow && pivot_of[j] < 0; i++)
+            if (fabs(ritz_dense_col(C, j)[i]) > best) {
+                best = fabs(ritz_dense_col(C, j)[i]);
+                *row = i;
+                *col = j;
+            }
+    return best;
+}
+
+static void swap_rows(ritz_dense *C, int64_t a, int64_t b)
+{
+    for (int64_t j = 0; j < C->ncol; j++) {
+        double *column = ritz_dense_col(C, j);
+        double kept = column[a];
+
+        column[a] = column[b];
+        column[b] = kept;
+    }
+}
+
+/*
+ * Gauss-Jordan elimination with complete pivoting: C becomes rows with one
+ * slave each, u_s + sum_m C_sm u_m = 0. Rows that depend on others are left
+ * without a slave; among equal pivots later columns become slaves.
+ *
+ * @param[in]  C         rows of largest norm 1, for what is rounding
+ * @param[out] pivot_of  C->ncol: the row in which a column is the slave, -1 for
+ *                       masters
+ */
+static void eliminate(ritz_dense *C, int64_t *pivot_of)
+{
+    int64_t row = 0;
+    int64_t col = 0;
+
+    for (int64_t j = 0; j < C->ncol; j++)
+        pivot_of[j] = -1;
+    for (int64_t k = 0; k < C->nrow; k++) {
+        if (find_pivot(C, k, pivot_of, &row, &col) <= pivot_tolerance)
+            return;
+        swap_rows(C, k, row);
+        pivot_of[col] = k;
+        for (int64_t j = 0; j < C->ncol; j++) {
+            double *column = ritz_dense_col(C, j);
+
+            if (j == col)
+                continue;
+            column[k] /= ritz_dense_col(C, col)[k];
+            for (int64_t i = 0; i < C->nrow; i++)
+                if (i != k)
+                    column[i] -= ritz_dense_col(C, col)[i] * column[k];
+        }
+        memset(ritz_dense_col(C, col), 0, (size_t)C->nrow * sizeof *C->val);
+        ritz_dense_col(C, col)[k] = 1.0;
+    }
+}
+
 /*
  * The full-order system as one component. Bodies meet at few dofs: with the
  * constraints C u = 0 over the dofs of all ports, Gauss-Jordan elimination with
@@ -7,19 +246,6 @@
  *
  * and T is the identity but for the rows of the slaves, so K stays sparse.
  */
-#include "assembly/eliminate.h"
-#include "assembly/held.h"
-#include "assembly/placement.h"
-#include "assembly/springs.h"
-#include "base/alloc.h"
-
-#include <ritz/synthesis.h>
-
-#include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* T from the reduced constraints, and what the masters are. */
 static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
@@ -77,7 +303,8 @@ static const ritz_sparse *matrix_of(const ritz_component *body, size_t offset)
 }
 
 /* diag(A_1, A_2, ...), bodies without one giving nothing; {0} if none has. */
-static ritz_status stack(const ritz_held *p, size_t offset, ritz_sparse *out)
+static ritz_status stack_matrices(const ritz_held *p, size_t offset,
+                                  ritz_sparse *out)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse A = {0};
@@ -132,7 +359,7 @@ static ritz_status project_matrices(const ritz_held *p, const double *setting,
         ritz_sparse *into =
             (ritz_sparse *)(void *)((char *)system + offsets[k]);
 
-        RITZ_TRY(stack(p, offsets[k], &all));
+        RITZ_TRY(stack_matrices(p, offsets[k], &all));
         if (k == K || k == D)
             RITZ_TRY(ritz_springs_add_sparse(&springs, k == D, p->num_dofs,
                                              p->row, &all));
@@ -200,6 +427,77 @@ done:
     return status;
 }
 
+/* Dofs that constraints eliminated from the bodies of a full-order system. */
+
+/* diag(G_1, G_2, ...), and the names of its rows in the system. */
+static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
+                                  ritz_recovery *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *row = NULL, *col = NULL;
+    double *val = NULL;
+    int64_t entries = 0, rows = 0, at = 0;
+
+    for (int64_t k = 0; k < p->count; k++) {
+        const ritz_recovery *r = &p->body[k].recovery;
+
+        rows += r->count;
+        entries += r->count > 0 ? r->G.colptr[r->G.ncol] : 0;
+    }
+    RITZ_NEW(row, entries);
+    RITZ_NEW(col, entries);
+    RITZ_NEW(val, entries);
+    RITZ_NEW(out->dof, rows);
+    for (int64_t k = 0; k < p->count; k++) {
+        const ritz_recovery *r = &p->body[k].recovery;
+
+        for (int64_t j = 0; r->count > 0 && j < r->G.ncol; j++)
+            for (int64_t e = r->G.colptr[j]; e < r->G.colptr[j + 1]; e++) {
+                row[at] = out->count + r->G.rowind[e];
+                col[at] = p->first[k] + j;
+                val[at++] = r->G.val[e];
+            }
+        for (int64_t i = 0; i < r->count; i++)
+            out->dof[out->count++] =
+                (ritz_dof){r->dof[i].grid + add[k], r->dof[i].component};
+    }
+    RITZ_TRY(ritz_sparse_from_triplets(rows, p->num_dofs, at, row, col, val,
+                                       &out->G));
+done:
+    free(row);
+    free(col);
+    free(val);
+    return status;
+}
+
+/*
+ * What the bodies' eliminated dofs follow: diag(G_k) T.
+ *
+ * @param[in] add  by how much the grid numbers of each body grow
+ * @param[in] T    all dofs of all bodies x those of the system
+ */
+static ritz_status held_recovery(const ritz_held *p, const int64_t *add,
+                                 const ritz_sparse *T, ritz_recovery *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_recovery all = {0};
+    ritz_sparse GT = {0};
+
+    RITZ_TRY(stack_recovery(p, add, &all));
+    if (all.count == 0)
+        goto done;
+    RITZ_TRY(ritz_sparse_product(&all.G, T, &GT));
+    ritz_sparse_free(&all.G);
+    all.G = GT;
+    GT = (ritz_sparse){0};
+    *out = all;
+    all = (ritz_recovery){0};
+done:
+    ritz_recovery_free(&all);
+    ritz_sparse_free(&GT);
+    return status;
+}
+
 /* Names of the masters; grids of all bodies where the angles put them. */
 static ritz_status name_dofs(const ritz_held *p, const double *setting,
                              const ritz_master *master, const ritz_sparse *T,
@@ -216,7 +514,7 @@ static ritz_status name_dofs(const ritz_held *p, const double *setting,
         system->dof[j] = p->body[master[j].body].dof[master[j].dof];
         system->dof[j].grid += add[master[j].body];
     }
-    RITZ_TRY(ritz_held_recovery(p, add, T, &system->recovery));
+    RITZ_TRY(held_recovery(p, add, T, &system->recovery));
 done:
     free(add);
     return status;
@@ -245,7 +543,7 @@ ritz_status ritz_assemble_masters(const ritz_scene *scene,
     double *scale = NULL;
     int64_t *pivot_of = NULL;
 
-    RITZ_TRY(ritz_held_load(scene, &p));
+    RITZ_TRY(load_held(scene, &p));
     RITZ_TRY(check_units(scene, &p));
     RITZ_NEW(scale, p.stage.num_coordinates);
     for (int64_t j = 0; j < p.stage.num_coordinates; j++)
@@ -253,7 +551,7 @@ ritz_status ritz_assemble_masters(const ritz_scene *scene,
     RITZ_TRY(ritz_stage_constraints(&p.stage, setting, scale, &C));
     RITZ_NEW(pivot_of, C.ncol);
     RITZ_NEW(master, p.num_dofs);
-    ritz_eliminate(&C, pivot_of);
+    eliminate(&C, pivot_of);
     RITZ_TRY(make_basis(&p, &C, pivot_of, master, &T));
     system.num_dofs = T.ncol;
     RITZ_TRY(project_matrices(&p, setting, &T, &system));
@@ -273,7 +571,7 @@ done:
     free(master);
     ritz_dense_free(&C);
     ritz_sparse_free(&T);
-    ritz_held_free(&p);
+    free_held(&p);
     ritz_component_free(&system);
     return status;
 }

@@ -1,3 +1,109 @@
+#include "assembly/turns.h"
+
+#include "assembly/joints.h"
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void ritz_turn_about(const double axis[static 3], double degrees,
+                     double R[static 9])
+{
+    /* quarter turns are exact, so that 90 degrees swaps axes and no more */
+    double quarter = fmod(degrees, 90.0) == 0.0
+                         ? fmod(fmod(degrees / 90.0, 4.0) + 4.0, 4.0)
+                         : -1.0;
+    static const double sines[] = {0.0, 1.0, 0.0, -1.0, 0.0};
+    double s =
+        quarter >= 0.0 ? sines[(int)quarter] : sin(degrees * RITZ_PI / 180.0);
+    double c = quarter >= 0.0 ? sines[(int)quarter + 1]
+                              : cos(degrees * RITZ_PI / 180.0);
+    const double skew[9] = {0.0,      -axis[2], axis[1], axis[2], 0.0,
+                            -axis[0], -axis[1], axis[0], 0.0};
+
+    for (int64_t i = 0; i < 3; i++)
+        for (int64_t j = 0; j < 3; j++)
+            R[3 * i + j] = (i == j ? c : 0.0) + s * skew[3 * i + j] +
+                           (1.0 - c) * axis[i] * axis[j];
+}
+
+void ritz_turn_product(const double A[static 9], const double B[static 9],
+                       double C[static 9])
+{
+    for (int64_t i = 0; i < 3; i++)
+        for (int64_t j = 0; j < 3; j++)
+            C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] +
+                           A[3 * i + 2] * B[6 + j];
+}
+
+void ritz_turn_between(const double A[static 9], const double B[static 9],
+                       double C[static 9])
+{
+    for (int64_t i = 0; i < 3; i++)
+        for (int64_t j = 0; j < 3; j++)
+            C[3 * i + j] =
+                A[i] * B[j] + A[3 + i] * B[3 + j] + A[6 + i] * B[6 + j];
+}
+
+void ritz_turn_apply(const double R[static 9], const double x[static 3],
+                     double y[static 3])
+{
+    for (int64_t i = 0; i < 3; i++)
+        y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
+}
+
+void ritz_turn_back(const double R[static 9], const double x[static 3],
+                    double y[static 3])
+{
+    for (int64_t i = 0; i < 3; i++)
+        y[i] = R[i] * x[0] + R[3 + i] * x[1] + R[6 + i] * x[2];
+}
+
+void ritz_cross(const double a[static 3], const double b[static 3],
+                double c[static 3])
+{
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        int k = (i + 2) % 3;
+
+        c[i] = a[j] * b[k] - a[k] * b[j];
+    }
+}
+
+double ritz_dot(const double a[static 3], const double b[static 3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* x / |x|. */
+static void normalise(double x[static 3])
+{
+    double length = sqrt(ritz_dot(x, x));
+
+    for (int i = 0; i < 3; i++)
+        x[i] /= length;
+}
+
+/* Two unit vectors normal to a unit axis and to each other. */
+static void normals(const double axis[static 3], double e[static 2][3])
+{
+    double start[3] = {0.0, 0.0, 0.0};
+    int least = 0;
+
+    for (int i = 1; i < 3; i++)
+        if (fabs(axis[i]) < fabs(axis[least]))
+            least = i;
+    start[least] = 1.0;
+    ritz_cross(axis, start, e[0]);
+    normalise(e[0]);
+    ritz_cross(axis, e[0], e[1]);
+}
+
 /*
  * What joints demand of the displacements u and rotations theta of two ports,
  * each along the basic axes of its own body. At rest a point x_B of the second
@@ -27,15 +133,6 @@
  * angles q_1, q_2 about a and c, phi = a q_1 + c q_2, are those of the dual
  * basis, q_k = g_k'phi with g_1 = c x n / a'(c x n), g_2 = n x a / c'(n x a).
  */
-#include "assembly/joints.h"
-
-#include "assembly/turns.h"
-#include "base/alloc.h"
-
-#include <inttypes.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Directions e of a joint: three of translation, then three of rotation. */
 typedef void point(const ritz_joint *joint, const ritz_joint_pose *pose,
@@ -63,7 +160,7 @@ static void point_hinge(const ritz_joint *joint, const ritz_joint_pose *pose,
     (void)pose;
     fill_basic(e);
     memcpy(e[3], joint->axis[0], sizeof e[3]);
-    ritz_normals(e[3], e + 4);
+    normals(e[3], e + 4);
 }
 
 static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
@@ -71,7 +168,7 @@ static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
 {
     (void)pose;
     memcpy(e[0], joint->axis[0], sizeof e[0]);
-    ritz_normals(e[0], e + 1);
+    normals(e[0], e + 1);
     fill_basic(e + 3);
 }
 
@@ -91,7 +188,7 @@ static void point_universal(const ritz_joint *joint,
     fill_basic(e);
     ritz_turn_apply(pose->R, joint->axis[1], c);
     ritz_cross(a, c, e[5]);
-    ritz_normalise(e[5]);
+    normalise(e[5]);
     ritz_cross(c, e[5], v);
     make_dual(a, v, e[3]);
     ritz_cross(e[5], a, v);
@@ -105,7 +202,7 @@ static void point_bushing(const ritz_joint *joint, const ritz_joint_pose *pose,
     (void)pose;
     memcpy(e[0], joint->axis[0], sizeof e[0]);
     ritz_cross(joint->axis[0], joint->axis[1], e[2]);
-    ritz_normalise(e[2]);
+    normalise(e[2]);
     ritz_cross(e[2], e[0], e[1]);
     memcpy(e + 3, e, 3 * sizeof e[0]);
 }
@@ -129,6 +226,22 @@ static const struct {
     [RITZ_JOINT_RIGID] = {"rigid joint", point_basic, {0}},
 };
 
+/*
+ * A fixed joint: every grid of one port with the grid of the other that lies
+ * at the same place, each measured from its port's origin.
+ */
+
+/* Row of a direction of the grid that starts at port row @p first, or -1. */
+static int64_t joint_direction(const ritz_joint_end *end, int64_t first,
+                               int64_t direction)
+{
+    for (int64_t k = first; k < end->count; k++)
+        if (end->dof[k].grid == end->dof[first].grid &&
+            end->dof[k].component == direction)
+            return k;
+    return -1;
+}
+
 /* Words for what a port lacks to be one six-dof grid. */
 static void list_missing(const ritz_joint_end *end, char text[64])
 {
@@ -137,7 +250,7 @@ static void list_missing(const ritz_joint_end *end, char text[64])
 
     text[0] = '\0';
     for (int64_t k = 0; k < 6; k++)
-        if (ritz_joint_direction(end, 0, k + 1) < 0)
+        if (joint_direction(end, 0, k + 1) < 0)
             used += (size_t)snprintf(text + used, 64 - used, "%s%s",
                                      used > 0 ? ", " : "", words[k]);
 }
@@ -164,7 +277,7 @@ static ritz_status find_six(const ritz_joint_end *end, const char *called,
                    called, end->dof[0].grid, end->component, end->port,
                    missing);
     for (int64_t k = 0; k < 6; k++)
-        row[k] = ritz_joint_direction(end, 0, k + 1);
+        row[k] = joint_direction(end, 0, k + 1);
     return RITZ_OK;
 }
 
@@ -212,6 +325,40 @@ static void find_arms(const ritz_joint_end end[static 2],
     }
 }
 
+/* Distance of two grids, each measured from its port's origin. */
+static double joint_distance(const ritz_joint_end end[static 2], int64_t a,
+                             int64_t b)
+{
+    double sum = 0.0;
+
+    for (int i = 0; i < 3; i++) {
+        double d = end[0].position[3 * a + i] - end[0].origin[i] -
+                   (end[1].position[3 * b + i] - end[1].origin[i]);
+
+        sum += d * d;
+    }
+    return sqrt(sum);
+}
+
+/* 1e-5 of the largest distance of a port's grids from its origin. */
+static double joint_tolerance(const ritz_joint *joint,
+                              const ritz_joint_end *end)
+{
+    double most = 0.0;
+
+    for (int64_t k = 0; k < end->count; k++) {
+        double sum = 0.0;
+
+        for (int i = 0; i < 3; i++) {
+            double d = end->position[3 * k + i] - end->origin[i];
+
+            sum += d * d;
+        }
+        most = fmax(most, sqrt(sum));
+    }
+    return joint->tolerance > 0.0 ? joint->tolerance : 1e-5 * most + 1e-12;
+}
+
 /* The relations of a joint of one grid on each side. */
 static ritz_status relate_six(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
@@ -224,14 +371,13 @@ static ritz_status relate_six(const ritz_joint *joint,
     for (int k = 0; k < 2; k++)
         RITZ_CHECK(find_six(&end[k], kinds[joint->type].called, row[k]));
     RITZ_REFUSE_IF(joint->type == RITZ_JOINT_BUSHING &&
-                       ritz_joint_distance(end, 0, 0) >
-                           ritz_joint_tolerance(joint, &end[0]),
+                       joint_distance(end, 0, 0) >
+                           joint_tolerance(joint, &end[0]),
                    RITZ_ERR_ARGUMENT,
                    "a bushing lies between grids at one place, those of "
                    "'%s/%s' and '%s/%s' lie %.3g apart, %.3g is let pass",
                    end[0].component, end[0].port, end[1].component, end[1].port,
-                   ritz_joint_distance(end, 0, 0),
-                   ritz_joint_tolerance(joint, &end[0]));
+                   joint_distance(end, 0, 0), joint_tolerance(joint, &end[0]));
     kinds[joint->type].point(joint, pose, e);
     find_arms(end, pose, arm);
     for (int k = 0; k < 6; k++) {
@@ -246,6 +392,94 @@ static ritz_status relate_six(const ritz_joint *joint,
     return RITZ_OK;
 }
 
+/* Rows at which a new grid begins, scalar points left out; how many. */
+static int64_t list_grids(const ritz_joint_end *end, int64_t *first)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < end->count; k++)
+        if (end->dof[k].component > 0 &&
+            (k == 0 || end->dof[k].grid != end->dof[k - 1].grid))
+            first[count++] = k;
+    return count;
+}
+
+/* Six equalities at most, of the directions that both grids have. */
+static void pair_grids(const ritz_joint_end end[static 2], int64_t a, int64_t b,
+                       ritz_relations *list)
+{
+    for (int64_t direction = 1; direction <= 6; direction++) {
+        int64_t i = joint_direction(&end[0], a, direction);
+        int64_t j = joint_direction(&end[1], b, direction);
+
+        if (i >= 0 && j >= 0)
+            list->item[list->count++] = (ritz_relation){
+                .rotation = direction > 3,
+                .freedom = {.state = RITZ_LOCKED},
+                .num_terms = {1, 1},
+                .row = {{i}, {j}},
+                .factor = {{1.0}, {1.0}},
+            };
+    }
+}
+
+/* The grid nearest to `grid` that is not taken, -1 if all are. */
+static int64_t find_nearest(const ritz_joint_end end[static 2], int64_t grid,
+                            int64_t count, const int64_t *first,
+                            const bool *taken)
+{
+    int64_t near = -1;
+
+    for (int64_t j = 0; j < count; j++)
+        if (!taken[j] &&
+            (near < 0 || joint_distance(end, grid, first[j]) <
+                             joint_distance(end, grid, first[near])))
+            near = j;
+    return near;
+}
+
+/* Those of a fixed joint: grids in pairs; room is that of the first port. */
+static ritz_status pair_joint(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              ritz_relations *list)
+{
+    ritz_status status = RITZ_OK;
+    double tolerance = joint_tolerance(joint, &end[0]);
+    int64_t *first[2] = {NULL, NULL};
+    bool *taken = NULL;
+    int64_t count[2];
+
+    for (int k = 0; k < 2; k++) {
+        RITZ_NEW(first[k], end[k].count);
+        count[k] = list_grids(&end[k], first[k]);
+    }
+    RITZ_FAIL_IF(count[0] != count[1], RITZ_ERR_ARGUMENT,
+                 "'%s/%s' has %" PRId64 " grids and '%s/%s' has %" PRId64,
+                 end[0].component, end[0].port, count[0], end[1].component,
+                 end[1].port, count[1]);
+    RITZ_NEW(taken, count[1]);
+    for (int64_t k = 0; k < count[0]; k++) {
+        int64_t a = first[0][k];
+        int64_t near = find_nearest(end, a, count[1], first[1], taken);
+        int64_t b = first[1][near];
+
+        RITZ_FAIL_IF(joint_distance(end, a, b) > tolerance, RITZ_ERR_ARGUMENT,
+                     "grid %" PRId64
+                     " of '%s/%s' has no partner: the nearest, grid "
+                     "%" PRId64 " of '%s/%s', lies %.3g away, %.3g is let pass",
+                     end[0].dof[a].grid, end[0].component, end[0].port,
+                     end[1].dof[b].grid, end[1].component, end[1].port,
+                     joint_distance(end, a, b), tolerance);
+        taken[near] = true;
+        pair_grids(end, a, b, list);
+    }
+done:
+    free(first[0]);
+    free(first[1]);
+    free(taken);
+    return status;
+}
+
 ritz_status ritz_joint_relate(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               const ritz_joint_pose *pose, ritz_relations *out)
@@ -255,7 +489,7 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
 
     RITZ_NEW(list.item, end[0].count + 6);
     if (joint->type == RITZ_JOINT_FIXED)
-        RITZ_TRY(ritz_joint_pair(joint, end, &list));
+        RITZ_TRY(pair_joint(joint, end, &list));
     else
         RITZ_TRY(relate_six(joint, end, pose, &list));
     RITZ_FAIL_IF(list.count == 0, RITZ_ERR_ARGUMENT,
@@ -277,4 +511,39 @@ void ritz_relations_free(ritz_relations *relations)
 {
     free(relations->item);
     *relations = (ritz_relations){0};
+}
+
+/* Where the settings of a joint put its second body: joints.c has the table. */
+
+void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
+                        ritz_joint_pose *out)
+{
+    double s[2] = {0.0, 0.0};
+    double first[9], second[9];
+    ritz_joint_pose pose = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+
+    for (int64_t k = 0; k < joint->num_sweeps && k < 2; k++)
+        s[k] = setting[joint->sweep + k];
+    switch (joint->type) {
+    case RITZ_JOINT_HINGE:
+        ritz_turn_about(joint->axis[0], s[0], pose.R);
+        break;
+    case RITZ_JOINT_SLIDER:
+        for (int i = 0; i < 3; i++)
+            pose.d[i] = s[0] * joint->axis[0][i];
+        break;
+    case RITZ_JOINT_UNIVERSAL:
+        ritz_turn_about(joint->axis[0], s[0], first);
+        ritz_turn_about(joint->axis[1], s[1], second);
+        ritz_turn_product(first, second, pose.R);
+        break;
+    case RITZ_JOINT_RIGID:
+        memcpy(pose.d, joint->offset, sizeof pose.d);
+        break;
+    case RITZ_JOINT_FIXED:
+    case RITZ_JOINT_SPHERICAL:
+    case RITZ_JOINT_BUSHING:
+        break;
+    }
+    *out = pose;
 }

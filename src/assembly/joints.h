@@ -54,22 +54,6 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               const ritz_joint_pose *pose, ritz_relations *out);
 
-/** Those of a fixed joint: grids in pairs; room is that of the first port. */
-ritz_status ritz_joint_pair(const ritz_joint *joint,
-                            const ritz_joint_end end[static 2],
-                            ritz_relations *list);
-
-/** Row of a direction of the grid that starts at port row @p first, or -1. */
-int64_t ritz_joint_direction(const ritz_joint_end *end, int64_t first,
-                             int64_t direction);
-
-/** Distance of two grids, each measured from its port's origin. */
-double ritz_joint_distance(const ritz_joint_end end[static 2], int64_t a,
-                           int64_t b);
-
-/** What a joint lets pass of that distance. */
-double ritz_joint_tolerance(const ritz_joint *joint, const ritz_joint_end *end);
-
 void ritz_relations_free(ritz_relations *relations);
 
 #endif

@@ -12,17 +12,6 @@ typedef struct ritz_link {
 } ritz_link;
 
 /**
- * The far body's stiffness and mass as the near port feels them.
- *
- * @param[in]  far   in coordinates q
- * @param[out] K,M   p x p
- */
-ritz_status ritz_link_condense(const ritz_reduced *far, const ritz_link *link,
-                               ritz_dense *K, ritz_dense *M);
-
-void ritz_link_free(ritz_link *link);
-
-/**
  * The neighbours of component @p k of a scene at its first configuration, by
  * all its joints; the other components are read for it.
  *

@@ -20,6 +20,7 @@
 
 /* Angles and positions of a loop are written with so many digits. */
 static const double closure = 1e-4;
+
 /* Of placements a few bodies apart, each a product of rotations: no gap. */
 static const double rounding = 1e-13;
 
@@ -113,8 +114,15 @@ static bool spread(const ritz_stage *stage, const ritz_joint_pose *pose,
     return found;
 }
 
-void ritz_place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
-                       ritz_placement *place)
+/*
+ * Every body placed through the joints, those that nothing holds staying where
+ * they are; a spherical joint turns a body only if no other joint does.
+ *
+ * @param[in]     pose   of each joint
+ * @param[in,out] place  of each body, zero on entry
+ */
+static void place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
+                         ritz_placement *place)
 {
     for (int64_t k = 0; k < stage->count; k++) {
         if (place[k].known)
@@ -210,7 +218,7 @@ ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
     RITZ_NEW(place, stage->count);
     for (int64_t j = 0; j < scene->num_joints; j++)
         ritz_joint_pose_at(&scene->joint[j], setting, &pose[j]);
-    ritz_place_bodies(stage, pose, place);
+    place_bodies(stage, pose, place);
     for (int64_t j = 0; j < scene->num_joints; j++) {
         link at;
 
@@ -219,5 +227,233 @@ ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
     }
 done:
     free(place);
+    return status;
+}
+
+/* Grids of all bodies side by side, where a configuration puts them. */
+
+/* Numbers stay where ranges do not overlap; else body k adds k 10^p. */
+static void renumber(int64_t count, const ritz_component *body, int64_t *add)
+{
+    int64_t power = 1;
+    int64_t highest = -1;
+    bool overlap = false;
+
+    for (int64_t k = 0; k < count; k++) {
+        int64_t least = INT64_MAX;
+        int64_t most = -1;
+        int64_t n = body[k].num_dofs;
+
+        for (int64_t i = 0; i < n + body[k].recovery.count; i++) {
+            int64_t grid =
+                i < n ? body[k].dof[i].grid : body[k].recovery.dof[i - n].grid;
+
+            least = grid < least ? grid : least;
+            most = grid > most ? grid : most;
+        }
+        overlap = overlap || least <= highest;
+        highest = most > highest ? most : highest;
+    }
+    while (highest >= power && power < INT64_MAX / 1000)
+        power *= 10;
+    for (int64_t k = 0; k < count; k++)
+        add[k] = overlap ? k * power : 0;
+}
+
+/* Append the grids of one body. */
+static void append(const ritz_grids *from, const ritz_placement *place,
+                   int64_t add, ritz_grids *to)
+{
+    for (int64_t i = 0; i < from->count; i++) {
+        double *x = to->position + 3 * to->count;
+
+        ritz_turn_apply(place->R, from->position + 3 * i, x);
+        for (int64_t k = 0; k < 3; k++)
+            x[k] += place->t[k];
+        to->id[to->count] = from->id[i] + add;
+        to->frame[to->count++] = to->num_frames + from->frame[i];
+    }
+    for (int64_t f = 0; f < from->num_frames; f++)
+        for (int64_t k = 0; k < 3; k++)
+            ritz_turn_apply(place->R, from->axes + 9 * f + 3 * k,
+                            to->axes + 9 * (to->num_frames + f) + 3 * k);
+    to->num_frames += from->num_frames;
+}
+
+/* One grid of the sorted order. */
+typedef struct entry {
+    int64_t id, at;
+} entry;
+
+static int compare(const void *left, const void *right)
+{
+    const entry *a = left;
+    const entry *b = right;
+
+    return (a->id > b->id) - (a->id < b->id);
+}
+
+/* Put grids in ascending order of number. */
+static ritz_status sort(ritz_grids *grids)
+{
+    ritz_status status = RITZ_OK;
+    size_t n = (size_t)grids->count;
+    entry *order = NULL;
+    double *position = NULL;
+    int64_t *frame = NULL;
+
+    RITZ_NEW(order, grids->count);
+    RITZ_NEW(position, 3 * grids->count);
+    RITZ_NEW(frame, grids->count);
+    for (int64_t k = 0; k < grids->count; k++)
+        order[k] = (entry){grids->id[k], k};
+    qsort(order, n, sizeof *order, compare);
+    for (int64_t k = 0; k < grids->count; k++) {
+        memcpy(position + 3 * k, grids->position + 3 * order[k].at,
+               3 * sizeof *position);
+        frame[k] = grids->frame[order[k].at];
+        grids->id[k] = order[k].id;
+    }
+    free(grids->position);
+    free(grids->frame);
+    grids->position = position;
+    grids->frame = frame;
+    position = NULL;
+    frame = NULL;
+done:
+    free(order);
+    free(position);
+    free(frame);
+    return status;
+}
+
+ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
+                             int64_t count, const ritz_component *body,
+                             int64_t *add, ritz_grids *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_placement *place = NULL;
+    ritz_joint_pose *pose = NULL;
+    ritz_grids all = {0};
+    int64_t grids = 0;
+    int64_t frames = 1;
+
+    for (int64_t k = 0; k < count; k++) {
+        grids += body[k].grids.count;
+        frames += body[k].grids.num_frames;
+    }
+    RITZ_NEW(place, count);
+    RITZ_NEW(pose, stage->scene->num_joints);
+    RITZ_NEW(all.id, grids);
+    RITZ_NEW(all.position, 3 * grids);
+    RITZ_NEW(all.frame, grids);
+    RITZ_NEW(all.axes, 9 * frames);
+    for (int64_t j = 0; j < stage->scene->num_joints; j++)
+        ritz_joint_pose_at(&stage->scene->joint[j], setting, &pose[j]);
+    place_bodies(stage, pose, place);
+    renumber(count, body, add);
+    all.num_frames = 1;
+    for (int64_t k = 0; k < 3; k++)
+        all.axes[4 * k] = 1.0;
+    for (int64_t k = 0; k < count; k++)
+        append(&body[k].grids, &place[k], add[k], &all);
+    RITZ_TRY(sort(&all));
+    *out = all;
+    all = (ritz_grids){0};
+done:
+    free(place);
+    free(pose);
+    ritz_grids_free(&all);
+    return status;
+}
+
+/*
+ * Mass and momentum of all bodies where a configuration puts them. A body at
+ * x = R x_b + t moves by its own rigid motions r_b as the whole does by
+ *
+ *     r = r_b X',    X = [R  0; [t]x R  R],
+ *
+ * so that R'M P = sum_b X_b (r_b'M_b T_b) P_b and R'MR = sum_b X_b (r_b'M_b
+ * r_b) X_b'.
+ */
+
+enum { DIRECTIONS = 6, MASSES = 36 };
+
+static bool is_known(const ritz_stage *stage)
+{
+    for (int64_t k = 0; k < stage->count; k++)
+        if (!stage->body[k].invariants.momentum.val)
+            return false;
+    return stage->count > 0;
+}
+
+/* X of a placement, 6 x 6. */
+static void carry(const ritz_placement *place, ritz_dense *X)
+{
+    for (int64_t j = 0; j < 3; j++) {
+        const double axis[3] = {place->R[j], place->R[3 + j], place->R[6 + j]};
+        double moment[3];
+
+        ritz_cross(place->t, axis, moment);
+        for (int64_t i = 0; i < 3; i++) {
+            ritz_dense_col(X, j)[i] = axis[i];
+            ritz_dense_col(X, j)[3 + i] = moment[i];
+            ritz_dense_col(X, 3 + j)[i] = 0.0;
+            ritz_dense_col(X, 3 + j)[3 + i] = axis[i];
+        }
+    }
+}
+
+static ritz_status add_body(const ritz_invariants *own, const ritz_dense *X,
+                            const ritz_dense *P, ritz_configuration *c)
+{
+    ritz_status status = RITZ_OK;
+    double rigid[MASSES];
+    const ritz_dense mass = {DIRECTIONS, DIRECTIONS, rigid};
+    ritz_dense XL = {0}, L = {0}, XM = {0}, all = {0};
+
+    memcpy(rigid, own->rigid, sizeof rigid);
+    RITZ_TRY(ritz_dense_mul(X, &own->momentum, &XL));
+    RITZ_TRY(ritz_dense_mul(&XL, P, &L));
+    RITZ_TRY(ritz_dense_mul(X, &mass, &XM));
+    RITZ_TRY(ritz_dense_mul_nt(&XM, X, &all));
+    for (int64_t k = 0; k < DIRECTIONS * L.ncol; k++)
+        c->momentum.val[k] += L.val[k];
+    for (int64_t k = 0; k < MASSES; k++)
+        c->rigid[k] += all.val[k];
+done:
+    ritz_dense_free(&XL);
+    ritz_dense_free(&L);
+    ritz_dense_free(&XM);
+    ritz_dense_free(&all);
+    return status;
+}
+
+ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
+                            ritz_configuration *configuration)
+{
+    ritz_status status = RITZ_OK;
+    ritz_joint_pose *pose = NULL;
+    ritz_placement *place = NULL;
+    ritz_dense X = {0};
+
+    if (!is_known(stage))
+        return RITZ_OK;
+    RITZ_NEW(pose, stage->scene->num_joints);
+    RITZ_NEW(place, stage->count);
+    RITZ_TRY(ritz_place_joints(stage, setting, pose));
+    place_bodies(stage, pose, place);
+    RITZ_TRY(ritz_dense_new(DIRECTIONS, DIRECTIONS, &X));
+    RITZ_TRY(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
+                            &configuration->momentum));
+    for (int64_t k = 0; k < stage->count; k++) {
+        carry(&place[k], &X);
+        RITZ_TRY(add_body(&stage->body[k].invariants, &X, &configuration->P[k],
+                          configuration));
+    }
+done:
+    free(pose);
+    free(place);
+    ritz_dense_free(&X);
     return status;
 }

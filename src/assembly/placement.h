@@ -14,16 +14,6 @@ typedef struct ritz_placement {
 } ritz_placement;
 
 /**
- * Every body placed through the joints, those that nothing holds staying where
- * they are; a spherical joint turns a body only if no other joint does.
- *
- * @param[in]     pose   of each joint
- * @param[in,out] place  of each body, zero on entry
- */
-void ritz_place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
-                       ritz_placement *place);
-
-/**
  * The pose of each joint of the scene at some settings; that of a joint which
  * closes a loop is what the other joints leave it.
  *

@@ -2,7 +2,6 @@
 #include "assembly/neighbour.h"
 #include "base/alloc.h"
 
-#include <ritz/container.h>
 #include <ritz/method.h>
 #include <ritz/monitor.h>
 #include <ritz/nested.h>
@@ -137,13 +136,14 @@ static ritz_status check_ports(const ritz_scene *scene, int64_t k,
 }
 
 /* A reduced model, or as many of its columns as the scene takes. */
-static ritz_status read_columns(const ritz_scene_component *item,
+static ritz_status load_columns(const ritz_source *source,
+                                const ritz_scene_component *item,
                                 ritz_reduced *out)
 {
     ritz_status status = RITZ_OK;
     ritz_reduced whole = {0};
 
-    RITZ_TRY(ritz_container_read_reduced(item->model, &whole));
+    RITZ_TRY(source->reduced(source->state, item->model, &whole));
     if (item->order > 0) {
         RITZ_TRY_IN(item->model, ritz_reduced_prefix(&whole, item->order, out));
     } else {
@@ -160,28 +160,28 @@ ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
 {
     ritz_status status = RITZ_OK;
     const ritz_scene_component *item = &scene->component[k];
-    ritz_summary summary = {0};
+    const ritz_source *source = scene->source;
+    char kind[RITZ_NAME_SIZE];
     ritz_component component = {0};
     bool known = false;
 
-    RITZ_TRY(ritz_container_summary(item->model, &summary));
-    if (strcmp(summary.kind, "reduced") == 0) {
+    RITZ_TRY(source->kind(source->state, item->model, kind));
+    if (strcmp(kind, "reduced") == 0) {
         RITZ_FAIL_IF(item->basis[0], RITZ_ERR_ARGUMENT,
                      "'%s' is reduced already, so it takes no basis",
                      item->model);
-        RITZ_TRY(read_columns(item, reduced));
+        RITZ_TRY(load_columns(source, item, reduced));
         goto done;
     }
     RITZ_FAIL_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
                  "'%s' is a full model, so a basis is due", item->model);
-    RITZ_TRY(ritz_container_read_component(item->model, &component));
+    RITZ_TRY(source->component(source->state, item->model, &component));
     status = check_ports(scene, k, &component);
     known = status != RITZ_OK; /* said where the port is named */
     RITZ_TRY(status);
     *full = component;
     component = (ritz_component){0};
 done:
-    ritz_summary_free(&summary);
     ritz_component_free(&component);
     return known ? status
                  : ritz_scene_context(scene, status, item->line, item->column,

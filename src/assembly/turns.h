@@ -26,10 +26,4 @@ void ritz_cross(const double a[static 3], const double b[static 3],
 
 double ritz_dot(const double a[static 3], const double b[static 3]);
 
-/** x / |x|. */
-void ritz_normalise(double x[static 3]);
-
-/** Two unit vectors normal to a unit axis and to each other. */
-void ritz_normals(const double axis[static 3], double e[static 2][3]);
-
 #endif

@@ -1,3 +1,166 @@
+/* The rows of a comparison: configurations that are listed, and between. */
+#include "base/alloc.h"
+
+#include "assembly/dual.h"
+#include "compare/compare.h"
+
+#include <ritz/monitor.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The sweep in which two configurations differ, -1 if not in one alone. */
+static int64_t differs_by(int64_t sweeps, const double *a, const double *b)
+{
+    int64_t one = -1;
+
+    for (int64_t k = 0; k < sweeps; k++)
+        if (a[k] != b[k]) {
+            if (one >= 0)
+                return -1;
+            one = k;
+        }
+    return one;
+}
+
+/* Append a row half way between two configurations. */
+static ritz_status add_between(const ritz_scene *scene, const double *from,
+                               int64_t sweep, double to, int64_t *count,
+                               ritz_compare_row *rows)
+{
+    ritz_compare_row *row = &rows[*count];
+
+    *count += 1;
+    RITZ_CHECK_NEW(row->setting, scene->num_sweeps);
+    memcpy(row->setting, from,
+           (size_t)scene->num_sweeps * sizeof *row->setting);
+    row->setting[sweep] = 0.5 * (from[sweep] + to);
+    return RITZ_OK;
+}
+
+/*
+ * Rows between neighbours of the list, and, where the turning of one joint goes
+ * on round the circle by the same step, between its last and its first.
+ */
+static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
+                                ritz_compare_row *row)
+{
+    int64_t h = scene->num_sweeps;
+    int64_t count = scene->num_configurations;
+    const double *first = scene->setting;
+    const double *last = scene->setting + (count - 1) * h;
+    int64_t sweep = -1;
+
+    for (int64_t k = 0; k + 1 < count; k++) {
+        const double *a = scene->setting + k * h;
+
+        sweep = differs_by(h, a, a + h);
+        if (sweep >= 0)
+            RITZ_CHECK(add_between(scene, a, sweep, a[h + sweep], rows, row));
+    }
+    sweep = count > 2 ? differs_by(h, first, last) : -1;
+    if (sweep >= 0 && scene->sweep[sweep].turns) {
+        double step = first[h + sweep] - first[sweep];
+
+        if (fabs(last[sweep] + step - first[sweep] - 360.0) < 1e-9)
+            RITZ_CHECK(
+                add_between(scene, last, sweep, last[sweep] + step, rows, row));
+    }
+    return RITZ_OK;
+}
+
+/* Listed configurations, then those half way between neighbours. */
+static ritz_status list_compare(const ritz_scene *scene, int64_t *count,
+                                ritz_compare_row **out)
+{
+    int64_t h = scene->num_sweeps;
+
+    RITZ_REFUSE_IF(scene->num_configurations < 1, RITZ_ERR_ARGUMENT,
+                   "the scene has no configuration");
+    RITZ_CHECK_NEW(*out, 2 * scene->num_configurations);
+    for (int64_t k = 0; k < scene->num_configurations; k++) {
+        ritz_compare_row *row = &(*out)[(*count)++];
+
+        row->listed = true;
+        RITZ_CHECK_NEW(row->setting, h);
+        if (h > 0)
+            memcpy(row->setting, scene->setting + k * h,
+                   (size_t)h * sizeof *row->setting);
+    }
+    return list_between(scene, count, *out);
+}
+
+/* What was measured, into the files of stage two. */
+
+/* A measure that was taken; NaN stands for none. */
+static ritz_status add(ritz_measures *errors, const char *name, double value,
+                       double limit, const char *where)
+{
+    return isnan(value) ? RITZ_OK
+                        : ritz_measures_add(errors, name, value, limit, where);
+}
+
+/* Of one configuration. */
+static ritz_status record_row(const ritz_compare_row *row,
+                              ritz_measures *errors)
+{
+    static const char against[] = "kept modes against the stage-1 system";
+
+    RITZ_CHECK(add(errors, "stage1-frequency-relative", row->frequency_error,
+                   row->allowed, against));
+    RITZ_CHECK(add(errors, "stage1-mac", row->mac, nan(""), against));
+    RITZ_CHECK(
+        add(errors, "stage1-rigid-hertz", row->rigid_error, nan(""), ""));
+    RITZ_CHECK(add(errors, "stage1-static-gain-relative", row->gain_error,
+                   nan(""), ""));
+    RITZ_CHECK(
+        add(errors, "stage1-moments-relative", row->moment_error, nan(""), ""));
+    return add(errors, "stage1-response-relative", row->response_error, nan(""),
+               "");
+}
+
+/*
+ * The worst of all listed configurations, into the file of every body. What no
+ * configuration measured is NaN, and stays so: fmax passes NaN over.
+ */
+static ritz_status record_bodies(ritz_comparison *out)
+{
+    static const char worst[] = "worst listed angle, against stage 1";
+    double frequency = nan(""), gain = nan(""), response = nan("");
+
+    for (int64_t k = 0; k < out->num_rows; k++) {
+        const ritz_compare_row *row = &out->row[k];
+
+        if (!row->listed)
+            continue;
+        frequency = fmax(frequency, row->frequency_error);
+        gain = fmax(gain, row->gain_error);
+        response = fmax(response, row->response_error);
+    }
+    for (int64_t c = 0; c < out->second.count; c++) {
+        ritz_measures *errors = &out->second.body[c].errors;
+
+        RITZ_CHECK(add(errors, "stage1-frequency-relative", frequency, nan(""),
+                       worst));
+        RITZ_CHECK(
+            add(errors, "stage1-static-gain-relative", gain, nan(""), worst));
+        RITZ_CHECK(
+            add(errors, "stage1-response-relative", response, nan(""), worst));
+    }
+    return RITZ_OK;
+}
+
+/* Into the files of the second system and of every body. */
+static ritz_status record_compare(ritz_comparison *comparison)
+{
+    for (int64_t k = 0; k < comparison->second_system.num_configurations; k++)
+        RITZ_CHECK(
+            record_row(&comparison->row[k],
+                       &comparison->second_system.configuration[k].errors));
+    return record_bodies(comparison);
+}
+
 /*
  * COMPARE [LeeTsuha1992]. Stage one: each body in its component modes, the
  * system at every configuration, the modes that matter there. Stage two: the
@@ -8,13 +171,6 @@
  * for its projections on the bodies fit each other, and Rayleigh-Ritz returns
  * it to rounding; tests/unit/compare/test_compare.c holds the code to it.
  */
-#include "assembly/dual.h"
-#include "base/alloc.h"
-#include "compare/compare_parts.h"
-
-#include <ritz/monitor.h>
-
-#include <stdlib.h>
 
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k)
 {
@@ -111,7 +267,7 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
     ritz_rows rows = {.stage = stage, .listed = &c.first_system};
 
     RITZ_TRY(ritz_dual_refuse(stage));
-    RITZ_TRY(ritz_compare_list(stage->scene, &c.num_rows, &c.row));
+    RITZ_TRY(list_compare(stage->scene, &c.num_rows, &c.row));
     rows.num_rows = c.num_rows;
     rows.row = c.row;
     RITZ_TRY_IN("stage 1", ritz_assemble(stage, NULL, &c.first_system));
@@ -120,7 +276,7 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
     RITZ_TRY(reduce(&rows, &c));
     RITZ_TRY_IN("errors", measure(&rows, &c));
     ritz_compare_suggest(&c, &c.suggestion);
-    RITZ_TRY(ritz_compare_record(&c));
+    RITZ_TRY(record_compare(&c));
     *out = c;
     c = (ritz_comparison){0};
 done:

@@ -1,3 +1,239 @@
+#include "compare/directions.h"
+
+#include "base/alloc.h"
+#include "compare/compare.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of mass scaled to unit diagonal: below this it counts as singular. */
+static const double well_conditioned = 1e-12;
+
+double ritz_typical_lambda(const ritz_reduced *body)
+{
+    double sum = 0.0;
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < body->K.ncol; j++) {
+        double k = ritz_dense_col(&body->K, j)[j];
+        double m = ritz_dense_col(&body->M, j)[j];
+
+        if (k > 0.0 && m > 0.0) {
+            sum += log(k / m);
+            count++;
+        }
+    }
+    return count > 0 ? exp(sum / (double)count) : 1.0;
+}
+
+/* L = lower triangle of S (M + stiffness K) S. */
+static void fill(const ritz_reduced *body, const double *scale,
+                 double stiffness, ritz_dense *L)
+{
+    for (int64_t j = 0; j < L->ncol; j++)
+        for (int64_t i = 0; i < L->nrow; i++)
+            ritz_dense_col(L, j)[i] =
+                i < j ? 0.0
+                      : scale[i] * scale[j] *
+                            (ritz_dense_col(&body->M, j)[i] +
+                             stiffness * ritz_dense_col(&body->K, j)[i]);
+}
+
+/* Factor L in place; false if it is not definite, or conditioned worse. */
+static bool factor(ritz_dense *L, double least)
+{
+    int r = (int)L->ncol;
+    double norm = 0.0, rcond = 1.0;
+
+    if (r == 0)
+        return true;
+    norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', r, L->val, r);
+    if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, L->val, r) != 0)
+        return false;
+    return LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, L->val, r, norm, &rcond) ==
+               0 &&
+           rcond > least;
+}
+
+ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
+                              double lambda, ritz_dense *L)
+{
+    RITZ_CHECK(ritz_dense_new(body->M.ncol, body->M.ncol, L));
+    fill(body, scale, 1.0 / lambda, L);
+    RITZ_REFUSE_IF(
+        !factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
+        "a motion has neither mass nor stiffness, or the reduced mass "
+        "is not positive");
+    return RITZ_OK;
+}
+
+ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
+                             ritz_dense *L, bool *mixed)
+{
+    int64_t r = body->M.ncol;
+
+    *mixed = false;
+    RITZ_CHECK(ritz_dense_new(r, r, L));
+    fill(body, scale, 0.0, L);
+    if (factor(L, well_conditioned))
+        return RITZ_OK;
+    *mixed = true;
+    ritz_dense_free(L);
+    return ritz_mixed_factor(body, scale, ritz_typical_lambda(body), L);
+    return RITZ_OK;
+}
+
+void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U)
+{
+    int r = (int)U->nrow;
+
+    if (U->ncol > 0)
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
+                    CblasNonUnit, r, (int)U->ncol, 1.0, L->val, r, U->val, r);
+    for (int64_t j = 0; j < U->ncol; j++)
+        for (int64_t i = 0; i < r; i++)
+            ritz_dense_col(U, j)[i] *= scale[i];
+}
+
+ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
+                                const ritz_dense *W, ritz_dense *Y)
+{
+    RITZ_CHECK(ritz_dense_copy(W, Y));
+    for (int64_t j = 0; j < Y->ncol; j++)
+        for (int64_t i = 0; i < Y->nrow; i++)
+            ritz_dense_col(Y, j)[i] /= scale[i];
+    if (Y->nrow * Y->ncol > 0)
+        cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
+                    CblasNonUnit, (int)Y->nrow, (int)Y->ncol, 1.0, L->val,
+                    (int)Y->nrow, Y->val, (int)Y->nrow);
+    return RITZ_OK;
+}
+
+ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
+                             double *value, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int r = (int)Y->nrow;
+    int m = (int)Y->ncol;
+    int least = r < m ? r : m;
+    int rank = 0;
+    ritz_dense U = {0};
+    double *sigma = NULL, *work = NULL;
+
+    RITZ_NEW(sigma, least);
+    RITZ_NEW(work, least);
+    RITZ_TRY(ritz_dense_new(r, least, &U));
+    if (least > 0) {
+        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'N', r, m, Y->val, r,
+                                    sigma, U.val, r, NULL, 1, work) != 0,
+                     RITZ_ERR_CONVERGENCE,
+                     "singular values of the composite set do not converge");
+        *largest = fmax(*largest, sigma[0]);
+    }
+    while (rank < least && sigma[rank] > tolerance * *largest)
+        rank++;
+    for (int k = 0; value && k < rank; k++)
+        value[k] = sigma[k];
+    RITZ_TRY(ritz_dense_columns(&U, 0, rank, out));
+done:
+    free(sigma);
+    free(work);
+    ritz_dense_free(&U);
+    return status;
+}
+
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         ritz_dense *out)
+{
+    return ritz_span_values(Y, tolerance, largest, NULL, out);
+}
+
+/*
+ * What one configuration gives to the composite set, in its modal coordinates:
+ * rigid modes, static answers of the system, kept modes or Krylov vectors. See
+ * composite.c for what becomes of them.
+ */
+
+/* Scale the flexible part of x to unit norm; false if there is none. */
+static bool normalise(const ritz_configuration *c, double *x)
+{
+    double norm = 0.0;
+
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        norm = hypot(norm, x[k]);
+    for (int64_t k = c->num_rigid; k < c->K.ncol && norm > 0.0; k++)
+        x[k] /= norm;
+    return norm > 0.0;
+}
+
+/* Modal coordinates of the static answer to input j. */
+static bool answer_input(const ritz_configuration *c, int64_t j, double *x)
+{
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        x[k] = ritz_dense_col(&c->io.B, j)[k] / c->lambda[k];
+    return normalise(c, x);
+}
+
+/* The same to a force that does work where row i of an output reads. */
+static bool answer_output(const ritz_configuration *c, const ritz_dense *C,
+                          int64_t i, double *x)
+{
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        x[k] = ritz_dense_col(C, k)[i] / c->lambda[k];
+    return normalise(c, x);
+}
+
+/* Modal coordinates of the system's static answers. */
+static ritz_status choose_answers(const ritz_scene *scene,
+                                  const ritz_configuration *c,
+                                  const ritz_plan *plan, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *const C[] = {&c->io.C, &c->io.Cv, &c->io.Ca};
+    ritz_dense X = {0};
+    int64_t m = 0;
+
+    RITZ_TRY(ritz_dense_new(c->K.ncol, c->io.num_inputs + 3 * c->io.num_outputs,
+                            &X));
+    for (int64_t j = 0; j < c->io.num_inputs; j++)
+        if (ritz_plan_attaches(scene, plan, j))
+            m += answer_input(c, j, ritz_dense_col(&X, m));
+    for (int kind = 0; kind < 3; kind++)
+        for (int64_t i = 0; i < c->io.num_outputs; i++)
+            if (plan->attached & RITZ_ATTACHED_OUTPUTS)
+                m += answer_output(c, C[kind], i, ritz_dense_col(&X, m));
+    RITZ_TRY(ritz_dense_columns(&X, 0, m, out));
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* Unit columns of some modes. */
+static ritz_status unit_vectors(int64_t e, int64_t count, int64_t first,
+                                const int64_t *which, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(e, count, out));
+    for (int64_t k = 0; k < count; k++)
+        ritz_dense_col(out, k)[first + (which ? which[k] : k)] = 1.0;
+    return RITZ_OK;
+}
+
+static ritz_status choose_krylov(const ritz_scene *scene,
+                                 const ritz_configuration *c, ritz_dense *out)
+{
+    int64_t moments = 0;
+
+    RITZ_CHECK(ritz_system_krylov(c, scene->select_vectors,
+                                  scene->select_outputs, out, &moments));
+    for (int64_t j = 0; j < out->ncol; j++)
+        (void)normalise(c, ritz_dense_col(out, j));
+    return RITZ_OK;
+}
+
 /*
  * The composite set, projected on each body. At a configuration the
  * coordinates of body c are q_c = P_c x with x modal, so that its columns are
@@ -22,15 +258,6 @@
  *
  * Where M_c is singular, M_c + K_c / lambda takes its place.
  */
-#include "base/alloc.h"
-#include "compare/compare_parts.h"
-#include "compare/directions.h"
-
-#include <cblas.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
     RIGID = RITZ_GIVEN_RIGID,
@@ -40,6 +267,25 @@ enum {
     GROUPS = RITZ_GIVEN
 };
 
+ritz_status ritz_composite_choose(const ritz_scene *scene,
+                                  const ritz_configuration *configuration,
+                                  const ritz_compare_row *row, int group,
+                                  const ritz_plan *plan, ritz_dense *out)
+{
+    const ritz_configuration *c = configuration;
+    int64_t e = c->K.ncol;
+
+    if (group == RITZ_GIVEN_RIGID)
+        return unit_vectors(e, c->num_rigid, 0, NULL, out);
+    if (group == RITZ_GIVEN_STATIC && plan->augment == RITZ_AUGMENT_SYSTEM)
+        return choose_answers(scene, c, plan, out);
+    if (group == RITZ_GIVEN_KEPT && scene->select == RITZ_SELECT_KRYLOV)
+        return choose_krylov(scene, c, out);
+    if (group == RITZ_GIVEN_KEPT)
+        return unit_vectors(e, row->num_kept, c->num_rigid, row->kept, out);
+    return ritz_dense_new(e, 0, out);
+}
+
 /*
  * Below this, relative to the largest, a direction is rounding. Rigid modes
  * hold flexible motion of eps |P|'|K||P| / lambda, 1e-11 measured on frames of
@@ -48,6 +294,7 @@ enum {
  * depend on each other differ by its solver's eps cond(K).
  */
 static const double tightest[GROUPS] = {1e-9, 1e-9, 1e-12, 1e-12};
+
 static const double tightest_of_bodies = 1e-10;
 
 typedef struct columns {

@@ -13,7 +13,7 @@
  * An output of velocity or acceleration adds its own rows to those that start.
  */
 #include "base/alloc.h"
-#include "compare/compare_parts.h"
+#include "compare/compare.h"
 
 #include <math.h>
 #include <stdlib.h>

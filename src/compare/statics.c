@@ -18,7 +18,7 @@
  * what was massless in the first system have some in the second.
  */
 #include "base/alloc.h"
-#include "compare/compare_parts.h"
+#include "compare/compare.h"
 #include "compare/directions.h"
 
 #include <ritz/eigen.h>

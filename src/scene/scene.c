@@ -6,6 +6,8 @@
 
 #include "base/alloc.h"
 
+#include <ritz/container.h>
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,7 +66,8 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
     ritz_status status = RITZ_OK;
     const yaml_node_t *value[NUM_KEYS];
     ritz_yaml yaml = {0};
-    ritz_scene scene = {.select_by = "hankel",
+    ritz_scene scene = {.source = &ritz_container_source,
+                        .select_by = "hankel",
                         .select_tolerance = 1e-3,
                         .composite_tolerance = 1e-12,
                         .attached_tolerance = 1e-3};

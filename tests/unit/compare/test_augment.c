@@ -10,7 +10,7 @@
 #include "matrices.h"
 #include "scenes.h"
 
-#include "compare/compare_parts.h"
+#include "compare/compare.h"
 
 #include <ritz/method.h>
 #include <ritz/verify.h>

@@ -6,7 +6,7 @@
 
 #include "beams.h"
 
-#include "compare/compare_parts.h"
+#include "compare/compare.h"
 
 #include <ritz/eigen.h>
 

@@ -6,7 +6,7 @@
 
 #include "dualspin.h"
 
-#include "compare/compare_parts.h"
+#include "compare/compare.h"
 
 #include <stdlib.h>
 

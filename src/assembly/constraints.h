@@ -1,6 +1,6 @@
-/* Springs and dampers of caged joints and bushings. */
-#ifndef RITZ_ASSEMBLY_SPRINGS_H
-#define RITZ_ASSEMBLY_SPRINGS_H
+/* What joints lock, and the springs and dampers of those that they hold. */
+#ifndef RITZ_ASSEMBLY_CONSTRAINTS_H
+#define RITZ_ASSEMBLY_CONSTRAINTS_H
 
 #include <ritz/synthesis.h>
 
@@ -32,5 +32,15 @@ ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
                                     ritz_sparse *A);
 
 void ritz_springs_free(ritz_springs *springs);
+
+/**
+ * Orthonormal columns that span the null space of C, c x n.
+ *
+ * @param[out] rank  singular values above 1e-9 of the largest
+ * @param[out] out   n x (n - rank)
+ * @cost   O(n^2 c)
+ */
+ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank,
+                            ritz_dense *out);
 
 #endif

@@ -1,6 +1,6 @@
 /* The steps of COMPARE's second stage. */
-#ifndef RITZ_COMPARE_COMPARE_PARTS_H
-#define RITZ_COMPARE_COMPARE_PARTS_H
+#ifndef RITZ_COMPARE_COMPARE_H
+#define RITZ_COMPARE_COMPARE_H
 
 #include <ritz/compare.h>
 
@@ -34,10 +34,6 @@ typedef struct ritz_rows {
 
 /** The stage-1 configuration of row @p k, borrowed. */
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
-
-/** Listed configurations, then those half way between neighbours. */
-ritz_status ritz_compare_list(const ritz_scene *scene, int64_t *count,
-                              ritz_compare_row **out);
 
 /** Plan that the scene asks for; `attached` may hold AUTO still. */
 ritz_plan ritz_compare_plan(const ritz_scene *scene);
@@ -154,31 +150,9 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  ritz_configuration *second,
                                  ritz_compare_row *row);
 
-/** X = sum_c P_c' M_c V_c P2_c, modes of the first by modes of the second. */
-ritz_status ritz_compare_correlate(const ritz_stage *stage, const ritz_dense *V,
-                                   const ritz_configuration *first,
-                                   const ritz_configuration *second,
-                                   ritz_dense *X);
-
-/** Flexible modes of stage 2 that stand for no kept mode. */
-ritz_status ritz_compare_strays(const ritz_scene *scene,
-                                const ritz_configuration *first,
-                                const ritz_configuration *second,
-                                const ritz_dense *X, ritz_compare_row *row);
-
-/** Take those marked `removed` out of the second system. */
-ritz_status ritz_compare_remove(const ritz_compare_row *row,
-                                ritz_configuration *second);
-
 /** Error of the flexible static gain: see ritz_gain_error. */
 ritz_status ritz_compare_gain(const ritz_configuration *first,
                               const ritz_configuration *second, double *out);
-
-/** Worst error of the kept moments, relative to the largest entry of each; NaN
-    if there are none. */
-ritz_status ritz_compare_moments(const ritz_configuration *first,
-                                 const ritz_configuration *second,
-                                 int64_t count, double *out);
 
 /** Whether a scene has a response: inputs, outputs, a band and damping. */
 bool ritz_compare_responds(const ritz_scene *scene);
@@ -215,8 +189,5 @@ void ritz_candidates_free(int64_t count, ritz_candidate **candidates);
 /** Where errors between listed angles are worst, and by which measure. */
 void ritz_compare_suggest(const ritz_comparison *comparison,
                           ritz_suggestion *out);
-
-/** Into the files of the second system and of every body. */
-ritz_status ritz_compare_record(ritz_comparison *comparison);
 
 #endif

@@ -5,7 +5,7 @@
  * any basis of one space, and a part of them is none of the system's.
  */
 #include "base/alloc.h"
-#include "compare/compare_parts.h"
+#include "compare/compare.h"
 
 #include <ritz/eigen.h>
 

@@ -1,0 +1,532 @@
+/*
+ * Responses of two systems, and the MIMO Bode plot of both: the magnitude of a
+ * transfer matrix at a frequency is bounded by its largest singular value, in
+ * which attachment modes are compared [McDaniel2000, sec. 3.2.2].
+ */
+#include "base/alloc.h"
+
+#include "compare/compare.h"
+#include "poles/dense_poles.h"
+
+#include <ritz/eigen.h>
+#include <ritz/verify.h>
+
+#include <complex.h>
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool ritz_compare_responds(const ritz_scene *scene)
+{
+    return scene->num_inputs > 0 && scene->num_outputs > 0 &&
+           scene->band_hz[1] > 0.0 && scene->damping.kind != RITZ_DAMPING_NONE;
+}
+
+/* Poles of a configuration, damped as the scene says. */
+static ritz_status find_poles(const ritz_scene *scene,
+                              const ritz_configuration *c, ritz_poles *out)
+{
+    const ritz_second_order model = {&c->K, &c->M, &c->D, &c->K4, &c->io};
+
+    return ritz_poles_of_dense(&model, &scene->damping, out);
+}
+
+ritz_status ritz_compare_respond(const ritz_scene *scene,
+                                 const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 ritz_two_responses *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_grid grid = {
+        .from_hz = fmax(scene->band_hz[0], 1e-3 * scene->band_hz[1]),
+        .to_hz = scene->band_hz[1],
+        .count = 200,
+        .refine = true,
+    };
+    ritz_poles one = {0}, two = {0};
+    ritz_response r = {0};
+    int64_t size = first->io.num_inputs * first->io.num_outputs;
+
+    RITZ_TRY(find_poles(scene, first, &one));
+    RITZ_TRY(find_poles(scene, second, &two));
+    RITZ_TRY(ritz_response_new(&grid, &one, "modal", &scene->damping, &r));
+    RITZ_NEW(out->two, r.count * size);
+    for (int64_t k = 0; k < r.count; k++) {
+        RITZ_TRY(ritz_poles_add(&one, r.hertz[k], r.H + k * size));
+        RITZ_TRY(ritz_poles_add(&two, r.hertz[k], out->two + k * size));
+    }
+    out->count = r.count;
+    out->num_inputs = first->io.num_inputs;
+    out->num_outputs = first->io.num_outputs;
+    out->hertz = r.hertz;
+    out->one = r.H;
+    r.hertz = NULL;
+    r.H = NULL;
+done:
+    ritz_poles_free(&one);
+    ritz_poles_free(&two);
+    ritz_response_free(&r);
+    return status;
+}
+
+void ritz_two_responses_free(ritz_two_responses *responses)
+{
+    free(responses->hertz);
+    free(responses->one);
+    free(responses->two);
+    *responses = (ritz_two_responses){0};
+}
+
+/* Largest singular value of each of some matrices, m x n. */
+static ritz_status largest_singular(int64_t count, int64_t m, int64_t n,
+                                    const double _Complex *H, double *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t least = m < n ? m : n;
+    double _Complex *A = NULL;
+    double *sigma = NULL, *work = NULL;
+
+    RITZ_NEW(A, m * n);
+    RITZ_NEW(sigma, least);
+    RITZ_NEW(work, least);
+    for (int64_t k = 0; k < count; k++) {
+        memcpy(A, H + k * m * n, (size_t)(m * n) * sizeof *A);
+        RITZ_FAIL_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)n, (int)m,
+                                    A, (int)n, sigma, NULL, 1, NULL, 1,
+                                    work) != 0,
+                     RITZ_ERR_CONVERGENCE,
+                     "singular values of a response do not converge");
+        out[k] = sigma[0];
+    }
+done:
+    free(A);
+    free(sigma);
+    free(work);
+    return status;
+}
+
+ritz_status ritz_compare_bode(const ritz_two_responses *responses,
+                              double *deviation, double *hertz)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_two_responses *r = responses;
+    const double far_below = 1e-3; /* 60 dB */
+    double *one = NULL, *two = NULL;
+    double mean = 0.0;
+    int64_t seen = 0;
+
+    RITZ_NEW(one, r->count);
+    RITZ_NEW(two, r->count);
+    RITZ_TRY(
+        largest_singular(r->count, r->num_outputs, r->num_inputs, r->one, one));
+    RITZ_TRY(
+        largest_singular(r->count, r->num_outputs, r->num_inputs, r->two, two));
+    for (int64_t k = 0; k < r->count; k++)
+        if (one[k] > 0.0) {
+            mean += log(one[k]);
+            seen++;
+        }
+    mean = seen > 0 ? exp(mean / (double)seen) : 0.0;
+    *deviation = 0.0;
+    *hertz = r->count > 0 ? r->hertz[0] : 0.0;
+    for (int64_t k = 0; k < r->count; k++) {
+        double level = fmax(one[k], far_below * mean);
+        double apart = level > 0.0 ? fabs(two[k] - one[k]) / level : 0.0;
+
+        if (apart > *deviation) {
+            *deviation = apart;
+            *hertz = r->hertz[k];
+        }
+    }
+done:
+    free(one);
+    free(two);
+    return status;
+}
+
+/*
+ * Modes of the second system that stand for no mode that was kept. With modes
+ * of unit mass and X_kj their products, mode j holds of the kept modes' space
+ *
+ *     s_j = sum over kept k of X_kj^2,    0 <= s_j <= 1
+ *
+ * which does not depend on the basis of a cluster. It stands for kept modes if
+ * that is half or more; the sum over all j is at most their number. What is
+ * left comes of the projection: bodies have more coordinates than the system
+ * had modes [McDaniel2000, table 3.3]. Static corrections are among them.
+ */
+
+/* Share of mode j in the space of the kept modes. */
+static double share(const ritz_configuration *first,
+                    const ritz_compare_row *row, const double *x)
+{
+    double sum = 0.0;
+
+    for (int64_t i = 0; i < row->num_kept; i++) {
+        double one = x[first->num_rigid + row->kept[i]];
+
+        sum += one * one;
+    }
+    return sum;
+}
+
+/* What a stray mode is, and which mode of the first system it is most like. */
+static ritz_stray describe(const ritz_scene *scene,
+                           const ritz_configuration *first, double lambda,
+                           const double *x)
+{
+    ritz_stray stray = {.hertz = ritz_eigen_hertz(lambda), .like = -1};
+    bool outside =
+        stray.hertz < scene->band_hz[0] || stray.hertz > scene->band_hz[1];
+
+    for (int64_t k = first->num_rigid; k < first->K.ncol; k++)
+        if (x[k] * x[k] > stray.mac) {
+            stray.mac = x[k] * x[k];
+            stray.like = k - first->num_rigid;
+        }
+    stray.removed =
+        scene->extraneous == RITZ_EXTRANEOUS_REMOVE ||
+        (scene->extraneous == RITZ_EXTRANEOUS_OUT_OF_BAND && outside);
+    return stray;
+}
+
+/* Flexible modes of stage 2 that stand for no kept mode. */
+static ritz_status compare_strays(const ritz_scene *scene,
+                                  const ritz_configuration *first,
+                                  const ritz_configuration *second,
+                                  const ritz_dense *X, ritz_compare_row *row)
+{
+    const double half = 0.5;
+
+    RITZ_CHECK_NEW(row->stray, second->K.ncol);
+    if (scene->select == RITZ_SELECT_KRYLOV)
+        return RITZ_OK; /* no mode was kept, so none is beside them */
+    for (int64_t j = second->num_rigid; j < second->K.ncol; j++) {
+        const double *x = ritz_dense_col(X, j);
+
+        if (share(first, row, x) >= half)
+            continue;
+        row->stray[row->num_strays] =
+            describe(scene, first, second->lambda[j], x);
+        row->stray[row->num_strays++].mode = j - second->num_rigid;
+    }
+    return RITZ_OK;
+}
+
+/* Columns `keep` of A. */
+static ritz_status take_columns(int64_t count, const int64_t *keep,
+                                ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense less = {0};
+
+    RITZ_TRY(ritz_dense_new(A->nrow, count, &less));
+    for (int64_t j = 0; j < count && A->nrow > 0; j++)
+        memcpy(ritz_dense_col(&less, j), ritz_dense_col(A, keep[j]),
+               (size_t)A->nrow * sizeof *A->val);
+    ritz_dense_free(A);
+    *A = less;
+    less = (ritz_dense){0};
+done:
+    ritz_dense_free(&less);
+    return status;
+}
+
+/* Rows and columns `keep` of a square A, or rows alone. */
+static ritz_status take_rows(int64_t count, const int64_t *keep, bool square,
+                             ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense less = {0};
+
+    if (square)
+        RITZ_TRY(take_columns(count, keep, A));
+    RITZ_TRY(ritz_dense_rows(A, count, keep, &less));
+    ritz_dense_free(A);
+    *A = less;
+    less = (ritz_dense){0};
+done:
+    ritz_dense_free(&less);
+    return status;
+}
+
+/* The modes `keep` of a configuration, and no other. */
+static ritz_status truncate(int64_t count, const int64_t *keep,
+                            ritz_configuration *c)
+{
+    for (int64_t k = 0; k < c->num_blocks; k++)
+        RITZ_CHECK(take_columns(count, keep, &c->P[k]));
+    RITZ_CHECK(take_columns(count, keep, &c->io.C));
+    RITZ_CHECK(take_columns(count, keep, &c->io.Cv));
+    RITZ_CHECK(take_columns(count, keep, &c->io.Ca));
+    if (c->momentum.val)
+        RITZ_CHECK(take_columns(count, keep, &c->momentum));
+    RITZ_CHECK(take_rows(count, keep, false, &c->io.B));
+    RITZ_CHECK(take_rows(count, keep, true, &c->K));
+    RITZ_CHECK(take_rows(count, keep, true, &c->M));
+    if (c->D.val)
+        RITZ_CHECK(take_rows(count, keep, true, &c->D));
+    if (c->K4.val)
+        RITZ_CHECK(take_rows(count, keep, true, &c->K4));
+    if (c->dampers.B.val)
+        RITZ_CHECK(take_rows(count, keep, false, &c->dampers.B));
+    for (int64_t j = 0; j < count; j++) /* keep[j] >= j */
+        c->lambda[j] = c->lambda[keep[j]];
+    return RITZ_OK;
+}
+
+/* Take those marked `removed` out of the second system. */
+static ritz_status compare_remove(const ritz_compare_row *row,
+                                  ritz_configuration *second)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *keep = NULL;
+    int64_t count = 0;
+    int64_t next = 0;
+
+    RITZ_NEW(keep, second->K.ncol);
+    for (int64_t j = 0; j < second->K.ncol; j++) {
+        while (next < row->num_strays &&
+               (row->stray[next].mode + second->num_rigid < j))
+            next++;
+        if (next < row->num_strays &&
+            row->stray[next].mode + second->num_rigid == j &&
+            row->stray[next].removed)
+            continue;
+        keep[count++] = j;
+    }
+    if (count < second->K.ncol)
+        RITZ_TRY(truncate(count, keep, second));
+done:
+    free(keep);
+    return status;
+}
+
+/*
+ * The second system against the first. Both have modal coordinates of unit
+ * mass, so that with q_c = P_c x and q_c = V_c P2_c z
+ *
+ *     X = sum_c P_c' M_c V_c P2_c,    X_kj^2 = MAC of mode k and mode j
+ */
+
+/* Modes closer than this in frequency are one cluster. */
+static const double same_frequency = 1e-6;
+
+/*
+ * An eigenvalue of a dense pencil of order e is in error by up to
+ * c eps lambda_max; two are compared, and P and V add their own rounding.
+ */
+static const double rounding = 20.0; /* c = rounding * e */
+
+/* X = sum_c P_c' M_c V_c P2_c, modes of the first by modes of the second. */
+static ritz_status compare_correlate(const ritz_stage *stage,
+                                     const ritz_dense *V,
+                                     const ritz_configuration *first,
+                                     const ritz_configuration *second,
+                                     ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense VP = {0}, MVP = {0}, part = {0};
+
+    RITZ_TRY(ritz_dense_new(first->K.ncol, second->K.ncol, X));
+    for (int64_t c = 0; c < stage->count; c++) {
+        RITZ_TRY(ritz_dense_mul(&V[c], &second->P[c], &VP));
+        RITZ_TRY(ritz_dense_mul(&stage->body[c].M, &VP, &MVP));
+        RITZ_TRY(ritz_dense_mul_tn(&first->P[c], &MVP, &part));
+        for (int64_t k = 0; k < part.nrow * part.ncol; k++)
+            X->val[k] += part.val[k];
+        ritz_dense_free(&VP);
+        ritz_dense_free(&MVP);
+        ritz_dense_free(&part);
+    }
+done:
+    ritz_dense_free(&VP);
+    ritz_dense_free(&MVP);
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* The mode of the second system that is most like mode k, and how like. */
+static int64_t find_partner(const ritz_configuration *second,
+                            const ritz_dense *X, int64_t k, double *mac)
+{
+    int64_t best = second->num_rigid;
+    double sum = 0.0;
+
+    for (int64_t j = second->num_rigid; j < X->ncol; j++)
+        if (fabs(ritz_dense_col(X, j)[k]) > fabs(ritz_dense_col(X, best)[k]))
+            best = j;
+    for (int64_t j = second->num_rigid; j < X->ncol; j++)
+        if (fabs(sqrt(second->lambda[j] / second->lambda[best]) - 1.0) <=
+            same_frequency)
+            sum += ritz_dense_col(X, j)[k] * ritz_dense_col(X, j)[k];
+    *mac = sum;
+    return best;
+}
+
+/*
+ * Of the modes that matter the smallest MAC and the largest error in frequency.
+ * Where they were kept, a mode beyond what rounding allows it comes before any
+ * that is within, lest a larger error that is allowed hide it.
+ */
+static void measure_modes(const ritz_configuration *first,
+                          const ritz_configuration *second, const ritz_dense *X,
+                          ritz_compare_row *row)
+{
+    int64_t e = first->K.ncol;
+    double c = rounding * (double)e;
+    bool any = false, broken = false;
+
+    row->frequency_error = row->mac = row->allowed = nan("");
+    for (int64_t i = 0; i < row->num_kept; i++) {
+        int64_t k = first->num_rigid + row->kept[i];
+        double mac = 0.0, error = 0.0, allowed = 0.0;
+        bool beyond = false;
+        int64_t j = 0;
+
+        if (second->K.ncol <= second->num_rigid)
+            continue;
+        j = find_partner(second, X, k, &mac);
+        error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
+        allowed = c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k];
+        row->mac = fmin(row->mac, mac); /* which passes NaN over */
+        beyond = row->listed && error > allowed;
+        if (!any || beyond > broken ||
+            (beyond == broken && error > row->frequency_error)) {
+            any = true;
+            broken = beyond;
+            row->frequency_error = error;
+            row->allowed = row->listed ? allowed : nan("");
+        }
+    }
+}
+
+static void measure_rigid(const ritz_configuration *second,
+                          ritz_compare_row *row)
+{
+    row->rigid_error = 0.0;
+    for (int64_t j = 0; j < second->num_rigid; j++)
+        row->rigid_error =
+            fmax(row->rigid_error, fabs(ritz_eigen_hertz(second->lambda[j])));
+}
+
+/* Largest difference of two matrices, relative to the first. */
+static double relative(const ritz_dense *one, const ritz_dense *two)
+{
+    double largest = ritz_dense_max(one);
+    double apart = 0.0;
+
+    for (int64_t k = 0; k < one->nrow * one->ncol; k++)
+        apart = fmax(apart, fabs(two->val[k] - one->val[k]));
+    return largest > 0.0 ? apart / largest : 0.0;
+}
+
+ritz_status ritz_compare_gain(const ritz_configuration *first,
+                              const ritz_configuration *second, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense one = {0}, two = {0};
+
+    RITZ_TRY(ritz_static_gain(&first->K, &first->M, &first->io,
+                              first->num_rigid, &one));
+    RITZ_TRY(ritz_static_gain(&second->K, &second->M, &second->io,
+                              first->num_rigid, &two));
+    RITZ_TRY(ritz_gain_error(&one, &two, out));
+done:
+    ritz_dense_free(&one);
+    ritz_dense_free(&two);
+    return status;
+}
+
+/* C Lambda^-i-1 B of the flexible part. */
+static ritz_status moment(const ritz_configuration *c, int64_t i,
+                          ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0};
+
+    RITZ_TRY(ritz_dense_copy(&c->io.B, &X));
+    for (int64_t j = 0; j < X.ncol; j++)
+        for (int64_t k = 0; k < X.nrow; k++)
+            ritz_dense_col(&X, j)[k] *=
+                k < c->num_rigid ? 0.0 : pow(c->lambda[k], -1.0 - (double)i);
+    RITZ_TRY(ritz_dense_mul(&c->io.C, &X, out));
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* Worst error of the kept moments, relative to the largest entry of each; NaN
+    if there are none. */
+static ritz_status compare_moments(const ritz_configuration *first,
+                                   const ritz_configuration *second,
+                                   int64_t count, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense one = {0}, two = {0};
+
+    *out = nan("");
+    for (int64_t i = 0; i < count && first->io.num_outputs > 0; i++) {
+        RITZ_TRY(moment(first, i, &one));
+        RITZ_TRY(moment(second, i, &two));
+        *out = fmax(*out, relative(&one, &two));
+        ritz_dense_free(&one);
+        ritz_dense_free(&two);
+    }
+done:
+    ritz_dense_free(&one);
+    ritz_dense_free(&two);
+    return status;
+}
+
+/* Largest difference over largest magnitude, on the first system's points. */
+static ritz_status measure_response(const ritz_scene *scene,
+                                    const ritz_configuration *first,
+                                    const ritz_configuration *second,
+                                    ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_two_responses r = {0};
+    double largest = 0.0, gap = 0.0;
+
+    RITZ_TRY(ritz_compare_respond(scene, first, second, &r));
+    for (int64_t k = 0; k < r.count * r.num_inputs * r.num_outputs; k++) {
+        largest = fmax(largest, cabs(r.one[k]));
+        gap = fmax(gap, cabs(r.one[k] - r.two[k]));
+    }
+    row->response_error = largest > 0.0 ? gap / largest : 0.0;
+done:
+    ritz_two_responses_free(&r);
+    return status;
+}
+
+ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
+                                 const ritz_configuration *first,
+                                 ritz_configuration *second,
+                                 ritz_compare_row *row)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_scene *scene = stage->scene;
+    ritz_dense X = {0};
+
+    row->num_rigid = first->num_rigid;
+    row->num_flexible = first->K.ncol - first->num_rigid;
+    row->gain_error = row->response_error = nan("");
+    RITZ_TRY(compare_correlate(stage, V, first, second, &X));
+    measure_modes(first, second, &X, row);
+    measure_rigid(second, row);
+    RITZ_TRY(compare_strays(scene, first, second, &X, row));
+    RITZ_TRY(compare_remove(row, second));
+    row->order = second->K.ncol;
+    if (scene->num_inputs > 0 && scene->num_outputs > 0)
+        RITZ_TRY(ritz_compare_gain(first, second, &row->gain_error));
+    RITZ_TRY(
+        compare_moments(first, second, row->num_moments, &row->moment_error));
+    if (ritz_compare_responds(scene))
+        RITZ_TRY(measure_response(scene, first, second, row));
+done:
+    ritz_dense_free(&X);
+    return status;
+}
