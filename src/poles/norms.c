@@ -298,7 +298,7 @@ void ab13dd_(/* NOLINT: its name */ const char *dico, const char *jobe,
              size_t dico_length, size_t jobe_length, size_t equil_length,
              size_t jobd_length);
 
-/* The stable part, its inputs and outputs of norm_of one. */
+/* The stable part, its inputs and outputs of length one. */
 typedef struct stable {
     ritz_split split;
     ritz_dense B, C, D;

@@ -220,7 +220,7 @@ enum { MOST_TERMS = 40 };
 /* falls_enough^MOST_TERMS = RITZ_SERIES_WITHIN */
 static const double falls_enough = 0.5;
 
-/* Term j as the outputs put_term it. */
+/* Term j as the outputs see it. */
 static ritz_status put_term(const ritz_dense *C, const ritz_dense *R, int64_t j,
                             double *out)
 {

@@ -211,7 +211,7 @@ static double _Complex add_ratio(double _Complex s, double ratio)
                       : -size;
 }
 
-/* |x^H y| / (|x||y|) of column j and y, real and imaginary solve_projected. */
+/* |x^H y| / (|x||y|) of column j and y, real and imaginary part. */
 static double correlation(const ritz_spectrum *spectrum, int64_t j,
                           const ritz_dense *y)
 {

@@ -432,7 +432,7 @@ static double doubt_of(const sample *s)
                 two > 0.0 ? sqrt(2.0 * s->error / two) : HUGE_VAL);
 }
 
-/* The step_of of zero i; 0 where the next is lost in rounding. */
+/* The step of zero i; 0 where the next is lost in rounding. */
 static double _Complex step_of(triangle *t, int64_t count,
                                const double _Complex *zero, int64_t i)
 {

@@ -11,7 +11,7 @@
 #include "spaces.h"
 #include "states.h"
 
-#include "check/probe_parts.h"
+#include "check/check.h"
 
 #include <ritz/method.h>
 #include <ritz/probe.h>

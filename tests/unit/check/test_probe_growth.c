@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "base/alloc.h"
-#include "check/probe_parts.h"
+#include "check/check.h"
 
 #include <ritz/probe.h>
 

@@ -10,7 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "check/probe_parts.h"
+#include "check/check.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
 
@@ -207,6 +207,38 @@ ritz_status ritz_probe_reduced(const ritz_reduced *reduced, ritz_probe *out)
 done:
     ritz_dampers_free(&dampers);
     ritz_structure_free(&model);
+    return status;
+}
+
+ritz_status ritz_check_poles(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probe probe = {0};
+    ritz_dense A = {0};
+    char text[2 * RITZ_NAME_SIZE];
+    double growth = 0.0;
+
+    if (it->reduced) {
+        /* rigid positions are left out: their double pole is defective */
+        RITZ_TRY(ritz_probe_energy_matrix(&it->modes, &A));
+        RITZ_TRY(ritz_probe_judge(&A, &probe));
+    } else {
+        RITZ_TRY(ritz_probe_states(it->space, &probe));
+    }
+    growth = probe.radius > 0.0 ? probe.pole[0] / probe.radius : 0.0;
+    it->stable = probe.verdict != RITZ_UNSTABLE;
+    ritz_probe_print(&probe, text);
+    if (!it->stable)
+        ritz_checker_say(it, "poles", growth, probe.tolerance, RITZ_FAIL, "",
+                         "%s", text);
+    else
+        ritz_checker_say(it, "poles", growth, probe.tolerance, RITZ_PASS, text,
+                         "%s",
+                         probe.verdict == RITZ_STABLE
+                             ? "all are left of the axis"
+                             : "on the axis: rigid motion, or no damping");
+done:
+    ritz_dense_free(&A);
     return status;
 }
 

@@ -13,16 +13,24 @@
  *
  * gives what is reached at most.
  */
-#include "check/probe_parts.h"
-
 #include "base/alloc.h"
+#include "check/check.h"
+#include "linear/eigenvalues.h"
 #include "linear/general.h"
+#include "linear/split.h"
 
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/* The largest |e^(A t)|^2, t >= 0. */
+typedef struct growth {
+    double met, seconds; /* what was met, and when */
+    double most;         /* bound; HUGE_VAL: none is known */
+    bool followed;       /* false: too many states, `met` is 1 */
+} growth;
 
 enum {
     MOST_STATES = 400, /* of whose exponential powers are taken */
@@ -64,7 +72,8 @@ static double norm_one(const ritz_dense *A)
 }
 
 /* e^(A h) where |A h| <= 1/2, by Horner's rule. */
-static ritz_status exponential(const ritz_dense *A, double h, ritz_dense *out)
+static ritz_status exponential_of(const ritz_dense *A, double h,
+                                  ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = A->nrow;
@@ -92,14 +101,14 @@ done:
 }
 
 /* e^(A h), e^(2 A h), e^(4 A h), ... until nothing is left, or t = most. */
-static ritz_status follow(const ritz_dense *A, double h, double most,
-                          ritz_growth *out)
+static ritz_status follow_powers(const ritz_dense *A, double h, double most,
+                                 growth *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense E = {0}, next = {0};
     double size = 1.0;
 
-    RITZ_TRY(exponential(A, h, &E));
+    RITZ_TRY(exponential_of(A, h, &E));
     for (int k = 0; size > died_out && h * ldexp(1.0, k) <= most; k++) {
         RITZ_TRY(ritz_dense_copy(&E, &next));
         RITZ_TRY(ritz_general_norm(&next, &size));
@@ -122,7 +131,7 @@ done:
 }
 
 /* (|V| |V^-1|)^2, eigenvectors of A as columns of length 1. */
-static ritz_status bound(const ritz_dense *A, double *out)
+static ritz_status bound_growth(const ritz_dense *A, double *out)
 {
     ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
@@ -149,28 +158,30 @@ done:
     return status;
 }
 
-ritz_status ritz_growth_measure(const ritz_dense *A, ritz_growth *out)
+/* Of a stable A. @cost O(n^3), some hundred products up to 400 states */
+static ritz_status measure_growth(const ritz_dense *A, growth *out)
 {
     double size = norm_one(A);
 
-    *out = (ritz_growth){.met = 1.0, .most = HUGE_VAL, .followed = true};
+    *out = (growth){.met = 1.0, .most = HUGE_VAL, .followed = true};
     if (A->nrow == 0 || size == 0.0) {
         out->most = 1.0;
         return RITZ_OK;
     }
-    RITZ_CHECK(bound(A, &out->most));
+    RITZ_CHECK(bound_growth(A, &out->most));
     out->followed = A->nrow <= MOST_STATES;
     if (!out->followed)
         return RITZ_OK;
     for (int k = 0; k < FOURTHS; k++)
-        RITZ_CHECK(follow(A, 0.25 / size * exp2((double)k / FOURTHS),
-                          long_enough / size, out));
+        RITZ_CHECK(follow_powers(A, 0.25 / size * exp2((double)k / FOURTHS),
+                                 long_enough / size, out));
     out->most = fmax(out->most, out->met);
     return RITZ_OK;
 }
 
-void ritz_prober_growth(ritz_prober *it, const ritz_growth *found, double limit,
-                        const char *what)
+/* Say it of @p what, which may reach @p limit. */
+static void say_growth(ritz_checker *it, const growth *found, double limit,
+                       const char *what)
 {
     char where[RITZ_WHERE_SIZE];
 
@@ -179,44 +190,132 @@ void ritz_prober_growth(ritz_prober *it, const ritz_growth *found, double limit,
     else
         snprintf(where, sizeof where, "not followed, of more than %d states",
                  MOST_STATES);
-    ritz_prober_say(it, "energy-growth", found->met, limit,
-                    found->met > limit ? RITZ_WARN : RITZ_PASS,
-                    found->met > 1.0 || !found->followed ? where : "",
-                    "%s of a free motion: %.4g times its first at least, %.3g "
-                    "at most",
-                    what, found->met, found->most);
+    ritz_checker_say(it, "energy-growth", found->met, limit,
+                     found->met > limit ? RITZ_WARN : RITZ_PASS,
+                     found->met > 1.0 || !found->followed ? where : "",
+                     "%s of a free motion: %.4g times its first at least, %.3g "
+                     "at most",
+                     what, found->met, found->most);
 }
 
-static ritz_status grow_modes(ritz_prober *it)
+/*
+ * States have no energy, and non-normal growth is no instability: what poles do
+ * not explain is told, in units of states of the check's own making.
+ */
+/* Of a state, per step: the error that integrators let pass unless they are
+   told otherwise. What grows by more than its inverse is lost in it. */
+static const double let_pass = 1e-3;
+
+/*
+ * Units of states are nobody's growth. They are scaled until what goes into
+ * each is as large as what comes out of it; a coupling one way, which some
+ * units make as small as one likes, has a floor to be held against.
+ */
+static ritz_status forget_units(ritz_dense *A)
 {
     ritz_status status = RITZ_OK;
-    ritz_growth found = {0};
+    int n = (int)A->nrow;
+    double least = DBL_EPSILON * ritz_dense_max(A);
+    ritz_dense sizes = {0};
+    double *scale = NULL;
+    lapack_int low = 0, high = 0;
+
+    RITZ_NEW(scale, n);
+    RITZ_TRY(ritz_dense_new(n, n, &sizes));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            if (i != j)
+                ritz_dense_col(&sizes, j)[i] =
+                    fmax(fabs(ritz_dense_col(A, j)[i]), least);
+    if (n > 0)
+        LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, sizes.val, n, &low, &high,
+                       scale);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(A, j)[i] *= scale[j] / scale[i];
+done:
+    free(scale);
+    ritz_dense_free(&sizes);
+    return status;
+}
+
+/*
+ * (|s| of the fastest pole over that of the slowest)^2: what a structure that
+ * does not grow shows in displacements and velocities of one unit of time, as
+ * a unit velocity of the slowest mode displaces it by 1 / |s|.
+ */
+static ritz_status pole_spread(const ritz_dense *A, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_eigenvalues poles = {0};
+    double fast = 0.0, slow = HUGE_VAL;
+
+    RITZ_TRY(ritz_eigenvalues_of(A, &poles));
+    for (int64_t k = 0; k < poles.count; k++) {
+        double size = hypot(poles.re[k], poles.im[k]);
+
+        fast = fmax(fast, size);
+        slow = fmin(slow, size);
+    }
+    *out = poles.count > 0 && slow > 0.0 ? pow(fast / slow, 2.0) : 1.0;
+done:
+    ritz_eigenvalues_free(&poles);
+    return status;
+}
+
+/* States have no energy: of their squares that is told which poles explain. */
+static ritz_status grow_states(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    growth found = {0};
+    ritz_dense A = {0};
+    ritz_split split = {0};
+    const ritz_dense none = {0};
+    double explained = 1.0;
+
+    RITZ_TRY(ritz_dense_copy(&it->space->A, &A));
+    if (it->space->E.val)
+        RITZ_TRY_IN("E", ritz_general_solve(&it->space->E, false, &A));
+    RITZ_TRY(forget_units(&A));
+    RITZ_TRY(ritz_split_new(&A, &none, &split));
+    RITZ_TRY(measure_growth(&split.S, &found));
+    RITZ_TRY(pole_spread(&split.S, &explained));
+    say_growth(it, &found, explained / (let_pass * let_pass),
+               "square of scaled states");
+done:
+    ritz_split_free(&split);
+    ritz_dense_free(&A);
+    return status;
+}
+
+static ritz_status grow_modes(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    growth found = {0};
     ritz_dense A = {0};
 
     RITZ_TRY(ritz_probe_energy_matrix(&it->modes, &A));
-    RITZ_TRY(ritz_growth_measure(&A, &found));
+    RITZ_TRY(measure_growth(&A, &found));
     /* squaring doubles rounding each time */
-    ritz_prober_growth(it, &found, 1.0 + 1e-6, "energy");
+    say_growth(it, &found, 1.0 + 1e-6, "energy");
 done:
     ritz_dense_free(&A);
     return status;
 }
 
-ritz_status ritz_probe_growth(ritz_prober *it)
+ritz_status ritz_check_growth(ritz_checker *it)
 {
     static const char name[] = "energy-growth";
 
-    if (!it->usable)
-        return RITZ_OK;
     if (it->definite) {
-        ritz_prober_say(it, name, 1.0, 1.0, RITZ_PASS, "",
-                        "proven: M, K and D are semidefinite");
+        ritz_checker_say(it, name, 1.0, 1.0, RITZ_PASS, "",
+                         "proven: M, K and D are semidefinite");
         return RITZ_OK;
     }
     if (!it->stable) {
-        ritz_prober_say(it, name, HUGE_VAL, 1.0, RITZ_FAIL, "",
-                        "a free motion grows without bound");
+        ritz_checker_say(it, name, HUGE_VAL, 1.0, RITZ_FAIL, "",
+                         "a free motion grows without bound");
         return RITZ_OK;
     }
-    return it->reduced ? grow_modes(it) : ritz_probe_growth_states(it);
+    return it->reduced ? grow_modes(it) : grow_states(it);
 }

@@ -1,0 +1,201 @@
+/*
+ * A model that is being checked: what is known of it, and what one check leaves
+ * to those behind it. Not for users.
+ */
+#ifndef RITZ_CHECK_CHECK_H
+#define RITZ_CHECK_CHECK_H
+
+#include "model/first_order.h"
+
+#include <ritz/audit.h>
+#include <ritz/eigen.h>
+#include <ritz/probe.h>
+
+/* What a check is made of. */
+enum {
+    RITZ_OF_COMPONENT = 1,
+    RITZ_OF_REDUCED = 2,
+    RITZ_OF_STATES = 4,
+};
+
+/* What a check needs, and is left out without. */
+enum {
+    RITZ_NEEDS_STIFFNESS = 1, /* K has entries */
+    RITZ_NEEDS_DAMPING = 2,   /* D has */
+    RITZ_NEEDS_STRUCTURAL = 4,
+    RITZ_NEEDS_PORTS = 8,
+};
+
+/* The bound on what rounding does to a pole is of first order, and eigensolvers
+   are backward stable within a few eps. */
+#define RITZ_PROBE_TIMES 8.0
+
+/* Forces K r of rigid motions, and what an error of size 1 leaves of them. */
+typedef struct ritz_forces {
+    double largest;
+    int64_t row; /* where; -1: there is none */
+    double bound;
+    double fine; /* relative error that is no fault */
+} ritz_forces;
+
+/*
+ * A square model from forces to the velocities of what they act on,
+ *
+ *     G(s) = diag(s^power) (C (s I - A)^-1 B + D)
+ *
+ * power 0 where the output is that velocity, 1 a displacement, -1 an
+ * acceleration.
+ */
+typedef struct ritz_collocated {
+    ritz_dense A, B, C, D;
+    int *power;                   /* ports */
+    char (*name)[RITZ_NAME_SIZE]; /* ports, what each is */
+} ritz_collocated;
+
+/* The least eigenvalue of (G + G^*) / 2 over |G|, and where it was met. */
+typedef struct ritz_passivity {
+    double value; /* negative: energy comes out */
+    double hertz;
+    int64_t port; /* with the largest share in its eigenvector */
+} ritz_passivity;
+
+typedef struct ritz_checker {
+    ritz_audit audit;
+    bool usable; /* what checks found so far lets the others be made */
+
+    /* One of these is what is checked. */
+    const ritz_component *component;
+    const ritz_reduced *reduced;
+    const ritz_state_space *space;
+
+    /* Of a component. */
+    bool rigid;      /* K has no entries */
+    bool placed;     /* every grid has a position */
+    double digits;   /* of K, at most 17 */
+    bool declared;   /* they are those that the source states, and not exact */
+    bool rounded;    /* K times a rigid motion is what its digits leave */
+    int64_t *part;   /* n, connected part of each dof, from 0 */
+    int64_t largest; /* the part with most dofs */
+    ritz_forces shift, turn; /* of translations; of rotations */
+    double centre[3];
+    double size;      /* largest distance of a grid from the centre, or 1 */
+    ritz_dense R;     /* n x 3 or 6, rotations per unit of size */
+    double softest;   /* first flexible eigenvalue, NaN if not known */
+    ritz_dense Phi;   /* n x k, rigid motions by geometry, Phi'M Phi = I */
+    double *mu;       /* k, Phi'K Phi, ascending  [rad^2/s^2] */
+    int64_t num_free; /* of Phi, that meet no stiffness */
+
+    /* Of a reduced component. */
+    ritz_structure model; /* with dampers installed */
+    ritz_damping damping;
+    ritz_first_order modes;
+    bool definite; /* M, K and D are semidefinite: nothing can grow */
+    ritz_dense L;  /* p x r, rows of the interface; velocities are L q' */
+    char (*row)[RITZ_NAME_SIZE]; /* p */
+
+    /* Of a reduced component, or of a state space. */
+    bool stable;           /* no pole is right of the axis */
+    ritz_collocated pairs; /* of a state space */
+} ritz_checker;
+
+/* A row of the list: of which models, with what, the function. */
+typedef struct ritz_check_row {
+    unsigned of, needs;
+    ritz_status (*run)(ritz_checker *it);
+} ritz_check_row;
+
+/** All checks, in order; the last has no function. */
+extern const ritz_check_row ritz_checks[];
+
+/** Append what a check found; @p where may be NULL. */
+[[gnu::format(printf, 7, 8)]] void
+ritz_checker_say(ritz_checker *it, const char *name, double value, double limit,
+                 ritz_verdict verdict, const char *where, const char *says,
+                 ...);
+
+/** Name the first dofs that are flagged; the number of all of them. */
+int64_t ritz_checker_dofs(const ritz_checker *it, const bool *flag,
+                          char where[RITZ_WHERE_SIZE]);
+
+/** Append @p text to a list, ", ..." once where it is full. */
+void ritz_checker_list(char where[RITZ_WHERE_SIZE], const char *text);
+
+/** Eigenpairs of a symmetric A, vectors of length one. */
+ritz_status ritz_check_eigen(const ritz_dense *A, ritz_pairs *out);
+
+/* The checks of a component: each uses what those before it left. */
+ritz_status ritz_check_values(ritz_checker *it);
+ritz_status ritz_check_dofs(ritz_checker *it);
+ritz_status ritz_check_mass_definite(ritz_checker *it);
+ritz_status ritz_check_stiffness_definite(ritz_checker *it);
+ritz_status ritz_check_geometry(ritz_checker *it);
+ritz_status ritz_check_forces(ritz_checker *it);
+ritz_status ritz_check_rigid(ritz_checker *it);
+ritz_status ritz_check_grounding(ritz_checker *it);
+ritz_status ritz_check_mass(ritz_checker *it);
+ritz_status ritz_check_damping(ritz_checker *it);
+ritz_status ritz_check_ports(ritz_checker *it);
+
+/* Those of a reduced component and of a state space. */
+ritz_status ritz_check_reduced_mass(ritz_checker *it);
+ritz_status ritz_check_reduced_stiffness(ritz_checker *it);
+ritz_status ritz_check_reduced_damping(ritz_checker *it);
+ritz_status ritz_check_reduced_structural(ritz_checker *it);
+ritz_status ritz_check_poles(ritz_checker *it);
+ritz_status ritz_check_growth(ritz_checker *it);
+ritz_status ritz_check_passivity(ritz_checker *it);
+ritz_status ritz_check_locked(ritz_checker *it);
+ritz_status ritz_check_locked_states(ritz_checker *it);
+ritz_status ritz_check_sprung(ritz_checker *it);
+ritz_status ritz_check_sprung_states(ritz_checker *it);
+ritz_status ritz_check_joined(ritz_checker *it);
+
+/** The pole of x' = A x that decides on its stability, into @p out. */
+ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out);
+
+/**
+ * First-order matrix of the modes that have mass in [w q; q'], whose square is
+ * twice the energy, q of rigid modes left out.
+ */
+ritz_status ritz_probe_energy_matrix(const ritz_first_order *modes,
+                                     ritz_dense *out);
+
+/**
+ * Inputs and outputs of one name as pairs; what each output is, displacement,
+ * velocity or acceleration, is what breaks passivity least.
+ *
+ * @param[out] out  without columns if there are none
+ */
+ritz_status ritz_collocated_of_space(const ritz_state_space *model,
+                                     ritz_collocated *out);
+void ritz_collocated_free(ritz_collocated *model);
+
+/** A model's response in a form in which a point is cheap. */
+typedef struct ritz_sampler ritz_sampler;
+
+ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out);
+
+/**
+ * G(i w), ports x ports by columns, borrowed; NULL where it is infinite.
+ */
+const double _Complex *ritz_sampler_at(ritz_sampler *sampler, double w);
+void ritz_sampler_free(ritz_sampler **sampler);
+
+/**
+ * Frequencies at which a response shows what it has: at every pole, around it,
+ * and between neighbours [rad/s], ascending, positive.
+ */
+ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out);
+
+/** @cost O(n^3), and O(p n^2) for each of about ten points a pole */
+ritz_status ritz_passivity_of(const ritz_collocated *model,
+                              ritz_passivity *out);
+
+/**
+ * Frequencies at which, besides, G + G^* + 2 slack I may become singular: on
+ * the axis, eigenvalues of a Hamiltonian pencil.
+ */
+ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
+                                     int64_t *count, double **out);
+
+#endif

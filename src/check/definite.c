@@ -1,0 +1,436 @@
+/*
+ * Definiteness. With S = diag(A)^-1/2, or diag(M)^-1/2 of D and K4, as matrices
+ * mix kg with kg m^2: the least eigenvalue of S A S over the largest, and where
+ * its eigenvector S^-1 x lies.
+ *
+ * Of D only the symmetric part counts: v'D v = v'(D + D')v / 2, and what is
+ * antisymmetric does no work.
+ */
+#include "base/alloc.h"
+#include "check/check.h"
+#include "poles/massless.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Below this, of the largest, D and K4 are as indefinite as text is that was
+   rounded to ten digits. */
+static const double slight_within = 1e-10;
+
+/* Columns that a line names, and the least share of the largest. */
+enum { SHOWN = 3 };
+static const double worth_naming = 0.3;
+
+/* "column 3 constraint, grid 101 T3", "column 7 normal, 12.3 Hz" */
+static void name_column(const ritz_reduced *reduced, int64_t j,
+                        char text[RITZ_NAME_SIZE])
+{
+    const ritz_columns *columns = &reduced->columns;
+    char beside[RITZ_DOF_NAME_SIZE + 4] = "";
+    char dof[RITZ_DOF_NAME_SIZE];
+    int64_t row = columns->dof[j];
+
+    if (row >= 0 && reduced->dof && row < reduced->num_dofs)
+        snprintf(beside, sizeof beside, ", %s",
+                 ritz_dof_name(reduced->dof[row], dof));
+    else if (isfinite(columns->hertz[j]))
+        snprintf(beside, sizeof beside, ", %.4g Hz", columns->hertz[j]);
+    snprintf(text, RITZ_NAME_SIZE, "column %lld %s%.36s", (long long)j + 1,
+             ritz_column_name(columns->kind[j]), beside);
+}
+
+/* Share of coordinate j: energies compare, lengths and angles do not. */
+static double share(const ritz_checker *it, const double *motion, int64_t j)
+{
+    double m = fabs(ritz_dense_col(&it->model.M, j)[j]);
+    double k = fabs(ritz_dense_col(&it->model.K, j)[j]);
+
+    return fabs(motion[j]) * sqrt(m > 0.0 ? m : k);
+}
+
+/* Name the columns that have most of a motion. */
+static void name_columns(const ritz_checker *it, const double *motion,
+                         char where[RITZ_WHERE_SIZE])
+{
+    double largest = HUGE_VAL;
+    double below = HUGE_VAL;
+
+    where[0] = '\0';
+    if (!it->reduced || it->reduced->columns.count != it->model.K.nrow)
+        return;
+    for (int shown = 0; shown < SHOWN; shown++) {
+        char text[RITZ_NAME_SIZE];
+        double best = 0.0;
+        int64_t at = -1;
+
+        for (int64_t j = 0; j < it->model.K.nrow; j++) {
+            double s = share(it, motion, j);
+
+            if (s < below && s > best) {
+                best = s;
+                at = j;
+            }
+        }
+        if (shown == 0)
+            largest = best;
+        if (at < 0 || best < worth_naming * largest)
+            return;
+        name_column(it->reduced, at, text);
+        ritz_checker_list(where, text);
+        below = best;
+    }
+}
+
+/* The least eigenvalue over the largest magnitude, and its vector. */
+typedef struct least_value {
+    double value;
+    double *motion; /* n */
+} least_value;
+
+/* 1 / sqrt of the diagonal, 1 where it is 0. */
+static double scale_of(const ritz_dense *by, int64_t j)
+{
+    double d = fabs(ritz_dense_col(by, j)[j]);
+
+    return d > 0.0 ? 1.0 / sqrt(d) : 1.0;
+}
+
+static ritz_status find_least(const ritz_dense *A, const ritz_dense *by,
+                              least_value *out)
+{
+    ritz_status status = RITZ_OK;
+    int n = (int)A->nrow;
+    ritz_dense V = {0};
+    double *lambda = NULL;
+    double most = 0.0;
+
+    RITZ_NEW(out->motion, n);
+    RITZ_NEW(lambda, n + 1);
+    RITZ_TRY(ritz_dense_copy(A, &V));
+    ritz_dense_symmetrise(&V);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(&V, j)[i] *= scale_of(by, i) * scale_of(by, j);
+    if (n > 0)
+        RITZ_FAIL_IF(
+            LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, V.val, n, lambda) != 0,
+            RITZ_ERR_CONVERGENCE,
+            "eigenvalues of a reduced matrix were not found");
+    for (int64_t k = 0; k < n; k++)
+        most = fmax(most, fabs(lambda[k]));
+    out->value = most > 0.0 ? lambda[0] / most : 0.0;
+    for (int64_t i = 0; i < n; i++)
+        out->motion[i] = ritz_dense_col(&V, 0)[i] * scale_of(by, i);
+done:
+    free(lambda);
+    ritz_dense_free(&V);
+    return status;
+}
+
+ritz_status ritz_check_reduced_mass(ritz_checker *it)
+{
+    static const char name[] = "mass-definite";
+    ritz_status status = RITZ_OK;
+    const ritz_dense *M = &it->model.M;
+    double limit = -RITZ_PROBE_TIMES * (double)M->nrow * DBL_EPSILON;
+    least_value found = {0};
+    char where[RITZ_WHERE_SIZE];
+
+    RITZ_TRY(find_least(M, M, &found));
+    if (found.value >= limit) {
+        ritz_checker_say(it, name, found.value, limit, RITZ_PASS, "",
+                         "no negative eigenvalue");
+    } else {
+        it->usable = it->definite = false;
+        name_columns(it, found.motion, where);
+        ritz_checker_say(it, name, found.value, limit, RITZ_FAIL, where,
+                         "mass with a negative eigenvalue, %.2g of the largest",
+                         found.value);
+    }
+done:
+    free(found.motion);
+    return status;
+}
+
+/* N'DN of motions without mass, entries that are rounding alone taken out. */
+static ritz_status damping_of_massless(const ritz_dense *D, const ritz_dense *N,
+                                       ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const double rounding = 64.0 * DBL_EPSILON;
+    /* what an entry of N may err by, of its largest, squared */
+    double floor = 1e-20 * ritz_dense_max(D) * pow(ritz_dense_max(N), 2.0);
+    ritz_dense most = {0};
+
+    RITZ_TRY(ritz_dense_project(D, N, out));
+    RITZ_TRY(ritz_dense_terms(D, N, &most));
+    for (int64_t k = 0; k < out->nrow * out->ncol; k++)
+        if (fabs(out->val[k]) <= rounding * most.val[k] + floor)
+            out->val[k] = 0.0;
+done:
+    ritz_dense_free(&most);
+    return status;
+}
+
+/* Of motions without mass N the least n'D n: k + c s = 0 grows if c < 0. */
+static ritz_status find_massless(const ritz_checker *it, least_value *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_second_order model = {.K = &it->model.K, .M = &it->model.M};
+    ritz_dense N = {0}, D = {0}, unit = {0};
+    least_value found = {0};
+
+    if (it->modes.count == it->modes.num_dofs)
+        return RITZ_OK;
+    RITZ_TRY(ritz_massless(&model, &it->modes.Phi, it->modes.lambda, &N));
+    RITZ_TRY(damping_of_massless(&it->model.D, &N, &D));
+    RITZ_TRY(ritz_dense_new(N.ncol, N.ncol, &unit));
+    RITZ_TRY(find_least(&D, &unit, &found));
+    if (found.value < -slight_within) {
+        RITZ_NEW(out->motion, N.nrow);
+        out->value = found.value;
+        for (int64_t j = 0; j < N.ncol; j++)
+            for (int64_t i = 0; i < N.nrow; i++)
+                out->motion[i] += ritz_dense_col(&N, j)[i] * found.motion[j];
+    }
+done:
+    free(found.motion);
+    ritz_dense_free(&N);
+    ritz_dense_free(&D);
+    ritz_dense_free(&unit);
+    return status;
+}
+
+/* Share of D that is antisymmetric, in the Frobenius norm. */
+static double skew_of(const ritz_dense *D)
+{
+    double whole = 0.0;
+    double skew = 0.0;
+
+    for (int64_t j = 0; j < D->ncol; j++)
+        for (int64_t i = 0; i < D->nrow; i++) {
+            double a = ritz_dense_col(D, j)[i];
+            double b = ritz_dense_col(D, i)[j];
+
+            whole = hypot(whole, a);
+            skew = hypot(skew, 0.5 * (a - b));
+        }
+    return whole > 0.0 ? skew / whole : 0.0;
+}
+
+static void say_damping(ritz_checker *it, const least_value *found,
+                        double limit)
+{
+    static const char name[] = "damping-definite";
+    double skew = skew_of(&it->model.D);
+    bool slight = found->value >= -slight_within;
+    char where[RITZ_WHERE_SIZE] = "";
+
+    if (found->value >= limit && skew > 0.0) {
+        ritz_checker_say(it, name, found->value, limit, RITZ_PASS, "",
+                         "no negative eigenvalue; %.3g %% is gyroscopic, which "
+                         "does no work",
+                         100.0 * skew);
+        return;
+    }
+    if (found->value < limit)
+        name_columns(it, found->motion, where);
+    it->definite = it->definite && found->value >= limit;
+    ritz_checker_say(it, name, found->value, limit,
+                     found->value >= limit ? RITZ_PASS : RITZ_WARN, where, "%s",
+                     found->value >= limit ? "no negative eigenvalue"
+                     : slight ? "damping with a negative eigenvalue, no larger "
+                                "than ten digits leave"
+                              : "damping with a negative eigenvalue: a motion "
+                                "is driven");
+}
+
+ritz_status ritz_check_reduced_damping(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *D = &it->model.D;
+    double limit =
+        -RITZ_PROBE_TIMES * RITZ_PROBE_TIMES * (double)D->nrow * DBL_EPSILON;
+    least_value found = {0}, massless = {0};
+    char where[RITZ_WHERE_SIZE];
+
+    RITZ_TRY(find_massless(it, &massless));
+    if (massless.motion) {
+        it->definite = false;
+        name_columns(it, massless.motion, where);
+        ritz_checker_say(it, "damping-definite", massless.value, 0.0, RITZ_FAIL,
+                         where,
+                         "negative damping of a motion without mass, which "
+                         "grows");
+        goto done;
+    }
+    RITZ_TRY(find_least(D, &it->model.M, &found));
+    say_damping(it, &found, limit);
+done:
+    free(found.motion);
+    free(massless.motion);
+    return status;
+}
+
+ritz_status ritz_check_reduced_structural(ritz_checker *it)
+{
+    static const char name[] = "structural-definite";
+    ritz_status status = RITZ_OK;
+    const ritz_dense *K4 = &it->reduced->K4;
+    least_value found = {0};
+    char where[RITZ_WHERE_SIZE] = "";
+    bool holds = true;
+
+    RITZ_TRY(find_least(K4, &it->model.M, &found));
+    holds = found.value >= -slight_within;
+    if (!holds)
+        name_columns(it, found.motion, where);
+    ritz_checker_say(it, name, found.value, -slight_within,
+                     holds ? RITZ_PASS : RITZ_FAIL, where, "%s",
+                     holds ? "no negative eigenvalue"
+                           : "structural damping with a negative eigenvalue: "
+                             "harmonic motion gains energy");
+done:
+    free(found.motion);
+    return status;
+}
+
+/*
+ * Stiffness, by the modes of (K, M), which other checks use too. A rigid motion
+ * phi has none: phi'K phi beyond rounding is that of matrices of too few digits,
+ * which hold a free body or drive it.
+ */
+
+/* Of the softest flexible eigenvalue: a rigid motion that is held or driven by
+   more is wrong, as of an audited component; by less than the second it has not
+   moved a radius in 1e6 of that mode's radians. */
+static const double driven = 1e-8;
+static const double unnoticed = 1e-12;
+
+/* Modes are found here: that they are there is part of the answer. */
+static ritz_status find_modes(ritz_checker *it, bool *singular)
+{
+    ritz_status status = RITZ_OK;
+    ritz_io none = {0};
+
+    RITZ_TRY(ritz_io_new(it->model.K.nrow, 0, 0, &none));
+    status = ritz_first_order_new(&it->model, &none, &it->damping, &it->modes);
+    *singular = status == RITZ_ERR_SINGULAR;
+    if (*singular)
+        status = RITZ_OK;
+done:
+    ritz_io_free(&none);
+    return status;
+}
+
+/* phi'K phi of rigid motions, 0 where it is rounding: the largest magnitude. */
+static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
+                                   int64_t *at)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *K = &it->model.K;
+    ritz_dense Phi = ritz_dense_part(&it->modes.Phi, 0, it->modes.num_rigid);
+    ritz_dense own = {0}, most = {0};
+
+    *out = 0.0;
+    *at = 0;
+    RITZ_TRY(ritz_dense_congruence(K, &Phi, &own));
+    RITZ_TRY(ritz_dense_terms(K, &Phi, &most));
+    for (int64_t k = 0; k < Phi.ncol; k++) {
+        double value = ritz_dense_col(&own, k)[k];
+
+        if (fabs(value) > 64.0 * DBL_EPSILON * ritz_dense_col(&most, k)[k] &&
+            fabs(value) > fabs(*out)) {
+            *out = value;
+            *at = k;
+        }
+    }
+done:
+    ritz_dense_free(&own);
+    ritz_dense_free(&most);
+    return status;
+}
+
+/* Matrices of few digits: a rigid motion is held, or driven. */
+static ritz_status say_rigid(ritz_checker *it, bool *said)
+{
+    const ritz_first_order *modes = &it->modes;
+    int64_t r = modes->num_rigid;
+    double softest = r < modes->count ? modes->lambda[r] : HUGE_VAL;
+    double value = 0.0;
+    int64_t at = 0;
+    char where[RITZ_WHERE_SIZE] = "";
+
+    RITZ_CHECK(rigid_stiffness(it, &value, &at));
+    *said = value < -unnoticed * softest || value > driven * softest;
+    if (!*said)
+        return RITZ_OK;
+    it->definite = value > 0.0;
+    name_columns(it, ritz_dense_col(&modes->Phi, at), where);
+    ritz_checker_say(
+        it, "stiffness-definite", value / softest, -driven,
+        value < -driven * softest ? RITZ_FAIL : RITZ_WARN, where,
+        "%s stiffness of a rigid motion, %.2g of the softest flexible one: too "
+        "few digits, a free body is not free",
+        value < 0.0 ? "negative" : "positive", value / softest);
+    return RITZ_OK;
+}
+
+static ritz_status say_stiffness(ritz_checker *it)
+{
+    static const char name[] = "stiffness-definite";
+    const ritz_first_order *modes = &it->modes;
+    int64_t massless = modes->num_dofs - modes->count;
+    int64_t r = modes->num_rigid;
+    double least = r < modes->count ? modes->lambda[r] : 0.0;
+    double most = modes->count > 0 ? modes->lambda[modes->count - 1] : 0.0;
+    char where[RITZ_WHERE_SIZE] = "";
+    bool said = false;
+
+    most = fmax(most, -least);
+    it->usable = least >= 0.0;
+    it->definite = it->definite && it->usable;
+    if (least < 0.0) {
+        name_columns(it, ritz_dense_col(&modes->Phi, r), where);
+        ritz_checker_say(it, name, least / most, 0.0, RITZ_FAIL, where,
+                         "stiffness with a negative eigenvalue, %.4g "
+                         "rad^2/s^2",
+                         least);
+        return RITZ_OK;
+    }
+    RITZ_CHECK(say_rigid(it, &said));
+    if (said)
+        return RITZ_OK;
+    snprintf(where, sizeof where, "%" PRId64 " rigid", r);
+    if (massless > 0)
+        ritz_checker_say(it, name, most > 0.0 ? least / most : 0.0, 0.0,
+                         RITZ_PASS, where,
+                         "no negative eigenvalue; %" PRId64 " of %" PRId64
+                         " motions have no mass, which no explicit integrator "
+                         "takes",
+                         massless, modes->num_dofs);
+    else
+        ritz_checker_say(it, name, most > 0.0 ? least / most : 0.0, 0.0,
+                         RITZ_PASS, where,
+                         "no negative eigenvalue beyond rigid motion");
+    return RITZ_OK;
+}
+
+ritz_status ritz_check_reduced_stiffness(ritz_checker *it)
+{
+    bool singular = false;
+
+    RITZ_CHECK(find_modes(it, &singular));
+    if (singular) {
+        it->usable = it->definite = false;
+        ritz_checker_say(it, "stiffness-definite", nan(""), 0.0, RITZ_FAIL, "",
+                         "mass and stiffness that are singular together");
+    } else {
+        RITZ_CHECK(say_stiffness(it));
+    }
+    return RITZ_OK;
+}

@@ -1,0 +1,361 @@
+/* What moves and what is connected: dofs, separate bodies, mass properties. */
+#include "base/alloc.h"
+#include "check/check.h"
+
+#include <ritz/eigen.h>
+#include <ritz/reduced.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/*
+ * Dofs that have no mass, no stiffness, or no connection to the others. Dofs of
+ * one grid belong together; two grids do if any entry of K or M couples them.
+ */
+
+static int64_t root_of(int64_t *parent, int64_t k)
+{
+    while (parent[k] != k) {
+        parent[k] = parent[parent[k]];
+        k = parent[k];
+    }
+    return k;
+}
+
+static void join_parts(int64_t *parent, int64_t a, int64_t b)
+{
+    a = root_of(parent, a);
+    b = root_of(parent, b);
+    if (a < b)
+        parent[b] = a;
+    else
+        parent[a] = b;
+}
+
+static void join_entries(const ritz_sparse *A, int64_t *parent)
+{
+    for (int64_t j = 0; A->colptr && j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            if (A->val[p] != 0.0)
+                join_parts(parent, A->rowind[p], j);
+}
+
+/* A row and the grid it belongs to, to bring rows of a grid together. */
+typedef struct seat {
+    int64_t grid, row;
+} seat;
+
+static int compare_seats(const void *left, const void *right)
+{
+    const seat *a = left;
+    const seat *b = right;
+
+    if (a->grid != b->grid)
+        return a->grid < b->grid ? -1 : 1;
+    return (a->row > b->row) - (a->row < b->row);
+}
+
+static ritz_status join_grids(const ritz_component *c, int64_t *parent)
+{
+    ritz_status status = RITZ_OK;
+    seat *list = NULL;
+
+    RITZ_NEW(list, c->num_dofs);
+    for (int64_t k = 0; k < c->num_dofs; k++)
+        list[k] = (seat){c->dof[k].grid, k};
+    qsort(list, (size_t)c->num_dofs, sizeof *list, compare_seats);
+    for (int64_t k = 1; k < c->num_dofs; k++)
+        if (list[k].grid == list[k - 1].grid)
+            join_parts(parent, list[k].row, list[k - 1].row);
+done:
+    free(list);
+    return status;
+}
+
+/* Number the parts in it->part; their count, and the largest of them. */
+static ritz_status find_parts(ritz_checker *it, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *c = it->component;
+    int64_t n = c->num_dofs;
+    int64_t *parent = NULL;
+    int64_t *size = NULL;
+
+    RITZ_NEW(parent, n);
+    RITZ_NEW(size, n);
+    RITZ_NEW(it->part, n);
+    for (int64_t k = 0; k < n; k++)
+        parent[k] = k;
+    join_entries(&c->K, parent);
+    join_entries(&c->M, parent);
+    RITZ_TRY(join_grids(c, parent));
+    *count = 0;
+    for (int64_t k = 0; k < n; k++) { /* a root is the least of its part */
+        int64_t root = root_of(parent, k);
+
+        it->part[k] = root == k ? (*count)++ : it->part[root];
+        size[it->part[k]]++;
+    }
+    for (int64_t k = 0; k < *count; k++)
+        if (size[k] > size[it->largest])
+            it->largest = k;
+done:
+    free(parent);
+    free(size);
+    return status;
+}
+
+/* Grids outside the largest part, each once. */
+static void name_others(const ritz_checker *it, char where[RITZ_WHERE_SIZE])
+{
+    const ritz_component *c = it->component;
+    int64_t last = -1;
+
+    where[0] = '\0';
+    for (int64_t k = 0; k < c->num_dofs; k++) {
+        char name[RITZ_DOF_NAME_SIZE];
+
+        if (it->part[k] == it->largest || c->dof[k].grid == last)
+            continue;
+        last = c->dof[k].grid;
+        snprintf(name, sizeof name, "%s %" PRId64,
+                 c->dof[k].component == 0 ? "point" : "grid", last);
+        ritz_checker_list(where, name);
+    }
+}
+
+static ritz_status check_parts(ritz_checker *it)
+{
+    int64_t count = 0;
+    char where[RITZ_WHERE_SIZE];
+
+    RITZ_CHECK(find_parts(it, &count));
+    name_others(it, where);
+    if (count == 1)
+        ritz_checker_say(it, "separate-bodies", 1.0, 1.0, RITZ_PASS, where,
+                         "all dofs are connected");
+    else
+        ritz_checker_say(it, "separate-bodies", (double)count, 1.0, RITZ_WARN,
+                         where,
+                         "%" PRId64 " parts without connection: the grids "
+                         "named lie outside the largest",
+                         count);
+    return RITZ_OK;
+}
+
+/* Flag the rows of A that hold nothing but zeros. */
+static void flag_empty(const ritz_sparse *A, bool *flag)
+{
+    for (int64_t j = 0; j < A->ncol; j++) {
+        flag[j] = true;
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            if (A->val[p] != 0.0)
+                flag[j] = false;
+    }
+}
+
+static void check_rows(ritz_checker *it, const ritz_sparse *A, const char *name,
+                       const char *meaning, bool *flag)
+{
+    char where[RITZ_WHERE_SIZE];
+    int64_t count = 0;
+
+    flag_empty(A, flag);
+    count = ritz_checker_dofs(it, flag, where);
+    if (count == 0)
+        ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, where,
+                         "there are none");
+    else
+        ritz_checker_say(it, name, (double)count, 0.0, RITZ_WARN, where,
+                         "%" PRId64 " of %" PRId64 " dofs %s", count,
+                         it->component->num_dofs, meaning);
+}
+
+ritz_status ritz_check_dofs(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *c = it->component;
+    bool *flag = NULL;
+
+    RITZ_NEW(flag, c->num_dofs);
+    check_rows(it, &c->M, "massless-dofs",
+               "have no mass: they follow the others without inertia", flag);
+    if (!it->rigid)
+        check_rows(it, &c->K, "unconnected-dofs",
+                   "have mass but no stiffness: they move freely", flag);
+    RITZ_TRY(check_parts(it));
+done:
+    free(flag);
+    return status;
+}
+
+/*
+ * Mass properties: with rigid motions R = [T, Theta] about the mass centre,
+ *
+ *     R'MR = | m I   0  |
+ *            |  0   J_c |
+ *
+ * whatever the body is: three equal masses, no coupling between translation
+ * and rotation, and principal moments with J_1 + J_2 >= J_3 > 0. Directions
+ * without any dof, as in plane models, are passed over.
+ */
+
+/* Relative, as of symmetry: lumping, averaging and single precision stay
+ * below; a mass that is not the same along all axes does not. */
+static const double agree_within = 1e-6;
+static const double bearable = 1e-2;
+
+static ritz_verdict verdict_of(double value)
+{
+    if (value <= agree_within)
+        return RITZ_PASS;
+    return value <= bearable ? RITZ_WARN : RITZ_FAIL;
+}
+
+/* R'MR, about the mass centre where positions are known. */
+static ritz_status condense_mass(const ritz_checker *it, const double *centre,
+                                 ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense R = {0};
+
+    if (it->placed)
+        RITZ_TRY(ritz_rigid_geometry(it->component, centre, &R));
+    else
+        RITZ_TRY(ritz_dense_copy(&it->R, &R));
+    RITZ_TRY(ritz_sparse_condense(&it->component->M, &R, out));
+done:
+    ritz_dense_free(&R);
+    return status;
+}
+
+/* Whether any dof lies along a basic axis. */
+static bool has_direction(const ritz_checker *it, int64_t j)
+{
+    for (int64_t i = 0; i < it->R.nrow; i++)
+        if (fabs(ritz_dense_col(&it->R, j)[i]) > 0.0)
+            return true;
+    return false;
+}
+
+/* The three masses agree; the largest of them. */
+static double check_masses(ritz_checker *it, const ritz_dense *A)
+{
+    double least = DBL_MAX;
+    double most = 0.0;
+    double spread = 0.0;
+
+    for (int64_t j = 0; j < 3; j++) {
+        if (!has_direction(it, j))
+            continue;
+        least = fmin(least, ritz_dense_col(A, j)[j]);
+        most = fmax(most, ritz_dense_col(A, j)[j]);
+    }
+    if (!(most > 0.0)) {
+        ritz_checker_say(it, "mass-translations", nan(""), agree_within,
+                         RITZ_WARN, NULL, "no mass moves with a translation");
+        return 0.0;
+    }
+    spread = (most - least) / most;
+    ritz_checker_say(
+        it, "mass-translations", spread, agree_within, verdict_of(spread), NULL,
+        spread <= agree_within ? "mass %.9g, the same along all axes"
+                               : "mass %.9g along one axis, %.9g along another",
+        most, least);
+    return most;
+}
+
+/*
+ * What couples translations with each other, and with rotations about the mass
+ * centre, against m and m times the size.
+ */
+static void check_coupling(ritz_checker *it, const ritz_dense *A, double mass,
+                           const double *centre)
+{
+    double worst = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < 3; i++) {
+            double scale = mass * (j < 3 ? 1.0 : it->size);
+
+            if (i == j || !has_direction(it, i) ||
+                !has_direction(it, j < 3 ? j : j - 3))
+                continue;
+            worst = fmax(worst, fabs(ritz_dense_col(A, j)[i]) / scale);
+        }
+    if (it->placed)
+        ritz_checker_say(
+            it, "mass-coupling", worst, agree_within, verdict_of(worst), NULL,
+            "mass centre at %.6g %.6g %.6g", centre[0], centre[1], centre[2]);
+    else
+        ritz_checker_say(it, "mass-coupling", worst, agree_within,
+                         verdict_of(worst), NULL,
+                         "translations are %scoupled by mass",
+                         worst <= agree_within ? "not " : "");
+}
+
+/* Principal moments of inertia, ascending. */
+static ritz_status find_moments(const ritz_dense *A, double J[3])
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense tensor = {0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_dense_new(3, 3, &tensor));
+    for (int64_t j = 0; j < 3; j++)
+        for (int64_t i = 0; i < 3; i++)
+            ritz_dense_col(&tensor, j)[i] = ritz_dense_col(A, 3 + j)[3 + i];
+    ritz_dense_symmetrise(&tensor);
+    RITZ_TRY(ritz_check_eigen(&tensor, &pairs));
+    for (int64_t k = 0; k < 3; k++)
+        J[k] = pairs.lambda[k];
+done:
+    ritz_dense_free(&tensor);
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
+{
+    double J[3] = {0.0, 0.0, 0.0};
+    double margin = 0.0;
+    bool spatial = true;
+
+    for (int64_t j = 0; j < 6; j++)
+        spatial = spatial && has_direction(it, j);
+    if (!spatial)
+        return RITZ_OK;
+    RITZ_CHECK(find_moments(A, J));
+    margin = J[2] > 0.0 ? (J[0] + J[1] - J[2]) / J[2] : 0.0;
+    ritz_checker_say(
+        it, "inertia-tensor", margin, -agree_within,
+        margin >= -agree_within && J[0] >= -agree_within * J[2] ? RITZ_PASS
+                                                                : RITZ_FAIL,
+        NULL, "principal moments %.6g %.6g %.6g%s", J[0], J[1], J[2],
+        margin >= -agree_within ? "" : ": no body has these moments");
+    return RITZ_OK;
+}
+
+ritz_status ritz_check_mass(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    ritz_inertia inertia = {0};
+    ritz_dense A = {0};
+    double mass = 0.0;
+
+    if (it->placed)
+        RITZ_TRY(ritz_inertia_of(it->component, &inertia));
+    RITZ_TRY(condense_mass(it, inertia.centre, &A));
+    mass = check_masses(it, &A);
+    if (mass > 0.0) {
+        check_coupling(it, &A, mass, inertia.centre);
+        if (A.ncol == 6)
+            RITZ_TRY(check_moments(it, &A));
+    }
+done:
+    ritz_dense_free(&A);
+    return status;
+}

@@ -1,0 +1,682 @@
+/*
+ * A response at many points: with A = U S U^*, S an upper triangle,
+ *
+ *     G(i w) = diag((i w)^power) (C U (i w I - S)^-1 U^* B + D)
+ *
+ * costs a triangular solve.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "check/check.h"
+#include "linear/eigenvalues.h"
+#include "linear/general.h"
+#include "poles/poles.h"
+#include "poles/widen.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct ritz_sampler {
+    int n, p;
+    double _Complex *S, *B, *C; /* n x n, n x p, p x n */
+    double _Complex *T, *X, *H; /* to work in */
+    const double *D;            /* p x p, borrowed */
+    const int *power;
+};
+
+/* On a pole there is no answer. */
+static const double on_pole = 1e-13;
+
+ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sampler *s = NULL;
+    double _Complex *U = NULL, *lambda = NULL;
+    lapack_int none = 0;
+    int info = 0;
+
+    RITZ_NEW(s, 1);
+    s->n = (int)model->A.nrow;
+    s->p = (int)model->B.ncol;
+    s->D = model->D.val;
+    s->power = model->power;
+    RITZ_TRY(ritz_widen(&model->A, &s->S));
+    RITZ_TRY(ritz_widen(&model->B, &s->B));
+    RITZ_TRY(ritz_widen(&model->C, &s->C));
+    RITZ_NEW(s->T, (int64_t)s->n * s->n);
+    RITZ_NEW(s->X, (int64_t)s->n * s->p);
+    RITZ_NEW(s->H, (int64_t)s->p * s->p);
+    RITZ_NEW(U, (int64_t)s->n * s->n);
+    RITZ_NEW(lambda, s->n);
+    if (s->n > 0)
+        info = LAPACKE_zgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, s->n, s->S, s->n,
+                             &none, lambda, U, s->n);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    if (s->n > 0)
+        RITZ_TRY(ritz_turn(s->n, s->p, s->p, U, U, &s->B, &s->C));
+    *out = s;
+    s = NULL;
+done:
+    free(U);
+    free(lambda);
+    ritz_sampler_free(&s);
+    return status;
+}
+
+/* T = i w - S, false where that is singular. */
+static bool shift_sampler(ritz_sampler *s, double w)
+{
+    int64_t n = s->n;
+
+    for (int64_t k = 0; k < n * n; k++)
+        s->T[k] = -s->S[k];
+    for (int64_t k = 0; k < n; k++) {
+        s->T[k + k * n] += ritz_complex(0.0, w);
+        if (cabs(s->T[k + k * n]) <= on_pole * w)
+            return false;
+    }
+    return true;
+}
+
+const double _Complex *ritz_sampler_at(ritz_sampler *s, double w)
+{
+    const double _Complex one = 1.0;
+    int n = s->n, p = s->p;
+
+    if (!shift_sampler(s, w))
+        return NULL;
+    for (int64_t k = 0; k < (int64_t)p * p; k++)
+        s->H[k] = s->D[k];
+    if (n > 0) {
+        memcpy(s->X, s->B, (size_t)n * (size_t)p * sizeof *s->X);
+        cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
+                    CblasNonUnit, n, p, &one, s->T, n, s->X, n);
+        cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, p, n, &one,
+                    s->C, p, s->X, n, &one, s->H, p);
+    }
+    for (int64_t i = 0; i < p; i++)
+        for (int64_t j = 0; j < p; j++) {
+            double _Complex *h = &s->H[i + j * p];
+
+            if (s->power[i] > 0)
+                *h *= ritz_complex(0.0, w);
+            else if (s->power[i] < 0)
+                *h *= ritz_complex(0.0, -1.0 / w);
+        }
+    return s->H;
+}
+
+void ritz_sampler_free(ritz_sampler **sampler)
+{
+    ritz_sampler *s = *sampler;
+
+    if (!s)
+        return;
+    free(s->S);
+    free(s->B);
+    free(s->C);
+    free(s->T);
+    free(s->X);
+    free(s->H);
+    free(s);
+    *sampler = NULL;
+}
+
+/*
+ * Whether force to velocity is positive real: energy only ever flows in,
+ *
+ *     (G(i w) + G(i w)^*) / 2 >= 0     for all w
+ *
+ * [AndersonVongpanitlerd1973]. It is met at and around every pole and between
+ * them, down from the lowest of these, and where probe_pencil.c says that a grid
+ * may have stepped over something.
+ */
+
+static const double golden = 0.61803398874989485;
+/* Widths beside a pole, of |Re s| or, where that is less, of |s| / 1000. */
+static const double beside[] = {0.25, 1.0, 4.0};
+static const double least_width = 1e-3;
+enum { DESCENTS = 3, STEPS = 40, MOST_STATES = 200, PER_POLE = 9 };
+
+/* (G + G^*) / 2 and its eigenvalues, and where they were least. */
+typedef struct descent {
+    ritz_sampler *sampler;
+    int p;
+    double _Complex *H;
+    double *lambda;
+    double scale; /* largest |G| so far */
+    ritz_passivity found;
+} descent;
+
+static int ascending(const void *left, const void *right)
+{
+    const double *a = left;
+    const double *b = right;
+
+    return (*a > *b) - (*a < *b);
+}
+
+/* Sort, leave out what is not positive or there twice; how many are left. */
+static int64_t sort_frequencies(int64_t count, double *w)
+{
+    int64_t kept = 0;
+
+    qsort(w, (size_t)count, sizeof *w, ascending);
+    for (int64_t k = 0; k < count; k++)
+        if (w[k] > 0.0 && (kept == 0 || w[k] > w[kept - 1] * (1.0 + 1e-12)))
+            w[kept++] = w[k];
+    return kept;
+}
+
+ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_eigenvalues poles = {0};
+    double *w = NULL;
+    int64_t n = 0;
+    int64_t alone = 0;
+
+    RITZ_TRY(ritz_eigenvalues_of(A, &poles));
+    RITZ_NEW(w, 2 * (PER_POLE * poles.count + 2));
+    for (int64_t k = 0; k < poles.count; k++) {
+        double size = hypot(poles.re[k], poles.im[k]);
+        double width = fmax(fabs(poles.re[k]), least_width * size);
+
+        w[n++] = size;
+        w[n++] = fabs(poles.im[k]);
+        for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
+            w[n++] = fabs(poles.im[k]) - beside[i] * width;
+            w[n++] = fabs(poles.im[k]) + beside[i] * width;
+        }
+    }
+    n = sort_frequencies(n, w);
+    if (n == 0)
+        w[n++] = 1.0;
+    w[n] = 0.1 * w[0]; /* below all, above all, and between neighbours */
+    w[n + 1] = 10.0 * w[n - 1];
+    alone = n;
+    n += 2;
+    for (int64_t k = 1; k < alone; k++)
+        w[n++] = sqrt(w[k - 1] * w[k]);
+    *count = sort_frequencies(n, w);
+    *out = w;
+    w = NULL;
+done:
+    free(w);
+    ritz_eigenvalues_free(&poles);
+    return status;
+}
+
+/* Least eigenvalue over |G| at w; positive where there is no answer. */
+static double meet_at(descent *s, double w)
+{
+    const double _Complex *G = ritz_sampler_at(s->sampler, w);
+    double size = 0.0;
+    double value = 1.0;
+    int p = s->p;
+
+    for (int64_t k = 0; G && k < (int64_t)p * p; k++)
+        size = hypot(size, cabs(G[k]));
+    if (!G || !isfinite(size) || size == 0.0)
+        return 1.0;
+    s->scale = fmax(s->scale, size);
+    for (int64_t j = 0; j < p; j++)
+        for (int64_t i = 0; i < p; i++)
+            s->H[i + j * p] = 0.5 * (G[i + j * p] + conj(G[j + i * p]));
+    if (LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'L', p, s->H, p, s->lambda) != 0)
+        return 1.0;
+    value = s->lambda[0] / size;
+    if (value < s->found.value) {
+        s->found.value = value;
+        s->found.hertz = w / (2.0 * RITZ_PI);
+        s->found.port = 0;
+        for (int64_t i = 1; i < p; i++)
+            if (cabs(s->H[i]) > cabs(s->H[s->found.port]))
+                s->found.port = i;
+    }
+    return value;
+}
+
+/* Golden section of what is least between two points, in log w. */
+static void descend_between(descent *s, double low, double high)
+{
+    double a = log(low), b = log(high);
+    double c = b - golden * (b - a), d = a + golden * (b - a);
+    double at_c = meet_at(s, exp(c)), at_d = meet_at(s, exp(d));
+
+    for (int step = 0; step < STEPS; step++) {
+        if (at_c < at_d) {
+            b = d;
+            d = c;
+            at_d = at_c;
+            c = b - golden * (b - a);
+            at_c = meet_at(s, exp(c));
+        } else {
+            a = c;
+            c = d;
+            at_c = at_d;
+            d = a + golden * (b - a);
+            at_d = meet_at(s, exp(d));
+        }
+    }
+}
+
+/* The lowest points of the grid, each with its neighbours. */
+static void descend_all(descent *s, int64_t count, const double *w,
+                        double *value)
+{
+    for (int turn = 0; turn < DESCENTS; turn++) {
+        int64_t at = 0;
+
+        for (int64_t k = 1; k < count; k++)
+            if (value[k] < value[at])
+                at = k;
+        if (value[at] >= 1.0)
+            return;
+        descend_between(s, at > 0 ? w[at - 1] : 0.5 * w[at],
+                        at + 1 < count ? w[at + 1] : 2.0 * w[at]);
+        for (int64_t k = at > 0 ? at - 1 : 0; k <= at + 1 && k < count; k++)
+            value[k] = 1.0;
+    }
+}
+
+/* Where two of these follow each other, and between. */
+static ritz_status meet_crossings(descent *s, const ritz_collocated *model)
+{
+    ritz_status status = RITZ_OK;
+    double *w = NULL;
+    int64_t count = 0;
+
+    if (model->A.nrow > MOST_STATES || s->scale == 0.0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_passivity_crossings(model, 1e-9 * s->scale, &count, &w));
+    for (int64_t k = 0; k < count; k++) {
+        meet_at(s, w[k]);
+        meet_at(s, k > 0 ? sqrt(w[k - 1] * w[k]) : 0.5 * w[k]);
+        if (k + 1 == count)
+            meet_at(s, 2.0 * w[k]);
+    }
+done:
+    free(w);
+    return status;
+}
+
+ritz_status ritz_passivity_of(const ritz_collocated *model, ritz_passivity *out)
+{
+    ritz_status status = RITZ_OK;
+    descent s = {.p = (int)model->B.ncol, .found = {.value = 1.0}};
+    double *w = NULL, *value = NULL;
+    int64_t count = 0;
+
+    RITZ_TRY(ritz_sampler_new(model, &s.sampler));
+    RITZ_NEW(s.H, (int64_t)s.p * s.p);
+    RITZ_NEW(s.lambda, s.p);
+    RITZ_TRY(ritz_probe_grid(&model->A, &count, &w));
+    RITZ_NEW(value, count);
+    for (int64_t k = 0; k < count; k++)
+        value[k] = meet_at(&s, w[k]);
+    descend_all(&s, count, w, value);
+    RITZ_TRY(meet_crossings(&s, model));
+    *out = s.found;
+done:
+    ritz_sampler_free(&s.sampler);
+    free(s.H);
+    free(s.lambda);
+    free(w);
+    free(value);
+    return status;
+}
+
+/*
+ * Where on the axis G + G^* may become singular [Boyd1989]: eigenvalues of
+ *
+ *     [ A  0   B      ]     [ I 0 0 ]
+ *     [ 0 -A' -C'     ] - s [ 0 I 0 ]
+ *     [ C  B'  D + D' ]     [ 0 0 0 ]
+ */
+
+/* Of |s|: an eigenvalue of the pencil no further from the axis is on it. */
+static const double on_axis = 1e-6;
+/* Velocities: C A and C B of what is a displacement. */
+static ritz_status take_velocities(const ritz_collocated *model, ritz_dense *C,
+                                   ritz_dense *D)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense CA = {0}, CB = {0};
+
+    RITZ_TRY(ritz_dense_copy(&model->C, C));
+    RITZ_TRY(ritz_dense_copy(&model->D, D));
+    RITZ_TRY(ritz_dense_mul(&model->C, &model->A, &CA));
+    RITZ_TRY(ritz_dense_mul(&model->C, &model->B, &CB));
+    for (int64_t i = 0; i < C->nrow; i++) {
+        if (model->power[i] != 1)
+            continue;
+        for (int64_t j = 0; j < C->ncol; j++)
+            ritz_dense_col(C, j)[i] = ritz_dense_col(&CA, j)[i];
+        for (int64_t j = 0; j < D->ncol; j++)
+            ritz_dense_col(D, j)[i] = ritz_dense_col(&CB, j)[i];
+    }
+done:
+    ritz_dense_free(&CA);
+    ritz_dense_free(&CB);
+    return status;
+}
+
+static ritz_status build_pencil(const ritz_collocated *model, double slack,
+                                ritz_dense *P, ritz_dense *Q)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->A.nrow, p = model->B.ncol, all = 2 * n + p;
+    ritz_dense C = {0}, D = {0};
+
+    RITZ_TRY(take_velocities(model, &C, &D));
+    RITZ_TRY(ritz_dense_new(all, all, P));
+    RITZ_TRY(ritz_dense_new(all, all, Q));
+    for (int64_t j = 0; j < n; j++) {
+        ritz_dense_col(Q, j)[j] = ritz_dense_col(Q, n + j)[n + j] = 1.0;
+        for (int64_t i = 0; i < n; i++) {
+            ritz_dense_col(P, j)[i] = ritz_dense_col(&model->A, j)[i];
+            ritz_dense_col(P, n + i)[n + j] = -ritz_dense_col(&model->A, j)[i];
+        }
+        for (int64_t i = 0; i < p; i++) {
+            ritz_dense_col(P, j)[2 * n + i] = ritz_dense_col(&C, j)[i];
+            ritz_dense_col(P, 2 * n + i)[n + j] = -ritz_dense_col(&C, j)[i];
+            ritz_dense_col(P, 2 * n + i)[j] = ritz_dense_col(&model->B, i)[j];
+            ritz_dense_col(P, n + j)[2 * n + i] =
+                ritz_dense_col(&model->B, i)[j];
+        }
+    }
+    for (int64_t j = 0; j < p; j++)
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(P, 2 * n + j)[2 * n + i] =
+                ritz_dense_col(&D, j)[i] + ritz_dense_col(&D, i)[j] +
+                (i == j ? 2.0 * slack : 0.0);
+done:
+    ritz_dense_free(&C);
+    ritz_dense_free(&D);
+    return status;
+}
+
+ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
+                                     int64_t *count, double **out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense P = {0}, Q = {0};
+    double *re = NULL, *im = NULL, *beta = NULL, *w = NULL;
+    int all = 0;
+    int64_t found = 0;
+
+    *count = 0;
+    for (int64_t i = 0; i < model->B.ncol; i++)
+        if (model->power[i] < 0) /* an integrator is on the axis itself */
+            return RITZ_OK;
+    RITZ_TRY(build_pencil(model, slack, &P, &Q));
+    all = (int)P.nrow;
+    RITZ_NEW(re, all);
+    RITZ_NEW(im, all);
+    RITZ_NEW(beta, all);
+    RITZ_NEW(w, all);
+    RITZ_FAIL_IF(LAPACKE_dggev(LAPACK_COL_MAJOR, 'N', 'N', all, P.val, all,
+                               Q.val, all, re, im, beta, NULL, 1, NULL, 1) != 0,
+                 RITZ_ERR_CONVERGENCE,
+                 "eigenvalues of a Hamiltonian pencil were not found");
+    for (int64_t k = 0; k < all; k++)
+        if (beta[k] > 0.0 && im[k] > 0.0 && fabs(re[k]) <= on_axis * im[k] &&
+            isfinite(im[k] / beta[k]))
+            w[found++] = im[k] / beta[k];
+    *count = sort_frequencies(found, w);
+    *out = w;
+    w = NULL;
+done:
+    ritz_dense_free(&P);
+    ritz_dense_free(&Q);
+    free(re);
+    free(im);
+    free(beta);
+    free(w);
+    return status;
+}
+
+/*
+ * Pairs of an input and an output of one name in a state space: a force, and
+ * the displacement, velocity or acceleration of where it acts.
+ */
+
+/* Passivity that is met better by less than this is met as well. */
+static const double no_better = 1e-9;
+
+static int64_t output_of(const ritz_state_space *model, int64_t input)
+{
+    for (int64_t i = 0; i < model->num_outputs; i++)
+        if (strcmp(model->output[i], model->input[input]) == 0)
+            return i;
+    return -1;
+}
+
+static ritz_status take_pairs(const ritz_state_space *model,
+                              ritz_collocated *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->A.nrow;
+    int64_t *in = NULL, *seen = NULL;
+    int64_t p = 0;
+
+    RITZ_NEW(in, model->num_inputs);
+    RITZ_NEW(seen, model->num_inputs);
+    for (int64_t j = 0; j < model->num_inputs; j++) {
+        seen[p] = output_of(model, j);
+        in[p] = j;
+        p += seen[p] >= 0;
+    }
+    RITZ_TRY(ritz_dense_copy(&model->A, &out->A));
+    RITZ_TRY(ritz_dense_new(n, p, &out->B));
+    RITZ_TRY(ritz_dense_new(p, n, &out->C));
+    RITZ_TRY(ritz_dense_new(p, p, &out->D));
+    RITZ_NEW(out->power, p);
+    RITZ_NEW(out->name, p);
+    for (int64_t j = 0; j < p; j++) {
+        memcpy(ritz_dense_col(&out->B, j), ritz_dense_col(&model->B, in[j]),
+               (size_t)n * sizeof *out->B.val);
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(&out->C, i)[j] =
+                ritz_dense_col(&model->C, i)[seen[j]];
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(&out->D, j)[i] =
+                ritz_dense_col(&model->D, in[j])[seen[i]];
+        memcpy(out->name[j], model->input[in[j]], sizeof *out->name);
+    }
+    if (model->E.val) {
+        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &out->A));
+        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &out->B));
+    }
+done:
+    free(in);
+    free(seen);
+    return status;
+}
+
+/* One pair as a model of its own. */
+static ritz_status take_pair(const ritz_collocated *all, int64_t i, int *power,
+                             ritz_collocated *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense row = {0};
+
+    out->A = all->A; /* borrowed, as power is */
+    out->power = power;
+    RITZ_TRY(ritz_dense_columns(&all->B, i, 1, &out->B));
+    RITZ_TRY(ritz_dense_rows(&all->C, 1, &i, &out->C));
+    RITZ_TRY(ritz_dense_rows(&all->D, 1, &i, &row));
+    RITZ_TRY(ritz_dense_columns(&row, i, 1, &out->D));
+done:
+    ritz_dense_free(&row);
+    return status;
+}
+
+/* What output i is: what breaks passivity least; of equals a displacement. */
+static ritz_status guess_quantity(const ritz_collocated *all, int64_t i)
+{
+    ritz_status status = RITZ_OK;
+    static const int powers[] = {1, 0, -1};
+    double best = -HUGE_VAL;
+
+    for (size_t k = 0; k < sizeof powers / sizeof *powers; k++) {
+        ritz_collocated one = {0};
+        ritz_passivity found = {0};
+        int power = powers[k];
+
+        status = take_pair(all, i, &power, &one);
+        if (status == RITZ_OK)
+            status = ritz_passivity_of(&one, &found);
+        one.A = (ritz_dense){0};
+        one.power = NULL;
+        ritz_collocated_free(&one);
+        RITZ_TRY(status);
+        if (found.value > best + no_better) {
+            best = found.value;
+            all->power[i] = power;
+        }
+    }
+done:
+    return status;
+}
+
+ritz_status ritz_collocated_of_space(const ritz_state_space *model,
+                                     ritz_collocated *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_collocated pairs = {0};
+
+    RITZ_TRY(take_pairs(model, &pairs));
+    for (int64_t i = 0; i < pairs.B.ncol; i++)
+        RITZ_TRY(guess_quantity(&pairs, i));
+    *out = pairs;
+    pairs = (ritz_collocated){0};
+done:
+    ritz_collocated_free(&pairs);
+    return status;
+}
+
+/* Whether energy can come out of the interface, and where it does. */
+
+/* Of |G|: what rounding of a response may leave. */
+static const double rounding = 1e-9;
+
+/* From forces along the interface to its velocities, by the modes. */
+static ritz_status collocated_of_modes(const ritz_checker *it,
+                                       ritz_collocated *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_first_order *modes = &it->modes;
+    int64_t m = modes->count, first = m - modes->num_rigid;
+    ritz_collocated model = {0};
+    ritz_dense LPhi = {0};
+    int64_t p = 0;
+
+    RITZ_TRY(ritz_dense_mul(&it->L, &modes->Phi, &LPhi));
+    RITZ_TRY(ritz_probe_energy_matrix(modes, &model.A));
+    RITZ_TRY(ritz_dense_new(first + m, LPhi.nrow, &model.B));
+    RITZ_NEW(model.name, LPhi.nrow);
+    for (int64_t i = 0; i < LPhi.nrow; i++) {
+        double size = 0.0;
+
+        for (int64_t j = 0; j < m; j++)
+            size = hypot(size, ritz_dense_col(&LPhi, j)[i]);
+        if (size == 0.0) /* moves without mass: it only stores */
+            continue;
+        for (int64_t j = 0; j < m; j++)
+            ritz_dense_col(&model.B, p)[first + j] =
+                ritz_dense_col(&LPhi, j)[i] / size;
+        memcpy(model.name[p++], it->row[i], sizeof *model.name);
+    }
+    model.B.ncol = p;
+    RITZ_NEW(model.power, p);
+    RITZ_TRY(ritz_general_transpose(&model.B, &model.C));
+    RITZ_TRY(ritz_dense_new(p, p, &model.D));
+    *out = model;
+    model = (ritz_collocated){0};
+done:
+    ritz_dense_free(&LPhi);
+    ritz_collocated_free(&model);
+    return status;
+}
+
+void ritz_collocated_free(ritz_collocated *model)
+{
+    ritz_dense_free(&model->A);
+    ritz_dense_free(&model->B);
+    ritz_dense_free(&model->C);
+    ritz_dense_free(&model->D);
+    free(model->power);
+    free(model->name);
+    *model = (ritz_collocated){0};
+}
+
+/* "tip as a displacement, root as a velocity": what pairs are taken for. */
+static void name_pairs(const ritz_collocated *pairs,
+                       char where[RITZ_WHERE_SIZE])
+{
+    static const char *const quantity[] = {"acceleration", "velocity",
+                                           "displacement"};
+
+    where[0] = '\0';
+    for (int64_t i = 0; i < pairs->B.ncol; i++) {
+        char text[RITZ_WHERE_SIZE];
+
+        snprintf(text, sizeof text, "%s (%s)", pairs->name[i],
+                 quantity[pairs->power[i] + 1]);
+        ritz_checker_list(where, text);
+    }
+}
+
+static ritz_status say_passivity(ritz_checker *it, const ritz_collocated *model)
+{
+    ritz_passivity found = {0};
+    char where[RITZ_WHERE_SIZE] = "";
+
+    RITZ_CHECK(ritz_passivity_of(model, &found));
+    if (found.value >= -rounding) {
+        if (it->space)
+            name_pairs(model, where);
+        ritz_checker_say(it, "passivity", found.value, -rounding, RITZ_PASS,
+                         where, "no energy comes out at any frequency met");
+        return RITZ_OK;
+    }
+    snprintf(where, sizeof where, "%.6g Hz, %s", found.hertz,
+             model->name[found.port]);
+    ritz_checker_say(it, "passivity", found.value, -rounding, RITZ_WARN, where,
+                     "energy comes out of the interface: with some passive "
+                     "neighbour it can be unstable");
+    return RITZ_OK;
+}
+
+ritz_status ritz_check_passivity(ritz_checker *it)
+{
+    static const char name[] = "passivity";
+    ritz_status status = RITZ_OK;
+    ritz_collocated model = {0};
+
+    if (it->space && it->pairs.B.ncol == 0) {
+        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
+                         "not applicable: no input and output of one name");
+    } else if (it->space) {
+        RITZ_TRY(say_passivity(it, &it->pairs));
+    } else if (it->L.nrow == 0) {
+        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
+                         "not applicable: no port and no input");
+    } else if (it->definite) {
+        ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, "",
+                         "proven: M, K and D are semidefinite, and forces act "
+                         "where velocities are met");
+    } else {
+        RITZ_TRY(collocated_of_modes(it, &model));
+        RITZ_TRY(say_passivity(it, &model));
+    }
+done:
+    ritz_collocated_free(&model);
+    return status;
+}

@@ -1,0 +1,541 @@
+/* Rigid-body motions: by geometry, by what holds them, and by eigenvectors. */
+#include "base/alloc.h"
+#include "check/check.h"
+
+#include <ritz/eigen.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/*
+ * Rigid-body motions by geometry: R, and an M-orthonormal basis Phi of their
+ * span in which Phi'K Phi = diag(mu). A motion without mass has no place in it.
+ */
+
+/* Dofs of grids without a position; scalar points need none. */
+static ritz_status check_positions(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *c = it->component;
+    bool *flag = NULL;
+    char where[RITZ_WHERE_SIZE];
+    int64_t count = 0;
+
+    RITZ_NEW(flag, c->num_dofs);
+    for (int64_t k = 0; k < c->num_dofs; k++)
+        flag[k] = c->dof[k].component > 0 &&
+                  ritz_grids_find(&c->grids, c->dof[k].grid) < 0;
+    count = ritz_checker_dofs(it, flag, where);
+    it->placed = count == 0;
+    ritz_checker_say(it, "positions", (double)count, 0.0,
+                     it->placed ? RITZ_PASS : RITZ_WARN, where,
+                     it->placed ? "all grids have positions"
+                                : "dofs of grids without a position: rotations "
+                                  "cannot be checked, and axes are taken as "
+                                  "basic");
+done:
+    free(flag);
+    return status;
+}
+
+/* Mean position of the dofs' grids, and how far they reach. */
+static void measure_extent(ritz_checker *it)
+{
+    const ritz_component *c = it->component;
+    int64_t count = 0;
+
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t k = 0; k < c->num_dofs; k++) {
+            int64_t g = ritz_grids_find(&c->grids, c->dof[k].grid);
+            double square = 0.0;
+
+            if (g < 0 || c->dof[k].component == 0)
+                continue;
+            count += pass == 0;
+            for (int i = 0; i < 3; i++) {
+                double d = c->grids.position[3 * g + i] - it->centre[i];
+
+                if (pass == 0)
+                    it->centre[i] += d / (double)count;
+                square += d * d;
+            }
+            if (pass == 1)
+                it->size = fmax(it->size, sqrt(square));
+        }
+    if (it->size <= 0.0)
+        it->size = 1.0;
+}
+
+/* Without positions: translations along axes that are taken as basic. */
+static ritz_status use_translations(ritz_checker *it)
+{
+    const ritz_component *c = it->component;
+    ritz_status status = ritz_dense_new(c->num_dofs, 3, &it->R);
+
+    for (int64_t k = 0; status == RITZ_OK && k < c->num_dofs; k++) {
+        int64_t direction = c->dof[k].component;
+
+        if (direction >= 1 && direction <= 3)
+            ritz_dense_col(&it->R, direction - 1)[k] = 1.0;
+    }
+    return status;
+}
+
+static ritz_status find_motions(ritz_checker *it)
+{
+    int64_t n = it->component->num_dofs;
+
+    measure_extent(it);
+    if (!it->placed)
+        return use_translations(it);
+    RITZ_CHECK(ritz_rigid_geometry(it->component, it->centre, &it->R));
+    for (int64_t k = 3 * n; k < 6 * n; k++)
+        it->R.val[k] /= it->size;
+    return RITZ_OK;
+}
+
+/* Columns of V with lambda above 1e-10 of the largest, over sqrt(lambda). */
+static void keep_massive(const ritz_pairs *pairs, ritz_dense *V)
+{
+    int64_t k = pairs->Phi.ncol;
+    double largest = k > 0 ? pairs->lambda[k - 1] : 0.0;
+    int64_t kept = 0;
+
+    for (int64_t j = 0; j < k; j++) {
+        if (!(pairs->lambda[j] > 1e-10 * largest))
+            continue;
+        for (int64_t i = 0; i < V->nrow; i++)
+            ritz_dense_col(V, kept)[i] =
+                ritz_dense_col(&pairs->Phi, j)[i] / sqrt(pairs->lambda[j]);
+        kept++;
+    }
+    V->ncol = kept;
+}
+
+/* R V, M-orthonormal: V from the eigenvectors of R'MR that have mass. */
+static ritz_status orthonormalise_motions(const ritz_checker *it,
+                                          ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense B = {0}, V = {0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_sparse_condense(&it->component->M, &it->R, &B));
+    RITZ_TRY(ritz_check_eigen(&B, &pairs));
+    RITZ_TRY(ritz_dense_new(B.nrow, B.nrow, &V));
+    keep_massive(&pairs, &V);
+    RITZ_TRY(ritz_dense_mul(&it->R, &V, out));
+done:
+    ritz_dense_free(&B);
+    ritz_dense_free(&V);
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+ritz_status ritz_check_geometry(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Q = {0}, A = {0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(check_positions(it));
+    RITZ_TRY(find_motions(it));
+    RITZ_TRY(orthonormalise_motions(it, &Q));
+    RITZ_NEW(it->mu, Q.ncol);
+    if (Q.ncol == 0)
+        goto done;
+    RITZ_TRY(ritz_sparse_condense(&it->component->K, &Q, &A));
+    RITZ_TRY(ritz_check_eigen(&A, &pairs));
+    RITZ_TRY(ritz_dense_mul(&Q, &pairs.Phi, &it->Phi));
+    memcpy(it->mu, pairs.lambda, (size_t)Q.ncol * sizeof *it->mu);
+done:
+    ritz_dense_free(&Q);
+    ritz_dense_free(&A);
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/*
+ * Grounding: forces K r that a rigid motion r meets, and what their size says.
+ *
+ * A relative error u of the entries of K, or of r, leaves in row i at most
+ * u sum_j |K_ij| |r_j|: with u = 1024 eps for elements computed in double
+ * precision (a commercial code left 290 eps in a solid, measured), 2^-24 for
+ * positions and frames kept in single precision or as eight letters of a card,
+ * half a unit of the last digit for a source of few digits. Beyond that,
+ * something holds the body.
+ */
+
+static ritz_status find_forces(const ritz_checker *it, int64_t first,
+                               double fine, ritz_forces *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_sparse *K = &it->component->K;
+    ritz_dense R = {0}, F = {0};
+
+    RITZ_TRY(ritz_dense_columns(&it->R, first, 3, &R));
+    RITZ_TRY(ritz_sparse_mul(K, &R, &F));
+    *out = (ritz_forces){.row = -1, .fine = fine};
+    for (int64_t j = 0; j < 3; j++)
+        for (int64_t i = 0; i < K->ncol; i++) {
+            double force = fabs(ritz_dense_col(&F, j)[i]);
+            double sum = 0.0;
+
+            for (int64_t p = K->colptr[i]; p < K->colptr[i + 1]; p++)
+                sum += fabs(K->val[p] * ritz_dense_col(&R, j)[K->rowind[p]]);
+            out->bound = fmax(out->bound, sum);
+            if (force > out->largest) {
+                out->largest = force;
+                out->row = i;
+            }
+        }
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&F);
+    return status;
+}
+
+/* How much the rigid motions are held, of the first flexible eigenvalue. */
+static double worst_hold(const ritz_checker *it)
+{
+    double worst = 0.0;
+
+    for (int64_t k = 0; k < it->Phi.ncol; k++)
+        worst = fmax(worst, fabs(it->mu[k]));
+    return isfinite(it->softest) ? worst / it->softest : 0.0;
+}
+
+/* Whether forces are more than rounding, and no more than few digits leave. */
+static bool is_rounded(const ritz_checker *it, const ritz_forces *f)
+{
+    return it->digits < 15.0 && f->largest > f->fine * f->bound &&
+           f->largest <= 0.5 * pow(10.0, 1.0 - it->digits) * f->bound;
+}
+
+static void say_grounding(ritz_checker *it, const char *name,
+                          const ritz_forces *f)
+{
+    const double single = ldexp(1.0, -24);
+    double held = worst_hold(it);
+    double limit = f->fine * f->bound;
+    char dof[RITZ_DOF_NAME_SIZE] = "";
+
+    if (f->row >= 0)
+        ritz_dof_name(it->component->dof[f->row], dof);
+    if (f->largest <= limit) {
+        ritz_checker_say(it, name, f->largest, limit, RITZ_PASS, dof,
+                         f->fine < single
+                             ? "free: no more than rounding"
+                             : "free: no more than positions kept in single "
+                               "precision leave");
+    } else if (is_rounded(it, f)) {
+        ritz_checker_say(it, name, f->largest, limit,
+                         held <= 1e-8 ? RITZ_WARN : RITZ_FAIL, dof,
+                         "a free body is not free: rounding to %.0f digits "
+                         "holds it, by %.1e of the first flexible eigenvalue",
+                         it->digits, held);
+    } else if (f->largest <= 16.0 * single * f->bound) {
+        ritz_checker_say(it, name, f->largest, limit, RITZ_WARN, dof,
+                         "free but for a geometry in single precision");
+    } else {
+        ritz_checker_say(it, name, f->largest, limit, RITZ_WARN, dof,
+                         "held: the largest force of a unit motion is %.3g, "
+                         "here",
+                         f->largest);
+    }
+}
+
+/* What the source's digits mean, now that their effect is known. */
+static void check_digits(ritz_checker *it)
+{
+    const double enough = 12.0;
+    ritz_verdict verdict = RITZ_PASS;
+
+    if (it->digits < enough && it->rounded && worst_hold(it) > 1e-8)
+        verdict = RITZ_FAIL;
+    else if (it->digits < enough && it->declared)
+        verdict = RITZ_WARN;
+    ritz_checker_say(it, "source-digits", it->digits, enough, verdict, NULL,
+                     verdict == RITZ_FAIL
+                         ? "%.0f digits are too few: the body is held by them"
+                     : verdict == RITZ_WARN
+                         ? "%.0f digits: no harm is seen, but differences of "
+                           "stiffness are lost"
+                         : "%.0f digits, as far as can be told",
+                     it->digits);
+}
+
+static bool has_turned_axes(const ritz_grids *grids)
+{
+    for (int64_t k = 0; k < grids->count; k++)
+        if (grids->frame[k] != 0)
+            return true;
+    return false;
+}
+
+ritz_status ritz_check_forces(ritz_checker *it)
+{
+    const double rounding = 1024.0 * DBL_EPSILON;
+    const double single = ldexp(1.0, -24);
+    bool turned = has_turned_axes(&it->component->grids);
+
+    RITZ_CHECK(find_forces(it, 0, turned ? single : rounding, &it->shift));
+    if (it->R.ncol == 6)
+        RITZ_CHECK(find_forces(it, 3, single, &it->turn));
+    it->rounded = is_rounded(it, &it->shift) || is_rounded(it, &it->turn);
+    return RITZ_OK;
+}
+
+ritz_status ritz_check_grounding(ritz_checker *it)
+{
+    say_grounding(it, "grounding-translation", &it->shift);
+    if (it->R.ncol == 6)
+        say_grounding(it, "grounding-rotation", &it->turn);
+    check_digits(it);
+    return RITZ_OK;
+}
+
+/*
+ * Rigid-body modes three ways. With lambda_f the first flexible eigenvalue:
+ *
+ *     geometry       mu of the motions that positions give; free is one with
+ *                    |mu| <= 1e-4 lambda_f, cleanly so below 1e-8 lambda_f
+ *     null space     eigenvalues below lambda_f / 100 by the inertia of
+ *                    K - tau M, which knows nothing of the eigensolver
+ *     eigenvectors   rigid ones among the lowest pairs
+ *
+ * and the sine of the largest angle, in the inner product of M, by which the
+ * free motions Phi leave the span of the rigid eigenvectors X:
+ *
+ *     E = Phi - X X'M Phi,    sin^2 = largest eigenvalue of E'ME.
+ */
+
+static const double cleanly_free = 1e-8; /* of lambda_f, as eigen.h has it */
+static const double nearly_free = 1e-4;
+
+/* Trace of K over trace of M: an eigenvalue that is certainly not rigid. */
+static double typical_eigenvalue(const ritz_component *c)
+{
+    const ritz_sparse *const both[] = {&c->K, &c->M};
+    double trace[2] = {0.0, 0.0};
+
+    for (int k = 0; k < 2; k++)
+        for (int64_t j = 0; j < c->num_dofs; j++)
+            trace[k] += ritz_sparse_diagonal(both[k], j);
+    return trace[1] > 0.0 ? fabs(trace[0]) / trace[1] : 1.0;
+}
+
+static void check_geometry(ritz_checker *it)
+{
+    double scale =
+        isfinite(it->softest) ? it->softest : typical_eigenvalue(it->component);
+    int64_t motions = it->Phi.ncol;
+    double worst = 0.0;
+
+    it->num_free = 0;
+    for (int64_t k = 0; k < motions; k++)
+        if (fabs(it->mu[k]) <= nearly_free * scale) {
+            it->num_free++;
+            worst = fmax(worst, fabs(it->mu[k]) / scale);
+        }
+    if (it->num_free < motions && it->rounded)
+        ritz_checker_say(it, "rigid-modes-geometry", (double)it->num_free,
+                         (double)motions, RITZ_FAIL, NULL,
+                         "only %" PRId64 " of %" PRId64 " rigid motions are "
+                         "free: rounding of the source holds the others",
+                         it->num_free, motions);
+    else if (it->num_free < motions)
+        ritz_checker_say(it, "rigid-modes-geometry", (double)it->num_free,
+                         (double)motions, RITZ_PASS, NULL,
+                         "%" PRId64 " of %" PRId64 " rigid motions are free, "
+                         "stiffness holds the others",
+                         it->num_free, motions);
+    else
+        ritz_checker_say(it, "rigid-modes-geometry", (double)it->num_free,
+                         (double)motions,
+                         worst <= cleanly_free ? RITZ_PASS : RITZ_WARN, NULL,
+                         "all %" PRId64 " rigid motions are free: the most "
+                         "that one is held is %.1e of the first flexible "
+                         "eigenvalue",
+                         motions, worst);
+}
+
+/* How far the free motions leave the span of X. */
+static ritz_status measure_angle(const ritz_checker *it, const ritz_dense *X,
+                                 double *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_sparse *M = &it->component->M;
+    ritz_dense Phi = {0}, MPhi = {0}, C = {0}, E = {0}, ME = {0}, EME = {0};
+    double trace = 0.0;
+
+    RITZ_TRY(ritz_dense_new(it->Phi.nrow, it->num_free, &Phi));
+    for (int64_t k = 0, kept = 0; kept < it->num_free; k++)
+        if (fabs(it->mu[k]) <= nearly_free * it->softest) {
+            for (int64_t i = 0; i < Phi.nrow; i++)
+                ritz_dense_col(&Phi, kept)[i] = ritz_dense_col(&it->Phi, k)[i];
+            kept++;
+        }
+    RITZ_TRY(ritz_sparse_mul(M, &Phi, &MPhi));
+    RITZ_TRY(ritz_dense_mul_tn(X, &MPhi, &C));
+    RITZ_TRY(ritz_dense_mul(X, &C, &E));
+    for (int64_t k = 0; k < E.nrow * E.ncol; k++)
+        E.val[k] = Phi.val[k] - E.val[k];
+    RITZ_TRY(ritz_sparse_mul(M, &E, &ME));
+    RITZ_TRY(ritz_dense_mul_tn(&E, &ME, &EME));
+    for (int64_t k = 0; k < EME.nrow; k++) /* bounds the largest eigenvalue */
+        trace += ritz_dense_col(&EME, k)[k];
+    *out = sqrt(fmax(trace, 0.0));
+done:
+    ritz_dense_free(&Phi);
+    ritz_dense_free(&MPhi);
+    ritz_dense_free(&C);
+    ritz_dense_free(&E);
+    ritz_dense_free(&ME);
+    ritz_dense_free(&EME);
+    return status;
+}
+
+static void say_agreement(ritz_checker *it, int64_t eigen, double sine)
+{
+    const double limit = 1e-6;
+    const double bearable = 1e-3;
+    const char *const name = "rigid-modes-agree";
+
+    if (it->rounded && eigen < it->Phi.ncol)
+        ritz_checker_say(it, name, nan(""), limit, RITZ_FAIL, NULL,
+                         "%" PRId64 " rigid modes where positions give %" PRId64
+                         " motions, which rounding holds",
+                         eigen, it->Phi.ncol);
+    else if (eigen < it->num_free)
+        ritz_checker_say(it, name, sine, limit, RITZ_FAIL, NULL,
+                         "geometry gives %" PRId64 " free motions, "
+                         "eigenvectors only %" PRId64,
+                         it->num_free, eigen);
+    else if (sine > limit)
+        ritz_checker_say(it, name, sine, limit,
+                         sine > bearable ? RITZ_FAIL : RITZ_WARN, NULL,
+                         "the eigenvectors leave the motions that positions "
+                         "give: is a position or a frame wrong?");
+    else if (eigen > it->num_free && it->placed)
+        ritz_checker_say(it, name, sine, limit, RITZ_WARN, NULL,
+                         "%" PRId64 " rigid modes but %" PRId64 " by geometry:"
+                         " a mechanism, or several bodies",
+                         eigen, it->num_free);
+    else
+        ritz_checker_say(it, name, sine, limit, RITZ_PASS, NULL,
+                         it->num_free > 0
+                             ? "geometry and eigenvectors span the same motions"
+                             : "neither finds a free motion");
+}
+
+/* The third way is another factor: MUMPS instead of CHOLMOD and ARPACK. */
+static ritz_status check_null_space(ritz_checker *it, int64_t eigen)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *c = it->component;
+    double tau =
+        (isfinite(it->softest) ? it->softest : typical_eigenvalue(c)) / 100.0;
+    int64_t count = 0;
+
+    status = ritz_eigen_count(&c->K, &c->M, tau, &count);
+    if (status == RITZ_ERR_SINGULAR) {
+        status = RITZ_OK;
+        ritz_checker_say(it, "rigid-modes-null-space", nan(""), (double)eigen,
+                         RITZ_FAIL, NULL, "cannot be counted: %s",
+                         ritz_error_message());
+        goto done;
+    }
+    RITZ_TRY(status);
+    ritz_checker_say(it, "rigid-modes-null-space", (double)count, (double)eigen,
+                     count == eigen ? RITZ_PASS : RITZ_FAIL, NULL,
+                     count == eigen
+                         ? "stiffness lets as many motions free as there are "
+                           "rigid eigenvectors"
+                         : "not as many as rigid eigenvectors");
+done:
+    return status;
+}
+
+/*
+ * First flexible eigenvalue. Where rounding holds the body its rigid modes are
+ * not told from others by size, and the first six are taken for them.
+ */
+static double find_softest(const ritz_checker *it, const ritz_pairs *pairs)
+{
+    int64_t rigid = pairs->num_rigid;
+    int64_t k = it->rounded && rigid < 6 ? 6 : rigid;
+
+    return k < pairs->Phi.ncol && pairs->lambda[k] > 0.0 ? pairs->lambda[k]
+                                                         : nan("");
+}
+
+static void say_eigenvectors(ritz_checker *it, const ritz_pairs *pairs)
+{
+    int64_t count = pairs->num_rigid;
+
+    ritz_checker_say(
+        it, "rigid-modes-eigenvectors", (double)count, 6.0,
+        count > 6 || (count == 0 && pairs->lambda[0] < 0.0) ? RITZ_WARN
+                                                            : RITZ_PASS,
+        NULL,
+        isfinite(it->softest)
+            ? "%" PRId64 " rigid modes, the first flexible one at %.6g Hz"
+            : "%" PRId64 " rigid modes and no flexible one",
+        count, ritz_eigen_hertz(it->softest));
+}
+
+/* No stiffness at all: everything with mass is free. */
+static void audit_rigid_body(ritz_checker *it)
+{
+    int64_t n = it->component->num_dofs;
+
+    it->num_free = it->Phi.ncol;
+    ritz_checker_say(it, "rigid-modes-eigenvectors", (double)n, 6.0,
+                     n > 6 ? RITZ_FAIL : RITZ_PASS, NULL,
+                     n > 6 ? "%" PRId64 " dofs without any stiffness: is the "
+                             "stiffness missing?"
+                           : "a rigid body of %" PRId64 " dofs",
+                     n);
+}
+
+ritz_status ritz_check_rigid(ritz_checker *it)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *c = it->component;
+    const ritz_span span = {.modes = 7};
+    ritz_pairs pairs = {0};
+    ritz_dense X = {0};
+    double sine = 0.0;
+
+    if (it->rigid) {
+        audit_rigid_body(it);
+        goto done;
+    }
+    status = ritz_eigen_sparse(&c->K, &c->M, &span, &pairs);
+    if (status == RITZ_ERR_SINGULAR || status == RITZ_ERR_CONVERGENCE) {
+        status = RITZ_OK;
+        ritz_checker_say(it, "rigid-modes-eigenvectors", nan(""), 6.0,
+                         RITZ_FAIL, NULL, "no modes: %s", ritz_error_message());
+        check_geometry(it);
+        goto done;
+    }
+    RITZ_TRY(status);
+    it->softest = find_softest(it, &pairs);
+    check_geometry(it);
+    RITZ_TRY(check_null_space(it, pairs.num_rigid));
+    say_eigenvectors(it, &pairs);
+    if (it->num_free > 0 && isfinite(it->softest)) {
+        RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &X));
+        RITZ_TRY(measure_angle(it, &X, &sine));
+    }
+    say_agreement(it, pairs.num_rigid, sine);
+done:
+    ritz_pairs_free(&pairs);
+    ritz_dense_free(&X);
+    return status;
+}
