@@ -2,6 +2,7 @@
 #ifndef RITZ_BASES_BALANCE_ASKED_H
 #define RITZ_BASES_BALANCE_ASKED_H
 
+#include "gramians/states.h"
 #include <ritz/gramians.h>
 #include <ritz/method.h>
 
@@ -42,5 +43,17 @@ ritz_status ritz_balanced_note(const ritz_request *request,
                                const ritz_gramians *gramians,
                                const ritz_balanced *balanced, bool bounded,
                                const char *what, ritz_basis *basis);
+
+/** The damping that was asked for, or else the component's own. */
+ritz_status ritz_request_damping(const ritz_request *request,
+                                 ritz_damping *out);
+
+/**
+ * Its component in states, less the shift.
+ *
+ * @return RITZ_ERR_ARGUMENT if the request is not for a number of states with
+ *         at most one shift, or as ritz_states_new
+ */
+ritz_status ritz_states_asked(const ritz_request *request, ritz_states *out);
 
 #endif

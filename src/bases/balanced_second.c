@@ -23,7 +23,7 @@
  * Z_p, as [MeyerSrinivasan1996] do and keep T alone of, needs M^-1 to be a left
  * vector and is not symmetric where the model is.
  */
-#include "bases/balanced_second.h"
+#include <ritz/method.h>
 
 #include "base/alloc.h"
 #include "bases/balance_asked.h"
@@ -35,8 +35,17 @@
 #include <math.h>
 #include <string.h>
 
+/* Balancing that leaves a model of second order what it is. */
+
+/* Which half of the controllability Gramian of x = [u; u'] is balanced. */
+typedef enum ritz_half {
+    RITZ_HALF_POSITION,
+    RITZ_HALF_VELOCITY,
+} ritz_half;
+
 /* What of a state is no rigid motion, relative: more is another motion. */
 static const double not_rigid = 1e-6;
+
 /* Of squares of norms whose difference is rounding. */
 static const double rounding = 1e-13;
 
@@ -234,8 +243,14 @@ static ritz_status vectors(const ritz_request *request, const second *s,
     return RITZ_OK;
 }
 
-ritz_status ritz_balanced_second(const ritz_request *request, ritz_half half,
-                                 ritz_basis *out)
+/*
+ * T = [Phi, T_b] and W = [Phi, W_b], Phi the rigid modes: see balanced_second.c.
+ *
+ * @return RITZ_ERR_ARGUMENT if a pole that is no rigid motion is not left of
+ *         the axis, or as ritz_gramians_asked
+ */
+static ritz_status balanced_second(const ritz_request *request, ritz_half half,
+                                   ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
@@ -261,3 +276,49 @@ done:
     ritz_basis_free(&basis);
     return status;
 }
+
+/*
+ * Balancing of positions: displacements that inputs reach, against those that
+ * outputs see in the dual model. See balanced_second.c for the equations.
+ */
+
+static ritz_status make_position(const ritz_request *request, ritz_basis *out)
+{
+    return balanced_second(request, RITZ_HALF_POSITION, out);
+}
+
+const ritz_method ritz_method_balanced_position = {
+    .name = "balanced-position",
+    .summary = "vectors balanced by positions, second order stays second order",
+    .reference = "ReisStykel2008",
+    .when = "few inputs, displacements as outputs, a second-order result",
+    .cost = "as balanced: modal O(m^2 r), dense O(n^3), low rank",
+    .holds = "symmetry and stability if outputs lie at inputs, or on one side",
+    .fails = "inputs and outputs apart: stability is probed, error measured",
+    .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
+            RITZ_USES_AMONG | RITZ_USES_SIDES,
+    .make = make_position,
+};
+
+/*
+ * Balancing of velocities, the half of the states in which a mode's values are
+ * nearly its Hankel values. See balanced_second.c for the equations.
+ */
+
+static ritz_status make_velocity(const ritz_request *request, ritz_basis *out)
+{
+    return balanced_second(request, RITZ_HALF_VELOCITY, out);
+}
+
+const ritz_method ritz_method_balanced_velocity = {
+    .name = "balanced-velocity",
+    .summary = "vectors balanced by velocities, second order stays so",
+    .reference = "ReisStykel2008",
+    .when = "few inputs, velocities as outputs, a second-order result",
+    .cost = "as balanced: modal O(m^2 r), dense O(n^3), low rank",
+    .holds = "symmetry and stability if velocities lie at inputs, or one side",
+    .fails = "inputs and outputs apart: stability is probed, error measured",
+    .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
+            RITZ_USES_AMONG | RITZ_USES_SIDES,
+    .make = make_velocity,
+};

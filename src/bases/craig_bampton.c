@@ -1,3 +1,66 @@
+
+#include "bases/partition.h"
+
+#include <ritz/eigen.h>
+
+#include <stdbool.h>
+#include <string.h>
+
+/* How many of the modes are kept: a cluster at the end is not cut. */
+static int64_t count_kept(const ritz_pairs *modes, int64_t wanted)
+{
+    const double together = 1e-6;
+    int64_t all = modes->Phi.ncol;
+    int64_t kept = modes->num_rigid + wanted;
+
+    if (wanted >= all - modes->num_rigid)
+        return all;
+    while (kept > modes->num_rigid && kept < all &&
+           modes->lambda[kept] - modes->lambda[kept - 1] <=
+               together * modes->lambda[kept])
+        kept++;
+    return kept;
+}
+
+/*
+ * Modes of the component condensed to its attached dofs,
+ *
+ *     (T_b'KT_b) Phi = (T_b'MT_b) Phi Lambda,
+ *
+ * all rigid ones and the lowest request->choice.interface_modes others; a
+ * cluster (relative gap below 1e-6) at the end is kept whole.
+ *
+ * @param[in]  T_b  n x b, [I; Psi]: constraint modes
+ * @param[out] out  Phi is b x k
+ * @return RITZ_ERR_SINGULAR
+ * @cost   O(b^3) beside the condensation
+ * @see    [CastanierTanPierre2001]
+ */
+static ritz_status condense_interface(const ritz_request *request,
+                                        const ritz_dense *T_b, ritz_pairs *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense K = {0}, M = {0}, Phi = {0};
+    ritz_pairs modes = {0};
+
+    RITZ_TRY(ritz_condense(request->component, T_b, &K, &M));
+    RITZ_TRY(ritz_eigen_dense(&K, &M, &modes));
+    RITZ_TRY(ritz_dense_columns(
+        &modes.Phi, 0, count_kept(&modes, request->choice.interface_modes),
+        &Phi));
+    ritz_dense_free(&modes.Phi);
+    modes.Phi = Phi;
+    Phi = (ritz_dense){0};
+    *out = modes;
+    modes = (ritz_pairs){0};
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_dense_free(&Phi);
+    ritz_pairs_free(&modes);
+    return ritz_context(status, "interface modes");
+}
+
 /*
  * Craig-Bampton reduction: constraint modes and fixed-interface normal modes.
  *
@@ -17,14 +80,6 @@
  * [CraigBampton1968] R. R. Craig and M. C. C. Bampton, Coupling of
  * substructures for dynamic analyses, AIAA Journal 6 (1968) 1313-1319.
  */
-#include "bases/interface.h"
-#include "bases/mechanism.h"
-#include "bases/partition.h"
-
-#include <ritz/eigen.h>
-
-#include <stdbool.h>
-#include <string.h>
 
 /* The number asked for, or all up to the frequency asked for. */
 static ritz_status find_normal_modes(const ritz_request *request,
@@ -76,7 +131,7 @@ static ritz_status reduce_boundary(const ritz_request *request,
     ritz_pairs modes = {0};
     ritz_basis basis = {0};
 
-    RITZ_TRY(ritz_interface_modes(request, &boundary->T, &modes));
+    RITZ_TRY(condense_interface(request, &boundary->T, &modes));
     RITZ_TRY(ritz_columns_new(modes.Phi.ncol, &basis.columns));
     RITZ_TRY(ritz_dense_mul(&boundary->T, &modes.Phi, &basis.T));
     for (int64_t j = 0; j < modes.Phi.ncol; j++) {

@@ -13,7 +13,6 @@
  * both.
  */
 #include "base/alloc.h"
-#include "bases/condense.h"
 #include "bases/partition.h"
 
 #include <lapacke.h>

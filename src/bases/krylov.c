@@ -1,4 +1,419 @@
 /*
+ * Block Krylov vectors. About each point sigma, with A = K - sigma M and the
+ * forces F that are to be answered,
+ *
+ *     R_0 = A^-1 F,   R_j = A^-1 M Q_j,   Q_j+1 = what is new in R_j
+ *
+ * orthonormal against all vectors that there are, of any point, in K or in M:
+ * the Lanczos recurrence of [CraigSuKim1992, sec. 2] with full
+ * reorthogonalisation, and with several points a rational Krylov sequence.
+ * Points take turns, a block each. V spans A^-1 F, (A^-1 M) A^-1 F, ... of
+ * every point, so that its Galerkin model keeps as many moments about that
+ * point as it has whole blocks there, and twice as many where inputs and
+ * outputs are both among the forces.
+ */
+#include "bases/krylov_block.h"
+
+#include "bases/loads.h"
+
+#include <ritz/eigen.h>
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Forces that cancel to this part of what they were summed from are nothing. */
+static const double rounding = 1e-11;
+
+/* The points ascend, so that 0 Hz is the first; it is the only one if none is
+ * chosen. */
+static void order_points(const ritz_choice *choice, ritz_krylov *S)
+{
+    S->num_points = choice->num_shifts > 0 ? choice->num_shifts : 1;
+    for (int64_t k = 0; k < choice->num_shifts; k++) {
+        int64_t at = k;
+
+        for (; at > 0 && S->point[at - 1].hertz > choice->shift_hz[k]; at--)
+            S->point[at] = S->point[at - 1];
+        S->point[at] = (ritz_krylov_point){.hertz = choice->shift_hz[k]};
+    }
+}
+
+static ritz_status factor_point(const ritz_elastic *body,
+                                ritz_krylov_point *point)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse A = {0};
+
+    point->sigma = ritz_eigen_lambda(point->hertz);
+    if (point->hertz == 0.0)
+        goto done;
+    RITZ_TRY(ritz_sparse_add(1.0, body->K, -point->sigma, body->M, &A));
+    status = ritz_ldl_new(&A, NULL, &point->A);
+    if (status == RITZ_ERR_SINGULAR)
+        status = ritz_fail(RITZ_ERR_SINGULAR,
+                           "expansion point %g Hz is a natural frequency: move "
+                           "it",
+                           point->hertz);
+done:
+    ritz_sparse_free(&A);
+    return status;
+}
+
+/* v'Mv must be positive for every v. */
+static ritz_status check_mass(const ritz_sparse *M)
+{
+    ritz_status status = RITZ_OK;
+    ritz_factor *L = NULL;
+
+    status = ritz_factor_spd(M, &L);
+    if (status == RITZ_ERR_SINGULAR)
+        status = ritz_fail(RITZ_ERR_SINGULAR,
+                           "mass is singular, so it gives no inner product: "
+                           "take stiffness");
+    ritz_factor_free(&L);
+    return status;
+}
+
+ritz_status ritz_krylov_new(const ritz_elastic *body,
+                            const ritz_request *request, ritz_krylov *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_choice *choice = &request->choice;
+    ritz_krylov S = {.body = body, .inner = choice->inner};
+
+    RITZ_FAIL_IF(request->modes < 0, RITZ_ERR_ARGUMENT,
+                 "Krylov vectors have no frequency: ask for a number of them");
+    S.vectors = request->modes < body->K->nrow ? request->modes : body->K->nrow;
+    if (S.inner == RITZ_INNER_MASS && body->M->nrow > 0)
+        RITZ_TRY(check_mass(body->M));
+    order_points(choice, &S);
+    for (int64_t k = 0; k < S.num_points; k++)
+        RITZ_TRY(factor_point(body, &S.point[k]));
+    RITZ_TRY(ritz_orthonormal_new(
+        body->K->nrow, S.inner == RITZ_INNER_MASS ? body->M : body->K,
+        request->tolerance, &S.set));
+    *out = S;
+    S = (ritz_krylov){0};
+done:
+    ritz_krylov_free(&S);
+    return status;
+}
+
+void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
+                      ritz_dense *size)
+{
+    for (int64_t k = 0; k < X->ncol; k++) {
+        const double *x = ritz_dense_col(X, k);
+        double *out = ritz_dense_col(size, k);
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+                out[A->rowind[p]] += factor * fabs(A->val[p] * x[j]);
+    }
+}
+
+/* size += |M Phi| |Phi' G|: what P takes out of the forces. */
+static ritz_status add_rigid_size(const ritz_elastic *E, const ritz_dense *G,
+                                  ritz_dense *size)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0};
+
+    if (E->Phi.ncol == 0)
+        goto done;
+    RITZ_TRY(ritz_dense_mul_tn(&E->Phi, G, &part));
+    for (int64_t j = 0; j < G->ncol; j++)
+        for (int64_t k = 0; k < part.nrow; k++)
+            for (int64_t i = 0; i < G->nrow; i++)
+                ritz_dense_col(size, j)[i] +=
+                    fabs(ritz_dense_col(&E->MPhi, k)[i] *
+                         ritz_dense_col(&part, j)[k]);
+done:
+    ritz_dense_free(&part);
+    return status;
+}
+
+/* Columns of R whose forces have cancelled are rounding: they become zero. */
+static void clear_rounding(const ritz_dense *G, const ritz_dense *size,
+                           ritz_dense *R)
+{
+    for (int64_t j = 0; j < R->ncol; j++) {
+        const double *g = ritz_dense_col(G, j);
+        const double *all = ritz_dense_col(size, j);
+        double *x = ritz_dense_col(R, j);
+        double left = 0.0;
+        double before = 0.0;
+
+        for (int64_t i = 0; i < R->nrow; i++) {
+            left += fabs(g[i] * x[i]);
+            before += all[i] * fabs(x[i]);
+        }
+        if (!(left > rounding * before) && R->nrow > 0)
+            memset(x, 0, (size_t)R->nrow * sizeof *x);
+    }
+}
+
+ritz_status ritz_krylov_answer(const ritz_krylov *S,
+                               const ritz_krylov_point *point,
+                               const ritz_forces *forces, ritz_dense *R)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense PG = {0}, size = {0}, X = {0};
+
+    RITZ_TRY(ritz_dense_copy(&forces->G, &PG));
+    RITZ_TRY(ritz_dense_copy(&forces->size, &size));
+    RITZ_TRY(add_rigid_size(S->body, &forces->G, &size));
+    RITZ_TRY(ritz_elastic_forces(S->body, &PG));
+    RITZ_TRY(ritz_dense_copy(&PG, &X));
+    if (point->A)
+        RITZ_TRY(ritz_elastic_answer_at(S->body, point->A, &X));
+    else
+        RITZ_TRY(ritz_elastic_answer(S->body, &X));
+    clear_rounding(&PG, &size, &X);
+    *R = X;
+    X = (ritz_dense){0};
+done:
+    ritz_dense_free(&PG);
+    ritz_dense_free(&size);
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* The forces F themselves, from column `first` on. */
+static ritz_status take_loads(const ritz_dense *F, int64_t first,
+                              ritz_forces *out)
+{
+    RITZ_CHECK(ritz_dense_columns(F, first, F->ncol - first, &out->G));
+    RITZ_CHECK(ritz_dense_copy(&out->G, &out->size));
+    for (int64_t k = 0; k < F->nrow * (F->ncol - first); k++)
+        out->size.val[k] = fabs(out->size.val[k]);
+    return RITZ_OK;
+}
+
+/* Inertia forces M Q of the last block of a point. */
+static ritz_status take_inertia(const ritz_krylov *S,
+                                const ritz_krylov_point *point,
+                                ritz_forces *out)
+{
+    const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
+
+    RITZ_CHECK(ritz_sparse_mul(S->body->M, &Q, &out->G));
+    RITZ_CHECK(ritz_dense_new(Q.nrow, Q.ncol, &out->size));
+    ritz_krylov_size(S->body->M, &Q, 1.0, &out->size);
+    return RITZ_OK;
+}
+
+/* Append what a point answers; *added columns. */
+static ritz_status append(ritz_krylov *S, const ritz_krylov_point *point,
+                          const ritz_forces *forces, int64_t most, bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense R = {0};
+
+    RITZ_TRY(ritz_krylov_answer(S, point, forces, &R));
+    RITZ_TRY(ritz_orthonormal_append(&S->set, &R, most, taken));
+done:
+    ritz_dense_free(&R);
+    return status;
+}
+
+ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_krylov_point at_rest = {0};
+    ritz_forces forces = {0};
+
+    RITZ_TRY(take_loads(F, 0, &forces));
+    RITZ_TRY(append(S, &at_rest, &forces, F->ncol, taken));
+    S->seeds = S->set.count;
+done:
+    ritz_forces_free(&forces);
+    return status;
+}
+
+/* The first block of a point; at 0 Hz the seeds are part of it. */
+static ritz_status start(ritz_krylov *S, const ritz_dense *F, int64_t seeded,
+                         ritz_krylov_point *point)
+{
+    ritz_status status = RITZ_OK;
+    int64_t before = S->set.count;
+    ritz_forces forces = {0};
+
+    RITZ_TRY(take_loads(F, point->A ? 0 : seeded, &forces));
+    RITZ_TRY(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    point->first = before;
+    if (!point->A && before == S->seeds)
+        point->first = 0;
+    point->count = S->set.count - point->first;
+done:
+    ritz_forces_free(&forces);
+    return status;
+}
+
+static ritz_status advance(ritz_krylov *S, ritz_krylov_point *point)
+{
+    ritz_status status = RITZ_OK;
+    int64_t before = S->set.count;
+    ritz_forces forces = {0};
+
+    RITZ_TRY(take_inertia(S, point, &forces));
+    RITZ_TRY(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    point->first = before;
+    point->count = S->set.count - before;
+done:
+    ritz_forces_free(&forces);
+    return status;
+}
+
+ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
+{
+    const int64_t full = S->vectors + S->seeds;
+    bool moving = true;
+
+    for (int64_t block = 0; moving && S->set.count < full; block++) {
+        moving = false;
+        for (int64_t k = 0; k < S->num_points && S->set.count < full; k++) {
+            ritz_krylov_point *point = &S->point[k];
+
+            if (point->ended)
+                continue;
+            if (block == 0)
+                RITZ_CHECK(start(S, F, seeded, point));
+            else
+                RITZ_CHECK(advance(S, point));
+            point->ended = point->count == 0;
+            point->whole += !point->ended && S->set.left == 0;
+            moving = moving || !point->ended;
+        }
+    }
+    return RITZ_OK;
+}
+
+void ritz_forces_free(ritz_forces *forces)
+{
+    ritz_dense_free(&forces->G);
+    ritz_dense_free(&forces->size);
+}
+
+void ritz_krylov_free(ritz_krylov *S)
+{
+    for (int64_t k = 0; k < S->num_points; k++)
+        ritz_ldl_free(&S->point[k].A);
+    ritz_orthonormal_free(&S->set);
+    *S = (ritz_krylov){0};
+}
+
+/* Of eps max |v|'|W||v|; see docs/methods/krylov.md for what was measured. */
+static const double products = 16.0;
+
+void ritz_krylov_say(ritz_basis *basis, const char *format, ...)
+{
+    size_t used = strlen(basis->remark);
+    va_list args;
+
+    va_start(args, format);
+    (void)vsnprintf(basis->remark + used, sizeof basis->remark - used, format,
+                    args);
+    va_end(args);
+}
+
+void ritz_krylov_say_blocks(const ritz_krylov *S, int64_t asked,
+                            ritz_basis *basis)
+{
+    int64_t found = S->set.count - S->seeds;
+
+    if (found < asked)
+        ritz_krylov_say(basis,
+                        "%" PRId64 " vectors and not %" PRId64
+                        ", nothing new is left; ",
+                        found, asked);
+    for (int64_t k = 0; k < S->num_points; k++)
+        ritz_krylov_say(basis, "%s%" PRId64 " whole block(s) about %g Hz",
+                        k > 0 ? ", " : "", S->point[k].whole,
+                        S->point[k].hertz);
+}
+
+/* Largest |v|'|W||v| of the columns. */
+static double largest_sum(const ritz_dense *V, const ritz_dense *size)
+{
+    double most = 0.0;
+
+    for (int64_t j = 0; j < V->ncol; j++) {
+        double sum = 0.0;
+
+        for (int64_t i = 0; i < V->nrow; i++)
+            sum += fabs(ritz_dense_col(V, j)[i]) * ritz_dense_col(size, j)[i];
+        most = fmax(most, sum);
+    }
+    return most;
+}
+
+static ritz_status measure(const ritz_krylov *S, double *worst, double *bound)
+{
+    ritz_status status = RITZ_OK;
+    bool by_mass = S->inner == RITZ_INNER_MASS;
+    const ritz_sparse *W = by_mass ? S->body->M : S->body->K;
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
+    ritz_dense WV = {0}, size = {0}, G = {0};
+
+    RITZ_TRY(ritz_sparse_mul(W, &V, &WV));
+    RITZ_TRY(ritz_dense_mul_tn(&V, &WV, &G));
+    RITZ_TRY(ritz_dense_new(V.nrow, V.ncol, &size));
+    ritz_krylov_size(W, &V, 1.0, &size);
+    for (int64_t j = 0; j < G.ncol; j++)
+        ritz_dense_col(&G, j)[j] -= 1.0;
+    *worst = ritz_dense_max(&G);
+    *bound = products * DBL_EPSILON * largest_sum(&V, &size);
+done:
+    ritz_dense_free(&WV);
+    ritz_dense_free(&size);
+    ritz_dense_free(&G);
+    return status;
+}
+
+ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S, ritz_basis *basis)
+{
+    const char *W = S->inner == RITZ_INNER_MASS ? "M" : "K";
+    double worst = 0.0;
+    double bound = 0.0;
+
+    RITZ_CHECK(measure(S, &worst, &bound));
+    ritz_krylov_say(basis, "; |V'%sV - I| is %.1e, %s %.1e", W, worst,
+                    worst <= bound ? "within" : "beyond", bound);
+    return RITZ_OK;
+}
+
+ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
+{
+    const ritz_dense *Phi = &S->body->Phi;
+    int64_t r = Phi->ncol;
+    size_t size = (size_t)Phi->nrow * sizeof *Phi->val;
+
+    RITZ_REFUSE_IF(r + S->set.count == 0, RITZ_ERR_ARGUMENT,
+                   "the basis would have no vectors");
+    RITZ_CHECK(ritz_basis_new(S->body->K->nrow, r + S->set.count, out));
+    for (int64_t j = 0; j < r; j++) {
+        memcpy(ritz_dense_col(&out->T, j), ritz_dense_col(Phi, j), size);
+        out->columns.kind[j] = RITZ_COLUMN_RIGID;
+        out->columns.hertz[j] = 0.0;
+        out->columns.residual[j] = S->body->residual[j];
+    }
+    for (int64_t j = 0; j < S->set.count; j++) {
+        memcpy(ritz_dense_col(&out->T, r + j), ritz_dense_col(&S->set.V, j),
+               (size_t)out->T.nrow * sizeof *out->T.val);
+        out->columns.kind[r + j] = RITZ_COLUMN_KRYLOV;
+    }
+    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD%s",
+             S->point[S->num_points - 1].A ? " + MUMPS" : "");
+    return RITZ_OK;
+}
+
+/*
  * Krylov reduction: rigid modes and block Krylov vectors of the undamped
  * structure, started by what it answers to its loads F,
  *
@@ -14,10 +429,6 @@
  * [McDaniel2000], to moments about 0 Hz and elsewhere, and to the block
  * tridiagonal V'MV that full reorthogonalisation must leave.
  */
-#include "bases/krylov_block.h"
-#include "bases/loads.h"
-
-#include <stdlib.h>
 
 static const int all_loads =
     RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;

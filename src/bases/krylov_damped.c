@@ -1,4 +1,168 @@
 /*
+ * The recurrence of krylov_damped.c. V may gain nothing from a block of states
+ * that is new all the same: without damping, every second one is
+ * [0; d]. A state is therefore kept by its coordinates in V, two columns as
+ * long as V is wide, orthonormal among themselves: the
+ * two-level orthogonal Arnoldi procedure of [LuSuBai2016].
+ */
+#include "bases/krylov_block.h"
+
+#include "bases/loads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* States [d; v] of a damped structure, by coordinates in Krylov vectors. */
+
+/* One chain of states. */
+typedef struct ritz_krylov_states {
+    const ritz_sparse *D;  /* borrowed; NULL: undamped */
+    int64_t room;          /* rows of d in a state, as many as V can have */
+    ritz_orthonormal kept; /* rows of d, then as many of v */
+    int64_t first, count;  /* the last block of states */
+    int64_t whole;         /* blocks of which V missed nothing */
+    bool ended;            /* nothing new came of the last block */
+} ritz_krylov_states;
+
+/* Put rows 0.. of A below row `at` of Z. */
+static void put_rows(const ritz_dense *A, int64_t at, ritz_dense *Z)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(Z, j)[at + i] = ritz_dense_col(A, j)[i];
+}
+
+/* `count` rows of the last states of a chain, from row `at` on. */
+static ritz_status pick_rows(const ritz_krylov_states *c, int64_t at,
+                             int64_t count, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(count, c->count, out));
+    for (int64_t j = 0; j < c->count; j++)
+        for (int64_t i = 0; i < count; i++)
+            ritz_dense_col(out, j)[i] =
+                ritz_dense_col(&c->kept.V, c->first + j)[at + i];
+    return RITZ_OK;
+}
+
+/*
+ * Append d to V, and the states [d; v] to those of the chain: d by its
+ * coordinates (WV)' d, v as it is in coordinates already.
+ */
+static ritz_status append(ritz_krylov *S, const ritz_forces *forces,
+                          const ritz_dense *v, ritz_krylov_states *c)
+{
+    ritz_status status = RITZ_OK;
+    ritz_orthonormal *set = &S->set;
+    ritz_dense R = {0}, raw = {0}, d = {0}, Z = {0}, WV = {0};
+
+    RITZ_TRY(ritz_krylov_answer(S, &S->point[0], forces, &R));
+    RITZ_TRY(ritz_dense_copy(&R, &raw));
+    RITZ_TRY(ritz_orthonormal_append(set, &R, S->vectors - set->count, NULL));
+    WV = ritz_dense_part(&set->WV, 0, set->count);
+    RITZ_TRY(ritz_dense_mul_tn(&WV, &raw, &d));
+    RITZ_TRY(ritz_dense_new(2 * c->room, d.ncol, &Z));
+    put_rows(&d, 0, &Z);
+    put_rows(v, c->room, &Z);
+    c->first = c->kept.count;
+    RITZ_TRY(ritz_orthonormal_append(&c->kept, &Z, Z.ncol, NULL));
+    c->count = c->kept.count - c->first;
+    c->ended = c->count == 0;
+    c->whole += !c->ended && set->left == 0;
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&raw);
+    ritz_dense_free(&d);
+    ritz_dense_free(&Z);
+    return status;
+}
+
+/* -omega (D d + omega M v), with d and v from their coordinates. */
+static ritz_status find_forces(const ritz_krylov *S, const ritz_sparse *D,
+                               double omega, const ritz_dense *d_in_V,
+                               const ritz_dense *v_in_V, ritz_forces *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_sparse *M = S->body->M;
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
+    ritz_dense d = {0}, v = {0}, Dd = {0}, Mv = {0};
+
+    RITZ_TRY(ritz_dense_mul(&V, d_in_V, &d));
+    RITZ_TRY(ritz_dense_mul(&V, v_in_V, &v));
+    RITZ_TRY(ritz_sparse_mul(M, &v, &Mv));
+    RITZ_TRY(ritz_dense_new(V.nrow, d.ncol, &out->G));
+    RITZ_TRY(ritz_dense_new(V.nrow, d.ncol, &out->size));
+    for (int64_t k = 0; k < V.nrow * d.ncol; k++)
+        out->G.val[k] = -omega * omega * Mv.val[k];
+    ritz_krylov_size(M, &v, omega * omega, &out->size);
+    if (!D)
+        goto done;
+    RITZ_TRY(ritz_sparse_mul(D, &d, &Dd));
+    for (int64_t k = 0; k < V.nrow * d.ncol; k++)
+        out->G.val[k] -= omega * Dd.val[k];
+    ritz_krylov_size(D, &d, omega, &out->size);
+done:
+    ritz_dense_free(&d);
+    ritz_dense_free(&v);
+    ritz_dense_free(&Dd);
+    ritz_dense_free(&Mv);
+    return status;
+}
+
+static void free_krylov_states(ritz_krylov_states *chain)
+{
+    ritz_orthonormal_free(&chain->kept);
+    *chain = (ritz_krylov_states){0};
+}
+
+/*
+ * Begin a chain with the answers to forces at rest: d = P' S P G, v = 0.
+ *
+ * @param[in]     D  borrowed until free, NULL where there is none
+ * @param[in,out] S  whose V takes what is new in d
+ */
+static ritz_status start_krylov_states(ritz_krylov *S, const ritz_sparse *D,
+                                       const ritz_forces *forces,
+                                       ritz_krylov_states *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_krylov_states chain = {.D = D, .room = S->vectors};
+    const ritz_dense at_rest = {0};
+
+    RITZ_TRY(ritz_orthonormal_new(2 * chain.room, NULL, S->set.tolerance,
+                                  &chain.kept));
+    RITZ_TRY(append(S, forces, &at_rest, &chain));
+    *out = chain;
+    chain = (ritz_krylov_states){0};
+done:
+    free_krylov_states(&chain);
+    return status;
+}
+
+/*
+ * One block more: d <- -omega P' S P (D d + omega M v), v <- d.
+ *
+ * @param[in] omega  unit of velocities  [rad/s]
+ */
+static ritz_status advance_krylov_states(ritz_krylov *S, double omega,
+                                         ritz_krylov_states *chain)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense d = {0}, v = {0};
+    ritz_forces forces = {0};
+
+    RITZ_TRY(pick_rows(chain, 0, S->set.count, &d));
+    RITZ_TRY(pick_rows(chain, chain->room, S->set.count, &v));
+    RITZ_TRY(find_forces(S, chain->D, omega, &d, &v, &forces));
+    RITZ_TRY(append(S, &forces, &d, chain));
+done:
+    ritz_dense_free(&d);
+    ritz_dense_free(&v);
+    ritz_forces_free(&forces);
+    return status;
+}
+
+/*
  * Krylov reduction of a damped structure: the recurrence of its first-order
  * form for displacement d and velocity v [CraigSuKim1992, sec. 3],
  *
@@ -20,12 +184,6 @@
  * chains. Damping that acts on rigid motion couples it to the rest, so that
  * D Phi_r joins the loads of a free body.
  */
-#include "bases/krylov_states.h"
-#include "bases/loads.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
     MOST_CHAINS = 2,
@@ -47,7 +205,7 @@ typedef struct recurrence {
 static void free_recurrence(recurrence *r)
 {
     for (int64_t k = 0; k < MOST_CHAINS; k++) {
-        ritz_krylov_states_free(&r->chain[k]);
+        free_krylov_states(&r->chain[k]);
         ritz_sparse_free(&r->D[k]);
     }
     ritz_krylov_free(&r->S);
@@ -187,7 +345,7 @@ static ritz_status start_chain(recurrence *r, int64_t k, const ritz_sparse *D,
     ritz_forces forces = {0};
 
     RITZ_TRY(collect_loads(r, D, loads, &forces));
-    RITZ_TRY(ritz_krylov_states_start(&r->S, D, &forces, &r->chain[k]));
+    RITZ_TRY(start_krylov_states(&r->S, D, &forces, &r->chain[k]));
     r->num_chains = k + 1;
 done:
     ritz_forces_free(&forces);
@@ -220,7 +378,7 @@ static ritz_status run(recurrence *r, int loads)
 
             if (chain->ended || r->S.set.count == r->S.vectors)
                 continue;
-            RITZ_CHECK(ritz_krylov_states_advance(&r->S, omega, chain));
+            RITZ_CHECK(advance_krylov_states(&r->S, omega, chain));
             moving = moving || !chain->ended;
         }
     }

@@ -1,3 +1,156 @@
+#include <ritz/dense.h>
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "bases/orthonormal.h"
+#include "bases/balance_asked.h"
+#include "linear/eigenvalues.h"
+#include "linear/general.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The states that a Gramian reaches, in coordinates in which it is I. */
+
+/*
+ * With A W + W A' + B B' = 0, W = U U' and U = Z Sigma X', cut to r values:
+ * Q = Z Sigma, V = Z Sigma^-1 and A~ = V'A Q, B~ = V'B, for which
+ * A~ + A~' = -B~ B~'.
+ */
+typedef struct ritz_gramian_range {
+    int64_t reached; /* values above the tolerance */
+    ritz_dense Q, V; /* n x r, r <= reached: as rounding allows */
+    ritz_dense A, B; /* r x r, r x inputs */
+    double rounding; /* |A + A' + B B'| of Frobenius */
+} ritz_gramian_range;
+
+/* (A + A' + B B') in place (i, j) */
+static double defect(const ritz_dense *A, const ritz_dense *B, int64_t i,
+                     int64_t j)
+{
+    double sum = ritz_dense_col(A, j)[i] + ritz_dense_col(A, i)[j];
+
+    for (int64_t k = 0; k < B->ncol; k++)
+        sum += ritz_dense_col(B, k)[i] * ritz_dense_col(B, k)[j];
+    return sum;
+}
+
+/* How many leading rows and columns keep the norm of it below the limit. */
+static int64_t good(const ritz_dense *A, const ritz_dense *B, double limit,
+                    double *norm)
+{
+    double sum = 0.0;
+
+    *norm = 0.0;
+    for (int64_t j = 0; j < A->nrow; j++) {
+        for (int64_t i = 0; i <= j; i++)
+            sum += (i < j ? 2.0 : 1.0) * pow(defect(A, B, i, j), 2.0);
+        if (sqrt(sum) > limit)
+            return j;
+        *norm = sqrt(sum);
+    }
+    return A->nrow;
+}
+
+/* |A + A' + B B'|, Frobenius. */
+static double gramian_defect(const ritz_dense *A, const ritz_dense *B)
+{
+    double norm = 0.0;
+
+    (void)good(A, B, HUGE_VAL, &norm);
+    return norm;
+}
+
+/* Columns k < r of Z times s^power. */
+static ritz_status scaled(const ritz_dense *Z, const double *s, int64_t r,
+                          double power, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_columns(Z, 0, r, out));
+    for (int64_t j = 0; j < r; j++)
+        for (int64_t i = 0; i < Z->nrow; i++)
+            ritz_dense_col(out, j)[i] *= pow(s[j], power);
+    return RITZ_OK;
+}
+
+static void free_gramian_range(ritz_gramian_range *range)
+{
+    ritz_dense_free(&range->Q);
+    ritz_dense_free(&range->V);
+    ritz_dense_free(&range->A);
+    ritz_dense_free(&range->B);
+    *range = (ritz_gramian_range){0};
+}
+
+/* Q, V, A and B of the first r values. */
+static ritz_status transform(const ritz_dense *A, const ritz_dense *B,
+                             const ritz_dense *Z, const double *s, int64_t r,
+                             ritz_gramian_range *range)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramian_range made = {.reached = range->reached,
+                               .rounding = range->rounding};
+    ritz_dense AQ = {0};
+
+    RITZ_TRY(scaled(Z, s, r, 1.0, &made.Q));
+    RITZ_TRY(scaled(Z, s, r, -1.0, &made.V));
+    RITZ_TRY(ritz_dense_mul(A, &made.Q, &AQ));
+    RITZ_TRY(ritz_dense_mul_tn(&made.V, &AQ, &made.A));
+    RITZ_TRY(ritz_dense_mul_tn(&made.V, B, &made.B));
+    free_gramian_range(range);
+    *range = made;
+    made = (ritz_gramian_range){0};
+done:
+    free_gramian_range(&made);
+    ritz_dense_free(&AQ);
+    return status;
+}
+
+/*
+ * @param[in] tolerance  relative, of singular values of U
+ * @param[in] limit      of `rounding`: the range is cut until it is below
+ * @return RITZ_ERR_ARGUMENT if the Gramian is zero, or a pole is not stable;
+ *         RITZ_ERR_CONVERGENCE if nothing is left
+ */
+static ritz_status new_gramian_range(const ritz_dense *A, const ritz_dense *B,
+                                     double tolerance, double limit,
+                                     ritz_gramian_range *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_gramian_range range = {0};
+    ritz_dense U = {0}, Z = {0};
+    double *s = NULL;
+    int64_t n = A->nrow;
+    int64_t r = 0;
+    double least = fmax(tolerance, (double)n * DBL_EPSILON);
+
+    RITZ_TRY(ritz_general_gramian(A, B, &U));
+    RITZ_TRY(ritz_general_svd(&U, &Z, &s, NULL));
+    while (r < n && s[r] > least * s[0])
+        r++;
+    RITZ_FAIL_IF(r == 0, RITZ_ERR_ARGUMENT,
+                 "no flexible state is reached, the Gramian is zero: do the "
+                 "inputs and outputs act on rigid motion alone?");
+    range.reached = r;
+    RITZ_TRY(transform(A, B, &Z, s, r, &range));
+    r = good(&range.A, &range.B, limit, &range.rounding);
+    RITZ_FAIL_IF(r == 0, RITZ_ERR_CONVERGENCE,
+                 "rounding of the Gramian is as large as the least damping");
+    if (r < range.reached)
+        RITZ_TRY(transform(A, B, &Z, s, r, &range));
+    *out = range;
+    range = (ritz_gramian_range){0};
+done:
+    free_gramian_range(&range);
+    ritz_dense_free(&U);
+    ritz_dense_free(&Z);
+    free(s);
+    return status;
+}
+
 /*
  * One-sided Lanczos vectors of x' = A x + B u in the inner product of the
  * inverse of a Gramian [CraigSuKim1992, section 5]. With
@@ -25,24 +178,13 @@
  * could still move across the axis are left out (on A^-1, where an odd number
  * of them has one pole far out).
  */
-#include "base/alloc.h"
-#include "base/tolerances.h"
-#include "bases/gramian_range.h"
-#include "bases/orthonormal.h"
-#include "bases/states_asked.h"
-#include "linear/eigenvalues.h"
-#include "linear/general.h"
-
-#include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Of the least damping: rounding above this is not small. */
 static const double small = 1e-3;
+
 /* How much rounding a pole must be left of. */
 static const double safely = 10.0;
+
 /* Times a pole's first-order bound: nearer to the axis it may be right of it. */
 static const double times = 8.0;
 
@@ -61,7 +203,7 @@ static void release(one_sided *s)
 {
     ritz_dense_free(&s->A);
     ritz_dense_free(&s->B);
-    ritz_gramian_range_free(&s->range);
+    free_gramian_range(&s->range);
     ritz_dense_free(&s->G);
     ritz_dense_free(&s->b);
     ritz_dense_free(&s->P);
@@ -120,14 +262,14 @@ static ritz_status choose_operator(const ritz_request *request, one_sided *s)
 {
     const ritz_gramian_range *range = &s->range;
 
-    RITZ_CHECK(ritz_gramian_range_new(&s->A, &s->B, request->tolerance,
-                                      small * s->damping, &s->range));
+    RITZ_CHECK(new_gramian_range(&s->A, &s->B, request->tolerance,
+                                 small * s->damping, &s->range));
     RITZ_CHECK(ritz_states_operator(&range->A, request->choice.inverse, &s->G));
     if (request->choice.inverse)
         RITZ_CHECK(ritz_dense_mul(&s->G, &range->B, &s->b));
     else
         RITZ_CHECK(ritz_dense_copy(&range->B, &s->b));
-    s->rounding = ritz_gramian_defect(&s->G, &s->b);
+    s->rounding = gramian_defect(&s->G, &s->b);
     return RITZ_OK;
 }
 

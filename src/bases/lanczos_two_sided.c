@@ -18,7 +18,7 @@
  * there is no way on: a serious breakdown, unless one side is exhausted.
  */
 #include "base/alloc.h"
-#include "bases/states_asked.h"
+#include "bases/balance_asked.h"
 #include "linear/general.h"
 
 #include <inttypes.h>

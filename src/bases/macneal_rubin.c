@@ -16,7 +16,10 @@
  */
 #include "bases/free_modes.h"
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+#include "bases/loads.h"
+
+static ritz_status make_macneal_rubin(const ritz_request *request,
+                                      ritz_basis *out)
 {
     return ritz_free_basis(request, RITZ_LOADS_ATTACHED, RITZ_COLUMN_RESIDUAL,
                            out);
@@ -31,5 +34,160 @@ const ritz_method ritz_method_macneal_rubin = {
     .holds = "kept modes, flexible static gain, rigid motion; from above",
     .fails = "attached dofs that depend on each other: left out, and named",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
-    .make = make,
+    .make = make_macneal_rubin,
+};
+
+/*
+ * MacNeal's reduction [MacNeal1971]: free-interface modes beside residual
+ * flexibility without mass. With T = [Phi, Psi] of macneal_rubin.c
+ *
+ *     K_r = diag(Lambda, F'Psi),   M_r = diag(I, 0)
+ *
+ * The residual columns are of kind massless, of which ritz_reduce leaves out
+ * mass and damping.
+ */
+
+static ritz_status make_macneal(const ritz_request *request, ritz_basis *out)
+{
+    return ritz_free_basis(request, RITZ_LOADS_ATTACHED, RITZ_COLUMN_MASSLESS,
+                           out);
+}
+
+const ritz_method ritz_method_macneal = {
+    .name = "macneal",
+    .summary = "free-interface modes, residual flexibility without mass",
+    .reference = "MacNeal1971",
+    .when = "free-interface results of codes that leave this mass out",
+    .cost = "as macneal-rubin",
+    .holds = "flexible static gain; kept modes",
+    .fails = "frequencies need not come from above; M is singular",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .make = make_macneal,
+};
+
+/*
+ * Free-interface modes beside inertia-relief attachment modes: what the body
+ * answers to unit forces F at its attached dofs while its rigid motion is
+ * carried by its own inertia,
+ *
+ *     X = P' S P F,    P = I - M Phi_r Phi_r'    [CraigChang1977]
+ *
+ * which is Psi of macneal_rubin.c and the share of the kept flexible modes,
+ *
+ *     X = Psi + Phi_f Lambda_f^-1 Phi_f' F,
+ *
+ * so that both span the same. A column of which Psi is nothing is left out.
+ */
+
+/* Psi := X; columns of T come to be as large as what is exchanged for them. */
+static ritz_status add_modes(ritz_free_set *set)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_pairs *modes = &set->modes;
+    ritz_dense share = {0}, part = {0};
+
+    RITZ_TRY(ritz_dense_mul_tn(&modes->Phi, &set->F, &share));
+    for (int64_t j = 0; j < share.ncol; j++)
+        for (int64_t k = 0; k < share.nrow; k++)
+            ritz_dense_col(&share, j)[k] *=
+                k < modes->num_rigid ? 0.0 : 1.0 / modes->lambda[k];
+    RITZ_TRY(ritz_dense_mul(&modes->Phi, &share, &part));
+    for (int64_t k = 0; k < part.nrow * part.ncol; k++)
+        set->Psi.val[k] += part.val[k];
+done:
+    ritz_dense_free(&share);
+    ritz_dense_free(&part);
+    return status;
+}
+
+static ritz_status make_inertia_relief(const ritz_request *request,
+                                       ritz_basis *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_free_set set = {0};
+
+    RITZ_TRY(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
+    if (set.Psi.ncol > 0)
+        RITZ_TRY(add_modes(&set));
+    RITZ_TRY(ritz_free_set_join(request, &set, RITZ_COLUMN_ATTACHMENT, out));
+done:
+    ritz_free_set_free(&set);
+    return status;
+}
+
+const ritz_method ritz_method_inertia_relief = {
+    .name = "inertia-relief",
+    .summary = "rigid, free-interface and inertia-relief attachment modes",
+    .reference = "CraigChang1977",
+    .when = "as macneal-rubin, columns as older papers have them",
+    .cost = "as macneal-rubin",
+    .holds = "spans what macneal-rubin spans",
+    .fails = "columns that are nearly parallel once many modes are kept",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .make = make_inertia_relief,
+};
+
+/*
+ * Dual Craig-Bampton [Rixen2004]: the columns of macneal_rubin.c, of which the
+ * residual ones stand for forces at the interface. A body alone is the same as
+ * by macneal-rubin; synthesis/dual.c joins such bodies by forces instead of by
+ * displacements.
+ */
+
+static ritz_status make_dual(const ritz_request *request, ritz_basis *out)
+{
+    return ritz_free_basis(request, RITZ_LOADS_ATTACHED, RITZ_COLUMN_FORCE,
+                           out);
+}
+
+const ritz_method ritz_method_dual_craig_bampton = {
+    .name = "dual-craig-bampton",
+    .summary = "macneal-rubin joined by interface forces: can be unstable",
+    .reference = "Rixen2004",
+    .when = "to compare with; forces join bodies instead of motions",
+    .cost = "as macneal-rubin",
+    .holds = "nothing: interfaces are met weakly",
+    .fails = "systems have a negative eigenvalue for each interface force",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .make = make_dual,
+};
+
+/*
+ * Normal modes and static Ritz vectors [ChuMilman1992]: the lowest modes, rigid
+ * ones first, and for each load f what they lack of its static answer,
+ *
+ *     psi = K^-1 f - Phi Lambda^-1 Phi' f,
+ *
+ * for a free body that of the flexible part, under inertia relief. A damper
+ * acts where the modes that were left out move too: without its vector, the
+ * damping it gives is wrong even where frequencies are right.
+ *
+ * psi is M-orthogonal to Phi as equation (12) there demands, but keeps the
+ * scale of a unit load.
+ */
+
+static ritz_status make_normal_modes(const ritz_request *request,
+                                     ritz_basis *out)
+{
+    const int usual = RITZ_LOADS_INPUTS | RITZ_LOADS_DAMPERS;
+    bool asked = request->choice.given & RITZ_USES_LOADS;
+    int loads = asked ? request->choice.loads : usual;
+    ritz_dense F = {0};
+    int64_t *dof = NULL;
+
+    if (asked && ritz_loads_count(request, loads) == 0)
+        RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof)); /* says why */
+    return ritz_free_basis(request, loads, RITZ_COLUMN_STATIC, out);
+}
+
+const ritz_method ritz_method_normal_modes = {
+    .name = "normal-modes",
+    .summary = "modes, and a static Ritz vector for each input and damper",
+    .reference = "ChuMilman1992",
+    .when = "one structure with its loads, dampers to be tuned",
+    .cost = "a factor, two solves a mode, 3 to 10 a load",
+    .holds = "kept modes, flexible static gain of its loads",
+    .fails = "interfaces: what other bodies push on is not answered",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .make = make_normal_modes,
 };

@@ -12,7 +12,6 @@
  */
 #include "base/alloc.h"
 #include "bases/balance_asked.h"
-#include "bases/states_asked.h"
 #include "gramians/cluster.h"
 #include "gramians/engines.h"
 #include "gramians/modal_modes.h"

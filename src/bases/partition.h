@@ -2,6 +2,7 @@
 #ifndef RITZ_BASES_PARTITION_H
 #define RITZ_BASES_PARTITION_H
 
+#include <ritz/component.h>
 #include <ritz/factor.h>
 #include <ritz/method.h>
 
@@ -37,5 +38,29 @@ void ritz_partition_scatter(const ritz_dense *part, const ritz_dofs *to,
                             int64_t first, ritz_dense *T);
 
 void ritz_partition_free(ritz_partition *s);
+
+/**
+ * Record a sentence that names the dofs which move freely while the rest of
+ * the component is held, and return RITZ_ERR_SINGULAR (or a worse failure).
+ *
+ * @param[in] K_ii,M_ii  the singular block and its mass
+ * @param[in] i          rows of the component that they stand for
+ * @param[in] weak       row of the block that gave way, -1 if not known
+ */
+ritz_status ritz_mechanism_refuse(const ritz_component *component,
+                                  const ritz_sparse *K_ii,
+                                  const ritz_sparse *M_ii, const ritz_dofs *i,
+                                  int64_t weak);
+
+/**
+ * T_b'KT_b and T_b'MT_b. What the first shows of motions that cost no energy is
+ * rounding of |T_b|'|K||T_b|, and is taken for the zero that it stands for.
+ *
+ * @param[in]  T_b  n x b, [I; Psi]: constraint modes
+ * @param[out] K,M  b x b, exactly symmetric
+ * @cost   O(b nnz + n b^2)
+ */
+ritz_status ritz_condense(const ritz_component *component,
+                          const ritz_dense *T_b, ritz_dense *K, ritz_dense *M);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * The largest exact Hankel value of a mode (or cluster) alone, which for one
+ * The largest exact Hankel hankel_value of a mode (or cluster) alone, which for one
  * mode with a displacement output is
  *
  *     sigma = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
@@ -7,12 +7,14 @@
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
 #include "base/alloc.h"
+
 #include "ranking/costs.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-static ritz_status value(const ritz_rank_request *request,
-                         const ritz_modal *cluster, double *out)
+static ritz_status hankel_value(const ritz_rank_request *request,
+                                const ritz_modal *cluster, double *out)
 {
     ritz_status status = RITZ_OK;
     double *sigma = NULL;
@@ -26,9 +28,10 @@ done:
     return status;
 }
 
-static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+static ritz_status rank_hankel(const ritz_rank_request *request,
+                               ritz_ranking *ranking)
 {
-    return ritz_ranking_by_cluster(request, value, ranking);
+    return ritz_ranking_by_cluster(request, hankel_value, ranking);
 }
 
 static double exact(const double pair[static 2])
@@ -38,9 +41,94 @@ static double exact(const double pair[static 2])
 
 const ritz_ranker ritz_ranker_hankel = {
     .name = "hankel",
-    .summary = "largest exact Hankel value of each mode (or cluster) alone",
+    .summary =
+        "largest exact Hankel hankel_value of each mode (or cluster) alone",
     .reference = "Moore1981",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .exact = exact,
-    .rank = rank,
+    .rank = rank_hankel,
+};
+
+/*
+ * The largest Hankel band_value of a mode (or cluster) alone over a band: of the
+ * Gramians
+ *
+ *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
+ *
+ * and W_o likewise, which hold what happens between w1 and w2 alone. From 0 to
+ * infinity it is `hankel`.
+ *
+ * [GawronskiJuang1990]
+ */
+
+static ritz_status band_value(const ritz_rank_request *request,
+                              const ritz_modal *cluster, double *out)
+{
+    ritz_status status = RITZ_OK;
+    double *sigma = NULL;
+
+    RITZ_NEW(sigma, 2 * cluster->count);
+    RITZ_TRY(ritz_modal_hankel_band(cluster, request->band_hz, sigma));
+    *out = sigma[0];
+done:
+    free(sigma);
+    return status;
+}
+
+static ritz_status rank_band(const ritz_rank_request *request,
+                             ritz_ranking *ranking)
+{
+    return ritz_ranking_by_cluster(request, band_value, ranking);
+}
+
+const ritz_ranker ritz_ranker_hankel_band = {
+    .name = "hankel-band",
+    .summary = "largest Hankel band_value of each mode alone within a band",
+    .reference = "GawronskiJuang1990",
+    .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING |
+             RITZ_RANK_BAND,
+    .rank = rank_band,
+};
+
+/*
+ * The H2 norm of a mode (or cluster) alone, sqrt(trace(C W_c C')), which for
+ * one mode with a displacement output is
+ *
+ *     |b||c| / sqrt(4 zeta w^3)
+ *
+ * Squares of these add up to H2 squared of the whole only where modes do not
+ * couple: modal-cost is that with all that they share.
+ *
+ * [Skelton1982]
+ */
+
+static ritz_status h2_value(const ritz_rank_request *request,
+                            const ritz_modal *cluster, double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense V = {0};
+    double sum = 0.0;
+
+    (void)request;
+    RITZ_TRY(ritz_modal_costs(cluster, &V));
+    for (int64_t k = 0; k < V.nrow * V.ncol; k++)
+        sum += V.val[k];
+    *out = sqrt(fmax(sum, 0.0));
+done:
+    ritz_dense_free(&V);
+    return status;
+}
+
+static ritz_status rank_h2(const ritz_rank_request *request,
+                           ritz_ranking *ranking)
+{
+    return ritz_ranking_by_cluster(request, h2_value, ranking);
+}
+
+const ritz_ranker ritz_ranker_h2 = {
+    .name = "h2",
+    .summary = "H2 norm of each mode (or cluster) alone",
+    .reference = "Skelton1982",
+    .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
+    .rank = rank_h2,
 };

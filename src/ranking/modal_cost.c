@@ -14,8 +14,14 @@
  */
 #include "ranking/costs.h"
 
+#include "base/alloc.h"
+#include "gramians/cluster.h"
+
+#include <ritz/reweigh.h>
+
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* c_ia of state a = 2 k or 2 k + 1 of mode k. */
 static double seen(const ritz_modal *modal, int64_t i, int64_t a)
@@ -94,3 +100,292 @@ const ritz_ranker ritz_ranker_modal_cost = {
     .sums = true,
     .rank = rank,
 };
+
+/* Going round between weights and choice: include/ritz/reweigh.h. */
+
+enum { MOST_ROUNDS = 400, LONGEST = 12 };
+
+static const double old_share = 0.5; /* a */
+
+static const double same = 1e-9; /* of weights, whose mean is 1 */
+
+/* What one round decided. */
+typedef struct trial {
+    bool *taken; /* m */
+    double *q;   /* p, weights it went by */
+    double *d;   /* p, what its choice misses */
+} trial;
+
+/* What does not change from round to round, and the last few rounds. */
+typedef struct loop {
+    const ritz_modal *modal;
+    int64_t m, p, keep;
+    ritz_dense V; /* m x p, costs */
+    double *Y;    /* p */
+    double *value;
+    int64_t *order, *cluster;
+    trial past[LONGEST + 1]; /* round r is past[r % (LONGEST + 1)] */
+} loop;
+
+static trial *at_round(loop *l, int64_t r)
+{
+    return &l->past[r % (LONGEST + 1)];
+}
+
+static ritz_status loop_new(const ritz_rank_request *request, int64_t keep,
+                            loop *l)
+{
+    l->modal = &request->modal;
+    l->m = l->modal->count;
+    l->p = l->modal->C.nrow;
+    l->keep = keep;
+    RITZ_CHECK(ritz_modal_costs(l->modal, &l->V));
+    RITZ_CHECK_NEW(l->Y, l->p);
+    RITZ_CHECK_NEW(l->value, l->m);
+    RITZ_CHECK_NEW(l->order, l->m);
+    RITZ_CHECK_NEW(l->cluster, l->m);
+    for (int k = 0; k <= LONGEST; k++) {
+        RITZ_CHECK_NEW(l->past[k].taken, l->m);
+        RITZ_CHECK_NEW(l->past[k].q, l->p);
+        RITZ_CHECK_NEW(l->past[k].d, l->p);
+    }
+    for (int64_t i = 0; i < l->p; i++)
+        for (int64_t k = 0; k < l->m; k++)
+            l->Y[i] += ritz_dense_col(&l->V, i)[k];
+    ritz_ranking_clusters(l->modal, l->cluster);
+    return RITZ_OK;
+}
+
+static void loop_free(loop *l)
+{
+    ritz_dense_free(&l->V);
+    free(l->Y);
+    free(l->value);
+    free(l->order);
+    free(l->cluster);
+    for (int k = 0; k <= LONGEST; k++) {
+        free(l->past[k].taken);
+        free(l->past[k].q);
+        free(l->past[k].d);
+    }
+}
+
+/* The modes of largest cost, clusters whole. */
+static ritz_status choose(loop *l, trial *t)
+{
+    int64_t n = 0;
+
+    for (int64_t k = 0; k < l->m; k++) {
+        l->value[k] = 0.0;
+        t->taken[k] = false;
+        for (int64_t i = 0; i < l->p; i++)
+            l->value[k] += t->q[i] * ritz_dense_col(&l->V, i)[k];
+    }
+    ritz_ranking_share(l->modal, l->value);
+    RITZ_CHECK(ritz_ranking_sort(l->m, l->value, l->order));
+    for (; n < l->m; n++) {
+        bool rest =
+            n > 0 && l->cluster[l->order[n]] == l->cluster[l->order[n - 1]];
+
+        if (n >= l->keep && !rest)
+            break;
+        t->taken[l->order[n]] = true;
+    }
+    return RITZ_OK;
+}
+
+/* The modes that are taken as a model of their own. */
+static ritz_status part_of(const ritz_modal *modal, const bool *taken,
+                           ritz_modal *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_modal part = {0};
+    int64_t *mode = NULL;
+    int64_t n = 0;
+
+    RITZ_NEW(mode, modal->count);
+    for (int64_t k = 0; k < modal->count; k++)
+        if (taken[k])
+            mode[n++] = k;
+    part.count = n;
+    RITZ_NEW(part.omega, n);
+    RITZ_NEW(part.zeta, n);
+    RITZ_TRY(ritz_dense_rows(&modal->B, n, mode, &part.B));
+    RITZ_TRY(ritz_dense_new(modal->C.nrow, n, &part.C));
+    RITZ_TRY(ritz_dense_new(modal->C.nrow, n, &part.Cv));
+    for (int64_t k = 0; k < n; k++) {
+        size_t size = (size_t)modal->C.nrow * sizeof(double);
+
+        part.omega[k] = modal->omega[mode[k]];
+        part.zeta[k] = modal->zeta[mode[k]];
+        memcpy(ritz_dense_col(&part.C, k), ritz_dense_col(&modal->C, mode[k]),
+               size);
+        memcpy(ritz_dense_col(&part.Cv, k), ritz_dense_col(&modal->Cv, mode[k]),
+               size);
+    }
+    *out = part;
+    part = (ritz_modal){0};
+done:
+    free(mode);
+    ritz_modal_free(&part);
+    return status;
+}
+
+/* d_i = |Y_i - Y_i(kept alone)|. */
+static ritz_status miss(const loop *l, trial *t)
+{
+    ritz_status status = RITZ_OK;
+    ritz_modal kept = {0};
+    ritz_dense V = {0};
+
+    RITZ_TRY(part_of(l->modal, t->taken, &kept));
+    RITZ_TRY(ritz_modal_costs(&kept, &V));
+    for (int64_t i = 0; i < l->p; i++) {
+        double alone = 0.0;
+
+        for (int64_t k = 0; k < V.nrow; k++)
+            alone += ritz_dense_col(&V, i)[k];
+        t->d[i] = fabs(l->Y[i] - alone);
+    }
+done:
+    ritz_modal_free(&kept);
+    ritz_dense_free(&V);
+    return status;
+}
+
+/* q := (1 - a) p d / sum d + a q; where nothing is missed they stay. */
+static void weigh(const loop *l, const trial *t, double *q)
+{
+    double sum = 0.0;
+
+    for (int64_t i = 0; i < l->p; i++)
+        sum += t->d[i];
+    for (int64_t i = 0; i < l->p; i++)
+        q[i] = sum > 0.0 ? old_share * t->q[i] +
+                               (1.0 - old_share) * (double)l->p * t->d[i] / sum
+                         : t->q[i];
+}
+
+static bool is_same(const loop *l, const trial *a, const trial *b)
+{
+    for (int64_t i = 0; i < l->p; i++)
+        if (!(fabs(a->q[i] - b->q[i]) <= same))
+            return false;
+    return memcmp(a->taken, b->taken, (size_t)l->m * sizeof *a->taken) == 0;
+}
+
+/* After how many rounds the last one comes again; 0: not yet. */
+static int64_t find_period(loop *l, int64_t round)
+{
+    for (int64_t k = 1; k <= LONGEST && k <= round; k++)
+        if (is_same(l, at_round(l, round), at_round(l, round - k)))
+            return k;
+    return 0;
+}
+
+static double worst(const loop *l, const trial *t)
+{
+    double largest = 0.0;
+
+    for (int64_t i = 0; i < l->p; i++)
+        largest = fmax(largest, t->d[i]);
+    return largest;
+}
+
+/* Of the rounds of a period, or of those remembered, that which misses least. */
+static const trial *best_of(loop *l, int64_t round, int64_t period)
+{
+    int64_t count = period > 0 ? period : LONGEST;
+    const trial *best = at_round(l, round);
+
+    for (int64_t k = 1; k < count && k <= round; k++) {
+        const trial *t = at_round(l, round - k);
+
+        if (worst(l, t) < worst(l, best))
+            best = t;
+    }
+    return best;
+}
+
+/* Modes that some round of the period keeps and the best does not. */
+static void list_others(loop *l, int64_t round, const trial *best,
+                        ritz_reweighing *out)
+{
+    for (int64_t k = 0; k < l->m; k++)
+        for (int64_t r = 0; r < out->period; r++)
+            if (at_round(l, round - r)->taken[k] && !best->taken[k]) {
+                out->other[out->num_other++] = k;
+                break;
+            }
+}
+
+static ritz_status report(loop *l, int64_t round, int64_t period,
+                          ritz_reweighing *out)
+{
+    const trial *best = best_of(l, round, period);
+    size_t size = (size_t)l->p * sizeof(double);
+
+    out->num_outputs = l->p;
+    out->rounds = round + 1;
+    out->period = period;
+    RITZ_CHECK_NEW(out->weight, l->p);
+    RITZ_CHECK_NEW(out->cost, l->p);
+    RITZ_CHECK_NEW(out->missed, l->p);
+    RITZ_CHECK_NEW(out->kept, l->m);
+    RITZ_CHECK_NEW(out->other, l->m);
+    memcpy(out->weight, best->q, size);
+    memcpy(out->cost, l->Y, size);
+    memcpy(out->missed, best->d, size);
+    for (int64_t k = 0; k < l->m; k++)
+        if (best->taken[k])
+            out->kept[out->num_kept++] = k;
+    list_others(l, round, best, out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
+                         ritz_reweighing *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reweighing found = {0};
+    int64_t round = 0, period = 0;
+    loop l = {0};
+
+    RITZ_FAIL_IF(request->modal.B.ncol == 0 || request->modal.C.nrow == 0,
+                 RITZ_ERR_ARGUMENT,
+                 "there are no inputs and outputs to weigh modes by");
+    RITZ_FAIL_IF(keep < 1 || keep >= request->modal.count, RITZ_ERR_ARGUMENT,
+                 "weights choose at least one mode and leave one out, of %d",
+                 (int)request->modal.count);
+    RITZ_TRY(loop_new(request, keep, &l));
+    for (int64_t i = 0; i < l.p; i++)
+        at_round(&l, 0)->q[i] = 1.0;
+    while (true) {
+        trial *t = at_round(&l, round);
+
+        RITZ_TRY(choose(&l, t));
+        RITZ_TRY(miss(&l, t));
+        period = find_period(&l, round);
+        if (period > 0 || round + 1 == MOST_ROUNDS)
+            break;
+        round++;
+        weigh(&l, t, at_round(&l, round)->q);
+    }
+    RITZ_TRY(report(&l, round, period, &found));
+    *out = found;
+    found = (ritz_reweighing){0};
+done:
+    loop_free(&l);
+    ritz_reweighing_free(&found);
+    return status;
+}
+
+void ritz_reweighing_free(ritz_reweighing *reweighing)
+{
+    free(reweighing->weight);
+    free(reweighing->cost);
+    free(reweighing->missed);
+    free(reweighing->kept);
+    free(reweighing->other);
+    *reweighing = (ritz_reweighing){0};
+}

@@ -1,13 +1,160 @@
+#include <ritz/ranking.h>
+
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "gramians/cluster.h"
 #include "ranking/costs.h"
-#include "ranking/coupling.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* How far modes are from being apart. */
+
+/* A mode this much weaker than the largest is rounding: its coupling is too. */
+static const double negligible = 1e-20;
+
+/* Which of a Gramian's entries are largest against their diagonals. */
+static void couple(const ritz_dense *W, ritz_ranking *ranking)
+{
+    const int64_t *cluster = ranking->cluster;
+    double largest[2] = {0.0, 0.0};
+
+    for (int64_t a = 0; a < W->nrow; a++)
+        largest[a % 2] = fmax(largest[a % 2], ritz_dense_col(W, a)[a]);
+    for (int64_t b = 0; b < W->nrow; b++)
+        for (int64_t a = 0; a < b; a++) {
+            double wa = ritz_dense_col(W, a)[a];
+            double wb = ritz_dense_col(W, b)[b];
+            double off = fabs(ritz_dense_col(W, b)[a]) / sqrt(wa * wb);
+
+            if (cluster[a / 2] == cluster[b / 2] ||
+                !(wa > negligible * largest[a % 2]) ||
+                !(wb > negligible * largest[b % 2]) ||
+                !(off > ranking->coupling))
+                continue;
+            ranking->coupling = off;
+            ranking->coupled[0] = a / 2;
+            ranking->coupled[1] = b / 2;
+        }
+}
+
+/*
+ * The largest normalised off-diagonal |W_ab| / sqrt(W_aa W_bb) of both exact
+ * Gramians, but within clusters, which are ranked whole.
+ */
+static ritz_status ranking_coupling(const ritz_modal *modal,
+                                    ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Wc = {0};
+    ritz_dense Wo = {0};
+
+    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
+    ranking->coupling = 0.0;
+    couple(&Wc, ranking);
+    couple(&Wo, ranking);
+done:
+    ritz_dense_free(&Wc);
+    ritz_dense_free(&Wo);
+    return status;
+}
+
+/* Places of modes by magnitude of value, and what clusters share. */
+
+/* A value and its mode, to be sorted. */
+typedef struct place {
+    double size;
+    int64_t mode;
+} place;
+
+/* Larger values first, of equal ones the lower frequency. */
+static int compare(const void *left, const void *right)
+{
+    const place *a = left;
+    const place *b = right;
+
+    if (a->size != b->size)
+        return a->size > b->size ? -1 : 1;
+    return (a->mode > b->mode) - (a->mode < b->mode);
+}
+
+ritz_status ritz_ranking_sort(int64_t count, const double *value,
+                              int64_t *order)
+{
+    ritz_status status = RITZ_OK;
+    place *all = NULL;
+
+    RITZ_NEW(all, count);
+    for (int64_t k = 0; k < count; k++)
+        all[k] = (place){fabs(value[k]), k};
+    qsort(all, (size_t)count, sizeof *all, compare);
+    for (int64_t k = 0; k < count; k++)
+        order[k] = all[k].mode;
+done:
+    free(all);
+    return status;
+}
+
+void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster)
+{
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        last = ritz_modal_cluster(modal, first);
+        for (int64_t k = first; k < last; k++)
+            cluster[k] = first;
+    }
+}
+
+void ritz_ranking_share(const ritz_modal *modal, double *value)
+{
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        double sum = 0.0;
+
+        last = ritz_modal_cluster(modal, first);
+        for (int64_t k = first; k < last; k++)
+            sum += value[k];
+        for (int64_t k = first; last > first + 1 && k < last; k++)
+            value[k] = sum / (double)(last - first);
+    }
+}
+
+void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
+                            const char *letter, int64_t k,
+                            char out[RITZ_NAME_SIZE])
+{
+    if (names)
+        (void)snprintf(out, RITZ_NAME_SIZE, "%s", names[k]);
+    else
+        (void)snprintf(out, RITZ_NAME_SIZE, "%s%" PRId64, letter, k + 1);
+}
+
+ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
+                                    ritz_cluster_value *value,
+                                    ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_modal *modal = &request->modal;
+    ritz_modal cluster = {0};
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < modal->count; first = last) {
+        last = ritz_modal_cluster(modal, first);
+        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
+        RITZ_TRY(value(request, &cluster, &ranking->value[first]));
+        for (int64_t k = first + 1; k < last; k++)
+            ranking->value[k] = ranking->value[first];
+        ritz_modal_free(&cluster);
+    }
+done:
+    ritz_modal_free(&cluster);
+    return status;
+}
 
 /* A new ranking is a new file that defines one descriptor, and a line here. */
 const ritz_ranker *const ritz_rankers[] = {
@@ -131,7 +278,7 @@ static ritz_status stand_beside(const ritz_rank_request *request,
         return RITZ_OK;
     RITZ_CHECK(ritz_modal_hankel(modal, ranking->system_value));
     ranking->num_system = 2 * modal->count;
-    return ritz_ranking_coupling(modal, ranking);
+    return ranking_coupling(modal, ranking);
 }
 
 ritz_status ritz_rank(const ritz_ranker *ranker,
