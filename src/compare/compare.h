@@ -82,10 +82,13 @@ typedef struct ritz_range {
     int64_t first, last;
 } ritz_range;
 
-/* What all configurations give to one body, r_c rows, in order of right. */
+/*
+ * What all configurations give to one body, r_c rows, in the order in which
+ * columns are made orthogonal: see composite.c.
+ */
 enum {
-    RITZ_GIVEN_RIGID,
     RITZ_GIVEN_MASSLESS,
+    RITZ_GIVEN_RIGID,
     RITZ_GIVEN_STATIC,
     RITZ_GIVEN_KEPT, /* modes or Krylov vectors */
     RITZ_GIVEN

@@ -249,19 +249,23 @@ static ritz_status choose_krylov(const ritz_scene *scene,
  * level the second are instead, once for all angles, the body's own: see
  * statics.c.
  *
- * With M_c = L L' and Y = L' W, columns are taken in that order of right: rigid
- * modes, motions without mass and static answers whole, so that no tolerance
- * costs rigidity or static gain; then what is left of the kept modes, whose
- * singular values below the tolerance are dropped. V_c = L'^-1 U. What is
+ * With M_c = L L' and Y = L' W, columns are made orthogonal in this order:
+ * motions without mass, rigid modes and static answers whole, so that no
+ * tolerance costs rigidity or static gain; then what is left of the kept modes,
+ * whose singular values below the tolerance are dropped. V_c = L'^-1 U. What is
  * scaled to unit mass of the system, as modes are, is static answers of the
  * system and Krylov vectors; those of a body are scaled to its own.
  *
- * Where M_c is singular, M_c + K_c / lambda takes its place.
+ * Where M_c is singular, M_c + K_c / lambda takes its place. Motions without
+ * mass, M_c N = 0, come first: made orthogonal to any column that stores energy
+ * they would take some of it, and its mass, over. Rigid modes do by rounding,
+ * most of all in N, where all motion is stiff; what is left of that after N is
+ * of the order of eps.
  */
 
 enum {
-    RIGID = RITZ_GIVEN_RIGID,
     MASSLESS = RITZ_GIVEN_MASSLESS,
+    RIGID = RITZ_GIVEN_RIGID,
     STATIC = RITZ_GIVEN_STATIC,
     KEPT = RITZ_GIVEN_KEPT,
     GROUPS = RITZ_GIVEN
