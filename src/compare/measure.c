@@ -30,7 +30,7 @@ static ritz_status find_poles(const ritz_scene *scene,
 {
     const ritz_second_order model = {&c->K, &c->M, &c->D, &c->K4, &c->io};
 
-    return ritz_poles_of_dense(&model, &scene->damping, out);
+    return ritz_poles_of_dense(&model, &scene->damping, scene->band_hz[1], out);
 }
 
 ritz_status ritz_compare_respond(const ritz_scene *scene,

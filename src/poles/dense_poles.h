@@ -4,8 +4,16 @@
 
 #include "poles/poles.h"
 
+/**
+ * Poles of all modes.
+ *
+ * @param[in] to_hz  where responses end that are of interest; 0: not known
+ * @return RITZ_ERR_ARGUMENT if an eigenvalue is negative beyond rounding, of
+ *         the largest eigenvalue or of (2 pi to_hz)^2
+ */
 ritz_status ritz_poles_of_dense(const ritz_second_order *model,
-                                const ritz_damping *damping, ritz_poles *out);
+                                const ritz_damping *damping, double to_hz,
+                                ritz_poles *out);
 
 /**
  * The same of pairs that are known: all modes of finite frequency, `lambda`

@@ -4,6 +4,7 @@
  */
 #include "base/alloc.h"
 
+#include "base/tolerances.h"
 #include "poles/dense_poles.h"
 #include "poles/massless.h"
 #include "response/responder.h"
@@ -64,7 +65,7 @@ static ritz_status make(const ritz_response_request *request,
         RITZ_TRY(of_component(request, m));
     else
         RITZ_TRY(ritz_poles_of_dense(request->matrices, request->damping,
-                                     &m->poles));
+                                     request->to_hz, &m->poles));
     out->poles = &m->poles;
     out->at = at;
     out->free = finish;
@@ -130,14 +131,20 @@ static ritz_status project(const ritz_dense *A, const ritz_dense *Phi,
     return A && A->val ? ritz_dense_project(A, Phi, out) : RITZ_OK;
 }
 
-/* Far below 0 an eigenvalue is no rounding: -3e-9 of the largest was seen. */
-static ritz_status refuse_unstable(const ritz_pairs *pairs)
+/*
+ * Far below 0 an eigenvalue is no rounding: -3e-9 of the largest was seen. All
+ * of a rigid body are rounding, of a stiffness that they do not tell of: the
+ * largest that matters is then that of the response, (2 pi f)^2.
+ */
+static ritz_status refuse_unstable(const ritz_pairs *pairs, double to_hz)
 {
     const double rounding = 1e-6;
     int64_t m = pairs->Phi.ncol;
+    double largest = pow(2.0 * RITZ_PI * to_hz, 2.0);
 
-    RITZ_REFUSE_IF(m > 0 && pairs->lambda[0] <
-                                -rounding * fabs(pairs->lambda[m - 1]),
+    if (m > 0)
+        largest = fmax(largest, fabs(pairs->lambda[m - 1]));
+    RITZ_REFUSE_IF(m > 0 && pairs->lambda[0] < -rounding * largest,
                    RITZ_ERR_ARGUMENT,
                    "the stiffness has a negative eigenvalue, %.3g where the "
                    "largest is %.3g: an unstable model has no steady response",
@@ -247,13 +254,14 @@ done:
 }
 
 ritz_status ritz_poles_of_dense(const ritz_second_order *model,
-                                const ritz_damping *damping, ritz_poles *out)
+                                const ritz_damping *damping, double to_hz,
+                                ritz_poles *out)
 {
     ritz_status status = RITZ_OK;
     ritz_pairs pairs = {0};
 
     RITZ_TRY(ritz_eigen_dense(model->K, model->M, &pairs));
-    RITZ_TRY(refuse_unstable(&pairs));
+    RITZ_TRY(refuse_unstable(&pairs, to_hz));
     RITZ_TRY(ritz_poles_of_pairs(model, damping, false, &pairs, out));
 done:
     ritz_pairs_free(&pairs);

@@ -65,9 +65,10 @@ ritz_status ritz_sides_measure(const ritz_second_order *model,
                                const ritz_verify_request *limits,
                                ritz_sides *sides, ritz_measures *out);
 
-/** Poles and pairs of a reduced model, all of them. */
+/** Poles and pairs of a reduced model, all of them: see ritz_poles_of_dense. */
 ritz_status ritz_sides_open(const ritz_second_order *model,
-                            const ritz_damping *damping, ritz_sides *sides);
+                            const ritz_damping *damping, double to_hz,
+                            ritz_sides *sides);
 
 /** That what goes in and comes out is the same of both. */
 ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *io);

@@ -185,7 +185,8 @@ static ritz_status measure(const ritz_reference *reference,
                            ritz_measures *out)
 {
     RITZ_CHECK(ritz_sides_check(&reference->component->io, model->io));
-    RITZ_CHECK(ritz_sides_open(model, &reference->damping, sides));
+    RITZ_CHECK(ritz_sides_open(model, &reference->damping,
+                               reference->band_hz[1], sides));
     sides->full = reference;
     return ritz_sides_measure(model, T, limits, sides, out);
 }

@@ -119,10 +119,11 @@ bool ritz_in_band(const double band_hz[2], double lambda)
 
 /* Its basis is dense and its modes are all there. */
 ritz_status ritz_sides_open(const ritz_second_order *model,
-                            const ritz_damping *damping, ritz_sides *sides)
+                            const ritz_damping *damping, double to_hz,
+                            ritz_sides *sides)
 {
     RITZ_CHECK_IN("reduced model",
-                  ritz_poles_of_dense(model, damping, &sides->reduced));
+                  ritz_poles_of_dense(model, damping, to_hz, &sides->reduced));
     RITZ_CHECK_IN("reduced model",
                   ritz_eigen_dense(model->K, model->M, &sides->small));
     return RITZ_OK;
@@ -237,7 +238,8 @@ static ritz_status verify(const ritz_component *full, const other *o,
     RITZ_TRY(check_limits(&full->io, request));
     RITZ_TRY(
         choose_damping(full, o->damping, request, &asked.damping, &is_assumed));
-    RITZ_TRY(ritz_sides_open(&o->model, &asked.damping, &sides));
+    RITZ_TRY(ritz_sides_open(&o->model, &asked.damping, request->band_hz[1],
+                             &sides));
     choose_band(&sides.reduced, highest_hertz(&sides.reduced, o->columns),
                 request, asked.band_hz);
     RITZ_TRY(ritz_reference_open(full, &asked, is_assumed, &reference));

@@ -99,7 +99,8 @@ static void a_mode_that_creeps_is_not_given_its_neighbour_s_ratio(void **state)
     (void)state;
     assert_ok(ritz_io_new(2, 0, 0, &io));
     assert_ok(ritz_poles_of_dense(
-        &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL, &poles));
+        &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL, 0.0,
+        &poles));
     assert_ok(ritz_damped_new(&poles, NULL, NULL, band, &damped));
     assert_true(isnan(damped.zeta[0]));
     assert_true(isnan(creal(damped.s[0])));

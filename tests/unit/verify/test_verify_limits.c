@@ -98,6 +98,40 @@ static void a_rigid_motion_that_is_not_there_is_missing(void **state)
     close_free(&f);
 }
 
+/* The eigenvalue of a lone rigid motion is rounding, of either sign, and is
+ * judged by the band: what is no rounding of that is refused. */
+static void rounding_of_a_lone_rigid_motion_is_no_instability(void **state)
+{
+    static const double part[] = {2e-17, -2e-17, -1e-3}; /* of the first mode */
+    ritz_verify_request request = RITZ_VERIFY_NONE;
+    fixture f;
+
+    (void)state;
+    open_free(&f);
+    request.band_hz[1] = 0.9 * ritz_eigen_hertz(f.pairs.lambda[RIGID]);
+    for (int k = 0; k < 3; k++) {
+        ritz_measures found = {0};
+        ritz_basis basis = {0};
+        ritz_reduced reduced = {0};
+
+        assert_ok(ritz_basis_new(f.beam.num_dofs, 1, &basis));
+        memcpy(basis.T.val, f.pairs.Phi.val,
+               (size_t)f.beam.num_dofs * sizeof(double));
+        assert_ok(ritz_reduce(&f.beam, &basis, &reduced));
+        reduced.K.val[0] = part[k] * f.pairs.lambda[RIGID];
+        if (k < 2)
+            assert_ok(ritz_verify_reduced(&f.beam, &reduced, &request, &found));
+        else
+            assert_fails(
+                ritz_verify_reduced(&f.beam, &reduced, &request, &found),
+                RITZ_ERR_ARGUMENT, "an unstable model has no steady response");
+        ritz_measures_free(&found);
+        ritz_reduced_free(&reduced);
+        ritz_basis_free(&basis);
+    }
+    close_free(&f);
+}
+
 /* lambda of a rigid motion on a spring k is k, of unit modal mass. */
 static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
 {
@@ -300,6 +334,7 @@ static void what_cancels_is_no_response(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_rigid_motion_that_is_not_there_is_missing),
+    cmocka_unit_test(rounding_of_a_lone_rigid_motion_is_no_instability),
     cmocka_unit_test(a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies),
     cmocka_unit_test(a_response_that_does_not_exist_cannot_be_held_to_a_limit),
     cmocka_unit_test(the_flexible_response_of_what_is_held_is_all_of_it),
