@@ -49,6 +49,14 @@ ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE]);
 const char *ritz_text_nearest(const char *word, int64_t count,
                               const char *first, size_t stride);
 
+/**
+ * The row called @p name of a table of pointers that ends in NULL, each to a
+ * struct whose first member is its name. NULL if there is none, and the
+ * sentence "there is no KIND 'NAME', is 'NEAREST' meant?" is recorded.
+ */
+const void *ritz_row_find(const void *table, const char *kind,
+                          const char *name);
+
 /** SHA-256 of some bytes, as text. */
 void ritz_digest_bytes(const void *bytes, size_t size,
                        char out[RITZ_DIGEST_SIZE]);

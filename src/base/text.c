@@ -181,3 +181,41 @@ const char *ritz_text_nearest(const char *word, int64_t count,
     }
     return best <= (int)(strlen(word) + 1) / 2 ? nearest : NULL;
 }
+
+/* Row k of a table of pointers to structs; the first member is the name. */
+static const char *name_row(const void *table, int64_t k, const void **row)
+{
+    const char *name = NULL;
+
+    memcpy(row, (const char *)table + (size_t)k * sizeof *row, sizeof *row);
+    if (*row)
+        memcpy(&name, *row, sizeof name);
+    return name;
+}
+
+const void *ritz_row_find(const void *table, const char *kind, const char *name)
+{
+    const char *nearest = NULL;
+    const void *row = NULL;
+    int best = FAR;
+
+    for (int64_t k = 0;; k++) {
+        const char *known = name_row(table, k, &row);
+        int apart = known ? distance(name, known) : FAR;
+
+        if (!known)
+            break;
+        if (strcmp(known, name) == 0)
+            return row;
+        if (apart < best) {
+            best = apart;
+            nearest = known;
+        }
+    }
+    if (best > (int)(strlen(name) + 1) / 2)
+        nearest = NULL;
+    ritz_record("there is no %s '%s'%s%s%s", kind, name,
+                nearest ? ", is '" : "", nearest ? nearest : "",
+                nearest ? "' meant?" : "");
+    return NULL;
+}

@@ -37,7 +37,7 @@ static int64_t count_kept(const ritz_pairs *modes, int64_t wanted)
  * @see    [CastanierTanPierre2001]
  */
 static ritz_status condense_interface(const ritz_request *request,
-                                        const ritz_dense *T_b, ritz_pairs *out)
+                                      const ritz_dense *T_b, ritz_pairs *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense K = {0}, M = {0}, Phi = {0};

@@ -13,8 +13,8 @@
  * dependent, or nothing beside the flexibility of the kept modes, are sifted.
  */
 
-#include "base/alloc.h"
 #include "bases/free_modes.h"
+#include "base/alloc.h"
 #include "bases/loads.h"
 
 #include <ritz/factor.h>

@@ -2,8 +2,8 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "bases/orthonormal.h"
 #include "bases/balance_asked.h"
+#include "bases/orthonormal.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
 

@@ -1,6 +1,5 @@
 #include "bases/partition.h"
 
-
 #include <ritz/eigen.h>
 
 #include <float.h>

@@ -172,14 +172,6 @@ static ritz_status record_compare(ritz_comparison *comparison)
  * it to rounding; tests/unit/compare/test_compare.c holds the code to it.
  */
 
-const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k)
-{
-    int64_t listed = rows->listed->num_configurations;
-
-    return k < listed ? &rows->listed->configuration[k]
-                      : &rows->between[k - listed];
-}
-
 /* The stage-1 system between listed configurations. */
 static ritz_status assemble_between(ritz_rows *rows)
 {

@@ -13,23 +13,6 @@
 /* Of mass scaled to unit diagonal: below this it counts as singular. */
 static const double well_conditioned = 1e-12;
 
-double ritz_typical_lambda(const ritz_reduced *body)
-{
-    double sum = 0.0;
-    int64_t count = 0;
-
-    for (int64_t j = 0; j < body->K.ncol; j++) {
-        double k = ritz_dense_col(&body->K, j)[j];
-        double m = ritz_dense_col(&body->M, j)[j];
-
-        if (k > 0.0 && m > 0.0) {
-            sum += log(k / m);
-            count++;
-        }
-    }
-    return count > 0 ? exp(sum / (double)count) : 1.0;
-}
-
 /* L = lower triangle of S (M + stiffness K) S. */
 static void fill(const ritz_reduced *body, const double *scale,
                  double stiffness, ritz_dense *L)

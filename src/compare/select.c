@@ -227,3 +227,11 @@ done:
     free(taken);
     return status;
 }
+
+const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k)
+{
+    int64_t listed = rows->listed->num_configurations;
+
+    return k < listed ? &rows->listed->configuration[k]
+                      : &rows->between[k - listed];
+}

@@ -231,3 +231,20 @@ void ritz_statics_free(ritz_statics *statics)
     ritz_dense_free(&statics->massless);
     ritz_dense_free(&statics->answers);
 }
+
+double ritz_typical_lambda(const ritz_reduced *body)
+{
+    double sum = 0.0;
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < body->K.ncol; j++) {
+        double k = ritz_dense_col(&body->K, j)[j];
+        double m = ritz_dense_col(&body->M, j)[j];
+
+        if (k > 0.0 && m > 0.0) {
+            sum += log(k / m);
+            count++;
+        }
+    }
+    return count > 0 ? exp(sum / (double)count) : 1.0;
+}

@@ -1,8 +1,8 @@
 
+#include "response/responder.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "poles/damped.h"
-#include "response/responder.h"
 
 #include <ritz/monitor.h>
 
@@ -152,7 +152,7 @@ double ritz_response_highest(const ritz_response_request *request)
 }
 
 /* Where a grid ends, whatever it is made of. */
-static double end_grid(const ritz_grid *grid)
+double ritz_grid_end(const ritz_grid *grid)
 {
     return grid->hertz && grid->count > 0 ? grid->hertz[grid->count - 1]
                                           : grid->to_hz;
@@ -262,39 +262,9 @@ ritz_status ritz_response_once(const ritz_response_engine *engine,
 
     RITZ_TRY(ritz_grid_check(grid));
     request->from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
-    request->to_hz = end_grid(grid);
+    request->to_hz = ritz_grid_end(grid);
     RITZ_TRY(ritz_responder_new(engine, request, &responder));
     RITZ_TRY(ritz_responder_sample(responder, grid, out));
-done:
-    ritz_responder_free(&responder);
-    return status;
-}
-
-ritz_status ritz_response_component(const ritz_component *component,
-                                    const ritz_response_engine *engine,
-                                    const ritz_damping *damping,
-                                    double up_to_hz, double tolerance,
-                                    const ritz_grid *grid, ritz_response *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_responder *responder = NULL;
-    const char *why = NULL;
-    ritz_response_request request = {.component = component,
-                                     .damping = damping,
-                                     .up_to_hz = up_to_hz,
-                                     .tolerance = 0.1 * tolerance};
-
-    RITZ_TRY(ritz_grid_check(grid));
-    request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
-    request.to_hz = end_grid(grid);
-    if (engine)
-        RITZ_TRY(ritz_responder_new(engine, &request, &responder));
-    else
-        RITZ_TRY(ritz_responder_auto(&request, &why, &responder));
-    if (tolerance > 0.0)
-        RITZ_TRY(ritz_responder_follow(responder, grid, tolerance, out));
-    else
-        RITZ_TRY(ritz_responder_sample(responder, grid, out));
 done:
     ritz_responder_free(&responder);
     return status;

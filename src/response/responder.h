@@ -73,6 +73,9 @@ ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
 /** The highest mode that a request wants of a component, Hz. */
 double ritz_response_highest(const ritz_response_request *request);
 
+/** The highest frequency of a grid, Hz, whatever it is made of. */
+double ritz_grid_end(const ritz_grid *grid);
+
 /** Make an engine ready and respond on a grid. */
 ritz_status ritz_response_once(const ritz_response_engine *engine,
                                ritz_response_request *request,

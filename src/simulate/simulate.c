@@ -4,9 +4,16 @@
 #include "base/alloc.h"
 #include "simulate/run.h"
 
+#include <ritz/text.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+const ritz_integrator *ritz_integrator_find(const char *name)
+{
+    return ritz_row_find(ritz_integrators, "integrator", name);
+}
 
 static ritz_status check(const ritz_simulated *subject,
                          const ritz_simulation_request *request)

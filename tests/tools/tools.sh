@@ -237,7 +237,7 @@ expect 0 'Largest over 2 configurations' ritz-rank system.h5
 expect 1 'not a component or a reduced component' ritz-rank ranking.h5
 
 sed 's/by: hankel/by: hankle/' scene.yaml >by.yaml
-expect 1 "by.yaml:11:14: there is no ranking 'hankle', did you mean 'hankel'" \
+expect 1 "by.yaml:11:14: there is no ranking 'hankle', is 'hankel' meant" \
     ritz-compare by.yaml -o x.h5
 
 expect 0 '' ritz-import --stiffness b.k.mtx --mass one.m.mtx --bulk pair.bdf \

@@ -1,0 +1,57 @@
+/* How a basis is asked for by name, checked against its method, and signed. */
+#include <ritz/method.h>
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+const ritz_method *ritz_method_find(const char *name)
+{
+    return ritz_row_find(ritz_methods, "method", name);
+}
+
+ritz_status ritz_request_check(const ritz_method *method,
+                               const ritz_request *request)
+{
+    bool by_number = request->modes >= 0;
+    bool by_frequency = request->up_to_hz > 0.0;
+
+    if (method->uses & RITZ_USES_MODES)
+        RITZ_REFUSE_IF(by_number == by_frequency, RITZ_ERR_ARGUMENT,
+                       "%s takes either a number of modes or a frequency",
+                       method->name);
+    else
+        RITZ_REFUSE_IF(by_number || by_frequency, RITZ_ERR_ARGUMENT,
+                       "%s has no modes to choose", method->name);
+    for (const ritz_choice_word *word = ritz_choice_words; word->key; word++)
+        RITZ_REFUSE_IF(request->choice.given & word->uses & ~method->uses,
+                       RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",
+                       method->name, word->key);
+    RITZ_REFUSE_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
+                   RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",
+                   method->name);
+    return RITZ_OK;
+}
+
+static void sign_basis(const ritz_method *method, const ritz_request *request,
+                       ritz_origin *origin)
+{
+    snprintf(origin->method, RITZ_NAME_SIZE, "%s", method->name);
+    snprintf(origin->reference, RITZ_NAME_SIZE, "%s", method->reference);
+    if (request->modes >= 0)
+        snprintf(origin->options, RITZ_NAME_SIZE, "modes %" PRId64,
+                 request->modes);
+    else if (request->up_to_hz > 0.0)
+        snprintf(origin->options, RITZ_NAME_SIZE, "up-to-hz %.17g",
+                 request->up_to_hz);
+    ritz_choice_print(&request->choice, RITZ_NAME_SIZE, origin->options);
+}
+
+ritz_status ritz_basis_make(const ritz_method *method,
+                            const ritz_request *request, ritz_basis *out)
+{
+    RITZ_CHECK(ritz_request_check(method, request));
+    RITZ_CHECK_IN(method->name, method->make(request, out));
+    sign_basis(method, request, &out->origin);
+    return RITZ_OK;
+}

@@ -1,0 +1,169 @@
+/* A ranking by any of the rankers, with what stands beside it. */
+#include "ranking/costs.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "gramians/cluster.h"
+
+#include <ritz/ranking.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const ritz_ranker *ritz_ranker_find(const char *name)
+{
+    return ritz_row_find(ritz_rankers, "ranking", name);
+}
+
+/* A mode this much weaker than the largest is rounding: its coupling is too. */
+static const double negligible = 1e-20;
+
+/* Which of a Gramian's entries are largest against their diagonals. */
+static void couple(const ritz_dense *W, ritz_ranking *ranking)
+{
+    const int64_t *cluster = ranking->cluster;
+    double largest[2] = {0.0, 0.0};
+
+    for (int64_t a = 0; a < W->nrow; a++)
+        largest[a % 2] = fmax(largest[a % 2], ritz_dense_col(W, a)[a]);
+    for (int64_t b = 0; b < W->nrow; b++)
+        for (int64_t a = 0; a < b; a++) {
+            double wa = ritz_dense_col(W, a)[a];
+            double wb = ritz_dense_col(W, b)[b];
+            double off = fabs(ritz_dense_col(W, b)[a]) / sqrt(wa * wb);
+
+            if (cluster[a / 2] == cluster[b / 2] ||
+                !(wa > negligible * largest[a % 2]) ||
+                !(wb > negligible * largest[b % 2]) ||
+                !(off > ranking->coupling))
+                continue;
+            ranking->coupling = off;
+            ranking->coupled[0] = a / 2;
+            ranking->coupled[1] = b / 2;
+        }
+}
+
+/*
+ * The largest normalised off-diagonal |W_ab| / sqrt(W_aa W_bb) of both exact
+ * Gramians, but within clusters, which are ranked whole.
+ */
+static ritz_status ranking_coupling(const ritz_modal *modal,
+                                    ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense Wc = {0};
+    ritz_dense Wo = {0};
+
+    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
+    ranking->coupling = 0.0;
+    couple(&Wc, ranking);
+    couple(&Wo, ranking);
+done:
+    ritz_dense_free(&Wc);
+    ritz_dense_free(&Wo);
+    return status;
+}
+
+static ritz_status ranking_new(const ritz_ranker *ranker,
+                               const ritz_rank_request *request,
+                               ritz_ranking *out)
+{
+    const ritz_modal *modal = &request->modal;
+    int64_t m = modal->count;
+
+    (void)snprintf(out->by, RITZ_NAME_SIZE, "%s", ranker->name);
+    (void)snprintf(out->reference, RITZ_NAME_SIZE, "%s", ranker->reference);
+    out->count = m;
+    out->total = nan("");
+    out->coupling = nan("");
+    RITZ_CHECK_NEW(out->hertz, m);
+    RITZ_CHECK_NEW(out->zeta, m);
+    RITZ_CHECK_NEW(out->value, m);
+    RITZ_CHECK_NEW(out->order, m);
+    RITZ_CHECK_NEW(out->cluster, m);
+    RITZ_CHECK_NEW(out->system_value, 2 * m);
+    for (int64_t k = 0; k < m; k++) {
+        out->hertz[k] = modal->omega[k] / (2.0 * RITZ_PI);
+        out->zeta[k] = request->undamped ? 0.0 : modal->zeta[k];
+    }
+    ritz_ranking_clusters(modal, out->cluster);
+    return RITZ_OK;
+}
+
+/* What a ranker needs and a request may lack, with the sentence for it. */
+static ritz_status check_needs(const ritz_ranker *ranker,
+                               const ritz_rank_request *r)
+{
+    const struct {
+        int need;
+        bool there;
+        const char *sentence;
+    } wants[] = {
+        {RITZ_RANK_INPUTS, r->modal.B.ncol > 0,
+         "a ranking needs at least one input and one output, there is no "
+         "input"},
+        {RITZ_RANK_OUTPUTS, r->modal.C.nrow > 0,
+         "a ranking needs at least one input and one output, there is no "
+         "output"},
+        {RITZ_RANK_DAMPING, !r->undamped,
+         "the modes have no damping, which this ranking needs of every one"},
+        {RITZ_RANK_BAND, r->band_hz[0] >= 0.0 && r->band_hz[1] > r->band_hz[0],
+         "there is no band to rank modes within"},
+        {RITZ_RANK_MOMENTUM, r->momentum.val,
+         "the model does not know its mass in rigid motion: its grids have no "
+         "positions, or it has too many columns"},
+        {RITZ_RANK_INTERFACE, r->interface.ncol > 0,
+         "these are not modes of an interface that is held"},
+    };
+
+    for (size_t k = 0; k < sizeof wants / sizeof *wants; k++)
+        RITZ_REFUSE_IF((ranker->needs & wants[k].need) && !wants[k].there,
+                       RITZ_ERR_ARGUMENT, "%s", wants[k].sentence);
+    return RITZ_OK;
+}
+
+/* Exact values of the whole, where there is something to drive and to see. */
+static ritz_status stand_beside(const ritz_rank_request *request,
+                                ritz_ranking *ranking)
+{
+    const ritz_modal *modal = &request->modal;
+
+    if (request->bare || request->undamped || modal->B.ncol == 0 ||
+        modal->C.nrow == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_modal_hankel(modal, ranking->system_value));
+    ranking->num_system = 2 * modal->count;
+    return ranking_coupling(modal, ranking);
+}
+
+/* One value for each cluster; a sum is shared out evenly. */
+static void join(const ritz_ranker *ranker, const ritz_modal *modal,
+                 ritz_ranking *ranking)
+{
+    if (ranker->sums)
+        ritz_ranking_share(modal, ranking->value);
+    for (int64_t j = 0; j < ranking->num_parts; j++)
+        ritz_ranking_share(modal, ritz_dense_col(&ranking->parts, j));
+}
+
+ritz_status ritz_rank(const ritz_ranker *ranker,
+                      const ritz_rank_request *request, ritz_ranking *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_ranking ranking = {0};
+
+    RITZ_TRY_IN(ranker->name, check_needs(ranker, request));
+    RITZ_TRY(ranking_new(ranker, request, &ranking));
+    RITZ_TRY_IN(ranker->name, ranker->rank(request, &ranking));
+    join(ranker, &request->modal, &ranking);
+    RITZ_TRY(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
+    RITZ_TRY(stand_beside(request, &ranking));
+    *out = ranking;
+    ranking = (ritz_ranking){0};
+done:
+    ritz_ranking_free(&ranking);
+    return status;
+}

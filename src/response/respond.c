@@ -1,0 +1,95 @@
+/* Which engine answers: the one that is named, or the one that suits. */
+#include "response/responder.h"
+
+#include <stdio.h>
+
+const ritz_response_engine *ritz_response_engine_find(const char *name)
+{
+    return ritz_row_find(ritz_response_engines, "engine", name);
+}
+
+static bool has_matrices(const ritz_component *c)
+{
+    return c->D.colptr || c->K4.colptr;
+}
+
+static bool is_rayleigh(const ritz_response_request *request)
+{
+    return request->damping && ritz_damping_is_rayleigh(request->damping);
+}
+
+const ritz_response_engine *
+ritz_response_engine_choose(const ritz_response_request *request,
+                            const char **why)
+{
+    if (request->states) {
+        *why = "a state space has no other";
+        return &ritz_response_engine_states;
+    }
+    if (request->matrices) {
+        *why = "all modes of a small dense model cost little";
+        return &ritz_response_engine_modal;
+    }
+    if (has_matrices(request->component) || is_rayleigh(request)) {
+        *why = "damping matrices act on all modes, which a sum of some misses";
+        return &ritz_response_engine_krylov;
+    }
+    *why =
+        "without damping matrices modes and the series of the rest are exact";
+    return &ritz_response_engine_modal;
+}
+
+ritz_status ritz_responder_auto(const ritz_response_request *request,
+                                const char **why, ritz_responder **out)
+{
+    return ritz_responder_or_direct(ritz_response_engine_choose(request, why),
+                                    request, out);
+}
+
+ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
+                                     const ritz_response_request *request,
+                                     ritz_responder **out)
+{
+    ritz_status status = ritz_responder_new(engine, request, out);
+    char said[RITZ_REMARK_SIZE / 2];
+
+    if (status != RITZ_ERR_CONVERGENCE || !request->component)
+        return status;
+    (void)snprintf(said, sizeof said, "%.*s", (int)sizeof said - 1,
+                   ritz_error_message());
+    RITZ_TRY(ritz_responder_new(&ritz_response_engine_direct, request, out));
+    (void)snprintf((*out)->remark, sizeof(*out)->remark,
+                   "%s gave up, direct instead: %s", engine->name, said);
+done:
+    return status;
+}
+
+ritz_status ritz_response_component(const ritz_component *component,
+                                    const ritz_response_engine *engine,
+                                    const ritz_damping *damping,
+                                    double up_to_hz, double tolerance,
+                                    const ritz_grid *grid, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_responder *responder = NULL;
+    const char *why = NULL;
+    ritz_response_request request = {.component = component,
+                                     .damping = damping,
+                                     .up_to_hz = up_to_hz,
+                                     .tolerance = 0.1 * tolerance};
+
+    RITZ_TRY(ritz_grid_check(grid));
+    request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
+    request.to_hz = ritz_grid_end(grid);
+    if (engine)
+        RITZ_TRY(ritz_responder_new(engine, &request, &responder));
+    else
+        RITZ_TRY(ritz_responder_auto(&request, &why, &responder));
+    if (tolerance > 0.0)
+        RITZ_TRY(ritz_responder_follow(responder, grid, tolerance, out));
+    else
+        RITZ_TRY(ritz_responder_sample(responder, grid, out));
+done:
+    ritz_responder_free(&responder);
+    return status;
+}
