@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """balanced.py FOLDER-OF-THE-TOOLS OUT.svg - where balanced truncation wins and
 where Craig-Bampton does: the tables of docs/methods/balanced.md on standard
 output, and their chart.

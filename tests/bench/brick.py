@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """brick.py NX NY NZ FOLDER - a solid block of 8-node bricks, free, steel,
 consistent mass: K.mtx, M.mtx, grids.bdf and dofs.txt (units kg m s).
 

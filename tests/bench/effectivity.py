@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """effectivity.py FOLDER-OF-THE-TOOLS - bound over true error of every estimate
 of ritz-reduce, for every method on every data set that it fits: the tables of
 docs/methods/estimates.md, on standard output.

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """effectivity_damping.py FOLDER-OF-THE-TOOLS - estimate over true error of
 responses where ratios differ between modes and nothing is proven: dampers at a
 few places, any positive D, structural damping, ratios by modes and by bands; a

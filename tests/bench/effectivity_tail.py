@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """effectivity_tail.py FOLDER-OF-THE-TOOLS - the balanced tail over the true
 error, of components and of state spaces of others: a table of
 docs/methods/estimates.md, on standard output.

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """methods.py FOLDER-OF-THE-TOOLS [--solid N] - every method on every data set
 it fits, at equal order: the tables of docs/methods/errors.md, on standard output.
 
@@ -164,7 +164,7 @@ def truss(external, folder, _):
 
 def solid(external, folder, n):
     """A free block of bricks, its port a patch of 4 x 4 grids."""
-    subprocess.run([sys.executable, HERE / "brick.py", *3 * [str(n)], folder],
+    subprocess.run([sys.executable, "-s", HERE / "brick.py", *3 * [str(n)], folder],
                    check=True, capture_output=True)
     port = ",".join(str(j * (n + 1) + k) for j in range(4)
                     for k in range(1, 5))
@@ -293,7 +293,7 @@ HEAD = """# How wrong each method is
 
 Every method on every data set that it fits, reduced to as many columns as it can have of those asked for and measured by `ritz-verify` against the full model up to its fifth flexible mode (damping `modal 0.01` where the model states none). Made by
 
-    /usr/bin/python3 tests/bench/methods.py build/release/bin --solid 25 >docs/methods/errors.md
+    /usr/bin/python3 -s tests/bench/methods.py build/release/bin --solid 25 >docs/methods/errors.md
 
 *missing*: modes of the band that no reduced mode is like (MAC below one half); *frequency*, *1 - MAC* and *damping*: the worst of the others; *response*: from an input inside to an output inside, largest error over the largest response in the band, which of a free body is that of its rigid motion; *static gain*: of the flexible part, relative. An error of 1 - MAC of 1 is a mode that is missing.
 

@@ -20,7 +20,7 @@ export OMP_NUM_THREADS OMP_THREAD_LIMIT
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir"
-/usr/bin/python3 "$here/brick.py" "$n" "$n" "$n" . >dofs
+/usr/bin/python3 -s "$here/brick.py" "$n" "$n" "$n" . >dofs
 corner=$(((n + 1) * (n + 1) * (n + 1)))
 middle=$((corner / 2))
 "$bin/ritz-import" -q --stiffness K.mtx --mass M.mtx --dofs dofs.txt \

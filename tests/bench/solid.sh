@@ -9,7 +9,7 @@ nx=${2:-25} ny=${3:-25} nz=${4:-25}
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir"
-n=$(/usr/bin/python3 "$here/brick.py" "$nx" "$ny" "$nz" .)
+n=$(/usr/bin/python3 -s "$here/brick.py" "$nx" "$ny" "$nz" .)
 # a patch of four by four grids: on one line they would not hold the body
 port=$(awk -v n="$((nz + 1))" 'BEGIN {
     for (j = 0; j < 4; j++)
@@ -25,7 +25,7 @@ step() {
     shift
     rm -f record
     "$bin/$@" -q --record record
-    /usr/bin/python3 -c 'import json, sys
+    /usr/bin/python3 -s -c 'import json, sys
 r = json.loads(open("record").readline())
 print("%-34s %9.2f %9.0f" % (sys.argv[1], r["seconds"]["wall"],
                              r["peak_bytes"] / 1e6))' "$name"

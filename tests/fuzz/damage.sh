@@ -125,5 +125,5 @@ space.h5     ritz-simulate --seconds 0.1 --step 0.01 --input torque=step @ -o OU
 pulse.tsv    ritz-simulate --seconds 0.1 --step 0.01 --input torque=@ reduced.h5 -o OUT
 CASES
 
-/usr/bin/python3 "$here/damage.py" "$dir/good" "$seeds"
+/usr/bin/python3 -s "$here/damage.py" "$dir/good" "$seeds"
 failed=no

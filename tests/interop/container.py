@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """container.py FILE... - h5py and SciPy see in containers what the
 documentation says; the kind of each file says what is looked for."""
 import sys

@@ -31,4 +31,4 @@ ritz-basis -q lanczos-one-sided --modes 9 --damping 'modal 0.01' \
     build/stator.h5 -o states.h5
 ritz-reduce -q build/stator.h5 states.h5 -o space.h5
 ritz-verify -q --damping 'modal 0.01' build/stator.h5 space.h5 -o measured.h5
-exec /usr/bin/python3 "$here/container.py" build/*.h5 ./*.h5
+exec /usr/bin/python3 -s "$here/container.py" build/*.h5 ./*.h5

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """with_exudyn.py PROGRAMS - Exudyn loads what ritz-export writes for it, finds
 in it what it would have computed itself, and keeps momentum."""
 import sys

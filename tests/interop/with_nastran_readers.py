@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -s
 """with_nastran_readers.py PROGRAMS - OUTPUT4 files that ritz-export writes are
 read by pyNastran and pyYeti, to the same bits."""
 import itertools

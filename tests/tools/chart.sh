@@ -124,7 +124,7 @@ expect 0 '' ritz-chart -q convergence plain.jsonl -o best.svg
 for words in 'equal error' tolerance '10 %: model uncertainty'; do
     expect 0 ">$words</text>" cat levels.svg
 done
-expect 0 '' /usr/bin/python3 - <<'END'
+expect 0 '' /usr/bin/python3 -s - <<'END'
 import re
 script = open("levels.svg.gp").read()
 number = r"screen ([\d.]+), screen ([\d.]+)"
@@ -159,7 +159,7 @@ while [ $i -lt 240 ]; do
 done | sed 's/"cpu":\([0-9]*\).5/"cpu":0.\1/' >dense.jsonl
 for kind in pareto convergence; do
     expect 0 '' ritz-chart -q $kind dense.jsonl -o dense-$kind.svg
-    expect 0 '' /usr/bin/python3 - $kind <<'END'
+    expect 0 '' /usr/bin/python3 -s - $kind <<'END'
 import re, sys
 script = open(f"dense-{sys.argv[1]}.svg.gp").read()
 wide, high = map(float, re.search(r"size ([\d.]+), *([\d.]+)", script).groups())
@@ -205,7 +205,7 @@ expect 0 '' ritz-chart response full.h5 --channel "it's {x}/a_b<&" \
     -o channel.svg
 expect 0 '' ritz-chart mac reduced.h5 stator.h5 -o mac.svg
 well mac.svg
-expect 0 '' /usr/bin/python3 mac.py
+expect 0 '' /usr/bin/python3 -s mac.py
 expect 0 '' ritz-chart mac basis.h5 stator.h5 -o basis.svg
 expect 1 'MAC is of two models, this is one' ritz-chart mac stator.h5 -o x.svg
 expect 0 '' ritz-rank -q reduced.h5 --damping 'modal 0.01' -o ranking.h5

@@ -67,8 +67,8 @@ for w in 0, 1:  # the true peak lies between points, and above them
     near(line(0, -2, w)[0, :2], peak)
     assert peak[1] > 1.001 * s[w].max() and peak[0] not in f[w]["hertz"][:]
 END
-expect 0 '' /usr/bin/python3 singular.py
-expect 0 '' /usr/bin/python3 - <<'END'
+expect 0 '' /usr/bin/python3 -s singular.py
+expect 0 '' /usr/bin/python3 -s - <<'END'
 import h5py, shutil
 shutil.copy("two-small.h5", "zero.h5")
 with h5py.File("zero.h5", "r+") as f:
@@ -79,7 +79,7 @@ with h5py.File("zero.h5", "r+") as f:
 END
 expect 0 '' ritz-chart response two-full.h5 zero.h5 --channel turn/torque \
     --error decibels -o zero.svg
-expect 0 '' /usr/bin/python3 - <<'END'
+expect 0 '' /usr/bin/python3 -s - <<'END'
 rows = [r.split("\t") for r in open("zero.svg.tsv").read().splitlines()]
 line = [r for r in rows[1:] if r[:3] == ["0", "1", "0"]]
 gaps = [k for k, r in enumerate(line) if r[7] == "NaN"]
@@ -90,7 +90,7 @@ expect 1 '' grep -F 'error / largest' zero.svg
 expect 0 '' ritz-chart response two-full.h5 zero.h5 --channel \
     singular-values -o infinite.svg
 expect 0 'a pole at 7 Hz is not damped' cat infinite.svg
-expect 0 '' /usr/bin/python3 -c \
+expect 0 '' /usr/bin/python3 -s -c \
     'import h5py; h5py.File("zero.h5", "r+").attrs["singular_peak"] = [7.0, 0.0]'
 expect 1 "'singular_peak' is no frequency and no value above 0" ritz-chart \
     response zero.h5 -o x.svg
@@ -129,7 +129,7 @@ expect 0 'cone=60, by masses' cat turned.svg
 well turned.svg
 expect 0 '' ritz-chart mac small-stator.h5 pair.h5 small-platform.h5 --at \
     cone=60 --at cone=60 -o alike.svg
-expect 0 '' /usr/bin/python3 - <<'END'
+expect 0 '' /usr/bin/python3 -s - <<'END'
 import h5py, shutil
 shutil.copy("small-stator.h5", "scaled.h5")
 with h5py.File("scaled.h5", "r+") as f:
@@ -175,7 +175,7 @@ twice, full = cells("twice.svg.tsv"), cells("seen.svg.tsv")
 assert all(abs(twice[k, k] - 1.0) < 1e-9 for k, j in twice if k == j)
 assert all(full[k, k] > 0.99 for k in range(3))
 END
-expect 0 '' /usr/bin/python3 likeness.py
+expect 0 '' /usr/bin/python3 -s likeness.py
 expect 1 "MAC is of two: choose two configurations of 'pair.h5' by --at" \
     ritz-chart mac pair.h5 --at cone=0 -o x.svg
 expect 1 '--at is there more than twice' ritz-chart mac pair.h5 --at cone=0 \

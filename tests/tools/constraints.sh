@@ -6,7 +6,7 @@
 
 # --- a solid: eight-node bricks, 2 x 2 x 6 of them, E = 70e9, nu = 0.3 ---------
 
-/usr/bin/python3 - <<'END'
+/usr/bin/python3 -s - <<'END'
 import itertools
 
 nx, ny, nz = 2, 2, 6

@@ -6,7 +6,7 @@
 
 # effective SET METHODS: bench/effectivity.py has status 1 for one too low.
 effective() {
-    expect 0 "## $1" /usr/bin/python3 "$here/../bench/effectivity.py" "$bin" \
+    expect 0 "## $1" /usr/bin/python3 -s "$here/../bench/effectivity.py" "$bin" \
         --only "$1" --methods "$2"
 }
 

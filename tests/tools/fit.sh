@@ -92,7 +92,7 @@ mv log.json path.json
 expect 0 'With the first columns alone' ritz-fit scene.yaml --tolerance \
     frequency=1e-2 --methods macneal-rubin --between 0 --components t-
 expect 0 'system-frequency-relative' ritz-info t-rotor.h5
-/usr/bin/python3 - >cut.yaml <<'END'
+/usr/bin/python3 -s - >cut.yaml <<'END'
 import json
 orders = json.load(open("path.json"))["path"][2]["orders"]
 for line in open("scene.yaml"):

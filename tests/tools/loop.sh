@@ -9,7 +9,7 @@ ritz-basis full chain.h5 -q -o full.h5
 ritz-reduce chain.h5 full.h5 -q -o whole.h5
 
 # Displacement fed back through g s / (1 + s / 10), either way.
-/usr/bin/python3 - <<'END'
+/usr/bin/python3 -s - <<'END'
 import numpy, scipy.io
 for name, g in ("damp", 0.3), ("drive", -0.3):
     scipy.io.savemat(name + ".mat", {
@@ -51,7 +51,7 @@ expect 0 'closed loop response' ritz-frf whole.h5 --to-hz 0.5 \
 expect 0 'states response' ritz-frf states.h5 --to-hz 0.5 --points-of closed.h5 \
     -o by-states.h5
 works 'a loop closed in frequency, in states and by hand is one' \
-    /usr/bin/python3 - <<'END'
+    /usr/bin/python3 -s - <<'END'
 import h5py, numpy
 def H(name):
     with h5py.File(name) as f:
@@ -94,7 +94,7 @@ ritz-basis normal-modes --modes 8 chain.h5 -q -o modes.h5
 ritz-reduce chain.h5 modes.h5 -q -o eight.h5
 expect 1 'it is not nested' ritz-poles --order 3 eight.h5
 cp eight.h5 nested.h5
-/usr/bin/python3 - <<'END'
+/usr/bin/python3 -s - <<'END'
 import h5py, numpy
 with h5py.File("nested.h5", "r+") as f:
     g = f.create_group("nested")
@@ -141,7 +141,7 @@ components:
 END
 expect 1 "'order' is how much of a model that is reduced already" \
     ritz-assemble scene.yaml -o system.h5
-/usr/bin/python3 - <<'END'
+/usr/bin/python3 -s - <<'END'
 import h5py
 with h5py.File("nested.h5", "r+") as f:
     f["nested/order"][1] = 3

@@ -44,7 +44,7 @@ else
     report yes 'the page refers to nothing outside'
 fi
 expect 0 "default-src 'none'" cat report.html
-expect 0 '' /usr/bin/python3 - <<'END'
+expect 0 '' /usr/bin/python3 -s - <<'END'
 import html.parser
 class Check(html.parser.HTMLParser):
     def __init__(self):

@@ -28,7 +28,7 @@ expect 2 'one of the two' ritz-frf plain.h5 --points-of modal.h5 \
     --tolerance 1e-3 -o none.h5
 
 # By SciPy: full complex systems, and cubics between the points of the file.
-if /usr/bin/python3 -c 'import h5py, scipy.sparse' 2>log; then
+if /usr/bin/python3 -s -c 'import h5py, scipy.sparse' 2>log; then
     cat >check.py <<'END_OF_CHECK'
 import h5py, numpy, scipy.interpolate, scipy.linalg, scipy.sparse, sys
 def matrix(f, name):
@@ -64,7 +64,7 @@ for f in numpy.random.default_rng(1992).uniform(hz[0], hz[-1], 1000):
 assert worst <= 1e-3, worst
 print(len(hz), worst)
 END_OF_CHECK
-    works 'SciPy finds the same, between points too' /usr/bin/python3 check.py
+    works 'SciPy finds the same, between points too' /usr/bin/python3 -s check.py
 else
     echo '# skipped: no SciPy, responses are not held to it'
 fi

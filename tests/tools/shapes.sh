@@ -3,7 +3,7 @@
 # deck, and VTU and XDMF files as meshio and h5py read them.
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
-python=/usr/bin/python3
+python='/usr/bin/python3 -s' # two words: the user's own packages stay out
 
 if ! $python -c 'import meshio, h5py, numpy' 2>/dev/null; then
     echo 'ok 1 - shapes # skip python3-meshio or python3-h5py is missing'

@@ -34,7 +34,7 @@ for how in '--method trapezoidal --step 1e-4' '--up-to-hz 1e4 --step 5e-4'; do
     # shellcheck disable=SC2086
     json 0 ritz-simulate $how --seconds 0.5 --input torque=sine:3 \
         --damping 'rayleigh 1 1e-5' stator.h5 -o full.h5
-    [ -s peak ] || /usr/bin/python3 -c \
+    [ -s peak ] || /usr/bin/python3 -s -c \
         'import json; print(json.load(open("log.json"))["peaks"][0])' >peak
     # a sine that is linear over 5e-4 s: (w h)^2 / 12 of it is 8e-6
     holds "  peaks alike ($how)" \

@@ -82,14 +82,14 @@ expect 1 'is no state space, --limit-h2 is not for it' ritz-verify chain.h5 \
     modes.h5 --limit-h2 1 -o none.h5
 
 # Matrices of a component out of a MAT file, and what was written into one.
-if /usr/bin/python3 -c 'import scipy.io' 2>log; then
+if /usr/bin/python3 -s -c 'import scipy.io' 2>log; then
     cat >pack.py <<'END'
 import scipy.io
 scipy.io.savemat("chain.mat", {k: scipy.io.mmread(f"{d}/chain.{k}.mtx")
                                for d in [__import__("sys").argv[1]]
                                for k in "KMD"}, do_compression=True)
 END
-    /usr/bin/python3 pack.py "$data/chain"
+    /usr/bin/python3 -s pack.py "$data/chain"
     ritz-import -q --stiffness chain.mat:K --mass chain.mat:M \
         --damping chain.mat:D --dofs "$data/chain/chain.dofs" --input tip=10:1 \
         --output-at root=1:1 -o packed.h5
@@ -106,7 +106,7 @@ with h5py.File("two.h5") as f:
 assert [str(x[0][0]) for x in m["output_names"]] == ["slow", "fast"]
 assert m["limits"][0, 0] == 0.5 and numpy.isnan(m["limits"][1, 0])
 END
-    works 'SciPy reads what was exported' /usr/bin/python3 read.py
+    works 'SciPy reads what was exported' /usr/bin/python3 -s read.py
 else
     echo '# skipped: no SciPy, MAT files of others are not tried'
 fi

@@ -11,7 +11,7 @@ END
 
 # well NAME: XML, without scripts; what gnuplot draws again is a picture too
 well() {
-    expect 0 '' /usr/bin/python3 well.py "$1"
+    expect 0 '' /usr/bin/python3 -s well.py "$1"
     expect 0 '' gnuplot -e "out='again.svg'" "$1.gp"
     expect 0 '</svg>' cat again.svg
 }

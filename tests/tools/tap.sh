@@ -50,7 +50,7 @@ expect() {
 
 # holds NAME PYTHON: the expression is true of j, the JSON object in log.json.
 holds() {
-    works "$1" /usr/bin/python3 - "$2" <<'END'
+    works "$1" /usr/bin/python3 -s - "$2" <<'END'
 import json, math, sys
 j = json.load(open("log.json"))
 def near(a, b, tolerance):

@@ -296,7 +296,7 @@ expect 2 'tsv has one way of writing' ritz-export h.h5 --to tsv --digits 5 -o x
 expect 1 "'K' is named twice" \
     ritz-export red.h5 --to output4 --matrix K,K --force -o x
 expect 2 'name it with --to' ritz-export red.h5 -o x
-/usr/bin/python3 - <<'END'
+/usr/bin/python3 -s - <<'END'
 import h5py, shutil
 shutil.copy("red.h5", "bare.h5")
 with h5py.File("bare.h5", "a") as f:
@@ -319,7 +319,7 @@ done
 for id in $ids; do
     wait "$id"
 done
-/usr/bin/python3 - >log.json <<'END'
+/usr/bin/python3 -s - >log.json <<'END'
 import json
 print(json.dumps([json.loads(line) for line in open("runs.jsonl")]))
 END
@@ -365,7 +365,7 @@ ritz-import -q --stiffness big.k.mtx --mass big.m.mtx --dofs big.dofs \
     --port all=1-40000:1 -o big.h5
 for signal in INT TERM HUP; do
     works "SIG$signal ends a tool, and the status tells" \
-        /usr/bin/python3 - $signal <<'END'
+        /usr/bin/python3 -s - $signal <<'END'
 import os, signal, subprocess, sys, time
 number = getattr(signal, "SIG" + sys.argv[1])
 run = subprocess.Popen(["ritz-basis", "craig-bampton", "--modes", "400",
@@ -378,7 +378,7 @@ done
 
 # Told to stop while it writes: tried until the signal meets a draft.
 works 'a tool that is stopped while it writes leaves no file' \
-    /usr/bin/python3 - <<'END'
+    /usr/bin/python3 -s - <<'END'
 import glob, signal, subprocess, sys
 for attempt in range(50):
     run = subprocess.Popen(["ritz-import", "-q", "--stiffness", "big.k.mtx",
