@@ -191,16 +191,35 @@ done:
     return status;
 }
 
+/* "frequency, mac (least), missing (modes)" */
+static const char *tolerance_help(void)
+{
+    static char help[1024];
+    size_t used = 0;
+
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+
+        if (kind->word && kind->of_modes)
+            used += (size_t)snprintf(help + used, sizeof help - used,
+                                     "%s%s%s%s%s%s", used > 0 ? ", " : "",
+                                     kind->word,
+                                     kind->large_is_good ? " (least)" : "",
+                                     kind->unit[0] ? " (" : "", kind->unit,
+                                     kind->unit[0] ? ")" : "");
+    }
+    snprintf(help + used, sizeof help - used,
+             "; a number alone is of the response");
+    return help;
+}
+
 /* What --help lists first. */
 static void own_options(asked *a, cli_option options[NUM_OWN])
 {
     ritz_fit_request *r = &a->request;
     const cli_option own[NUM_OWN] = {
         {CLI_TEXT(&a->tolerance), .name = "tolerance",
-         .argument = "[MEASURE=]X[,MEASURE=X]",
-         .help = "frequency, mac (least), damping, response, flexible, gain, "
-                 "missing "
-                 "(modes); a number alone is of the response"},
+         .argument = "[MEASURE=]X[,MEASURE=X]", .help = tolerance_help()},
         {CLI_TEXT(&a->band), .name = "band-hz", .argument = "F,F",
          .help = "where it is to hold [the scene's]"},
         DAMPERS_OPTION(&a->damper),

@@ -85,57 +85,35 @@ static ritz_status judge(cli_run *run, const ritz_measures *measures)
     return RITZ_OK;
 }
 
-/* Modes have frequencies and shapes, state spaces have norms. */
-enum { OF_MODES = 1, OF_STATES = 2 };
-
-static const struct {
-    const char *name;    /* --limit-... */
-    const char *measure; /* that is there if it can be held to it */
-    size_t offset;
-    int of;
-} limits[] = {
-#define OFFSET(field) offsetof(ritz_verify_request, limit_##field)
-    {"frequency", "frequency-relative", OFFSET(frequency), OF_MODES},
-    {"mac", "mac", OFFSET(mac), OF_MODES},
-    {"damping", "damping-relative", OFFSET(damping), OF_MODES},
-    {"missing", "missing-modes", OFFSET(missing), OF_MODES},
-    {"response", "response-relative", OFFSET(response), OF_MODES | OF_STATES},
-    {"flexible", "response-relative", OFFSET(flexible), OF_MODES},
-    {"gain", "static-gain-relative", OFFSET(gain), OF_MODES | OF_STATES},
-    {"h-infinity", "h-infinity-relative", OFFSET(infinity), OF_STATES},
-    {"h2", "h2-relative", OFFSET(two), OF_STATES},
-};
-
-enum { LIMITS = sizeof limits / sizeof *limits };
-
-static double limit_of(const wish *asked, size_t k)
-{
-    return *(const double *)(const void *)((const char *)&asked->verify +
-                                           limits[k].offset);
-}
-
 static ritz_status check_limits(const cli_run *run, const wish *asked,
                                 bool states)
 {
-    const int of = states ? OF_STATES : OF_MODES;
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
 
-    for (size_t k = 0; k < LIMITS; k++)
-        RITZ_REFUSE_IF(!isnan(limit_of(asked, k)) && !(limits[k].of & of),
+        RITZ_REFUSE_IF(!isnan(asked->verify.limit[k]) &&
+                           (states ? !kind->of_states : !kind->of_modes),
                        RITZ_ERR_ARGUMENT,
                        "'%s' is %s state space, --limit-%s is not for it",
-                       run->operand[1], states ? "a" : "no", limits[k].name);
+                       run->operand[1], states ? "a" : "no", kind->word);
+    }
     return RITZ_OK;
 }
 
-/* A limit that nothing was held to is met by nothing being there. */
+/* A limit of what is not there is met, and nothing was compared. */
 static void say_unmeasured(cli_run *run, const wish *asked,
                            const ritz_measures *measures)
 {
-    for (size_t k = 0; k < LIMITS; k++)
-        if (!isnan(limit_of(asked, k)) &&
-            !ritz_measures_find(measures, limits[k].measure))
-            cli_warn(run, "--limit-%s: nothing of '%s' is there to be compared",
-                     limits[k].name, run->operand[1]);
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+
+        if (isnan(asked->verify.limit[k]) ||
+            ritz_measures_find(measures, kind->name) ||
+            (kind->other && ritz_measures_find(measures, kind->other)))
+            continue;
+        cli_warn(run, "--limit-%s: nothing of '%s' is there to be compared",
+                 kind->word, run->operand[1]);
+    }
 }
 
 /* The full model as states: as it is, or a component that is small enough. */
@@ -233,42 +211,42 @@ done:
     return status;
 }
 
-#define LIMIT(word, field, text)                                               \
-    {                                                                          \
-        CLI_REAL(&v->limit_##field), .name = "limit-" word, .argument = "X",   \
-                                     .min = 0.0, .max = 1e9, .help = (text)    \
+enum { OWN_OPTIONS = 5 };
+
+/* "--limit-gain": one option for each measure that takes a limit. */
+static void add_limits(ritz_verify_request *request,
+                       char (*name)[RITZ_NAME_SIZE], cli_option *options)
+{
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+
+        if (!kind->word)
+            continue;
+        snprintf(name[k], sizeof name[k], "limit-%s", kind->word);
+        *options++ = (cli_option){CLI_REAL(&request->limit[k]),
+                                  .name = name[k],
+                                  .argument = "X",
+                                  .min = 0.0,
+                                  .max = kind->large_is_good ? 1.0 : 1e9,
+                                  .help = kind->help};
     }
+}
 
 int main(int argc, char **argv)
 {
     const char *band = NULL;
     wish asked = {.verify = RITZ_VERIFY_NONE};
-    ritz_verify_request *v = &asked.verify;
-    const cli_option options[] = {
+    char name[RITZ_MEASURES][RITZ_NAME_SIZE];
+    cli_option options[OWN_OPTIONS + RITZ_MEASURES + 1] = {
         {CLI_TEXT(&asked.at), .name = "at",
          .argument = "JOINT=SETTING[,JOINT=SETTING]",
          .help = "which configuration of a system, degrees and lengths"},
         {CLI_TEXT(&band), .name = "band-hz", .argument = "F,F",
-         .help = "where it matters [the system's; else what is reliable]"},
+         .help = "band in Hz of all measures [the scene's; else up to half the "
+                 "highest reduced frequency]"},
         ORDER_OPTION(&asked.order),
         DAMPING_OPTION(&asked.damping),
         DAMPERS_OPTION(&asked.damper),
-        LIMIT("frequency", frequency, "relative error of frequencies"),
-        {CLI_REAL(&v->limit_mac), .name = "limit-mac", .argument = "X",
-         .min = 0.0, .max = 1.0, .help = "least MAC of mode shapes"},
-        LIMIT("damping", damping, "relative error of damping ratios"),
-        LIMIT("missing", missing,
-              "modes of the band without partner [0 beside a limit of "
-              "frequency or damping]"),
-        LIMIT("response", response,
-              "error of the response over the largest |H| in the band"),
-        LIMIT("flexible", flexible,
-              "the same over the largest |H| less what rigid motion answers"),
-        LIMIT("gain", gain, "relative error of the flexible static gain"),
-        LIMIT("h-infinity", infinity,
-              "of state spaces: relative, of the largest |H| anywhere"),
-        LIMIT("h2", two, "of state spaces: relative, of the H2 norm"),
-        {0},
     };
     const cli_program program = {
         .name = "ritz-verify",
@@ -290,8 +268,9 @@ int main(int argc, char **argv)
     };
     cli_run run;
 
+    add_limits(&asked.verify, name, options + OWN_OPTIONS);
     cli_parse(&program, argc, argv, &run);
     if (band)
-        cli_pair(&program, "band-hz", band, v->band_hz);
+        cli_pair(&program, "band-hz", band, asked.verify.band_hz);
     return cli_finish(&run, verify(&run, &asked));
 }

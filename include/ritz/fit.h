@@ -149,23 +149,6 @@ extern const ritz_method ritz_fit_compare;
 const ritz_method *ritz_fit_method_find(const char *name);
 
 /**
- * Take "frequency=1e-3,mac=0.99,gain=1e-6": measures, their tolerances; a
- * number alone is of the response. Others stay as they are.
- *
- * @return RITZ_ERR_ARGUMENT for a measure that is none, naming the nearest, for
- *         one that is named twice, or a tolerance that can be none
- */
-ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits);
-
-/** Its text form: "response=0.01". Cut to fit. */
-void ritz_tolerance_print(const ritz_verify_request *limits, int64_t size,
-                          char *out);
-
-/** Word of a measure: "response" of "response-relative"; its own name if it has
- * none. */
-const char *ritz_tolerance_word(const char *measure);
-
-/**
  * Prepare a component: its modes to three times the band, responses at all
  * points where candidates are compared.
  *

@@ -2,37 +2,26 @@
 #ifndef RITZ_VERIFY_H
 #define RITZ_VERIFY_H
 
+#include <ritz/measures.h>
 #include <ritz/reduced.h>
 #include <ritz/response.h>
 #include <ritz/state_space.h>
 #include <ritz/system.h>
 
-#include <math.h>
-
-/* What is compared, and what it is held to; NaN limits: only measured. */
+/* What is compared, and what it is held to. */
 typedef struct ritz_verify_request {
-    double band_hz[2];      /* [0, 0]: up to half the highest frequency of the
-                               basis, or of the reduced model */
-    ritz_damping damping;   /* of the responses */
-    double limit_frequency; /* relative */
-    double limit_mac;       /* smallest */
-    double limit_damping;   /* relative error of damping ratios */
-    double limit_response;  /* relative to the largest |H| in the band */
-    double limit_flexible;  /* relative to what of |H| is no rigid motion */
-    double limit_gain;      /* relative, flexible static gain */
-    double limit_missing;   /* modes; NaN: 0 where limit_frequency or
-                               limit_damping is given */
-    double limit_infinity;  /* of state spaces, h-infinity-relative */
-    double limit_two;       /* of state spaces, h2-relative */
+    double band_hz[2];           /* [0, 0]: up to half the highest frequency of
+                                    the basis, or of the reduced model */
+    ritz_damping damping;        /* of the responses */
+    double limit[RITZ_MEASURES]; /* by ritz_measure_id; NaN: only measured.
+                                    Missing modes are held to 0 where frequency
+                                    or damping has a limit */
 } ritz_verify_request;
 
+#define RITZ_NO_LIMIT(name) (double)NAN,
 #define RITZ_VERIFY_NONE                                                       \
     {                                                                          \
-        .limit_frequency = (double)NAN, .limit_mac = (double)NAN,              \
-        .limit_damping = (double)NAN, .limit_response = (double)NAN,           \
-        .limit_flexible = (double)NAN, .limit_gain = (double)NAN,              \
-        .limit_missing = (double)NAN, .limit_infinity = (double)NAN,           \
-        .limit_two = (double)NAN                                               \
+        .limit = { RITZ_EACH_MEASURE(RITZ_NO_LIMIT) }                          \
     }
 
 /**
@@ -80,8 +69,26 @@ ritz_status ritz_verify_states(const ritz_state_space *full,
                                const ritz_verify_request *request,
                                ritz_measures *out);
 
-/** Whether a measure meets its limit (a NaN limit always). MAC is a minimum. */
-bool ritz_measure_holds(const ritz_measure *measure);
+/**
+ * Take "frequency=1e-3,mac=0.99,gain=1e-6": words of measures and their
+ * tolerances; a number alone is of the response. Others stay as they are.
+ *
+ * @return RITZ_ERR_ARGUMENT for a word that names no measure of second-order
+ *         models, naming the nearest, for one that is given twice, or for a
+ *         tolerance that can be none
+ */
+ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits);
+
+/** Its text form: "response=0.01". Cut to fit. */
+void ritz_tolerance_print(const ritz_verify_request *limits, int64_t size,
+                          char *out);
+
+/** All words that ritz_tolerance_take knows: "frequency, mac". Cut to fit. */
+void ritz_tolerance_words(int64_t size, char *out);
+
+/** Word of a measure: "response" of "response-relative"; its own name if it has
+ * none. */
+const char *ritz_tolerance_word(const char *measure);
 
 /**
  * Flexible static gain C Phi_f Lambda_f^-1 Phi_f' B of a dense model.

@@ -40,6 +40,7 @@ static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c)
 static void add_error(ritz_fit *fit, const ritz_fit_candidate *c)
 {
     const ritz_measure *m = NULL;
+    const ritz_measure_kind *kind = NULL;
 
     if (c->refusal[0]) {
         add(fit, "it is refused: %s", c->refusal);
@@ -50,13 +51,14 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c)
     if (c->binding < 0)
         return;
     m = &c->errors.item[c->binding];
+    kind = ritz_measure_kind_find(m->name);
     if (strcmp(m->name, "missing-modes") == 0)
         add(fit, "%.0f mode%s of the band %s missing (%s)", m->value,
             m->value > 1.0 ? "s" : "", m->value > 1.0 ? "are" : "is", m->where);
-    else if (strcmp(m->name, "mac") == 0 && m->limit > nearly_one)
+    else if (kind && kind->large_is_good && m->limit > nearly_one)
         add(fit, "the least MAC is 1 - %.1e (%s) where 1 - %.1e is asked",
             1.0 - m->value, m->where, 1.0 - m->limit);
-    else if (strcmp(m->name, "mac") == 0)
+    else if (kind && kind->large_is_good)
         add(fit, "the least MAC is %.4f (%s) where %.4f is asked", m->value,
             m->where, m->limit);
     else
@@ -139,10 +141,11 @@ static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
 static bool rigid_alone(const ritz_fitter *fitter, const ritz_fit_candidate *c)
 {
     const ritz_verify_request *limits = &fitter->request.tolerance;
-    if (isnan(limits->limit_response) || !isnan(limits->limit_flexible))
+    if (isnan(limits->limit[RITZ_MEASURE_RESPONSE]) ||
+        !isnan(limits->limit[RITZ_MEASURE_FLEXIBLE]))
         return false;
     return ritz_measures_value(&c->errors, "flexible-response-relative") >
-           10.0 * limits->limit_response;
+           10.0 * limits->limit[RITZ_MEASURE_RESPONSE];
 }
 
 /* What was asked of something that is not there: no mode lies in the band, no
@@ -150,18 +153,16 @@ static bool rigid_alone(const ritz_fitter *fitter, const ritz_fit_candidate *c)
 static void add_vacuous(const ritz_fitter *fitter, ritz_fit *fit,
                         const ritz_fit_candidate *c)
 {
-    static const char *const asked[] = {"frequency-relative", "mac",
-                                        "damping-relative", "response-relative",
-                                        "static-gain-relative"};
     bool any = false;
 
-    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
-        double limit = ritz_fit_limit(&fitter->request.tolerance, asked[k]);
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
 
-        if (isnan(limit) || ritz_measures_find(&c->errors, asked[k]))
+        if (isnan(fitter->request.tolerance.limit[k]) ||
+            ritz_measures_find(&c->errors, kind->name))
             continue;
         add(fit, "%s '%s'", any ? " or" : "; nothing was there to be held to",
-            ritz_tolerance_word(asked[k]));
+            kind->word);
         any = true;
     }
 }

@@ -75,9 +75,6 @@ void ritz_fit_uninstall(ritz_component *copy);
 void ritz_fit_judge(const ritz_verify_request *limits,
                     ritz_fit_candidate *candidate);
 
-/** Limit of a measure by its name; NaN: none. */
-double ritz_fit_limit(const ritz_verify_request *limits, const char *measure);
-
 /** Whether some measure has a limit at all, and what is limited exists. */
 ritz_status ritz_fit_check(const ritz_verify_request *limits,
                            const ritz_component *full);

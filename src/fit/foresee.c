@@ -10,15 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Measures of which there is a bound. */
-static const char *const bounded[][2] = {
-    {"frequency-relative", "frequency-relative-bound"},
-    {"response-relative", "response-relative-bound"},
-    {"missing-modes", "missing-modes-bound"},
-};
-
-enum { BOUNDED = sizeof bounded / sizeof *bounded };
-
 ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                const ritz_component *full,
                                ritz_fit_place *place)
@@ -33,31 +24,24 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
     return ritz_estimator_new(full, &asked, &place->estimator);
 }
 
-/* Where a frequency is asked to be near, no mode may be missing. */
-static ritz_verify_request complete(const ritz_verify_request *limits)
-{
-    ritz_verify_request all = *limits;
-
-    if (!isnan(all.limit_frequency))
-        all.limit_missing = fmax(all.limit_missing, 0.0);
-    return all;
-}
-
-/* Of mac, damping, gain and the flexible response there are no bounds. */
+/* Whether bounds say that every measure with a tolerance holds: one without a
+   bound is not known to. Where frequencies are to be near, no mode may be
+   missing. */
 static bool within(const ritz_verify_request *limits,
                    const ritz_measures *found)
 {
-    const ritz_verify_request all = complete(limits);
-    bool held = isnan(all.limit_mac) && isnan(all.limit_damping) &&
-                isnan(all.limit_flexible) && isnan(all.limit_gain);
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const char *bound = ritz_measure_table[k].bound;
+        double limit = limits->limit[k];
 
-    for (int k = 0; k < BOUNDED; k++) {
-        double limit = ritz_fit_limit(&all, bounded[k][0]);
-
-        held = held && (isnan(limit) ||
-                        ritz_measures_value(found, bounded[k][1]) <= limit);
+        if (k == RITZ_MEASURE_MISSING &&
+            !isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
+            limit = fmax(limit, 0.0);
+        if (!isnan(limit) &&
+            !(bound && ritz_measures_value(found, bound) <= limit))
+            return false;
     }
-    return held;
+    return true;
 }
 
 /* Where modes may be missing, no error is certain. */
@@ -66,8 +50,8 @@ static bool beyond(const ritz_verify_request *limits,
 {
     double least = ritz_measures_value(found, "frequency-relative-least");
 
-    *excess = least / limits->limit_frequency;
-    return !(limits->limit_missing > 0.0) && *excess > 1.0;
+    *excess = least / limits->limit[RITZ_MEASURE_FREQUENCY];
+    return !(limits->limit[RITZ_MEASURE_MISSING] > 0.0) && *excess > 1.0;
 }
 
 ritz_status ritz_fit_bound_at(const ritz_fit_place *place, const ritz_dense *T,
@@ -112,7 +96,8 @@ ritz_status ritz_fit_foresee(const ritz_fitter *fitter,
     double excess = 0.0;
 
     *verdict = RITZ_FIT_OPEN;
-    if (!place->estimator || (fitter->scene && isnan(limits->limit_frequency)))
+    if (!place->estimator ||
+        (fitter->scene && isnan(limits->limit[RITZ_MEASURE_FREQUENCY])))
         return RITZ_OK;
     RITZ_TRY(
         ritz_fit_bound_at(place, T, reduced, fitter->scene != NULL, &found));

@@ -57,17 +57,21 @@ const ritz_method *ritz_fit_method_find(const char *name)
 static ritz_scene choosing(const ritz_fitter *f)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
-    bool seen = isnan(limits->limit_frequency) && isnan(limits->limit_mac) &&
-                isnan(limits->limit_damping) && isnan(limits->limit_missing);
+    bool seen = true;             /* no tolerance is of modes */
     ritz_scene scene = *f->scene; /* borrowed */
+
+    for (int k = 0; k < RITZ_MEASURES; k++)
+        seen = seen && (isnan(limits->limit[k]) ||
+                        ritz_measure_table[k].needs & RITZ_NEEDS_CHANNELS);
 
     memcpy(scene.band_hz, limits->band_hz, sizeof scene.band_hz);
     scene.damping = limits->damping;
     scene.select = seen && scene.damping.kind != RITZ_DAMPING_NONE
                        ? RITZ_SELECT_RANKED
                        : RITZ_SELECT_BAND;
-    scene.augment =
-        isnan(limits->limit_gain) ? RITZ_AUGMENT_NONE : RITZ_AUGMENT_SYSTEM;
+    scene.augment = isnan(limits->limit[RITZ_MEASURE_GAIN])
+                        ? RITZ_AUGMENT_NONE
+                        : RITZ_AUGMENT_SYSTEM;
     return scene;
 }
 

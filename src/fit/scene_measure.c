@@ -19,14 +19,13 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
     for (int64_t k = 0; k < more->count; k++) {
         const ritz_measure *m = &more->item[k];
         ritz_measure *old = ritz_measures_find(worst, m->name);
-        bool least = strcmp(m->name, "mac") == 0;
 
         (void)snprintf(where, sizeof where, "%.28s%s%.32s", at,
                        at[0] && m->where[0] ? ": " : "", m->where);
         if (!old) {
             RITZ_CHECK(
                 ritz_measures_add(worst, m->name, m->value, m->limit, where));
-        } else if (least ? m->value < old->value : m->value > old->value) {
+        } else if (ritz_measure_is_worse(m->name, m->value, old->value)) {
             old->value = m->value;
             memcpy(old->where, where, sizeof where);
         }

@@ -75,15 +75,15 @@ done:
 
 double ritz_fit_rich_to(const ritz_verify_request *limits)
 {
-    const double tolerance[] = {
-        limits->limit_frequency, limits->limit_damping,
-        limits->limit_response,  limits->limit_flexible,
-        limits->limit_gain,      1.0 - limits->limit_mac};
     double finest = HUGE_VAL;
 
-    for (size_t k = 0; k < sizeof tolerance / sizeof *tolerance; k++)
-        if (tolerance[k] > 0.0) /* NaN: not given */
-            finest = fmin(finest, tolerance[k]);
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+        double allowed = ritz_measure_error(kind->name, limits->limit[k]);
+
+        if (kind->unit[0] == '\0' && allowed > 0.0) /* NaN: not given */
+            finest = fmin(finest, allowed);
+    }
     return fmin(rich_most,
                 rich_to * fmax(1.0, sqrt(10.0 * rich_leaves / finest)));
 }
@@ -230,7 +230,7 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
     RITZ_TRY(name_places(f));
     RITZ_TRY(refer(f));
     RITZ_TRY(ritz_fit_check(limits, &f->place[0].full));
-    RITZ_FAIL_IF(!isnan(limits->limit_mac) &&
+    RITZ_FAIL_IF(!isnan(limits->limit[RITZ_MEASURE_MAC]) &&
                      f->place[0].full.io.num_inputs == 0 &&
                      f->place[0].full.io.num_outputs == 0,
                  RITZ_ERR_ARGUMENT,

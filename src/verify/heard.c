@@ -1,5 +1,5 @@
 /* Whether an output sees an input at all. */
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"

@@ -2,7 +2,7 @@
  * What of a full model serves every comparison with a reduction of it: found
  * once, then only read.
  */
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include "base/alloc.h"
 

@@ -1,7 +1,7 @@
 #include "verify/seen.h"
 
 #include "base/alloc.h"
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include <math.h>
 #include <stdlib.h>

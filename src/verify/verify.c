@@ -3,7 +3,7 @@
  * the band, responses on a grid that is refined at the poles of both models,
  * the flexible static gain, and what one of them has and the other has not.
  */
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include "base/alloc.h"
 #include "poles/dense_poles.h"
@@ -146,6 +146,47 @@ done:
     return status;
 }
 
+/* Which mode of the full model is which of the reduced one. */
+static ritz_status match_modes(const ritz_dense *T, ritz_sides *sides)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_reference *full = sides->full;
+    ritz_dense Q = {0};
+
+    sides->shapes = T && T->val && T->nrow == full->component->num_dofs;
+    if (!sides->shapes)
+        return ritz_match_outputs(&full->poles, &sides->reduced, &full->seen,
+                                  &sides->match);
+    RITZ_TRY(cross(sides, T, &Q));
+    RITZ_TRY(
+        ritz_match_shapes(&full->poles, &sides->reduced, &Q, &sides->match));
+done:
+    ritz_dense_free(&Q);
+    return status;
+}
+
+/* Every row of the table that exists for these models. */
+static ritz_status measure_rows(const ritz_sides *sides, ritz_measures *out)
+{
+    const ritz_io *io = &sides->full->component->io;
+    const bool channels = io->num_inputs > 0 && io->num_outputs > 0;
+
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+        ritz_measure m = {.value = nan(""), .limit = sides->limit[k]};
+
+        if (!kind->of_modes ||
+            (kind->needs & RITZ_NEEDS_CHANNELS && !channels) ||
+            (kind->needs & RITZ_NEEDS_LIMIT && isnan(m.limit)))
+            continue;
+        RITZ_CHECK(kind->of_modes(sides, &m));
+        if (!isnan(m.value))
+            RITZ_CHECK(
+                ritz_measures_add(out, kind->name, m.value, m.limit, m.where));
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_sides_measure(const ritz_second_order *model,
                                const ritz_dense *T,
                                const ritz_verify_request *limits,
@@ -153,30 +194,22 @@ ritz_status ritz_sides_measure(const ritz_second_order *model,
 {
     ritz_status status = RITZ_OK;
     const ritz_reference *full = sides->full;
-    ritz_dense Q = {0};
     ritz_measures found = {0};
 
+    sides->limit = limits->limit;
+    sides->model = model;
     RITZ_TRY_IN("reduced model",
                 ritz_damped_new(&sides->reduced, NULL, NULL, full->band_hz,
                                 &sides->damped_reduced));
     RITZ_TRY_IN("reduced model",
                 ritz_static_gain(model->K, model->M, model->io,
                                  full->pairs.num_rigid, &sides->gain_reduced));
-    if (T && T->val && T->nrow == full->component->num_dofs) {
-        sides->shapes = true;
-        RITZ_TRY(cross(sides, T, &Q));
-        RITZ_TRY(ritz_match_shapes(&full->poles, &sides->reduced, &Q,
-                                   &sides->match));
-    } else {
-        RITZ_TRY(ritz_match_outputs(&full->poles, &sides->reduced, &full->seen,
-                                    &sides->match));
-    }
-    RITZ_TRY(ritz_sides_modes(sides, limits, &found));
-    RITZ_TRY(ritz_sides_responses(sides, limits, &found));
+    RITZ_TRY(match_modes(T, sides));
+    RITZ_TRY(ritz_sides_respond(sides));
+    RITZ_TRY(measure_rows(sides, &found));
     *out = found;
     found = (ritz_measures){0};
 done:
-    ritz_dense_free(&Q);
     ritz_measures_free(&found);
     return status;
 }
@@ -203,23 +236,15 @@ typedef struct other {
 static ritz_status check_limits(const ritz_io *io,
                                 const ritz_verify_request *request)
 {
-    const struct {
-        const char *measure;
-        double limit;
-    } of_responses[] = {
-        {"response-relative", request->limit_response},
-        {"flexible-response-relative", request->limit_flexible},
-        {"static-gain-relative", request->limit_gain},
-    };
-
-    for (size_t k = 0; k < sizeof of_responses / sizeof *of_responses; k++)
+    for (int k = 0; k < RITZ_MEASURES; k++)
         RITZ_REFUSE_IF(
-            !isnan(of_responses[k].limit) &&
+            !isnan(request->limit[k]) &&
+                ritz_measure_table[k].needs & RITZ_NEEDS_CHANNELS &&
                 (io->num_inputs == 0 || io->num_outputs == 0),
             RITZ_ERR_ARGUMENT,
             "a limit of '%s' needs inputs and outputs, and there are "
             "%" PRId64 " and %" PRId64,
-            of_responses[k].measure, io->num_inputs, io->num_outputs);
+            ritz_measure_table[k].name, io->num_inputs, io->num_outputs);
     return RITZ_OK;
 }
 
@@ -281,12 +306,4 @@ ritz_status ritz_verify_system(const ritz_component *full,
         ""};
 
     return verify(full, &o, request, out);
-}
-
-bool ritz_measure_holds(const ritz_measure *measure)
-{
-    if (isnan(measure->limit))
-        return true;
-    return strcmp(measure->name, "mac") == 0 ? measure->value >= measure->limit
-                                             : measure->value <= measure->limit;
 }

@@ -78,8 +78,8 @@ expect 0 'errors measured by ritz-verify' ritz-export --to matlab verified.h5 \
 ritz-basis -q normal-modes --modes 3 chain.h5 -o basis.h5
 ritz-reduce -q chain.h5 basis.h5 -o modes.h5
 expect 1 'is a state space and' ritz-verify two.h5 modes.h5 -o none.h5
-expect 1 'is no state space, --limit-h2 is not for it' ritz-verify chain.h5 \
-    modes.h5 --limit-h2 1 -o none.h5
+expect 1 'is no state space, --limit-h-infinity is not for it' ritz-verify chain.h5 \
+    modes.h5 --limit-h-infinity 1 -o none.h5
 
 # Matrices of a component out of a MAT file, and what was written into one.
 if /usr/bin/python3 -s -c 'import scipy.io' 2>log; then

@@ -1,32 +1,25 @@
 /* Which records, which measures and which methods a chart shows. */
 #include "cli/records.h"
 
+#include <ritz/measures.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Errors by importance, and what they are called. */
-static const struct known {
-    const char *name, *title;
-} known[] = {
-    {"response-relative", "response error"},
-    {"flexible-response-relative", "flexible response error"},
-    {"frequency-relative", "frequency error"},
-    {"mac", "mode shape error, 1 - MAC"},
-    {"damping-relative", "damping error"},
-    {"static-gain-relative", "static gain error"},
-    {"h-infinity-relative", "H-infinity error"},
-    {"h2-relative", "H2 error"},
-};
-
-enum { NUM_KNOWN = sizeof known / sizeof *known };
+/* The measure that is drawn after so many others; NULL: there are no more. */
+static const ritz_measure_kind *by_importance(int rank)
+{
+    for (int k = 0; k < RITZ_MEASURES; k++)
+        if (ritz_measure_table[k].importance == rank + 1)
+            return &ritz_measure_table[k];
+    return NULL;
+}
 
 double record_error(const record *r, const char *name)
 {
-    double value = record_value(r->errors, name);
-
-    return strcmp(name, "mac") == 0 ? 1.0 - value : value;
+    return ritz_measure_error(name, record_value(r->errors, name));
 }
 
 static bool usable(const record *r)
@@ -99,10 +92,9 @@ static bool has(const records *all, const char *name)
 
 static const char *title_of(const char *name)
 {
-    for (int k = 0; k < NUM_KNOWN; k++)
-        if (strcmp(known[k].name, name) == 0)
-            return known[k].title;
-    return name;
+    const ritz_measure_kind *kind = ritz_measure_kind_find(name);
+
+    return kind && kind->label ? kind->label : name;
 }
 
 /* The tolerance that records state of a measure; of MAC, what it may lack. */
@@ -112,7 +104,7 @@ static double tolerance_of(const records *all, const char *name)
         double limit = record_value(all->item[k].tolerance, name);
 
         if (isfinite(limit))
-            return strcmp(name, "mac") == 0 ? 1.0 - limit : limit;
+            return ritz_measure_error(name, limit);
     }
     return nan("");
 }
@@ -141,9 +133,9 @@ static void add_all(const records *all, json_t *const *values, bool others,
     const char *name = NULL;
     json_t *value = NULL;
 
-    for (int k = 0; k < NUM_KNOWN; k++)
-        if (json_object_get(*values, known[k].name))
-            add(all, known[k].name, count, list);
+    for (int k = 0; by_importance(k); k++)
+        if (json_object_get(*values, by_importance(k)->name))
+            add(all, by_importance(k)->name, count, list);
     json_object_foreach(*values, name, value)
     {
         const char *end = strrchr(name, '-');
@@ -163,8 +155,8 @@ ritz_status records_measures(const records *all, int64_t *count, measure **out)
     for (int64_t k = 0; k < all->count; k++)
         if (all->item[k].tolerance)
             add_all(all, &all->item[k].tolerance, true, count, list);
-    for (int k = 0; k < NUM_KNOWN; k++)
-        add(all, known[k].name, count, list);
+    for (int k = 0; by_importance(k); k++)
+        add(all, by_importance(k)->name, count, list);
     for (int64_t k = 0; k < all->count; k++)
         add_all(all, &all->item[k].errors, false, count, list);
     RITZ_FAIL_IF(*count == 0, RITZ_ERR_ARGUMENT,

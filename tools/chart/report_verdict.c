@@ -3,6 +3,8 @@
 
 #include "chart/html.h"
 
+#include <ritz/measures.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,12 +23,10 @@ static double excess_of(const record *r)
         return HUGE_VAL;
     json_object_foreach(r->tolerance, name, limit)
     {
-        bool mac = strcmp(name, "mac") == 0;
-        double error = record_value(r->errors, name);
-        double allowed = json_number_value(limit);
-        double times = mac ? (1.0 - error) / (1.0 - allowed) : error / allowed;
+        double times = ritz_measure_ratio(name, record_value(r->errors, name),
+                                          json_number_value(limit));
 
-        if (isnan(times) && error != allowed)
+        if (isnan(times))
             return HUGE_VAL;
         worst = fmax(worst, times);
     }
@@ -132,21 +132,20 @@ static void say_size(FILE *file, const record *r)
 /* What is known without measuring: nothing that is worse than all. */
 static void say_bounds(FILE *file, const record *r)
 {
-    static const struct {
-        const char *name, *word;
-    } all[] = {{"frequency-relative-bound", "frequencies"},
-               {"response-relative-bound", "the response"}};
     const json_t *estimates = json_object_get(r->json, "estimates");
     char word[32];
 
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        double bound = record_value(estimates, all[k].name);
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+        double bound = kind->bound && kind->label
+                           ? record_value(estimates, kind->bound)
+                           : nan("");
 
         if (!(bound <= 1.0))
             continue;
         chart_say_error(bound, word);
         fprintf(file, "<li>");
-        html_print(file, "proven: %s within %s", all[k].word, word);
+        html_print(file, "proven: %s at most %s", kind->label, word);
         fprintf(file, "</li>");
     }
 }

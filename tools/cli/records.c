@@ -1,5 +1,7 @@
 #include "cli/records.h"
 
+#include <ritz/measures.h>
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -94,8 +96,7 @@ static bool keeps(const record *r)
     {
         double error = record_value(r->errors, name);
 
-        if (strcmp(name, "mac") == 0 ? !(error >= json_number_value(limit))
-                                     : !(error <= json_number_value(limit)))
+        if (!ritz_measure_meets(name, error, json_number_value(limit)))
             return false;
     }
     return true;

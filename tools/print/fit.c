@@ -16,23 +16,12 @@ json_t *fit_values_json(const ritz_measures *measures)
 /* "response-relative": 0.01 of each measure that has a tolerance. */
 static json_t *tolerance_json(const ritz_verify_request *limits)
 {
-    const struct {
-        const char *name;
-        double limit;
-    } all[] = {
-        {"frequency-relative", limits->limit_frequency},
-        {"mac", limits->limit_mac},
-        {"damping-relative", limits->limit_damping},
-        {"response-relative", limits->limit_response},
-        {"flexible-response-relative", limits->limit_flexible},
-        {"static-gain-relative", limits->limit_gain},
-        {"missing-modes", limits->limit_missing},
-    };
     json_t *object = json_object();
 
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-        if (!isnan(all[k].limit))
-            json_object_set_new(object, all[k].name, cli_real(all[k].limit));
+    for (int k = 0; k < RITZ_MEASURES; k++)
+        if (!isnan(limits->limit[k]))
+            json_object_set_new(object, ritz_measure_table[k].name,
+                                cli_real(limits->limit[k]));
     return object;
 }
 

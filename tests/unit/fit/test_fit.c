@@ -304,7 +304,7 @@ static void what_cannot_be_fitted_is_refused_in_words(void **state)
     assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
                  "a tolerance of 'response' needs inputs and outputs");
     request = quick(0.5, 0.01, "frequency=1e-2");
-    request.tolerance.limit_frequency = nan("");
+    request.tolerance.limit[RITZ_MEASURE_FREQUENCY] = nan("");
     assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
                  "no tolerance is given");
     request = quick(0.5, 0.01, "damping=1e-2");

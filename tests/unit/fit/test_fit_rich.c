@@ -72,11 +72,11 @@ static void fine_tolerances_ask_for_a_richer_stage(void **state)
     ritz_verify_request limits = RITZ_VERIFY_NONE;
 
     (void)state;
-    limits.limit_response = 1e-2;
+    limits.limit[RITZ_MEASURE_RESPONSE] = 1e-2;
     assert_near(ritz_fit_rich_to(&limits), 8.0, 0.0);
-    limits.limit_frequency = 1.6e-4;
+    limits.limit[RITZ_MEASURE_FREQUENCY] = 1.6e-4;
     assert_near(ritz_fit_rich_to(&limits), 16.0, 1e-12);
-    limits.limit_mac = 1.0 - 1e-9;
+    limits.limit[RITZ_MEASURE_MAC] = 1.0 - 1e-9;
     assert_near(ritz_fit_rich_to(&limits), 32.0, 0.0);
 }
 

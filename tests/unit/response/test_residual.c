@@ -6,7 +6,7 @@
 
 #include "bar.h"
 #include "frame.h"
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include <ritz/response.h>
 

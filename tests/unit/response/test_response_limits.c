@@ -6,7 +6,7 @@
 
 #include "masses.h"
 #include "response/responder.h"
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include <ritz/response.h>
 

@@ -93,7 +93,7 @@ static void the_whole_space_has_no_error_at_all(void **state)
     open_beam(true, &beam);
     request.band_hz[1] = 0.3;
     request.damping = (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 1e-3};
-    request.limit_response = 1e-6;
+    request.limit[RITZ_MEASURE_RESPONSE] = 1e-6;
     assert_ok(ritz_basis_new(beam.num_dofs, beam.num_dofs, &basis));
     for (int64_t k = 0; k < beam.num_dofs; k++)
         ritz_dense_col(&basis.T, k)[k] = 1.0;
@@ -127,7 +127,7 @@ static void a_mode_that_was_left_out_is_missing_by_name(void **state)
     basis.T.ncol = 5;
     basis.columns.count = 5;
     request.band_hz[1] = 0.1;
-    request.limit_frequency = 1e-3;
+    request.limit[RITZ_MEASURE_FREQUENCY] = 1e-3;
     for (int with_shapes = 1; with_shapes >= 0; with_shapes--) {
         assert_ok(ritz_reduce(&beam, &basis, &reduced));
         if (!with_shapes)

@@ -82,7 +82,7 @@ static void a_rigid_motion_that_is_not_there_is_missing(void **state)
         ritz_measures found = {0};
         const ritz_measure *missing = NULL;
 
-        request.limit_frequency = 1e-3;
+        request.limit[RITZ_MEASURE_FREQUENCY] = 1e-3;
         request.band_hz[0] = table[k].low;
         /* short of the first flexible mode: nothing else is missing */
         request.band_hz[1] = 0.9 * ritz_eigen_hertz(f.pairs.lambda[RIGID]);
@@ -145,7 +145,7 @@ static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
         const double relative = soft ? 0.9e-3 : 1.1e-3;
         const double lambda = f.pairs.lambda[RIGID];
 
-        request.limit_frequency = 1e-3;
+        request.limit[RITZ_MEASURE_FREQUENCY] = 1e-3;
         request.band_hz[1] = 1.1 * ritz_eigen_hertz(lambda);
         measure(&f, 0, 5, relative * relative * lambda, &request, &found);
         assert_near(find_measure(&found, "rigid-hertz")->value,
@@ -156,7 +156,7 @@ static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
             soft);
         ritz_measures_free(&found);
         /* nothing is asked: nothing fails */
-        request.limit_frequency = nan("");
+        request.limit[RITZ_MEASURE_FREQUENCY] = nan("");
         measure(&f, 0, 5, relative * relative * lambda, &request, &found);
         assert_true(find_measure(&found, "missing-rigid-modes")->value == 1.0);
         assert_true(
@@ -172,11 +172,11 @@ static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **s)
         size_t offset;
         const char *words;
     } table[] = {
-        {offsetof(ritz_verify_request, limit_response),
+        {offsetof(ritz_verify_request, limit[RITZ_MEASURE_RESPONSE]),
          "a limit of 'response-relative' needs inputs and outputs"},
-        {offsetof(ritz_verify_request, limit_flexible),
+        {offsetof(ritz_verify_request, limit[RITZ_MEASURE_FLEXIBLE]),
          "a limit of 'flexible-response-relative' needs inputs and outputs"},
-        {offsetof(ritz_verify_request, limit_gain),
+        {offsetof(ritz_verify_request, limit[RITZ_MEASURE_GAIN]),
          "a limit of 'static-gain-relative' needs inputs and outputs, and "
          "there are 0 and 0"},
     };
@@ -222,8 +222,8 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
     basis.T.val[tip] = 1.0; /* far too stiff */
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
     request.band_hz[1] = 0.1;
-    request.limit_flexible = 0.1;
-    request.limit_response = 0.5;
+    request.limit[RITZ_MEASURE_FLEXIBLE] = 0.1;
+    request.limit[RITZ_MEASURE_RESPONSE] = 0.5;
     assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
     assert_true(find_measure(&found, "response-relative")->limit == 0.1);
     assert_false(ritz_measure_holds(find_measure(&found, "response-relative")));
@@ -249,7 +249,7 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
     assert_ok(masses_apart(4, stiffness, damper, &c));
     assert_ok(ritz_io_new(4, 0, 0, &c.io));
     request.band_hz[1] = 1.0;
-    request.limit_damping = 1e-2;
+    request.limit[RITZ_MEASURE_DAMPING] = 1e-2;
     for (int twice = 0; twice < 2; twice++) {
         ritz_basis basis = {0};
         ritz_reduced reduced = {0};

@@ -126,11 +126,11 @@ static void rigid_motions_of_both_are_left_out_of_norms(void **state)
     assert_ok(ritz_verify_states(&full, &held, &none, &found));
     assert_null(ritz_measures_find(&found, "h-infinity"));
     ritz_measures_free(&found);
-    request.limit_infinity = 1.0;
+    request.limit[RITZ_MEASURE_INFINITY_RELATIVE] = 1.0;
     assert_fails(ritz_verify_states(&full, &held, &request, &found),
                  RITZ_ERR_ARGUMENT, "2 poles of the full model and 0");
     request = none;
-    request.limit_gain = 1.0;
+    request.limit[RITZ_MEASURE_GAIN] = 1.0;
     assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "a pole is at 0");
     ritz_state_space_free(&full);
@@ -155,7 +155,7 @@ static void what_reaches_an_output_at_once_has_no_h2_norm(void **state)
         strstr(ritz_measures_find(&found, "h-infinity")->where, "infinite"));
     assert_near(value(&found, "static-gain-relative"), 0.0, 1e-15);
     ritz_measures_free(&found);
-    request.limit_two = 1.0;
+    request.limit[RITZ_MEASURE_H2] = 1.0;
     assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "there is no H2 norm");
     ritz_state_space_free(&full);
@@ -193,7 +193,7 @@ static void models_of_other_names_are_refused(void **state)
     (void)state;
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
-    request.limit_response = 1.0;
+    request.limit[RITZ_MEASURE_RESPONSE] = 1.0;
     assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "needs --band-hz");
     request.band_hz[0] = 3.0;

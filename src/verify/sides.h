@@ -1,6 +1,6 @@
 /* The two models that are compared, and the measures between them. */
-#ifndef RITZ_VERIFY_COMPARE_SIDES_H
-#define RITZ_VERIFY_COMPARE_SIDES_H
+#ifndef RITZ_VERIFY_SIDES_H
+#define RITZ_VERIFY_SIDES_H
 
 #include "poles/damped.h"
 #include "verify/match.h"
@@ -32,8 +32,22 @@ struct ritz_reference {
     ritz_sweep own, random;
 };
 
+/* How far the responses of two models are apart, over all points. */
+typedef struct ritz_gap {
+    bool heard;      /* any |H| of the full model is more than rounding */
+    double largest;  /* |H| of the full model */
+    double flexible; /* |H| less what rigid motion answers */
+    double error, error_hz; /* |H - H_r|, and where */
+    double db, db_hz;       /* of levels, where |H| is audible */
+    double singular;        /* smallest non-zero singular value, its largest */
+    double singular_error, singular_hz;
+} ritz_gap;
+
 typedef struct ritz_sides {
     const ritz_reference *full;
+    const double *limit; /* RITZ_MEASURES of them, by ritz_measure_id */
+    const ritz_second_order *model; /* the reduced one */
+    ritz_gap gap;
     int where;        /* sum of RITZ_AT_... */
     bool shapes;      /* MAC is of shapes */
     bool outputs;     /* MAC is of what inputs and outputs see, of modes that
@@ -86,15 +100,24 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_damped *damped, int64_t even,
                               ritz_sweep *out);
 
-/** Frequency, MAC, damping, rigid, missing and extra modes. */
-ritz_status ritz_sides_modes(const ritz_sides *sides,
-                             const ritz_verify_request *request,
-                             ritz_measures *out);
+/** Fill `gap`: responses of both models, at all points that were asked for. */
+ritz_status ritz_sides_respond(ritz_sides *sides);
 
-/** Response and static gain; none if there is no input or no output. */
-ritz_status ritz_sides_responses(const ritz_sides *sides,
-                                 const ritz_verify_request *request,
-                                 ritz_measures *out);
+/* Functions of the table of measures: see ritz_measure_kind.of_modes. */
+ritz_status ritz_modes_frequency(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_modes_damping(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_modes_rigid_hertz(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_modes_missing_rigid(const ritz_sides *sides,
+                                     ritz_measure *out);
+ritz_status ritz_modes_missing(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_modes_extra(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_responses_error(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_responses_flexible(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out);
+ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out);
 
 /** Fill `heard` of a sweep that has its responses. */
 ritz_status ritz_sweep_hear(const ritz_poles *poles, ritz_sweep *sweep);

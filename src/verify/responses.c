@@ -1,8 +1,10 @@
 /* Measures between the responses and static gains of two models. */
-#include "verify/compare_sides.h"
+#include "verify/sides.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+
+#include <ritz/singular.h>
 
 #include <complex.h>
 #include <math.h>
@@ -104,34 +106,24 @@ done:
     return ritz_context(status, "full model");
 }
 
-/* What is found while the points of all sweeps are passed. */
-typedef struct extreme {
-    double largest;   /* |H| of the full model */
-    double flexible;  /* of that less rigid motion */
-    bool heard;       /* any of it is more than rounding */
-    double error;     /* |H - H_r| */
-    double error_hz;  /* where */
-    double db, db_hz; /* the level, where it is audible */
-} extreme;
-
 /* Both models at some frequencies. */
-typedef struct both {
+typedef struct sweep_pair {
     const ritz_sweep *full; /* NULL: none */
     double _Complex *reduced;
-} both;
+} sweep_pair;
 
 /* One response of both models at a frequency. */
-static ritz_status take(double _Complex H, double _Complex H_r, double hertz,
-                        extreme *found)
+static ritz_status compare_entry(double _Complex H, double _Complex H_r,
+                                 double hertz, ritz_gap *gap)
 {
     double error = cabs(H - H_r);
 
     RITZ_REFUSE_IF(!isfinite(error), RITZ_ERR_CONVERGENCE,
                    "the response at %.6g Hz leaves all bounds", hertz);
-    found->largest = fmax(found->largest, cabs(H));
-    if (error > found->error) {
-        found->error = error;
-        found->error_hz = hertz;
+    gap->largest = fmax(gap->largest, cabs(H));
+    if (error > gap->error) {
+        gap->error = error;
+        gap->error_hz = hertz;
     }
     return RITZ_OK;
 }
@@ -140,15 +132,16 @@ static ritz_status take(double _Complex H, double _Complex H_r, double hertz,
  * The reduced model at the points, and how far it is off. Where a rigid motion
  * of the reduced model alone would answer without end, at rest, it is not asked.
  */
-static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
+static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
+                                 ritz_gap *gap)
 {
     const int64_t values = s->full->values;
     double least = sides->reduced.num_rigid > 0
                        ? above_rest * sides->full->band_hz[1] * (1.0 - 1e-9)
                        : 0.0;
 
-    found->flexible = fmax(found->flexible, s->full->flexible);
-    found->heard = found->heard || s->full->heard;
+    gap->flexible = fmax(gap->flexible, s->full->flexible);
+    gap->heard = gap->heard || s->full->heard;
     RITZ_CHECK_NEW(s->reduced, s->full->count * values);
     for (int64_t k = 0; k < s->full->count; k++) {
         double hertz = s->full->hertz[k];
@@ -162,13 +155,13 @@ static ritz_status respond(const ritz_sides *sides, both *s, extreme *found)
         RITZ_CHECK_IN("reduced model",
                       ritz_poles_add(&sides->reduced, hertz, H_r));
         for (int64_t i = 0; i < values; i++)
-            RITZ_CHECK(take(H[i], H_r[i], hertz, found));
+            RITZ_CHECK(compare_entry(H[i], H_r[i], hertz, gap));
     }
     return RITZ_OK;
 }
 
 /* Levels mean something above a part of the largest |H|, once that is known. */
-static void compare_levels(const both *s, extreme *found)
+static void compare_levels(const sweep_pair *s, ritz_gap *gap)
 {
     const int64_t values = s->full->values;
 
@@ -176,10 +169,10 @@ static void compare_levels(const both *s, extreme *found)
         double a = cabs(s->full->full[k]);
         double b = fmax(cabs(s->reduced[k]), 1e-300);
 
-        if (a > RITZ_AUDIBLE * found->largest &&
-            fabs(20.0 * log10(b / a)) > found->db) {
-            found->db = fabs(20.0 * log10(b / a));
-            found->db_hz = s->full->hertz[k / values];
+        if (a > RITZ_AUDIBLE * gap->largest &&
+            fabs(20.0 * log10(b / a)) > gap->db) {
+            gap->db = fabs(20.0 * log10(b / a));
+            gap->db_hz = s->full->hertz[k / values];
         }
     }
 }
@@ -196,41 +189,101 @@ static void say_where(const ritz_reference *full, double hertz,
                    full->assumed ? " assumed" : "");
 }
 
-static ritz_status add_response(const ritz_sides *sides, const extreme *found,
-                                const ritz_verify_request *request,
-                                ritz_measures *out)
-{
-    const bool rigid = sides->full->poles.num_rigid > 0;
-    char where[RITZ_NAME_SIZE];
+/* Singular values are zero below this part of the largest of all points. */
+static const double zero_singular = 1e-10;
 
-    if (!found->heard) /* no output sees any input */
-        return RITZ_OK;
-    say_where(sides->full, found->error_hz, where);
-    RITZ_CHECK(ritz_measures_add(
-        out, "response-relative", found->error / found->largest,
-        rigid ? request->limit_response
-              : fmin(request->limit_response, request->limit_flexible),
-        where));
-    if (rigid && found->flexible > RITZ_AUDIBLE * found->error)
-        RITZ_CHECK(ritz_measures_add(out, "flexible-response-relative",
-                                     found->error / found->flexible,
-                                     request->limit_flexible, where));
-    say_where(sides->full, found->db_hz, where);
-    return ritz_measures_add(out, "response-db", found->db, nan(""), where);
+/* Singular values of a model at every point of a sweep, descending at each. */
+static ritz_status take_singular(const ritz_io *io, const ritz_sweep *sweep,
+                                 const double _Complex *H, int64_t most,
+                                 double *sigma)
+{
+    const ritz_scales scales = {.output = io->limit};
+
+    for (int64_t k = 0; k < sweep->count; k++)
+        RITZ_CHECK(ritz_singular_values(io->num_outputs, io->num_inputs,
+                                        H + k * sweep->values, &scales,
+                                        sigma + k * most));
+    return RITZ_OK;
 }
 
-/* Every sweep that was asked for. */
-static ritz_status compare(const ritz_sides *sides,
-                           const ritz_verify_request *request,
-                           ritz_measures *out)
+/* How many singular values of the full model are not zero at some point. */
+static int64_t count_nonzero(int64_t points, int64_t most, const double *sigma)
 {
-    enum { SWEEPS = 3 };
+    double largest = 0.0;
+    int64_t rank = 0;
+
+    for (int64_t k = 0; k < points; k++)
+        largest = fmax(largest, sigma[k * most]);
+    for (int64_t k = 0; k < points; k++)
+        while (rank < most && sigma[k * most + rank] > zero_singular * largest)
+            rank++;
+    return rank;
+}
+
+/*
+ * sigma_r of both models, r the rank of the full one [McDaniel2000, 3.3]: the
+ * curve below in its plots of singular values over frequency.
+ */
+static ritz_status compare_singular(const ritz_sides *sides,
+                                    const sweep_pair *s, ritz_gap *gap)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &sides->full->component->io;
+    const int64_t points = s->full->count;
+    const int64_t most =
+        io->num_inputs < io->num_outputs ? io->num_inputs : io->num_outputs;
+    double *sigma = NULL, *reduced = NULL;
+    int64_t rank = 0;
+
+    RITZ_NEW(sigma, points * most);
+    RITZ_NEW(reduced, points * most);
+    RITZ_TRY(take_singular(io, s->full, s->full->full, most, sigma));
+    RITZ_TRY(take_singular(io, s->full, s->reduced, most, reduced));
+    rank = count_nonzero(points, most, sigma);
+    for (int64_t k = 0; k < points && rank > 0; k++) {
+        double full = sigma[k * most + rank - 1];
+        double error = fabs(full - reduced[k * most + rank - 1]);
+
+        gap->singular = fmax(gap->singular, full);
+        if (error > gap->singular_error) {
+            gap->singular_error = error;
+            gap->singular_hz = s->full->hertz[k];
+        }
+    }
+done:
+    free(sigma);
+    free(reduced);
+    return status;
+}
+
+enum { SWEEPS = 3 };
+
+/* Whatever is found at the points of all sweeps. */
+static ritz_status compare_sweeps(const ritz_sides *sides, sweep_pair *sweep,
+                                  ritz_gap *gap)
+{
+    for (int k = 0; k < SWEEPS; k++)
+        if (sweep[k].full)
+            RITZ_CHECK(compare_sweep(sides, &sweep[k], gap));
+    for (int k = 0; k < SWEEPS; k++) {
+        if (!sweep[k].full)
+            continue;
+        compare_levels(&sweep[k], gap);
+        if (!isnan(sides->limit[RITZ_MEASURE_SINGULAR]))
+            RITZ_CHECK(compare_singular(sides, &sweep[k], gap));
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_sides_respond(ritz_sides *sides)
+{
     ritz_status status = RITZ_OK;
     const ritz_reference *full = sides->full;
     ritz_sweep other = {0};
-    extreme found = {0};
-    both sweep[SWEEPS] = {{&full->own, NULL}};
+    sweep_pair sweep[SWEEPS] = {{&full->own, NULL}};
 
+    if (full->own.count == 0)
+        return RITZ_OK;
     if (sides->where & RITZ_AT_RANDOM)
         sweep[1].full = &full->random;
     if (sides->where & RITZ_AT_OTHER_POLES) {
@@ -239,13 +292,7 @@ static ritz_status compare(const ritz_sides *sides,
         RITZ_TRY(ritz_reference_respond(full, &other));
         sweep[2].full = &other;
     }
-    for (int k = 0; k < SWEEPS; k++)
-        if (sweep[k].full)
-            RITZ_TRY(respond(sides, &sweep[k], &found));
-    for (int k = 0; k < SWEEPS; k++)
-        if (sweep[k].full)
-            compare_levels(&sweep[k], &found);
-    RITZ_TRY(add_response(sides, &found, request, out));
+    RITZ_TRY(compare_sweeps(sides, sweep, &sides->gap));
 done:
     for (int k = 0; k < SWEEPS; k++)
         free(sweep[k].reduced);
@@ -253,28 +300,55 @@ done:
     return status;
 }
 
-static ritz_status add_gain(const ritz_sides *sides, double limit,
-                            ritz_measures *out)
+/* Models without rigid motion have one response, and it is the flexible one. */
+ritz_status ritz_responses_error(const ritz_sides *sides, ritz_measure *out)
 {
-    double error = 0.0;
+    const ritz_gap *gap = &sides->gap;
 
-    RITZ_CHECK(
-        ritz_gain_error(&sides->full->gain, &sides->gain_reduced, &error));
-    if (!isnan(error))
-        RITZ_CHECK(ritz_measures_add(out, "static-gain-relative", error, limit,
-                                     "largest singular value"));
+    if (!gap->heard)
+        return RITZ_OK;
+    out->value = gap->error / gap->largest;
+    if (sides->full->poles.num_rigid == 0)
+        out->limit = fmin(out->limit, sides->limit[RITZ_MEASURE_FLEXIBLE]);
+    say_where(sides->full, gap->error_hz, out->where);
     return RITZ_OK;
 }
 
-ritz_status ritz_sides_responses(const ritz_sides *sides,
-                                 const ritz_verify_request *request,
-                                 ritz_measures *out)
+ritz_status ritz_responses_flexible(const ritz_sides *sides, ritz_measure *out)
 {
-    const ritz_io *io = &sides->full->poles.io;
+    const ritz_gap *gap = &sides->gap;
 
-    if (io->num_inputs == 0 || io->num_outputs == 0)
+    if (!gap->heard || sides->full->poles.num_rigid == 0 ||
+        !(gap->flexible > RITZ_AUDIBLE * gap->error))
         return RITZ_OK;
-    if (sides->full->own.count > 0)
-        RITZ_CHECK(compare(sides, request, out));
-    return add_gain(sides, request->limit_gain, out);
+    out->value = gap->error / gap->flexible;
+    say_where(sides->full, gap->error_hz, out->where);
+    return RITZ_OK;
+}
+
+ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out)
+{
+    if (!sides->gap.heard)
+        return RITZ_OK;
+    out->value = sides->gap.db;
+    say_where(sides->full, sides->gap.db_hz, out->where);
+    return RITZ_OK;
+}
+
+ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out)
+{
+    const ritz_gap *gap = &sides->gap;
+
+    if (!gap->heard || !(gap->singular > 0.0))
+        return RITZ_OK;
+    out->value = gap->singular_error / gap->singular;
+    say_where(sides->full, gap->singular_hz, out->where);
+    return RITZ_OK;
+}
+
+ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out)
+{
+    (void)snprintf(out->where, sizeof out->where, "largest singular value");
+    return ritz_gain_error(&sides->full->gain, &sides->gain_reduced,
+                           &out->value);
 }

@@ -1,0 +1,245 @@
+/* Measures between the modes of two models. */
+#include "verify/sides.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The largest of some values, and the full mode that has it. */
+typedef struct extreme {
+    double value;
+    int64_t mode; /* -1: there was none */
+} extreme;
+
+static bool in_band(const ritz_sides *sides, double lambda)
+{
+    return ritz_in_band(sides->full->band_hz, lambda);
+}
+
+/* Whether mode k of the full model is in the band and has a partner. */
+static bool is_paired(const ritz_sides *sides, int64_t k)
+{
+    return in_band(sides, sides->full->poles.lambda[k]) &&
+           sides->match.partner[k] >= 0;
+}
+
+static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
+{
+    double full = sqrt(sides->full->poles.lambda[k]);
+    double reduced = sqrt(sides->reduced.lambda[r]);
+
+    return fabs(reduced - full) / full;
+}
+
+/* Of the largest ratio of both models: smaller ones are what some thousand
+   terms of a modal damping leave by rounding. */
+static const double undamped_within = 1e-12;
+
+/* The ratio up to which a mode is undamped. */
+static double undamped(const ritz_sides *sides)
+{
+    const ritz_damped *both[] = {&sides->full->damped, &sides->damped_reduced};
+    const int64_t count[] = {sides->full->poles.count, sides->reduced.count};
+    double largest = 0.0;
+
+    for (int t = 0; t < 2; t++)
+        for (int64_t k = 0; k < count[t]; k++)
+            if (isfinite(both[t]->zeta[k]))
+                largest = fmax(largest, fabs(both[t]->zeta[k]));
+    return undamped_within * largest;
+}
+
+/*
+ * Where D couples modes, undamped partners need not be damped ones: the nearest
+ * pole is. Of a mode that does not oscillate in the full model nothing is said
+ * (NaN); one that does so in it alone is wholly wrong.
+ */
+static double damping_error(const ritz_sides *sides, double nothing, int64_t k,
+                            int64_t r)
+{
+    bool coupled = sides->full->poles.coupled || sides->reduced.coupled;
+    double full = sides->full->damped.zeta[k];
+    double reduced = sides->damped_reduced.zeta[r];
+
+    if (coupled && !isnan(full))
+        reduced = ritz_spectrum_ratio(
+            ritz_damped_nearest(&sides->damped_reduced, sides->reduced.count,
+                                sides->full->damped.s[k]));
+    if (full == reduced || (fabs(full) <= nothing && fabs(reduced) <= nothing))
+        return 0.0;
+    if (!isnan(full) && isnan(reduced))
+        return 1.0;
+    return fabs(reduced - full) / fmax(fabs(full), fabs(reduced));
+}
+
+static void keep_larger(double value, int64_t mode, extreme *of)
+{
+    if (isnan(value) || (of->mode >= 0 && value <= of->value))
+        return;
+    of->value = value;
+    of->mode = mode;
+}
+
+/* The value and "mode 5, 0.1202 Hz". */
+static void tell_mode(const ritz_sides *sides, extreme found, ritz_measure *out)
+{
+    if (found.mode < 0)
+        return;
+    out->value = found.value;
+    (void)snprintf(out->where, sizeof out->where, "mode %" PRId64 ", %.4g Hz",
+                   found.mode + 1,
+                   ritz_eigen_hertz(sides->full->poles.lambda[found.mode]));
+}
+
+ritz_status ritz_modes_frequency(const ritz_sides *sides, ritz_measure *out)
+{
+    extreme found = {0.0, -1};
+
+    for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
+        if (is_paired(sides, k))
+            keep_larger(frequency_error(sides, k, sides->match.partner[k]), k,
+                        &found);
+    tell_mode(sides, found, out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_modes_damping(const ritz_sides *sides, ritz_measure *out)
+{
+    const double nothing = undamped(sides);
+    extreme found = {0.0, -1};
+
+    if (sides->full->assumed) /* nothing is known to compare with */
+        return RITZ_OK;
+    for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
+        if (is_paired(sides, k))
+            keep_larger(
+                damping_error(sides, nothing, k, sides->match.partner[k]), k,
+                &found);
+    tell_mode(sides, found, out);
+    return RITZ_OK;
+}
+
+/* How many modes of the band no channel shows: they have no MAC. */
+static int64_t count_unseen(const ritz_sides *sides)
+{
+    const ritz_poles *full = &sides->full->poles;
+    int64_t count = 0;
+
+    for (int64_t k = full->num_rigid; k < full->count; k++)
+        count += in_band(sides, full->lambda[k]) && !sides->full->seen.mode[k];
+    return count;
+}
+
+/* "mode 5, 0.1202 Hz, 1 not seen" */
+ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out)
+{
+    int64_t unseen = sides->outputs ? count_unseen(sides) : 0;
+    extreme found = {0.0, -1};
+    size_t used = 0;
+
+    if (!sides->shapes && !sides->outputs)
+        return RITZ_OK;
+    for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
+        if (in_band(sides, sides->full->poles.lambda[k]))
+            keep_larger(-sides->match.mac[k], k, &found);
+    found.value = -found.value;
+    tell_mode(sides, found, out);
+    used = strlen(out->where);
+    if (found.mode >= 0 && unseen > 0)
+        (void)snprintf(out->where + used, sizeof out->where - used,
+                       ", %" PRId64 " not seen", unseen);
+    return RITZ_OK;
+}
+
+/* A count, and the first mode that was counted. */
+static void tell_count(int64_t count, int64_t first, const ritz_poles *poles,
+                       ritz_measure *out)
+{
+    out->value = (double)count;
+    if (count > 0)
+        (void)snprintf(out->where, sizeof out->where,
+                       "first: mode %" PRId64 ", %.4g Hz", first + 1,
+                       ritz_eigen_hertz(poles->lambda[first]));
+}
+
+/* A frequency or damping that is held to a limit must be there. */
+static double missing_limit(const ritz_sides *sides)
+{
+    const double *limit = sides->limit;
+    double missing = limit[RITZ_MEASURE_MISSING];
+
+    return isnan(limit[RITZ_MEASURE_FREQUENCY]) &&
+                   isnan(limit[RITZ_MEASURE_DAMPING])
+               ? missing
+               : fmax(missing, 0.0);
+}
+
+ritz_status ritz_modes_missing(const ritz_sides *sides, ritz_measure *out)
+{
+    const ritz_poles *full = &sides->full->poles;
+    int64_t count = 0;
+    int64_t first = -1;
+
+    for (int64_t k = full->num_rigid; k < sides->match.count; k++)
+        if (sides->match.partner[k] < 0 && in_band(sides, full->lambda[k]))
+            first = count++ == 0 ? k : first;
+    tell_count(count, first, full, out);
+    out->limit = missing_limit(sides);
+    return RITZ_OK;
+}
+
+ritz_status ritz_modes_extra(const ritz_sides *sides, ritz_measure *out)
+{
+    const ritz_match *match = &sides->match;
+    int64_t count = 0;
+    int64_t first = -1;
+
+    for (int64_t r = sides->reduced.num_rigid; r < match->num_reduced; r++)
+        if (!match->taken[r] && in_band(sides, sides->reduced.lambda[r]))
+            first = count++ == 0 ? r : first;
+    tell_count(count, first, &sides->reduced, out);
+    return RITZ_OK;
+}
+
+/* Of the first modes of the reduced model, as many as the full model has rigid
+   ones, the largest frequency. */
+ritz_status ritz_modes_rigid_hertz(const ritz_sides *sides, ritz_measure *out)
+{
+    const int64_t rigid = sides->full->poles.num_rigid;
+
+    if (rigid == 0)
+        return RITZ_OK;
+    out->value = 0.0;
+    for (int64_t k = 0; k < rigid && k < sides->small.Phi.ncol; k++)
+        out->value =
+            fmax(out->value, fabs(ritz_eigen_hertz(sides->small.lambda[k])));
+    return RITZ_OK;
+}
+
+/*
+ * How many of those are no rigid motion: neither 0 but for rounding, nor nearer
+ * to it than the first flexible mode's frequency may be off.
+ */
+ritz_status ritz_modes_missing_rigid(const ritz_sides *sides, ritz_measure *out)
+{
+    const ritz_poles *full = &sides->full->poles;
+    const double relative = sides->limit[RITZ_MEASURE_FREQUENCY];
+    const int64_t rigid = full->num_rigid;
+    const int64_t there = sides->small.Phi.ncol;
+    int64_t lost = rigid > there ? rigid - there : 0;
+    double allowed = 0.0;
+
+    if (rigid == 0)
+        return RITZ_OK;
+    if (full->count > rigid && !isnan(relative))
+        allowed = relative * ritz_eigen_hertz(full->lambda[rigid]);
+    for (int64_t k = sides->reduced.num_rigid; k < rigid && k < there; k++)
+        lost += fabs(ritz_eigen_hertz(sides->small.lambda[k])) > allowed;
+    out->value = (double)lost;
+    if (lost > 0)
+        (void)snprintf(out->where, sizeof out->where, "of %" PRId64, rigid);
+    if (!isnan(missing_limit(sides)) && !(sides->full->band_hz[0] > 0.0))
+        out->limit = 0.0;
+    return RITZ_OK;
+}

@@ -1,0 +1,509 @@
+/*
+ * Full against reduced, both of first order:
+ *
+ *     |G - G_r|_inf, |G - G_r|_2, max over a band of |H - H_r|, |G(0) - G_r(0)|
+ *
+ * Rigid and other poles that are not left of the axis make norms infinite; a
+ * reduction keeps them as they are, and norms are of what is left of both.
+ */
+#include "verify/states.h"
+#include "base/alloc.h"
+#include "linear/general.h"
+#include "linear/split.h"
+#include "verify/sides.h"
+
+#include <ritz/norms.h>
+#include <ritz/probe.h>
+#include <ritz/verify.h>
+
+#include <complex.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Relative, of H-infinity norms. */
+static const double norm_tolerance = 1e-8;
+/*
+ * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
+ * moves the response by some n eps |G|. The factor is a choice: no error of
+ * tests/claims/states.claims comes near its bound by less.
+ */
+static const double rounding = 1e3;
+/* Points before those at the poles are added. */
+enum { EVEN_POINTS = 200 };
+/* With a pole at 0 there is no response: begin at this part of the band. */
+static const double above_rest = 1e-3;
+
+static void free_pair(ritz_state_pair *p)
+{
+    for (int k = 0; k < 2; k++) {
+        ritz_state_space_free(&p->model[k]);
+        ritz_state_space_free(&p->stable[k]);
+        ritz_dense_free(&p->gain[k]);
+    }
+    ritz_state_space_free(&p->difference);
+}
+
+/* Names and limits of a model, for another of so many states. */
+static ritz_status make_states(const ritz_state_space *model, int64_t states,
+                               ritz_state_space *out)
+{
+    const ritz_io io = {.num_inputs = model->num_inputs,
+                        .num_outputs = model->num_outputs,
+                        .input = model->input,
+                        .output = model->output,
+                        .limit = model->limit};
+
+    return ritz_state_space_new(states, &io, out);
+}
+
+static ritz_status check_names(const char *what, int64_t a, int64_t b,
+                               const char (*of_a)[RITZ_NAME_SIZE],
+                               const char (*of_b)[RITZ_NAME_SIZE])
+{
+    RITZ_REFUSE_IF(a != b, RITZ_ERR_ARGUMENT,
+                   "the models differ in %ss: %" PRId64 " and %" PRId64, what,
+                   a, b);
+    for (int64_t k = 0; k < a; k++)
+        RITZ_REFUSE_IF(strcmp(of_a[k], of_b[k]) != 0, RITZ_ERR_ARGUMENT,
+                       "%s %" PRId64 " is '%s' of one model and '%s' of the "
+                       "other",
+                       what, k + 1, of_a[k], of_b[k]);
+    return RITZ_OK;
+}
+
+/* to(row.., col..) = sign from */
+static void place_block(double sign, const ritz_dense *from, int64_t row,
+                        int64_t col, ritz_dense *to)
+{
+    for (int64_t j = 0; j < from->ncol; j++)
+        for (int64_t i = 0; i < from->nrow; i++)
+            ritz_dense_col(to, col + j)[row + i] =
+                sign * ritz_dense_col(from, j)[i];
+}
+
+/* E of a model of n states, or the identity, from (first, first) on. */
+static void place_descriptor(const ritz_dense *E, int64_t n, int64_t first,
+                             ritz_dense *to)
+{
+    place_block(1.0, E, first, first, to);
+    for (int64_t i = 0; i < n && !E->val; i++)
+        ritz_dense_col(to, first + i)[first + i] = 1.0;
+}
+
+static ritz_status check_signals(const ritz_state_space *a,
+                                 const ritz_state_space *b)
+{
+    RITZ_CHECK(
+        check_names("input", a->num_inputs, b->num_inputs, a->input, b->input));
+    return check_names("output", a->num_outputs, b->num_outputs, a->output,
+                       b->output);
+}
+
+/* a - b: both models side by side, the outputs of the second taken off. */
+ritz_status ritz_state_space_difference(const ritz_state_space *a,
+                                        const ritz_state_space *b,
+                                        ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space both = {0};
+    int64_t n = a->A.nrow;
+    int64_t m = b->A.nrow;
+
+    RITZ_TRY(check_signals(a, b));
+    RITZ_TRY(make_states(a, n + m, &both));
+    memcpy(both.damping, a->damping, sizeof both.damping);
+    memcpy(both.units, a->units, sizeof both.units);
+    place_block(1.0, &a->A, 0, 0, &both.A);
+    place_block(1.0, &b->A, n, n, &both.A);
+    place_block(1.0, &a->B, 0, 0, &both.B);
+    place_block(1.0, &b->B, n, 0, &both.B);
+    place_block(1.0, &a->C, 0, 0, &both.C);
+    place_block(-1.0, &b->C, 0, n, &both.C);
+    for (int64_t k = 0; k < a->D.nrow * a->D.ncol; k++)
+        both.D.val[k] = a->D.val[k] - b->D.val[k];
+    if (a->E.val || b->E.val) {
+        RITZ_TRY(ritz_dense_new(n + m, n + m, &both.E));
+        place_descriptor(&a->E, n, 0, &both.E);
+        place_descriptor(&b->E, m, n, &both.E);
+    }
+    *out = both;
+    both = (ritz_state_space){0};
+done:
+    ritz_state_space_free(&both);
+    return status;
+}
+
+/* In the place of a matrix of zeros. */
+static ritz_status copy_matrix(const ritz_dense *from, ritz_dense *to)
+{
+    ritz_dense_free(to);
+    return from->val ? ritz_dense_copy(from, to) : RITZ_OK;
+}
+
+/* A row of outputs over its limit. */
+static void divide_row(double limit, int64_t i, ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol && !isnan(limit); j++)
+        ritz_dense_col(A, j)[i] /= limit;
+}
+
+static ritz_status divide_outputs(const ritz_state_space *model,
+                                  const double *limit, ritz_state_space *out)
+{
+    RITZ_CHECK(make_states(model, model->A.nrow, out));
+    RITZ_CHECK(copy_matrix(&model->A, &out->A));
+    RITZ_CHECK(copy_matrix(&model->B, &out->B));
+    RITZ_CHECK(copy_matrix(&model->C, &out->C));
+    RITZ_CHECK(copy_matrix(&model->D, &out->D));
+    RITZ_CHECK(copy_matrix(&model->E, &out->E));
+    for (int64_t i = 0; i < model->num_outputs; i++) {
+        divide_row(limit[i], i, &out->C);
+        divide_row(limit[i], i, &out->D);
+    }
+    return RITZ_OK;
+}
+
+/* What belongs to poles left of the axis: Y'A X, Y'E X, Y'B, C X. */
+static ritz_status take_stable(const ritz_state_space *model,
+                               ritz_state_space *out, int64_t *num_unstable)
+{
+    ritz_status status = RITZ_OK;
+    ritz_split split = {0};
+
+    RITZ_TRY(ritz_split_new(&model->A, &model->E, &split));
+    *num_unstable = split.T.ncol;
+    RITZ_TRY(make_states(model, split.X.ncol, out));
+    RITZ_TRY(copy_matrix(&split.S, &out->A));
+    RITZ_TRY(copy_matrix(&split.P, &out->E));
+    RITZ_TRY(copy_matrix(&model->D, &out->D));
+    ritz_dense_free(&out->B);
+    ritz_dense_free(&out->C);
+    RITZ_TRY(ritz_dense_mul_tn(&split.Y, &model->B, &out->B));
+    RITZ_TRY(ritz_dense_mul(&model->C, &split.X, &out->C));
+done:
+    ritz_split_free(&split);
+    return status;
+}
+
+/* D - C A^-1 B; RITZ_ERR_SINGULAR if there is a pole at 0. */
+static ritz_status static_gain(const ritz_state_space *model, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0};
+
+    RITZ_TRY(ritz_dense_copy(&model->B, &X));
+    RITZ_TRY(ritz_general_solve(&model->A, false, &X));
+    RITZ_TRY(ritz_dense_mul(&model->C, &X, out));
+    for (int64_t k = 0; k < out->nrow * out->ncol; k++)
+        out->val[k] = model->D.val[k] - out->val[k];
+done:
+    ritz_dense_free(&X);
+    return status;
+}
+
+static ritz_status take_gains(ritz_state_pair *p)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int k = 0; k < 2; k++) {
+        status = static_gain(&p->model[k], &p->gain[k]);
+        if (status == RITZ_ERR_SINGULAR)
+            return RITZ_OK;
+        RITZ_TRY(status);
+    }
+    p->has_gain = true;
+done:
+    return status;
+}
+
+/*
+ * The pair without its norms.
+ *
+ * @return RITZ_ERR_ARGUMENT if inputs or outputs differ
+ */
+static ritz_status open_pair(const ritz_state_space *full,
+                             const ritz_state_space *reduced,
+                             const ritz_verify_request *request,
+                             ritz_state_pair *p)
+{
+    p->request = request;
+    p->given[0] = full;
+    p->given[1] = reduced;
+    RITZ_CHECK(check_signals(full, reduced));
+    for (int k = 0; k < 2; k++) {
+        RITZ_CHECK(divide_outputs(p->given[k], full->limit, &p->model[k]));
+        RITZ_CHECK(
+            take_stable(&p->model[k], &p->stable[k], &p->num_unstable[k]));
+    }
+    p->has_norms = p->num_unstable[0] == p->num_unstable[1];
+    if (p->has_norms)
+        RITZ_CHECK(ritz_state_space_difference(&p->stable[0], &p->stable[1],
+                                               &p->difference));
+    return RITZ_OK;
+}
+
+/* A limit of a norm that is infinite cannot be held. */
+static ritz_status check_norms(const ritz_state_pair *p)
+{
+    RITZ_REFUSE_IF(!p->has_norms, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " poles of the full model and %" PRId64
+                   " of the reduced one are not left of the axis: the norm "
+                   "of their difference is infinite",
+                   p->num_unstable[0], p->num_unstable[1]);
+    return RITZ_OK;
+}
+
+static ritz_status take_norms(ritz_state_pair *p)
+{
+    const double *limit = p->request->limit;
+
+    if (!isnan(limit[RITZ_MEASURE_INFINITY_RELATIVE]) ||
+        !isnan(limit[RITZ_MEASURE_H2]))
+        RITZ_CHECK(check_norms(p));
+    if (!p->has_norms)
+        return RITZ_OK;
+    RITZ_CHECK_IN("full model",
+                  ritz_norm_infinity(&p->stable[0], norm_tolerance, &p->full));
+    RITZ_CHECK_IN("difference", ritz_norm_infinity(&p->difference,
+                                                   norm_tolerance, &p->error));
+    return RITZ_OK;
+}
+
+/* "0.83 Hz, less 6 poles not left of axis" */
+static void say_where(const ritz_state_pair *p, char where[RITZ_NAME_SIZE])
+{
+    const ritz_norm *norm = &p->error;
+    size_t used = 0;
+
+    if (isfinite(norm->hertz))
+        used = (size_t)snprintf(where, RITZ_NAME_SIZE, "%.6g Hz", norm->hertz);
+    else
+        used = (size_t)snprintf(where, RITZ_NAME_SIZE, "infinite frequency");
+    if (p->num_unstable[0] > 0)
+        used += (size_t)snprintf(where + used, RITZ_NAME_SIZE - used,
+                                 ", less %" PRId64 " poles not left of axis",
+                                 p->num_unstable[0]);
+    if (norm->lower >= norm->value && used < RITZ_NAME_SIZE - 16)
+        snprintf(where + used, RITZ_NAME_SIZE - used, ", at least");
+}
+
+ritz_status ritz_states_infinity(const ritz_state_pair *p, ritz_measure *out)
+{
+    if (!p->has_norms)
+        return RITZ_OK;
+    out->value = p->error.value;
+    say_where(p, out->where);
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_infinity_relative(const ritz_state_pair *p,
+                                          ritz_measure *out)
+{
+    if (!p->has_norms || !(p->full.value > 0.0))
+        return RITZ_OK;
+    out->value = p->error.value / p->full.value;
+    say_where(p, out->where);
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
+                                       ritz_measure *out)
+{
+    const double bound =
+        ritz_measures_value(&p->given[1]->estimates, "h-infinity-bound");
+
+    if (!p->has_norms || isnan(bound))
+        return RITZ_OK;
+    out->value = p->error.value;
+    out->limit = bound + (norm_tolerance * bound +
+                          rounding * (double)p->model[0].A.nrow * DBL_EPSILON *
+                              p->full.value);
+    say_where(p, out->where);
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
+{
+    ritz_norm full = {0}, error = {0};
+
+    if (!p->has_norms)
+        return RITZ_OK;
+    if (ritz_dense_max(&p->model[0].D) > 0.0 ||
+        ritz_dense_max(&p->model[1].D) > 0.0) {
+        RITZ_REFUSE_IF(!isnan(out->limit), RITZ_ERR_ARGUMENT,
+                       "--limit-h2: an input reaches an output at once (D is "
+                       "not 0), there is no H2 norm");
+        return RITZ_OK;
+    }
+    RITZ_CHECK_IN("full model", ritz_norm_two(&p->stable[0], &full));
+    RITZ_CHECK_IN("difference", ritz_norm_two(&p->difference, &error));
+    if (full.value > 0.0)
+        out->value = error.value / full.value;
+    return RITZ_OK;
+}
+
+/* Second-order models in first-order form. */
+ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_verify_request request = RITZ_VERIFY_NONE;
+    const ritz_second_order *m = sides->model;
+    const ritz_reduced lent = {
+        .K = *m->K, .M = *m->M, .D = *m->D, .K4 = *m->K4, .io = *m->io};
+    ritz_state_space full = {0}, reduced = {0};
+    ritz_state_pair p = {0};
+
+    RITZ_TRY_IN("full model",
+                ritz_state_space_of_component(sides->full->component,
+                                              &sides->full->damping, &full));
+    RITZ_TRY_IN("reduced model", ritz_state_space_of_reduced(
+                                     &lent, &sides->full->damping, &reduced));
+    RITZ_TRY(open_pair(&full, &reduced, &request, &p));
+    RITZ_TRY(check_norms(&p));
+    RITZ_TRY(ritz_states_h2(&p, out));
+done:
+    ritz_state_space_free(&full);
+    ritz_state_space_free(&reduced);
+    free_pair(&p);
+    return status;
+}
+
+/* The largest difference, and the largest response of the full model. */
+typedef struct largest {
+    double error, full, hertz;
+} largest;
+
+/* Both at the points that are refined at the poles of one of them. */
+static ritz_status compare_at(const ritz_state_pair *p, int refined,
+                              const ritz_grid *grid, largest *found)
+{
+    ritz_status status = RITZ_OK;
+    ritz_response r[2] = {0};
+    ritz_grid same = *grid;
+    int64_t values = 0;
+
+    RITZ_TRY(ritz_response_states(&p->model[refined], grid, &r[refined]));
+    same.hertz = r[refined].hertz;
+    same.count = r[refined].count;
+    RITZ_TRY(
+        ritz_response_states(&p->model[1 - refined], &same, &r[1 - refined]));
+    values = r[0].num_inputs * r[0].num_outputs;
+    for (int64_t k = 0; k < r[0].count * values; k++) {
+        double error = cabs(r[0].H[k] - r[1].H[k]);
+
+        found->full = fmax(found->full, cabs(r[0].H[k]));
+        if (error > found->error) {
+            found->error = error;
+            found->hertz = r[0].hertz[k / values];
+        }
+    }
+done:
+    ritz_response_free(&r[0]);
+    ritz_response_free(&r[1]);
+    return status;
+}
+
+ritz_status ritz_states_response(const ritz_state_pair *p, ritz_measure *out)
+{
+    ritz_grid grid = {.from_hz = p->request->band_hz[0],
+                      .to_hz = p->request->band_hz[1],
+                      .count = EVEN_POINTS,
+                      .refine = true};
+    largest found = {0};
+
+    if (grid.to_hz == 0.0)
+        return RITZ_OK;
+    if (!p->has_gain)
+        grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
+    for (int k = 0; k < 2; k++)
+        RITZ_CHECK(compare_at(p, k, &grid, &found));
+    if (!(found.full > 0.0))
+        return RITZ_OK;
+    out->value = found.error / found.full;
+    (void)snprintf(out->where, sizeof out->where, "%.6g Hz", found.hertz);
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_gain(const ritz_state_pair *p, ritz_measure *out)
+{
+    if (p->has_gain)
+        RITZ_CHECK(ritz_gain_error(&p->gain[0], &p->gain[1], &out->value));
+    RITZ_REFUSE_IF(isnan(out->value) && !isnan(out->limit), RITZ_ERR_ARGUMENT,
+                   "--limit-gain: there is no static gain, a pole is at 0");
+    (void)snprintf(out->where, sizeof out->where, "largest singular value");
+    return RITZ_OK;
+}
+
+/* Growth is held to rounding unless the full model grows too. */
+ritz_status ritz_states_growth(const ritz_state_pair *p, ritz_measure *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_probe probe[2] = {0};
+    ritz_measures found = {0};
+
+    RITZ_TRY_IN("full model", ritz_probe_states(p->given[0], &probe[0]));
+    RITZ_TRY_IN("reduced model", ritz_probe_states(p->given[1], &probe[1]));
+    RITZ_TRY(ritz_probe_record(&probe[1], &found));
+    *out = found.item[0];
+    if (probe[0].verdict == RITZ_UNSTABLE)
+        out->limit = nan("");
+done:
+    ritz_measures_free(&found);
+    return status;
+}
+
+static ritz_status check_states(const ritz_state_space *full,
+                                const ritz_verify_request *request)
+{
+    const double *band = request->band_hz;
+
+    RITZ_REFUSE_IF(full->num_inputs == 0 || full->num_outputs == 0,
+                   RITZ_ERR_ARGUMENT,
+                   "there are no %s, nothing can be compared",
+                   full->num_inputs == 0 ? "inputs" : "outputs");
+    RITZ_REFUSE_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
+                       (band[1] != 0.0 && band[0] >= band[1]),
+                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
+                   band[0], band[1]);
+    for (int k = 0; k < RITZ_MEASURES && band[1] == 0.0; k++)
+        RITZ_REFUSE_IF(!isnan(request->limit[k]) &&
+                           ritz_measure_table[k].needs & RITZ_NEEDS_BAND,
+                       RITZ_ERR_ARGUMENT,
+                       "--limit-%s of a state space needs --band-hz",
+                       ritz_measure_table[k].word);
+    return RITZ_OK;
+}
+
+ritz_status ritz_verify_states(const ritz_state_space *full,
+                               const ritz_state_space *reduced,
+                               const ritz_verify_request *request,
+                               ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures found = {0};
+    ritz_state_pair p = {0};
+
+    RITZ_TRY(check_states(full, request));
+    RITZ_TRY(open_pair(full, reduced, request, &p));
+    RITZ_TRY(take_gains(&p));
+    RITZ_TRY(take_norms(&p));
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+        ritz_measure m = {.value = nan(""), .limit = request->limit[k]};
+
+        if (kind->of_states)
+            RITZ_TRY(kind->of_states(&p, &m));
+        if (!isnan(m.value))
+            RITZ_TRY(ritz_measures_add(&found, kind->name, m.value, m.limit,
+                                       m.where));
+    }
+    *out = found;
+    found = (ritz_measures){0};
+done:
+    ritz_measures_free(&found);
+    free_pair(&p);
+    return status;
+}
