@@ -8,7 +8,7 @@
  *
  * [Nastran1986], section 2.4.
  */
-#include "formats/bulk_parts.h"
+#include "formats/bulk.h"
 
 #include "base/alloc.h"
 

@@ -1,3 +1,185 @@
+/* Grids of bulk data, and the coordinate systems that place and turn them. */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "formats/bulk.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+
+/* ---- axes --------------------------------------------------------------- */
+
+/*
+ * Coordinate systems of bulk data.
+ *
+ *     A origin, B on the z axis, C in the x-z plane:
+ *     e_z = (B - A) / |B - A|,  e_y ~ e_z x (C - A),  e_x = e_y x e_z
+ *
+ *     coordinates        cylindrical r, theta, z     spherical r, theta, phi
+ *     x                  r cos(theta)                r sin(theta) cos(phi)
+ *     y                  r sin(theta)                r sin(theta) sin(phi)
+ *     z                  z                           r cos(theta)
+ *
+ * with angles in degrees. Displacements are along the directions in which the
+ * coordinates grow. Where these are not defined, on the z axis of either, they
+ * are the frame's own axes x, y, z, which is what the public NASTRAN does.
+ */
+
+static void cross(const double a[static 3], const double b[static 3],
+                  double out[static 3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double norm(const double a[static 3])
+{
+    return hypot(hypot(a[0], a[1]), a[2]);
+}
+
+static void divide(double a[static 3], double by)
+{
+    for (int k = 0; k < 3; k++)
+        a[k] /= by;
+}
+
+/* sin and cos of an angle in degrees, exact where they are 0 or 1. */
+static void turn(double degrees, double *sine, double *cosine)
+{
+    static const double EXACT[] = {0.0, 1.0, 0.0, -1.0, 0.0};
+    double angle = degrees * (RITZ_PI / 180.0);
+    double quarters = degrees / 90.0;
+    int quarter = 0;
+
+    *sine = sin(angle);
+    *cosine = cos(angle);
+    if (quarters == floor(quarters) && fabs(quarters) < 1e9) {
+        quarter = (int)(((int64_t)quarters % 4 + 4) % 4);
+        *sine = EXACT[quarter];
+        *cosine = EXACT[quarter + 1];
+    }
+}
+
+/* Coordinates of a kind of frame as x, y, z along its axes. */
+static void straighten(int32_t kind, const double x[static 3],
+                       double out[static 3])
+{
+    double s = 0.0;
+    double c = 1.0;
+    double s_phi = 0.0;
+    double c_phi = 1.0;
+
+    memcpy(out, x, 3 * sizeof *out);
+    if (kind == RITZ_RECTANGULAR)
+        return;
+    turn(x[1], &s, &c);
+    if (kind == RITZ_CYLINDRICAL) {
+        out[0] = x[0] * c;
+        out[1] = x[0] * s;
+        return;
+    }
+    turn(x[2], &s_phi, &c_phi);
+    out[0] = x[0] * s * c_phi;
+    out[1] = x[0] * s * s_phi;
+    out[2] = x[0] * c;
+}
+
+/* Coordinates @p x of a resolved frame, NULL the basic one, as a position. */
+static void place_point(const ritz_bulk_frame *frame, const double x[static 3],
+                        double out[static 3])
+{
+    double local[3];
+
+    if (!frame) {
+        memcpy(out, x, 3 * sizeof *out);
+        return;
+    }
+    straighten(frame->kind, x, local);
+    for (int j = 0; j < 3; j++)
+        out[j] = frame->origin[j] + local[0] * frame->axes[j] +
+                 local[1] * frame->axes[3 + j] + local[2] * frame->axes[6 + j];
+}
+
+/* Rows: directions of growing coordinates, along the frame's own axes. */
+static void local_axes(int32_t kind, const double p[static 3], double r,
+                       double out[static 9])
+{
+    double radius = norm(p);
+    double c_phi = p[0] / r;
+    double s_phi = p[1] / r;
+    double s = r / radius;
+    double c = p[2] / radius;
+    const double round[9] = {c_phi, s_phi, 0, -s_phi, c_phi, 0, 0, 0, 1};
+    const double sphere[9] = {s * c_phi, s * s_phi, c,     c * c_phi, c * s_phi,
+                              -s,        -s_phi,    c_phi, 0.0};
+
+    memcpy(out, kind == RITZ_CYLINDRICAL ? round : sphere, sizeof round);
+}
+
+/* Displacement axes of a frame at a position of the basic frame. */
+static void find_axes(const ritz_bulk_frame *frame,
+                      const double position[static 3], double out[static 9])
+{
+    double p[3] = {0.0, 0.0, 0.0};
+    double local[9];
+    double scale = norm(position) + norm(frame->origin);
+    double r = 0.0;
+
+    memcpy(out, frame->axes, sizeof frame->axes);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            p[i] += frame->axes[3 * i + j] * (position[j] - frame->origin[j]);
+    r = hypot(p[0], p[1]);
+    /* On the axis up to the rounding of the position: some ten operations on
+     * numbers up to the scale. */
+    if (frame->kind == RITZ_RECTANGULAR || r <= 16.0 * DBL_EPSILON * scale)
+        return;
+    local_axes(frame->kind, p, r, local);
+    for (int64_t i = 0; i < 3; i++)
+        for (int64_t j = 0; j < 3; j++)
+            out[3 * i + j] = local[3 * i] * frame->axes[j] +
+                             local[3 * i + 1] * frame->axes[3 + j] +
+                             local[3 * i + 2] * frame->axes[6 + j];
+}
+
+/* Origin and axes of a frame by three points, which no line may hold. */
+static ritz_status orient_frame(const ritz_bulk_cards *all,
+                                const double A[static 3],
+                                const double B[static 3],
+                                const double C[static 3],
+                                ritz_bulk_frame *frame)
+{
+    double *e_x = &frame->axes[0];
+    double *e_y = &frame->axes[3];
+    double *e_z = &frame->axes[6];
+    double to_C[3];
+    double z = 0.0;
+    double y = 0.0;
+
+    for (int k = 0; k < 3; k++) {
+        frame->origin[k] = A[k];
+        e_z[k] = B[k] - A[k];
+        to_C[k] = C[k] - A[k];
+    }
+    z = norm(e_z);
+    if (z > 0.0)
+        divide(e_z, z);
+    cross(e_z, to_C, e_y);
+    y = norm(e_y);
+    /* below the root of epsilon, x would keep less than half its digits */
+    if (!(z > 0.0 && y > 1.5e-8 * norm(to_C) && isfinite(z) && isfinite(y)))
+        RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
+                                     "the three points of coordinate system "
+                                     "%" PRId64 " lie on a line",
+                                     frame->id));
+    divide(e_y, y);
+    cross(e_y, e_z, e_x);
+    return RITZ_OK;
+}
+
+/* ---- grids -------------------------------------------------------------- */
+
 /*
  * GRID cards: where the grids are, and along which axes they move.
  *
@@ -6,12 +188,6 @@
  * A blank CP, CD or PS is that of GRDSET. Displacement frames of all grids that
  * have the same axes are one; those of curved frames belong to one grid each.
  */
-#include "formats/bulk_parts.h"
-
-#include "base/alloc.h"
-
-#include <inttypes.h>
-#include <math.h>
 
 /* CP, CD and PS, at fields 1, 5 and 6 of GRID and of GRDSET. */
 static ritz_status take_frames(const ritz_card *card, ritz_bulk_grid *out)
@@ -28,7 +204,7 @@ static ritz_status take_frames(const ritz_card *card, ritz_bulk_grid *out)
                                     "a coordinate system in which a structure "
                                     "moves"));
     if (out->spc != RITZ_BULK_BLANK &&
-        (!ritz_bulk_mask(out->spc, &mask) || (out->spc != 0 && (mask & 1))))
+        (!ritz_card_mask(out->spc, &mask) || (out->spc != 0 && (mask & 1))))
         RITZ_CHECK(ritz_card_refuse(card, 6, "a list of directions 1 to 6"));
     return RITZ_OK;
 }
@@ -122,16 +298,243 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
     if (all->num_grids == 0)
         return NULL;
     return bsearch(&id, all->grid, (size_t)all->num_grids, sizeof *all->grid,
-                   ritz_bulk_compare_ids);
+                   ritz_cards_compare_ids);
 }
 
-/* ---- putting them in place --------------------------------------------- */
+/* ---- coordinate systems ------------------------------------------------- */
+
+/*
+ * Coordinate systems of bulk data: their cards, and the order in which they are
+ * resolved.
+ *
+ * Frames and grids refer to each other in any order. They are resolved depth
+ * first with a stack of their own, so that a chain of a million frames is no
+ * deeper than the heap.
+ */
+
+enum { UNTOUCHED, OPEN, RESOLVED };
+
+static int compare_frames(const void *a, const void *b)
+{
+    const ritz_bulk_frame *left = a;
+    const ritz_bulk_frame *right = b;
+    int order = (left->id > right->id) - (left->id < right->id);
+
+    return order ? order
+                 : (left->line > right->line) - (left->line < right->line);
+}
+
+/* CORD1: CID G1 G2 G3, twice on a card. */
+static ritz_status take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
+                                 int64_t from, int32_t kind)
+{
+    ritz_bulk_frame new = {
+        .line = card->entry->line, .kind = kind, .by_grids = true};
+
+    RITZ_CHECK(ritz_card_id(card, from, &new.id));
+    for (int64_t k = 0; k < 3; k++)
+        RITZ_CHECK(ritz_card_id(card, from + 1 + k, &new.grid[k]));
+    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
+    all->frame[all->num_frames++] = new;
+    return RITZ_OK;
+}
+
+/* CORD2: CID RID A B C. */
+static ritz_status take_by_points(ritz_bulk_cards *all, const ritz_card *card,
+                                  int32_t kind)
+{
+    ritz_bulk_frame new = {.line = card->entry->line, .kind = kind};
+
+    RITZ_CHECK(ritz_card_id(card, 0, &new.id));
+    RITZ_CHECK(ritz_card_whole(card, 1, 0, &new.base));
+    for (int64_t k = 0; k < 9; k++)
+        RITZ_CHECK(ritz_card_real(card, 2 + k, 0.0, &new.point[k]));
+    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
+    all->frame[all->num_frames++] = new;
+    return RITZ_OK;
+}
+
+ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
+                                 int32_t kind, bool by_grids)
+{
+    if (!by_grids)
+        return take_by_points(all, card, kind);
+    RITZ_CHECK(take_by_grids(all, card, 0, kind));
+    if (card->count > 4)
+        RITZ_CHECK(take_by_grids(all, card, 4, kind));
+    return RITZ_OK;
+}
+
+static bool same_frame(const ritz_bulk_frame *a, const ritz_bulk_frame *b)
+{
+    bool same =
+        a->kind == b->kind && a->by_grids == b->by_grids && a->base == b->base;
+
+    for (int64_t k = 0; k < 3; k++)
+        same = same && a->grid[k] == b->grid[k];
+    for (int64_t k = 0; k < 9; k++)
+        same = same && a->point[k] == b->point[k];
+    return same;
+}
+
+ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all)
+{
+    int64_t kept = 0;
+
+    if (all->num_frames > 1)
+        qsort(all->frame, (size_t)all->num_frames, sizeof *all->frame,
+              compare_frames);
+    for (int64_t k = 0; k < all->num_frames; k++) {
+        ritz_bulk_frame *frame = &all->frame[k];
+
+        if (kept == 0 || all->frame[kept - 1].id != frame->id) {
+            all->frame[kept++] = *frame;
+            continue;
+        }
+        if (!same_frame(&all->frame[kept - 1], frame))
+            RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
+                                         "coordinate system %" PRId64
+                                         " is defined otherwise before",
+                                         frame->id));
+    }
+    all->num_frames = kept;
+    return RITZ_OK;
+}
+
+/* Frame or grid by id; NULL if there is none. */
+static ritz_bulk_frame *find_frame(const ritz_bulk_cards *all, int64_t id)
+{
+    if (all->num_frames == 0)
+        return NULL;
+    return bsearch(&id, all->frame, (size_t)all->num_frames, sizeof *all->frame,
+                   ritz_cards_compare_ids);
+}
+
+/* ---- resolving ---------------------------------------------------------- */
+
+/* Id of the k-th frame that a frame rests on, 0 for none or the basic one. */
+static ritz_status rests_on(const ritz_bulk_cards *all,
+                            const ritz_bulk_frame *frame, int k, int64_t *out)
+{
+    const ritz_bulk_grid *grid = NULL;
+
+    *out = 0;
+    if (!frame->by_grids) {
+        *out = k == 0 ? frame->base : 0;
+        return RITZ_OK;
+    }
+    grid = ritz_bulk_find_grid(all, frame->grid[k]);
+    if (!grid)
+        return ritz_cards_refuse(&all->cards, frame->line,
+                                 "coordinate system %" PRId64
+                                 " is defined by grid %" PRId64
+                                 ", which there is not",
+                                 frame->id, frame->grid[k]);
+    *out = grid->cp;
+    return RITZ_OK;
+}
+
+/* The next frame that must be resolved before this one; NULL if none must. */
+static ritz_status next_open(const ritz_bulk_cards *all,
+                             const ritz_bulk_frame *frame,
+                             ritz_bulk_frame **out)
+{
+    ritz_status status = RITZ_OK;
+
+    *out = NULL;
+    for (int k = 0; k < 3 && !*out; k++) {
+        ritz_bulk_frame *below = NULL;
+        int64_t id = 0;
+
+        RITZ_TRY(rests_on(all, frame, k, &id));
+        if (id == 0)
+            continue;
+        below = find_frame(all, id);
+        if (!below) {
+            status =
+                ritz_cards_refuse(&all->cards, frame->line,
+                                  "coordinate system %" PRId64
+                                  " rests on %" PRId64 ", which there is not",
+                                  frame->id, id);
+            goto done;
+        }
+        if (below->progress == OPEN)
+            RITZ_TRY(ritz_cards_refuse(&all->cards, frame->line,
+                                       "coordinate system %" PRId64
+                                       " rests on itself by way of %" PRId64,
+                                       frame->id, id));
+        if (below->progress == UNTOUCHED)
+            *out = below;
+    }
+done:
+    return status;
+}
+
+static ritz_status resolve(const ritz_bulk_cards *all, ritz_bulk_frame *frame)
+{
+    double p[3][3];
+
+    for (int64_t k = 0; k < 3; k++) {
+        const double *x = &frame->point[3 * k];
+        int64_t base = frame->base;
+
+        if (frame->by_grids) {
+            const ritz_bulk_grid *grid =
+                ritz_bulk_find_grid(all, frame->grid[k]);
+
+            x = grid->x;
+            base = grid->cp;
+        }
+        place_point(base ? find_frame(all, base) : NULL, x, p[k]);
+    }
+    frame->progress = RESOLVED;
+    return orient_frame(all, p[0], p[1], p[2], frame);
+}
+
+/* Resolve one frame, and before it what it rests on. */
+static ritz_status resolve_from(const ritz_bulk_cards *all, int64_t first,
+                                int64_t *stack)
+{
+    int64_t depth = 0;
+
+    if (all->frame[first].progress == RESOLVED)
+        return RITZ_OK;
+    all->frame[first].progress = OPEN;
+    stack[depth++] = first;
+    while (depth > 0) {
+        ritz_bulk_frame *below = NULL;
+
+        RITZ_CHECK(next_open(all, &all->frame[stack[depth - 1]], &below));
+        if (below) {
+            below->progress = OPEN;
+            stack[depth++] = below - all->frame;
+        } else {
+            RITZ_CHECK(resolve(all, &all->frame[stack[--depth]]));
+        }
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_bulk_resolve_frames(ritz_bulk_cards *all)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *stack = NULL;
+
+    RITZ_NEW(stack, all->num_frames);
+    for (int64_t k = 0; k < all->num_frames; k++)
+        RITZ_TRY(resolve_from(all, k, stack));
+done:
+    free(stack);
+    return status;
+}
+
+/* ---- putting them in place ---------------------------------------------- */
 
 static ritz_status frame_of(const ritz_bulk_cards *all,
                             const ritz_bulk_grid *grid, int64_t id,
                             ritz_bulk_frame **out)
 {
-    *out = id ? ritz_bulk_find_frame(all, id) : NULL;
+    *out = id ? find_frame(all, id) : NULL;
     if (id && !*out)
         return ritz_cards_refuse(&all->cards, grid->line,
                                  "GRID %" PRId64
@@ -189,7 +592,7 @@ static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
 
     build->grids.id[k] = grid->id;
     RITZ_CHECK(frame_of(all, grid, grid->cp, &frame));
-    ritz_bulk_position(frame, grid->x, position);
+    place_point(frame, grid->x, position);
     for (int j = 0; j < 3; j++)
         if (!isfinite(position[j]))
             RITZ_CHECK(ritz_cards_refuse(
@@ -204,7 +607,7 @@ static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
         build->grids.frame[k] = *shared;
         return RITZ_OK;
     }
-    ritz_bulk_axes(frame, position, axes);
+    find_axes(frame, position, axes);
     RITZ_CHECK(add_axes(build, axes, &build->grids.frame[k]));
     if (shared)
         *shared = build->grids.frame[k];

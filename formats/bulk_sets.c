@@ -6,32 +6,14 @@
  * points where none are. Ranges may overlap as much as they like: they are
  * merged direction by direction, so the work grows with what comes out.
  */
-#include "formats/bulk_parts.h"
+#include "formats/bulk.h"
 
 #include "base/alloc.h"
 #include "base/search.h"
 
 #include <inttypes.h>
 
-enum { MOST_IDS = 10000000 }; /* that ranges alone may stand for */
-
-bool ritz_bulk_mask(int64_t digits, uint8_t *out)
-{
-    uint8_t mask = digits == 0 ? 1 : 0;
-
-    if (digits < 0 || digits > 6543210)
-        return false;
-    for (; digits > 0; digits /= 10) {
-        uint8_t bit = (uint8_t)(1U << (unsigned)(digits % 10));
-
-        if (digits % 10 > 6 || (mask & bit) || digits % 10 == 0)
-            return false;
-        mask |= bit;
-    }
-    *out = mask;
-    return true;
-}
-
+enum { MOST_IDS = 10000000 };
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range)
 {
     RITZ_CHECK_ROOM(list->range, list->count, list->room);
@@ -114,7 +96,7 @@ done:
     return status;
 }
 
-/* ---- sets -------------------------------------------------------------- */
+/* ---- sets --------------------------------------------------------------- */
 
 /* A list of dofs that grows. */
 typedef struct dofs {

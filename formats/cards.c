@@ -1,12 +1,522 @@
 /*
- * Cards of NASTRAN bulk data: scanned into lines, lines joined to cards, a card
- * taken apart when it is asked for.
+ * Cards of NASTRAN bulk data. A deck is scanned into lines, without executive
+ * and case control, comments, blank lines and what follows ENDDATA. A file that
+ * INCLUDE names is gone through in place; its name is relative to the folder of
+ * the file that names it. Then lines are joined to cards: a line continues
+ * another by the markers in the tenth field of the one and the first field of
+ * the other; the line above is looked at first, then the whole deck.
  */
-#include "formats/cards_parts.h"
+#include "base/alloc.h"
+#include "base/path.h"
+#include "formats/cards_lines.h"
+
+#include <ritz/text.h>
 
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
+
+enum { RITZ_CARDS_DEEPEST = 16 };
+
+/* A file that is being gone through. */
+typedef struct ritz_source {
+    ritz_lines text;
+    int64_t file;
+    char *folder; /* to which its INCLUDEs are relative; NULL: not followed */
+} ritz_source;
+
+/* The file on top, below it those whose INCLUDE led there. */
+typedef struct ritz_scanner {
+    ritz_cards *cards;
+    bool ended; /* by ENDDATA */
+    int depth;
+    ritz_source open[RITZ_CARDS_DEEPEST + 1];
+} ritz_scanner;
+
+/* ---- files and their control sections ----------------------------------- */
+
+/* SPC = 5 in the case control: remember which set is meant. */
+static ritz_status take_selection(const ritz_lines *text, const char *word,
+                                  int64_t which, ritz_cards *cards)
+{
+    const char *end = text->line_end;
+    const char *at = NULL;
+    int64_t set = 0;
+
+    if (!ritz_card_begins(text->line, end - text->line, word, &at))
+        return RITZ_OK;
+    at = memchr(at, '=', (size_t)(end - at));
+    if (!at)
+        return RITZ_OK;
+    for (at++; at < end && ritz_card_is_blank(*at); at++)
+        ;
+    for (; at < end && isdigit((unsigned char)*at) && set < INT64_MAX / 100;
+         at++)
+        set = 10 * set + (*at - '0');
+    if (set == 0)
+        return RITZ_OK;
+    RITZ_CHECK_ROOM(cards->selected[which], cards->num_selected[which],
+                    cards->selected_room[which]);
+    cards->selected[which][cards->num_selected[which]++] = set;
+    return RITZ_OK;
+}
+
+/*
+ * Go to where bulk data begin: behind BEGIN BULK, behind any other BEGIN if
+ * CEND came before it, at the start where there is neither; keep the sets that
+ * the case control selects.
+ */
+static ritz_status skip_control(const char *path, ritz_lines *text,
+                                ritz_cards *cards)
+{
+    ritz_lines trial = *text;
+    const char *rest = NULL;
+    bool cases = false;
+    bool begun = false;
+
+    while (!begun && ritz_lines_next(&trial)) {
+        const char *end = trial.line_end;
+        int64_t length = end - trial.line;
+
+        cases = cases || ritz_card_begins(trial.line, length, "CEND", &rest);
+        begun = ritz_card_begins(trial.line, length, "BEGIN", &rest) &&
+                (cases || ritz_card_begins(rest, end - rest, "BULK", &rest));
+    }
+    RITZ_REFUSE_IF(cases && !begun, RITZ_ERR_FORMAT,
+                   "'%s' holds CEND but no BEGIN BULK",
+                   path ? path : "the deck");
+    while (begun && text->number < trial.number) {
+        (void)ritz_lines_next(text);
+        if (cases) {
+            RITZ_CHECK(take_selection(text, "SPC", RITZ_SELECT_SPC, cards));
+            RITZ_CHECK(take_selection(text, "MPC", RITZ_SELECT_MPC, cards));
+        }
+    }
+    return RITZ_OK;
+}
+
+static ritz_status copy_text(const char *text, char **out)
+{
+    char *copy = NULL;
+
+    RITZ_CHECK_NEW(copy, (int64_t)strlen(text) + 1);
+    memcpy(copy, text, strlen(text) + 1);
+    *out = copy;
+    return RITZ_OK;
+}
+
+/* Append a file; @p text becomes the deck's, unless the call fails. */
+static ritz_status add_file(ritz_cards *cards, const char *path, char *text)
+{
+    char *copy = NULL;
+
+    RITZ_CHECK_ROOM(cards->file, cards->num_files, cards->files_room);
+    if (path)
+        RITZ_CHECK(copy_text(path, &copy));
+    cards->file[cards->num_files].path = copy;
+    cards->file[cards->num_files++].text = text;
+    return RITZ_OK;
+}
+
+/* ---- INCLUDE ------------------------------------------------------------ */
+
+enum { MOST_FILES = 10000 };
+
+/* The name in 'quotes', perhaps over several lines, or the rest of the line. */
+static ritz_status include_name(ritz_lines *text, const char *at, char *name,
+                                size_t size)
+{
+    const char *end = text->line_end;
+    size_t used = 0;
+    char quote = '\0';
+
+    while (at < end && (ritz_card_is_blank(*at) || *at == '='))
+        at++;
+    if (at < end && (*at == '\'' || *at == '"'))
+        quote = *at++;
+    for (;;) {
+        const char *stop = NULL;
+        int64_t length = end - at;
+
+        if (quote)
+            stop = memchr(at, quote, (size_t)length);
+        else
+            ritz_card_uncomment(at, &length);
+        if (stop)
+            length = stop - at;
+        ritz_card_trim(&at, &length);
+        RITZ_REFUSE_IF(used + (size_t)length >= size, RITZ_ERR_FORMAT,
+                       "the name that INCLUDE gives is too long");
+        memcpy(name + used, at, (size_t)length);
+        used += (size_t)length;
+        if (stop || !quote)
+            break;
+        RITZ_REFUSE_IF(!ritz_lines_next(text), RITZ_ERR_FORMAT,
+                       "the quote of INCLUDE is not closed");
+        at = text->line;
+        end = text->line_end;
+    }
+    name[used] = '\0';
+    RITZ_REFUSE_IF(used == 0, RITZ_ERR_FORMAT, "INCLUDE names no file");
+    return RITZ_OK;
+}
+
+/* folder/name, or name alone if it begins at the root. */
+static ritz_status join_path(const char *folder, const char *name, char **out)
+{
+    size_t length = strlen(folder) + strlen(name) + 2;
+    char *path = NULL;
+
+    RITZ_CHECK_NEW(path, (int64_t)length);
+    if (*name == '/' || !*folder || strcmp(folder, ".") == 0)
+        snprintf(path, length, "%s", name);
+    else
+        snprintf(path, length, "%s/%s", folder, name);
+    *out = path;
+    return RITZ_OK;
+}
+
+static const char *path_of(const ritz_scanner *scan, int level)
+{
+    return scan->cards->file[scan->open[level].file].path;
+}
+
+/* Go on with a file before the one that includes it; takes `bytes`. */
+static ritz_status open_file(ritz_scanner *scan, const char *path, char *bytes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_source new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
+                       .file = scan->cards->num_files};
+
+    status = add_file(scan->cards, path, bytes);
+    if (status != RITZ_OK)
+        free(bytes);
+    RITZ_TRY(status);
+    RITZ_TRY(skip_control(path, &new.text, scan->cards));
+    RITZ_TRY(ritz_path_folder(path, &new.folder));
+    scan->open[scan->depth++] = new;
+done:
+    return status;
+}
+
+static ritz_status include(ritz_scanner *scan, const char *path)
+{
+    char *bytes = NULL;
+
+    for (int k = 0; k < scan->depth; k++)
+        RITZ_REFUSE_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
+                       RITZ_ERR_FORMAT, "'%s' includes itself", path);
+    RITZ_REFUSE_IF(scan->depth > RITZ_CARDS_DEEPEST, RITZ_ERR_FORMAT,
+                   "INCLUDE is more than %d files deep", RITZ_CARDS_DEEPEST);
+    RITZ_REFUSE_IF(scan->cards->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
+                   "INCLUDE reads more than %d files", MOST_FILES);
+    RITZ_CHECK(ritz_text_read(path, &bytes));
+    return open_file(scan, path, bytes);
+}
+
+/* Follow an INCLUDE; @p rest is what stands behind the word. */
+static ritz_status follow_include(ritz_scanner *scan, const char *rest)
+{
+    enum { LONGEST = 4096 };
+    ritz_status status = RITZ_OK;
+    ritz_source *top = &scan->open[scan->depth - 1];
+    const char *including = path_of(scan, scan->depth - 1);
+    int64_t number = top->text.number;
+    char name[LONGEST] = "";
+    char where[LONGEST + 40] = "";
+    char *path = NULL;
+
+    if (including)
+        snprintf(where, sizeof where, "'%s', line %" PRId64, including, number);
+    else
+        snprintf(where, sizeof where, "line %" PRId64, number);
+    RITZ_TRY_IN(where, include_name(&top->text, rest, name, sizeof name));
+    if (!top->folder) {
+        scan->cards->num_skipped++;
+        goto done;
+    }
+    RITZ_TRY(join_path(top->folder, name, &path));
+    RITZ_TRY_IN(where, include(scan, path));
+done:
+    free(path);
+    return status;
+}
+
+/* ---- lines of a file and of those that it includes ---------------------- */
+
+static ritz_status add_line(ritz_cards *cards, int64_t file,
+                            const ritz_lines *text, int64_t length)
+{
+    ritz_line *line = NULL;
+
+    RITZ_REFUSE_IF(length > INT32_MAX, RITZ_ERR_FORMAT,
+                   "line %" PRId64 " is too long", text->number);
+    RITZ_CHECK_ROOM(cards->line, cards->num_lines, cards->lines_room);
+    line = &cards->line[cards->num_lines++];
+    *line = (ritz_line){.text = text->line,
+                        .length = (int32_t)length,
+                        .file = (int32_t)file,
+                        .number = text->number,
+                        .next = -1};
+    return RITZ_OK;
+}
+
+static ritz_status take_line(ritz_scanner *scan)
+{
+    const ritz_source *top = &scan->open[scan->depth - 1];
+    const char *line = top->text.line;
+    const char *rest = NULL;
+    int64_t length = top->text.line_end - line;
+
+    ritz_card_uncomment(line, &length);
+    while (length > 0 && ritz_card_is_blank(line[length - 1]))
+        length--;
+    if (length == 0 || ritz_card_begins(line, length, "BEGIN", &rest))
+        return RITZ_OK;
+    if (ritz_card_begins(line, length, "ENDDATA", &rest))
+        scan->ended = true;
+    else if (ritz_card_begins(line, length, "INCLUDE", &rest))
+        RITZ_CHECK(follow_include(scan, rest));
+    else
+        RITZ_CHECK(add_line(scan->cards, top->file, &top->text, length));
+    return RITZ_OK;
+}
+
+/* Keep the lines of a file, and of what it includes, up to ENDDATA. */
+static ritz_status scan_text(const char *path, const char *folder,
+                             ritz_lines text, ritz_cards *cards)
+{
+    ritz_status status = RITZ_OK;
+    ritz_scanner scan = {.cards = cards};
+    char *copy = NULL;
+
+    RITZ_TRY(add_file(cards, path, NULL));
+    RITZ_TRY(skip_control(path, &text, cards));
+    if (folder)
+        RITZ_TRY(copy_text(folder, &copy));
+    scan.open[scan.depth++] = (ritz_source){.text = text, .folder = copy};
+    while (scan.depth > 0 && !scan.ended) {
+        if (ritz_lines_next(&scan.open[scan.depth - 1].text))
+            RITZ_TRY(take_line(&scan));
+        else
+            free(scan.open[--scan.depth].folder);
+    }
+done:
+    while (scan.depth > 0)
+        free(scan.open[--scan.depth].folder);
+    return status;
+}
+
+/* ---- from lines to cards ------------------------------------------------ */
+
+typedef struct marker {
+    char text[RITZ_CARD_NAME + 1];
+    int64_t line;
+    bool taken;
+} marker;
+
+static void copy_marker(const char *text, int64_t length,
+                        char out[RITZ_CARD_NAME + 1])
+{
+    int64_t k = 0;
+
+    for (; k < length && k < RITZ_CARD_NAME; k++)
+        out[k] = ritz_card_upper(text[k]);
+    out[k] = '\0';
+}
+
+/* Marker that a continuation begins with: field 1 without its + or *. */
+static void leading_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
+{
+    const char *text = NULL;
+    int64_t length = 0;
+
+    ritz_view_name(line, &text, &length);
+    if (length > 0) {
+        text++;
+        length--;
+    }
+    ritz_card_trim(&text, &length);
+    copy_marker(text, length, out);
+}
+
+/* Marker that a line ends with: what is in columns 73-80. */
+static void trailing_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
+{
+    const char *text = NULL;
+    int64_t length = 0;
+    int64_t mark = 0;
+
+    out[0] = '\0';
+    if (line->free) {
+        (void)ritz_view_items(line, &mark);
+        if (mark == 0)
+            return;
+        (void)ritz_view_item(line, mark, &text, &length);
+    } else {
+        if (line->length <= RITZ_CARD_DATA)
+            return;
+        text = line->text + RITZ_CARD_DATA;
+        length = line->length - RITZ_CARD_DATA;
+    }
+    /* the first of the eight columns does not count, whatever it holds */
+    if (length > 0 && ritz_card_is_blank(*text))
+        ritz_card_trim(&text, &length);
+    else if (length > 0 && !line->free && *text != '+' && *text != '*') {
+        text++;
+        length--;
+    }
+    if (length > 0 && (*text == '+' || *text == '*')) {
+        text++;
+        length--;
+    }
+    ritz_card_trim(&text, &length);
+    copy_marker(text, length, out);
+}
+
+static ritz_status add_entry(ritz_cards *cards, int64_t line,
+                             const ritz_view *seen)
+{
+    ritz_entry *entry = NULL;
+    const char *name = NULL;
+    int64_t length = 0;
+
+    ritz_view_name(seen, &name, &length);
+    RITZ_CHECK_ROOM(cards->entry, cards->num_entries, cards->entries_room);
+    entry = &cards->entry[cards->num_entries++];
+    *entry = (ritz_entry){.line = line};
+    for (int64_t k = 0; k < length && k < RITZ_CARD_NAME_SIZE - 1; k++) {
+        if (name[k] == '*' || ritz_card_is_blank(name[k]))
+            break;
+        entry->name[k] = ritz_card_upper(name[k]);
+    }
+    return RITZ_OK;
+}
+
+/* Continuations that no line above them claims. */
+typedef struct strays {
+    int64_t count, room;
+    marker *marker;
+} strays;
+
+static ritz_status add_stray(strays *list, int64_t line,
+                             const char text[RITZ_CARD_NAME + 1])
+{
+    RITZ_CHECK_ROOM(list->marker, list->count, list->room);
+    list->marker[list->count] = (marker){.line = line};
+    memcpy(list->marker[list->count++].text, text, RITZ_CARD_NAME + 1);
+    return RITZ_OK;
+}
+
+/* Give each continuation to the line above it where the markers allow. */
+static ritz_status join_neighbours(ritz_cards *cards, strays *list)
+{
+    char lead[RITZ_CARD_NAME + 1];
+    char trail[RITZ_CARD_NAME + 1] = "";
+    ritz_view seen;
+
+    for (int64_t k = 0; k < cards->num_lines; k++) {
+        ritz_view_look(&cards->line[k], &seen);
+        if (!seen.continues) {
+            RITZ_CHECK(add_entry(cards, k, &seen));
+            trailing_marker(&seen, trail);
+            continue;
+        }
+        leading_marker(&seen, lead);
+        if (k > 0 && (!lead[0] || strcmp(lead, trail) == 0))
+            cards->line[k - 1].next = k;
+        else
+            RITZ_CHECK(add_stray(list, k, lead));
+        trailing_marker(&seen, trail);
+    }
+    return RITZ_OK;
+}
+
+static int compare_markers(const void *a, const void *b)
+{
+    const marker *left = a;
+    const marker *right = b;
+
+    return strcmp(left->text, right->text);
+}
+
+/* Let the lines whose tenth field has a stray's marker claim it. */
+static ritz_status join_strays(ritz_cards *cards, strays *list)
+{
+    marker wanted = {0};
+    ritz_view seen;
+
+    if (list->count == 0)
+        return RITZ_OK;
+    qsort(list->marker, (size_t)list->count, sizeof *list->marker,
+          compare_markers);
+    for (int64_t k = 1; k < list->count; k++)
+        if (compare_markers(&list->marker[k - 1], &list->marker[k]) == 0)
+            RITZ_CHECK(ritz_cards_refuse(cards, list->marker[k].line,
+                                         "another continuation has the marker "
+                                         "'+%s' too",
+                                         list->marker[k].text));
+    for (int64_t k = 0; k < cards->num_lines; k++) {
+        marker *found = NULL;
+
+        ritz_view_look(&cards->line[k], &seen);
+        trailing_marker(&seen, wanted.text);
+        if (!wanted.text[0] || cards->line[k].next >= 0)
+            continue;
+        found = bsearch(&wanted, list->marker, (size_t)list->count,
+                        sizeof wanted, compare_markers);
+        if (!found)
+            continue;
+        if (found->taken)
+            RITZ_CHECK(ritz_cards_refuse(
+                cards, k, "another line is continued by '+%s' too",
+                wanted.text));
+        found->taken = true;
+        cards->line[k].next = found->line;
+    }
+    return RITZ_OK;
+}
+
+/* Every line must be reached from a card: no stray is left, no circle. */
+static ritz_status check_reach(const ritz_cards *cards)
+{
+    ritz_status status = RITZ_OK;
+    bool *reached = NULL;
+
+    RITZ_NEW(reached, cards->num_lines);
+    for (int64_t k = 0; k < cards->num_entries; k++)
+        for (int64_t at = cards->entry[k].line; at >= 0;
+             at = cards->line[at].next)
+            reached[at] = true;
+    for (int64_t k = 0; k < cards->num_lines; k++)
+        if (!reached[k])
+            RITZ_TRY(ritz_cards_refuse(cards, k,
+                                       "the continuation '%.*s' belongs to no "
+                                       "card",
+                                       cards->line[k].length < RITZ_CARD_NAME
+                                           ? (int)cards->line[k].length
+                                           : RITZ_CARD_NAME,
+                                       cards->line[k].text));
+done:
+    free(reached);
+    return status;
+}
+
+/* Find the cards; give every continuation to the line that it continues. */
+static ritz_status join_lines(ritz_cards *cards)
+{
+    ritz_status status = RITZ_OK;
+    strays list = {0};
+
+    RITZ_TRY(join_neighbours(cards, &list));
+    RITZ_TRY(join_strays(cards, &list));
+    RITZ_TRY(check_reach(cards));
+done:
+    free(list.marker);
+    return status;
+}
+
+/* ---- decks -------------------------------------------------------------- */
 
 ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
                               const char *format, ...)
@@ -33,8 +543,8 @@ ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
     ritz_cards cards = {0};
     ritz_lines whole = {.at = text, .end = text + size};
 
-    RITZ_TRY(ritz_cards_scan(path, folder, whole, &cards));
-    RITZ_TRY(ritz_cards_join(&cards));
+    RITZ_TRY(scan_text(path, folder, whole, &cards));
+    RITZ_TRY(join_lines(&cards));
     *out = cards;
     cards = (ritz_cards){0};
 done:
@@ -54,4 +564,22 @@ void ritz_cards_free(ritz_cards *cards)
     free(cards->selected[0]);
     free(cards->selected[1]);
     *cards = (ritz_cards){0};
+}
+
+/* ---- what the case control selects -------------------------------------- */
+
+int ritz_cards_compare_ids(const void *left, const void *right)
+{
+    const int64_t *a = left;
+    const int64_t *b = right;
+
+    return (*a > *b) - (*a < *b);
+}
+
+bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set)
+{
+    return cards->num_selected[which] == 0 ||
+           bsearch(&set, cards->selected[which],
+                   (size_t)cards->num_selected[which], sizeof set,
+                   ritz_cards_compare_ids);
 }

@@ -123,4 +123,16 @@ ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
 void ritz_card_free(ritz_card *card);
 void ritz_cards_free(ritz_cards *cards);
 
+/** Order of two int64_t, and of structs that begin with an id. */
+int ritz_cards_compare_ids(const void *left, const void *right);
+
+/** Whether a set of SPC or MPC cards acts; those selected are sorted. */
+bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set);
+
+/** Whether a field is @p word, which is in capitals. */
+bool ritz_card_is_word(const char *text, const char *word);
+
+/** Directions "123" as digits; @return false if they are not distinct 0-6 */
+bool ritz_card_mask(int64_t digits, uint8_t *out);
+
 #endif

@@ -1,9 +1,127 @@
 /*
- * A card taken apart into its fields, line by line. Two large lines count as
- * one small: a small line that follows a single large one leaves its four
- * missing fields blank.
+ * The fields of a card: how it is taken apart, and what a field says as number
+ * or id. Two large lines count as one small: a small line that follows a single
+ * large one leaves its four missing fields blank.
  */
-#include "formats/cards_parts.h"
+#include "formats/cards.h"
+#include "formats/cards_lines.h"
+#include "formats/decimal.h"
+
+#include <ritz/text.h>
+
+#include <math.h>
+
+/* ---- values ------------------------------------------------------------- */
+
+const char *ritz_card_text(const ritz_card *card, int64_t k)
+{
+    return k < card->count ? card->field[k].text : "";
+}
+
+ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
+                             const char *wanted)
+{
+    const char *text = ritz_card_text(card, k);
+    int64_t line = k < card->count ? card->field[k].line : card->entry->line;
+
+    if (!*text)
+        return ritz_cards_refuse(card->cards, line,
+                                 "a field of %s is blank where %s must be",
+                                 card->entry->name, wanted);
+    return ritz_cards_refuse(card->cards, line, "'%s' in %s is not %s", text,
+                             card->entry->name, wanted);
+}
+
+ritz_status ritz_card_whole(const ritz_card *card, int64_t k, int64_t blank,
+                            int64_t *out)
+{
+    const char *text = ritz_card_text(card, k);
+
+    if (*text && !ritz_text_whole(text, out))
+        return ritz_card_refuse(card, k, "a whole number");
+    if (!*text)
+        *out = blank;
+    return RITZ_OK;
+}
+
+ritz_status ritz_card_id(const ritz_card *card, int64_t k, int64_t *out)
+{
+    static const int64_t MOST_ID = 999999999999999;
+    const char *text = ritz_card_text(card, k);
+
+    if (!ritz_text_whole(text, out) || *out <= 0)
+        return ritz_card_refuse(card, k, "a positive whole number");
+    if (*out > MOST_ID) /* so that one may count beyond it */
+        return ritz_card_refuse(card, k, "an id of at most 15 digits");
+    return RITZ_OK;
+}
+
+ritz_status ritz_card_real(const ritz_card *card, int64_t k, double blank,
+                           double *out)
+{
+    const char *text = ritz_card_text(card, k);
+
+    if (*text && !ritz_card_number(text, out))
+        return ritz_card_refuse(card, k, "a number");
+    if (!*text)
+        *out = blank;
+    return RITZ_OK;
+}
+
+/* All of a text as a number, and the digits it is written with. */
+static bool scan_number(const char *text, ritz_decimal *out)
+{
+    const char *end = text + strlen(text);
+
+    return ritz_decimal_scan(&text, end, out) && text == end &&
+           isfinite(out->value);
+}
+
+bool ritz_card_number(const char *text, double *out)
+{
+    ritz_decimal number = {0};
+
+    if (!scan_number(text, &number))
+        return false;
+    *out = number.value;
+    return true;
+}
+
+int64_t ritz_card_digits(const char *text)
+{
+    ritz_decimal number = {0};
+
+    return scan_number(text, &number) ? number.digits : 0;
+}
+
+bool ritz_card_is_word(const char *text, const char *word)
+{
+    for (; *text && *word; text++, word++)
+        if (*text != *word && *text - 'a' + 'A' != *word)
+            return false;
+    return *text == *word;
+}
+
+/* that ranges alone may stand for */
+
+bool ritz_card_mask(int64_t digits, uint8_t *out)
+{
+    uint8_t mask = digits == 0 ? 1 : 0;
+
+    if (digits < 0 || digits > 6543210)
+        return false;
+    for (; digits > 0; digits /= 10) {
+        uint8_t bit = (uint8_t)(1U << (unsigned)(digits % 10));
+
+        if (digits % 10 > 6 || (mask & bit) || digits % 10 == 0)
+            return false;
+        mask |= bit;
+    }
+    *out = mask;
+    return true;
+}
+
+/* ---- fields ------------------------------------------------------------- */
 
 static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
                              int64_t length)

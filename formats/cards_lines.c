@@ -9,7 +9,7 @@
  * A comma in the first ten columns makes a line free. A tab goes to the next of
  * columns 9, 17, ... What lies beyond column 80 of a fixed line is not read.
  */
-#include "formats/cards_parts.h"
+#include "formats/cards_lines.h"
 
 void ritz_card_trim(const char **text, int64_t *length)
 {

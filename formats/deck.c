@@ -17,14 +17,20 @@ const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size)
 static ritz_status parse_bytes(const char *path, const char *bytes,
                                int64_t size, const char *folder, ritz_deck *out)
 {
+    ritz_status status = RITZ_OK;
     const ritz_deck_format *format = ritz_deck_recognise(bytes, size);
+    ritz_deck deck = {0};
 
-    RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
-                   "'%s' is not a text file, as all decks are that Ritz knows",
-                   path ? path : "the deck");
-    RITZ_CHECK(format->parse(path, bytes, size, folder, out));
-    out->format = format;
-    return RITZ_OK;
+    RITZ_FAIL_IF(!format, RITZ_ERR_FORMAT,
+                 "'%s' is not a text file, as all decks are that Ritz knows",
+                 path ? path : "the deck");
+    RITZ_TRY(format->parse(path, bytes, size, folder, &deck));
+    deck.format = format;
+    *out = deck;
+    deck = (ritz_deck){0};
+done:
+    ritz_deck_free(&deck);
+    return status;
 }
 
 ritz_status ritz_deck_parse(const char *path, const char *text,

@@ -15,12 +15,304 @@
  *
  * [Nastran1986], entry DMIG.
  */
-#include "formats/dmig_parts.h"
-
 #include "base/alloc.h"
+#include "base/tolerances.h"
+#include "formats/cards.h"
+#include "formats/matrix.h"
+
+#include <ritz/foreign.h>
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
+
+enum {
+    RITZ_DMIG_SQUARE = 1,
+    RITZ_DMIG_WIDE = 2,
+    RITZ_DMIG_SYMMETRIC = 6,
+    RITZ_DMIG_COLUMNS = 9,
+};
+
+/* What a header says. */
+typedef struct ritz_dmig_header {
+    char name[RITZ_NAME_SIZE];
+    int64_t line; /* in the deck */
+    int64_t form;
+    bool complex, polar;
+    int64_t digits;
+    int64_t first, count; /* its terms, once sorted */
+    int64_t rank;         /* place in the file */
+} ritz_dmig_header;
+
+/* A(row, col) = re + i im, as a column card gives it. */
+typedef struct ritz_dmig_term {
+    ritz_dof row, col;
+    double re, im;
+    int64_t line;
+    int64_t matrix; /* index of the header */
+} ritz_dmig_term;
+
+typedef struct ritz_dmig_cards {
+    ritz_cards cards;
+    int64_t num_headers, headers_room;
+    int64_t num_terms, terms_room;
+    ritz_dmig_header *header; /* sorted by name once taken */
+    ritz_dmig_term *term;
+} ritz_dmig_cards;
+
+static int compare_names(const void *a, const void *b)
+{
+    const ritz_dmig_header *left = a;
+    const ritz_dmig_header *right = b;
+
+    return strcmp(left->name, right->name);
+}
+
+static char upper(char letter)
+{
+    return (char)toupper((unsigned char)letter);
+}
+
+static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
+{
+    const char *name = ritz_card_text(card, 0);
+    size_t k = 0;
+
+    if (!isalpha((unsigned char)*name))
+        return ritz_card_refuse(card, 0, "the name of a matrix");
+    for (; name[k]; k++) {
+        if (iscntrl((unsigned char)name[k]) || name[k] == '/')
+            return ritz_card_refuse(card, 0, "the name of a matrix");
+        out[k] = upper(name[k]);
+    }
+    out[k] = '\0';
+    return RITZ_OK;
+}
+
+/* The header has 0 where columns have a grid; a blank is a header's too. */
+static bool is_header(const ritz_card *card)
+{
+    const char *grid = ritz_card_text(card, 1);
+
+    return strcmp(grid, "0") == 0 || !*grid;
+}
+
+static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
+{
+    ritz_dmig_header new = {.line = card->entry->line,
+                            .rank = all->num_headers};
+    int64_t type = 0;
+    int64_t polar = 0;
+
+    RITZ_CHECK(take_name(card, new.name));
+    RITZ_CHECK(ritz_card_whole(card, 2, 0, &new.form));
+    RITZ_CHECK(ritz_card_whole(card, 3, 0, &type));
+    RITZ_CHECK(ritz_card_whole(card, 5, 0, &polar));
+    if (new.form != RITZ_DMIG_SQUARE &&new.form != RITZ_DMIG_WIDE &&new.form !=
+        RITZ_DMIG_SYMMETRIC &&new.form != RITZ_DMIG_COLUMNS)
+        RITZ_CHECK(ritz_card_refuse(card, 2, "a form: 1, 2, 6 or 9"));
+    if (type < 1 || type > 4)
+        RITZ_CHECK(ritz_card_refuse(card, 3, "a type: 1, 2, 3 or 4"));
+    if (polar != 0 && polar != 1)
+        RITZ_CHECK(ritz_card_refuse(card, 5, "0 or 1 for POLAR"));
+    new.complex = type > 2;
+    new.polar = polar == 1;
+    RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
+    all->header[all->num_headers++] = new;
+    return RITZ_OK;
+}
+
+static ritz_status sort_headers(ritz_dmig_cards *all)
+{
+    if (all->num_headers > 1)
+        qsort(all->header, (size_t)all->num_headers, sizeof *all->header,
+              compare_names);
+    for (int64_t k = 1; k < all->num_headers; k++)
+        if (compare_names(&all->header[k - 1], &all->header[k]) == 0)
+            RITZ_CHECK(ritz_cards_refuse(&all->cards, all->header[k].line,
+                                         "DMIG '%s' has a second header",
+                                         all->header[k].name));
+    return RITZ_OK;
+}
+
+static ritz_status take_dof(const ritz_card *card, int64_t k, ritz_dof *out)
+{
+    RITZ_CHECK(ritz_card_id(card, k, &out->grid));
+    RITZ_CHECK(ritz_card_whole(card, k + 1, 0, &out->component));
+    if (out->component < 0 || out->component > 6)
+        RITZ_CHECK(ritz_card_refuse(card, k + 1, "a direction, 0 to 6"));
+    return RITZ_OK;
+}
+
+static bool is_empty_group(const ritz_card *card, int64_t k)
+{
+    for (int64_t j = k; j < k + 4; j++)
+        if (*ritz_card_text(card, j))
+            return false;
+    return true;
+}
+
+/* G C A B at field k. */
+static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
+                            const ritz_card *card, int64_t k, ritz_dof col)
+{
+    static const double RADIANS = RITZ_PI / 180.0;
+    ritz_dmig_term new = {.col = col, .matrix = owner - all->header};
+    double a = 0.0;
+    double b = 0.0;
+    int64_t digits = 0;
+
+    RITZ_CHECK(take_dof(card, k, &new.row));
+    RITZ_CHECK(ritz_card_real(card, k + 2, 0.0, &a));
+    RITZ_CHECK(ritz_card_real(card, k + 3, 0.0, &b));
+    if (!owner->complex && b != 0.0)
+        RITZ_CHECK(
+            ritz_card_refuse(card, k + 3, "blank, as it is in a real matrix"));
+    new.line = card->field[k].line;
+    new.re = owner->polar ? a *cos(b * RADIANS) : a;
+    new.im = owner->polar ? a *sin(b * RADIANS) : b;
+    for (int64_t j = k + 2; j < k + 4; j++) {
+        digits = ritz_card_digits(ritz_card_text(card, j));
+        if (digits > owner->digits)
+            owner->digits = digits;
+    }
+    RITZ_CHECK_ROOM(all->term, all->num_terms, all->terms_room);
+    all->term[all->num_terms++] = new;
+    owner->count++;
+    return RITZ_OK;
+}
+
+static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dmig_header wanted = {0};
+    ritz_dmig_header *owner = NULL;
+    ritz_dof col = {0};
+
+    RITZ_TRY(take_name(card, wanted.name));
+    if (all->num_headers > 0)
+        owner = bsearch(&wanted, all->header, (size_t)all->num_headers,
+                        sizeof wanted, compare_names);
+    if (!owner) {
+        status = ritz_cards_refuse(&all->cards, card->entry->line,
+                                   "DMIG '%s' has no header", wanted.name);
+        goto done;
+    }
+    RITZ_TRY(take_dof(card, 1, &col));
+    for (int64_t k = 4; k < card->count; k += 4)
+        if (!is_empty_group(card, k))
+            RITZ_TRY(add_term(all, owner, card, k, col));
+done:
+    return status;
+}
+
+/* Go through the DMIG cards: headers first, as they may follow columns. */
+static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
+{
+    ritz_status status = RITZ_OK;
+    ritz_card card = {0};
+
+    for (int64_t k = 0; k < all->cards.num_entries; k++) {
+        if (strcmp(all->cards.entry[k].name, "DMIG") != 0)
+            continue;
+        RITZ_TRY(ritz_card_take(&all->cards, k, &card));
+        if (is_header(&card) != headers)
+            continue;
+        if (headers)
+            RITZ_TRY(add_header(all, &card));
+        else
+            RITZ_TRY(add_column(all, &card));
+    }
+done:
+    ritz_card_free(&card);
+    return status;
+}
+
+/* Headers and terms of the deck, as its cards give them. */
+static ritz_status take_deck(ritz_dmig_cards *all)
+{
+    RITZ_CHECK(take_cards(all, true));
+    RITZ_CHECK(sort_headers(all));
+    return take_cards(all, false);
+}
+
+/* The dofs that occur as rows, as columns or as either, ascending. */
+static ritz_status collect(const ritz_dmig_term *terms, int64_t count,
+                           bool rows, bool cols, int64_t *found, ritz_dof **out)
+{
+    ritz_dof *dof = NULL;
+    int64_t n = 0;
+
+    RITZ_CHECK_NEW(dof, 2 * count);
+    for (int64_t k = 0; k < count; k++) {
+        if (rows)
+            dof[n++] = terms[k].row;
+        if (cols)
+            dof[n++] = terms[k].col;
+    }
+    *found = ritz_dof_distinct(n, dof);
+    *out = dof;
+    return RITZ_OK;
+}
+
+static int64_t position(ritz_dof wanted, int64_t count, const ritz_dof *dof)
+{
+    const ritz_dof *found =
+        bsearch(&wanted, dof, (size_t)count, sizeof wanted, ritz_dof_compare);
+
+    return found - dof;
+}
+
+/* Both triangles where one is given. */
+static ritz_status list_terms(const ritz_dmig_header *owner,
+                              const ritz_dmig_term *terms, int64_t nrow,
+                              const ritz_dof *row, int64_t ncol,
+                              const ritz_dof *col, ritz_triplets *out)
+{
+    RITZ_CHECK(ritz_triplets_new(2 * owner->count, out));
+    for (int64_t k = 0; k < owner->count; k++) {
+        const ritz_dmig_term *one = &terms[k];
+        int64_t i = position(one->row, nrow, row);
+        int64_t j = position(one->col, ncol, col);
+
+        ritz_triplets_put(out, i, j, one->re, one->im);
+        if (owner->form == RITZ_DMIG_SYMMETRIC && i != j)
+            ritz_triplets_put(out, j, i, one->re, one->im);
+    }
+    return RITZ_OK;
+}
+
+/* The matrix of a header and its sorted terms. */
+static ritz_status make_matrix(const ritz_dmig_header *owner,
+                               const ritz_dmig_term *terms, ritz_matrix *out)
+{
+    ritz_status status = RITZ_OK;
+    bool square =
+        owner->form == RITZ_DMIG_SQUARE || owner->form == RITZ_DMIG_SYMMETRIC;
+    ritz_matrix new = {.symmetric = owner->form == RITZ_DMIG_SYMMETRIC,
+                       .digits = owner->digits};
+    ritz_triplets list = {0};
+    int64_t nrow = 0;
+    int64_t ncol = 0;
+
+    memcpy(new.name, owner->name, sizeof new.name);
+    snprintf(new.spelling, sizeof new.spelling, "DMIG, form %d%s%s",
+             (int)owner->form, owner->complex ? ", complex" : "",
+             owner->polar ? ", polar" : "");
+    RITZ_TRY(collect(terms, owner->count, true, square, &nrow, &new.row));
+    ncol = nrow;
+    if (!square)
+        RITZ_TRY(collect(terms, owner->count, false, true, &ncol, &new.col));
+    RITZ_TRY(list_terms(owner, terms, nrow, new.row, ncol,
+                        square ? new.row : new.col, &list));
+    RITZ_TRY(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
+    *out = new;
+    new = (ritz_matrix){0};
+done:
+    ritz_triplets_free(&list);
+    ritz_matrix_free(&new);
+    return status;
+}
 
 static int compare_whole(int64_t a, int64_t b)
 {
@@ -116,7 +408,7 @@ static ritz_status read_dmig(const char *bytes, int64_t size,
     ritz_matrices new = {0};
 
     RITZ_TRY(ritz_cards_parse(NULL, bytes, size, folder, &all.cards));
-    RITZ_TRY(ritz_dmig_take(&all));
+    RITZ_TRY(take_deck(&all));
     RITZ_FAIL_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                  "there is no DMIG card in the bulk data");
     sort_terms(&all);
@@ -125,9 +417,9 @@ static ritz_status read_dmig(const char *bytes, int64_t size,
           compare_ranks);
     RITZ_NEW(new.matrix, all.num_headers);
     for (; new.count < all.num_headers; new.count++)
-        RITZ_TRY(ritz_dmig_matrix(&all.header[new.count],
-                                  all.term + all.header[new.count].first,
-                                  &new.matrix[new.count]));
+        RITZ_TRY(make_matrix(&all.header[new.count],
+                             all.term + all.header[new.count].first,
+                             &new.matrix[new.count]));
     snprintf(new.format, sizeof new.format, "%s", ritz_format_dmig.name);
     *out = new;
     new = (ritz_matrices){0};

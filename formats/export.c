@@ -1,19 +1,7 @@
-#include "base/alloc.h"
-
+/* Exporters by name, and what may be asked of each. */
 #include <ritz/export.h>
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* A new format is a new file that defines one descriptor, and one line here. */
-const ritz_exporter *const ritz_exporters[] = {
-    &ritz_exporter_exudyn,        &ritz_exporter_matlab,
-    &ritz_exporter_matrix_market, &ritz_exporter_output4,
-    &ritz_exporter_tsv,           &ritz_exporter_vtu,
-    &ritz_exporter_xdmf,          NULL,
-};
 
 const ritz_exporter *ritz_exporter_find(const char *name)
 {
@@ -43,27 +31,4 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
                    "dense or digits",
                    exporter->name);
     return RITZ_OK;
-}
-
-ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
-{
-    char(*more)[256] = NULL;
-    va_list args;
-
-    RITZ_CHECK_NEW(more, report->count + 1);
-    if (report->count > 0)
-        memcpy(more, report->line, (size_t)report->count * sizeof *more);
-    va_start(args, format);
-    vsnprintf(more[report->count], sizeof *more, format, args);
-    va_end(args);
-    free(report->line);
-    report->line = more;
-    report->count++;
-    return RITZ_OK;
-}
-
-void ritz_export_report_free(ritz_export_report *report)
-{
-    free(report->line);
-    *report = (ritz_export_report){0};
 }

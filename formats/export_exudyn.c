@@ -3,10 +3,256 @@
  * loads [Gerstmayr2023], as release 1.13.6 saves it. Nodes carry translations
  * only, along basic axes, and come in the order of grid ids.
  */
-#include "formats/exudyn.h"
-
+#include "base/alloc.h"
 #include "base/draft.h"
 #include "container/h5.h"
+#include "formats/exudyn.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the body ----------------------------------------------------------- */
+
+void exudyn_body_free(exudyn_body *b)
+{
+    ritz_nodes_free(&b->nodes);
+    free(b->dof);
+    ritz_dense_free(&b->T);
+    free(b->xRef);
+    ritz_dense_free(&b->modeBasis);
+    exudyn_modes_free(&b->modes);
+    exudyn_terms_free(&b->terms);
+    ritz_invariants_free(&b->invariants);
+    *b = (exudyn_body){0};
+}
+
+static ritz_status check_parts(const ritz_reduced *reduced)
+{
+    RITZ_REFUSE_IF(
+        !reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
+        "it was reduced --without-basis, which holds the shapes that "
+        "the file needs");
+    RITZ_REFUSE_IF(reduced->grids.count == 0, RITZ_ERR_ARGUMENT,
+                   "no grid has a position: import with --bulk");
+    RITZ_REFUSE_IF(!reduced->inertia.known, RITZ_ERR_ARGUMENT,
+                   "the body has no mass");
+    RITZ_REFUSE_IF(
+        !reduced->invariants.momentum.val, RITZ_ERR_ARGUMENT,
+        "it holds no invariants of inertia, which are kept of at most "
+        "%d columns, and it has %lld",
+        (int)RITZ_INVARIANT_COLUMNS, (long long)reduced->K.ncol);
+    return RITZ_OK;
+}
+
+static ritz_status check_rows(const ritz_reduced *reduced)
+{
+    for (int64_t i = 0; i < reduced->num_dofs; i++) {
+        ritz_dof dof = reduced->dof[i];
+
+        RITZ_REFUSE_IF(dof.component == 0, RITZ_ERR_ARGUMENT,
+                       "point %lld is a scalar point, which has no place in a "
+                       "body that moves",
+                       (long long)dof.grid);
+        RITZ_REFUSE_IF(ritz_grids_find(&reduced->grids, dof.grid) < 0,
+                       RITZ_ERR_ARGUMENT, "grid %lld has no position",
+                       (long long)dof.grid);
+    }
+    return RITZ_OK;
+}
+
+/* An absent translation is zero along its axis, which must be a basic one. */
+static ritz_status check_nodes(const ritz_nodes *nodes)
+{
+    RITZ_REFUSE_IF(nodes->count == 0, RITZ_ERR_ARGUMENT,
+                   "no grid has a translation");
+    for (int64_t k = 0; k < nodes->count; k++) {
+        const int64_t *row = nodes->row + 3 * k;
+        bool all = row[0] >= 0 && row[1] >= 0 && row[2] >= 0;
+
+        RITZ_REFUSE_IF(!all && !ritz_nodes_basic(nodes, k), RITZ_ERR_ARGUMENT,
+                       "grid %lld has axes of its own and brings only some of "
+                       "its translations",
+                       (long long)nodes->grids->id[nodes->grid[k]]);
+    }
+    return RITZ_OK;
+}
+
+/*
+ * A grid that is only recovered may lack a translation, of which nothing is
+ * known: it is left out.
+ */
+static void leave_partial(int64_t num_rows, ritz_nodes *nodes)
+{
+    int64_t kept = 0;
+
+    for (int64_t k = 0; k < nodes->count; k++) {
+        const int64_t *row = nodes->row + 3 * k;
+        bool own = false;
+        bool all = true;
+
+        for (int p = 0; p < 3; p++) {
+            own = own || (row[p] >= 0 && row[p] < num_rows);
+            all = all && row[p] >= 0;
+        }
+        if (!own && !all)
+            continue;
+        memmove(nodes->row + 3 * kept, row, 3 * sizeof *row);
+        nodes->grid[kept++] = nodes->grid[k];
+    }
+    nodes->count = kept;
+}
+
+static ritz_status count_rotating(const ritz_grids *grids, exudyn_body *b)
+{
+    ritz_status status = RITZ_OK;
+    bool *turns = NULL;
+
+    RITZ_NEW(turns, grids->count);
+    for (int64_t i = 0; i < b->num_dofs; i++) {
+        int64_t k = b->dof[i].component > 3
+                        ? ritz_grids_find(grids, b->dof[i].grid)
+                        : -1;
+
+        if (k < 0 || turns[k])
+            continue;
+        turns[k] = true;
+        b->num_rotating++;
+    }
+done:
+    free(turns);
+    return status;
+}
+
+static ritz_status place_nodes(exudyn_body *b)
+{
+    RITZ_CHECK_NEW(b->xRef, 3 * b->nodes.count);
+    for (int64_t k = 0; k < b->nodes.count; k++)
+        memcpy(b->xRef + 3 * k, b->nodes.grids->position + 3 * b->nodes.grid[k],
+               3 * sizeof *b->xRef);
+    return RITZ_OK;
+}
+
+/* Psi: rows x, y, z of each node. */
+static ritz_status shape_modes(exudyn_body *b)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = b->nodes.count;
+    ritz_dense Psi = {0}, along = {0};
+
+    RITZ_TRY(ritz_dense_mul(&b->T, &b->modes.V, &Psi));
+    RITZ_TRY(ritz_dense_new(3 * n, Psi.ncol, &b->modeBasis));
+    for (int a = 0; a < 3; a++) {
+        ritz_dense_free(&along);
+        RITZ_TRY(ritz_nodes_along(&b->nodes, &Psi, a, &along));
+        for (int64_t j = 0; j < Psi.ncol; j++)
+            for (int64_t k = 0; k < n; k++)
+                ritz_dense_col(&b->modeBasis, j)[3 * k + a] =
+                    ritz_dense_col(&along, j)[k];
+    }
+done:
+    ritz_dense_free(&Psi);
+    ritz_dense_free(&along);
+    return status;
+}
+
+ritz_status exudyn_body_of(const ritz_reduced *reduced, exudyn_body *out)
+{
+    ritz_status status = RITZ_OK;
+    exudyn_body b = {0};
+
+    RITZ_TRY(check_parts(reduced));
+    b.num_dofs = reduced->num_dofs + reduced->recovery.count;
+    RITZ_TRY(ritz_recovery_extend(&reduced->recovery, reduced->num_dofs,
+                                  reduced->dof, &reduced->T, &b.dof, &b.T));
+    RITZ_TRY(check_rows(reduced));
+    RITZ_TRY(count_rotating(&reduced->grids, &b));
+    RITZ_TRY(ritz_nodes_of(b.num_dofs, b.dof, &reduced->grids, &b.nodes));
+    leave_partial(reduced->num_dofs, &b.nodes);
+    RITZ_TRY(check_nodes(&b.nodes));
+    RITZ_TRY(exudyn_modes_of(reduced, &b.modes));
+    RITZ_TRY(place_nodes(&b));
+    RITZ_TRY(shape_modes(&b));
+    RITZ_TRY(ritz_invariants_project(&reduced->invariants, &b.modes.V,
+                                     &b.invariants));
+    RITZ_TRY(exudyn_terms_of(&b.invariants, &reduced->inertia, &b.terms));
+    *out = b;
+    b = (exudyn_body){0};
+done:
+    exudyn_body_free(&b);
+    return status;
+}
+
+/* Share of kinetic energy that translations do not carry, at its worst. */
+static double find_loss(const exudyn_body *b, int64_t *mode)
+{
+    int64_t m = b->modes.V.ncol;
+    double worst = 0.0;
+
+    for (int64_t j = 0; j < m; j++) {
+        double part = 0.0;
+        double loss = 0.0;
+
+        for (int64_t a = 0; a < 3 * m; a += m)
+            part += ritz_dense_col(&b->invariants.product, a + j)[a + j];
+        loss = fabs(1.0 - part / ritz_dense_col(&b->modes.M, j)[j]);
+        if (loss > worst) {
+            worst = loss;
+            *mode = j;
+        }
+    }
+    return worst;
+}
+
+static ritz_status say_losses(const ritz_reduced *reduced, const exudyn_body *b,
+                              ritz_export_report *report)
+{
+    int64_t mode = 0;
+    double loss = find_loss(b, &mode);
+    const double *rigid = b->invariants.rigid;
+    double m = reduced->inertia.mass;
+
+    if (b->num_rotating > 0)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "rotations of %lld grids left out: they count in mass, inertia and "
+            "frequencies, not in shapes",
+            (long long)b->num_rotating));
+    /* rounding, of modes that 98 columns make: 3e-9, measured */
+    if (b->num_rotating > 0 || loss > 1e-6)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "translations alone change the kinetic energy of a mode by %.2g "
+            "at most, of mode %lld",
+            loss, (long long)mode + 1));
+    /* 1e-6: the asymmetry that import averages away */
+    if (fabs(rigid[0] - m) + fabs(rigid[7] - m) + fabs(rigid[14] - m) >
+        1e-6 * m)
+        RITZ_CHECK(ritz_export_say(report,
+                                   "mass differs by direction, %.6g %.6g %.6g: "
+                                   "are dofs fixed? Their mean is taken",
+                                   rigid[0], rigid[7], rigid[14]));
+    if (reduced->D.val || reduced->K4.val || reduced->damping[0])
+        RITZ_CHECK(ritz_export_say(report, "damping left out: the file has no "
+                                           "place for it"));
+    return RITZ_OK;
+}
+
+ritz_status exudyn_body_say(const ritz_reduced *reduced, const exudyn_body *b,
+                            ritz_export_report *report)
+{
+    RITZ_CHECK(ritz_export_say(
+        report, "%lld flexible modes, %.6g to %.6g Hz, at %lld nodes",
+        (long long)b->modes.V.ncol, b->modes.lowest_hz, b->modes.highest_hz,
+        (long long)b->nodes.count));
+    RITZ_CHECK(ritz_export_say(
+        report, "%lld rigid %s left to the moving frame%s",
+        (long long)b->modes.num_rigid, b->modes.kept ? "columns" : "motions",
+        b->modes.kept ? "" : ", the modes are eigenvectors of the others"));
+    return say_losses(reduced, b, report);
+}
+
+/* ---- its file ----------------------------------------------------------- */
 
 /* Exudyn compares `datatype` with str: only text of variable length is one. */
 static hid_t text_type(void)

@@ -3,7 +3,7 @@
  * field a shape, and the number of each grid.
  */
 #include "base/draft.h"
-#include "formats/xml.h"
+#include "formats/sink.h"
 
 #include <errno.h>
 #include <inttypes.h>

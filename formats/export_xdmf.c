@@ -6,7 +6,7 @@
 #include "base/alloc.h"
 #include "base/draft.h"
 #include "container/h5.h"
-#include "formats/xml.h"
+#include "formats/sink.h"
 
 #include <errno.h>
 #include <inttypes.h>

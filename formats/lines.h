@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 /* Begin with `at` and `end`; a copy goes on from where it was made. */
 typedef struct ritz_lines {
@@ -13,7 +14,19 @@ typedef struct ritz_lines {
 } ritz_lines;
 
 /** Take the next line. @return false at the end of the text */
-bool ritz_lines_next(ritz_lines *text);
+static inline bool ritz_lines_next(ritz_lines *text)
+{
+    const char *stop = NULL;
+
+    if (text->at >= text->end)
+        return false;
+    stop = memchr(text->at, '\n', (size_t)(text->end - text->at));
+    text->line = text->at;
+    text->line_end = stop ? stop : text->end;
+    text->at = stop ? stop + 1 : text->end;
+    text->number++;
+    return true;
+}
 
 /** Letters of a text that a message quotes: all, but at most 79. */
 static inline int ritz_lines_quoted(const char *text, const char *end)

@@ -10,7 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
-#include "formats/triplets.h"
+#include "formats/matrix.h"
 
 #include <inttypes.h>
 #include <math.h>

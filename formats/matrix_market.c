@@ -10,15 +10,333 @@
  * whether it is to be summed, and a stiffness twice too large looks like one.
  * Zeros are not kept, so that array and coordinate give one pattern.
  */
-#include "formats/matrix_market.h"
-
 #include "base/alloc.h"
 #include "formats/decimal.h"
+#include "formats/lines.h"
+
+#include <ritz/foreign.h>
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* In the order of their names below. */
+enum { RITZ_MARKET_COORDINATE, RITZ_MARKET_ARRAY };
+enum {
+    RITZ_MARKET_REAL,
+    RITZ_MARKET_DOUBLE,
+    RITZ_MARKET_INTEGER,
+    RITZ_MARKET_COMPLEX,
+    RITZ_MARKET_PATTERN,
+};
+enum {
+    RITZ_MARKET_GENERAL,
+    RITZ_MARKET_SYMMETRIC,
+    RITZ_MARKET_SKEW,
+    RITZ_MARKET_HERMITIAN,
+};
+
+typedef struct ritz_market_entry {
+    int64_t row, col; /* from 0; of symmetric files in the lower triangle */
+    double re, im;
+    bool flipped; /* stood in the upper triangle */
+} ritz_market_entry;
+
+typedef struct ritz_market {
+    ritz_lines text;
+    int layout, field, symmetry;
+    const char *kind; /* its symmetry in words */
+    int64_t nrow, ncol;
+    int64_t most; /* entries there is room for */
+    int64_t count;
+    ritz_market_entry *entry;
+    int64_t digits;
+} ritz_market;
+
+/* ---- entries to columns ------------------------------------------------- */
+
+/* a := the value that entry (col, row) has if (row, col) has a. */
+static void mirror_value(const ritz_market *m, double *re, double *im)
+{
+    if (m->symmetry == RITZ_MARKET_SKEW) {
+        *re = -*re;
+        *im = -*im;
+    } else if (m->symmetry == RITZ_MARKET_HERMITIAN) {
+        *im = -*im;
+    }
+}
+
+static bool is_sorted(const ritz_market *m)
+{
+    for (int64_t k = 1; k < m->count; k++) {
+        const ritz_market_entry *a = &m->entry[k - 1];
+        const ritz_market_entry *b = &m->entry[k];
+
+        if (a->col > b->col || (a->col == b->col && a->row > b->row))
+            return false;
+    }
+    return true;
+}
+
+/* Stable counting sort of the entries, by row or by column. */
+static ritz_status sort_by(ritz_market *m, bool by_row)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = by_row ? m->nrow : m->ncol;
+    int64_t *start = NULL;
+    ritz_market_entry *sorted = NULL;
+
+    RITZ_NEW(start, n + 1);
+    RITZ_NEW(sorted, m->count);
+    for (int64_t k = 0; k < m->count; k++)
+        start[(by_row ? m->entry[k].row : m->entry[k].col) + 1]++;
+    for (int64_t j = 0; j < n; j++)
+        start[j + 1] += start[j];
+    for (int64_t k = 0; k < m->count; k++)
+        sorted[start[by_row ? m->entry[k].row : m->entry[k].col]++] =
+            m->entry[k];
+    free(m->entry);
+    m->entry = sorted;
+    sorted = NULL;
+done:
+    free(start);
+    free(sorted);
+    return status;
+}
+
+/* Sort; of a mirrored pair that agrees keep one, refuse other repetitions. */
+static ritz_status settle_entries(ritz_market *m)
+{
+    int64_t kept = 0;
+    int64_t run = 0; /* entries at one place */
+
+    if (!is_sorted(m)) {
+        RITZ_CHECK(sort_by(m, true));
+        RITZ_CHECK(sort_by(m, false));
+    }
+    for (int64_t k = 0; k < m->count; k++) {
+        const ritz_market_entry *e = &m->entry[k];
+        const ritz_market_entry *last = kept > 0 ? &m->entry[kept - 1] : NULL;
+
+        if (!last || last->row != e->row || last->col != e->col) {
+            m->entry[kept++] = *e;
+            run = 1;
+            continue;
+        }
+        run++;
+        RITZ_REFUSE_IF(last->flipped == e->flipped || run > 2, RITZ_ERR_FORMAT,
+                       "entry (%" PRId64 ", %" PRId64 ") is given twice",
+                       e->row + 1, e->col + 1);
+        RITZ_REFUSE_IF(last->re != e->re || last->im != e->im, RITZ_ERR_FORMAT,
+                       "entries (%" PRId64 ", %" PRId64 ") and (%" PRId64
+                       ", %" PRId64 ") of a %s matrix disagree",
+                       e->row + 1, e->col + 1, e->col + 1, e->row + 1, m->kind);
+    }
+    m->count = kept;
+    return RITZ_OK;
+}
+
+static bool is_zero(const ritz_market_entry *e)
+{
+    return e->re == 0.0 && e->im == 0.0;
+}
+
+/*
+ * Columns from sorted entries. Mirrored ones come from columns further left, so
+ * that they are in place, in order, when a column's own entries follow.
+ */
+static ritz_status compress_columns(const ritz_market *m, ritz_matrix *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse A = {0};
+    int64_t *next = NULL;
+    double *imaginary = NULL;
+
+    RITZ_NEW(next, m->ncol + 1);
+    for (int64_t k = 0; k < m->count; k++) {
+        const ritz_market_entry *e = &m->entry[k];
+
+        if (is_zero(e))
+            continue;
+        next[e->col + 1]++;
+        if (m->symmetry != RITZ_MARKET_GENERAL && e->row != e->col)
+            next[e->row + 1]++;
+    }
+    for (int64_t j = 0; j < m->ncol; j++)
+        next[j + 1] += next[j];
+    RITZ_TRY(ritz_sparse_new(m->nrow, m->ncol, next[m->ncol], &A));
+    memcpy(A.colptr, next, (size_t)(m->ncol + 1) * sizeof *next);
+    if (m->field == RITZ_MARKET_COMPLEX)
+        RITZ_NEW(imaginary, next[m->ncol]);
+    for (int64_t k = 0; k < m->count; k++) {
+        ritz_market_entry e = m->entry[k];
+        bool twice = m->symmetry != RITZ_MARKET_GENERAL && e.row != e.col;
+
+        for (int turn = 0; turn < (twice ? 2 : 1) && !is_zero(&e); turn++) {
+            int64_t p = next[turn ? e.row : e.col]++;
+
+            if (turn)
+                mirror_value(m, &e.re, &e.im);
+            A.rowind[p] = turn ? e.col : e.row;
+            A.val[p] = e.re;
+            if (imaginary)
+                imaginary[p] = e.im;
+        }
+    }
+    out->A = A;
+    out->imaginary = imaginary;
+    A = (ritz_sparse){0};
+    imaginary = NULL;
+done:
+    free(next);
+    free(imaginary);
+    ritz_sparse_free(&A);
+    return status;
+}
+
+/* ---- lines of entries --------------------------------------------------- */
+
+/* Take the next line that is neither blank nor a comment, less its blanks. */
+static bool next_line(ritz_market *m)
+{
+    ritz_lines *text = &m->text;
+
+    while (ritz_lines_next(text)) {
+        while (text->line_end > text->line && text->line_end[-1] == '\r')
+            text->line_end--;
+        text->line = ritz_decimal_skip(text->line, text->line_end);
+        if (text->line < text->line_end && *text->line != '%')
+            return true;
+    }
+    return false;
+}
+
+/* One number, which a blank or the end of the line must follow. */
+static ritz_status read_number(ritz_market *m, const char **at, double *out)
+{
+    const char *begin = ritz_decimal_skip(*at, m->text.line_end);
+    ritz_decimal number = {0};
+
+    *at = begin;
+    RITZ_REFUSE_IF(!ritz_decimal_scan(at, m->text.line_end, &number) ||
+                       ritz_decimal_is_inside(*at, m->text.line_end),
+                   RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' is not a number",
+                   m->text.number, ritz_lines_quoted(begin, m->text.line_end),
+                   begin);
+    RITZ_REFUSE_IF(!isfinite(number.value), RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": the value is not finite", m->text.number);
+    if (number.digits > m->digits)
+        m->digits = number.digits;
+    *out = number.value;
+    return RITZ_OK;
+}
+
+static ritz_status append(ritz_market *m, ritz_market_entry e)
+{
+    int64_t row = e.row;
+
+    RITZ_REFUSE_IF(m->count == m->most, RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": more entries than the %" PRId64
+                   " that are declared",
+                   m->text.number, m->most);
+    RITZ_REFUSE_IF(e.row < 0 || e.row >= m->nrow || e.col < 0 ||
+                       e.col >= m->ncol,
+                   RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": entry (%" PRId64 ", %" PRId64
+                   ") lies outside a %" PRId64 " x %" PRId64 " matrix",
+                   m->text.number, e.row + 1, e.col + 1, m->nrow, m->ncol);
+    RITZ_REFUSE_IF(
+        row == e.col && ((m->symmetry == RITZ_MARKET_SKEW &&
+                          (e.re != 0.0 || e.im != 0.0)) ||
+                         (m->symmetry == RITZ_MARKET_HERMITIAN && e.im != 0.0)),
+        RITZ_ERR_FORMAT,
+        "line %" PRId64 ": diagonal entry %" PRId64 " cannot be in a %s matrix",
+        m->text.number, row + 1, m->kind);
+    if (m->symmetry != RITZ_MARKET_GENERAL && e.row < e.col) {
+        e.row = e.col;
+        e.col = row;
+        e.flipped = true;
+        mirror_value(m, &e.re, &e.im);
+    }
+    m->entry[m->count++] = e;
+    return RITZ_OK;
+}
+
+/* The line "i j value". */
+static ritz_status read_entry(ritz_market *m)
+{
+    ritz_market_entry e = {.re = 1.0};
+    const char *at = m->text.line;
+    const char *second = NULL;
+    bool good = ritz_decimal_scan_whole(&at, m->text.line_end, &e.row);
+
+    second = ritz_decimal_skip(at, m->text.line_end);
+    good = good && second > at;
+    at = second;
+    good = good && ritz_decimal_scan_whole(&at, m->text.line_end, &e.col);
+    RITZ_REFUSE_IF(
+        !good || ritz_decimal_is_inside(at, m->text.line_end), RITZ_ERR_FORMAT,
+        "line %" PRId64 ": '%.*s' is not an entry 'row column value'",
+        m->text.number, ritz_lines_quoted(m->text.line, m->text.line_end),
+        m->text.line);
+    e.row--;
+    e.col--;
+    if (m->field != RITZ_MARKET_PATTERN)
+        RITZ_CHECK(read_number(m, &at, &e.re));
+    if (m->field == RITZ_MARKET_COMPLEX)
+        RITZ_CHECK(read_number(m, &at, &e.im));
+    RITZ_REFUSE_IF(ritz_decimal_skip(at, m->text.line_end) != m->text.line_end,
+                   RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": more than an entry on the line",
+                   m->text.number);
+    return append(m, e);
+}
+
+/* Values of an array on one line, which follow those of the lines before. */
+static ritz_status read_values(ritz_market *m, ritz_market_entry *next)
+{
+    const char *at = m->text.line;
+
+    while (ritz_decimal_skip(at, m->text.line_end) != m->text.line_end) {
+        RITZ_CHECK(read_number(m, &at, &next->re));
+        if (m->field == RITZ_MARKET_COMPLEX)
+            RITZ_CHECK(read_number(m, &at, &next->im));
+        RITZ_REFUSE_IF(m->count == m->most, RITZ_ERR_FORMAT,
+                       "line %" PRId64 ": more values than the %" PRId64
+                       " that are declared",
+                       m->text.number, m->most);
+        RITZ_CHECK(append(m, *next));
+        next->row++;
+        if (next->row == m->nrow) {
+            next->col++;
+            next->row = m->symmetry == RITZ_MARKET_GENERAL ? 0 : next->col;
+            next->row += m->symmetry == RITZ_MARKET_SKEW;
+        }
+    }
+    return RITZ_OK;
+}
+
+/* Entries from the next line to the end of the file. */
+static ritz_status read_entries(ritz_market *m)
+{
+    ritz_market_entry next = {.row = m->symmetry == RITZ_MARKET_SKEW};
+
+    while (next_line(m)) {
+        if (m->layout == RITZ_MARKET_COORDINATE)
+            RITZ_CHECK(read_entry(m));
+        else
+            RITZ_CHECK(read_values(m, &next));
+    }
+    RITZ_REFUSE_IF(m->count < m->most, RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": ends after %" PRId64 " of %" PRId64
+                   " entries",
+                   m->text.number, m->count, m->most);
+    return RITZ_OK;
+}
+
+/* ---- head of the file --------------------------------------------------- */
 
 /* Rows or columns that a file may declare beyond one for each byte. */
 enum { NULL_ROWS = 32000000 };
@@ -106,7 +424,7 @@ static ritz_status read_size(ritz_market *m)
     int64_t n[3] = {0};
     int64_t bytes = 0;
 
-    RITZ_REFUSE_IF(!ritz_market_next(m), RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(!next_line(m), RITZ_ERR_FORMAT,
                    "line %" PRId64 ": ends before its size", m->text.number);
     RITZ_REFUSE_IF(!ritz_decimal_scan_row(
                        m->text.line, m->text.line_end,
@@ -157,10 +475,10 @@ static ritz_status read_all(const char *bytes, int64_t size, const char *folder,
     (void)folder; /* the format includes no other file */
     RITZ_TRY(read_banner(&m));
     RITZ_TRY(read_size(&m));
-    RITZ_TRY(ritz_market_read_entries(&m));
-    RITZ_TRY(ritz_market_settle(&m));
+    RITZ_TRY(read_entries(&m));
+    RITZ_TRY(settle_entries(&m));
     RITZ_NEW(matrix, 1);
-    RITZ_TRY(ritz_market_compress(&m, matrix));
+    RITZ_TRY(compress_columns(&m, matrix));
     matrix->symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
     matrix->digits = m.digits;
     if (m.field == RITZ_MARKET_INTEGER || m.field == RITZ_MARKET_PATTERN ||

@@ -102,10 +102,6 @@ ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row);
 ritz_status ritz_output4_end(ritz_output4_list *list,
                              ritz_output4_build *build);
 
-/** Give the matrix the meaning that FORM says. */
-ritz_status ritz_output4_obey(ritz_output4_list *list,
-                              ritz_output4_build *build);
-
 /** Copy a name without its padding. */
 void ritz_output4_name(const char *bytes, int64_t size,
                        char out[RITZ_NAME_SIZE]);

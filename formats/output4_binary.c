@@ -6,11 +6,159 @@
  *
  * Data fill their record: where NW disagrees the record is right.
  */
-#include "formats/output4_binary.h"
+#include "formats/output4.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+
+/* The file and how its bytes are meant. */
+typedef struct ritz_binary {
+    const unsigned char *begin, *at, *end;
+    bool big_endian;
+    int64_t mark;    /* bytes of a record's length */
+    int64_t integer; /* bytes of an integer, the size of a word too */
+    int64_t real;    /* bytes of a number in this matrix */
+} ritz_binary;
+
+typedef struct ritz_binary_record {
+    const unsigned char *at;
+    int64_t size;
+} ritz_binary_record;
+
+/** @p size bytes as an unsigned number. */
+static inline uint64_t load_bits(const unsigned char *at, int64_t size,
+                                 bool big_endian)
+{
+    uint64_t value = 0;
+
+    for (int64_t k = 0; k < size; k++)
+        value = value << 8 | at[big_endian ? k : size - 1 - k];
+    return value;
+}
+
+/** @p size bytes, 4 or 8, as an integer. */
+static inline int64_t load_integer(const ritz_binary *b,
+                                   const unsigned char *at, int64_t size)
+{
+    uint64_t bits = load_bits(at, size, b->big_endian);
+
+    return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
+}
+
+/* ---- records ------------------------------------------------------------ */
+
+/*
+ * Records as Fortran writes them unformatted: length, bytes, length again. Byte
+ * order and size of integers follow from the first length. Lengths are integers
+ * of 4 bytes, of 8 by some compilers; records of no bytes may stand between
+ * others.
+ */
+
+/* How the file is spelled, from the length of its first record. */
+static bool find_spelling(const char *bytes, int64_t size, ritz_binary *out)
+{
+    const void *start = bytes;
+    ritz_binary b = {.begin = start};
+
+    b.at = b.begin;
+    b.end = b.begin + size;
+    for (int k = 0; k < 8 && size >= 4; k++) {
+        int64_t length = 0;
+
+        b.big_endian = k & 1;
+        b.integer = k & 2 ? 8 : 4;
+        b.mark = k & 4 ? 4 : 8;
+        length = 6 * b.integer;
+        if (size < b.mark ||
+            load_bits(b.at, b.mark, b.big_endian) != (uint64_t)length)
+            continue;
+        *out = b;
+        return true;
+    }
+    return false;
+}
+
+/* Take a record that is not empty; its size is -1 at the end of the file. */
+static ritz_status take_record(ritz_binary *b, ritz_binary_record *out)
+{
+    int64_t size = 0;
+
+    while (size == 0) {
+        int64_t left = b->end - b->at;
+
+        *out = (ritz_binary_record){.size = -1};
+        if (left == 0)
+            return RITZ_OK;
+        RITZ_REFUSE_IF(left < 2 * b->mark, RITZ_ERR_FORMAT,
+                       "byte %td: %" PRId64 " bytes are left, too few for "
+                       "a record",
+                       b->at - b->begin, left);
+        size = load_integer(b, b->at, b->mark);
+        RITZ_REFUSE_IF(size < 0 || size > left - 2 * b->mark, RITZ_ERR_FORMAT,
+                       "byte %td: a record of %" PRId64
+                       " bytes begins, but %" PRId64 " are left",
+                       b->at - b->begin, size, left - b->mark);
+        *out = (ritz_binary_record){b->at + b->mark, size};
+        b->at += size + 2 * b->mark;
+        RITZ_REFUSE_IF(
+            load_integer(b, b->at - b->mark, b->mark) != size, RITZ_ERR_FORMAT,
+            "byte %td: a record of %" PRId64 " bytes ends with another length",
+            b->at - b->mark - b->begin, size);
+    }
+    return RITZ_OK;
+}
+
+/* A record as the header of a matrix. */
+static ritz_status take_header(const ritz_binary *b,
+                               const ritz_binary_record *from,
+                               ritz_output4_header *out)
+{
+    ritz_output4_header h = {0};
+    int64_t n[4] = {0};
+    const void *name = from->at + 4 * b->integer;
+
+    for (int64_t k = 0; k < 4 && from->size == 6 * b->integer; k++)
+        n[k] = load_integer(b, from->at + k * b->integer, b->integer);
+    RITZ_REFUSE_IF(n[3] < 1 || n[3] > 4 || n[0] < 0 || n[1] == INT64_MIN,
+                   RITZ_ERR_FORMAT,
+                   "byte %td: a record of %" PRId64 " bytes begins no matrix",
+                   from->at - b->begin, from->size);
+    h.ncol = n[0];
+    h.nrow = n[1] < 0 ? -n[1] : n[1];
+    h.bigmat = n[1] < 0 || n[1] >= 65536;
+    h.form = n[2];
+    h.type = n[3];
+    ritz_output4_name(name, 2 * b->integer, h.name);
+    *out = h;
+    return RITZ_OK;
+}
+
+/* Numbers in the columns ahead, at most: what to make room for. */
+static int64_t count_numbers(const ritz_binary *b, int64_t ncol)
+{
+    ritz_binary ahead = *b;
+    int64_t count = 0;
+
+    for (;;) {
+        int64_t left = ahead.end - ahead.at;
+        int64_t size = 0;
+
+        if (left < 2 * b->mark)
+            return count;
+        size = load_integer(b, ahead.at, b->mark);
+        if (size < 0 || size > left - 2 * b->mark)
+            return count;
+        if (size >= b->integer &&
+            load_integer(b, ahead.at + b->mark, b->integer) > ncol)
+            return count;
+        if (size > 3 * b->integer)
+            count += (size - 3 * b->integer) / b->real;
+        ahead.at += size + 2 * b->mark;
+    }
+}
+
+/* ---- columns ------------------------------------------------------------ */
 
 /* 8 bytes as an unsigned number, in a form that compiles to one instruction. */
 static uint64_t load_8(const unsigned char *at, bool big_endian)
@@ -20,7 +168,7 @@ static uint64_t load_8(const unsigned char *at, bool big_endian)
                   (uint64_t)at[4] << 32 | (uint64_t)at[5] << 40 |
                   (uint64_t)at[6] << 48 | (uint64_t)at[7] << 56;
 
-    return big_endian ? ritz_binary_load(at, 8, true) : up;
+    return big_endian ? load_bits(at, 8, true) : up;
 }
 
 static double load_real(const ritz_binary *b, const unsigned char *at)
@@ -31,7 +179,7 @@ static double load_real(const ritz_binary *b, const unsigned char *at)
     uint32_t half = 0;
 
     if (b->real == 4) {
-        half = (uint32_t)ritz_binary_load(at, 4, b->big_endian);
+        half = (uint32_t)load_bits(at, 4, b->big_endian);
         memcpy(&narrow, &half, sizeof narrow);
         return (double)narrow;
     }
@@ -73,7 +221,7 @@ static ritz_status read_strings(const ritz_binary *b, ritz_output4_build *build,
         int64_t n[2] = {0};
 
         for (int64_t k = 0; k < integers && k < left; k++)
-            n[k] = ritz_binary_integer(b, at + k * b->integer, b->integer);
+            n[k] = load_integer(b, at + k * b->integer, b->integer);
         RITZ_REFUSE_IF(!ritz_output4_decode(build, rule, b->real / b->integer,
                                             n, left, &string),
                        RITZ_ERR_FORMAT,
@@ -137,7 +285,7 @@ static ritz_status read_column(ritz_binary *b, ritz_output4_build *build,
     ritz_binary_record data = {0};
     int64_t n[3] = {0};
 
-    RITZ_CHECK(ritz_binary_take(b, &column));
+    RITZ_CHECK(take_record(b, &column));
     RITZ_REFUSE_IF(column.size < 0, RITZ_ERR_FORMAT,
                    "'%s' ends after column %" PRId64 " of %" PRId64,
                    build->header.name, build->column + 1, build->header.ncol);
@@ -146,7 +294,7 @@ static ritz_status read_column(ritz_binary *b, ritz_output4_build *build,
                    " bytes is no column of '%s'",
                    column.at - b->begin, column.size, build->header.name);
     for (int64_t k = 0; k < 3; k++)
-        n[k] = ritz_binary_integer(b, column.at + k * b->integer, b->integer);
+        n[k] = load_integer(b, column.at + k * b->integer, b->integer);
     data.at = column.at + 3 * b->integer;
     data.size = column.size - 3 * b->integer;
     *last = n[0] == build->header.ncol + 1;
@@ -174,12 +322,11 @@ static ritz_status read_matrix(ritz_binary *b, const ritz_binary_record *first,
     ritz_output4_build build = {0};
     bool last = false;
 
-    RITZ_TRY(ritz_binary_header(b, first, &header));
+    RITZ_TRY(take_header(b, first, &header));
     b->real = header.type % 2 == 1 && b->integer == 4 ? 4 : 8;
-    RITZ_TRY(ritz_output4_begin(list, &header,
-                                ritz_binary_numbers(b, header.ncol) /
-                                    (header.type > 2 ? 2 : 1),
-                                &build));
+    RITZ_TRY(ritz_output4_begin(
+        list, &header,
+        count_numbers(b, header.ncol) / (header.type > 2 ? 2 : 1), &build));
     while (!last)
         RITZ_TRY(read_column(b, &build, &last));
     build.matrix.digits = b->real == 4 ? 7 : 17;
@@ -199,7 +346,7 @@ bool ritz_output4_is_binary(const char *bytes, int64_t size)
 {
     ritz_binary b = {0};
 
-    return ritz_binary_spelling(bytes, size, &b);
+    return find_spelling(bytes, size, &b);
 }
 
 ritz_status ritz_output4_read_binary(const char *bytes, int64_t size,
@@ -208,9 +355,9 @@ ritz_status ritz_output4_read_binary(const char *bytes, int64_t size,
     ritz_binary b = {0};
     ritz_binary_record first = {0};
 
-    (void)ritz_binary_spelling(bytes, size, &b);
+    (void)find_spelling(bytes, size, &b);
     for (;;) {
-        RITZ_CHECK(ritz_binary_take(&b, &first));
+        RITZ_CHECK(take_record(&b, &first));
         if (first.size < 0)
             return RITZ_OK;
         RITZ_CHECK(read_matrix(&b, &first, list));

@@ -10,12 +10,168 @@
  * one. A column numbered NCOL + 1 ends the matrix. Integers are taken as words
  * where there are as many as expected, else as fields of 8 or 16.
  */
-#include "formats/output4_text.h"
-
 #include "formats/decimal.h"
+#include "formats/lines.h"
+#include "formats/output4.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
+
+typedef struct ritz_output4_text {
+    ritz_lines lines;
+    int64_t per_line, width, digits; /* of nEw.d */
+    char format[24];                 /* the same as written */
+} ritz_output4_text;
+
+/* ---- lines -------------------------------------------------------------- */
+
+/* Take a line, less its '\r'; false at the end of the file. */
+static bool take_line(ritz_output4_text *t)
+{
+    ritz_lines *lines = &t->lines;
+
+    if (!ritz_lines_next(lines))
+        return false;
+    if (lines->line_end > lines->line && lines->line_end[-1] == '\r')
+        lines->line_end--;
+    return true;
+}
+
+/* Take lines until one is not blank. */
+static bool take_filled_line(ritz_output4_text *t)
+{
+    while (take_line(t))
+        if (ritz_decimal_skip(t->lines.line, t->lines.line_end) !=
+            t->lines.line_end)
+            return true;
+    return false;
+}
+
+/* `count` integers in fields of some width, the line blank behind them. */
+static bool read_fields(const char *at, const char *end, const int64_t *width,
+                        int64_t count, int64_t *out)
+{
+    for (int64_t k = 0; k < count; k++) {
+        const char *stop = end - at > width[k] ? at + width[k] : end;
+
+        at = ritz_decimal_skip(at, stop);
+        if (!ritz_decimal_scan_whole(&at, stop, &out[k]) ||
+            ritz_decimal_skip(at, stop) != stop)
+            return false;
+        at = stop;
+    }
+    return true;
+}
+
+/* @p count integers of the line: words, or else fields of 8 or of 16. */
+static bool take_integers(const ritz_output4_text *t, int64_t count,
+                          int64_t *out)
+{
+    static const int64_t widths[2][3] = {{8, 8, 8}, {16, 16, 16}};
+
+    if (ritz_decimal_scan_row(t->lines.line, t->lines.line_end, count, out))
+        return true;
+    for (int k = 0; k < 2; k++)
+        if (t->lines.line_end - t->lines.line == widths[k][0] * count &&
+            read_fields(t->lines.line, t->lines.line_end, widths[k], count,
+                        out))
+            return true;
+    return false;
+}
+
+/* A whole number of at most 3 digits that must be followed by something. */
+static bool small_number(const char **at, const char *end, int64_t *out)
+{
+    const char *start = *at;
+
+    return *at < end && **at >= '0' && **at <= '9' &&
+           ritz_decimal_scan_whole(at, end, out) && *at - start <= 3;
+}
+
+/* "1P,3E23.16" or "5E16.9" at `at`, up to a blank, '|' or the end. */
+static bool read_format(const char *at, const char *end, ritz_output4_text *t)
+{
+    const char *start = at;
+    bool scaled = end - at > 3 && at[0] == '1' && (at[1] | 32) == 'p';
+    int64_t decimals = 0;
+
+    if (scaled)
+        at += at[2] == ',' ? 3 : 2;
+    if (!small_number(&at, end, &t->per_line) || at == end ||
+        ((*at | 32) != 'e' && (*at | 32) != 'd'))
+        return false;
+    at++;
+    if (!small_number(&at, end, &t->width) || at == end || *at++ != '.' ||
+        !small_number(&at, end, &decimals))
+        return false;
+    if (at < end && *at != ' ' && *at != '|' && *at != '\0')
+        return false;
+    if (t->per_line < 1 || t->width < 3 || decimals >= t->width)
+        return false;
+    t->digits = decimals + scaled;
+    snprintf(t->format, sizeof t->format, "%.*s", (int)(at - start), start);
+    return true;
+}
+
+/* Name and format behind the four integers of a header. */
+static bool read_label(const char *at, const char *end, ritz_output4_text *t,
+                       char name[RITZ_NAME_SIZE])
+{
+    const char *name_end = end - at > 8 ? at + 8 : end;
+    bool found = false;
+
+    for (const char *c = name_end; c < end && !found; c++)
+        found = read_format(c, end, t);
+    if (!found && ritz_decimal_skip(name_end, end) != end)
+        return false;
+    for (const char *c = at; c < name_end && !found; c++) {
+        found = read_format(c, end, t); /* a short name without padding */
+        if (found)
+            name_end = c;
+    }
+    if (!found) {
+        static const char usual[] = "5E16.9";
+
+        /* without 1P the point is in front of all digits, but not here */
+        found = read_format(usual, usual + strlen(usual), t);
+        t->digits++;
+    }
+    if (t->digits > 17)
+        t->digits = 17;
+    if (t->digits < 1)
+        t->digits = 1;
+    ritz_output4_name(at, name_end - at, name);
+    return found;
+}
+
+/* The line as a header of a matrix, and the nEw.d that it states. */
+static bool take_header(ritz_output4_text *t, ritz_output4_header *out)
+{
+    static const int64_t widths[2][4] = {{8, 8, 8, 8}, {16, 16, 8, 8}};
+    static const int64_t total[2] = {32, 48};
+    int64_t n[4] = {0};
+
+    for (int k = 0; k < 2; k++) {
+        ritz_output4_header h = {0};
+
+        if (t->lines.line_end - t->lines.line < total[k] ||
+            !read_fields(t->lines.line, t->lines.line + total[k], widths[k], 4,
+                         n) ||
+            !read_label(t->lines.line + total[k], t->lines.line_end, t, h.name))
+            continue;
+        h.ncol = n[0];
+        h.nrow = n[1] < 0 ? -n[1] : n[1];
+        h.bigmat = n[1] < 0 || n[1] >= 65536;
+        h.form = n[2];
+        h.type = n[3];
+        *out = h;
+        return h.ncol >= 0 && h.type >= 1 && h.type <= 4;
+    }
+    return false;
+}
+
+/* ---- columns ------------------------------------------------------------ */
 
 /* One number of the line, `k` fields from its left. */
 static ritz_status read_number(const ritz_output4_text *t,
@@ -61,7 +217,7 @@ static ritz_status read_numbers(ritz_output4_text *t, ritz_output4_build *build,
         int64_t here =
             reals - done_ < t->per_line ? reals - done_ : t->per_line;
 
-        RITZ_REFUSE_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
+        RITZ_REFUSE_IF(!take_line(t), RITZ_ERR_FORMAT,
                        "column %" PRId64 " of '%s' ends after %" PRId64
                        " of %" PRId64 " numbers",
                        build->column + 1, build->header.name, done_, reals);
@@ -95,14 +251,13 @@ static ritz_status read_strings(ritz_output4_text *t, ritz_output4_build *build,
         ritz_output4_string string = {0};
         int64_t integers[2] = {0};
 
-        RITZ_REFUSE_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
+        RITZ_REFUSE_IF(!take_line(t), RITZ_ERR_FORMAT,
                        "column %" PRId64 " of '%s' ends after %" PRId64
                        " of %" PRId64 " words",
                        build->column + 1, build->header.name, words - left,
                        words);
         RITZ_REFUSE_IF(
-            !ritz_output4_take_integers(t, ritz_output4_integers(rule),
-                                        integers) ||
+            !take_integers(t, ritz_output4_integers(rule), integers) ||
                 !ritz_output4_decode(build, rule, wide, integers, left,
                                      &string),
             RITZ_ERR_FORMAT,
@@ -160,15 +315,14 @@ static ritz_status skip_last(ritz_output4_text *t,
     ritz_output4_header header = {0};
     double number = 0.0;
 
-    RITZ_REFUSE_IF(!ritz_output4_take_line(t), RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(!take_line(t), RITZ_ERR_FORMAT,
                    "the record that ends '%s' is cut short",
                    build->header.name);
     RITZ_CHECK(read_number(t, build, 0, &number));
     for (int64_t k = t->per_line; k < count; k += t->per_line) {
         ritz_output4_text ahead = *t;
 
-        if (!ritz_output4_take_filled_line(&ahead) ||
-            ritz_output4_take_header(&ahead, &header))
+        if (!take_filled_line(&ahead) || take_header(&ahead, &header))
             return RITZ_OK;
         *t = ahead;
     }
@@ -183,10 +337,10 @@ static ritz_status read_column(ritz_output4_text *t, ritz_output4_build *build,
     int64_t after = build->header.ncol + 1;
 
     RITZ_REFUSE_IF(
-        !ritz_output4_take_integers(t, 3, n) || n[1] < 0 || n[2] < 1,
-        RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' begins no column of '%s'",
-        t->lines.number, ritz_lines_quoted(t->lines.line, t->lines.line_end),
-        t->lines.line, build->header.name);
+        !take_integers(t, 3, n) || n[1] < 0 || n[2] < 1, RITZ_ERR_FORMAT,
+        "line %" PRId64 ": '%.*s' begins no column of '%s'", t->lines.number,
+        ritz_lines_quoted(t->lines.line, t->lines.line_end), t->lines.line,
+        build->header.name);
     *last = n[0] == after;
     if (*last) {
         RITZ_CHECK(skip_last(t, build, n[2]));
@@ -209,13 +363,13 @@ static ritz_status read_matrix(ritz_output4_text *t, ritz_output4_list *list)
     ritz_output4_header header = {0};
     ritz_output4_build build = {0};
 
-    RITZ_FAIL_IF(!ritz_output4_take_header(t, &header), RITZ_ERR_FORMAT,
+    RITZ_FAIL_IF(!take_header(t, &header), RITZ_ERR_FORMAT,
                  "line %" PRId64 ": '%.*s' begins no matrix", t->lines.number,
                  ritz_lines_quoted(t->lines.line, t->lines.line_end),
                  t->lines.line);
     RITZ_TRY(ritz_output4_begin(list, &header, 0, &build));
     for (bool last = false; !last;) {
-        RITZ_FAIL_IF(!ritz_output4_take_filled_line(t), RITZ_ERR_FORMAT,
+        RITZ_FAIL_IF(!take_filled_line(t), RITZ_ERR_FORMAT,
                      "'%s' ends after column %" PRId64 " of %" PRId64,
                      header.name, build.column + 1, header.ncol);
         RITZ_TRY(read_column(t, &build, &last));
@@ -238,8 +392,7 @@ bool ritz_output4_is_text(const char *bytes, int64_t size)
     ritz_output4_text t = {.lines = {.at = bytes, .end = bytes + size}};
     ritz_output4_header header = {0};
 
-    return ritz_output4_take_filled_line(&t) &&
-           ritz_output4_take_header(&t, &header);
+    return take_filled_line(&t) && take_header(&t, &header);
 }
 
 ritz_status ritz_output4_read_text(const char *bytes, int64_t size,
@@ -247,7 +400,7 @@ ritz_status ritz_output4_read_text(const char *bytes, int64_t size,
 {
     ritz_output4_text t = {.lines = {.at = bytes, .end = bytes + size}};
 
-    while (ritz_output4_take_filled_line(&t))
+    while (take_filled_line(&t))
         RITZ_CHECK(read_matrix(&t, list));
     return RITZ_OK;
 }

@@ -5,7 +5,7 @@
  * exponent has three digits, as many numbers as fit 80 letters. Sparse is
  * bigmat: it has no limit of rows. Binary has 4-byte integers in native order.
  */
-#include "formats/output4_put.h"
+#include "formats/reduced_matrices.h"
 #include "formats/sink.h"
 
 #include <ritz/foreign.h>
@@ -13,6 +13,130 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+enum {
+    RITZ_OUTPUT4_MOST_8 = 99999999, /* in eight letters */
+    RITZ_OUTPUT4_LINE = 80,
+};
+
+/* A file, and the matrix that is being written to it. */
+typedef struct ritz_output4_writer {
+    FILE *file;
+    const ritz_matrix *matrix;
+    ritz_output4_style style;
+    int64_t numbers; /* per value: 1 real, 2 complex */
+    int width;       /* of a number in text */
+    int integer;     /* of an integer */
+    int64_t placed;  /* numbers on the present line */
+} ritz_output4_writer;
+
+/* ---- words -------------------------------------------------------------- */
+
+/* Up to 8 letters, digits and '_', capitals, a letter first. */
+static void write_name(const char *name, char out[9])
+{
+    size_t used = 0;
+
+    memset(out, 0, 9);
+    for (; *name && used < 8; name++) {
+        char c = *name;
+        bool digit = c >= '0' && c <= '9';
+
+        if (c >= 'a' && c <= 'z')
+            c = (char)(c - 'a' + 'A');
+        if (!digit && (c < 'A' || c > 'Z'))
+            c = '_';
+        if (used == 0 && (digit || c == '_'))
+            out[used++] = 'M';
+        out[used++] = c;
+    }
+    if (used == 0)
+        out[used++] = 'M';
+    memset(out + used, ' ', 8 - used);
+}
+
+/* Integers, which are a line of their own in text. */
+static void put_integers(const ritz_output4_writer *w, int64_t count,
+                         const int64_t *n)
+{
+    for (int64_t k = 0; k < count; k++) {
+        int32_t narrow = (int32_t)n[k];
+
+        if (w->style.text)
+            fprintf(w->file, "%*" PRId64, w->integer, n[k]);
+        else
+            fwrite(&narrow, sizeof narrow, 1, w->file);
+    }
+    if (w->style.text)
+        fputc('\n', w->file);
+}
+
+static void put_number(ritz_output4_writer *w, double number)
+{
+    if (!w->style.text) {
+        fwrite(&number, sizeof number, 1, w->file);
+        return;
+    }
+    fprintf(w->file, "%#*.*E", w->width, (int)w->style.digits - 1, number);
+    w->placed++;
+    if (w->placed == RITZ_OUTPUT4_LINE / w->width) {
+        fputc('\n', w->file);
+        w->placed = 0;
+    }
+}
+
+/* The value of entry @p p, or zero if it is -1. */
+static void put_value(ritz_output4_writer *w, int64_t p)
+{
+    put_number(w, p < 0 ? 0.0 : w->matrix->A.val[p]);
+    if (w->numbers == 2)
+        put_number(w, p < 0 ? 0.0 : w->matrix->imaginary[p]);
+}
+
+static void end_line(ritz_output4_writer *w)
+{
+    if (w->style.text && w->placed > 0)
+        fputc('\n', w->file);
+    w->placed = 0;
+}
+
+/* The length in front of and behind a record of bytes. */
+static void put_mark(const ritz_output4_writer *w, int64_t bytes)
+{
+    int32_t mark = (int32_t)bytes;
+
+    if (!w->style.text)
+        fwrite(&mark, sizeof mark, 1, w->file);
+}
+
+static void put_header(const ritz_output4_writer *w)
+{
+    const ritz_matrix *m = w->matrix;
+    int64_t nrow = w->style.sparse ? -m->A.nrow : m->A.nrow;
+    int64_t square = m->A.nrow == m->A.ncol ? 1 : 2;
+    int64_t n[4] = {m->A.ncol, nrow, square, 2 * w->numbers};
+    bool wide = n[0] > RITZ_OUTPUT4_MOST_8 || nrow > RITZ_OUTPUT4_MOST_8 ||
+                nrow < -RITZ_OUTPUT4_MOST_8 / 10;
+    char name[9];
+
+    if (m->symmetric && square == 1)
+        n[2] = 6;
+    write_name(m->name, name);
+    put_mark(w, 24);
+    if (w->style.text) {
+        fprintf(w->file, "%*" PRId64 "%*" PRId64 "%8" PRId64 "%8" PRId64 "%s",
+                wide ? 16 : 8, n[0], wide ? 16 : 8, n[1], n[2], n[3], name);
+        fprintf(w->file, "1P,%dE%d.%d%s\n", RITZ_OUTPUT4_LINE / w->width,
+                w->width, (int)w->style.digits - 1, wide ? "|I16" : "");
+    } else {
+        put_integers(w, 4, n);
+        fwrite(name, 1, 8, w->file);
+    }
+    put_mark(w, 24);
+}
+
+/* ---- matrices ----------------------------------------------------------- */
 
 enum { MOST_RECORD = 0x7fffffff };
 
@@ -55,8 +179,8 @@ static ritz_status begin_column(const ritz_output4_writer *w, int64_t j,
         !w->style.text && words > MOST_RECORD / 4 - 3, RITZ_ERR_ARGUMENT,
         "column %" PRId64 " of '%s' is too long for a record of 2 GiB", j + 1,
         w->matrix->name);
-    ritz_output4_put_mark(w, 4 * (words + 3));
-    ritz_output4_put_integers(w, 3, (const int64_t[]){j + 1, row, words});
+    put_mark(w, 4 * (words + 3));
+    put_integers(w, 3, (const int64_t[]){j + 1, row, words});
     return RITZ_OK;
 }
 
@@ -75,9 +199,9 @@ static ritz_status write_dense(ritz_output4_writer *w, int64_t j, int64_t begin,
     words = rows * w->numbers * (w->style.text ? 1 : 2);
     RITZ_CHECK(begin_column(w, j, first + 1, words));
     for (int64_t i = first; i < first + rows; i++)
-        ritz_output4_put_value(w, A->rowind[p] == i ? p++ : -1);
-    ritz_output4_end_line(w);
-    ritz_output4_put_mark(w, 4 * (words + 3));
+        put_value(w, A->rowind[p] == i ? p++ : -1);
+    end_line(w);
+    put_mark(w, 4 * (words + 3));
     return RITZ_OK;
 }
 
@@ -94,15 +218,14 @@ static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
     RITZ_CHECK(begin_column(w, j, 0, words));
     for (int64_t p = begin, q = 0; p < end; p = next_entry(m, q, end)) {
         q = end_of_run(m, p, end);
-        ritz_output4_put_integers(
-            w, 2,
-            (const int64_t[]){2 * w->numbers * (q - p) + 1,
-                              m->A.rowind[p] + 1});
+        put_integers(w, 2,
+                     (const int64_t[]){2 * w->numbers * (q - p) + 1,
+                                       m->A.rowind[p] + 1});
         for (int64_t k = p; k < q; k++)
-            ritz_output4_put_value(w, k);
-        ritz_output4_end_line(w);
+            put_value(w, k);
+        end_line(w);
     }
-    ritz_output4_put_mark(w, 4 * (words + 3));
+    put_mark(w, 4 * (words + 3));
     return RITZ_OK;
 }
 
@@ -147,7 +270,7 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
     w.width = number_width(m, style->digits);
     w.integer =
         last >= RITZ_OUTPUT4_MOST_8 || m->A.nrow > RITZ_OUTPUT4_MOST_8 ? 16 : 8;
-    ritz_output4_put_header(&w);
+    put_header(&w);
     for (int64_t j = 0; j < last; j++) {
         int64_t end = m->A.colptr[j + 1];
         int64_t begin = next_entry(m, m->A.colptr[j], end);
@@ -158,9 +281,9 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
             RITZ_CHECK(write_dense(&w, j, begin, end));
     }
     RITZ_CHECK(begin_column(&w, last, 1, style->text ? 1 : 2));
-    ritz_output4_put_number(&w, sqrt(2.0));
-    ritz_output4_end_line(&w);
-    ritz_output4_put_mark(&w, 20);
+    put_number(&w, sqrt(2.0));
+    end_line(&w);
+    put_mark(&w, 20);
     return RITZ_OK;
 }
 
@@ -188,3 +311,68 @@ ritz_status ritz_output4_write(const char *path, int64_t count,
         "%" PRId64 " digits cannot be written, 1 to 17 can", all.style.digits);
     return ritz_sink_write(path, write_all, &all);
 }
+
+/* ---- exporter ----------------------------------------------------------- */
+
+static ritz_status write(const ritz_matrices *list,
+                         const ritz_export_request *request,
+                         ritz_export_report *report)
+{
+    const ritz_output4_style style = {
+        .text = request->text,
+        .sparse = !request->dense,
+        .digits = request->digits > 0 ? request->digits : 17,
+    };
+
+    for (int64_t k = 0; k < list->count; k++)
+        RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld",
+                                   list->matrix[k].name,
+                                   (long long)list->matrix[k].A.nrow,
+                                   (long long)list->matrix[k].A.ncol));
+    if (style.text && style.digits < 17)
+        RITZ_CHECK(
+            ritz_export_say(report,
+                            "%lld digits: values are rounded, and a free "
+                            "body is then not quite free",
+                            (long long)style.digits));
+    return ritz_output4_write(request->output, list->count, list->matrix,
+                              &style);
+}
+
+static ritz_status write_reduced(const ritz_reduced *reduced,
+                                 const ritz_export_request *request,
+                                 ritz_export_report *report)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrices list = {0};
+
+    RITZ_TRY(ritz_reduced_matrices(reduced, request->matrices, &list));
+    RITZ_TRY(write(&list, request, report));
+done:
+    ritz_matrices_free(&list);
+    return status;
+}
+
+static ritz_status write_states(const ritz_state_space *model,
+                                const ritz_export_request *request,
+                                ritz_export_report *report)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrices list = {0};
+
+    RITZ_TRY(ritz_state_matrices(model, request->matrices, &list));
+    RITZ_TRY(write(&list, request, report));
+done:
+    ritz_matrices_free(&list);
+    return status;
+}
+
+const ritz_exporter ritz_exporter_output4 = {
+    .name = "output4",
+    .summary = "NASTRAN OUTPUT4 matrices, binary or text",
+    .reference = "MSC2014",
+    .kind = "reduced",
+    .uses = RITZ_EXPORT_MATRICES | RITZ_EXPORT_STYLE,
+    .write_reduced = write_reduced,
+    .write_states = write_states,
+};

@@ -1,15 +1,232 @@
 /* Shapes of modes and of columns, at points. */
-#include "formats/shapes_parts.h"
-
 #include "base/alloc.h"
+#include "base/search.h"
 
 #include <ritz/eigen.h>
+#include <ritz/shapes.h>
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Modes or columns from 0, as listed. */
+typedef struct shapes_choice {
+    int64_t count;
+    int64_t *at;
+} shapes_choice;
+
+/* Rows of a body and how they move. */
+typedef struct shapes_motion {
+    int64_t num_dofs;
+    const ritz_dof *dof;
+    const ritz_grids *grids;
+    const ritz_elements *elements;
+    const ritz_dense *T; /* num_dofs x shapes */
+} shapes_motion;
+
+/* ---- lists of modes, "1-6,9" -------------------------------------------- */
+
+/* "5" or "7-9" of so many letters. */
+static bool read_part(const char *text, size_t length, int64_t *from,
+                      int64_t *to)
+{
+    char part[48] = "";
+    char *dash = NULL;
+
+    if (length == 0 || length >= sizeof part)
+        return false;
+    memcpy(part, text, length);
+    dash = strchr(part, '-');
+    if (dash)
+        *dash++ = '\0';
+    if (!ritz_text_whole(part, from) || *from < 1)
+        return false;
+    *to = *from;
+    return !dash || (ritz_text_whole(dash, to) && *to >= *from);
+}
+
+/* Twice: to count, and to fill `at` unless it is NULL. */
+static ritz_status walk(const char *list, const char *what, int64_t most,
+                        shapes_choice *out)
+{
+    const char *end = list + strlen(list);
+
+    out->count = 0;
+    for (const char *at = list; at <= end;) {
+        size_t length = strcspn(at, ",");
+        int64_t from = 0, to = 0;
+
+        RITZ_REFUSE_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
+                       "'%.*s' is no part of a list of modes such as 1,5,10-20",
+                       (int)(length % 64), at);
+        RITZ_REFUSE_IF(to > most, RITZ_ERR_ARGUMENT,
+                       "there is no %s %" PRId64 ", there are %" PRId64, what,
+                       to, most);
+        for (int64_t k = from; k <= to; k++, out->count++)
+            if (out->at)
+                out->at[out->count] = k - 1;
+        at += length + 1;
+    }
+    return RITZ_OK;
+}
+
+/* The largest number of a list, to know how many modes are wanted. */
+static ritz_status find_furthest(const char *list, int64_t *out)
+{
+    const char *end = list + strlen(list);
+
+    *out = 0;
+    for (const char *at = list; at <= end;) {
+        size_t length = strcspn(at, ",");
+        int64_t from = 0, to = 0;
+
+        RITZ_REFUSE_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
+                       "'%.*s' is no part of a list of modes such as 1,5,10-20",
+                       (int)(length % 64), at);
+        *out = to > *out ? to : *out;
+        at += length + 1;
+    }
+    return RITZ_OK;
+}
+
+/* "1,7-9" of @p most that there are; NULL: all. */
+static ritz_status choose_modes(const char *list, const char *what,
+                                int64_t most, shapes_choice *out)
+{
+    ritz_status status = RITZ_OK;
+    shapes_choice made = {.count = most};
+
+    if (list)
+        RITZ_TRY(walk(list, what, most, &made));
+    RITZ_NEW(made.at, made.count + 1);
+    if (list)
+        RITZ_TRY(walk(list, what, most, &made));
+    for (int64_t k = 0; !list && k < most; k++)
+        made.at[k] = k;
+    *out = made;
+    made.at = NULL;
+done:
+    free(made.at);
+    return status;
+}
+
+/* ---- points, how they move, and cells between them ---------------------- */
+
+/* Grids with a dof, in ascending order; index[k]: point of grid k, or -1. */
+static ritz_status list_points(const shapes_motion *m, int64_t *index,
+                               ritz_shapes *out)
+{
+    const ritz_grids *grids = m->grids;
+
+    for (int64_t k = 0; k < grids->count; k++)
+        index[k] = -1;
+    for (int64_t i = 0; i < m->num_dofs; i++) {
+        int64_t k = m->dof[i].component > 0
+                        ? ritz_grids_find(grids, m->dof[i].grid)
+                        : -1;
+
+        if (k >= 0)
+            index[k] = 0;
+        else if (i == 0 || m->dof[i].grid != m->dof[i - 1].grid)
+            out->num_placeless++;
+    }
+    for (int64_t k = 0; k < grids->count; k++)
+        if (index[k] == 0)
+            index[k] = out->num_points++;
+    RITZ_REFUSE_IF(out->num_points == 0, RITZ_ERR_ARGUMENT,
+                   "no grid has a position: import with --bulk");
+    RITZ_CHECK_NEW(out->id, out->num_points);
+    RITZ_CHECK_NEW(out->position, 3 * out->num_points);
+    for (int64_t k = 0; k < grids->count; k++) {
+        if (index[k] < 0)
+            continue;
+        out->id[index[k]] = grids->id[k];
+        memcpy(out->position + 3 * index[k], grids->position + 3 * k,
+               3 * sizeof *out->position);
+    }
+    return RITZ_OK;
+}
+
+/* Displacement axis i of a grid brings axes[3 i + j] along basic axis j. */
+static void place_motion(const shapes_motion *m, const int64_t *index,
+                         ritz_shapes *out)
+{
+    const ritz_grids *grids = m->grids;
+
+    for (int64_t i = 0; i < m->num_dofs; i++) {
+        int64_t c = m->dof[i].component;
+        int64_t k = c > 0 ? ritz_grids_find(grids, m->dof[i].grid) : -1;
+        const double *axis = NULL;
+        ritz_dense *to = c > 3 ? &out->turn : &out->u;
+
+        if (k < 0)
+            continue;
+        axis = grids->axes + 9 * grids->frame[k] + 3 * ((c - 1) % 3);
+        for (int64_t j = 0; j < m->T->ncol; j++)
+            for (int b = 0; b < 3; b++)
+                ritz_dense_col(to, j)[3 * index[k] + b] +=
+                    axis[b] * ritz_dense_col(m->T, j)[i];
+    }
+}
+
+static bool rotates(const shapes_motion *m)
+{
+    for (int64_t i = 0; i < m->num_dofs; i++)
+        if (m->dof[i].component > 3)
+            return true;
+    return false;
+}
+
+/* Elements by points; a cell for each point if there are none. */
+static ritz_status list_cells(const shapes_motion *m, ritz_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_elements cells = {0};
+
+    RITZ_TRY(ritz_elements_copy(m->elements, &cells));
+    (void)ritz_elements_keep(&cells, out->num_points, out->id);
+    for (int64_t i = 0; cells.count > 0 && i < cells.first[cells.count]; i++)
+        cells.grid[i] = ritz_search(out->num_points, out->id, cells.grid[i]);
+    out->meshed = cells.count > 0;
+    if (!out->meshed) {
+        cells.count = out->num_points;
+        RITZ_NEW(cells.kind, cells.count);
+        RITZ_NEW(cells.first, cells.count + 1);
+        RITZ_NEW(cells.grid, cells.count);
+        for (int64_t k = 0; k < cells.count; k++) {
+            cells.kind[k] = RITZ_CELL_POINT;
+            cells.grid[k] = k;
+            cells.first[k + 1] = k + 1;
+        }
+    }
+    out->cells = cells;
+    cells = (ritz_elements){0};
+done:
+    ritz_elements_free(&cells);
+    return status;
+}
+
+/* All of the shapes but their names. */
+static ritz_status place_shapes(const shapes_motion *m, ritz_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *index = NULL;
+
+    RITZ_NEW(index, m->grids->count);
+    RITZ_TRY(list_points(m, index, out));
+    RITZ_TRY(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->u));
+    if (rotates(m))
+        RITZ_TRY(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->turn));
+    place_motion(m, index, out);
+    RITZ_TRY(list_cells(m, out));
+done:
+    free(index);
+    return status;
+}
+
+/* ---- which shapes ------------------------------------------------------- */
 
 /* Chosen columns, and room for what they are called. */
 static ritz_status pick(const ritz_dense *from, const shapes_choice *which,
@@ -63,7 +280,7 @@ static ritz_status finish(const body *of, const ritz_dense *T,
     m.num_dofs = of->num_dofs + of->recovery->count;
     m.dof = all;
     m.T = &shape;
-    RITZ_TRY(shapes_place(&m, shapes));
+    RITZ_TRY(place_shapes(&m, shapes));
 done:
     free(all);
     ritz_dense_free(&shape);
@@ -94,7 +311,7 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     RITZ_TRY(ritz_dampers_copy(&reduced->dampers, &dampers));
     RITZ_TRY(ritz_dampers_install(&dampers, &K, &D));
     RITZ_TRY(ritz_eigen_dense(&K, &reduced->M, &pairs));
-    RITZ_TRY(shapes_choose(list, "mode", pairs.Phi.ncol, &which));
+    RITZ_TRY(choose_modes(list, "mode", pairs.Phi.ncol, &which));
     RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
     RITZ_TRY(ritz_dense_mul(&reduced->T, &Phi, &T));
     RITZ_TRY(finish(&whole, &T, &shapes));
@@ -127,16 +344,16 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
     shapes_choice which = {0};
 
     if (list)
-        RITZ_TRY(shapes_furthest(list, &span.modes));
+        RITZ_TRY(find_furthest(list, &span.modes));
     if (span.modes > component->num_dofs)
         span.modes = component->num_dofs;
     RITZ_TRY(ritz_sparse_copy(&component->K, &K));
     RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
     RITZ_TRY(ritz_dampers_install_sparse(&dampers, &K, &D));
     RITZ_TRY(ritz_eigen_sparse(&K, &component->M, &span, &pairs));
-    RITZ_TRY(shapes_choose(list, "mode",
-                           list ? pairs.Phi.ncol : pairs.num_rigid + span.modes,
-                           &which));
+    RITZ_TRY(choose_modes(list, "mode",
+                          list ? pairs.Phi.ncol : pairs.num_rigid + span.modes,
+                          &which));
     if (!list && which.count > pairs.Phi.ncol)
         which.count = pairs.Phi.ncol;
     RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
@@ -191,7 +408,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
                  "the basis is for %" PRId64
                  " dofs, the component has %" PRId64,
                  basis->T.nrow, component->num_dofs);
-    RITZ_TRY(shapes_choose(list, "column", basis->T.ncol, &which));
+    RITZ_TRY(choose_modes(list, "column", basis->T.ncol, &which));
     RITZ_TRY(pick_columns(basis, &which, &T, &shapes));
     RITZ_TRY(finish(&whole, &T, &shapes));
     *out = shapes;

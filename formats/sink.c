@@ -1,10 +1,14 @@
+/* What exporters share: files, lines of their reports, XML. */
 #include "formats/sink.h"
 
+#include "base/alloc.h"
 #include "base/draft.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 ritz_status ritz_sink_write(const char *path,
@@ -44,5 +48,64 @@ ritz_status ritz_sink_check(const ritz_matrix *m)
                            "row %" PRId64 " of column %" PRId64
                            " of '%s' is not finite",
                            m->A.rowind[p] + 1, j + 1, m->name);
+    return RITZ_OK;
+}
+
+ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
+{
+    char(*more)[256] = NULL;
+    va_list args;
+
+    RITZ_CHECK_NEW(more, report->count + 1);
+    if (report->count > 0)
+        memcpy(more, report->line, (size_t)report->count * sizeof *more);
+    va_start(args, format);
+    vsnprintf(more[report->count], sizeof *more, format, args);
+    va_end(args);
+    free(report->line);
+    report->line = more;
+    report->count++;
+    return RITZ_OK;
+}
+
+void ritz_export_report_free(ritz_export_report *report)
+{
+    free(report->line);
+    *report = (ritz_export_report){0};
+}
+
+void ritz_xml_put(FILE *file, const char *text)
+{
+    static const char marks[] = "&<>\"'";
+    static const char *const entities[] = {"&amp;", "&lt;", "&gt;", "&quot;",
+                                           "&apos;"};
+
+    for (; *text; text++) {
+        const char *mark = strchr(marks, *text);
+
+        if (mark)
+            fputs(entities[mark - marks], file);
+        else
+            fputc((unsigned char)*text < ' ' ? '?' : *text, file);
+    }
+}
+
+ritz_status ritz_shapes_say(const ritz_shapes *shapes,
+                            ritz_export_report *report)
+{
+    long long cells = shapes->meshed ? (long long)shapes->cells.count : 0;
+
+    RITZ_CHECK(ritz_export_say(
+        report, "%lld shapes at %lld points, %lld elements%s",
+        (long long)shapes->count, (long long)shapes->num_points, cells,
+        shapes->turn.val ? "; rotations as fields of their own" : ""));
+    if (!shapes->meshed)
+        RITZ_CHECK(ritz_export_say(report,
+                                   "no elements are known: single points "
+                                   "(import with --bulk for them)"));
+    if (shapes->num_placeless > 0)
+        RITZ_CHECK(ritz_export_say(
+            report, "%lld points have no position and are left out",
+            (long long)shapes->num_placeless));
     return RITZ_OK;
 }

@@ -1,7 +1,8 @@
-/* A file of a foreign format, which appears whole or not at all. */
+/* What exporters share. */
 #ifndef RITZ_FORMATS_SINK_H
 #define RITZ_FORMATS_SINK_H
 
+#include <ritz/export.h>
 #include <ritz/foreign.h>
 
 #include <stdio.h>
@@ -17,5 +18,12 @@ ritz_status ritz_sink_write(const char *path,
 
 /** Refuse a matrix that holds a value that is not finite, naming it. */
 ritz_status ritz_sink_check(const ritz_matrix *m);
+
+/** @p text with markup as entities and control characters as '?'. */
+void ritz_xml_put(FILE *file, const char *text);
+
+/** Points, cells, shapes, and what was left out. */
+ritz_status ritz_shapes_say(const ritz_shapes *shapes,
+                            ritz_export_report *report);
 
 #endif

@@ -49,6 +49,7 @@ typedef struct ritz_deck_format {
      *
      * @param[in] path    for messages; NULL: they begin with the line
      * @param[in] folder  to which included files are relative
+     * @param[out] out    empty; freed by the caller after a failure too
      * @return RITZ_ERR_FORMAT with file and line, and what is wrong there
      */
     ritz_status (*parse)(const char *path, const char *bytes, int64_t size,

@@ -61,28 +61,12 @@ ritz_status ritz_names_find(const ritz_import_request *request,
                             const ritz_deck *deck, ritz_parts *parts,
                             ritz_names *out);
 
-/** Names that a deck has for @p spec, n rows. @return RITZ_ERR_FORMAT */
-ritz_status ritz_names_of_deck(const ritz_deck *deck, int64_t n,
-                               const char *spec, ritz_names *out);
-
 /** Names in a file of `GRID COMP` rows. */
 ritz_status ritz_names_of_file(const char *path, ritz_names *out);
 void ritz_names_free(ritz_names *names);
 
 /** Rows that have an entry other than zero. */
 void ritz_part_mark(const ritz_part *part, bool *taken);
-
-/** Put the parts into the component but for its grids, rows empty in K and M left out. */
-ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_deck *deck,
-                              const ritz_names *names,
-                              ritz_component *component,
-                              ritz_import_report *report);
-void ritz_parts_free(ritz_parts *parts);
-
-/** Positions and frames of the grids that are named; the origin for a single
- * grid without a deck. */
-ritz_status ritz_import_place(const ritz_deck *deck, const ritz_names *names,
-                              ritz_component *component);
 
 /* Constraints between the rows, and what becomes of the dofs by them. */
 typedef struct ritz_tying {
@@ -96,15 +80,13 @@ typedef struct ritz_tying {
 } ritz_tying;
 
 /**
- * Find what constraints do to the rows; add the grids, dofs and equations of
- * rigid and averaged ports to the deck.
+ * Find what constraints do to the rows.
  *
  * @param[in,out] deck   borrowed by @p out
  * @param[in,out] names  moved into @p out; those of parts are placed anew
  */
-ritz_status ritz_tying_new(const ritz_import_request *request, ritz_deck *deck,
-                           ritz_parts *parts, ritz_names *names,
-                           const ritz_component *component,
+ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
+                           ritz_names *names, const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out);
 
 /** Solve the equations of the deck and of the ports so far. */
@@ -114,7 +96,7 @@ ritz_status ritz_tying_solve(ritz_tying *tying);
 ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
                               ritz_tying *tying);
 
-/** Tie the ports to grids of their own. */
+/** Add the grids, dofs and equations of rigid and averaged ports. */
 ritz_status ritz_tying_ports(const ritz_import_request *request,
                              ritz_deck *deck, ritz_tying *tying,
                              ritz_import_report *report);
@@ -174,20 +156,6 @@ ritz_status ritz_import_io(const ritz_import_request *request,
 ritz_status ritz_import_dampers(const ritz_import_request *request,
                                 const ritz_extended *extended,
                                 ritz_component *component);
-
-/** Add @p scale times the row vector of "GRID:COMP", of so many letters. */
-ritz_status ritz_import_aim(const char *text, size_t length,
-                            const ritz_extended *extended, double scale,
-                            double *into);
-
-/**
- * Take "NAME=REST" apart.
- *
- * @param[out] rest  points behind the '='
- * @return RITZ_ERR_ARGUMENT with @p form, what it should look like
- */
-ritz_status ritz_import_split(const char *text, const char *form,
-                              char name[RITZ_NAME_SIZE], const char **rest);
 
 /** A label, in which '/' divides: "N/mm". @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE]);

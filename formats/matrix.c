@@ -1,4 +1,5 @@
-#include "formats/triplets.h"
+/* Matrices of foreign files, put together from their entries. */
+#include "formats/matrix.h"
 
 #include "base/alloc.h"
 
@@ -52,4 +53,21 @@ void ritz_triplets_free(ritz_triplets *list)
     free(list->re);
     free(list->im);
     *list = (ritz_triplets){0};
+}
+
+void ritz_matrix_free(ritz_matrix *matrix)
+{
+    ritz_sparse_free(&matrix->A);
+    free(matrix->imaginary);
+    free(matrix->row);
+    free(matrix->col);
+    *matrix = (ritz_matrix){0};
+}
+
+void ritz_matrices_free(ritz_matrices *matrices)
+{
+    for (int64_t k = 0; k < matrices->count; k++)
+        ritz_matrix_free(&matrices->matrix[k]);
+    free(matrices->matrix);
+    *matrices = (ritz_matrices){0};
 }

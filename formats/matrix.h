@@ -1,6 +1,6 @@
 /* A matrix as a list of entries, real or complex, before it is compressed. */
-#ifndef RITZ_FORMATS_TRIPLETS_H
-#define RITZ_FORMATS_TRIPLETS_H
+#ifndef RITZ_FORMATS_MATRIX_H
+#define RITZ_FORMATS_MATRIX_H
 
 #include <ritz/foreign.h>
 

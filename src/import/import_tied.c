@@ -1,0 +1,531 @@
+/*
+ * Ports of one grid that is made for them, at the mean position of theirs.
+ *
+ * Rigid: the dofs u of the port's grids follow the new grid, u = S q.
+ * Averaged: the new grid is their average, q = A u.
+ * Forces on it are spread to the dofs as A' f, and nothing is stiffened.
+ */
+#include "base/alloc.h"
+#include "import/import.h"
+#include "model/ties.h"
+
+#include <lapacke.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A port while it is tied. */
+typedef struct ritz_tied {
+    const char *text;
+    bool rigid;
+    const ritz_import_request *request;
+    ritz_deck *deck;
+    ritz_tying *tying;
+    ritz_port port;
+    bool *held; /* dofs of all names that ports hold */
+    ritz_ties over;
+    int64_t id;           /* of the new grid */
+    ritz_average average; /* of its dofs */
+} ritz_tied;
+
+enum { SIX = 6 };
+
+/* What follows in the equations is of this port. */
+static ritz_status cite_port(const ritz_tied *it)
+{
+    ritz_equation_source from = {.file = -1};
+
+    snprintf(from.name, sizeof from.name, "%s port %.44s",
+             it->rigid ? "rigid" : "averaged", it->port.name);
+    return ritz_equations_cite_next(&it->deck->equations, from);
+}
+
+/* Say that @p open motions are left open. */
+static ritz_status refuse_open(int64_t open)
+{
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "its dofs leave %" PRId64 " of six motions open (do its "
+                     "grids lie on a line?): name more of them",
+                     open);
+}
+
+/* ---- averaged ports ----------------------------------------------------- */
+
+/*
+ * An averaged port: its grid is the average of its dofs, q = A u, and so that q
+ * can be held, six of these depend on it and the others,
+ *
+ *     A_p u_p + A_r u_r = q,    u_p = A_p^-1 (q - A_r u_r)
+ *
+ * chosen by QR with column pivoting, which keeps A_p^-1 small. Where the dofs
+ * depend on others already, A stands for A G. What ports hold is not chosen.
+ */
+
+/* The average over dofs that depend on nothing: A G, and what its columns
+ * are; those that a port holds come last. */
+typedef struct reach {
+    ritz_dense A; /* 6 x k, scaled so that lengths cancel */
+    int64_t num_free;
+    ritz_dof *dof;
+} reach;
+
+/* Columns of A G that are not zero, of dofs held or not, from `first` on;
+ * place[j]: column of j there. */
+static int64_t place_columns(const ritz_tied *it, const ritz_sparse *turned,
+                             const int64_t *row, bool held, int64_t first,
+                             int64_t *place)
+{
+    const ritz_tying *tying = it->tying;
+
+    for (int64_t i = 0; i < it->average.A.ncol; i++)
+        for (int64_t p = turned->colptr[row[i]]; p < turned->colptr[row[i] + 1];
+             p++) {
+            int64_t j = turned->rowind[p];
+            int64_t k = tying->by.kept.at[j];
+
+            if (!tying->fixed[k] && it->held[k] == held && place[j] < 0)
+                place[j] = first++;
+        }
+    return first;
+}
+
+static void spread(const ritz_tied *it, const ritz_sparse *turned,
+                   const int64_t *row, const int64_t *place, reach *out)
+{
+    const ritz_average *average = &it->average;
+    const ritz_tying *tying = it->tying;
+
+    for (int64_t i = 0; i < average->A.ncol; i++)
+        for (int64_t p = turned->colptr[row[i]]; p < turned->colptr[row[i] + 1];
+             p++) {
+            int64_t j = place[turned->rowind[p]];
+            ritz_dof dof =
+                tying->names.dof[tying->by.kept.at[turned->rowind[p]]];
+            double share =
+                turned->val[p] / ritz_tie_scale(dof, average->length);
+
+            if (j < 0)
+                continue;
+            out->dof[j] = dof;
+            for (int k = 0; k < SIX; k++)
+                ritz_dense_col(&out->A, j)[k] +=
+                    share * ritz_dense_col(&average->A, i)[k] *
+                    (k < 3 ? 1.0 : average->length);
+        }
+}
+
+static ritz_status substitute(const ritz_tied *it, const ritz_sparse *turned,
+                              reach *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_tying *tying = it->tying;
+    int64_t count = it->average.A.ncol;
+    int64_t *row = NULL, *place = NULL;
+    int64_t found = 0;
+    ritz_roster roster = {0};
+
+    RITZ_NEW(row, count);
+    RITZ_NEW(place, tying->by.kept.count);
+    RITZ_TRY(ritz_roster_new(tying->names.count, tying->names.dof, &roster));
+    for (int64_t i = 0; i < count; i++)
+        row[i] = ritz_roster_row(&roster, it->average.dof[i]);
+    for (int64_t j = 0; j < tying->by.kept.count; j++)
+        place[j] = -1;
+    out->num_free = place_columns(it, turned, row, false, 0, place);
+    found = place_columns(it, turned, row, true, out->num_free, place);
+    RITZ_NEW(out->dof, found);
+    RITZ_TRY(ritz_dense_new(SIX, found, &out->A));
+    spread(it, turned, row, place, out);
+done:
+    free(row);
+    free(place);
+    ritz_roster_free(&roster);
+    return status;
+}
+
+/* Motions that the first columns of A leave open, by its triangular factor. */
+static int64_t count_open(const ritz_dense *A)
+{
+    double rcond = 0.0;
+    int64_t rank = 0;
+
+    (void)LAPACKE_dtrcon(LAPACK_COL_MAJOR, '1', 'U', 'N', SIX, A->val, SIX,
+                         &rcond);
+    if (rcond > 1.5e-8) /* as of positions: half the digits are lost */
+        return 0;
+    while (rank < SIX - 1 &&
+           fabs(ritz_dense_col(A, rank)[rank]) > 1.5e-8 * fabs(A->val[0]))
+        rank++;
+    return SIX - rank;
+}
+
+static ritz_status check_open(const reach *over, int64_t open)
+{
+    if (open == 0)
+        return RITZ_OK;
+    if (over->num_free == over->A.ncol)
+        return refuse_open(open);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "six of its dofs are to depend on it, and without those "
+                     "that other ports hold %" PRId64 " motions are left open: "
+                     "name more of them",
+                     open);
+}
+
+/* A := Q' A with A_p = Q R in front, by pivoting among the free columns. */
+static ritz_status factor(reach *over, lapack_int *order, double *tau)
+{
+    ritz_dense *A = &over->A;
+    int64_t k = over->num_free;
+
+    RITZ_CHECK(check_open(over, k < SIX ? SIX - k : 0));
+    for (int64_t j = k; j < A->ncol; j++)
+        order[j] = (lapack_int)j + 1;
+    RITZ_REFUSE_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, SIX, (lapack_int)k, A->val,
+                                  SIX, order, tau) != 0,
+                   RITZ_ERR_MEMORY, "no memory for the average");
+    if (A->ncol > k)
+        RITZ_REFUSE_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', SIX,
+                                      (lapack_int)(A->ncol - k), SIX, A->val,
+                                      SIX, tau, ritz_dense_col(A, k), SIX) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the average");
+    return check_open(over, count_open(A));
+}
+
+/* X = R_p^-1 [Q', -R_r]: u_p = X [q; u_r]. */
+static ritz_status pivot(reach *over, lapack_int *order, ritz_dense *X)
+{
+    const ritz_dense *A = &over->A;
+    lapack_int k = (lapack_int)A->ncol;
+    double tau[SIX];
+
+    RITZ_CHECK(factor(over, order, tau));
+    RITZ_CHECK(ritz_dense_new(SIX, k, X));
+    for (int64_t j = 0; j < SIX; j++)
+        ritz_dense_col(X, j)[j] = 1.0;
+    RITZ_REFUSE_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', SIX, SIX, SIX,
+                                  A->val, SIX, tau, X->val, SIX) != 0,
+                   RITZ_ERR_MEMORY, "no memory for the average");
+    for (int64_t j = SIX; j < k; j++)
+        for (int64_t i = 0; i < SIX; i++)
+            ritz_dense_col(X, j)[i] = -ritz_dense_col(A, j)[i];
+    RITZ_REFUSE_IF(LAPACKE_dtrtrs(LAPACK_COL_MAJOR, 'U', 'N', 'N', SIX, k,
+                                  A->val, SIX, X->val, SIX) != 0,
+                   RITZ_ERR_SINGULAR, "the average is singular");
+    return RITZ_OK;
+}
+
+static ritz_status put(const ritz_tied *it, const ritz_dense *X,
+                       const ritz_dof *dof, const lapack_int *order)
+{
+    ritz_equations *eq = &it->deck->equations;
+    double length = it->average.length;
+
+    for (int64_t i = 0; i < SIX; i++) {
+        ritz_dof dependent = dof[order[i] - 1];
+        double most = 0.0;
+
+        RITZ_CHECK(ritz_equations_begin(eq, dependent));
+        for (int64_t j = 0; j < X->ncol; j++)
+            most = fmax(most, fabs(ritz_dense_col(X, j)[i]));
+        for (int64_t j = 0; j < X->ncol; j++) {
+            ritz_dof of =
+                j < SIX ? (ritz_dof){it->id, j + 1} : dof[order[j] - 1];
+            double share = ritz_dense_col(X, j)[i];
+
+            if (fabs(share) > RITZ_TIE_ROUNDING * most)
+                RITZ_CHECK(
+                    ritz_equations_add(eq, of,
+                                       share * ritz_tie_scale(of, length) /
+                                           ritz_tie_scale(dependent, length)));
+        }
+    }
+    return RITZ_OK;
+}
+
+/*
+ * Make six of the port's dofs depend on its grid and the others.
+ *
+ * @param[in] turned  G' of what was solved before the grid was added
+ */
+static ritz_status tie_average(const ritz_tied *it, const ritz_sparse *turned)
+{
+    ritz_status status = RITZ_OK;
+    reach over = {0};
+    ritz_dense X = {0};
+    lapack_int *order = NULL;
+
+    RITZ_TRY(substitute(it, turned, &over));
+    RITZ_NEW(order, over.A.ncol);
+    RITZ_TRY(pivot(&over, order, &X));
+    RITZ_TRY(cite_port(it));
+    RITZ_TRY(put(it, &X, over.dof, order));
+done:
+    free(over.dof);
+    free(order);
+    ritz_dense_free(&over.A);
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* ---- ports and their grids ---------------------------------------------- */
+
+/* ---- the dofs that there are -------------------------------------------- */
+
+/* Whether all that a dependent dof follows is known. */
+static bool is_known(const ritz_tying *tying, const ritz_sparse *turned,
+                     int64_t dof)
+{
+    for (int64_t p = turned->colptr[dof]; p < turned->colptr[dof + 1]; p++) {
+        int64_t k = tying->by.kept.at[turned->rowind[p]];
+
+        if (tying->outside[k] && !tying->fixed[k])
+            return false;
+    }
+    return true;
+}
+
+/* Dofs that a port may name: with stiffness or mass, their own or that of what
+ * depends on them, or dependent on such. */
+static ritz_status find_present(const ritz_tying *tying,
+                                const ritz_sparse *turned, bool *present)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_elimination *by = &tying->by;
+    bool *gone = NULL;
+
+    RITZ_NEW(gone, tying->names.count);
+    for (int64_t k = 0; k < by->gone.count; k++)
+        gone[by->gone.at[k]] = true;
+    for (int64_t k = 0; k < tying->names.count; k++) {
+        if (gone[k])
+            present[k] = is_known(tying, turned, k);
+        if (!tying->alive[k])
+            continue;
+        for (int64_t p = turned->colptr[k]; p < turned->colptr[k + 1]; p++)
+            present[by->kept.at[turned->rowind[p]]] = true;
+    }
+done:
+    free(gone);
+    return status;
+}
+
+/* The same as a component of which ports can be made. */
+static ritz_status list_present(const ritz_tying *tying,
+                                const ritz_sparse *turned, ritz_extended *out)
+{
+    ritz_status status = RITZ_OK;
+    bool *present = NULL;
+    ritz_extended new = {0};
+
+    new.view.grids = tying->deck->grids;
+    RITZ_NEW(present, tying->names.count);
+    RITZ_NEW(new.view.dof, tying->names.count);
+    RITZ_TRY(find_present(tying, turned, present));
+    for (int64_t k = 0; k < tying->names.count; k++)
+        if (present[k])
+            new.view.dof[new.view.num_dofs++] = tying->names.dof[k];
+    new.num_rows = new.view.num_dofs;
+    RITZ_TRY(ritz_roster_new(new.num_rows, new.view.dof, &new.roster));
+    *out = new;
+    new = (ritz_extended){0};
+done:
+    free(present);
+    ritz_extended_free(&new);
+    return status;
+}
+
+static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
+{
+    const ritz_grids *grids = &it->deck->grids;
+    ritz_tie tie = {.weight = 1.0};
+
+    for (int64_t i = 0; i < it->port.dofs.count; i++) {
+        ritz_dof dof = extended->view.dof[it->port.dofs.at[i]];
+        int64_t k = ritz_grids_find(grids, dof.grid);
+
+        RITZ_REFUSE_IF(k < 0 || dof.component == 0, RITZ_ERR_ARGUMENT,
+                       "'%" PRId64
+                       "' has no position: those of grids are known "
+                       "from the deck alone (--bulk)",
+                       dof.grid);
+        if (i > 0 && k != tie.grid) {
+            RITZ_CHECK(ritz_ties_add(&it->over, tie));
+            tie.mask = 0;
+        }
+        tie.grid = k;
+        tie.mask |= (uint8_t)(1U << (unsigned)dof.component);
+    }
+    return ritz_ties_add(&it->over, tie);
+}
+
+/* ---- the new grid ------------------------------------------------------- */
+
+static int64_t largest_id(const ritz_deck *deck, const ritz_names *names)
+{
+    int64_t most = 0;
+
+    for (int64_t k = 0; k < names->count; k++)
+        if (names->dof[k].grid > most)
+            most = names->dof[k].grid;
+    if (deck->num_points > 0 && deck->point[deck->num_points - 1] > most)
+        most = deck->point[deck->num_points - 1];
+    if (deck->grids.id[deck->grids.count - 1] > most)
+        most = deck->grids.id[deck->grids.count - 1];
+    return most;
+}
+
+/* Its id is above all others, so that grids still ascend. */
+static ritz_status add_grid(ritz_tied *it)
+{
+    ritz_status status = RITZ_OK;
+    ritz_grids *grids = &it->deck->grids;
+    int64_t n = grids->count;
+    int64_t *id = NULL, *frame = NULL;
+    double *position = NULL;
+    ritz_dof dof[SIX];
+
+    it->id = largest_id(it->deck, &it->tying->names);
+    RITZ_FAIL_IF(it->id >= INT64_MAX - 1, RITZ_ERR_ARGUMENT,
+                 "no id is left for its grid");
+    it->id++;
+    RITZ_NEW(id, n + 1);
+    RITZ_NEW(frame, n + 1);
+    RITZ_NEW(position, 3 * (n + 1));
+    memcpy(id, grids->id, (size_t)n * sizeof *id);
+    memcpy(frame, grids->frame, (size_t)n * sizeof *frame);
+    memcpy(position, grids->position, 3 * (size_t)n * sizeof *position);
+    id[n] = it->id;
+    memcpy(position + 3 * n, it->port.origin, sizeof it->port.origin);
+    for (int64_t c = 1; c <= SIX; c++)
+        dof[c - 1] = (ritz_dof){it->id, c};
+    RITZ_TRY(ritz_tying_append(SIX, dof, it->tying));
+    free(grids->id);
+    free(grids->frame);
+    free(grids->position);
+    grids->id = id;
+    grids->frame = frame;
+    grids->position = position;
+    grids->count = n + 1;
+    id = frame = NULL;
+    position = NULL;
+done:
+    free(id);
+    free(frame);
+    free(position);
+    return status;
+}
+
+static ritz_status tie_rigid(ritz_tied *it)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_tie whole = {it->deck->grids.count - 1, 0x7e, 1.0};
+    ritz_ties from = {0};
+
+    RITZ_TRY(ritz_ties_add(&from, whole));
+    RITZ_TRY(cite_port(it));
+    RITZ_TRY(ritz_tie_rigid(&it->deck->grids, &from, &it->over,
+                            &it->deck->equations));
+done:
+    ritz_ties_free(&from);
+    return status;
+}
+
+/* ---- one after the other ------------------------------------------------ */
+
+/* What ports hold must not depend: that of --port, and grids made before. */
+static ritz_status find_held(const ritz_extended *present,
+                             const ritz_import_report *report, ritz_tied *it)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_names *names = &it->tying->names;
+    ritz_port port = {0};
+    ritz_roster roster = {0};
+
+    RITZ_NEW(it->held, names->count + SIX);
+    RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
+    for (int64_t k = 0; k < it->request->num_ports; k++) {
+        RITZ_TRY_IN(
+            it->request->port[k],
+            ritz_import_port(it->request->port[k], false, present, &port));
+        for (int64_t i = 0; i < port.dofs.count; i++)
+            it->held[ritz_roster_row(
+                &roster, present->view.dof[port.dofs.at[i]])] = true;
+        ritz_dofs_free(&port.dofs);
+    }
+    for (int64_t k = 0; k < report->num_grids; k++)
+        for (int64_t c = 1; c <= SIX; c++)
+            it->held[ritz_roster_row(&roster,
+                                     (ritz_dof){report->grid[k].id, c})] = true;
+done:
+    ritz_roster_free(&roster);
+    return status;
+}
+
+static ritz_status tie(ritz_tied *it, const ritz_import_report *report)
+{
+    ritz_status status = RITZ_OK;
+    ritz_extended present = {0};
+    ritz_sparse turned = {0};
+
+    RITZ_FAIL_IF(it->deck->grids.count == 0, RITZ_ERR_ARGUMENT,
+                 "positions of its grids are known from a deck alone: --bulk");
+    RITZ_TRY(ritz_sparse_transpose(&it->tying->by.G, &turned));
+    RITZ_TRY(list_present(it->tying, &turned, &present));
+    RITZ_TRY(ritz_import_port(it->text, false, &present, &it->port));
+    RITZ_TRY(find_held(&present, report, it));
+    RITZ_TRY(group_dofs(&present, it));
+    RITZ_TRY(ritz_average_new(&it->deck->grids, &it->over, it->port.origin,
+                              &it->average));
+    if (it->average.num_loose > 0)
+        RITZ_TRY(refuse_open(it->average.num_loose));
+    RITZ_TRY(add_grid(it));
+    RITZ_TRY(it->rigid ? tie_rigid(it) : tie_average(it, &turned));
+    RITZ_TRY(ritz_tying_solve(it->tying));
+done:
+    ritz_extended_free(&present);
+    ritz_sparse_free(&turned);
+    return status;
+}
+
+static ritz_status add_port(ritz_tied *it, ritz_import_report *report)
+{
+    ritz_status status = RITZ_OK;
+    ritz_import_grid *grid = &report->grid[report->num_grids];
+
+    RITZ_TRY_IN(it->text, tie(it, report));
+    memcpy(grid->port, it->port.name, sizeof grid->port);
+    grid->id = it->id;
+    grid->num_tied = it->port.dofs.count;
+    report->num_grids++;
+done:
+    free(it->held);
+    ritz_dofs_free(&it->port.dofs);
+    ritz_ties_free(&it->over);
+    ritz_average_free(&it->average);
+    return status;
+}
+
+ritz_status ritz_tying_ports(const ritz_import_request *request,
+                             ritz_deck *deck, ritz_tying *tying,
+                             ritz_import_report *report)
+{
+    int64_t count = request->num_rigid_ports + request->num_averaged_ports;
+
+    RITZ_CHECK_NEW(report->grid, count);
+    for (int64_t k = 0; k < count; k++) {
+        int64_t j = k - request->num_rigid_ports;
+        ritz_tied it = {.text = j < 0 ? request->rigid_port[k]
+                                      : request->averaged_port[j],
+                        .rigid = j < 0,
+                        .request = request,
+                        .deck = deck,
+                        .tying = tying};
+
+        RITZ_CHECK(add_port(&it, report));
+    }
+    return RITZ_OK;
+}
