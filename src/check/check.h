@@ -61,7 +61,6 @@ typedef struct ritz_passivity {
 
 typedef struct ritz_checker {
     ritz_audit audit;
-    bool usable; /* what checks found so far lets the others be made */
 
     /* One of these is what is checked. */
     const ritz_component *component;
@@ -69,13 +68,9 @@ typedef struct ritz_checker {
     const ritz_state_space *space;
 
     /* Of a component. */
-    bool rigid;      /* K has no entries */
-    bool placed;     /* every grid has a position */
-    double digits;   /* of K, at most 17 */
-    bool declared;   /* they are those that the source states, and not exact */
-    bool rounded;    /* K times a rigid motion is what its digits leave */
-    int64_t *part;   /* n, connected part of each dof, from 0 */
-    int64_t largest; /* the part with most dofs */
+    double digits;           /* of K, at most 17 */
+    int64_t *part;           /* n, connected part of each dof, from 0 */
+    int64_t largest;         /* the part with most dofs */
     ritz_forces shift, turn; /* of translations; of rotations */
     double centre[3];
     double size;      /* largest distance of a grid from the centre, or 1 */
@@ -89,13 +84,19 @@ typedef struct ritz_checker {
     ritz_structure model; /* with dampers installed */
     ritz_damping damping;
     ritz_first_order modes;
-    bool definite; /* M, K and D are semidefinite: nothing can grow */
-    ritz_dense L;  /* p x r, rows of the interface; velocities are L q' */
+    ritz_dense L; /* p x r, rows of the interface; velocities are L q' */
     char (*row)[RITZ_NAME_SIZE]; /* p */
 
-    /* Of a reduced component, or of a state space. */
-    bool stable;           /* no pole is right of the axis */
-    ritz_collocated pairs; /* of a state space */
+    /* Of a state space. */
+    ritz_collocated pairs; /* inputs and outputs of one name */
+
+    bool usable;   /* what checks found so far lets the others be made */
+    bool rigid;    /* of a component: K has no entries */
+    bool placed;   /* every grid has a position */
+    bool declared; /* the digits are those that the source states */
+    bool rounded;  /* K times a rigid motion is what its digits leave */
+    bool definite; /* of a reduced one, M, K and D are: nothing can grow */
+    bool stable;   /* no pole is right of the axis */
 } ritz_checker;
 
 /* A row of the list: of which models, with what, the function. */

@@ -132,7 +132,7 @@ void ritz_sampler_free(ritz_sampler **sampler)
  *     (G(i w) + G(i w)^*) / 2 >= 0     for all w
  *
  * [AndersonVongpanitlerd1973]. It is met at and around every pole and between
- * them, down from the lowest of these, and where probe_pencil.c says that a grid
+ * them, down from the lowest of these, and where the pencil below says that a grid
  * may have stepped over something.
  */
 

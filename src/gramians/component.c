@@ -1,8 +1,348 @@
 /* Gramians of a component by the engine that is asked for, or that fits. */
+#include "base/alloc.h"
 #include "gramians/engines.h"
 #include "gramians/low_rank.h"
+#include "gramians/modal_modes.h"
+#include "gramians/states.h"
 
+#include <ritz/eigen.h>
+
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows first, first + step, ... of Z, over or times the scale. */
+static ritz_status pick_rows(const ritz_dense *Z, int64_t first, int64_t step,
+                             const double *scale, bool over, ritz_dense *out)
+{
+    int64_t m = Z->nrow / 2;
+
+    RITZ_CHECK(ritz_dense_new(m, Z->ncol, out));
+    for (int64_t j = 0; j < Z->ncol; j++) {
+        const double *from = ritz_dense_col(Z, j) + first;
+        double *to = ritz_dense_col(out, j);
+
+        for (int64_t k = 0; k < m; k++) {
+            double s = scale ? scale[k] : 1.0;
+
+            to[k] = over ? from[k * step] / s : from[k * step] * s;
+        }
+    }
+    return RITZ_OK;
+}
+
+/* [top Q; bottom V], Q and V the positions and the velocities in Z. */
+static ritz_status stack_halves(const ritz_mode_states *states,
+                                const ritz_dense *top, const ritz_dense *bottom,
+                                bool over, const ritz_dense *Z, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = states->modes->num_dofs;
+    int64_t m = Z->nrow / 2;
+    int64_t velocities = states->step == 1 ? m : 1;
+    ritz_dense part = {0}, x = {0}, made = {0};
+
+    RITZ_TRY(ritz_dense_new(2 * n, Z->ncol, &made));
+    for (int half = 0; half < 2 && Z->ncol > 0; half++) {
+        RITZ_TRY(pick_rows(Z, half * velocities, states->step,
+                           half == 0 ? states->scale : NULL, over, &part));
+        RITZ_TRY(ritz_dense_mul(half == 0 ? top : bottom, &part, &x));
+        for (int64_t j = 0; j < x.ncol; j++)
+            memcpy(ritz_dense_col(&made, j) + half * n, ritz_dense_col(&x, j),
+                   (size_t)n * sizeof *x.val);
+        ritz_dense_free(&part);
+        ritz_dense_free(&x);
+    }
+    *out = made;
+    made = (ritz_dense){0};
+done:
+    ritz_dense_free(&part);
+    ritz_dense_free(&x);
+    ritz_dense_free(&made);
+    return status;
+}
+
+/* [top 0 own; 0 bottom own]: rigid modes, and then what is there. */
+static ritz_status put_behind_rigid(const ritz_mode_states *states,
+                                    const ritz_dense *top,
+                                    const ritz_dense *bottom, ritz_dense *own)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = states->modes->num_dofs;
+    int64_t r = states->apart;
+    size_t column = (size_t)n * sizeof *own->val;
+    ritz_dense all = {0};
+
+    RITZ_TRY(ritz_dense_new(2 * n, 2 * r + own->ncol, &all));
+    for (int64_t j = 0; j < r; j++) {
+        memcpy(ritz_dense_col(&all, j), ritz_dense_col(top, j), column);
+        memcpy(ritz_dense_col(&all, r + j) + n, ritz_dense_col(bottom, j),
+               column);
+    }
+    for (int64_t j = 0; j < own->ncol; j++)
+        memcpy(ritz_dense_col(&all, 2 * r + j), ritz_dense_col(own, j),
+               2 * column);
+    ritz_dense_free(own);
+    *own = all;
+    all = (ritz_dense){0};
+done:
+    ritz_dense_free(&all);
+    return status;
+}
+
+/* * Gramians of modes as those of x = [u; u'] of the component:
+ *
+ *     Z_c := [Phi 0; 0 Phi] Z_c,    Z_o := [M Phi 0; 0 Phi] Z_o
+ *
+ * and T and W likewise, behind the rigid modes that stand apart.
+ *
+ * @param[in,out] gramians  in states; without E */
+static ritz_status lift_gramians(const ritz_mode_states *states,
+                                 ritz_gramians *gramians)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_first_order *modes = states->modes;
+    int64_t m = modes->count - states->apart;
+    const ritz_dense Phi = ritz_dense_part(&modes->Phi, states->apart, m);
+    const ritz_dense MPhi = ritz_dense_part(&modes->MPhi, states->apart, m);
+    const ritz_dense *Zc = &gramians->Zc, *Zo = &gramians->Zo;
+    const ritz_dense *T = &gramians->T, *W = &gramians->W;
+    ritz_gramians made = *gramians;
+
+    made.Zc = made.Zo = made.T = made.W = (ritz_dense){0};
+    RITZ_TRY(stack_halves(states, &Phi, &Phi, true, Zc, &made.Zc));
+    RITZ_TRY(stack_halves(states, &Phi, &MPhi, true, Zc, &made.EZc));
+    RITZ_TRY(stack_halves(states, &MPhi, &Phi, false, Zo, &made.Zo));
+    RITZ_TRY(stack_halves(states, &Phi, &Phi, true, T, &made.T));
+    RITZ_TRY(stack_halves(states, &MPhi, &Phi, false, W, &made.W));
+    RITZ_TRY(put_behind_rigid(states, &modes->Phi, &modes->Phi, &made.T));
+    RITZ_TRY(put_behind_rigid(states, &modes->MPhi, &modes->Phi, &made.W));
+    ritz_gramians_free(gramians);
+    *gramians = made;
+    made = (ritz_gramians){0};
+done:
+    ritz_gramians_free(&made);
+    return status;
+}
+
+/*
+ * A component's Gramians by SLICOT, in states z = [S q; q'] of its modes
+ * (states.h). Rigid modes that damping does not couple to others stand apart
+ * before, whatever else does not decay is told apart by its poles.
+ */
+
+/* A, B and C of the states as a state space, which takes them. */
+static ritz_status space_of(const ritz_io *io, ritz_states *states,
+                            ritz_state_space *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space space = {0};
+
+    RITZ_TRY(ritz_state_space_new(states->count, io, &space));
+    ritz_dense_free(&space.A);
+    ritz_dense_free(&space.B);
+    ritz_dense_free(&space.C);
+    space.A = states->A;
+    space.B = states->B;
+    space.C = states->C;
+    states->A = states->B = states->C = (ritz_dense){0};
+    *out = space;
+    space = (ritz_state_space){0};
+done:
+    ritz_state_space_free(&space);
+    return status;
+}
+
+/* By SLICOT, in modal coordinates; what does not decay stands apart. */
+static ritz_status find_dense(const ritz_gramians_request *request,
+                              ritz_gramians *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_states states = {0};
+    ritz_state_space space = {0};
+    ritz_gramians gramians = {0};
+    ritz_mode_states layout = {.step = 1};
+
+    RITZ_TRY(
+        ritz_states_new(request->component, &request->damping, 0.0, &states));
+    RITZ_TRY(space_of(&request->component->io, &states, &space));
+    RITZ_TRY(ritz_gramians_of_space(&space, &gramians));
+    RITZ_FAIL_IF(gramians.T.ncol == states.count, RITZ_ERR_ARGUMENT,
+                 "no motion of the component decays, and none has a Gramian: "
+                 "give it damping");
+    layout.modes = &states.modes;
+    layout.apart = states.num_apart;
+    layout.scale = states.scale;
+    RITZ_TRY(lift_gramians(&layout, &gramians));
+    snprintf(gramians.damping, sizeof gramians.damping, "%s", states.damping);
+    *out = gramians;
+    gramians = (ritz_gramians){0};
+done:
+    ritz_states_free(&states);
+    ritz_state_space_free(&space);
+    ritz_gramians_free(&gramians);
+    return status;
+}
+
+/*
+ * A component's Gramians in closed form (modal_gramians.c, modal_band.c): of all
+ * its modes by dense matrices, or of those up to a frequency by sparse ones.
+ */
+
+static ritz_status all_modes(const ritz_gramians_request *request,
+                             ritz_first_order *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    ritz_structure structure = {0};
+
+    RITZ_FAIL_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+                 "%" PRId64 " dofs have too many modes to take all of them: "
+                 "say up to which frequency, or ask engine 'low-rank'",
+                 component->num_dofs);
+    RITZ_TRY(ritz_structure_of_component(component, &structure));
+    RITZ_TRY(ritz_first_order_new(&structure, &component->io, &request->damping,
+                                  out));
+done:
+    ritz_structure_free(&structure);
+    return status;
+}
+
+/* Matrices with dampers installed. */
+typedef struct sparse_structure {
+    ritz_sparse K, D;
+    ritz_dampers dampers;
+} sparse_structure;
+
+static void structure_free(sparse_structure *s)
+{
+    ritz_sparse_free(&s->K);
+    ritz_sparse_free(&s->D);
+    ritz_dampers_free(&s->dampers);
+}
+
+static ritz_status install_dampers(const ritz_component *component,
+                                   sparse_structure *out)
+{
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &out->K));
+    if (component->D.colptr)
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &out->D));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &out->dampers));
+    return ritz_dampers_install_sparse(&out->dampers, &out->K, &out->D);
+}
+
+static ritz_status modes_up_to(const ritz_gramians_request *request,
+                               ritz_first_order *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_component *component = request->component;
+    const ritz_span span = {.modes = -1, .up_to_hz = request->among_hz};
+    sparse_structure s = {0};
+    ritz_pairs pairs = {0};
+    ritz_first_order modes = {.num_dofs = component->num_dofs};
+
+    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
+                 "structural damping is of harmonic motion and has no states, "
+                 "give it as a modal ratio");
+    RITZ_TRY(install_dampers(component, &s));
+    RITZ_TRY(ritz_eigen_sparse(&s.K, &component->M, &span, &pairs));
+    modes.count = pairs.Phi.ncol;
+    modes.num_rigid = pairs.num_rigid;
+    modes.Phi = pairs.Phi;
+    modes.lambda = pairs.lambda;
+    pairs.Phi = (ritz_dense){0};
+    pairs.lambda = NULL;
+    for (int64_t k = 0; k < modes.num_rigid; k++)
+        modes.lambda[k] = 0.0;
+    RITZ_TRY(ritz_sparse_mul(&component->M, &modes.Phi, &modes.MPhi));
+    if (s.D.colptr)
+        RITZ_TRY(ritz_sparse_project(&s.D, &modes.Phi, &modes.Delta));
+    RITZ_TRY(ritz_first_order_drive(&component->io, &request->damping, &modes));
+    *out = modes;
+    modes = (ritz_first_order){0};
+done:
+    structure_free(&s);
+    ritz_pairs_free(&pairs);
+    ritz_first_order_free(&modes);
+    return status;
+}
+
+ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
+                                ritz_first_order *out)
+{
+    RITZ_CHECK(request->among_hz > 0.0 ? modes_up_to(request, out)
+                                       : all_modes(request, out));
+    RITZ_REFUSE_IF(out->count == out->num_rigid, RITZ_ERR_ARGUMENT,
+                   "the component has no flexible modes%s: its rigid modes are "
+                   "all there is",
+                   request->among_hz > 0.0 ? " up to that frequency" : "");
+    return ritz_modes_turn(out);
+}
+
+/* Of modes that damping does not couple. */
+static ritz_status closed_form(const ritz_gramians_request *request,
+                               const ritz_first_order *modes,
+                               ritz_gramians *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_mode_states layout = {
+        .modes = modes, .apart = modes->num_rigid, .step = 2};
+    ritz_modal modal = {0};
+    ritz_gramians gramians = {.engine = "closed form"};
+
+    RITZ_TRY(ritz_modal_of_modes(modes, &request->component->io, &modal));
+    RITZ_TRY(request->band_hz[1] > 0.0
+                 ? ritz_modal_factors_band(&modal, request->band_hz,
+                                           &gramians.Zc, &gramians.Zo)
+                 : ritz_modal_factors(&modal, &gramians.Zc, &gramians.Zo));
+    RITZ_TRY(lift_gramians(&layout, &gramians));
+    ritz_damping_print(&request->damping, gramians.damping);
+    *out = gramians;
+    gramians = (ritz_gramians){0};
+done:
+    ritz_modal_free(&modal);
+    ritz_gramians_free(&gramians);
+    return status;
+}
+
+/* Closed form; @return RITZ_ERR_ARGUMENT also if damping couples modes */
+static ritz_status find_modal(const ritz_gramians_request *request,
+                              ritz_gramians *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_first_order modes = {0};
+    ritz_coupling coupling = {0};
+
+    RITZ_TRY(ritz_gramians_modes(request, &modes));
+    if (ritz_modes_coupled(&modes, &coupling))
+        RITZ_TRY(ritz_coupling_refuse(
+            &coupling, request->band_hz[1] > 0.0
+                           ? "over a band it must be mode by mode"
+                           : "engine 'dense' takes any"));
+    RITZ_TRY(closed_form(request, &modes, out));
+done:
+    ritz_first_order_free(&modes);
+    return status;
+}
+
+/* The same unless damping couples modes: then *fits is false, and no more. */
+static ritz_status find_modal_if(const ritz_gramians_request *request,
+                                 bool *fits, ritz_gramians *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_first_order modes = {0};
+    ritz_coupling coupling = {0};
+
+    RITZ_TRY(ritz_gramians_modes(request, &modes));
+    *fits = !ritz_modes_coupled(&modes, &coupling);
+    if (*fits)
+        RITZ_TRY(closed_form(request, &modes, out));
+done:
+    ritz_first_order_free(&modes);
+    return status;
+}
 
 /* What an engine is called, and what it heeds. */
 typedef struct engine_row {
@@ -20,25 +360,25 @@ static ritz_status find_any(const ritz_gramians_request *request,
     bool fits = false;
 
     if (request->band_hz[1] > 0.0)
-        return ritz_gramians_modal(request, out);
+        return find_modal(request, out);
     if (large && !(request->among_hz > 0.0))
         return ritz_gramians_low_rank(request, out);
-    RITZ_CHECK(ritz_gramians_modal_if(request, &fits, out));
+    RITZ_CHECK(find_modal_if(request, &fits, out));
     if (!fits)
         RITZ_CHECK(large ? ritz_gramians_low_rank(request, out)
-                         : ritz_gramians_dense(request, out));
+                         : find_dense(request, out));
     return RITZ_OK;
 }
 
 static const engine_row engines[] = {
     [RITZ_ENGINE_AUTO] = {"auto", find_any, true, true},
-    [RITZ_ENGINE_DENSE] = {"dense", ritz_gramians_dense, false, false},
-    [RITZ_ENGINE_MODAL] = {"modal", ritz_gramians_modal, true, true},
+    [RITZ_ENGINE_DENSE] = {"dense", find_dense, false, false},
+    [RITZ_ENGINE_MODAL] = {"modal", find_modal, true, true},
     [RITZ_ENGINE_LOW_RANK] = {"low-rank", ritz_gramians_low_rank, false, false},
 };
 
-static ritz_status check(const ritz_gramians_request *request,
-                         const engine_row *engine)
+static ritz_status check_request(const ritz_gramians_request *request,
+                                 const engine_row *engine)
 {
     const ritz_io *io = &request->component->io;
     const double *band = request->band_hz;
@@ -70,6 +410,6 @@ ritz_status ritz_gramians_of_component(const ritz_gramians_request *request,
 {
     const engine_row *engine = &engines[request->engine];
 
-    RITZ_CHECK(check(request, engine));
+    RITZ_CHECK(check_request(request, engine));
     return engine->find(request, out);
 }

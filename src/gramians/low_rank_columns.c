@@ -104,8 +104,8 @@ done:
 }
 
 /* R of S Z = Q R. */
-static ritz_status triangle(const ritz_low_rank_model *model, int side,
-                            const ritz_low_rank_columns *Z, ritz_dense *R)
+static ritz_status triangle_of(const ritz_low_rank_model *model, int side,
+                               const ritz_low_rank_columns *Z, ritz_dense *R)
 {
     ritz_status status = RITZ_OK;
     int64_t rows = 2 * model->n;
@@ -137,7 +137,7 @@ done:
 }
 
 /* V of the long columns, k x r, from R, which is overwritten. */
-static ritz_status long_ones(ritz_dense *R, ritz_dense *out)
+static ritz_status find_long_columns(ritz_dense *R, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int m = (int)R->nrow;
@@ -174,8 +174,8 @@ ritz_status ritz_low_rank_compress(const ritz_low_rank_model *model, int side,
 
     if (Z->count == 0)
         return RITZ_OK;
-    RITZ_TRY(triangle(model, side, Z, &R));
-    RITZ_TRY(long_ones(&R, &V));
+    RITZ_TRY(triangle_of(model, side, Z, &R));
+    RITZ_TRY(find_long_columns(&R, &V));
     RITZ_TRY(ritz_dense_mul(&all, &V, &turned));
     free(Z->val);
     Z->val = turned.val;

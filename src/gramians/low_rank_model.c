@@ -1,4 +1,4 @@
-/* Sparse M, D, K of a component for the low-rank engine, and its slow modes. */
+/* The matrices, loads and slow modes that the low-rank iteration starts from. */
 #include "base/alloc.h"
 #include "gramians/low_rank_parts.h"
 
@@ -8,6 +8,235 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+
+/*
+ * What the iteration starts from: of inputs W = [0; B], of outputs
+ * W = [C'; Cv'], without the part that rigid motion takes, M Phi Phi'W.
+ *
+ * Dofs m without mass, and without damping, follow those with mass:
+ *
+ *     u_m = -K_mm^-1 (K_mr u_r - B_m f),    T = [I; -K_mm^-1 K_mr],
+ *
+ * so that B and C' become T'B and T'C', zero in rows m, and C_m K_mm^-1 B_m
+ * feeds through. An acceleration output sees, with X = T M_rr^-1 T'Ca',
+ *
+ *     C' := C' - K X,    Cv' := Cv' - D'X.
+ *
+ * Feedthrough is left out: it is the same whatever is kept.
+ */
+
+/* Of the same product in magnitudes: smaller is rounding. */
+static const double unseen = 1e-10;
+
+/* Rows of C as columns, divided by limits. */
+static ritz_status turn_outputs(const ritz_io *io, const ritz_dense *C,
+                                ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
+    for (int64_t i = 0; i < C->nrow; i++)
+        for (int64_t j = 0; j < C->ncol; j++)
+            ritz_dense_col(out, i)[j] =
+                ritz_dense_col(C, j)[i] /
+                (isnan(io->limit[i]) ? 1.0 : io->limit[i]);
+    return RITZ_OK;
+}
+
+/* Rows @p to of A += f X. */
+static void add_rows(const ritz_dofs *to, double f, const ritz_dense *X,
+                     ritz_dense *A)
+{
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < to->count; i++)
+            ritz_dense_col(A, j)[to->at[i]] += f * ritz_dense_col(X, j)[i];
+}
+
+static void clear_rows(const ritz_dofs *rows, ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < rows->count; i++)
+            ritz_dense_col(A, j)[rows->at[i]] = 0.0;
+}
+
+/* X := K_mm^-1 of rows m of A. */
+static ritz_status hold(const ritz_low_rank_model *model, ritz_factor *F,
+                        const ritz_dense *A, ritz_dense *X)
+{
+    RITZ_CHECK(
+        ritz_dense_rows(A, model->massless.count, model->massless.at, X));
+    return ritz_factor_solve(F, X);
+}
+
+/* A := T'A */
+static ritz_status condense(const ritz_low_rank_model *model,
+                            const ritz_sparse *K_rm, ritz_factor *F,
+                            ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0}, Y = {0};
+
+    RITZ_TRY(hold(model, F, A, &X));
+    RITZ_TRY(ritz_sparse_mul(K_rm, &X, &Y));
+    add_rows(&model->massive, -1.0, &Y, A);
+    clear_rows(&model->massless, A);
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&Y);
+    return status;
+}
+
+/* A := T A, whose rows m are zero. */
+static ritz_status follow(const ritz_low_rank_model *model, ritz_factor *F,
+                          ritz_dense *A)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense KA = {0}, X = {0};
+
+    RITZ_TRY(ritz_sparse_mul(&model->K, A, &KA));
+    RITZ_TRY(hold(model, F, &KA, &X));
+    add_rows(&model->massless, -1.0, &X, A);
+done:
+    ritz_dense_free(&KA);
+    ritz_dense_free(&X);
+    return status;
+}
+
+/* Whether outputs C' see what inputs move at once. */
+static ritz_status refuse_improper(const ritz_low_rank_model *model,
+                                   ritz_factor *F, const ritz_dense *B,
+                                   const ritz_dense *Ct, const char *what)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense X = {0}, C_m = {0}, seen = {0};
+
+    RITZ_TRY(hold(model, F, B, &X));
+    RITZ_TRY(
+        ritz_dense_rows(Ct, model->massless.count, model->massless.at, &C_m));
+    RITZ_TRY(ritz_dense_mul_tn(&C_m, &X, &seen));
+    RITZ_FAIL_IF(ritz_dense_max(&seen) >
+                     unseen * ritz_dense_max(&C_m) * ritz_dense_max(&X),
+                 RITZ_ERR_ARGUMENT,
+                 "an output is the %s of a dof without mass that an input "
+                 "drives: no states can give it",
+                 what);
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&C_m);
+    ritz_dense_free(&seen);
+    return status;
+}
+
+/* B, C', Cv', Ca' of dofs with mass alone; F holds the others. */
+static ritz_status condense_all(const ritz_low_rank_model *model,
+                                ritz_dense *const parts[static 4],
+                                ritz_factor **F)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *m = &model->massless;
+    const ritz_dofs *r = &model->massive;
+    ritz_sparse K_mm = {0}, K_rm = {0};
+
+    if (m->count == 0)
+        goto done;
+    RITZ_TRY(ritz_sparse_extract(&model->K, m->count, m->at, m->count, m->at,
+                                 &K_mm));
+    RITZ_TRY(ritz_sparse_extract(&model->K, r->count, r->at, m->count, m->at,
+                                 &K_rm));
+    RITZ_TRY_IN("stiffness that holds the dofs without mass",
+                ritz_factor_spd(&K_mm, F));
+    RITZ_TRY(refuse_improper(model, *F, parts[0], parts[2], "velocity"));
+    RITZ_TRY(refuse_improper(model, *F, parts[0], parts[3], "acceleration"));
+    for (int k = 0; k < 4; k++)
+        RITZ_TRY(condense(model, &K_rm, *F, parts[k]));
+done:
+    ritz_sparse_free(&K_mm);
+    ritz_sparse_free(&K_rm);
+    return status;
+}
+
+/* X := T M_rr^-1 X; M_rr must be definite in any case. */
+static ritz_status accelerate(const ritz_low_rank_model *model, ritz_factor *F,
+                              ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dofs *r = &model->massive;
+    ritz_sparse M_rr = {0};
+    ritz_factor *mass = NULL;
+    ritz_dense Y = {0};
+
+    if (r->count == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_sparse_extract(&model->M, r->count, r->at, r->count, r->at,
+                                 &M_rr));
+    status = ritz_factor_spd(&M_rr, &mass);
+    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                 "M is singular, and not by dofs without mass alone: engine "
+                 "'low-rank' needs mass for every other motion");
+    RITZ_TRY(status);
+    if (ritz_dense_max(X) == 0.0)
+        goto done;
+    RITZ_TRY(ritz_dense_rows(X, r->count, r->at, &Y));
+    RITZ_TRY(ritz_factor_solve(mass, &Y));
+    clear_rows(r, X);
+    add_rows(r, 1.0, &Y, X);
+    if (F)
+        RITZ_TRY(follow(model, F, X));
+done:
+    ritz_sparse_free(&M_rr);
+    ritz_factor_free(&mass);
+    ritz_dense_free(&Y);
+    return status;
+}
+
+static ritz_status subtract(const ritz_sparse *A, const ritz_dense *X,
+                            ritz_dense *from)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AX = {0};
+
+    RITZ_TRY(ritz_sparse_mul(A, X, &AX));
+    for (int64_t k = 0; k < AX.nrow * AX.ncol; k++)
+        from->val[k] -= AX.val[k];
+done:
+    ritz_dense_free(&AX);
+    return status;
+}
+
+/* W of both sides, whose dofs and modes are known. */
+static ritz_status find_loads(const ritz_io *io, ritz_low_rank_model *model)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense *B = &model->W[RITZ_REACHED][RITZ_BELOW];
+    ritz_dense *C = &model->W[RITZ_SEEN][RITZ_ABOVE];
+    ritz_dense *Cv = &model->W[RITZ_SEEN][RITZ_BELOW];
+    ritz_dense X = {0};
+    ritz_factor *F = NULL;
+
+    RITZ_TRY(ritz_dense_new(model->n, io->num_inputs,
+                            &model->W[RITZ_REACHED][RITZ_ABOVE]));
+    RITZ_TRY(ritz_dense_copy(&io->B, B));
+    RITZ_TRY(turn_outputs(io, &io->C, C));
+    RITZ_TRY(turn_outputs(io, &io->Cv, Cv));
+    RITZ_TRY(turn_outputs(io, &io->Ca, &X));
+    RITZ_TRY(condense_all(model, (ritz_dense *[]){B, C, Cv, &X}, &F));
+    RITZ_TRY(accelerate(model, F, &X));
+    RITZ_TRY(subtract(&model->K, &X, C));
+    RITZ_TRY(subtract(model->Dt.colptr ? &model->Dt : &model->D, &X, Cv));
+    if (model->massless.count > 0) { /* K X has rounding there */
+        clear_rows(&model->massless, C);
+        clear_rows(&model->massless, Cv);
+    }
+    for (int side = 0; side < RITZ_SIDES; side++)
+        RITZ_TRY(ritz_low_rank_size(model, side, &model->whole[side]));
+    for (int k = 0; k < 2; k++) { /* once leaves rounding */
+        RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, B));
+        RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, C));
+        RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, Cv));
+    }
+done:
+    ritz_dense_free(&X);
+    ritz_factor_free(&F);
+    return status;
+}
 
 /* Of |D||Phi|: what damping leaves of a rigid motion is rounding. */
 static const double rounding = 1e-10;
@@ -200,7 +429,7 @@ ritz_status ritz_low_rank_model_new(const ritz_gramians_request *request,
     RITZ_TRY(collect_matrices(request, &model));
     RITZ_TRY(split_dofs(request->component, &model));
     RITZ_TRY(find_modes(&model));
-    RITZ_TRY(ritz_low_rank_loads(&request->component->io, &model));
+    RITZ_TRY(find_loads(&request->component->io, &model));
     *out = model;
     model = (ritz_low_rank_model){0};
 done:

@@ -42,9 +42,6 @@ void ritz_low_rank_model_free(ritz_low_rank_model *model);
 ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
                                double *out);
 
-/** W of both sides, whose dofs and modes are known. */
-ritz_status ritz_low_rank_loads(const ritz_io *io, ritz_low_rank_model *model);
-
 /* Columns of a factor Z = [above; below], with room for more. */
 typedef struct ritz_low_rank_columns {
     int64_t count, room;
@@ -108,8 +105,5 @@ typedef struct ritz_low_rank_sweep {
     double least; /* damping ratio of the shifts so far */
     int64_t shifts;
 } ritz_low_rank_sweep;
-
-/** Take one shift, or a pair of them, and add what it gives. */
-ritz_status ritz_low_rank_step(ritz_low_rank_sweep *sweep, double _Complex p);
 
 #endif

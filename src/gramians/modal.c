@@ -15,10 +15,231 @@
 
 #include <ritz/eigen.h>
 
+#include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+/* Of the damping of the modes themselves; beneath is what rounding leaves. */
+static const double coupled_above = 1e-6;
+static const double rounding = 1e-12;
 /* Relative gap of frequencies within a cluster. */
 static const double near = 1e-6;
+
+/* One past the last of the modes at the frequency of mode `first`. */
+static int64_t end_of_cluster(const ritz_first_order *modes, int64_t first)
+{
+    int64_t last = first + 1;
+
+    while (last < modes->count) {
+        double w = sqrt(modes->lambda[last]);
+
+        if (w - sqrt(modes->lambda[last - 1]) > near * w)
+            break;
+        last++;
+    }
+    return last;
+}
+
+/* Columns first, first + 1, ... of A := those times V. */
+static ritz_status turn_columns(ritz_dense *A, int64_t first,
+                                const ritz_dense *V)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0}, turned = {0};
+
+    if (A->nrow == 0 || A->ncol == 0)
+        goto done;
+    part = ritz_dense_part(A, first, V->nrow);
+    RITZ_TRY(ritz_dense_mul(&part, V, &turned));
+    memcpy(part.val, turned.val,
+           (size_t)(turned.nrow * turned.ncol) * sizeof *turned.val);
+done:
+    ritz_dense_free(&turned);
+    return status;
+}
+
+/* Rows first, first + 1, ... of A := V' times those. */
+static ritz_status turn_rows(ritz_dense *A, int64_t first, const ritz_dense *V)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense part = {0}, turned = {0};
+    int64_t n = V->nrow;
+
+    RITZ_TRY(ritz_dense_new(n, A->ncol, &part));
+    for (int64_t j = 0; j < A->ncol; j++)
+        memcpy(ritz_dense_col(&part, j), ritz_dense_col(A, j) + first,
+               (size_t)n * sizeof *part.val);
+    RITZ_TRY(ritz_dense_mul_tn(V, &part, &turned));
+    for (int64_t j = 0; j < A->ncol; j++)
+        memcpy(ritz_dense_col(A, j) + first, ritz_dense_col(&turned, j),
+               (size_t)n * sizeof *part.val);
+done:
+    ritz_dense_free(&part);
+    ritz_dense_free(&turned);
+    return status;
+}
+
+/* Eigenvectors of a block of Delta; *needed: it is not diagonal yet. */
+static ritz_status axes_of(const ritz_dense *Delta, int64_t first, int64_t last,
+                           ritz_dense *V, bool *needed)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = last - first;
+    double *d = NULL;
+    int info = 0;
+
+    RITZ_NEW(d, n);
+    RITZ_TRY(ritz_dense_new(n, n, V));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++) {
+            double x = ritz_dense_col(Delta, first + j)[first + i];
+
+            ritz_dense_col(V, j)[i] = x;
+            *needed = *needed || (i != j && x != 0.0);
+        }
+    if (!*needed)
+        goto done;
+    ritz_dense_symmetrise(V);
+    info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (int)n, V->val, (int)n, d);
+    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                 "damping of a cluster of modes cannot be made diagonal");
+    ritz_dense_orient(V);
+done:
+    free(d);
+    return status;
+}
+
+ritz_status ritz_modes_turn(ritz_first_order *modes)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense V = {0};
+    int64_t last = 0;
+
+    for (int64_t k = modes->num_rigid; k < modes->count; k = last) {
+        bool needed = false;
+
+        last = end_of_cluster(modes, k);
+        if (last == k + 1)
+            continue;
+        RITZ_TRY(axes_of(&modes->Delta, k, last, &V, &needed));
+        if (needed) {
+            RITZ_TRY(turn_columns(&modes->Phi, k, &V));
+            RITZ_TRY(turn_columns(&modes->MPhi, k, &V));
+            RITZ_TRY(turn_columns(&modes->C, k, &V));
+            RITZ_TRY(turn_columns(&modes->Cv, k, &V));
+            RITZ_TRY(turn_columns(&modes->Delta, k, &V));
+            RITZ_TRY(turn_rows(&modes->Delta, k, &V));
+            RITZ_TRY(turn_rows(&modes->B, k, &V));
+        }
+        ritz_dense_free(&V);
+    }
+done:
+    ritz_dense_free(&V);
+    return status;
+}
+
+bool ritz_modes_coupled(const ritz_first_order *modes, ritz_coupling *out)
+{
+    const ritz_dense *d = &modes->Delta;
+    double largest = 0.0;
+
+    for (int64_t k = 0; k < d->ncol; k++)
+        largest = fmax(largest, fabs(ritz_dense_col(d, k)[k]));
+    for (int64_t j = modes->num_rigid; j < d->ncol; j++)
+        for (int64_t i = 0; i < j; i++) {
+            double own = sqrt(fabs(ritz_dense_col(d, i)[i]) *
+                              fabs(ritz_dense_col(d, j)[j]));
+            double off = fmax(fabs(ritz_dense_col(d, j)[i]),
+                              fabs(ritz_dense_col(d, i)[j]));
+
+            if (off <= coupled_above * own + rounding * largest)
+                continue;
+            out->hertz[0] = ritz_eigen_hertz(modes->lambda[i]);
+            out->hertz[1] = ritz_eigen_hertz(modes->lambda[j]);
+            out->ratio = off / fmax(own, rounding * largest);
+            return true;
+        }
+    return false;
+}
+
+ritz_status ritz_coupling_refuse(const ritz_coupling *coupling, const char *why)
+{
+    char own[RITZ_NAME_SIZE] = "which have none of their own";
+
+    if (isfinite(coupling->ratio))
+        snprintf(own, sizeof own, "%.1e of their own damping", coupling->ratio);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "the damping matrix couples the modes at %.6g and %.6g "
+                     "Hz (%s): %s",
+                     coupling->hertz[0], coupling->hertz[1], own, why);
+}
+
+/* Of so many modes, all zero. */
+static ritz_status modal_empty(int64_t count, int64_t inputs, int64_t outputs,
+                               ritz_modal *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_modal modal = {.count = count};
+
+    RITZ_NEW(modal.omega, count);
+    RITZ_NEW(modal.zeta, count);
+    RITZ_TRY(ritz_dense_new(count, inputs, &modal.B));
+    RITZ_TRY(ritz_dense_new(outputs, count, &modal.C));
+    RITZ_TRY(ritz_dense_new(outputs, count, &modal.Cv));
+    *out = modal;
+    modal = (ritz_modal){0};
+done:
+    ritz_modal_free(&modal);
+    return status;
+}
+
+/* Inputs and outputs of flexible mode k, which is mode `at`. */
+static void put_mode(const ritz_first_order *modes, int64_t at,
+                     const double *limit, ritz_modal *modal, int64_t k)
+{
+    for (int64_t j = 0; j < modal->B.ncol; j++)
+        ritz_dense_col(&modal->B, j)[k] = ritz_dense_col(&modes->B, j)[at];
+    for (int64_t i = 0; i < modal->C.nrow; i++) {
+        double by = isnan(limit[i]) ? 1.0 : limit[i];
+
+        ritz_dense_col(&modal->C, k)[i] = ritz_dense_col(&modes->C, at)[i] / by;
+        ritz_dense_col(&modal->Cv, k)[i] =
+            ritz_dense_col(&modes->Cv, at)[i] / by;
+    }
+}
+
+ritz_status ritz_modal_of_modes(const ritz_first_order *modes,
+                                const ritz_io *io, ritz_modal *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_modal modal = {0};
+    int64_t r = modes->num_rigid;
+
+    for (int64_t i = 0; i < io->num_outputs; i++)
+        RITZ_FAIL_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
+                     "output '%s' has the limit %g, which is not positive",
+                     io->output[i], io->limit[i]);
+    RITZ_TRY(
+        modal_empty(modes->count - r, modes->B.ncol, modes->C.nrow, &modal));
+    for (int64_t k = 0; k < modal.count; k++) {
+        modal.omega[k] = sqrt(modes->lambda[r + k]);
+        modal.zeta[k] = ritz_dense_col(&modes->Delta, r + k)[r + k] /
+                        (2.0 * modal.omega[k]);
+        RITZ_FAIL_IF(!(modal.zeta[k] > 0.0), RITZ_ERR_ARGUMENT,
+                     "the mode at %.6g Hz has %s damping: every flexible mode "
+                     "needs a positive ratio",
+                     ritz_eigen_hertz(modes->lambda[r + k]),
+                     modal.zeta[k] < 0.0 ? "negative" : "no");
+        put_mode(modes, r + k, io->limit, &modal, k);
+    }
+    *out = modal;
+    modal = (ritz_modal){0};
+done:
+    ritz_modal_free(&modal);
+    return status;
+}
 
 int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first)
 {
@@ -37,7 +258,7 @@ ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
     int64_t outputs = modal->C.nrow;
     ritz_modal part = {0};
 
-    RITZ_TRY(ritz_modal_empty(last - first, modal->B.ncol, outputs, &part));
+    RITZ_TRY(modal_empty(last - first, modal->B.ncol, outputs, &part));
     for (int64_t k = first; k < last; k++) {
         part.omega[k - first] = modal->omega[k];
         part.zeta[k - first] = modal->zeta[k];
@@ -58,8 +279,8 @@ done:
     return status;
 }
 
-static ritz_status check(const ritz_dense *K, const ritz_dense *D,
-                         const ritz_io *io)
+static ritz_status check_sizes(const ritz_dense *K, const ritz_dense *D,
+                               const ritz_io *io)
 {
     RITZ_REFUSE_IF(io->B.nrow != K->nrow || io->C.ncol != K->nrow,
                    RITZ_ERR_ARGUMENT,
@@ -103,7 +324,7 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
     ritz_first_order modes = {0};
     ritz_coupling coupling = {0};
 
-    RITZ_TRY(check(K, D, io));
+    RITZ_TRY(check_sizes(K, D, io));
     RITZ_TRY(find_modes(K, M, D, io, damping, &modes));
     RITZ_TRY(ritz_modes_turn(&modes));
     if (ritz_modes_coupled(&modes, &coupling))

@@ -27,10 +27,6 @@ bool ritz_modes_coupled(const ritz_first_order *modes, ritz_coupling *out);
 ritz_status ritz_coupling_refuse(const ritz_coupling *coupling,
                                  const char *why);
 
-/** Of so many modes, all zero. */
-ritz_status ritz_modal_empty(int64_t count, int64_t inputs, int64_t outputs,
-                             ritz_modal *out);
-
 /**
  * Their flexible ones, of which damping couples none.
  *

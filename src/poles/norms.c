@@ -1,7 +1,13 @@
 /*
- * A real Schur form is brought to a complex triangle once, after which a point
- * costs one triangular solve. Peaks lie near poles: they are where the search
- * begins, and a golden section between neighbours ends it.
+ * Norms of what stable poles answer, in the Schur form that tells them apart:
+ *
+ *     |G|_inf = max_w sigma_1(C (i w P - S)^-1 B + D),
+ *     |G|_2   = |C F_c|_F,   S W_c P' + P W_c S' + B B' = 0,   W_c = F_c F_c'
+ *
+ * AB13DD decides by eigenvalues of a Hamiltonian matrix whether a value is ever
+ * reached. B and C go in with length one, so that it is not a question of
+ * units. Its peak is compared with values that are met at every pole.
+ * [Bruinsma1990], [Hammarling1982]
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -22,6 +28,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/*
+ * A real Schur form is brought to a complex triangle once, after which a point
+ * costs one triangular solve. Peaks lie near poles: they are where the search
+ * begins, and a golden section between neighbours ends it.
+ */
 
 /* C (i w P - S)^-1 B + D, S and P complex triangular. */
 typedef struct ritz_peak {
@@ -271,18 +283,6 @@ done:
     free(value);
     return status;
 }
-
-/*
- * Norms of what stable poles answer, in the Schur form that tells them apart:
- *
- *     |G|_inf = max_w sigma_1(C (i w P - S)^-1 B + D),
- *     |G|_2   = |C F_c|_F,   S W_c P' + P W_c S' + B B' = 0,   W_c = F_c F_c'
- *
- * AB13DD decides by eigenvalues of a Hamiltonian matrix whether a value is ever
- * reached. B and C go in with length one, so that it is not a question of
- * units. Its peak is compared with values that are met at every pole.
- * [Bruinsma1990], [Hammarling1982]
- */
 
 /* Beyond this many states no Hamiltonian is made. */
 enum { MOST_STATES = 600 };

@@ -1,4 +1,29 @@
 /*
+ * The answer of all modes above those of `pairs`, free bodies included:
+ *
+ *     K R_0 = B - M Phi Phi'B,   K R_j = M R_(j-1),   Phi'M R_j = 0
+ *
+ * Damping a M + b K acts on those modes too:
+ *
+ *     lambda (1 + i w b) + i w a - w^2 = (1 + i w b) (lambda - mu),
+ *     mu = (w^2 - i w a) / (1 + i w b)
+ *
+ * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall by
+ * |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the |mu|
+ * at the end of the range: powers of rad^2/s^2 leave all bounds.
+ */
+#include "base/alloc.h"
+#include "poles/poles.h"
+#include "poles/proportional.h"
+
+#include <ritz/factor.h>
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/*
  * K R = f, Phi'M R = 0, is consistent where f = (I - M Phi Phi') f, the rigid
  * modes being among Phi, and is solved with A = K - sigma M, sigma < 0, by
  *
@@ -11,16 +36,6 @@
  * all other terms are rounding. So a term is held to what it adds at the end of
  * the range, of the whole answer there, and not to its own size.
  */
-#include "base/alloc.h"
-#include "poles/poles.h"
-#include "poles/proportional.h"
-
-#include <ritz/factor.h>
-
-#include <complex.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Of the whole answer at the end of the range, what its series is good to. */
 #define RITZ_SERIES_WITHIN 1e-12
@@ -200,21 +215,6 @@ done:
     ritz_dense_free(&next);
     return status;
 }
-
-/*
- * The answer of all modes above those of `pairs`, free bodies included:
- *
- *     K R_0 = B - M Phi Phi'B,   K R_j = M R_(j-1),   Phi'M R_j = 0
- *
- * Damping a M + b K acts on those modes too:
- *
- *     lambda (1 + i w b) + i w a - w^2 = (1 + i w b) (lambda - mu),
- *     mu = (w^2 - i w a) / (1 + i w b)
- *
- * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall by
- * |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the |mu|
- * at the end of the range: powers of rad^2/s^2 leave all bounds.
- */
 
 enum { MOST_TERMS = 40 };
 /* falls_enough^MOST_TERMS = RITZ_SERIES_WITHIN */

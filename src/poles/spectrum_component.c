@@ -1,13 +1,4 @@
-/*
- * The space in which damped poles of a large component are sought. Undamped
- * modes alone mislead where dampers are discrete: the motion that a truncated
- * set leaves across a damper is far from the true one, and so is the ratio.
- * With the static answers X to a force along each influence vector beside them
- * the small model is near enough for inverse iteration to settle on what is
- * sought.
- *
- *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
- */
+/* Lowest damped poles of a component, made exact on its full matrices. */
 #include "base/alloc.h"
 #include "poles/refine.h"
 #include "poles/spectrum_parts.h"
@@ -19,6 +10,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/*
+ * The space in which damped poles of a large component are sought. Undamped
+ * modes alone mislead where dampers are discrete: the motion that a truncated
+ * set leaves across a damper is far from the true one, and so is the ratio.
+ * With the static answers X to a force along each influence vector beside them
+ * the small model is near enough for inverse iteration to settle on what is
+ * sought.
+ *
+ *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
+ */
 
 /* A column of which less than this is new adds nothing. */
 static const double dependent = 1e-8;
@@ -186,8 +188,6 @@ done:
     ritz_reduced_free(&small);
     return status;
 }
-
-/* Lowest damped poles of a component, made exact on its full matrices. */
 
 /* Beyond what is wanted, of modes and of frequencies. */
 enum { MORE_MODES = 8 };

@@ -1,9 +1,4 @@
-/*
- * Finite zeros by the reduction of the system pencil to a regular one of the
- * same finite zeros (SLICOT AB08ND, [EmamiNaeiniVanDooren1982]). Time, inputs
- * and outputs are scaled first, so that its decisions on rank are no question
- * of units.
- */
+/* Zeros: found from the pencil, made exact where the model says more. */
 #include "base/alloc.h"
 #include "model/first_order.h"
 #include "poles/channel.h"
@@ -31,6 +26,13 @@ typedef struct sample {
     double _Complex f, first, second;
     double error;
 } sample;
+
+/*
+ * Finite zeros by the reduction of the system pencil to a regular one of the
+ * same finite zeros (SLICOT AB08ND, [EmamiNaeiniVanDooren1982]). Time, inputs
+ * and outputs are scaled first, so that its decisions on rank are no question
+ * of units.
+ */
 
 /* The Fortran name; character arguments bring their lengths at the end. */
 void ab08nd_(/* NOLINT: its name */ const char *equil, const int *n,
@@ -532,8 +534,6 @@ done:
     free(done);
     return status;
 }
-
-/* Zeros: found from the pencil, made exact where the model says more. */
 
 /* By magnitude; equal ones by real part, and of a pair the upper one first. */
 static int ascending(const void *left, const void *right)

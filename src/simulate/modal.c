@@ -11,16 +11,74 @@
  * What damping takes in a step and what inputs give are z'W z with W of
  * exponential.c, exact as well.
  */
+#include "base/alloc.h"
 #include "simulate/exponential.h"
-#include "simulate/groups.h"
 #include "simulate/oscillator.h"
 #include "simulate/states.h"
 
-#include "base/alloc.h"
+#include <ritz/dense.h>
 
+#include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct groups {
+    int64_t count;
+    int64_t *first;  /* count + 1 */
+    int64_t *member; /* of group k: member[first[k]] ... */
+} groups;
+
+/* Connected parts of the graph of D, in the order of their first modes. */
+
+static bool couples_modes(const ritz_dense *D, double floor, int64_t i,
+                          int64_t j)
+{
+    return i != j && (fabs(ritz_dense_col(D, j)[i]) > floor ||
+                      fabs(ritz_dense_col(D, i)[j]) > floor);
+}
+
+static void groups_free(groups *g)
+{
+    free(g->first);
+    free(g->member);
+    *g = (groups){0};
+}
+
+/* Entries below 64 eps of the largest couple nothing. */
+static ritz_status groups_new(const ritz_dense *D, groups *out)
+{
+    ritz_status status = RITZ_OK;
+    groups g = {0};
+    bool *seen = NULL;
+    int64_t n = D->nrow;
+    int64_t end = 0; /* of members */
+    double floor = 64.0 * DBL_EPSILON * ritz_dense_max(D);
+
+    RITZ_NEW(g.first, n + 1);
+    RITZ_NEW(g.member, n);
+    RITZ_NEW(seen, n);
+    for (int64_t j = 0; j < n; j++) {
+        if (seen[j])
+            continue;
+        seen[j] = true;
+        g.member[end] = j;
+        for (int64_t next = end++; next < end; next++)
+            for (int64_t i = j + 1; i < n; i++)
+                if (!seen[i] && couples_modes(D, floor, i, g.member[next])) {
+                    seen[i] = true;
+                    g.member[end++] = i;
+                }
+        g.first[++g.count] = end;
+    }
+    *out = g;
+    g = (groups){0};
+done:
+    free(seen);
+    groups_free(&g);
+    return status;
+}
 
 /* Modes that D couples; one alone if `o` is to be used. */
 typedef struct group {
@@ -35,12 +93,12 @@ typedef struct group {
 typedef struct modal {
     int64_t num_groups;
     group *group;
-    ritz_groups parts;
+    groups parts;
     double *f, *g; /* n, modal forces and their rates */
     double *z, *z1;
 } modal;
 
-static void release(void *own)
+static void release_modal(void *own)
 {
     modal *s = own;
 
@@ -50,7 +108,7 @@ static void release(void *own)
         ritz_dense_free(&s->group[k].W[1]);
     }
     free(s->group);
-    ritz_groups_free(&s->parts);
+    groups_free(&s->parts);
     free(s->f);
     free(s->g);
     free(s->z);
@@ -59,8 +117,8 @@ static void release(void *own)
 }
 
 /* The matrix of z'; `forces` of a lone mode, whose input is its own force. */
-static ritz_status first_order(const ritz_motion *m, const group *part,
-                               ritz_dense *out)
+static ritz_status group_matrix(const ritz_motion *m, const group *part,
+                                ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int64_t g = part->count;
@@ -93,8 +151,8 @@ done:
 }
 
 /* q'D q' and q'B u as forms of z. */
-static ritz_status forms(const ritz_motion *m, const group *part,
-                         const ritz_dense *A, ritz_dense Q[2])
+static ritz_status group_forms(const ritz_motion *m, const group *part,
+                               const ritz_dense *A, ritz_dense Q[2])
 {
     int64_t g = part->count;
 
@@ -113,7 +171,7 @@ static ritz_status forms(const ritz_motion *m, const group *part,
     return RITZ_OK;
 }
 
-static ritz_status prepare(const ritz_motion *m, double h, group *part)
+static ritz_status prepare_group(const ritz_motion *m, double h, group *part)
 {
     ritz_status status = RITZ_OK;
     ritz_dense A = {0}, Q[2] = {{0}, {0}};
@@ -126,9 +184,9 @@ static ritz_status prepare(const ritz_motion *m, double h, group *part)
         if (!m->energies)
             return RITZ_OK;
     }
-    RITZ_TRY(first_order(m, part, &A));
+    RITZ_TRY(group_matrix(m, part, &A));
     if (m->energies)
-        RITZ_TRY(forms(m, part, &A, Q));
+        RITZ_TRY(group_forms(m, part, &A, Q));
     RITZ_TRY(
         ritz_exponential(&A, h, m->energies ? 2 : 0, Q, &part->E, part->W));
 done:
@@ -138,7 +196,7 @@ done:
     return status;
 }
 
-static double form(const ritz_dense *W, const double *z)
+static double value_of_form(const ritz_dense *W, const double *z)
 {
     double sum = 0.0;
 
@@ -147,10 +205,11 @@ static double form(const ritz_dense *W, const double *z)
     return sum;
 }
 
-static void account(const group *part, const double *z, ritz_march *march)
+static void account_energy(const group *part, const double *z,
+                           ritz_march *march)
 {
-    march->dissipated += form(&part->W[0], z);
-    march->work += form(&part->W[1], z);
+    march->dissipated += value_of_form(&part->W[0], z);
+    march->work += value_of_form(&part->W[1], z);
 }
 
 /* A mode alone. */
@@ -164,7 +223,7 @@ static void advance_one(const group *part, double f, double g,
     const double z[4] = {q, v, f, g};
 
     if (march->motion->energies)
-        account(part, z, march);
+        account_energy(part, z, march);
     march->x[j] = o->hold * q + o->S * v + o->P * f + o->R * g;
     march->v[j] = -march->motion->lambda[j] * o->S * q + o->rate * v +
                   o->S * f + o->P * g;
@@ -186,7 +245,7 @@ static void advance_group(const group *part, const double *u0, const double *u1,
         s->z[2 * g + p + j] = part->scale * (u1[j] - u0[j]) / march->step;
     }
     if (m->energies)
-        account(part, s->z, march);
+        account_energy(part, s->z, march);
     memset(s->z1, 0, (size_t)(2 * g + 2 * p) * sizeof *s->z1);
     ritz_motion_gemv(&part->E, 1.0, s->z, s->z1);
     for (int64_t i = 0; i < g; i++) {
@@ -195,8 +254,8 @@ static void advance_group(const group *part, const double *u0, const double *u1,
     }
 }
 
-static ritz_status advance(ritz_march *march, const double *u0,
-                           const double *u1)
+static ritz_status advance_modal(ritz_march *march, const double *u0,
+                                 const double *u1)
 {
     const ritz_motion *m = march->motion;
     modal *s = march->own;
@@ -231,7 +290,7 @@ static ritz_status start_modes(const ritz_motion *motion, double step,
     modal *s = NULL;
 
     RITZ_NEW(s, 1);
-    RITZ_TRY(ritz_groups_new(&motion->D, &s->parts));
+    RITZ_TRY(groups_new(&motion->D, &s->parts));
     RITZ_NEW(s->group, s->parts.count);
     s->num_groups = s->parts.count;
     RITZ_NEW(s->f, motion->n);
@@ -241,20 +300,20 @@ static ritz_status start_modes(const ritz_motion *motion, double step,
     for (int64_t k = 0; k < s->num_groups; k++) {
         s->group[k].mode = s->parts.member + s->parts.first[k];
         s->group[k].count = s->parts.first[k + 1] - s->parts.first[k];
-        RITZ_TRY(prepare(motion, step, &s->group[k]));
+        RITZ_TRY(prepare_group(motion, step, &s->group[k]));
     }
     out->own = s;
-    out->advance = advance;
-    out->free = release;
+    out->advance = advance_modal;
+    out->free = release_modal;
     s = NULL;
 done:
     if (s)
-        release(s);
+        release_modal(s);
     return status;
 }
 
-static ritz_status start(const ritz_motion *motion, double step, double rho,
-                         ritz_march *out)
+static ritz_status start_modal(const ritz_motion *motion, double step,
+                               double rho, ritz_march *out)
 {
     (void)rho;
     if (motion->form == RITZ_FORM_STATES)
@@ -271,5 +330,5 @@ const ritz_integrator ritz_integrator_modal = {
     .fails = "needs all modes; a loop closed around it is of first order",
     .reference = "Sirlin1992",
     .takes_states = true,
-    .start = start,
+    .start = start_modal,
 };

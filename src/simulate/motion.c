@@ -13,9 +13,257 @@
 
 #include "base/alloc.h"
 #include "linear/general.h"
+#include "poles/poles.h"
+
+#include <ritz/eigen.h>
 
 #include <math.h>
 #include <stdlib.h>
+
+/* Modes as a motion: of a dense model, or of a full component up to a band. */
+
+/* The sentence that refuses structural damping, if it is there. */
+static ritz_status refuse_structural(bool there)
+{
+    RITZ_REFUSE_IF(
+        there, RITZ_ERR_ARGUMENT,
+        "structural damping is of harmonic motion alone, in time it "
+        "would answer before it is driven: give it as a modal ratio");
+    return RITZ_OK;
+}
+
+/* Modes as they are: what @p modes owns moves over. */
+static ritz_status take_modes(ritz_first_order *modes, ritz_motion *m)
+{
+    m->form = RITZ_FORM_MODAL;
+    m->n = modes->count;
+    m->original = modes->num_dofs;
+    m->num_rigid = modes->num_rigid;
+    RITZ_CHECK(ritz_dense_copy(&modes->B, &m->push));
+    m->lambda = modes->lambda;
+    m->D = modes->Delta;
+    m->B = modes->B;
+    m->C = modes->C;
+    m->Cv = modes->Cv;
+    m->feed = modes->feed;
+    m->to = modes->MPhi;
+    modes->lambda = NULL;
+    modes->Delta = modes->B = modes->C = (ritz_dense){0};
+    modes->Cv = modes->feed = modes->MPhi = (ritz_dense){0};
+    return RITZ_OK;
+}
+
+/* What K leaves to modes above, as the first term of their series. */
+static ritz_status add_rest(const ritz_component *component, double up_to_hz,
+                            const ritz_pairs *pairs, ritz_dense *feed)
+{
+    ritz_status status = RITZ_OK;
+    ritz_residual rest = {0};
+    int64_t size = feed->nrow * feed->ncol;
+
+    if (pairs->Phi.ncol >= component->num_dofs)
+        return RITZ_OK;
+    RITZ_TRY(ritz_residual_new(component, NULL, pairs, 0.0, up_to_hz, &rest));
+    for (int64_t k = 0; rest.count > 0 && k < size; k++)
+        feed->val[k] += rest.C[k];
+done:
+    ritz_residual_free(&rest);
+    return status;
+}
+
+/* Modal, up to a frequency, with the static answer of all above in `feed`. */
+static ritz_status motion_of_modes(const ritz_component *component,
+                                   const ritz_damping *damping, double up_to_hz,
+                                   ritz_motion *out)
+{
+    static const ritz_damping none = {0};
+    ritz_status status = RITZ_OK;
+    const ritz_span span = {.modes = -1, .up_to_hz = up_to_hz};
+    ritz_pairs pairs = {0};
+    ritz_first_order modes = {.num_dofs = component->num_dofs};
+    ritz_motion m = {0};
+
+    RITZ_FAIL_IF(!(up_to_hz > 0.0), RITZ_ERR_ARGUMENT,
+                 "no frequency is given up to which modes are to be found");
+    RITZ_TRY(refuse_structural(component->K4.colptr &&
+                               ritz_sparse_max(&component->K4) > 0.0));
+    RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));
+    modes.count = pairs.Phi.ncol;
+    modes.num_rigid = pairs.num_rigid;
+    RITZ_TRY(ritz_dense_copy(&pairs.Phi, &modes.Phi));
+    RITZ_TRY(ritz_sparse_mul(&component->M, &pairs.Phi, &modes.MPhi));
+    RITZ_TRY(ritz_sparse_project(&component->D, &pairs.Phi, &modes.Delta));
+    RITZ_NEW(modes.lambda, modes.count);
+    for (int64_t j = modes.num_rigid; j < modes.count; j++)
+        modes.lambda[j] = pairs.lambda[j];
+    RITZ_TRY(ritz_first_order_drive(&component->io, damping ? damping : &none,
+                                    &modes));
+    RITZ_TRY_IN("what lies above the modes",
+                add_rest(component, up_to_hz, &pairs, &modes.feed));
+    RITZ_TRY(take_modes(&modes, &m));
+    m.highest = nan("");
+    *out = m;
+    m = (ritz_motion){0};
+done:
+    ritz_pairs_free(&pairs);
+    ritz_first_order_free(&modes);
+    ritz_motion_free(&m);
+    return status;
+}
+
+/*
+ * A full component as a motion, for implicit integrators.
+ *
+ * Dofs without mass (rows empty in M) are in equilibrium at every step's end;
+ * at the start they are put there by the simulation. D must leave them alone.
+ */
+
+/* Rows in which A has nothing but zeros. */
+static void find_empty(const ritz_sparse *A, bool *out)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        out[j] = true;
+    for (int64_t k = 0; k < A->colptr[A->ncol]; k++)
+        if (A->val[k] != 0.0)
+            out[A->rowind[k]] = false;
+}
+
+static ritz_status check(const ritz_component *component,
+                         const ritz_damping *damping, const bool *massless,
+                         const ritz_sparse *D)
+{
+    const ritz_io *io = &component->io;
+
+    RITZ_CHECK(refuse_structural(component->K4.colptr &&
+                                 ritz_sparse_max(&component->K4) > 0.0));
+    RITZ_REFUSE_IF(damping->kind != RITZ_DAMPING_NONE &&
+                       !ritz_damping_is_rayleigh(damping),
+                   RITZ_ERR_ARGUMENT,
+                   "damping ratios are of modes, which an implicit integrator "
+                   "does not find: use modal, or rayleigh damping");
+    for (int64_t k = 0; D->colptr && k < D->colptr[D->ncol]; k++) {
+        char name[RITZ_DOF_NAME_SIZE];
+
+        RITZ_REFUSE_IF(D->val[k] != 0.0 && massless[D->rowind[k]],
+                       RITZ_ERR_ARGUMENT,
+                       "%s has damping and no mass: condense it first",
+                       ritz_dof_name(component->dof[D->rowind[k]], name));
+    }
+    for (int64_t j = 0; j < component->num_dofs; j++)
+        for (int64_t i = 0; massless[j] && i < io->num_outputs; i++)
+            RITZ_REFUSE_IF(
+                ritz_dense_col(&io->Cv, j)[i] != 0.0 ||
+                    ritz_dense_col(&io->Ca, j)[i] != 0.0,
+                RITZ_ERR_ARGUMENT,
+                "output '%s' is the velocity or acceleration of a dof "
+                "without mass",
+                io->output[i]);
+    return RITZ_OK;
+}
+
+/* C - Ca M^-1 K and so on: Z = M^-1 Ca', C -= Z'K. */
+static ritz_status write_out_sparse(const ritz_io *io, ritz_effective *mass,
+                                    ritz_motion *m)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense z = {0};
+    double *row = NULL;
+
+    RITZ_NEW(row, m->n);
+    RITZ_TRY(ritz_dense_new(m->n, 1, &z));
+    for (int64_t i = 0; i < io->num_outputs; i++) {
+        for (int64_t k = 0; k < m->n; k++)
+            z.val[k] = ritz_dense_col(&io->Ca, k)[i];
+        if (ritz_dense_max(&z) == 0.0)
+            continue;
+        RITZ_TRY(ritz_effective_solve(mass, 1, z.val));
+        for (int64_t j = 0; j < io->num_inputs; j++)
+            ritz_dense_col(&m->feed, j)[i] +=
+                ritz_motion_dot(m->n, z.val, ritz_dense_col(&m->B, j));
+        for (int64_t k = 0; k < m->n; k++)
+            row[k] = 0.0;
+        ritz_motion_stiffness(m, -1.0, z.val, row); /* K is symmetric */
+        for (int64_t k = 0; k < m->n; k++)
+            ritz_dense_col(&m->C, k)[i] += row[k];
+        for (int64_t k = 0; m->sD.colptr && k < m->n; k++)
+            for (int64_t e = m->sD.colptr[k]; e < m->sD.colptr[k + 1]; e++)
+                ritz_dense_col(&m->Cv, k)[i] -=
+                    z.val[m->sD.rowind[e]] * m->sD.val[e];
+    }
+done:
+    free(row);
+    ritz_dense_free(&z);
+    return status;
+}
+
+/* Dofs without mass do not jump by an impulse. */
+static ritz_status find_push(ritz_effective *mass, ritz_motion *m)
+{
+    RITZ_CHECK(ritz_dense_copy(&m->B, &m->push));
+    for (int64_t j = 0; j < m->push.ncol; j++)
+        for (int64_t k = 0; k < m->n; k++)
+            if (m->massless[k])
+                ritz_dense_col(&m->push, j)[k] = 0.0;
+    return ritz_effective_solve(mass, m->push.ncol, m->push.val);
+}
+
+static ritz_status fill(const ritz_component *component,
+                        const ritz_damping *damping, ritz_motion *m)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &component->io;
+    ritz_sparse D = {0};
+
+    m->n = m->original = component->num_dofs;
+    RITZ_NEW(m->massless, m->n);
+    RITZ_TRY(ritz_sparse_copy(&component->K, &m->sK));
+    RITZ_TRY(ritz_sparse_copy(&component->M, &m->sM));
+    find_empty(&m->sM, m->massless);
+    if (component->D.colptr)
+        RITZ_TRY(ritz_sparse_copy(&component->D, &m->sD));
+    if (ritz_damping_is_rayleigh(damping)) {
+        RITZ_TRY(ritz_sparse_add(damping->a, &m->sM, damping->b, &m->sK, &D));
+        if (m->sD.colptr) {
+            ritz_sparse sum = {0};
+
+            RITZ_TRY(ritz_sparse_add(1.0, &D, 1.0, &m->sD, &sum));
+            ritz_sparse_free(&m->sD);
+            m->sD = sum;
+        } else {
+            m->sD = D;
+            D = (ritz_sparse){0};
+        }
+    }
+    RITZ_TRY(check(component, damping, m->massless, &m->sD));
+    RITZ_TRY(ritz_dense_copy(&io->B, &m->B));
+    RITZ_TRY(ritz_dense_copy(&io->C, &m->C));
+    RITZ_TRY(ritz_dense_copy(&io->Cv, &m->Cv));
+    RITZ_TRY(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
+done:
+    ritz_sparse_free(&D);
+    return status;
+}
+
+static ritz_status motion_of_sparse(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    ritz_motion *out)
+{
+    static const ritz_damping none = {0};
+    ritz_status status = RITZ_OK;
+    ritz_motion m = {.form = RITZ_FORM_SPARSE, .highest = nan("")};
+    ritz_effective mass = {0};
+
+    RITZ_TRY(fill(component, damping ? damping : &none, &m));
+    RITZ_TRY_IN("M", ritz_effective_new(&m, 1.0, 0.0, 0.0, true, &mass));
+    RITZ_TRY(find_push(&mass, &m));
+    RITZ_TRY(write_out_sparse(&component->io, &mass, &m));
+    *out = m;
+    m = (ritz_motion){0};
+done:
+    ritz_effective_free(&mass);
+    ritz_motion_free(&m);
+    return status;
+}
 
 static bool present(const ritz_dense *A)
 {
@@ -153,13 +401,13 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
     double highest = 0.0;
 
     damping = damping ? damping : &none;
-    RITZ_TRY(ritz_motion_refuse_structural(present(model->K4) &&
-                                           ritz_dense_max(model->K4) > 0.0));
+    RITZ_TRY(refuse_structural(present(model->K4) &&
+                               ritz_dense_max(model->K4) > 0.0));
     RITZ_TRY(ritz_first_order_new(&s, model->io, damping, &modes));
     for (int64_t j = 0; j < modes.count; j++)
         highest = fmax(highest, fabs(modes.lambda[j]));
     if (modal || modes.count < modes.num_dofs) {
-        RITZ_TRY(ritz_motion_take_modes(&modes, &m));
+        RITZ_TRY(take_modes(&modes, &m));
         if (!modal)
             RITZ_TRY(fill_out(&m));
     } else {
@@ -213,13 +461,13 @@ ritz_status ritz_motion_new(const ritz_simulated *subject,
     if (subject->model)
         return ritz_motion_dense(subject->model, subject->damping, modal, out);
     if (modal)
-        return ritz_motion_modes(subject->component, subject->damping,
-                                 request->up_to_hz, out);
+        return motion_of_modes(subject->component, subject->damping,
+                               request->up_to_hz, out);
     RITZ_REFUSE_IF(!integrator->takes_sparse, RITZ_ERR_ARGUMENT,
                    "'%s' is of small dense models: a full component goes by "
                    "modal, trapezoidal or generalised-alpha",
                    integrator->name);
-    return ritz_motion_sparse(subject->component, subject->damping, out);
+    return motion_of_sparse(subject->component, subject->damping, out);
     return RITZ_OK;
 }
 

@@ -49,21 +49,7 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
                               const ritz_damping *damping, bool modal,
                               ritz_motion *out);
 
-/** Modal, up to a frequency, with the static answer of all above in `feed`. */
-ritz_status ritz_motion_modes(const ritz_component *component,
-                              const ritz_damping *damping, double up_to_hz,
-                              ritz_motion *out);
-
-ritz_status ritz_motion_sparse(const ritz_component *component,
-                               const ritz_damping *damping, ritz_motion *out);
-
 ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out);
-
-/** Modes as they are: what @p modes owns moves over. */
-ritz_status ritz_motion_take_modes(ritz_first_order *modes, ritz_motion *m);
-
-/** The sentence that refuses structural damping, if it is there. */
-ritz_status ritz_motion_refuse_structural(bool there);
 
 /** Whichever of them a subject and an integrator ask for. */
 ritz_status ritz_motion_new(const ritz_simulated *subject,
@@ -126,9 +112,6 @@ ritz_status ritz_march_new(const ritz_motion *motion,
                            const ritz_integrator *integrator, double step,
                            double rho, ritz_march *out);
 void ritz_march_free(ritz_march *march);
-
-/** Outputs now. */
-void ritz_march_see(const ritz_march *march, const double *u, double *y);
 
 /** Kinetic and potential energy now. */
 void ritz_march_energy(const ritz_march *march, double *kinetic,

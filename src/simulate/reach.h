@@ -26,10 +26,6 @@ typedef struct ritz_reach {
 ritz_status ritz_reach_new(const ritz_simulated *subject,
                            const ritz_motion *motion, ritz_reach *out);
 
-/** The march as it is now, at @p seconds. */
-void ritz_reach_note(ritz_reach *reach, const ritz_march *march,
-                     double seconds);
-
 void ritz_reach_free(ritz_reach *reach);
 
 #endif

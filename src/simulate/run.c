@@ -1,15 +1,249 @@
-/* The loop over time. */
+/* A simulation: the request, the loop over time, and what it yields. */
 #include "simulate/run.h"
 
 #include "base/alloc.h"
+#include "simulate/motion.h"
+#include "simulate/reach.h"
 
 #include <ritz/monitor.h>
+#include <ritz/simulate.h>
+#include <ritz/text.h>
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Motions on their way: what all integrators share. */
+
+ritz_status ritz_march_new(const ritz_motion *motion,
+                           const ritz_integrator *integrator, double step,
+                           double rho, ritz_march *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_march march = {.motion = motion, .step = step};
+
+    RITZ_NEW(march.x, motion->n);
+    if (motion->form != RITZ_FORM_STATES)
+        RITZ_NEW(march.v, motion->n);
+    RITZ_TRY_IN(integrator->name, integrator->start(motion, step, rho, &march));
+    *out = march;
+    march = (ritz_march){0};
+done:
+    ritz_march_free(&march);
+    return status;
+}
+
+void ritz_march_free(ritz_march *march)
+{
+    if (march->own)
+        march->free(march->own);
+    free(march->x);
+    free(march->v);
+    *march = (ritz_march){0};
+}
+
+/* Outputs now. */
+static void see_outputs(const ritz_march *march, const double *u, double *y)
+{
+    const ritz_motion *m = march->motion;
+
+    for (int64_t i = 0; i < m->C.nrow; i++)
+        y[i] = 0.0;
+    ritz_motion_gemv(&m->C, 1.0, march->x, y);
+    if (march->v)
+        ritz_motion_gemv(&m->Cv, 1.0, march->v, y);
+    ritz_motion_gemv(&m->feed, 1.0, u, y);
+}
+
+/* x'A x / 2 column by column, without room for A x. */
+static double quadratic(const ritz_dense *A, const double *x)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        sum += x[j] * ritz_motion_dot(A->nrow, ritz_dense_col(A, j), x);
+    return 0.5 * sum;
+}
+
+static double sparse_quadratic(const ritz_sparse *A, const double *x)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
+            sum += x[A->rowind[k]] * A->val[k] * x[j];
+    return 0.5 * sum;
+}
+
+void ritz_march_energy(const ritz_march *march, double *kinetic,
+                       double *potential)
+{
+    const ritz_motion *m = march->motion;
+
+    *kinetic = *potential = 0.0;
+    switch (m->form) {
+    case RITZ_FORM_MODAL:
+        for (int64_t k = 0; k < m->n; k++) {
+            *kinetic += 0.5 * march->v[k] * march->v[k];
+            *potential += 0.5 * m->lambda[k] * march->x[k] * march->x[k];
+        }
+        break;
+    case RITZ_FORM_DENSE:
+        *kinetic = quadratic(&m->M, march->v);
+        *potential = quadratic(&m->K, march->x);
+        break;
+    case RITZ_FORM_SPARSE:
+        *kinetic = sparse_quadratic(&m->sM, march->v);
+        *potential = sparse_quadratic(&m->sK, march->x);
+        break;
+    case RITZ_FORM_STATES:
+        break;
+    }
+}
+
+enum { BY_PLACE, BY_RATE, BY_ACCELERATION, BY_STRAIN, WAYS };
+
+static double sparse_diagonal(const ritz_sparse *A, int64_t j)
+{
+    double sum = 0.0;
+
+    for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
+        if (A->rowind[k] == j)
+            sum += A->val[k];
+    return sum;
+}
+
+/* M or K of dof j by itself. */
+static double diagonal(const ritz_simulated *s, bool mass, int64_t j)
+{
+    if (s->component)
+        return sparse_diagonal(mass ? &s->component->M : &s->component->K, j);
+    return ritz_dense_col(mass ? s->model->M : s->model->K, j)[j];
+}
+
+/* weight^2 += c^2 / by */
+static void add_weight(const ritz_dense *C, int64_t j, int64_t i, double by,
+                       double *weight)
+{
+    if (C->val && by > 0.0)
+        *weight = hypot(*weight, ritz_dense_col(C, j)[i] / sqrt(by));
+}
+
+static void weigh(const ritz_simulated *s, const ritz_io *io, ritz_reach *reach)
+{
+    int64_t n = s->component ? s->component->num_dofs : s->model->M->nrow;
+
+    for (int64_t j = 0; j < n; j++) {
+        double m = diagonal(s, true, j);
+        double k = m > 0.0 ? 0.0 : diagonal(s, false, j);
+
+        for (int64_t i = 0; i < reach->count; i++) {
+            double *weight = reach->weight + i * WAYS;
+
+            add_weight(&io->C, j, i, m, &weight[BY_PLACE]);
+            add_weight(&io->Cv, j, i, m, &weight[BY_RATE]);
+            add_weight(&io->Ca, j, i, m, &weight[BY_ACCELERATION]);
+            add_weight(&io->C, j, i, k, &weight[BY_STRAIN]);
+        }
+    }
+}
+
+ritz_status ritz_reach_new(const ritz_simulated *subject,
+                           const ritz_motion *motion, ritz_reach *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reach reach = {.count = motion->feed.nrow};
+
+    RITZ_NEW(reach.size, reach.count);
+    if (subject->model || subject->component) {
+        RITZ_NEW(reach.weight, WAYS * reach.count);
+        RITZ_NEW(reach.last, motion->n);
+        RITZ_NEW(reach.work, motion->n);
+        weigh(subject,
+              subject->model ? subject->model->io : &subject->component->io,
+              &reach);
+    }
+    *out = reach;
+    reach = (ritz_reach){0};
+done:
+    ritz_reach_free(&reach);
+    return status;
+}
+
+/* sqrt(x'M x) */
+static double norm(const ritz_motion *motion, const double *x, double *work)
+{
+    if (motion->form == RITZ_FORM_MODAL)
+        return sqrt(ritz_motion_dot(motion->n, x, x));
+    memset(work, 0, (size_t)motion->n * sizeof *work);
+    ritz_motion_mass(motion, 1.0, x, work);
+    return sqrt(fmax(ritz_motion_dot(motion->n, x, work), 0.0));
+}
+
+static void note_states(ritz_reach *reach, const ritz_march *march)
+{
+    const ritz_dense *C = &march->motion->C;
+
+    for (int64_t i = 0; i < reach->count; i++) {
+        double sum = 0.0;
+
+        for (int64_t j = 0; j < C->ncol; j++)
+            sum += fabs(ritz_dense_col(C, j)[i] * march->x[j]);
+        reach->size[i] = fmax(reach->size[i], sum);
+    }
+}
+
+/* x'' as the quotient of two velocities: nothing of it at the start. */
+static double acceleration(ritz_reach *reach, const ritz_march *march,
+                           double seconds)
+{
+    double by = seconds - reach->seconds;
+    double size = 0.0;
+
+    for (int64_t k = 0; k < march->motion->n; k++)
+        reach->last[k] = march->v[k] - reach->last[k];
+    if (by > 0.0)
+        size = norm(march->motion, reach->last, reach->work) / by;
+    memcpy(reach->last, march->v, (size_t)march->motion->n * sizeof(double));
+    reach->seconds = seconds;
+    return size;
+}
+
+/* The march as it is now, at @p seconds. */
+static void note_reach(ritz_reach *reach, const ritz_march *march,
+                       double seconds)
+{
+    double size[WAYS] = {0.0};
+    double kinetic = 0.0, potential = 0.0;
+
+    if (!reach->weight) {
+        note_states(reach, march);
+        return;
+    }
+    ritz_march_energy(march, &kinetic, &potential);
+    size[BY_PLACE] = norm(march->motion, march->x, reach->work);
+    size[BY_RATE] = sqrt(2.0 * fmax(kinetic, 0.0));
+    size[BY_ACCELERATION] = acceleration(reach, march, seconds);
+    size[BY_STRAIN] = sqrt(2.0 * fmax(potential, 0.0));
+    for (int64_t i = 0; i < reach->count; i++) {
+        double sum = 0.0;
+
+        for (int k = 0; k < WAYS; k++)
+            sum += reach->weight[i * WAYS + k] * size[k];
+        reach->size[i] = fmax(reach->size[i], sum);
+    }
+}
+
+void ritz_reach_free(ritz_reach *reach)
+{
+    free(reach->weight);
+    free(reach->size);
+    free(reach->last);
+    free(reach->work);
+    *reach = (ritz_reach){0};
+}
 
 static const double most_steps = 1e10;
 /* Of more values than this a file is not to be made. */
@@ -162,7 +396,7 @@ static void note(const ritz_march *march, double start, int64_t k,
 {
     for (int64_t j = 0; j < s->num_inputs; j++)
         s->u[k * s->num_inputs + j] = u[j];
-    ritz_march_see(march, u, s->y + k * s->num_outputs);
+    see_outputs(march, u, s->y + k * s->num_outputs);
     if (!s->balance)
         return;
     ritz_march_energy(march, &s->kinetic[k], &s->potential[k]);
@@ -201,9 +435,12 @@ static ritz_status begin(const ritz_motion *motion,
     return RITZ_OK;
 }
 
-ritz_status ritz_run(const ritz_motion *motion,
-                     const ritz_simulation_request *request, ritz_reach *reach,
-                     ritz_simulation *out)
+/* * Simulate what has become a motion; names are left to the caller.
+ *
+ * @param[in,out] reach  noted with each time that is written; may be NULL */
+static ritz_status run_march(const ritz_motion *motion,
+                             const ritz_simulation_request *request,
+                             ritz_reach *reach, ritz_simulation *out)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation s = {0};
@@ -223,7 +460,7 @@ ritz_status ritz_run(const ritz_motion *motion,
     RITZ_TRY(begin(motion, request, u1, &march, &energy));
     note(&march, energy, 0, u1, &s);
     if (reach)
-        ritz_reach_note(reach, &march, 0.0);
+        note_reach(reach, &march, 0.0);
     for (int64_t k = 1; k <= steps; k++) {
         double t = (double)k * request->step;
 
@@ -240,7 +477,7 @@ ritz_status ritz_run(const ritz_motion *motion,
         s.seconds[k / every] = t;
         note(&march, energy, k / every, u1, &s);
         if (reach)
-            ritz_reach_note(reach, &march, t);
+            note_reach(reach, &march, t);
         ritz_monitor_step("simulation", k, steps);
     }
     *out = s;
@@ -251,4 +488,109 @@ done:
     ritz_march_free(&march);
     ritz_simulation_free(&s);
     return status;
+}
+
+const ritz_integrator *ritz_integrator_find(const char *name)
+{
+    return ritz_row_find(ritz_integrators, "integrator", name);
+}
+
+static ritz_status check(const ritz_simulated *subject,
+                         const ritz_simulation_request *request)
+{
+    int64_t steps = 0;
+
+    RITZ_REFUSE_IF((subject->model != NULL) + (subject->component != NULL) +
+                           (subject->states != NULL) !=
+                       1,
+                   RITZ_ERR_ARGUMENT, "there is not one thing to simulate");
+    RITZ_CHECK(ritz_request_steps(request, &steps));
+    RITZ_REFUSE_IF(subject->states && subject->damping &&
+                       subject->damping->kind != RITZ_DAMPING_NONE,
+                   RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
+    return RITZ_OK;
+}
+
+static void take_names(const ritz_simulated *subject, ritz_simulation *s)
+{
+    const ritz_io *io = subject->model       ? subject->model->io
+                        : subject->component ? &subject->component->io
+                                             : NULL;
+    const char(*input)[RITZ_NAME_SIZE] =
+        io ? (const char(*)[RITZ_NAME_SIZE])io->input
+           : (const char(*)[RITZ_NAME_SIZE])subject->states->input;
+    const char(*output)[RITZ_NAME_SIZE] =
+        io ? (const char(*)[RITZ_NAME_SIZE])io->output
+           : (const char(*)[RITZ_NAME_SIZE])subject->states->output;
+
+    if (s->num_inputs > 0)
+        memcpy(s->input, input, (size_t)s->num_inputs * RITZ_NAME_SIZE);
+    if (s->num_outputs > 0)
+        memcpy(s->output, output, (size_t)s->num_outputs * RITZ_NAME_SIZE);
+}
+
+ritz_status ritz_simulate_noting(const ritz_simulated *subject,
+                                 const ritz_simulation_request *request,
+                                 bool energies, ritz_reach *reach,
+                                 ritz_simulation *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_motion motion = {0};
+    ritz_reach found = {0};
+
+    RITZ_TRY(check(subject, request));
+    RITZ_TRY(ritz_motion_new(subject, request, &motion));
+    motion.energies = energies && motion.form != RITZ_FORM_STATES;
+    if (reach)
+        RITZ_TRY(ritz_reach_new(subject, &motion, &found));
+    RITZ_TRY(run_march(&motion, request, reach ? &found : NULL, out));
+    take_names(subject, out);
+    if (subject->damping)
+        ritz_damping_print(subject->damping, out->damping);
+    else if (subject->states)
+        memcpy(out->damping, subject->states->damping, sizeof out->damping);
+    if (reach)
+        *reach = found;
+    found = (ritz_reach){0};
+done:
+    ritz_motion_free(&motion);
+    ritz_reach_free(&found);
+    return status;
+}
+
+ritz_status ritz_simulate(const ritz_simulated *subject,
+                          const ritz_simulation_request *request,
+                          ritz_simulation *out)
+{
+    return ritz_simulate_noting(subject, request, true, NULL, out);
+}
+
+ritz_status ritz_simulation_difference(const ritz_simulation *exact,
+                                       const ritz_simulation *other,
+                                       double *out)
+{
+    int64_t p = exact->num_outputs;
+    double worst = 0.0;
+
+    RITZ_REFUSE_IF(exact->count != other->count || p != other->num_outputs,
+                   RITZ_ERR_ARGUMENT, "two simulations do not fit each other");
+    for (int64_t k = 0; k < exact->count; k++)
+        RITZ_REFUSE_IF(fabs(exact->seconds[k] - other->seconds[k]) >
+                           1e-9 * exact->seconds[exact->count - 1],
+                       RITZ_ERR_ARGUMENT,
+                       "two simulations have different times");
+    for (int64_t i = 0; i < p; i++) {
+        double size = 0.0, off = 0.0;
+
+        for (int64_t k = 0; k < exact->count; k++) {
+            double y = exact->y[k * p + i];
+
+            size = fmax(size, fabs(y));
+            off = fmax(off, fabs(other->y[k * p + i] - y));
+        }
+        if (size > 0.0)
+            worst = fmax(worst, off / size);
+    }
+    *out = worst;
+    return RITZ_OK;
 }

@@ -9,15 +9,6 @@ ritz_status ritz_request_steps(const ritz_simulation_request *request,
                                int64_t *out);
 
 /**
- * Simulate what has become a motion; names are left to the caller.
- *
- * @param[in,out] reach  noted with each time that is written; may be NULL
- */
-ritz_status ritz_run(const ritz_motion *motion,
-                     const ritz_simulation_request *request, ritz_reach *reach,
-                     ritz_simulation *out);
-
-/**
  * ritz_simulate, with or without energies.
  *
  * @param[out] reach  may be NULL; the caller frees it
