@@ -130,14 +130,19 @@ done:
     return status;
 }
 
-/* The zero furthest right, over its size, among those within reach. */
-static int64_t worst_zero(int64_t count, const double _Complex *zero,
-                          double reach)
+/*
+ * The zero furthest right, over its size, among those that attachments reach
+ * and that are not 0. What is read as acceleration has a double zero at 0,
+ * which rounding of n eps splits by the root of that, of the largest pole.
+ */
+static int64_t worst_zero(const ritz_collocated *pairs, int64_t count,
+                          const double _Complex *zero, double radius)
 {
+    double least = sqrt((double)pairs->A.nrow * DBL_EPSILON) * radius;
     int64_t worst = -1;
 
     for (int64_t k = 0; k < count; k++)
-        if (cabs(zero[k]) > 0.0 && cabs(zero[k]) <= reach &&
+        if (cabs(zero[k]) > least && cabs(zero[k]) <= beyond * radius &&
             (worst < 0 || creal(zero[k]) / cabs(zero[k]) >
                               creal(zero[worst]) / cabs(zero[worst])))
             worst = k;
@@ -148,7 +153,7 @@ static void say_locked(ritz_checker *it, int64_t count,
                        const double _Complex *zero, double radius)
 {
     static const char name[] = "interface-locked";
-    int64_t at = worst_zero(count, zero, beyond * radius);
+    int64_t at = worst_zero(&it->pairs, count, zero, radius);
     ritz_probe probe = {.count = count, .radius = radius};
     char text[2 * RITZ_NAME_SIZE];
     bool fails = false;
