@@ -50,20 +50,21 @@ static double total(const ritz_dense *A, int64_t j)
     return sum;
 }
 
-/* Rounding of T'KT at i, j; an eigensolver rounds all modes as the worst. */
+/* Rounding of T'KT at i, j, of both programs; an eigensolver rounds all modes
+ * as the worst. */
 static double rounding(const ritz_dense *G, int64_t i, int64_t j)
 {
     double most = ritz_dense_col(G, j)[i];
 
     for (int64_t k = 24; i >= 24 && j >= 24 && k < 40; k++)
         most = fmax(most, ritz_dense_col(G, k)[k]);
-    return DBL_EPSILON * most;
+    return 2.0 * DBL_EPSILON * most;
 }
 
 /*
- * How far column i of T may be off: rounding dK turns it towards mode j by
- * x_i' dK x_j / (lambda_i - lambda_j); constraint modes answer at lambda = 0.
- * Measured: half to a fifth of that for constraint modes, 1/20 for modes.
+ * How far column i of T may be off that of another program: rounding dK turns
+ * either towards mode j by x_i' dK x_j / (lambda_i - lambda_j); constraint modes
+ * answer at lambda = 0.
  */
 static double turn_of(const ritz_reduced *ours, const ritz_dense *G, int64_t i)
 {

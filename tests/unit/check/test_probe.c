@@ -126,25 +126,32 @@ static void unsymmetric_damping_is_looked_at(void **state)
 
 /*
  * The double pole of a free body is defective: rounding of eps 1e6 splits it by
- * the root of that, which the bound knows.
+ * the root of that, which the bound knows. Along the real axis or across it, as
+ * rounding has it: of 40 bodies some poles are split to the right.
  */
 static void a_defective_pole_is_not_called_unstable(void **state)
 {
-    static const double m[] = {1, 2, 3}, k[] = {0, 1.1e6, 0.7e6};
+    static const double m[] = {1, 2, 3};
     ritz_damping damping = {.kind = RITZ_DAMPING_RAYLEIGH, .b = 1e-4};
-    ritz_component masses = {0};
-    ritz_state_space model = {0};
-    ritz_probe probe = {0};
+    int split = 0;
 
     (void)state;
-    assert_ok(masses_component(3, m, k, NULL, &masses));
-    assert_ok(masses_io(&masses, 0, NULL, 0, NULL));
-    assert_ok(ritz_state_space_of_component(&masses, &damping, &model));
-    assert_ok(ritz_probe_states(&model, &probe));
-    assert_int_equal(probe.verdict, RITZ_MARGINAL);
-    assert_true(probe.pole[0] > 1e-9); /* it is split, by 3e-6 (measured) */
-    ritz_state_space_free(&model);
-    ritz_component_free(&masses);
+    for (int body = 0; body < 40; body++) {
+        const double k[] = {0, 1.1e6 + 1e3 * body, 0.7e6};
+        ritz_component masses = {0};
+        ritz_state_space model = {0};
+        ritz_probe probe = {0};
+
+        assert_ok(masses_component(3, m, k, NULL, &masses));
+        assert_ok(masses_io(&masses, 0, NULL, 0, NULL));
+        assert_ok(ritz_state_space_of_component(&masses, &damping, &model));
+        assert_ok(ritz_probe_states(&model, &probe));
+        assert_int_equal(probe.verdict, RITZ_MARGINAL);
+        split += probe.pole[0] > 1e-9; /* by 3e-6 (measured) */
+        ritz_state_space_free(&model);
+        ritz_component_free(&masses);
+    }
+    assert_true(split > 0);
 }
 
 /*
