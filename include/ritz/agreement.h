@@ -10,6 +10,8 @@
 
 #include <ritz/ranking.h>
 
+#pragma GCC visibility push(default)
+
 /* The first k of either, clusters whole. */
 typedef struct ritz_overlap {
     int64_t k;
@@ -44,5 +46,7 @@ ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
                                 int64_t top, ritz_agreement *out);
 
 void ritz_agreement_free(ritz_agreement *agreement);
+
+#pragma GCC visibility pop
 
 #endif

@@ -33,6 +33,8 @@
 
 #include <ritz/component.h>
 
+#pragma GCC visibility push(default)
+
 typedef enum ritz_verdict {
     RITZ_PASS,
     RITZ_WARN,
@@ -62,5 +64,7 @@ ritz_status ritz_audit_component(const ritz_component *component,
 const char *ritz_verdict_name(ritz_verdict verdict);
 
 void ritz_audit_free(ritz_audit *audit);
+
+#pragma GCC visibility pop
 
 #endif

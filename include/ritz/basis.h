@@ -11,6 +11,8 @@
 
 #include <stdbool.h>
 
+#pragma GCC visibility push(default)
+
 /* A method that makes another kind adds it here, and its name in basis.c. */
 typedef enum ritz_column_kind {
     RITZ_COLUMN_RIGID,      /* free rigid-body motion */
@@ -82,5 +84,7 @@ bool ritz_column_find(const char *name, ritz_column_kind *out);
 
 void ritz_columns_free(ritz_columns *columns);
 void ritz_basis_free(ritz_basis *basis);
+
+#pragma GCC visibility pop
 
 #endif

@@ -10,6 +10,8 @@
 
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 enum { RITZ_MOST_SHIFTS = 16 };
 
 /* What a method heeds of a request; the rest must be left alone. */
@@ -101,5 +103,7 @@ ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
 
 /** Words that were given, as "shift-hz 0,5 inner mass"; cut to fit. */
 void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out);
+
+#pragma GCC visibility pop
 
 #endif

@@ -16,6 +16,8 @@
 #include <ritz/response.h>
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 /* What goes in and comes out of a model, by name; borrowed. */
 typedef struct ritz_ends {
     int64_t num_inputs, num_outputs;
@@ -114,5 +116,7 @@ ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,
                               const double *hertz, ritz_margins *out);
 
 void ritz_loop_free(ritz_loop *loop);
+
+#pragma GCC visibility pop
 
 #endif

@@ -9,6 +9,8 @@
 #include <ritz/ranking.h>
 #include <ritz/synthesis.h>
 
+#pragma GCC visibility push(default)
+
 /* A flexible mode of the second system that stands for no kept mode. */
 typedef struct ritz_stray {
     int64_t mode; /* flexible mode of stage 2, as assembled */
@@ -144,5 +146,7 @@ void ritz_composite_free(ritz_composite *composite);
 
 void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows);
 void ritz_comparison_free(ritz_comparison *comparison);
+
+#pragma GCC visibility pop
 
 #endif

@@ -21,6 +21,8 @@
 
 #include <stdbool.h>
 
+#pragma GCC visibility push(default)
+
 /* Where the grids are. Scalar points are not listed. */
 typedef struct ritz_grids {
     int64_t count;
@@ -132,5 +134,7 @@ ritz_status ritz_rigid_geometry(const ritz_component *component,
 
 void ritz_grids_free(ritz_grids *grids);
 void ritz_component_free(ritz_component *component);
+
+#pragma GCC visibility pop
 
 #endif

@@ -20,6 +20,8 @@
 #include <ritz/state_space.h>
 #include <ritz/system.h>
 
+#pragma GCC visibility push(default)
+
 /* What every file says about how it was made. */
 typedef struct ritz_stamp {
     const char *command; /* that made it */
@@ -89,5 +91,7 @@ ritz_status ritz_container_read_rankings(const char *path, ritz_rankings *out);
 ritz_status ritz_container_write_rankings(const char *path,
                                           const ritz_rankings *rankings,
                                           const ritz_stamp *stamp);
+
+#pragma GCC visibility pop
 
 #endif

@@ -16,6 +16,8 @@
 #include <ritz/sparse.h>
 #include <ritz/text.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_dampers {
     int64_t count;
     char (*name)[RITZ_NAME_SIZE]; /* distinct; "body/name" in a system */
@@ -75,5 +77,7 @@ ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
                                         ritz_sparse *D);
 
 void ritz_dampers_free(ritz_dampers *dampers);
+
+#pragma GCC visibility pop
 
 #endif

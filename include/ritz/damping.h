@@ -14,6 +14,8 @@
 
 #include <stdbool.h>
 
+#pragma GCC visibility push(default)
+
 enum {
     RITZ_MAX_BANDS = 8,
     RITZ_MOST_RATIOS = 40,
@@ -86,5 +88,7 @@ double ritz_damping_ratio(const ritz_damping *damping, double omega);
 /** The same of flexible mode @p mode, 0 being the first. */
 double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
                             double omega);
+
+#pragma GCC visibility pop
 
 #endif

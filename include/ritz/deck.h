@@ -10,6 +10,8 @@
 #include <ritz/elements.h>
 #include <ritz/equations.h>
 
+#pragma GCC visibility push(default)
+
 /* Sets of dofs that a code keeps when it reduces matrices. */
 enum { RITZ_SET_A, RITZ_SET_B, RITZ_SET_Q, RITZ_NUM_SETS };
 
@@ -72,5 +74,7 @@ ritz_status ritz_deck_parse(const char *path, const char *text,
                             const char *folder, ritz_deck *out);
 
 void ritz_deck_free(ritz_deck *deck);
+
+#pragma GCC visibility pop
 
 #endif

@@ -6,6 +6,8 @@
 
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_dense {
     int64_t nrow, ncol;
     double *val; /* nrow * ncol, A(i,j) is val[i + j * nrow] */
@@ -91,5 +93,7 @@ void ritz_dense_orient(ritz_dense *A);
 double *ritz_dense_col(const ritz_dense *A, int64_t j);
 
 void ritz_dense_free(ritz_dense *A);
+
+#pragma GCC visibility pop
 
 #endif

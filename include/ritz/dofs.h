@@ -11,6 +11,8 @@
 
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 /* Directions of a grid: 1-3 translations, 4-6 rotations, 0 a scalar point. */
 typedef struct ritz_dof {
     int64_t grid;
@@ -51,5 +53,7 @@ int ritz_dof_compare(const void *left, const void *right);
 int64_t ritz_dof_distinct(int64_t count, ritz_dof *dof);
 
 void ritz_dofs_free(ritz_dofs *set);
+
+#pragma GCC visibility pop
 
 #endif

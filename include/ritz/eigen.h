@@ -6,6 +6,8 @@
 #include <ritz/sparse.h>
 #include <ritz/text.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_pairs {
     ritz_dense Phi;   /* n x k, Phi' M Phi = I, oriented as ritz_dense_orient */
     double *lambda;   /* k, ascending, as computed  [rad^2/s^2] */
@@ -84,5 +86,7 @@ double ritz_eigen_hertz(double lambda);
 double ritz_eigen_lambda(double hertz);
 
 void ritz_pairs_free(ritz_pairs *pairs);
+
+#pragma GCC visibility pop
 
 #endif

@@ -11,6 +11,8 @@
 
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 typedef enum ritz_cell {
     RITZ_CELL_POINT = 1, /* of pictures alone: where there is no element */
     RITZ_CELL_LINE = 3,
@@ -62,5 +64,7 @@ ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
                                 const int64_t *id);
 
 void ritz_elements_free(ritz_elements *elements);
+
+#pragma GCC visibility pop
 
 #endif

@@ -13,6 +13,8 @@
 
 #include <stdbool.h>
 
+#pragma GCC visibility push(default)
+
 /* What states equations: a card of a deck, or a port. */
 typedef struct ritz_equation_source {
     char name[RITZ_NAME_SIZE]; /* "RBE2 600" */
@@ -102,5 +104,7 @@ ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
                                  ritz_dof **names, ritz_dense *shape);
 
 void ritz_recovery_free(ritz_recovery *recovery);
+
+#pragma GCC visibility pop
 
 #endif

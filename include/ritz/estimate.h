@@ -25,6 +25,8 @@
 
 #include <ritz/reduced.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_estimate_request {
     double band_hz[2];    /* [0, 0]: up to half of what the basis knows of */
     ritz_damping damping; /* of responses; none: no response is bounded */
@@ -78,5 +80,7 @@ void ritz_estimator_free(ritz_estimator **estimator);
 ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
                           const ritz_estimate_request *request,
                           ritz_reduced *reduced);
+
+#pragma GCC visibility pop
 
 #endif

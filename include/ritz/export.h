@@ -8,6 +8,8 @@
 #include <ritz/simulate.h>
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 /* What may be asked of an exporter; zero where not given. */
 typedef struct ritz_export_request {
     const char *output;   /* path */
@@ -75,5 +77,7 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
 [[gnu::format(printf, 2, 3)]] ritz_status
 ritz_export_say(ritz_export_report *report, const char *format, ...);
 void ritz_export_report_free(ritz_export_report *report);
+
+#pragma GCC visibility pop
 
 #endif

@@ -7,6 +7,8 @@
 
 #include <complex.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_factor ritz_factor;
 
 /**
@@ -77,5 +79,7 @@ ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X);
 ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
                                        double _Complex *X);
 void ritz_zldl_free(ritz_zldl **F);
+
+#pragma GCC visibility pop
 
 #endif

@@ -16,6 +16,8 @@
 #include <ritz/system.h>
 #include <ritz/verify.h>
 
+#pragma GCC visibility push(default)
+
 /* Seconds: on the wall, and of the processor. */
 typedef struct ritz_fit_watch {
     double wall, cpu;
@@ -255,5 +257,7 @@ void ritz_fitter_free(ritz_fitter **fitter);
 void ritz_fit_candidate_free(ritz_fit_candidate *candidate);
 void ritz_fit_free(ritz_fit *fit);
 void ritz_fit_path_free(ritz_fit_path *path);
+
+#pragma GCC visibility pop
 
 #endif

@@ -9,6 +9,8 @@
 #include <ritz/sparse.h>
 #include <ritz/text.h>
 
+#pragma GCC visibility push(default)
+
 /* One matrix as its file states it; both triangles once read. */
 typedef struct ritz_matrix {
     char name[RITZ_NAME_SIZE]; /* "KGG"; "" where the format has none */
@@ -90,5 +92,7 @@ ritz_status ritz_matrix_market_write(const char *path,
 
 void ritz_matrix_free(ritz_matrix *matrix);
 void ritz_matrices_free(ritz_matrices *matrices);
+
+#pragma GCC visibility pop
 
 #endif

@@ -22,6 +22,8 @@
 #include <ritz/component.h>
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 /*
  * Of n states: those of a state space, or x = [u; u'] of a component, for which
  * n is twice its dofs and E = [I 0; 0 M].
@@ -120,5 +122,7 @@ double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept);
 
 void ritz_gramians_free(ritz_gramians *gramians);
 void ritz_balanced_free(ritz_balanced *balanced);
+
+#pragma GCC visibility pop
 
 #endif

@@ -5,6 +5,8 @@
 #include <ritz/component.h>
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 /* Texts as the options of ritz-import take them; NULL or count 0: not given. */
 typedef struct ritz_import_request {
     const char *stiffness, *mass, *damping, *structural_damping;
@@ -114,5 +116,7 @@ ritz_status ritz_import_state_space(const ritz_import_space_request *request,
 bool ritz_import_space_next(const char **at, char *out);
 
 void ritz_import_report_free(ritz_import_report *report);
+
+#pragma GCC visibility pop
 
 #endif

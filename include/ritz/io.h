@@ -12,6 +12,8 @@
 #include <ritz/dense.h>
 #include <ritz/text.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_io {
     int64_t num_inputs, num_outputs;
     char (*input)[RITZ_NAME_SIZE];  /* num_inputs names */
@@ -34,5 +36,7 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
                             ritz_io *out);
 
 void ritz_io_free(ritz_io *io);
+
+#pragma GCC visibility pop
 
 #endif

@@ -11,6 +11,8 @@
 
 #include <math.h>
 
+#pragma GCC visibility push(default)
+
 /* In the order in which a verified file lists them. */
 #define RITZ_EACH_MEASURE(X)                                                   \
     X(FREQUENCY)                                                               \
@@ -96,5 +98,7 @@ bool ritz_measure_holds(const ritz_measure *measure);
 
 /** Whether value @p a is worse than value @p b. */
 bool ritz_measure_is_worse(const char *name, double a, double b);
+
+#pragma GCC visibility pop
 
 #endif

@@ -7,6 +7,8 @@
 #include <ritz/component.h>
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 /* What hangs on the attached dofs while modes are found, of their order. */
 typedef struct ritz_neighbour {
     ritz_dense K, M; /* attached x attached, condensed [N/m], [kg]; {0}: none */
@@ -89,5 +91,7 @@ ritz_status ritz_request_check(const ritz_method *method,
 /** Make a basis and sign it with method, options and reference. */
 ritz_status ritz_basis_make(const ritz_method *method,
                             const ritz_request *request, ritz_basis *out);
+
+#pragma GCC visibility pop
 
 #endif

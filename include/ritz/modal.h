@@ -11,6 +11,8 @@
 #include <ritz/dense.h>
 #include <ritz/io.h>
 
+#pragma GCC visibility push(default)
+
 /* Flexible modes of a model, with their own share of inputs and outputs. */
 typedef struct ritz_modal {
     int64_t count;    /* m */
@@ -74,5 +76,7 @@ ritz_status ritz_modal_hankel_band(const ritz_modal *modal,
                                    double *sigma);
 
 void ritz_modal_free(ritz_modal *modal);
+
+#pragma GCC visibility pop
 
 #endif

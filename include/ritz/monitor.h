@@ -8,6 +8,8 @@
 
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 /** What is being done, and how far: step @p done of @p total (0: unknown). */
 typedef void ritz_observer(const char *what, int64_t done, int64_t total);
 
@@ -16,5 +18,7 @@ void ritz_monitor_observe(ritz_observer *observer);
 
 /** Report a step. */
 void ritz_monitor_step(const char *what, int64_t done, int64_t total);
+
+#pragma GCC visibility pop
 
 #endif

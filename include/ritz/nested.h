@@ -12,6 +12,8 @@
 
 #include <ritz/reduced.h>
 
+#pragma GCC visibility push(default)
+
 /**
  * The columns in another order, and with them all that has columns: matrices,
  * dampers, ports, inputs and outputs, invariants, T.
@@ -46,5 +48,7 @@ ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
  */
 ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
                              const char *name, double value);
+
+#pragma GCC visibility pop
 
 #endif

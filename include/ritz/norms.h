@@ -4,6 +4,8 @@
 
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_norm {
     double value;
     double hertz; /* H-infinity: where it stands; HUGE_VAL: far out */
@@ -47,5 +49,7 @@ ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out);
 ritz_status ritz_state_space_difference(const ritz_state_space *a,
                                         const ritz_state_space *b,
                                         ritz_state_space *out);
+
+#pragma GCC visibility pop
 
 #endif

@@ -9,6 +9,8 @@
 #include <ritz/reduced.h>
 #include <ritz/state_space.h>
 
+#pragma GCC visibility push(default)
+
 typedef enum ritz_stability {
     RITZ_STABLE,   /* every pole is left of the axis by more than rounding */
     RITZ_MARGINAL, /* some are on it: rigid-body motion, or no damping */
@@ -90,5 +92,7 @@ void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE]);
  */
 ritz_status ritz_probe_record(const ritz_probe *probe,
                               ritz_measures *estimates);
+
+#pragma GCC visibility pop
 
 #endif

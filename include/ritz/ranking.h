@@ -9,6 +9,8 @@
 #include <ritz/modal.h>
 #include <ritz/system.h>
 
+#pragma GCC visibility push(default)
+
 /* What a ranking needs of a model; the rest may be absent. */
 enum {
     RITZ_RANK_INPUTS = 1,
@@ -174,5 +176,7 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
 
 void ritz_ranking_free(ritz_ranking *ranking);
 void ritz_rankings_free(ritz_rankings *rankings);
+
+#pragma GCC visibility pop
 
 #endif

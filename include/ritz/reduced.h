@@ -13,6 +13,8 @@
 #include <ritz/component.h>
 #include <ritz/io.h>
 
+#pragma GCC visibility push(default)
+
 /* How a port moves: along basic axes, displacement = map q. */
 typedef struct ritz_port_map {
     char name[RITZ_NAME_SIZE];
@@ -165,5 +167,7 @@ void ritz_invariants_free(ritz_invariants *invariants);
 void ritz_measures_free(ritz_measures *measures);
 void ritz_port_map_free(ritz_port_map *port);
 void ritz_reduced_free(ritz_reduced *reduced);
+
+#pragma GCC visibility pop
 
 #endif

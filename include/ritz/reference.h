@@ -8,6 +8,8 @@
 
 #include <ritz/verify.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_reference ritz_reference;
 
 typedef struct ritz_reference_request {
@@ -72,5 +74,7 @@ void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
 
 /** The next number of a sequence, in [0, 1) [Steele2014]. */
 double ritz_random_next(uint64_t *state);
+
+#pragma GCC visibility pop
 
 #endif

@@ -14,6 +14,8 @@
 
 #include <complex.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_response {
     int64_t count; /* of frequencies */
     double *hertz; /* ascending */
@@ -220,5 +222,7 @@ ritz_status ritz_response_component(const ritz_component *component,
                                     const ritz_damping *damping,
                                     double up_to_hz, double tolerance,
                                     const ritz_grid *grid, ritz_response *out);
+
+#pragma GCC visibility pop
 
 #endif

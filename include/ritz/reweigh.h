@@ -15,6 +15,8 @@
 
 #include <ritz/ranking.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_reweighing {
     int64_t num_outputs;
     double *weight; /* q, beside those of the request; of the best round */
@@ -37,5 +39,7 @@ ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
                          ritz_reweighing *out);
 
 void ritz_reweighing_free(ritz_reweighing *reweighing);
+
+#pragma GCC visibility pop
 
 #endif

@@ -12,6 +12,8 @@
 #include <ritz/source.h>
 #include <ritz/text.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_scene_component {
     char name[RITZ_NAME_SIZE];
     char *model; /* path, relative ones taken from the scene's folder */
@@ -207,5 +209,7 @@ ritz_status ritz_scene_context(const ritz_scene *scene, ritz_status status,
                                const char *name);
 
 void ritz_scene_free(ritz_scene *scene);
+
+#pragma GCC visibility pop
 
 #endif

@@ -9,6 +9,8 @@
 #include <ritz/elements.h>
 #include <ritz/reduced.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_shapes {
     int64_t num_points;  /* grids with a position and a dof */
     int64_t *id;         /* num_points, ascending */
@@ -44,5 +46,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
                                  const char *list, ritz_shapes *out);
 
 void ritz_shapes_free(ritz_shapes *shapes);
+
+#pragma GCC visibility pop
 
 #endif

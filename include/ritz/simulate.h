@@ -20,6 +20,8 @@
 
 #include <stdbool.h>
 
+#pragma GCC visibility push(default)
+
 typedef enum ritz_hold {
     RITZ_HOLD_FIRST,
     RITZ_HOLD_ZERO,
@@ -268,5 +270,7 @@ ritz_status ritz_simulate_growth(const ritz_second_order *model,
                                  const ritz_damping *damping,
                                  const ritz_integrator *integrator, double step,
                                  int64_t steps, int64_t starts, double *out);
+
+#pragma GCC visibility pop
 
 #endif

@@ -7,6 +7,8 @@
 
 #include <ritz/response.h>
 
+#pragma GCC visibility push(default)
+
 /*
  * What signals are measured by: outputs are divided by theirs, as by the limit
  * of each; inputs are multiplied by theirs, as by the size each may have. NULL,
@@ -43,5 +45,7 @@ ritz_status ritz_singular_peak(const ritz_response *response,
                                const ritz_scales *scales,
                                ritz_responder *responder, double *hertz,
                                double *value);
+
+#pragma GCC visibility pop
 
 #endif

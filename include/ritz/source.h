@@ -9,6 +9,8 @@
 #include <ritz/component.h>
 #include <ritz/reduced.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_source {
     void *state; /* given to each function */
     /** "component" or "reduced", what the model called @p name is. */
@@ -20,5 +22,7 @@ typedef struct ritz_source {
     /** A reduced model with all of its columns; the caller frees it. */
     ritz_status (*reduced)(void *state, const char *name, ritz_reduced *out);
 } ritz_source;
+
+#pragma GCC visibility pop
 
 #endif

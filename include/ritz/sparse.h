@@ -18,6 +18,8 @@
 
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_sparse {
     int64_t nrow, ncol;
     int64_t *colptr; /* column j is entries colptr[j]..colptr[j+1]-1 */
@@ -133,5 +135,7 @@ ritz_status ritz_sparse_symmetrise(ritz_sparse *A);
 
 /** Free what @p A owns and leave it empty. */
 void ritz_sparse_free(ritz_sparse *A);
+
+#pragma GCC visibility pop
 
 #endif

@@ -9,6 +9,8 @@
 
 #include <complex.h>
 
+#pragma GCC visibility push(default)
+
 /*
  * Of each pair of poles the one with Im s > 0, and every real one, by ascending
  * |s|. With K4, which says what loss a motion of positive frequency has, all
@@ -105,5 +107,7 @@ ritz_status ritz_scan_component(const ritz_component *component,
 
 void ritz_spectrum_free(ritz_spectrum *spectrum);
 void ritz_scan_free(ritz_scan *scan);
+
+#pragma GCC visibility pop
 
 #endif

@@ -16,6 +16,8 @@
 
 #include <complex.h>
 
+#pragma GCC visibility push(default)
+
 /* Of more dofs than this no dense first-order model is made. */
 enum { RITZ_STATE_DOFS = 1500 };
 
@@ -138,5 +140,7 @@ ritz_status ritz_response_states(const ritz_state_space *model,
                                  const ritz_grid *grid, ritz_response *out);
 
 void ritz_state_space_free(ritz_state_space *model);
+
+#pragma GCC visibility pop
 
 #endif

@@ -14,6 +14,8 @@
 #include <ritz/scene.h>
 #include <ritz/system.h>
 
+#pragma GCC visibility push(default)
+
 /* A scene with its models loaded and reduced: what stage one has made. */
 typedef struct ritz_stage {
     const ritz_scene *scene; /* borrowed */
@@ -158,5 +160,7 @@ ritz_status ritz_joint_neighbour(const ritz_joint *joint, const double *setting,
 void ritz_neighbour_free(ritz_neighbour *neighbour);
 
 void ritz_stage_free(ritz_stage *stage);
+
+#pragma GCC visibility pop
 
 #endif

@@ -11,6 +11,8 @@
 
 #include <ritz/reduced.h>
 
+#pragma GCC visibility push(default)
+
 typedef struct ritz_configuration {
     char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
     int64_t num_settings;
@@ -69,5 +71,7 @@ ritz_status ritz_configuration_install(ritz_configuration *configuration);
 
 void ritz_configuration_free(ritz_configuration *configuration);
 void ritz_system_free(ritz_system *system);
+
+#pragma GCC visibility pop
 
 #endif

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#pragma GCC visibility push(default)
+
 enum {
     RITZ_NAME_SIZE = 64,       /* room for a name and its NUL */
     RITZ_DIGEST_SIZE = 64 + 1, /* SHA-256 as hexadecimal text, and its NUL */
@@ -63,5 +65,7 @@ void ritz_digest_bytes(const void *bytes, size_t size,
 
 /** SHA-256 of a file. @return RITZ_ERR_FILE */
 ritz_status ritz_digest_file(const char *path, char out[RITZ_DIGEST_SIZE]);
+
+#pragma GCC visibility pop
 
 #endif

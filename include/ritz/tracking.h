@@ -4,6 +4,8 @@
 
 #include <ritz/synthesis.h>
 
+#pragma GCC visibility push(default)
+
 typedef enum ritz_track_kind {
     RITZ_TRACK_SWAP,    /* two tracks change places in frequency */
     RITZ_TRACK_TIE,     /* a second mode is nearly as like */
@@ -61,5 +63,7 @@ ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
                        double up_to_hz, ritz_tracking *out);
 
 void ritz_tracking_free(ritz_tracking *tracking);
+
+#pragma GCC visibility pop
 
 #endif

@@ -8,6 +8,8 @@
 #include <ritz/state_space.h>
 #include <ritz/system.h>
 
+#pragma GCC visibility push(default)
+
 /* What is compared, and what it is held to. */
 typedef struct ritz_verify_request {
     double band_hz[2];           /* [0, 0]: up to half the highest frequency of
@@ -108,5 +110,7 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
  */
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out);
+
+#pragma GCC visibility pop
 
 #endif

@@ -18,6 +18,8 @@
 
 #include <complex.h>
 
+#pragma GCC visibility push(default)
+
 /* For `output` and `input` together: all channels at once. */
 enum { RITZ_ALL_CHANNELS = -1 };
 
@@ -65,5 +67,7 @@ ritz_status ritz_zeros_component(const ritz_component *component,
 ritz_status ritz_zeros_states(const ritz_state_space *model, int64_t output,
                               int64_t input, int64_t *count,
                               double _Complex **out);
+
+#pragma GCC visibility pop
 
 #endif
