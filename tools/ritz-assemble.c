@@ -19,7 +19,7 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_system(run, run->report, &system));
+    RITZ_TRY(describe_system(run, &system));
     RITZ_TRY(tracks_report(run, &stage, &system, tracks));
     cli_record(run, "assemble", system.configuration[0].K.nrow);
 done:
@@ -42,7 +42,7 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_component(run->output, &full, &stamp));
     cli_say(run, "%s:", run->output);
-    describe_component(run, run->report, &full);
+    describe_component(run, &full);
     cli_record(run, "full", full.num_dofs);
 done:
     free(setting);

@@ -51,7 +51,7 @@ static void report(cli_run *run, const ritz_basis *basis)
     double worst = (double)NAN;
 
     cli_say(run, "%s:", run->output);
-    describe_basis(run, run->report, basis);
+    describe_basis(run, basis);
     for (int64_t k = 0; k < c->count; k++) {
         if (isnan(c->hertz[k]))
             continue;

@@ -42,8 +42,8 @@ static ritz_status vouch(cli_run *run, const ritz_measures *errors,
     const ritz_measures *known = errors->count > 0 ? errors : estimates;
 
     cli_report_text(run, "errors_rest_on", rests);
-    json_object_set_new(run->report, "errors",
-                        model_measures_json(known, rests));
+    if (known->count == 0)
+        model_set_measures(run, "errors", known, rests);
     RITZ_REFUSE_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
                    "'%s' carries neither estimated nor measured errors: run "
                    "ritz-verify, or export it all the same with --force",
@@ -56,7 +56,7 @@ static ritz_status vouch(cli_run *run, const ritz_measures *errors,
     cli_say(run, "errors %s by %s:", rests,
             errors->count > 0 ? "ritz-verify or ritz-compare"
                               : "ritz-reduce, not verified");
-    model_say_measures(run, known, rests);
+    model_say_measures(run, "errors", known, rests);
     for (int64_t k = 0; k < known->count; k++) {
         cli_record_error(run, known->item[k].name, known->item[k].value);
         if (!ritz_measure_holds(&known->item[k]))

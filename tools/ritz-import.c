@@ -132,7 +132,7 @@ static void report(cli_run *run, const ritz_component *component,
                    const ritz_import_report *done)
 {
     cli_say(run, "%s:", run->output);
-    describe_component(run, run->report, component);
+    describe_component(run, component);
     cli_say(run, "  rows named by  %s", done->map);
     report_removed(run, done);
     report_constraints(run, done);
@@ -205,7 +205,7 @@ static ritz_status import_space(cli_run *run,
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_state_space(run->output, &space, &stamp));
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_states(run, run->report, &space));
+    RITZ_TRY(describe_states(run, &space));
     cli_record(run, "import", space.A.nrow);
 done:
     ritz_state_space_free(&space);

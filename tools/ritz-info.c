@@ -4,55 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-static ritz_status describe(const cli_run *run, json_t *keys, const model *m)
-{
-    switch (m->kind) {
-    case MODEL_COMPONENT:
-        describe_component(run, keys, &m->component);
-        return RITZ_OK;
-    case MODEL_BASIS:
-        describe_basis(run, keys, &m->basis);
-        return RITZ_OK;
-    case MODEL_REDUCED:
-        return describe_reduced(run, keys, &m->reduced);
-    case MODEL_SYSTEM:
-        return describe_system(run, keys, &m->system);
-    case MODEL_RESPONSE:
-        describe_response(run, keys, &m->response);
-        return RITZ_OK;
-    case MODEL_RANKING:
-        describe_rankings(run, keys, &m->rankings);
-        return RITZ_OK;
-    case MODEL_STATES:
-        return describe_states(run, keys, &m->states);
-    case MODEL_SIMULATION:
-        describe_simulation(run, keys, &m->simulation);
-        return RITZ_OK;
-    case MODEL_ANY:
-        break;
-    }
-    return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
-}
-
-static ritz_status container(cli_run *run, json_t *keys, const char *path)
+static ritz_status describe_container(cli_run *run, const char *path)
 {
     ritz_status status = RITZ_OK;
     ritz_summary summary = {0};
     model m = {0};
-    json_t *inputs = json_array();
 
-    json_object_set_new(keys, "made_from", inputs);
     RITZ_TRY(model_read(run, path, MODEL_ANY, &m));
     RITZ_TRY(ritz_container_summary(path, &summary));
-    RITZ_TRY_IN(path, describe(run, keys, &m));
-    cli_say(run, "  %-14s %s", "made by", summary.command);
-    cli_say(run, "  %-14s ritz %s", "version", summary.version);
+    RITZ_TRY_IN(path, describe_model(run, &m));
+    sink_field(run, "made by", "command", "%s", summary.command);
+    sink_field(run, "version", "made_by_version", "ritz %s", summary.version);
+    sink_list(run, "made_from");
     for (int64_t k = 0; k < summary.num_inputs; k++) {
-        json_array_append_new(inputs, cli_string(summary.input[k]));
         cli_say(run, "  %-14s %s", k > 0 ? "" : "from", summary.input[k]);
+        sink_add(run, "%s", summary.input[k]);
     }
-    json_object_set_new(keys, "command", cli_string(summary.command));
-    json_object_set_new(keys, "made_by_version", cli_string(summary.version));
+    sink_end(run);
 done:
     model_free(&m);
     ritz_summary_free(&summary);
@@ -67,7 +35,7 @@ static bool is_matrix_file(const char *bytes, int64_t size)
     return false;
 }
 
-static ritz_status foreign(cli_run *run, json_t *keys, const char *path)
+static ritz_status describe_foreign(cli_run *run, const char *path)
 {
     ritz_status status = RITZ_OK;
     ritz_matrices matrices = {0};
@@ -79,7 +47,7 @@ static ritz_status foreign(cli_run *run, json_t *keys, const char *path)
     RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
     if (is_matrix_file(bytes, size)) {
         RITZ_TRY_IN(path, ritz_foreign_parse(bytes, size, &matrices));
-        describe_matrices(run, keys, &matrices);
+        describe_matrices(run, &matrices);
         goto done;
     }
     RITZ_FAIL_IF(size == 0, RITZ_ERR_FORMAT, "'%s' is empty", path);
@@ -96,7 +64,7 @@ static ritz_status foreign(cli_run *run, json_t *keys, const char *path)
                  "'%s' is no container, no matrix file that Ritz knows, and "
                  "no bulk data with grids",
                  path);
-    describe_deck(run, keys, &deck);
+    describe_deck(run, &deck);
 done:
     free(bytes);
     ritz_matrices_free(&matrices);
@@ -104,24 +72,24 @@ done:
     return status;
 }
 
-/* Of one file, the keys stand in the report itself too. */
+/* Keys of a single file stand in the report itself too. */
 static ritz_status inform(cli_run *run)
 {
-    json_t *files = json_array();
-
-    json_object_set_new(run->report, "files", files);
+    sink_list(run, "files");
     for (int k = 0; k < run->num_operands; k++) {
         const char *path = run->operand[k];
-        json_t *keys = json_object();
 
-        json_array_append_new(files, keys);
-        json_object_set_new(keys, "file", cli_string(path));
+        sink_object(run, NULL);
+        sink_set(run, "file", "%s", path);
         cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
-        RITZ_CHECK(ritz_container_is(path) ? container(run, keys, path)
-                                           : foreign(run, keys, path));
-        if (run->num_operands == 1)
-            json_object_update(run->report, keys);
+        RITZ_CHECK(ritz_container_is(path) ? describe_container(run, path)
+                                           : describe_foreign(run, path));
+        sink_end(run);
     }
+    sink_end(run);
+    if (run->num_operands == 1)
+        sink_lift(run,
+                  json_array_get(json_object_get(run->report, "files"), 0));
     if (run->output)
         RITZ_CHECK(cli_save(run, run->output));
     return RITZ_OK;

@@ -118,9 +118,9 @@ static ritz_status damp(cli_run *run, model *m, const wish *asked,
     }
     if (!asked->tsv) {
         cli_say(run, "%s:", path);
-        describe_damping(run, run->report, text);
+        describe_damping(run, text);
         if (m->kind != MODEL_STATES)
-            describe_dampers(run, run->report, dampers_of(m));
+            describe_dampers(run, dampers_of(m));
     }
     return RITZ_OK;
 }

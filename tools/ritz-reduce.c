@@ -30,7 +30,7 @@ static ritz_status report(cli_run *run, const ritz_reduced *reduced)
     const ritz_measures *estimates = &reduced->estimates;
 
     cli_say(run, "%s:", run->output);
-    RITZ_CHECK(describe_reduced(run, run->report, reduced));
+    RITZ_CHECK(describe_reduced(run, reduced));
     cli_report_int(run, "vectors", reduced->columns.count);
     cli_report_reals(run, "residuals", reduced->columns.count,
                      reduced->columns.residual);
@@ -95,7 +95,7 @@ static ritz_status to_states(cli_run *run, const model *full,
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_state_space(run->output, &states, &stamp));
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_states(run, run->report, &states));
+    RITZ_TRY(describe_states(run, &states));
     cli_report_int(run, "vectors", states.columns.count);
     cli_record(run, states.origin.method, states.A.nrow);
     for (int64_t k = 0; k < states.estimates.count; k++)

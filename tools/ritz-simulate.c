@@ -109,7 +109,7 @@ static ritz_status run_it(cli_run *run, const wish *asked,
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_simulation(run->output, &s, &stamp));
     cli_say(run, "%s:", run->output);
-    describe_simulation(run, run->report, &s);
+    describe_simulation(run, &s);
     if (isnan(asked->step))
         cli_say(run, "  %-14s %.1e of each output's largest, by half the step",
                 "accurate to", reached.error);

@@ -65,9 +65,7 @@ static ritz_status judge(cli_run *run, const ritz_measures *measures)
     int64_t failed = 0;
     int64_t asked = 0;
 
-    model_say_measures(run, measures, "measured");
-    json_object_set_new(run->report, "measures",
-                        model_measures_json(measures, "measured"));
+    model_say_measures(run, "measures", measures, "measured");
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 

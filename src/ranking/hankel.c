@@ -1,5 +1,5 @@
 /*
- * The largest exact Hankel hankel_value of a mode (or cluster) alone, which for one
+ * The largest exact Hankel value of a mode (or cluster) alone, which for one
  * mode with a displacement output is
  *
  *     sigma = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
@@ -42,7 +42,7 @@ static double exact(const double pair[static 2])
 const ritz_ranker ritz_ranker_hankel = {
     .name = "hankel",
     .summary =
-        "largest exact Hankel hankel_value of each mode (or cluster) alone",
+        "largest exact Hankel value of each mode (or cluster) alone",
     .reference = "Moore1981",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .exact = exact,
@@ -50,7 +50,7 @@ const ritz_ranker ritz_ranker_hankel = {
 };
 
 /*
- * The largest Hankel band_value of a mode (or cluster) alone over a band: of the
+ * The largest Hankel value of a mode (or cluster) alone over a band: of the
  * Gramians
  *
  *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
@@ -83,7 +83,7 @@ static ritz_status rank_band(const ritz_rank_request *request,
 
 const ritz_ranker ritz_ranker_hankel_band = {
     .name = "hankel-band",
-    .summary = "largest Hankel band_value of each mode alone within a band",
+    .summary = "largest Hankel value of each mode alone within a band",
     .reference = "GawronskiJuang1990",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING |
              RITZ_RANK_BAND,

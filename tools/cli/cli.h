@@ -17,7 +17,12 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { CLI_MAX_LIST = 256, CLI_MAX_COMMAND = 4096, CLI_MAX_OPERANDS = 3 };
+enum {
+    CLI_MAX_LIST = 256,
+    CLI_MAX_COMMAND = 4096,
+    CLI_MAX_OPERANDS = 3,
+    CLI_MAX_DEPTH = 8
+};
 
 typedef enum cli_kind {
     CLI_KIND_END,
@@ -88,7 +93,9 @@ typedef struct cli_run {
     const char *output, *record;
     bool quiet, json;
     char command[CLI_MAX_COMMAND]; /* for the file that it makes */
-    json_t *report;                /* of --json; the tool adds its keys */
+    json_t *report;                /* of --json; sink.h adds to it */
+    json_t *open[CLI_MAX_DEPTH];   /* in it, where values go at present */
+    int depth;
     json_t *warnings;
     json_t *line; /* of --record: method, order, errors */
     FILE *said;   /* all that cli_say was told, kept in the next two */

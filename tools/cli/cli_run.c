@@ -16,24 +16,6 @@
 #include <time.h>
 #include <unistd.h>
 
-void cli_say(const cli_run *run, const char *format, ...)
-{
-    va_list args;
-    va_list again;
-
-    va_start(args, format);
-    va_copy(again, args);
-    vfprintf(run->said, format, again);
-    putc('\n', run->said);
-    va_end(again);
-    if (!run->quiet && !run->json) {
-        cli_watch_clear();
-        vprintf(format, args);
-        putchar('\n');
-    }
-    va_end(args);
-}
-
 ritz_status cli_save(cli_run *run, const char *path)
 {
     ritz_status status = RITZ_OK;

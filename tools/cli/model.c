@@ -221,10 +221,22 @@ static const char *verdict(const ritz_measure *m, const char *known)
     return ritz_measure_holds(m) ? "pass" : "fail";
 }
 
-void model_say_measures(const cli_run *run, const ritz_measures *measures,
-                        const char *known)
+void model_set_measures(cli_run *run, const char *key,
+                        const ritz_measures *measures, const char *known)
 {
-    char limit[32];
+    sink_list(run, key);
+    for (int64_t k = 0; k < measures->count; k++) {
+        const ritz_measure *m = &measures->item[k];
+
+        sink_set(run, "name,value,limit,verdict,where", "%s %g %g %s %s",
+                 m->name, m->value, m->limit, verdict(m, known), m->where);
+    }
+    sink_end(run);
+}
+
+void model_say_measures(cli_run *run, const char *key,
+                        const ritz_measures *measures, const char *known)
+{
     int width = 28; /* more where a name is longer */
 
     for (int64_t k = 0; k < measures->count; k++)
@@ -232,13 +244,36 @@ void model_say_measures(const cli_run *run, const ritz_measures *measures,
             width = (int)strlen(measures->item[k].name);
     cli_say(run, "%-*s %12s %12s  %-9s  %s", width, "measure", "value", "limit",
             "verdict", "where");
+    sink_list(run, key);
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
-        snprintf(limit, sizeof limit, isnan(m->limit) ? "-" : "%.4g", m->limit);
-        cli_say(run, "%-*s %12.4e %12s  %-9s  %s", width, m->name, m->value,
-                limit, verdict(m, known), m->where);
+        sink_say(run, "name,value,limit,verdict,where",
+                 "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
+                 m->limit, verdict(m, known), m->where);
     }
+    sink_end(run);
+}
+
+void model_set_cost(cli_run *run, const ritz_cost *cost)
+{
+    sink_object(run, "cost");
+    sink_set(run,
+             "highest_hz,step_explicit,step_accurate,step,seconds_per_second,"
+             "integrator",
+             "%g %g %g %g %g %s", cost->highest_hz, cost->step_explicit,
+             cost->step_accurate, cost->step, cost->seconds_per_second,
+             cost->integrator);
+    sink_end(run);
+}
+
+ritz_io model_io_of_states(const ritz_state_space *states)
+{
+    return (ritz_io){.num_inputs = states->num_inputs,
+                     .num_outputs = states->num_outputs,
+                     .input = states->input,
+                     .output = states->output,
+                     .limit = states->limit};
 }
 
 json_t *model_measures_json(const ritz_measures *measures, const char *known)

@@ -2,7 +2,7 @@
 #ifndef RITZ_TOOLS_CLI_MODEL_H
 #define RITZ_TOOLS_CLI_MODEL_H
 
-#include "cli/cli.h"
+#include "cli/sink.h"
 
 #include <ritz/container.h>
 #include <ritz/scene.h>
@@ -75,19 +75,24 @@ ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
 ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 
 /**
- * Table of measures; and as array in JSON, with verdicts.
+ * Table of measures, and a list of them with verdicts; or the list alone.
  *
  * @param[in] known  the word for those without a limit: "measured", "estimated"
  */
-void model_say_measures(const cli_run *run, const ritz_measures *measures,
-                        const char *known);
+void model_say_measures(cli_run *run, const char *key,
+                        const ritz_measures *measures, const char *known);
+void model_set_measures(cli_run *run, const char *key,
+                        const ritz_measures *measures, const char *known);
+
 json_t *model_measures_json(const ritz_measures *measures, const char *known);
-
-/** What a simulator pays, as JSON and records have it. */
 json_t *model_cost_json(const ritz_cost *cost);
-
-/** Frequencies as JSON array. */
 json_t *model_reals_json(int64_t count, const double *values);
+
+/** What a simulator pays, as the object `cost`. */
+void model_set_cost(cli_run *run, const ritz_cost *cost);
+
+/** Names of inputs and outputs, and limits, borrowed; no matrices. */
+ritz_io model_io_of_states(const ritz_state_space *states);
 
 /** "1.2 to 30.5 Hz" of the columns that have a frequency; false if none. */
 bool model_band(const ritz_columns *columns, double *low, double *high);

@@ -10,10 +10,13 @@
 #ifndef RITZ_TOOLS_PRINT_CHECKSUM_H
 #define RITZ_TOOLS_PRINT_CHECKSUM_H
 
-#include <ritz/sparse.h>
-#include <ritz/text.h>
+#include "cli/sink.h"
 
 void checksum_sparse(const ritz_sparse *A, char out[RITZ_DIGEST_SIZE]);
 void checksum_dense(const ritz_dense *A, char out[RITZ_DIGEST_SIZE]);
+
+/** The sum of that name among the checksums; it may have commas, by which
+ * sink.h would cut it. */
+void checksum_set(cli_run *run, const char *name, const char *sum);
 
 #endif

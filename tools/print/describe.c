@@ -1,132 +1,224 @@
 #include "print/describe.h"
 
+#include "base/tolerances.h"
 #include "print/checksum.h"
 #include "print/nested.h"
+#include "print/rankings.h"
 
+#include <ritz/probe.h>
+
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-static json_t *names_json(int64_t count, char (*name)[RITZ_NAME_SIZE])
+/* Relative size of an antisymmetric part that is rounding. */
+static const double skew_rounding = 1e-12;
+
+static void describe_units(cli_run *run, const char *units)
 {
-    json_t *array = json_array();
-
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(array, cli_string(name[k]));
-    return array;
-}
-
-static void set_int(json_t *keys, const char *key, int64_t value)
-{
-    json_object_set_new(keys, key, json_integer(value));
-}
-
-static void set_text(json_t *keys, const char *key, const char *text)
-{
-    json_object_set_new(keys, key, cli_string(text));
+    sink_set(run, "units", "%s", units);
+    cli_say(run, "  %-14s %s", "units", *units ? units : "not stated");
 }
 
 /* A sparse matrix: a line, and its checksum. An absent one is passed over. */
-static void matrix(const cli_run *run, json_t *sums, const char *name,
-                   const ritz_sparse *A)
+static void describe_sparse(cli_run *run, const char *name,
+                            const ritz_sparse *A)
 {
     char sum[RITZ_DIGEST_SIZE];
 
     if (!A->colptr)
         return;
     checksum_sparse(A, sum);
-    set_text(sums, name, sum);
+    checksum_set(run, name, sum);
     cli_say(run, "  %-14s %lld x %lld, %lld entries, sha256 %.12s...", name,
             (long long)A->nrow, (long long)A->ncol,
             (long long)A->colptr[A->ncol], sum);
 }
 
-static void dense(const cli_run *run, json_t *sums, const char *name,
-                  const ritz_dense *A)
+static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
 {
     char sum[RITZ_DIGEST_SIZE];
 
     if (!A->val)
         return;
     checksum_dense(A, sum);
-    set_text(sums, name, sum);
+    checksum_set(run, name, sum);
     cli_say(run, "  %-14s %lld x %lld, dense, sha256 %.12s...", name,
             (long long)A->nrow, (long long)A->ncol, sum);
 }
 
-static void io(const cli_run *run, json_t *keys, const ritz_io *io)
+/* Inputs and outputs by name, these with their limits. */
+static void describe_io(cli_run *run, const ritz_io *io)
 {
-    json_object_set_new(keys, "inputs", names_json(io->num_inputs, io->input));
-    json_object_set_new(keys, "outputs",
-                        names_json(io->num_outputs, io->output));
-    for (int64_t k = 0; k < io->num_inputs; k++)
-        cli_say(run, "  %-14s %s", k > 0 ? "" : "inputs", io->input[k]);
+    sink_names(run, "inputs", "inputs", io->num_inputs, io->input);
+    sink_names(run, NULL, "outputs", io->num_outputs, io->output);
     for (int64_t k = 0; k < io->num_outputs; k++) {
+        const char *title = k > 0 ? "" : "outputs";
+
         if (io->limit && !isnan(io->limit[k]))
-            cli_say(run, "  %-14s %s, limit %g", k > 0 ? "" : "outputs",
-                    io->output[k], io->limit[k]);
+            cli_say(run, "  %-14s %s, limit %g", title, io->output[k],
+                    io->limit[k]);
         else
-            cli_say(run, "  %-14s %s", k > 0 ? "" : "outputs", io->output[k]);
+            cli_say(run, "  %-14s %s", title, io->output[k]);
     }
 }
 
 /* A port: its grids in order of first appearance, how many dofs, where. */
-static void port(const cli_run *run, json_t *keys, const char *name,
-                 int64_t count, const ritz_dof *dof, const double *origin)
+static void describe_port(cli_run *run, const char *name, int64_t count,
+                          const ritz_dof *dof, const double *origin)
 {
     enum { SHOWN = 12 };
-    json_t *grids = json_array();
-    json_t *item = json_object();
     char text[SHOWN * 22] = "";
-    size_t used = 0;
-    int64_t last = -1;
+    int64_t grids = 0;
 
+    sink_list(run, "ports");
+    sink_add(run, "%s", name);
+    sink_end(run);
+    sink_list(run, "port_details");
+    sink_object(run, NULL);
+    sink_set(run, "name,dofs", "%s %lld", name, (long long)count);
+    sink_reals(run, "origin", 3, origin);
+    sink_list(run, "grids");
     for (int64_t k = 0; k < count; k++) {
-        if (dof[k].grid == last)
+        if (k > 0 && dof[k].grid == dof[k - 1].grid)
             continue;
-        last = dof[k].grid;
-        if (json_array_size(grids) < SHOWN)
-            used += (size_t)snprintf(text + used, sizeof text - used, " %lld",
-                                     (long long)last);
-        json_array_append_new(grids, json_integer(last));
+        if (grids++ < SHOWN)
+            sink_append(text, sizeof text, " %lld", (long long)dof[k].grid);
+        sink_add(run, "%lld", (long long)dof[k].grid);
     }
+    sink_end(run);
+    sink_end(run);
+    sink_end(run);
     cli_say(run, "  port %-9s %lld dofs at grids%s%s, origin (%g, %g, %g)",
-            name, (long long)count, text,
-            json_array_size(grids) > SHOWN ? " ..." : "", origin[0], origin[1],
-            origin[2]);
-    set_text(item, "name", name);
-    set_int(item, "dofs", count);
-    json_object_set_new(item, "grids", grids);
-    json_object_set_new(item, "origin", model_reals_json(3, origin));
-    json_array_append_new(json_object_get(keys, "port_details"), item);
-    json_array_append_new(json_object_get(keys, "ports"), cli_string(name));
+            name, (long long)count, text, grids > SHOWN ? " ..." : "",
+            origin[0], origin[1], origin[2]);
 }
 
-static void start_ports(json_t *keys)
+/* Lists of ports are there even where there is none. */
+static void start_ports(cli_run *run)
 {
-    json_object_set_new(keys, "ports", json_array());
-    json_object_set_new(keys, "port_details", json_array());
+    sink_list(run, "ports");
+    sink_end(run);
+    sink_list(run, "port_details");
+    sink_end(run);
 }
 
-static void component_ports(const cli_run *run, json_t *keys,
-                            const ritz_component *c)
+static void describe_component_ports(cli_run *run, const ritz_component *c)
 {
-    start_ports(keys);
+    start_ports(run);
     for (int64_t k = 0; k < c->num_ports; k++) {
         const ritz_port *p = &c->port[k];
         ritz_dof *dof = calloc((size_t)p->dofs.count + 1, sizeof *dof);
 
         for (int64_t i = 0; dof && i < p->dofs.count; i++)
             dof[i] = c->dof[p->dofs.at[i]];
-        port(run, keys, p->name, dof ? p->dofs.count : 0, dof, p->origin);
+        describe_port(run, p->name, dof ? p->dofs.count : 0, dof, p->origin);
         free(dof);
     }
 }
 
-void describe_component(const cli_run *run, json_t *keys,
-                        const ritz_component *c)
+void describe_damping(cli_run *run, const char *text)
 {
-    json_t *sums = json_object();
+    ritz_damping damping = {0};
+    int64_t at = 0;
+    double worst = 0.0;
+
+    sink_set(run, "damping", "%s", text);
+    if (*text)
+        cli_say(run, "  %-14s %s", "damping", text);
+    if (ritz_damping_parse(text, &damping) != RITZ_OK ||
+        damping.kind != RITZ_DAMPING_FIT)
+        return;
+    worst = ritz_damping_misfit(&damping, &at);
+    sink_object(run, "rayleigh_fit");
+    sink_field(run, "", "a,b,residual",
+               "a = %.6g, b = %.6g, off by %.2g of %.2g at most, at %g Hz",
+               damping.a, damping.b, worst, damping.point[at][1],
+               damping.point[at][0]);
+    sink_end(run);
+}
+
+void describe_dampers(cli_run *run, const ritz_dampers *dampers)
+{
+    sink_list(run, "dampers");
+    for (int64_t j = 0; j < dampers->count; j++) {
+        bool held = dampers->held_c[j] == dampers->c[j] &&
+                    dampers->held_k[j] == dampers->k[j];
+
+        sink_field(run, j > 0 ? "" : "dampers", "name,c,k",
+                   "%s, c = %g, k = %g%s", dampers->name[j], dampers->c[j],
+                   dampers->k[j], held ? "" : ", not in D and K");
+    }
+    sink_end(run);
+}
+
+/* The antisymmetric part of D, relative in the Frobenius norm. */
+static void describe_skew(cli_run *run, double share)
+{
+    sink_set(run, "gyroscopic", "%g", share);
+    if (share > skew_rounding)
+        cli_say(run,
+                "  %-14s unsymmetric: a gyroscopic part of %.3g %% is kept", "",
+                100.0 * share);
+}
+
+static double measure_skew(const ritz_dense *D)
+{
+    double all = 0.0;
+    double skew = 0.0;
+
+    for (int64_t j = 0; j < D->ncol; j++)
+        for (int64_t i = 0; i < D->nrow; i++) {
+            double d = ritz_dense_col(D, j)[i];
+
+            all = hypot(all, d);
+            skew = hypot(skew, 0.5 * (d - ritz_dense_col(D, i)[j]));
+        }
+    return all > 0.0 ? skew / all : 0.0;
+}
+
+/* "grid 7: 123456": directions of a grid; the first dof of the next one. */
+static int64_t print_grid(const ritz_recovery *r, int64_t k, size_t size,
+                          char *text)
+{
+    ritz_dof first = r->dof[k];
+
+    snprintf(text, size, "%s %lld", first.component == 0 ? "point" : "grid",
+             (long long)first.grid);
+    if (first.component > 0)
+        sink_append(text, size, " ");
+    for (; k < r->count && r->dof[k].grid == first.grid; k++)
+        if (r->dof[k].component > 0)
+            sink_append(text, size, "%lld", (long long)r->dof[k].component);
+    return k;
+}
+
+/* Dofs that constraints eliminated. */
+static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
+{
+    enum { SHOWN = 5 };
+    char text[SHOWN * 64] = "";
+    int64_t grids = 0;
+
+    sink_set(run, "recovered", "%lld", (long long)recovery->count);
+    sink_list(run, "recovered_dofs");
+    for (int64_t k = 0; k < recovery->count; grids++) {
+        char one[64];
+
+        k = print_grid(recovery, k, sizeof one, one);
+        sink_add(run, "%s", one);
+        if (grids < SHOWN)
+            sink_append(text, sizeof text, "%s%s", grids > 0 ? ", " : "", one);
+    }
+    sink_end(run);
+    if (recovery->count > 0)
+        cli_say(run, "  %-14s %lld dofs that follow from the others: %s%s",
+                "recovered", (long long)recovery->count, text,
+                grids > SHOWN ? ", ..." : "");
+}
+
+void describe_component(cli_run *run, const ritz_component *c)
+{
     int64_t scalar = 0;
     int64_t grids = 0;
 
@@ -135,53 +227,47 @@ void describe_component(const cli_run *run, json_t *keys,
         grids += c->dof[k].component != 0 &&
                  (k == 0 || c->dof[k].grid != c->dof[k - 1].grid);
     }
-    cli_say(run, "  %-14s component, %lld dofs at %lld grids%s", "kind",
-            (long long)c->num_dofs, (long long)grids,
-            c->grids.count > 0 ? "" : " without positions");
+    sink_set(run, "kind,scalar_points,digits,asymmetry", "%s %lld %g %g",
+             "component", (long long)scalar, c->digits, c->asymmetry);
+    sink_field(run, "kind", "dofs,grids",
+               "component, %lld dofs at %lld grids%s", (long long)c->num_dofs,
+               (long long)grids,
+               c->grids.count > 0 ? "" : " without positions");
     if (scalar > 0)
         cli_say(run, "  %-14s %lld", "scalar points", (long long)scalar);
-    cli_say(run, "  %-14s %s", "units", *c->units ? c->units : "not stated");
-    matrix(run, sums, "K", &c->K);
-    matrix(run, sums, "M", &c->M);
-    matrix(run, sums, "D", &c->D);
-    describe_skew(run, keys, c->D.colptr ? ritz_sparse_skew(&c->D) : 0.0);
-    matrix(run, sums, "K4", &c->K4);
+    describe_units(run, c->units);
+    describe_sparse(run, "K", &c->K);
+    describe_sparse(run, "M", &c->M);
+    describe_sparse(run, "D", &c->D);
+    describe_skew(run, c->D.colptr ? ritz_sparse_skew(&c->D) : 0.0);
+    describe_sparse(run, "K4", &c->K4);
     for (int64_t k = 0; k < c->num_loads; k++) {
         char name[RITZ_NAME_SIZE + 4];
 
         snprintf(name, sizeof name, "KG/%s", c->load[k].name);
-        matrix(run, sums, name, &c->load[k].KG);
+        describe_sparse(run, name, &c->load[k].KG);
     }
-    describe_damping(run, keys, c->damping);
-    describe_dampers(run, keys, &c->dampers);
-    describe_recovery(run, keys, &c->recovery);
+    describe_damping(run, c->damping);
+    describe_dampers(run, &c->dampers);
+    describe_recovery(run, &c->recovery);
     if (c->digits > 0.0)
         cli_say(run, "  %-14s %g significant", "digits", c->digits);
     if (c->asymmetry > 0.0)
         cli_say(run, "  %-14s %.1e of the largest entry, averaged away",
                 "asymmetry", c->asymmetry);
-    component_ports(run, keys, c);
-    io(run, keys, &c->io);
-    set_text(keys, "kind", "component");
-    set_int(keys, "dofs", c->num_dofs);
-    set_int(keys, "grids", grids);
-    set_int(keys, "scalar_points", scalar);
-    set_text(keys, "units", c->units);
-    json_object_set_new(keys, "digits", cli_real(c->digits));
-    json_object_set_new(keys, "asymmetry", cli_real(c->asymmetry));
-    json_object_set_new(keys, "checksums", sums);
+    describe_component_ports(run, c);
+    describe_io(run, &c->io);
 }
 
-/* "12 constraint, 8 normal"; and the same as an object. */
-void describe_columns(const cli_run *run, json_t *keys, const ritz_columns *c)
+/* "12 constraint, 8 normal". */
+static void describe_columns(cli_run *run, const ritz_columns *c)
 {
-    json_t *kinds = json_object();
     char text[160] = "";
-    size_t used = 0;
     int64_t modes = 0;
     double low = 0.0;
     double high = 0.0;
 
+    sink_object(run, "columns");
     for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_BALANCED; kind++) {
         const char *name = ritz_column_name((ritz_column_kind)kind);
         int64_t count = 0;
@@ -190,261 +276,379 @@ void describe_columns(const cli_run *run, json_t *keys, const ritz_columns *c)
             count += (int)c->kind[k] == kind;
         if (count == 0)
             continue;
-        set_int(kinds, name, count);
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%lld %s",
-                                 used > 0 ? ", " : "", (long long)count, name);
+        sink_set(run, name, "%lld", (long long)count);
+        sink_append(text, sizeof text, "%s%lld %s", *text ? ", " : "",
+                    (long long)count, name);
         modes += kind == RITZ_COLUMN_NORMAL ? count : 0;
     }
+    sink_end(run);
+    sink_set(run, "modes", "%lld", (long long)modes);
     cli_say(run, "  %-14s %s", "columns", text);
     if (model_band(c, &low, &high))
         cli_say(run, "  %-14s %g to %g Hz", "normal modes", low, high);
-    set_int(keys, "modes", modes);
-    json_object_set_new(keys, "columns", kinds);
 }
 
-void describe_origin(const cli_run *run, json_t *keys, const ritz_origin *o)
+/* How a basis was made. */
+static void describe_origin(cli_run *run, const ritz_origin *o)
 {
+    sink_set(run, "method,options,engine", "%s %s %s", o->method, o->options,
+             o->engine);
     cli_say(run, "  %-14s %s (%s) [%s]%s%s", "method", o->method,
             *o->options ? o->options : "no options", o->reference,
             *o->engine ? ", " : "", o->engine);
-    set_text(keys, "method", o->method);
-    set_text(keys, "options", o->options);
-    set_text(keys, "engine", o->engine);
 }
 
-/* Values of what was balanced: some of them, and all in JSON. */
-static void describe_hankel(const cli_run *run, json_t *keys,
-                            const ritz_basis *b)
+/* Values of a balanced basis: some of them, and all in JSON. */
+static void describe_hankel(cli_run *run, const ritz_basis *b)
 {
     enum { SHOWN = 10, ROOM = 12 };
     char text[SHOWN * ROOM + 8] = "";
-    size_t used = 0;
 
     for (int64_t k = 0; k < b->num_hankel && k < SHOWN; k++)
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s%.4g",
-                                 k > 0 ? " " : "", b->hankel[k]);
+        sink_append(text, sizeof text, "%s%.4g", k > 0 ? " " : "",
+                    b->hankel[k]);
     cli_say(run, "  %-14s %s%s", "Hankel values", text,
             b->num_hankel > SHOWN ? " ..." : "");
-    json_object_set_new(keys, "hankel_values",
-                        model_reals_json(b->num_hankel, b->hankel));
+    sink_reals(run, "hankel_values", b->num_hankel, b->hankel);
 }
 
-void describe_basis(const cli_run *run, json_t *keys, const ritz_basis *b)
+void describe_basis(cli_run *run, const ritz_basis *b)
 {
-    json_t *sums = json_object();
-    json_t *hertz = json_array();
-
-    cli_say(run, "  %-14s basis of %lld columns for %lld %s", "kind",
-            (long long)b->T.ncol, (long long)b->T.nrow,
-            b->states ? "states" : "dofs");
-    describe_origin(run, keys, &b->origin);
-    describe_columns(run, keys, &b->columns);
-    dense(run, sums, "T", &b->T);
-    dense(run, sums, "W", &b->W);
+    sink_set(run, "kind", "%s", "basis");
+    sink_field(run, "kind", "dofs,dofs_full",
+               "basis of %lld columns for %lld %s", (long long)b->T.ncol,
+               (long long)b->T.nrow, b->states ? "states" : "dofs");
+    describe_origin(run, &b->origin);
+    describe_columns(run, &b->columns);
+    describe_dense(run, "T", &b->T);
+    describe_dense(run, "W", &b->W);
     if (*b->damping)
-        describe_damping(run, keys, b->damping);
+        describe_damping(run, b->damping);
     if (b->num_hankel > 0)
-        describe_hankel(run, keys, b);
+        describe_hankel(run, b);
+    sink_list(run, "frequencies_hz");
     for (int64_t k = 0; k < b->columns.count; k++)
         if (!isnan(b->columns.hertz[k]))
-            json_array_append_new(hertz, cli_real(b->columns.hertz[k]));
-    set_text(keys, "kind", "basis");
-    set_int(keys, "dofs_full", b->T.nrow);
-    set_int(keys, "dofs", b->T.ncol);
-    json_object_set_new(keys, "frequencies_hz", hertz);
-    json_object_set_new(keys, "checksums", sums);
+            sink_add(run, "%g", b->columns.hertz[k]);
+    sink_end(run);
 }
 
-void describe_inertia(const cli_run *run, json_t *keys, const ritz_inertia *i)
+/* Mass, centre and inertia; an empty object if they are not known. */
+static void describe_inertia(cli_run *run, const ritz_inertia *i)
 {
-    json_t *item = json_object();
-
+    sink_object(run, "inertia");
     if (i->known) {
-        cli_say(run, "  %-14s %.8g", "mass", i->mass);
+        sink_field(run, "mass", "mass", "%.8g", i->mass);
         cli_say(run, "  %-14s (%.6g, %.6g, %.6g)", "centre of mass",
                 i->centre[0], i->centre[1], i->centre[2]);
         for (size_t k = 0; k < 3; k++)
             cli_say(run, "  %-14s %14.6g %14.6g %14.6g", k > 0 ? "" : "inertia",
                     i->tensor[3 * k], i->tensor[3 * k + 1],
                     i->tensor[3 * k + 2]);
-        json_object_set_new(item, "mass", cli_real(i->mass));
-        json_object_set_new(item, "centre", model_reals_json(3, i->centre));
-        json_object_set_new(item, "tensor", model_reals_json(9, i->tensor));
+        sink_reals(run, "centre", 3, i->centre);
+        sink_reals(run, "tensor", 9, i->tensor);
     }
-    json_object_set_new(keys, "inertia", item);
+    sink_end(run);
 }
 
-/* Frequencies, ten a line at most, rigid modes as their number. */
-static void hertz_lines(const cli_run *run, const char *title, int64_t rigid,
-                        int64_t count, const double *hertz)
+/* Frequencies, five a line, rigid modes as their number. */
+static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
+                           int64_t count, const double *hertz)
 {
     cli_say(run, "  %-14s %lld rigid, %lld flexible modes%s", title,
             (long long)rigid, (long long)(count - rigid),
             count > rigid ? ", Hz:" : "");
     for (int64_t k = rigid; k < count; k += 5) {
         char line[5 * 14 + 1] = "";
-        size_t used = 0;
 
         for (int64_t i = k; i < k + 5 && i < count; i++)
-            used += (size_t)snprintf(line + used, sizeof line - used, " %12.7g",
-                                     hertz[i]);
+            sink_append(line, sizeof line, " %12.7g", hertz[i]);
         cli_say(run, "  %-14s%s", "", line);
     }
+    sink_reals(run, "frequencies_hz", count, hertz);
 }
 
-void describe_measures(const cli_run *run, json_t *keys, const char *key,
-                       const ritz_measures *m)
+static void describe_measures(cli_run *run, const char *key,
+                              const ritz_measures *m, const char *known)
 {
-    const char *known =
-        strcmp(key, "estimates") == 0 ? "estimated" : "measured";
-
-    json_object_set_new(keys, key, model_measures_json(m, known));
-    if (m->count > 0) {
+    if (m->count > 0)
         cli_say(run, "  %s:", key);
-        model_say_measures(run, m, known);
-    }
+    if (m->count > 0)
+        model_say_measures(run, key, m, known);
+    else
+        model_set_measures(run, key, m, known);
 }
 
-ritz_status describe_reduced(const cli_run *run, json_t *keys,
-                             const ritz_reduced *r)
+ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
 {
     ritz_status status = RITZ_OK;
-    json_t *sums = json_object();
     double *hertz = NULL;
     int64_t rigid = 0;
     int64_t count = 0;
 
-    set_text(keys, "kind", "reduced");
-    json_object_set_new(keys, "checksums", sums);
+    sink_set(run, "kind", "%s", "reduced");
     RITZ_TRY(model_hertz(&r->K, &r->M, &rigid, &count, &hertz));
-    cli_say(run, "  %-14s reduced component, %lld coordinates for %lld dofs",
-            "kind", (long long)r->K.nrow, (long long)r->num_dofs);
-    cli_say(run, "  %-14s %s", "units", *r->units ? r->units : "not stated");
-    describe_origin(run, keys, &r->origin);
-    describe_columns(run, keys, &r->columns);
-    hertz_lines(run, "frequencies", rigid, count, hertz);
-    dense(run, sums, "K", &r->K);
-    dense(run, sums, "M", &r->M);
-    dense(run, sums, "D", &r->D);
-    describe_skew(run, keys, describe_skew_dense(&r->D));
-    dense(run, sums, "K4", &r->K4);
-    dense(run, sums, "T", &r->T);
-    describe_damping(run, keys, r->damping);
-    describe_dampers(run, keys, &r->dampers);
-    describe_recovery(run, keys, &r->recovery);
-    describe_inertia(run, keys, &r->inertia);
-    start_ports(keys);
+    sink_field(run, "kind", "dofs,dofs_full",
+               "reduced component, %lld coordinates for %lld dofs",
+               (long long)r->K.nrow, (long long)r->num_dofs);
+    describe_units(run, r->units);
+    describe_origin(run, &r->origin);
+    describe_columns(run, &r->columns);
+    describe_hertz(run, "frequencies", rigid, count, hertz);
+    describe_dense(run, "K", &r->K);
+    describe_dense(run, "M", &r->M);
+    describe_dense(run, "D", &r->D);
+    describe_skew(run, measure_skew(&r->D));
+    describe_dense(run, "K4", &r->K4);
+    describe_dense(run, "T", &r->T);
+    describe_damping(run, r->damping);
+    describe_dampers(run, &r->dampers);
+    describe_recovery(run, &r->recovery);
+    describe_inertia(run, &r->inertia);
+    start_ports(run);
     for (int64_t k = 0; k < r->num_ports; k++)
-        port(run, keys, r->port[k].name, r->port[k].count, r->port[k].dof,
-             r->port[k].origin);
-    io(run, keys, &r->io);
-    set_int(keys, "dofs", r->K.nrow);
-    set_int(keys, "dofs_full", r->num_dofs);
-    set_text(keys, "units", r->units);
-    json_object_set_new(keys, "frequencies_hz", model_reals_json(count, hertz));
-    describe_measures(run, keys, "estimates", &r->estimates);
-    describe_measures(run, keys, "errors", &r->errors);
-    nested_describe(run, keys, &r->nested, r->K.ncol);
+        describe_port(run, r->port[k].name, r->port[k].count, r->port[k].dof,
+                      r->port[k].origin);
+    describe_io(run, &r->io);
+    describe_measures(run, "estimates", &r->estimates, "estimated");
+    describe_measures(run, "errors", &r->errors, "measured");
+    nested_describe(run, &r->nested, r->K.ncol);
 done:
     free(hertz);
     return status;
 }
 
-static ritz_status configuration(const cli_run *run, json_t *keys,
-                                 const ritz_configuration *c)
+static ritz_status describe_configuration(cli_run *run,
+                                          const ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-    json_t *item = json_object();
     double *hertz = NULL;
 
-    json_array_append_new(json_object_get(keys, "configurations"), item);
-    RITZ_TRY(model_hertz_at(c, &hertz));
-    hertz_lines(run, *c->at ? c->at : "as joined", c->num_rigid, c->K.nrow,
-                hertz);
-    set_text(item, "at", c->at);
-    set_int(item, "dofs", c->K.nrow);
-    set_int(item, "rank", c->rank);
-    json_object_set_new(item, "frequencies_hz",
-                        model_reals_json(c->K.nrow, hertz));
-    describe_measures(run, item, "errors", &c->errors);
-    if (!json_object_get(keys, "frequencies_hz")) { /* the first one's */
-        set_int(keys, "dofs", c->K.nrow);
-        set_int(keys, "modes", c->K.nrow - c->num_rigid);
-        json_object_set(keys, "frequencies_hz",
-                        json_object_get(item, "frequencies_hz"));
-        io(run, keys, &c->io);
-    }
-done:
+    RITZ_CHECK(model_hertz_at(c, &hertz));
+    sink_object(run, NULL);
+    sink_set(run, "at,dofs,rank", "%s %lld %lld", c->at, (long long)c->K.nrow,
+             (long long)c->rank);
+    describe_hertz(run, *c->at ? c->at : "as joined", c->num_rigid, c->K.nrow,
+                   hertz);
+    describe_measures(run, "errors", &c->errors, "measured");
+    sink_end(run);
     free(hertz);
-    return status;
+    return RITZ_OK;
 }
 
-ritz_status describe_system(const cli_run *run, json_t *keys,
-                            const ritz_system *s)
+/* All of them; the report itself has keys of the first one. */
+static ritz_status describe_configurations(cli_run *run, const ritz_system *s)
 {
-    json_t *components = json_array();
-    json_t *sums = json_object();
-
-    set_text(keys, "kind", "system");
-    set_text(keys, "name", s->name);
-    set_text(keys, "units", s->units);
-    json_object_set_new(keys, "sweeps", names_json(s->num_sweeps, s->sweep));
-    json_object_set_new(keys, "ports", json_array());
-    json_object_set_new(keys, "configurations", json_array());
-    json_object_set_new(keys, "components", components);
-    json_object_set_new(keys, "checksums", sums);
-    cli_say(run, "  %-14s system '%s' at %lld configurations", "kind", s->name,
-            (long long)s->num_configurations);
-    cli_say(run, "  %-14s %s", "units", *s->units ? s->units : "not stated");
-    for (int64_t k = 0; k < s->num_components; k++) {
-        json_t *item = json_object();
-
-        cli_say(run, "  %-14s %-16s %lld coordinates for %lld dofs",
-                k > 0 ? "" : "components", s->component[k],
-                (long long)s->order[k], (long long)s->order_full[k]);
-        set_text(item, "name", s->component[k]);
-        set_int(item, "dofs", s->order[k]);
-        set_int(item, "dofs_full", s->order_full[k]);
-        json_array_append_new(components, item);
-    }
-    if (s->band_hz[1] > 0.0)
-        cli_say(run, "  %-14s %g to %g Hz", "band", s->band_hz[0],
-                s->band_hz[1]);
-    describe_damping(run, keys, s->damping);
-    if (s->num_configurations > 0)
-        describe_dampers(run, keys, &s->configuration[0].dampers);
     for (int64_t k = 0; k < s->num_configurations; k++) {
         const ritz_configuration *c = &s->configuration[k];
+        const json_t *first = NULL;
         char name[2][RITZ_NAME_SIZE + 4];
 
-        RITZ_CHECK(configuration(run, keys, c));
+        sink_list(run, "configurations");
+        RITZ_CHECK(describe_configuration(run, c));
+        first = json_array_get(sink_here(run), 0);
+        sink_end(run);
+        if (k == 0) {
+            sink_set(run, "dofs,modes", "%lld %lld", (long long)c->K.nrow,
+                     (long long)(c->K.nrow - c->num_rigid));
+            json_object_set(sink_here(run), "frequencies_hz",
+                            json_object_get(first, "frequencies_hz"));
+            describe_io(run, &c->io);
+        }
         snprintf(name[0], sizeof name[0], "%s/K", c->at);
         snprintf(name[1], sizeof name[1], "%s/M", c->at);
-        dense(run, sums, name[0], &c->K);
-        dense(run, sums, name[1], &c->M);
+        describe_dense(run, name[0], &c->K);
+        describe_dense(run, name[1], &c->M);
     }
     return RITZ_OK;
 }
 
-void describe_response(const cli_run *run, json_t *keys, const ritz_response *r)
+ritz_status describe_system(cli_run *run, const ritz_system *s)
 {
-    double low = r->count > 0 ? r->hertz[0] : (double)NAN;
-    double high = r->count > 0 ? r->hertz[r->count - 1] : (double)NAN;
+    sink_set(run, "kind", "%s", "system");
+    sink_names(run, NULL, "sweeps", s->num_sweeps, s->sweep);
+    sink_list(run, "ports");
+    sink_end(run);
+    sink_field(run, "kind", "name", "system '%s' at %lld configurations",
+               s->name, (long long)s->num_configurations);
+    describe_units(run, s->units);
+    sink_list(run, "components");
+    for (int64_t k = 0; k < s->num_components; k++)
+        sink_field(run, k > 0 ? "" : "components", "name,dofs,dofs_full",
+                   "%-16s %lld coordinates for %lld dofs", s->component[k],
+                   (long long)s->order[k], (long long)s->order_full[k]);
+    sink_end(run);
+    if (s->band_hz[1] > 0.0)
+        cli_say(run, "  %-14s %g to %g Hz", "band", s->band_hz[0],
+                s->band_hz[1]);
+    describe_damping(run, s->damping);
+    if (s->num_configurations > 0)
+        describe_dampers(run, &s->configuration[0].dampers);
+    return describe_configurations(run, s);
+}
 
-    cli_say(run, "  %-14s frequency response, %lld points, %g to %g Hz", "kind",
-            (long long)r->count, low, high);
-    cli_say(run, "  %-14s %s, damping %s", "method", r->method,
-            *r->damping ? r->damping : "of the matrices");
-    for (int64_t k = 0; k < r->num_inputs; k++)
-        cli_say(run, "  %-14s %s", k > 0 ? "" : "inputs", r->input[k]);
-    for (int64_t k = 0; k < r->num_outputs; k++)
-        cli_say(run, "  %-14s %s", k > 0 ? "" : "outputs", r->output[k]);
-    set_text(keys, "kind", "response");
-    set_int(keys, "points", r->count);
-    json_object_set_new(keys, "from_hz", cli_real(low));
-    json_object_set_new(keys, "to_hz", cli_real(high));
-    set_text(keys, "method", r->method);
-    set_text(keys, "damping", r->damping);
-    json_object_set_new(keys, "inputs", names_json(r->num_inputs, r->input));
-    json_object_set_new(keys, "outputs", names_json(r->num_outputs, r->output));
+void describe_response(cli_run *run, const ritz_response *r)
+{
+    sink_set(run, "kind", "%s", "response");
+    sink_field(run, "kind", "points,from_hz,to_hz",
+               "frequency response, %lld points, %g to %g Hz",
+               (long long)r->count, r->count > 0 ? r->hertz[0] : (double)NAN,
+               r->count > 0 ? r->hertz[r->count - 1] : (double)NAN);
+    sink_set(run, "damping", "%s", r->damping);
+    sink_field(run, "method", "method", "%s, damping %s", r->method,
+               *r->damping ? r->damping : "of the matrices");
+    sink_names(run, "inputs", "inputs", r->num_inputs, r->input);
+    sink_names(run, "outputs", "outputs", r->num_outputs, r->output);
+}
+
+/* Largest |value| of an output, and when. */
+static double find_peak(const ritz_simulation *s, int64_t i, double *when)
+{
+    double most = 0.0;
+
+    *when = s->count > 0 ? s->seconds[0] : 0.0;
+    for (int64_t k = 0; k < s->count; k++) {
+        double y = fabs(s->y[k * s->num_outputs + i]);
+
+        if (y > most) {
+            most = y;
+            *when = s->seconds[k];
+        }
+    }
+    return most;
+}
+
+/* Largest error of the energy balance over the largest energy. */
+static double find_imbalance(const ritz_simulation *s)
+{
+    double off = 0.0, size = 0.0;
+
+    for (int64_t k = 0; k < s->count; k++) {
+        off = fmax(off, fabs(s->balance[k]));
+        size = fmax(size, fabs(s->kinetic[k]) + fabs(s->potential[k]) +
+                              fabs(s->dissipated[k]));
+    }
+    return size > 0.0 ? off / size : 0.0;
+}
+
+void describe_simulation(cli_run *run, const ritz_simulation *s)
+{
+    double end = s->count > 0 ? s->seconds[s->count - 1] : 0.0;
+
+    sink_set(run, "kind,order,damping", "%s %lld %s", "simulation",
+             (long long)s->order, s->damping);
+    sink_field(run, "kind", "points,seconds",
+               "time response, %lld times to %g s", (long long)s->count, end);
+    sink_field(run, "method", "method,step,hold",
+               "%s, step %g s, inputs held to order %s, damping %s",
+               s->integrator, s->step, s->hold,
+               *s->damping ? s->damping : "of the matrices");
+    sink_names(run, "inputs", "inputs", s->num_inputs, s->input);
+    sink_names(run, NULL, "outputs", s->num_outputs, s->output);
+    sink_list(run, "peaks");
+    for (int64_t i = 0; i < s->num_outputs; i++) {
+        double when = 0.0;
+        double most = find_peak(s, i, &when);
+
+        cli_say(run, "  %-14s %-20s at most %.6e at %g s",
+                i > 0 ? "" : "outputs", s->output[i], most, when);
+        sink_add(run, "%g", most);
+    }
+    sink_end(run);
+    if (s->balance)
+        sink_field(run, "energies", "imbalance",
+                   "balance to %.1e of the largest", find_imbalance(s));
+}
+
+/* The slowest first, of a pair one line. */
+static void describe_poles(cli_run *run, int64_t count,
+                           const double _Complex *pole)
+{
+    enum { SHOWN = 40 };
+    int64_t shown = 0;
+
+    cli_say(run, "  %-14s %14s %14s %12s %10s", "poles", "real, rad/s",
+            "imaginary", "Hz", "damping");
+    sink_list(run, "poles");
+    for (int64_t k = 0; k < count; k++) {
+        double re = creal(pole[k]);
+        double im = cimag(pole[k]);
+        double w = hypot(re, im);
+
+        sink_list(run, NULL);
+        sink_add(run, "%g %g", re, im);
+        sink_end(run);
+        if (im >= 0.0 && shown++ < SHOWN)
+            cli_say(run, "  %-14s %14.6g %14.6g %12.6g %10.4g", "", re, im,
+                    w / (2.0 * RITZ_PI), w > 0.0 ? -re / w : 0.0);
+    }
+    sink_end(run);
+    if (shown > SHOWN)
+        cli_say(run, "  %-14s and %lld faster ones", "",
+                (long long)(shown - SHOWN));
+}
+
+ritz_status describe_states(cli_run *run, const ritz_state_space *states)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io io = model_io_of_states(states);
+    ritz_probe probe = {0};
+    double _Complex *pole = NULL;
+    int64_t count = 0;
+    char text[2 * RITZ_NAME_SIZE];
+
+    RITZ_TRY(ritz_probe_states(states, &probe));
+    RITZ_TRY(ritz_state_space_poles(states, &count, &pole));
+    sink_set(run, "kind", "%s", "state-space");
+    sink_field(run, "kind", "states", "state space, %lld states",
+               (long long)states->A.nrow);
+    describe_units(run, states->units);
+    if (*states->origin.method)
+        describe_origin(run, &states->origin);
+    describe_columns(run, &states->columns);
+    describe_dense(run, "A", &states->A);
+    describe_dense(run, "B", &states->B);
+    describe_dense(run, "C", &states->C);
+    describe_dense(run, "D", &states->D);
+    describe_dense(run, "E", &states->E);
+    describe_damping(run, states->damping);
+    describe_io(run, &io);
+    describe_poles(run, count, pole);
+    ritz_probe_print(&probe, text);
+    sink_field(run, "stability", "stability", "%s: %s",
+               ritz_stability_name(probe.verdict), text);
+    describe_measures(run, "estimates", &states->estimates, "estimated");
+    describe_measures(run, "errors", &states->errors, "measured");
+done:
+    free(pole);
+    return status;
+}
+
+ritz_status describe_model(cli_run *run, const model *m)
+{
+    switch (m->kind) {
+    case MODEL_COMPONENT:
+        describe_component(run, &m->component);
+        return RITZ_OK;
+    case MODEL_BASIS:
+        describe_basis(run, &m->basis);
+        return RITZ_OK;
+    case MODEL_REDUCED:
+        return describe_reduced(run, &m->reduced);
+    case MODEL_SYSTEM:
+        return describe_system(run, &m->system);
+    case MODEL_RESPONSE:
+        describe_response(run, &m->response);
+        return RITZ_OK;
+    case MODEL_RANKING:
+        rankings_describe(run, &m->rankings);
+        return RITZ_OK;
+    case MODEL_STATES:
+        return describe_states(run, &m->states);
+    case MODEL_SIMULATION:
+        describe_simulation(run, &m->simulation);
+        return RITZ_OK;
+    case MODEL_ANY:
+        break;
+    }
+    return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
 }

@@ -211,7 +211,7 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
         if (c->modes[k] >= 0) /* there is a number to choose */
             cli_say(run, "  %-20s %lld mode%s", ritz_fitter_body(fitter, k),
                     (long long)c->modes[k], c->modes[k] == 1 ? "" : "s");
-    model_say_measures(run, &c->errors, "measured");
+    model_say_measures(run, "measures", &c->errors, "measured");
     say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);
     cli_report_text(run, "method", c->method->name);

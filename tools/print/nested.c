@@ -22,59 +22,45 @@ ritz_status nested_take(const char *path, int64_t order, model *m)
 }
 
 /* A row a measure and a column an order, some orders at a time. */
-static void say_errors(const cli_run *run, const ritz_nested *nested)
+static void say_errors(cli_run *run, const ritz_nested *nested)
 {
     enum { ACROSS = 6, WIDTH = 9 };
 
     for (int64_t k = 0; k < nested->count; k += ACROSS) {
         int64_t end = k + ACROSS < nested->count ? k + ACROSS : nested->count;
         char line[ACROSS * WIDTH + 1] = "";
-        size_t used = 0;
 
         for (int64_t i = k; i < end; i++)
-            used += (size_t)snprintf(line + used, sizeof line - used,
-                                     " %8" PRId64, nested->order[i]);
+            sink_append(line, sizeof line, " %8" PRId64, nested->order[i]);
         cli_say(run, "    %-35s%s", "errors of the first", line);
         for (int64_t j = 0; j < nested->num_errors; j++) {
             const double *value = ritz_dense_col(&nested->value, j);
 
-            used = 0;
+            line[0] = '\0';
             for (int64_t i = k; i < end; i++)
-                used += isnan(value[i]) /* it was not measured */
-                            ? (size_t)snprintf(line + used, sizeof line - used,
-                                               " %8s", "-")
-                            : (size_t)snprintf(line + used, sizeof line - used,
-                                               " %8.1e", value[i]);
+                if (isnan(value[i])) /* it was not measured */
+                    sink_append(line, sizeof line, " %8s", "-");
+                else
+                    sink_append(line, sizeof line, " %8.1e", value[i]);
             cli_say(run, "      %-33s%s", nested->error[j], line);
         }
     }
 }
 
-void nested_describe(const cli_run *run, json_t *keys,
-                     const ritz_nested *nested, int64_t columns)
+void nested_describe(cli_run *run, const ritz_nested *nested, int64_t columns)
 {
-    json_t *group = json_object();
-    json_t *orders = json_array();
-    json_t *errors = json_object();
-
-    if (nested->smallest == 0) {
-        json_decref(group);
-        json_decref(orders);
-        json_decref(errors);
+    if (nested->smallest == 0)
         return;
-    }
-    cli_say(run, "  %-14s first %" PRId64 " to %" PRId64 " columns (--order N)",
-            "nested", nested->smallest, columns);
+    sink_object(run, "nested");
+    sink_field(run, "nested", "smallest",
+               "first %" PRId64 " to %" PRId64 " columns (--order N)",
+               nested->smallest, columns);
     say_errors(run, nested);
-    for (int64_t k = 0; k < nested->count; k++)
-        json_array_append_new(orders, json_integer(nested->order[k]));
-    for (int64_t j = 0; j < nested->num_errors; j++) {
-        json_object_set_new(
-            errors, nested->error[j],
-            model_reals_json(nested->count, ritz_dense_col(&nested->value, j)));
-    }
-    json_object_set_new(group, "smallest", json_integer(nested->smallest));
-    json_object_set_new(group, "order", orders);
-    json_object_set_new(group, "errors", errors);
-    json_object_set_new(keys, "nested", group);
+    sink_wholes(run, "order", nested->count, nested->order);
+    sink_object(run, "errors");
+    for (int64_t j = 0; j < nested->num_errors; j++)
+        sink_reals(run, nested->error[j], nested->count,
+                   ritz_dense_col(&nested->value, j));
+    sink_end(run);
+    sink_end(run);
 }

@@ -22,7 +22,6 @@
 ritz_status nested_take(const char *path, int64_t order, model *m);
 
 /** What prefixes there are, with what is known of each; nothing if none. */
-void nested_describe(const cli_run *run, json_t *keys,
-                     const ritz_nested *nested, int64_t columns);
+void nested_describe(cli_run *run, const ritz_nested *nested, int64_t columns);
 
 #endif

@@ -1,5 +1,7 @@
 #include "print/rankings.h"
 
+#include "cli/cli_table.h"
+
 #include <ritz/gramians.h>
 
 #include <math.h>
@@ -101,22 +103,21 @@ double rankings_difference(const ritz_ranking *r)
     return worst;
 }
 
-static void say_parts(const ritz_ranking *r, int64_t mode, size_t size,
-                      char *out)
+static double percent(double part, double whole)
 {
-    size_t used = 0;
+    return whole != 0.0 ? 100.0 * part / whole : 0.0;
+}
 
-    out[0] = '\0';
-    for (int64_t j = 0; j < r->num_parts && used < size; j++) {
+static void print_parts(const ritz_ranking *r, int64_t mode, size_t size,
+                        char *out)
+{
+    for (int64_t j = 0; j < r->num_parts; j++) {
         double value = ritz_dense_col(&r->parts, j)[mode];
-        double whole = r->whole[j];
 
-        used +=
-            (size_t)(isnan(whole)
-                         ? snprintf(out + used, size - used, " %10.3g", value)
-                         : snprintf(out + used, size - used, " %9.2f%%",
-                                    whole != 0.0 ? 100.0 * value / whole
-                                                 : 0.0));
+        if (isnan(r->whole[j]))
+            sink_append(out, size, " %10.3g", value);
+        else
+            sink_append(out, size, " %9.2f%%", percent(value, r->whole[j]));
     }
 }
 
@@ -128,11 +129,9 @@ static bool shows_parts(const ritz_ranking *r)
 static void say_heads(const cli_run *run, const ritz_ranking *r)
 {
     char parts[MOST_PARTS * CELL] = "";
-    size_t used = 0;
 
     for (int64_t j = 0; shows_parts(r) && j < r->num_parts; j++)
-        used += (size_t)snprintf(parts + used, sizeof parts - used, " %10.10s",
-                                 r->part[j]);
+        sink_append(parts, sizeof parts, " %10.10s", r->part[j]);
     cli_say(run, "%4s %6s %14s %9s %7s %13.13s %7s%s%s", "rank", "mode", "Hz",
             "zeta", "cluster", r->by, "share", parts,
             isnan(exact_at(r, 0))
@@ -154,7 +153,7 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
     if (r->zeta[mode] > 0.0)
         snprintf(zeta, sizeof zeta, "%.3g", r->zeta[mode]);
     if (shows_parts(r))
-        say_parts(r, mode, sizeof parts, parts);
+        print_parts(r, mode, sizeof parts, parts);
     if (!isnan(exact))
         snprintf(beside, sizeof beside, "  %.5e %.5e", r->system_value[2 * k],
                  r->system_value[2 * k + 1]);
@@ -163,16 +162,14 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
                  r->value[mode] / exact - 1.0);
     cli_say(run, "%4lld %6lld %14.7g %9s %7s %13.5e %6.2f%%%s%s%s",
             (long long)k + 1, number(track, mode), r->hertz[mode], zeta,
-            cluster, r->value[mode],
-            total != 0.0 ? 100.0 * r->value[mode] / total : 0.0, parts, beside,
-            differs);
+            cluster, r->value[mode], percent(r->value[mode], total), parts,
+            beside, differs);
 }
 
 /* What all modes of the model have of each part. */
 static void say_sums(const cli_run *run, const ritz_ranking *r)
 {
     char parts[MOST_PARTS * CELL] = "";
-    size_t used = 0;
 
     for (int64_t j = 0; j < r->num_parts; j++) {
         double sum = 0.0;
@@ -181,9 +178,7 @@ static void say_sums(const cli_run *run, const ritz_ranking *r)
             return;
         for (int64_t k = 0; k < r->count; k++)
             sum += ritz_dense_col(&r->parts, j)[k];
-        used += (size_t)snprintf(parts + used, sizeof parts - used, " %9.2f%%",
-                                 r->whole[j] != 0.0 ? 100.0 * sum / r->whole[j]
-                                                    : 0.0);
+        sink_append(parts, sizeof parts, " %9.2f%%", percent(sum, r->whole[j]));
     }
     cli_say(run, "%4s %52s %13s%s", "sum", "", "", parts);
 }
@@ -202,26 +197,29 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
         cli_say(run, "all values add up to %.9g", r->total);
 }
 
-/* Places of one mode in each ranking of a group: "  1  2  -". */
-static void say_places(const ranked *group, int64_t number_wanted, size_t size,
-                       char *out)
+int64_t rankings_place(const ritz_ranking *r, const int64_t *track,
+                       int64_t number)
 {
-    size_t used = 0;
+    for (int64_t k = 0; k < r->count; k++)
+        if ((track ? track[r->order[k]] : r->order[k]) == number)
+            return k + 1;
+    return 0;
+}
 
-    for (int64_t c = 0; c < group->all.count && used + CELL < size; c++) {
-        const ritz_ranking *r = &group->all.item[c];
-        long long place = 0;
+/* Places of one mode in each ranking of a group: "  1  2  -". */
+static void print_places(const ranked *group, int64_t number, size_t size,
+                         char *out)
+{
+    out[0] = '\0';
+    for (int64_t c = 0; c < group->all.count; c++) {
+        int64_t place = rankings_place(
+            &group->all.item[c], group->all.track ? group->all.track[c] : NULL,
+            number);
 
-        for (int64_t k = 0; k < r->count; k++) {
-            int64_t mode = r->order[k];
-            int64_t n = group->all.track ? group->all.track[c][mode] : mode;
-
-            if (n == number_wanted)
-                place = (long long)k + 1;
-        }
-        used += (size_t)(place > 0 ? snprintf(out + used, size - used, " %3lld",
-                                              place)
-                                   : snprintf(out + used, size - used, "   -"));
+        if (place > 0)
+            sink_append(out, size, " %3lld", (long long)place);
+        else
+            sink_append(out, size, "   -");
     }
 }
 
@@ -245,7 +243,7 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
 
         name_cluster(r, group->track, mode, cluster);
         if (group->all.count <= MOST_COLUMNS)
-            say_places(group, group->track[mode], sizeof places, places);
+            print_places(group, group->track[mode], sizeof places, places);
         cli_say(run, "%4lld %6lld %14.7g %7s %13.5e  %-24s %s",
                 (long long)k + 1, number(group->track, mode), r->hertz[mode],
                 cluster, r->value[mode], group->all.item[group->where[mode]].at,
@@ -265,62 +263,60 @@ void rankings_say_values(const cli_run *run, const ritz_ranking *r,
         cli_say(run, "       and %lld more", (long long)(r->num_system - most));
 }
 
-static json_t *reals(int64_t count, const double *values)
+void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
 {
-    json_t *array = json_array();
-
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(array, cli_real(values[k]));
-    return array;
-}
-
-static json_t *numbers(int64_t count, const int64_t *values)
-{
-    json_t *array = json_array();
-
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(array, json_integer(values[k] + 1));
-    return array;
-}
-
-static json_t *parts_json(const ritz_ranking *r)
-{
-    json_t *array = json_array();
-
-    for (int64_t j = 0; j < r->num_parts; j++) {
-        json_t *item = json_object();
-
-        json_object_set_new(item, "name", cli_string(r->part[j]));
-        json_object_set_new(item, "whole", cli_real(r->whole[j]));
-        json_object_set_new(item, "values",
-                            reals(r->count, ritz_dense_col(&r->parts, j)));
-        json_array_append_new(array, item);
-    }
-    return array;
-}
-
-json_t *rankings_json(const ritz_ranking *r, const int64_t *track)
-{
-    json_t *item = json_object();
-
-    json_object_set_new(item, "by", cli_string(r->by));
-    json_object_set_new(item, "at", cli_string(r->at));
-    json_object_set_new(item, "damping", cli_string(r->damping));
-    json_object_set_new(item, "order", numbers(r->count, r->order));
-    json_object_set_new(item, "frequencies_hz", reals(r->count, r->hertz));
-    json_object_set_new(item, "zeta", reals(r->count, r->zeta));
-    json_object_set_new(item, "values", reals(r->count, r->value));
-    json_object_set_new(item, "clusters", numbers(r->count, r->cluster));
-    json_object_set_new(item, "total", cli_real(r->total));
-    json_object_set_new(item, "system_values",
-                        reals(r->num_system, r->system_value));
-    json_object_set_new(item, "coupling", cli_real(r->coupling));
-    json_object_set_new(item, "difference", cli_real(rankings_difference(r)));
+    sink_set(run, "by,at,damping,total,coupling,difference",
+             "%s %s %s %g %g %g", r->by, r->at, r->damping, r->total,
+             r->coupling, rankings_difference(r));
+    sink_numbers(run, "order", r->count, r->order);
+    sink_reals(run, "frequencies_hz", r->count, r->hertz);
+    sink_reals(run, "zeta", r->count, r->zeta);
+    sink_reals(run, "values", r->count, r->value);
+    sink_numbers(run, "clusters", r->count, r->cluster);
+    sink_reals(run, "system_values", r->num_system, r->system_value);
     if (track)
-        json_object_set_new(item, "tracks", numbers(r->count, track));
-    if (r->num_parts > 0)
-        json_object_set_new(item, "parts", parts_json(r));
-    return item;
+        sink_numbers(run, "tracks", r->count, track);
+    for (int64_t j = 0; j < r->num_parts; j++) {
+        sink_list(run, "parts");
+        sink_object(run, NULL);
+        sink_set(run, "name,whole", "%s %g", r->part[j], r->whole[j]);
+        sink_reals(run, "values", r->count, ritz_dense_col(&r->parts, j));
+        sink_end(run);
+        sink_end(run);
+    }
+}
+
+/* Every ranking; the object that is open has the keys of the first too. */
+void rankings_describe(cli_run *run, const ritz_rankings *all)
+{
+    const json_t *first = NULL;
+
+    sink_set(run, "kind", "%s", "ranking");
+    cli_say(run, "  %-14s %lld ranking%s", "kind", (long long)all->count,
+            all->count == 1 ? "" : "s");
+    sink_list(run, "rankings");
+    for (int64_t k = 0; k < all->count; k++) {
+        const ritz_ranking *r = &all->item[k];
+        const int64_t *track = all->track ? all->track[k] : NULL;
+
+        cli_say(run,
+                "  %-14s of %lld flexible modes by %s [%s]%s%s, damping %s",
+                "ranking", (long long)r->count, r->by, r->reference,
+                *r->at ? ", at " : "", r->at, rankings_damping(r));
+        if (r->count > 0)
+            rankings_say(run, r, track, INT64_MAX);
+        else
+            rankings_say_values(run, r, INT64_MAX);
+        sink_object(run, NULL);
+        rankings_set(run, r, track);
+        sink_end(run);
+    }
+    first = json_array_get(sink_here(run), 0);
+    sink_end(run);
+    if (first) {
+        sink_lift(run, first);
+        sink_set(run, "modes", "%lld", (long long)all->item[0].count);
+    }
 }
 
 /* Of one model every ranking has the same to say. */
@@ -351,15 +347,14 @@ void rankings_warn(cli_run *run, const ranked *group)
     }
     if (!worst)
         return;
-    cli_say(run,
-            "coupling: modes %lld and %lld share %.3g of the exact Gramian%s%s",
-            (long long)worst->coupled[0] + 1, (long long)worst->coupled[1] + 1,
-            worst->coupling, *worst->at ? " at " : "", worst->at);
+    sink_say(run, json_object_get(run->report, "coupling") ? "" : ",,coupling",
+             "coupling: modes %lld and %lld share %.3g of the exact "
+             "Gramian%s%s",
+             (long long)worst->coupled[0] + 1, (long long)worst->coupled[1] + 1,
+             worst->coupling, *worst->at ? " at " : "", worst->at);
     if (!isnan(differs))
         cli_say(run, "values by %s differ from the exact ones by %.2g at most",
                 worst->by, differs);
-    if (!json_object_get(run->report, "coupling"))
-        json_object_set_new(run->report, "coupling", cli_real(worst->coupling));
     if (!(worst->coupling > coupled_limit) || isnan(differs))
         return;
     snprintf(text, sizeof text,
@@ -375,12 +370,10 @@ void rankings_warn(cli_run *run, const ranked *group)
 static void list_modes(int64_t count, const int64_t *mode, size_t size,
                        char *out)
 {
-    size_t used = 0;
-
-    snprintf(out, size, "none");
-    for (int64_t k = 0; k < count && used + CELL < size; k++)
-        used += (size_t)snprintf(out + used, size - used, "%s%lld",
-                                 k > 0 ? " " : "", (long long)mode[k] + 1);
+    snprintf(out, size, "%s", count > 0 ? "" : "none");
+    for (int64_t k = 0; k < count; k++)
+        sink_append(out, size, "%s%lld", k > 0 ? " " : "",
+                    (long long)mode[k] + 1);
 }
 
 static const char *outcome_of(const ritz_reweighing *found, char out[128])
@@ -400,13 +393,13 @@ static const char *outcome_of(const ritz_reweighing *found, char out[128])
 void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
                           const ritz_reweighing *found, int64_t keep)
 {
-    json_t *item = json_object();
     char kept[1024], other[1024], outcome[128];
 
     list_modes(found->num_kept, found->kept, sizeof kept, kept);
     list_modes(found->num_other, found->other, sizeof other, other);
-    cli_say(run, "\nReweighting outputs for %lld modes %s: modes %s.",
-            (long long)keep, outcome_of(found, outcome), kept);
+    sink_object(run, "reweighting");
+    sink_say(run, "keep", "\nReweighting outputs for %lld modes %s: modes %s.",
+             (long long)keep, outcome_of(found, outcome), kept);
     cli_say(run, "%-24s %12s %13s %13s %8s", "output", "weight", "variance",
             "missed", "part");
     for (int64_t i = 0; i < found->num_outputs; i++)
@@ -421,15 +414,12 @@ void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
                  outcome, (long long)keep,
                  found->num_other > 0 ? ", others would keep modes " : "",
                  found->num_other > 0 ? other : "");
-    json_object_set_new(run->report, "reweighting", item);
-    json_object_set_new(item, "keep", json_integer(keep));
-    json_object_set_new(item, "kept", numbers(found->num_kept, found->kept));
-    json_object_set_new(item, "other", numbers(found->num_other, found->other));
-    json_object_set_new(item, "rounds", json_integer(found->rounds));
-    json_object_set_new(item, "period", json_integer(found->period));
-    json_object_set_new(item, "weights",
-                        reals(found->num_outputs, found->weight));
-    json_object_set_new(item, "costs", reals(found->num_outputs, found->cost));
-    json_object_set_new(item, "missed",
-                        reals(found->num_outputs, found->missed));
+    sink_numbers(run, "kept", found->num_kept, found->kept);
+    sink_numbers(run, "other", found->num_other, found->other);
+    sink_set(run, "rounds,period", "%lld %lld", (long long)found->rounds,
+             (long long)found->period);
+    sink_reals(run, "weights", found->num_outputs, found->weight);
+    sink_reals(run, "costs", found->num_outputs, found->cost);
+    sink_reals(run, "missed", found->num_outputs, found->missed);
+    sink_end(run);
 }

@@ -3,7 +3,7 @@
 #define RITZ_TOOLS_PRINT_RANKINGS_H
 
 #include "chart/gnuplot.h"
-#include "cli/cli.h"
+#include "cli/sink.h"
 
 #include <ritz/agreement.h>
 #include <ritz/reweigh.h>
@@ -29,6 +29,10 @@ void ranked_free(ranked *group);
 void rankings_say(const cli_run *run, const ritz_ranking *ranking,
                   const int64_t *track, int64_t most);
 
+/** Place from 1 of the mode with that number; 0: it is not there. */
+int64_t rankings_place(const ritz_ranking *ranking, const int64_t *track,
+                       int64_t number);
+
 /** The largest over configurations, where it stands, and places at each. */
 void rankings_say_largest(const cli_run *run, const ranked *group);
 
@@ -36,8 +40,12 @@ void rankings_say_largest(const cli_run *run, const ranked *group);
 void rankings_say_values(const cli_run *run, const ritz_ranking *ranking,
                          int64_t most);
 
-/** by, at, damping, order, values and all else as one object. */
-json_t *rankings_json(const ritz_ranking *ranking, const int64_t *track);
+/** by, at, damping, order, values and all else, in the object that is open. */
+void rankings_set(cli_run *run, const ritz_ranking *ranking,
+                  const int64_t *track);
+
+/** What is in a file of rankings. */
+void rankings_describe(cli_run *run, const ritz_rankings *all);
 
 /** Say and report that modes couple, of all of a group the worst. */
 void rankings_warn(cli_run *run, const ranked *group);
@@ -81,14 +89,5 @@ ritz_status rankings_draw(const char *path, const char *title,
 /** The same in a picture that was begun. */
 ritz_status rankings_plot(gnuplot *picture, const char *title,
                           const contest *all, int64_t most);
-
-/**
- * Numbers of modes at each configuration from a table of --tracks.
- *
- * @param[in]     path      of the table
- * @param[in,out] all       whose `at` says which configuration is theirs
- */
-ritz_status rankings_read_tracks(cli_run *run, const char *path,
-                                 ritz_rankings *all);
 
 #endif

@@ -1,5 +1,5 @@
 /* Several rankings side by side: correlations, overlaps, what swaps. */
-#include "print/rankings.h"
+#include "print/rankings_make.h"
 
 #include "cli/cli_table.h"
 
@@ -7,28 +7,142 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_COLUMNS = 10, CELL = 16, ROOM = 32, LIST = 1024 };
+enum { MOST_COLUMNS = 10, CELL = 16, LIST = 1024 };
 
 /* Frequencies of one mode in two rankings of one model agree to rounding. */
 static const double same_frequency = 1e-3;
+
+static ritz_status contest_new(int64_t count, contest *out)
+{
+    out->ranking = calloc((size_t)count + 1, sizeof(void *));
+    out->track = calloc((size_t)count + 1, sizeof(void *));
+    out->name = calloc((size_t)count + 1, sizeof *out->name);
+    RITZ_REFUSE_IF(!out->ranking || !out->track || !out->name, RITZ_ERR_MEMORY,
+                   "no memory for rankings");
+    return RITZ_OK;
+}
+
+static void add_ranking(const ritz_ranking *ranking, const int64_t *track,
+                        const char *file, contest *out)
+{
+    out->ranking[out->count] = ranking;
+    out->track[out->count] = track;
+    snprintf(out->name[out->count++], sizeof *out->name, "%s", file);
+}
+
+/* " word", if there is one. */
+static void append_word(const char *word, char *name, size_t size)
+{
+    if (*word)
+        sink_append(name, size, "%s%.60s", *name ? " " : "", word);
+}
+
+/* Whether what lies `offset` bytes into a ranking differs among them. */
+static bool varies(const contest *c, size_t offset)
+{
+    for (int64_t k = 1; k < c->count; k++)
+        if (strcmp((const char *)c->ranking[k] + offset,
+                   (const char *)c->ranking[0] + offset) != 0)
+            return true;
+    return false;
+}
+
+/* By what differs; where nothing does, by ranking and number. */
+static void name_all(contest *c)
+{
+    static const size_t part[] = {offsetof(ritz_ranking, at),
+                                  offsetof(ritz_ranking, by),
+                                  offsetof(ritz_ranking, damping)};
+    size_t size = sizeof *c->name;
+
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++)
+        for (int64_t k = 0; varies(c, part[i]) && k < c->count; k++)
+            append_word((const char *)c->ranking[k] + part[i], c->name[k],
+                        size);
+    for (int64_t k = 0; k < c->count; k++)
+        if (!*c->name[k])
+            append_word(c->ranking[k]->by, c->name[k], size);
+}
+
+ritz_status rank_contest(const rank_result *result, bool all, contest *out)
+{
+    ritz_status status = RITZ_OK;
+    contest c = {0};
+    int64_t count = 0;
+    bool files = result->file != NULL;
+    bool one = result->count == 1;
+
+    for (int64_t g = 0; g < result->count; g++)
+        count += result->group[g].all.count;
+    RITZ_TRY(contest_new(count, &c));
+    for (int64_t g = 0; g < result->count; g++) {
+        const ranked *group = &result->group[g];
+        const ritz_rankings *r = &group->all;
+
+        if (!all && !files && !one) {
+            add_ranking(ranked_whole(group), ranked_track(group), "", &c);
+            continue;
+        }
+        for (int64_t k = 0; k < r->count; k++)
+            add_ranking(&r->item[k], r->track ? r->track[k] : NULL,
+                        files && !one ? result->file[g] : "", &c);
+    }
+    c.chain = one && !files;
+    name_all(&c);
+    *out = c;
+    c = (contest){0};
+done:
+    rank_contest_free(&c);
+    return status;
+}
+
+void rank_contest_free(contest *all)
+{
+    free(all->ranking);
+    free(all->track);
+    free(all->name);
+    *all = (contest){0};
+}
+
+ritz_status rank_write(const char *path, const rank_result *result,
+                       const ritz_stamp *stamp)
+{
+    ritz_status status = RITZ_OK;
+    contest c = {0};
+    ritz_rankings all = {0}; /* borrows what it holds */
+    bool tracked = true;
+
+    RITZ_TRY(rank_contest(result, true, &c));
+    all.item = calloc((size_t)c.count + 1, sizeof *all.item);
+    all.track = calloc((size_t)c.count + 1, sizeof *all.track);
+    RITZ_FAIL_IF(!all.item || !all.track, RITZ_ERR_MEMORY,
+                 "no memory for rankings");
+    for (int64_t k = 0; k < c.count; k++) {
+        all.item[k] = *c.ranking[k];
+        tracked = tracked && c.track[k];
+    }
+    for (int64_t g = 0, k = 0; tracked && g < result->count; g++)
+        for (int64_t i = 0; i < result->group[g].all.count; i++)
+            all.track[k++] = result->group[g].all.track[i];
+    all.count = c.count;
+    if (!tracked) {
+        free(all.track);
+        all.track = NULL;
+    }
+    RITZ_TRY(ritz_container_write_rankings(path, &all, stamp));
+done:
+    free(all.item);
+    free(all.track);
+    rank_contest_free(&c);
+    return status;
+}
 
 static int64_t number_of(const contest *all, int64_t which, int64_t mode)
 {
     return all->track[which] ? all->track[which][mode] : mode;
 }
 
-/* Place from 1 of the mode of that number; 0: it is not there. */
-static int64_t place_of(const contest *all, int64_t which, int64_t wanted)
-{
-    const ritz_ranking *r = all->ranking[which];
-
-    for (int64_t k = 0; k < r->count; k++)
-        if (number_of(all, which, r->order[k]) == wanted)
-            return k + 1;
-    return 0;
-}
-
-static void say_names(const cli_run *run, const contest *all)
+static void say_names(cli_run *run, const contest *all)
 {
     cli_say(run, "\nRankings compared:");
     for (int64_t k = 0; k < all->count; k++)
@@ -36,30 +150,28 @@ static void say_names(const cli_run *run, const contest *all)
 }
 
 /* Modes in the order of the first ranking, and their places in all. */
-static void say_places(const cli_run *run, const contest *all, int64_t most)
+static void say_places(cli_run *run, const contest *all, int64_t most)
 {
     const ritz_ranking *r = all->ranking[0];
     char line[MOST_COLUMNS * CELL] = "";
-    size_t used = 0;
 
     if (all->count > MOST_COLUMNS)
         return;
     for (int64_t c = 0; c < all->count; c++)
-        used += (size_t)snprintf(line + used, sizeof line - used, " %5c",
-                                 (int)('A' + c));
+        sink_append(line, sizeof line, " %5c", (int)('A' + c));
     cli_say(run, "%6s %14s  %s", all->track[0] ? "track" : "mode", "Hz", line);
     for (int64_t k = 0; k < r->count && k < most; k++) {
         int64_t number = number_of(all, 0, r->order[k]);
 
-        used = 0;
+        line[0] = '\0';
         for (int64_t c = 0; c < all->count; c++) {
-            int64_t place = place_of(all, c, number);
-            char cell[CELL] = "-";
+            int64_t place =
+                rankings_place(all->ranking[c], all->track[c], number);
 
             if (place > 0)
-                snprintf(cell, sizeof cell, "%d", (int)place);
-            used +=
-                (size_t)snprintf(line + used, sizeof line - used, " %5s", cell);
+                sink_append(line, sizeof line, " %5lld", (long long)place);
+            else
+                sink_append(line, sizeof line, " %5s", "-");
         }
         cli_say(run, "%6lld %14.7g  %s", (long long)number + 1,
                 r->hertz[r->order[k]], line);
@@ -68,77 +180,48 @@ static void say_places(const cli_run *run, const contest *all, int64_t most)
         cli_say(run, "       and %lld more", (long long)(r->count - most));
 }
 
-static void list(int64_t count, const int64_t *number, char out[LIST])
+/* Numbers of modes as a list, and as "1 2 5". */
+static void list_modes(cli_run *run, const char *key, int64_t count,
+                       const int64_t *number, char out[LIST])
 {
-    size_t used = 0;
-
-    snprintf(out, LIST, "none");
-    for (int64_t k = 0; k < count && used + CELL < LIST; k++)
-        used += (size_t)snprintf(out + used, LIST - used, "%s%lld",
-                                 k > 0 ? " " : "", (long long)number[k] + 1);
+    snprintf(out, LIST, "%s", count > 0 ? "" : "none");
+    for (int64_t k = 0; k < count; k++)
+        sink_append(out, LIST, "%s%lld", k > 0 ? " " : "",
+                    (long long)number[k] + 1);
+    sink_numbers(run, key, count, number);
 }
 
-static void say_pair(const cli_run *run, const contest *all, int64_t a,
-                     int64_t b, const ritz_agreement *g)
+static void say_pair(cli_run *run, const contest *all, int64_t a, int64_t b,
+                     const ritz_agreement *g)
 {
     char text[LIST] = "", left[LIST], entered[LIST];
-    size_t used = 0;
 
-    for (int64_t k = 0; k < g->num_overlaps && used + ROOM < LIST; k++)
-        used += (size_t)snprintf(text + used, LIST - used, "%s%lld: %.0f%%",
-                                 k > 0 ? ", " : "", (long long)g->overlap[k].k,
-                                 100.0 * g->overlap[k].share);
-    cli_say(run, "%s to %s:", all->name[a], all->name[b]);
-    cli_say(run,
-            "  rank correlation: Spearman %.4f, Kendall %.4f, of %lld "
-            "modes",
-            g->spearman, g->kendall, (long long)g->common);
+    sink_object(run, NULL);
+    sink_list(run, "overlap");
+    for (int64_t k = 0; k < g->num_overlaps; k++) {
+        sink_set(run, "k,share", "%lld %g", (long long)g->overlap[k].k,
+                 g->overlap[k].share);
+        sink_append(text, sizeof text, "%s%lld: %.0f%%", k > 0 ? ", " : "",
+                    (long long)g->overlap[k].k, 100.0 * g->overlap[k].share);
+    }
+    sink_end(run);
+    sink_say(run, "from,to", "%s to %s:", all->name[a], all->name[b]);
+    sink_say(run, "spearman,kendall,modes",
+             "  rank correlation: Spearman %.4f, Kendall %.4f, of %lld modes",
+             g->spearman, g->kendall, (long long)g->common);
     if (g->alone[0] + g->alone[1] > 0)
         cli_say(run,
                 "  %lld modes of the first and %lld of the second are not "
                 "in the other",
                 (long long)g->alone[0], (long long)g->alone[1]);
     cli_say(run, "  the first k in common, %s", text);
-    list(g->num_left, g->left, left);
-    list(g->num_entered, g->entered, entered);
+    list_modes(run, "left", g->num_left, g->left, left);
+    list_modes(run, "entered", g->num_entered, g->entered, entered);
+    sink_set(run, "top,top_share", "%lld %g", (long long)g->top, g->top_share);
     if (g->num_left + g->num_entered > 0)
         cli_say(run, "  among the first %lld: %s leave, %s enter",
                 (long long)g->top, left, entered);
-}
-
-static json_t *numbers(int64_t count, const int64_t *number)
-{
-    json_t *array = json_array();
-
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(array, json_integer(number[k] + 1));
-    return array;
-}
-
-static json_t *pair_json(const contest *all, int64_t a, int64_t b,
-                         const ritz_agreement *g)
-{
-    json_t *item = json_object();
-    json_t *overlap = json_array();
-
-    for (int64_t k = 0; k < g->num_overlaps; k++) {
-        json_t *one = json_object();
-
-        json_object_set_new(one, "k", json_integer(g->overlap[k].k));
-        json_object_set_new(one, "share", cli_real(g->overlap[k].share));
-        json_array_append_new(overlap, one);
-    }
-    json_object_set_new(item, "from", cli_string(all->name[a]));
-    json_object_set_new(item, "to", cli_string(all->name[b]));
-    json_object_set_new(item, "modes", json_integer(g->common));
-    json_object_set_new(item, "spearman", cli_real(g->spearman));
-    json_object_set_new(item, "kendall", cli_real(g->kendall));
-    json_object_set_new(item, "overlap", overlap);
-    json_object_set_new(item, "top", json_integer(g->top));
-    json_object_set_new(item, "top_share", cli_real(g->top_share));
-    json_object_set_new(item, "left", numbers(g->num_left, g->left));
-    json_object_set_new(item, "entered", numbers(g->num_entered, g->entered));
-    return item;
+    sink_end(run);
 }
 
 /* Largest relative difference of frequencies of modes of one number. */
@@ -169,7 +252,7 @@ static void warn_numbers(cli_run *run, const contest *all)
                  worst);
 }
 
-static ritz_status check(const contest *all)
+static ritz_status check_contest(const contest *all)
 {
     for (int64_t k = 0; k < all->count; k++) {
         RITZ_REFUSE_IF(all->ranking[k]->count == 0, RITZ_ERR_ARGUMENT,
@@ -186,27 +269,23 @@ static ritz_status check(const contest *all)
 
 ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top)
 {
-    ritz_status status = RITZ_OK;
-    ritz_agreement g = {0};
-    json_t *array = json_array();
-
-    json_object_set_new(run->report, "comparison", array);
-    RITZ_TRY(check(all));
+    sink_list(run, "comparison");
+    RITZ_CHECK(check_contest(all));
     say_names(run, all);
     say_places(run, all, top);
     warn_numbers(run, all);
     for (int64_t b = 1; b < all->count; b++) {
         int64_t a = all->chain ? b - 1 : 0;
+        ritz_agreement g = {0};
 
-        RITZ_TRY(ritz_rankings_agree(all->ranking[a], all->track[a],
-                                     all->ranking[b], all->track[b], top, &g));
+        RITZ_CHECK(ritz_rankings_agree(all->ranking[a], all->track[a],
+                                       all->ranking[b], all->track[b], top,
+                                       &g));
         say_pair(run, all, a, b, &g);
-        json_array_append_new(array, pair_json(all, a, b, &g));
         ritz_agreement_free(&g);
     }
-done:
-    ritz_agreement_free(&g);
-    return status;
+    sink_end(run);
+    return RITZ_OK;
 }
 
 /* Whether all rankings are made of the same parts, which then are columns. */

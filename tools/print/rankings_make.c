@@ -4,12 +4,114 @@
 #include "print/nested.h"
 
 #include <ritz/gramians.h>
+#include <ritz/text.h>
 
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { FIELDS = 3, FIELD = 256 };
+
+/* "TRACK\tCONFIGURATION\tMODE\t..." of one line; false if it is none. */
+static bool cut_line(const char *line, char field[FIELDS][FIELD])
+{
+    for (int k = 0; k < FIELDS; k++) {
+        size_t length = strcspn(line, "\t\n");
+
+        if (length >= FIELD)
+            return false;
+        memcpy(field[k], line, length);
+        field[k][length] = '\0';
+        line += length;
+        if (*line != '\t')
+            return k == FIELDS - 1;
+        line++;
+    }
+    return true;
+}
+
+/* Configuration of that name; systems without sweeps are "as joined". */
+static int64_t find_configuration(const ritz_rankings *all, const char *at)
+{
+    for (int64_t k = 0; k < all->count; k++)
+        if (strcmp(*all->item[k].at ? all->item[k].at : "as joined", at) == 0)
+            return k;
+    return -1;
+}
+
+static ritz_status take_track(const char *line, int64_t most,
+                              ritz_rankings *all)
+{
+    char field[FIELDS][FIELD];
+    int64_t track = 0, mode = 0, at = -1;
+
+    RITZ_REFUSE_IF(
+        !cut_line(line, field) || !ritz_text_whole(field[0], &track) ||
+            !ritz_text_whole(field[2], &mode) || track < 1 || track > most ||
+            mode < 1,
+        RITZ_ERR_FORMAT, "'%.40s' is no line of a table of tracks", line);
+    at = find_configuration(all, field[1]);
+    if (at < 0)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(mode > all->item[at].count, RITZ_ERR_FORMAT,
+                   "mode %lld at '%s' is not there: the tracks are those of "
+                   "another system",
+                   (long long)mode, field[1]);
+    all->track[at][mode - 1] = track - 1;
+    return RITZ_OK;
+}
+
+static ritz_status check_tracks(const ritz_rankings *all)
+{
+    for (int64_t k = 0; k < all->count; k++)
+        for (int64_t i = 0; i < all->item[k].count; i++)
+            RITZ_REFUSE_IF(all->track[k][i] < 0, RITZ_ERR_FORMAT,
+                           "mode %lld at '%s' has no track", (long long)i + 1,
+                           all->item[k].at);
+    return RITZ_OK;
+}
+
+static ritz_status make_tracks(ritz_rankings *all)
+{
+    all->track = calloc((size_t)all->count + 1, sizeof *all->track);
+    RITZ_REFUSE_IF(!all->track, RITZ_ERR_MEMORY, "no memory for tracks");
+    for (int64_t k = 0; k < all->count; k++) {
+        size_t m = (size_t)all->item[k].count;
+
+        all->track[k] = malloc((m + 1) * sizeof **all->track);
+        RITZ_REFUSE_IF(!all->track[k], RITZ_ERR_MEMORY, "no memory for tracks");
+        for (size_t i = 0; i < m; i++)
+            all->track[k][i] = -1;
+    }
+    return RITZ_OK;
+}
+
+/* Numbers of modes at each configuration, from the table that --tracks of other
+   tools writes. */
+static ritz_status read_tracks(cli_run *run, const char *path,
+                               ritz_rankings *all)
+{
+    ritz_status status = RITZ_OK;
+    char *text = NULL;
+    int64_t size = 0, rows = 0;
+
+    RITZ_TRY(cli_input(run, path));
+    RITZ_TRY(ritz_bytes_read(path, &size, &text));
+    RITZ_TRY(make_tracks(all));
+    RITZ_FAIL_IF(strncmp(text, "track\tconfiguration\tmode\t", 25) != 0,
+                 RITZ_ERR_FORMAT, "it is no table of tracks");
+    for (const char *c = text; *c; c++)
+        rows += *c == '\n';
+    for (const char *line = strchr(text, '\n'); line && line[1];
+         line = strchr(line + 1, '\n'))
+        RITZ_TRY(take_track(line + 1, rows, all));
+    RITZ_TRY(check_tracks(all));
+done:
+    free(text);
+    return ritz_context(status, path);
+}
 
 /* What one model is ranked with. */
 typedef struct subject {
@@ -112,7 +214,7 @@ static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
         RITZ_CHECK(rank_at(s, ranker, at, &all->item[k]));
     }
     if (s->asked->tracks)
-        RITZ_CHECK(rankings_read_tracks(s->run, s->asked->tracks, all));
+        RITZ_CHECK(read_tracks(s->run, s->asked->tracks, all));
     if (count > 1)
         RITZ_CHECK(ritz_rankings_largest(all, &out->largest, &out->where,
                                          &out->track));
@@ -120,7 +222,7 @@ static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
 }
 
 /* Dampers of every configuration that is ranked; what is left out is said. */
-static ritz_status prepare(subject *s)
+static ritz_status install_dampers(subject *s)
 {
     ritz_status status = RITZ_OK;
     model *m = s->m;
@@ -183,34 +285,31 @@ static ritz_status make_groups(subject *s, rank_result *out)
 }
 
 /* Keys of the report: those of the first group, and all others in a list. */
-static void report_groups(cli_run *run, const rank_result *result)
+static void set_groups(cli_run *run, const rank_result *result)
 {
     const ranked *first = result->group;
-    json_t *head = rankings_json(ranked_whole(first), ranked_track(first));
-    json_t *list = json_array();
-    const char *key = NULL;
-    json_t *value = NULL;
 
-    json_object_foreach(head, key,
-                        value) if (!json_object_get(run->report, key))
-        json_object_set(run->report, key, value);
-    json_decref(head);
-    json_object_set_new(run->report, "rankings", list);
+    sink_list(run, "rankings");
     for (int64_t g = 0; g < result->count; g++) {
         const ritz_rankings *all = &result->group[g].all;
 
-        for (int64_t k = 0; k < all->count; k++)
-            json_array_append_new(
-                list, rankings_json(&all->item[k],
-                                    all->track ? all->track[k] : NULL));
+        for (int64_t k = 0; k < all->count; k++) {
+            sink_object(run, NULL);
+            rankings_set(run, &all->item[k], all->track ? all->track[k] : NULL);
+            sink_end(run);
+        }
     }
+    sink_end(run);
+    sink_object(run, "whole");
+    rankings_set(run, ranked_whole(first), ranked_track(first));
+    sink_end(run);
+    sink_lift(run, json_object_get(run->report, "whole"));
+    json_object_del(run->report, "whole");
     if (first->all.count > 1) {
-        json_t *where = json_array();
-
+        sink_list(run, "where");
         for (int64_t k = 0; k < first->largest.count; k++)
-            json_array_append_new(
-                where, cli_string(first->all.item[first->where[k]].at));
-        json_object_set_new(run->report, "where", where);
+            sink_add(run, "%s", first->all.item[first->where[k]].at);
+        sink_end(run);
     }
 }
 
@@ -233,9 +332,9 @@ static ritz_status rank_modes(cli_run *run, const rank_wish *asked, model *m,
     s.choice.weights = &s.weights;
     RITZ_TRY(ritz_weights_parse(asked->input_weights, asked->output_weights,
                                 &s.weights));
-    RITZ_TRY(prepare(&s));
+    RITZ_TRY(install_dampers(&s));
     RITZ_TRY(make_groups(&s, out));
-    report_groups(run, out);
+    set_groups(run, out);
 done:
     ritz_weights_free(&s.weights);
     return status;
@@ -321,8 +420,8 @@ static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
         cli_say(run, "residuals of both Gramians %.1e and %.1e",
                 gramians.residual[0], gramians.residual[1]);
     rankings_say_values(run, r, 40);
-    report_groups(run, out);
-    cli_report_text(run, "engine", gramians.engine);
+    set_groups(run, out);
+    sink_set(run, "engine", "%s", gramians.engine);
 done:
     ritz_gramians_free(&gramians);
     return status;
@@ -367,7 +466,7 @@ ritz_status rank_read(cli_run *run, rank_result *out)
     RITZ_FAIL_IF(count == 1 && out->group->all.count == 1, RITZ_ERR_ARGUMENT,
                  "'%s' holds one ranking: name another to compare it with",
                  run->operand[0]);
-    report_groups(run, out);
+    set_groups(run, out);
 done:
     model_free(&m);
     return status;

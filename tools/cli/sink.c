@@ -1,0 +1,445 @@
+#include "cli/sink.h"
+
+#include "cli/cli_watch.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One conversion of a format. */
+typedef struct conversion {
+    int width, precision; /* width below 0: to the left; precision: none */
+    bool plus;
+    char size;   /* 'l', 'L' of "ll", or 0 */
+    char letter; /* 0: the format has ended */
+} conversion;
+
+/* Where one call goes: the text, the keys that are left, the target. */
+typedef struct telling {
+    FILE *text;
+    const char *keys; /* NULL: all are plain items of a list */
+    json_t *to;
+} telling;
+
+/* Arguments, in a struct so that functions may take them by turns. */
+typedef struct arguments {
+    va_list list;
+} arguments;
+
+static int read_count(const char **at, arguments *args)
+{
+    int count = 0;
+
+    if (**at == '*' && args) {
+        ++*at;
+        return va_arg(args->list, int);
+    }
+    while (isdigit((unsigned char)**at))
+        count = 10 * count + *(*at)++ - '0';
+    return count;
+}
+
+/* What begins behind a '%'; @p at is moved behind it. Without arguments no
+   width is an argument. */
+static conversion read_conversion(const char **at, arguments *args)
+{
+    conversion c = {.precision = -1};
+    bool left = false;
+
+    for (; **at == '-' || **at == '+'; ++*at) {
+        left = left || **at == '-';
+        c.plus = c.plus || **at == '+';
+    }
+    c.width = read_count(at, args);
+    c.width = left ? -c.width : c.width;
+    if (**at == '.') {
+        ++*at;
+        c.precision = read_count(at, args);
+    }
+    for (; **at == 'l' || **at == 'z'; ++*at)
+        c.size = c.size == 'l' ? 'L' : 'l';
+    c.letter = **at;
+    *at += **at != '\0';
+    return c;
+}
+
+/* The next key, which is cut off; "" if there is none. */
+static void cut_key(telling *t, char key[RITZ_NAME_SIZE])
+{
+    size_t length = t->keys ? strcspn(t->keys, ",") : 0;
+
+    snprintf(key, RITZ_NAME_SIZE, "%.*s", (int)length, t->keys ? t->keys : "");
+    if (t->keys)
+        t->keys += length + (t->keys[length] == ',');
+}
+
+static void put_value(telling *t, const char *key, json_t *value)
+{
+    if (!t->keys)
+        json_array_append_new(t->to, value);
+    else if (*key)
+        json_object_set_new(t->to, key, value);
+    else
+        json_decref(value);
+}
+
+static void tell_text(telling *t, conversion c, const char *key,
+                      const char *value)
+{
+    if (t->text)
+        fprintf(t->text, "%*.*s", c.width, c.precision, value ? value : "");
+    put_value(t, key, cli_string(value));
+}
+
+static void tell_real(telling *t, conversion c, const char *key, double value)
+{
+    put_value(t, key, cli_real(value));
+    if (!t->text)
+        return;
+    if (isnan(value))
+        fprintf(t->text, "%*s", c.width, "-");
+    else if (c.letter == 'e')
+        fprintf(t->text, c.plus ? "%+*.*e" : "%*.*e", c.width, c.precision,
+                value);
+    else if (c.letter == 'f')
+        fprintf(t->text, c.plus ? "%+*.*f" : "%*.*f", c.width, c.precision,
+                value);
+    else
+        fprintf(t->text, c.plus ? "%+*.*g" : "%*.*g", c.width, c.precision,
+                value);
+}
+
+static void tell_whole(telling *t, conversion c, const char *key,
+                       arguments *args)
+{
+    long long value = c.size == 'L'   ? va_arg(args->list, long long)
+                      : c.size == 'l' ? va_arg(args->list, long)
+                                      : va_arg(args->list, int);
+
+    if (t->text)
+        fprintf(t->text, "%*lld", c.width, value);
+    put_value(t, key, c.size ? json_integer(value) : json_boolean(value));
+}
+
+static void tell_one(telling *t, conversion c, arguments *args)
+{
+    char key[RITZ_NAME_SIZE];
+
+    cut_key(t, key);
+    switch (c.letter) {
+    case 's':
+        tell_text(t, c, key, va_arg(args->list, const char *));
+        break;
+    case 'c':
+        fprintf(t->text, "%*c", c.width, va_arg(args->list, int));
+        break;
+    case 'd':
+        tell_whole(t, c, key, args);
+        break;
+    case 'e':
+    case 'f':
+    case 'g':
+        tell_real(t, c, key, va_arg(args->list, double));
+        break;
+    default:
+        abort(); /* a format that no tool may use */
+    }
+}
+
+static void tell(telling *t, const char *format, arguments *args)
+{
+    while (*format) {
+        size_t plain = strcspn(format, "%");
+
+        if (t->text)
+            fwrite(format, 1, plain, t->text);
+        format += plain;
+        if (!*format++)
+            return;
+        if (*format != '%')
+            tell_one(t, read_conversion(&format, args), args);
+        else if (t->text)
+            putc(*format++, t->text);
+        else
+            format++;
+    }
+}
+
+json_t *sink_here(const cli_run *run)
+{
+    return run->depth > 0 ? run->open[run->depth - 1] : run->report;
+}
+
+/* Where the values of a call go: the object that is open, or a new item. */
+static json_t *find_target(const cli_run *run, const char *keys)
+{
+    json_t *here = sink_here(run);
+    json_t *item = NULL;
+
+    if (!json_is_array(here) || keys[strspn(keys, ",")] == '\0')
+        return here;
+    item = json_object();
+    json_array_append_new(here, item);
+    return item;
+}
+
+/* End the line, and show what of the text is new. */
+static void end_line(const cli_run *run, long from)
+{
+    putc('\n', run->said);
+    fflush(run->said);
+    if (run->quiet || run->json || !run->text || from < 0)
+        return;
+    cli_watch_clear();
+    fwrite(run->text + from, 1, run->text_size - (size_t)from, stdout);
+}
+
+static void tell_line(const cli_run *run, const char *title, const char *keys,
+                      const char *format, arguments *args)
+{
+    long from = ftell(run->said);
+    telling t = {run->said, keys, find_target(run, keys)};
+
+    if (title)
+        fprintf(run->said, "  %-14s ", title);
+    tell(&t, format, args);
+    end_line(run, from);
+}
+
+void cli_say(const cli_run *run, const char *format, ...)
+{
+    arguments args;
+
+    va_start(args.list, format);
+    tell_line(run, NULL, "", format, &args);
+    va_end(args.list);
+}
+
+void sink_say(cli_run *run, const char *keys, const char *format, ...)
+{
+    arguments args;
+
+    va_start(args.list, format);
+    tell_line(run, NULL, keys, format, &args);
+    va_end(args.list);
+}
+
+void sink_field(cli_run *run, const char *title, const char *keys,
+                const char *format, ...)
+{
+    arguments args;
+
+    va_start(args.list, format);
+    tell_line(run, title, keys, format, &args);
+    va_end(args.list);
+}
+
+void sink_set(cli_run *run, const char *keys, const char *format, ...)
+{
+    arguments args;
+    telling t = {NULL, keys, find_target(run, keys)};
+
+    va_start(args.list, format);
+    tell(&t, format, &args);
+    va_end(args.list);
+}
+
+void sink_add(cli_run *run, const char *format, ...)
+{
+    arguments args;
+    telling t = {NULL, NULL, sink_here(run)};
+
+    va_start(args.list, format);
+    tell(&t, format, &args);
+    va_end(args.list);
+}
+
+/* Open what is there under that key, or else a new object or list. */
+static void open_value(cli_run *run, const char *key, json_t *value)
+{
+    json_t *here = sink_here(run);
+    json_t *there = key ? json_object_get(here, key) : NULL;
+
+    if (run->depth == CLI_MAX_DEPTH || !value)
+        abort();
+    if (there && json_typeof(there) == json_typeof(value)) {
+        json_decref(value);
+        value = there;
+    } else if (key) {
+        json_object_set_new(here, key, value);
+    } else {
+        json_array_append_new(here, value);
+    }
+    run->open[run->depth++] = value;
+}
+
+void sink_object(cli_run *run, const char *key)
+{
+    open_value(run, key, json_object());
+}
+
+void sink_list(cli_run *run, const char *key)
+{
+    open_value(run, key, json_array());
+}
+
+void sink_end(cli_run *run)
+{
+    run->depth--;
+}
+
+void sink_lift(cli_run *run, const json_t *from)
+{
+    json_t *copy = json_deep_copy(from);
+
+    json_object_update_missing(sink_here(run), copy);
+    json_decref(copy);
+}
+
+void sink_record(cli_run *run)
+{
+    if (run->depth == CLI_MAX_DEPTH)
+        abort();
+    run->open[run->depth++] = json_object();
+}
+
+ritz_status sink_end_record(cli_run *run)
+{
+    return cli_record_line(run, run->open[--run->depth]);
+}
+
+void sink_line(cli_run *run)
+{
+    if (run->depth == CLI_MAX_DEPTH)
+        abort();
+    run->open[run->depth++] = run->line;
+}
+
+void sink_reals(cli_run *run, const char *key, int64_t count,
+                const double *values)
+{
+    sink_list(run, key);
+    for (int64_t k = 0; k < count; k++)
+        json_array_append_new(sink_here(run), cli_real(values[k]));
+    sink_end(run);
+}
+
+void sink_wholes(cli_run *run, const char *key, int64_t count,
+                 const int64_t *values)
+{
+    sink_list(run, key);
+    for (int64_t k = 0; k < count; k++)
+        json_array_append_new(sink_here(run), json_integer(values[k]));
+    sink_end(run);
+}
+
+void sink_numbers(cli_run *run, const char *key, int64_t count,
+                  const int64_t *indices)
+{
+    sink_list(run, key);
+    for (int64_t k = 0; k < count; k++)
+        json_array_append_new(sink_here(run), json_integer(indices[k] + 1));
+    sink_end(run);
+}
+
+void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
+                char (*name)[RITZ_NAME_SIZE])
+{
+    sink_list(run, key);
+    for (int64_t k = 0; k < count; k++) {
+        json_array_append_new(sink_here(run), cli_string(name[k]));
+        if (title)
+            cli_say(run, "  %-14s %s", k > 0 ? "" : title, name[k]);
+    }
+    sink_end(run);
+}
+
+/* The head of a column, as wide as what stands below it. */
+static void tell_head(FILE *text, const sink_column *column)
+{
+    const char *at = column->format;
+
+    while (*at) {
+        size_t plain = strcspn(at, "%");
+
+        fwrite(at, 1, plain, text);
+        at += plain + (at[plain] == '%');
+        if (at[-1] == '%') {
+            conversion c = read_conversion(&at, NULL);
+
+            fprintf(text, "%*s", c.width, column->head);
+        }
+    }
+}
+
+/* A value under the format of its column, or for JSON alone. */
+static void tell_cell(telling *t, const char *format, ...)
+{
+    arguments args;
+
+    va_start(args.list, format);
+    tell(t, format, &args);
+    va_end(args.list);
+}
+
+static void tell_field(telling t, const sink_column *column, const void *row)
+{
+    static const char *const plain[] = {"%lld", "%g", "%s", "%s", "%d"};
+    const void *at = (const char *)row + column->offset;
+    const char *format = column->head ? column->format : plain[column->kind];
+
+    t.text = column->head ? t.text : NULL;
+    t.keys = column->key ? column->key : "";
+    switch (column->kind) {
+    case SINK_INT:
+        tell_cell(&t, format, (long long)*(const int64_t *)at);
+        break;
+    case SINK_REAL:
+        tell_cell(&t, format, *(const double *)at);
+        break;
+    case SINK_TEXT:
+        tell_cell(&t, format, *(const char *const *)at);
+        break;
+    case SINK_NAME:
+        tell_cell(&t, format, (const char *)at);
+        break;
+    case SINK_BOOL:
+        tell_cell(&t, format, (int)*(const bool *)at);
+        break;
+    }
+}
+
+void sink_table(cli_run *run, const char *key, const sink_column *columns,
+                int64_t count, const void *rows, size_t stride)
+{
+    long from = ftell(run->said);
+
+    for (const sink_column *c = columns; c->key || c->head; c++)
+        if (c->head)
+            tell_head(run->said, c);
+    end_line(run, from);
+    sink_list(run, key);
+    for (int64_t k = 0; k < count; k++) {
+        const void *row = (const char *)rows + (size_t)k * stride;
+
+        from = ftell(run->said);
+        sink_object(run, NULL);
+        for (const sink_column *c = columns; c->key || c->head; c++)
+            tell_field((telling){run->said, NULL, sink_here(run)}, c, row);
+        sink_end(run);
+        end_line(run, from);
+    }
+    sink_end(run);
+}
+
+void sink_append(char *text, size_t size, const char *format, ...)
+{
+    size_t used = strlen(text);
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(text + used, size - used, format, args);
+    va_end(args);
+}

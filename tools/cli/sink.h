@@ -1,0 +1,117 @@
+/*
+ * What a tool says, told once: each call gives a line of text for people and
+ * the values in it for --json. Values become keys of the object that is open,
+ * which at first is the report of the run itself; while a list is open, the
+ * values of one call are its next item.
+ *
+ * Keys name the conversions of a format in their order, divided by commas. A
+ * conversion without a key, as the second of "name,,step", is of the text
+ * alone.
+ *
+ *     %s           text      NULL: null
+ *     %lld         integer
+ *     %g %e %f     number    null, and '-' in the text, if it is none
+ *     %d           boolean
+ */
+#ifndef RITZ_TOOLS_CLI_SINK_H
+#define RITZ_TOOLS_CLI_SINK_H
+
+#include "cli/cli.h"
+
+#include <ritz/sparse.h>
+#include <ritz/text.h>
+
+/** A line, and its values. */
+[[gnu::format(printf, 3, 4)]] void sink_say(cli_run *run, const char *keys,
+                                            const char *format, ...);
+
+/** The same behind a title, in the column that all titles share. */
+[[gnu::format(printf, 4, 5)]] void sink_field(cli_run *run, const char *title,
+                                              const char *keys,
+                                              const char *format, ...);
+
+/** The values alone; blanks may stand between the conversions. */
+[[gnu::format(printf, 3, 4)]] void sink_set(cli_run *run, const char *keys,
+                                            const char *format, ...);
+
+/** Plain items of the list that is open, one for each conversion. */
+[[gnu::format(printf, 2, 3)]] void sink_add(cli_run *run, const char *format,
+                                            ...);
+
+/**
+ * Open an object or a list, until the sink_end that belongs to it. One that
+ * is there under this key already is opened again.
+ *
+ * @param[in] key  NULL: an item of the list that is open
+ */
+void sink_object(cli_run *run, const char *key);
+void sink_list(cli_run *run, const char *key);
+void sink_end(cli_run *run);
+
+/**
+ * Open the object of a line of its own for the file of --record. Its
+ * sink_end_record adds tool, command, inputs and memory, and appends it now;
+ * without --record it is dropped.
+ */
+void sink_record(cli_run *run);
+ritz_status sink_end_record(cli_run *run);
+
+/** Open the line of this run that --record appends at its end. */
+void sink_line(cli_run *run);
+
+/** The object or list that is open; borrowed. */
+json_t *sink_here(const cli_run *run);
+
+/** Give the object that is open those keys of another that it has not. */
+void sink_lift(cli_run *run, const json_t *from);
+
+/** Lists of plain values; numbers count from 1 where they are indices. */
+void sink_reals(cli_run *run, const char *key, int64_t count,
+                const double *values);
+void sink_wholes(cli_run *run, const char *key, int64_t count,
+                 const int64_t *values);
+void sink_numbers(cli_run *run, const char *key, int64_t count,
+                  const int64_t *indices);
+
+/** Names as a list and, below each other behind @p title, as text; NULL: only
+ * as a list. */
+void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
+                char (*name)[RITZ_NAME_SIZE]);
+
+/* A column of a table whose rows are structs of one type. */
+typedef struct sink_column {
+    const char *key;  /* NULL: text alone */
+    const char *head; /* NULL: JSON alone */
+    const char *format;
+    enum { SINK_INT, SINK_REAL, SINK_TEXT, SINK_NAME, SINK_BOOL } kind;
+    size_t offset;
+} sink_column;
+
+/* The kind of a column is that of the field: an array of letters is a name. */
+#define SINK_COLUMN(type, field, key, head, format)                              \
+    {                                                                            \
+        key, head, format,                                                     \
+            _Generic(((type *)0)->field,                                       \
+                     int64_t: SINK_INT,                                        \
+                     double: SINK_REAL,                                        \
+                     const char *: SINK_TEXT,                                  \
+                     char *: SINK_NAME,                                        \
+                     bool: SINK_BOOL),                                         \
+            offsetof(type, field) \
+    }
+
+/**
+ * A list of rows as a table: heads, as wide as the formats of their columns,
+ * and a line and an item for each row.
+ *
+ * @param[in] columns  ended by {0}
+ * @param[in] stride   bytes from a row to the next
+ */
+void sink_table(cli_run *run, const char *key, const sink_column *columns,
+                int64_t count, const void *rows, size_t stride);
+
+/** Add to a text that is built piece by piece, as far as there is room. */
+[[gnu::format(printf, 3, 4)]] void sink_append(char *text, size_t size,
+                                               const char *format, ...);
+
+#endif
