@@ -1,10 +1,9 @@
 /*
- * How far a reduced model can be off, told by one factor of the full matrices,
- * by what they leave of its modes, and by how many modes lie below some
- * frequencies. See estimate_enclose.c.
+ * Where counts and inverse iterations are spent: on the reduced modes in the
+ * band, then on what verify pairs with the full modes in it.
  */
 #include "base/alloc.h"
-#include "estimate/estimate_parts.h"
+#include "estimate/estimator.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -12,11 +11,346 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+enum { GAPS = 3 };
+/* Counts that one reduction may ask for: some, and some for each mode. */
+enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
+/* Inverse iterations that full modes without a partner may ask for. */
+enum { ITERATIONS = 4, MOST_BESIDE = 16 };
+/* Behind the end of the band, in lambda: further than verify counts to it. */
+static const double behind = 8e-9;
+/* Of the band, in lambda: what is below is a rigid motion. */
+static const double slow = 0.5e-6;
+enum { MOST_LISTED = 100 };
 /* sigma, of the band: smaller is tighter at its end, larger rounds less. */
 static const double shift = 0.1;
 /* Trial modes so far beyond the band, in lambda, and as many beyond. */
 static const double beyond = 30.0;
 enum { MORE = 10 };
+/* Of the band, in lambda: what rounding hides below is a rigid motion. */
+static const double as_rigid = 1e-6;
+
+/* Count there; what cannot be factored is not counted. */
+static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
+{
+    ritz_status status = ritz_estimator_count(estimator, rho);
+
+    *end = status == RITZ_ERR_SINGULAR;
+    return *end ? RITZ_OK : status;
+}
+
+/*
+ * Count where it helps, until every mode is told or enough is spent; but an
+ * inverse iteration helps first.
+ */
+static ritz_status refine(ritz_estimator *estimator, ritz_measuring *m)
+{
+    ritz_status status = RITZ_OK;
+    int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->reach - m->first);
+    ritz_pursuit pursuit = {.first = m->first, .last = m->reach};
+    bool end = false;
+
+    RITZ_NEW(pursuit.tries, m->reach - m->first);
+    while (!end) {
+        double rho = nan("");
+        int64_t mode = -1;
+
+        ritz_enclosure_free(&m->enclosure);
+        RITZ_TRY(ritz_enclosure_new(estimator, &m->trial, &m->polished,
+                                    &m->enclosure));
+        if (budget-- > 0 && estimator->num_counts < RITZ_MOST_COUNTS)
+            rho = ritz_propose_count(estimator, &m->trial, &m->enclosure,
+                                     &pursuit, &mode);
+        if (mode >= 0 && !m->polished.X.val) {
+            RITZ_TRY(ritz_lehmann_polish(estimator, &m->trial, &m->polished));
+            continue;
+        }
+        if (mode >= 0)
+            pursuit.tries[mode - m->first]++;
+        end = isnan(rho);
+        if (!end)
+            RITZ_TRY(count_at(estimator, rho, &end));
+    }
+done:
+    free(pursuit.tries);
+    return status;
+}
+
+/* One more far above the band: the further, the less the rest answers. */
+static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
+{
+    double rho = ritz_propose_above(estimator, &m->trial,
+                                    ritz_eigen_lambda(m->band_hz[1]));
+    bool end = isnan(rho) || estimator->num_counts == RITZ_MOST_COUNTS;
+
+    if (end)
+        return RITZ_OK;
+    RITZ_CHECK(count_at(estimator, rho, &end));
+    ritz_enclosure_free(&m->enclosure);
+    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
+                              &m->enclosure);
+}
+
+/* Where to count modes of the band: at its end, or in a gap behind. */
+static double end_of_band(const ritz_measuring *m, int64_t gap)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]) * (1.0 + DBL_EPSILON);
+    int64_t above = m->last + gap;
+    double low = above > 0 ? m->pairs.lambda[above - 1] : 0.0;
+    double high = above < m->pairs.Phi.ncol ? m->pairs.lambda[above] : end;
+
+    return gap == 0 ? end : fmax(end, low + 0.3 * (high - low));
+}
+
+/*
+ * Unless it is known that none is missing, count at the end of the band, and in
+ * the next gaps, where the partners of the last modes may be.
+ */
+static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
+{
+    double at = 0.0;
+    bool end = false;
+
+    for (int64_t gap = 0; gap < GAPS && m->last + gap <= m->pairs.Phi.ncol &&
+                          ritz_missing_modes(estimator, m, &at) != 0 && !end &&
+                          estimator->num_counts < RITZ_MOST_COUNTS;
+         gap++)
+        RITZ_CHECK(count_at(estimator, end_of_band(m, gap), &end));
+    return RITZ_OK;
+}
+
+static ritz_status enclose(const ritz_estimator *estimator, ritz_measuring *m)
+{
+    ritz_enclosure_free(&m->enclosure);
+    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
+                              &m->enclosure);
+}
+
+/* Which full modes are in the band is told by a count at its end. */
+static ritz_status count_ends(ritz_estimator *estimator, ritz_measuring *m)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]);
+    bool none = false;
+
+    if ((!m->matched.known || m->matched.astride) &&
+        estimator->num_counts < RITZ_MOST_COUNTS)
+        RITZ_CHECK(count_at(estimator, end * (1.0 + behind), &none));
+    if (m->matched.slow && estimator->num_counts < RITZ_MOST_COUNTS)
+        RITZ_CHECK(count_at(estimator, slow * end, &none));
+    RITZ_CHECK(enclose(estimator, m));
+    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+    if (m->matched.full > m->reach)
+        m->reach = m->matched.full;
+    if (m->reach > m->trial.count)
+        m->reach = m->trial.count;
+    if (m->reach > m->last) {
+        RITZ_CHECK(refine(estimator, m));
+        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+    }
+    return RITZ_OK;
+}
+
+/* One more inverse iteration, of what there is. */
+static ritz_status iterate(ritz_estimator *estimator, ritz_measuring *m)
+{
+    ritz_lehmann next = {0};
+
+    RITZ_CHECK(ritz_lehmann_polish(
+        estimator, m->polished.X.val ? &m->polished : &m->trial, &next));
+    ritz_lehmann_free(&m->polished);
+    m->polished = next;
+    return RITZ_OK;
+}
+
+/* Count and iterate until the modes of the band are told. */
+static ritz_status refine_all(ritz_estimator *estimator, bool response,
+                              ritz_measuring *m)
+{
+    int iterations = 0, counts = 0;
+
+    m->reach = m->last;
+    RITZ_CHECK(refine(estimator, m));
+    if (response)
+        RITZ_CHECK(count_above(estimator, m));
+    RITZ_CHECK(count_band(estimator, m));
+    RITZ_CHECK(enclose(estimator, m));
+    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+    RITZ_CHECK(count_ends(estimator, m));
+    while (m->matched.open || m->matched.unsettled) {
+        bool none = false;
+
+        if (!isnan(m->matched.rho) && counts++ < MOST_BESIDE &&
+            estimator->num_counts < RITZ_MOST_COUNTS)
+            RITZ_CHECK(count_at(estimator, m->matched.rho, &none));
+        else if (iterations++ < ITERATIONS)
+            RITZ_CHECK(iterate(estimator, m));
+        else
+            break;
+        RITZ_CHECK(enclose(estimator, m));
+        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+    }
+    return RITZ_OK;
+}
+
+/* What was found of a reduced model's modes, as named numbers. */
+
+/* "mode 7, 3.41 Hz", and which of the full model if it is another. */
+static void say_where(const ritz_claim *claim, int64_t k, double theta,
+                      char where[RITZ_NAME_SIZE])
+{
+    int used = snprintf(where, RITZ_NAME_SIZE, "mode %" PRId64 ", %.4g Hz",
+                        k + 1, ritz_eigen_hertz(theta));
+    size_t left = (size_t)(RITZ_NAME_SIZE - used);
+
+    if (claim->number < 0)
+        (void)snprintf(where + used, left, ", near some full mode");
+    else if (claim->number != k)
+        (void)snprintf(where + used, left, ", full mode %" PRId64,
+                       claim->number + 1);
+}
+
+/*
+ * What mode k says of the worst error at least: however the first k full modes
+ * are paired with reduced ones, one of them has a partner of number k or more,
+ * which is above the highest that mode k of the full model can be.
+ */
+static double least_of(const ritz_measuring *m, int64_t k)
+{
+    double theta = m->pairs.lambda[k];
+    double rounding = 0.5 * m->trial.reduced[k] / theta;
+    double low = fmax(fmin(theta, m->trial.least[k]), 0.0);
+
+    return sqrt(low / m->enclosure.high[k]) - 1.0 - rounding;
+}
+
+/*
+ * Of full modes that are in the band for certain, wherever their partners lie.
+ * Modes below a band need no partner, so nothing is sure of it.
+ */
+static ritz_status report_least(const ritz_estimator *estimator,
+                                const ritz_measuring *m, ritz_measures *out)
+{
+    double band = ritz_eigen_lambda(m->band_hz[1]);
+    double most = 0.0;
+    char where[RITZ_NAME_SIZE] = "";
+
+    for (int64_t k = m->first; k < m->trial.count && m->band_hz[0] == 0.0 &&
+                               m->enclosure.high[k] <= band;
+         k++) {
+        double theta = m->pairs.lambda[k];
+        double least = least_of(m, k);
+
+        if (!(least > most) || ritz_counted_rigid(estimator, k, theta, band))
+            continue;
+        most = least;
+        (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz", k + 1,
+                       ritz_eigen_hertz(theta));
+    }
+    if (most > 0.0)
+        RITZ_CHECK(ritz_measures_add(out, "frequency-relative-least", most,
+                                     nan(""), where));
+    return RITZ_OK;
+}
+
+/* The same claim of the mode of its own number, if anything is known of it, and
+ * that it is another than the one that is claimed: of a cluster any will do. */
+static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
+{
+    const ritz_enclosure *e = &m->enclosure;
+    const int64_t p = claim.number;
+    double same = ritz_claim_same(&m->trial, e, k, m->pairs.lambda[k]);
+    bool apart = e->high[k] < e->low[p] || e->high[p] < e->low[k];
+
+    if (isfinite(same) && apart) {
+        claim.bound = same;
+        claim.number = k;
+    }
+    return claim;
+}
+
+/* "mode-7" and so on, of the band. */
+static ritz_status list_modes(const ritz_estimator *estimator,
+                              const ritz_measuring *m, ritz_measures *out)
+{
+    double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
+    double at = 0.0;
+    /* where none is missing all are the full model's by their numbers */
+    bool complete = ritz_missing_modes(estimator, m, &at) == 0;
+    char name[RITZ_NAME_SIZE];
+    char where[RITZ_NAME_SIZE];
+
+    for (int64_t k = m->first; k < m->last && out->count < MOST_LISTED; k++) {
+        double theta = m->pairs.lambda[k];
+        ritz_claim claim = ritz_claim_of(&m->trial, &m->enclosure, k, theta);
+
+        if (ritz_counted_rigid(estimator, k, theta, band))
+            continue;
+        if (complete && claim.number >= 0 && claim.number != k)
+            claim = own(m, k, claim);
+        (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
+        say_where(&claim, k, theta, where);
+        RITZ_CHECK(ritz_measures_add(out, name, claim.bound, nan(""), where));
+    }
+    return RITZ_OK;
+}
+
+/* Of a pair: "mode 7, 3.41 Hz, full mode 8". */
+static ritz_status add_pair(const ritz_measuring *m, const char *name,
+                            double value, int64_t k, int64_t number,
+                            ritz_measures *out)
+{
+    const ritz_claim claim = {.number = number};
+    char where[RITZ_NAME_SIZE];
+
+    say_where(&claim, k, m->pairs.lambda[k], where);
+    return ritz_measures_add(out, name, value, nan(""), where);
+}
+
+/* The worst mode of the band, and each. */
+static ritz_status report_modes(const ritz_estimator *estimator,
+                                const ritz_measuring *m, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_matched *v = &m->matched;
+    ritz_measures each = {0};
+
+    RITZ_TRY(list_modes(estimator, m, &each));
+    if (!v->known && (v->any || each.count > 0))
+        RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
+                                   nan(""), "modes are not counted"));
+    else if (v->bound >= 0.0)
+        RITZ_TRY(add_pair(m, "frequency-relative-bound", v->bound, v->mode,
+                          v->number, out));
+    if (v->least > 0.0)
+        RITZ_TRY(add_pair(m, "frequency-relative-least", v->least,
+                          v->least_mode, v->least_number, out));
+    for (int64_t k = 0; k < each.count; k++)
+        RITZ_TRY(ritz_measures_add(out, each.item[k].name, each.item[k].value,
+                                   nan(""), each.item[k].where));
+done:
+    ritz_measures_free(&each);
+    return status;
+}
+
+static ritz_status report_missing(const ritz_measuring *m, ritz_measures *out)
+{
+    const ritz_matched *v = &m->matched;
+    char where[RITZ_NAME_SIZE] = "";
+
+    if (!v->known)
+        return RITZ_OK;
+    if (v->first >= 0)
+        (void)snprintf(
+            where, sizeof where, "first: full mode %" PRId64 ", below %.4g Hz",
+            v->first + 1, ritz_eigen_hertz(m->enclosure.high[v->first]));
+    return ritz_measures_add(out, "missing-modes-bound", (double)v->missing,
+                             nan(""), where);
+}
+
+/*
+ * How far a reduced model can be off, told by one factor of the full matrices,
+ * by what they leave of its modes, and by how many modes lie below some
+ * frequencies. See estimate_enclose.c.
+ */
 
 ritz_status ritz_estimator_new(const ritz_component *full,
                                const ritz_estimate_request *request,
@@ -101,10 +435,42 @@ static void measuring_free(ritz_measuring *m)
     ritz_enclosure_free(&m->enclosure);
 }
 
+/*
+ * Rounding of the reduced matrices may hide a rigid motion: what it leaves of
+ * such a mode is no frequency, and left out of the band if a count finds the
+ * full model's there.
+ */
+static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
+                                      ritz_measuring *m)
+{
+    ritz_status status = RITZ_OK;
+    double slowest = as_rigid * ritz_eigen_lambda(m->band_hz[1]);
+
+    while (m->first < m->last) {
+        double rounding = m->trial.reduced[m->first];
+        double rho = 2.0 * fmax(rounding, m->trial.rounding[m->first]);
+
+        if (m->pairs.lambda[m->first] > rounding || rho > slowest)
+            break;
+        if (!ritz_counted_more(estimator, m->first, slowest)) {
+            status = ritz_estimator_count(estimator, fmax(rho, 1e-3 * slowest));
+            if (status == RITZ_ERR_SINGULAR)
+                return RITZ_OK; /* it cannot be counted: the mode stays */
+            RITZ_TRY(status);
+        }
+        if (!ritz_counted_more(estimator, m->first, slowest))
+            break;
+        m->first++;
+    }
+done:
+    return status;
+}
+
 /* The reduced modes in the band, and the trial that serves them. */
-static ritz_status begin(ritz_estimator *estimator, const ritz_basis *basis,
-                         const ritz_reduced *reduced, bool *response,
-                         ritz_measuring *m)
+static ritz_status open_measuring(ritz_estimator *estimator,
+                                  const ritz_basis *basis,
+                                  const ritz_reduced *reduced, bool *response,
+                                  ritz_measuring *m)
 {
     RITZ_REFUSE_IF(basis->T.nrow != estimator->component->num_dofs ||
                        basis->T.ncol != reduced->K.nrow,
@@ -120,7 +486,7 @@ static ritz_status begin(ritz_estimator *estimator, const ritz_basis *basis,
                                    -shift * ritz_eigen_lambda(m->band_hz[1])));
     RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
                                 count_trial(m, *response), &m->trial));
-    return ritz_skip_rounded(estimator, m);
+    return skip_rounded_rigid(estimator, m);
 }
 
 ritz_status ritz_estimator_measure(ritz_estimator *estimator,
@@ -133,11 +499,11 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
     ritz_measures found = {0};
     bool response = true;
 
-    RITZ_TRY(begin(estimator, basis, reduced, &response, &m));
+    RITZ_TRY(open_measuring(estimator, basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0) {
-        RITZ_TRY(ritz_measuring_refine(estimator, response, &m));
-        RITZ_TRY(ritz_report_modes(estimator, &m, &found));
-        RITZ_TRY(ritz_report_missing(&m, &found));
+        RITZ_TRY(refine_all(estimator, response, &m));
+        RITZ_TRY(report_modes(estimator, &m, &found));
+        RITZ_TRY(report_missing(&m, &found));
         if (response)
             RITZ_TRY(ritz_bound_response(estimator, &m, reduced, &found));
     }
@@ -159,13 +525,13 @@ ritz_status ritz_estimator_least(ritz_estimator *estimator,
     ritz_estimator bare = {0}; /* the same, nothing being counted */
     bool response = false;
 
-    RITZ_TRY(begin(estimator, basis, reduced, &response, &m));
+    RITZ_TRY(open_measuring(estimator, basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0) {
         bare = *estimator;
         bare.num_counts = 0;
         RITZ_TRY(
             ritz_enclosure_new(&bare, &m.trial, &m.polished, &m.enclosure));
-        RITZ_TRY(ritz_report_least(&bare, &m, out));
+        RITZ_TRY(report_least(&bare, &m, out));
     }
 done:
     measuring_free(&m);

@@ -15,10 +15,6 @@ typedef struct ritz_match {
     bool *taken; /* num_reduced, is somebody's partner */
 } ritz_match;
 
-/** No partner for any mode, and no MAC. */
-ritz_status ritz_match_new(const ritz_poles *full, const ritz_poles *reduced,
-                           ritz_match *out);
-
 /**
  * By shapes: Q = Phi_full' M T Phi_reduced, both sides normalised. Full modes
  * closer than 1e-3 are one cluster, whose MAC is that of subspaces: the least

@@ -12,6 +12,10 @@ typedef struct extreme {
     int64_t mode; /* -1: there was none */
 } extreme;
 
+/* Of the largest ratio of both models: smaller ones are what some thousand
+   terms of a modal damping leave by rounding. */
+static const double undamped_within = 1e-12;
+
 static bool in_band(const ritz_sides *sides, double lambda)
 {
     return ritz_in_band(sides->full->band_hz, lambda);
@@ -31,10 +35,6 @@ static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
 
     return fabs(reduced - full) / full;
 }
-
-/* Of the largest ratio of both models: smaller ones are what some thousand
-   terms of a modal damping leave by rounding. */
-static const double undamped_within = 1e-12;
 
 /* The ratio up to which a mode is undamped. */
 static double undamped(const ritz_sides *sides)

@@ -1,7 +1,6 @@
 #include "verify/seen.h"
 
 #include "base/alloc.h"
-#include "verify/sides.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +10,8 @@
 static const double rounding = 1e-10;
 
 enum { KINDS = 3 };
+/* Rounding of the edge of a band belongs to it. */
+static const double edge = 1e-9;
 
 /* A row of outputs sees mode k: rows of C, then Cv, then Ca. */
 static double output_of(const ritz_io *io, int64_t row, int64_t k)
@@ -23,6 +24,14 @@ static double output_of(const ritz_io *io, int64_t row, int64_t k)
 static double input_of(const ritz_io *io, int64_t j, int64_t k)
 {
     return ritz_dense_col(&io->B, j)[k];
+}
+
+bool ritz_in_band(const double band_hz[2], double lambda)
+{
+    double hertz = ritz_eigen_hertz(lambda);
+
+    return hertz >= band_hz[0] * (1.0 - edge) &&
+           hertz <= band_hz[1] * (1.0 + edge);
 }
 
 static double norm(int64_t n, const double *x, int64_t stride)

@@ -12,6 +12,9 @@
 /* Of the largest |H|: what is below is not looked at. */
 #define RITZ_AUDIBLE 1e-6
 
+/** The edge of a band belongs to it, and rounding of the edge too. */
+bool ritz_in_band(const double band_hz[2], double lambda);
+
 /* A mode as [phi'b_j / largest of any mode, c_i phi / largest of any mode]. */
 typedef struct ritz_seen {
     int64_t num_modes, num_inputs, num_outputs;

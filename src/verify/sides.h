@@ -59,34 +59,6 @@ typedef struct ritz_sides {
     ritz_match match;
 } ritz_sides;
 
-/** The edge of a band belongs to it, and rounding of the edge too. */
-bool ritz_in_band(const double band_hz[2], double lambda);
-
-/** The same with damping that somebody has chosen, or has not. */
-ritz_status ritz_reference_open(const ritz_component *full,
-                                const ritz_reference_request *request,
-                                bool assumed, ritz_reference **out);
-
-/**
- * The measures of one model, whose poles are there already, against the full
- * one.
- *
- * @param[in]     T      NULL: shapes cannot be compared
- * @param[in,out] sides  with `reduced` and `small`; the rest is filled in
- */
-ritz_status ritz_sides_measure(const ritz_second_order *model,
-                               const ritz_dense *T,
-                               const ritz_verify_request *limits,
-                               ritz_sides *sides, ritz_measures *out);
-
-/** Poles and pairs of a reduced model, all of them: see ritz_poles_of_dense. */
-ritz_status ritz_sides_open(const ritz_second_order *model,
-                            const ritz_damping *damping, double to_hz,
-                            ritz_sides *sides);
-
-/** That what goes in and comes out is the same of both. */
-ritz_status ritz_sides_check(const ritz_io *full, const ritz_io *io);
-
 /** The full model at the points of a sweep, which has its hertz. */
 ritz_status ritz_reference_respond(const ritz_reference *reference,
                                    ritz_sweep *sweep);
@@ -119,10 +91,6 @@ ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out);
 ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out);
 ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out);
 
-/** Fill `heard` of a sweep that has its responses. */
-ritz_status ritz_sweep_hear(const ritz_poles *poles, ritz_sweep *sweep);
-
 void ritz_sweep_free(ritz_sweep *sweep);
-void ritz_sides_free(ritz_sides *sides);
 
 #endif

@@ -36,7 +36,7 @@ enum { EVEN_POINTS = 200 };
 /* With a pole at 0 there is no response: begin at this part of the band. */
 static const double above_rest = 1e-3;
 
-static void free_pair(ritz_state_pair *p)
+void ritz_state_pair_free(ritz_state_pair *p)
 {
     for (int k = 0; k < 2; k++) {
         ritz_state_space_free(&p->model[k]);
@@ -219,11 +219,6 @@ done:
     return status;
 }
 
-/*
- * The pair without its norms.
- *
- * @return RITZ_ERR_ARGUMENT if inputs or outputs differ
- */
 static ritz_status open_pair(const ritz_state_space *full,
                              const ritz_state_space *reduced,
                              const ritz_verify_request *request,
@@ -270,6 +265,24 @@ static ritz_status take_norms(ritz_state_pair *p)
     RITZ_CHECK_IN("difference", ritz_norm_infinity(&p->difference,
                                                    norm_tolerance, &p->error));
     return RITZ_OK;
+}
+
+ritz_status ritz_state_pair_new(const ritz_state_space *full,
+                                const ritz_state_space *reduced,
+                                const ritz_verify_request *request,
+                                ritz_state_pair *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_pair p = {0};
+
+    RITZ_TRY(open_pair(full, reduced, request, &p));
+    RITZ_TRY(take_gains(&p));
+    RITZ_TRY(take_norms(&p));
+    *out = p;
+    p = (ritz_state_pair){0};
+done:
+    ritz_state_pair_free(&p);
+    return status;
 }
 
 /* "0.83 Hz, less 6 poles not left of axis" */
@@ -367,7 +380,7 @@ ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out)
 done:
     ritz_state_space_free(&full);
     ritz_state_space_free(&reduced);
-    free_pair(&p);
+    ritz_state_pair_free(&p);
     return status;
 }
 
@@ -452,58 +465,5 @@ ritz_status ritz_states_growth(const ritz_state_pair *p, ritz_measure *out)
         out->limit = nan("");
 done:
     ritz_measures_free(&found);
-    return status;
-}
-
-static ritz_status check_states(const ritz_state_space *full,
-                                const ritz_verify_request *request)
-{
-    const double *band = request->band_hz;
-
-    RITZ_REFUSE_IF(full->num_inputs == 0 || full->num_outputs == 0,
-                   RITZ_ERR_ARGUMENT,
-                   "there are no %s, nothing can be compared",
-                   full->num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_REFUSE_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
-                       (band[1] != 0.0 && band[0] >= band[1]),
-                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                   band[0], band[1]);
-    for (int k = 0; k < RITZ_MEASURES && band[1] == 0.0; k++)
-        RITZ_REFUSE_IF(!isnan(request->limit[k]) &&
-                           ritz_measure_table[k].needs & RITZ_NEEDS_BAND,
-                       RITZ_ERR_ARGUMENT,
-                       "--limit-%s of a state space needs --band-hz",
-                       ritz_measure_table[k].word);
-    return RITZ_OK;
-}
-
-ritz_status ritz_verify_states(const ritz_state_space *full,
-                               const ritz_state_space *reduced,
-                               const ritz_verify_request *request,
-                               ritz_measures *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_measures found = {0};
-    ritz_state_pair p = {0};
-
-    RITZ_TRY(check_states(full, request));
-    RITZ_TRY(open_pair(full, reduced, request, &p));
-    RITZ_TRY(take_gains(&p));
-    RITZ_TRY(take_norms(&p));
-    for (int k = 0; k < RITZ_MEASURES; k++) {
-        const ritz_measure_kind *kind = &ritz_measure_table[k];
-        ritz_measure m = {.value = nan(""), .limit = request->limit[k]};
-
-        if (kind->of_states)
-            RITZ_TRY(kind->of_states(&p, &m));
-        if (!isnan(m.value))
-            RITZ_TRY(ritz_measures_add(&found, kind->name, m.value, m.limit,
-                                       m.where));
-    }
-    *out = found;
-    found = (ritz_measures){0};
-done:
-    ritz_measures_free(&found);
-    free_pair(&p);
     return status;
 }

@@ -20,6 +20,17 @@ typedef struct ritz_state_pair {
         error; /* H-infinity, of the full model and the difference */
 } ritz_state_pair;
 
+/**
+ * @param[in] full,reduced,request  borrowed until free
+ * @return RITZ_ERR_ARGUMENT if inputs or outputs differ, or if there are no norms
+ *         and one has a limit
+ */
+ritz_status ritz_state_pair_new(const ritz_state_space *full,
+                                const ritz_state_space *reduced,
+                                const ritz_verify_request *request,
+                                ritz_state_pair *out);
+void ritz_state_pair_free(ritz_state_pair *p);
+
 /* Functions of the table of measures: see ritz_measure_kind.of_states. */
 ritz_status ritz_states_infinity(const ritz_state_pair *p, ritz_measure *out);
 ritz_status ritz_states_infinity_relative(const ritz_state_pair *p,

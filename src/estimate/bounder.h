@@ -1,8 +1,8 @@
 /* The parts of estimate_response.c, whose head has the equations. */
-#ifndef RITZ_ESTIMATE_ESTIMATE_BOUNDER_H
-#define RITZ_ESTIMATE_ESTIMATE_BOUNDER_H
+#ifndef RITZ_ESTIMATE_BOUNDER_H
+#define RITZ_ESTIMATE_BOUNDER_H
 
-#include "estimate/estimate_parts.h"
+#include "estimate/estimator.h"
 #include "poles/poles.h"
 
 #include <complex.h>
@@ -51,46 +51,7 @@ typedef struct ritz_bounder {
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
 void ritz_bounder_free(ritz_bounder *r);
 
-/** The stiffness of trial mode @p j, 0 of a rigid one, and its rate. */
-double ritz_bounder_stiffness(const ritz_bounder *r, int64_t j);
 double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j);
-
-/** The rate of a full mode: 2 zeta omega, or a + b lambda. */
-double ritz_bounder_rate(const ritz_bounder *r, double lambda);
-
-/**
- * How far rounding moves a reduced response at @p w rad/s: K_ij off by
- * sqrt(r_i r_j), r the rounding of eigenvalues, moves it by p_i eta_j K_ij, and
- * what damping is made of K too; M_ij moves it as well. Among rigid motions
- * only M does: their stiffness is set to 0.
- */
-double ritz_bounder_rounding(const ritz_bounder *r, double w,
-                             const ritz_side *in, const ritz_side *out);
-
-/**
- * Rates where no ratio is common to all modes: D's diagonal, K4's over omega,
- * and what was asked for. The least ratio stands for modes not yet met.
- *
- * @param[out] rates,matrices  of each trial mode; matrices: what comes of D, K4
- */
-ritz_status ritz_bounder_rates(const ritz_estimator *estimator, ritz_bounder *r,
-                               double *rates, double *matrices);
-
-/**
- * Whether ratios stated mode by mode differ within a pair of equal ones: any
- * vectors of these will do, and each model damps its own.
- */
-bool ritz_bounder_at_odds(const ritz_bounder *r);
-
-/** Whether a mode of the band that is driven and seen has no damping. */
-bool ritz_bounder_undamped(const ritz_bounder *r, const double band_hz[2]);
-
-/** Room for it, and D and K4 of trial modes. */
-ritz_status ritz_coupled_open(const ritz_component *full, ritz_bounder *r);
-void ritz_coupled_free(ritz_bounder *r);
-
-/** eta and alpha of all sides at @p w, whose modal shares are there. */
-void ritz_coupled_solve(ritz_bounder *r, double w);
 
 /**
  * The largest bound of all pairs anywhere within @p h of @p w rad/s; with h = 0

@@ -5,8 +5,8 @@
  *
  * its eigenvalues: 0 where there is no mass.
  */
-#ifndef RITZ_ESTIMATE_ESTIMATE_PARTS_H
-#define RITZ_ESTIMATE_ESTIMATE_PARTS_H
+#ifndef RITZ_ESTIMATE_ESTIMATOR_H
+#define RITZ_ESTIMATE_ESTIMATOR_H
 
 #include <ritz/eigen.h>
 #include <ritz/estimate.h>
@@ -72,13 +72,6 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out);
 void ritz_lehmann_free(ritz_lehmann *trial);
 
-/**
- * nu of estimate_values.c for rho, ascending; none where rho is too close to a
- * mode of the trial.
- */
-ritz_status ritz_lehmann_values(const ritz_lehmann *trial, double rho,
-                                ritz_pairs *out);
-
 /* Enclosures of the full model's lowest eigenvalues, and of trial modes. */
 typedef struct ritz_enclosure {
     int64_t count; /* of full modes */
@@ -140,12 +133,6 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
                          const ritz_enclosure *enclosure, int64_t k,
                          double theta);
 
-/** The same of a full mode in [low, high]; how far it is off at least. */
-double ritz_claim_apart(const ritz_measuring *m, int64_t k, double low,
-                        double high);
-double ritz_claim_between(const ritz_measuring *m, int64_t k, double low,
-                          double high);
-
 /** How far mode @p k can be from the full one of its number. */
 double ritz_claim_same(const ritz_lehmann *trial,
                        const ritz_enclosure *enclosure, int64_t k,
@@ -186,25 +173,6 @@ double ritz_propose_above(const ritz_estimator *estimator,
 ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
                                  const ritz_measuring *m, ritz_matched *out);
 
-/** Count and iterate until the modes of the band are told. */
-ritz_status ritz_measuring_refine(ritz_estimator *estimator, bool response,
-                                  ritz_measuring *m);
-
-/** What the worst error is at least if no mode is missing, without counts. */
-ritz_status ritz_report_least(const ritz_estimator *estimator,
-                              const ritz_measuring *m, ritz_measures *out);
-
-/**
- * Rounding of the reduced matrices may hide a rigid motion: what it leaves of
- * such a mode is no frequency, and left out of the band if a count finds the
- * full model's there.
- */
-ritz_status ritz_skip_rounded(ritz_estimator *estimator, ritz_measuring *m);
-
-/** The worst mode of the band, and each. */
-ritz_status ritz_report_modes(const ritz_estimator *estimator,
-                              const ritz_measuring *m, ritz_measures *out);
-
 /**
  * Full modes less reduced ones below the end of the band, or below a count
  * above it: a mode just within the band may have its partner just outside. -1
@@ -214,11 +182,6 @@ ritz_status ritz_report_modes(const ritz_estimator *estimator,
  */
 int64_t ritz_missing_modes(const ritz_estimator *estimator,
                            const ritz_measuring *m, double *at);
-ritz_status ritz_report_missing(const ritz_measuring *m, ritz_measures *out);
-
-/** Whether D is a M + b K with a, b >= 0, and which; there is no K4. */
-ritz_status ritz_rayleigh_of(const ritz_component *full, double *a, double *b,
-                             bool *found);
 
 /**
  * Whether anything can be said of a reduced response: there are inputs, outputs

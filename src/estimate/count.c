@@ -10,7 +10,7 @@
  * modes are missing there, and where is found by halving. Then counts move away
  * from the mode as far as its neighbours let them.
  */
-#include "estimate/estimate_parts.h"
+#include "estimate/estimator.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -284,4 +284,25 @@ double ritz_propose_count(const ritz_estimator *estimator,
         }
     }
     return rho;
+}
+
+int64_t ritz_missing_modes(const ritz_estimator *estimator,
+                           const ritz_measuring *m, double *at)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]);
+    int64_t least = -1;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++) {
+        const ritz_counted *c = &estimator->count[s];
+        int64_t below = 0;
+
+        while (below < m->pairs.Phi.ncol && m->pairs.lambda[below] < c->rho)
+            below++;
+        below = c->below > below ? c->below - below : 0;
+        if (c->rho >= end && (least < 0 || below < least)) {
+            least = below;
+            *at = c->rho;
+        }
+    }
+    return least;
 }

@@ -1,0 +1,634 @@
+/* What a bound of responses is made of, once; see estimate_response.c. */
+#include "estimate/bounder.h"
+#include "base/alloc.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of a sum: one is due, the rest is room. */
+static const double roundings = 4.0;
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* The stiffness of a trial mode, its rate of damping. */
+static double stiffness_of(const ritz_bounder *r, int64_t j)
+{
+    return j < r->num_rigid ? 0.0 : r->trial->theta[j];
+}
+
+/* The rate of a full mode: 2 zeta omega, or a + b lambda. */
+static double rate_at(const ritz_bounder *r, double lambda)
+{
+    return r->rayleigh ? r->a + r->b * lambda
+                       : 2.0 * r->zeta * sqrt(fmax(lambda, 0.0));
+}
+
+double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j)
+{
+    if (r->given)
+        return r->given[j];
+    return j < r->num_rigid && !r->rayleigh ? 0.0
+                                            : rate_at(r, stiffness_of(r, j));
+}
+
+/* A X from a column of V on; nothing of no A. */
+static ritz_status multiply_damping(const ritz_sparse *A, const ritz_bounder *r,
+                                    int64_t at, ritz_dense *V)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AX = {0};
+
+    if (!A->colptr)
+        return RITZ_OK;
+    RITZ_TRY(ritz_sparse_mul(A, &r->trial->X, &AX));
+    memcpy(ritz_dense_col(V, at), AX.val,
+           (size_t)(AX.nrow * AX.ncol) * sizeof *AX.val);
+done:
+    ritz_dense_free(&AX);
+    return status;
+}
+
+/* [R b_o c_o D_o K4_o], with M X X' of all but R taken out. */
+static ritz_status stack_vectors(const ritz_estimator *estimator,
+                                 ritz_bounder *r, ritz_dense *V)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_io *io = &estimator->component->io;
+    const ritz_dense *const C[KINDS] = {&io->C, &io->Cv, &io->Ca};
+    int64_t n = estimator->component->num_dofs;
+    int64_t m = r->trial->count;
+    ritz_dense MX = {0};
+    ritz_dense part = {0};
+
+    RITZ_TRY(ritz_dense_new(n, r->size, V));
+    memcpy(V->val, r->trial->R.val, (size_t)(n * m) * sizeof *V->val);
+    for (int64_t j = 0; j < io->num_inputs; j++)
+        memcpy(ritz_dense_col(V, m + j), ritz_dense_col(&io->B, j),
+               (size_t)n * sizeof *V->val);
+    for (int64_t k = 0; k < KINDS; k++)
+        for (int64_t i = 0; i < io->num_outputs; i++)
+            for (int64_t d = 0; d < n; d++)
+                ritz_dense_col(V, m + io->num_inputs + k * io->num_outputs +
+                                      i)[d] = ritz_dense_col(C[k], d)[i];
+    if (r->coupled) {
+        RITZ_TRY(
+            multiply_damping(&estimator->component->D, r, r->size - 2 * m, V));
+        RITZ_TRY(
+            multiply_damping(&estimator->component->K4, r, r->size - m, V));
+    }
+    RITZ_TRY(ritz_sparse_mul(&estimator->component->M, &r->trial->X, &MX));
+    part = ritz_dense_part(V, m, r->size - m);
+    for (int twice = 0; twice < 2; twice++)
+        RITZ_TRY(ritz_dense_take_out(&MX, &r->trial->X, &part));
+done:
+    ritz_dense_free(&MX);
+    return status;
+}
+
+/* G, Q and the norms of V's columns. */
+static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense V = {0};
+    ritz_dense E = {0};
+
+    RITZ_TRY(stack_vectors(estimator, r, &V));
+    RITZ_TRY(ritz_dense_copy(&V, &E));
+    RITZ_TRY(ritz_factor_solve(estimator->A, &E));
+    RITZ_TRY(ritz_dense_mul_tn(&V, &E, &r->G));
+    ritz_dense_symmetrise(&r->G);
+    RITZ_TRY(ritz_sparse_condense(&estimator->component->M, &E, &r->Q));
+    RITZ_NEW(r->size_of, r->size);
+    for (int64_t j = 0; j < r->size; j++)
+        r->size_of[j] = sqrt(fmax(ritz_dense_col(&r->G, j)[j], 0.0));
+done:
+    ritz_dense_free(&V);
+    ritz_dense_free(&E);
+    return status;
+}
+
+/*
+ * sin^2 of each rigid mode: by the residuals of all together, as full and trial
+ * ones may be turned among themselves, and the gap to flexible modes.
+ */
+static double rigid_sin2(const ritz_bounder *r)
+{
+    const ritz_lehmann *trial = r->trial;
+    double next = r->num_rigid < r->e->count ? r->e->low[r->num_rigid] : 0.0;
+    double sum = 0.0;
+
+    if (!(next > 0.0))
+        return 1.0;
+    for (int64_t j = 0; j < r->num_rigid; j++) {
+        double t = trial->theta[j] - trial->sigma;
+        double eps2 = fmax(ritz_dense_col(&trial->G, j)[j], 0.0) / t;
+
+        sum += square(trial->rounding[j] / trial->sigma) +
+               eps2 * square(1.0 - trial->sigma / next);
+    }
+    return sum;
+}
+
+/* sin^2 of each full mode against the trial modes of numbers up to N. */
+static ritz_status take_sines(ritz_bounder *r)
+{
+    const ritz_lehmann *trial = r->trial;
+    const ritz_enclosure *e = r->e;
+    double sum = 0.0;
+
+    RITZ_CHECK_NEW(r->sin2, e->count);
+    for (int64_t p = 0; p < e->count; p++)
+        r->sin2[p] = 1.0;
+    for (int64_t N = 1; N < e->count && N <= trial->count; N++) {
+        double t = trial->theta[N - 1] - trial->sigma;
+        double next = 1.0 / (e->low[N] - trial->sigma);
+        double most = 1.0 / (e->low[N - 1] - trial->sigma);
+
+        sum += fmax(most - 1.0 / t, 0.0);
+        for (int64_t p = 0; p < N; p++) {
+            double least = 1.0 / (e->high[p] - trial->sigma);
+
+            if (least > next)
+                r->sin2[p] = fmin(r->sin2[p], sum / (least - next));
+        }
+    }
+    for (int64_t p = 0; p < r->num_rigid && p < e->count; p++)
+        r->sin2[p] = fmin(r->sin2[p], rigid_sin2(r));
+    return RITZ_OK;
+}
+
+/* How much faster w d grows with an eigenvalue than that does itself. */
+static double damping_over(const ritz_bounder *r, double w, double theta)
+{
+    return r->rayleigh ? w * r->b : w * r->zeta / sqrt(theta);
+}
+
+/*
+ * How far rounding moves a reduced response at @p w rad/s: K_ij off by
+ * sqrt(r_i r_j), r the rounding of eigenvalues, moves it by p_i eta_j K_ij, and
+ * what damping is made of K too; M_ij moves it as well. Among rigid motions
+ * only M does: their stiffness is set to 0.
+ */
+static double rounding_at(const ritz_bounder *r, double w, const ritz_side *in,
+                          const ritz_side *out)
+{
+    double all[2] = {0.0, 0.0};
+    double rigid[2] = {0.0, 0.0};
+    double mass[2] = {0.0, 0.0};
+
+    for (int64_t j = 0; j < r->trial->count; j++) {
+        double off = r->trial->rounding[j] + r->trial->reduced[j];
+        double own = w * sqrt(r->trial->inertia[j]);
+        double each = sqrt(
+            off * (1.0 + damping_over(r, w, fmax(r->trial->theta[j], off))));
+
+        mass[0] += own * cabs(in->eta[j]);
+        mass[1] += own * cabs(out->eta[j]);
+        all[0] += cabs(in->eta[j]) * each;
+        all[1] += cabs(out->eta[j]) * each;
+        if (j + 1 == r->num_rigid) {
+            rigid[0] = all[0];
+            rigid[1] = all[1];
+        }
+    }
+    return all[0] * all[1] - rigid[0] * rigid[1] +
+           roundings * DBL_EPSILON * mass[0] * mass[1];
+}
+
+/*
+ * Damping that couples modes: of D and K4 as matrices the reduced model's
+ * response and what it leaves are exact,
+ *
+ *     (Theta - w^2 + i w X'DX + i X'K4X) eta = X'b,
+ *     r = b_o - R eta - i w D_o eta - i K4_o eta,
+ *
+ * D_o and K4_o being D X and K4 X without their M X X' of that, and X'r = 0.
+ * Only what the full model makes of r is not: its modes are taken as if
+ * uncoupled, hence no bound.
+ */
+
+/* X'A X; nothing of no A. */
+static ritz_status condense_on_modes(const ritz_sparse *A, const ritz_dense *X,
+                                     ritz_dense *out)
+{
+    return A->colptr ? ritz_sparse_condense(A, X, out)
+                     : ritz_dense_new(X->ncol, X->ncol, out);
+}
+
+/* Room for it, and D and K4 of trial modes. */
+static ritz_status open_coupled(const ritz_component *full, ritz_bounder *r)
+{
+    int64_t m = r->trial->count;
+    int64_t sides = r->io->num_inputs + r->io->num_outputs;
+    const double *rates = r->given;
+
+    RITZ_CHECK(condense_on_modes(&full->D, &r->trial->X, &r->D));
+    RITZ_CHECK(condense_on_modes(&full->K4, &r->trial->X, &r->K4));
+    for (int64_t j = r->num_rigid; j < m; j++)
+        ritz_dense_col(&r->D, j)[j] += rates[j] - r->matrices[j];
+    RITZ_CHECK_NEW(r->Z, m * m);
+    RITZ_CHECK_NEW(r->answers, m * sides);
+    RITZ_CHECK_NEW(r->pivot, m);
+    return RITZ_OK;
+}
+
+/* eta of one side, and alpha of what it leaves. */
+static void fill_side(const ritz_bounder *r, double w,
+                      const double _Complex *eta, ritz_side *s)
+{
+    int64_t m = r->trial->count;
+    int64_t last = r->size - 2 * m;
+
+    for (int64_t j = 0; j < m; j++) {
+        s->eta[j] = eta[j];
+        s->alpha[j] = -eta[j];
+        s->alpha[last + j] = -ritz_complex(0.0, w) * eta[j];
+        s->alpha[last + m + j] = -ritz_complex(0.0, 1.0) * eta[j];
+    }
+    s->change = s->damped = s->quarter = s->three = 0.0;
+}
+
+/* eta and alpha of all sides at @p w, whose modal shares are there. */
+static void solve_coupled(ritz_bounder *r, double w)
+{
+    int m = (int)r->trial->count;
+    int sides = (int)(r->io->num_inputs + r->io->num_outputs);
+    double _Complex *at = r->answers;
+
+    for (int64_t j = 0; j < m; j++)
+        for (int64_t i = 0; i < m; i++)
+            r->Z[i + j * m] = ritz_complex(
+                i == j ? stiffness_of(r, j) - w * w : 0.0,
+                w * ritz_dense_col(&r->D, j)[i] + ritz_dense_col(&r->K4, j)[i]);
+    for (int side = 0; side < sides; side++) {
+        const ritz_side *s = side < r->io->num_inputs
+                                 ? &r->in[side]
+                                 : &r->out[side - r->io->num_inputs];
+
+        for (int64_t j = 0; j < m; j++)
+            at[j + (int64_t)side * m] = s->modal[j];
+    }
+    if (LAPACKE_zgesv(LAPACK_COL_MAJOR, m, sides, r->Z, m, r->pivot, at, m))
+        for (int64_t k = 0; k < (int64_t)m * sides; k++)
+            at[k] = nan("");
+    for (int64_t k = 0; k < r->io->num_inputs; k++, at += m)
+        fill_side(r, w, at, &r->in[k]);
+    for (int64_t k = 0; k < r->io->num_outputs; k++, at += m)
+        fill_side(r, w, at, &r->out[k]);
+}
+
+static void free_coupled(ritz_bounder *r)
+{
+    ritz_dense_free(&r->D);
+    ritz_dense_free(&r->K4);
+    free(r->Z);
+    free(r->answers);
+    free(r->pivot);
+}
+
+static ritz_status new_sides(const ritz_bounder *r, int64_t count,
+                             ritz_side **out)
+{
+    RITZ_CHECK_NEW(*out, count);
+    for (int64_t k = 0; k < count; k++) {
+        RITZ_CHECK_NEW((*out)[k].alpha, r->size);
+        RITZ_CHECK_NEW((*out)[k].modal, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].eta, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].slope, r->size);
+        RITZ_CHECK_NEW((*out)[k].first, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].second, r->trial->count);
+    }
+    return RITZ_OK;
+}
+
+static void free_sides(int64_t count, ritz_side *sides)
+{
+    for (int64_t k = 0; sides && k < count; k++) {
+        free(sides[k].alpha);
+        free(sides[k].modal);
+        free(sides[k].eta);
+        free(sides[k].slope);
+        free(sides[k].first);
+        free(sides[k].second);
+    }
+    free(sides);
+}
+
+void ritz_bounder_free(ritz_bounder *r)
+{
+    free_sides(r->io->num_inputs, r->in);
+    free_sides(r->io->num_outputs, r->out);
+    ritz_dense_free(&r->G);
+    ritz_dense_free(&r->Q);
+    ritz_dense_free(&r->B);
+    for (int k = 0; k < KINDS; k++)
+        ritz_dense_free(&r->C[k]);
+    free(r->size_of);
+    free(r->sin2);
+    free(r->GV);
+    free(r->QV);
+    free_coupled(r);
+}
+
+ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
+{
+    const ritz_io *io = r->io;
+    const ritz_dense *X = &r->trial->X;
+
+    r->size = (r->coupled ? 3 : 1) * r->trial->count + io->num_inputs +
+              KINDS * io->num_outputs;
+    RITZ_CHECK(take_forms(estimator, r));
+    RITZ_CHECK(take_sines(r));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &r->B));
+    RITZ_CHECK(ritz_dense_mul(&io->C, X, &r->C[0]));
+    RITZ_CHECK(ritz_dense_mul(&io->Cv, X, &r->C[1]));
+    RITZ_CHECK(ritz_dense_mul(&io->Ca, X, &r->C[2]));
+    RITZ_CHECK(new_sides(r, io->num_inputs, &r->in));
+    RITZ_CHECK(new_sides(r, io->num_outputs, &r->out));
+    RITZ_CHECK_NEW(r->GV, r->size);
+    RITZ_CHECK_NEW(r->QV, r->size);
+    if (r->coupled)
+        RITZ_CHECK(open_coupled(estimator->component, r));
+    return RITZ_OK;
+}
+
+/*
+ * The bound of |H - H_r| of each pair of an input and an output, at a frequency
+ * or anywhere in an interval: see estimate_response.c.
+ */
+
+typedef double _Complex number;
+
+/* The product of a real symmetric matrix and a complex vector. */
+static void multiply(const ritz_dense *G, const number *x, number *y)
+{
+    memset(y, 0, (size_t)G->nrow * sizeof *y);
+    for (int64_t j = 0; j < G->ncol; j++)
+        for (int64_t i = 0; i < G->nrow && x[j] != 0.0; i++)
+            y[i] += ritz_dense_col(G, j)[i] * x[j];
+}
+
+static double norm_of(const ritz_bounder *r, const number *x, number *work)
+{
+    double sum = 0.0;
+
+    multiply(&r->G, x, work);
+    for (int64_t i = 0; i < r->size; i++)
+        sum += creal(conj(x[i]) * work[i]);
+    return sqrt(fmax(sum, 0.0));
+}
+
+/* Of c eta_j within h of w: what it is at most, and its second derivative. */
+static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
+                    double w, double h, double out[2])
+{
+    double d = ritz_bounder_rate_of(r, j);
+    double theta = stiffness_of(r, j);
+    double off = h * (2.0 * w + h) + h * d;
+    double z = fmax(hypot(theta - w * w, w * d) - off, fmax(w - h, 0.0) * d);
+    double z1 = hypot(2.0 * (w + h), d);
+    double second = s->second[j];
+    double first = cabs(s->first[j]) + h * second;
+    double share = cabs(s->modal[j]) + h * first;
+    double b = r->rayleigh ? r->b : 0.0;
+    double eta1 = (first + share * z1 / z) / z;
+    double eta2 = (second + 2.0 * first * z1 / z +
+                   share * (2.0 * z1 * z1 / z + 2.0) / z) /
+                  z;
+
+    out[0] = share / z;
+    out[1] = hypot(1.0, (w + h) * b) * eta2 + 2.0 * b * eta1;
+}
+
+/*
+ * One side at w: modal shares, and alpha and slope of what is not modal, are
+ * there. Within h of w
+ *
+ *     |r(w + d) - r(w)| <= h |r'(w)| + h^2 / 2 max |r''|,
+ *
+ * where r' is known as a vector, in which large parts cancel; `bent` is what is
+ * not modal of |r''|.
+ */
+static void solve_side(ritz_bounder *r, double w, double h, double bent,
+                       ritz_side *s)
+{
+    double b = r->rayleigh ? r->b : 0.0;
+    number c = ritz_complex(1.0, w * b);
+    double curve = bent;
+
+    s->damped = s->quarter = s->three = 0.0;
+    for (int64_t j = 0; j < r->trial->count; j++) {
+        double theta = stiffness_of(r, j);
+        double d = ritz_bounder_rate_of(r, j);
+        number z = ritz_complex(theta - w * w, w * d);
+        number z1 = ritz_complex(-2.0 * w, d);
+        double size = r->size_of[j];
+        double most[2];
+
+        s->eta[j] = s->modal[j] / z;
+        s->alpha[j] = -c * s->eta[j];
+        s->slope[j] = -ritz_complex(0.0, b) * s->eta[j] -
+                      c * (s->first[j] - s->eta[j] * z1) / z;
+        most_of(r, s, j, w, h, most);
+        if (h > 0.0)
+            curve += size * most[1];
+        if (r->rayleigh || theta <= 0.0)
+            continue;
+        s->damped += size * most[0] * 2.0 * r->zeta * (w + h) / sqrt(theta);
+        s->quarter += size * most[0] / sqrt(sqrt(theta));
+        s->three += size * most[0] / (sqrt(theta) * sqrt(sqrt(theta)));
+    }
+    s->norm = norm_of(r, s->alpha, r->GV);
+    s->change =
+        h > 0.0 ? h * norm_of(r, s->slope, r->GV) + 0.5 * h * h * curve : 0.0;
+}
+
+/* Sides of all inputs and outputs. */
+static void solve_all(ritz_bounder *r, double w, double h)
+{
+    const ritz_io *io = r->io;
+    int64_t m = r->trial->count;
+    int64_t p = io->num_outputs;
+
+    for (int64_t k = 0; k < io->num_inputs; k++) {
+        memset(r->in[k].alpha, 0, (size_t)r->size * sizeof(number));
+        r->in[k].alpha[m + k] = 1.0;
+        for (int64_t j = 0; j < m; j++)
+            r->in[k].modal[j] = ritz_dense_col(&r->B, k)[j];
+        if (!r->coupled)
+            solve_side(r, w, h, 0.0, &r->in[k]);
+    }
+    for (int64_t k = 0; k < p; k++) {
+        ritz_side *s = &r->out[k];
+        int64_t at = m + io->num_inputs + k;
+
+        memset(s->alpha, 0, (size_t)r->size * sizeof(number));
+        s->alpha[at] = 1.0;
+        s->alpha[at + p] = ritz_complex(0.0, w);
+        s->alpha[at + 2 * p] = -w * w;
+        s->slope[at + p] = ritz_complex(0.0, 1.0);
+        s->slope[at + 2 * p] = -2.0 * w;
+        for (int64_t j = 0; j < m; j++) {
+            double cv = ritz_dense_col(&r->C[1], j)[k];
+            double ca = ritz_dense_col(&r->C[2], j)[k];
+
+            s->modal[j] = ritz_complex(
+                ritz_dense_col(&r->C[0], j)[k] - w * w * ca, w * cv);
+            s->first[j] = ritz_complex(-2.0 * w * ca, cv);
+            s->second[j] = 2.0 * fabs(ca);
+        }
+        if (!r->coupled)
+            solve_side(r, w, h, 2.0 * r->size_of[at + 2 * p], s);
+    }
+    if (!r->coupled)
+        return;
+    solve_coupled(r, w);
+    for (int64_t k = 0; k < io->num_inputs; k++)
+        r->in[k].norm = norm_of(r, r->in[k].alpha, r->GV);
+    for (int64_t k = 0; k < p; k++)
+        r->out[k].norm = norm_of(r, r->out[k].alpha, r->GV);
+}
+
+/* At one interval of frequencies. */
+typedef struct place {
+    double low, high; /* w, both ends */
+    number c, s;
+    double most_s;   /* |s| anywhere within */
+    double least_c2; /* |c|^2 */
+} place;
+
+/* Largest |rest| of a mode whose lambda lies in [low, high]. */
+static double rest_of(const ritz_bounder *r, const place *at, double low,
+                      double high)
+{
+    double apart =
+        fmax(0.0, fmax(low - at->high * at->high, at->low * at->low - high));
+    double z = hypot(apart, at->low * rate_at(r, low));
+    double mu = low - r->trial->sigma;
+    double own = 0.0;
+
+    if (!(z > 0.0))
+        return HUGE_VAL;
+    if (!r->rayleigh) {
+        double over = fmin(1.0, at->high * rate_at(r, high) / z);
+
+        if (isinf(high))
+            over = apart > 0.0 ? at->high * rate_at(r, low) / apart : 1.0;
+        own = fmin(1.0, over) * (1.0 + at->most_s / mu);
+    }
+    return at->most_s * at->most_s / (at->least_c2 * mu * z) + own;
+}
+
+/*
+ * What modes make of the rest and of what damping adds: of N lowest ones by
+ * what is not held of them, of the others together; N is what suits best.
+ *
+ * @param[in] all, added  products of norms that either goes with
+ */
+static double bound_rest(const ritz_bounder *r, const place *at, double all,
+                         double added)
+{
+    const ritz_enclosure *e = r->e;
+    double sigma = r->trial->sigma;
+    double sum = 0.0;
+    double most = 0.0;
+    double best = HUGE_VAL;
+
+    for (int64_t N = 0; N < e->count; N++) {
+        double low = fmax(e->low[N], 0.0);
+        double first = 1.0 + at->most_s / (low - sigma);
+        double far = all * rest_of(r, at, low, HUGE_VAL) + added * first;
+        double own = all * rest_of(r, at, low, e->high[N]) + added * first;
+
+        best = fmin(best, fmin(sum, most) + far);
+        sum += r->sin2[N] * own;
+        most = fmax(most, own);
+    }
+    return best;
+}
+
+/* Bound of one pair; *response is its |H_r|. */
+static double bound_pair(const ritz_bounder *r, const place *at, double h,
+                         const ritz_side *in, const ritz_side *out,
+                         double *response)
+{
+    double sigma = -r->trial->sigma;
+    double c = cabs(at->c);
+    double P = in->norm + in->change;
+    double D = out->norm + out->change;
+    double varied = in->norm * out->change + in->change * D;
+    double turned = r->rayleigh ? h * r->b : 0.0;
+    double moved = h * (2.0 * at->high + fabs(r->a + r->b * -sigma));
+    double all = (P + in->damped) * (D + out->damped);
+    double w = at->high;
+    double defect = 0.0;
+    number lead = 0.0;
+    number H = 0.0;
+
+    for (int64_t i = 0; i < r->size; i++)
+        lead += out->alpha[i] *
+                (r->GV[i] / at->c + at->s * r->QV[i] / (at->c * at->c));
+    for (int64_t j = 0; j < r->trial->count; j++)
+        H += out->modal[j] * in->eta[j];
+    *response = cabs(H);
+    if (!r->rayleigh)
+        defect = r->zeta * w *
+                 (in->quarter * out->quarter + sigma * in->three * out->three);
+    return cabs(lead) + defect +
+           varied * (1.0 / c + cabs(at->s) / (c * c * sigma)) +
+           (turned + moved / sigma +
+            2.0 * turned * at->most_s / sigma / sqrt(at->least_c2)) /
+               at->least_c2 * P * D +
+           bound_rest(r, at, all, all - P * D) +
+           rounding_at(r, at->high, in, out);
+}
+
+static place place_of(const ritz_bounder *r, double w, double h)
+{
+    double sigma = r->trial->sigma;
+    place at = {
+        .low = fmax(w - h, 0.0), .high = w + h, .c = 1.0, .least_c2 = 1.0};
+
+    at.s = w * w - sigma;
+    at.most_s = at.high * at.high - sigma;
+    if (r->rayleigh) {
+        at.c = ritz_complex(1.0, w * r->b);
+        at.least_c2 += at.low * r->b * at.low * r->b;
+        at.s = ritz_complex(w * w - sigma, -w * (r->a + r->b * sigma));
+        at.most_s = hypot(at.most_s, at.high * fabs(r->a + r->b * sigma));
+        at.most_s = fmax(at.most_s, cabs(at.s));
+    }
+    return at;
+}
+
+/* The largest bound of all pairs within h of w; with h = 0 it tells |H_r|. */
+double ritz_bound_at(ritz_bounder *r, double w, double h)
+{
+    const ritz_io *io = r->io;
+    place at = place_of(r, w, h);
+    double largest = 0.0;
+
+    solve_all(r, w, h);
+    for (int64_t j = 0; j < io->num_inputs; j++) {
+        multiply(&r->G, r->in[j].alpha, r->GV);
+        multiply(&r->Q, r->in[j].alpha, r->QV);
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            double response = 0.0;
+            double one =
+                bound_pair(r, &at, h, &r->in[j], &r->out[i], &response);
+
+            largest = fmax(largest, isnan(one) ? HUGE_VAL : one);
+            if (h == 0.0) {
+                r->least = fmax(r->least, response - one);
+                r->largest = fmax(r->largest, response);
+            }
+        }
+    }
+    return largest;
+}

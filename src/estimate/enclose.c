@@ -1,0 +1,610 @@
+/*
+ * Ritz pairs of the full matrices in the range of T, anew: a reduced model's
+ * own are theirs to rounding, unless some of its columns have lost their mass.
+ *
+ * Rounding. K x is summed up from |K||x|: so x'Kx is off by some eps times
+ * |x|'|K||x|, and so may any other program's be; M x too. Pairs of a dense
+ * pencil err by eps times its largest eigenvalue beside. Modes nearer to each
+ * other than that may change places: what one of them is, the other may be.
+ */
+#include "base/alloc.h"
+#include "estimate/estimator.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SHIFTS = 16 };
+/* Roundings of a sum of terms that cancel: one is due, the rest is room. */
+static const double roundings = 4.0;
+/* Of the rounding of eigenvalues beside: how far a count may be off. */
+static const double margin = 2.0;
+
+ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma)
+{
+    ritz_status status = RITZ_ERR_SINGULAR;
+    const ritz_component *full = estimator->component;
+    ritz_sparse A = {0};
+
+    if (estimator->A)
+        return RITZ_OK;
+    for (int t = 0; t < MOST_SHIFTS && status == RITZ_ERR_SINGULAR; t++) {
+        ritz_sparse_free(&A);
+        estimator->sigma = t > 0 ? 10.0 * estimator->sigma : sigma;
+        RITZ_TRY(
+            ritz_sparse_add(1.0, &full->K, -estimator->sigma, &full->M, &A));
+        status = ritz_factor_spd(&A, &estimator->A);
+    }
+done:
+    ritz_sparse_free(&A);
+    return ritz_context(status, "estimate");
+}
+
+/* Ritz pairs in the range of Y, which may be far from orthonormal. */
+static ritz_status take_ritz_pairs(const ritz_component *full,
+                                   const ritz_dense *Y, ritz_lehmann *trial)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense K = {0};
+    ritz_dense M = {0};
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_sparse_condense(&full->K, Y, &K));
+    RITZ_TRY(ritz_sparse_condense(&full->M, Y, &M));
+    RITZ_TRY(ritz_eigen_dense(&K, &M, &pairs));
+    RITZ_TRY(ritz_dense_mul(Y, &pairs.Phi, &trial->X));
+    trial->count = pairs.Phi.ncol;
+    trial->theta = pairs.lambda;
+    pairs.lambda = NULL;
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* |x|'|K||x| of each column. */
+static double magnitude(const ritz_sparse *K, const double *x)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < K->ncol; j++) {
+        double part = 0.0;
+
+        for (int64_t p = K->colptr[j]; p < K->colptr[j + 1]; p++)
+            part += fabs(K->val[p] * x[K->rowind[p]]);
+        sum += fabs(x[j]) * part;
+    }
+    return sum;
+}
+
+/* R = K X - M X Theta; rounding of theta. */
+static ritz_status take_residuals(const ritz_component *full,
+                                  ritz_lehmann *trial)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense MX = {0};
+    double largest = 0.0;
+
+    if (trial->count > 0)
+        largest = trial->theta[trial->count - 1];
+    RITZ_NEW(trial->rounding, trial->count);
+    RITZ_NEW(trial->inertia, trial->count);
+    RITZ_TRY(ritz_sparse_mul(&full->K, &trial->X, &trial->R));
+    RITZ_TRY(ritz_sparse_mul(&full->M, &trial->X, &MX));
+    for (int64_t j = 0; j < trial->count; j++) {
+        double *r = ritz_dense_col(&trial->R, j);
+        double *x = ritz_dense_col(&trial->X, j);
+
+        for (int64_t i = 0; i < MX.nrow; i++)
+            r[i] -= trial->theta[j] * ritz_dense_col(&MX, j)[i];
+        trial->inertia[j] = magnitude(&full->M, x);
+        trial->rounding[j] =
+            roundings * DBL_EPSILON *
+            (magnitude(&full->K, x) +
+             (fabs(trial->theta[j]) - trial->sigma) * trial->inertia[j] +
+             largest);
+    }
+done:
+    ritz_dense_free(&MX);
+    return status;
+}
+
+/* Between what each eigenvalue of the reduced pencil can be. */
+static void bound_reduced(const ritz_pairs *pairs, ritz_lehmann *trial)
+{
+    double least = HUGE_VAL;
+    double most = -HUGE_VAL;
+
+    for (int64_t j = 0; j < trial->count; j++) {
+        most = fmax(most, pairs->lambda[j] + trial->reduced[j]);
+        trial->most[j] = most;
+    }
+    for (int64_t j = trial->count - 1; j >= 0; j--) {
+        least = fmin(least, pairs->lambda[j] - trial->reduced[j]);
+        trial->least[j] = least;
+    }
+}
+
+/*
+ * Of eigenvalues of the reduced pencil as it is: its entries, which some
+ * vectors take the difference of, and the largest eigenvalue.
+ */
+static ritz_status round_reduced(const ritz_reduced *reduced,
+                                 const ritz_pairs *pairs, ritz_lehmann *trial)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense Q = ritz_dense_part(&pairs->Phi, 0, trial->count);
+    ritz_dense K = {0};
+    ritz_dense M = {0};
+
+    RITZ_NEW(trial->reduced, trial->count);
+    RITZ_NEW(trial->least, trial->count);
+    RITZ_NEW(trial->most, trial->count);
+    RITZ_TRY(ritz_dense_terms(&reduced->K, &Q, &K));
+    RITZ_TRY(ritz_dense_terms(&reduced->M, &Q, &M));
+    for (int64_t j = 0; j < trial->count; j++) {
+        trial->inertia[j] += ritz_dense_col(&M, j)[j];
+        trial->reduced[j] = roundings * DBL_EPSILON *
+                            (ritz_dense_col(&K, j)[j] +
+                             fabs(pairs->lambda[j]) * ritz_dense_col(&M, j)[j] +
+                             pairs->lambda[pairs->Phi.ncol - 1]);
+    }
+    bound_reduced(pairs, trial);
+done:
+    ritz_dense_free(&K);
+    ritz_dense_free(&M);
+    return status;
+}
+
+/* E = A^-1 R and G = R'E. */
+static ritz_status solve_residuals(ritz_estimator *estimator,
+                                   ritz_lehmann *trial)
+{
+    RITZ_CHECK(ritz_dense_copy(&trial->R, &trial->E));
+    if (trial->count > 0)
+        RITZ_CHECK(ritz_factor_solve(estimator->A, &trial->E));
+    RITZ_CHECK(ritz_dense_mul_tn(&trial->R, &trial->E, &trial->G));
+    ritz_dense_symmetrise(&trial->G);
+    return RITZ_OK;
+}
+
+ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
+                             const ritz_reduced *reduced,
+                             const ritz_pairs *pairs, int64_t count,
+                             ritz_lehmann *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense part = ritz_dense_part(&pairs->Phi, 0, count);
+    ritz_lehmann trial = {.sigma = estimator->sigma};
+    ritz_dense Y = {0};
+
+    RITZ_TRY(ritz_dense_mul(T, &part, &Y));
+    RITZ_TRY(take_ritz_pairs(estimator->component, &Y, &trial));
+    RITZ_FAIL_IF(trial.count != count, RITZ_ERR_SINGULAR,
+                 "estimate: columns of the basis depend on each other");
+    RITZ_TRY(take_residuals(estimator->component, &trial));
+    RITZ_TRY(round_reduced(reduced, pairs, &trial));
+    RITZ_TRY(solve_residuals(estimator, &trial));
+    *out = trial;
+    trial = (ritz_lehmann){0};
+done:
+    ritz_dense_free(&Y);
+    ritz_lehmann_free(&trial);
+    return status;
+}
+
+/*
+ * A^-1 M X = (X - E) Theta_t^-1, as R = A X - M X Theta_t. Its columns are of
+ * one size without the factor, and span the same.
+ */
+ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
+                                const ritz_lehmann *trial, ritz_lehmann *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_lehmann polished = {.sigma = estimator->sigma};
+    ritz_dense Y = {0};
+
+    RITZ_TRY(ritz_dense_copy(&trial->X, &Y));
+    for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
+        Y.val[k] -= trial->E.val[k];
+    RITZ_TRY(take_ritz_pairs(estimator->component, &Y, &polished));
+    RITZ_TRY(take_residuals(estimator->component, &polished));
+    RITZ_TRY(solve_residuals(estimator, &polished));
+    *out = polished;
+    polished = (ritz_lehmann){0};
+done:
+    ritz_dense_free(&Y);
+    ritz_lehmann_free(&polished);
+    return status;
+}
+
+void ritz_lehmann_free(ritz_lehmann *trial)
+{
+    ritz_dense_free(&trial->X);
+    ritz_dense_free(&trial->R);
+    ritz_dense_free(&trial->E);
+    ritz_dense_free(&trial->G);
+    free(trial->theta);
+    free(trial->rounding);
+    free(trial->inertia);
+    free(trial->reduced);
+    free(trial->least);
+    free(trial->most);
+    *trial = (ritz_lehmann){0};
+}
+
+/*
+ * The Ritz values tau of estimate_enclose.c, as their inverses. Rounding of a
+ * dense problem is eps times its largest value, and tau is large where rho is
+ * close to a mode: so nu = 1 / tau is sought, whose largest belong to the modes
+ * furthest from rho. With J = sign D and z = |D|^-1/2 u
+ *
+ *     D z = tau (D^2 + G^) z   is   H u = nu J u,
+ *     H = |D| + |D|^-1/2 G^ |D|^-1/2 = LL',
+ *
+ * and nu are the eigenvalues of L'JL.
+ */
+
+/* Diagonal of D; false if rounding may have turned a sign of it. */
+static bool take_offsets(const ritz_lehmann *trial, double rho, double *d)
+{
+    bool clear = true;
+
+    for (int64_t j = 0; j < trial->count; j++) {
+        double off = rho - trial->theta[j];
+        double t = trial->theta[j] - trial->sigma;
+
+        clear = clear && fabs(off) > trial->rounding[j];
+        d[j] = off / (t * (rho - trial->sigma));
+    }
+    return clear;
+}
+
+/* H; what rounding leaves of a residual is one more. */
+static void fill_form(const ritz_lehmann *trial, const double *d, ritz_dense *H)
+{
+    for (int64_t j = 0; j < trial->count; j++) {
+        double t_j = trial->theta[j] - trial->sigma;
+        double rounded = trial->rounding[j] / (t_j * t_j);
+
+        for (int64_t i = 0; i < trial->count; i++) {
+            double t = (trial->theta[i] - trial->sigma) * t_j;
+
+            ritz_dense_col(H, j)[i] = ritz_dense_col(&trial->G, j)[i] /
+                                      (t * sqrt(t * fabs(d[i] * d[j])));
+        }
+        ritz_dense_col(H, j)[j] += fabs(d[j]) + rounded * rounded / fabs(d[j]);
+    }
+}
+
+/* L over H; false if rounding has left it indefinite. */
+static bool factor_form(ritz_dense *H)
+{
+    int m = (int)H->nrow;
+
+    for (int64_t j = 0; j < H->ncol; j++)
+        memset(ritz_dense_col(H, j), 0, (size_t)j * sizeof *H->val);
+    return LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', m, H->val, m) == 0;
+}
+
+/* L'JL. */
+static ritz_status join_signs(const ritz_dense *L, const double *d,
+                              ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense JL = {0};
+
+    RITZ_TRY(ritz_dense_copy(L, &JL));
+    for (int64_t j = 0; j < L->ncol; j++)
+        for (int64_t i = j; i < L->nrow; i++)
+            ritz_dense_col(&JL, j)[i] *= d[i] > 0.0 ? 1.0 : -1.0;
+    RITZ_TRY(ritz_dense_mul_tn(L, &JL, out));
+    ritz_dense_symmetrise(out);
+done:
+    ritz_dense_free(&JL);
+    return status;
+}
+
+/*
+ * nu of estimate_values.c for rho, ascending; none where rho is too close to a
+ * mode of the trial.
+ */
+static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
+                                 ritz_pairs *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = trial->count;
+    double *d = NULL;
+    ritz_dense L = {0};
+    ritz_dense LJL = {0};
+    ritz_dense one = {0};
+
+    RITZ_NEW(d, m);
+    if (!take_offsets(trial, rho, d))
+        goto done;
+    RITZ_TRY(ritz_dense_new(m, m, &L));
+    fill_form(trial, d, &L);
+    if (!factor_form(&L))
+        goto done;
+    RITZ_TRY(join_signs(&L, d, &LJL));
+    RITZ_TRY(ritz_dense_new(m, m, &one));
+    for (int64_t j = 0; j < m; j++)
+        ritz_dense_col(&one, j)[j] = 1.0;
+    RITZ_TRY(ritz_eigen_dense(&LJL, &one, out));
+done:
+    free(d);
+    ritz_dense_free(&L);
+    ritz_dense_free(&LJL);
+    ritz_dense_free(&one);
+    return status;
+}
+
+/*
+ * Enclosures of eigenvalues by Lehmann's method with Goerisch's choice of norm.
+ * Y = A^1/2 X Theta_t^-1/2, theta_t = theta - sigma, is orthonormal and
+ *
+ *     Y'SY = diag(k_j) = Theta_t^-1,   Y'S^2 Y = diag(k_j)^2 + G^,
+ *     G^_ij = G_ij / (t_i t_j)^3/2,    G = R'A^-1 R
+ *
+ * so that nothing cancels where residuals are small. Let N eigenvalues kappa of
+ * S be above kappa_rho, as an inertia count says. (S - kappa_rho)^-1 has N
+ * positive eigenvalues, and in the range of (S - kappa_rho) Y the Ritz values
+ * tau of
+ *
+ *     D z = tau (D^2 + G^) z,   D = diag(k_j - kappa_rho)
+ *
+ * which are below them: the i-th least of n positive ones gives
+ *
+ *     kappa_(N - n + i) <= kappa_rho + 1 / tau_i
+ *
+ * and the i-th most negative of the others kappa_(N + i) >= the same. To first
+ * order kappa_k is overestimated by G^_kk / (k_k - kappa_rho), and because
+ *
+ *     kappa_k >= eigenvalue k of X'M A^-1 M X = Theta_t^-1 + G / (t_i t_j)
+ *
+ * it is in error by G^_kk / k_k at least: bound over error is no more than
+ * k_k / (k_k - kappa_rho), nearly, which is what makes a good rho.
+ *
+ * [Lehmann1963], [BeattieGoerisch1995]
+ */
+
+static double shifted(const ritz_lehmann *trial, int64_t j)
+{
+    return trial->theta[j] - trial->sigma;
+}
+
+/* 1 / (kappa_rho + 1 / tau) + sigma; infinite if that kappa is not positive. */
+static double eigenvalue(double kappa, double sigma)
+{
+    return kappa > 0.0 ? 1.0 / kappa + sigma : HUGE_VAL;
+}
+
+/* Rounding of the trial's modes up to about rho. */
+static double rounding_at(const ritz_lehmann *trial, double rho)
+{
+    double most = 0.0;
+
+    for (int64_t j = 0; j < trial->count; j++)
+        if (j == 0 || trial->theta[j] <= 2.0 * rho)
+            most = fmax(most, trial->rounding[j]);
+    return most;
+}
+
+/* Of eigenvalues of a dense matrix. */
+static double rounding_of(const ritz_pairs *nu)
+{
+    int64_t count = nu->Phi.ncol;
+
+    return count > 0 ? roundings * DBL_EPSILON *
+                           fmax(fabs(nu->lambda[0]), nu->lambda[count - 1])
+                     : 0.0;
+}
+
+/*
+ * What one count says of full modes below it: least is carried down, as modes
+ * that rounding may exchange share it.
+ */
+static void enclose_below(const ritz_lehmann *trial, const ritz_pairs *nu,
+                          double kappa_rho, int64_t below, ritz_enclosure *e)
+{
+    int64_t count = nu->Phi.ncol;
+    int64_t first = 0;
+    double off = rounding_of(nu);
+    double least = HUGE_VAL;
+
+    while (first < count && nu->lambda[first] <= 0.0)
+        first++;
+    for (int64_t at = first; at < count; at++) {
+        int64_t p = below - 1 - (at - first);
+        double kappa = kappa_rho + nu->lambda[at] + off;
+
+        least = fmin(least, eigenvalue(kappa, trial->sigma) -
+                                trial->rounding[count - 1 - at]);
+        if (p >= 0 && p < e->count)
+            e->low[p] = fmax(e->low[p], least);
+    }
+}
+
+/* The same of modes above it: most is carried up. */
+static void enclose_above(const ritz_lehmann *trial, const ritz_pairs *nu,
+                          double kappa_rho, int64_t below, ritz_enclosure *e)
+{
+    int64_t count = nu->Phi.ncol;
+    int64_t last = count - 1;
+    double off = rounding_of(nu);
+    double most = 0.0;
+
+    while (last >= 0 && nu->lambda[last] > 0.0)
+        last--;
+    for (int64_t at = last; at >= 0; at--) {
+        int64_t p = below + (last - at);
+        double kappa = kappa_rho + nu->lambda[at] - off;
+
+        most = fmax(most, eigenvalue(kappa, trial->sigma) +
+                              trial->rounding[count - 1 - at]);
+        if (p < e->count)
+            e->high[p] = fmin(e->high[p], most);
+    }
+}
+
+/* What one count says of eigenvalues above it, or below it. */
+static ritz_status enclose(const ritz_lehmann *trial,
+                           const ritz_counted *counted, bool above,
+                           ritz_enclosure *e)
+{
+    ritz_status status = RITZ_OK;
+    double off = margin * rounding_at(trial, counted->rho);
+    double rho = counted->rho + (above ? off : -off);
+    double kappa_rho = 1.0 / (rho - trial->sigma);
+    ritz_pairs nu = {0};
+
+    if (!(kappa_rho > 0.0))
+        return RITZ_OK;
+    RITZ_TRY(solve_lehmann(trial, rho, &nu));
+    if (above)
+        enclose_above(trial, &nu, kappa_rho, counted->below, e);
+    else
+        enclose_below(trial, &nu, kappa_rho, counted->below, e);
+done:
+    ritz_pairs_free(&nu);
+    return status;
+}
+
+/* Upper bounds: of Ritz, and of one inverse iteration. */
+static ritz_status improve_from_above(const ritz_lehmann *trial,
+                                      ritz_enclosure *e)
+{
+    ritz_status status = RITZ_OK;
+    int64_t m = trial->count;
+    double off = 0.0;
+    double most = 0.0;
+    ritz_dense S = {0};
+    ritz_dense one = {0};
+    ritz_pairs kappa = {0};
+
+    RITZ_TRY(ritz_dense_new(m, m, &S));
+    RITZ_TRY(ritz_dense_new(m, m, &one));
+    for (int64_t j = 0; j < m; j++) {
+        for (int64_t i = 0; i < m; i++)
+            ritz_dense_col(&S, j)[i] = ritz_dense_col(&trial->G, j)[i] /
+                                       (shifted(trial, i) * shifted(trial, j));
+        ritz_dense_col(&S, j)[j] += 1.0 / shifted(trial, j);
+        ritz_dense_col(&one, j)[j] = 1.0;
+    }
+    RITZ_TRY(ritz_eigen_dense(&S, &one, &kappa));
+    off = rounding_of(&kappa);
+    for (int64_t k = 0; k < kappa.Phi.ncol; k++) {
+        double better =
+            fmin(trial->theta[k],
+                 eigenvalue(kappa.lambda[kappa.Phi.ncol - 1 - k] - off,
+                            trial->sigma));
+
+        most = fmax(most, better + trial->rounding[k]);
+        e->high[k] = fmin(e->high[k], most);
+    }
+done:
+    ritz_dense_free(&S);
+    ritz_dense_free(&one);
+    ritz_pairs_free(&kappa);
+    return status;
+}
+
+/* What counts alone say, and that both ends ascend. */
+static void settle_ends(const ritz_estimator *estimator,
+                        const ritz_lehmann *trial, ritz_enclosure *e)
+{
+    for (int64_t s = 0; s < estimator->num_counts; s++) {
+        double rho = estimator->count[s].rho;
+        double off = margin * rounding_at(trial, rho);
+
+        for (int64_t p = 0; p < e->count; p++) {
+            if (p >= estimator->count[s].below)
+                e->low[p] = fmax(e->low[p], rho - off);
+            else
+                e->high[p] = fmin(e->high[p], rho + off);
+        }
+    }
+    for (int64_t p = 1; p < e->count; p++)
+        e->low[p] = fmax(e->low[p], e->low[p - 1]);
+    for (int64_t p = e->count - 2; p >= 0; p--)
+        e->high[p] = fmin(e->high[p], e->high[p + 1]);
+}
+
+/* What a trial says with each count. */
+static ritz_status add_trial(const ritz_estimator *estimator,
+                             const ritz_lehmann *trial, ritz_enclosure *e)
+{
+    const ritz_counted *counted = estimator->count;
+
+    RITZ_CHECK(improve_from_above(trial, e));
+    for (int64_t s = 0; s < estimator->num_counts; s++) {
+        int64_t below = 0;
+
+        while (below < trial->count && trial->theta[below] < counted[s].rho)
+            below++;
+        if (below > 0)
+            RITZ_CHECK(enclose(trial, &counted[s], false, e));
+        if (below < trial->count && counted[s].below > below)
+            RITZ_CHECK(enclose(trial, &counted[s], true, e));
+    }
+    return RITZ_OK;
+}
+
+/* Some kappa is within eps / t of 1 / t, eps = |R|_(A^-1) / |x|_A. */
+static void add_near(const ritz_lehmann *trial, ritz_enclosure *e)
+{
+    for (int64_t k = 0; k < trial->count; k++) {
+        double t = shifted(trial, k);
+        double eps = sqrt(fmax(ritz_dense_col(&trial->G, k)[k], 0.0) / t);
+        int64_t at = e->num_near++;
+
+        e->near_high[at] = HUGE_VAL;
+        if (!(eps < 1.0)) /* it may be the kappa = 0 of no mass */
+            continue;
+        e->near_low[at] = t / (1.0 + eps) + trial->sigma - trial->rounding[k];
+        e->near_high[at] = t / (1.0 - eps) + trial->sigma + trial->rounding[k];
+    }
+}
+
+ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
+                               const ritz_lehmann *trial,
+                               const ritz_lehmann *polished,
+                               ritz_enclosure *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_enclosure e = {.count = trial->count};
+    const ritz_counted *counted = estimator->count;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++)
+        if (counted[s].below > e.count)
+            e.count = counted[s].below;
+    e.count++; /* the next one, of which counts may say something */
+    RITZ_NEW(e.low, e.count);
+    RITZ_NEW(e.high, e.count);
+    RITZ_NEW(e.near_low, trial->count + polished->count);
+    RITZ_NEW(e.near_high, trial->count + polished->count);
+    for (int64_t p = 0; p < e.count; p++)
+        e.high[p] = HUGE_VAL;
+    add_near(trial, &e);
+    add_near(polished, &e);
+    RITZ_TRY(add_trial(estimator, trial, &e));
+    RITZ_TRY(add_trial(estimator, polished, &e));
+    settle_ends(estimator, trial, &e);
+    *out = e;
+    e = (ritz_enclosure){0};
+done:
+    ritz_enclosure_free(&e);
+    return status;
+}
+
+void ritz_enclosure_free(ritz_enclosure *enclosure)
+{
+    free(enclosure->low);
+    free(enclosure->high);
+    free(enclosure->near_low);
+    free(enclosure->near_high);
+    *enclosure = (ritz_enclosure){0};
+}

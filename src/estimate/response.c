@@ -1,0 +1,472 @@
+/*
+ * D as a M + b K, if it is that to rounding: least squares over the diagonals
+ * d, m, k, by Gram-Schmidt, once more of what it leaves, and then held to every
+ * entry.
+ */
+#include "base/alloc.h"
+#include "estimate/bounder.h"
+#include "estimate/estimator.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Of sqrt(d_ii d_jj): rounding of matrices printed with 15 digits. */
+static const double within = 1e-13;
+enum { PASSES = 3 };
+/* Eigenvalues nearer than this, relative, are those of a pair. */
+static const double pair = 1e-3;
+/* Of what other modes do: rounding of vectors, not of a force or a sensor. */
+static const double no_part = 1e-9;
+static const double two_pi = 6.28318530717958647693;
+/* A free body has no response at rest: as ritz-verify begins. */
+static const double above_rest = 1e-3;
+/* Residual of a rigid mode, relative: its square is far below rounding. */
+static const double as_rigid = 1e-7;
+/* Of the largest |H_r|: intervals are not split for less. */
+static const double nothing = 1e-12;
+/* Between points the bound may exceed what it is at points by so much. */
+static const double slack = 1.05;
+enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };
+/* Of D, relative; a gyroscopic part is no damping. */
+static const double symmetric = 1e-9;
+
+typedef struct sums {
+    double mm, mk, md;
+} sums;
+
+/* Entry j of m, k and of d - a m - b k. */
+static void entry(const ritz_component *full, const double ab[2], int64_t j,
+                  double out[3])
+{
+    out[0] = ritz_sparse_diagonal(&full->M, j);
+    out[1] = ritz_sparse_diagonal(&full->K, j);
+    out[2] =
+        ritz_sparse_diagonal(&full->D, j) - ab[0] * out[0] - ab[1] * out[1];
+}
+
+/* One pass: a and b get better. */
+static void improve(const ritz_component *full, double ab[2])
+{
+    sums s = {0};
+    double kk = 0.0, kd = 0.0, b = 0.0;
+    double e[3];
+
+    for (int64_t j = 0; j < full->num_dofs; j++) {
+        entry(full, ab, j, e);
+        s.mm += e[0] * e[0];
+        s.mk += e[0] * e[1];
+        s.md += e[0] * e[2];
+    }
+    for (int64_t j = 0; j < full->num_dofs && s.mm > 0.0; j++) {
+        double k = 0.0;
+
+        entry(full, ab, j, e);
+        k = e[1] - s.mk / s.mm * e[0];
+        kk += k * k;
+        kd += k * e[2];
+    }
+    b = kk > 0.0 ? kd / kk : 0.0;
+    if (s.mm > 0.0)
+        ab[0] += (s.md - s.mk * b) / s.mm;
+    ab[1] += b;
+}
+
+/* A soft row is held to what is soft, however stiff others are. */
+static ritz_status vanishes(const ritz_component *full, const double ab[2],
+                            const ritz_sparse *rest, bool *out)
+{
+    ritz_status status = RITZ_OK;
+    double *size = NULL;
+    bool all = true;
+
+    RITZ_NEW(size, full->num_dofs);
+    for (int64_t j = 0; j < full->num_dofs; j++)
+        size[j] =
+            sqrt(within * (fabs(ritz_sparse_diagonal(&full->D, j)) +
+                           fabs(ab[0] * ritz_sparse_diagonal(&full->M, j)) +
+                           fabs(ab[1] * ritz_sparse_diagonal(&full->K, j))));
+    for (int64_t j = 0; j < rest->ncol; j++)
+        for (int64_t p = rest->colptr[j]; p < rest->colptr[j + 1]; p++)
+            all = all && fabs(rest->val[p]) <= size[rest->rowind[p]] * size[j];
+    *out = all;
+done:
+    free(size);
+    return status;
+}
+
+/* Whether D is a M + b K with a, b >= 0, and which; there is no K4. */
+static ritz_status fit_rayleigh(const ritz_component *full, double *a,
+                                double *b, bool *found)
+{
+    ritz_status status = RITZ_OK;
+    ritz_sparse part = {0};
+    ritz_sparse rest = {0};
+    double ab[2] = {0.0, 0.0};
+    double k_size = ritz_sparse_max(&full->K);
+    double m_size = ritz_sparse_max(&full->M);
+    double most = 0.0;
+
+    *found = false;
+    if (!full->D.colptr || full->K4.colptr)
+        return RITZ_OK;
+    most = within * ritz_sparse_max(&full->D);
+    for (int pass = 0; pass < PASSES; pass++)
+        improve(full, ab);
+    RITZ_TRY(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
+    RITZ_TRY(ritz_sparse_add(1.0, &part, -ab[1], &full->K, &rest));
+    RITZ_TRY(vanishes(full, ab, &rest, found));
+    *found = *found && ab[0] * m_size >= -most && ab[1] * k_size >= -most;
+    *a = fmax(ab[0], 0.0);
+    *b = fmax(ab[1], 0.0);
+done:
+    ritz_sparse_free(&part);
+    ritz_sparse_free(&rest);
+    return status;
+}
+
+/* Rates of trial modes where no ratio is common to all. */
+
+/* Diagonal of X'A X, 0 of no A. */
+static ritz_status diagonal(const ritz_sparse *D, const ritz_dense *X,
+                            double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense DX = {0};
+
+    if (!D->colptr)
+        return RITZ_OK;
+    RITZ_TRY(ritz_sparse_mul(D, X, &DX));
+    for (int64_t j = 0; j < X->ncol; j++)
+        out[j] = ritz_dense_dot(X, j, &DX, j);
+done:
+    ritz_dense_free(&DX);
+    return status;
+}
+
+/*
+ * Whether rounding of a mode's stiffness hides w d, in z = theta - w^2 + i w d:
+ * what D leaves of a mode that it does not damp is no damping.
+ */
+static bool is_lost(const ritz_lehmann *trial, int64_t j, double damping)
+{
+    return fabs(damping) <= trial->rounding[j] + trial->reduced[j];
+}
+
+/*
+ * Rates where no ratio is common to all modes: D's diagonal, K4's over omega,
+ * and what was asked for. The least ratio stands for modes not yet met.
+ *
+ * @param[out] rates,matrices  of each trial mode; matrices: what comes of D, K4
+ */
+static ritz_status take_rates(const ritz_estimator *estimator, ritz_bounder *r,
+                              double *rates, double *matrices)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_damping *damping = &estimator->request.damping;
+    double *hysteretic = NULL;
+
+    RITZ_NEW(hysteretic, r->trial->count);
+    RITZ_TRY(diagonal(&estimator->component->D, &r->trial->X, rates));
+    RITZ_TRY(diagonal(&estimator->component->K4, &r->trial->X, hysteretic));
+    r->zeta = 1.0;
+    for (int64_t j = r->num_rigid; j < r->trial->count; j++) {
+        double w = sqrt(fmax(r->trial->theta[j], DBL_MIN));
+
+        matrices[j] = rates[j] + hysteretic[j] / w;
+        rates[j] = matrices[j] +
+                   2.0 * w * ritz_damping_of_mode(damping, j - r->num_rigid, w);
+        if (is_lost(r->trial, j, rates[j] * w))
+            rates[j] = 0.0; /* see has_undamped */
+        else
+            r->zeta = fmin(r->zeta, fmax(0.5 * rates[j] / w, 0.0));
+    }
+    r->given = rates;
+    r->matrices = matrices;
+    r->coupled =
+        estimator->component->D.colptr || estimator->component->K4.colptr;
+    r->rayleigh = false;
+done:
+    free(hysteretic);
+    return status;
+}
+
+/*
+ * Whether ratios stated mode by mode differ within a pair of equal ones: any
+ * vectors of these will do, and each model damps its own.
+ */
+static bool is_at_odds(const ritz_bounder *r)
+{
+    for (int64_t j = r->num_rigid; r->given && j + 1 < r->trial->count; j++) {
+        double low = r->trial->theta[j];
+        double high = r->trial->theta[j + 1];
+        double zeta = r->given[j] / sqrt(fmax(low, DBL_MIN));
+        double next = r->given[j + 1] / sqrt(fmax(high, DBL_MIN));
+
+        if (!r->coupled && high - low <= pair * high &&
+            fabs(zeta - next) > pair * next)
+            return true;
+    }
+    return false;
+}
+
+/* Largest |v_j| / sqrt(theta_j - sigma) of a row or column of shares, of all or
+ * of one mode. */
+static double share(const ritz_bounder *r, const ritz_dense *V, bool rows,
+                    int64_t j)
+{
+    int64_t count = rows ? V->ncol : V->nrow;
+    double t = r->trial->theta[j] - r->trial->sigma;
+    double most = 0.0;
+
+    for (int64_t i = 0; i < count; i++)
+        most = fmax(most, fabs(rows ? ritz_dense_col(V, i)[j]
+                                    : ritz_dense_col(V, j)[i]));
+    return most / sqrt(t);
+}
+
+/* Whether mode j takes part in V, beside the modes that do most. */
+static bool takes_part(const ritz_bounder *r, const ritz_dense *V, bool rows,
+                       int64_t j)
+{
+    double most = 0.0;
+
+    for (int64_t k = 0; k < r->trial->count; k++)
+        most = fmax(most, share(r, V, rows, k));
+    return share(r, V, rows, j) > no_part * most;
+}
+
+/* Whether a mode of the band that is driven and seen has no damping. */
+static bool has_undamped(const ritz_bounder *r, const double band_hz[2])
+{
+    for (int64_t j = r->num_rigid; r->given && j < r->trial->count; j++) {
+        double hertz = ritz_eigen_hertz(r->trial->theta[j]);
+
+        if (r->given[j] == 0.0 && hertz >= band_hz[0] && hertz <= band_hz[1] &&
+            takes_part(r, &r->B, true, j) &&
+            (takes_part(r, &r->C[0], false, j) ||
+             takes_part(r, &r->C[1], false, j) ||
+             takes_part(r, &r->C[2], false, j)))
+            return true;
+    }
+    return false;
+}
+
+/*
+ * How far a reduced response can be off. In the trial's coordinates, with
+ * z_j(w) = theta_j - w^2 + i w d_j and d the modal damping,
+ *
+ *     eta_j = x_j'b / z_j,   r_p = b - Z X eta = b_o - c X_R eta,
+ *
+ * b_o = b - M X X'b, X_R = R and c = 1; of D = a M + b K, c = 1 + i w b. The
+ * same of an output's row, transposed, is r_d, and
+ *
+ *     H - H_r = defect + r_d' Z^-1 r_p.
+ *
+ * In exact modes, with mu = lambda - sigma and z = c mu - s,
+ *
+ *     1 / z = 1 / (c mu) + s / (c mu)^2 + rest(lambda) / mu
+ *
+ * the first two are forms in A^-1 and A^-1 M A^-1, known exactly, and the rest
+ * is small for all modes far above w. Modes k that the reduced model holds take
+ * part in r only by what it does not hold of them:
+ *
+ *     |phi_k'r| <= sqrt(mu_k) sin_k |r|_(A^-1),
+ *     sum_(k<=N) (kappa_k - kappa_(N+1)) sin_k^2
+ *                                <= sum_(k<=N) (kappa_k - 1 / t_k)
+ *
+ * from the trace of S in the span of the N lowest trial modes. The rest of mode
+ * k is bounded over the interval that is known to hold lambda_k.
+ *
+ * Ratios zeta of exact modes are not those of reduced ones: D X is 2 zeta times
+ * M X Theta^1/2 and, in exact modes, R times 2 zeta / (sqrt lambda_k + sqrt
+ * theta_j) beside: bounded by |R_j|. The defect X'D X - D_r is a second
+ * difference of sqrt lambda, of order |R_i||R_j|.
+ */
+
+/* Between a and b, split until the bound is near the best of the points. */
+static double bound_interval(ritz_bounder *r, double a, double b, double *best,
+                             int64_t *left)
+{
+    double low[DEEPEST];
+    double high[DEEPEST];
+    double top = 0.0;
+    int depth = 1;
+
+    low[0] = a;
+    high[0] = b;
+    while (depth > 0) {
+        double from = low[depth - 1];
+        double to = high[depth - 1];
+        double w = 0.5 * (from + to);
+        double U = ritz_bound_at(r, w, 0.5 * (to - from));
+
+        depth--;
+        if (U <= slack * *best || --*left < 0 || depth + 2 > DEEPEST) {
+            top = fmax(top, U);
+            continue;
+        }
+        *best = fmax(*best, ritz_bound_at(r, w, 0.0));
+        low[depth] = from;
+        high[depth++] = w;
+        low[depth] = w;
+        high[depth++] = to;
+    }
+    return top;
+}
+
+/* Points of the band, at and beside the reduced model's poles. */
+static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
+                               int64_t *count, double **hertz)
+{
+    ritz_status status = RITZ_OK;
+    ritz_grid grid = {.from_hz = band_hz[0],
+                      .to_hz = band_hz[1],
+                      .count = EVEN_POINTS,
+                      .refine = true};
+    int64_t m = r->trial->count - r->num_rigid;
+    double *omega = NULL;
+    double *zeta = NULL;
+
+    if (r->num_rigid > 0)
+        grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
+    RITZ_NEW(omega, m);
+    RITZ_NEW(zeta, m);
+    for (int64_t k = 0; k < m; k++) {
+        double theta = r->trial->theta[r->num_rigid + k];
+
+        omega[k] = sqrt(fmax(theta, 0.0));
+        zeta[k] =
+            omega[k] > 0.0
+                ? 0.5 * ritz_bounder_rate_of(r, r->num_rigid + k) / omega[k]
+                : 1.0;
+    }
+    RITZ_TRY(ritz_grid_points(&grid, m, omega, zeta, count, hertz));
+done:
+    free(omega);
+    free(zeta);
+    return status;
+}
+
+static ritz_status bound_band(ritz_bounder *r, const double band_hz[2],
+                              double *out, double *at)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = 0;
+    int64_t left = MOST_INTERVALS;
+    double *hertz = NULL;
+    double best = 0.0;
+    double top = 0.0;
+
+    RITZ_TRY(take_points(r, band_hz, &count, &hertz));
+    for (int64_t k = 0; k < count; k++) {
+        double one = ritz_bound_at(r, two_pi * hertz[k], 0.0);
+
+        if (one > best) {
+            best = one;
+            *at = hertz[k];
+        }
+    }
+    best = fmax(best, nothing * r->largest);
+    top = best;
+    for (int64_t k = 0; k + 1 < count && !r->coupled; k++)
+        top = fmax(top, bound_interval(r, two_pi * hertz[k],
+                                       two_pi * hertz[k + 1], &best, &left));
+    *out = top;
+done:
+    free(hertz);
+    return status;
+}
+
+/* What can be said of a response. */
+typedef enum promise { NOTHING, ESTIMATE, BOUND } promise;
+
+static promise promise_of(const ritz_estimator *estimator,
+                          const ritz_reduced *reduced, int64_t modes)
+{
+    const ritz_component *full = estimator->component;
+    ritz_damping_kind kind = estimator->request.damping.kind;
+
+    if (modes != reduced->K.nrow || full->io.num_inputs == 0 ||
+        full->io.num_outputs == 0 ||
+        (full->dampers.count > 0 && !full->D.colptr) || /* not installed */
+        (full->D.colptr && ritz_sparse_asymmetry(&full->D) > symmetric))
+        return NOTHING;
+    if (full->D.colptr || full->K4.colptr || kind == RITZ_DAMPING_BANDS ||
+        kind == RITZ_DAMPING_MODES)
+        return ESTIMATE;
+    return kind == RITZ_DAMPING_NONE ? NOTHING : BOUND;
+}
+
+bool ritz_response_boundable(const ritz_estimator *estimator,
+                             const ritz_reduced *reduced, int64_t modes)
+{
+    return promise_of(estimator, reduced, modes) != NOTHING;
+}
+
+/*
+ * Whether the modes that count as rigid are the full model's: then both have
+ * them at 0, where rounding of matrices may leave them elsewhere.
+ */
+static bool rigid_in_full(const ritz_lehmann *trial, int64_t num_rigid)
+{
+    bool all = true;
+
+    for (int64_t j = 0; j < num_rigid; j++) {
+        double t = trial->theta[j] - trial->sigma;
+        double eps = sqrt(fmax(ritz_dense_col(&trial->G, j)[j], 0.0) / t);
+
+        all = all && eps <= as_rigid;
+    }
+    return all;
+}
+
+ritz_status ritz_bound_response(ritz_estimator *estimator,
+                                const ritz_measuring *m,
+                                const ritz_reduced *reduced, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_damping *damping = &estimator->request.damping;
+    bool known = promise_of(estimator, reduced, m->pairs.Phi.ncol) == BOUND;
+    bool sure = false;
+    ritz_bounder r = {.trial = &m->trial,
+                      .e = &m->enclosure,
+                      .io = &estimator->component->io,
+                      .num_rigid = m->pairs.num_rigid,
+                      .rayleigh = ritz_damping_is_rayleigh(damping),
+                      .zeta = damping->zeta,
+                      .a = damping->a,
+                      .b = damping->b};
+    double *rates = NULL;
+    double *matrices = NULL;
+    double bound = 0.0;
+    double at = 0.0;
+    double counted = 0.0;
+    char where[RITZ_NAME_SIZE];
+
+    RITZ_NEW(rates, m->trial.count);
+    RITZ_NEW(matrices, m->trial.count);
+    if (!known && damping->kind == RITZ_DAMPING_NONE)
+        RITZ_TRY(fit_rayleigh(estimator->component, &r.a, &r.b, &r.rayleigh));
+    sure =
+        (known || r.rayleigh) && rigid_in_full(&m->trial, m->pairs.num_rigid);
+    if (!known && !r.rayleigh)
+        RITZ_TRY(take_rates(estimator, &r, rates, matrices));
+    RITZ_TRY(ritz_bounder_open(estimator, &r));
+    RITZ_TRY(bound_band(&r, m->band_hz, &bound, &at));
+    if ((r.coupled && ritz_missing_modes(estimator, m, &counted) != 0) ||
+        is_at_odds(&r) || has_undamped(&r, m->band_hz))
+        bound = HUGE_VAL; /* of their damping nothing is known */
+    (void)snprintf(where, sizeof where, "%.6g Hz", at);
+    if (bound > 0.0)
+        RITZ_TRY(ritz_measures_add(
+            out,
+            sure ? "response-relative-bound" : "response-relative-estimate",
+            r.least > 0.0 ? bound / r.least : HUGE_VAL, nan(""), where));
+done:
+    ritz_bounder_free(&r);
+    free(rates);
+    free(matrices);
+    return status;
+}
