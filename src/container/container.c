@@ -1,7 +1,7 @@
 /* What every kind of container begins with, and how it gets its name. */
-#include "container/container_parts.h"
-
 #include "base/alloc.h"
+#include "base/draft.h"
+#include "container/schema.h"
 
 #include <ritz/version.h>
 
@@ -11,6 +11,12 @@
 #include <sys/stat.h>
 
 enum { FORMAT = 1 };
+
+/* A container being written, under a name of its own until it is complete. */
+typedef struct container_writer {
+    hid_t file;
+    ritz_draft draft;
+} container_writer;
 
 /* A short command is a plain attribute. */
 static ritz_status set_command(hid_t file, const char *command)
@@ -29,31 +35,40 @@ done:
     return status;
 }
 
-ritz_status ritz_writer_new(const char *path, const char *kind,
-                            const char *units, const ritz_stamp *stamp,
-                            ritz_writer *out)
+static void free_writer(container_writer *writer)
+{
+    ritz_h5_close(writer->file);
+    ritz_draft_free(&writer->draft);
+    *writer = (container_writer){0};
+}
+
+static ritz_status new_writer(const char *path, const char *kind,
+                              const char *units, const ritz_stamp *stamp,
+                              container_writer *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_writer writer = {0};
+    container_writer writer = {0};
+    const int64_t format = FORMAT;
 
     RITZ_TRY(ritz_draft_new(path, &writer.draft));
     RITZ_TRY(ritz_h5_create(writer.draft.name, &writer.file));
     RITZ_TRY(ritz_h5_set_text(writer.file, "ritz_kind", kind));
-    RITZ_TRY(ritz_part_set_whole(writer.file, "ritz_format", FORMAT));
+    RITZ_TRY(ritz_h5_set(writer.file, "ritz_format", H5T_STD_I64LE,
+                         ritz_h5_scalar(), &format));
     RITZ_TRY(ritz_h5_set_text(writer.file, "ritz_version", ritz_version()));
     RITZ_TRY(set_command(writer.file, stamp->command));
     RITZ_TRY(ritz_h5_set_texts(writer.file, "inputs", stamp->num_inputs,
                                stamp->input));
     RITZ_TRY(ritz_h5_set_text(writer.file, "units", units));
     *out = writer;
-    writer = (ritz_writer){0};
+    writer = (container_writer){0};
 done:
-    ritz_writer_free(&writer);
+    free_writer(&writer);
     return status;
 }
 
 /* What HDF5 still holds back may not fit on the disk: closing can fail. */
-ritz_status ritz_writer_finish(ritz_writer *writer)
+static ritz_status finish_writer(container_writer *writer)
 {
     herr_t closed = H5Fclose(writer->file);
 
@@ -61,13 +76,6 @@ ritz_status ritz_writer_finish(ritz_writer *writer)
     RITZ_REFUSE_IF(closed < 0, RITZ_ERR_FILE,
                    "cannot be written to its end, is the disk full?");
     return ritz_draft_publish(&writer->draft);
-}
-
-void ritz_writer_free(ritz_writer *writer)
-{
-    ritz_h5_close(writer->file);
-    ritz_draft_free(&writer->draft);
-    *writer = (ritz_writer){0};
 }
 
 /* Open a container of any kind that this release reads. */
@@ -82,7 +90,7 @@ static ritz_status open_any(const char *path, char kind[RITZ_NAME_SIZE],
     RITZ_FAIL_IF(H5Aexists(file, "ritz_kind") <= 0, RITZ_ERR_FORMAT,
                  "an HDF5 file, but no container: it has no 'ritz_kind'");
     RITZ_TRY(ritz_h5_get_text(file, "ritz_kind", RITZ_NAME_SIZE, kind));
-    RITZ_TRY(ritz_part_get_whole(file, "ritz_format", &format));
+    RITZ_TRY(ritz_h5_get(file, "ritz_format", H5T_STD_I64LE, 1, &format));
     RITZ_FAIL_IF(format != FORMAT, RITZ_ERR_FORMAT,
                  "is of format %" PRId64 ", this release reads %d", format,
                  FORMAT);
@@ -93,20 +101,39 @@ done:
     return status;
 }
 
-ritz_status ritz_part_open(const char *path, const char *kind, hid_t *out)
+ritz_status ritz_schema_write(const char *path, const ritz_schema *schema,
+                              const void *object, const char *units,
+                              const ritz_stamp *stamp)
 {
     ritz_status status = RITZ_OK;
-    char found[RITZ_NAME_SIZE] = "";
-    hid_t file = 0;
+    container_writer writer = {0};
+    ritz_place place = {.schema = schema, .object = object};
 
-    RITZ_TRY(open_any(path, found, &file));
-    RITZ_FAIL_IF(strcmp(found, kind) != 0, RITZ_ERR_FORMAT,
-                 "holds a %s where a %s is due", found, kind);
-    *out = file;
-    file = 0;
+    RITZ_TRY(new_writer(path, schema->name, units, stamp, &writer));
+    place.at = writer.file;
+    RITZ_TRY(ritz_schema_write_members(&place));
+    RITZ_TRY(finish_writer(&writer));
 done:
-    ritz_h5_close(file);
-    return status;
+    free_writer(&writer);
+    return ritz_context(status, path);
+}
+
+ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
+                             void *object, char *units)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place place = {.schema = schema, .object = object, .target = object};
+    ritz_name found = "";
+
+    RITZ_TRY(open_any(path, found, &place.at));
+    RITZ_FAIL_IF(strcmp(found, schema->name) != 0, RITZ_ERR_FORMAT,
+                 "holds a %s where a %s is due", found, schema->name);
+    if (units)
+        RITZ_TRY(ritz_h5_get_text(place.at, "units", RITZ_NAME_SIZE, units));
+    RITZ_TRY(ritz_schema_read_members(&place));
+done:
+    ritz_h5_close(place.at);
+    return ritz_context(status, path);
 }
 
 bool ritz_container_is(const char *path)

@@ -2,13 +2,13 @@
  * HDF5 in the few forms that containers use.
  *
  * Files are written with bounds v1.8 to v1.10 and without times, so that two
- * identical runs give identical bytes. Every value lies under a checksum: data
- * sets of more than 64 values are chunked with Fletcher-32, smaller ones and
- * attributes lie in object headers, which HDF5 itself checks. Strings are of
- * fixed length, for the heap that holds others has no checksum. The index of
- * chunks has none either, and one that sends the reader to zeros would be
- * believed, since their Fletcher-32 is 0: hence each chunked set has an
- * attribute `checksum` of all its values.
+ * identical runs give identical bytes. All values are protected by checksums:
+ * data sets of more than 64 values are chunked with Fletcher-32; smaller ones
+ * and attributes are stored in object headers, which HDF5 itself checks.
+ * Strings have a fixed length, as the heap that holds others has no checksum.
+ * The index of chunks has none either, and the Fletcher-32 of zeros is 0, so
+ * that a damaged index could pass zeros off as values: therefore each chunked
+ * data set has an attribute `checksum` of all its values.
  *
  * `type` is the type on file, H5T_IEEE_F64LE, H5T_STD_I64LE or a string; values
  * in memory are of the native one. An id of 0 is nothing, as a failed one is.
@@ -26,12 +26,11 @@
 
 enum {
     RITZ_H5_RANK = 3,     /* most dimensions that anything has */
-    RITZ_H5_LONG = 16384, /* bytes of text that no longer are an attribute:
-                             HDF5 moves one of 64 KiB to a heap that has no
-                             checksum */
+    RITZ_H5_LONG = 16384, /* bytes from which text is a data set, as HDF5 moves
+                             an attribute of 64 KiB to a heap without checksum */
 };
 
-/* Sizes, the last running fastest; of rank 0 a single value. */
+/* Sizes, the last running fastest; rank 0 is a single value. */
 typedef struct ritz_h5_shape {
     int rank;
     hsize_t dims[RITZ_H5_RANK];
@@ -40,7 +39,6 @@ typedef struct ritz_h5_shape {
 ritz_h5_shape ritz_h5_scalar(void);
 ritz_h5_shape ritz_h5_vector(int64_t n);
 ritz_h5_shape ritz_h5_table(int64_t n, int64_t m);
-ritz_h5_shape ritz_h5_stack(int64_t n, int64_t m, int64_t k);
 
 /** Number of values, @p most + 1 if it is larger. */
 hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most);
@@ -48,10 +46,10 @@ hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most);
 /** Before HDF5 is first used: its messages are silenced, and its exit. */
 void ritz_h5_begin(void);
 
-/** Open to read. HDF5's own messages are silenced from here on. */
+/** Open to read; begins HDF5. */
 ritz_status ritz_h5_open(const char *path, hid_t *out);
 
-/** Start a file over, to write. The same holds. */
+/** Create or empty a file, to write; begins HDF5. */
 ritz_status ritz_h5_create(const char *path, hid_t *out);
 
 /** Create a group. */
@@ -65,9 +63,9 @@ bool ritz_h5_has(hid_t at, const char *name);
 
 /**
  * Names of all members of a group: in the order of their attributes `index`,
- * which are 0, 1, 2, ..., or by name if none has one.
+ * which are 0, 1, 2, ..., or by name if no member has one.
  *
- * @return RITZ_ERR_FORMAT if one cannot be a name, or an index is amiss
+ * @return RITZ_ERR_FORMAT if one cannot be a name, or an index is wrong
  */
 ritz_status ritz_h5_list(hid_t group, int64_t *count,
                          char (**out)[RITZ_NAME_SIZE]);
@@ -75,7 +73,7 @@ ritz_status ritz_h5_list(hid_t group, int64_t *count,
 /** Type of strings that take @p size bytes with their NUL. */
 hid_t ritz_h5_string(size_t size);
 
-/** Close what these functions opened, or nothing. */
+/** Close any object of these functions; 0 or less is none. */
 void ritz_h5_close(hid_t id);
 
 /** Attributes. To read, the number of values must agree, not the shape. */
@@ -91,7 +89,7 @@ ritz_status ritz_h5_get_text(hid_t at, const char *name, size_t size,
 
 /**
  * Texts of any length and number: an attribute, or a data set `long_NAME` if
- * they would not fit an object header. Each text read is the caller's to free, and the list.
+ * they are too long for an object header. The caller frees what is read.
  */
 ritz_status ritz_h5_set_texts(hid_t at, const char *name, int64_t count,
                               char *const *text);
@@ -103,42 +101,26 @@ void ritz_h5_free_texts(int64_t count, char **text);
 ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
                           hid_t *memory);
 
-/** Data sets: shape, once it is borne out, and values. */
+/** Open a data set of @p rank, once the file holds as much as it declares. */
+ritz_status ritz_h5_open_set(hid_t at, const char *name, int rank,
+                             ritz_h5_shape *shape, hid_t *out);
+
+/** The shape of such a data set, or whether it has the shape that is due. */
 ritz_status ritz_h5_shape_of(hid_t at, const char *name, int rank,
                              ritz_h5_shape *out);
-ritz_status ritz_h5_count(hid_t at, const char *name, int64_t *out);
+ritz_status ritz_h5_expect(hid_t at, const char *name, ritz_h5_shape shape);
+
+/** All values of a data set. */
 ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
                           ritz_h5_shape shape, const void *values);
 ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
                          ritz_h5_shape shape, void *values);
 
-/** Open a data set of @p rank to read, once its shape is borne out. */
-ritz_status ritz_h5_open_set(hid_t at, const char *name, int rank,
-                             ritz_h5_shape *shape, hid_t *out);
-
-/** Create a data set; @p chunk is its pieces' shape, all of it if unchunked. */
-ritz_status ritz_h5_create_set(hid_t at, const char *name, hid_t type,
-                               ritz_h5_shape shape, ritz_h5_shape *chunk,
-                               hid_t *out);
-
-/** Give a chunked data set the checksum of its values, or hold them to it. */
-ritz_status ritz_h5_seal(hid_t set, const char *name, int64_t bytes,
-                         const void *values);
-ritz_status ritz_h5_verify(hid_t set, const char *name, int64_t bytes,
-                           const void *values);
-
-/** Shape of the pieces in which a data set is best read. */
-ritz_h5_shape ritz_h5_pieces(hid_t set, const ritz_h5_shape *shape);
-
-/** The same of finite numbers; @p nan_allowed: NaN stands for none. */
-ritz_status ritz_h5_read_real(hid_t at, const char *name, ritz_h5_shape shape,
-                              bool nan_allowed, double *values);
-
 /** A dense matrix, which h5py shows as shape (nrow, ncol). */
 ritz_status ritz_h5_write_dense(hid_t at, const char *name,
                                 const ritz_dense *A);
 
-/** The same back, all finite; an expected size of -1 is any. */
+/** Read one, all finite; an expected size of -1 is any. */
 ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
                                int64_t ncol, ritz_dense *out);
 

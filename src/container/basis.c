@@ -1,0 +1,90 @@
+/* Containers of bases. */
+#include "container/schema.h"
+
+/* Damping is stored of states, and of vectors with a left side of their own. */
+static bool has_damping(const void *object)
+{
+    const ritz_basis *basis = object;
+
+    return basis->states || basis->W.val;
+}
+
+static bool has_among(const void *object)
+{
+    const ritz_basis *basis = object;
+
+    return has_damping(basis) && basis->among_hz > 0.0;
+}
+
+static ritz_status settle_basis(const ritz_place *place)
+{
+    const ritz_basis *basis = place->target;
+
+    for (int64_t k = 0; k < basis->num_hankel; k++)
+        RITZ_REFUSE_IF(basis->hankel[k] < 0.0 ||
+                           (k > 0 && basis->hankel[k] > basis->hankel[k - 1]),
+                       RITZ_ERR_FORMAT, "'hankel' does not descend to zero");
+    RITZ_REFUSE_IF(basis->bound < 0.0, RITZ_ERR_FORMAT,
+                   "'bound' is %g, which bounds no error", basis->bound);
+    return RITZ_OK;
+}
+
+static const ritz_size sizes[] = {
+    {'n', .offset = offsetof(ritz_basis, T.nrow), "T"},
+    {'r', .offset = offsetof(ritz_basis, T.ncol), "T"},
+    {'h', .offset = offsetof(ritz_basis, num_hankel), "hankel"},
+    {0},
+};
+
+static const ritz_member members[] = {
+    {"", PART, RITZ_AT(ritz_basis, origin), .schema = &ritz_schema_origin},
+    {"T", MATRIX_DENSE, RITZ_AT(ritz_basis, T), "n r",
+     "u = T q; of states [u; u'] = T z, with 2n rows"},
+    {"W", MATRIX_DENSE, RITZ_AT(ritz_basis, W), "n r", "left vectors",
+     .optional = ""},
+    {"hankel", SET_REAL, RITZ_AT(ritz_basis, hankel), "h",
+     "Hankel values of the model that was balanced, descending", .optional = "",
+     .some = 'h'},
+    {"bound", ATTRIBUTE_REAL, RITZ_AT(ritz_basis, bound), "",
+     "with `hankel`: bound of the H-infinity norm of the error, outputs "
+     "divided by their limits",
+     .values = VALUES_OR_NAN, .some = 'h'},
+    {"states", ATTRIBUTE_FLAG, RITZ_AT(ritz_basis, states), "",
+     "1: a basis of states", .optional = ""},
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_basis, damping), "",
+     "with `states` or `W`: what it was made with", .has = has_damping},
+    {"among_hz", ATTRIBUTE_REAL, RITZ_AT(ritz_basis, among_hz), "",
+     "all columns are made of the modes up to this frequency, whose damping "
+     "ratios these are",
+     .optional = "", .has = has_among},
+    {"", PART, RITZ_AT(ritz_basis, columns), .schema = &ritz_schema_columns},
+    {0},
+};
+
+const ritz_schema ritz_schema_basis = {
+    .name = "basis",
+    .sizes = sizes,
+    .members = members,
+    .settle = settle_basis,
+};
+
+ritz_status ritz_container_read_basis(const char *path, ritz_basis *out)
+{
+    ritz_basis basis = {0};
+    ritz_status status =
+        ritz_schema_read(path, &ritz_schema_basis, &basis, NULL);
+
+    if (status == RITZ_OK)
+        *out = basis;
+    else
+        ritz_basis_free(&basis);
+    return status;
+}
+
+ritz_status ritz_container_write_basis(const char *path,
+                                       const ritz_basis *basis,
+                                       const char *units,
+                                       const ritz_stamp *stamp)
+{
+    return ritz_schema_write(path, &ritz_schema_basis, basis, units, stamp);
+}

@@ -1,0 +1,150 @@
+/* Containers of components. */
+#include "container/schema.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+static int compare_rows(const void *a, const void *b)
+{
+    const int64_t *left = a;
+    const int64_t *right = b;
+
+    return (*left > *right) - (*left < *right);
+}
+
+static ritz_status settle_port(const ritz_place *place)
+{
+    const ritz_port *port = place->target;
+    ritz_status status = RITZ_OK;
+    ritz_dofs sorted = {0};
+
+    RITZ_TRY(ritz_dofs_copy(&port->dofs, &sorted));
+    qsort(sorted.at, (size_t)sorted.count, sizeof *sorted.at, compare_rows);
+    for (int64_t k = 1; k < sorted.count; k++)
+        RITZ_FAIL_IF(sorted.at[k - 1] == sorted.at[k], RITZ_ERR_FORMAT,
+                     "row %" PRId64 " is in 'dofs' twice", sorted.at[k]);
+done:
+    ritz_dofs_free(&sorted);
+    return status;
+}
+
+static const ritz_size port_sizes[] = {
+    {'q', .offset = offsetof(ritz_port, dofs.count), "dofs"},
+    {0},
+};
+
+static const ritz_member port_members[] = {
+    {"origin", ATTRIBUTE_REAL, RITZ_AT(ritz_port, origin), "3",
+     "in the basic frame"},
+    {"axes", ATTRIBUTE_REAL, RITZ_AT(ritz_port, axes), "3 3",
+     "row i is axis i in basic axes"},
+    {"dofs", SET_WHOLE, RITZ_AT(ritz_port, dofs.at), "q", "distinct rows",
+     "0..n-1"},
+    {0},
+};
+
+static const ritz_schema port_schema = {
+    .name = "port of a component",
+    .sizes = port_sizes,
+    .members = port_members,
+    .settle = settle_port,
+};
+
+static const ritz_member load_members[] = {
+    {"", MATRIX_SPARSE, RITZ_AT(ritz_load, KG), "n n"},
+    {0},
+};
+
+static const ritz_schema load_schema = {.members = load_members};
+
+/* Settling finds the asymmetry that is there now; the larger one counts. */
+static ritz_status settle_component(const ritz_place *place)
+{
+    ritz_component *component = place->target;
+    double asymmetry = component->asymmetry;
+
+    RITZ_CHECK_IN("elements", ritz_elements_check(&component->elements,
+                                                  component->grids.count,
+                                                  component->grids.id));
+    RITZ_CHECK_IN("recovery",
+                  ritz_recovery_check(&component->recovery, component->num_dofs,
+                                      component->dof));
+    RITZ_CHECK(ritz_component_settle(component, false));
+    component->asymmetry = fmax(component->asymmetry, asymmetry);
+    return RITZ_OK;
+}
+
+static const ritz_size sizes[] = {
+    {'n', .offset = offsetof(ritz_component, num_dofs), "dofs/grid"},
+    {'c', .offset = offsetof(ritz_component, num_dofs)},
+    {'l', .offset = offsetof(ritz_component, num_loads)},
+    {'b', .offset = offsetof(ritz_component, num_ports)},
+    {0},
+};
+
+static const ritz_member members[] = {
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_component, damping), "",
+     "as `--damping` reads it; may be empty"},
+    {"asymmetry", ATTRIBUTE_REAL, RITZ_AT(ritz_component, asymmetry), "",
+     "relative asymmetry that was averaged away"},
+    {"digits", ATTRIBUTE_REAL, RITZ_AT(ritz_component, digits), "",
+     "significant digits of the source, 0 if not known"},
+    {"K", MATRIX_SPARSE, RITZ_AT(ritz_component, K), "n n",
+     "stiffness; no entries in a rigid component", .optional = ""},
+    {"M", MATRIX_SPARSE, RITZ_AT(ritz_component, M), "n n", "mass",
+     .optional = ""},
+    {"D", MATRIX_SPARSE, RITZ_AT(ritz_component, D), "n n",
+     "viscous damping; the one matrix that need not be symmetric",
+     .optional = ""},
+    {"K4", MATRIX_SPARSE, RITZ_AT(ritz_component, K4), "n n",
+     "structural damping, in K + i K4", .optional = ""},
+    {"KG", LIST, RITZ_LIST(ritz_component, load), "l",
+     "geometric stiffness of each unit load, sparse (n, n)", .optional = "",
+     .some = 'l', .schema = &load_schema},
+    {"dofs/grid", SET_WHOLE, RITZ_ITEM(ritz_component, dof, ritz_dof, grid),
+     "n", "grid or scalar point of each row"},
+    {"dofs/component", SET_WHOLE,
+     RITZ_ITEM(ritz_component, dof, ritz_dof, component), "n",
+     "1-3 translation, 4-6 rotation, 0 scalar point", "0..6"},
+    {"grids", PART, RITZ_AT(ritz_component, grids), .optional = "", .some = 'f',
+     .schema = &ritz_schema_grids},
+    {"elements", PART, RITZ_AT(ritz_component, elements), .optional = "",
+     .some = 'e', .schema = &ritz_schema_elements},
+    {"ports", LIST, RITZ_LIST(ritz_component, port), "b",
+     .schema = &port_schema},
+    {"", PART, RITZ_AT(ritz_component, io), .schema = &ritz_schema_io},
+    {"recovery", PART, RITZ_AT(ritz_component, recovery), .optional = "",
+     .some = 'd', .schema = &ritz_schema_recovery},
+    {"dampers", PART, RITZ_AT(ritz_component, dampers), .optional = "",
+     .some = 'd', .schema = &ritz_schema_dampers},
+    {0},
+};
+
+const ritz_schema ritz_schema_component = {
+    .name = "component",
+    .sizes = sizes,
+    .members = members,
+    .settle = settle_component,
+};
+
+ritz_status ritz_container_read_component(const char *path, ritz_component *out)
+{
+    ritz_component component = {0};
+    ritz_status status = ritz_schema_read(path, &ritz_schema_component,
+                                          &component, component.units);
+
+    if (status == RITZ_OK)
+        *out = component;
+    else
+        ritz_component_free(&component);
+    return status;
+}
+
+ritz_status ritz_container_write_component(const char *path,
+                                           const ritz_component *component,
+                                           const ritz_stamp *stamp)
+{
+    return ritz_schema_write(path, &ritz_schema_component, component,
+                             component->units, stamp);
+}

@@ -1,0 +1,305 @@
+/* Members that several kinds of container share. */
+#include "container/schema.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/* Grids. */
+
+static ritz_status settle_grids(const ritz_place *place)
+{
+    const ritz_grids *grids = place->target;
+
+    RITZ_REFUSE_IF(grids->num_frames < 1, RITZ_ERR_FORMAT,
+                   "'frames' is not f x 3 x 3");
+    for (int64_t k = 1; k < grids->count; k++)
+        RITZ_REFUSE_IF(grids->id[k - 1] >= grids->id[k], RITZ_ERR_FORMAT,
+                       "'id' does not ascend at grid %" PRId64, grids->id[k]);
+    for (int k = 0; k < 9; k++)
+        RITZ_REFUSE_IF(fabs(grids->axes[k] - (k % 4 == 0 ? 1.0 : 0.0)) > 0.0,
+                       RITZ_ERR_FORMAT, "frame 0 is not the basic frame");
+    return RITZ_OK;
+}
+
+static const ritz_size grids_sizes[] = {
+    {'g', .offset = offsetof(ritz_grids, count), "id"},
+    {'f', .offset = offsetof(ritz_grids, num_frames), "frames"},
+    {0},
+};
+
+static const ritz_member grids_members[] = {
+    {"id", SET_WHOLE, RITZ_AT(ritz_grids, id), "g", "ascending"},
+    {"position", SET_REAL, RITZ_AT(ritz_grids, position), "g 3",
+     "in the basic frame"},
+    {"frame", SET_WHOLE, RITZ_AT(ritz_grids, frame), "g",
+     "row of `frames` along whose axes the grid's displacements are", "0..f-1"},
+    {"frames", SET_REAL, RITZ_AT(ritz_grids, axes), "f 3 3",
+     "`frames[k, i]` is displacement axis i in basic axes; `frames[0]` is the "
+     "identity"},
+    {0},
+};
+
+const ritz_schema ritz_schema_grids = {
+    .name = "grids",
+    .sizes = grids_sizes,
+    .members = grids_members,
+    .settle = settle_grids,
+};
+
+/* Elements. */
+
+static int64_t count_nodes(const void *object)
+{
+    const ritz_elements *elements = object;
+
+    return elements->first ? elements->first[elements->count] : 0;
+}
+
+static ritz_status settle_elements(const ritz_place *place)
+{
+    const ritz_elements *elements = place->target;
+
+    RITZ_REFUSE_IF(elements->count == 0, RITZ_ERR_FORMAT,
+                   "'first' has 1 values for 0 elements");
+    for (int64_t k = 0; k < elements->count; k++)
+        RITZ_REFUSE_IF(elements->first[k + 1] < elements->first[k],
+                       RITZ_ERR_FORMAT, "'first' does not ascend");
+    return RITZ_OK;
+}
+
+static const ritz_size elements_sizes[] = {
+    {'e', .offset = offsetof(ritz_elements, count), "kind"},
+    {'t', .count = count_nodes},
+    {0},
+};
+
+static const ritz_member elements_members[] = {
+    {"kind", SET_WHOLE, RITZ_AT(ritz_elements, kind), "e",
+     "VTK's number of the cell", "1.."},
+    {"first", SET_WHOLE, RITZ_AT(ritz_elements, first), "e+1",
+     "element k has the grids `grids[first[k]:first[k + 1]]`, from 0", "0.."},
+    {"grids", SET_WHOLE, RITZ_AT(ritz_elements, grid), "t",
+     "ids that `grids/id` holds, in VTK's order"},
+    {0},
+};
+
+const ritz_schema ritz_schema_elements = {
+    .name = "elements",
+    .sizes = elements_sizes,
+    .members = elements_members,
+    .settle = settle_elements,
+};
+
+/* Dofs that constraints eliminated. */
+
+static ritz_status settle_recovery(const ritz_place *place)
+{
+    const ritz_recovery *recovery = place->target;
+
+    RITZ_REFUSE_IF(recovery->count == 0, RITZ_ERR_FORMAT, "it names no dofs");
+    return RITZ_OK;
+}
+
+static const ritz_size recovery_sizes[] = {
+    {'d', .offset = offsetof(ritz_recovery, count), "grid"},
+    {0},
+};
+
+static const ritz_member recovery_members[] = {
+    {"grid", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, grid), "d",
+     "grid of each dof that constraints eliminated"},
+    {"component", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, component),
+     "d", "and its direction", "0..6"},
+    {"G", MATRIX_SPARSE, RITZ_AT(ritz_recovery, G), "d n",
+     "how they follow: u(recovery) = G u, with u the rows that `dofs` names"},
+    {0},
+};
+
+const ritz_schema ritz_schema_recovery = {
+    .name = "recovery",
+    .sizes = recovery_sizes,
+    .members = recovery_members,
+    .settle = settle_recovery,
+};
+
+/* Dampers. */
+
+static ritz_status settle_dampers(const ritz_place *place)
+{
+    return ritz_dampers_check(place->target, ritz_schema_size(place, 'c'));
+}
+
+static const ritz_size dampers_sizes[] = {
+    {'d', .offset = offsetof(ritz_dampers, count), "names"},
+    {0},
+};
+
+static const ritz_member dampers_members[] = {
+    {"names", SET_WORDS, RITZ_AT(ritz_dampers, name), "d",
+     "distinct; `body/damper` in systems"},
+    {"c", SET_REAL, RITZ_AT(ritz_dampers, c), "d",
+     "each stands for c b b' in D; not negative"},
+    {"k", SET_REAL, RITZ_AT(ritz_dampers, k), "d", "and for k b b' in K"},
+    {"held_c", SET_REAL, RITZ_AT(ritz_dampers, held_c), "d",
+     "what of that `D` contains already: 0 in components and reductions, c in "
+     "systems"},
+    {"held_k", SET_REAL, RITZ_AT(ritz_dampers, held_k), "d",
+     "the same of k and `K`"},
+    {"B", MATRIX_DENSE, RITZ_AT(ritz_dampers, B), "c d",
+     "influence vectors b, as columns"},
+    {0},
+};
+
+const ritz_schema ritz_schema_dampers = {
+    .name = "dampers",
+    .sizes = dampers_sizes,
+    .members = dampers_members,
+    .settle = settle_dampers,
+};
+
+/* Inputs and outputs. */
+
+/* Matrices without columns or rows, and empty lists, where there are none. */
+static ritz_status settle_io(const ritz_place *place)
+{
+    ritz_io *io = place->target;
+    int64_t n = ritz_schema_size(place, 'c');
+
+    if (!io->B.val) {
+        RITZ_CHECK_NEW(io->input, 0);
+        RITZ_CHECK(ritz_dense_new(n, 0, &io->B));
+    }
+    if (!io->C.val) {
+        RITZ_CHECK_NEW(io->output, 0);
+        RITZ_CHECK_NEW(io->limit, 0);
+        RITZ_CHECK(ritz_dense_new(0, n, &io->C));
+        RITZ_CHECK(ritz_dense_new(0, n, &io->Cv));
+        RITZ_CHECK(ritz_dense_new(0, n, &io->Ca));
+    }
+    return RITZ_OK;
+}
+
+static const ritz_size io_sizes[] = {
+    {'m', .offset = offsetof(ritz_io, num_inputs), "inputs/names"},
+    {'p', .offset = offsetof(ritz_io, num_outputs), "outputs/names"},
+    {0},
+};
+
+static const ritz_member io_members[] = {
+    {"inputs/names", SET_NAMES, RITZ_AT(ritz_io, input), "m", "distinct",
+     .optional = "inputs", .some = 'm'},
+    {"inputs/B", MATRIX_DENSE, RITZ_AT(ritz_io, B), "c m",
+     "input matrix: M x'' + D x' + K x = B u", .optional = "inputs",
+     .some = 'm'},
+    {"outputs/names", SET_NAMES, RITZ_AT(ritz_io, output), "p", "distinct",
+     .optional = "outputs", .some = 'p'},
+    {"outputs/C", MATRIX_DENSE, RITZ_AT(ritz_io, C), "p c",
+     "y = C x + Cv x' + Ca x''", .optional = "outputs", .some = 'p'},
+    {"outputs/Cv", MATRIX_DENSE, RITZ_AT(ritz_io, Cv), "p c", "of velocities",
+     .optional = "outputs", .some = 'p'},
+    {"outputs/Ca", MATRIX_DENSE, RITZ_AT(ritz_io, Ca), "p c",
+     "of accelerations", .optional = "outputs", .some = 'p'},
+    {"outputs/limits", SET_REAL, RITZ_AT(ritz_io, limit), "p",
+     "largest tolerated \\|y\\|", .values = VALUES_OR_NAN,
+     .optional = "outputs", .some = 'p'},
+    {0},
+};
+
+const ritz_schema ritz_schema_io = {
+    .name = "inputs and outputs",
+    .sizes = io_sizes,
+    .members = io_members,
+    .settle = settle_io,
+};
+
+/* Columns of a basis. */
+
+static const ritz_size columns_sizes[] = {
+    {'r', .offset = offsetof(ritz_columns, count), "^"},
+    {0},
+};
+
+static const ritz_member columns_members[] = {
+    {"columns/kind", SET_COLUMN_KINDS, RITZ_AT(ritz_columns, kind), "r",
+     "rigid, constraint, normal, residual, system, krylov, static, "
+     "attachment, interface, massless, force, state, perturbed, balanced"},
+    {"columns/dof", SET_WHOLE, RITZ_AT(ritz_columns, dof), "r",
+     "row of the full component whose unit motion or force the column "
+     "answers; -1 where none",
+     "-1..n-1"},
+    {"columns/hertz", SET_REAL, RITZ_AT(ritz_columns, hertz), "r",
+     "frequency of a mode", .values = VALUES_OR_NAN},
+    {"residuals", SET_REAL, RITZ_AT(ritz_columns, residual), "r",
+     "relative residual of each eigenpair", .values = VALUES_OR_NAN},
+    {0},
+};
+
+const ritz_schema ritz_schema_columns = {
+    .name = "columns",
+    .sizes = columns_sizes,
+    .members = columns_members,
+};
+
+/* How a basis was made. */
+
+static const ritz_member origin_members[] = {
+    {"method", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, method), "",
+     "which made the basis"},
+    {"options", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, options), "",
+     "as given"},
+    {"reference", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, reference), "",
+     "key of `references.bib`"},
+    {"engine", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, engine), "",
+     "libraries that computed it"},
+    {0},
+};
+
+const ritz_schema ritz_schema_origin = {
+    .name = "origin",
+    .members = origin_members,
+};
+
+/* Measures. */
+
+/* An infinite value is a bound that bounds nothing. */
+static ritz_status settle_measures(const ritz_place *place)
+{
+    const ritz_measures *measures = place->target;
+    ritz_name name = "";
+
+    for (int64_t k = 0; k < measures->count; k++) {
+        const ritz_measure *item = &measures->item[k];
+
+        RITZ_REFUSE_IF(isnan(item->value) || item->value == -HUGE_VAL,
+                       RITZ_ERR_FORMAT, "value %" PRId64 " of 'value' is none",
+                       k + 1);
+        RITZ_CHECK(ritz_name_copy(item->name, name));
+    }
+    return RITZ_OK;
+}
+
+static const ritz_size measures_sizes[] = {
+    {'k', .offset = offsetof(ritz_measures, count), "name"},
+    {0},
+};
+
+static const ritz_member measures_members[] = {
+    {"name", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, name), "k",
+     "of the measure"},
+    {"value", SET_REAL, RITZ_ITEM(ritz_measures, item, ritz_measure, value),
+     "k", "infinite: a bound that bounds nothing", .values = VALUES_ANY},
+    {"limit", SET_REAL, RITZ_ITEM(ritz_measures, item, ritz_measure, limit),
+     "k", "that was asked for", .values = VALUES_OR_NAN},
+    {"where", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, where),
+     "k", "mode, channel or frequency; may be empty"},
+    {0},
+};
+
+const ritz_schema ritz_schema_measures = {
+    .name = "measures",
+    .sizes = measures_sizes,
+    .members = measures_members,
+    .settle = settle_measures,
+};

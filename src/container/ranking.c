@@ -1,0 +1,258 @@
+/*
+ * Containers of rankings: a single one has its members in the file itself,
+ * several have theirs in `rankings/0`, 1, ... Files of releases before clusters,
+ * parts and configurations lack those members, and are read.
+ */
+#include "container/schema.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Each mode has one place in the order. */
+static ritz_status check_order(const ritz_ranking *ranking)
+{
+    ritz_status status = RITZ_OK;
+    bool *placed = NULL;
+
+    RITZ_NEW(placed, ranking->count);
+    for (int64_t k = 0; k < ranking->count; k++) {
+        int64_t mode = ranking->order[k];
+
+        RITZ_FAIL_IF(placed[mode], RITZ_ERR_FORMAT,
+                     "mode %" PRId64 " is in 'order' twice", mode);
+        placed[mode] = true;
+    }
+done:
+    free(placed);
+    return status;
+}
+
+/* Without clusters each mode is its own. Modes of a cluster are neighbours. */
+static ritz_status settle_clusters(ritz_ranking *ranking)
+{
+    int64_t m = ranking->count;
+    int64_t *cluster = ranking->cluster;
+
+    if (!cluster) {
+        RITZ_CHECK_NEW(cluster, m);
+        for (int64_t k = 0; k < m; k++)
+            cluster[k] = k;
+        ranking->cluster = cluster;
+    }
+    for (int64_t k = 0; k < m; k++)
+        RITZ_REFUSE_IF(cluster[k] != k &&
+                           (k == 0 || cluster[k] != cluster[k - 1]),
+                       RITZ_ERR_FORMAT,
+                       "'cluster' does not name the first "
+                       "mode");
+    return RITZ_OK;
+}
+
+static ritz_status settle_ranking(const ritz_place *place)
+{
+    ritz_ranking *ranking = place->target;
+
+    RITZ_CHECK(check_order(ranking));
+    RITZ_CHECK(settle_clusters(ranking));
+    for (int k = 0; k < 2; k++)
+        RITZ_REFUSE_IF(!isnan(ranking->coupling) && ranking->coupling > 0.0 &&
+                           (ranking->coupled[k] < 0 ||
+                            ranking->coupled[k] >= ranking->count),
+                       RITZ_ERR_FORMAT, "'coupled' is not a pair of modes");
+    return RITZ_OK;
+}
+
+/* What earlier releases did not write is always written. */
+static bool has_always(const void *object)
+{
+    (void)object;
+    return true;
+}
+
+/* Tracks: numbers by which modes are followed, of all rankings or of none. */
+
+static ritz_status write_track(const ritz_place *place, hid_t group)
+{
+    const ritz_ranking *ranking = place->object;
+    const ritz_rankings *all = place->outer->object;
+
+    if (!all->track)
+        return RITZ_OK;
+    return ritz_h5_write(group, "track", H5T_STD_I64LE,
+                         ritz_h5_vector(ranking->count),
+                         all->track[place->index]);
+}
+
+static const ritz_size sizes[] = {
+    {'m', .offset = offsetof(ritz_ranking, count), "hertz"},
+    {'p', .offset = offsetof(ritz_ranking, num_parts), "parts/names"},
+    {'s', .offset = offsetof(ritz_ranking, num_system), "system_value"},
+    {0},
+};
+
+static ritz_status read_track(const ritz_place *place, hid_t group)
+{
+    ritz_rankings *all = place->outer->target;
+    int64_t m = all->item[place->index].count;
+    bool there = ritz_h5_has(group, "track");
+
+    if (there && place->index == 0)
+        RITZ_CHECK_NEW(all->track, all->count);
+    RITZ_REFUSE_IF(there != !!all->track, RITZ_ERR_FORMAT,
+                   "some rankings have 'track' and some do not");
+    if (!there)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(all->track[place->index], m);
+    RITZ_CHECK(ritz_h5_read(group, "track", H5T_STD_I64LE, ritz_h5_vector(m),
+                            all->track[place->index]));
+    return ritz_schema_check_whole("track", m, all->track[place->index], 0,
+                                   INT32_MAX);
+}
+
+static const ritz_member members[] = {
+    {"by", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_ranking, by), "",
+     "name of the ranking"},
+    {"reference", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_ranking, reference), "",
+     "key of `references.bib`"},
+    {"at", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_ranking, at), "", "the configuration",
+     .optional = "", .has = has_always},
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_ranking, damping), "",
+     "as `--damping` reads it; may be empty", .optional = "",
+     .has = has_always},
+    {"total", ATTRIBUTE_REAL, RITZ_AT(ritz_ranking, total), "",
+     "sum of all values by identity; NaN: there is none",
+     .values = VALUES_OR_NAN, .optional = "", .has = has_always},
+    {"coupling", ATTRIBUTE_REAL, RITZ_AT(ritz_ranking, coupling), "",
+     "largest normalised off-diagonal of the modal Gramian; NaN: not computed",
+     .values = VALUES_OR_NAN},
+    {"coupled", ATTRIBUTE_WHOLE, RITZ_AT(ritz_ranking, coupled), "2",
+     "the two modes of that entry"},
+    {"hertz", SET_REAL, RITZ_AT(ritz_ranking, hertz), "m",
+     "of the flexible modes"},
+    {"zeta", SET_REAL, RITZ_AT(ritz_ranking, zeta), "m",
+     "damping ratio that was used; 0: none"},
+    {"value", SET_REAL, RITZ_AT(ritz_ranking, value), "m", "of each mode"},
+    {"order", SET_WHOLE, RITZ_AT(ritz_ranking, order), "m", "modes, best first",
+     "0..m-1"},
+    {"cluster", SET_WHOLE, RITZ_AT(ritz_ranking, cluster), "m",
+     "first mode of each mode's cluster", "0..m-1", .optional = "",
+     .some = 'm'},
+    {"track", BY_HAND, .shape = "m",
+     .about = "numbers from 0 that say which mode is which in other rankings",
+     .write = write_track, .read = read_track},
+    {"parts/names", SET_WORDS, RITZ_AT(ritz_ranking, part), "p",
+     "outputs, inputs or directions that values are made of",
+     .optional = "parts", .some = 'p'},
+    {"parts/whole", SET_REAL, RITZ_AT(ritz_ranking, whole), "p",
+     "what there is of each in all; NaN where unknown", .values = VALUES_OR_NAN,
+     .optional = "parts", .some = 'p'},
+    {"parts/values", MATRIX_DENSE, RITZ_AT(ritz_ranking, parts), "m p",
+     "of each mode", .optional = "parts", .some = 'p'},
+    {"system_value", SET_REAL, RITZ_AT(ritz_ranking, system_value), "s",
+     "exact Hankel values of the whole, descending"},
+    {0},
+};
+
+const ritz_schema ritz_schema_ranking = {
+    .name = "ranking",
+    .sizes = sizes,
+    .members = members,
+    .settle = settle_ranking,
+};
+
+/* One ranking or several. */
+
+static bool has_several(const void *object)
+{
+    return ((const ritz_rankings *)object)->count != 1;
+}
+
+static ritz_status write_single(const ritz_place *place, hid_t group)
+{
+    const ritz_rankings *all = place->object;
+    const ritz_place item = {.at = group,
+                             .schema = &ritz_schema_ranking,
+                             .object = all->item,
+                             .outer = place};
+
+    return has_several(all) ? RITZ_OK : ritz_schema_write_members(&item);
+}
+
+static ritz_status read_single(const ritz_place *place, hid_t group)
+{
+    ritz_rankings *all = place->target;
+    ritz_place item = {
+        .at = group, .schema = &ritz_schema_ranking, .outer = place};
+
+    if (all->item) /* several were read */
+        return RITZ_OK;
+    RITZ_CHECK_NEW(all->item, 1);
+    all->count = 1;
+    item.object = item.target = all->item;
+    return ritz_schema_read_members(&item);
+}
+
+static const ritz_size rankings_sizes[] = {
+    {'k', .offset = offsetof(ritz_rankings, count)},
+    {0},
+};
+
+static const ritz_member rankings_members[] = {
+    {"rankings", LIST, RITZ_LIST(ritz_rankings, item), "k", .numbered = true,
+     .optional = "", .has = has_several, .schema = &ritz_schema_ranking},
+    {"", BY_HAND, .shape = "", .write = write_single, .read = read_single},
+    {0},
+};
+
+static const ritz_schema rankings_schema = {
+    .name = "ranking",
+    .sizes = rankings_sizes,
+    .members = rankings_members,
+};
+
+ritz_status ritz_container_read_rankings(const char *path, ritz_rankings *out)
+{
+    ritz_rankings all = {0};
+    ritz_status status = ritz_schema_read(path, &rankings_schema, &all, NULL);
+
+    if (status == RITZ_OK)
+        *out = all;
+    else
+        ritz_rankings_free(&all);
+    return status;
+}
+
+ritz_status ritz_container_write_rankings(const char *path,
+                                          const ritz_rankings *rankings,
+                                          const ritz_stamp *stamp)
+{
+    return ritz_schema_write(path, &rankings_schema, rankings, "", stamp);
+}
+
+ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_rankings all = {0};
+
+    RITZ_TRY(ritz_container_read_rankings(path, &all));
+    RITZ_FAIL_IF(all.count != 1, RITZ_ERR_FORMAT,
+                 "'%s' holds %" PRId64 " rankings, not one", path, all.count);
+    *out = all.item[0];
+    all.item[0] = (ritz_ranking){0};
+done:
+    ritz_rankings_free(&all);
+    return status;
+}
+
+ritz_status ritz_container_write_ranking(const char *path,
+                                         const ritz_ranking *ranking,
+                                         const ritz_stamp *stamp)
+{
+    ritz_ranking one = *ranking; /* borrowed */
+    const ritz_rankings all = {.count = 1, .item = &one};
+
+    return ritz_container_write_rankings(path, &all, stamp);
+}

@@ -1,0 +1,237 @@
+/* Containers of reduced components. */
+#include "container/schema.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+/* Ports. */
+
+static const ritz_size port_sizes[] = {
+    {'p', .offset = offsetof(ritz_port_map, count), "grid"},
+    {0},
+};
+
+static const ritz_member port_members[] = {
+    {"origin", ATTRIBUTE_REAL, RITZ_AT(ritz_port_map, origin), "3",
+     "in the basic frame"},
+    {"axes", ATTRIBUTE_REAL, RITZ_AT(ritz_port_map, axes), "3 3",
+     "row i is axis i in basic axes"},
+    {"grid", SET_WHOLE, RITZ_ITEM(ritz_port_map, dof, ritz_dof, grid), "p",
+     "of each row"},
+    {"component", SET_WHOLE, RITZ_ITEM(ritz_port_map, dof, ritz_dof, component),
+     "p", "basic direction of each row", "0..6"},
+    {"position", SET_REAL, RITZ_AT(ritz_port_map, position), "p 3",
+     "of each row's grid; zero for a scalar point"},
+    {"map", MATRIX_DENSE, RITZ_AT(ritz_port_map, map), "p r",
+     "displacements along basic axes = map q"},
+    {0},
+};
+
+static const ritz_schema port_schema = {
+    .name = "port of a reduced component",
+    .sizes = port_sizes,
+    .members = port_members,
+};
+
+/* Prefixes of nested columns: a data set of errors for each measure. */
+
+static ritz_status write_errors(const ritz_place *place, hid_t group)
+{
+    const ritz_nested *nested = place->object;
+    ritz_h5_shape shape = ritz_h5_vector(nested->count);
+    ritz_name name = "";
+
+    for (int64_t j = 0; j < nested->num_errors; j++) {
+        RITZ_CHECK(ritz_name_copy(nested->error[j], name));
+        RITZ_CHECK(ritz_h5_write(group, name, H5T_IEEE_F64LE, shape,
+                                 ritz_dense_col(&nested->value, j)));
+    }
+    return RITZ_OK;
+}
+
+static ritz_status read_errors(const ritz_place *place, hid_t group)
+{
+    ritz_nested *nested = place->target;
+    ritz_h5_shape shape = ritz_h5_vector(nested->count);
+
+    RITZ_CHECK(ritz_h5_list(group, &nested->num_errors, &nested->error));
+    RITZ_CHECK(
+        ritz_dense_new(nested->count, nested->num_errors, &nested->value));
+    for (int64_t j = 0; j < nested->num_errors; j++) {
+        double *value = ritz_dense_col(&nested->value, j);
+
+        RITZ_CHECK(ritz_h5_read(group, nested->error[j], H5T_IEEE_F64LE, shape,
+                                value));
+        RITZ_CHECK(ritz_schema_check_real(nested->error[j], nested->count,
+                                          value, VALUES_OR_NAN));
+    }
+    return RITZ_OK;
+}
+
+static ritz_status settle_nested(const ritz_place *place)
+{
+    const ritz_nested *nested = place->target;
+
+    for (int64_t k = 1; k < nested->count; k++)
+        RITZ_REFUSE_IF(nested->order[k] <= nested->order[k - 1],
+                       RITZ_ERR_FORMAT,
+                       "'order' does not ascend at value %" PRId64, k + 1);
+    return RITZ_OK;
+}
+
+static const ritz_size nested_sizes[] = {
+    {'s', .offset = offsetof(ritz_nested, smallest)},
+    {'k', .offset = offsetof(ritz_nested, count), "order"},
+    {0},
+};
+
+static const ritz_member nested_members[] = {
+    {"smallest", ATTRIBUTE_WHOLE, RITZ_AT(ritz_nested, smallest), "",
+     "the first so many columns, or more, are a reduced component of their own",
+     "1..r"},
+    {"order", SET_WHOLE, RITZ_AT(ritz_nested, order), "k",
+     "orders of which something is known, ascending, in `smallest`..r", "s..r"},
+    {"error/<measure>", BY_HAND, .shape = "k",
+     .about = "what that measure came to at each; NaN where it was not "
+              "measured",
+     .write = write_errors, .read = read_errors},
+    {0},
+};
+
+const ritz_schema ritz_schema_nested = {
+    .name = "nested",
+    .sizes = nested_sizes,
+    .members = nested_members,
+    .settle = settle_nested,
+};
+
+/* The whole. */
+
+static bool has_inertia(const void *object)
+{
+    return ((const ritz_reduced *)object)->inertia.known;
+}
+
+static bool has_invariants(const void *object)
+{
+    const ritz_reduced *reduced = object;
+
+    return has_inertia(object) && reduced->invariants.momentum.val;
+}
+
+static bool has_dofs(const void *object)
+{
+    return ((const ritz_reduced *)object)->dof;
+}
+
+static ritz_status settle_reduced(const ritz_place *place)
+{
+    ritz_reduced *reduced = place->target;
+
+    reduced->inertia.known = ritz_h5_has(place->at, "inertia");
+    RITZ_CHECK_IN("elements",
+                  ritz_elements_check(&reduced->elements, reduced->grids.count,
+                                      reduced->grids.id));
+    return ritz_context(ritz_recovery_check(&reduced->recovery,
+                                            reduced->num_dofs, reduced->dof),
+                        "recovery");
+}
+
+static const ritz_size sizes[] = {
+    {'n', .offset = offsetof(ritz_reduced, num_dofs)},
+    {'r', .offset = offsetof(ritz_reduced, K.ncol), "K"},
+    {'c', .offset = offsetof(ritz_reduced, K.ncol)},
+    {'b', .offset = offsetof(ritz_reduced, num_ports)},
+    {0},
+};
+
+static const ritz_member members[] = {
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_reduced, damping), "",
+     "as `--damping` reads it; may be empty"},
+    {"", PART, RITZ_AT(ritz_reduced, origin), .schema = &ritz_schema_origin},
+    {"num_dofs", ATTRIBUTE_WHOLE, RITZ_AT(ritz_reduced, num_dofs), "",
+     "n of the full component", "0.."},
+    {"K", MATRIX_DENSE, RITZ_AT(ritz_reduced, K), "r r", "stiffness"},
+    {"M", MATRIX_DENSE, RITZ_AT(ritz_reduced, M), "r r", "mass"},
+    {"D", MATRIX_DENSE, RITZ_AT(ritz_reduced, D), "r r", "viscous damping",
+     .optional = ""},
+    {"K4", MATRIX_DENSE, RITZ_AT(ritz_reduced, K4), "r r",
+     "structural damping, in K + i K4", .optional = ""},
+    {"dampers", PART, RITZ_AT(ritz_reduced, dampers), .optional = "",
+     .some = 'd', .schema = &ritz_schema_dampers},
+    {"T", MATRIX_DENSE, RITZ_AT(ritz_reduced, T), "n r",
+     "u = T q; left out by `--without-basis`, as what follows", .optional = ""},
+    {"grids", PART, RITZ_AT(ritz_reduced, grids), .optional = "", .some = 'f',
+     .schema = &ritz_schema_grids},
+    {"elements", PART, RITZ_AT(ritz_reduced, elements), .optional = "",
+     .some = 'e', .schema = &ritz_schema_elements},
+    {"dofs/grid", SET_WHOLE, RITZ_ITEM(ritz_reduced, dof, ritz_dof, grid), "n",
+     "as in a component", .optional = "dofs", .has = has_dofs},
+    {"dofs/component", SET_WHOLE,
+     RITZ_ITEM(ritz_reduced, dof, ritz_dof, component), "n",
+     "as in a component", "0..6", .optional = "dofs", .has = has_dofs},
+    {"recovery", PART, RITZ_AT(ritz_reduced, recovery), .optional = "recovery",
+     .some = 'd', .schema = &ritz_schema_recovery},
+    {"", PART, RITZ_AT(ritz_reduced, columns), .schema = &ritz_schema_columns},
+    {"ports", LIST, RITZ_LIST(ritz_reduced, port), "b", .schema = &port_schema},
+    {"", PART, RITZ_AT(ritz_reduced, io), .schema = &ritz_schema_io},
+    {"inertia/mass", SET_REAL, RITZ_AT(ritz_reduced, inertia.mass), "1",
+     .inside = true, .optional = "inertia", .has = has_inertia},
+    {"inertia/centre", SET_REAL, RITZ_AT(ritz_reduced, inertia.centre), "3",
+     "of mass, in the basic frame", .inside = true, .optional = "inertia",
+     .has = has_inertia},
+    {"inertia/tensor", SET_REAL, RITZ_AT(ritz_reduced, inertia.tensor), "3 3",
+     "about the centre, in basic axes", .inside = true, .optional = "inertia",
+     .has = has_inertia},
+    {"inertia/rigid", SET_REAL, RITZ_AT(ritz_reduced, invariants.rigid), "6 6",
+     "R' M R", .inside = true, .optional = "inertia/momentum",
+     .has = has_invariants},
+    {"inertia/momentum", MATRIX_DENSE,
+     RITZ_AT(ritz_reduced, invariants.momentum), "6 r",
+     "R' M T: linear and angular momentum of each column",
+     .optional = "inertia/momentum", .has = has_invariants},
+    {"inertia/position", MATRIX_DENSE,
+     RITZ_AT(ritz_reduced, invariants.position), "3 3r",
+     "`[a, b*r + k]` is X_a' m T_b[:, k]", .optional = "inertia/momentum",
+     .has = has_invariants},
+    {"inertia/product", MATRIX_DENSE, RITZ_AT(ritz_reduced, invariants.product),
+     "3r 3r", "`[a*r + j, b*r + k]` is T_a[:, j]' m T_b[:, k]",
+     .optional = "inertia/momentum", .has = has_invariants},
+    {"estimates", PART, RITZ_AT(ritz_reduced, estimates), .optional = "",
+     .some = 'k', .schema = &ritz_schema_measures},
+    {"errors", PART, RITZ_AT(ritz_reduced, errors), .optional = "", .some = 'k',
+     .schema = &ritz_schema_measures},
+    {"nested", PART, RITZ_AT(ritz_reduced, nested), .optional = "", .some = 's',
+     .schema = &ritz_schema_nested},
+    {0},
+};
+
+const ritz_schema ritz_schema_reduced = {
+    .name = "reduced",
+    .sizes = sizes,
+    .members = members,
+    .settle = settle_reduced,
+};
+
+ritz_status ritz_container_read_reduced(const char *path, ritz_reduced *out)
+{
+    ritz_reduced reduced = {0};
+    ritz_status status =
+        ritz_schema_read(path, &ritz_schema_reduced, &reduced, reduced.units);
+
+    if (status == RITZ_OK)
+        *out = reduced;
+    else
+        ritz_reduced_free(&reduced);
+    return status;
+}
+
+ritz_status ritz_container_write_reduced(const char *path,
+                                         const ritz_reduced *reduced,
+                                         const ritz_stamp *stamp)
+{
+    return ritz_schema_write(path, &ritz_schema_reduced, reduced,
+                             reduced->units, stamp);
+}

@@ -1,0 +1,111 @@
+/* Containers of frequency responses. */
+#include "container/schema.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static bool has_peak(const void *object)
+{
+    const ritz_response *response = object;
+
+    return response->num_singular > 0 && response->singular_peak[1] > 0.0;
+}
+
+static bool has_interpolation(const void *object)
+{
+    return ((const ritz_response *)object)->interpolation[0];
+}
+
+static ritz_status settle_response(const ritz_place *place)
+{
+    const ritz_response *r = place->target;
+    const double *peak = r->singular_peak;
+    int64_t fewer =
+        r->num_outputs < r->num_inputs ? r->num_outputs : r->num_inputs;
+
+    for (int64_t k = 1; k < r->count; k++)
+        RITZ_REFUSE_IF(r->hertz[k] < r->hertz[k - 1], RITZ_ERR_FORMAT,
+                       "'hertz' descends at value %" PRId64, k + 1);
+    RITZ_REFUSE_IF(!(r->tolerance >= 0.0) || !(r->tolerance < 1.0),
+                   RITZ_ERR_FORMAT, "'tolerance' is %g, not between 0 and 1",
+                   r->tolerance);
+    RITZ_REFUSE_IF(r->singular && r->num_singular != fewer, RITZ_ERR_FORMAT,
+                   "'singular_values' is not hertz x the fewer of outputs and "
+                   "inputs");
+    RITZ_REFUSE_IF(
+        H5Aexists(place->at, "singular_peak") > 0 &&
+            (!(peak[0] >= 0.0) || isinf(peak[0]) || !(peak[1] > 0.0)),
+        RITZ_ERR_FORMAT,
+        "'singular_peak' is no frequency and no value above 0");
+    return RITZ_OK;
+}
+
+/* Real (0) or imaginary part (1) of each value: re, im, ... (C 6.2.5). */
+#define RITZ_COMPLEX(type, field, part)                                        \
+    .offset = offsetof(type, field), .size = sizeof(double _Complex),          \
+    .item = (part) * sizeof(double)
+
+static const ritz_size sizes[] = {
+    {'k', .offset = offsetof(ritz_response, count), "hertz"},
+    {'m', .offset = offsetof(ritz_response, num_inputs), "inputs/names"},
+    {'p', .offset = offsetof(ritz_response, num_outputs), "outputs/names"},
+    {'s', .offset = offsetof(ritz_response, num_singular), "singular_values"},
+    {0},
+};
+
+static const ritz_member members[] = {
+    {"method", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_response, method), "",
+     "the engine"},
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_response, damping), "",
+     "as `--damping` reads it; may be empty"},
+    {"hertz", SET_REAL, RITZ_AT(ritz_response, hertz), "k", "not descending"},
+    {"inputs/names", SET_NAMES, RITZ_AT(ritz_response, input), "m", "distinct"},
+    {"outputs/names", SET_NAMES, RITZ_AT(ritz_response, output), "p",
+     "distinct"},
+    {"H/real", SET_REAL, RITZ_COMPLEX(ritz_response, H, 0), "k p m",
+     "`H = f[\"H/real\"][:] + 1j * f[\"H/imag\"][:]`"},
+    {"H/imag", SET_REAL, RITZ_COMPLEX(ritz_response, H, 1), "k p m",
+     "and its imaginary part"},
+    {"interpolation", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_response, interpolation),
+     "", "`cubic`: points were chosen to be interpolated so", .optional = "",
+     .has = has_interpolation},
+    {"tolerance", ATTRIBUTE_REAL, RITZ_AT(ritz_response, tolerance), "",
+     "with `interpolation`: its error, of the largest \\|H\\| of each channel",
+     .values = VALUES_ANY, .has = has_interpolation},
+    {"singular_values", SET_REAL, RITZ_AT(ritz_response, singular), "k s",
+     "of H with the scales that were asked for, descending", .optional = "",
+     .some = 's'},
+    {"singular_peak", ATTRIBUTE_REAL, RITZ_AT(ritz_response, singular_peak),
+     "2",
+     "hertz and value of the largest singular value, between the points too; "
+     "infinite at a pole that nothing damps",
+     .values = VALUES_ANY, .optional = "", .has = has_peak},
+    {0},
+};
+
+const ritz_schema ritz_schema_response = {
+    .name = "response",
+    .sizes = sizes,
+    .members = members,
+    .settle = settle_response,
+};
+
+ritz_status ritz_container_read_response(const char *path, ritz_response *out)
+{
+    ritz_response response = {0};
+    ritz_status status =
+        ritz_schema_read(path, &ritz_schema_response, &response, NULL);
+
+    if (status == RITZ_OK)
+        *out = response;
+    else
+        ritz_response_free(&response);
+    return status;
+}
+
+ritz_status ritz_container_write_response(const char *path,
+                                          const ritz_response *response,
+                                          const ritz_stamp *stamp)
+{
+    return ritz_schema_write(path, &ritz_schema_response, response, "", stamp);
+}

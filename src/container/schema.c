@@ -1,0 +1,776 @@
+/*
+ * The engine behind the tables of containers: it walks the rows of a schema to
+ * write an object, and to read and check one.
+ *
+ * Nothing is allocated before the file has been seen to hold as much: sizes are
+ * taken from data sets whose shape is backed by stored bytes, and the shape of
+ * each other member is compared with them first.
+ */
+#include "container/schema.h"
+
+#include "base/alloc.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Letters and shapes. */
+
+static int64_t get_whole(const void *object, size_t offset)
+{
+    int64_t value = 0;
+
+    memcpy(&value, (const char *)object + offset, sizeof value);
+    return value;
+}
+
+static void set_whole(void *object, size_t offset, int64_t value)
+{
+    memcpy((char *)object + offset, &value, sizeof value);
+}
+
+static const ritz_size *find_size(const ritz_schema *schema, char letter)
+{
+    for (const ritz_size *s = schema->sizes; s && s->letter; s++)
+        if (s->letter == letter)
+            return s;
+    return NULL;
+}
+
+int64_t ritz_schema_size(const ritz_place *place, char letter)
+{
+    for (; place; place = place->outer) {
+        const ritz_size *s = find_size(place->schema, letter);
+
+        if (s)
+            return s->count ? s->count(place->object)
+                            : get_whole(place->object, s->offset);
+    }
+    return 0;
+}
+
+/* "12", "n", "3r", "n+1" or "-1"; returns what follows. */
+static const char *read_term(const ritz_place *place, const char *text,
+                             int64_t *out)
+{
+    char *end = NULL;
+
+    *out = 1;
+    if (isdigit((unsigned char)*text) || *text == '-') {
+        *out = strtol(text, &end, 10);
+        text = end;
+    }
+    if (isalpha((unsigned char)*text))
+        *out *= ritz_schema_size(place, *text++);
+    if (*text == '+' || *text == '-') {
+        *out += strtol(text, &end, 10);
+        text = end;
+    }
+    return text;
+}
+
+static ritz_h5_shape shape_of(const ritz_place *place, const ritz_member *row)
+{
+    ritz_h5_shape shape = {0};
+
+    for (const char *text = row->shape; text && *text; text += *text == ' ') {
+        int64_t size = 0;
+
+        text = read_term(place, text, &size);
+        shape.dims[shape.rank++] = (hsize_t)size;
+    }
+    return shape;
+}
+
+ritz_status ritz_schema_check_whole(const char *name, int64_t count,
+                                    const int64_t *values, int64_t least,
+                                    int64_t most)
+{
+    for (int64_t k = 0; k < count; k++)
+        RITZ_REFUSE_IF(values[k] < least || values[k] > most, RITZ_ERR_FORMAT,
+                       "value %" PRId64 " of '%s' is %" PRId64
+                       ", not in %" PRId64 "..%" PRId64,
+                       k + 1, name, values[k], least, most);
+    return RITZ_OK;
+}
+
+/* "0..n-1"; without an end every number on that side. */
+static void read_range(const ritz_place *place, const char *text,
+                       int64_t *least, int64_t *most)
+{
+    *least = INT64_MIN;
+    *most = INT64_MAX;
+    if (!text)
+        return;
+    if (*text != '.')
+        text = read_term(place, text, least);
+    if (text[2])
+        (void)read_term(place, text + 2, most);
+}
+
+static bool is_allowed(double x, ritz_member_values values)
+{
+    return isfinite(x) || values == VALUES_ANY ||
+           (values == VALUES_OR_NAN && isnan(x));
+}
+
+ritz_status ritz_schema_check_real(const char *name, int64_t count,
+                                   const double *values,
+                                   ritz_member_values allowed)
+{
+    for (int64_t k = 0; k < count; k++)
+        RITZ_REFUSE_IF(!is_allowed(values[k], allowed), RITZ_ERR_FORMAT,
+                       "value %" PRId64 " of '%s' is not finite", k + 1, name);
+    return RITZ_OK;
+}
+
+/* Where members lie: in the file, and in memory. */
+
+static bool is_attribute(const ritz_member *row)
+{
+    return row->kind <= ATTRIBUTE_REAL;
+}
+
+static const char *name_of(const ritz_member *row)
+{
+    const char *slash = strchr(row->name, '/');
+
+    return slash ? slash + 1 : row->name;
+}
+
+/* The group of a row, "" if it is that of the place. */
+static void copy_group(const char *path, ritz_name out)
+{
+    const char *slash = strchr(path, '/');
+
+    snprintf(out, sizeof(ritz_name), "%.*s", slash ? (int)(slash - path) : 0,
+             path);
+}
+
+/* Whether there is a link "name" or "group/name". */
+static bool has_link(hid_t at, const char *path)
+{
+    ritz_name group = "";
+    hid_t id = 0;
+    bool has = false;
+
+    copy_group(path, group);
+    if (!group[0])
+        return ritz_h5_has(at, path);
+    if (!ritz_h5_has(at, group))
+        return false;
+    id = H5Gopen2(at, group, H5P_DEFAULT);
+    has = id > 0 && ritz_h5_has(id, strchr(path, '/') + 1);
+    ritz_h5_close(id);
+    return has;
+}
+
+static const void *pointer_at(const void *object, size_t offset)
+{
+    const void *pointer = NULL;
+
+    memcpy(&pointer, (const char *)object + offset, sizeof pointer);
+    return pointer;
+}
+
+static const void *field_of(const ritz_place *place, const ritz_member *row)
+{
+    return (const char *)place->object + row->offset;
+}
+
+static void *target_of(const ritz_place *place, const ritz_member *row)
+{
+    return (char *)place->target + row->offset;
+}
+
+static ritz_place part_of(const ritz_place *place, const ritz_member *row,
+                          hid_t at)
+{
+    return (ritz_place){
+        .at = at,
+        .schema = row->schema,
+        .object = field_of(place, row),
+        .target = place->target ? target_of(place, row) : NULL,
+        .outer = place,
+    };
+}
+
+static bool is_empty(const ritz_place *place, const ritz_member *row)
+{
+    const void *field = field_of(place, row);
+
+    switch (row->kind) {
+    case ATTRIBUTE_TEXT:
+        return !*(const char *)field;
+    case ATTRIBUTE_FLAG:
+        return !*(const bool *)field;
+    case SET_WHOLE:
+    case SET_REAL:
+    case SET_NAMES:
+    case SET_WORDS:
+        return !pointer_at(field, 0);
+    case MATRIX_DENSE:
+        return !((const ritz_dense *)field)->val;
+    case MATRIX_SPARSE:
+        return !((const ritz_sparse *)field)->colptr;
+    default:
+        return false;
+    }
+}
+
+/* Whether the object says that it has this member. */
+static bool is_given(const ritz_place *place, const ritz_member *row)
+{
+    ritz_place part = part_of(place, row, place->at);
+
+    if (row->has)
+        return row->has(place->object);
+    if (row->some)
+        return ritz_schema_size(row->kind == PART ? &part : place, row->some) >
+               0;
+    return !row->optional || !is_empty(place, row);
+}
+
+/* Whether the file has it, or must have it. */
+static bool is_due(const ritz_place *place, const ritz_member *row)
+{
+    const char *what = row->optional;
+
+    if (!what)
+        return is_given(place, row);
+    if (is_attribute(row) && !*what)
+        return H5Aexists(place->at, row->name) > 0;
+    return has_link(place->at, *what ? what : row->name);
+}
+
+/* Arrays: values in the file, gathered from and scattered to items. */
+
+static size_t width_in_file(const ritz_member *row)
+{
+    return row->kind == SET_WHOLE || row->kind == SET_REAL ? sizeof(int64_t)
+                                                           : RITZ_NAME_SIZE;
+}
+
+static size_t width_of_item(const ritz_member *row)
+{
+    if (row->size > 0)
+        return row->size;
+    return row->kind == SET_COLUMN_KINDS ? sizeof(ritz_column_kind)
+                                         : width_in_file(row);
+}
+
+static hid_t type_of(const ritz_member *row)
+{
+    if (row->kind == SET_WHOLE)
+        return H5Tcopy(H5T_STD_I64LE);
+    if (row->kind == SET_REAL)
+        return H5Tcopy(H5T_IEEE_F64LE);
+    return ritz_h5_string(RITZ_NAME_SIZE);
+}
+
+/* Of text only what is before the NUL: the rest would differ between runs. */
+static void gather(const ritz_member *row, int64_t count, const char *from,
+                   char *to)
+{
+    size_t width = width_in_file(row), step = width_of_item(row);
+
+    from += row->item;
+    for (int64_t k = 0; k < count; k++, from += step, to += width) {
+        if (row->kind == SET_COLUMN_KINDS) {
+            const ritz_column_kind *kind = (const void *)from;
+
+            snprintf(to, width, "%s", ritz_column_name(*kind));
+        } else if (width == RITZ_NAME_SIZE) {
+            memcpy(to, from, strnlen(from, width - 1));
+        } else {
+            memcpy(to, from, width);
+        }
+    }
+}
+
+static ritz_status scatter(const ritz_member *row, int64_t count,
+                           const char *from, char *to)
+{
+    size_t width = width_in_file(row), step = width_of_item(row);
+
+    to += row->item;
+    for (int64_t k = 0; k < count; k++, from += width, to += step) {
+        ritz_column_kind *kind = (void *)to;
+
+        if (row->kind != SET_COLUMN_KINDS)
+            memcpy(to, from, width);
+        else
+            RITZ_REFUSE_IF(!ritz_column_find(from, kind), RITZ_ERR_FORMAT,
+                           "column %" PRId64 " is of unknown kind '%s'", k + 1,
+                           from);
+    }
+    return RITZ_OK;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+/* Each can be the name of a link, and no two are the same. */
+static ritz_status check_names(int64_t count, const ritz_name *names)
+{
+    ritz_status status = RITZ_OK;
+    ritz_name *sorted = NULL;
+
+    RITZ_NEW(sorted, count);
+    for (int64_t k = 0; k < count; k++) {
+        status = ritz_name_copy(names[k], sorted[k]);
+        RITZ_FAIL_IF(status != RITZ_OK, RITZ_ERR_FORMAT,
+                     "name %" PRId64 ", '%.40s', cannot be one", k + 1,
+                     names[k]);
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_names);
+    for (int64_t k = 1; k < count; k++)
+        RITZ_FAIL_IF(strcmp(sorted[k - 1], sorted[k]) == 0, RITZ_ERR_FORMAT,
+                     "'%s' is there twice", sorted[k]);
+done:
+    free(sorted);
+    return status;
+}
+
+static ritz_status write_array(const ritz_place *place, hid_t at,
+                               const ritz_member *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_h5_shape shape = shape_of(place, row);
+    int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
+    const void *field = field_of(place, row);
+    hid_t type = type_of(row);
+    char *values = NULL;
+
+    RITZ_NEW(values, count * (int64_t)width_in_file(row));
+    gather(row, count, row->inside ? field : pointer_at(field, 0), values);
+    if (row->kind == SET_NAMES)
+        RITZ_TRY_IN(name_of(row), check_names(count, (void *)values));
+    RITZ_TRY(ritz_h5_write(at, name_of(row), type, shape, values));
+done:
+    free(values);
+    ritz_h5_close(type);
+    return status;
+}
+
+static ritz_status check_values(const ritz_place *place, const ritz_member *row,
+                                int64_t count, const void *values)
+{
+    int64_t least = 0, most = 0;
+
+    if (row->kind == SET_NAMES)
+        return ritz_context(check_names(count, values), name_of(row));
+    if (row->kind == SET_REAL)
+        return ritz_schema_check_real(name_of(row), count, values, row->values);
+    if (row->kind != SET_WHOLE)
+        return RITZ_OK;
+    read_range(place, row->range, &least, &most);
+    return ritz_schema_check_whole(name_of(row), count, values, least, most);
+}
+
+/* Values in the object, or in an array that its first member allocates. */
+static ritz_status find_room(const ritz_member *row, int64_t count, void *field,
+                             char **out)
+{
+    char *array = field;
+
+    if (!row->inside) {
+        memcpy(&array, field, sizeof array);
+        if (!array)
+            RITZ_CHECK_NEW(array, count * (int64_t)width_of_item(row));
+        memcpy(field, &array, sizeof array);
+    }
+    *out = array;
+    return RITZ_OK;
+}
+
+static ritz_status read_array(const ritz_place *place, hid_t at,
+                              const ritz_member *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_h5_shape shape = shape_of(place, row);
+    int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
+    hid_t type = type_of(row);
+    char *values = NULL, *to = NULL;
+
+    RITZ_TRY(ritz_h5_expect(at, name_of(row), shape));
+    RITZ_NEW(values, count * (int64_t)width_in_file(row));
+    RITZ_TRY(find_room(row, count, target_of(place, row), &to));
+    RITZ_TRY(ritz_h5_read(at, name_of(row), type, shape, values));
+    RITZ_TRY(check_values(place, row, count, values));
+    RITZ_TRY(scatter(row, count, values, to));
+done:
+    free(values);
+    ritz_h5_close(type);
+    return status;
+}
+
+/* Attributes. */
+
+static ritz_status write_attribute(const ritz_place *place, hid_t at,
+                                   const ritz_member *row)
+{
+    const void *field = field_of(place, row);
+    const int64_t one = 1;
+
+    switch (row->kind) {
+    case ATTRIBUTE_TEXT:
+        return ritz_h5_set_text(at, row->name, field);
+    case ATTRIBUTE_FLAG:
+        return ritz_h5_set(at, row->name, H5T_STD_I64LE, ritz_h5_scalar(),
+                           &one);
+    case ATTRIBUTE_WHOLE:
+        return ritz_h5_set(at, row->name, H5T_STD_I64LE, shape_of(place, row),
+                           field);
+    default:
+        return ritz_h5_set(at, row->name, H5T_IEEE_F64LE, shape_of(place, row),
+                           field);
+    }
+}
+
+static ritz_status check_attribute(const ritz_place *place,
+                                   const ritz_member *row, int64_t value)
+{
+    int64_t least = 1, most = 1; /* of a flag */
+
+    if (row->kind == ATTRIBUTE_WHOLE)
+        read_range(place, row->range, &least, &most);
+    RITZ_REFUSE_IF(value < least || value > most, RITZ_ERR_FORMAT,
+                   "attribute '%s' is %" PRId64 ", not in %" PRId64
+                   "..%" PRId64,
+                   row->name, value, least, most);
+    return RITZ_OK;
+}
+
+static ritz_status read_attribute(const ritz_place *place, hid_t at,
+                                  const ritz_member *row)
+{
+    ritz_h5_shape shape = shape_of(place, row);
+    int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
+    void *field = target_of(place, row);
+    int64_t whole = 0;
+    const double *x = field;
+
+    switch (row->kind) {
+    case ATTRIBUTE_TEXT:
+        return ritz_h5_get_text(at, row->name, row->size, field);
+    case ATTRIBUTE_FLAG:
+        RITZ_CHECK(ritz_h5_get(at, row->name, H5T_STD_I64LE, 1, &whole));
+        *(bool *)field = true;
+        return check_attribute(place, row, whole);
+    case ATTRIBUTE_WHOLE:
+        RITZ_CHECK(ritz_h5_get(at, row->name, H5T_STD_I64LE, count, field));
+        for (int64_t k = 0; k < count; k++)
+            RITZ_CHECK(check_attribute(place, row, ((int64_t *)field)[k]));
+        return RITZ_OK;
+    default:
+        RITZ_CHECK(ritz_h5_get(at, row->name, H5T_IEEE_F64LE, count, field));
+        for (int64_t k = 0; k < count; k++)
+            RITZ_REFUSE_IF(!is_allowed(x[k], row->values), RITZ_ERR_FORMAT,
+                           "attribute '%s' is not finite", row->name);
+        return RITZ_OK;
+    }
+}
+
+/* Parts and lists. */
+
+static ritz_status write_part(const ritz_place *place, const ritz_member *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place part = part_of(place, row, place->at);
+    hid_t group = 0;
+
+    if (!*row->name)
+        return ritz_schema_write_members(&part);
+    RITZ_TRY(ritz_h5_group(place->at, row->name, &group));
+    part.at = group;
+    RITZ_TRY(ritz_schema_write_members(&part));
+done:
+    ritz_h5_close(group);
+    return ritz_context(status, row->name);
+}
+
+static ritz_status read_part(const ritz_place *place, const ritz_member *row)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place part = part_of(place, row, place->at);
+    hid_t group = 0;
+
+    if (!*row->name)
+        return ritz_schema_read_members(&part);
+    RITZ_TRY(ritz_h5_enter(place->at, row->name, &group));
+    part.at = group;
+    RITZ_TRY(ritz_schema_read_members(&part));
+done:
+    ritz_h5_close(group);
+    return ritz_context(status, row->name);
+}
+
+/* An item whose one member is a sparse matrix is that matrix's group. */
+static bool is_matrix(const ritz_schema *schema)
+{
+    return schema->members->kind == MATRIX_SPARSE && !*schema->members->name;
+}
+
+static ritz_status write_item(const ritz_place *item, const char *name)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place in_group = *item;
+    const ritz_member *row = item->schema->members;
+
+    in_group.at = 0;
+    if (is_matrix(item->schema)) {
+        RITZ_TRY(ritz_h5_write_sparse(item->at, name, field_of(item, row)));
+        RITZ_TRY(ritz_h5_enter(item->at, name, &in_group.at));
+    } else {
+        RITZ_TRY(ritz_h5_group(item->at, name, &in_group.at));
+    }
+    RITZ_TRY(ritz_h5_set(in_group.at, "index", H5T_STD_I64LE, ritz_h5_scalar(),
+                         &item->index));
+    if (!is_matrix(item->schema))
+        RITZ_TRY_IN(name, ritz_schema_write_members(&in_group));
+done:
+    ritz_h5_close(in_group.at);
+    return status;
+}
+
+static ritz_status write_list(const ritz_place *place, const ritz_member *row)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = ritz_schema_size(place, *row->shape);
+    ritz_place item = {.schema = row->schema, .outer = place};
+    ritz_name name = "";
+
+    RITZ_TRY(ritz_h5_group(place->at, row->name, &item.at));
+    item.object = pointer_at(field_of(place, row), 0);
+    for (item.index = 0; item.index < count; item.index++) {
+        if (row->numbered)
+            snprintf(name, sizeof name, "%" PRId64, item.index);
+        else
+            RITZ_TRY(ritz_name_copy(item.object, name));
+        RITZ_TRY(write_item(&item, name));
+        item.object = (const char *)item.object + row->size;
+    }
+done:
+    ritz_h5_close(item.at);
+    return ritz_context(status, row->name);
+}
+
+static ritz_status read_item(const ritz_place *item, const char *name)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place in_group = *item;
+
+    in_group.at = 0;
+    if (is_matrix(item->schema))
+        return ritz_h5_read_sparse(item->at, name,
+                                   target_of(item, item->schema->members));
+    RITZ_TRY(ritz_h5_enter(item->at, name, &in_group.at));
+    RITZ_TRY(ritz_schema_read_members(&in_group));
+done:
+    ritz_h5_close(in_group.at);
+    return ritz_context(status, name);
+}
+
+static ritz_status read_list(const ritz_place *place, const ritz_member *row)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_size *size = find_size(place->schema, *row->shape);
+    ritz_place item = {.schema = row->schema, .outer = place};
+    ritz_name *name = NULL;
+    char *items = NULL;
+    int64_t count = 0;
+
+    RITZ_TRY(ritz_h5_enter(place->at, row->name, &item.at));
+    RITZ_TRY(ritz_h5_list(item.at, &count, &name));
+    RITZ_NEW(items, count * (int64_t)row->size);
+    memcpy(target_of(place, row), &items, sizeof items);
+    set_whole(place->target, size->offset, count);
+    for (; item.index < count; item.index++) {
+        item.object = item.target = items + (size_t)item.index * row->size;
+        if (!row->numbered)
+            memcpy(item.target, name[item.index], sizeof *name);
+        RITZ_TRY(read_item(&item, name[item.index]));
+    }
+done:
+    free(name);
+    ritz_h5_close(item.at);
+    return ritz_context(status, row->name);
+}
+
+/* All rows of a schema. */
+
+static ritz_status write_row(const ritz_place *place, hid_t at,
+                             const ritz_member *row)
+{
+    switch (row->kind) {
+    case PART:
+        return write_part(place, row);
+    case LIST:
+        return write_list(place, row);
+    case BY_HAND:
+        return row->write(place, at);
+    case MATRIX_DENSE:
+        return ritz_h5_write_dense(at, name_of(row), field_of(place, row));
+    case MATRIX_SPARSE:
+        return ritz_h5_write_sparse(at, name_of(row), field_of(place, row));
+    default:
+        return is_attribute(row) ? write_attribute(place, at, row)
+                                 : write_array(place, at, row);
+    }
+}
+
+static ritz_status read_row(const ritz_place *place, hid_t at,
+                            const ritz_member *row)
+{
+    ritz_h5_shape shape = {0};
+
+    switch (row->kind) {
+    case PART:
+        return read_part(place, row);
+    case LIST:
+        return read_list(place, row);
+    case BY_HAND:
+        return row->read(place, at);
+    case MATRIX_DENSE:
+        shape = shape_of(place, row);
+        return ritz_h5_read_dense(at, name_of(row), (int64_t)shape.dims[0],
+                                  (int64_t)shape.dims[1],
+                                  target_of(place, row));
+    case MATRIX_SPARSE:
+        return ritz_h5_read_sparse(at, name_of(row), target_of(place, row));
+    default:
+        return is_attribute(row) ? read_attribute(place, at, row)
+                                 : read_array(place, at, row);
+    }
+}
+
+/* The group that rows lie in, kept open while they do. */
+typedef struct open_group {
+    ritz_name name;
+    hid_t id;
+} open_group;
+
+static ritz_status follow_group(hid_t at, const ritz_member *row,
+                                open_group *open,
+                                ritz_status (*go)(hid_t, const char *, hid_t *))
+{
+    ritz_name name = "";
+
+    copy_group(row->name, name);
+    if (strcmp(name, open->name) == 0)
+        return RITZ_OK;
+    ritz_h5_close(open->id);
+    *open = (open_group){0};
+    if (!name[0])
+        return RITZ_OK;
+    RITZ_CHECK(go(at, name, &open->id));
+    memcpy(open->name, name, sizeof name);
+    return RITZ_OK;
+}
+
+static ritz_status in_group(ritz_status status, const open_group *open)
+{
+    return open->name[0] ? ritz_context(status, open->name) : status;
+}
+
+ritz_status ritz_schema_write_members(const ritz_place *place)
+{
+    ritz_status status = RITZ_OK;
+    open_group open = {0};
+
+    for (const ritz_member *row = place->schema->members; row->name; row++) {
+        if (!is_given(place, row))
+            continue;
+        RITZ_TRY(follow_group(place->at, row, &open, ritz_h5_group));
+        RITZ_TRY(in_group(write_row(place, open.id ? open.id : place->at, row),
+                          &open));
+    }
+done:
+    ritz_h5_close(open.id);
+    return status;
+}
+
+/* Size of the letter in the data set of a row, found in its shape. */
+static ritz_status measure_row(const ritz_place *place, const ritz_size *s,
+                               const ritz_member *row, int64_t *out)
+{
+    ritz_status status = RITZ_OK;
+    open_group open = {0};
+    ritz_h5_shape found = {0};
+    const char *letter = strchr(row->shape, s->letter);
+    int rank = 1, which = 0;
+
+    for (const char *c = row->shape; *c; c++) {
+        rank += *c == ' ';
+        which += *c == ' ' && c < letter;
+    }
+    if (!is_due(place, row))
+        return RITZ_OK;
+    RITZ_TRY(follow_group(place->at, row, &open, ritz_h5_enter));
+    RITZ_TRY(in_group(ritz_h5_shape_of(open.id ? open.id : place->at,
+                                       name_of(row), rank, &found),
+                      &open));
+    RITZ_FAIL_IF(found.dims[which] > INT64_MAX / 4, RITZ_ERR_FORMAT,
+                 "'%s' is too large", name_of(row));
+    *out = (int64_t)found.dims[which];
+done:
+    ritz_h5_close(open.id);
+    return status;
+}
+
+static ritz_status read_sizes(const ritz_place *place)
+{
+    for (const ritz_size *s = place->schema->sizes; s && s->letter; s++) {
+        const ritz_member *row = place->schema->members;
+        int64_t size = 0;
+
+        if (!s->from)
+            continue;
+        while (row->name && strcmp(row->name, s->from) != 0)
+            row++;
+        if (row->name)
+            RITZ_CHECK(measure_row(place, s, row, &size));
+        else /* "^" */
+            size = ritz_schema_size(place->outer, s->letter);
+        set_whole(place->target, s->offset, size);
+    }
+    return RITZ_OK;
+}
+
+/* What stands for an attribute that files of earlier releases lack. */
+static void set_absent(const ritz_place *place, const ritz_member *row)
+{
+    const double none = nan("");
+
+    if (row->kind == ATTRIBUTE_REAL && row->values == VALUES_OR_NAN)
+        memcpy(target_of(place, row), &none, sizeof none);
+}
+
+ritz_status ritz_schema_read_members(const ritz_place *place)
+{
+    ritz_status status = RITZ_OK;
+    open_group open = {0};
+
+    RITZ_TRY(read_sizes(place));
+    for (const ritz_member *row = place->schema->members; row->name; row++) {
+        if (!is_due(place, row)) {
+            if (row->optional)
+                set_absent(place, row);
+            continue;
+        }
+        RITZ_TRY(follow_group(place->at, row, &open, ritz_h5_enter));
+        RITZ_TRY(in_group(read_row(place, open.id ? open.id : place->at, row),
+                          &open));
+    }
+    if (place->schema->settle)
+        RITZ_TRY(place->schema->settle(place));
+done:
+    ritz_h5_close(open.id);
+    return status;
+}

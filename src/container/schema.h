@@ -1,0 +1,154 @@
+/*
+ * What containers hold, as rows. One table for each object says of each member
+ * its name and form in the file, its shape, where it lies in memory and what it
+ * means. Reading, writing and checking walk these rows; so do the list of
+ * `ritz-info --members` and the tables of docs/container.md.
+ *
+ * A shape is up to three sizes, "n 3r" or "e+1": numbers, and letters that the
+ * schema defines from fields of its object. Members of the same group have its
+ * name before theirs, "inputs/B", and follow each other.
+ *
+ * Rows are written in their order, which is part of the format: the same object
+ * gives the same bytes.
+ */
+#ifndef RITZ_CONTAINER_SCHEMA_H
+#define RITZ_CONTAINER_SCHEMA_H
+
+#include "container/h5.h"
+
+#include <ritz/container.h>
+
+#include <stddef.h>
+
+typedef char ritz_name[RITZ_NAME_SIZE];
+
+typedef enum ritz_member_kind {
+    ATTRIBUTE_TEXT,  /* char[size] */
+    ATTRIBUTE_FLAG,  /* bool, stored as 1, or absent */
+    ATTRIBUTE_WHOLE, /* int64_t, or several in the object */
+    ATTRIBUTE_REAL,  /* double, or several in the object */
+    SET_WHOLE,       /* int64_t * */
+    SET_REAL,        /* double * */
+    SET_NAMES,       /* ritz_name *, distinct, each can be the name of a link */
+    SET_WORDS,       /* ritz_name *, any */
+    SET_COLUMN_KINDS, /* ritz_column_kind *, stored as words */
+    MATRIX_DENSE,     /* ritz_dense */
+    MATRIX_SPARSE,    /* ritz_sparse, whose size the object checks */
+    PART,             /* a struct in the object, as a group of that name */
+    LIST,             /* an array of structs, a group each in that group */
+    BY_HAND,          /* functions of its own */
+} ritz_member_kind;
+
+/* Which numbers a member may hold; always finite otherwise. */
+typedef enum ritz_member_values {
+    VALUES_FINITE,
+    VALUES_OR_NAN, /* NaN stands for none; an absent attribute becomes NaN */
+    VALUES_ANY,    /* the object is checked afterwards */
+} ritz_member_values;
+
+typedef struct ritz_schema ritz_schema;
+
+/* An object while it is read or written: its group, and what it is part of. */
+typedef struct ritz_place {
+    hid_t at;
+    const ritz_schema *schema;
+    const void *object;
+    void *target;                   /* the object while it is read, else NULL */
+    const struct ritz_place *outer; /* NULL for a file */
+    int64_t index;                  /* of an item in its list */
+} ritz_place;
+
+typedef struct ritz_member {
+    const char *name; /* "" of a PART: its members lie in the same group */
+    ritz_member_kind kind;
+    size_t offset; /* in the object: of the member, or of a pointer to it */
+    size_t size;   /* of text, or of an item of the array; 0: of one value */
+    size_t item;   /* offset of the value within such an item */
+    const char *shape;
+    const char *about; /* for docs/container.md */
+    const char *range; /* of whole numbers, "0..n-1"; either end may lack */
+    ritz_member_values values;
+    bool inside;   /* the array is in the object itself */
+    bool numbered; /* items of a list are "0", "1", ... and have no names */
+    /*
+     * A member may be absent from a file if `optional` names what decides that,
+     * "" the member itself. It is written if `has` says so, or if the size
+     * `some` is not 0; without both, an optional member if it is not empty.
+     * Where only `has` or `some` is given, it decides of reading too.
+     */
+    const char *optional;
+    bool (*has)(const void *object);
+    char some;
+    const ritz_schema *schema; /* of a part, or of the items of a list */
+    ritz_status (*write)(const ritz_place *place, hid_t group);
+    ritz_status (*read)(const ritz_place *place, hid_t group);
+} ritz_member;
+
+/* A letter of shapes, and the field of the object in which its value is. */
+typedef struct ritz_size {
+    char letter;
+    size_t offset;                        /* of an int64_t */
+    const char *from;                     /* row whose shape tells it when read,
+                                           "^" the outer object's letter; NULL
+                                           if it is read otherwise */
+    int64_t (*count)(const void *object); /* instead of a field */
+} ritz_size;
+
+struct ritz_schema {
+    const char *name;           /* `ritz_kind`, or of a part */
+    const ritz_size *sizes;     /* ended by letter 0; NULL: none */
+    const ritz_member *members; /* ended by name NULL */
+    /** Checks and completes what was read. */
+    ritz_status (*settle)(const ritz_place *place);
+};
+
+/*
+ * Where the value of a row is: a field; text; the first member of an array of
+ * structs; the value of each item of such an array. Shape and meaning follow.
+ */
+#define RITZ_AT(type, field)                                                   \
+    .offset = offsetof(type, field), .size = 0, .item = 0
+#define RITZ_TEXT(type, field)                                                 \
+    .offset = offsetof(type, field), .size = sizeof(((type *)0)->field),       \
+    .item = 0
+#define RITZ_LIST(type, field)                                                 \
+    .offset = offsetof(type, field), .size = sizeof(*((type *)0)->field),      \
+    .item = 0
+#define RITZ_ITEM(type, field, item_type, value)                               \
+    .offset = offsetof(type, field), .size = sizeof(item_type),                \
+    .item = offsetof(item_type, value)
+
+/** Write a file of the kind that the schema names. */
+ritz_status ritz_schema_write(const char *path, const ritz_schema *schema,
+                              const void *object, const char *units,
+                              const ritz_stamp *stamp);
+
+/**
+ * Read one into an empty object, which may be filled in part on failure.
+ *
+ * @param[out] units  RITZ_NAME_SIZE letters; NULL if not wanted
+ */
+ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
+                             void *object, char *units);
+
+/** All members at a place. */
+ritz_status ritz_schema_write_members(const ritz_place *place);
+ritz_status ritz_schema_read_members(const ritz_place *place);
+
+/** Value of a letter, of the object or of one that it is part of. */
+int64_t ritz_schema_size(const ritz_place *place, char letter);
+
+/** Values of a data set that a row by hand has read. */
+ritz_status ritz_schema_check_whole(const char *name, int64_t count,
+                                    const int64_t *values, int64_t least,
+                                    int64_t most);
+ritz_status ritz_schema_check_real(const char *name, int64_t count,
+                                   const double *values,
+                                   ritz_member_values allowed);
+
+/* Parts that several kinds of container share. */
+extern const ritz_schema ritz_schema_grids, ritz_schema_elements,
+    ritz_schema_recovery, ritz_schema_dampers, ritz_schema_io,
+    ritz_schema_columns, ritz_schema_origin, ritz_schema_measures;
+
+#endif

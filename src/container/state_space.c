@@ -1,0 +1,90 @@
+/* Containers of models in first-order form. */
+#include "container/schema.h"
+
+#include "base/alloc.h"
+
+/* A full component is not known: no column names a row of one. */
+static int64_t count_no_dofs(const void *object)
+{
+    (void)object;
+    return 0;
+}
+
+static ritz_status settle_state_space(const ritz_place *place)
+{
+    ritz_state_space *model = place->target;
+
+    if (!model->input)
+        RITZ_CHECK_NEW(model->input, 0);
+    if (!model->output) {
+        RITZ_CHECK_NEW(model->output, 0);
+        RITZ_CHECK_NEW(model->limit, 0);
+    }
+    return ritz_state_space_check(model);
+}
+
+static const ritz_size sizes[] = {
+    {'r', .offset = offsetof(ritz_state_space, A.ncol), "A"},
+    {'m', .offset = offsetof(ritz_state_space, num_inputs), "inputs/names"},
+    {'p', .offset = offsetof(ritz_state_space, num_outputs), "outputs/names"},
+    {'n', .count = count_no_dofs},
+    {0},
+};
+
+static const ritz_member members[] = {
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_state_space, damping), "",
+     "that is in A beside the component's matrices"},
+    {"", PART, RITZ_AT(ritz_state_space, origin),
+     .schema = &ritz_schema_origin},
+    {"A", MATRIX_DENSE, RITZ_AT(ritz_state_space, A), "r r",
+     "E x' = A x + B u"},
+    {"B", MATRIX_DENSE, RITZ_AT(ritz_state_space, B), "r m", "input matrix"},
+    {"C", MATRIX_DENSE, RITZ_AT(ritz_state_space, C), "p r", "y = C x + D u"},
+    {"D", MATRIX_DENSE, RITZ_AT(ritz_state_space, D), "p m", "feedthrough"},
+    {"E", MATRIX_DENSE, RITZ_AT(ritz_state_space, E), "r r",
+     "not singular; without it the identity", .optional = ""},
+    {"inputs/names", SET_NAMES, RITZ_AT(ritz_state_space, input), "m",
+     "distinct", .optional = "inputs", .some = 'm'},
+    {"outputs/names", SET_NAMES, RITZ_AT(ritz_state_space, output), "p",
+     "distinct", .optional = "outputs", .some = 'p'},
+    {"outputs/limits", SET_REAL, RITZ_AT(ritz_state_space, limit), "p",
+     "largest tolerated \\|y\\|", .values = VALUES_OR_NAN,
+     .optional = "outputs", .some = 'p'},
+    {"", PART, RITZ_AT(ritz_state_space, columns),
+     .schema = &ritz_schema_columns},
+    {"estimates", PART, RITZ_AT(ritz_state_space, estimates), .optional = "",
+     .some = 'k', .schema = &ritz_schema_measures},
+    {"errors", PART, RITZ_AT(ritz_state_space, errors), .optional = "",
+     .some = 'k', .schema = &ritz_schema_measures},
+    {0},
+};
+
+const ritz_schema ritz_schema_state_space = {
+    .name = "state-space",
+    .sizes = sizes,
+    .members = members,
+    .settle = settle_state_space,
+};
+
+ritz_status ritz_container_read_state_space(const char *path,
+                                            ritz_state_space *out)
+{
+    ritz_state_space model = {0};
+    ritz_status status =
+        ritz_schema_read(path, &ritz_schema_state_space, &model, model.units);
+
+    if (status == RITZ_OK)
+        *out = model;
+    else
+        ritz_state_space_free(&model);
+    return status;
+}
+
+ritz_status ritz_container_write_state_space(const char *path,
+                                             const ritz_state_space *model,
+                                             const ritz_stamp *stamp)
+{
+    RITZ_CHECK_IN(path, ritz_state_space_check(model));
+    return ritz_schema_write(path, &ritz_schema_state_space, model,
+                             model->units, stamp);
+}

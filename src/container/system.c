@@ -1,0 +1,234 @@
+/* Containers of systems: `blocks`, and `configurations/0`, 1, ... */
+#include "container/schema.h"
+
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+/* Blocks: component c brings rows first .. first + order - 1 of q. */
+
+typedef struct system_block {
+    int64_t index, first, order, order_full;
+} system_block;
+
+static const ritz_member block_members[] = {
+    {"index", ATTRIBUTE_WHOLE, RITZ_AT(system_block, index), "",
+     "place among the blocks, from 0"},
+    {"first", ATTRIBUTE_WHOLE, RITZ_AT(system_block, first), "",
+     "first row of the component in q"},
+    {"order", ATTRIBUTE_WHOLE, RITZ_AT(system_block, order), "",
+     "number of its rows", "0..2147483647"},
+    {"order_full", ATTRIBUTE_WHOLE, RITZ_AT(system_block, order_full), "",
+     "dofs of the full component", "0.."},
+    {0},
+};
+
+const ritz_schema ritz_schema_block = {
+    .name = "block",
+    .members = block_members,
+};
+
+static ritz_status write_block(hid_t blocks, const char *name,
+                               const system_block *block)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place at = {.schema = &ritz_schema_block, .object = block};
+
+    RITZ_TRY(ritz_h5_group(blocks, name, &at.at));
+    RITZ_TRY(ritz_schema_write_members(&at));
+done:
+    ritz_h5_close(at.at);
+    return status;
+}
+
+static ritz_status write_blocks(const ritz_place *place, hid_t group)
+{
+    const ritz_system *system = place->object;
+    system_block block = {0};
+    ritz_name name = "";
+
+    for (int64_t c = 0; c < system->num_components; c++) {
+        block.index = c;
+        block.order = system->order[c];
+        block.order_full = system->order_full[c];
+        RITZ_CHECK(ritz_name_copy(system->component[c], name));
+        RITZ_CHECK(write_block(group, name, &block));
+        block.first += block.order;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status read_block(hid_t blocks, const char *name, int64_t due,
+                              system_block *block)
+{
+    ritz_status status = RITZ_OK;
+    ritz_place at = {
+        .schema = &ritz_schema_block, .object = block, .target = block};
+
+    RITZ_TRY(ritz_h5_enter(blocks, name, &at.at));
+    RITZ_TRY(ritz_schema_read_members(&at));
+    RITZ_FAIL_IF(block->first != due, RITZ_ERR_FORMAT,
+                 "attribute 'first' is %" PRId64 ", not in %" PRId64
+                 "..%" PRId64,
+                 block->first, due, due);
+done:
+    ritz_h5_close(at.at);
+    return ritz_context(status, name);
+}
+
+static ritz_status read_blocks(const ritz_place *place, hid_t group)
+{
+    ritz_system *system = place->target;
+    int64_t first = 0;
+
+    RITZ_CHECK(
+        ritz_h5_list(group, &system->num_components, &system->component));
+    RITZ_CHECK_NEW(system->order, system->num_components);
+    RITZ_CHECK_NEW(system->order_full, system->num_components);
+    for (int64_t c = 0; c < system->num_components; c++) {
+        system_block block = {0};
+
+        RITZ_CHECK(read_block(group, system->component[c], first, &block));
+        system->order[c] = block.order;
+        system->order_full[c] = block.order_full;
+        first += block.order;
+    }
+    return RITZ_OK;
+}
+
+/* The way back from x to each component: q_c = P_c x. */
+
+static ritz_status write_maps(const ritz_place *place, hid_t group)
+{
+    const ritz_configuration *configuration = place->object;
+    const ritz_system *system = place->outer->object;
+
+    RITZ_REFUSE_IF(configuration->num_blocks != system->num_components,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " blocks for %" PRId64 " components",
+                   configuration->num_blocks, system->num_components);
+    for (int64_t c = 0; c < system->num_components; c++)
+        RITZ_CHECK(ritz_h5_write_dense(group, system->component[c],
+                                       &configuration->P[c]));
+    return RITZ_OK;
+}
+
+static ritz_status read_maps(const ritz_place *place, hid_t group)
+{
+    ritz_configuration *configuration = place->target;
+    const ritz_system *system = place->outer->object;
+
+    RITZ_CHECK_NEW(configuration->P, system->num_components);
+    configuration->num_blocks = system->num_components;
+    for (int64_t c = 0; c < system->num_components; c++)
+        RITZ_CHECK(ritz_h5_read_dense(group, system->component[c],
+                                      system->order[c], configuration->K.ncol,
+                                      &configuration->P[c]));
+    return RITZ_OK;
+}
+
+/* Configurations. */
+
+static bool has_momentum(const void *object)
+{
+    return ((const ritz_configuration *)object)->momentum.val;
+}
+
+static const ritz_size configuration_sizes[] = {
+    {'e', .offset = offsetof(ritz_configuration, K.ncol), "K"},
+    {'c', .offset = offsetof(ritz_configuration, K.ncol)},
+    {'w', .offset = offsetof(ritz_configuration, num_settings), "^"},
+    {0},
+};
+
+static const ritz_member configuration_members[] = {
+    {"at", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_configuration, at), "",
+     "`clock=60,cone=0`"},
+    {"rank", ATTRIBUTE_WHOLE, RITZ_AT(ritz_configuration, rank), "",
+     "of the constraints", "0.."},
+    {"num_rigid", ATTRIBUTE_WHOLE, RITZ_AT(ritz_configuration, num_rigid), "",
+     "number of rigid motions", "0..e"},
+    {"settings", SET_REAL, RITZ_AT(ritz_configuration, setting), "w",
+     "of each of `sweeps`"},
+    {"K", MATRIX_DENSE, RITZ_AT(ritz_configuration, K), "e e", "stiffness"},
+    {"M", MATRIX_DENSE, RITZ_AT(ritz_configuration, M), "e e", "mass"},
+    {"D", MATRIX_DENSE, RITZ_AT(ritz_configuration, D), "e e",
+     "viscous damping", .optional = ""},
+    {"K4", MATRIX_DENSE, RITZ_AT(ritz_configuration, K4), "e e",
+     "structural damping, in K + i K4", .optional = ""},
+    {"dampers", PART, RITZ_AT(ritz_configuration, dampers), .optional = "",
+     .some = 'd', .schema = &ritz_schema_dampers},
+    {"lambda", SET_REAL, RITZ_AT(ritz_configuration, lambda), "e",
+     "eigenvalues, in rad^2/s^2"},
+    {"", PART, RITZ_AT(ritz_configuration, io), .schema = &ritz_schema_io},
+    {"blocks/<component>", BY_HAND, .shape = "order e",
+     .about = "the way back: q of the component = block x", .write = write_maps,
+     .read = read_maps},
+    {"momentum", MATRIX_DENSE, RITZ_AT(ritz_configuration, momentum), "6 e",
+     "R'M of x, with R the rigid motions about the origin of the first body's "
+     "basic frame",
+     .optional = "momentum", .has = has_momentum},
+    {"rigid", SET_REAL, RITZ_AT(ritz_configuration, rigid), "6 6", "R'MR",
+     .inside = true, .optional = "momentum", .has = has_momentum},
+    {"errors", PART, RITZ_AT(ritz_configuration, errors), .optional = "",
+     .some = 'k', .schema = &ritz_schema_measures},
+    {0},
+};
+
+static const ritz_schema configuration_schema = {
+    .name = "configuration",
+    .sizes = configuration_sizes,
+    .members = configuration_members,
+};
+
+/* The whole. */
+
+static const ritz_size sizes[] = {
+    {'w', .offset = offsetof(ritz_system, num_sweeps), "sweeps"},
+    {'k', .offset = offsetof(ritz_system, num_configurations)},
+    {0},
+};
+
+static const ritz_member members[] = {
+    {"name", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_system, name), "", "of the scene"},
+    {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_system, damping), "",
+     "as `--damping` reads it; may be empty"},
+    {"band_hz", ATTRIBUTE_REAL, RITZ_AT(ritz_system, band_hz), "2",
+     "for which it is made"},
+    {"sweeps", SET_NAMES, RITZ_AT(ritz_system, sweep), "w",
+     "what joints are set to: `clock`, `wrist`, `wrist.2`"},
+    {"blocks/<component>", BY_HAND, .shape = "",
+     .about = "a block for each component", .write = write_blocks,
+     .read = read_blocks},
+    {"configurations", LIST, RITZ_LIST(ritz_system, configuration), "k",
+     .numbered = true, .schema = &configuration_schema},
+    {0},
+};
+
+const ritz_schema ritz_schema_system = {
+    .name = "system",
+    .sizes = sizes,
+    .members = members,
+};
+
+ritz_status ritz_container_read_system(const char *path, ritz_system *out)
+{
+    ritz_system system = {0};
+    ritz_status status =
+        ritz_schema_read(path, &ritz_schema_system, &system, system.units);
+
+    if (status == RITZ_OK)
+        *out = system;
+    else
+        ritz_system_free(&system);
+    return status;
+}
+
+ritz_status ritz_container_write_system(const char *path,
+                                        const ritz_system *system,
+                                        const ritz_stamp *stamp)
+{
+    return ritz_schema_write(path, &ritz_schema_system, system, system->units,
+                             stamp);
+}
