@@ -111,7 +111,7 @@ ritz_status ritz_schema_write(const char *path, const ritz_schema *schema,
 
     RITZ_TRY(new_writer(path, schema->name, units, stamp, &writer));
     place.at = writer.file;
-    RITZ_TRY(ritz_schema_write_members(&place));
+    RITZ_TRY(ritz_schema_move(&place));
     RITZ_TRY(finish_writer(&writer));
 done:
     free_writer(&writer);
@@ -130,7 +130,7 @@ ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
                  "holds a %s where a %s is due", found, schema->name);
     if (units)
         RITZ_TRY(ritz_h5_get_text(place.at, "units", RITZ_NAME_SIZE, units));
-    RITZ_TRY(ritz_schema_read_members(&place));
+    RITZ_TRY(ritz_schema_move(&place));
 done:
     ritz_h5_close(place.at);
     return ritz_context(status, path);

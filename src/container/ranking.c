@@ -178,7 +178,7 @@ static ritz_status write_single(const ritz_place *place, hid_t group)
                              .object = all->item,
                              .outer = place};
 
-    return has_several(all) ? RITZ_OK : ritz_schema_write_members(&item);
+    return has_several(all) ? RITZ_OK : ritz_schema_move(&item);
 }
 
 static ritz_status read_single(const ritz_place *place, hid_t group)
@@ -192,7 +192,7 @@ static ritz_status read_single(const ritz_place *place, hid_t group)
     RITZ_CHECK_NEW(all->item, 1);
     all->count = 1;
     item.object = item.target = all->item;
-    return ritz_schema_read_members(&item);
+    return ritz_schema_move(&item);
 }
 
 static const ritz_size rankings_sizes[] = {

@@ -70,6 +70,7 @@ typedef struct ritz_member {
     ritz_member_values values;
     bool inside;   /* the array is in the object itself */
     bool numbered; /* items of a list are "0", "1", ... and have no names */
+    char some;     /* a letter: see below */
     /*
      * A member may be absent from a file if `optional` names what decides that,
      * "" the member itself. It is written if `has` says so, or if the size
@@ -78,7 +79,6 @@ typedef struct ritz_member {
      */
     const char *optional;
     bool (*has)(const void *object);
-    char some;
     const ritz_schema *schema; /* of a part, or of the items of a list */
     ritz_status (*write)(const ritz_place *place, hid_t group);
     ritz_status (*read)(const ritz_place *place, hid_t group);
@@ -131,9 +131,8 @@ ritz_status ritz_schema_write(const char *path, const ritz_schema *schema,
 ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
                              void *object, char *units);
 
-/** All members at a place. */
-ritz_status ritz_schema_write_members(const ritz_place *place);
-ritz_status ritz_schema_read_members(const ritz_place *place);
+/** Write all members of an object at its place, or read them to its target. */
+ritz_status ritz_schema_move(const ritz_place *place);
 
 /** Value of a letter, of the object or of one that it is part of. */
 int64_t ritz_schema_size(const ritz_place *place, char letter);

@@ -36,7 +36,7 @@ static ritz_status write_block(hid_t blocks, const char *name,
     ritz_place at = {.schema = &ritz_schema_block, .object = block};
 
     RITZ_TRY(ritz_h5_group(blocks, name, &at.at));
-    RITZ_TRY(ritz_schema_write_members(&at));
+    RITZ_TRY(ritz_schema_move(&at));
 done:
     ritz_h5_close(at.at);
     return status;
@@ -67,7 +67,7 @@ static ritz_status read_block(hid_t blocks, const char *name, int64_t due,
         .schema = &ritz_schema_block, .object = block, .target = block};
 
     RITZ_TRY(ritz_h5_enter(blocks, name, &at.at));
-    RITZ_TRY(ritz_schema_read_members(&at));
+    RITZ_TRY(ritz_schema_move(&at));
     RITZ_FAIL_IF(block->first != due, RITZ_ERR_FORMAT,
                  "attribute 'first' is %" PRId64 ", not in %" PRId64
                  "..%" PRId64,
