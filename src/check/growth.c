@@ -16,6 +16,7 @@
 #include "base/alloc.h"
 #include "check/check.h"
 #include "linear/eigenvalues.h"
+#include "linear/exponential.h"
 #include "linear/general.h"
 #include "linear/split.h"
 
@@ -35,7 +36,6 @@ typedef struct growth {
 enum {
     MOST_STATES = 400, /* of whose exponential powers are taken */
     FOURTHS = 4,       /* of an octave */
-    TERMS = 14, /* of a Taylor series at |A h| <= 1/2: 0.5^15 / 15! < eps */
 };
 /* Of a free motion so small nothing is said any more. */
 static const double died_out = 1e-3;
@@ -71,35 +71,6 @@ static double norm_one(const ritz_dense *A)
                           A->val, (int)A->nrow);
 }
 
-/* e^(A h) where |A h| <= 1/2, by Horner's rule. */
-static ritz_status exponential_of(const ritz_dense *A, double h,
-                                  ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t n = A->nrow;
-    ritz_dense E = {0}, next = {0};
-
-    RITZ_TRY(ritz_dense_new(n, n, &E));
-    for (int64_t i = 0; i < n; i++)
-        ritz_dense_col(&E, i)[i] = 1.0;
-    for (int term = TERMS; term > 0; term--) {
-        RITZ_TRY(ritz_dense_mul(A, &E, &next));
-        for (int64_t k = 0; k < n * n; k++)
-            next.val[k] *= h / term;
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(&next, i)[i] += 1.0;
-        ritz_dense_free(&E);
-        E = next;
-        next = (ritz_dense){0};
-    }
-    *out = E;
-    E = (ritz_dense){0};
-done:
-    ritz_dense_free(&E);
-    ritz_dense_free(&next);
-    return status;
-}
-
 /* e^(A h), e^(2 A h), e^(4 A h), ... until nothing is left, or t = most. */
 static ritz_status follow_powers(const ritz_dense *A, double h, double most,
                                  growth *out)
@@ -108,7 +79,7 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
     ritz_dense E = {0}, next = {0};
     double size = 1.0;
 
-    RITZ_TRY(exponential_of(A, h, &E));
+    RITZ_TRY(ritz_exponential(A, h, 0, NULL, &E, NULL));
     for (int k = 0; size > died_out && h * ldexp(1.0, k) <= most; k++) {
         RITZ_TRY(ritz_dense_copy(&E, &next));
         RITZ_TRY(ritz_general_norm(&next, &size));

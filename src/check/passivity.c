@@ -1,19 +1,18 @@
 /*
- * A response at many points: with A = U S U^*, S an upper triangle,
+ * Whether energy can come out of the interface, by the response from forces to
+ * the velocities of what they act on,
  *
- *     G(i w) = diag((i w)^power) (C U (i w I - S)^-1 U^* B + D)
- *
- * costs a triangular solve.
+ *     G(i w) = diag((i w)^power) (C (i w I - A)^-1 B + D)
  */
 #include "base/alloc.h"
+#include "base/complex.h"
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
-#include "poles/poles.h"
-#include "poles/widen.h"
+#include "linear/resolvent.h"
+#include "linear/search.h"
 
-#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,90 +20,48 @@
 #include <string.h>
 
 struct ritz_sampler {
-    int n, p;
-    double _Complex *S, *B, *C; /* n x n, n x p, p x n */
-    double _Complex *T, *X, *H; /* to work in */
-    const double *D;            /* p x p, borrowed */
-    const int *power;
+    ritz_resolvent resolvent;
+    double _Complex *H;           /* p x p, to work in */
+    const ritz_collocated *model; /* borrowed D and powers */
 };
 
-/* On a pole there is no answer. */
+/* Of w: there is no response this close to a pole. */
 static const double on_pole = 1e-13;
 
 ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
 {
     ritz_status status = RITZ_OK;
+    const ritz_dense none = {0};
     ritz_sampler *s = NULL;
-    double _Complex *U = NULL, *lambda = NULL;
-    lapack_int none = 0;
-    int info = 0;
 
     RITZ_NEW(s, 1);
-    s->n = (int)model->A.nrow;
-    s->p = (int)model->B.ncol;
-    s->D = model->D.val;
-    s->power = model->power;
-    RITZ_TRY(ritz_widen(&model->A, &s->S));
-    RITZ_TRY(ritz_widen(&model->B, &s->B));
-    RITZ_TRY(ritz_widen(&model->C, &s->C));
-    RITZ_NEW(s->T, (int64_t)s->n * s->n);
-    RITZ_NEW(s->X, (int64_t)s->n * s->p);
-    RITZ_NEW(s->H, (int64_t)s->p * s->p);
-    RITZ_NEW(U, (int64_t)s->n * s->n);
-    RITZ_NEW(lambda, s->n);
-    if (s->n > 0)
-        info = LAPACKE_zgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, s->n, s->S, s->n,
-                             &none, lambda, U, s->n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
-    if (s->n > 0)
-        RITZ_TRY(ritz_turn(s->n, s->p, s->p, U, U, &s->B, &s->C));
+    s->model = model;
+    RITZ_TRY(ritz_resolvent_new(&model->A, &none, &model->B, &model->C,
+                                &s->resolvent));
+    RITZ_NEW(s->H, model->B.ncol * model->B.ncol);
     *out = s;
     s = NULL;
 done:
-    free(U);
-    free(lambda);
     ritz_sampler_free(&s);
     return status;
 }
 
-/* T = i w - S, false where that is singular. */
-static bool shift_sampler(ritz_sampler *s, double w)
-{
-    int64_t n = s->n;
-
-    for (int64_t k = 0; k < n * n; k++)
-        s->T[k] = -s->S[k];
-    for (int64_t k = 0; k < n; k++) {
-        s->T[k + k * n] += ritz_complex(0.0, w);
-        if (cabs(s->T[k + k * n]) <= on_pole * w)
-            return false;
-    }
-    return true;
-}
-
 const double _Complex *ritz_sampler_at(ritz_sampler *s, double w)
 {
-    const double _Complex one = 1.0;
-    int n = s->n, p = s->p;
+    const ritz_dense *D = &s->model->D;
+    int64_t p = D->ncol;
 
-    if (!shift_sampler(s, w))
+    for (int64_t k = 0; k < p * p; k++)
+        s->H[k] = D->val[k];
+    if (!ritz_resolvent_add(&s->resolvent, ritz_complex(0.0, w), on_pole, s->H))
         return NULL;
-    for (int64_t k = 0; k < (int64_t)p * p; k++)
-        s->H[k] = s->D[k];
-    if (n > 0) {
-        memcpy(s->X, s->B, (size_t)n * (size_t)p * sizeof *s->X);
-        cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
-                    CblasNonUnit, n, p, &one, s->T, n, s->X, n);
-        cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, p, n, &one,
-                    s->C, p, s->X, n, &one, s->H, p);
-    }
     for (int64_t i = 0; i < p; i++)
         for (int64_t j = 0; j < p; j++) {
             double _Complex *h = &s->H[i + j * p];
 
-            if (s->power[i] > 0)
+            if (s->model->power[i] > 0)
                 *h *= ritz_complex(0.0, w);
-            else if (s->power[i] < 0)
+            else if (s->model->power[i] < 0)
                 *h *= ritz_complex(0.0, -1.0 / w);
         }
     return s->H;
@@ -116,11 +73,7 @@ void ritz_sampler_free(ritz_sampler **sampler)
 
     if (!s)
         return;
-    free(s->S);
-    free(s->B);
-    free(s->C);
-    free(s->T);
-    free(s->X);
+    ritz_resolvent_free(&s->resolvent);
     free(s->H);
     free(s);
     *sampler = NULL;
@@ -136,11 +89,12 @@ void ritz_sampler_free(ritz_sampler **sampler)
  * may have stepped over something.
  */
 
-static const double golden = 0.61803398874989485;
 /* Widths beside a pole, of |Re s| or, where that is less, of |s| / 1000. */
 static const double beside[] = {0.25, 1.0, 4.0};
 static const double least_width = 1e-3;
-enum { DESCENTS = 3, STEPS = 40, MOST_STATES = 200, PER_POLE = 9 };
+/* Of its upper end: the length of a bracket that is not divided any more. */
+static const double close_enough = 1e-9;
+enum { DESCENTS = 3, MOST_STATES = 200, PER_POLE = 9 };
 
 /* (G + G^*) / 2 and its eigenvalues, and where they were least. */
 typedef struct descent {
@@ -241,33 +195,24 @@ static double meet_at(descent *s, double w)
     return value;
 }
 
-/* Golden section of what is least between two points, in log w. */
-static void descend_between(descent *s, double low, double high)
+static ritz_status ease_at(void *state, double w, double *value)
 {
-    double a = log(low), b = log(high);
-    double c = b - golden * (b - a), d = a + golden * (b - a);
-    double at_c = meet_at(s, exp(c)), at_d = meet_at(s, exp(d));
+    *value = -meet_at(state, w);
+    return RITZ_OK;
+}
 
-    for (int step = 0; step < STEPS; step++) {
-        if (at_c < at_d) {
-            b = d;
-            d = c;
-            at_d = at_c;
-            c = b - golden * (b - a);
-            at_c = meet_at(s, exp(c));
-        } else {
-            a = c;
-            c = d;
-            at_c = at_d;
-            d = a + golden * (b - a);
-            at_d = meet_at(s, exp(d));
-        }
-    }
+/* Golden section of what is least between two points. */
+static ritz_status descend_between(descent *s, double low, double high)
+{
+    const ritz_curve curve = {ease_at, s};
+    double most = 0.0;
+
+    return ritz_curve_between(&curve, close_enough, &low, &high, &most);
 }
 
 /* The lowest points of the grid, each with its neighbours. */
-static void descend_all(descent *s, int64_t count, const double *w,
-                        double *value)
+static ritz_status descend_all(descent *s, int64_t count, const double *w,
+                               double *value)
 {
     for (int turn = 0; turn < DESCENTS; turn++) {
         int64_t at = 0;
@@ -276,12 +221,13 @@ static void descend_all(descent *s, int64_t count, const double *w,
             if (value[k] < value[at])
                 at = k;
         if (value[at] >= 1.0)
-            return;
-        descend_between(s, at > 0 ? w[at - 1] : 0.5 * w[at],
-                        at + 1 < count ? w[at + 1] : 2.0 * w[at]);
+            return RITZ_OK;
+        RITZ_CHECK(descend_between(s, at > 0 ? w[at - 1] : 0.5 * w[at],
+                                   at + 1 < count ? w[at + 1] : 2.0 * w[at]));
         for (int64_t k = at > 0 ? at - 1 : 0; k <= at + 1 && k < count; k++)
             value[k] = 1.0;
     }
+    return RITZ_OK;
 }
 
 /* Where two of these follow each other, and between. */
@@ -319,7 +265,7 @@ ritz_status ritz_passivity_of(const ritz_collocated *model, ritz_passivity *out)
     RITZ_NEW(value, count);
     for (int64_t k = 0; k < count; k++)
         value[k] = meet_at(&s, w[k]);
-    descend_all(&s, count, w, value);
+    RITZ_TRY(descend_all(&s, count, w, value));
     RITZ_TRY(meet_crossings(&s, model));
     *out = s.found;
 done:

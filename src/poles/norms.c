@@ -12,38 +12,34 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
+#include "linear/resolvent.h"
+#include "linear/search.h"
 #include "linear/split.h"
-#include "poles/curve.h"
 #include "poles/poles.h"
-#include "poles/widen.h"
 
 #include <ritz/norms.h>
 
-#include <cblas.h>
 #include <complex.h>
 #include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /*
- * A real Schur form is brought to a complex triangle once, after which a point
- * costs one triangular solve. Peaks lie near poles: they are where the search
- * begins, and a golden section between neighbours ends it.
+ * Peaks lie near poles: they are where the search begins, and a golden section
+ * between neighbours ends it.
  */
 
-/* C (i w P - S)^-1 B + D, S and P complex triangular. */
-typedef struct ritz_peak {
-    int n, m, p;
-    double _Complex *S, *P, *B, *C, *D; /* P NULL: the identity */
-    double _Complex *T, *X, *H;         /* to work in */
-    bool begun;                         /* T has its triangle */
+/* C (i w P - S)^-1 B + D. */
+typedef struct peak {
+    ritz_resolvent resolvent;
+    ritz_dense D;       /* borrowed */
+    double _Complex *H; /* p x m, to work in */
     double *sigma, *spare;
     double w, value; /* the largest that was met, and where */
-} ritz_peak;
+} peak;
 
 /* Points that stand out: so many, and no lower than so much of the highest. */
 enum { MOST_PEAKS = 8 };
@@ -51,130 +47,53 @@ static const double worth_climbing = 0.5;
 /* Of a bracket's length when it is done, relative to its frequency. */
 static const double close_enough = 1e-9;
 
-/* Blocks of two, which stand for a pair, become triangles. */
-static ritz_status triangularise_peak(ritz_peak *s)
+static void peak_free(peak *s)
 {
-    ritz_status status = RITZ_OK;
-    int64_t n = s->n;
-    double _Complex *Q = NULL, *Z = NULL, *alpha = NULL, *beta = NULL;
-    int info = 0;
-
-    RITZ_NEW(Q, n * n);
-    RITZ_NEW(Z, n * n);
-    RITZ_NEW(alpha, n);
-    RITZ_NEW(beta, n);
-    if (s->P)
-        info =
-            LAPACKE_zhgeqz(LAPACK_COL_MAJOR, 'S', 'I', 'I', s->n, 1, s->n, s->S,
-                           s->n, s->P, s->n, alpha, beta, Q, s->n, Z, s->n);
-    else
-        info = LAPACKE_zhseqr(LAPACK_COL_MAJOR, 'S', 'I', s->n, 1, s->n, s->S,
-                              s->n, alpha, Q, s->n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
-    RITZ_TRY(ritz_turn(s->n, s->m, s->p, Q, s->P ? Z : Q, &s->B, &s->C));
-done:
-    free(Q);
-    free(Z);
-    free(alpha);
-    free(beta);
-    return status;
-}
-
-static void peak_free(ritz_peak *peak)
-{
-    free(peak->S);
-    free(peak->P);
-    free(peak->B);
-    free(peak->C);
-    free(peak->D);
-    free(peak->T);
-    free(peak->X);
-    free(peak->H);
-    free(peak->sigma);
-    free(peak->spare);
-    *peak = (ritz_peak){0};
+    ritz_resolvent_free(&s->resolvent);
+    free(s->H);
+    free(s->sigma);
+    free(s->spare);
+    *s = (peak){0};
 }
 
 static ritz_status peak_new(const ritz_split *split, const ritz_dense *B,
-                            const ritz_dense *C, const ritz_dense *D,
-                            ritz_peak *out)
+                            const ritz_dense *C, const ritz_dense *D, peak *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_peak s = {.n = (int)B->nrow, .m = (int)B->ncol, .p = (int)C->nrow};
-    int64_t least = s.m < s.p ? s.m : s.p;
+    peak s = {.D = *D};
+    int64_t least = B->ncol < C->nrow ? B->ncol : C->nrow;
 
-    RITZ_TRY(ritz_widen(&split->S, &s.S));
-    if (split->P.val)
-        RITZ_TRY(ritz_widen(&split->P, &s.P));
-    RITZ_TRY(ritz_widen(B, &s.B));
-    RITZ_TRY(ritz_widen(C, &s.C));
-    RITZ_TRY(ritz_widen(D, &s.D));
-    RITZ_NEW(s.T, (int64_t)s.n * s.n);
-    RITZ_NEW(s.X, (int64_t)s.n * s.m);
-    RITZ_NEW(s.H, (int64_t)s.p * s.m);
+    RITZ_TRY(ritz_resolvent_new(&split->S, &split->P, B, C, &s.resolvent));
+    RITZ_NEW(s.H, B->ncol * C->nrow);
     RITZ_NEW(s.sigma, least);
     RITZ_NEW(s.spare, least);
-    if (s.n > 0 && least > 0)
-        RITZ_TRY(triangularise_peak(&s));
     *out = s;
-    s = (ritz_peak){0};
+    s = (peak){0};
 done:
     peak_free(&s);
     return status;
 }
 
-/* T = i w P - S; without P its diagonal is all that changes. */
-static void shift_triangle(ritz_peak *s, double w)
+static ritz_status peak_at(peak *s, double w, double *value)
 {
-    const double _Complex value_at = ritz_complex(0.0, w);
-    int64_t n = s->n;
-
-    for (int64_t j = 0; j < n; j++) {
-        int64_t diagonal = j + j * n;
-
-        for (int64_t i = s->P || !s->begun ? 0 : j; i <= j; i++)
-            s->T[i + j * n] =
-                (s->P ? value_at * s->P[i + j * n] : 0.0) - s->S[i + j * n];
-        if (!s->P)
-            s->T[diagonal] += value_at;
-    }
-    s->begun = true;
-}
-
-/* H = D + C (i w P - S)^-1 B */
-static void respond_at(ritz_peak *s, double w)
-{
-    const double _Complex one = 1.0;
-    size_t item = sizeof *s->X;
-    int64_t n = s->n;
-
-    memcpy(s->H, s->D, (size_t)((int64_t)s->p * s->m) * item);
-    if (n == 0 || isinf(w))
-        return;
-    shift_triangle(s, w);
-    memcpy(s->X, s->B, (size_t)(n * s->m) * item);
-    cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
-                CblasNonUnit, s->n, s->m, &one, s->T, s->n, s->X, s->n);
-    cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, s->p, s->m, s->n,
-                &one, s->C, s->p, s->X, s->n, &one, s->H, s->p);
-}
-
-static ritz_status peak_at(ritz_peak *peak, double w, double *value)
-{
+    int m = s->resolvent.m, p = s->resolvent.p;
     int info = 0;
 
     *value = 0.0;
-    if (peak->m == 0 || peak->p == 0)
+    if (m == 0 || p == 0)
         return RITZ_OK;
-    respond_at(peak, w);
-    info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', peak->p, peak->m, peak->H,
-                          peak->p, peak->sigma, NULL, 1, NULL, 1, peak->spare);
+    for (int64_t k = 0; k < (int64_t)p * m; k++)
+        s->H[k] = s->D.val[k];
+    if (isfinite(w))
+        ritz_resolvent_add(&s->resolvent, ritz_complex(0.0, w), 0.0, s->H);
+    info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', p, m, s->H, p, s->sigma,
+                          NULL, 1, NULL, 1, s->spare);
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
                    "singular values of a response were not found");
-    *value = peak->sigma[0];
-    if (*value > peak->value) {
-        peak->value = *value;
-        peak->w = w;
+    *value = s->sigma[0];
+    if (*value > s->value) {
+        s->value = *value;
+        s->w = w;
     }
     return RITZ_OK;
 }
@@ -188,24 +107,22 @@ static int ascending(const void *left, const void *right)
 }
 
 /* 0 and, of every pole, where it alone answers most, else its magnitude. */
-static ritz_status choose_frequencies(const ritz_peak *s, int64_t *count,
+static ritz_status choose_frequencies(const peak *s, int64_t *count,
                                       double **out)
 {
     ritz_status status = RITZ_OK;
     double *w = NULL;
-    int64_t kept = 0;
+    int64_t n = s->resolvent.n, kept = 0;
 
-    RITZ_NEW(w, s->n + 2);
-    for (int64_t k = 0; k < s->n; k++) {
-        int64_t value_at = k + k * s->n;
-        double _Complex pole =
-            s->P ? s->S[value_at] / s->P[value_at] : s->S[value_at];
+    RITZ_NEW(w, n + 2);
+    for (int64_t k = 0; k < n; k++) {
+        double _Complex pole = ritz_resolvent_pole(&s->resolvent, k);
         double gap = cimag(pole) * cimag(pole) - creal(pole) * creal(pole);
 
         w[k + 1] = gap > 0.0 ? sqrt(gap) : cabs(pole);
     }
-    qsort(w, (size_t)s->n + 1, sizeof *w, ascending);
-    for (int64_t k = 0; k <= s->n; k++)
+    qsort(w, (size_t)n + 1, sizeof *w, ascending);
+    for (int64_t k = 0; k <= n; k++)
         if (kept == 0 || w[k] - w[kept - 1] > close_enough * w[k])
             w[kept++] = w[k];
     w[kept] = 2.0 * w[kept - 1] + 1.0; /* the last bracket ends there */
@@ -223,7 +140,7 @@ static ritz_status value_at(void *state, double w, double *value)
 }
 
 /* What is met is remembered by the peak. */
-static ritz_status climb_between(ritz_peak *s, double low, double high)
+static ritz_status climb_between(peak *s, double low, double high)
 {
     const ritz_curve curve = {value_at, s};
     double most = 0.0;
@@ -246,7 +163,7 @@ static int64_t next_highest_point(int64_t count, const double *value)
  * Between a point and a neighbour on either side; a narrow peak is in the half
  * width around the point, whatever is between it and the next.
  */
-static ritz_status climb_around(ritz_peak *s, const double *w, int64_t k)
+static ritz_status climb_around(peak *s, const double *w, int64_t k)
 {
     double low = k > 0 ? w[k - 1] : w[k];
     double high = w[k + 1];
@@ -258,25 +175,25 @@ static ritz_status climb_around(ritz_peak *s, const double *w, int64_t k)
     return climb_between(s, low, high);
 }
 
-static ritz_status peak_search(ritz_peak *peak)
+static ritz_status peak_search(peak *s)
 {
     ritz_status status = RITZ_OK;
     double *w = NULL, *value = NULL;
     double at_infinity = 0.0;
     int64_t count = 0;
 
-    RITZ_TRY(choose_frequencies(peak, &count, &w));
+    RITZ_TRY(choose_frequencies(s, &count, &w));
     RITZ_NEW(value, count);
     for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(peak_at(peak, w[k], &value[k]));
-    RITZ_TRY(peak_at(peak, HUGE_VAL, &at_infinity));
+        RITZ_TRY(peak_at(s, w[k], &value[k]));
+    RITZ_TRY(peak_at(s, HUGE_VAL, &at_infinity));
     for (int t = 0; t < MOST_PEAKS; t++) {
         int64_t k = next_highest_point(count, value);
 
-        if (k < 0 || value[k] < worth_climbing * peak->value)
+        if (k < 0 || value[k] < worth_climbing * s->value)
             break;
         value[k] = -1.0;
-        RITZ_TRY(climb_around(peak, w, k));
+        RITZ_TRY(climb_around(s, w, k));
     }
 done:
     free(w);
@@ -415,28 +332,28 @@ done:
 static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_peak peak = {0};
+    peak p = {0};
     double direct = 0.0, w = 0.0, value = 0.0;
     bool found = false;
 
-    RITZ_TRY(peak_new(&s->split, &s->B, &s->C, &s->D, &peak));
-    RITZ_TRY(peak_search(&peak));
-    w = peak.w;
-    if (peak.n > 0 && peak.n <= MOST_STATES && peak.value > 0.0)
+    RITZ_TRY(peak_new(&s->split, &s->B, &s->C, &s->D, &p));
+    RITZ_TRY(peak_search(&p));
+    w = p.w;
+    if (p.resolvent.n > 0 && p.resolvent.n <= MOST_STATES && p.value > 0.0)
         RITZ_TRY(bisect_peak(s, tolerance, &w, &value, &found));
     if (found && isfinite(w))
-        RITZ_TRY(peak_at(&peak, w, &direct));
+        RITZ_TRY(peak_at(&p, w, &direct));
     snprintf(out->engine, sizeof out->engine,
              found ? "SLICOT AB13DD" : "search at poles, a lower bound");
-    out->lower = s->size * peak.value;
+    out->lower = s->size * p.value;
     out->value = out->lower;
-    out->hertz = peak.w / (2.0 * RITZ_PI);
+    out->hertz = p.w / (2.0 * RITZ_PI);
     if (found && s->size * value > out->value) {
         out->value = s->size * value;
         out->hertz = w / (2.0 * RITZ_PI);
     }
 done:
-    peak_free(&peak);
+    peak_free(&p);
     return status;
 }
 

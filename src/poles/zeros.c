@@ -1,12 +1,12 @@
 /* Zeros: found from the pencil, made exact where the model says more. */
 #include "base/alloc.h"
+#include "linear/resolvent.h"
 #include "model/first_order.h"
 #include "poles/channel.h"
 #include "poles/poles.h"
 
 #include <ritz/zeros.h>
 
-#include <cblas.h>
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
@@ -222,37 +222,20 @@ static void fill_block(const ritz_channel *channel, int64_t k, triangle *t)
 
 static ritz_status fill_schur(const ritz_channel *channel, triangle *t)
 {
-    ritz_status status = RITZ_OK;
-    const double _Complex one = 1.0, zero = 0.0;
-    int n = (int)t->n, found = 0, info = 0;
-    double _Complex *Q = NULL, *pole = NULL, *b = NULL, *c = NULL;
+    const ritz_dense none = {0};
+    ritz_resolvent r = {0};
 
-    RITZ_NEW(Q, t->n * t->n);
-    RITZ_NEW(pole, t->n);
-    RITZ_NEW(b, t->n);
-    RITZ_NEW(c, t->n);
-    for (int64_t k = 0; k < t->n * t->n; k++)
-        t->T[k] = channel->A.val[k];
-    for (int64_t k = 0; k < t->n; k++) {
-        b[k] = channel->B.val[k];
-        c[k] = channel->C.val[k];
-    }
-    if (n > 0)
-        info = LAPACKE_zgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n, t->T, n,
-                             &found, pole, Q, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
-    if (n > 0) {
-        cblas_zgemv(CblasColMajor, CblasConjTrans, n, n, &one, Q, n, b, 1,
-                    &zero, t->b, 1);
-        cblas_zgemv(CblasColMajor, CblasTrans, n, n, &one, Q, n, c, 1, &zero,
-                    t->c, 1);
-    }
-done:
-    free(Q);
-    free(pole);
-    free(b);
-    free(c);
-    return status;
+    RITZ_CHECK(
+        ritz_resolvent_new(&channel->A, &none, &channel->B, &channel->C, &r));
+    free(t->T);
+    free(t->b);
+    free(t->c);
+    t->T = r.S;
+    t->b = r.B;
+    t->c = r.C;
+    r.S = r.B = r.C = NULL;
+    ritz_resolvent_free(&r);
+    return RITZ_OK;
 }
 
 static void triangle_free(triangle *t)

@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 
 #include "base/tolerances.h"
-#include "poles/curve.h"
+#include "linear/search.h"
 #include "response/responder.h"
 
 #include <ritz/closed_loop.h>

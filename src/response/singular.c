@@ -1,5 +1,5 @@
 /* Singular values of responses, by LAPACK zgesvd of scaled H. */
-#include "poles/curve.h"
+#include "linear/search.h"
 
 #include "base/alloc.h"
 

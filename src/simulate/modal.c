@@ -12,7 +12,7 @@
  * exponential.c, exact as well.
  */
 #include "base/alloc.h"
-#include "simulate/exponential.h"
+#include "linear/exponential.h"
 #include "simulate/oscillator.h"
 #include "simulate/states.h"
 

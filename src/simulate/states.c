@@ -11,7 +11,7 @@
 
 #include "base/alloc.h"
 #include "linear/general.h"
-#include "simulate/exponential.h"
+#include "linear/exponential.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 
 #include "motions.h"
 
-#include "simulate/exponential.h"
+#include "linear/exponential.h"
 #include "simulate/oscillator.h"
 
 #include <ritz/simulate.h>

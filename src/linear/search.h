@@ -1,6 +1,6 @@
 /* The most of a function of frequency that is known at points. */
-#ifndef RITZ_POLES_CURVE_H
-#define RITZ_POLES_CURVE_H
+#ifndef RITZ_LINEAR_SEARCH_H
+#define RITZ_LINEAR_SEARCH_H
 
 #include <ritz/status.h>
 

@@ -1,6 +1,6 @@
 /* The exponential of a matrix, and integrals of quadratic forms along it. */
-#ifndef RITZ_SIMULATE_EXPONENTIAL_H
-#define RITZ_SIMULATE_EXPONENTIAL_H
+#ifndef RITZ_LINEAR_EXPONENTIAL_H
+#define RITZ_LINEAR_EXPONENTIAL_H
 
 #include <ritz/dense.h>
 

@@ -1,4 +1,4 @@
-#include "poles/curve.h"
+#include "linear/search.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -11,7 +11,7 @@
  *
  * Nothing in it grows if A is stable, unlike in exponentials of [-A' Q; 0 A].
  */
-#include "simulate/exponential.h"
+#include "linear/exponential.h"
 
 #include "base/alloc.h"
 
