@@ -35,17 +35,17 @@ static ritz_status draw(cli_run *run, const chart_kind *kind,
 {
     ritz_status status = RITZ_OK;
     chart_sources sources = {0};
-    gnuplot picture = {0};
+    picture drawn = {0};
 
     RITZ_TRY(chart_read(run, run->num_operands - 1, run->operand + 1,
                         kind ? kind->holds : ~CHART_SYSTEM, &sources));
     if (kind)
-        RITZ_TRY(kind->draw(&sources, wish, &picture));
+        RITZ_TRY(kind->draw(&sources, wish, &drawn));
     else
         RITZ_TRY(report_write(&sources, wish));
     cli_say(run, "%s", run->output);
 done:
-    gnuplot_free(&picture);
+    picture_free(&drawn);
     chart_sources_free(&sources);
     return status;
 }

@@ -1,4 +1,5 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
+#include "chart/chart.h"
 #include "print/dampers.h"
 #include "print/nested.h"
 #include "print/rankings.h"
@@ -86,7 +87,7 @@ static ritz_status report(cli_run *run, const rank_wish *asked,
     snprintf(title, sizeof title, "%.100s, damping %.100s", run->operand[0],
              rankings_damping(first));
     if (asked->chart)
-        RITZ_TRY(rankings_draw(asked->chart, title, &all, asked->top));
+        RITZ_TRY(chart_rankings(asked->chart, title, &all, asked->top));
     cli_record(run, first->by,
                first->count > 0 ? first->count : first->num_system);
 done:

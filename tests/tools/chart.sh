@@ -126,25 +126,27 @@ for words in 'equal error' tolerance '10 %: model uncertainty'; do
 done
 expect 0 '' /usr/bin/python3 -s - <<'END'
 import re
-script = open("levels.svg.gp").read()
-number = r"screen ([\d.]+), screen ([\d.]+)"
-# decades from 1 to 1e-3 are as far apart as each other, and so is what they say
-line = [float(y) for x, y in re.findall(
-    f"set arrow from {number} to .*lw 1 lc rgb '#9fb0c3'", script)]
-assert len(line) == 4
-step = [b - a for a, b in zip(line, line[1:])]
-assert max(step) - min(step) < 1e-5 and min(step) > 0.1
-word = {w: float(y) for w, x, y in re.findall(
-    f"set label '([^']+)' at {number} noenhanced font ',11'", script)}
-said = ["0.1\u00a0%", "1\u00a0%", "10\u00a0%", "100\u00a0%"]
-assert all(abs(word[w] - y) < 1e-5 for w, y in zip(said, line)), word
-assert line[0] < word["0.3\u00a0%"] < line[1]
+from words import words
+said = words("levels.svg")
+# decades from 1 to 1e-3 are as far apart as each other, and each says at its
+# right end how much it is, as does the tolerance in between
+at = {text: y for text, x, y, high in said}
+step = [at[b] - at[a] for a, b in
+        zip(["100 %", "10 %", "1 %"], ["10 %", "1 %", "0.1 %"])]
+assert max(step) - min(step) < 0.5 and min(step) > 30, step
+assert at["1 %"] < at["0.3 %"] < at["0.1 %"]
+drawing = open("levels.svg").read()
+line = [float(y) for a, y, b, z in re.findall(
+    r"M([\d.]+),([\d.]+) L([\d.]+),([\d.]+)", drawing)
+    if y == z and float(b) - float(a) > 300]
+assert all(any(abs(y - at[w]) < 8 for y in line) for w in
+           ("100 %", "10 %", "1 %", "0.1 %", "0.3 %")), line
 rows = [r.split("\t") for r in open("best.svg.tsv").read().splitlines()]
 best = [(r[3], r[4]) for r in rows if r[:3] == ["0", "0", "5"]]
 assert best == [("3", "0.2"), ("4", "0.01")], best
 END
 
-# --- words beside points, and marks that are told apart -----------------------
+# --- words that do not cover each other, and marks that are told apart ---------
 
 i=0
 while [ $i -lt 240 ]; do
@@ -161,25 +163,41 @@ for kind in pareto convergence; do
     expect 0 '' ritz-chart -q $kind dense.jsonl -o dense-$kind.svg
     expect 0 '' /usr/bin/python3 -s - $kind <<'END'
 import re, sys
-script = open(f"dense-{sys.argv[1]}.svg.gp").read()
-wide, high = map(float, re.search(r"size ([\d.]+), *([\d.]+)", script).groups())
-word = [(t, float(x) * wide, float(y) * high, int(s)) for t, x, y, s in
-        re.findall(r"set label '([^']+)' at screen ([\d.]+), screen ([\d.]+) "
-                   r"noenhanced front font ',(\d+)'", script)]
-# half an em a letter is less than any font has
-box = [(x, y - s / 2, x + 0.45 * s * len(t), y + s / 2) for t, x, y, s in word]
-for i, a in enumerate(box):
-    for b in box[:i]:
-        assert a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]
-said = [t for t, x, y, s in word]
+from words import words
+said = [t for t, x, y, high in words(f"dense-{sys.argv[1]}.svg")]
 assert "chosen: method3, 12" in said and "runner-up: method4, 12" in said, said
-assert (len(said) > 2) == (sys.argv[1] == "pareto"), said
-sign = re.findall(r"point pt (\d+) ps 0.9 lw 1.6 lc rgb '([^']+)'", script)[:20]
+# orders stand beside the front, and in no other chart
+orders = {t for t in said if re.fullmatch(r"3|6|9|12", t)}
+assert bool(orders) == (sys.argv[1] == "pareto"), said
+script = open(f"dense-{sys.argv[1]}.svg.gp").read()
+sign = re.findall(r"points pt (\d+) ps 0.9 lw 1.6 lc rgb (c\d)", script)[:20]
 assert len(set(sign)) == 20, sign
-blue = [p for p, c in sign if c in ("#0072b2", "#3f8fbf")][:2]
+blue = [p for p, c in sign if c in ("c1", "c6")][:2]
 assert blue[0] != blue[1]
 END
 done
+
+# points of one method that hide each other are one: the lowest of a square
+i=0
+while [ $i -lt 900 ]; do
+    i=$((i + 1))
+    line crowd $((1000 + i % 30)) "0.01$((100 + i % 90))"
+done >crowd.jsonl
+line crowd 2000 1e-5 >>crowd.jsonl
+expect 0 '' ritz-chart -q convergence crowd.jsonl -o crowd.svg
+expect 0 '' /usr/bin/python3 -s - <<'END'
+rows = [r.split("\t") for r in open("crowd.svg.tsv").read().splitlines()[1:]]
+drawn = [(float(r[3]), float(r[4])) for r in rows if r[2:3] == ["0"]]
+assert 2 <= len(drawn) < 30 and (2000.0, 1e-5) in drawn, drawn
+assert min(y for x, y in drawn if x < 2000) == 0.011
+END
+
+# a name that gnuplot would run is a name
+expect 0 '' ritz-chart -q pareto plain.jsonl -o '|touch ran;.svg'
+expect 0 '' ritz-chart -q pareto plain.jsonl -o '< touch ran;.svg'
+expect 0 '</svg>' cat '|touch ran;.svg'
+well '|touch ran;.svg'
+works 'no name of a picture is a command' test ! -e ran
 
 # --- containers ---------------------------------------------------------------
 

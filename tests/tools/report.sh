@@ -149,8 +149,21 @@ addEventListener("load", function () {
     found.singular = page.body.textContent.includes("singular values: full.h5");
     found.equal = page.body.textContent.includes("lines of equal error");
     found.levels = 0;
-    for (const word of picture.querySelectorAll("text"))
-        found.levels += word.textContent === "equal error";
+    for (const row of page.querySelectorAll(".legend li"))
+        found.levels += row.textContent === "equal error";
+    found.charts = 0;
+    found.legends = 0;
+    for (const section of page.querySelectorAll("section")) {
+        found.charts += section.querySelector("figure") !== null;
+        found.legends = Math.max(found.legends,
+            section.querySelectorAll(".legend").length);
+    }
+    /* what a legend calls a line or a mark, no picture says again */
+    found.twice = 0;
+    const charts = picture.closest("section");
+    for (const row of charts.querySelectorAll(".legend li"))
+        for (const word of charts.querySelectorAll(".picture text"))
+            found.twice += word.textContent === row.textContent;
     found.whole = page.querySelectorAll(".whole").length;
     found.cut = [];
     found.bare = 0;
@@ -215,7 +228,9 @@ holds 'nothing is wider than a page of 360, 768 or 1600 pixels' '
 holds 'no word of a picture is cut' 'j["cut"] == []'
 holds 'words on marks and lines have a rim' 'j["bare"] == 0'
 holds 'equal error is said, and singular values are drawn' '
-    j["equal"] and j["levels"] == 1 and j["singular"]'
+    j["equal"] and j["levels"] == 2 and j["singular"]'
+holds 'a section has one legend for all its pictures' '
+    j["charts"] >= 5 and j["legends"] == 1 and j["twice"] == 0'
 holds 'a picture of several channels has the width of the page' '
     j["whole"] >= 1'
 holds 'every picture has a name and a table' '

@@ -1,6 +1,7 @@
 #include "chart/chart.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -166,4 +167,51 @@ void chart_sources_free(chart_sources *sources)
     free(sources->file);
     records_free(&sources->runs);
     *sources = (chart_sources){0};
+}
+
+void chart_say_error(double error, char out[32])
+{
+    if (isnan(error))
+        snprintf(out, 32, "not measured");
+    else if (error <= 0.0)
+        snprintf(out, 32, error < 0.0 ? "below 0" : "0");
+    else if (error < RECORDS_ROUNDING)
+        snprintf(out, 32, "< %.0e", RECORDS_ROUNDING);
+    else if (error >= 0.0995 && error < 100.0)
+        snprintf(out, 32, "%.0f\xc2\xa0%%", 100.0 * error);
+    else if (error >= 1e-4 && error < 100.0)
+        snprintf(out, 32, "%.2g\xc2\xa0%%", 100.0 * error);
+    else
+        snprintf(out, 32, "%.1e", error);
+}
+
+void chart_say_seconds(double seconds, char out[32])
+{
+    static const struct {
+        double unit;
+        const char *name;
+    } units[] = {{1.0, "s"}, {1e-3, "ms"}, {1e-6, "\xc2\xb5s"}, {1e-9, "ns"}};
+    int k = 0;
+
+    while (k < 3 && seconds < 0.9995 * units[k].unit)
+        k++;
+    snprintf(out, 32,
+             seconds >= 99.95 * units[k].unit ? "%.0f\xc2\xa0%s"
+                                              : "%.2g\xc2\xa0%s",
+             seconds / units[k].unit, units[k].name);
+}
+
+const char *chart_base(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+
+    return slash ? slash + 1 : path;
+}
+
+int chart_mark(int64_t series)
+{
+    static const int marks[] = {7, 5, 9, 13, 11};
+    static const int first[SVG_SERIES] = {0, 1, 2, 3, 4, 3, 1, 2};
+
+    return marks[(first[series % SVG_SERIES] + series / SVG_SERIES) % 5];
 }

@@ -5,10 +5,10 @@
 #ifndef RITZ_TOOLS_CHART_CHART_H
 #define RITZ_TOOLS_CHART_CHART_H
 
-#include "chart/axis.h"
-#include "chart/gnuplot.h"
+#include "chart/picture.h"
 #include "cli/model.h"
 #include "cli/records.h"
+#include "print/rankings.h"
 
 /* What a file can hold, by its content. */
 enum {
@@ -37,7 +37,7 @@ typedef struct chart_sources {
 
 typedef struct chart_wish {
     const char *path; /* of the picture */
-    bool keep;        /* see gnuplot_new */
+    bool keep;        /* see picture_new */
     cli_list measure, channel;
     cli_list at;         /* of systems: which configurations */
     const char *subject; /* NULL: the only one */
@@ -52,35 +52,43 @@ typedef struct chart_kind {
     int holds; /* of files that it takes */
     const char *files;
     ritz_status (*draw)(const chart_sources *sources, const chart_wish *wish,
-                        gnuplot *out);
+                        picture *out);
 } chart_kind;
 
 /** All kinds, ended by one without a name. */
 extern const chart_kind chart_kinds[];
 
 ritz_status chart_pareto(const chart_sources *sources, const chart_wish *wish,
-                         gnuplot *out);
+                         picture *out);
 ritz_status chart_convergence(const chart_sources *sources,
-                              const chart_wish *wish, gnuplot *out);
+                              const chart_wish *wish, picture *out);
 ritz_status chart_hankel(const chart_sources *sources, const chart_wish *wish,
-                         gnuplot *out);
+                         picture *out);
 ritz_status chart_response(const chart_sources *sources, const chart_wish *wish,
-                           gnuplot *out);
+                           picture *out);
 ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
-                      gnuplot *out);
+                      picture *out);
 ritz_status chart_simulation(const chart_sources *sources,
-                             const chart_wish *wish, gnuplot *out);
+                             const chart_wish *wish, picture *out);
 ritz_status chart_tracks(const chart_sources *sources, const chart_wish *wish,
-                         gnuplot *out);
+                         picture *out);
 
 /** Read files, each by its content; one that is none of @p holds is refused. */
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
                        int holds, chart_sources *out);
 void chart_sources_free(chart_sources *sources);
 
-/* --- parts of charts ------------------------------------------------------ */
+/**
+ * Bars of values by mode, as SVG; data and script stay beside it as PATH.tsv
+ * and PATH.gp.
+ *
+ * @param[in] most  so many modes of each ranking
+ * @return RITZ_ERR_FILE if gnuplot is not there or fails
+ */
+ritz_status chart_rankings(const char *path, const char *title,
+                           const contest *all, int64_t most);
 
-enum { CHART_WORD = 160 };
+/* --- words of charts ------------------------------------------------------ */
 
 /** "0.31 %", "3.1e-06", "2.1 ms". */
 void chart_say_error(double error, char out[32]);
@@ -89,47 +97,27 @@ void chart_say_seconds(double seconds, char out[32]);
 /** "rotor.h5" of "build/rotor.h5". */
 const char *chart_base(const char *path);
 
-/** Colour and mark of one of several series; @p hollow or filled. */
-const char *chart_colour(int64_t series);
-int chart_mark(int64_t series, bool hollow);
+/** Whole decades around some values. */
+typedef struct chart_range {
+    double low, high;
+} chart_range;
 
-/* A plot area, in pixels from the lower left corner of the picture. */
-typedef struct chart_area {
-    double left, bottom, right, top;
-    axis x, y;
-    double edge; /* left end of its cell, where the label of y stands */
-} chart_area;
+/**
+ * Of the finite ones of some values that are above @p floor_value. Where others
+ * are not, and a logarithm cannot show zero, a decade is added below for them
+ * to stand at its foot.
+ *
+ * @param[in]  floor_value  > 0
+ * @param[out] lifted       how many do
+ * @return the decade above the floor if nothing is above it
+ */
+chart_range chart_decades(int64_t count, const double *values,
+                          double floor_value, int64_t *lifted);
 
-/** Margins, ranges, tics at decades or as gnuplot likes, labels, title. */
-void chart_area_begin(gnuplot *picture, const chart_area *area,
-                      const char *title, const char *xlabel,
-                      const char *ylabel);
+/** Mark of a series, as gnuplot numbers them; begin.gp has the same rule. */
+int chart_mark(int64_t series);
 
-/** The whole picture as one bare area, for legends and notes at the end. */
-void chart_canvas(gnuplot *picture);
-
-/** Tics of a logarithmic axis in seconds: "20 ms", "50 ms". */
-void chart_tics_seconds(gnuplot *picture, const axis *x);
-
-/** A text at a place in pixels. */
-void chart_text(gnuplot *picture, double x, double y, const char *text,
-                const char *how);
-
-/** A level line through an area, from side to side. */
-void chart_level(gnuplot *picture, const chart_area *area, double value,
-                 const char *how);
-
-/* What a legend shows beside a name. */
-typedef struct chart_sign {
-    char name[CHART_WORD];
-    const char *colour;
-    int mark;    /* 0: a line */
-    int dash;    /* of a line */
-    double wide; /* of a line; 0: as others */
-} chart_sign;
-
-/** Rows that a legend needs at a width; draw it, or only count. */
-int64_t chart_legend(gnuplot *picture, int64_t count, const chart_sign *signs,
-                     double left, double top, double right, bool draw);
+/** The channel of singular values. */
+#define CHART_SINGULAR_WORD "singular-values"
 
 #endif

@@ -1,87 +1,316 @@
-#include "chart/chart_errors.h"
-
+/*
+ * Errors of run records, against time (pareto) or order (convergence): a panel
+ * for each measure, a series for each method.
+ */
+#include "chart/chart.h"
 #include "chart/html.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void free_work(chart_errors_work *w)
+/* Models are themselves wrong by about so much: see docs/chart.md. */
+static const double uncertainty = 0.1;
+
+typedef struct form {
+    const char *title, *xlabel;
+    bool seconds;                 /* x is a time, on a logarithmic axis */
+    double (*x)(const record *r); /* NaN: not known */
+    bool front;                   /* what nothing beats in both */
+    bool lines;                   /* from order to order of a method */
+} form;
+
+/* Pixels, as errors.gp has them: of a cell, and of its panel. */
+enum { CELL_WIDE = 490, CELL_HIGH = 380, PANEL_WIDE = 376, PANEL_HIGH = 280 };
+
+/* Two marks nearer than this are one to the eye; pixels. */
+static const double mark_apart = 4.0;
+
+/* An order at the front is written if it is so far from the last, pixels. */
+static const double word_wide = 28.0, word_high = 15.0;
+
+/* Of the height of a panel: room below the lowest point, for its mark and its
+   order. */
+static const double foot_part = 0.07;
+
+/* Styles of rows of the data. */
+enum { MEETS, MISSES, CHOSEN, RUNNER_UP, ON_FRONT, ON_LINE };
+
+/* What a panel shows, for its template. */
+typedef struct panel {
+    double x_low, x_high, y_low, y_high, tolerance;
+} panel;
+
+/* A chart in the making. */
+typedef struct work {
+    const form *form;
+    records all;
+    int64_t num_measures;
+    measure *measure;
+    panel *panel; /* of each measure */
+    int64_t num_methods;
+    const char **method;
+    int64_t *which; /* method of each record */
+    double *x, *y;  /* of each record, as drawn; NaN: not in this panel */
+    bool *front, *keep;
+    int64_t *order;           /* records in the order of a line */
+    int64_t lifted, left_out; /* to be said below */
+    picture *picture;
+} work;
+
+static void free_work(work *w)
 {
     free(w->all.item);
     free(w->measure);
+    free(w->panel);
     free(w->method);
     free(w->which);
     free(w->x);
     free(w->y);
     free(w->front);
+    free(w->keep);
+    free(w->order);
 }
 
-enum { MOST_SIGNS = 64, OTHER_SIGNS = 7 };
+/* --- scales --------------------------------------------------------------- */
 
-/* Methods, then what the other signs mean. */
-static int64_t list_signs(chart_errors_work *w, chart_sign signs[MOST_SIGNS])
+chart_range chart_decades(int64_t count, const double *values,
+                          double floor_value, int64_t *lifted)
 {
-    bool any[OTHER_SIGNS] = {[3] = w->form->front, [4] = true};
-    int64_t n = 0;
+    chart_range range = {HUGE_VAL, 0.0};
 
-    for (int64_t s = 0; s < w->num_methods && n < MOST_SIGNS - OTHER_SIGNS;
-         s++) {
-        signs[n] = (chart_sign){.colour = chart_colour(s),
-                                .mark = chart_mark(s, false)};
-        snprintf(signs[n++].name, CHART_WORD, "%.60s", w->method[s]);
+    *lifted = 0;
+    for (int64_t k = 0; k < count; k++) {
+        if (!isfinite(values[k]))
+            continue;
+        *lifted += values[k] <= floor_value;
+        if (values[k] > floor_value)
+            range.low = fmin(range.low, values[k]);
+        range.high = fmax(range.high, values[k]);
     }
+    if (!(range.high > floor_value))
+        range.low = range.high = 3.0 * floor_value;
+    range.low = pow(10.0, floor(log10(range.low) - 0.08));
+    range.high = pow(10.0, ceil(log10(range.high) + 0.08));
+    if (*lifted > 0)
+        range.low /= 10.0;
+    return range;
+}
+
+/* Coordinates of all records in the panel of a measure, and its axes. */
+static void place_records(work *w, const measure *m, panel *p)
+{
+    double least = HUGE_VAL, most = 0.0;
+    chart_range y = {0.0, 0.0};
+    int64_t lifted = 0;
+
     for (int64_t k = 0; k < w->all.count; k++) {
-        any[0] = any[0] || w->all.item[k].chosen;
-        any[1] = any[1] || w->all.item[k].runner_up;
-        any[2] = any[2] || !w->all.item[k].feasible;
+        w->x[k] = w->form->x(&w->all.item[k]);
+        w->y[k] = record_error(&w->all.item[k], m->name);
+        if (!isfinite(w->y[k]) || !isfinite(w->x[k]) ||
+            (w->form->seconds && !(w->x[k] > 0.0))) {
+            w->left_out++;
+            w->x[k] = w->y[k] = nan("");
+            continue;
+        }
+        least = fmin(least, w->x[k]);
+        most = fmax(most, w->x[k]);
     }
-    for (int64_t k = 0; k < w->num_measures; k++) {
-        chart_area area = {.right = 1.0, .top = 1.0};
-        int64_t count[2];
-
-        chart_errors_place(w, &w->measure[k], &area, count);
-        any[5] = any[5] || w->measure[k].tolerance > 0.0;
-        any[6] = any[6] || chart_errors_uncertain(&area);
+    y = chart_decades(w->all.count, w->y, RECORDS_ROUNDING, &lifted);
+    w->lifted += lifted;
+    *p = (panel){.x_low = least > most ? 0.5 : 0.7 * least,
+                 .x_high = least > most ? 2.0 : 1.3 * most,
+                 .y_low = y.low,
+                 .y_high = y.high};
+    if (!w->form->seconds)
+        p->x_high = most > 0.0 ? 1.05 * most : 1.0;
+    if (m->tolerance > 0.0) {
+        p->tolerance = m->tolerance;
+        if (m->tolerance < y.low)
+            p->y_low = m->tolerance / 2.0;
+        if (m->tolerance >= y.high)
+            p->y_high = 2.0 * m->tolerance;
     }
-    const chart_sign others[] = {
-        {.name = "chosen", .colour = SVG_ALARM, .mark = 6},
-        {.name = "runner-up", .colour = SVG_INK, .mark = 6},
-        {.name = "hollow: misses a limit", .colour = SVG_MUTED, .mark = 6},
-        {.name = "Pareto front", .colour = SVG_MUTED, .dash = 1, .wide = 2.0},
-        {.name = "equal error", .colour = SVG_PALE, .dash = 1, .wide = 1.0},
-        {.name = "tolerance", .colour = SVG_ALARM, .dash = 1, .wide = 1.6},
-        {.name = "10 %: model uncertainty",
-         .colour = SVG_INK,
-         .dash = 2,
-         .wide = 1.4},
-    };
-    for (int k = 0; k < OTHER_SIGNS; k++)
-        if (any[k])
-            signs[n++] = others[k];
-    return n;
+    for (int64_t k = 0; k < w->all.count; k++)
+        w->y[k] = isnan(w->y[k]) ? w->y[k] : fmax(w->y[k], p->y_low);
+    p->y_low *= pow(p->y_low / p->y_high, foot_part);
 }
 
-/* What the picture cannot show, said below it. */
-static void put_notes(const chart_errors_work *w, double y)
+/* Pixels of a value in a panel. */
+static double pixel_x(const work *w, const panel *p, double x)
 {
-    char text[CHART_WORD] = "";
-    size_t used = 0;
-
-    if (w->lifted > 0)
-        used = (size_t)snprintf(
-            text, sizeof text, "%lld error%s below %.0e %s at the foot. ",
-            (long long)w->lifted, w->lifted > 1 ? "s" : "", RECORDS_ROUNDING,
-            w->lifted > 1 ? "stand" : "stands");
-    if (w->left_out > 0)
-        snprintf(text + used, sizeof text - used,
-                 "%lld %s not known and left out.", (long long)w->left_out,
-                 w->left_out > 1 ? "are" : "is");
-    chart_text(w->picture, CHART_LEFT, y, text,
-               "font ',11' tc rgb '" SVG_MUTED "'");
+    return w->form->seconds
+               ? PANEL_WIDE * log(x / p->x_low) / log(p->x_high / p->x_low)
+               : PANEL_WIDE * x / p->x_high;
 }
 
-static void put_table(const chart_errors_work *w)
+static double pixel_y(const panel *p, double y)
+{
+    return PANEL_HIGH * log(y / p->y_low) / log(p->y_high / p->y_low);
+}
+
+/* --- front and lines ------------------------------------------------------ */
+
+/* What nothing beats: no other point is left of it and as low. */
+static void find_front(work *w)
+{
+    for (int64_t k = 0; k < w->all.count; k++) {
+        bool best = !isnan(w->x[k]) && !w->all.item[k].incomplete;
+
+        for (int64_t i = 0; best && i < w->all.count; i++) {
+            if (isnan(w->x[i]) || i == k || w->all.item[i].incomplete)
+                continue;
+            best = !(w->x[i] <= w->x[k] && w->y[i] <= w->y[k] &&
+                     (w->x[i] < w->x[k] || w->y[i] < w->y[k] || i < k));
+        }
+        w->front[k] = best;
+    }
+}
+
+/* Whether record a stands before b: to the left of it, or there and lower. */
+static bool is_before(const work *w, int64_t a, int64_t b)
+{
+    if (w->x[a] != w->x[b])
+        return w->x[a] < w->x[b];
+    return w->y[a] != w->y[b] ? w->y[a] < w->y[b] : a < b;
+}
+
+/* Records of the front (method -1), or the best of a method at each order, from
+   left to right; what misses modes is on neither. */
+static int64_t list_line(work *w, int64_t method)
+{
+    int64_t count = 0, kept = 0;
+
+    for (int64_t k = 0; k < w->all.count; k++) {
+        int64_t at = count;
+
+        if (isnan(w->x[k]) || w->all.item[k].incomplete ||
+            (method < 0 ? !w->front[k] : w->which[k] != method))
+            continue;
+        for (; at > 0 && is_before(w, k, w->order[at - 1]); at--)
+            w->order[at] = w->order[at - 1];
+        w->order[at] = k;
+        count++;
+    }
+    for (int64_t i = 0; i < count; i++)
+        if (kept == 0 || w->x[w->order[i]] > w->x[w->order[kept - 1]])
+            w->order[kept++] = w->order[i];
+    return kept;
+}
+
+/* --- data ----------------------------------------------------------------- */
+
+static void say_point(work *w, const record *r, const measure *m)
+{
+    char error[32], time[80] = "", cost[80] = "", word[32];
+
+    chart_say_error(record_error(r, m->name), error);
+    if (isfinite(r->cpu)) {
+        chart_say_seconds(r->cpu, word);
+        snprintf(time, sizeof time, "\nto reduce: %s", word);
+    }
+    if (isfinite(r->cost)) {
+        chart_say_seconds(r->cost, word);
+        snprintf(cost, sizeof cost, "\none simulated second: %s", word);
+    }
+    picture_tip(w->picture, "%.60s, order %lld\n%s: %s (%.4g)%s%s%s%s",
+                r->method, (long long)r->order, m->title, error,
+                record_error(r, m->name), time, cost,
+                !r->tolerance ? ""
+                : r->feasible ? "\nmeets the tolerance"
+                              : "\nmisses the tolerance",
+                !r->tolerance  ? ""
+                : r->chosen    ? "; chosen"
+                : r->runner_up ? "; runner-up"
+                               : "");
+}
+
+/* A row; its word is the order, if it is to be written beside the point. */
+static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
+{
+    const record *r = &w->all.item[k];
+    FILE *file = w->picture->data.file;
+
+    fprintf(file, "%lld\t%lld\t%d\t%.9g\t%.9g\t", (long long)p,
+            (long long)w->which[k], style, w->x[k], w->y[k]);
+    if (style <= MISSES)
+        say_point(w, r, &w->measure[p]);
+    fprintf(file, "\t%lld\t", (long long)r->order);
+    html_line(file, r->method);
+    fprintf(file, "\t");
+    if (word)
+        fprintf(file, "%lld", (long long)r->order);
+    fputc('\n', file);
+}
+
+/*
+ * A line, ended by an empty row. Below and left of a point of the front is no
+ * other point, by its definition: there its order is written, unless the last
+ * one is too near.
+ */
+static void put_line(work *w, int64_t p, int64_t method)
+{
+    const int64_t count = list_line(w, method);
+    double x = -HUGE_VAL, y = HUGE_VAL;
+
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t k = w->order[i];
+        const double at_x = pixel_x(w, &w->panel[p], w->x[k]);
+        const double at_y = pixel_y(&w->panel[p], w->y[k]);
+        const bool word =
+            method < 0 && (at_x - x > word_wide || y - at_y > word_high);
+
+        if (word) {
+            x = at_x;
+            y = at_y;
+        }
+        put_row(w, p, k, method < 0 ? ON_FRONT : ON_LINE, word);
+    }
+    fputc('\n', w->picture->data.file);
+}
+
+/* Points, of those that hide each other the lowest of a method; lines. */
+static ritz_status put_panel(work *w, int64_t p)
+{
+    ritz_status status = RITZ_OK;
+    const size_t count = (size_t)w->all.count + 1;
+    double *at = calloc(2 * count, sizeof *at);
+    int64_t *group = calloc(count, sizeof *group);
+
+    RITZ_FAIL_IF(!at || !group, RITZ_ERR_MEMORY, "no memory for a chart");
+    find_front(w);
+    for (int64_t k = 0; k < w->all.count; k++) {
+        const record *r = &w->all.item[k];
+
+        w->keep[k] = w->front[k] || r->chosen || r->runner_up;
+        group[k] = isnan(w->x[k]) ? -1 : 2 * w->which[k] + r->feasible;
+        if (group[k] < 0)
+            continue;
+        at[k] = pixel_x(w, &w->panel[p], w->x[k]);
+        at[count + (size_t)k] = pixel_y(&w->panel[p], w->y[k]);
+    }
+    RITZ_TRY(
+        picture_thin(w->all.count, at, at + count, mark_apart, group, w->keep));
+    for (int64_t k = 0; k < w->all.count; k++) {
+        const record *r = &w->all.item[k];
+
+        if (isnan(w->x[k]) || !w->keep[k])
+            continue;
+        put_row(w, p, k, r->feasible ? MEETS : MISSES, false);
+        if (r->chosen || r->runner_up)
+            put_row(w, p, k, r->chosen ? CHOSEN : RUNNER_UP, false);
+    }
+    if (w->form->front)
+        put_line(w, p, -1);
+    for (int64_t s = 0; w->form->lines && s < w->num_methods; s++)
+        put_line(w, p, s);
+done:
+    free(at);
+    free(group);
+    return status;
+}
+
+static void put_table(const work *w)
 {
     FILE *file = w->picture->table.file;
 
@@ -105,46 +334,118 @@ static void put_table(const chart_errors_work *w)
     }
 }
 
-static ritz_status compose(chart_errors_work *w)
+/* --- legend and note ------------------------------------------------------ */
+
+/* "chosen: compare, 34", in place of a word beside the point. */
+static void add_chosen(work *w, const record *r, bool chosen)
 {
-    int64_t columns = w->num_measures > 1 ? 2 : 1;
-    int64_t rows = (w->num_measures + columns - 1) / columns;
-    double wide = (double)columns * CHART_CELL_WIDE;
-    chart_sign signs[MOST_SIGNS];
-    int64_t count = list_signs(w, signs);
-    double foot = 0.0, high = 0.0;
+    picture_sign sign = {.colour = chosen ? "alarm" : "ink", .mark = 6};
 
-    w->picture->wide = wide;
-    foot =
-        44.0 + 20.0 * (double)chart_legend(w->picture, count, signs, CHART_LEFT,
-                                           0.0, wide - CHART_MARGIN, false);
-    high = (w->num_measures > 1 ? CHART_HEAD : 0.0) +
-           (double)(rows * CHART_CELL_HIGH) + foot;
-    gnuplot_size(w->picture, wide, high);
-    fprintf(w->picture->data.file,
-            "area\tseries\tstyle\tx\ty\ttip\torder\tmethod\n");
-    fprintf(w->picture->plot.file, "set multiplot\n");
-    for (int64_t k = 0; k < w->num_measures; k++) {
-        int64_t column = k % columns, row = rows - 1 - k / columns;
+    snprintf(sign.name, sizeof sign.name, "%s: %.40s, %lld",
+             chosen ? "chosen" : "runner-up", r->method, (long long)r->order);
+    picture_add_sign(w->picture, &sign);
+}
 
-        RITZ_CHECK(chart_errors_area(w, k, (double)(column * CHART_CELL_WIDE),
-                                     foot + (double)(row * CHART_CELL_HIGH)));
-        fprintf(w->picture->plot.file, "\n");
+static void add_signs(work *w)
+{
+    const record *chosen = NULL, *second = NULL;
+    bool hollow = false, limit = false, uncertain = false;
+
+    for (int64_t s = 0; s < w->num_methods && s < PICTURE_SIGNS - 7; s++) {
+        picture_sign sign = {.colour = svg_series((int)(s % SVG_SERIES)),
+                             .mark = chart_mark(s)};
+
+        snprintf(sign.name, sizeof sign.name, "%.60s", w->method[s]);
+        picture_add_sign(w->picture, &sign);
     }
-    chart_canvas(w->picture);
-    if (w->num_measures > 1)
-        chart_text(w->picture, CHART_LEFT, high - 18.0, w->form->title,
-                   "font ',16' tc rgb '" SVG_INK "'");
-    chart_legend(w->picture, count, signs, CHART_LEFT, foot - 14.0,
-                 wide - CHART_MARGIN, true);
-    put_notes(w, 12.0);
-    fprintf(w->picture->plot.file, "plot NaN notitle\nunset multiplot\n");
+    for (int64_t k = w->all.count - 1; k >= 0; k--) {
+        const record *r = &w->all.item[k];
+
+        chosen = r->chosen ? r : chosen;
+        second = r->runner_up && !r->chosen ? r : second;
+        hollow = hollow || !r->feasible;
+    }
+    for (int64_t p = 0; p < w->num_measures; p++) {
+        limit = limit || w->panel[p].tolerance > 0.0;
+        uncertain = uncertain || (w->panel[p].y_low <= uncertainty &&
+                                  uncertainty <= w->panel[p].y_high);
+    }
+    if (chosen)
+        add_chosen(w, chosen, true);
+    if (second)
+        add_chosen(w, second, false);
+    const picture_sign others[] = {
+        {.name = "hollow: misses a limit", .colour = "muted", .mark = 6},
+        {.name = "Pareto front", .colour = "muted", .wide = 2.0},
+        {.name = "equal error", .colour = "pale", .wide = 1.0},
+        {.name = "tolerance", .colour = "alarm", .wide = 1.6},
+        {.name = "10 %: model uncertainty",
+         .colour = "ink",
+         .dash = 2,
+         .wide = 1.4},
+    };
+    const bool there[] = {hollow, w->form->front, true, limit, uncertain};
+
+    for (size_t k = 0; k < sizeof there / sizeof *there; k++)
+        if (there[k])
+            picture_add_sign(w->picture, &others[k]);
+}
+
+/* What the picture cannot show, said below it. */
+static void say_missing(work *w)
+{
+    char *text = w->picture->note;
+    size_t used = 0;
+
+    if (w->lifted > 0)
+        used = (size_t)snprintf(
+            text, PICTURE_WORD, "%lld error%s below %.0e %s at the foot. ",
+            (long long)w->lifted, w->lifted > 1 ? "s" : "", RECORDS_ROUNDING,
+            w->lifted > 1 ? "stand" : "stands");
+    if (w->left_out > 0)
+        snprintf(text + used, PICTURE_WORD - used,
+                 "%lld %s not known and left out.", (long long)w->left_out,
+                 w->left_out > 1 ? "are" : "is");
+}
+
+/* --- the picture ---------------------------------------------------------- */
+
+static ritz_status compose(work *w)
+{
+    static const int64_t stride = sizeof(panel) / sizeof(double);
+    const int64_t n = w->num_measures, across = n > 1 ? 2 : 1;
+    picture *p = w->picture;
+    const panel *first = w->panel;
+
+    fprintf(p->data.file,
+            "area\tseries\tstyle\tx\ty\ttip\torder\tmethod\tword\n");
+    for (int64_t k = 0; k < n; k++) {
+        place_records(w, &w->measure[k], &w->panel[k]);
+        RITZ_CHECK(put_panel(w, k));
+    }
+    p->wide = (double)(across * CELL_WIDE);
+    const int64_t down = (n + across - 1) / across;
+
+    p->body = (double)(down * CELL_HIGH);
+    fprintf(p->given.file,
+            "panels = %lld\nacross = %lld\nmethods = %lld\nseconds = %d\n",
+            (long long)n, (long long)across, (long long)w->num_methods,
+            w->form->seconds);
+    picture_give_text(p, "xlabel", w->form->xlabel);
+    picture_give_texts(p, "title", n, w->measure->title, sizeof(measure));
+    picture_give_reals(p, "x_low", n, &first->x_low, stride);
+    picture_give_reals(p, "x_high", n, &first->x_high, stride);
+    picture_give_reals(p, "y_low", n, &first->y_low, stride);
+    picture_give_reals(p, "y_high", n, &first->y_high, stride);
+    picture_give_reals(p, "tolerance", n, &first->tolerance, stride);
+    add_signs(w);
+    say_missing(w);
     put_table(w);
-    return RITZ_OK;
+    return picture_draw(p, "errors.gp", w->form->title, w->form->xlabel);
 }
 
 /* Measures of which every error is rounding have nothing to show. */
-static void drop_rounding(chart_errors_work *w)
+static void drop_rounding(work *w)
 {
     int64_t kept = 0;
 
@@ -155,16 +456,16 @@ static void drop_rounding(chart_errors_work *w)
 }
 
 /* Of measures the first @p kept are taken. */
-static ritz_status not_there(const chart_errors_work *w, const char *asked,
-                             int64_t kept)
+static ritz_status refuse_measure(const work *w, const char *asked,
+                                  int64_t kept)
 {
     char names[16 * RITZ_NAME_SIZE] = "";
     size_t used = 0;
 
     for (int64_t k = 0; k < w->num_measures; k++) {
-        if (k < kept && strcmp(w->measure[k].name, asked) == 0)
-            return ritz_fail(RITZ_ERR_ARGUMENT, "--measure '%s' is given twice",
-                             asked);
+        RITZ_REFUSE_IF(k < kept && strcmp(w->measure[k].name, asked) == 0,
+                       RITZ_ERR_ARGUMENT, "--measure '%s' is given twice",
+                       asked);
         if (used < sizeof names)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
                                      used > 0 ? ", " : "", w->measure[k].name);
@@ -174,7 +475,7 @@ static ritz_status not_there(const chart_errors_work *w, const char *asked,
 }
 
 /* Measures that are asked for, or all. */
-static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
+static ritz_status choose_measures(work *w, const cli_list *asked)
 {
     int64_t kept = 0;
 
@@ -188,7 +489,7 @@ static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
                strcmp(w->measure[k].name, asked->text[a]) != 0)
             k++;
         if (k >= w->num_measures)
-            return not_there(w, asked->text[a], kept);
+            return refuse_measure(w, asked->text[a], kept);
         measure found = w->measure[k];
 
         w->measure[k] = w->measure[kept];
@@ -199,12 +500,12 @@ static ritz_status choose_measures(chart_errors_work *w, const cli_list *asked)
     return RITZ_OK;
 }
 
-ritz_status chart_errors_draw(const chart_sources *sources,
-                              const chart_wish *wish, const chart_errors *form,
-                              gnuplot *out)
+static ritz_status draw_errors(const chart_sources *sources,
+                               const chart_wish *wish, const form *how,
+                               picture *out)
 {
     ritz_status status = RITZ_OK;
-    chart_errors_work w = {.form = form, .picture = out};
+    work w = {.form = how, .picture = out};
     size_t room = 0;
     bool any = false;
 
@@ -215,15 +516,61 @@ ritz_status chart_errors_draw(const chart_sources *sources,
     w.x = calloc(room, sizeof *w.x);
     w.y = calloc(room, sizeof *w.y);
     w.front = calloc(room, sizeof *w.front);
-    RITZ_FAIL_IF(!w.x || !w.y || !w.front, RITZ_ERR_MEMORY,
-                 "no memory for a chart");
+    w.keep = calloc(room, sizeof *w.keep);
+    w.order = calloc(room, sizeof *w.order);
+    w.panel = calloc((size_t)w.num_measures + 1, sizeof *w.panel);
+    RITZ_FAIL_IF(!w.x || !w.y || !w.front || !w.keep || !w.order || !w.panel,
+                 RITZ_ERR_MEMORY, "no memory for a chart");
     for (int64_t k = 0; k < w.all.count; k++)
-        any = any || isfinite(form->x(&w.all.item[k]));
+        any = any || isfinite(how->x(&w.all.item[k]));
     RITZ_FAIL_IF(!any, RITZ_ERR_ARGUMENT, "no record says what its model cost");
-    RITZ_TRY(gnuplot_new(wish->path, wish->keep, out));
+    RITZ_TRY(picture_new(wish->path, wish->keep, out));
     RITZ_TRY(compose(&w));
-    RITZ_TRY(gnuplot_draw(out, form->title, form->xlabel));
 done:
     free_work(&w);
     return status;
+}
+
+static double time_of(const record *r)
+{
+    return r->cpu;
+}
+
+static double cost_of(const record *r)
+{
+    return r->cost;
+}
+
+static double order_of(const record *r)
+{
+    return (double)r->order;
+}
+
+ritz_status chart_pareto(const chart_sources *sources, const chart_wish *wish,
+                         picture *out)
+{
+    const bool simulate = wish->against ? strcmp(wish->against, "simulate") == 0
+                                        : records_cost(&sources->runs);
+    const form how = {
+        .title = simulate ? "Errors against the cost of simulation"
+                          : "Errors against the time to reduce",
+        .xlabel = simulate ? "processor time for one simulated second"
+                           : "processor time to make basis and reduction",
+        .seconds = true,
+        .x = simulate ? cost_of : time_of,
+        .front = true,
+    };
+
+    return draw_errors(sources, wish, &how, out);
+}
+
+ritz_status chart_convergence(const chart_sources *sources,
+                              const chart_wish *wish, picture *out)
+{
+    const form how = {.title = "Errors against order",
+                      .xlabel = "order of the reduced model",
+                      .x = order_of,
+                      .lines = true};
+
+    return draw_errors(sources, wish, &how, out);
 }

@@ -1,12 +1,177 @@
-/* Bars of values from rankings: see rankings_draw.c. */
+/* Values of modes as bars, from rankings. */
 #include "chart/chart.h"
+#include "chart/html.h"
 #include "print/rankings_make.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* A value below this part of the largest is left out of the picture. */
+static const double invisible = 1e-12;
+
+/* Rankings of different kinds share one axis only as parts of their largest. */
+static bool is_mixed(const contest *all)
+{
+    for (int64_t c = 1; c < all->count; c++)
+        if (strcmp(all->ranking[c]->by, all->ranking[0]->by) != 0)
+            return true;
+    return false;
+}
+
+static double largest_of(const ritz_ranking *r)
+{
+    return r->count > 0 ? fabs(r->value[r->order[0]]) : 0.0;
+}
+
+static int64_t number_of(const contest *all, int64_t c, int64_t mode)
+{
+    return all->track[c] ? all->track[c][mode] : mode;
+}
+
+/* Mode of that number in ranking c; -1: none. */
+static int64_t find_mode(const contest *all, int64_t c, int64_t number)
+{
+    for (int64_t k = 0; k < all->ranking[c]->count; k++)
+        if (number_of(all, c, k) == number)
+            return k;
+    return -1;
+}
+
+/* Magnitude of a number in ranking c, as drawn; NaN: nothing to see. */
+static double height_of(const contest *all, int64_t c, int64_t number)
+{
+    const ritz_ranking *r = all->ranking[c];
+    int64_t mode = find_mode(all, c, number);
+    double top = largest_of(r);
+
+    if (mode < 0 || !(fabs(r->value[mode]) > invisible * top))
+        return nan("");
+    return fabs(r->value[mode]) / (is_mixed(all) ? top : 1.0);
+}
+
+/* Numbers that are among the first few of some ranking, ascending. */
+static ritz_status pick_numbers(const contest *all, int64_t most,
+                                int64_t *count, int64_t **out)
+{
+    int64_t *number = calloc((size_t)(all->count * most) + 1, sizeof *number);
+    int64_t n = 0;
+
+    RITZ_REFUSE_IF(!number, RITZ_ERR_MEMORY, "no memory for a chart");
+    for (int64_t c = 0; c < all->count; c++)
+        for (int64_t k = 0; k < all->ranking[c]->count && k < most; k++) {
+            int64_t wanted = number_of(all, c, all->ranking[c]->order[k]);
+            int64_t at = n;
+
+            while (at > 0 && number[at - 1] > wanted)
+                at--;
+            if (at > 0 && number[at - 1] == wanted)
+                continue;
+            memmove(number + at + 1, number + at,
+                    (size_t)(n - at) * sizeof *number);
+            number[at] = wanted;
+            n++;
+        }
+    *count = n;
+    *out = number;
+    return RITZ_OK;
+}
+
+static double hertz_of(const contest *all, int64_t number)
+{
+    int64_t c = 0;
+
+    while (find_mode(all, c, number) < 0)
+        c++;
+    return all->ranking[c]->hertz[find_mode(all, c, number)];
+}
+
+/* Mode and label, then of each ranking value and tip; a table of the values. */
+static void put_data(picture *p, const contest *all, int64_t count,
+                     const int64_t *number)
+{
+    FILE *data = p->data.file, *table = p->table.file;
+    const char *noun = all->track[0] ? "track" : "mode";
+
+    fprintf(data, "mode\tlabel");
+    fprintf(table, "mode\tlabel");
+    for (int64_t c = 0; c < all->count; c++) {
+        picture_sign sign = {.colour = svg_series((int)(c % SVG_SERIES)),
+                             .wide = 8.0};
+
+        snprintf(sign.name, sizeof sign.name, "%.120s", all->name[c]);
+        picture_add_sign(p, &sign);
+        fprintf(data, "\t");
+        html_line(data, all->name[c]);
+        fprintf(data, "\ttip");
+        fprintf(table, "\t");
+        html_line(table, all->name[c]);
+    }
+    for (int64_t k = 0; k < count; k++) {
+        const long long named = (long long)number[k] + 1;
+        const double hertz = hertz_of(all, number[k]);
+
+        fprintf(data, "\n%lld\t%lld: %.3g", named, named, hertz);
+        fprintf(table, "\n%lld\t%lld: %.3g", named, named, hertz);
+        for (int64_t c = 0; c < all->count; c++) {
+            double value = height_of(all, c, number[k]);
+
+            fprintf(data, "\t%.6g\t", value);
+            fprintf(table, "\t%.6g", value);
+            picture_tip(p, "%s %lld, %.4g Hz\n%s: %.4g", noun, named, hertz,
+                        all->name[c], value);
+        }
+    }
+    fprintf(data, "\n");
+    fprintf(table, "\n");
+}
+
+static ritz_status draw_rankings(picture *p, const char *title,
+                                 const contest *all, int64_t most)
+{
+    ritz_status status = RITZ_OK;
+    double largest = 0.0;
+    int64_t *number = NULL;
+    int64_t count = 0;
+
+    for (int64_t c = 0; c < all->count; c++)
+        largest = fmax(largest, largest_of(all->ranking[c]));
+    RITZ_FAIL_IF(!(largest > 0.0), RITZ_ERR_ARGUMENT,
+                 "no mode has a value that could be drawn");
+    RITZ_TRY(pick_numbers(all, most, &count, &number));
+    put_data(p, all, count, number);
+    p->wide = 220.0 + (double)(count * (14 + 7 * all->count));
+    p->wide = fmin(fmax(p->wide, 640.0), 2400.0);
+    p->body = 440.0;
+    fprintf(p->given.file, "rankings = %lld\ncount = %lld\n",
+            (long long)all->count, (long long)count);
+    picture_give_text(p, "head", title);
+    picture_give_text(p, "xlabel", all->track[0] ? "track: Hz" : "mode: Hz");
+    picture_give_text(p, "ylabel",
+                      is_mixed(all) ? "part of the largest value"
+                                    : all->ranking[0]->by);
+    RITZ_TRY(picture_draw(p, "hankel.gp", title, "values of modes as bars"));
+done:
+    free(number);
+    return status;
+}
+
+ritz_status chart_rankings(const char *path, const char *title,
+                           const contest *all, int64_t most)
+{
+    ritz_status status = RITZ_OK;
+    picture p = {0};
+
+    RITZ_TRY(picture_new(path, true, &p));
+    RITZ_TRY(draw_rankings(&p, title, all, most));
+done:
+    picture_free(&p);
+    return status;
+}
+
 /* Rankings as ritz-rank holds them; they stay the sources'. */
-static ritz_status borrow(const chart_sources *sources, rank_result *out)
+static ritz_status borrow_rankings(const chart_sources *sources,
+                                   rank_result *out)
 {
     out->group = calloc((size_t)sources->count + 1, sizeof *out->group);
     out->file = calloc((size_t)sources->count + 1, sizeof *out->file);
@@ -27,21 +192,19 @@ static ritz_status borrow(const chart_sources *sources, rank_result *out)
 }
 
 ritz_status chart_hankel(const chart_sources *sources, const chart_wish *wish,
-                         gnuplot *out)
+                         picture *out)
 {
     ritz_status status = RITZ_OK;
     rank_result result = {0};
     contest all = {0};
     char title[256];
 
-    RITZ_TRY(borrow(sources, &result));
+    RITZ_TRY(borrow_rankings(sources, &result));
     RITZ_TRY(rank_contest(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,
              rankings_damping(all.ranking[0]));
-    RITZ_TRY(gnuplot_new(wish->path, wish->keep, out));
-    RITZ_TRY(rankings_plot(out, title, &all, wish->top));
-    fflush(out->data.file);
-    fputs(out->data.text, out->table.file);
+    RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(draw_rankings(out, title, &all, wish->top));
 done:
     rank_contest_free(&all);
     free(result.group);

@@ -4,7 +4,9 @@
  * anything else with a system by what inputs drive and outputs see.
  */
 #include "chart/chart_mac.h"
+#include "chart/html.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { MOST_FILES = 70 };
@@ -130,8 +132,102 @@ static ritz_status shapes_of(const choice *chosen, const char **how,
     return RITZ_OK;
 }
 
+/* --- the picture ---------------------------------------------------------- */
+
+/* Cells have numbers in them up to so many modes. */
+enum { NUMBERED = 24 };
+
+static void say_mode(const mac_shapes *s, int64_t k, char out[32])
+{
+    if (isnan(s->hertz[k]))
+        snprintf(out, 32, "%lld", (long long)k + 1);
+    else
+        snprintf(out, 32, "%lld: %.3g", (long long)k + 1, s->hertz[k]);
+}
+
+/* Names of modes, as an array of the template. */
+static ritz_status give_modes(picture *p, const char *name, const mac_shapes *s)
+{
+    enum { SIZE = 32 };
+    char(*word)[SIZE] = calloc((size_t)s->count + 1, SIZE);
+
+    RITZ_REFUSE_IF(!word, RITZ_ERR_MEMORY, "no memory for a chart");
+    for (int64_t k = 0; k < s->count; k++)
+        say_mode(s, k, word[k]);
+    picture_give_texts(p, name, s->count, word[0], SIZE);
+    free(word);
+    return RITZ_OK;
+}
+
+static void put_data(const mac_shapes *a, const mac_shapes *b,
+                     const int64_t *row, picture *p)
+{
+    FILE *data = p->data.file, *table = p->table.file;
+    char x[32], y[32];
+
+    fprintf(data, "column\trow\tmac\ttip\n");
+    html_line(table, a->name);
+    for (int64_t j = 0; j < b->count; j++) {
+        say_mode(b, j, x);
+        fprintf(table, "\t%s", x);
+    }
+    for (int64_t i = 0; i < a->count; i++) {
+        say_mode(a, i, y);
+        fprintf(table, "\n%s", y);
+        for (int64_t j = 0; j < b->count; j++) {
+            double mac = mac_of(a, b, row, i, j);
+
+            say_mode(b, j, x);
+            fprintf(data, "%lld\t%lld\t%.6g\t", (long long)j, (long long)i,
+                    mac);
+            picture_tip(p, "%.60s %s Hz\n%.60s %s Hz\nMAC %.4f", a->name, y,
+                        b->name, x, mac);
+            fprintf(data, "\n");
+            fprintf(table, "\t%.4f", mac);
+        }
+        fprintf(data, "\n");
+    }
+    fprintf(table, "\n");
+}
+
+static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
+                            const int64_t *row, const char *how, picture *p)
+{
+    enum { LEFT = 116, RIGHT = 64, HEAD = 40, FOOT = 100, LETTER = 8 };
+    const int64_t most = a->count > b->count ? a->count : b->count;
+    const double cell = most <= NUMBERED ? 34.0 : 640.0 / (double)most;
+    char title[4 * PICTURE_WORD];
+    size_t letters =
+        (size_t)snprintf(title, sizeof title, "MAC of %.160s and %.160s, %s",
+                         a->name, b->name, how);
+
+    p->wide = fmax(LEFT + RIGHT + cell * (double)b->count,
+                   (double)(LEFT + LETTER * letters));
+    p->body = HEAD + FOOT + cell * (double)a->count;
+    /* as many modes can be told apart as there are inputs and outputs */
+    if (a->num_seen > 0 && (a->num_seen < a->count || a->num_seen < b->count))
+        snprintf(p->note, sizeof p->note,
+                 "%lld inputs and outputs tell no more modes apart than that: "
+                 "likeness can be chance",
+                 (long long)a->num_seen);
+    fprintf(p->given.file,
+            "across = %lld\ndown = %lld\ncell = %.6g\nleft = %d\n"
+            "numbered = %d\n",
+            (long long)b->count, (long long)a->count, cell, (int)LEFT,
+            most <= NUMBERED);
+    picture_give_text(p, "head", title);
+    picture_give_text(p, "xlabel", b->name);
+    picture_give_text(p, "ylabel", a->name);
+    RITZ_CHECK(give_modes(p, "column_name", b));
+    RITZ_CHECK(give_modes(p, "row_name", a));
+    put_data(a, b, row, p);
+    return picture_draw(p, "mac.gp", title,
+                        "likeness of mode shapes: 1 the same, 0 nothing in "
+                        "common");
+}
+
 ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
-                      gnuplot *out)
+                      picture *out)
 {
     ritz_status status = RITZ_OK;
     choice chosen = {.num_bodies = 0};
@@ -142,8 +238,8 @@ ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
     RITZ_TRY(choose(sources, &wish->at, &chosen));
     RITZ_TRY(shapes_of(&chosen, &how, set));
     RITZ_TRY(mac_match(&set[0], &set[1], &row));
-    RITZ_TRY(gnuplot_new(wish->path, wish->keep, out));
-    RITZ_TRY(mac_draw(&set[0], &set[1], row, how, out));
+    RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(draw_mac(&set[0], &set[1], row, how, out));
 done:
     free(row);
     mac_shapes_free(&set[0]);

@@ -13,10 +13,10 @@ typedef struct mac_shapes {
     ritz_dense MU; /* the same times the mass of bodies; {0}: U itself */
     double *hertz; /* count; NaN: none */
     int64_t count;
-    const ritz_dof *dof;       /* n, borrowed; NULL: rows are not dofs */
-    int64_t num_seen;          /* of them in common with others, once matched */
-    char (*seen)[MAC_LABEL];   /* n, inputs and outputs; NULL: rows are none */
-    char name[2 * CHART_WORD]; /* "system.h5, clock=60" */
+    const ritz_dof *dof;     /* n, borrowed; NULL: rows are not dofs */
+    int64_t num_seen;        /* of them in common with others, once matched */
+    char (*seen)[MAC_LABEL]; /* n, inputs and outputs; NULL: rows are none */
+    char name[2 * PICTURE_WORD]; /* "system.h5, clock=60" */
 } mac_shapes;
 
 /* What has modes: a container and, of a system, one configuration of it. */
@@ -59,9 +59,5 @@ double mac_of(const mac_shapes *a, const mac_shapes *b, const int64_t *row,
               int64_t i, int64_t j);
 
 void mac_shapes_free(mac_shapes *shapes);
-
-/** The picture; @p how they are compared, for its title. */
-ritz_status mac_draw(const mac_shapes *a, const mac_shapes *b,
-                     const int64_t *row, const char *how, gnuplot *out);
 
 #endif

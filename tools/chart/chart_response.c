@@ -1,15 +1,69 @@
-/* Responses over each other, and how far each is from the first. */
-#include "chart/chart_response.h"
-
+/*
+ * Responses over each other, and how far each is from the first: of a channel H
+ * or of the singular values s of all of it
+ *
+ *     |H_r - H| / max |H|      or      |s_r - s| / max s
+ *     |20 log10(|H_r| / |H|)|  or      |20 log10(s_r / s)|
+ *
+ * at points that both have. Decibels have gaps where a value is 0, or a
+ * singular value is nothing but rounding beside the largest.
+ */
+#include "chart/chart.h"
 #include "chart/html.h"
 
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* Curves, and what two more signs mean. */
-enum { MOST_SIGNS = CHART_MOST_RESPONSES + 2 };
+enum {
+    MOST_RESPONSES = 12,
+    MOST_CHANNELS = 4,
+    MOST_PEAKS = 24,
+    SINGULAR = -1, /* in place of an output: singular values */
+    CELL_WIDE = 490,
+    CELL_HIGH = 470,  /* with one strip of errors or none */
+    STRIP_HIGH = 153, /* what another strip adds */
+    PANEL_WIDE = 404,
+};
 
-int64_t chart_response_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
-                            const char *wanted)
+/* How errors are measured; each has a strip below the magnitudes. */
+enum { RELATIVE, DECIBELS, STRIPS };
+
+/* A singular value is rounding below this part of the largest. */
+static const double rounding = 1e-12;
+
+typedef struct overlay {
+    int64_t count;
+    const ritz_response *curve[MOST_RESPONSES];
+    const char *name[MOST_RESPONSES];
+    int64_t num_channels;
+    int64_t output[MOST_CHANNELS], input[MOST_CHANNELS];
+    int64_t passed; /* channels that are not drawn */
+    bool strip[STRIPS];
+    picture *picture;
+} overlay;
+
+/* Ends of axes of one channel. */
+typedef struct extent {
+    double most, least; /* of magnitudes above 0 */
+    double top;         /* the same as most, or a true peak above it */
+    double worst[STRIPS], best[STRIPS]; /* of errors above 0 */
+    int64_t shared;                     /* points that curves have in common */
+} extent;
+
+/* What a channel needs of its template. */
+typedef struct channel {
+    char title[2 * PICTURE_WORD];
+    double singular, shared, y_low, y_high;
+    double low[STRIPS], high[STRIPS];
+} channel;
+
+/* --- what is drawn -------------------------------------------------------- */
+
+/* Place of a name among some; -1: it is none of them. */
+static int64_t find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
+                         const char *wanted)
 {
     for (int64_t k = 0; k < count; k++)
         if (strcmp(name[k], wanted) == 0)
@@ -17,79 +71,68 @@ int64_t chart_response_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
     return -1;
 }
 
-static ritz_status take_responses(const chart_sources *sources,
-                                  chart_overlay *o)
+static ritz_status take_response(const chart_file *file, overlay *o)
 {
-    const ritz_response *first = NULL;
+    const ritz_response *r = &file->model.response, *first = o->curve[0];
 
-    for (int64_t k = 0; k < sources->count; k++) {
-        const chart_file *file = &sources->file[k];
-        const ritz_response *r = &file->model.response;
-
-        if (file->holds != CHART_RESPONSE)
-            continue;
-        RITZ_REFUSE_IF(o->count == CHART_MOST_RESPONSES, RITZ_ERR_ARGUMENT,
-                       "more than %d responses cannot be told apart",
-                       (int)CHART_MOST_RESPONSES);
-        RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
-                       "'%s' has fewer than two points", file->path);
-        first = first ? first : r;
-        for (int64_t i = 0; i < first->num_outputs; i++)
-            RITZ_REFUSE_IF(chart_response_name(r->num_outputs, r->output,
-                                               first->output[i]) < 0,
-                           RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
-                           file->path, first->output[i]);
-        for (int64_t i = 0; i < first->num_inputs; i++)
-            RITZ_REFUSE_IF(chart_response_name(r->num_inputs, r->input,
-                                               first->input[i]) < 0,
-                           RITZ_ERR_ARGUMENT, "'%s' has no input '%s'",
-                           file->path, first->input[i]);
-        o->curve[o->count++] =
-            (chart_curve){.r = r, .name = chart_base(file->path)};
-    }
-    RITZ_REFUSE_IF(o->count == 0, RITZ_ERR_ARGUMENT, "there is no response");
+    RITZ_REFUSE_IF(o->count == MOST_RESPONSES, RITZ_ERR_ARGUMENT,
+                   "more than %d responses cannot be told apart",
+                   (int)MOST_RESPONSES);
+    RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
+                   "'%s' has fewer than two points", file->path);
+    first = first ? first : r;
+    for (int64_t i = 0; i < first->num_outputs; i++)
+        RITZ_REFUSE_IF(find_name(r->num_outputs, r->output, first->output[i]) <
+                           0,
+                       RITZ_ERR_ARGUMENT, "'%s' has no output '%s'", file->path,
+                       first->output[i]);
+    for (int64_t i = 0; i < first->num_inputs; i++)
+        RITZ_REFUSE_IF(find_name(r->num_inputs, r->input, first->input[i]) < 0,
+                       RITZ_ERR_ARGUMENT, "'%s' has no input '%s'", file->path,
+                       first->input[i]);
+    o->name[o->count] = chart_base(file->path);
+    o->curve[o->count++] = r;
     return RITZ_OK;
 }
 
 /* Singular values, of which all files hold as many. */
-static ritz_status add_singular(chart_overlay *o)
+static ritz_status add_singular(overlay *o)
 {
-    const ritz_response *first = o->curve[0].r;
+    const ritz_response *first = o->curve[0];
 
     for (int64_t w = 0; w < o->count; w++) {
-        const ritz_response *r = o->curve[w].r;
+        const ritz_response *r = o->curve[w];
 
         RITZ_REFUSE_IF(r->num_singular == 0, RITZ_ERR_ARGUMENT,
                        "'%s' holds no singular values: ritz-frf "
                        "--singular-values stores them",
-                       o->curve[w].name);
+                       o->name[w]);
         RITZ_REFUSE_IF(r->num_inputs != first->num_inputs ||
                            r->num_outputs != first->num_outputs,
                        RITZ_ERR_ARGUMENT,
                        "'%s' has more inputs or outputs than '%s', their "
                        "singular values do not compare",
-                       o->curve[w].name, o->curve[0].name);
+                       o->name[w], o->name[0]);
     }
-    o->output[o->num_channels] = CHART_SINGULAR;
-    o->input[o->num_channels++] = CHART_SINGULAR;
+    o->output[o->num_channels] = SINGULAR;
+    o->input[o->num_channels++] = SINGULAR;
     return RITZ_OK;
 }
 
-static ritz_status add_channel(chart_overlay *o, const char *text)
+static ritz_status add_channel(overlay *o, const char *text)
 {
-    const ritz_response *r = o->curve[0].r;
+    const ritz_response *r = o->curve[0];
     const char *slash = strchr(text, '/');
     char output[RITZ_NAME_SIZE] = "";
     int64_t i = -1, j = -1;
 
     if (slash && slash - text < RITZ_NAME_SIZE) {
         snprintf(output, sizeof output, "%.*s", (int)(slash - text), text);
-        i = chart_response_name(r->num_outputs, r->output, output);
-        j = chart_response_name(r->num_inputs, r->input, slash + 1);
+        i = find_name(r->num_outputs, r->output, output);
+        j = find_name(r->num_inputs, r->input, slash + 1);
     }
-    RITZ_REFUSE_IF(o->num_channels == CHART_MOST_CHANNELS, RITZ_ERR_ARGUMENT,
-                   "more than %d channels do not fit",
-                   (int)CHART_MOST_CHANNELS);
+    RITZ_REFUSE_IF(o->num_channels == MOST_CHANNELS, RITZ_ERR_ARGUMENT,
+                   "more than %d channels do not fit", (int)MOST_CHANNELS);
     if (strcmp(text, CHART_SINGULAR_WORD) == 0)
         return add_singular(o);
     RITZ_REFUSE_IF(i < 0 || j < 0, RITZ_ERR_ARGUMENT,
@@ -101,19 +144,18 @@ static ritz_status add_channel(chart_overlay *o, const char *text)
     return RITZ_OK;
 }
 
-static ritz_status choose_channels(const cli_list *asked, chart_overlay *o)
+static ritz_status choose_channels(const cli_list *asked, overlay *o)
 {
-    const ritz_response *r = o->curve[0].r;
+    const ritz_response *r = o->curve[0];
 
-    if (!r)
-        return RITZ_OK;
+    RITZ_REFUSE_IF(o->count == 0, RITZ_ERR_ARGUMENT, "there is no response");
     RITZ_REFUSE_IF(r->num_outputs < 1 || r->num_inputs < 1, RITZ_ERR_ARGUMENT,
-                   "'%s' has no channel", o->curve[0].name);
+                   "'%s' has no channel", o->name[0]);
     for (int k = 0; k < asked->count; k++)
         RITZ_CHECK(add_channel(o, asked->text[k]));
     for (int64_t c = 0; asked->count == 0 && c < r->num_outputs * r->num_inputs;
          c++) {
-        if (o->num_channels == CHART_MOST_CHANNELS) {
+        if (o->num_channels == MOST_CHANNELS) {
             o->passed++;
             continue;
         }
@@ -123,37 +165,347 @@ static ritz_status choose_channels(const cli_list *asked, chart_overlay *o)
     return RITZ_OK;
 }
 
-static int64_t list_signs(const chart_overlay *o, chart_sign signs[MOST_SIGNS])
+/* --- values and errors ---------------------------------------------------- */
+
+static bool is_singular(const overlay *o, int64_t c)
 {
-    int64_t count = o->count;
-    bool singular = false, many = false, peak = false;
+    return o->output[c] == SINGULAR;
+}
 
-    for (int64_t w = 0; w < o->count; w++) {
-        bool under = w == 0 && o->count > 1;
+static int64_t count_lines(const overlay *o, int64_t c)
+{
+    return is_singular(o, c) ? o->curve[0]->num_singular : 1;
+}
 
-        signs[w] = (chart_sign){
-            .colour = under ? SVG_PALE : chart_colour(w > 0 ? w - 1 : 0),
-            .dash = (int)(w < 2 ? 1 : w),
-            .wide = under ? 6.0 : 0.0};
-        snprintf(signs[w].name, CHART_WORD, "%.80s%s", o->curve[w].name,
-                 under ? ", the reference" : "");
-        peak = peak || o->curve[w].r->singular_peak[1] > 0.0;
-        many = many || o->curve[w].r->num_singular > 1;
+/* H of a curve's k-th point in channel c, or one of its singular values. */
+static double _Complex value_of(const overlay *o, int64_t which, int64_t k,
+                                int64_t c, int64_t line)
+{
+    const ritz_response *first = o->curve[0], *r = o->curve[which];
+    int64_t i = 0, j = 0;
+
+    if (is_singular(o, c))
+        return r->singular[k * r->num_singular + line];
+    i = find_name(r->num_outputs, r->output, first->output[o->output[c]]);
+    j = find_name(r->num_inputs, r->input, first->input[o->input[c]]);
+    return r->H[(k * r->num_outputs + i) * r->num_inputs + j];
+}
+
+static double size_of(const overlay *o, int64_t k, int64_t c)
+{
+    return cabs(value_of(o, 0, k, c, 0));
+}
+
+/* Below this a value of the first at point k is rounding. */
+static double nothing_at(const overlay *o, int64_t k, int64_t c)
+{
+    return is_singular(o, c) ? rounding * size_of(o, k, c) : 0.0;
+}
+
+/* Point of a curve at a frequency of another; -1: it has none there. */
+static int64_t find_point(const ritz_response *r, double hertz)
+{
+    int64_t low = 0, high = r->count;
+
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (r->hertz[middle] < hertz * (1.0 - rounding))
+            low = middle + 1;
+        else
+            high = middle;
     }
-    for (int64_t c = 0; c < o->num_channels; c++)
-        singular = singular || chart_response_singular(o, c);
-    if (singular && many)
-        signs[count++] = (chart_sign){.name = "thin: all but the largest",
-                                      .colour = SVG_MUTED,
-                                      .dash = 1,
-                                      .wide = 0.8};
-    if (singular && peak)
-        signs[count++] = (chart_sign){
-            .name = "peak between points", .colour = SVG_MUTED, .mark = 12};
+    return low < r->count && r->hertz[low] <= hertz * (1.0 + rounding) ? low
+                                                                       : -1;
+}
+
+/* Errors of curve w at its point k; NaN where the first has no such point, or
+   a value is rounding. */
+static void measure_errors(const overlay *o, int64_t w, int64_t k, int64_t c,
+                           int64_t line, double most, double error[STRIPS])
+{
+    const int64_t at = find_point(o->curve[0], o->curve[w]->hertz[k]);
+    double _Complex H = 0.0, H_r = 0.0;
+    double least = 0.0;
+
+    error[RELATIVE] = error[DECIBELS] = nan("");
+    if (at < 0 || w == 0)
+        return;
+    H = value_of(o, 0, at, c, line);
+    H_r = value_of(o, w, k, c, line);
+    least = nothing_at(o, at, c);
+    error[RELATIVE] = cabs(H_r - H) / most;
+    if (cabs(H) > least && cabs(H_r) > least)
+        error[DECIBELS] = fabs(20.0 * log10(cabs(H_r) / cabs(H)));
+}
+
+static void widen_by_errors(const overlay *o, int64_t w, int64_t c, extent *e)
+{
+    double error[STRIPS];
+
+    for (int64_t line = 0; line < count_lines(o, c); line++)
+        for (int64_t k = 0; k < o->curve[w]->count; k++) {
+            measure_errors(o, w, k, c, line, e->most, error);
+            e->shared += !isnan(error[RELATIVE]);
+            for (int s = 0; s < STRIPS; s++) {
+                if (error[s] > 0.0)
+                    e->best[s] = fmin(e->best[s], error[s]);
+                if (error[s] > e->worst[s])
+                    e->worst[s] = error[s];
+            }
+        }
+}
+
+static extent find_extent(const overlay *o, int64_t c)
+{
+    extent e = {.least = HUGE_VAL, .best = {HUGE_VAL, HUGE_VAL}};
+
+    for (int64_t line = 0; line < count_lines(o, c); line++)
+        for (int64_t k = 0; k < o->curve[0]->count; k++) {
+            double size = cabs(value_of(o, 0, k, c, line));
+
+            e.most = fmax(e.most, size);
+            if (size > nothing_at(o, k, c))
+                e.least = fmin(e.least, size);
+        }
+    e.top = e.most;
+    for (int64_t w = 0; is_singular(o, c) && w < o->count; w++)
+        if (isfinite(o->curve[w]->singular_peak[1]))
+            e.top = fmax(e.top, o->curve[w]->singular_peak[1]);
+    for (int64_t w = 1; e.most > 0.0 && w < o->count; w++)
+        widen_by_errors(o, w, c, &e);
+    return e;
+}
+
+/* Whole decades that hold both ends, at most fourteen. */
+static void set_decades(double least, double most, double *low, double *high)
+{
+    most = most > 0.0 ? most : 1.0;
+    least = least < most ? least : most / 10.0;
+    *low = pow(10.0, floor(log10(fmax(least, 1e-14 * most))));
+    *high = pow(10.0, ceil(log10(1.01 * most)));
+}
+
+/* --- data ----------------------------------------------------------------- */
+
+/* Pixel column of a frequency in a panel. */
+static int64_t column_of(const ritz_response *r, double hertz)
+{
+    const double low = r->hertz[0], high = r->hertz[r->count - 1];
+    const bool is_log = low > 0.0 && high / low >= 10.0;
+
+    return (int64_t)(PANEL_WIDE * (is_log ? log(hertz / low) / log(high / low)
+                                          : (hertz - low) / (high - low)));
+}
+
+/* "NaN" leaves a gap in a line, "nan" is bridged. */
+static void put_real(FILE *file, double value)
+{
+    if (isnan(value))
+        fprintf(file, "\tNaN");
+    else
+        fprintf(file, "\t%.9g", value);
+}
+
+/* A point of a line: magnitude, degrees, errors. */
+enum { VALUES = 2 + STRIPS, FEW = 2 * VALUES };
+
+static void take_values(const overlay *o, int64_t w, int64_t k, int64_t c,
+                        int64_t line, double most, double out[VALUES])
+{
+    double _Complex H = value_of(o, w, k, c, line);
+
+    out[0] = cabs(H);
+    out[1] = is_singular(o, c) ? nan("") : carg(H) * 180.0 / M_PI;
+    measure_errors(o, w, k, c, line, most, out + 2);
+}
+
+/*
+ * Points k to end of a line are in one column of pixels: of many the first, the
+ * last, and the least and largest of magnitude and errors stay, and gaps.
+ */
+static void keep_extremes(const double (*value)[VALUES], int64_t k, int64_t end,
+                          bool *keep)
+{
+    for (int64_t p = k; p < end; p++)
+        keep[p] = end - k <= FEW || p == k || p == end - 1;
+    for (int v = 0; v < VALUES; v++) {
+        int64_t least = k, most = k;
+
+        for (int64_t p = k; p < end; p++) {
+            least = value[p][v] < value[least][v] ? p : least;
+            most = value[p][v] > value[most][v] ? p : most;
+            keep[p] = keep[p] || isnan(value[p][2 + DECIBELS]) !=
+                                     isnan(value[k][2 + DECIBELS]);
+        }
+        keep[least] = keep[most] = true;
+    }
+}
+
+static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
+                            int64_t line, double most)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_response *r = o->curve[w];
+    const size_t count = (size_t)r->count + 1;
+    double(*value)[VALUES] = calloc(count, sizeof *value);
+    bool *keep = calloc(count, sizeof *keep);
+    FILE *file = o->picture->data.file;
+
+    RITZ_FAIL_IF(!value || !keep, RITZ_ERR_MEMORY, "no memory for a chart");
+    for (int64_t k = 0; k < r->count; k++)
+        take_values(o, w, k, c, line, most, value[k]);
+    for (int64_t k = 0, end = 0; k < r->count; k = end) {
+        const int64_t column = column_of(o->curve[0], r->hertz[k]);
+
+        while (end < r->count &&
+               column_of(o->curve[0], r->hertz[end]) == column)
+            end++;
+        keep_extremes((const double(*)[VALUES])value, k, end, keep);
+    }
+    for (int64_t k = 0; k < r->count; k++) {
+        if (!keep[k])
+            continue;
+        fprintf(file, "%lld\t%lld\t%lld", (long long)c, (long long)w,
+                (long long)line);
+        put_real(file, r->hertz[k]);
+        for (int v = 0; v < VALUES; v++)
+            put_real(file, value[k][v]);
+        fprintf(file, "\t\n");
+    }
+    fputc('\n', file);
+done:
+    free(value);
+    free(keep);
+    return status;
+}
+
+/* Peaks of the first curve, largest first: where a reader points at. */
+static int64_t find_peaks(const overlay *o, int64_t c, int64_t peak[MOST_PEAKS])
+{
+    int64_t count = 0;
+    int64_t last = o->curve[0]->count - 1;
+
+    for (int64_t k = 1; k < last; k++) {
+        double size = size_of(o, k, c);
+        int64_t at = count;
+
+        if (size <= size_of(o, k - 1, c) || size < size_of(o, k + 1, c))
+            continue;
+        while (at > 0 && size_of(o, peak[at - 1], c) < size)
+            at--;
+        if (at == MOST_PEAKS)
+            continue;
+        count += count < MOST_PEAKS;
+        for (int64_t i = count - 1; i > at; i--)
+            peak[i] = peak[i - 1];
+        peak[at] = k;
+    }
     return count;
 }
 
-static void put_head(const chart_overlay *o)
+/* Of a mark: its row of the data as far as its tip, and of the table as far as
+   errors. */
+static void begin_rows(const overlay *o, int64_t c, int which, int64_t w,
+                       double hertz, double drawn, double value)
+{
+    const ritz_response *first = o->curve[0];
+    FILE *table = o->picture->table.file;
+
+    fprintf(o->picture->data.file,
+            "%lld\t%d\t%lld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t", (long long)c, which,
+            (long long)w, hertz, drawn);
+    if (is_singular(o, c)) {
+        fprintf(table, "singular values");
+    } else {
+        html_line(table, first->output[o->output[c]]);
+        fprintf(table, "/");
+        html_line(table, first->input[o->input[c]]);
+    }
+    fprintf(table, "\t%.6g\t%.5g", hertz, value);
+}
+
+/* A peak of the first, and how far the others are from it. */
+static void put_peak(const overlay *o, int64_t c, int64_t k, double most)
+{
+    const double hertz = o->curve[0]->hertz[k];
+    double error[STRIPS];
+    char others[1000] = "";
+    size_t used = 0;
+
+    begin_rows(o, c, -1, 0, hertz, size_of(o, k, c), size_of(o, k, c));
+    for (int64_t w = 1; w < o->count; w++) {
+        int64_t at = find_point(o->curve[w], hertz);
+
+        error[RELATIVE] = error[DECIBELS] = nan("");
+        if (at >= 0)
+            measure_errors(o, w, at, c, 0, most, error);
+        if (at >= 0 && used < sizeof others)
+            used +=
+                (size_t)snprintf(others + used, sizeof others - used,
+                                 "\n%.40s: error %.2e of the largest, %.2g dB",
+                                 o->name[w], error[RELATIVE], error[DECIBELS]);
+        fprintf(o->picture->table.file, "\t%.3e\t%.3g", error[RELATIVE],
+                error[DECIBELS]);
+    }
+    picture_tip(o->picture, "peak at %.6g Hz\n%.60s: %s = %.5g%s", hertz,
+                o->name[0], is_singular(o, c) ? "largest" : "|H|",
+                size_of(o, k, c), others);
+    fprintf(o->picture->data.file, "\n");
+    fprintf(o->picture->table.file, "\n");
+}
+
+/* The largest singular value between points, as stored beside them. */
+static void put_true_peak(const overlay *o, int64_t w, int64_t c,
+                          const extent *e)
+{
+    const double *own = o->curve[w]->singular_peak;
+    const double *first = o->curve[0]->singular_peak;
+
+    if (!(own[1] > 0.0))
+        return;
+    begin_rows(o, c, -2, w, own[0], isinf(own[1]) ? e->top : own[1], own[1]);
+    if (isinf(own[1]))
+        picture_tip(o->picture,
+                    "%.60s: infinite\na pole at %.6g Hz is not damped",
+                    o->name[w], own[0]);
+    else
+        picture_tip(o->picture,
+                    "%.60s: largest of all\n%.6g at %.6g Hz, between points "
+                    "too",
+                    o->name[w], own[1], own[0]);
+    for (int64_t i = 1; i < o->count; i++) {
+        bool known = i == w && first[1] > 0.0 && isfinite(first[1] + own[1]);
+
+        fprintf(o->picture->table.file, "\t%.3e\t%.3g",
+                known ? fabs(own[1] - first[1]) / first[1] : nan(""),
+                known ? fabs(20.0 * log10(own[1] / first[1])) : nan(""));
+    }
+    fprintf(o->picture->data.file, "\n");
+    fprintf(o->picture->table.file, "\n");
+}
+
+static ritz_status put_channel(const overlay *o, int64_t c, const extent *e)
+{
+    const double most = e->most > 0.0 ? e->most : 1.0;
+    int64_t peak[MOST_PEAKS];
+    int64_t count = find_peaks(o, c, peak);
+
+    for (int64_t w = 0; w < o->count; w++)
+        for (int64_t line = 0; line < count_lines(o, c); line++)
+            RITZ_CHECK(put_line(o, w, c, line, most));
+    for (int64_t p = 0; p < count; p++)
+        put_peak(o, c, peak[p], most);
+    fputc('\n', o->picture->data.file);
+    for (int64_t w = 0; is_singular(o, c) && w < o->count; w++)
+        put_true_peak(o, w, c, e);
+    fputc('\n', o->picture->data.file);
+    return RITZ_OK;
+}
+
+/* --- the picture ---------------------------------------------------------- */
+
+static void put_heads(const overlay *o)
 {
     FILE *table = o->picture->table.file;
 
@@ -161,66 +513,158 @@ static void put_head(const chart_overlay *o)
             "channel\tresponse\tvalue\thertz\tmagnitude\tdegrees\terror\t"
             "decibels\ttip\n");
     fprintf(table, "channel\tpeak, Hz\tvalue of ");
-    html_line(table, o->curve[0].name);
+    html_line(table, o->name[0]);
     for (int64_t w = 1; w < o->count; w++) {
         fprintf(table, "\terror of ");
-        html_line(table, o->curve[w].name);
+        html_line(table, o->name[w]);
         fprintf(table, "\tthe same in dB");
     }
     fprintf(table, "\n");
 }
 
-static ritz_status compose(const chart_overlay *o)
+static void add_signs(const overlay *o)
 {
-    int64_t columns = o->num_channels > 1 ? 2 : 1;
-    int64_t rows = (o->num_channels + columns - 1) / columns;
-    chart_sign signs[MOST_SIGNS];
-    int64_t count = list_signs(o, signs);
-    double wide = (double)columns * OVERLAY_WIDE, foot = 0.0;
+    bool singular = false, many = false, peak = false;
 
-    foot = 30.0 + 20.0 * (double)chart_legend(o->picture, count, signs,
-                                              OVERLAY_LEFT, 0.0,
-                                              wide - OVERLAY_RIGHT, false);
-    foot += o->passed > 0 ? 16.0 : 0.0;
-    gnuplot_size(o->picture, wide, (double)rows * o->high + foot);
-    put_head(o);
-    fprintf(o->picture->plot.file, "set multiplot\n");
-    for (int64_t c = 0; c < o->num_channels; c++) {
-        int64_t column = c % columns, row = rows - 1 - c / columns;
+    for (int64_t w = 0; w < o->count; w++) {
+        const bool under = w == 0 && o->count > 1;
+        picture_sign sign = {
+            .role = under ? "the reference" : NULL,
+            .colour = under ? "pale" : svg_series((int)(w > 0 ? w - 1 : 0)),
+            .dash = (int)w,
+            .wide = under ? 6.0 : 1.8};
 
-        chart_response_channel(o, c, (double)(column * OVERLAY_WIDE),
-                               foot + (double)row * o->high);
+        snprintf(sign.name, sizeof sign.name, "%.80s", o->name[w]);
+        picture_add_sign(o->picture, &sign);
+        peak = peak || o->curve[w]->singular_peak[1] > 0.0;
+        many = many || o->curve[w]->num_singular > 1;
     }
-    chart_canvas(o->picture);
-    chart_legend(o->picture, count, signs, OVERLAY_LEFT, foot - 14.0,
-                 wide - OVERLAY_RIGHT, true);
-    if (o->passed > 0) {
-        char text[CHART_WORD];
+    for (int64_t c = 0; c < o->num_channels; c++)
+        singular = singular || is_singular(o, c);
+    if (singular && many)
+        picture_add_sign(o->picture,
+                         &(picture_sign){.name = "thin: all but the largest",
+                                         .colour = "muted",
+                                         .wide = 0.8});
+    if (singular && peak)
+        picture_add_sign(o->picture,
+                         &(picture_sign){.name = "peak between points",
+                                         .colour = "muted",
+                                         .mark = 12});
+}
 
-        snprintf(text, sizeof text,
+/* "tip / torque: error at most 0.31 %, 0.027 dB" */
+static void say_title(const overlay *o, int64_t c, const extent *e,
+                      char out[2 * PICTURE_WORD])
+{
+    const ritz_response *r = o->curve[0];
+    char worst[32], decibels[24] = "";
+    size_t used = 0;
+
+    if (is_singular(o, c))
+        used = (size_t)snprintf(out, PICTURE_WORD, "singular values");
+    else
+        used = (size_t)snprintf(out, 2 * RITZ_NAME_SIZE + 4, "%s / %s",
+                                r->output[o->output[c]], r->input[o->input[c]]);
+    if (o->count < 2 || e->shared == 0)
+        return;
+    chart_say_error(e->worst[RELATIVE], worst);
+    snprintf(decibels, sizeof decibels,
+             "%.2g\xc2\xa0"
+             "dB",
+             e->worst[DECIBELS]);
+    snprintf(out + used, 120, ": %s at most %s%s%s",
+             o->strip[RELATIVE] ? "error" : "difference",
+             o->strip[RELATIVE] ? worst : "",
+             o->strip[RELATIVE] && o->strip[DECIBELS] ? ", " : "",
+             o->strip[DECIBELS] ? decibels : "");
+}
+
+static ritz_status take_channel(const overlay *o, int64_t c, channel *out)
+{
+    const extent e = find_extent(o, c);
+
+    say_title(o, c, &e, out->title);
+    out->singular = is_singular(o, c);
+    out->shared = o->count > 1 && e.shared > 0;
+    set_decades(e.least, e.top, &out->y_low, &out->y_high);
+    for (int s = 0; s < STRIPS; s++)
+        set_decades(e.best[s], e.worst[s], &out->low[s], &out->high[s]);
+    return put_channel(o, c, &e);
+}
+
+/* Pixels; one strip of errors is in every cell. */
+static int cell_high(const overlay *o)
+{
+    return CELL_HIGH +
+           (o->strip[RELATIVE] && o->strip[DECIBELS] ? STRIP_HIGH : 0);
+}
+
+/* What all channels and each of them need of the template. */
+static void give_channels(const overlay *o, const channel *all)
+{
+    static const int64_t stride = sizeof(channel) / sizeof(double);
+    const ritz_response *r = o->curve[0];
+    const double low = r->hertz[0], high = r->hertz[r->count - 1];
+    const struct {
+        const char *name;
+        const double *value;
+    } list[] = {{"singular", &all->singular},  {"shared", &all->shared},
+                {"y_low", &all->y_low},        {"y_high", &all->y_high},
+                {"error_low", &all->low[0]},   {"error_high", &all->high[0]},
+                {"decibel_low", &all->low[1]}, {"decibel_high", &all->high[1]}};
+
+    fprintf(o->picture->given.file,
+            "channels = %lld\nacross = %d\ntall = %d\ncurves = %lld\n"
+            "strips = %d\ndecibels = %d\nx_low = %.9g\nx_high = %.9g\n"
+            "x_log = %d\n",
+            (long long)o->num_channels, o->num_channels > 1 ? 2 : 1,
+            cell_high(o), (long long)o->count,
+            o->strip[RELATIVE] + o->strip[DECIBELS], o->strip[DECIBELS], low,
+            high > low ? high : low + 1.0, low > 0.0 && high / low >= 10.0);
+    picture_give_texts(o->picture, "title", o->num_channels, all->title,
+                       sizeof *all);
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+        picture_give_reals(o->picture, list[k].name, o->num_channels,
+                           list[k].value, stride);
+}
+
+static ritz_status compose(const overlay *o)
+{
+    const int64_t across = o->num_channels > 1 ? 2 : 1;
+    picture *p = o->picture;
+    channel all[MOST_CHANNELS] = {0};
+
+    const int64_t down = (o->num_channels + across - 1) / across;
+
+    p->wide = (double)(across * CELL_WIDE);
+    p->body = (double)(down * cell_high(o));
+    put_heads(o);
+    for (int64_t c = 0; c < o->num_channels; c++)
+        RITZ_CHECK(take_channel(o, c, &all[c]));
+    give_channels(o, all);
+    add_signs(o);
+    if (o->passed > 0)
+        snprintf(p->note, sizeof p->note,
                  "%lld more channels are not drawn: choose by --channel",
                  (long long)o->passed);
-        chart_text(o->picture, OVERLAY_LEFT, 10.0, text,
-                   "font ',11' tc rgb '" SVG_MUTED "'");
-    }
-    fprintf(o->picture->plot.file, "plot NaN notitle\nunset multiplot\n");
-    return gnuplot_draw(o->picture, "Frequency responses",
+    return picture_draw(p, "response.gp", "Frequency responses",
                         "magnitudes or singular values over each other, and "
                         "below them how far they are from the first");
 }
 
 ritz_status chart_response(const chart_sources *sources, const chart_wish *wish,
-                           gnuplot *out)
+                           picture *out)
 {
-    chart_overlay o = {.picture = out, .high = OVERLAY_HIGH};
+    overlay o = {.picture = out};
     const char *error = wish->error ? wish->error : "relative";
 
-    o.strip[CHART_RELATIVE] = strcmp(error, "decibels") != 0;
-    o.strip[CHART_DECIBELS] = strcmp(error, "relative") != 0;
-    if (o.strip[CHART_RELATIVE] && o.strip[CHART_DECIBELS])
-        o.high += OVERLAY_STRIP;
-    RITZ_CHECK(take_responses(sources, &o));
+    o.strip[RELATIVE] = strcmp(error, "decibels") != 0;
+    o.strip[DECIBELS] = strcmp(error, "relative") != 0;
+    for (int64_t k = 0; k < sources->count; k++)
+        if (sources->file[k].holds == CHART_RESPONSE)
+            RITZ_CHECK(take_response(&sources->file[k], &o));
     RITZ_CHECK(choose_channels(&wish->channel, &o));
-    RITZ_CHECK(gnuplot_new(wish->path, wish->keep, out));
+    RITZ_CHECK(picture_new(wish->path, wish->keep, out));
     return compose(&o);
 }

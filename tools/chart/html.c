@@ -3,6 +3,7 @@
 #include "base/letter.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 #include <string.h>
 
 static const char *entity(char c)
@@ -33,30 +34,57 @@ int html_letter(FILE *file, const char *text)
     return length;
 }
 
-void html_text(FILE *file, const char *text)
+int html_symbol(FILE *file, const char *text)
 {
-    while (*text) {
-        const char *escaped = entity(*text);
+    const char *escaped = entity(*text);
 
-        if (escaped)
-            fputs(escaped, file);
-        text += escaped ? 1 : html_letter(file, text);
-    }
+    if (!escaped)
+        return html_letter(file, text);
+    fputs(escaped, file);
+    return 1;
 }
 
-void html_print(FILE *file, const char *format, ...)
+void html_text(FILE *file, const char *text)
 {
-    char text[2001];
-    va_list args;
-
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    html_text(file, text);
+    while (*text)
+        text += html_symbol(file, text);
 }
 
 void html_line(FILE *file, const char *text)
 {
     while (*text)
         text += html_letter(file, text);
+}
+
+/* One argument, as the conversion that ends with this letter asks. */
+static void put_argument(FILE *file, char letter, int precision, va_list *args)
+{
+    if (letter == 's')
+        html_text(file, va_arg(*args, const char *));
+    else if (letter == 'd')
+        fprintf(file, "%lld", va_arg(*args, long long));
+    else
+        fprintf(file, "%.*g", precision, va_arg(*args, double));
+}
+
+void html_print(FILE *file, const char *format, ...)
+{
+    va_list args;
+
+    va_start(args, format);
+    for (const char *c = format; *c; c++) {
+        int precision = 6;
+
+        if (*c != '%' || *++c == '%') {
+            fputc(*c, file);
+            continue;
+        }
+        if (*c == '.') {
+            precision = c[1] - '0';
+            c += 2;
+        }
+        c += strspn(c, "l");
+        put_argument(file, *c, precision, &args);
+    }
+    va_end(args);
 }

@@ -11,9 +11,15 @@
  */
 void html_text(FILE *file, const char *text);
 
-/** The same, formatted; what is longer than 2000 bytes is cut. */
+/**
+ * Write markup with text in it, as printf would: only what stands for "%s" is
+ * escaped. It knows "%s", "%lld", "%g", "%.3g" and "%%".
+ */
 [[gnu::format(printf, 2, 3)]] void html_print(FILE *file, const char *format,
                                               ...);
+
+/** Write one letter as markup. @return bytes of text it took */
+int html_symbol(FILE *file, const char *text);
 
 /** Write one letter, or what stands for it. @return bytes of text it took */
 int html_letter(FILE *file, const char *text);

@@ -4,11 +4,42 @@
 
 #include "chart/chart.h"
 
+/* The page in the making. */
+typedef struct report_page {
+    const chart_sources *sources;
+    const chart_wish *wish;
+    cli_table links, body; /* of the contents; sections */
+    cli_table figures;     /* of the section in the making */
+    int64_t num_pictures, num_sections;
+    int num_signs; /* of its legend */
+    picture_sign sign[PICTURE_SIGNS];
+} report_page;
+
 /**
  * Write the page. Charts are drawn for what the files hold.
  *
  * @param[in] wish  path of the page; choices of charts
  */
 ritz_status report_write(const chart_sources *sources, const chart_wish *wish);
+
+/** A section with its title, which the contents name. */
+void report_begin(report_page *p, const char *title);
+
+/** Its end: one legend of all its pictures, then these. */
+ritz_status report_end(report_page *p);
+
+/** Draw a chart for the section: picture, caption, and the same as a table. */
+ritz_status report_figure(report_page *p, const char *kind,
+                          const chart_sources *sources, const chart_wish *wish,
+                          const char *caption);
+
+/** Verdicts, charts and tables of records, if there are any. */
+ritz_status report_records(report_page *p);
+
+/** Which method, how large, how wrong, how fast: of one subject. */
+ritz_status report_verdict(FILE *file, const records *all);
+
+/** Methods at equal order, and at equal error. */
+ritz_status report_tables(FILE *file, const records *all);
 
 #endif

@@ -1,11 +1,9 @@
 /* Methods side by side: at equal order, and at equal error. */
-#include "chart/report_parts.h"
-
 #include "chart/html.h"
+#include "chart/report.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_ORDERS = 8 };
 
@@ -18,30 +16,27 @@ typedef struct side {
     int64_t num_measures;
 } side;
 
-static int by_size(const void *a, const void *b)
+/* Least order above another; INT64_MAX: none. */
+static int64_t next_order(const records *all, int64_t above)
 {
-    const int64_t *x = a, *y = b;
+    int64_t least = INT64_MAX;
 
-    return (*x > *y) - (*x < *y);
+    for (int64_t k = 0; k < all->count; k++)
+        if (all->item[k].order > above && all->item[k].order < least)
+            least = all->item[k].order;
+    return least;
 }
 
 /* Up to eight orders, spread over those there are. */
 static int64_t pick_orders(const records *all, int64_t out[MOST_ORDERS])
 {
-    int64_t *order = calloc((size_t)all->count + 1, sizeof *order);
-    int64_t n = 0, kept = 0;
+    int64_t n = 0, kept = 0, at = 0;
 
-    for (int64_t k = 0; order && k < all->count; k++)
-        order[k] = all->item[k].order;
-    if (order)
-        qsort(order, (size_t)all->count, sizeof *order, by_size);
-    for (int64_t k = 0; order && k < all->count; k++)
-        if (n == 0 || order[n - 1] != order[k])
-            order[n++] = order[k];
-    kept = n < MOST_ORDERS ? n : MOST_ORDERS;
-    for (int64_t k = 0; k < kept; k++)
-        out[k] = order[kept == 1 ? 0 : k * (n - 1) / (kept - 1)];
-    free(order);
+    for (int64_t o = -1; (o = next_order(all, o)) < INT64_MAX;)
+        n++;
+    for (int64_t o = -1; (o = next_order(all, o)) < INT64_MAX; at++)
+        if (n <= MOST_ORDERS || at == kept * (n - 1) / (MOST_ORDERS - 1))
+            out[kept++] = o;
     return kept;
 }
 
@@ -62,7 +57,7 @@ static double least_error(const side *s, int64_t method, int64_t order)
 }
 
 /* Smallest record of a method that is good enough; NULL: none. */
-static const record *smallest(const side *s, int64_t method, double level)
+static const record *find_smallest(const side *s, int64_t method, double level)
 {
     const record *best = NULL;
 
@@ -80,31 +75,31 @@ static const record *smallest(const side *s, int64_t method, double level)
 
 static void begin_table(FILE *file, const char *caption)
 {
-    fprintf(file, "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-                  "aria-label=\"");
-    html_text(file, caption);
-    fprintf(file, "\"><table><caption>");
-    html_text(file, caption);
-    fprintf(file, "</caption><thead><tr><th scope=\"col\">method</th>");
+    html_print(file,
+               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+               "aria-label=\"%s\"><table><caption>%s</caption><thead><tr>"
+               "<th scope=\"col\">method</th>",
+               caption, caption);
 }
 
-static void begin_row(FILE *file, const char *name)
+static void put_cell(FILE *file, const char *text, const char *small, bool best)
 {
-    fprintf(file, "<tr><th scope=\"row\">");
-    html_text(file, name);
-    fprintf(file, "</th>");
+    fprintf(file, "<td%s>", best ? " class=\"best\"" : "");
+    html_print(file,
+               *small ? "%s <span class=\"small\">%s</span></td>" : "%s%s</td>",
+               text, small);
 }
 
 static void put_orders(FILE *file, const side *s)
 {
     int64_t order[MOST_ORDERS];
     double best[MOST_ORDERS];
-    int64_t count = pick_orders(s->all, order);
-    char caption[CHART_WORD], word[32];
+    const int64_t count = pick_orders(s->all, order);
+    char text[PICTURE_WORD];
 
-    snprintf(caption, sizeof caption,
-             "Least %s with at most so many coordinates", s->measure->title);
-    begin_table(file, caption);
+    snprintf(text, sizeof text, "Least %s with at most so many coordinates",
+             s->measure->title);
+    begin_table(file, text);
     for (int64_t k = 0; k < count; k++) {
         fprintf(file, "<th scope=\"col\">%lld</th>", (long long)order[k]);
         best[k] = HUGE_VAL;
@@ -113,58 +108,52 @@ static void put_orders(FILE *file, const side *s)
     }
     fprintf(file, "</tr></thead><tbody>\n");
     for (int64_t m = 0; m < s->num_methods; m++) {
-        begin_row(file, s->method[m]);
+        html_print(file, "<tr><th scope=\"row\">%s</th>", s->method[m]);
         for (int64_t k = 0; k < count; k++) {
-            double error = least_error(s, m, order[k]);
+            const double error = least_error(s, m, order[k]);
+            char word[32];
 
             chart_say_error(error, word);
-            fprintf(file, "<td%s>", error <= best[k] ? " class=\"best\"" : "");
-            html_text(file, isnan(error) ? "\xe2\x80\x93" : word);
-            fprintf(file, "</td>");
+            put_cell(file, isnan(error) ? "\xe2\x80\x93" : word, "",
+                     error <= best[k]);
         }
         fprintf(file, "</tr>\n");
     }
     fprintf(file, "</tbody></table></div>\n");
 }
 
-static void put_cell(FILE *file, const record *r, int64_t best, bool simulate)
+static void put_smallest(FILE *file, const record *r, bool best, bool simulate)
 {
-    double time = r ? simulate ? r->cost : r->cpu : nan("");
-    char word[32];
+    const double time = r ? simulate ? r->cost : r->cpu : nan("");
+    char order[32] = "\xe2\x80\x93", word[32] = "";
 
-    if (!r) {
-        fprintf(file, "<td>&#8211;</td>");
-        return;
-    }
-    fprintf(file, "<td%s>%lld", r->order == best ? " class=\"best\"" : "",
-            (long long)r->order);
-    if (isfinite(time)) {
+    if (r)
+        snprintf(order, sizeof order, "%lld", (long long)r->order);
+    if (isfinite(time))
         chart_say_seconds(time, word);
-        fprintf(file, " <span class=\"small\">%s</span>", word);
-    }
-    fprintf(file, "</td>");
+    put_cell(file, order, word, best);
 }
 
 static void put_levels(FILE *file, const side *s)
 {
     static const double levels[] = {(double)NAN, 0.1, 1e-2, 1e-3, 1e-4};
     enum { LEVELS = sizeof levels / sizeof *levels };
+    const bool simulate = records_cost(s->all);
     int64_t best[LEVELS];
     bool limits = false;
-    char caption[CHART_WORD], word[32];
+    char text[PICTURE_WORD], word[32];
 
     for (int64_t k = 0; k < s->all->count; k++)
         limits = limits || s->all->item[k].tolerance;
-    snprintf(caption, sizeof caption,
+    snprintf(text, sizeof text,
              "Fewest coordinates for a %s of at most so much, and %s",
              s->measure->title,
-             records_cost(s->all) ? "time for one simulated second"
-                                  : "time to reduce");
-    begin_table(file, caption);
+             simulate ? "time for one simulated second" : "time to reduce");
+    begin_table(file, text);
     for (int k = !limits; k < LEVELS; k++) {
         best[k] = INT64_MAX;
         for (int64_t m = 0; m < s->num_methods; m++) {
-            const record *r = smallest(s, m, levels[k]);
+            const record *r = find_smallest(s, m, levels[k]);
 
             best[k] = r && r->order < best[k] ? r->order : best[k];
         }
@@ -174,10 +163,12 @@ static void put_levels(FILE *file, const side *s)
     }
     fprintf(file, "</tr></thead><tbody>\n");
     for (int64_t m = 0; m < s->num_methods; m++) {
-        begin_row(file, s->method[m]);
-        for (int k = !limits; k < LEVELS; k++)
-            put_cell(file, smallest(s, m, levels[k]), best[k],
-                     records_cost(s->all));
+        html_print(file, "<tr><th scope=\"row\">%s</th>", s->method[m]);
+        for (int k = !limits; k < LEVELS; k++) {
+            const record *r = find_smallest(s, m, levels[k]);
+
+            put_smallest(file, r, r && r->order == best[k], simulate);
+        }
         fprintf(file, "</tr>\n");
     }
     fprintf(file, "</tbody></table></div>\n");
@@ -201,38 +192,4 @@ done:
     free(s.method);
     free(s.which);
     return status;
-}
-
-void report_table(FILE *file, const char *text, const char *caption)
-{
-    bool head = true;
-
-    fprintf(file, "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-                  "aria-label=\"");
-    html_text(file, caption);
-    fprintf(file, "\"><table><caption>");
-    html_text(file, caption);
-    fprintf(file, "</caption>\n");
-    while (*text) {
-        const char *end = text + strcspn(text, "\n");
-
-        fprintf(file, head ? "<thead><tr>" : "<tr>");
-        while (text <= end && text[0]) {
-            size_t length = strcspn(text, "\t\n");
-            char *cell = strndup(text, length);
-
-            fprintf(file, head ? "<th scope=\"col\">" : "<td>");
-            if (cell)
-                html_text(file, cell);
-            fprintf(file, head ? "</th>" : "</td>");
-            free(cell);
-            text += length + 1;
-            if (text > end)
-                break;
-        }
-        fprintf(file, head ? "</tr></thead><tbody>\n" : "</tr>\n");
-        head = false;
-        text = *end ? end + 1 : end;
-    }
-    fprintf(file, "</tbody></table></div>\n");
 }

@@ -1,7 +1,6 @@
 /* The answer in one look. */
-#include "chart/report_parts.h"
-
 #include "chart/html.h"
+#include "chart/report.h"
 
 #include <ritz/measures.h>
 
@@ -76,60 +75,51 @@ static const record *find_second(const records *all)
     return NULL;
 }
 
-static void begin_card(FILE *file, const char *question)
+static void begin_card(FILE *file, const char *question, const char *answer)
 {
-    fprintf(file, "<div><dt>%s</dt><dd><div class=\"big\">", question);
+    html_print(file, "<div><dt>%s</dt><dd><div class=\"big\">%s</div><ul>",
+               question, answer);
+}
+
+static void end_card(FILE *file)
+{
+    fprintf(file, "</ul></dd></div>\n");
 }
 
 static void say_method(FILE *file, const record *r, const record *second)
 {
-    begin_card(file, "Which method");
-    html_text(file, r->method);
-    fprintf(file, "</div>");
-    if (second) {
-        fprintf(file, "<ul><li>runner-up: ");
-        html_text(file, second->method);
-        fprintf(file, ", order %lld</li></ul>", (long long)second->order);
-    }
-    fprintf(file, "</dd></div>\n");
+    begin_card(file, "Which method", r->method);
+    if (second)
+        html_print(file, "<li>runner-up: %s, order %lld</li>", second->method,
+                   (long long)second->order);
+    end_card(file);
 }
 
-/* A whole number of a record; -1: it has none. */
-static int64_t whole_of(const record *r, const char *name)
-{
-    const json_t *value = json_object_get(r->json, name);
-
-    return json_is_integer(value) ? json_integer_value(value) : -1;
-}
-
-/* "14 + 2 flexible modes": of each component of a scene. */
-static void say_modes(FILE *file, const json_t *modes)
-{
-    fprintf(file, "<li>");
-    for (size_t k = 0; k < json_array_size(modes); k++)
-        fprintf(file, "%s%lld", k > 0 ? " + " : "",
-                (long long)json_integer_value(json_array_get(modes, k)));
-    fprintf(file, " modes asked for%s</li>",
-            json_array_size(modes) > 1 ? ", component by component" : "");
-}
-
+/* "14 + 2 modes asked for": of each component of a scene. */
 static void say_size(FILE *file, const record *r)
 {
-    int64_t full = whole_of(r, "dofs_full");
+    const json_t *full = json_object_get(r->json, "dofs_full");
     const json_t *modes = json_object_get(r->json, "modes");
+    const size_t count = json_array_size(modes);
+    char order[32];
 
-    begin_card(file, "How large");
-    fprintf(file, "%lld", (long long)r->order);
-    fprintf(file, "</div><ul><li>coordinates");
-    if (full > 0)
-        fprintf(file, ", of %lld dofs of the full model", (long long)full);
-    fprintf(file, "</li>");
-    if (json_array_size(modes) > 0)
-        say_modes(file, modes);
-    fprintf(file, "</ul></dd></div>\n");
+    snprintf(order, sizeof order, "%lld", (long long)r->order);
+    begin_card(file, "How large", order);
+    fprintf(file, "<li>coordinates");
+    if (json_integer_value(full) > 0)
+        fprintf(file, ", of %lld dofs of the full model",
+                (long long)json_integer_value(full));
+    fprintf(file, count > 0 ? "</li><li>" : "</li>");
+    for (size_t k = 0; k < count; k++)
+        fprintf(file, "%s%lld", k > 0 ? " + " : "",
+                (long long)json_integer_value(json_array_get(modes, k)));
+    if (count > 0)
+        fprintf(file, " modes asked for%s</li>",
+                count > 1 ? ", component by component" : "");
+    end_card(file);
 }
 
-/* What is known without measuring: nothing that is worse than all. */
+/* Bounds that are proven without measuring; those above 1 say nothing. */
 static void say_bounds(FILE *file, const record *r)
 {
     const json_t *estimates = json_object_get(r->json, "estimates");
@@ -144,9 +134,7 @@ static void say_bounds(FILE *file, const record *r)
         if (!(bound <= 1.0))
             continue;
         chart_say_error(bound, word);
-        fprintf(file, "<li>");
-        html_print(file, "proven: %s at most %s", kind->label, word);
-        fprintf(file, "</li>");
+        html_print(file, "<li>proven: %s at most %s</li>", kind->label, word);
     }
 }
 
@@ -155,18 +143,15 @@ static void say_errors(FILE *file, const record *r, int64_t count,
 {
     char word[32], limit[32];
 
-    begin_card(file, "How wrong");
     chart_say_error(record_error(r, m->name), word);
-    html_text(file, word);
-    fprintf(file, "</div><ul>");
+    begin_card(file, "How wrong", word);
     for (int64_t k = 0; k < count; k++) {
         double error = record_error(r, m[k].name);
 
         if (isnan(error))
             continue;
         chart_say_error(error, word);
-        fprintf(file, "<li>");
-        html_print(file, "%s: %s", m[k].title, word);
+        html_print(file, "<li>%s: %s", m[k].title, word);
         if (m[k].tolerance > 0.0) {
             chart_say_error(m[k].tolerance, limit);
             fprintf(file, ", allowed <span class=\"whole\">%s</span>", limit);
@@ -174,38 +159,35 @@ static void say_errors(FILE *file, const record *r, int64_t count,
         fprintf(file, "</li>");
     }
     say_bounds(file, r);
-    fprintf(file, "</ul></dd></div>\n");
+    end_card(file);
 }
 
 static void say_cost(FILE *file, const record *r)
 {
     const json_t *cost = json_object_get(r->json, "cost");
-    double step = record_value(cost, "step");
-    double highest = record_value(cost, "highest_hz");
+    const double step = record_value(cost, "step");
+    const double highest = record_value(cost, "highest_hz");
     const char *by = json_string_value(json_object_get(cost, "integrator"));
+    const bool simulated = isfinite(r->cost);
     char word[32];
 
-    begin_card(file, "How fast");
-    chart_say_seconds(isfinite(r->cost) ? r->cost : r->cpu, word);
-    fprintf(file, "%s</div><ul>", word);
-    if (isfinite(r->cost)) {
+    chart_say_seconds(simulated ? r->cost : r->cpu, word);
+    begin_card(file, "How fast", word);
+    if (simulated)
         fprintf(file, "<li>for one simulated second, %.0f times real time</li>",
                 1.0 / r->cost);
-        if (isfinite(step)) {
-            chart_say_seconds(step, word);
-            fprintf(file, "<li>step %s", word);
-            if (by)
-                html_print(file, ", %.60s", by);
-            fprintf(file, "</li>");
-        }
-        if (isfinite(highest))
-            fprintf(file, "<li>highest mode %.4g Hz</li>", highest);
-        chart_say_seconds(r->cpu, word);
+    if (simulated && isfinite(step)) {
+        chart_say_seconds(step, word);
+        html_print(file, "<li>step %s%s%s</li>", word, by ? ", " : "",
+                   by ? by : "");
     }
+    if (simulated && isfinite(highest))
+        fprintf(file, "<li>highest mode %.4g Hz</li>", highest);
+    chart_say_seconds(r->cpu, word);
     if (isfinite(r->cpu))
         fprintf(file, "<li>%s%sto make basis and reduction</li>",
-                isfinite(r->cost) ? word : "", isfinite(r->cost) ? " " : "");
-    fprintf(file, "</ul></dd></div>\n");
+                simulated ? word : "", simulated ? " " : "");
+    end_card(file);
 }
 
 static void say_why(FILE *file, const record *r, reason why, int64_t count)
@@ -217,11 +199,8 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                 r->feasible ? "meets" : "misses",
                 r->feasible ? "&#10003; It meets every tolerance."
                             : "&#10007; It misses a tolerance.");
-    if (text) {
-        fprintf(file, "<p>Why: ");
-        html_text(file, text);
-        fprintf(file, "</p>\n");
-    }
+    if (text)
+        html_print(file, "<p>Why: %s</p>\n", text);
     if (why != CHOSEN)
         fprintf(file,
                 "<p class=\"note\">No record says which was chosen: this is "

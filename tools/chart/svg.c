@@ -1,18 +1,23 @@
 #include "chart/svg.h"
 
 #include "chart/html.h"
-#include "cli/cli_table.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *const svg_colour[SVG_COLOURS] = {"#0072b2", "#c44e00", "#007a5a",
-                                             "#a23b82", "#8a6d00", "#3f8fbf",
-                                             "#5b5b5b", "#b2182b"};
+const svg_colour svg_colours[] = {
+    {"c1", "#0072b2"},    {"c2", "#c44e00"},   {"c3", "#007a5a"},
+    {"c4", "#a23b82"},    {"c5", "#8a6d00"},   {"c6", "#3f8fbf"},
+    {"c7", "#5b5b5b"},    {"c8", "#b2182b"},   {"ink", "#1b1f24"},
+    {"muted", "#5a6270"}, {"grid", "#d9dee5"}, {"paper", "#ffffff"},
+    {"alarm", "#b00020"}, {"pale", "#9fb0c3"}, {NULL, NULL},
+};
 
-/* How gnuplot begins words. */
-static const char bare_words[] = "stroke=\"none\"";
+const char *svg_series(int series)
+{
+    return svg_colours[series % SVG_SERIES].name;
+}
 
 static bool starts(const char *text, const char *with)
 {
@@ -20,221 +25,134 @@ static bool starts(const char *text, const char *with)
 }
 
 /* Behind the next @p end; the end of the text if there is none. */
-static const char *behind(const char *text, const char *end)
+static const char *skip_past(const char *text, const char *end)
 {
     const char *found = strstr(text, end);
 
     return found ? found + strlen(end) : text + strlen(text);
 }
 
-static void put_name(FILE *file, const char *title, const char *summary)
-{
-    fputs("<title>", file);
-    html_text(file, title);
-    fputs("</title>\n<desc>", file);
-    html_text(file, summary);
-    fputs("</desc>", file);
-}
-
-/* What a point is called when it is pointed at. */
-static const char *put_tip(FILE *file, const char *text, int64_t num_tips,
-                           char *const *tip)
-{
-    const char *number = strchr(text, '\'');
-    long which = number ? strtol(number + 1, NULL, 10) : -1;
-
-    fputs("<g class=\"mark\"><title>", file);
-    if (which >= 0 && which < num_tips)
-        html_text(file, tip[which]);
-    fputs("</title>", file);
-    return behind(text, "</title>");
-}
-
-/* Behind a group that holds nothing; or where it began. */
-static const char *skip_empty(const char *text)
-{
-    const char *inside = behind(text, ">");
-
-    return starts(inside, "\n</g>\n") ? inside + 6 : text;
-}
+static const char pointed[] =
+    "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'";
 
 /*
- * Words get a rim of paper, so that they can be read across lines and points;
- * those that are themselves the colour of paper stand on something dark.
+ * A label of hypertext. It was markup when gnuplot read it (see picture_tip),
+ * which escaped '&' once more and wrote ends of lines as "\n".
  */
-static const char *put_rim(FILE *file, const char *text)
+static const char *copy_tip(FILE *file, const char *c)
 {
-    const char *end = text + strcspn(text, ">");
-    const char *font = strstr(text, "font-family");
-    const char *pale = strstr(text, "fill=\"rgb(255,255,255)\"");
+    const char *end = strstr(c, "')\" onmouseout=");
 
-    if (!font || font > end || (pale && pale < end))
-        return text;
-    fputs("stroke=\"" SVG_PAPER "\" stroke-width=\"3\" "
-          "stroke-linejoin=\"round\" paint-order=\"stroke\"",
-          file);
-    return text + strlen(bare_words);
-}
+    fputs("<g class=\"mark\"><title>", file);
+    for (c += strlen(pointed); end && c < end;) {
+        bool line = starts(c, "\\n"), amp = starts(c, "&amp;");
 
-ritz_status svg_dress(const char *drawn, const char *title, const char *summary,
-                      int64_t num_tips, char *const *tip, char **out)
-{
-    static const char pointed[] = "<g onmousemove=";
-    ritz_status status = RITZ_OK;
-    cli_table table = {0};
-    bool named = false;
-    const char *c = drawn;
-
-    RITZ_TRY(cli_table_new(&table));
-    while (*c) {
-        const char *next = starts(c, "<g fill=")   ? skip_empty(c)
-                           : starts(c, bare_words) ? put_rim(table.file, c)
-                                                   : c;
-
-        if (next > c) {
-            c = next;
-        } else if (starts(c, "<title>") && !named) {
-            put_name(table.file, title, summary);
-            named = true;
-            c = behind(c, "</desc>");
-        } else if (starts(c, "<title>")) {
-            c = behind(c, "</title>"); /* of a line: no name of a point */
-        } else if (starts(c, pointed)) {
-            c = put_tip(table.file, c, num_tips, tip);
-        } else {
-            fputc(*c++, table.file);
-        }
+        fputc(line ? '\n' : *c, file);
+        c += line ? 2 : amp ? 5 : 1;
     }
-    RITZ_FAIL_IF(ferror(table.file) || fflush(table.file) != 0, RITZ_ERR_MEMORY,
-                 "no memory for a picture");
-    *out = strdup(table.text);
-    RITZ_FAIL_IF(!*out, RITZ_ERR_MEMORY, "no memory for a picture");
-done:
-    cli_table_free(&table);
-    return status;
+    fputs("</title>", file);
+    return skip_past(c, "</title>");
 }
 
-/* "--c3" of one of our colours; NULL of any other. */
-static const char *variable(unsigned red, unsigned green, unsigned blue)
+/* Name of the page for a colour, "rgb(  0, 114, 178)", "#0072b2" or "black";
+   NULL: it has none. */
+static const char *name_colour(const char *text)
 {
-    static const struct {
-        const char *colour, *name;
-    } known[] = {
-        {SVG_INK, "--ink"},     {SVG_MUTED, "--muted"}, {SVG_GRID, "--grid"},
-        {SVG_PAPER, "--paper"}, {SVG_ALARM, "--alarm"}, {SVG_PALE, "--pale"},
-        {"#000000", "--ink"},
-    };
-    static const char *const series[SVG_COLOURS] = {
-        "--c1", "--c2", "--c3", "--c4", "--c5", "--c6", "--c7", "--c8"};
-    char text[32];
+    unsigned long rgb = 0;
+    char *end = NULL;
+    char value[32];
 
-    snprintf(text, sizeof text, "#%02x%02x%02x", red & 255, green & 255,
-             blue & 255);
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-        if (strcmp(known[k].colour, text) == 0)
-            return known[k].name;
-    for (int k = 0; k < SVG_COLOURS; k++)
-        if (strcmp(svg_colour[k], text) == 0)
-            return series[k];
-    return NULL;
+    if (starts(text, "rgb("))
+        for (const char *c = text + 3; *c == '(' || *c == ','; c = end)
+            rgb = rgb << 8 | (strtoul(c + 1, &end, 10) & 255);
+    else if (text[0] == '#' && strlen(text) == 7)
+        rgb = strtoul(text + 1, NULL, 16);
+    else if (strcmp(text, "black") != 0)
+        return NULL;
+    snprintf(value, sizeof value, "#%06lx", rgb);
+    for (const svg_colour *k = svg_colours; k->name; k++)
+        if (strcmp(k->value, value) == 0)
+            return k->name;
+    return rgb == 0 ? "ink" : NULL;
 }
 
-/* "rgb(  0, 114, 178)" or "#0072b2"; false: something else. */
-static bool read_colour(const char *text, unsigned rgb[3])
+/* A value of an attribute; ids and what refers to them get their prefix. */
+static void copy_value(FILE *file, const char *value, size_t length,
+                       const char *prefix, bool is_id)
 {
-    bool listed = starts(text, "rgb(");
-    const char *at = text + (listed ? 4 : 1);
+    char text[40] = "";
+    const char *colour = NULL;
 
-    if (!listed && (text[0] != '#' || strlen(text) != 7))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        char pair[] = {at[0], at[1], '\0'};
-        char *end = NULL;
-
-        rgb[k] = (unsigned)(listed ? strtoul(at, &end, 10)
-                                   : strtoul(pair, &end, 16));
-        if (end == at || end == pair)
-            return false;
-        at = listed ? end + (*end == ',') : at + 2;
+    if (length < sizeof text) {
+        memcpy(text, value, length);
+        colour = name_colour(text);
     }
-    return true;
-}
-
-/* What an attribute says, without its quotes: fill='rgb(0, 114, 178)'. */
-static void put_value(FILE *file, const char *value, int length,
-                      const char *prefix)
-{
-    const char *name = NULL;
-    unsigned rgb[3] = {0};
-    char text[64] = "";
-
-    snprintf(text, sizeof text, "%.*s", length, value);
-    if (read_colour(text, rgb))
-        name = variable(rgb[0], rgb[1], rgb[2]);
-    if (strcmp(text, "black") == 0)
-        name = "--ink";
-    if (name)
-        fprintf(file, "var(%s)", name);
-    else if (starts(text, "#gp"))
-        fprintf(file, "#%s%.*s", prefix, length - 1, value + 1);
+    if (colour)
+        fprintf(file, "var(--%s)", colour);
+    else if (is_id)
+        fprintf(file, "%s%.*s", prefix, (int)length, value);
+    else if (starts(value, "#gp"))
+        fprintf(file, "#%s%.*s", prefix, (int)length - 1, value + 1);
     else
-        fprintf(file, "%.*s", length, value);
+        fprintf(file, "%.*s", (int)length, value);
 }
 
-/* A tag from '<' to '>'; ids are prefixed, and colours named. */
-static const char *put_tag(FILE *file, const char *tag, const char *prefix)
+/* A tag from '<' to '>'. */
+static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
 {
-    while (*tag && *tag != '>') {
-        char mark = *tag;
-        const char *end =
-            mark == '"' || mark == '\'' ? strchr(tag + 1, mark) : NULL;
-        bool is_id = starts(tag, " id=");
+    const char *begin = tag;
 
-        fputc(*tag++, file);
+    while (*tag && *tag != '>') {
+        const char *end =
+            *tag == '"' || *tag == '\'' ? strchr(tag + 1, *tag) : NULL;
+
         if (end) {
-            put_value(file, tag, (int)(end - tag), prefix);
-            fputc(mark, file);
-            tag = end + 1;
-        } else if (is_id) {
-            fprintf(file, "id=%c%s", tag[3], prefix);
-            tag += 4;
-            while (*tag && *tag != '"' && *tag != '\'')
-                fputc(*tag++, file);
-            if (*tag)
-                fputc(*tag++, file);
+            fputc(*tag, file);
+            copy_value(file, tag + 1, (size_t)(end - tag - 1), prefix,
+                       tag - begin > 4 && starts(tag - 4, " id="));
+            tag = end;
         }
+        fputc(*tag++, file);
     }
     return tag;
 }
 
-/* Whether it would be illegible on a telephone, and is to be scrolled. */
-static bool is_wide(const char *svg)
+/* "<title>" or "<desc>", whose id ends in that letter. */
+static void put_name(FILE *file, const char *tag, char letter,
+                     const char *prefix, const char *text)
 {
-    const char *box = strstr(svg, "viewBox=\"0 0 ");
-
-    return box && strtod(box + strlen("viewBox=\"0 0 "), NULL) > SVG_WIDE;
+    if (prefix)
+        fprintf(file, "<%s id=\"%s%c\">", tag, prefix, letter);
+    else
+        fprintf(file, "<%s>", tag);
+    html_text(file, text);
+    fprintf(file, "</%s>\n", tag);
 }
 
-void svg_embed(FILE *file, const char *svg, const char *prefix)
+void svg_copy(FILE *file, const char *drawn, const svg_names *names)
 {
-    const char *c = strstr(svg, "<svg");
+    const char *prefix = names->prefix, *c = drawn;
     bool named = false;
 
-    if (!c)
-        return;
-    fprintf(file,
-            "<svg class=\"picture%s\" role=\"img\" aria-labelledby=\"%st %sd\"",
-            is_wide(c) ? " wide" : "", prefix, prefix);
-    for (c += 4; *c;) {
-        if (!named && starts(c, "<title>")) {
-            fprintf(file, "<title id=\"%st\">", prefix);
-            c += 7;
-        } else if (!named && starts(c, "<desc>")) {
-            fprintf(file, "<desc id=\"%sd\">", prefix);
-            c += 6;
+    if (prefix) {
+        c = skip_past(drawn, "<svg");
+        fprintf(file,
+                "<svg class=\"picture\" role=\"img\" "
+                "aria-labelledby=\"%st %sd\"",
+                prefix, prefix);
+    }
+    while (*c) {
+        if (starts(c, "<title>") && !named) {
+            put_name(file, "title", 't', prefix, names->title);
+            put_name(file, "desc", 'd', prefix, names->summary);
             named = true;
-        } else if (*c == '<') {
-            c = put_tag(file, c, prefix);
+            c = skip_past(c, "</desc>");
+        } else if (starts(c, "<title>")) {
+            c = skip_past(c, "</title>"); /* of a plot, of no mark */
+        } else if (starts(c, pointed)) {
+            c = copy_tip(file, c);
+        } else if (prefix && *c == '<') {
+            c = copy_tag(file, c, prefix);
         } else {
             fputc(*c++, file);
         }

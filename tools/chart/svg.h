@@ -2,40 +2,34 @@
 #ifndef RITZ_TOOLS_CHART_SVG_H
 #define RITZ_TOOLS_CHART_SVG_H
 
-#include <ritz/status.h>
-
-#include <stdint.h>
 #include <stdio.h>
 
 /*
- * Colours of all pictures, told apart by colour-blind readers and each with a
- * contrast of 3 to white. A page shows them by name, light or dark.
+ * Colours of all pictures, "c1" to "c8" of series, told apart by colour-blind
+ * readers and each with a contrast of 3 to white, and those of words and lines.
+ * A page has a light and a dark one under each name, as "--c1".
  */
-enum { SVG_COLOURS = 8 };
-extern const char *const svg_colour[SVG_COLOURS];
-#define SVG_INK   "#1b1f24" /* text and lines that count */
-#define SVG_MUTED "#5a6270" /* text and lines beside them */
-#define SVG_GRID  "#d9dee5"
-#define SVG_PAPER "#ffffff"
-#define SVG_ALARM "#b00020" /* limits */
-#define SVG_PALE  "#9fb0c3" /* what others are drawn over */
+typedef struct svg_colour {
+    const char *name, *value;
+} svg_colour;
 
-/* Wider pictures are illegible on a telephone, and to be scrolled; pixels. */
-#define SVG_WIDE 560.0
+enum { SVG_SERIES = 8 };
 
-/**
- * Name a picture and its points. gnuplot's own names go, its scripts, and
- * groups that are empty; a point of hypertext "17" has the 17th tip.
- *
- * @param[out] out  to be freed
- */
-ritz_status svg_dress(const char *drawn, const char *title, const char *summary,
-                      int64_t num_tips, char *const *tip, char **out);
+/** All colours, those of series first, ended by one without a name. */
+extern const svg_colour svg_colours[];
+
+/** Name of the colour of a series. */
+const char *svg_series(int series);
+
+typedef struct svg_names {
+    const char *title, *summary;
+    const char *prefix; /* of ids on a page; NULL: a file of its own */
+} svg_names;
 
 /**
- * Write a dressed picture into a page: names are made its own by @p prefix,
- * colours become those of the page.
+ * Copy a picture of gnuplot's: it gets its name, and labels of hypertext become
+ * titles of marks. On a page colours become those of the page.
  */
-void svg_embed(FILE *file, const char *svg, const char *prefix);
+void svg_copy(FILE *file, const char *drawn, const svg_names *names);
 
 #endif

@@ -2,7 +2,6 @@
 #ifndef RITZ_TOOLS_PRINT_RANKINGS_H
 #define RITZ_TOOLS_PRINT_RANKINGS_H
 
-#include "chart/gnuplot.h"
 #include "cli/sink.h"
 
 #include <ritz/agreement.h>
@@ -76,18 +75,5 @@ ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top);
 
 /** All rankings as one table with tabs. */
 ritz_status rankings_write_table(const char *path, const contest *all);
-
-/**
- * Bars of values by mode, drawn by gnuplot as SVG; data and script stay beside
- * it as PATH.tsv and PATH.gp.
- *
- * @return RITZ_ERR_FILE if gnuplot is not there or fails
- */
-ritz_status rankings_draw(const char *path, const char *title,
-                          const contest *all, int64_t most);
-
-/** The same in a picture that was begun. */
-ritz_status rankings_plot(gnuplot *picture, const char *title,
-                          const contest *all, int64_t most);
 
 #endif

@@ -1,0 +1,362 @@
+#include "chart/picture.h"
+
+#include "base/draft.h"
+#include "chart/html.h"
+#include "chart/text.h"
+
+#include <ritz/text.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum {
+    NO_PROGRAM = 127,
+    TIP_SIZE = 1000,    /* a label of gnuplot's has 1024 bytes at most */
+    SIGN_WIDE = 60,     /* pixels of a sign and the space around its name */
+    LETTER_TENTHS = 75, /* of a pixel: no letter of a legend is wider */
+};
+
+ritz_status picture_new(const char *path, bool keep, picture *out)
+{
+    const size_t length = strlen(path);
+
+    RITZ_REFUSE_IF(keep &&
+                       (length < 5 || strcmp(path + length - 4, ".svg") != 0),
+                   RITZ_ERR_ARGUMENT,
+                   "a chart is an SVG, '%s' does not end in '.svg'", path);
+    RITZ_REFUSE_IF(length + 16 >= PICTURE_PATH, RITZ_ERR_ARGUMENT,
+                   "the name of a chart is too long");
+    snprintf(out->path, sizeof out->path, "%s", path);
+    out->keep = keep;
+    RITZ_CHECK(cli_table_new(&out->data));
+    RITZ_CHECK(cli_table_new(&out->given));
+    return cli_table_new(&out->table);
+}
+
+void picture_add_sign(picture *p, const picture_sign *sign)
+{
+    if (p->num_signs < PICTURE_SIGNS)
+        p->sign[p->num_signs++] = *sign;
+}
+
+/* Text in gnuplot's single quotes, where it reads nothing but ''. */
+static void quote(FILE *file, const char *text)
+{
+    fputc('\'', file);
+    while (*text) {
+        if (*text == '\'')
+            fputc('\'', file);
+        text += html_letter(file, text);
+    }
+    fputc('\'', file);
+}
+
+void picture_give_text(picture *p, const char *name, const char *text)
+{
+    fprintf(p->given.file, "%s = ", name);
+    quote(p->given.file, text);
+    fputc('\n', p->given.file);
+}
+
+void picture_give_texts(picture *p, const char *name, int64_t count,
+                        const char *text, size_t size)
+{
+    FILE *file = p->given.file;
+
+    fprintf(file, "array %s[%lld] = [", name, (long long)count);
+    for (int64_t k = 0; k < count; k++) {
+        fputs(k > 0 ? ", " : "", file);
+        quote(file, text + (size_t)k * size);
+    }
+    fputs("]\n", file);
+}
+
+void picture_give_reals(picture *p, const char *name, int64_t count,
+                        const double *value, int64_t stride)
+{
+    FILE *file = p->given.file;
+
+    fprintf(file, "array %s[%lld] = [", name, (long long)count);
+    for (int64_t k = 0; k < count; k++)
+        fprintf(file, "%s%.9g", k > 0 ? ", " : "", value[k * stride]);
+    fputs("]\n", file);
+}
+
+/*
+ * gnuplot takes '\' and '"' of data for its own, so that they, and what markup
+ * reads, are written as markup does; svg_copy reads it back.
+ */
+void picture_tip(picture *p, const char *format, ...)
+{
+    FILE *file = p->data.file;
+    const long begin = ftell(file);
+    char text[TIP_SIZE];
+    const char *c = text;
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    while (*c && ftell(file) - begin < TIP_SIZE) {
+        if (*c == '\n' || *c == '\\')
+            fputs(*c++ == '\n' ? "\\n" : "&#92;", file);
+        else
+            c += html_symbol(file, c);
+    }
+}
+
+/* A point in its square of the picture. */
+typedef struct placed {
+    int64_t group, column, row, index;
+    double y;
+    bool keep;
+} placed;
+
+static int by_square(const void *a, const void *b)
+{
+    const placed *p = a, *q = b;
+    const int64_t apart[] = {p->group - q->group, p->column - q->column,
+                             p->row - q->row, q->keep - p->keep};
+
+    for (size_t k = 0; k < sizeof apart / sizeof *apart; k++)
+        if (apart[k] != 0)
+            return apart[k] < 0 ? -1 : 1;
+    if (p->y != q->y)
+        return p->y < q->y ? -1 : 1;
+    return p->index < q->index ? -1 : 1;
+}
+
+ritz_status picture_thin(int64_t count, const double *x, const double *y,
+                         double cell, const int64_t *group, bool *keep)
+{
+    placed *all = calloc((size_t)count + 1, sizeof *all);
+    int64_t n = 0;
+
+    RITZ_REFUSE_IF(!all, RITZ_ERR_MEMORY, "no memory for a chart");
+    for (int64_t k = 0; k < count; k++)
+        if (group[k] >= 0)
+            all[n++] = (placed){group[k],
+                                (int64_t)floor(x[k] / cell),
+                                (int64_t)floor(y[k] / cell),
+                                k,
+                                y[k],
+                                keep[k]};
+    qsort(all, (size_t)n, sizeof *all, by_square);
+    for (int64_t i = 0; i < n; i++)
+        if (i == 0 || all[i].group != all[i - 1].group ||
+            all[i].column != all[i - 1].column || all[i].row != all[i - 1].row)
+            keep[all[i].index] = true;
+    free(all);
+    return RITZ_OK;
+}
+
+static const char *base_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+
+    return slash ? slash + 1 : path;
+}
+
+/* Of a name without a folder "./NAME": gnuplot runs "|NAME" and "<NAME". */
+static void put_name(FILE *file, const char *variable, const char *path,
+                     const char *ending)
+{
+    char name[PICTURE_PATH + 16];
+
+    snprintf(name, sizeof name, "./%s%s", base_of(path), ending);
+    fprintf(file, "if (!exists('%s')) %s = ", variable, variable);
+    quote(file, name);
+    fputc('\n', file);
+}
+
+static size_t count_letters(const char *text)
+{
+    size_t count = 0;
+
+    for (; *text; text++)
+        count += ((unsigned char)*text & 0xc0) != 0x80;
+    return count;
+}
+
+/* Names and signs of the legend, in as many columns as have room. */
+static void put_legend(const picture *p, FILE *file)
+{
+    const int count = p->keep ? p->num_signs : 0;
+    char name[2 * PICTURE_WORD];
+    size_t most = 1;
+
+    for (int k = 0; k < count; k++) {
+        const picture_sign *s = &p->sign[k];
+
+        snprintf(name, sizeof name, "%s%s%s", s->name, s->role ? ", " : "",
+                 s->role ? s->role : "");
+        most = count_letters(name) > most ? count_letters(name) : most;
+        if (k == 0)
+            fprintf(file, "array key_name[%d]\narray key_sign[%d]\n", count,
+                    count);
+        fprintf(file, "key_name[%d] = ", k + 1);
+        quote(file, name);
+        if (s->mark > 0)
+            fprintf(file,
+                    "\nkey_sign[%d] = 'with points pt %d ps 0.9 lw 1.6 "
+                    "lc rgb %s'\n",
+                    k + 1, s->mark, s->colour);
+        else
+            fprintf(file,
+                    "\nkey_sign[%d] = 'with lines lw %g dt %d lc rgb %s'\n",
+                    k + 1, s->wide, s->dash > 1 ? s->dash : 1, s->colour);
+    }
+    fprintf(file, "keys = %d\ncolumns = %d\n", count,
+            (int)fmax(1.0, p->wide / (SIGN_WIDE +
+                                      0.1 * LETTER_TENTHS * (double)most)));
+}
+
+static void put_template(FILE *file, const char *name)
+{
+    fputc('\n', file);
+    for (const char *const *line = chart_text_find(name); *line; line++)
+        fputs(*line, file);
+}
+
+/* The whole script: what is given, then the templates. */
+static ritz_status write_script(picture *p, const char *template,
+                                cli_table *out)
+{
+    RITZ_CHECK(cli_table_new(out));
+    RITZ_REFUSE_IF(fflush(p->given.file) != 0, RITZ_ERR_MEMORY,
+                   "no memory for a chart");
+    fprintf(out->file, "# gnuplot ");
+    html_line(out->file, base_of(p->path));
+    fprintf(out->file, ".gp\n");
+    put_name(out->file, "out", p->path, "");
+    put_name(out->file, "data", p->path, ".tsv");
+    for (const svg_colour *c = svg_colours; c->name; c++)
+        fprintf(out->file, "%s = '%s'\n", c->name, c->value);
+    fprintf(out->file, "wide = %.0f\nbody = %.0f\nnote = ", p->wide, p->body);
+    quote(out->file, p->keep ? p->note : "");
+    fputc('\n', out->file);
+    put_legend(p, out->file);
+    fputs(p->given.text, out->file);
+    put_template(out->file, "begin.gp");
+    put_template(out->file, template);
+    put_template(out->file, "end.gp");
+    return RITZ_OK;
+}
+
+/* -e NAME='FILE', where a name that is no path from the root has a "./". */
+static ritz_status assign(const char *name, const char *value, size_t size,
+                          char *out)
+{
+    size_t used =
+        (size_t)snprintf(out, size, "%s='%s", name, *value == '/' ? "" : "./");
+
+    for (; *value && used + 4 < size; value++)
+        used += (size_t)snprintf(out + used, size - used,
+                                 *value == '\'' ? "''" : "%c", *value);
+    RITZ_REFUSE_IF(*value, RITZ_ERR_ARGUMENT,
+                   "the name of a chart is too long");
+    snprintf(out + used, size - used, "'");
+    return RITZ_OK;
+}
+
+static ritz_status run_gnuplot(const char *script, const char *data,
+                               const char *out)
+{
+    static char program[] = "gnuplot", defaults[] = "-d", option[] = "-e";
+    char set_out[PICTURE_PATH + 16], set_data[PICTURE_PATH + 16];
+    char file[PICTURE_PATH + 16];
+    char *const argv[] = {program, defaults, option, set_out,
+                          option,  set_data, file,   NULL};
+    int outcome = 0;
+    pid_t child = -1;
+
+    snprintf(file, sizeof file, "%s%s", *script == '/' ? "" : "./", script);
+    RITZ_CHECK(assign("out", out, sizeof set_out, set_out));
+    RITZ_CHECK(assign("data", data, sizeof set_data, set_data));
+    child = fork();
+    if (child == 0) {
+        execvp(program, argv);
+        _exit(NO_PROGRAM);
+    }
+    RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE, "cannot start gnuplot: %s",
+                   strerror(errno));
+    while (waitpid(child, &outcome, 0) < 0 && errno == EINTR)
+        ;
+    RITZ_REFUSE_IF(
+        WIFEXITED(outcome) && WEXITSTATUS(outcome) == NO_PROGRAM, RITZ_ERR_FILE,
+        "gnuplot is not installed: '%s' is there to be drawn by it", script);
+    RITZ_REFUSE_IF(!WIFEXITED(outcome) || WEXITSTATUS(outcome) != 0,
+                   RITZ_ERR_FILE, "gnuplot could not draw '%s'", script);
+    return RITZ_OK;
+}
+
+/* Beside the picture, to stay or until the draft is freed. */
+static ritz_status put_beside(const picture *p, cli_table *table,
+                              const char *ending, ritz_draft *draft,
+                              char out[PICTURE_PATH])
+{
+    if (p->keep) {
+        snprintf(out, PICTURE_PATH, "%.*s%s", PICTURE_PATH - 8, p->path,
+                 ending);
+        return cli_table_save(table, out);
+    }
+    RITZ_CHECK(ritz_draft_new(p->path, draft));
+    snprintf(out, PICTURE_PATH, "%s", draft->name);
+    return cli_table_write(table, out);
+}
+
+static ritz_status publish(const picture *p)
+{
+    ritz_status status = RITZ_OK;
+    const svg_names names = {p->title, p->summary, NULL};
+    cli_table table = {0};
+
+    RITZ_TRY(cli_table_new(&table));
+    svg_copy(table.file, p->drawn, &names);
+    RITZ_TRY(cli_table_save(&table, p->path));
+done:
+    cli_table_free(&table);
+    return status;
+}
+
+ritz_status picture_draw(picture *p, const char *template, const char *title,
+                         const char *summary)
+{
+    ritz_status status = RITZ_OK;
+    char data[PICTURE_PATH], script[PICTURE_PATH];
+    ritz_draft draft = {0}, data_draft = {0}, script_draft = {0};
+    cli_table text = {0};
+
+    snprintf(p->title, sizeof p->title, "%s", title);
+    p->summary = summary;
+    RITZ_TRY(write_script(p, template, &text));
+    RITZ_TRY(put_beside(p, &p->data, ".tsv", &data_draft, data));
+    RITZ_TRY(put_beside(p, &text, ".gp", &script_draft, script));
+    RITZ_TRY(ritz_draft_new(p->path, &draft));
+    RITZ_TRY(run_gnuplot(script, data, draft.name));
+    RITZ_TRY(ritz_text_read(draft.name, &p->drawn));
+    RITZ_FAIL_IF(!strstr(p->drawn, "</svg>"), RITZ_ERR_FILE,
+                 "gnuplot drew no picture");
+    if (p->keep)
+        RITZ_TRY(publish(p));
+done:
+    cli_table_free(&text);
+    ritz_draft_free(&draft);
+    ritz_draft_free(&data_draft);
+    ritz_draft_free(&script_draft);
+    return p->keep ? ritz_context(status, p->path) : status;
+}
+
+void picture_free(picture *p)
+{
+    free(p->drawn);
+    cli_table_free(&p->data);
+    cli_table_free(&p->given);
+    cli_table_free(&p->table);
+    *p = (picture){0};
+}
