@@ -65,7 +65,7 @@ static const char *name_colour(const char *text)
     if (starts(text, "rgb("))
         for (const char *c = text + 3; *c == '(' || *c == ','; c = end)
             rgb = rgb << 8 | (strtoul(c + 1, &end, 10) & 255);
-    else if (text[0] == '#' && strlen(text) == 7)
+    else if (text[0] == '#' && strspn(text + 1, "0123456789abcdefABCDEF") == 6)
         rgb = strtoul(text + 1, NULL, 16);
     else if (strcmp(text, "black") != 0)
         return NULL;

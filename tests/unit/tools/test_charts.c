@@ -125,7 +125,7 @@ static const char drawn[] =
     "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'x &amp;lt; "
     "&amp;quot;y&amp;quot;\\n&amp;#92;n')\" "
     "onmouseout=\"gnuplot_svg.hideHypertext()\"><title> </title>\n"
-    "<use xlink:href='#gpDot' color='rgb(  0, 114, 178)'/></g>\n"
+    "<use xlink:href='#gpPt10' color='rgb(  0, 114, 178)'/></g>\n"
     "<path stroke='black' fill='rgb(1,2,3)'/>"
     "<text fill=\"#5a6270\">a = 'b' &gt; #gpDot rgb(0,114,178)</text></g>"
     "</svg>\n";
@@ -166,7 +166,7 @@ static void a_page_gives_its_own_names_and_colours(void **state)
     assert_non_null(strstr(got, "role=\"img\" aria-labelledby=\"p7-t p7-d\""));
     assert_non_null(strstr(got, "<title id=\"p7-t\">A</title>"));
     assert_non_null(strstr(got, "id='p7-gpDot'"));
-    assert_non_null(strstr(got, "xlink:href='#p7-gpDot'"));
+    assert_non_null(strstr(got, "xlink:href='#p7-gpPt10'"));
     assert_non_null(strstr(got, "color='var(--c1)'"));
     assert_non_null(strstr(got, "stroke='var(--ink)' fill='rgb(1,2,3)'"));
     assert_non_null(strstr(got, "fill=\"var(--muted)\""));
