@@ -27,7 +27,7 @@
 
 #include "base/alloc.h"
 #include "bases/balance_asked.h"
-#include "bases/orthonormal.h"
+#include "linear/orthonormal.h"
 
 #include <ritz/eigen.h>
 

@@ -3,7 +3,7 @@
 #define RITZ_BASES_KRYLOV_BLOCK_H
 
 #include "bases/elastic.h"
-#include "bases/orthonormal.h"
+#include "linear/orthonormal.h"
 
 #include <ritz/method.h>
 

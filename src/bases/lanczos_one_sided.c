@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/balance_asked.h"
-#include "bases/orthonormal.h"
+#include "linear/orthonormal.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
 

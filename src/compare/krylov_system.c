@@ -12,49 +12,11 @@
  *
  * An output of velocity or acceleration adds its own rows to those that start.
  */
-#include "base/alloc.h"
 #include "compare/compare.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "linear/orthonormal.h"
 
 /* Of a column's K-norm what is left of a dependent one. */
 static const double dependent = 1e-10;
-
-/* a'Kb of flexible coordinates. */
-static double product(const ritz_configuration *c, const double *a,
-                      const double *b)
-{
-    double sum = 0.0;
-
-    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
-        sum += a[k] * c->lambda[k] * b[k];
-    return sum;
-}
-
-/* Make v K-orthonormal to the first m columns; false if it depends on them. */
-static bool orthogonalise(const ritz_configuration *c, const ritz_dense *V,
-                          int64_t m, double *v)
-{
-    double before = sqrt(product(c, v, v));
-    double after = 0.0;
-
-    for (int pass = 0; pass < 2; pass++)
-        for (int64_t j = 0; j < m; j++) {
-            const double *u = ritz_dense_col(V, j);
-            double share = product(c, u, v);
-
-            for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
-                v[k] -= share * u[k];
-        }
-    after = sqrt(product(c, v, v));
-    if (!(after > dependent * before))
-        return false;
-    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
-        v[k] /= after;
-    return true;
-}
 
 /* v = Lambda^-1 r, r a column, or row i of a matrix with a stride. */
 static void solve(const ritz_configuration *c, const double *r, int64_t stride,
@@ -82,25 +44,33 @@ static ritz_status start(const ritz_configuration *c, bool both,
     return RITZ_OK;
 }
 
-/*
- * Append one block to V, which has a column to spare, from its candidates W.
- *
- * @return whether all of W found room
- */
-static bool append(const ritz_configuration *c, const ritz_dense *W,
-                   int64_t vectors, ritz_dense *V, int64_t *count)
+/* diag(Lambda), 0 where motion is rigid: the inner product of the vectors. */
+static ritz_status take_weights(const ritz_configuration *c, ritz_sparse *out)
 {
-    for (int64_t j = 0; j < W->ncol; j++) {
-        double *v = ritz_dense_col(V, *count);
+    int64_t n = c->K.ncol;
 
-        memcpy(v, ritz_dense_col(W, j), (size_t)W->nrow * sizeof *v);
-        if (!orthogonalise(c, V, *count, v))
-            continue;
-        if (*count == vectors)
-            return false;
-        *count += 1;
+    RITZ_CHECK(ritz_sparse_new(n, n, n, out));
+    for (int64_t k = 0; k < n; k++) {
+        out->colptr[k + 1] = k + 1;
+        out->rowind[k] = k;
+        out->val[k] = k < c->num_rigid ? 0.0 : c->lambda[k];
     }
-    return true;
+    return RITZ_OK;
+}
+
+/* Append one block, up to so many vectors; whether all that is new fits. */
+static ritz_status append_block(ritz_dense *W, int64_t vectors,
+                                ritz_orthonormal *set, bool *fits)
+{
+    *fits = true;
+    for (int64_t j = 0; j < W->ncol && *fits; j++) {
+        ritz_dense column = ritz_dense_part(W, j, 1);
+
+        RITZ_CHECK(
+            ritz_orthonormal_append(set, &column, set->count < vectors, NULL));
+        *fits = set->left == 0;
+    }
+    return RITZ_OK;
 }
 
 ritz_status ritz_system_krylov(const ritz_configuration *configuration,
@@ -111,25 +81,32 @@ ritz_status ritz_system_krylov(const ritz_configuration *configuration,
     const ritz_configuration *c = configuration;
     int64_t flexible = c->K.ncol - c->num_rigid;
     int64_t most = vectors < flexible ? vectors : flexible;
-    int64_t count = 0, first = 0, blocks = 0;
-    ritz_dense V = {0}, W = {0};
+    int64_t first = 0, blocks = 0;
+    ritz_sparse weights = {0};
+    ritz_orthonormal set = {0};
+    ritz_dense W = {0};
+    bool fits = false;
 
-    RITZ_TRY(ritz_dense_new(c->K.ncol, most + 1, &V));
+    RITZ_TRY(take_weights(c, &weights));
+    RITZ_TRY(ritz_orthonormal_new(c->K.ncol, &weights, dependent, &set));
     RITZ_TRY(start(c, both, &W));
-    while (append(c, &W, most, &V, &count)) {
+    RITZ_TRY(append_block(&W, most, &set, &fits));
+    while (fits) {
         blocks++;
-        if (count == first) /* every further moment is kept as well */
+        if (set.count == first) /* every further moment is kept as well */
             break;
         ritz_dense_free(&W);
-        RITZ_TRY(ritz_dense_columns(&V, first, count - first, &W));
+        RITZ_TRY(ritz_dense_columns(&set.V, first, set.count - first, &W));
         for (int64_t j = 0; j < W.ncol; j++)
             solve(c, ritz_dense_col(&W, j), 1, ritz_dense_col(&W, j));
-        first = count;
+        first = set.count;
+        RITZ_TRY(append_block(&W, most, &set, &fits));
     }
     *moments = both ? 2 * blocks : blocks;
-    RITZ_TRY(ritz_dense_columns(&V, 0, count, out));
+    RITZ_TRY(ritz_dense_columns(&set.V, 0, set.count, out));
 done:
-    ritz_dense_free(&V);
+    ritz_sparse_free(&weights);
+    ritz_orthonormal_free(&set);
     ritz_dense_free(&W);
     return status;
 }

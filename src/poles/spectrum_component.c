@@ -1,5 +1,6 @@
 /* Lowest damped poles of a component, made exact on its full matrices. */
 #include "base/alloc.h"
+#include "linear/orthonormal.h"
 #include "poles/refine.h"
 #include "poles/spectrum_parts.h"
 
@@ -22,107 +23,49 @@
  *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
  */
 
-/* A column of which less than this is new adds nothing. */
+/* A column of which less than this is new is linearly dependent. */
 static const double dependent = 1e-8;
 /* Undamped modes to scan with, at least; and for each mode before the one. */
 enum { LEAST_MODES = 20, EACH_MODE = 2 };
-
-/* |x|_A; Ax is written. */
-static ritz_status norm_of(const ritz_sparse *A, const ritz_dense *x,
-                           ritz_dense *Ax, double *out)
-{
-    double sum = 0.0;
-
-    ritz_dense_free(Ax);
-    RITZ_CHECK(ritz_sparse_mul(A, x, Ax));
-    for (int64_t i = 0; i < x->nrow; i++)
-        sum += x->val[i] * Ax->val[i];
-    *out = sqrt(fmax(sum, 0.0));
-    return RITZ_OK;
-}
-
-/* x -= T T'A x, twice, and divide by what is left; `fresh` if there is any. */
-static ritz_status orthogonalise(const ritz_sparse *A, const ritz_dense *T,
-                                 int64_t count, ritz_dense *x, bool *fresh)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense Ax = {0};
-    double before = 0.0, left = 0.0;
-
-    RITZ_TRY(norm_of(A, x, &Ax, &before));
-    for (int pass = 0; pass < 2; pass++) {
-        for (int64_t j = 0; j < count; j++) {
-            const double *t = ritz_dense_col(T, j);
-            double q = 0.0;
-
-            for (int64_t i = 0; i < x->nrow; i++)
-                q += t[i] * Ax.val[i];
-            for (int64_t i = 0; i < x->nrow; i++)
-                x->val[i] -= q * t[i];
-        }
-        RITZ_TRY(norm_of(A, x, &Ax, &left));
-    }
-    *fresh = left > dependent * before && left > 0.0;
-    for (int64_t i = 0; *fresh && i < x->nrow; i++)
-        x->val[i] /= left;
-done:
-    ritz_dense_free(&Ax);
-    return status;
-}
-
-/* Append to T, of which `count` columns are there, what X adds. */
-static ritz_status append_columns(const ritz_sparse *A, const ritz_dense *X,
-                                  ritz_dense *T, int64_t *count)
-{
-    ritz_status status = RITZ_OK;
-    ritz_dense x = {0};
-    bool fresh = false;
-
-    for (int64_t j = 0; j < X->ncol; j++) {
-        RITZ_TRY(ritz_dense_columns(X, j, 1, &x));
-        RITZ_TRY(orthogonalise(A, T, *count, &x, &fresh));
-        if (fresh)
-            memcpy(ritz_dense_col(T, (*count)++), x.val,
-                   (size_t)x.nrow * sizeof *x.val);
-        ritz_dense_free(&x);
-    }
-done:
-    ritz_dense_free(&x);
-    return status;
-}
 
 /* T = [Phi X], its columns named. */
 static ritz_status span_space(const ritz_component *component,
                               const ritz_pairs *pairs, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
-    int64_t m = pairs->Phi.ncol;
+    int64_t n = component->num_dofs;
     double sigma = pairs->sigma < 0.0 ? pairs->sigma : -1.0;
     ritz_sparse A = {0};
     ritz_factor *F = NULL;
     ritz_dense X = {0};
+    ritz_orthonormal set = {0};
     ritz_basis basis = {0};
-    int64_t count = 0;
 
     RITZ_TRY(ritz_sparse_add(1.0, &component->K, -sigma, &component->M, &A));
-    RITZ_TRY(ritz_basis_new(component->num_dofs, m + component->dampers.count,
-                            &basis));
-    RITZ_TRY(append_columns(&A, &pairs->Phi, &basis.T, &count));
+    RITZ_TRY(ritz_orthonormal_new(n, &A, dependent, &set));
+    RITZ_TRY(ritz_dense_copy(&pairs->Phi, &X));
+    RITZ_TRY(ritz_orthonormal_append(&set, &X, n, NULL));
     if (component->dampers.count > 0) {
+        ritz_dense_free(&X);
         RITZ_TRY(ritz_dense_copy(&component->dampers.B, &X));
         RITZ_TRY_IN("static answer", ritz_factor_spd(&A, &F));
         RITZ_TRY(ritz_factor_solve(F, &X));
-        RITZ_TRY(append_columns(&A, &X, &basis.T, &count));
+        RITZ_TRY(ritz_orthonormal_append(&set, &X, n - set.count, NULL));
     }
-    for (int64_t j = 0; j < pairs->num_rigid && j < count; j++)
+    RITZ_TRY(ritz_basis_new(n, set.count, &basis));
+    ritz_dense_free(&basis.T);
+    basis.T = set.V;
+    basis.T.ncol = set.count;
+    set.V = (ritz_dense){0};
+    for (int64_t j = 0; j < pairs->num_rigid && j < set.count; j++)
         basis.columns.kind[j] = RITZ_COLUMN_RIGID;
-    basis.T.ncol = basis.columns.count = count;
     *out = basis;
     basis = (ritz_basis){0};
 done:
     ritz_factor_free(&F);
     ritz_sparse_free(&A);
     ritz_dense_free(&X);
+    ritz_orthonormal_free(&set);
     ritz_basis_free(&basis);
     return status;
 }

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "bases/orthonormal.h"
+#include "linear/orthonormal.h"
 #include "frame.h"
 #include "project.h"
 

@@ -11,16 +11,116 @@
  * product after every change of R: carried along by the same sums, it drifts
  * away from R, by the inverse of what is new in a column, at every block.
  */
-#include "bases/orthonormal.h"
-
+#include "linear/orthonormal.h"
 #include "base/alloc.h"
-#include "bases/gram.h"
+
+#include <ritz/sparse.h>
 
 #include <cblas.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Of the energy of a column: less is left to the next round. */
+static const double strong_pivot = 1e-3;
+
+/* WR := W R; W NULL is the identity. */
+static ritz_status weigh_columns(const ritz_sparse *W, const ritz_dense *R,
+                                 ritz_dense *WR)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense product = {0};
+
+    if (R->nrow * R->ncol == 0)
+        return RITZ_OK;
+    if (W)
+        RITZ_TRY(ritz_sparse_mul(W, R, &product));
+    memcpy(WR->val, W ? product.val : R->val,
+           (size_t)(R->nrow * R->ncol) * sizeof *R->val);
+done:
+    ritz_dense_free(&product);
+    return status;
+}
+
+/* * Pivoted Cholesky of G, which it destroys, diagonal one: order[] are its
+ * strong pivots, at most @p most, the largest first.
+ *
+ * @return how many there are */
+static int64_t find_pivots(ritz_dense *G, int64_t most, int64_t *order)
+{
+    int64_t p = G->ncol;
+    int64_t count = 0;
+
+    while (count < most && count < p) {
+        int64_t pivot = 0;
+        double d = 0.0;
+
+        for (int64_t j = 1; j < p; j++)
+            if (ritz_dense_col(G, j)[j] >
+                ritz_dense_col(G, pivot)[pivot] * (1.0 + 1e-9))
+                pivot = j;
+        d = ritz_dense_col(G, pivot)[pivot];
+        if (!(d > strong_pivot))
+            break;
+        order[count++] = pivot;
+        for (int64_t j = 0; j < p; j++) {
+            double factor = ritz_dense_col(G, j)[pivot] / d;
+
+            for (int64_t i = 0; i < p && j != pivot; i++)
+                ritz_dense_col(G, j)[i] -= factor * ritz_dense_col(G, pivot)[i];
+        }
+        for (int64_t j = 0; j < p; j++)
+            ritz_dense_col(G, j)[pivot] = ritz_dense_col(G, pivot)[j] = 0.0;
+    }
+    return count;
+}
+
+/* G := L of G = L L', column by column; the upper triangle stays. */
+static ritz_status factor_cholesky(ritz_dense *G)
+{
+    int64_t p = G->ncol;
+
+    for (int64_t j = 0; j < p; j++) {
+        double *g = ritz_dense_col(G, j);
+        double d = sqrt(g[j]);
+
+        RITZ_REFUSE_IF(!(g[j] > 0.0), RITZ_ERR_CONVERGENCE,
+                       "a block of vectors lost its independence");
+        for (int64_t i = j; i < p; i++)
+            g[i] /= d;
+        for (int64_t k = j + 1; k < p; k++)
+            for (int64_t i = k; i < p; i++)
+                ritz_dense_col(G, k)[i] -= g[i] * g[k];
+    }
+    return RITZ_OK;
+}
+
+/* * Q := Q L^-T with Q'WQ = L L', twice, and WQ with it.
+ *
+ * @param[in] Q  far from dependent: strong pivots
+ * @return RITZ_ERR_CONVERGENCE if it is not */
+static ritz_status normalise_columns(const ritz_sparse *W, ritz_dense *Q,
+                                     ritz_dense *WQ)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense G = {0};
+    int n = (int)Q->nrow;
+    int p = (int)Q->ncol;
+
+    for (int pass = 0; pass < 2; pass++) {
+        RITZ_TRY(ritz_dense_mul_tn(Q, WQ, &G));
+        ritz_dense_symmetrise(&G);
+        RITZ_TRY(factor_cholesky(&G));
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans,
+                    CblasNonUnit, n, p, 1.0, G.val, p, Q->val, n);
+        RITZ_TRY(weigh_columns(W, Q, WQ));
+        ritz_dense_free(&G);
+    }
+done:
+    ritz_dense_free(&G);
+    return status;
+}
 
 enum { MOST_PASSES = 8 };
 
@@ -51,7 +151,8 @@ static void copy_column(ritz_dense *A, int64_t from, int64_t to)
 }
 
 /* A := A - B H, of what is kept as columns. */
-static void subtract(const ritz_dense *B, const ritz_dense *H, ritz_dense *A)
+static void subtract_product(const ritz_dense *B, const ritz_dense *H,
+                             ritz_dense *A)
 {
     if (A->nrow > 0 && A->ncol > 0 && B->ncol > 0)
         cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)A->nrow,
@@ -68,8 +169,8 @@ static ritz_status project_out(const ritz_orthonormal *set, block *b)
     ritz_dense H = {0};
 
     RITZ_TRY(ritz_dense_mul_tn(&WV, &b->R, &H));
-    subtract(&V, &H, &b->R);
-    RITZ_TRY(ritz_gram_weigh(set->W, &b->R, &b->WR));
+    subtract_product(&V, &H, &b->R);
+    RITZ_TRY(weigh_columns(set->W, &b->R, &b->WR));
 done:
     ritz_dense_free(&H);
     return status;
@@ -109,7 +210,7 @@ done:
 }
 
 /* Scale what is left to one; columns of which nothing is left are dropped. */
-static void sift(block *b, double tolerance)
+static void drop_columns(block *b, double tolerance)
 {
     int64_t kept = 0;
 
@@ -153,7 +254,7 @@ static void scale_block(const ritz_sparse *W, block *b)
 {
     const double eps = rounded * DBL_EPSILON;
 
-    sift(b, 0.0);
+    drop_columns(b, 0.0);
     for (int64_t j = 0; j < b->R.ncol; j++) {
         b->energy[j] = 1.0;
         b->least[j] =
@@ -162,7 +263,7 @@ static void scale_block(const ritz_sparse *W, block *b)
 }
 
 /* A with room for `room` columns, of which `count` are kept. */
-static ritz_status widen(ritz_dense *A, int64_t count, int64_t room)
+static ritz_status widen_columns(ritz_dense *A, int64_t count, int64_t room)
 {
     ritz_dense wide = {0};
 
@@ -174,34 +275,34 @@ static ritz_status widen(ritz_dense *A, int64_t count, int64_t room)
     return RITZ_OK;
 }
 
-static ritz_status reserve(ritz_orthonormal *set, int64_t more)
+static ritz_status reserve_columns(ritz_orthonormal *set, int64_t more)
 {
     int64_t need = set->count + more;
     int64_t room = set->count + set->count / 2 + more;
 
     if (set->V.ncol < need)
-        RITZ_CHECK(widen(&set->V, set->count, room));
+        RITZ_CHECK(widen_columns(&set->V, set->count, room));
     if (set->WV.ncol < need)
-        RITZ_CHECK(widen(&set->WV, set->count, room));
+        RITZ_CHECK(widen_columns(&set->WV, set->count, room));
     return RITZ_OK;
 }
 
 /* Move the strong columns of the block into the set; the others move up. */
-static ritz_status take(ritz_orthonormal *set, block *b, int64_t count,
-                        const int64_t *order, bool *taken)
+static ritz_status take_columns(ritz_orthonormal *set, block *b, int64_t count,
+                                const int64_t *order, bool *taken)
 {
     ritz_dense Q = {0}, WQ = {0};
     int64_t kept = 0;
     size_t size = (size_t)b->R.nrow * sizeof *b->R.val;
 
-    RITZ_CHECK(reserve(set, count));
+    RITZ_CHECK(reserve_columns(set, count));
     Q = ritz_dense_part(&set->V, set->count, count);
     WQ = ritz_dense_part(&set->WV, set->count, count);
     for (int64_t k = 0; k < count && size > 0; k++) {
         memcpy(ritz_dense_col(&Q, k), ritz_dense_col(&b->R, order[k]), size);
         memcpy(ritz_dense_col(&WQ, k), ritz_dense_col(&b->WR, order[k]), size);
     }
-    RITZ_CHECK(ritz_gram_normalise(set->W, &Q, &WQ));
+    RITZ_CHECK(normalise_columns(set->W, &Q, &WQ));
     set->count += count;
     for (int64_t j = 0; j < b->R.ncol; j++) {
         bool gone = false;
@@ -230,12 +331,12 @@ static ritz_status go_round(ritz_orthonormal *set, block *b, int64_t most,
     ritz_dense G = {0};
 
     RITZ_TRY(orthogonalise(set, b));
-    sift(b, set->tolerance);
+    drop_columns(b, set->tolerance);
     if (b->R.ncol == 0)
         return RITZ_OK;
     RITZ_TRY(ritz_dense_mul_tn(&b->R, &b->WR, &G));
     ritz_dense_symmetrise(&G);
-    RITZ_TRY(take(set, b, ritz_gram_pivots(&G, most, order), order, taken));
+    RITZ_TRY(take_columns(set, b, find_pivots(&G, most, order), order, taken));
 done:
     ritz_dense_free(&G);
     return status;
@@ -255,7 +356,7 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
     RITZ_NEW(b.least, R->ncol);
     RITZ_NEW(order, R->ncol);
     RITZ_TRY(ritz_dense_new(R->nrow, R->ncol, &WR));
-    RITZ_TRY(ritz_gram_weigh(set->W, R, &WR));
+    RITZ_TRY(weigh_columns(set->W, R, &WR));
     b.WR = WR;
     for (int64_t j = 0; j < R->ncol; j++) {
         b.source[j] = j;
@@ -267,7 +368,7 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
     while (b.R.ncol > 0 && set->count - before < most)
         RITZ_TRY(go_round(set, &b, most - (set->count - before), order, taken));
     RITZ_TRY(orthogonalise(set, &b));
-    sift(&b, set->tolerance);
+    drop_columns(&b, set->tolerance);
     set->left = b.R.ncol;
 done:
     ritz_dense_free(&WR);

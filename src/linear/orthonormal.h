@@ -1,6 +1,6 @@
 /* Columns V that are orthonormal in a matrix W, and grow block by block. */
-#ifndef RITZ_BASES_ORTHONORMAL_H
-#define RITZ_BASES_ORTHONORMAL_H
+#ifndef RITZ_LINEAR_ORTHONORMAL_H
+#define RITZ_LINEAR_ORTHONORMAL_H
 
 #include <ritz/sparse.h>
 
