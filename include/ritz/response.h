@@ -9,6 +9,7 @@
 #include <ritz/component.h>
 #include <ritz/damping.h>
 #include <ritz/reduced.h>
+#include <ritz/state_space.h>
 
 #include <stdbool.h>
 
@@ -100,6 +101,16 @@ ritz_status ritz_response_direct(const ritz_component *component,
                                  const ritz_grid *grid, ritz_response *out);
 
 /**
+ * Response C (i w E - A)^-1 B + D; a grid that is refined gets points around
+ * every pole.
+ *
+ * @return RITZ_ERR_SINGULAR if a point lies on a pole
+ * @cost   O(n^3), and O(n^2) a point and input
+ */
+ritz_status ritz_response_states(const ritz_state_space *model,
+                                 const ritz_grid *grid, ritz_response *out);
+
+/**
  * Between stored points: each channel is the cubic through the four points
  * around, two on either side, at the ends the outermost four; of fewer points,
  * through all. This is what `tolerance` of a response is about.
@@ -116,7 +127,7 @@ void ritz_response_free(ritz_response *response);
 typedef struct ritz_response_request {
     const ritz_component *component;
     const ritz_second_order *matrices;
-    const struct ritz_state_space *states;
+    const ritz_state_space *states;
     const ritz_damping *damping; /* NULL: that of the matrices alone */
     double from_hz, to_hz;       /* where responses will be asked for */
     double up_to_hz;  /* modes of a component; 0: three times the end */

@@ -12,7 +12,6 @@
 #include <ritz/component.h>
 #include <ritz/damping.h>
 #include <ritz/reduced.h>
-#include <ritz/response.h>
 
 #include <complex.h>
 
@@ -128,16 +127,6 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
  */
 ritz_status ritz_state_space_poles(const ritz_state_space *model,
                                    int64_t *count, double _Complex **out);
-
-/**
- * Response C (i w E - A)^-1 B + D; a grid that is refined gets points around
- * every pole.
- *
- * @return RITZ_ERR_SINGULAR if a point lies on a pole
- * @cost   O(n^3), and O(n^2) a point and input
- */
-ritz_status ritz_response_states(const ritz_state_space *model,
-                                 const ritz_grid *grid, ritz_response *out);
 
 void ritz_state_space_free(ritz_state_space *model);
 

@@ -6,6 +6,8 @@
 
 #include "linear/general.h"
 
+#include <ritz/response.h>
+
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
