@@ -3,6 +3,8 @@
 #include "masses.h"
 #include "states.h"
 
+#include <ritz/response.h>
+
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>

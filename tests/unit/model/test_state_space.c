@@ -2,6 +2,7 @@
 
 #include "masses.h"
 
+#include <ritz/response.h>
 #include <ritz/method.h>
 #include <ritz/state_space.h>
 

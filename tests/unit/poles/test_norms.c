@@ -4,6 +4,7 @@
 
 #include "poles/poles.h"
 
+#include <ritz/response.h>
 #include <ritz/gramians.h>
 #include <ritz/norms.h>
 
