@@ -1,10 +1,71 @@
 /* ritz-info - what is in a container, a matrix file or a bulk data deck. */
 #include "print/describe.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static ritz_status describe_container(cli_run *run, const char *path)
+/* One line of the tables of docs/container.md. */
+static void print_row(const ritz_container_row *row, void *data)
+{
+    const char **of = data;
+    const char *range = row->range;
+
+    if (!*of || strcmp(*of, row->of) != 0)
+        printf("%s%s:\n\n| member | type | shape | meaning |\n"
+               "|---|---|---|---|\n",
+               *of ? "\n" : "", row->of);
+    *of = row->of;
+    if (row->type == NULL) {
+        printf("| %s | | | see there%s |\n", row->name,
+               row->optional ? "; optional" : "");
+        return;
+    }
+    printf("| `%s` | %s%s | %s%s%s | %s%s%s%s |\n", row->name, row->type,
+           row->optional ? ", optional" : "", *row->shape ? "(" : "",
+           row->shape, *row->shape ? ")" : "", row->about, range ? "; in " : "",
+           range ? range : "", row->nan ? "; NaN: none" : "");
+}
+
+static void list_members(void)
+{
+    const char *of = NULL;
+
+    ritz_container_rows(print_row, &of);
+}
+
+static void describe_member(const ritz_container_row *row, void *data)
+{
+    cli_run *run = data;
+
+    sink_say(run, "member,type,shape", "  %-30s %-16s %s", row->name, row->type,
+             row->shape);
+}
+
+static const void *object_of(const model *m)
+{
+    switch (m->kind) {
+    case MODEL_COMPONENT:
+        return &m->component;
+    case MODEL_BASIS:
+        return &m->basis;
+    case MODEL_REDUCED:
+        return &m->reduced;
+    case MODEL_SYSTEM:
+        return &m->system;
+    case MODEL_RESPONSE:
+        return &m->response;
+    case MODEL_RANKING:
+        return &m->rankings;
+    case MODEL_STATES:
+        return &m->states;
+    default:
+        return &m->simulation;
+    }
+}
+
+static ritz_status describe_container(cli_run *run, bool members,
+                                      const char *path)
 {
     ritz_status status = RITZ_OK;
     ritz_summary summary = {0};
@@ -13,6 +74,12 @@ static ritz_status describe_container(cli_run *run, const char *path)
     RITZ_TRY(model_read(run, path, MODEL_ANY, &m));
     RITZ_TRY(ritz_container_summary(path, &summary));
     RITZ_TRY_IN(path, describe_model(run, &m));
+    if (members) {
+        sink_list(run, "members");
+        ritz_container_members(summary.kind, object_of(&m), describe_member,
+                               run);
+        sink_end(run);
+    }
     sink_field(run, "made by", "command", "%s", summary.command);
     sink_field(run, "version", "made_by_version", "ritz %s", summary.version);
     sink_list(run, "made_from");
@@ -73,7 +140,7 @@ done:
 }
 
 /* Keys of a single file stand in the report itself too. */
-static ritz_status inform(cli_run *run)
+static ritz_status inform(cli_run *run, bool members)
 {
     sink_list(run, "files");
     for (int k = 0; k < run->num_operands; k++) {
@@ -82,8 +149,9 @@ static ritz_status inform(cli_run *run)
         sink_object(run, NULL);
         sink_set(run, "file", "%s", path);
         cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
-        RITZ_CHECK(ritz_container_is(path) ? describe_container(run, path)
-                                           : describe_foreign(run, path));
+        RITZ_CHECK(ritz_container_is(path)
+                       ? describe_container(run, members, path)
+                       : describe_foreign(run, path));
         sink_end(run);
     }
     sink_end(run);
@@ -97,7 +165,13 @@ static ritz_status inform(cli_run *run)
 
 int main(int argc, char **argv)
 {
-    const cli_option options[] = {{0}};
+    bool members = false;
+    const cli_option options[] = {
+        {CLI_FLAG(&members), .name = "members",
+         .help = "list what a container holds, with sizes"},
+        {CLI_ACTION(list_members), .name = "list",
+         .help = "list what containers can hold, with its meaning"},
+        {0}};
     const cli_program program = {
         .name = "ritz-info",
         .operands = {{"FILE",
@@ -114,5 +188,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    return cli_finish(&run, inform(&run));
+    return cli_finish(&run, inform(&run, members));
 }

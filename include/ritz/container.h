@@ -48,6 +48,33 @@ bool ritz_container_is(const char *path);
 ritz_status ritz_container_summary(const char *path, ritz_summary *out);
 void ritz_summary_free(ritz_summary *summary);
 
+/* A member that containers hold, as docs/container.md lists it. */
+typedef struct ritz_container_row {
+    const char *of;    /* kind or part that it belongs to: "component" */
+    const char *name;  /* "inputs/B" */
+    const char *type;  /* "f64"; NULL: members that several kinds share */
+    const char *shape; /* "n, m"; of an object its sizes, "243, 2" */
+    const char *about; /* what it means */
+    const char *range; /* of whole numbers, "0..n-1"; NULL: any */
+    bool optional;
+    bool nan; /* NaN stands for none */
+} ritz_container_row;
+
+/** All members of all kinds, from the tables that read and write them. */
+void ritz_container_rows(void (*say)(const ritz_container_row *row, void *data),
+                         void *data);
+
+/**
+ * The members that a file of an object holds, with their sizes.
+ *
+ * @param[in] kind    "component", ... as `ritz_kind` says
+ * @param[in] object  of that kind: a ritz_component, ...; rankings: all
+ */
+void ritz_container_members(const char *kind, const void *object,
+                            void (*say)(const ritz_container_row *row,
+                                        void *data),
+                            void *data);
+
 /* One pair for each kind. Reading a component settles it. */
 ritz_status ritz_container_read_component(const char *path,
                                           ritz_component *out);

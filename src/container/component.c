@@ -52,7 +52,8 @@ static const ritz_schema port_schema = {
 };
 
 static const ritz_member load_members[] = {
-    {"", MATRIX_SPARSE, RITZ_AT(ritz_load, KG), "n n"},
+    {"", MATRIX_SPARSE, RITZ_AT(ritz_load, KG), "n n",
+     "geometric stiffness of a unit load"},
     {0},
 };
 
@@ -99,8 +100,7 @@ static const ritz_member members[] = {
      .optional = ""},
     {"K4", MATRIX_SPARSE, RITZ_AT(ritz_component, K4), "n n",
      "structural damping, in K + i K4", .optional = ""},
-    {"KG", LIST, RITZ_LIST(ritz_component, load), "l",
-     "geometric stiffness of each unit load, sparse (n, n)", .optional = "",
+    {"KG", LIST, RITZ_LIST(ritz_component, load), "l", .optional = "",
      .some = 'l', .schema = &load_schema},
     {"dofs/grid", SET_WHOLE, RITZ_ITEM(ritz_component, dof, ritz_dof, grid),
      "n", "grid or scalar point of each row"},

@@ -43,6 +43,7 @@ static const ritz_member grids_members[] = {
 
 const ritz_schema ritz_schema_grids = {
     .name = "grids",
+    .shared = "grids/",
     .sizes = grids_sizes,
     .members = grids_members,
     .settle = settle_grids,
@@ -87,6 +88,7 @@ static const ritz_member elements_members[] = {
 
 const ritz_schema ritz_schema_elements = {
     .name = "elements",
+    .shared = "elements/",
     .sizes = elements_sizes,
     .members = elements_members,
     .settle = settle_elements,
@@ -111,7 +113,7 @@ static const ritz_member recovery_members[] = {
     {"grid", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, grid), "d",
      "grid of each dof that constraints eliminated"},
     {"component", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, component),
-     "d", "and its direction", "0..6"},
+     "d", "and its direction, as in `dofs`", "0..6"},
     {"G", MATRIX_SPARSE, RITZ_AT(ritz_recovery, G), "d n",
      "how they follow: u(recovery) = G u, with u the rows that `dofs` names"},
     {0},
@@ -119,6 +121,7 @@ static const ritz_member recovery_members[] = {
 
 const ritz_schema ritz_schema_recovery = {
     .name = "recovery",
+    .shared = "recovery/",
     .sizes = recovery_sizes,
     .members = recovery_members,
     .settle = settle_recovery,
@@ -140,13 +143,13 @@ static const ritz_member dampers_members[] = {
     {"names", SET_WORDS, RITZ_AT(ritz_dampers, name), "d",
      "distinct; `body/damper` in systems"},
     {"c", SET_REAL, RITZ_AT(ritz_dampers, c), "d",
-     "each stands for c b b' in D; not negative"},
-    {"k", SET_REAL, RITZ_AT(ritz_dampers, k), "d", "and for k b b' in K"},
+     "each damper adds c b b' to D; not negative"},
+    {"k", SET_REAL, RITZ_AT(ritz_dampers, k), "d", "and k b b' to K"},
     {"held_c", SET_REAL, RITZ_AT(ritz_dampers, held_c), "d",
      "what of that `D` contains already: 0 in components and reductions, c in "
      "systems"},
     {"held_k", SET_REAL, RITZ_AT(ritz_dampers, held_k), "d",
-     "the same of k and `K`"},
+     "the same for k and `K`"},
     {"B", MATRIX_DENSE, RITZ_AT(ritz_dampers, B), "c d",
      "influence vectors b, as columns"},
     {0},
@@ -154,6 +157,7 @@ static const ritz_member dampers_members[] = {
 
 const ritz_schema ritz_schema_dampers = {
     .name = "dampers",
+    .shared = "dampers/",
     .sizes = dampers_sizes,
     .members = dampers_members,
     .settle = settle_dampers,
@@ -209,6 +213,7 @@ static const ritz_member io_members[] = {
 
 const ritz_schema ritz_schema_io = {
     .name = "inputs and outputs",
+    .shared = "",
     .sizes = io_sizes,
     .members = io_members,
     .settle = settle_io,
@@ -238,6 +243,7 @@ static const ritz_member columns_members[] = {
 
 const ritz_schema ritz_schema_columns = {
     .name = "columns",
+    .shared = "",
     .sizes = columns_sizes,
     .members = columns_members,
 };
@@ -258,6 +264,7 @@ static const ritz_member origin_members[] = {
 
 const ritz_schema ritz_schema_origin = {
     .name = "origin",
+    .shared = "",
     .members = origin_members,
 };
 
@@ -287,11 +294,11 @@ static const ritz_size measures_sizes[] = {
 
 static const ritz_member measures_members[] = {
     {"name", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, name), "k",
-     "of the measure"},
+     "such as `frequency-relative`; `estimates` are alike"},
     {"value", SET_REAL, RITZ_ITEM(ritz_measures, item, ritz_measure, value),
      "k", "infinite: a bound that bounds nothing", .values = VALUES_ANY},
     {"limit", SET_REAL, RITZ_ITEM(ritz_measures, item, ritz_measure, limit),
-     "k", "that was asked for", .values = VALUES_OR_NAN},
+     "k", "tolerance that was asked for", .values = VALUES_OR_NAN},
     {"where", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, where),
      "k", "mode, channel or frequency; may be empty"},
     {0},
@@ -299,6 +306,7 @@ static const ritz_member measures_members[] = {
 
 const ritz_schema ritz_schema_measures = {
     .name = "measures",
+    .shared = "errors/",
     .sizes = measures_sizes,
     .members = measures_members,
     .settle = settle_measures,

@@ -123,10 +123,10 @@ static const ritz_member members[] = {
      "as `--damping` reads it; may be empty", .optional = "",
      .has = has_always},
     {"total", ATTRIBUTE_REAL, RITZ_AT(ritz_ranking, total), "",
-     "sum of all values by identity; NaN: there is none",
-     .values = VALUES_OR_NAN, .optional = "", .has = has_always},
+     "sum of all values by identity", .values = VALUES_OR_NAN, .optional = "",
+     .has = has_always},
     {"coupling", ATTRIBUTE_REAL, RITZ_AT(ritz_ranking, coupling), "",
-     "largest normalised off-diagonal of the modal Gramian; NaN: not computed",
+     "largest normalised off-diagonal of the modal Gramian",
      .values = VALUES_OR_NAN},
     {"coupled", ATTRIBUTE_WHOLE, RITZ_AT(ritz_ranking, coupled), "2",
      "the two modes of that entry"},
@@ -140,14 +140,14 @@ static const ritz_member members[] = {
     {"cluster", SET_WHOLE, RITZ_AT(ritz_ranking, cluster), "m",
      "first mode of each mode's cluster", "0..m-1", .optional = "",
      .some = 'm'},
-    {"track", BY_HAND, .shape = "m",
+    {"track", BY_HAND, .type = "i64, optional", .shape = "m",
      .about = "numbers from 0 that say which mode is which in other rankings",
      .write = write_track, .read = read_track},
     {"parts/names", SET_WORDS, RITZ_AT(ritz_ranking, part), "p",
      "outputs, inputs or directions that values are made of",
      .optional = "parts", .some = 'p'},
     {"parts/whole", SET_REAL, RITZ_AT(ritz_ranking, whole), "p",
-     "what there is of each in all; NaN where unknown", .values = VALUES_OR_NAN,
+     "what there is of each in all", .values = VALUES_OR_NAN,
      .optional = "parts", .some = 'p'},
     {"parts/values", MATRIX_DENSE, RITZ_AT(ritz_ranking, parts), "m p",
      "of each mode", .optional = "parts", .some = 'p'},
@@ -207,7 +207,7 @@ static const ritz_member rankings_members[] = {
     {0},
 };
 
-static const ritz_schema rankings_schema = {
+const ritz_schema ritz_schema_rankings = {
     .name = "ranking",
     .sizes = rankings_sizes,
     .members = rankings_members,
@@ -216,7 +216,8 @@ static const ritz_schema rankings_schema = {
 ritz_status ritz_container_read_rankings(const char *path, ritz_rankings *out)
 {
     ritz_rankings all = {0};
-    ritz_status status = ritz_schema_read(path, &rankings_schema, &all, NULL);
+    ritz_status status =
+        ritz_schema_read(path, &ritz_schema_rankings, &all, NULL);
 
     if (status == RITZ_OK)
         *out = all;
@@ -229,7 +230,7 @@ ritz_status ritz_container_write_rankings(const char *path,
                                           const ritz_rankings *rankings,
                                           const ritz_stamp *stamp)
 {
-    return ritz_schema_write(path, &rankings_schema, rankings, "", stamp);
+    return ritz_schema_write(path, &ritz_schema_rankings, rankings, "", stamp);
 }
 
 ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out)

@@ -67,7 +67,7 @@ static const char *read_term(const ritz_place *place, const char *text,
     return text;
 }
 
-static ritz_h5_shape shape_of(const ritz_place *place, const ritz_member *row)
+ritz_h5_shape ritz_schema_shape(const ritz_place *place, const ritz_member *row)
 {
     ritz_h5_shape shape = {0};
 
@@ -181,7 +181,7 @@ static void *target_of(const ritz_place *place, const ritz_member *row)
     return (char *)place->target + row->offset;
 }
 
-static ritz_place part_of(const ritz_place *place, const ritz_member *row)
+ritz_place ritz_schema_part(const ritz_place *place, const ritz_member *row)
 {
     return (ritz_place){
         .at = place->at,
@@ -215,9 +215,9 @@ static bool is_empty(const ritz_place *place, const ritz_member *row)
 }
 
 /* Whether the object says that it has this member. */
-static bool is_given(const ritz_place *place, const ritz_member *row)
+bool ritz_schema_is_given(const ritz_place *place, const ritz_member *row)
 {
-    ritz_place part = part_of(place, row);
+    ritz_place part = ritz_schema_part(place, row);
 
     if (row->has)
         return row->has(place->object);
@@ -233,7 +233,7 @@ static bool is_due(const ritz_place *place, const ritz_member *row)
     const char *what = row->optional;
 
     if (!what)
-        return is_given(place, row);
+        return ritz_schema_is_given(place, row);
     if (is_attribute(row) && !*what)
         return H5Aexists(place->at, row->name) > 0;
     return has_link(place->at, *what ? what : row->name);
@@ -334,7 +334,7 @@ static ritz_status write_array(const ritz_place *place, hid_t at,
                                const ritz_member *row)
 {
     ritz_status status = RITZ_OK;
-    ritz_h5_shape shape = shape_of(place, row);
+    ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
     const void *field = field_of(place, row);
     hid_t type = type_of(row);
@@ -386,7 +386,7 @@ static ritz_status read_array(const ritz_place *place, hid_t at,
                               const ritz_member *row)
 {
     ritz_status status = RITZ_OK;
-    ritz_h5_shape shape = shape_of(place, row);
+    ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
     hid_t type = type_of(row);
     char *values = NULL, *to = NULL;
@@ -418,11 +418,11 @@ static ritz_status write_attribute(const ritz_place *place, hid_t at,
         return ritz_h5_set(at, row->name, H5T_STD_I64LE, ritz_h5_scalar(),
                            &one);
     case ATTRIBUTE_WHOLE:
-        return ritz_h5_set(at, row->name, H5T_STD_I64LE, shape_of(place, row),
-                           field);
+        return ritz_h5_set(at, row->name, H5T_STD_I64LE,
+                           ritz_schema_shape(place, row), field);
     default:
-        return ritz_h5_set(at, row->name, H5T_IEEE_F64LE, shape_of(place, row),
-                           field);
+        return ritz_h5_set(at, row->name, H5T_IEEE_F64LE,
+                           ritz_schema_shape(place, row), field);
     }
 }
 
@@ -443,7 +443,7 @@ static ritz_status check_attribute(const ritz_place *place,
 static ritz_status read_attribute(const ritz_place *place, hid_t at,
                                   const ritz_member *row)
 {
-    ritz_h5_shape shape = shape_of(place, row);
+    ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
     void *field = target_of(place, row);
     int64_t whole = 0;
@@ -492,7 +492,7 @@ static ritz_status open_group(const ritz_place *place, const char *name,
 static ritz_status move_part(const ritz_place *place, const ritz_member *row)
 {
     ritz_status status = RITZ_OK;
-    ritz_place part = part_of(place, row);
+    ritz_place part = ritz_schema_part(place, row);
     hid_t group = 0;
 
     if (is_read(place))
@@ -539,7 +539,7 @@ done:
 }
 
 /* Names of the groups of a list: its items' own, or "0", "1", ... */
-static ritz_status name_items(const ritz_place *place, const ritz_member *row,
+ritz_status ritz_schema_items(const ritz_place *place, const ritz_member *row,
                               int64_t *count, ritz_name **out)
 {
     ritz_status status = RITZ_OK;
@@ -585,7 +585,7 @@ static ritz_status move_list(const ritz_place *place, const ritz_member *row)
 
     RITZ_TRY(open_group(place, row->name, &item.at));
     RITZ_TRY(is_read(place) ? find_items(place, row, item.at, &count, &name)
-                            : name_items(place, row, &count, &name));
+                            : ritz_schema_items(place, row, &count, &name));
     item.object = pointer_at(field_of(place, row), 0);
     if (is_read(place))
         memcpy(&item.target, field_of(place, row), sizeof item.target);
@@ -604,7 +604,7 @@ done:
 static ritz_status move_dense(const ritz_place *place, hid_t at,
                               const ritz_member *row)
 {
-    ritz_h5_shape due = shape_of(place, row);
+    ritz_h5_shape due = ritz_schema_shape(place, row);
 
     if (!is_read(place))
         return ritz_h5_write_dense(at, name_of(row), field_of(place, row));
@@ -719,7 +719,8 @@ ritz_status ritz_schema_move(const ritz_place *place)
     if (is_read(place))
         RITZ_CHECK(read_sizes(place));
     for (const ritz_member *row = place->schema->members; row->name; row++) {
-        if (!(is_read(place) ? is_due(place, row) : is_given(place, row))) {
+        if (!(is_read(place) ? is_due(place, row)
+                             : ritz_schema_is_given(place, row))) {
             if (is_read(place) && row->optional)
                 set_absent(place, row);
             continue;

@@ -67,6 +67,7 @@ typedef struct ritz_member {
     const char *shape;
     const char *about; /* for docs/container.md */
     const char *range; /* of whole numbers, "0..n-1"; either end may lack */
+    const char *type;  /* of a row by hand, for docs/container.md */
     ritz_member_values values;
     bool inside;   /* the array is in the object itself */
     bool numbered; /* items of a list are "0", "1", ... and have no names */
@@ -95,8 +96,10 @@ typedef struct ritz_size {
 } ritz_size;
 
 struct ritz_schema {
-    const char *name;           /* `ritz_kind`, or of a part */
-    const ritz_size *sizes;     /* ended by letter 0; NULL: none */
+    const char *name;       /* `ritz_kind`, or of a part */
+    const char *shared;     /* of a part of several kinds: the group it lies in,
+                           with a slash, or "" */
+    const ritz_size *sizes; /* ended by letter 0; NULL: none */
     const ritz_member *members; /* ended by name NULL */
     /** Checks and completes what was read. */
     ritz_status (*settle)(const ritz_place *place);
@@ -134,6 +137,14 @@ ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
 /** Write all members of an object at its place, or read them to its target. */
 ritz_status ritz_schema_move(const ritz_place *place);
 
+/* What a walk over the rows of an object goes by. */
+bool ritz_schema_is_given(const ritz_place *place, const ritz_member *row);
+ritz_h5_shape ritz_schema_shape(const ritz_place *place,
+                                const ritz_member *row);
+ritz_place ritz_schema_part(const ritz_place *place, const ritz_member *row);
+ritz_status ritz_schema_items(const ritz_place *place, const ritz_member *row,
+                              int64_t *count, ritz_name **out);
+
 /** Value of a letter, of the object or of one that it is part of. */
 int64_t ritz_schema_size(const ritz_place *place, char letter);
 
@@ -145,8 +156,11 @@ ritz_status ritz_schema_check_real(const char *name, int64_t count,
                                    const double *values,
                                    ritz_member_values allowed);
 
-/* Parts that several kinds of container share. */
-extern const ritz_schema ritz_schema_grids, ritz_schema_elements,
+/* One of each kind of file, and parts that several kinds share. */
+extern const ritz_schema ritz_schema_component, ritz_schema_basis,
+    ritz_schema_reduced, ritz_schema_state_space, ritz_schema_system,
+    ritz_schema_response, ritz_schema_simulation, ritz_schema_ranking,
+    ritz_schema_rankings, ritz_schema_grids, ritz_schema_elements,
     ritz_schema_recovery, ritz_schema_dampers, ritz_schema_io,
     ritz_schema_columns, ritz_schema_origin, ritz_schema_measures;
 

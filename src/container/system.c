@@ -24,7 +24,7 @@ static const ritz_member block_members[] = {
     {0},
 };
 
-const ritz_schema ritz_schema_block = {
+static const ritz_schema block_schema = {
     .name = "block",
     .members = block_members,
 };
@@ -33,7 +33,7 @@ static ritz_status write_block(hid_t blocks, const char *name,
                                const system_block *block)
 {
     ritz_status status = RITZ_OK;
-    ritz_place at = {.schema = &ritz_schema_block, .object = block};
+    ritz_place at = {.schema = &block_schema, .object = block};
 
     RITZ_TRY(ritz_h5_group(blocks, name, &at.at));
     RITZ_TRY(ritz_schema_move(&at));
@@ -63,8 +63,7 @@ static ritz_status read_block(hid_t blocks, const char *name, int64_t due,
                               system_block *block)
 {
     ritz_status status = RITZ_OK;
-    ritz_place at = {
-        .schema = &ritz_schema_block, .object = block, .target = block};
+    ritz_place at = {.schema = &block_schema, .object = block, .target = block};
 
     RITZ_TRY(ritz_h5_enter(blocks, name, &at.at));
     RITZ_TRY(ritz_schema_move(&at));
@@ -162,7 +161,7 @@ static const ritz_member configuration_members[] = {
     {"lambda", SET_REAL, RITZ_AT(ritz_configuration, lambda), "e",
      "eigenvalues, in rad^2/s^2"},
     {"", PART, RITZ_AT(ritz_configuration, io), .schema = &ritz_schema_io},
-    {"blocks/<component>", BY_HAND, .shape = "order e",
+    {"blocks/<component>", BY_HAND, .type = "f64", .shape = "order e",
      .about = "the way back: q of the component = block x", .write = write_maps,
      .read = read_maps},
     {"momentum", MATRIX_DENSE, RITZ_AT(ritz_configuration, momentum), "6 e",
@@ -198,9 +197,8 @@ static const ritz_member members[] = {
      "for which it is made"},
     {"sweeps", SET_NAMES, RITZ_AT(ritz_system, sweep), "w",
      "what joints are set to: `clock`, `wrist`, `wrist.2`"},
-    {"blocks/<component>", BY_HAND, .shape = "",
-     .about = "a block for each component", .write = write_blocks,
-     .read = read_blocks},
+    {"blocks/<component>", BY_HAND, .schema = &block_schema,
+     .write = write_blocks, .read = read_blocks},
     {"configurations", LIST, RITZ_LIST(ritz_system, configuration), "k",
      .numbered = true, .schema = &configuration_schema},
     {0},
