@@ -14,6 +14,7 @@
 #include "assembly/dual.h"
 #include "assembly/placement.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 #include <ritz/monitor.h>
@@ -106,11 +107,10 @@ done:
 /* Whether modes i and j lie apart; rigid ones do not, nor do clusters. */
 static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
 {
-    const double cluster = 1e-6;
 
     return (i >= rigid || j >= rigid) &&
            fabs(lambda[i] - lambda[j]) >
-               cluster * fmax(fabs(lambda[i]), fabs(lambda[j]));
+               RITZ_CLUSTER_GAP * fmax(fabs(lambda[i]), fabs(lambda[j]));
 }
 
 /*

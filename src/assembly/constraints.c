@@ -3,6 +3,7 @@
 #include "assembly/joints.h"
 #include "assembly/placement.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/synthesis.h>
 
@@ -362,15 +363,12 @@ done:
  * and a singular value decomposition of the small R show what is which.
  */
 
-/* Singular values below this, relative to the largest, are rounding. */
-static const double rank_tolerance = 1e-9;
-
 /* How many singular values are more than rounding. */
 static int64_t count_rank(int64_t count, const double *sigma)
 {
     int64_t rank = 0;
 
-    while (rank < count && sigma[rank] > rank_tolerance * sigma[0])
+    while (rank < count && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
     return rank;
 }

@@ -22,9 +22,10 @@
  */
 #include <ritz/synthesis.h>
 
-#include "assembly/dual.h"
 #include "assembly/constraints.h"
+#include "assembly/dual.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 
@@ -50,9 +51,6 @@ typedef struct ritz_dual {
     ritz_dense joint;   /* (y + mu) square, symmetric */
     int64_t num_forces; /* mu, the last of the columns */
 } ritz_dual;
-
-/* Relative, below which a constraint does not see p; and of C, is rounding. */
-static const double unseen = 1e-9;
 
 /* Columns of A whose flag is as wanted. */
 static ritz_status pick(const ritz_dense *A, const bool *flag, bool wanted,
@@ -127,7 +125,7 @@ static ritz_status decompose(const ritz_dense *C, const bool *is_force,
                                 s->U.val, c, s->Vt.val, p) != 0,
                  RITZ_ERR_CONVERGENCE,
                  "singular values of the interface do not converge");
-    while (s->rank < least && s->sigma[s->rank] > unseen * s->sigma[0])
+    while (s->rank < least && s->sigma[s->rank] > RITZ_RANK_LOSS * s->sigma[0])
         s->rank++;
 done:
     ritz_dense_free(&W);
@@ -149,7 +147,7 @@ static ritz_status hold(const split *s, const ritz_dense *C_q, int64_t *rank,
     else
         RITZ_TRY(ritz_dense_copy(C_q, &C_0));
     for (int64_t k = 0; k < C_0.nrow * C_0.ncol; k++)
-        if (fabs(C_0.val[k]) <= unseen * most)
+        if (fabs(C_0.val[k]) <= RITZ_RANK_LOSS * most)
             C_0.val[k] = 0.0;
     RITZ_TRY(ritz_null_space(&C_0, rank, N));
 done:

@@ -1,7 +1,8 @@
 
-#include "assembly/placement.h"
 #include "assembly/constraints.h"
+#include "assembly/placement.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include <ritz/dense.h>
 
 #include <ritz/synthesis.h>
@@ -111,9 +112,9 @@ static ritz_status load(const ritz_scene *scene, ritz_held *p)
     for (int64_t k = 0; k < scene->num_components; k++) {
         p->count++;
         p->first[k] = p->num_dofs;
-        RITZ_CHECK_IN(scene->component[k].name,
-                      load_body(scene->source, scene->component[k].model,
-                              &p->body[k]));
+        RITZ_CHECK_IN(
+            scene->component[k].name,
+            load_body(scene->source, scene->component[k].model, &p->body[k]));
         p->num_dofs += p->body[k].num_dofs;
         RITZ_CHECK(ritz_component_attached(&p->body[k], NULL, &p->held[k]));
     }
@@ -172,8 +173,6 @@ done:
     return status;
 }
 
-static const double pivot_tolerance = 1e-9; /* of rows of largest norm 1 */
-
 /* Row and column of the largest entry left; later columns win ties. */
 static double find_pivot(const ritz_dense *C, int64_t from,
                          const int64_t *pivot_of, int64_t *row, int64_t *col)
@@ -218,7 +217,7 @@ static void eliminate(ritz_dense *C, int64_t *pivot_of)
     for (int64_t j = 0; j < C->ncol; j++)
         pivot_of[j] = -1;
     for (int64_t k = 0; k < C->nrow; k++) {
-        if (find_pivot(C, k, pivot_of, &row, &col) <= pivot_tolerance)
+        if (find_pivot(C, k, pivot_of, &row, &col) <= RITZ_RANK_LOSS)
             return;
         swap_rows(C, k, row);
         pivot_of[col] = k;

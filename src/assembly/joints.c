@@ -356,7 +356,9 @@ static double joint_tolerance(const ritz_joint *joint,
         }
         most = fmax(most, sqrt(sum));
     }
-    return joint->tolerance > 0.0 ? joint->tolerance : 1e-5 * most + 1e-12;
+    return joint->tolerance > 0.0
+               ? joint->tolerance
+               : RITZ_PORT_MATCH * most + RITZ_PORT_MATCH_LEAST;
 }
 
 /* The relations of a joint of one grid on each side. */

@@ -18,7 +18,7 @@
 
 #include "assembly/joints.h"
 #include "base/alloc.h"
-
+#include "base/tolerances.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -27,12 +27,6 @@
 
 static ritz_status pick(const ritz_dense *A, const ritz_link *of,
                         ritz_freedom_state state, ritz_dense *out);
-
-/* Of a matrix scaled to unit diagonal: smaller singular values are none. */
-static const double rank_tolerance = 1e-9;
-
-/* Of the largest diagonal entry: below it is rounding. */
-static const double rounding = 1e-13;
 
 /* K + f f' of the springs' rows, each times the root of its stiffness. */
 static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
@@ -116,7 +110,7 @@ static ritz_status hold(const ritz_link *of, ritz_dense *S, ritz_dense *Z)
     RITZ_FAIL_IF(c > 0 && LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', c, r, L.val, c,
                                          sigma, U.val, c, Vt.val, r) != 0,
                  RITZ_ERR_CONVERGENCE, "the joint's relations have no rank");
-    while (rank < c && rank < r && sigma[rank] > rank_tolerance * sigma[0])
+    while (rank < c && rank < r && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
     RITZ_TRY(ritz_dense_mul_tn(&U, &G, &UG));
     RITZ_TRY(ritz_dense_new(r, G.ncol, S));
@@ -157,7 +151,7 @@ static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
     for (int64_t j = 0; j < n; j++) {
         double own = ritz_dense_col(A, j)[j];
 
-        d[j] = own > rounding * largest ? 1.0 / sqrt(own) : 0.0;
+        d[j] = own > RITZ_CONDENSED_ROUNDING * largest ? 1.0 / sqrt(own) : 0.0;
     }
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
@@ -168,7 +162,7 @@ static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
                                          A->val, (int)n, lambda) != 0,
                  RITZ_ERR_CONVERGENCE,
                  "what the joint leaves free has no eigenvalues");
-    while (unseen < n && lambda[unseen] <= rank_tolerance)
+    while (unseen < n && lambda[unseen] <= RITZ_RANK_LOSS)
         unseen++;
     for (int64_t k = unseen; k < n; k++)
         for (int64_t j = 0; j < B->ncol; j++) {
@@ -514,8 +508,8 @@ static ritz_status add_body(const ritz_scene *scene, int64_t k, int64_t other,
         if (near < 0)
             continue;
         if (far.num_dofs == 0)
-            RITZ_TRY(load_far_body(scene->source, &scene->component[other],
-                                   &far));
+            RITZ_TRY(
+                load_far_body(scene->source, &scene->component[other], &far));
         side[near] = (ritz_joined){scene->component[k].name, component};
         side[1 - near] = (ritz_joined){scene->component[other].name, &far};
         RITZ_TRY(ritz_joint_neighbour(&scene->joint[j], scene->setting, side,

@@ -12,17 +12,12 @@
 
 #include "assembly/turns.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Angles and positions of a loop are written with so many digits. */
-static const double closure = 1e-4;
-
-/* Of placements a few bodies apart, each a product of rotations: no gap. */
-static const double rounding = 1e-13;
 
 /* What a joint says of its two bodies: x - near of the first is R (x - far). */
 typedef struct link {
@@ -190,15 +185,17 @@ static ritz_status close_joint(const ritz_stage *stage, int64_t j,
     const ritz_scene_component *component = stage->scene->component;
     const misfit found = measure(at, place);
 
-    if (found.gap <= rounding * found.size && found.turn <= rounding)
+    if (found.gap <= RITZ_PLACEMENT_ROUNDING * found.size &&
+        found.turn <= RITZ_PLACEMENT_ROUNDING)
         return RITZ_OK;
-    RITZ_FAIL_IF(found.gap > closure * found.size, RITZ_ERR_ARGUMENT,
+    RITZ_FAIL_IF(found.gap > RITZ_LOOP_CLOSURE * found.size, RITZ_ERR_ARGUMENT,
                  "closes a loop of joints that does not meet: '%s/%s' and "
                  "'%s/%s' stand %.3g apart",
                  component[at->body[0]].name, joint->between[0].port,
                  component[at->body[1]].name, joint->between[1].port,
                  found.gap);
-    RITZ_FAIL_IF(found.turn > closure && !at->turns_freely, RITZ_ERR_ARGUMENT,
+    RITZ_FAIL_IF(found.turn > RITZ_LOOP_CLOSURE && !at->turns_freely,
+                 RITZ_ERR_ARGUMENT,
                  "closes a loop of joints whose angles do not agree: '%s' is "
                  "turned otherwise against '%s' by the other joints",
                  component[at->body[1]].name, component[at->body[0]].name);

@@ -26,6 +26,7 @@
 #include <ritz/method.h>
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "bases/balance_asked.h"
 #include "linear/orthonormal.h"
 
@@ -42,12 +43,6 @@ typedef enum ritz_half {
     RITZ_HALF_POSITION,
     RITZ_HALF_VELOCITY,
 } ritz_half;
-
-/* What of a state is no rigid motion, relative: more is another motion. */
-static const double not_rigid = 1e-6;
-
-/* Of squares of norms whose difference is rounding. */
-static const double rounding = 1e-13;
 
 typedef struct second {
     ritz_gramians states; /* of x = [u; u'] */
@@ -89,7 +84,7 @@ static ritz_status refuse_unstable(const second *s)
         size = ritz_dense_max(&part);
         if (s->Phi.ncol > 0)
             RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &part));
-        RITZ_FAIL_IF(ritz_dense_max(&part) > not_rigid * size,
+        RITZ_FAIL_IF(ritz_dense_max(&part) > RITZ_RIGID_STATE * size,
                      RITZ_ERR_ARGUMENT,
                      "a pole that is no rigid motion is not left of the axis: "
                      "balance the states of this component instead");
@@ -187,7 +182,7 @@ static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
     RITZ_TRY(square(&io->B, &io->B, &BB));
     RITZ_TRY(square(&C, &io->B, &CB));
     RITZ_TRY(square(&C, &C, &CC));
-    *out = CB > 0.0 && BB * CC - CB * CB <= rounding * BB * CC;
+    *out = CB > 0.0 && BB * CC - CB * CB <= RITZ_SQUARE_ROUNDING * BB * CC;
 done:
     ritz_dense_free(&C);
     return status;

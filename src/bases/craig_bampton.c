@@ -1,6 +1,8 @@
 
 #include "bases/partition.h"
 
+#include "base/tolerances.h"
+
 #include <ritz/eigen.h>
 
 #include <stdbool.h>
@@ -9,7 +11,6 @@
 /* How many of the modes are kept: a cluster at the end is not cut. */
 static int64_t count_kept(const ritz_pairs *modes, int64_t wanted)
 {
-    const double together = 1e-6;
     int64_t all = modes->Phi.ncol;
     int64_t kept = modes->num_rigid + wanted;
 
@@ -17,7 +18,7 @@ static int64_t count_kept(const ritz_pairs *modes, int64_t wanted)
         return all;
     while (kept > modes->num_rigid && kept < all &&
            modes->lambda[kept] - modes->lambda[kept - 1] <=
-               together * modes->lambda[kept])
+               RITZ_CLUSTER_GAP * modes->lambda[kept])
         kept++;
     return kept;
 }

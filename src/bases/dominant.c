@@ -10,6 +10,7 @@
 #include "bases/dominant.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 
@@ -19,16 +20,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-
-/* A pole nearer to the real axis than this share of it is real. */
-static const double real_within = 1e-12;
-/* A mode without damping has this ratio, lest its point be a pole. */
-static const double least_decay = 1e-4;
-/* A mode at critical damping has its point at this share of w^2, not at 0. */
-static const double least_square = 1e-2;
-/* What a kind of loads does to a mode, beside the most it does to any: less is
-   rounding. */
-static const double least_share = 1e-12;
 
 typedef struct candidate {
     double _Complex s;
@@ -166,9 +157,10 @@ static void solve_apart(model *s)
 
         if (lambda <= 0.0)
             continue; /* rounding of a rigid motion */
-        zeta =
-            fmax(0.5 * ritz_dense_col(&s->W, k)[k] / sqrt(lambda), least_decay);
-        square = copysign(fmax(fabs(zeta - 1.0), least_square), zeta - 1.0);
+        zeta = fmax(0.5 * ritz_dense_col(&s->W, k)[k] / sqrt(lambda),
+                    RITZ_LEAST_DECAY);
+        square =
+            copysign(fmax(fabs(zeta - 1.0), RITZ_LEAST_SQUARE), zeta - 1.0);
         append(s, csqrt(lambda * square), zeta * sqrt(lambda))->z[k] = 1.0;
     }
 }
@@ -196,12 +188,12 @@ static void fill_states(const model *s, double _Complex *A)
 /* A pole in the upper half plane, real ones among them; z is of length 2m. */
 static void keep(double _Complex p, const double _Complex *z, model *s)
 {
-    double decay = fmax(fabs(creal(p)), least_decay * cabs(p));
+    double decay = fmax(fabs(creal(p)), RITZ_LEAST_DECAY * cabs(p));
     double omega = cimag(p);
     double length = 0.0;
     candidate *pole = NULL;
 
-    if (fabs(omega) <= real_within * cabs(p))
+    if (fabs(omega) <= RITZ_POLE_REAL * cabs(p))
         omega = 0.0;
     if (omega < 0.0 || cabs(p) == 0.0)
         return;
@@ -281,7 +273,7 @@ static double gain(const model *s, const candidate *pole, double _Complex *b)
     for (int64_t g = 0; g < s->R->num_groups; g++) {
         double share = direct(s, pole, g, b);
 
-        if (!(share > least_share * s->most[g]))
+        if (!(share > RITZ_LEAST_PARTICIPATION * s->most[g]))
             share = 0.0;
         if (s->R->group[g].kind == RITZ_LOADS_OUTPUTS) {
             out = share;
@@ -310,7 +302,7 @@ static double find_most(const model *s, int64_t g, double _Complex *b)
         terms = fmax(terms, s->terms[g][0] + size * (s->terms[g][1] +
                                                      size * s->terms[g][2]));
     }
-    return most > least_share * terms ? most : HUGE_VAL;
+    return most > RITZ_LEAST_PARTICIPATION * terms ? most : HUGE_VAL;
 }
 
 static ritz_status weigh(model *s)
@@ -354,7 +346,7 @@ static void aim(const model *s, const candidate *pole, int64_t g,
 {
     double _Complex *b = probe->b + s->R->group[g].first;
     double share = direct(s, pole, g, b);
-    bool counts = share > least_share * s->most[g];
+    bool counts = share > RITZ_LEAST_PARTICIPATION * s->most[g];
 
     probe->s = pole->s;
     probe->group = g;

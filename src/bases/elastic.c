@@ -16,6 +16,7 @@
 #include "bases/elastic.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 
@@ -34,7 +35,7 @@ static int64_t largest_row(int64_t n, int64_t r, const double *W)
 
         for (int64_t k = 0; k < r; k++)
             sum += W[i * r + k] * W[i * r + k];
-        if (sum > most * (1.0 + 1e-9)) {
+        if (sum > most * RITZ_TIE) {
             most = sum;
             best = i;
         }

@@ -15,6 +15,7 @@
 
 #include "bases/free_modes.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "bases/loads.h"
 
 #include <ritz/factor.h>
@@ -26,19 +27,6 @@
 #include <string.h>
 
 enum { MOST_SWEEPS = 60 };
-
-/*
- * Sweeps end in rounding of eps lambda_max / lambda, lambda the first mode left
- * out: 5e-8 was measured on a rotor of stiff bars, 1e-13 on solids. More than
- * this is no convergence.
- */
-static const double unsettled = 1e-5;
-
-/*
- * A residual mode this small beside what the load does to A, rigid motion
- * included, is the rounding of G: the load acts on a body that is rigid.
- */
-static const double rounding = 1e-11;
 
 typedef struct residual_problem {
     const ritz_request *request;
@@ -75,9 +63,9 @@ static ritz_status choose_shift(const ritz_component *component,
         known = &first;
     }
     if (known->Phi.ncol > known->num_rigid)
-        *out = 1e-2 * known->lambda[known->num_rigid];
+        *out = RITZ_SHIFT_OF_FIRST * known->lambda[known->num_rigid];
     else
-        *out = K > 0.0 && M > 0.0 ? 1e-6 * K / M : 1.0;
+        *out = K > 0.0 && M > 0.0 ? RITZ_SHIFT_OF_SIZE * K / M : 1.0;
 done:
     ritz_pairs_free(&first);
     return status;
@@ -159,7 +147,7 @@ static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
         own[j] = ritz_dense_dot(p->F, j, &X, j);
         least[j] =
             fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
-                 rounding * ritz_dense_col_max(&X, j));
+                 RITZ_RESIDUAL_ROUNDING * ritz_dense_col_max(&X, j));
     }
 done:
     ritz_dense_free(&X);
@@ -173,7 +161,8 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
     ritz_status status = RITZ_OK;
     const ritz_component *component = p->request->component;
     const ritz_pairs *modes = p->modes;
-    const double settled = 1e-14 * sqrt((double)component->num_dofs);
+    const double settled =
+        RITZ_SWEEPS_SETTLED * sqrt((double)component->num_dofs);
     double s = 0.0;
     double change = 1.0, best = HUGE_VAL;
     ritz_sparse A = {0};
@@ -196,7 +185,7 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
             break; /* rounding, not contraction, is what is left */
         best = fmin(best, change);
     }
-    RITZ_FAIL_IF(change > unsettled, RITZ_ERR_CONVERGENCE,
+    RITZ_FAIL_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
                  "residual attachment modes still change by %.1e", change);
 done:
     free(least);
@@ -268,7 +257,7 @@ static ritz_status sift(const residual_problem *p, const ritz_dense *Psi,
         double own = ritz_dense_col(&R, j)[j];
         double all = own + kept_flexibility(p, j);
 
-        if (own > tolerance * all && own > rounding * answer[j])
+        if (own > tolerance * all && own > RITZ_RESIDUAL_ROUNDING * answer[j])
             scale[j] = 1.0 / sqrt(own);
     }
     for (int64_t j = 0; j < R.ncol; j++)

@@ -14,6 +14,7 @@
  */
 #include "bases/krylov_block.h"
 
+#include "base/tolerances.h"
 #include "bases/loads.h"
 
 #include <ritz/eigen.h>
@@ -25,9 +26,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Forces that cancel to this part of what they were summed from are nothing. */
-static const double rounding = 1e-11;
 
 /* The points ascend, so that 0 Hz is the first; it is the only one if none is
  * chosen. */
@@ -153,7 +151,7 @@ static void clear_rounding(const ritz_dense *G, const ritz_dense *size,
             left += fabs(g[i] * x[i]);
             before += all[i] * fabs(x[i]);
         }
-        if (!(left > rounding * before) && R->nrow > 0)
+        if (!(left > RITZ_CANCELLED_FORCE * before) && R->nrow > 0)
             memset(x, 0, (size_t)R->nrow * sizeof *x);
     }
 }
@@ -308,9 +306,6 @@ void ritz_krylov_free(ritz_krylov *S)
     *S = (ritz_krylov){0};
 }
 
-/* Of eps max |v|'|W||v|; see docs/methods/krylov.md for what was measured. */
-static const double products = 16.0;
-
 void ritz_krylov_say(ritz_basis *basis, const char *format, ...)
 {
     size_t used = strlen(basis->remark);
@@ -368,7 +363,7 @@ static ritz_status measure(const ritz_krylov *S, double *worst, double *bound)
     for (int64_t j = 0; j < G.ncol; j++)
         ritz_dense_col(&G, j)[j] -= 1.0;
     *worst = ritz_dense_max(&G);
-    *bound = products * DBL_EPSILON * largest_sum(&V, &size);
+    *bound = RITZ_SUMMED_ROUNDING * DBL_EPSILON * largest_sum(&V, &size);
 done:
     ritz_dense_free(&WV);
     ritz_dense_free(&size);

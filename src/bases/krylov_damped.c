@@ -7,6 +7,7 @@
  */
 #include "bases/krylov_block.h"
 
+#include "base/tolerances.h"
 #include "bases/loads.h"
 
 #include <math.h>
@@ -190,8 +191,6 @@ enum {
     ALL_LOADS = RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
 };
 
-static const double symmetric_within = 1e-12;
-
 typedef struct recurrence {
     const ritz_request *request;
     ritz_sparse K;              /* with the springs of discrete dampers */
@@ -357,7 +356,7 @@ static ritz_status start_chains(recurrence *r, int loads)
 {
     const ritz_sparse *D = r->D[0].colptr ? &r->D[0] : NULL;
 
-    if (!D || ritz_sparse_asymmetry(D) <= symmetric_within)
+    if (!D || ritz_sparse_asymmetry(D) <= RITZ_SYMMETRIC)
         return start_chain(r, 0, D, loads);
     RITZ_CHECK(ritz_sparse_transpose(D, &r->D[1]));
     RITZ_CHECK(start_chain(r, 0, D, loads & ~RITZ_LOADS_OUTPUTS));

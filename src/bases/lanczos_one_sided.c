@@ -3,9 +3,9 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/balance_asked.h"
-#include "linear/orthonormal.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
+#include "linear/orthonormal.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -179,15 +179,6 @@ done:
  * of them has one pole far out).
  */
 
-/* Of the least damping: rounding above this is not small. */
-static const double small = 1e-3;
-
-/* How much rounding a pole must be left of. */
-static const double safely = 10.0;
-
-/* Times a pole's first-order bound: nearer to the axis it may be right of it. */
-static const double times = 8.0;
-
 /* A system, or (A', C') of it as (A, B), and what becomes of it. */
 typedef struct one_sided {
     ritz_dense A, B;
@@ -238,10 +229,10 @@ static ritz_status check_poles(const ritz_states *states, one_sided *s)
     double rounding = 0.0;
 
     RITZ_TRY(ritz_eigenvalues_of(&s->A, &poles));
-    k = ritz_eigenvalues_worst(&poles, times);
+    k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
     s->damping = -poles.re[k];
     growth = poles.re[k] + states->alpha;
-    rounding = times * poles.error[k];
+    rounding = RITZ_POLE_BOUND_FACTOR * poles.error[k];
     RITZ_FAIL_IF(s->damping <= rounding &&
                      (s->damping < -rounding || states->alpha > 0.0),
                  RITZ_ERR_ARGUMENT,
@@ -263,7 +254,7 @@ static ritz_status choose_operator(const ritz_request *request, one_sided *s)
     const ritz_gramian_range *range = &s->range;
 
     RITZ_CHECK(new_gramian_range(&s->A, &s->B, request->tolerance,
-                                 small * s->damping, &s->range));
+                                 RITZ_LANCZOS_SMALL * s->damping, &s->range));
     RITZ_CHECK(ritz_states_operator(&range->A, request->choice.inverse, &s->G));
     if (request->choice.inverse)
         RITZ_CHECK(ritz_dense_mul(&s->G, &range->B, &s->b));
@@ -327,9 +318,9 @@ static ritz_status settle(one_sided *s, ritz_dense *Gr)
         ritz_eigenvalues_free(&poles);
         RITZ_TRY(reduce(s, s->P.ncol, Gr));
         RITZ_TRY(ritz_eigenvalues_of(Gr, &poles));
-        k = ritz_eigenvalues_worst(&poles, times);
-        certain = poles.re[k] < -times * poles.error[k] &&
-                  poles.re[k] < -safely * s->rounding;
+        k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
+        certain = poles.re[k] < -RITZ_POLE_BOUND_FACTOR * poles.error[k] &&
+                  poles.re[k] < -RITZ_LANCZOS_SAFE * s->rounding;
         if (!certain) {
             s->P.ncol--;
             s->uncertain++;

@@ -1,5 +1,7 @@
 #include "bases/partition.h"
 
+#include "base/tolerances.h"
+
 #include <ritz/eigen.h>
 
 #include <float.h>
@@ -21,7 +23,7 @@ static int64_t largest(int64_t n, const double *x, int64_t count,
 
         for (int64_t j = 0; j < count; j++)
             taken = taken || before[j] == k;
-        if (!taken && (best < 0 || fabs(x[k]) > fabs(x[best]) * (1.0 + 1e-9)))
+        if (!taken && (best < 0 || fabs(x[k]) > fabs(x[best]) * RITZ_TIE))
             best = k;
     }
     return best;
@@ -39,7 +41,7 @@ static void describe(const ritz_component *component, const ritz_dofs *i,
         char name[RITZ_DOF_NAME_SIZE];
 
         named[k] = largest(i->count, x, k, named);
-        if (fabs(x[named[k]]) <= 1e-6 * fabs(x[named[0]]))
+        if (fabs(x[named[k]]) <= RITZ_NULL_VECTOR_SHARE * fabs(x[named[0]]))
             break;
         used += (size_t)snprintf(
             text + used, 160 - used, "%s%s", k > 0 ? ", " : "",

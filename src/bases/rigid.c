@@ -2,6 +2,8 @@
  * Rigid body: six motions by geometry about the centre of mass, or as many as
  * the component's dofs can show.
  */
+#include "base/tolerances.h"
+
 #include <ritz/method.h>
 
 #include <ritz/reduced.h>
@@ -13,7 +15,7 @@
 /* Motions that no dof can show: a plane model, a point mass. */
 static bool is_nothing(const ritz_dense *R, int64_t j, double largest)
 {
-    return ritz_dense_col_max(R, j) <= 1e-12 * largest;
+    return ritz_dense_col_max(R, j) <= RITZ_NO_MOTION * largest;
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

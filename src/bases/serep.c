@@ -15,6 +15,7 @@
  * tests/unit/bases/test_serep.c.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 #include <ritz/method.h>
@@ -26,9 +27,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Above this, three digits of what is measured are lost, and it is said. */
-static const double poor = 1e3;
 
 /* What is chosen, and how well it tells the modes apart. */
 typedef struct selection {
@@ -151,7 +149,7 @@ static void judge(selection *c, const double *sigma, const ritz_dense *Vt)
         sigma[last] > 0.0 ? fmax(sigma[0], 1.0) / sigma[last] : HUGE_VAL;
     for (int64_t j = 0; j < Vt->ncol; j++)
         if (fabs(ritz_dense_col(Vt, j)[last]) >
-            (1.0 + 1e-9) * fabs(ritz_dense_col(Vt, c->worst)[last]))
+            RITZ_TIE * fabs(ritz_dense_col(Vt, c->worst)[last]))
             c->worst = j;
 }
 
@@ -231,7 +229,7 @@ static void remark(const selection *c, ritz_basis *basis)
     size_t used = 0;
     char name[RITZ_NAME_SIZE];
 
-    if (c->condition > poor) {
+    if (c->condition > RITZ_SEREP_CONDITION) {
         name_worst(c, name);
         used += (size_t)snprintf(text, size,
                                  "attached dofs see %s badly: condition %.1e%s",

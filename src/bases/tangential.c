@@ -43,10 +43,6 @@ enum {
     FREE_ROUNDS = 5, /* after them points follow those of before */
 };
 
-/* Relative change of points: interpolation is exact where they stand, and an
-   optimum is flat. */
-static const double settled = 1e-6;
-
 static const ritz_damping assumed = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
 
 typedef struct search {
@@ -241,7 +237,7 @@ static ritz_status iterate(search *s)
         RITZ_TRY(ritz_dominant_probes(&s->R, &s->damping, &V, &probes));
         if (s->rounds > 0)
             s->change = follow(&s->probes, s->rounds <= FREE_ROUNDS, &probes);
-        if (s->change <= settled || s->rounds == MOST_ROUNDS)
+        if (s->change <= RITZ_POINTS_SETTLED || s->rounds == MOST_ROUNDS)
             break;
         RITZ_TRY(answer(s, &probes));
         ritz_dense_free(&V);
@@ -315,7 +311,7 @@ static void remark(const search *s, ritz_basis *basis)
     if (s->request->choice.num_shifts > 0)
         used = snprintf(text, size, "%" PRId64 " answer(s) interpolated",
                         s->probes.count);
-    else if (s->change <= settled)
+    else if (s->change <= RITZ_POINTS_SETTLED)
         used =
             snprintf(text, size, "points settled after %d round(s)", s->rounds);
     else

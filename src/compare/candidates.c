@@ -1,5 +1,6 @@
 /* Stage two by one plan, and by one composite tolerance after the other. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include "compare/compare.h"
 
@@ -416,10 +417,6 @@ void ritz_candidates_free(int64_t count, ritz_candidate **candidates)
  * would change nothing.
  */
 
-static const double visible = 1e-3;
-
-static const double outstanding = 10.0;
-
 static const struct measure {
     const char *name;
     size_t offset; /* in ritz_compare_row */
@@ -456,7 +453,9 @@ static ritz_suggestion find_worst(const ritz_comparison *c,
 /* How far an error stands out: one or less asks for nothing. */
 static double stands_out(const ritz_suggestion *s)
 {
-    return s->row < 0 ? 0.0 : s->error / fmax(visible, outstanding * s->listed);
+    return s->row < 0 ? 0.0
+                      : s->error / fmax(RITZ_SUGGEST_VISIBLE,
+                                        RITZ_SUGGEST_FACTOR * s->listed);
 }
 
 void ritz_compare_suggest(const ritz_comparison *comparison,

@@ -1,5 +1,6 @@
 /* The rows of a comparison: configurations that are listed, and between. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include "assembly/dual.h"
 #include "compare/compare.h"
@@ -63,7 +64,7 @@ static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
     if (sweep >= 0 && scene->sweep[sweep].turns) {
         double step = first[h + sweep] - first[sweep];
 
-        if (fabs(last[sweep] + step - first[sweep] - 360.0) < 1e-9)
+        if (fabs(last[sweep] + step - first[sweep] - 360.0) < RITZ_SAME_ANGLE)
             RITZ_CHECK(
                 add_between(scene, last, sweep, last[sweep] + step, rows, row));
     }

@@ -1,6 +1,7 @@
 #include "compare/directions.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "compare/compare.h"
 
 #include <cblas.h>
@@ -9,9 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Of mass scaled to unit diagonal: below this it counts as singular. */
-static const double well_conditioned = 1e-12;
 
 /* L = lower triangle of S (M + stiffness K) S. */
 static void fill(const ritz_reduced *body, const double *scale,
@@ -62,7 +60,7 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
     *mixed = false;
     RITZ_CHECK(ritz_dense_new(r, r, L));
     fill(body, scale, 0.0, L);
-    if (factor(L, well_conditioned))
+    if (factor(L, RITZ_MASS_CONDITION))
         return RITZ_OK;
     *mixed = true;
     ritz_dense_free(L);
@@ -280,9 +278,9 @@ ritz_status ritz_composite_choose(const ritz_scene *scene,
  * its distance from the centre of the system. Answers of a body to forces that
  * depend on each other differ by its solver's eps cond(K).
  */
-static const double tightest[GROUPS] = {1e-9, 1e-9, 1e-12, 1e-12};
-
-static const double tightest_of_bodies = 1e-10;
+static const double tightest[GROUPS] = {
+    RITZ_TIGHTEST_RIGID, RITZ_TIGHTEST_RIGID, RITZ_TIGHTEST_STATIC,
+    RITZ_TIGHTEST_STATIC};
 
 typedef struct columns {
     ritz_dense group[GROUPS];
@@ -362,7 +360,7 @@ static ritz_status choose_directions(const ritz_dense *L, const double *scale,
         if (g == KEPT)
             least = fmax(plan->tolerance, least);
         if (g == STATIC && own)
-            least = tightest_of_bodies;
+            least = RITZ_TIGHTEST_BODY;
         RITZ_TRY(ritz_mass_transform(L, scale, &of->group[g], &Y));
         if (g == MASSLESS || (g == STATIC && own))
             make_unit(&Y);

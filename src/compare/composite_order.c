@@ -7,6 +7,7 @@
 
 #include "assembly/dual.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "compare/directions.h"
 
 #include <ritz/eigen.h>
@@ -198,9 +199,6 @@ done:
  * [LeeTsuha1992].
  */
 
-/* Relative to the largest singular value: below it a direction is rounding. */
-static const double least = 1e-9;
-
 /* A direction of a body, while they are put in order. */
 typedef struct direction {
     int group;
@@ -224,7 +222,7 @@ static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
     RITZ_TRY(givens_gather(g, body, RITZ_GROUP_RIGID, &W));
     RITZ_TRY(ritz_mass_factor(&g->stage->body[body], scale, &L, &mixed));
     RITZ_TRY(ritz_mass_transform(&L, scale, &W, &Y));
-    RITZ_TRY(ritz_span_of(&Y, least, &largest, out));
+    RITZ_TRY(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, out));
     ritz_mass_return(&L, scale, out);
 done:
     ritz_dense_free(&W);
@@ -262,7 +260,7 @@ static ritz_status start(const ritz_givens *g, frame *f)
     RITZ_TRY(ritz_mixed_factor(body, f->scale, g->lambda, &f->L));
     RITZ_TRY(rigid_motions(g, f->body, &R));
     RITZ_TRY(ritz_mass_transform(&f->L, f->scale, &R, &Y));
-    RITZ_TRY(ritz_span_of(&Y, least, &largest, &f->U));
+    RITZ_TRY(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, &f->U));
 done:
     ritz_dense_free(&R);
     ritz_dense_free(&Y);
@@ -279,7 +277,8 @@ static ritz_status add_group(const ritz_givens *g, int group, frame *f)
     RITZ_TRY(ritz_mass_transform(&f->L, f->scale, &W, &Y));
     RITZ_TRY(ritz_dense_take_out(&f->U, &f->U, &Y));
     RITZ_TRY(ritz_dense_take_out(&f->U, &f->U, &Y)); /* twice is enough */
-    RITZ_TRY(ritz_span_values(&Y, least, &f->largest, f->value, &more));
+    RITZ_TRY(
+        ritz_span_values(&Y, RITZ_RANK_LOSS, &f->largest, f->value, &more));
     if (more.ncol > f->U.nrow - f->U.ncol)
         more.ncol = f->U.nrow - f->U.ncol;
     RITZ_TRY(ritz_dense_beside(&f->U, &more, &both));

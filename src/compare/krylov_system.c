@@ -12,11 +12,9 @@
  *
  * An output of velocity or acceleration adds its own rows to those that start.
  */
+#include "base/tolerances.h"
 #include "compare/compare.h"
 #include "linear/orthonormal.h"
-
-/* Of a column's K-norm what is left of a dependent one. */
-static const double dependent = 1e-10;
 
 /* v = Lambda^-1 r, r a column, or row i of a matrix with a stride. */
 static void solve(const ritz_configuration *c, const double *r, int64_t stride,
@@ -88,7 +86,7 @@ ritz_status ritz_system_krylov(const ritz_configuration *configuration,
     bool fits = false;
 
     RITZ_TRY(take_weights(c, &weights));
-    RITZ_TRY(ritz_orthonormal_new(c->K.ncol, &weights, dependent, &set));
+    RITZ_TRY(ritz_orthonormal_new(c->K.ncol, &weights, RITZ_DEPENDENT, &set));
     RITZ_TRY(start(c, both, &W));
     RITZ_TRY(append_block(&W, most, &set, &fits));
     while (fits) {

@@ -4,6 +4,7 @@
  * which attachment modes are compared [McDaniel2000, sec. 3.2.2].
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include "compare/compare.h"
 #include "poles/dense_poles.h"
@@ -40,7 +41,7 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
 {
     ritz_status status = RITZ_OK;
     const ritz_grid grid = {
-        .from_hz = fmax(scene->band_hz[0], 1e-3 * scene->band_hz[1]),
+        .from_hz = fmax(scene->band_hz[0], RITZ_BAND_START * scene->band_hz[1]),
         .to_hz = scene->band_hz[1],
         .count = 200,
         .refine = true,
@@ -112,7 +113,6 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
 {
     ritz_status status = RITZ_OK;
     const ritz_two_responses *r = responses;
-    const double far_below = 1e-3; /* 60 dB */
     double *one = NULL, *two = NULL;
     double mean = 0.0;
     int64_t seen = 0;
@@ -132,7 +132,7 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
     *deviation = 0.0;
     *hertz = r->count > 0 ? r->hertz[0] : 0.0;
     for (int64_t k = 0; k < r->count; k++) {
-        double level = fmax(one[k], far_below * mean);
+        double level = fmax(one[k], RITZ_BODE_FLOOR * mean);
         double apart = level > 0.0 ? fabs(two[k] - one[k]) / level : 0.0;
 
         if (apart > *deviation) {
@@ -311,15 +311,6 @@ done:
  *     X = sum_c P_c' M_c V_c P2_c,    X_kj^2 = MAC of mode k and mode j
  */
 
-/* Modes closer than this in frequency are one cluster. */
-static const double same_frequency = 1e-6;
-
-/*
- * An eigenvalue of a dense pencil of order e is in error by up to
- * c eps lambda_max; two are compared, and P and V add their own rounding.
- */
-static const double rounding = 20.0; /* c = rounding * e */
-
 /* X = sum_c P_c' M_c V_c P2_c, modes of the first by modes of the second. */
 static ritz_status compare_correlate(const ritz_stage *stage,
                                      const ritz_dense *V,
@@ -360,7 +351,7 @@ static int64_t find_partner(const ritz_configuration *second,
             best = j;
     for (int64_t j = second->num_rigid; j < X->ncol; j++)
         if (fabs(sqrt(second->lambda[j] / second->lambda[best]) - 1.0) <=
-            same_frequency)
+            RITZ_CLUSTER_GAP)
             sum += ritz_dense_col(X, j)[k] * ritz_dense_col(X, j)[k];
     *mac = sum;
     return best;
@@ -376,7 +367,7 @@ static void measure_modes(const ritz_configuration *first,
                           ritz_compare_row *row)
 {
     int64_t e = first->K.ncol;
-    double c = rounding * (double)e;
+    double c = RITZ_EIGENVALUE_ROUNDING * (double)e;
     bool any = false, broken = false;
 
     row->frequency_error = row->mac = row->allowed = nan("");

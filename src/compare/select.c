@@ -5,6 +5,7 @@
  * any basis of one space, and a part of them is none of the system's.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "compare/compare.h"
 
 #include <ritz/eigen.h>
@@ -12,9 +13,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Relative gap of frequencies within a cluster. */
-static const double near = 1e-6;
 
 /* Values of the flexible modes of one configuration. */
 static ritz_status rank_one(const ritz_scene *scene,
@@ -168,7 +166,7 @@ static int64_t complete(const ritz_configuration *c, bool *taken)
         for (last = first + 1; last < flexible; last++) {
             double w = sqrt(lambda[last]);
 
-            if (w - sqrt(lambda[last - 1]) > near * w)
+            if (w - sqrt(lambda[last - 1]) > RITZ_CLUSTER_GAP * w)
                 break;
             any = any || taken[last];
         }

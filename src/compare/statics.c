@@ -18,6 +18,7 @@
  * what was massless in the first system have some in the second.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "compare/compare.h"
 #include "compare/directions.h"
 
@@ -128,7 +129,6 @@ static ritz_status relieve(const ritz_dense *R, const ritz_dense *MR,
                            const double *scale, ritz_dense *F)
 {
     ritz_status status = RITZ_OK;
-    const double least = 1e-11;
     ritz_dense share = {0}, gone = {0}, kept = {0};
     int64_t m = 0;
 
@@ -145,7 +145,7 @@ static ritz_status relieve(const ritz_dense *R, const ritz_dense *MR,
             after = hypot(after, scale[i] * e);
             ritz_dense_col(F, m)[i] = scale[i] * e;
         }
-        m += after > least * before;
+        m += after > RITZ_FORCE_RELIEVED * before;
     }
     RITZ_TRY(ritz_dense_columns(F, 0, m, &kept));
     ritz_dense_free(F);

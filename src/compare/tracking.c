@@ -8,6 +8,7 @@
  * spaces: 1 where one contains the other, whatever their bases are.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/tracking.h>
 
@@ -28,16 +29,6 @@ typedef struct ritz_track_step {
     ritz_dense mac;            /* num_from x num_to, the same in a cluster */
     int64_t *partner;          /* num_from, in `to`; -1: lost */
 } ritz_track_step;
-
-/* Likeness that makes a partner, and by how much a second must fall behind. */
-static const double alike = 0.5;
-
-static const double clear = 0.1;
-
-/* Two modes mixed beyond these, in a plane that stays so well, do not cross. */
-static const double mixed = 0.05;
-
-static const double plane = 0.9;
 
 /* One past the last mode of the cluster of mode i. */
 static int64_t cluster_end(const int64_t *cluster, int64_t count, int64_t i)
@@ -114,7 +105,7 @@ static int64_t find_partner(const ritz_track_step *step, const bool *taken,
     for (int64_t j = 0; j < step->num_to; j++) {
         double mac = ritz_dense_col(&step->mac, j)[i];
 
-        if (!taken[j] && mac >= alike &&
+        if (!taken[j] && mac >= RITZ_TRACK_LIKE &&
             (best < 0 || mac > ritz_dense_col(&step->mac, best)[i]))
             best = j;
     }
@@ -215,7 +206,7 @@ static ritz_status judge_one(const ritz_track_step *step, int64_t i,
     if (step->partner[i] < 0) {
         event.kind = RITZ_TRACK_LOST;
         RITZ_CHECK(add_event(step, &event, t));
-    } else if (best[1] >= 0 && event.mac[0] - event.mac[1] < clear) {
+    } else if (best[1] >= 0 && event.mac[0] - event.mac[1] < RITZ_TRACK_CLEAR) {
         event.kind = RITZ_TRACK_TIE;
         RITZ_CHECK(add_event(step, &event, t));
     }
@@ -243,7 +234,8 @@ static ritz_status judge_two(const ritz_track_step *step, int64_t i, int64_t j,
         event.kind = RITZ_TRACK_SWAP;
         RITZ_CHECK(add_event(step, &event, t));
     }
-    if (j == i + 1 && shared >= plane && fmin(crossed[0], crossed[1]) > mixed) {
+    if (j == i + 1 && shared >= RITZ_TRACK_PLANE &&
+        fmin(crossed[0], crossed[1]) > RITZ_TRACK_MIXED) {
         event.kind = RITZ_TRACK_AVOIDED;
         event.shared = shared;
         RITZ_CHECK(add_event(step, &event, t));
@@ -288,9 +280,6 @@ static ritz_status track_events(const ritz_track_step *step, double up_to_hz,
  * Modes that are in one cluster at any configuration get one track throughout,
  * by joining their tracks: which of them went on as which is not defined.
  */
-
-/* Relative gap of frequencies within a cluster. */
-static const double near = 1e-6;
 
 /* The nearest configuration among those before k, not looking for ever. */
 static int64_t find_before(const ritz_system *system, int64_t k)
@@ -347,7 +336,7 @@ static ritz_status lay_out(const ritz_system *system, ritz_tracking *t)
         for (int64_t j = 0; j < t->first[k + 1] - t->first[k]; j++) {
             hertz[j] = ritz_eigen_hertz(c->lambda[c->num_rigid + j]);
             cluster[j] = j;
-            if (j > 0 && hertz[j] - hertz[j - 1] <= near * hertz[j])
+            if (j > 0 && hertz[j] - hertz[j - 1] <= RITZ_CLUSTER_GAP * hertz[j])
                 cluster[j] = cluster[j - 1];
         }
     }

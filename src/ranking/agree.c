@@ -12,12 +12,10 @@
 #include "ritz/agreement.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Of the largest value: rounding, and so equal. */
-static const double rounding = 1e-12;
 
 /* A mode that both rankings have. */
 typedef struct shared {
@@ -51,7 +49,7 @@ static double size_of(const side *s, int64_t mode)
 {
     double size = fabs(s->ranking->value[mode]);
 
-    return size > rounding * s->largest ? size : 0.0;
+    return size > RITZ_EQUAL_VALUES * s->largest ? size : 0.0;
 }
 
 /* Mode of that number; -1: none. */

@@ -13,6 +13,7 @@
 #include "ranking/costs.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include <ritz/ranking.h>
 
 #include <lapacke.h>
@@ -22,9 +23,6 @@
 /* Effective masses, of which two rankings are made. */
 
 enum { RITZ_MASS_PARTS = 6 };
-
-/* Shares below this are rounding: rigid modes carry what there is. */
-static const double nothing = 1e-9;
 
 /* Effective masses in six directions as the parts of a ranking. */
 static ritz_status mass_parts(const ritz_rank_request *request,
@@ -80,7 +78,7 @@ static ritz_status rank_masses(const ritz_rank_request *request,
         largest = fmax(largest, ranking->value[first]);
     }
     RITZ_REFUSE_IF(
-        !(largest > nothing), RITZ_ERR_ARGUMENT,
+        !(largest > RITZ_NO_MASS_SHARE), RITZ_ERR_ARGUMENT,
         "rigid modes carry all of the mass of a free model, flexible ones "
         "none: hold it, or take effective-interface-mass of fixed-interface "
         "modes");
@@ -108,14 +106,11 @@ const ritz_ranker ritz_ranker_effective_mass = {
  *
  *     s_k = trace(M_s^-1 P_k'P_k) / p = P_k M_s^-1 P_k' / p,    sum_k s_k <= 1
  *
- * p being the rank_interface_masses of M_s. On an interface that moves as a rigid body it weighs
+ * p being the rank of M_s. On an interface that moves as a rigid body it weighs
  * the effective masses of the component held there, which are its parts.
  *
  * [KammerTriller1996]
  */
-
-/* Of M_s with a unit diagonal: motions of the interface that move no mass. */
-static const double massless = 1e-12;
 
 /*
  * X' X = M_s^-1 on the motions that have mass: with S = diag(M_s)^-1/2 and
@@ -143,7 +138,7 @@ static ritz_status invert(const ritz_dense *M_s, ritz_dense *X)
                          lambda);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
                  "the mass of the interface has no eigenvalues");
-    while (r < p && !(lambda[r] > massless * lambda[p - 1]))
+    while (r < p && !(lambda[r] > RITZ_MASSLESS_INTERFACE * lambda[p - 1]))
         r++;
     RITZ_TRY(ritz_dense_new(p - r, p, X));
     for (int64_t i = 0; i < p; i++)

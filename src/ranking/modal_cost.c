@@ -15,6 +15,7 @@
 #include "ranking/costs.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/cluster.h"
 
 #include <ritz/reweigh.h>
@@ -104,10 +105,6 @@ const ritz_ranker ritz_ranker_modal_cost = {
 /* Going round between weights and choice: include/ritz/reweigh.h. */
 
 enum { MOST_ROUNDS = 400, LONGEST = 12 };
-
-static const double old_share = 0.5; /* a */
-
-static const double same = 1e-9; /* of weights, whose mean is 1 */
 
 /* What one round decided. */
 typedef struct trial {
@@ -261,15 +258,16 @@ static void weigh(const loop *l, const trial *t, double *q)
     for (int64_t i = 0; i < l->p; i++)
         sum += t->d[i];
     for (int64_t i = 0; i < l->p; i++)
-        q[i] = sum > 0.0 ? old_share * t->q[i] +
-                               (1.0 - old_share) * (double)l->p * t->d[i] / sum
-                         : t->q[i];
+        q[i] = sum > 0.0
+                   ? RITZ_OLD_WEIGHT * t->q[i] +
+                         (1.0 - RITZ_OLD_WEIGHT) * (double)l->p * t->d[i] / sum
+                   : t->q[i];
 }
 
 static bool is_same(const loop *l, const trial *a, const trial *b)
 {
     for (int64_t i = 0; i < l->p; i++)
-        if (!(fabs(a->q[i] - b->q[i]) <= same))
+        if (!(fabs(a->q[i] - b->q[i]) <= RITZ_SAME_WEIGHTS))
             return false;
     return memcmp(a->taken, b->taken, (size_t)l->m * sizeof *a->taken) == 0;
 }

@@ -18,9 +18,6 @@ const ritz_ranker *ritz_ranker_find(const char *name)
     return ritz_row_find(ritz_rankers, "ranking", name);
 }
 
-/* A mode this much weaker than the largest is rounding: its coupling is too. */
-static const double negligible = 1e-20;
-
 /* Which of a Gramian's entries are largest against their diagonals. */
 static void couple(const ritz_dense *W, ritz_ranking *ranking)
 {
@@ -36,8 +33,8 @@ static void couple(const ritz_dense *W, ritz_ranking *ranking)
             double off = fabs(ritz_dense_col(W, b)[a]) / sqrt(wa * wb);
 
             if (cluster[a / 2] == cluster[b / 2] ||
-                !(wa > negligible * largest[a % 2]) ||
-                !(wb > negligible * largest[b % 2]) ||
+                !(wa > RITZ_NEGLIGIBLE_GRAMIAN * largest[a % 2]) ||
+                !(wb > RITZ_NEGLIGIBLE_GRAMIAN * largest[b % 2]) ||
                 !(off > ranking->coupling))
                 continue;
             ranking->coupling = off;

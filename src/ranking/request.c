@@ -1,6 +1,7 @@
 /* Weights of inputs and outputs as text, and what they make of a model's io. */
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/ranking.h>
 
@@ -139,9 +140,6 @@ static ritz_status apply_weights(const ritz_weights *weights, ritz_io *io)
  */
 
 enum { DIRECTIONS = 6 };
-
-/* Of a coupling K_bn against sqrt(K_bb K_nn): modes of another interface. */
-static const double clamped = 1e-6;
 
 /* What is ranked: matrices and io of coordinates, and what is known of mass. */
 typedef struct subject {
@@ -320,7 +318,8 @@ static ritz_status check_clamped(const ritz_dense *K, int64_t p,
                                    ritz_dense_col(K, n[j])[n[j]]));
 
             RITZ_REFUSE_IF(
-                !(fabs(ritz_dense_col(K, n[j])[b[i]]) <= clamped * own),
+                !(fabs(ritz_dense_col(K, n[j])[b[i]]) <=
+                  RITZ_FOREIGN_INTERFACE * own),
                 RITZ_ERR_ARGUMENT,
                 "normal modes and constraint modes share stiffness: the "
                 "interface was not held when they were made");

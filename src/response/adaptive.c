@@ -1,6 +1,7 @@
 #include "response/responder.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/monitor.h>
 
@@ -28,10 +29,6 @@ typedef struct ritz_mesh {
 
 /* H of more values than this is a mistake in the request. */
 static const int64_t most_values = INT64_C(1) << 28;
-
-/* Points closer than this, relative, are one: a cubic through two of them
-   divides the rounding of H by their distance. */
-static const double same = 1e-9;
 
 /* H into mesh->row, the peaks heeded. */
 static ritz_status mesh_ask(ritz_mesh *mesh, double hertz)
@@ -98,8 +95,8 @@ static void close_up(ritz_mesh *mesh)
     int64_t kept = 0;
 
     for (int64_t k = 0; k < mesh->count; k++) {
-        if (kept > 0 &&
-            mesh->hertz[k] - mesh->hertz[kept - 1] <= same * mesh->hertz[k]) {
+        if (kept > 0 && mesh->hertz[k] - mesh->hertz[kept - 1] <=
+                            RITZ_SAME_KNOT * mesh->hertz[k]) {
             mesh->open[kept - 1] = mesh->open[kept - 1] || mesh->open[k];
             continue;
         }
@@ -185,12 +182,6 @@ static ritz_status mesh_insert(ritz_mesh *mesh, int64_t count,
 /* Zeros of each channel that are near enough to the axis to make it dip. */
 
 enum { PARTS = 8, MOST_STEPS = 5 };
-
-/* Of the frequency: where a step is smaller, it was the last. */
-static const double settled = 1e-9;
-
-/* Of what its errors are measured by: a channel beneath is rounding. */
-static const double heard = 0.5;
 
 /* Points that were found, in the order of channels. */
 typedef struct finds {
@@ -293,7 +284,7 @@ static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
             return RITZ_OK;
         z = w - H / slope;
         before = w;
-        still = H == 0.0 || fabs(creal(z) - w) <= settled * w;
+        still = H == 0.0 || fabs(creal(z) - w) <= RITZ_DIP_SETTLED * w;
         if (!still)
             w = creal(z);
         if (!(w > low && w < high))
@@ -382,7 +373,7 @@ static ritz_status mesh_add_dips(ritz_mesh *mesh)
     finds f = {.values = mesh->values};
 
     for (int64_t v = 0; v < mesh->values; v++)
-        if (mesh->peak[v] > heard * mesh->scale[v])
+        if (mesh->peak[v] > RITZ_CHANNEL_HEARD * mesh->scale[v])
             RITZ_TRY(search(mesh, v, &f));
     RITZ_TRY(merge(mesh, &f));
 done:
@@ -390,9 +381,6 @@ done:
     free(f.H);
     return status;
 }
-
-/* Of the last frequency: so far beside the range is in it. */
-static const double rounding = 1e-12;
 
 /* out = sum of weighted rows. */
 static void cubic_mix(int points, const double *weight, int64_t values,
@@ -434,7 +422,7 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
 
     RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT,
                    "the response has no points");
-    beside = rounding * r->hertz[r->count - 1];
+    beside = RITZ_RANGE_ROUNDING * r->hertz[r->count - 1];
     RITZ_REFUSE_IF(!(hertz >= r->hertz[0] - beside) ||
                        !(hertz <= r->hertz[r->count - 1] + beside),
                    RITZ_ERR_ARGUMENT,
@@ -461,17 +449,6 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
 
 enum { MOST_ROUNDS = 60 };
 
-/* Of its frequency: an interval this short is not halved. */
-static const double shortest = 4e-9;
-
-/* An undamped pole is a point, at which the responder says what is wrong. */
-static const double least_ratio = 1e-15;
-
-/* What is measured at a few places is held to this part. */
-static const double margin = 0.5;
-
-static const double quarter = 0.25;
-
 /* The points of a grid, of all peaks and beside them. */
 static ritz_status begin(const ritz_responder *responder, const ritz_grid *grid,
                          int64_t *count, double **out)
@@ -492,7 +469,7 @@ static ritz_status begin(const ritz_responder *responder, const ritz_grid *grid,
         if (!(size > 0.0) || !(cimag(s[k]) > 0.0))
             continue;
         omega[num_modes] = size;
-        zeta[num_modes++] = fmax(-creal(s[k]) / size, least_ratio);
+        zeta[num_modes++] = fmax(-creal(s[k]) / size, RITZ_LEAST_RATIO);
     }
     RITZ_TRY(ritz_grid_points(&wide, num_modes, omega, zeta, count, out));
 done:
@@ -530,10 +507,11 @@ static ritz_status test(ritz_mesh *mesh, int64_t k, double allowed,
     memcpy(H, mesh->row, (size_t)mesh->values * sizeof *H);
     *needed = !agrees(mesh, k, *hertz, allowed);
     if (!*needed) {
-        RITZ_CHECK(mesh_ask(mesh, low + quarter * step));
-        *needed = !agrees(mesh, k, low + quarter * step, allowed);
+        RITZ_CHECK(mesh_ask(mesh, low + RITZ_SAMPLED_AT * step));
+        *needed = !agrees(mesh, k, low + RITZ_SAMPLED_AT * step, allowed);
     }
-    RITZ_REFUSE_IF(*needed && step <= shortest * mesh->hertz[k + 1],
+    RITZ_REFUSE_IF(*needed &&
+                       step <= RITZ_SHORTEST_INTERVAL * mesh->hertz[k + 1],
                    RITZ_ERR_CONVERGENCE,
                    "the response does not settle at %.9g Hz: is there a mode "
                    "without damping, or a tolerance beneath its rounding",
@@ -614,9 +592,10 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
     RITZ_TRY(begin(responder, grid, &count, &hertz));
     RITZ_TRY(new_mesh(responder, count, hertz, &mesh));
     for (int round = 0; round < MOST_ROUNDS && added > 0; round++) {
-        ritz_noise_scales(io->num_outputs, io->num_inputs, margin * tolerance,
-                          mesh.peak, mesh.level, mesh.scale);
-        RITZ_TRY(halve(&mesh, margin * tolerance, &added));
+        ritz_noise_scales(io->num_outputs, io->num_inputs,
+                          RITZ_SAMPLED_MARGIN * tolerance, mesh.peak,
+                          mesh.level, mesh.scale);
+        RITZ_TRY(halve(&mesh, RITZ_SAMPLED_MARGIN * tolerance, &added));
     }
     RITZ_TRY(mesh_add_dips(&mesh));
     RITZ_TRY(hand_over(&mesh, grid, tolerance, out));

@@ -32,13 +32,6 @@
 
 enum { MOST_MATRICES = 4, MOST_NUDGES = 100 };
 
-/* How far the rest stays from a pole that was removed, of its lambda: its own
-   error is of this size or less, while the factor loses as many digits in a
-   direction that is projected out. */
-static const double nudge = 1e-9;
-
-static const double nudge_at_rest = 1e-6;
-
 static ritz_status start(ritz_direct *s)
 {
     const ritz_component *c = s->component;
@@ -149,7 +142,8 @@ static double beside_poles(const ritz_direct *s, double w2)
 {
     int64_t r = s->poles.num_rigid;
     double first = r < s->m ? s->poles.lambda[r] : fabs(s->pairs.sigma);
-    double gap = fmax(nudge * w2, r > 0 ? nudge_at_rest * first : 0.0);
+    double gap =
+        fmax(RITZ_NUDGE * w2, r > 0 ? RITZ_NUDGE_AT_REST * first : 0.0);
     bool clear = false;
 
     for (int t = 0; t < MOST_NUDGES && !clear; t++) {
@@ -293,9 +287,6 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
  *     |c'Z^-1 b - computed| <= some eps |y|'|Z||x|
  */
 
-/* What sums of rounding come to, measured: 2 to 5. */
-static const double some = 16.0;
-
 /* t += factor |A||x| */
 static void add(const ritz_sparse *A, double factor, const double _Complex *x,
                 double *t)
@@ -336,7 +327,8 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
 
             for (int64_t k = 0; k < n; k++)
                 sum += cabs(Y[k + i * n]) * t[k];
-            out[i * direct->inputs + j] = some * DBL_EPSILON * sum;
+            out[i * direct->inputs + j] =
+                RITZ_SUMMED_ROUNDING * DBL_EPSILON * sum;
         }
     }
 done:

@@ -16,8 +16,6 @@
 /* In half-power widths. */
 static const double beside[] = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 enum { BESIDE = sizeof beside / sizeof *beside, AROUND = 2 * BESIDE + 1 };
-/* Points closer than this, relative, are one. */
-static const double same = 1e-13;
 static const int64_t most_points = 100000000;
 
 /* Points that are given ascend, and none is negative. */
@@ -93,7 +91,7 @@ static int64_t distinct(int64_t count, double *f)
 
     qsort(f, (size_t)count, sizeof *f, ascending);
     for (int64_t k = 0; k < count; k++)
-        if (kept == 0 || f[k] - f[kept - 1] > same * f[k])
+        if (kept == 0 || f[k] - f[kept - 1] > RITZ_SAME_POINT * f[k])
             f[kept++] = f[k];
     return kept;
 }

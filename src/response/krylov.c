@@ -45,18 +45,6 @@ typedef struct ritz_krylov {
 
 enum { EVEN = 12, MOST_MODES = 60 };
 
-/* Of an answer's terms: what rounding leaves of it. */
-static const double rounding = 1e-13;
-
-/* Points keep this far off modes, of their frequency; and off 0 Hz, of the
-   end. */
-static const double clear_of_modes = 1e-5;
-
-static const double above_rest = 1e-4;
-
-/* Of lambda_h: what lambda_h - w^2 is taken for at least. */
-static const double least_gap = 0.02;
-
 /* Whether D or K4 couples modes with the rest. */
 static bool krylov_couples(const ritz_krylov *k)
 {
@@ -65,14 +53,14 @@ static bool krylov_couples(const ritz_krylov *k)
     return c->D.colptr || c->K4.colptr;
 }
 
-/* f, or clear_of_modes it where a mode is. */
+/* f, or beside it where a mode is. */
 static double clear(const ritz_krylov *k, double f)
 {
     for (int64_t j = 0; j < k->full.m; j++) {
         double mode = ritz_eigen_hertz(k->full.poles.lambda[j]);
 
-        if (fabs(f - mode) < 0.1 * clear_of_modes * f)
-            return f * (1.0 + clear_of_modes);
+        if (fabs(f - mode) < 0.1 * RITZ_BESIDE_MODE * f)
+            return f * (1.0 + RITZ_BESIDE_MODE);
     }
     return f;
 }
@@ -93,7 +81,7 @@ static ritz_status place(ritz_krylov *k, double low, double high)
 
         if (mode <= low || mode >= high)
             continue;
-        k->hertz[k->count++] = mode * (1.0 + clear_of_modes);
+        k->hertz[k->count++] = mode * (1.0 + RITZ_BESIDE_MODE);
         k->hertz[k->count++] = clear(k, 0.5 * (before + mode));
         before = mode;
     }
@@ -116,7 +104,7 @@ static ritz_status make_room(ritz_krylov *k)
 /* Points and arrays for a range. */
 static ritz_status place_krylov(ritz_krylov *k, double from_hz, double to_hz)
 {
-    RITZ_CHECK(place(k, fmax(from_hz, above_rest * to_hz), to_hz));
+    RITZ_CHECK(place(k, fmax(from_hz, RITZ_ABOVE_REST * to_hz), to_hz));
     return make_room(k);
 }
 
@@ -133,7 +121,7 @@ static void take_krylov(ritz_krylov *k, double hertz, int64_t index)
 static ritz_status judge_krylov(ritz_krylov *k, double hertz, double *error)
 {
     double w2 = ritz_eigen_lambda(hertz);
-    double gap = fmax(k->lambda_h - w2, least_gap * k->lambda_h);
+    double gap = fmax(k->lambda_h - w2, RITZ_LEAST_GAP * k->lambda_h);
     double most = k->amplify * (k->lambda_h + k->space.tau) / gap;
 
     RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
@@ -171,7 +159,8 @@ static void allow(ritz_krylov *k)
 
             k->allowed[v] =
                 k->tolerance * k->allowed[v] +
-                rounding * (k->peak[v] + k->load[j] * k->load[k->inputs + i]);
+                RITZ_PROJECTION_FLOOR *
+                    (k->peak[v] + k->load[j] * k->load[k->inputs + i]);
         }
 }
 
@@ -204,12 +193,6 @@ static ritz_status measure_krylov(ritz_krylov *k)
     k->unmet = k->worst;
     return RITZ_OK;
 }
-
-/* Of its frequency: so far clear_of_poles a pole Z can be factored. */
-static const double clear_of_poles = 1e-4;
-
-/* How wrong an indicator may be found, at most. */
-static const double most_amplified = 1e6;
 
 /* Whether residual `index` has a part in an error that is too large. */
 static bool takes_part(const ritz_krylov *k, int64_t index)
@@ -325,7 +308,7 @@ static ritz_status split(int64_t n, int64_t columns, const double _Complex *Z,
 }
 
 /*
- * Largest error of the projection clear_of_poles full answers, over what is allowed;
+ * Largest error of the projection beside full answers, over what is allowed;
  * where it is more than was thought, all errors are from now on. Neither is
  * what rounding makes of those answers: Y are the outputs' own.
  */
@@ -356,13 +339,13 @@ static ritz_status compare(ritz_krylov *k, double hertz,
         if (error > 0.1 * allowed && error > k->trial[v])
             more = fmax(more, error / k->trial[v]);
     }
-    k->amplify = fmin(k->amplify * more, most_amplified);
+    k->amplify = fmin(k->amplify * more, RITZ_MOST_AMPLIFIED);
 done:
     free(H);
     return status;
 }
 
-/* Answers to all inputs at a frequency, or clear_of_poles it where there is none; and
+/* Answers to all inputs at a frequency, or beside it where there is none; and
    to all outputs, of the transposed system. */
 static ritz_status answer(ritz_krylov *k, double *hertz, double _Complex *Z)
 {
@@ -371,7 +354,7 @@ static ritz_status answer(ritz_krylov *k, double *hertz, double _Complex *Z)
     put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
     status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
     if (status == RITZ_ERR_SINGULAR) {
-        *hertz *= 1.0 + clear_of_poles;
+        *hertz *= 1.0 + RITZ_BESIDE_POLE;
         put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
         status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
     }
@@ -438,20 +421,6 @@ done:
 
 enum { MOST_ROUNDS = 60, MOST_CONFIRMED = 12 };
 
-/* Of ratios' modes as all engines have it; without them fewer will do. */
-static const double modes_beyond = 1.5;
-
-static const double usual_tolerance = 1e-9;
-
-/* Rounding of what is projected; less is not to be had. */
-static const double least_tolerance = 1e-13;
-
-/* A correction that leaves more than this of the error was the last. */
-static const double pays = 0.3;
-
-/* Of its frequency: so far clear_of_undamped an undamped pole full answers keep digits. */
-static const double clear_of_undamped = 1e-5;
-
 static void krylov_free(ritz_krylov *k)
 {
     ritz_direct_free(&k->full);
@@ -471,7 +440,7 @@ static void krylov_free(ritz_krylov *k)
 
 /*
  * Until the error is small everywhere. An expansion point at which it is,
- * clear_of_undamped the full answers, says that the bound is not sharp: *held.
+ * beside the full answers, says that the bound is not sharp: *held.
  */
 static ritz_status grow(ritz_krylov *k, bool *held)
 {
@@ -485,7 +454,7 @@ static ritz_status grow(ritz_krylov *k, bool *held)
 
         if (pay) {
             RITZ_CHECK(krylov_correct(k, &added));
-            pay = added > 0 && k->worst <= pays * before;
+            pay = added > 0 && k->worst <= RITZ_CORRECTION_PAYS * before;
             added = 1;
         } else {
             RITZ_CHECK(krylov_expand(k, k->hertz[k->at], &added, &was));
@@ -497,7 +466,7 @@ static ritz_status grow(ritz_krylov *k, bool *held)
     return RITZ_OK;
 }
 
-/* The frequency of the pole that is damped least, or clear_of_undamped it where that has
+/* The frequency of the pole that is damped least, or beside it where that has
    no response; 0 if none is in the range. */
 static ritz_status find_quietest(const ritz_krylov *k,
                                  const ritz_response_request *request,
@@ -520,8 +489,8 @@ static ritz_status find_quietest(const ritz_krylov *k,
             *out = hertz;
         }
     }
-    if (least < clear_of_undamped)
-        *out *= 1.0 + clear_of_undamped;
+    if (least < RITZ_BESIDE_MODE)
+        *out *= 1.0 + RITZ_BESIDE_MODE;
 done:
     ritz_damped_free(&damped);
     return status;
@@ -574,7 +543,7 @@ static double highest_of(const ritz_response_request *request)
         (damping && damping->kind != RITZ_DAMPING_NONE &&
          !ritz_damping_is_rayleigh(damping)))
         return ritz_response_highest(request);
-    return modes_beyond * request->to_hz;
+    return RITZ_POLES_BEYOND * request->to_hz;
 }
 
 static ritz_status start(const ritz_response_request *request, ritz_krylov *k)
@@ -586,8 +555,8 @@ static ritz_status start(const ritz_response_request *request, ritz_krylov *k)
                    "modes up to %g Hz cannot give a response up to %g Hz",
                    highest, request->to_hz);
     k->tolerance =
-        request->tolerance > 0.0 ? request->tolerance : usual_tolerance;
-    k->tolerance = fmax(k->tolerance, least_tolerance);
+        request->tolerance > 0.0 ? request->tolerance : RITZ_ENGINE_TOLERANCE;
+    k->tolerance = fmax(k->tolerance, RITZ_PROJECTION_FLOOR);
     k->amplify = 1.0;
     k->lambda_h = ritz_eigen_lambda(highest);
     k->outputs = io->num_outputs;

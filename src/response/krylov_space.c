@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of its length: what is left of a vector beneath this is nothing new. */
-static const double dependent = 1e-10;
-
 /* A gets `more` behind its columns; room is doubled where there is none. */
 static ritz_status append(ritz_dense *A, int64_t *room, const ritz_dense *more)
 {
@@ -189,7 +186,7 @@ static ritz_status add_one(ritz_krylov_space *s, ritz_dense *x, bool *added)
     RITZ_CHECK(turn(s, &none, x, &before));
     for (int pass = 0; pass < 2; pass++) {
         RITZ_CHECK(turn(s, &X, x, &length));
-        if (!(length > dependent * before) || !isfinite(length))
+        if (!(length > RITZ_DEPENDENT * before) || !isfinite(length))
             return RITZ_OK;
     }
     for (int64_t i = 0; i < x->nrow; i++)

@@ -165,9 +165,6 @@ void ritz_loop_free(ritz_loop *loop)
 
 enum { MOST_HALVES = 60 };
 
-/* A sign that changes through infinity is no crossing. */
-static const double real_within = 1e-6;
-
 typedef enum which { GAIN, SENSITIVITY } which;
 
 typedef struct prober {
@@ -217,7 +214,8 @@ static ritz_status bisect(prober *s, double (*zero)(double _Complex),
     ritz_loop_values values = {.gain = at_low};
     double middle = low;
 
-    for (int k = 0; k < MOST_HALVES && high - low > 1e-14 * high; k++) {
+    for (int k = 0; k < MOST_HALVES && high - low > RITZ_BISECTION_END * high;
+         k++) {
         middle = low + (high - low) / 2.0;
         RITZ_CHECK(probe(s, middle, &values));
         if (zero(values.gain) * zero(at_low) > 0.0)
@@ -234,7 +232,8 @@ static void heed_gain(double hertz, double _Complex L, ritz_margins *out)
 {
     double factor = -1.0 / creal(L);
 
-    if (!(creal(L) < 0.0) || fabs(cimag(L)) > real_within * fabs(creal(L)))
+    if (!(creal(L) < 0.0) ||
+        fabs(cimag(L)) > RITZ_REAL_CROSSING * fabs(creal(L)))
         return;
     if (factor >= 1.0 && !(factor >= out->gain_up)) {
         out->gain_up = factor;
@@ -250,7 +249,7 @@ static void heed_phase(double hertz, double _Complex L, ritz_margins *out)
 {
     double angle = fabs(carg(-L)) * 180.0 / RITZ_PI;
 
-    if (fabs(cabs(L) - 1.0) > real_within || angle >= out->phase)
+    if (fabs(cabs(L) - 1.0) > RITZ_REAL_CROSSING || angle >= out->phase)
         return;
     out->phase = angle;
     out->phase_hz = hertz;

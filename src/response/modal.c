@@ -138,13 +138,13 @@ static ritz_status project(const ritz_dense *A, const ritz_dense *Phi,
  */
 static ritz_status refuse_unstable(const ritz_pairs *pairs, double to_hz)
 {
-    const double rounding = 1e-6;
     int64_t m = pairs->Phi.ncol;
     double largest = pow(2.0 * RITZ_PI * to_hz, 2.0);
 
     if (m > 0)
         largest = fmax(largest, fabs(pairs->lambda[m - 1]));
-    RITZ_REFUSE_IF(m > 0 && pairs->lambda[0] < -rounding * largest,
+    RITZ_REFUSE_IF(m > 0 &&
+                       pairs->lambda[0] < -RITZ_NEGATIVE_STIFFNESS * largest,
                    RITZ_ERR_ARGUMENT,
                    "the stiffness has a negative eigenvalue, %.3g where the "
                    "largest is %.3g: an unstable model has no steady response",
@@ -155,7 +155,6 @@ static ritz_status refuse_unstable(const ritz_pairs *pairs, double to_hz)
 /* Whether A moves with any of N, beyond rounding. */
 static ritz_status acts(const ritz_dense *A, const ritz_dense *N, bool *out)
 {
-    const double rounding = 1e-12;
     ritz_status status = RITZ_OK;
     ritz_dense AN = {0}, NA = {0};
 
@@ -164,7 +163,7 @@ static ritz_status acts(const ritz_dense *A, const ritz_dense *N, bool *out)
     RITZ_TRY(ritz_dense_mul(A, N, &AN));
     RITZ_TRY(ritz_dense_mul_tn(A, N, &NA));
     if (fmax(ritz_dense_max(&AN), ritz_dense_max(&NA)) >
-        rounding * ritz_dense_max(A) * ritz_dense_max(N))
+        RITZ_NO_COUPLING * ritz_dense_max(A) * ritz_dense_max(N))
         *out = true;
 done:
     ritz_dense_free(&AN);

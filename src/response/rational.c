@@ -230,17 +230,8 @@ static double need_interpolant(const ritz_interpolant *interpolant,
 
 enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
 
-/* Of its frequency: nodes begin so far beside an undamped pole, and keep so far
-   off all poles and zeros. */
-static const double beside = 1e-4;
-
-static const double clear = 1e-6;
-
 /* Beside a pole, in half-power widths. */
 static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
-
-/* Of w^2: nearer to an undamped pole than this there is no answer. */
-static const double pole_within = 1e-12;
 
 /* An undamped pole that was cancelled has no response. */
 static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
@@ -249,7 +240,7 @@ static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
 
     for (int64_t k = 0; k < s->num_poles; k++) {
         bool on = cabs(ritz_complex(0.0, w) - s->pole[k]) <=
-                  pole_within * (w + cabs(s->pole[k]));
+                  RITZ_POLE_HIT * (w + cabs(s->pole[k]));
 
         RITZ_REFUSE_IF(
             on && s->pole[k] == 0.0, RITZ_ERR_SINGULAR,
@@ -281,7 +272,7 @@ static bool is_on(double _Complex s, int64_t count, const double _Complex *at,
                   double unit)
 {
     for (int64_t k = 0; k < count; k++)
-        if (cabs(s - at[k] * unit) <= clear * cabs(s))
+        if (cabs(s - at[k] * unit) <= RITZ_NODE_CLEAR * cabs(s))
             return true;
     return false;
 }
@@ -331,7 +322,7 @@ static ritz_status place_nodes(ritz_nodes *s, double low, double high)
         if (hertz <= low || hertz >= high)
             continue;
         at[n++] = hertz;
-        width = fmax(width, beside * hertz);
+        width = fmax(width, RITZ_BESIDE_POLE * hertz);
         for (int o = 0; o < OFFSETS; o++) {
             add_candidate(s, hertz - offset[o] * width, low, high);
             add_candidate(s, hertz + offset[o] * width, low, high);
@@ -440,12 +431,6 @@ static ritz_status converge_nodes(ritz_nodes *s, double tolerance)
 
 /* What is cancelled: poles and, of small components, zeros. */
 
-/* Poles are cancelled up to here, of the end. */
-static const double cancelled_to = 1.5;
-
-/* Of |s|: poles nearer than this are one. */
-static const double same = 1e-9;
-
 /* A pole that is there is added once more, and then not again: 0 is double, and
    what couples two equal modes a little is seen through both. */
 static void add_pole(ritz_nodes *s, double _Complex pole)
@@ -453,7 +438,7 @@ static void add_pole(ritz_nodes *s, double _Complex pole)
     int64_t there = 0;
 
     for (int64_t k = 0; k < s->num_poles; k++)
-        there += cabs(s->pole[k] - pole) <= same * cabs(pole);
+        there += cabs(s->pole[k] - pole) <= RITZ_SAME_POLE * cabs(pole);
     if (there < 2)
         s->pole[s->num_poles++] = pole;
 }
@@ -530,7 +515,7 @@ static ritz_status nodes_find_poles(ritz_nodes *s,
                                     const ritz_responder *responder)
 {
     ritz_status status = RITZ_OK;
-    double most = 2.0 * RITZ_PI * cancelled_to * responder->to_hz;
+    double most = 2.0 * RITZ_PI * RITZ_POLES_BEYOND * responder->to_hz;
     double _Complex *found = NULL;
     int64_t count = 0;
 
@@ -568,7 +553,7 @@ static ritz_status nodes_find_zeros(ritz_nodes *s)
             continue;
         RITZ_NEW(all, 2 * count);
         for (int64_t k = 0; k < count; k++)
-            if (cabs(z[k]) <= cancelled_to * s->both.unit)
+            if (cabs(z[k]) <= RITZ_POLES_BEYOND * s->both.unit)
                 all[n++] = z[k];
         RITZ_TRY(cancel_interpolant(&s->both, v, n, all));
         free(z);
@@ -595,11 +580,6 @@ done:
  * half-power width. What the interpolant errs there is known before it is
  * added; three nodes in a row within the tolerance are the end.
  */
-
-static const double usual_tolerance = 1e-9;
-
-/* Of the end: a free body has its first node so far above 0 Hz. */
-static const double above_rest = 1e-4;
 
 /* Of channels: of more, zeros take longer than nodes. */
 static const int64_t most_channels = 9;
@@ -635,7 +615,7 @@ static ritz_status start(const ritz_response_request *request,
     s->noise = &out->noise;
     s->mirror = !request->component->K4.colptr;
     if (s->full.poles.num_rigid > 0 && low == 0.0)
-        low = above_rest * request->to_hz;
+        low = RITZ_ABOVE_REST * request->to_hz;
     RITZ_CHECK(nodes_find_poles(s, out));
     RITZ_CHECK(
         new_interpolant(s->values, unit, s->num_poles, s->pole, &s->poles));
@@ -654,7 +634,7 @@ static ritz_status start(const ritz_response_request *request,
         RITZ_CHECK(nodes_find_zeros(s));
     RITZ_CHECK(place_nodes(s, low, request->to_hz));
     return converge_nodes(s, request->tolerance > 0.0 ? request->tolerance
-                                                      : usual_tolerance);
+                                                      : RITZ_ENGINE_TOLERANCE);
 }
 
 static void finish(void *state)

@@ -14,13 +14,6 @@
 
 enum { KINDS = 3 };
 
-/* Of a channel's level: one that is nowhere above is rounding; rigid motions
-   that cancel leave 1e-13. */
-static const double rounding = 1e-12;
-
-/* The same of what is not, from one frequency to the next. */
-static const double grain = 0x1p-50;
-
 /* (K + tau M)_kk */
 static double diagonal(const ritz_response_request *request, double tau,
                        int64_t k)
@@ -126,25 +119,16 @@ void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
 
     ritz_channel_scales(num_outputs, num_inputs, peak, scale);
     for (int64_t v = 0; v < values; v++) {
-        double least = rounding * level[v];
+        double least = RITZ_CHANNEL_ROUNDING * level[v];
 
         if (peak[v] <= least)
             scale[v] = fmax(scale[v], least / tolerance);
         else
-            scale[v] += grain * level[v] / tolerance;
+            scale[v] += RITZ_RESPONSE_GRAIN * level[v] / tolerance;
     }
 }
 
 /* What all engines share: points of a grid, names, damped poles. */
-
-/* Of the largest around: a channel below is rounding. */
-static const double audible = 1e-9;
-
-/* Of the end of the range: rounding. */
-static const double within = 1.0 + 1e-9;
-
-/* Of the end of the range: so far poles of full matrices are found. */
-static const double beyond = 1.5;
 
 double ritz_response_highest(const ritz_response_request *request)
 {
@@ -222,7 +206,7 @@ ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
     const ritz_io *io = &responder->poles->io;
 
     RITZ_REFUSE_IF(responder->component &&
-                       !(hertz <= responder->to_hz * within),
+                       !(hertz <= responder->to_hz * RITZ_RANGE_END),
                    RITZ_ERR_ARGUMENT,
                    "%g Hz lies above %g Hz, up to which the response was "
                    "prepared",
@@ -291,7 +275,8 @@ static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
                                double _Complex **out)
 {
     const double band_hz[2] = {r->from_hz, r->to_hz};
-    const ritz_span span = {.modes = -1, .up_to_hz = beyond * r->to_hz};
+    const ritz_span span = {.modes = -1,
+                            .up_to_hz = RITZ_POLES_BEYOND * r->to_hz};
     ritz_status status = RITZ_OK;
     ritz_spectrum own = {0};
     ritz_damped damped = {0};
@@ -348,6 +333,7 @@ void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
             for (int64_t k = 0; k < num_outputs; k++)
                 column = fmax(column, peak[k * num_inputs + j]);
             scale[i * num_inputs + j] =
-                fmax(peak[i * num_inputs + j], audible * sqrt(row * column));
+                fmax(peak[i * num_inputs + j],
+                     RITZ_CHANNEL_LEAST * sqrt(row * column));
         }
 }
