@@ -11,6 +11,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "model/modal.h"
 
 #include <ritz/eigen.h>
 
@@ -69,16 +70,6 @@ done:
     return status;
 }
 
-/* What damping beside the matrices adds to mode k. */
-static double rate(const ritz_damping *damping, double lambda)
-{
-    double omega = sqrt(fmax(lambda, 0.0));
-
-    if (damping->kind == RITZ_DAMPING_RAYLEIGH)
-        return damping->a + damping->b * lambda;
-    return 2.0 * omega * ritz_damping_ratio(damping, omega);
-}
-
 /* Largest sum_i |F_ij|, times the largest |X_ik|. */
 static double largest_terms(const ritz_dense *F, const ritz_dense *X)
 {
@@ -109,6 +100,10 @@ static ritz_status see_loads(const ritz_dense *X, model *s)
     return RITZ_OK;
 }
 
+/* The modes here are not those of the component: of ratios that are listed mode
+   by mode the last stands for all. */
+enum { BEYOND_LISTED = RITZ_MOST_RATIOS };
+
 static ritz_status make_model(const ritz_rational *R,
                               const ritz_damping *damping, const ritz_dense *T,
                               model *s)
@@ -124,7 +119,8 @@ static ritz_status make_model(const ritz_rational *R,
     RITZ_TRY(in_modes(&component->D, T, &s->modes.Phi, &s->W));
     RITZ_TRY(in_modes(&component->K4, T, &s->modes.Phi, &s->K4));
     for (int64_t k = 0; k < s->W.ncol; k++)
-        ritz_dense_col(&s->W, k)[k] += rate(damping, s->modes.lambda[k]);
+        ritz_dense_col(&s->W, k)[k] +=
+            ritz_modal_rate(damping, BEYOND_LISTED, s->modes.lambda[k]);
     RITZ_TRY(ritz_dense_mul(T, &s->modes.Phi, &TX));
     RITZ_TRY(see_loads(&TX, s));
     RITZ_NEW(s->pole, 2 * s->W.ncol);

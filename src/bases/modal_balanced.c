@@ -34,7 +34,7 @@ typedef struct group {
 
 typedef struct search {
     ritz_gramians_request asked;
-    ritz_first_order modes;
+    ritz_modal_model modes;
     ritz_modal modal;
     int64_t count;
     group *groups; /* by frequency */
@@ -44,7 +44,7 @@ typedef struct search {
 
 static void release(search *s)
 {
-    ritz_first_order_free(&s->modes);
+    ritz_modal_model_free(&s->modes);
     ritz_modal_free(&s->modal);
     free(s->groups);
 }

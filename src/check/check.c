@@ -126,7 +126,7 @@ static void free_checker(ritz_checker *it)
     ritz_dense_free(&it->R);
     ritz_dense_free(&it->Phi);
     ritz_structure_free(&it->model);
-    ritz_first_order_free(&it->modes);
+    ritz_modal_model_free(&it->modes);
     ritz_dense_free(&it->L);
     free(it->row);
     ritz_collocated_free(&it->pairs);

@@ -5,7 +5,7 @@
 #ifndef RITZ_CHECK_CHECK_H
 #define RITZ_CHECK_CHECK_H
 
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include <ritz/audit.h>
 #include <ritz/eigen.h>
@@ -83,7 +83,7 @@ typedef struct ritz_checker {
     /* Of a reduced component. */
     ritz_structure model; /* with dampers installed */
     ritz_damping damping;
-    ritz_first_order modes;
+    ritz_modal_model modes;
     ritz_dense L; /* p x r, rows of the interface; velocities are L q' */
     char (*row)[RITZ_NAME_SIZE]; /* p */
 
@@ -158,7 +158,7 @@ ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out);
  * First-order matrix of the modes that have mass in [w q; q'], whose square is
  * twice the energy, q of rigid modes left out.
  */
-ritz_status ritz_probe_energy_matrix(const ritz_first_order *modes,
+ritz_status ritz_probe_energy_matrix(const ritz_modal_model *modes,
                                      ritz_dense *out);
 
 /**

@@ -318,7 +318,7 @@ static ritz_status find_modes(ritz_checker *it, bool *singular)
     ritz_io none = {0};
 
     RITZ_TRY(ritz_io_new(it->model.K.nrow, 0, 0, &none));
-    status = ritz_first_order_new(&it->model, &none, &it->damping, &it->modes);
+    status = ritz_modal_model_new(&it->model, &none, &it->damping, &it->modes);
     *singular = status == RITZ_ERR_SINGULAR;
     if (*singular)
         status = RITZ_OK;
@@ -358,7 +358,7 @@ done:
 /* Matrices of few digits: a rigid motion is held, or driven. */
 static ritz_status say_rigid(ritz_checker *it, bool *said)
 {
-    const ritz_first_order *modes = &it->modes;
+    const ritz_modal_model *modes = &it->modes;
     int64_t r = modes->num_rigid;
     double softest = r < modes->count ? modes->lambda[r] : HUGE_VAL;
     double value = 0.0;
@@ -383,7 +383,7 @@ static ritz_status say_rigid(ritz_checker *it, bool *said)
 static ritz_status say_stiffness(ritz_checker *it)
 {
     static const char name[] = "stiffness-definite";
-    const ritz_first_order *modes = &it->modes;
+    const ritz_modal_model *modes = &it->modes;
     int64_t massless = modes->num_dofs - modes->count;
     int64_t r = modes->num_rigid;
     double least = r < modes->count ? modes->lambda[r] : 0.0;

@@ -42,27 +42,12 @@ static const double died_out = 1e-3;
 /* Of |A| t: squaring has added up rounding to 1e-7 then. */
 static const double long_enough = 1e-7 / DBL_EPSILON;
 
-ritz_status ritz_probe_energy_matrix(const ritz_first_order *modes,
+ritz_status ritz_probe_energy_matrix(const ritz_modal_model *modes,
                                      ritz_dense *out)
 {
-    int64_t m = modes->count;
-    int64_t r = modes->num_rigid;
-    int64_t f = m - r;
-    ritz_dense A = {0};
+    const ritz_modal_layout layout = {.position = modes->num_rigid};
 
-    RITZ_CHECK(ritz_dense_new(f + m, f + m, &A));
-    for (int64_t k = r; k < m; k++) {
-        double w = sqrt(fabs(modes->lambda[k]));
-
-        ritz_dense_col(&A, f + k)[k - r] = w;
-        ritz_dense_col(&A, k - r)[f + k] = -w;
-    }
-    for (int64_t j = 0; j < m; j++)
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(&A, f + j)[f + i] =
-                -ritz_dense_col(&modes->Delta, j)[i];
-    *out = A;
-    return RITZ_OK;
+    return ritz_modal_states(modes, &layout, out, NULL, NULL);
 }
 
 static double norm_one(const ritz_dense *A)

@@ -272,7 +272,7 @@ static void trial_free(trial *t)
 static ritz_status all_damping(const ritz_checker *it, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *modes = &it->modes;
+    const ritz_modal_model *modes = &it->modes;
     ritz_dense own = {0}, part = {0}, sum = {0};
 
     if (it->model.D.val)
@@ -344,7 +344,7 @@ static void attach_to_rows(const ritz_dense *L, int64_t only, double a,
 static ritz_status own_sizes(const ritz_checker *it, double *k, double *m)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *modes = &it->modes;
+    const ritz_modal_model *modes = &it->modes;
     ritz_dense LPhi = {0};
 
     RITZ_TRY(ritz_dense_mul(&it->L, &modes->Phi, &LPhi));

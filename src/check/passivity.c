@@ -517,7 +517,7 @@ static ritz_status collocated_of_modes(const ritz_checker *it,
                                        ritz_collocated *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *modes = &it->modes;
+    const ritz_modal_model *modes = &it->modes;
     int64_t m = modes->count, first = m - modes->num_rigid;
     ritz_collocated model = {0};
     ritz_dense LPhi = {0};

@@ -117,37 +117,17 @@ done:
     return status;
 }
 
-/* A of the modes with mass. */
-static ritz_status first_order_matrix(const ritz_first_order *modes,
-                                      ritz_dense *out)
-{
-    int64_t m = modes->count;
-
-    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, out));
-    for (int64_t j = 0; j < m; j++) {
-        double w = sqrt(fabs(modes->lambda[j]));
-        double s = w > 0.0 ? w : 1.0;
-
-        ritz_dense_col(out, m + j)[j] = s;
-        ritz_dense_col(out, j)[m + j] = -modes->lambda[j] / s;
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(out, m + j)[m + i] =
-                -ritz_dense_col(&modes->Delta, j)[i];
-    }
-    return RITZ_OK;
-}
-
 static ritz_status probe_modes(const ritz_structure *model,
                                const ritz_damping *damping, ritz_probe *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_io none = {0};
     ritz_dense A = {0};
     int64_t r = 0;
 
     RITZ_TRY(ritz_io_new(model->K.nrow, 0, 0, &none));
-    status = ritz_first_order_new(model, &none, damping, &modes);
+    status = ritz_modal_model_new(model, &none, damping, &modes);
     if (status == RITZ_ERR_SINGULAR) {
         out->verdict = RITZ_UNSTABLE;
         snprintf(out->why, sizeof out->why,
@@ -156,7 +136,8 @@ static ritz_status probe_modes(const ritz_structure *model,
         goto done;
     }
     RITZ_TRY(status);
-    RITZ_TRY(first_order_matrix(&modes, &A));
+    RITZ_TRY(
+        ritz_modal_states(&modes, &(ritz_modal_layout){0}, &A, NULL, NULL));
     RITZ_TRY(ritz_probe_judge(&A, out));
     r = modes.num_rigid;
     if (r < modes.count && modes.lambda[r] < 0.0) {
@@ -166,7 +147,7 @@ static ritz_status probe_modes(const ritz_structure *model,
                  modes.lambda[r]);
     }
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     ritz_io_free(&none);
     ritz_dense_free(&A);
     return status;

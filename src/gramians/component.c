@@ -103,7 +103,7 @@ static ritz_status lift_gramians(const ritz_mode_states *states,
                                  ritz_gramians *gramians)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *modes = states->modes;
+    const ritz_modal_model *modes = states->modes;
     int64_t m = modes->count - states->apart;
     const ritz_dense Phi = ritz_dense_part(&modes->Phi, states->apart, m);
     const ritz_dense MPhi = ritz_dense_part(&modes->MPhi, states->apart, m);
@@ -192,7 +192,7 @@ done:
  */
 
 static ritz_status all_modes(const ritz_gramians_request *request,
-                             ritz_first_order *out)
+                             ritz_modal_model *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
@@ -203,7 +203,7 @@ static ritz_status all_modes(const ritz_gramians_request *request,
                  "say up to which frequency, or ask engine 'low-rank'",
                  component->num_dofs);
     RITZ_TRY(ritz_structure_of_component(component, &structure));
-    RITZ_TRY(ritz_first_order_new(&structure, &component->io, &request->damping,
+    RITZ_TRY(ritz_modal_model_new(&structure, &component->io, &request->damping,
                                   out));
 done:
     ritz_structure_free(&structure);
@@ -234,43 +234,36 @@ static ritz_status install_dampers(const ritz_component *component,
 }
 
 static ritz_status modes_up_to(const ritz_gramians_request *request,
-                               ritz_first_order *out)
+                               ritz_modal_model *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     const ritz_span span = {.modes = -1, .up_to_hz = request->among_hz};
     sparse_structure s = {0};
     ritz_pairs pairs = {0};
-    ritz_first_order modes = {.num_dofs = component->num_dofs};
+    ritz_modal_model modes = {0};
 
     RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
                  "structural damping is of harmonic motion and has no states, "
                  "give it as a modal ratio");
     RITZ_TRY(install_dampers(component, &s));
     RITZ_TRY(ritz_eigen_sparse(&s.K, &component->M, &span, &pairs));
-    modes.count = pairs.Phi.ncol;
-    modes.num_rigid = pairs.num_rigid;
-    modes.Phi = pairs.Phi;
-    modes.lambda = pairs.lambda;
-    pairs.Phi = (ritz_dense){0};
-    pairs.lambda = NULL;
-    for (int64_t k = 0; k < modes.num_rigid; k++)
-        modes.lambda[k] = 0.0;
+    ritz_modal_model_take(&pairs, component->num_dofs, &modes);
     RITZ_TRY(ritz_sparse_mul(&component->M, &modes.Phi, &modes.MPhi));
     if (s.D.colptr)
         RITZ_TRY(ritz_sparse_project(&s.D, &modes.Phi, &modes.Delta));
-    RITZ_TRY(ritz_first_order_drive(&component->io, &request->damping, &modes));
+    RITZ_TRY(ritz_modal_model_drive(&component->io, &request->damping, &modes));
     *out = modes;
-    modes = (ritz_first_order){0};
+    modes = (ritz_modal_model){0};
 done:
     structure_free(&s);
     ritz_pairs_free(&pairs);
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     return status;
 }
 
 ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
-                                ritz_first_order *out)
+                                ritz_modal_model *out)
 {
     RITZ_CHECK(request->among_hz > 0.0 ? modes_up_to(request, out)
                                        : all_modes(request, out));
@@ -283,7 +276,7 @@ ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
 
 /* Of modes that damping does not couple. */
 static ritz_status closed_form(const ritz_gramians_request *request,
-                               const ritz_first_order *modes,
+                               const ritz_modal_model *modes,
                                ritz_gramians *out)
 {
     ritz_status status = RITZ_OK;
@@ -312,7 +305,7 @@ static ritz_status find_modal(const ritz_gramians_request *request,
                               ritz_gramians *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_coupling coupling = {0};
 
     RITZ_TRY(ritz_gramians_modes(request, &modes));
@@ -323,7 +316,7 @@ static ritz_status find_modal(const ritz_gramians_request *request,
                            : "engine 'dense' takes any"));
     RITZ_TRY(closed_form(request, &modes, out));
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     return status;
 }
 
@@ -332,7 +325,7 @@ static ritz_status find_modal_if(const ritz_gramians_request *request,
                                  bool *fits, ritz_gramians *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_coupling coupling = {0};
 
     RITZ_TRY(ritz_gramians_modes(request, &modes));
@@ -340,7 +333,7 @@ static ritz_status find_modal_if(const ritz_gramians_request *request,
     if (*fits)
         RITZ_TRY(closed_form(request, &modes, out));
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     return status;
 }
 

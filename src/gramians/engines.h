@@ -2,7 +2,7 @@
 #ifndef RITZ_GRAMIANS_ENGINES_H
 #define RITZ_GRAMIANS_ENGINES_H
 
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include <ritz/gramians.h>
 
@@ -15,11 +15,11 @@
  * @return RITZ_ERR_ARGUMENT if there are too many, or no flexible one
  */
 ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
-                                ritz_first_order *out);
+                                ritz_modal_model *out);
 
 /* States of modes: q_k is row k * step, q_k' the next, or row m + k of 2m. */
 typedef struct ritz_mode_states {
-    const ritz_first_order *modes;
+    const ritz_modal_model *modes;
     int64_t apart; /* rigid modes, the first ones, that are none of them */
     int64_t step;  /* 1: all q before all q'; 2: each q before its q' */
     const double *scale; /* rows are scale q and q'; NULL: q */

@@ -28,7 +28,7 @@ static const double rounding = 1e-12;
 static const double near = 1e-6;
 
 /* One past the last of the modes at the frequency of mode `first`. */
-static int64_t end_of_cluster(const ritz_first_order *modes, int64_t first)
+static int64_t end_of_cluster(const ritz_modal_model *modes, int64_t first)
 {
     int64_t last = first + 1;
 
@@ -111,7 +111,7 @@ done:
     return status;
 }
 
-ritz_status ritz_modes_turn(ritz_first_order *modes)
+ritz_status ritz_modes_turn(ritz_modal_model *modes)
 {
     ritz_status status = RITZ_OK;
     ritz_dense V = {0};
@@ -140,7 +140,7 @@ done:
     return status;
 }
 
-bool ritz_modes_coupled(const ritz_first_order *modes, ritz_coupling *out)
+bool ritz_modes_coupled(const ritz_modal_model *modes, ritz_coupling *out)
 {
     const ritz_dense *d = &modes->Delta;
     double largest = 0.0;
@@ -196,7 +196,7 @@ done:
 }
 
 /* Inputs and outputs of flexible mode k, which is mode `at`. */
-static void put_mode(const ritz_first_order *modes, int64_t at,
+static void put_mode(const ritz_modal_model *modes, int64_t at,
                      const double *limit, ritz_modal *modal, int64_t k)
 {
     for (int64_t j = 0; j < modal->B.ncol; j++)
@@ -210,7 +210,7 @@ static void put_mode(const ritz_first_order *modes, int64_t at,
     }
 }
 
-ritz_status ritz_modal_of_modes(const ritz_first_order *modes,
+ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, ritz_modal *out)
 {
     ritz_status status = RITZ_OK;
@@ -294,23 +294,17 @@ static ritz_status check_sizes(const ritz_dense *K, const ritz_dense *D,
 static ritz_status find_modes(const ritz_dense *K, const ritz_dense *M,
                               const ritz_dense *D, const ritz_io *io,
                               const ritz_damping *damping,
-                              ritz_first_order *modes)
+                              ritz_modal_model *modes)
 {
     ritz_status status = RITZ_OK;
     const ritz_damping none = {0};
     ritz_pairs pairs = {0};
 
     RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
-    modes->num_dofs = K->nrow;
-    modes->count = pairs.Phi.ncol;
-    modes->num_rigid = pairs.num_rigid;
-    modes->Phi = pairs.Phi;
-    modes->lambda = pairs.lambda;
-    pairs.Phi = (ritz_dense){0};
-    pairs.lambda = NULL;
+    ritz_modal_model_take(&pairs, K->nrow, modes);
     if (D && D->val)
         RITZ_TRY(ritz_dense_project(D, &modes->Phi, &modes->Delta));
-    RITZ_TRY(ritz_first_order_drive(io, damping ? damping : &none, modes));
+    RITZ_TRY(ritz_modal_model_drive(io, damping ? damping : &none, modes));
 done:
     ritz_pairs_free(&pairs);
     return status;
@@ -321,7 +315,7 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
                            const ritz_damping *damping, ritz_modal *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_coupling coupling = {0};
 
     RITZ_TRY(check_sizes(K, D, io));
@@ -332,7 +326,7 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
                                       "a ranking needs damping mode by mode"));
     RITZ_TRY(ritz_modal_of_modes(&modes, io, out));
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     return status;
 }
 

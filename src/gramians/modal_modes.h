@@ -2,7 +2,7 @@
 #ifndef RITZ_GRAMIANS_MODAL_MODES_H
 #define RITZ_GRAMIANS_MODAL_MODES_H
 
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include <ritz/modal.h>
 
@@ -12,7 +12,7 @@
  * Modes of one frequency may be any basis of their space: turn them into one in
  * which damping is diagonal. MPhi may be {0}.
  */
-ritz_status ritz_modes_turn(ritz_first_order *modes);
+ritz_status ritz_modes_turn(ritz_modal_model *modes);
 
 /* Two modes that damping couples, one at least flexible. */
 typedef struct ritz_coupling {
@@ -21,7 +21,7 @@ typedef struct ritz_coupling {
 } ritz_coupling;
 
 /** Whether there are such. */
-bool ritz_modes_coupled(const ritz_first_order *modes, ritz_coupling *out);
+bool ritz_modes_coupled(const ritz_modal_model *modes, ritz_coupling *out);
 
 /** RITZ_ERR_ARGUMENT, with a sentence that ends in @p why. */
 ritz_status ritz_coupling_refuse(const ritz_coupling *coupling,
@@ -33,7 +33,7 @@ ritz_status ritz_coupling_refuse(const ritz_coupling *coupling,
  * @param[in] io  for the limits of its outputs
  * @return RITZ_ERR_ARGUMENT if one has no damping, or a limit is not positive
  */
-ritz_status ritz_modal_of_modes(const ritz_first_order *modes,
+ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, ritz_modal *out);
 
 #endif

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Rigid modes stand apart if Delta does not join them to flexible ones. */
-static int64_t count_apart(const ritz_first_order *modes)
+static int64_t count_apart(const ritz_modal_model *modes)
 {
     int64_t r = modes->num_rigid;
 
@@ -23,7 +23,7 @@ static int64_t count_apart(const ritz_first_order *modes)
 
 static ritz_status choose_scale(ritz_states *states)
 {
-    const ritz_first_order *modes = &states->modes;
+    const ritz_modal_model *modes = &states->modes;
     int64_t half = modes->count - states->num_apart;
     double least = 0.0;
 
@@ -41,39 +41,17 @@ static ritz_status choose_scale(ritz_states *states)
     return RITZ_OK;
 }
 
-/* A = [0 S; -Lambda S^-1 -Delta] - alpha I,  B = [0; B],  C = [C S^-1 Cv] */
-static ritz_status fill(ritz_states *states)
+/* A - alpha I, B and C. */
+static ritz_status fill_states(ritz_states *states)
 {
-    const ritz_first_order *modes = &states->modes;
     int64_t r = states->num_apart;
-    int64_t m = modes->count - r;
+    const ritz_modal_layout layout = {r, r, states->scale};
 
-    states->count = 2 * m;
-    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &states->A));
-    RITZ_CHECK(ritz_dense_new(2 * m, modes->B.ncol, &states->B));
-    RITZ_CHECK(ritz_dense_new(modes->C.nrow, 2 * m, &states->C));
-    for (int64_t j = 0; j < m; j++) {
-        double *q = ritz_dense_col(&states->A, j);
-        double *v = ritz_dense_col(&states->A, m + j);
-        double s = states->scale[j];
-
-        v[j] = s;
-        q[m + j] = -modes->lambda[r + j] / s;
-        for (int64_t i = 0; i < m; i++)
-            v[m + i] = -ritz_dense_col(&modes->Delta, r + j)[r + i];
-        q[j] -= states->alpha;
-        v[m + j] -= states->alpha;
-        for (int64_t i = 0; i < modes->C.nrow; i++) {
-            ritz_dense_col(&states->C, j)[i] =
-                ritz_dense_col(&modes->C, r + j)[i] / s;
-            ritz_dense_col(&states->C, m + j)[i] =
-                ritz_dense_col(&modes->Cv, r + j)[i];
-        }
-    }
-    for (int64_t j = 0; j < modes->B.ncol; j++)
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(&states->B, j)[m + i] =
-                ritz_dense_col(&modes->B, j)[r + i];
+    RITZ_CHECK(ritz_modal_states(&states->modes, &layout, &states->A,
+                                 &states->B, &states->C));
+    states->count = states->A.nrow;
+    for (int64_t k = 0; k < states->count; k++)
+        ritz_dense_col(&states->A, k)[k] -= states->alpha;
     return RITZ_OK;
 }
 
@@ -86,12 +64,12 @@ ritz_status ritz_states_new(const ritz_component *component,
     ritz_structure structure = {0};
 
     RITZ_TRY(ritz_structure_of_component(component, &structure));
-    RITZ_TRY(ritz_first_order_new(&structure, &component->io, damping,
+    RITZ_TRY(ritz_modal_model_new(&structure, &component->io, damping,
                                   &states.modes));
     ritz_damping_print(damping, states.damping);
     states.num_apart = count_apart(&states.modes);
     RITZ_TRY(choose_scale(&states));
-    RITZ_TRY(fill(&states));
+    RITZ_TRY(fill_states(&states));
     RITZ_FAIL_IF(states.count == 0, RITZ_ERR_ARGUMENT,
                  "the component has no flexible states: its rigid modes are "
                  "all there is");
@@ -176,7 +154,7 @@ static ritz_status put_states(const ritz_states *states, const ritz_dense *T,
                               const ritz_dense *W, ritz_basis *basis)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *modes = &states->modes;
+    const ritz_modal_model *modes = &states->modes;
     int64_t n = modes->num_dofs;
     int64_t r = states->num_apart;
     int64_t m = states->count / 2;
@@ -226,7 +204,7 @@ done:
 
 void ritz_states_free(ritz_states *states)
 {
-    ritz_first_order_free(&states->modes);
+    ritz_modal_model_free(&states->modes);
     free(states->scale);
     ritz_dense_free(&states->A);
     ritz_dense_free(&states->B);

@@ -2,7 +2,7 @@
 #ifndef RITZ_GRAMIANS_STATES_H
 #define RITZ_GRAMIANS_STATES_H
 
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include <ritz/basis.h>
 
@@ -12,7 +12,7 @@
  * to others stand apart, and are no part of A, B and C.
  */
 typedef struct ritz_states {
-    ritz_first_order modes;
+    ritz_modal_model modes;
     int64_t num_apart; /* rigid modes that stand apart, the first ones */
     int64_t count;     /* of states in A */
     double *scale;     /* count / 2 */

@@ -13,6 +13,7 @@
  */
 #include "base/alloc.h"
 #include "linear/general.h"
+#include "model/modal.h"
 #include "model/state_reduce.h"
 
 #include <ritz/eigen.h>
@@ -113,15 +114,9 @@ static ritz_status add_ratios(const ritz_damping *damping, double among_hz,
     RITZ_TRY_IN("damping ratios", ritz_eigen_sparse(&m->K, M, &span, &modes));
     RITZ_TRY(ritz_dense_mul_tn(&modes.Phi, MT, &q));
     for (int64_t j = 0; j < q.ncol; j++)
-        for (int64_t k = 0; k < q.nrow; k++) {
-            double w = sqrt(fmax(modes.lambda[k], 0.0));
-            int64_t flexible = k - modes.num_rigid;
-
+        for (int64_t k = 0; k < q.nrow; k++)
             ritz_dense_col(&q, j)[k] *=
-                flexible < 0
-                    ? 0.0
-                    : 2.0 * w * ritz_damping_of_mode(damping, flexible, w);
-        }
+                ritz_modal_rate(damping, k - modes.num_rigid, modes.lambda[k]);
     RITZ_TRY(ritz_dense_mul(&modes.Phi, &q, &rate));
     RITZ_TRY(ritz_sparse_mul(M, &rate, &force));
     add(1.0, &force, &m->F);

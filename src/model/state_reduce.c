@@ -15,7 +15,7 @@
 #include "model/state_reduce.h"
 
 #include "base/alloc.h"
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include <ritz/state_space.h>
 
@@ -65,7 +65,7 @@ done:
 }
 
 /* Lambda T_q + Delta T_v */
-static ritz_status restoring(const ritz_first_order *modes,
+static ritz_status restoring(const ritz_modal_model *modes,
                              const ritz_dense *T_q, const ritz_dense *T_v,
                              ritz_dense *out)
 {
@@ -78,7 +78,7 @@ static ritz_status restoring(const ritz_first_order *modes,
 }
 
 /* C T_q + Cv T_v, and what feeds through. */
-static ritz_status project_outputs(const ritz_first_order *modes,
+static ritz_status project_outputs(const ritz_modal_model *modes,
                                    const ritz_dense *T_q, const ritz_dense *T_v,
                                    ritz_state_space *out)
 {
@@ -114,7 +114,7 @@ static double terms(const ritz_dense *A, int64_t i, const ritz_dense *X,
  * columns, what is rounding of no rigid motion is none: left as it is, it would
  * join what stands apart, by numbers so small that scaling goes astray.
  */
-static void settle_rigid(const ritz_first_order *modes,
+static void settle_rigid(const ritz_modal_model *modes,
                          const ritz_columns *columns, const ritz_dense *A,
                          const ritz_dense *X, int64_t first, ritz_dense *part)
 {
@@ -133,7 +133,7 @@ static void settle_rigid(const ritz_first_order *modes,
 }
 
 /* A half of T or W in modal coordinates. */
-static ritz_status take_settled(const ritz_first_order *modes,
+static ritz_status take_settled(const ritz_modal_model *modes,
                                 const ritz_columns *columns,
                                 const ritz_dense *A, const ritz_dense *X,
                                 int64_t first, ritz_dense *out)
@@ -143,7 +143,7 @@ static ritz_status take_settled(const ritz_first_order *modes,
     return RITZ_OK;
 }
 
-static ritz_status project(const ritz_first_order *modes,
+static ritz_status project(const ritz_modal_model *modes,
                            const ritz_basis *basis, ritz_state_space *out,
                            ritz_dense *E)
 {
@@ -182,14 +182,14 @@ static ritz_status project_modes(const ritz_component *component,
 {
     ritz_status status = RITZ_OK;
     ritz_structure model = {0};
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
 
     RITZ_TRY(ritz_structure_of_component(component, &model));
-    RITZ_TRY(ritz_first_order_new(&model, &component->io, damping, &modes));
+    RITZ_TRY(ritz_modal_model_new(&model, &component->io, damping, &modes));
     RITZ_TRY(project(&modes, basis, out, E));
 done:
     ritz_structure_free(&model);
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     return status;
 }
 

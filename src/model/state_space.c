@@ -5,11 +5,11 @@
  *     C = [C - Ca M^-1 K, Cv - Ca M^-1 D],   D = Ca M^-1 B
  *
  * Damping ratios are M Phi diag(2 zeta w) Phi'M beside D. Where M is singular
- * x = [q; q'] of the modes with mass, as first_order.c finds them.
+ * x = [q; q'] of the modes with mass, as modal.c finds them.
  */
 #include "base/alloc.h"
 #include "linear/general.h"
-#include "model/first_order.h"
+#include "model/modal.h"
 #include "model/state_reduce.h"
 
 #include <ritz/state_space.h>
@@ -282,40 +282,6 @@ done:
     return status;
 }
 
-/* D + a M + b K + M Phi diag(2 zeta w) Phi'M. */
-static ritz_status total_damping(const ritz_structure *model, const ritz_io *io,
-                                 const ritz_damping *damping, ritz_dense *out)
-{
-    ritz_status status = RITZ_OK;
-    int64_t n = model->K.nrow;
-    const ritz_structure bare = {model->K, model->M, {0}};
-    ritz_first_order modes = {0};
-    ritz_dense MPhiDelta = {0}, D = {0};
-
-    if (damping->kind != RITZ_DAMPING_NONE &&
-        !ritz_damping_is_rayleigh(damping)) {
-        RITZ_TRY(ritz_first_order_new(&bare, io, damping, &modes));
-        RITZ_TRY(ritz_dense_mul(&modes.MPhi, &modes.Delta, &MPhiDelta));
-        RITZ_TRY(ritz_dense_mul_nt(&MPhiDelta, &modes.MPhi, &D));
-    } else {
-        RITZ_TRY(ritz_dense_new(n, n, &D));
-    }
-    for (int64_t k = 0; k < n * n; k++) {
-        if (ritz_damping_is_rayleigh(damping))
-            D.val[k] +=
-                damping->a * model->M.val[k] + damping->b * model->K.val[k];
-        if (model->D.val)
-            D.val[k] += model->D.val[k];
-    }
-    *out = D;
-    D = (ritz_dense){0};
-done:
-    ritz_first_order_free(&modes);
-    ritz_dense_free(&MPhiDelta);
-    ritz_dense_free(&D);
-    return status;
-}
-
 /* C(:, first..) += sign A B */
 static ritz_status add_product(double sign, const ritz_dense *A,
                                const ritz_dense *B, int64_t first,
@@ -389,34 +355,30 @@ static ritz_status by_modes(const ritz_structure *model, const ritz_io *io,
                             const ritz_damping *damping, ritz_state_space *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_state_space made = {0};
+    double *ones = NULL;
     int64_t m = 0;
 
-    RITZ_TRY(ritz_first_order_new(model, io, damping, &modes));
+    RITZ_TRY(ritz_modal_model_new(model, io, damping, &modes));
     m = modes.count;
     RITZ_TRY(ritz_state_space_new(2 * m, io, &made));
-    for (int64_t j = 0; j < m; j++) {
-        ritz_dense_col(&made.A, m + j)[j] = 1.0;
-        ritz_dense_col(&made.A, j)[m + j] = -modes.lambda[j];
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(&made.A, m + j)[m + i] =
-                -ritz_dense_col(&modes.Delta, j)[i];
-        for (int64_t i = 0; i < io->num_outputs; i++) {
-            ritz_dense_col(&made.C, j)[i] = ritz_dense_col(&modes.C, j)[i];
-            ritz_dense_col(&made.C, m + j)[i] = ritz_dense_col(&modes.Cv, j)[i];
-        }
-    }
-    for (int64_t j = 0; j < io->num_inputs; j++)
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(&made.B, j)[m + i] = ritz_dense_col(&modes.B, j)[i];
+    RITZ_NEW(ones, m);
+    for (int64_t k = 0; k < m; k++)
+        ones[k] = 1.0;
+    ritz_dense_free(&made.A);
+    ritz_dense_free(&made.B);
+    ritz_dense_free(&made.C);
+    RITZ_TRY(ritz_modal_states(&modes, &(ritz_modal_layout){.scale = ones},
+                               &made.A, &made.B, &made.C));
     ritz_dense_free(&made.D);
     made.D = modes.feed;
     modes.feed = (ritz_dense){0};
     *out = made;
     made = (ritz_state_space){0};
 done:
-    ritz_first_order_free(&modes);
+    free(ones);
+    ritz_modal_model_free(&modes);
     ritz_state_space_free(&made);
     return status;
 }
@@ -427,7 +389,11 @@ static ritz_status convert(const ritz_structure *model, const ritz_io *io,
     ritz_status status = RITZ_OK;
     ritz_dense D = {0};
 
-    RITZ_TRY(total_damping(model, io, damping, &D));
+    if (model->D.val)
+        RITZ_TRY(ritz_dense_copy(&model->D, &D));
+    else
+        RITZ_TRY(ritz_dense_new(model->K.nrow, model->K.nrow, &D));
+    RITZ_TRY(ritz_modal_damping(model, damping, &D));
     status = by_dofs(model, &D, io, out);
     if (status == RITZ_ERR_SINGULAR)
         RITZ_TRY(by_modes(model, io, damping, out));

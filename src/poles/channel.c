@@ -84,22 +84,6 @@ done:
     return status;
 }
 
-/*
- * A channel of a second-order model, by its modes: with W = |Lambda|^1/2, or 1
- * where Lambda is 0,
- *
- *     x = [W p; p'],   x' = [ 0          W     ] x + [ 0      ] u
- *                           [ -Lambda/W  -Delta ]    [ Phi'B ]
- *
- * which holds slow poles apart from fast ones. Without damping
- * p'' = -Lambda p + Phi'B u stands for itself.
- */
-
-static double weight_of(double lambda)
-{
-    return lambda != 0.0 ? sqrt(fabs(lambda)) : 1.0;
-}
-
 /* A = -Lambda, or blocks of two. */
 static ritz_status fill_decoupled(int64_t m, const ritz_channel_row *rows,
                                   bool squared, double feed, ritz_channel *out)
@@ -115,7 +99,7 @@ static ritz_status fill_decoupled(int64_t m, const ritz_channel_row *rows,
     out->D.val[0] = feed;
     for (int64_t k = 0; k < m; k++) {
         const ritz_channel_row *r = &rows[k];
-        double w = weight_of(r->lambda);
+        double w = ritz_modal_scale(r->lambda);
 
         out->B.val[n - m + k] = 1.0;
         out->C.val[k] = squared ? r->c : r->c / w;
@@ -142,35 +126,16 @@ static ritz_status channel_of_rows(int64_t count, const ritz_channel_row *rows,
 }
 
 /* All of it, in the same coordinates. */
-static ritz_status channel_of_coupled(const ritz_first_order *f,
+static ritz_status channel_of_coupled(const ritz_modal_model *f,
                                       ritz_channel *out)
 {
-    int64_t m = f->count;
-
-    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &out->A));
-    RITZ_CHECK(ritz_dense_new(2 * m, f->B.ncol, &out->B));
-    RITZ_CHECK(ritz_dense_new(f->C.nrow, 2 * m, &out->C));
-    RITZ_CHECK(ritz_dense_copy(&f->feed, &out->D));
-    for (int64_t k = 0; k < m; k++) {
-        double w = weight_of(f->lambda[k]);
-
-        ritz_dense_col(&out->A, m + k)[k] = w;
-        ritz_dense_col(&out->A, k)[m + k] = -f->lambda[k] / w;
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(&out->A, m + k)[m + i] =
-                -ritz_dense_col(&f->Delta, k)[i];
-        for (int64_t j = 0; j < f->B.ncol; j++)
-            ritz_dense_col(&out->B, j)[m + k] = ritz_dense_col(&f->B, j)[k];
-        for (int64_t i = 0; i < f->C.nrow; i++) {
-            ritz_dense_col(&out->C, k)[i] = ritz_dense_col(&f->C, k)[i] / w;
-            ritz_dense_col(&out->C, m + k)[i] = ritz_dense_col(&f->Cv, k)[i];
-        }
-    }
-    return RITZ_OK;
+    RITZ_CHECK(ritz_modal_states(f, &(ritz_modal_layout){0}, &out->A, &out->B,
+                                 &out->C));
+    return ritz_dense_copy(&f->feed, &out->D);
 }
 
 /* The same without damping, of several outputs and inputs. */
-static ritz_status channel_of_undamped(const ritz_first_order *f,
+static ritz_status channel_of_undamped(const ritz_modal_model *f,
                                        ritz_channel *out)
 {
     out->squared = true;
@@ -183,13 +148,13 @@ static ritz_status channel_of_undamped(const ritz_first_order *f,
 }
 
 /* @param[in] single  whether @p io is of one input and one output */
-static ritz_status channel_of_modes(const ritz_first_order *modes,
+static ritz_status channel_of_modes(const ritz_modal_model *modes,
                                     const ritz_dense *D, const ritz_io *io,
                                     bool single, ritz_channel *out)
 {
     ritz_status status = RITZ_OK;
     ritz_channel_row *rows = NULL;
-    ritz_first_order moved = {0};
+    ritz_modal_model moved = {0};
     int64_t count = -1;
 
     if (single)
@@ -205,7 +170,7 @@ static ritz_status channel_of_modes(const ritz_first_order *modes,
         RITZ_TRY(channel_of_coupled(&moved, out));
 done:
     free(rows);
-    ritz_first_order_free(&moved);
+    ritz_modal_model_free(&moved);
     return status;
 }
 
@@ -275,7 +240,7 @@ ritz_status ritz_channel_dense(const ritz_second_order *model,
     static const ritz_damping none = {0};
     ritz_status status = RITZ_OK;
     ritz_structure structure = {*model->K, *model->M, {0}};
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_channel made = {0};
     ritz_io io = {0};
     bool single = output != RITZ_ALL_CHANNELS;
@@ -290,13 +255,13 @@ ritz_status ritz_channel_dense(const ritz_second_order *model,
     RITZ_TRY(take_channel(model->io, output, input, &io));
     if (single)
         made.derivative = integrate_outputs(&io);
-    RITZ_TRY(ritz_first_order_new(&structure, &io, damping ? damping : &none,
+    RITZ_TRY(ritz_modal_model_new(&structure, &io, damping ? damping : &none,
                                   &modes));
     RITZ_TRY(channel_of_modes(&modes, &structure.D, &io, single, &made));
     *out = made;
     made = (ritz_channel){0};
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     ritz_channel_free(&made);
     ritz_io_free(&io);
     return status;

@@ -31,7 +31,7 @@ static const double few = 8.0;
 enum { FORCE, PLACE, SPEED, PUSH, KINDS };
 
 typedef struct sight {
-    const ritz_first_order *modes;
+    const ritz_modal_model *modes;
     double highest, same; /* lambda: the largest, and how near equal ones are */
     double eps;           /* of the magnitudes in a product over all dofs */
     ritz_dense value, doubt; /* modes x KINDS: a'phi_k */
@@ -48,7 +48,7 @@ static double mixing(const sight *s, int64_t j, int64_t k)
                                           : 1.0;
 }
 
-static sight eyes_on(const ritz_first_order *modes)
+static sight eyes_on(const ritz_modal_model *modes)
 {
     int64_t m = modes->count;
     double highest = m > 0 ? fabs(modes->lambda[m - 1]) : 0.0;
@@ -81,7 +81,7 @@ static void project_rows(const sight *s, const double *a, double *value,
 
 /* a'phi_k of every mode, and what rounding may make of it; added to what is
  * there. */
-static void channel_see(const ritz_first_order *modes, const double *a,
+static void channel_see(const ritz_modal_model *modes, const double *a,
                         double *value, double *doubt)
 {
     const sight s = eyes_on(modes);
@@ -90,7 +90,7 @@ static void channel_see(const ritz_first_order *modes, const double *a,
 }
 
 /* What rounding of K and M may bring of mode j into mode k. */
-static double channel_mixing(const ritz_first_order *modes, int64_t j,
+static double channel_mixing(const ritz_modal_model *modes, int64_t j,
                              int64_t k)
 {
     const sight s = eyes_on(modes);
@@ -98,7 +98,7 @@ static double channel_mixing(const ritz_first_order *modes, int64_t j,
     return mixing(&s, j, k);
 }
 
-static ritz_status open_eyes(const ritz_first_order *modes, const ritz_dense *D,
+static ritz_status open_eyes(const ritz_modal_model *modes, const ritz_dense *D,
                              const ritz_io *io, sight *s)
 {
     int64_t m = modes->count;
@@ -137,7 +137,7 @@ static bool is_coupled(const sight *s)
 /* (c - lambda ca) b, (cv - rate ca) b, and what rounding makes of them. */
 static ritz_channel_row row_of(const sight *s, int64_t k)
 {
-    const ritz_first_order *m = s->modes;
+    const ritz_modal_model *m = s->modes;
     double v[KINDS], d[KINDS], c = m->C.val[k], cv = m->Cv.val[k];
     double l = fabs(m->lambda[k]), rate = ritz_dense_col(&m->Delta, k)[k];
     double off = few * DBL_EPSILON * fmin(s->highest, l / RITZ_EIGEN_FAR_BELOW);
@@ -207,7 +207,7 @@ static int64_t drop_silent(int64_t count, ritz_channel_row *rows)
     return kept;
 }
 
-ritz_status ritz_channel_rows(const ritz_first_order *modes,
+ritz_status ritz_channel_rows(const ritz_modal_model *modes,
                               const ritz_dense *D, const ritz_io *io,
                               int64_t *count, ritz_channel_row **out)
 {
@@ -241,7 +241,7 @@ done:
 
 /* Rigid motions by columns: a basis of those that count, so far. */
 typedef struct sieve {
-    const ritz_first_order *modes;
+    const ritz_modal_model *modes;
     int64_t r;          /* rigid motions */
     ritz_dense loaded;  /* r x ., those that damping acts on */
     ritz_dense left;    /* r x ., those that it leaves free, and that count */
@@ -292,7 +292,7 @@ static double doubt_of_damping(const sieve *s, const ritz_dense *most,
 static ritz_status set_apart(const ritz_dense *D, sieve *s)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *f = s->modes;
+    const ritz_modal_model *f = s->modes;
     int64_t m = f->count;
     double noise = 0.0, smallest = 0.0;
     ritz_dense G = {0}, most = {0};
@@ -415,7 +415,7 @@ static ritz_status basis_of(const sieve *s, ritz_dense *out)
 }
 
 /* Delta of what is left free is zero, not rounding. */
-static void set_free(const sieve *s, ritz_first_order *f)
+static void set_free(const sieve *s, ritz_modal_model *f)
 {
     for (int64_t k = s->loaded.ncol; k < f->num_rigid; k++)
         for (int64_t i = 0; i < f->count; i++) {
@@ -424,11 +424,11 @@ static void set_free(const sieve *s, ritz_first_order *f)
         }
 }
 
-static ritz_status change_basis(const sieve *s, ritz_first_order *out)
+static ritz_status change_basis(const sieve *s, ritz_modal_model *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_first_order *f = s->modes;
-    ritz_first_order made = {.num_dofs = f->num_dofs};
+    const ritz_modal_model *f = s->modes;
+    ritz_modal_model made = {.num_dofs = f->num_dofs};
     ritz_dense T = {0};
 
     RITZ_TRY(basis_of(s, &T));
@@ -446,16 +446,16 @@ static ritz_status change_basis(const sieve *s, ritz_first_order *out)
     RITZ_TRY(ritz_dense_copy(&f->feed, &made.feed));
     set_free(s, &made);
     *out = made;
-    made = (ritz_first_order){0};
+    made = (ritz_modal_model){0};
 done:
     ritz_dense_free(&T);
-    ritz_first_order_free(&made);
+    ritz_modal_model_free(&made);
     return status;
 }
 
-ritz_status ritz_channel_moved(const ritz_first_order *modes,
+ritz_status ritz_channel_moved(const ritz_modal_model *modes,
                                const ritz_dense *D, const ritz_io *io,
-                               ritz_first_order *out)
+                               ritz_modal_model *out)
 {
     ritz_status status = RITZ_OK;
     sieve s = {.modes = modes, .r = modes->num_rigid};

@@ -2,7 +2,7 @@
 #ifndef RITZ_POLES_CHANNEL_MODES_H
 #define RITZ_POLES_CHANNEL_MODES_H
 
-#include "model/first_order.h"
+#include "model/modal.h"
 #include "poles/channel.h"
 
 /* Modes of one channel as they are summed, c + s cv over s^2 + rate s + lambda;
@@ -21,7 +21,7 @@ typedef struct ritz_channel_row {
  * @param[out] out   as many as there are modes, to be freed by the caller
  * @param[out] count of them that count; -1: damping couples modes
  */
-ritz_status ritz_channel_rows(const ritz_first_order *modes,
+ritz_status ritz_channel_rows(const ritz_modal_model *modes,
                               const ritz_dense *D, const ritz_io *io,
                               int64_t *count, ritz_channel_row **out);
 
@@ -31,8 +31,8 @@ ritz_status ritz_channel_rows(const ritz_first_order *modes,
  * @param[in] D   that Delta was projected from; {0}: none
  * @param[in] io  any inputs and outputs
  */
-ritz_status ritz_channel_moved(const ritz_first_order *modes,
+ritz_status ritz_channel_moved(const ritz_modal_model *modes,
                                const ritz_dense *D, const ritz_io *io,
-                               ritz_first_order *out);
+                               ritz_modal_model *out);
 
 #endif

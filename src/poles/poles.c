@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "model/io.h"
+#include "model/modal.h"
 
 #include <complex.h>
 #include <lapacke.h>
@@ -176,12 +177,8 @@ ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
         double w = rigid ? 0.0 : sqrt(fmax(pairs->lambda[k], 0.0));
 
         poles.lambda[k] = w * w;
-        if (damping && !rigid)
-            poles.rate[k] =
-                2.0 * w * ritz_damping_of_mode(damping, k - poles.num_rigid, w);
-        /* a M + b K damps rigid motion too; a ratio does not */
-        if (damping && rigid && ritz_damping_is_rayleigh(damping))
-            poles.rate[k] = damping->a;
+        poles.rate[k] =
+            ritz_modal_rate(damping, k - poles.num_rigid, poles.lambda[k]);
     }
     RITZ_TRY(add_matrices(D, K4, &poles));
     RITZ_TRY(ritz_io_project(io, &pairs->Phi, &poles.io));

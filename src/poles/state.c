@@ -1,6 +1,7 @@
 #include "poles/state.h"
 
 #include "base/alloc.h"
+#include "model/modal.h"
 #include "poles/massless.h"
 
 #include <ritz/eigen.h>
@@ -13,7 +14,7 @@
 
 double ritz_state_weight(const ritz_state *state, int64_t j)
 {
-    return state->lambda[j] == 0.0 ? 1.0 : sqrt(fabs(state->lambda[j]));
+    return ritz_modal_scale(state->lambda[j]);
 }
 
 /* G = D_aa^-1 [D_ap I], k x (m + k). */
@@ -135,24 +136,19 @@ static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
     return RITZ_OK;
 }
 
-/* What ratios, or a M + b K, add to D of modes and of N. */
+/* What stated damping adds to D; of N, where M is 0 and K is 1, only b K. */
 static void add_given(const ritz_damping *damping, const ritz_pairs *pairs,
                       ritz_dense *D)
 {
     bool rayleigh = damping && ritz_damping_is_rayleigh(damping);
     int64_t m = pairs->Phi.ncol;
 
-    for (int64_t j = 0; damping && j < D->ncol; j++) {
-        double lambda = j < m ? pairs->lambda[j] : 1.0;
-        double w = sqrt(fmax(lambda, 0.0));
-        double *d = &ritz_dense_col(D, j)[j];
-
-        if (rayleigh)
-            *d += (j < m ? damping->a : 0.0) + damping->b * lambda;
-        else if (j < m && w > 0.0)
-            *d += 2.0 * w *
-                  ritz_damping_of_mode(damping, j - pairs->num_rigid, w);
-    }
+    for (int64_t j = 0; j < D->ncol; j++)
+        if (j < m)
+            ritz_dense_col(D, j)[j] += ritz_modal_rate(
+                damping, j - pairs->num_rigid, pairs->lambda[j]);
+        else if (rayleigh)
+            ritz_dense_col(D, j)[j] += damping->b;
 }
 
 /*

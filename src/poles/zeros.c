@@ -1,7 +1,7 @@
 /* Zeros: found from the pencil, made exact where the model says more. */
 #include "base/alloc.h"
 #include "linear/resolvent.h"
-#include "model/first_order.h"
+#include "model/modal.h"
 #include "poles/channel.h"
 #include "poles/poles.h"
 

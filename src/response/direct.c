@@ -20,6 +20,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "model/modal.h"
 #include "model/io.h"
 #include "response/responder.h"
 
@@ -181,9 +182,8 @@ static void rates(const ritz_direct *s, double w, int64_t columns,
     for (int64_t j = 0; j < columns; j++)
         for (int64_t k = 0; k < s->m; k++) {
             const double *u = ritz_dense_col(&s->MPhi, k);
-            double wk = sqrt(s->poles.lambda[k]);
-            int64_t mode = k - s->poles.num_rigid;
-            double e = 2.0 * wk * ritz_damping_of_mode(&s->damping, mode, wk);
+            double e = ritz_modal_rate(&s->damping, k - s->poles.num_rigid,
+                                       s->poles.lambda[k]);
             double _Complex sum = 0.0;
 
             for (int64_t i = 0; i < s->n; i++)

@@ -1,6 +1,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "model/modal.h"
 #include "poles/spectrum_parts.h"
 #include "response/direct.h"
 #include "response/responder.h"
@@ -458,11 +459,8 @@ static ritz_status take_whole(ritz_nodes *s)
         return RITZ_OK;
     RITZ_TRY(ritz_dense_copy(&full->MPhi, &scaled));
     for (int64_t k = 0; k < full->m; k++) {
-        double w = sqrt(full->poles.lambda[k]);
-        int64_t mode = k - full->poles.num_rigid;
-        double rate =
-            mode < 0 ? 0.0
-                     : 2.0 * w * ritz_damping_of_mode(&full->damping, mode, w);
+        double rate = ritz_modal_rate(
+            &full->damping, k - full->poles.num_rigid, full->poles.lambda[k]);
 
         for (int64_t i = 0; i < full->n; i++)
             ritz_dense_col(&scaled, k)[i] *= rate;

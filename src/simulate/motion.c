@@ -33,7 +33,7 @@ static ritz_status refuse_structural(bool there)
 }
 
 /* Modes as they are: what @p modes owns moves over. */
-static ritz_status take_modes(ritz_first_order *modes, ritz_motion *m)
+static ritz_status take_modes(ritz_modal_model *modes, ritz_motion *m)
 {
     m->form = RITZ_FORM_MODAL;
     m->n = modes->count;
@@ -53,22 +53,13 @@ static ritz_status take_modes(ritz_first_order *modes, ritz_motion *m)
     return RITZ_OK;
 }
 
-/* What K leaves to modes above, as the first term of their series. */
-static ritz_status add_rest(const ritz_component *component, double up_to_hz,
-                            const ritz_pairs *pairs, ritz_dense *feed)
+/* The static response of modes above, the first term of their series. */
+static ritz_status find_rest(const ritz_component *component, double up_to_hz,
+                             const ritz_pairs *pairs, ritz_residual *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_residual rest = {0};
-    int64_t size = feed->nrow * feed->ncol;
-
     if (pairs->Phi.ncol >= component->num_dofs)
         return RITZ_OK;
-    RITZ_TRY(ritz_residual_new(component, NULL, pairs, 0.0, up_to_hz, &rest));
-    for (int64_t k = 0; rest.count > 0 && k < size; k++)
-        feed->val[k] += rest.C[k];
-done:
-    ritz_residual_free(&rest);
-    return status;
+    return ritz_residual_new(component, NULL, pairs, 0.0, up_to_hz, out);
 }
 
 /* Modal, up to a frequency, with the static answer of all above in `feed`. */
@@ -80,7 +71,8 @@ static ritz_status motion_of_modes(const ritz_component *component,
     ritz_status status = RITZ_OK;
     const ritz_span span = {.modes = -1, .up_to_hz = up_to_hz};
     ritz_pairs pairs = {0};
-    ritz_first_order modes = {.num_dofs = component->num_dofs};
+    ritz_modal_model modes = {0};
+    ritz_residual rest = {0};
     ritz_motion m = {0};
 
     RITZ_FAIL_IF(!(up_to_hz > 0.0), RITZ_ERR_ARGUMENT,
@@ -88,25 +80,24 @@ static ritz_status motion_of_modes(const ritz_component *component,
     RITZ_TRY(refuse_structural(component->K4.colptr &&
                                ritz_sparse_max(&component->K4) > 0.0));
     RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));
-    modes.count = pairs.Phi.ncol;
-    modes.num_rigid = pairs.num_rigid;
-    RITZ_TRY(ritz_dense_copy(&pairs.Phi, &modes.Phi));
     RITZ_TRY(ritz_sparse_mul(&component->M, &pairs.Phi, &modes.MPhi));
     RITZ_TRY(ritz_sparse_project(&component->D, &pairs.Phi, &modes.Delta));
-    RITZ_NEW(modes.lambda, modes.count);
-    for (int64_t j = modes.num_rigid; j < modes.count; j++)
-        modes.lambda[j] = pairs.lambda[j];
-    RITZ_TRY(ritz_first_order_drive(&component->io, damping ? damping : &none,
-                                    &modes));
     RITZ_TRY_IN("what lies above the modes",
-                add_rest(component, up_to_hz, &pairs, &modes.feed));
+                find_rest(component, up_to_hz, &pairs, &rest));
+    ritz_modal_model_take(&pairs, component->num_dofs, &modes);
+    RITZ_TRY(ritz_modal_model_drive(&component->io, damping ? damping : &none,
+                                    &modes));
+    for (int64_t k = 0;
+         rest.count > 0 && k < rest.num_outputs * rest.num_inputs; k++)
+        modes.feed.val[k] += rest.C[k];
     RITZ_TRY(take_modes(&modes, &m));
     m.highest = nan("");
     *out = m;
     m = (ritz_motion){0};
 done:
+    ritz_residual_free(&rest);
     ritz_pairs_free(&pairs);
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     ritz_motion_free(&m);
     return status;
 }
@@ -280,36 +271,6 @@ static ritz_status add(double alpha, const ritz_dense *X, ritz_dense *A)
     return RITZ_OK;
 }
 
-/* D += M Phi Delta Phi'M of ratios alone, or a M + b K. */
-static ritz_status add_damping(const ritz_structure *model,
-                               const ritz_damping *damping, ritz_dense *D)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_structure bare = {model->K, model->M, {0}};
-    ritz_first_order modes = {0};
-    ritz_io io = {0};
-    ritz_dense MPhiDelta = {0}, part = {0};
-
-    if (damping->kind == RITZ_DAMPING_NONE)
-        return RITZ_OK;
-    if (ritz_damping_is_rayleigh(damping)) {
-        RITZ_TRY(add(damping->a, &model->M, D));
-        RITZ_TRY(add(damping->b, &model->K, D));
-        goto done;
-    }
-    RITZ_TRY(ritz_io_new(model->K.nrow, 0, 0, &io));
-    RITZ_TRY(ritz_first_order_new(&bare, &io, damping, &modes));
-    RITZ_TRY(ritz_dense_mul(&modes.MPhi, &modes.Delta, &MPhiDelta));
-    RITZ_TRY(ritz_dense_mul_nt(&MPhiDelta, &modes.MPhi, &part));
-    RITZ_TRY(add(1.0, &part, D));
-done:
-    ritz_first_order_free(&modes);
-    ritz_io_free(&io);
-    ritz_dense_free(&MPhiDelta);
-    ritz_dense_free(&part);
-    return status;
-}
-
 /* C -= A X */
 static ritz_status take(const ritz_dense *A, const ritz_dense *X, ritz_dense *C)
 {
@@ -383,7 +344,7 @@ static ritz_status fill_dense(const ritz_structure *s, const ritz_io *io,
     RITZ_CHECK(ritz_dense_copy(&s->M, &m->M));
     if (s->D.val)
         RITZ_CHECK(ritz_dense_copy(&s->D, &m->D));
-    RITZ_CHECK(add_damping(s, damping, &m->D));
+    RITZ_CHECK(ritz_modal_damping(s, damping, &m->D));
     return drive(io, m);
 }
 
@@ -396,14 +357,14 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
     /* borrowed */
     const ritz_structure s = {*model->K, *model->M,
                               present(model->D) ? *model->D : (ritz_dense){0}};
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
     ritz_motion m = {0};
     double highest = 0.0;
 
     damping = damping ? damping : &none;
     RITZ_TRY(refuse_structural(present(model->K4) &&
                                ritz_dense_max(model->K4) > 0.0));
-    RITZ_TRY(ritz_first_order_new(&s, model->io, damping, &modes));
+    RITZ_TRY(ritz_modal_model_new(&s, model->io, damping, &modes));
     for (int64_t j = 0; j < modes.count; j++)
         highest = fmax(highest, fabs(modes.lambda[j]));
     if (modal || modes.count < modes.num_dofs) {
@@ -417,7 +378,7 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
     *out = m;
     m = (ritz_motion){0};
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     ritz_motion_free(&m);
     return status;
 }

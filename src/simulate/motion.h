@@ -11,7 +11,7 @@
 #ifndef RITZ_SIMULATE_MOTION_H
 #define RITZ_SIMULATE_MOTION_H
 
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include <ritz/factor.h>
 #include <ritz/simulate.h>

@@ -10,8 +10,8 @@
 #include "simulate/states.h"
 
 #include "base/alloc.h"
-#include "linear/general.h"
 #include "linear/exponential.h"
+#include "linear/general.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Zeros: closed forms, poles of held structures, cancellation, pencils. */
 #include "masses.h"
-#include "model/first_order.h"
+#include "model/modal.h"
 #include "poles/channel.h"
 #include "spaces.h"
 #include "testing.h"

@@ -9,7 +9,7 @@
  *
  * u = Phi q + R B u, and C R B feeds through. D R must be zero.
  */
-#include "model/first_order.h"
+#include "model/modal.h"
 
 #include "base/alloc.h"
 #include "linear/general.h"
@@ -99,7 +99,7 @@ void ritz_structure_free(ritz_structure *model)
 }
 
 /* Phi'D Phi; what of a rigid motion is no more than rounding is zero. */
-static ritz_status project_damping(const ritz_dense *D, ritz_first_order *model)
+static ritz_status project_damping(const ritz_dense *D, ritz_modal_model *model)
 {
     ritz_status status = RITZ_OK;
     ritz_dense most = {0};
@@ -117,27 +117,29 @@ done:
     return status;
 }
 
-/* 2 zeta w, or a + b w^2, which is of rigid motion too. */
-static void add_damping(const ritz_damping *damping, ritz_first_order *model)
+double ritz_modal_rate(const ritz_damping *damping, int64_t flexible,
+                       double lambda)
 {
-    bool rayleigh = ritz_damping_is_rayleigh(damping);
+    double w = sqrt(fmax(lambda, 0.0));
 
-    for (int64_t k = 0; k < model->count; k++) {
-        double w = sqrt(fmax(model->lambda[k], 0.0));
-        double rate = 0.0;
+    if (!damping)
+        return 0.0;
+    if (ritz_damping_is_rayleigh(damping))
+        return damping->a + damping->b * lambda;
+    return flexible < 0 ? 0.0
+                        : 2.0 * w * ritz_damping_of_mode(damping, flexible, w);
+}
 
-        if (rayleigh)
-            rate = damping->a + damping->b * model->lambda[k];
-        else if (k >= model->num_rigid)
-            rate = 2.0 * w *
-                   ritz_damping_of_mode(damping, k - model->num_rigid, w);
-        ritz_dense_col(&model->Delta, k)[k] += rate;
-    }
+static void add_damping(const ritz_damping *damping, ritz_modal_model *model)
+{
+    for (int64_t k = 0; k < model->count; k++)
+        ritz_dense_col(&model->Delta, k)[k] +=
+            ritz_modal_rate(damping, k - model->num_rigid, model->lambda[k]);
 }
 
 /* R X = (K + s M)^-1 X - Phi (Lambda + s)^-1 Phi'X, and |.| of the first. */
 static ritz_status massless_share(const ritz_structure *model,
-                                  const ritz_first_order *modes,
+                                  const ritz_modal_model *modes,
                                   const ritz_dense *X, ritz_dense *RX,
                                   double *size)
 {
@@ -186,7 +188,7 @@ done:
 /* feed += C R B, once nothing else depends on R. */
 static ritz_status add_massless(const ritz_structure *model, const ritz_io *io,
                                 const ritz_damping *damping,
-                                ritz_first_order *modes)
+                                ritz_modal_model *modes)
 {
     ritz_status status = RITZ_OK;
     ritz_dense RB = {0}, RD = {0}, feed = {0};
@@ -220,7 +222,7 @@ done:
 }
 
 /* C - Ca Phi Lambda, Cv - Ca Phi Delta, Ca Phi B. */
-static ritz_status project_io(const ritz_io *io, ritz_first_order *model)
+static ritz_status project_io(const ritz_io *io, ritz_modal_model *model)
 {
     ritz_status status = RITZ_OK;
     ritz_io part = {0};
@@ -246,31 +248,37 @@ done:
     return status;
 }
 
+void ritz_modal_model_take(ritz_pairs *pairs, int64_t num_dofs,
+                           ritz_modal_model *out)
+{
+    out->num_dofs = num_dofs;
+    out->count = pairs->Phi.ncol;
+    out->num_rigid = pairs->num_rigid;
+    out->Phi = pairs->Phi;
+    out->lambda = pairs->lambda;
+    for (int64_t k = 0; k < out->num_rigid; k++)
+        out->lambda[k] = 0.0;
+    pairs->Phi = (ritz_dense){0};
+    pairs->lambda = NULL;
+}
+
 static ritz_status find_modes(const ritz_structure *model,
-                              ritz_first_order *modes)
+                              ritz_modal_model *modes)
 {
     ritz_status status = RITZ_OK;
     ritz_pairs pairs = {0};
 
     RITZ_TRY(ritz_eigen_dense(&model->K, &model->M, &pairs));
-    modes->num_dofs = model->K.nrow;
-    modes->count = pairs.Phi.ncol;
-    modes->num_rigid = pairs.num_rigid;
-    modes->Phi = pairs.Phi;
-    modes->lambda = pairs.lambda;
-    pairs.Phi = (ritz_dense){0};
-    pairs.lambda = NULL;
-    for (int64_t k = 0; k < modes->num_rigid; k++)
-        modes->lambda[k] = 0.0;
+    ritz_modal_model_take(&pairs, model->K.nrow, modes);
     RITZ_TRY(ritz_dense_mul(&model->M, &modes->Phi, &modes->MPhi));
 done:
     ritz_pairs_free(&pairs);
     return status;
 }
 
-ritz_status ritz_first_order_drive(const ritz_io *io,
+ritz_status ritz_modal_model_drive(const ritz_io *io,
                                    const ritz_damping *damping,
-                                   ritz_first_order *modes)
+                                   ritz_modal_model *modes)
 {
     if (!modes->Delta.val)
         RITZ_CHECK(ritz_dense_new(modes->count, modes->count, &modes->Delta));
@@ -278,27 +286,124 @@ ritz_status ritz_first_order_drive(const ritz_io *io,
     return project_io(io, modes);
 }
 
-ritz_status ritz_first_order_new(const ritz_structure *model, const ritz_io *io,
+ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
                                  const ritz_damping *damping,
-                                 ritz_first_order *out)
+                                 ritz_modal_model *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_first_order modes = {0};
+    ritz_modal_model modes = {0};
 
     RITZ_TRY(find_modes(model, &modes));
     if (model->D.val)
         RITZ_TRY(project_damping(&model->D, &modes));
-    RITZ_TRY(ritz_first_order_drive(io, damping, &modes));
+    RITZ_TRY(ritz_modal_model_drive(io, damping, &modes));
     if (modes.count < modes.num_dofs && io->num_inputs + io->num_outputs > 0)
         RITZ_TRY(add_massless(model, io, damping, &modes));
     *out = modes;
-    modes = (ritz_first_order){0};
+    modes = (ritz_modal_model){0};
 done:
-    ritz_first_order_free(&modes);
+    ritz_modal_model_free(&modes);
     return status;
 }
 
-void ritz_first_order_free(ritz_first_order *model)
+/* M Phi Delta Phi'M of ratios alone. */
+static ritz_status spread_ratios(const ritz_structure *model,
+                                 const ritz_damping *damping, ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_structure bare = {model->K, model->M, {0}};
+    ritz_modal_model modes = {0};
+    ritz_io io = {0};
+    ritz_dense MPhiDelta = {0};
+
+    RITZ_TRY(ritz_io_new(model->K.nrow, 0, 0, &io));
+    RITZ_TRY(ritz_modal_model_new(&bare, &io, damping, &modes));
+    RITZ_TRY(ritz_dense_mul(&modes.MPhi, &modes.Delta, &MPhiDelta));
+    RITZ_TRY(ritz_dense_mul_nt(&MPhiDelta, &modes.MPhi, out));
+done:
+    ritz_modal_model_free(&modes);
+    ritz_io_free(&io);
+    ritz_dense_free(&MPhiDelta);
+    return status;
+}
+
+ritz_status ritz_modal_damping(const ritz_structure *model,
+                               const ritz_damping *damping, ritz_dense *D)
+{
+    ritz_status status = RITZ_OK;
+    int64_t n = model->K.nrow;
+    ritz_dense more = {0};
+
+    if (damping->kind == RITZ_DAMPING_NONE)
+        return RITZ_OK;
+    if (!ritz_damping_is_rayleigh(damping)) {
+        RITZ_TRY(spread_ratios(model, damping, &more));
+    } else {
+        RITZ_TRY(ritz_dense_new(n, n, &more));
+        for (int64_t k = 0; k < n * n; k++)
+            more.val[k] =
+                damping->a * model->M.val[k] + damping->b * model->K.val[k];
+    }
+    for (int64_t k = 0; D->val && k < n * n; k++)
+        more.val[k] += D->val[k];
+    ritz_dense_free(D);
+    *D = more;
+    more = (ritz_dense){0};
+done:
+    ritz_dense_free(&more);
+    return status;
+}
+
+double ritz_modal_scale(double lambda)
+{
+    return lambda != 0.0 ? sqrt(fabs(lambda)) : 1.0;
+}
+
+/* Row k of a modal model, as inputs and outputs have it, in its states. */
+static void put_loads(const ritz_modal_model *modes, int64_t k, double s,
+                      int64_t q, int64_t v, ritz_dense *B, ritz_dense *C)
+{
+    for (int64_t j = 0; B && j < modes->B.ncol; j++)
+        ritz_dense_col(B, j)[v] = ritz_dense_col(&modes->B, j)[k];
+    for (int64_t i = 0; C && i < modes->C.nrow; i++) {
+        if (q >= 0)
+            ritz_dense_col(C, q)[i] = ritz_dense_col(&modes->C, k)[i] / s;
+        ritz_dense_col(C, v)[i] = ritz_dense_col(&modes->Cv, k)[i];
+    }
+}
+
+ritz_status ritz_modal_states(const ritz_modal_model *modes,
+                              const ritz_modal_layout *layout, ritz_dense *A,
+                              ritz_dense *B, ritz_dense *C)
+{
+    int64_t first = layout->first;
+    int64_t positions = modes->count - layout->position;
+    int64_t n = positions + modes->count - first;
+
+    RITZ_CHECK(ritz_dense_new(n, n, A));
+    if (B)
+        RITZ_CHECK(ritz_dense_new(n, modes->B.ncol, B));
+    if (C)
+        RITZ_CHECK(ritz_dense_new(modes->C.nrow, n, C));
+    for (int64_t k = first; k < modes->count; k++) {
+        double lambda = modes->lambda[k];
+        double s =
+            layout->scale ? layout->scale[k - first] : ritz_modal_scale(lambda);
+        int64_t q = k - layout->position, v = positions + k - first;
+
+        if (q >= 0) {
+            ritz_dense_col(A, v)[q] = s;
+            ritz_dense_col(A, q)[v] = -lambda / s;
+        }
+        for (int64_t i = first; i < modes->count; i++)
+            ritz_dense_col(A, v)[positions + i - first] =
+                -ritz_dense_col(&modes->Delta, k)[i];
+        put_loads(modes, k, s, q, v, B, C);
+    }
+    return RITZ_OK;
+}
+
+void ritz_modal_model_free(ritz_modal_model *model)
 {
     ritz_dense_free(&model->Phi);
     ritz_dense_free(&model->MPhi);
@@ -308,5 +413,5 @@ void ritz_first_order_free(ritz_first_order *model)
     ritz_dense_free(&model->C);
     ritz_dense_free(&model->Cv);
     ritz_dense_free(&model->feed);
-    *model = (ritz_first_order){0};
+    *model = (ritz_modal_model){0};
 }

@@ -1,0 +1,112 @@
+/*
+ * All modes of a dense second-order model, its damping and what drives it and
+ * is seen of it, in modal coordinates:
+ *
+ *     q'' + Delta q' + Lambda q = B u,    y = C q + Cv q' + feed u
+ */
+#ifndef RITZ_MODEL_MODAL_H
+#define RITZ_MODEL_MODAL_H
+
+#include <ritz/component.h>
+#include <ritz/damping.h>
+#include <ritz/eigen.h>
+#include <ritz/reduced.h>
+
+/* K, M and D with dampers installed; D {0}: none. */
+typedef struct ritz_structure {
+    ritz_dense K, M, D;
+} ritz_structure;
+
+/** @return RITZ_ERR_ARGUMENT if it is too large or has structural damping */
+ritz_status ritz_structure_of_component(const ritz_component *component,
+                                        ritz_structure *out);
+ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
+                                      ritz_structure *out);
+void ritz_structure_free(ritz_structure *model);
+
+typedef struct ritz_modal_model {
+    int64_t num_dofs, count; /* n, m: modes that have mass, rigid ones first */
+    int64_t num_rigid;
+    ritz_dense Phi, MPhi; /* n x m */
+    double *lambda;       /* m, 0 where rigid  [rad^2/s^2] */
+    ritz_dense Delta;     /* m x m, all damping */
+    ritz_dense B;         /* m x inputs */
+    ritz_dense C, Cv;     /* outputs x m, accelerations written out */
+    ritz_dense feed;      /* outputs x inputs */
+} ritz_modal_model;
+
+/**
+ * With neither inputs nor outputs it is made for its poles alone, and what
+ * damps massless dofs is left out.
+ *
+ * @return RITZ_ERR_ARGUMENT if a massless dof is damped, or driven and seen by
+ *         its velocity or acceleration; RITZ_ERR_SINGULAR if K + M is
+ */
+ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
+                                 const ritz_damping *damping,
+                                 ritz_modal_model *out);
+
+/**
+ * The last steps of that, with modes found otherwise, which may be some of all:
+ * @p damping goes into Delta ({0}: no other), and what drives and is seen is
+ * projected. What massless dofs answer is left out.
+ *
+ * @param[in,out] modes  with Phi, lambda, Delta and counts
+ */
+ritz_status ritz_modal_model_drive(const ritz_io *io,
+                                   const ritz_damping *damping,
+                                   ritz_modal_model *modes);
+
+/**
+ * Modes that were found otherwise: Phi and lambda move over, 0 where rigid.
+ *
+ * @param[in] num_dofs  rows of Phi
+ */
+void ritz_modal_model_take(ritz_pairs *pairs, int64_t num_dofs,
+                           ritz_modal_model *out);
+
+void ritz_modal_model_free(ritz_modal_model *model);
+
+/**
+ * phi'D phi that stated damping means for a mode: 2 zeta w of ratios, which
+ * rigid motion does not have, or a + b lambda of a M + b K, which it has.
+ *
+ * @param[in] damping   NULL: 0
+ * @param[in] flexible  number among the flexible modes; negative: rigid
+ */
+double ritz_modal_rate(const ritz_damping *damping, int64_t flexible,
+                       double lambda);
+
+/**
+ * D += what stated damping is as a matrix: a M + b K, or of ratios
+ * M Phi diag(2 zeta w) Phi'M.
+ *
+ * @param[in,out] D  {0}: zeros, and stays {0} if there is no damping
+ */
+ritz_status ritz_modal_damping(const ritz_structure *model,
+                               const ritz_damping *damping, ritz_dense *D);
+
+/** |lambda|^1/2, or 1 where lambda is 0: it makes states well scaled. */
+double ritz_modal_scale(double lambda);
+
+/* Which states stand for a modal model. */
+typedef struct ritz_modal_layout {
+    int64_t first;       /* the first mode that has a state q' */
+    int64_t position;    /* the first mode that has a state q, not below */
+    const double *scale; /* S, from mode `first` on; NULL: ritz_modal_scale */
+} ritz_modal_layout;
+
+/**
+ * The model in states [S q; q'],
+ *
+ *     A = [0 S; -Lambda S^-1 -Delta],   B = [0; B],   C = [C S^-1 Cv]
+ *
+ * Scaled so, slow poles are not lost beside fast ones.
+ *
+ * @param[out] B,C  NULL: not wanted
+ */
+ritz_status ritz_modal_states(const ritz_modal_model *modes,
+                              const ritz_modal_layout *layout, ritz_dense *A,
+                              ritz_dense *B, ritz_dense *C);
+
+#endif
