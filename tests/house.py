@@ -27,7 +27,8 @@ LEVELS = [
     ['formats'],
     ['import'],
     ['cli'],
-    ['print', 'chart', 'claims'],
+    ['print', 'claims'],
+    ['chart'],
     ['tools'],
 ]
 LEVEL = {room: k for k, rooms in enumerate(LEVELS) for room in rooms}
@@ -36,7 +37,7 @@ LEVEL = {room: k for k, rooms in enumerate(LEVELS) for room in rooms}
 TABLES = {
     'src/bases/bases.c': 'ritz_methods',
     'src/ranking/rankers.c': 'ritz_rankers',
-    'src/response/engines.c': 'ritz_engines',
+    'src/response/engines.c': 'ritz_response_engines',
     'src/verify/measures.c': 'ritz_measure_table',
     'src/simulate/integrators.c': 'ritz_integrators',
     'src/check/checks.c': 'ritz_checks',
@@ -84,6 +85,9 @@ FUNCTION = re.compile(r'^(?!static|typedef|return|else)[A-Za-z_][\w \*]*?'
 TABLE = re.compile(r'^const [\w ]+?[ \*](\w+)(?:\[\w*\])* =', re.M)
 
 
+OWN = re.compile(r'^static [\w \*]*?[ \*](\w+)\(', re.M)
+
+
 def definitions(code):
     """Names that other files can use, to the file that defines them."""
     home = {}
@@ -102,7 +106,8 @@ def uses(code, home):
     graph = {}
     for path, text in code.items():
         if path.endswith('.c'):
-            for name in set(WORD.findall(text)):
+            own = set(OWN.findall(text))
+            for name in set(WORD.findall(text)) - own:
                 there = home.get(name)
                 if there and there != path:
                     graph.setdefault((path, there), []).append(name)

@@ -30,15 +30,15 @@ static ritz_status write_bodies(cli_run *run, const char *prefix,
 }
 
 /* What the command line asks beside the scene. */
-typedef struct asked {
+typedef struct compare_options {
     const char *prefix, *report, *tracks, *extraneous, *tolerance_table;
     int64_t num_tolerances;
     double tolerance[MOST_TOLERANCES];
-} asked;
+} compare_options;
 
 /* "1e-12,1e-6" */
 static void read_tolerances(const cli_program *program, const char *text,
-                            asked *a)
+                            compare_options *a)
 {
     char word[64];
 
@@ -61,7 +61,8 @@ static void read_tolerances(const cli_program *program, const char *text,
 }
 
 /* The chart of the composite tolerance. */
-static ritz_status chart(cli_run *run, const asked *a, const ritz_stage *stage,
+static ritz_status chart(cli_run *run, const compare_options *a,
+                         const ritz_stage *stage,
                          const ritz_comparison *comparison)
 {
     ritz_status status = RITZ_OK;
@@ -81,7 +82,7 @@ done:
     return status;
 }
 
-static ritz_status compare(cli_run *run, const asked *a)
+static ritz_status compare(cli_run *run, const compare_options *a)
 {
     ritz_status status = RITZ_OK;
     ritz_scene scene = {0};
@@ -113,7 +114,7 @@ done:
 
 int main(int argc, char **argv)
 {
-    asked a = {0};
+    compare_options a = {0};
     const char *tolerances = NULL;
     const cli_option options[] = {
         {CLI_TEXT(&a.prefix), .name = "components", .argument = "PREFIX",

@@ -333,11 +333,11 @@ static void mark_forces(const ritz_stage *stage, bool *is_force)
 }
 
 /* K, M of the system and P, from scaled coordinates to those of the bodies. */
-typedef struct pencil {
+typedef struct dual_pencil {
     ritz_dense K, M, P;
-} pencil;
+} dual_pencil;
 
-static void pencil_free(pencil *of)
+static void pencil_free(dual_pencil *of)
 {
     ritz_dense_free(&of->K);
     ritz_dense_free(&of->M);
@@ -345,17 +345,17 @@ static void pencil_free(pencil *of)
 }
 
 /* All of it in new coordinates, z = Z w. */
-static ritz_status change(const ritz_dense *Z, pencil *of)
+static ritz_status change(const ritz_dense *Z, dual_pencil *of)
 {
     ritz_status status = RITZ_OK;
-    pencil to = {0};
+    dual_pencil to = {0};
 
     RITZ_TRY(ritz_dense_congruence(&of->K, Z, &to.K));
     RITZ_TRY(ritz_dense_congruence(&of->M, Z, &to.M));
     RITZ_TRY(ritz_dense_mul(&of->P, Z, &to.P));
     pencil_free(of);
     *of = to;
-    to = (pencil){0};
+    to = (dual_pencil){0};
 done:
     pencil_free(&to);
     return status;
@@ -364,7 +364,7 @@ done:
 static ritz_status make_pencil(const ritz_stage *stage,
                                const ritz_springs *springs,
                                const ritz_dual *dual, const double *scale,
-                               pencil *out)
+                               dual_pencil *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense K = {0}, M = {0}, none = {0};
@@ -426,7 +426,7 @@ done:
 }
 
 /* Z = [I; -K_00^-1 K_0z]: the last coordinates, without mass, condensed. */
-static ritz_status condense(int64_t massless, pencil *of)
+static ritz_status condense(int64_t massless, dual_pencil *of)
 {
     ritz_status status = RITZ_OK;
     int64_t rest = of->K.ncol - massless;
@@ -464,15 +464,15 @@ done:
 }
 
 /* Modes that are found, and where they go: by |lambda|. */
-typedef struct place {
+typedef struct force_place {
     double size;
     int64_t from;
-} place;
+} force_place;
 
 static int by_size(const void *left, const void *right)
 {
-    const place *a = left;
-    const place *b = right;
+    const force_place *a = left;
+    const force_place *b = right;
 
     return a->size != b->size ? (a->size > b->size) - (a->size < b->size)
                               : (a->from > b->from) - (a->from < b->from);
@@ -485,7 +485,7 @@ static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
     ritz_status status = RITZ_OK;
     int64_t e = pairs->Phi.ncol;
     ritz_dense Phi = {0}, Q = {0};
-    place *at = NULL;
+    force_place *at = NULL;
     double *size = NULL;
 
     RITZ_NEW(at, e);
@@ -495,7 +495,7 @@ static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
     RITZ_TRY(ritz_dense_new(e, e, &c->K));
     RITZ_TRY(ritz_dense_new(e, e, &c->M));
     for (int64_t j = 0; j < e; j++)
-        at[j] = (place){fabs(pairs->lambda[j]), j};
+        at[j] = (force_place){fabs(pairs->lambda[j]), j};
     if (e > 0)
         qsort(at, (size_t)e, sizeof *at, by_size);
     for (int64_t j = 0; j < e; j++) {
@@ -567,8 +567,8 @@ done:
 
 /* The pencil with its forces turned, and those without mass condensed. */
 static ritz_status prepare(const ritz_stage *stage, const ritz_springs *springs,
-                           const ritz_dense *C, const double *scale, pencil *of,
-                           int64_t *rank)
+                           const ritz_dense *C, const double *scale,
+                           dual_pencil *of, int64_t *rank)
 {
     ritz_status status = RITZ_OK;
     ritz_dual dual = {0};
@@ -600,7 +600,7 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                ritz_configuration *c)
 {
     ritz_status status = RITZ_OK;
-    pencil of = {0};
+    dual_pencil of = {0};
     ritz_pairs pairs = {0};
 
     RITZ_TRY(prepare(stage, springs, C, scale, &of, &c->rank));

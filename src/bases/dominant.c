@@ -30,7 +30,7 @@ typedef struct candidate {
     double _Complex *z; /* m, modal coordinates; borrowed from `vectors` */
 } candidate;
 
-typedef struct model {
+typedef struct dominant_model {
     const ritz_rational *R;
     ritz_pairs modes; /* of T'KT and T'MT */
     ritz_dense W, K4;
@@ -40,9 +40,9 @@ typedef struct model {
     double _Complex *vectors;              /* m for each */
     double terms[RITZ_RATIONAL_GROUPS][3]; /* largest they might do */
     double most[RITZ_RATIONAL_GROUPS];     /* largest |F'x|; huge if rounding */
-} model;
+} dominant_model;
 
-static void free_model(model *s)
+static void free_model(dominant_model *s)
 {
     ritz_pairs_free(&s->modes);
     ritz_dense_free(&s->W);
@@ -86,7 +86,7 @@ static double largest_terms(const ritz_dense *F, const ritz_dense *X)
 }
 
 /* What loads do to each mode. */
-static ritz_status see_loads(const ritz_dense *X, model *s)
+static ritz_status see_loads(const ritz_dense *X, dominant_model *s)
 {
     for (int64_t g = 0; g < s->R->num_groups; g++)
         for (int k = 0; k < 3; k++) {
@@ -106,7 +106,7 @@ enum { BEYOND_LISTED = RITZ_MOST_RATIOS };
 
 static ritz_status make_model(const ritz_rational *R,
                               const ritz_damping *damping, const ritz_dense *T,
-                              model *s)
+                              dominant_model *s)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = R->component;
@@ -132,7 +132,7 @@ done:
     return status;
 }
 
-static candidate *append(model *s, double _Complex point, double decay)
+static candidate *append(dominant_model *s, double _Complex point, double decay)
 {
     candidate *pole = &s->pole[s->count];
 
@@ -144,7 +144,7 @@ static candidate *append(model *s, double _Complex point, double decay)
 }
 
 /* s^2 = -w^2 (1 - zeta) of each mode. */
-static void solve_apart(model *s)
+static void solve_apart(dominant_model *s)
 {
     for (int64_t k = 0; k < s->W.ncol; k++) {
         double lambda = s->modes.lambda[k];
@@ -162,7 +162,7 @@ static void solve_apart(model *s)
 }
 
 /* [0, I; -Lambda - i K4, -W], 2m x 2m. */
-static void fill_states(const model *s, double _Complex *A)
+static void fill_states(const dominant_model *s, double _Complex *A)
 {
     int64_t m = s->W.ncol;
 
@@ -182,7 +182,7 @@ static void fill_states(const model *s, double _Complex *A)
 }
 
 /* A pole in the upper half plane, real ones among them; z is of length 2m. */
-static void keep(double _Complex p, const double _Complex *z, model *s)
+static void keep(double _Complex p, const double _Complex *z, dominant_model *s)
 {
     double decay = fmax(fabs(creal(p)), RITZ_LEAST_DECAY * cabs(p));
     double omega = cimag(p);
@@ -200,7 +200,7 @@ static void keep(double _Complex p, const double _Complex *z, model *s)
         pole->z[i] = z[i] / length;
 }
 
-static ritz_status solve_together(model *s)
+static ritz_status solve_together(dominant_model *s)
 {
     ritz_status status = RITZ_OK;
     int64_t m = s->W.ncol;
@@ -225,7 +225,7 @@ done:
 }
 
 /* b = conj(F(-conj(s))'x) of one kind of loads; returns |b|. */
-static double direct(const model *s, const candidate *pole, int64_t g,
+static double direct(const dominant_model *s, const candidate *pole, int64_t g,
                      double _Complex *b)
 {
     double _Complex power = 1.0;
@@ -245,7 +245,7 @@ static double direct(const model *s, const candidate *pole, int64_t g,
 }
 
 /* |x'(2 p M + D) x| in modal coordinates, p = -conj(s). */
-static double scale_of(const model *s, const candidate *pole)
+static double scale_of(const dominant_model *s, const candidate *pole)
 {
     double _Complex sum = 0.0;
 
@@ -260,7 +260,8 @@ static double scale_of(const model *s, const candidate *pole)
 }
 
 /* |C x| |x'B| of a pole; where there is only one of them, its square. */
-static double gain(const model *s, const candidate *pole, double _Complex *b)
+static double gain(const dominant_model *s, const candidate *pole,
+                   double _Complex *b)
 {
     double in = 0.0;
     double out = 0.0;
@@ -286,7 +287,7 @@ static double gain(const model *s, const candidate *pole, double _Complex *b)
 }
 
 /* The most that a kind of loads does to a pole. */
-static double find_most(const model *s, int64_t g, double _Complex *b)
+static double find_most(const dominant_model *s, int64_t g, double _Complex *b)
 {
     double most = 0.0;
     double terms = 0.0;
@@ -301,7 +302,7 @@ static double find_most(const model *s, int64_t g, double _Complex *b)
     return most > RITZ_LEAST_PARTICIPATION * terms ? most : HUGE_VAL;
 }
 
-static ritz_status weigh(model *s)
+static ritz_status weigh(dominant_model *s)
 {
     ritz_status status = RITZ_OK;
     double _Complex *b = NULL;
@@ -337,8 +338,8 @@ static int compare(const void *left, const void *right)
 }
 
 /* The probe of a pole and a group: what loads do to it, over its length. */
-static void aim(const model *s, const candidate *pole, int64_t g,
-                ritz_probe *probe)
+static void aim(const dominant_model *s, const candidate *pole, int64_t g,
+                ritz_interpolation_point *probe)
 {
     double _Complex *b = probe->b + s->R->group[g].first;
     double share = direct(s, pole, g, b);
@@ -350,7 +351,7 @@ static void aim(const model *s, const candidate *pole, int64_t g,
         b[j] = counts ? b[j] / share : 0.0;
 }
 
-static ritz_status list(const model *s, ritz_probes *out)
+static ritz_status list(const dominant_model *s, ritz_probes *out)
 {
     ritz_probes probes = {0};
     int64_t poles = 0;
@@ -375,7 +376,7 @@ ritz_status ritz_dominant_probes(const ritz_rational *R,
                                  const ritz_dense *T, ritz_probes *out)
 {
     ritz_status status = RITZ_OK;
-    model s = {0};
+    dominant_model s = {0};
 
     RITZ_TRY(make_model(R, damping, T, &s));
     if (ritz_rational_damped(R))

@@ -35,22 +35,22 @@ typedef enum ending {
 } ending;
 
 /* One side: vectors so far, and candidates for the next block. */
-typedef struct side {
+typedef struct lanczos_side {
     ritz_dense vectors; /* as many columns as are asked for */
     ritz_dense next;    /* operator times the last block; the start at first */
     ritz_dense waiting; /* candidates that found no partner */
-} side;
+} lanczos_side;
 
 typedef struct two_sided {
     ritz_dense G; /* A or A^-1 */
-    side right, left;
+    lanczos_side right, left;
     int64_t used; /* columns of both sides' vectors */
     ending end;
 } two_sided;
 
 static void release(two_sided *t)
 {
-    side *const sides[] = {&t->right, &t->left};
+    lanczos_side *const sides[] = {&t->right, &t->left};
 
     ritz_dense_free(&t->G);
     for (int k = 0; k < 2; k++) {
@@ -61,7 +61,7 @@ static void release(two_sided *t)
 }
 
 /* All candidates, side by side, each of unit length or zero. */
-static ritz_status gather(const side *s, ritz_dense *out)
+static ritz_status gather(const lanczos_side *s, ritz_dense *out)
 {
     const ritz_dense *const parts[] = {&s->next, &s->waiting};
     int64_t at = 0;
@@ -82,8 +82,8 @@ static ritz_status gather(const side *s, ritz_dense *out)
 }
 
 /* Candidates less what is spanned, orthonormal; dependent ones left out. */
-static ritz_status prepare(const side *own, const side *other, int64_t used,
-                           double tolerance, ritz_dense *out)
+static ritz_status prepare(const lanczos_side *own, const lanczos_side *other,
+                           int64_t used, double tolerance, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_dense V = ritz_dense_part(&own->vectors, 0, used);
@@ -109,7 +109,7 @@ done:
 /* X R s^-1/2 of the first columns become vectors, the others wait. */
 static ritz_status accept(const ritz_dense *X, const ritz_dense *R,
                           const double *s, int64_t joined, int64_t used,
-                          side *own)
+                          lanczos_side *own)
 {
     ritz_status status = RITZ_OK;
     ritz_dense turned = {0};

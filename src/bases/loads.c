@@ -83,12 +83,12 @@ static const source sources[] = {
 };
 
 /* Steps through the loads that are not zero. */
-typedef struct walk {
+typedef struct load_walk {
     const ritz_request *request;
     int loads;
     size_t kind;
     int64_t at; /* of that kind: the next to be looked at */
-} walk;
+} load_walk;
 
 static bool is_zero(const ritz_request *request, const source *from, int64_t j)
 {
@@ -99,7 +99,7 @@ static bool is_zero(const ritz_request *request, const source *from, int64_t j)
 }
 
 /* The next source and its load; false past the last. */
-static bool step(walk *w, const source **from, int64_t *j)
+static bool step(load_walk *w, const source **from, int64_t *j)
 {
     for (; w->kind < sizeof sources / sizeof *sources; w->kind++, w->at = 0) {
         const source *here = &sources[w->kind];
@@ -119,7 +119,7 @@ static bool step(walk *w, const source **from, int64_t *j)
 
 int64_t ritz_loads_count(const ritz_request *request, int loads)
 {
-    walk w = {request, loads, 0, 0};
+    load_walk w = {request, loads, 0, 0};
     const source *from = NULL;
     int64_t j = 0;
     int64_t count = 0;
@@ -149,7 +149,7 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
 {
     ritz_status status = RITZ_OK;
     int64_t n = request->component->num_dofs;
-    walk w = {request, loads, 0, 0};
+    load_walk w = {request, loads, 0, 0};
     const source *from = NULL;
     ritz_dofs rest = {0};
     ritz_dense columns = {0};
@@ -185,7 +185,7 @@ done:
 const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
                             char text[RITZ_LOADS_NAME_SIZE])
 {
-    walk w = {request, loads, 0, 0};
+    load_walk w = {request, loads, 0, 0};
     const source *from = NULL;
     char name[RITZ_DOF_NAME_SIZE];
     int64_t at = 0;

@@ -25,24 +25,24 @@
 #include <string.h>
 
 /* Modes that are kept whole or not at all. */
-typedef struct group {
+typedef struct mode_group {
     int64_t first, last; /* flexible modes first .. last - 1 */
     double value;        /* by which it is ranked */
     double bound;        /* of what it answers alone */
     bool keep;
-} group;
+} mode_group;
 
-typedef struct search {
+typedef struct subset_search {
     ritz_gramians_request asked;
     ritz_modal_model modes;
     ritz_modal modal;
     int64_t count;
-    group *groups; /* by frequency */
-    int64_t kept;  /* modes */
-    double bound;  /* of all that is left out */
-} search;
+    mode_group *groups; /* by frequency */
+    int64_t kept;       /* modes */
+    double bound;       /* of all that is left out */
+} subset_search;
 
-static void release(search *s)
+static void release(subset_search *s)
 {
     ritz_modal_model_free(&s->modes);
     ritz_modal_free(&s->modal);
@@ -69,7 +69,7 @@ static ritz_status check(const ritz_request *request)
     return RITZ_OK;
 }
 
-static ritz_status find_modes(const ritz_request *request, search *s)
+static ritz_status find_modes(const ritz_request *request, subset_search *s)
 {
     const ritz_choice *choice = &request->choice;
     ritz_coupling coupling = {0};
@@ -86,8 +86,8 @@ static ritz_status find_modes(const ritz_request *request, search *s)
 }
 
 /* What modes first .. last - 1 are worth alone; over a band, if there is one. */
-static ritz_status weigh(const search *s, const double *band, double *sigma,
-                         group *at)
+static ritz_status weigh(const subset_search *s, const double *band,
+                         double *sigma, mode_group *at)
 {
     ritz_status status = RITZ_OK;
     ritz_modal part = {0};
@@ -104,7 +104,7 @@ done:
     return status;
 }
 
-static ritz_status rank(const ritz_request *request, search *s)
+static ritz_status rank(const ritz_request *request, subset_search *s)
 {
     ritz_status status = RITZ_OK;
     bool banded = request->choice.given & RITZ_USES_BAND;
@@ -115,10 +115,10 @@ static ritz_status rank(const ritz_request *request, search *s)
     RITZ_NEW(sigma, 2 * s->modal.count);
     RITZ_NEW(s->groups, s->modal.count);
     for (int64_t first = 0; first < s->modal.count; first = last) {
-        group *at = &s->groups[s->count++];
+        mode_group *at = &s->groups[s->count++];
 
         last = ritz_modal_cluster(&s->modal, first);
-        *at = (group){.first = first, .last = last};
+        *at = (mode_group){.first = first, .last = last};
         RITZ_TRY(weigh(s, band, sigma, at));
     }
 done:
@@ -127,12 +127,12 @@ done:
 }
 
 /* Of those that are not kept yet; of equal ones the lowest in frequency. */
-static group *best(search *s)
+static mode_group *best(subset_search *s)
 {
-    group *found = NULL;
+    mode_group *found = NULL;
 
     for (int64_t k = 0; k < s->count; k++) {
-        group *at = &s->groups[k];
+        mode_group *at = &s->groups[k];
 
         if (!at->keep && at->value > (found ? found->value : 0.0))
             found = at;
@@ -141,9 +141,9 @@ static group *best(search *s)
 }
 
 /* The best first, until the next does not fit or does nothing. */
-static ritz_status choose(const ritz_request *request, search *s)
+static ritz_status choose(const ritz_request *request, subset_search *s)
 {
-    group *next = best(s);
+    mode_group *next = best(s);
 
     RITZ_REFUSE_IF(!next, RITZ_ERR_ARGUMENT,
                    "inputs reach no mode that outputs see");
@@ -164,7 +164,7 @@ static ritz_status choose(const ritz_request *request, search *s)
     return RITZ_OK;
 }
 
-static void put(const search *s, int64_t mode, int64_t column,
+static void put(const subset_search *s, int64_t mode, int64_t column,
                 ritz_basis *basis)
 {
     bool rigid = mode < s->modes.num_rigid;
@@ -178,7 +178,7 @@ static void put(const search *s, int64_t mode, int64_t column,
         rigid ? 0.0 : ritz_eigen_hertz(s->modes.lambda[mode]);
 }
 
-static void remark(const ritz_request *request, const search *s,
+static void remark(const ritz_request *request, const subset_search *s,
                    ritz_basis *basis)
 {
     char damping[RITZ_DAMPING_SIZE] = "";
@@ -204,7 +204,7 @@ static void remark(const ritz_request *request, const search *s,
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
-    search s = {0};
+    subset_search s = {0};
     ritz_basis basis = {0};
     int64_t column = 0;
 

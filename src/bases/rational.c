@@ -151,8 +151,8 @@ done:
 }
 
 /* v += F(s) b of a group. */
-static void load(const ritz_rational_loads *group, const ritz_probe *probe,
-                 double _Complex *v)
+static void load(const ritz_rational_loads *group,
+                 const ritz_interpolation_point *probe, double _Complex *v)
 {
     double _Complex power = 1.0;
 
@@ -166,7 +166,8 @@ static void load(const ritz_rational_loads *group, const ritz_probe *probe,
         }
 }
 
-static ritz_status answer(ritz_rational *R, const ritz_probe *probe,
+static ritz_status answer(ritz_rational *R,
+                          const ritz_interpolation_point *probe,
                           double _Complex *v)
 {
     load(&R->group[probe->group], probe, v);
@@ -261,8 +262,8 @@ static ritz_status split(const ritz_rational *R, const double _Complex *v,
 }
 
 /* Both parts, or none if there may be no room for both. */
-static ritz_status add(ritz_rational *R, const ritz_probe *probe, int64_t room,
-                       ritz_dense *Q)
+static ritz_status add(ritz_rational *R, const ritz_interpolation_point *probe,
+                       int64_t room, ritz_dense *Q)
 {
     ritz_status status = RITZ_OK;
     int64_t n = R->component->num_dofs;

@@ -25,16 +25,16 @@ typedef struct ritz_rational_loads {
 } ritz_rational_loads;
 
 /* One answer that is wanted: where, and in which direction of which loads. */
-typedef struct ritz_probe {
+typedef struct ritz_interpolation_point {
     double _Complex s; /* Im s >= 0; K4 counts above the real axis only */
     int64_t group;
     double _Complex *b; /* as many as there are loads of all groups, zero of
                            others; owned */
-} ritz_probe;
+} ritz_interpolation_point;
 
 typedef struct ritz_probes {
     int64_t count;
-    ritz_probe *item;
+    ritz_interpolation_point *item;
 } ritz_probes;
 
 typedef struct ritz_rational {

@@ -45,7 +45,7 @@ enum {
 
 static const ritz_damping assumed = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
 
-typedef struct search {
+typedef struct irka_search {
     const ritz_request *request;
     ritz_damping damping;
     bool assumed;     /* nobody had said how it is damped */
@@ -58,9 +58,9 @@ typedef struct search {
     int64_t left_out;   /* fixed points' answers without room */
     int rounds;
     double change;
-} search;
+} irka_search;
 
-static void free_search(search *s)
+static void free_search(irka_search *s)
 {
     ritz_pairs_free(&s->modes);
     ritz_dense_free(&s->rigid);
@@ -70,7 +70,7 @@ static void free_search(search *s)
 }
 
 /* The choice's damping, else the component's, else a usual one. */
-static ritz_status choose_damping(search *s)
+static ritz_status choose_damping(irka_search *s)
 {
     const ritz_component *component = s->request->component;
     const ritz_choice *choice = &s->request->choice;
@@ -97,7 +97,7 @@ static int64_t count_modes(const ritz_pairs *modes, double up_to_hz)
 }
 
 /* Rigid modes, and twice as many flexible ones as there shall be vectors. */
-static ritz_status find_modes(search *s)
+static ritz_status find_modes(irka_search *s)
 {
     const ritz_request *request = s->request;
     const ritz_component *component = request->component;
@@ -131,7 +131,7 @@ static ritz_status find_modes(search *s)
 }
 
 /* Every load that is answered by itself, at every point that was given. */
-static ritz_status list_given(const search *s, ritz_probes *out)
+static ritz_status list_given(const irka_search *s, ritz_probes *out)
 {
     const ritz_choice *choice = &s->request->choice;
     ritz_probes probes = {0};
@@ -147,7 +147,7 @@ static ritz_status list_given(const search *s, ritz_probes *out)
             const ritz_rational_loads *group = &s->R.group[g];
 
             for (int64_t j = 0; group->answered && j < group->count; j++) {
-                ritz_probe *probe = &probes.item[at++];
+                ritz_interpolation_point *probe = &probes.item[at++];
 
                 probe->s = (double _Complex)_Complex_I *
                            (2.0 * RITZ_PI * choice->shift_hz[k]);
@@ -160,7 +160,7 @@ static ritz_status list_given(const search *s, ritz_probes *out)
 }
 
 /* T from probes, of which those that gave nothing are dropped. */
-static ritz_status answer(search *s, ritz_probes *probes)
+static ritz_status answer(irka_search *s, ritz_probes *probes)
 {
     ritz_status status = RITZ_OK;
     ritz_dense T = {0};
@@ -187,7 +187,8 @@ done:
 }
 
 /* Distance of two points, none between groups. */
-static double distance(const ritz_probe *a, const ritz_probe *b)
+static double distance(const ritz_interpolation_point *a,
+                       const ritz_interpolation_point *b)
 {
     return a->group == b->group ? cabs(a->s - b->s) : HUGE_VAL;
 }
@@ -205,10 +206,10 @@ static double follow(const ritz_probes *before, bool is_free,
     if (probes->count < before->count)
         return HUGE_VAL;
     for (int64_t k = 0; k < before->count; k++) {
-        const ritz_probe *old = &before->item[k];
+        const ritz_interpolation_point *old = &before->item[k];
         int64_t among = is_free ? before->count : probes->count;
         int64_t best = k;
-        ritz_probe found;
+        ritz_interpolation_point found;
 
         for (int64_t j = k + 1; j < among; j++)
             if (distance(old, &probes->item[j]) <
@@ -224,7 +225,7 @@ static double follow(const ritz_probes *before, bool is_free,
 }
 
 /* Points to where the poles that they gave say, until they stay. */
-static ritz_status iterate(search *s)
+static ritz_status iterate(irka_search *s)
 {
     ritz_status status = RITZ_OK;
     int64_t r = s->rigid.ncol;
@@ -249,7 +250,7 @@ done:
     return status;
 }
 
-static ritz_status take_given(search *s)
+static ritz_status take_given(irka_search *s)
 {
     ritz_status status = RITZ_OK;
     ritz_probes probes = {0};
@@ -276,7 +277,7 @@ static int choose_loads(const ritz_request *request)
     return RITZ_LOADS_ATTACHED;
 }
 
-static ritz_status interpolate(search *s)
+static ritz_status interpolate(irka_search *s)
 {
     const ritz_request *request = s->request;
     int loads = request->choice.loads;
@@ -299,7 +300,7 @@ static ritz_status interpolate(search *s)
 }
 
 /* How the points were found, and what should be known of them. */
-static void remark(const search *s, ritz_basis *basis)
+static void remark(const irka_search *s, ritz_basis *basis)
 {
     char *text = basis->remark;
     const size_t size = sizeof basis->remark;
@@ -331,7 +332,7 @@ static void remark(const search *s, ritz_basis *basis)
 }
 
 /* Rigid, krylov. */
-static ritz_status describe(const search *s, ritz_basis *out)
+static ritz_status describe(const irka_search *s, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     ritz_basis basis = {0};
@@ -361,7 +362,7 @@ ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
                                  ritz_probes *probes)
 {
     ritz_status status = RITZ_OK;
-    search s = {.request = request};
+    irka_search s = {.request = request};
     ritz_dofs rest = {0};
 
     /* refuses attached dofs that are out of range or repeated */

@@ -16,11 +16,11 @@
 #include <string.h>
 
 /* The modal matrices as a model. */
-typedef struct modal {
+typedef struct damped_modal {
     ritz_dense K, M, D, K4;
-} modal;
+} damped_modal;
 
-static void modal_free(modal *m)
+static void modal_free(damped_modal *m)
 {
     ritz_dense_free(&m->K);
     ritz_dense_free(&m->M);
@@ -40,7 +40,7 @@ static ritz_status lead(const ritz_dense *A, int64_t m, ritz_dense *out)
     return RITZ_OK;
 }
 
-static ritz_status modal_new(const ritz_poles *poles, modal *out)
+static ritz_status modal_new(const ritz_poles *poles, damped_modal *out)
 {
     int64_t m = poles->count;
 
@@ -203,7 +203,7 @@ static ritz_status take_coupled(const ritz_poles *poles,
                                 const double band_hz[2], ritz_damped *damped)
 {
     ritz_status status = RITZ_OK;
-    modal m = {0};
+    damped_modal m = {0};
     const ritz_second_order model = {&m.K, &m.M, &m.D, &m.K4, NULL};
     int64_t *of = NULL;
 

@@ -25,27 +25,27 @@ typedef struct shared {
 } shared;
 
 /* One ranking, its modes' numbers and its largest value. */
-typedef struct side {
+typedef struct ranked_values {
     const ritz_ranking *ranking;
     const int64_t *track;
     double largest;
-} side;
+} ranked_values;
 
-static side side_of(const ritz_ranking *ranking, const int64_t *track)
+static ranked_values side_of(const ritz_ranking *ranking, const int64_t *track)
 {
-    side s = {ranking, track, 0.0};
+    ranked_values s = {ranking, track, 0.0};
 
     for (int64_t k = 0; k < ranking->count; k++)
         s.largest = fmax(s.largest, fabs(ranking->value[k]));
     return s;
 }
 
-static int64_t number_of(const side *s, int64_t mode)
+static int64_t number_of(const ranked_values *s, int64_t mode)
 {
     return s->track ? s->track[mode] : mode;
 }
 
-static double size_of(const side *s, int64_t mode)
+static double size_of(const ranked_values *s, int64_t mode)
 {
     double size = fabs(s->ranking->value[mode]);
 
@@ -53,7 +53,7 @@ static double size_of(const side *s, int64_t mode)
 }
 
 /* Mode of that number; -1: none. */
-static int64_t find(const side *s, int64_t number)
+static int64_t find(const ranked_values *s, int64_t number)
 {
     if (!s->track)
         return number < s->ranking->count ? number : -1;
@@ -116,7 +116,8 @@ static double kendall(int64_t count, const shared *all)
                : nan("");
 }
 
-static ritz_status correlate(const side s[static 2], ritz_agreement *out)
+static ritz_status correlate(const ranked_values s[static 2],
+                             ritz_agreement *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_ranking *a = s[0].ranking;
@@ -156,7 +157,7 @@ static int64_t whole(const ritz_ranking *r, int64_t k)
     return n;
 }
 
-static bool is_among(const side *s, int64_t n, int64_t number)
+static bool is_among(const ranked_values *s, int64_t n, int64_t number)
 {
     for (int64_t k = 0; k < n; k++)
         if (number_of(s, s->ranking->order[k]) == number)
@@ -165,8 +166,8 @@ static bool is_among(const side *s, int64_t n, int64_t number)
 }
 
 /* Numbers among the first k of `s` that are not among those of `other`. */
-static int64_t difference(const side *s, const side *other, int64_t k,
-                          int64_t *out)
+static int64_t difference(const ranked_values *s, const ranked_values *other,
+                          int64_t k, int64_t *out)
 {
     int64_t n = whole(s->ranking, k);
     int64_t m = whole(other->ranking, k);
@@ -184,7 +185,7 @@ static int64_t difference(const side *s, const side *other, int64_t k,
     return count;
 }
 
-static double share(const side s[static 2], int64_t k)
+static double share(const ranked_values s[static 2], int64_t k)
 {
     int64_t n = whole(s[0].ranking, k);
     int64_t m = whole(s[1].ranking, k);
@@ -194,7 +195,8 @@ static double share(const side s[static 2], int64_t k)
 }
 
 /* 1, 2, 5, 10, 20, ... of which the last is all. */
-static ritz_status set_overlaps(const side s[static 2], ritz_agreement *out)
+static ritz_status set_overlaps(const ranked_values s[static 2],
+                                ritz_agreement *out)
 {
     static const int64_t step[] = {1, 2, 5};
     enum { MOST = 3 * 18 };
@@ -219,7 +221,7 @@ ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
                                 int64_t top, ritz_agreement *out)
 {
     ritz_status status = RITZ_OK;
-    const side s[2] = {side_of(a, track_a), side_of(b, track_b)};
+    const ranked_values s[2] = {side_of(a, track_a), side_of(b, track_b)};
     ritz_agreement agreement = {.top = top};
 
     RITZ_FAIL_IF(top < 1, RITZ_ERR_ARGUMENT,

@@ -107,11 +107,11 @@ const ritz_ranker ritz_ranker_modal_cost = {
 enum { MOST_ROUNDS = 400, LONGEST = 12 };
 
 /* What one round decided. */
-typedef struct trial {
+typedef struct weighting_trial {
     bool *taken; /* m */
     double *q;   /* p, weights it went by */
     double *d;   /* p, what its choice misses */
-} trial;
+} weighting_trial;
 
 /* What does not change from round to round, and the last few rounds. */
 typedef struct loop {
@@ -121,10 +121,10 @@ typedef struct loop {
     double *Y;    /* p */
     double *value;
     int64_t *order, *cluster;
-    trial past[LONGEST + 1]; /* round r is past[r % (LONGEST + 1)] */
+    weighting_trial past[LONGEST + 1]; /* round r is past[r % (LONGEST + 1)] */
 } loop;
 
-static trial *at_round(loop *l, int64_t r)
+static weighting_trial *at_round(loop *l, int64_t r)
 {
     return &l->past[r % (LONGEST + 1)];
 }
@@ -168,7 +168,7 @@ static void loop_free(loop *l)
 }
 
 /* The modes of largest cost, clusters whole. */
-static ritz_status choose(loop *l, trial *t)
+static ritz_status choose(loop *l, weighting_trial *t)
 {
     int64_t n = 0;
 
@@ -229,7 +229,7 @@ done:
 }
 
 /* d_i = |Y_i - Y_i(kept alone)|. */
-static ritz_status miss(const loop *l, trial *t)
+static ritz_status miss(const loop *l, weighting_trial *t)
 {
     ritz_status status = RITZ_OK;
     ritz_modal kept = {0};
@@ -251,7 +251,7 @@ done:
 }
 
 /* q := (1 - a) p d / sum d + a q; where nothing is missed they stay. */
-static void weigh(const loop *l, const trial *t, double *q)
+static void weigh(const loop *l, const weighting_trial *t, double *q)
 {
     double sum = 0.0;
 
@@ -264,7 +264,8 @@ static void weigh(const loop *l, const trial *t, double *q)
                    : t->q[i];
 }
 
-static bool is_same(const loop *l, const trial *a, const trial *b)
+static bool is_same(const loop *l, const weighting_trial *a,
+                    const weighting_trial *b)
 {
     for (int64_t i = 0; i < l->p; i++)
         if (!(fabs(a->q[i] - b->q[i]) <= RITZ_SAME_WEIGHTS))
@@ -281,7 +282,7 @@ static int64_t find_period(loop *l, int64_t round)
     return 0;
 }
 
-static double worst(const loop *l, const trial *t)
+static double worst(const loop *l, const weighting_trial *t)
 {
     double largest = 0.0;
 
@@ -291,13 +292,13 @@ static double worst(const loop *l, const trial *t)
 }
 
 /* Of the rounds of a period, or of those remembered, that which misses least. */
-static const trial *best_of(loop *l, int64_t round, int64_t period)
+static const weighting_trial *best_of(loop *l, int64_t round, int64_t period)
 {
     int64_t count = period > 0 ? period : LONGEST;
-    const trial *best = at_round(l, round);
+    const weighting_trial *best = at_round(l, round);
 
     for (int64_t k = 1; k < count && k <= round; k++) {
-        const trial *t = at_round(l, round - k);
+        const weighting_trial *t = at_round(l, round - k);
 
         if (worst(l, t) < worst(l, best))
             best = t;
@@ -306,7 +307,7 @@ static const trial *best_of(loop *l, int64_t round, int64_t period)
 }
 
 /* Modes that some round of the period keeps and the best does not. */
-static void list_others(loop *l, int64_t round, const trial *best,
+static void list_others(loop *l, int64_t round, const weighting_trial *best,
                         ritz_reweighing *out)
 {
     for (int64_t k = 0; k < l->m; k++)
@@ -320,7 +321,7 @@ static void list_others(loop *l, int64_t round, const trial *best,
 static ritz_status report(loop *l, int64_t round, int64_t period,
                           ritz_reweighing *out)
 {
-    const trial *best = best_of(l, round, period);
+    const weighting_trial *best = best_of(l, round, period);
     size_t size = (size_t)l->p * sizeof(double);
 
     out->num_outputs = l->p;
@@ -359,7 +360,7 @@ ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
     for (int64_t i = 0; i < l.p; i++)
         at_round(&l, 0)->q[i] = 1.0;
     while (true) {
-        trial *t = at_round(&l, round);
+        weighting_trial *t = at_round(&l, round);
 
         RITZ_TRY(choose(&l, t));
         RITZ_TRY(miss(&l, t));

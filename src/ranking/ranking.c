@@ -14,16 +14,16 @@
 /* Places of modes by magnitude of value, and what clusters share. */
 
 /* A value and its mode, to be sorted. */
-typedef struct place {
+typedef struct ranked_place {
     double size;
     int64_t mode;
-} place;
+} ranked_place;
 
 /* Larger values first, of equal ones the lower frequency. */
 static int compare(const void *left, const void *right)
 {
-    const place *a = left;
-    const place *b = right;
+    const ranked_place *a = left;
+    const ranked_place *b = right;
 
     if (a->size != b->size)
         return a->size > b->size ? -1 : 1;
@@ -34,11 +34,11 @@ ritz_status ritz_ranking_sort(int64_t count, const double *value,
                               int64_t *order)
 {
     ritz_status status = RITZ_OK;
-    place *all = NULL;
+    ranked_place *all = NULL;
 
     RITZ_NEW(all, count);
     for (int64_t k = 0; k < count; k++)
-        all[k] = (place){fabs(value[k]), k};
+        all[k] = (ranked_place){fabs(value[k]), k};
     qsort(all, (size_t)count, sizeof *all, compare);
     for (int64_t k = 0; k < count; k++)
         order[k] = all[k].mode;

@@ -142,15 +142,15 @@ static ritz_status apply_weights(const ritz_weights *weights, ritz_io *io)
 enum { DIRECTIONS = 6 };
 
 /* What is ranked: matrices and io of coordinates, and what is known of mass. */
-typedef struct subject {
+typedef struct ranked_model {
     const ritz_dense *K, *M, *D;
     const ritz_io *io;
     const ritz_dense *momentum; /* 6 x r; without values: not known */
     const double *rigid;
-} subject;
+} ranked_model;
 
 /* io with weights and, where momentum is known, six outputs more. */
-static ritz_status extend(const subject *s, const ritz_weights *weights,
+static ritz_status extend(const ranked_model *s, const ritz_weights *weights,
                           ritz_io *out)
 {
     ritz_status status = RITZ_OK;
@@ -210,7 +210,7 @@ done:
     return status;
 }
 
-static ritz_status take_momentum(const subject *s, ritz_rank_request *out)
+static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense none = {0};
@@ -238,9 +238,9 @@ static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
  * The modal model. Rankings of mass do without damping: where there is none,
  * any ratio gives them the modes, and `undamped` says that it means nothing.
  */
-static ritz_status make_modal(const subject *s, const ritz_rank_choice *choice,
-                              int needs, const ritz_io *io,
-                              ritz_rank_request *out)
+static ritz_status make_modal(const ranked_model *s,
+                              const ritz_rank_choice *choice, int needs,
+                              const ritz_io *io, ritz_rank_request *out)
 {
     const ritz_damping any = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.5};
     const ritz_dense *D = s->D && s->D->val ? s->D : NULL;
@@ -251,7 +251,7 @@ static ritz_status make_modal(const subject *s, const ritz_rank_choice *choice,
                           out->undamped ? &any : &choice->damping, &out->modal);
 }
 
-static ritz_status make(const subject *s, const ritz_rank_choice *choice,
+static ritz_status make(const ranked_model *s, const ritz_rank_choice *choice,
                         int needs, ritz_rank_request *out)
 {
     ritz_status status = RITZ_OK;
@@ -336,7 +336,7 @@ static ritz_status make_held(const ritz_reduced *r,
     ritz_status status = RITZ_OK;
     ritz_dense K = {0}, M = {0}, D = {0}, momentum = {0};
     ritz_io io = {0};
-    const subject s = {&K, &M, &D, &io, &momentum, r->invariants.rigid};
+    const ranked_model s = {&K, &M, &D, &io, &momentum, r->invariants.rigid};
     const ritz_rank_choice bare = {.damping = choice->damping};
     int64_t *b = NULL, *n = NULL;
     int64_t p = 0, m = 0;
@@ -374,12 +374,12 @@ ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
                                          const ritz_rank_choice *choice,
                                          int needs, ritz_rank_request *out)
 {
-    const subject s = {&reduced->K,
-                       &reduced->M,
-                       &reduced->D,
-                       &reduced->io,
-                       &reduced->invariants.momentum,
-                       reduced->invariants.rigid};
+    const ranked_model s = {&reduced->K,
+                            &reduced->M,
+                            &reduced->D,
+                            &reduced->io,
+                            &reduced->invariants.momentum,
+                            reduced->invariants.rigid};
     ritz_rank_request request = {0};
     ritz_status status = RITZ_OK;
 
@@ -400,7 +400,8 @@ ritz_rank_request_of_configuration(const ritz_configuration *configuration,
                                    ritz_rank_request *out)
 {
     const ritz_configuration *c = configuration;
-    const subject s = {&c->K, &c->M, &c->D, &c->io, &c->momentum, c->rigid};
+    const ranked_model s = {&c->K,  &c->M,        &c->D,
+                            &c->io, &c->momentum, c->rigid};
 
     RITZ_REFUSE_IF(needs & RITZ_RANK_INTERFACE, RITZ_ERR_ARGUMENT,
                    "a system has no interface to hold: rank its components");

@@ -20,7 +20,7 @@
  * added where they are largest. See response_krylov.c for the equations.
  */
 
-typedef struct ritz_krylov {
+typedef struct krylov_responder {
     ritz_direct full;
     ritz_krylov_space space;
     ritz_krylov_small small;
@@ -41,12 +41,12 @@ typedef struct ritz_krylov {
     double unmet;                /* that, or what full answers showed */
     int64_t at;                  /* the point where it is */
     int64_t points, corrections; /* that were made */
-} ritz_krylov;
+} krylov_responder;
 
 enum { EVEN = 12, MOST_MODES = 60 };
 
 /* Whether D or K4 couples modes with the rest. */
-static bool krylov_couples(const ritz_krylov *k)
+static bool krylov_couples(const krylov_responder *k)
 {
     const ritz_component *c = k->full.component;
 
@@ -54,7 +54,7 @@ static bool krylov_couples(const ritz_krylov *k)
 }
 
 /* f, or beside it where a mode is. */
-static double clear(const ritz_krylov *k, double f)
+static double clear(const krylov_responder *k, double f)
 {
     for (int64_t j = 0; j < k->full.m; j++) {
         double mode = ritz_eigen_hertz(k->full.poles.lambda[j]);
@@ -66,7 +66,7 @@ static double clear(const ritz_krylov *k, double f)
 }
 
 /* Even ones; where modes are coupled, each resonance and between them too. */
-static ritz_status place(ritz_krylov *k, double low, double high)
+static ritz_status place(krylov_responder *k, double low, double high)
 {
     double before = low;
     int64_t m = k->full.m;
@@ -88,7 +88,7 @@ static ritz_status place(ritz_krylov *k, double low, double high)
     return RITZ_OK;
 }
 
-static ritz_status make_room(ritz_krylov *k)
+static ritz_status make_room(krylov_responder *k)
 {
     RITZ_CHECK_NEW(k->size, k->inputs + k->outputs);
     RITZ_CHECK_NEW(k->load, k->inputs + k->outputs);
@@ -102,14 +102,15 @@ static ritz_status make_room(ritz_krylov *k)
 }
 
 /* Points and arrays for a range. */
-static ritz_status place_krylov(ritz_krylov *k, double from_hz, double to_hz)
+static ritz_status place_krylov(krylov_responder *k, double from_hz,
+                                double to_hz)
 {
     RITZ_CHECK(place(k, fmax(from_hz, RITZ_ABOVE_REST * to_hz), to_hz));
     return make_room(k);
 }
 
 /* Residual `index`, inputs before outputs, of what was solved last. */
-static void take_krylov(ritz_krylov *k, double hertz, int64_t index)
+static void take_krylov(krylov_responder *k, double hertz, int64_t index)
 {
     bool dual = index >= k->inputs;
 
@@ -118,7 +119,8 @@ static void take_krylov(ritz_krylov *k, double hertz, int64_t index)
 }
 
 /* Sizes of all residuals at a point; of loads, of which they are the rest. */
-static ritz_status judge_krylov(ritz_krylov *k, double hertz, double *error)
+static ritz_status judge_krylov(krylov_responder *k, double hertz,
+                                double *error)
 {
     double w2 = ritz_eigen_lambda(hertz);
     double gap = fmax(k->lambda_h - w2, RITZ_LEAST_GAP * k->lambda_h);
@@ -140,7 +142,7 @@ static ritz_status judge_krylov(ritz_krylov *k, double hertz, double *error)
     return RITZ_OK;
 }
 
-static ritz_status see_peaks(ritz_krylov *k, double hertz)
+static ritz_status see_peaks(krylov_responder *k, double hertz)
 {
     memset(k->H, 0, (size_t)k->values * sizeof *k->H);
     RITZ_CHECK(ritz_poles_add(&k->small.poles, hertz, k->H));
@@ -150,7 +152,7 @@ static ritz_status see_peaks(ritz_krylov *k, double hertz)
 }
 
 /* What each channel may err. */
-static void allow(ritz_krylov *k)
+static void allow(krylov_responder *k)
 {
     ritz_channel_scales(k->outputs, k->inputs, k->peak, k->allowed);
     for (int64_t i = 0; i < k->outputs; i++)
@@ -166,11 +168,11 @@ static void allow(ritz_krylov *k)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    return ritz_poles_add(&((ritz_krylov *)state)->small.poles, hertz, H);
+    return ritz_poles_add(&((krylov_responder *)state)->small.poles, hertz, H);
 }
 
 /* Every point: the worst of them, against what is allowed. */
-static ritz_status measure_krylov(ritz_krylov *k)
+static ritz_status measure_krylov(krylov_responder *k)
 {
     free(k->y);
     RITZ_CHECK_NEW(k->y, k->space.W.ncol);
@@ -195,7 +197,7 @@ static ritz_status measure_krylov(ritz_krylov *k)
 }
 
 /* Whether residual `index` has a part in an error that is too large. */
-static bool takes_part(const ritz_krylov *k, int64_t index)
+static bool takes_part(const krylov_responder *k, int64_t index)
 {
     const double *error = k->error + k->at * k->values;
 
@@ -208,7 +210,7 @@ static bool takes_part(const ritz_krylov *k, int64_t index)
 }
 
 /* Project anew and measure. */
-static ritz_status renew(ritz_krylov *k, ritz_dense *X, int64_t *added)
+static ritz_status renew(krylov_responder *k, ritz_dense *X, int64_t *added)
 {
     RITZ_CHECK(ritz_krylov_space_add(&k->space, X, added));
     ritz_krylov_small_free(&k->small);
@@ -217,7 +219,7 @@ static ritz_status renew(ritz_krylov *k, ritz_dense *X, int64_t *added)
 }
 
 /* X += real and imaginary part of S y, as columns. */
-static void correction(const ritz_krylov *k, ritz_dense *X)
+static void correction(const krylov_responder *k, ritz_dense *X)
 {
     int64_t n = k->space.S.nrow;
     double *re = X->val + n * X->ncol;
@@ -237,7 +239,7 @@ static void correction(const ritz_krylov *k, ritz_dense *X)
 }
 
 /* The first: A^-1 of all loads. */
-static ritz_status begin_krylov(ritz_krylov *k)
+static ritz_status begin_krylov(krylov_responder *k)
 {
     ritz_status status = RITZ_OK;
     ritz_dense X = {0};
@@ -256,7 +258,7 @@ done:
 }
 
 /* A^-1 of the residuals at the worst point. */
-static ritz_status krylov_correct(ritz_krylov *k, int64_t *added)
+static ritz_status krylov_correct(krylov_responder *k, int64_t *added)
 {
     ritz_status status = RITZ_OK;
     int64_t loads = k->inputs + k->outputs;
@@ -279,7 +281,7 @@ done:
 }
 
 /* b of the inputs, then c of the outputs, n each. */
-static void put_loads(const ritz_krylov *k, double w, double _Complex *X)
+static void put_loads(const krylov_responder *k, double w, double _Complex *X)
 {
     const ritz_io *io = &k->full.component->io;
     int64_t n = k->full.n;
@@ -312,7 +314,7 @@ static ritz_status split(int64_t n, int64_t columns, const double _Complex *Z,
  * where it is more than was thought, all errors are from now on. Neither is
  * what rounding makes of those answers: Y are the outputs' own.
  */
-static ritz_status compare(ritz_krylov *k, double hertz,
+static ritz_status compare(krylov_responder *k, double hertz,
                            const double _Complex *X, const double _Complex *Y,
                            double *out)
 {
@@ -347,7 +349,8 @@ done:
 
 /* Answers to all inputs at a frequency, or beside it where there is none; and
    to all outputs, of the transposed system. */
-static ritz_status answer(ritz_krylov *k, double *hertz, double _Complex *Z)
+static ritz_status answer(krylov_responder *k, double *hertz,
+                          double _Complex *Z)
 {
     ritz_status status = RITZ_OK;
 
@@ -373,8 +376,8 @@ done:
  *
  * @param[out] was  that error over what is allowed
  */
-static ritz_status krylov_expand(ritz_krylov *k, double hertz, int64_t *added,
-                                 double *was)
+static ritz_status krylov_expand(krylov_responder *k, double hertz,
+                                 int64_t *added, double *was)
 {
     ritz_status status = RITZ_OK;
     int64_t n = k->full.n;
@@ -421,7 +424,7 @@ done:
 
 enum { MOST_ROUNDS = 60, MOST_CONFIRMED = 12 };
 
-static void krylov_free(ritz_krylov *k)
+static void krylov_free(krylov_responder *k)
 {
     ritz_direct_free(&k->full);
     ritz_krylov_space_free(&k->space);
@@ -442,7 +445,7 @@ static void krylov_free(ritz_krylov *k)
  * Until the error is small everywhere. An expansion point at which it is,
  * beside the full answers, says that the bound is not sharp: *held.
  */
-static ritz_status grow(ritz_krylov *k, bool *held)
+static ritz_status grow(krylov_responder *k, bool *held)
 {
     bool pay = true;
     int64_t added = 1;
@@ -468,7 +471,7 @@ static ritz_status grow(ritz_krylov *k, bool *held)
 
 /* The frequency of the pole that is damped least, or beside it where that has
    no response; 0 if none is in the range. */
-static ritz_status find_quietest(const ritz_krylov *k,
+static ritz_status find_quietest(const krylov_responder *k,
                                  const ritz_response_request *request,
                                  double *out)
 {
@@ -497,8 +500,8 @@ done:
 }
 
 /* Full answers at the worst point, and at the pole that is damped least. */
-static ritz_status confirm(ritz_krylov *k, const ritz_response_request *request,
-                           bool *held)
+static ritz_status confirm(krylov_responder *k,
+                           const ritz_response_request *request, bool *held)
 {
     double hertz = k->hertz[k->at];
     double was = 0.0;
@@ -514,7 +517,7 @@ static ritz_status confirm(ritz_krylov *k, const ritz_response_request *request,
     return RITZ_OK;
 }
 
-static ritz_status converge(ritz_krylov *k,
+static ritz_status converge(krylov_responder *k,
                             const ritz_response_request *request)
 {
     bool held = false;
@@ -546,7 +549,8 @@ static double highest_of(const ritz_response_request *request)
     return RITZ_POLES_BEYOND * request->to_hz;
 }
 
-static ritz_status start(const ritz_response_request *request, ritz_krylov *k)
+static ritz_status start(const ritz_response_request *request,
+                         krylov_responder *k)
 {
     const ritz_io *io = &request->component->io;
     double highest = highest_of(request);
@@ -580,7 +584,7 @@ static ritz_status make(const ritz_response_request *request,
                         ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_krylov *k = NULL;
+    krylov_responder *k = NULL;
 
     RITZ_NEW(k, 1);
     RITZ_TRY(start(request, k));

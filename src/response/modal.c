@@ -13,13 +13,13 @@
 #include <stdlib.h>
 
 /* `pairs` and `residual` of a component alone. */
-typedef struct modal {
+typedef struct modal_responder {
     ritz_pairs pairs;
     ritz_poles poles;
     ritz_residual residual;
-} modal;
+} modal_responder;
 
-static void modal_free(modal *m)
+static void modal_free(modal_responder *m)
 {
     ritz_pairs_free(&m->pairs);
     ritz_poles_free(&m->poles);
@@ -34,14 +34,15 @@ static void finish(void *state)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    const modal *m = state;
+    const modal_responder *m = state;
 
     RITZ_CHECK(ritz_poles_add(&m->poles, hertz, H));
     ritz_residual_add(&m->residual, hertz, H);
     return RITZ_OK;
 }
 
-static ritz_status of_component(const ritz_response_request *request, modal *m)
+static ritz_status of_component(const ritz_response_request *request,
+                                modal_responder *m)
 {
     double highest = ritz_response_highest(request);
 
@@ -58,7 +59,7 @@ static ritz_status make(const ritz_response_request *request,
                         ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
-    modal *m = NULL;
+    modal_responder *m = NULL;
 
     RITZ_NEW(m, 1);
     if (request->component)

@@ -48,7 +48,7 @@ typedef struct ritz_interpolant {
 /* So many nodes in a row are within the tolerance at the end. */
 enum { RITZ_RATIONAL_ENOUGH = 3 };
 
-typedef struct ritz_nodes {
+typedef struct rational_nodes {
     ritz_direct full;
     ritz_interpolant poles; /* those alone are cancelled */
     ritz_interpolant both;  /* and zeros, where there are any */
@@ -68,7 +68,7 @@ typedef struct ritz_nodes {
     int64_t nodes;
     bool small; /* `whole` is there */
     ritz_whole whole;
-} ritz_nodes;
+} rational_nodes;
 
 static void free_interpolant(ritz_interpolant *interpolant)
 {
@@ -235,7 +235,7 @@ enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
 static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
 
 /* An undamped pole that was cancelled has no response. */
-static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
+static ritz_status refuse_pole(const rational_nodes *s, double hertz)
 {
     double w = 2.0 * RITZ_PI * hertz;
 
@@ -257,7 +257,7 @@ static ritz_status refuse_pole(const ritz_nodes *s, double hertz)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    ritz_nodes *s = state;
+    rational_nodes *s = state;
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
     RITZ_CHECK(refuse_pole(s, hertz));
@@ -279,7 +279,8 @@ static bool is_on(double _Complex s, int64_t count, const double _Complex *at,
 }
 
 /* A frequency where a node may be: on no pole and on no zero. */
-static void add_candidate(ritz_nodes *s, double hertz, double low, double high)
+static void add_candidate(rational_nodes *s, double hertz, double low,
+                          double high)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     bool on = !(hertz >= low && hertz <= high) ||
@@ -302,7 +303,7 @@ static int ascending(const void *left, const void *right)
 
 /* Beside resonances, between them, and so many towards both ends that among
  * them are Leja points, which gather there. */
-static ritz_status place_nodes(ritz_nodes *s, double low, double high)
+static ritz_status place_nodes(rational_nodes *s, double low, double high)
 {
     ritz_status status = RITZ_OK;
     double *at = NULL;
@@ -342,7 +343,7 @@ done:
 }
 
 /* The candidate that helps most, -1 if none is left. */
-static int64_t next(const ritz_nodes *s)
+static int64_t next(const rational_nodes *s)
 {
     double most = -HUGE_VAL;
     int64_t best = -1;
@@ -361,7 +362,7 @@ static int64_t next(const ritz_nodes *s)
     return best;
 }
 
-static ritz_status add_node(ritz_nodes *s, double hertz)
+static ritz_status add_node(rational_nodes *s, double hertz)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
@@ -377,7 +378,7 @@ static ritz_status add_node(ritz_nodes *s, double hertz)
 }
 
 /* What either interpolant missed at a new node; whether one did not. */
-static bool judge(ritz_nodes *s, double hertz, double tolerance)
+static bool judge(rational_nodes *s, double hertz, double tolerance)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     const ritz_io *io = &s->full.component->io;
@@ -409,7 +410,7 @@ static bool judge(ritz_nodes *s, double hertz, double tolerance)
 }
 
 /* Nodes until the last were within the tolerance. */
-static ritz_status converge_nodes(ritz_nodes *s, double tolerance)
+static ritz_status converge_nodes(rational_nodes *s, double tolerance)
 {
     bool near = false;
 
@@ -434,7 +435,7 @@ static ritz_status converge_nodes(ritz_nodes *s, double tolerance)
 
 /* A pole that is there is added once more, and then not again: 0 is double, and
    what couples two equal modes a little is seen through both. */
-static void add_pole(ritz_nodes *s, double _Complex pole)
+static void add_pole(rational_nodes *s, double _Complex pole)
 {
     int64_t there = 0;
 
@@ -445,7 +446,7 @@ static void add_pole(ritz_nodes *s, double _Complex pole)
 }
 
 /* A small component as a dense model, ratios in D as the modes have them. */
-static ritz_status take_whole(ritz_nodes *s)
+static ritz_status take_whole(rational_nodes *s)
 {
     ritz_status status = RITZ_OK;
     const ritz_direct *full = &s->full;
@@ -477,13 +478,13 @@ done:
 }
 
 /* What acts beside that model's D. */
-static const ritz_damping *rest_of(const ritz_nodes *s)
+static const ritz_damping *rest_of(const rational_nodes *s)
 {
     return s->full.ratios ? NULL : &s->full.damping;
 }
 
 /* Poles as the responder knows them; of a small coupled one by itself. */
-static ritz_status list_poles(const ritz_nodes *s,
+static ritz_status list_poles(const rational_nodes *s,
                               const ritz_responder *responder, int64_t *count,
                               double _Complex **out)
 {
@@ -509,7 +510,7 @@ done:
  * below the axis, which are - s but for damping by D, and far enough away for
  * that to do.
  */
-static ritz_status nodes_find_poles(ritz_nodes *s,
+static ritz_status nodes_find_poles(rational_nodes *s,
                                     const ritz_responder *responder)
 {
     ritz_status status = RITZ_OK;
@@ -534,7 +535,7 @@ done:
 }
 
 /* Zeros of each channel of that model. */
-static ritz_status nodes_find_zeros(ritz_nodes *s)
+static ritz_status nodes_find_zeros(rational_nodes *s)
 {
     ritz_status status = RITZ_OK;
     int64_t inputs = s->full.component->io.num_inputs;
@@ -582,7 +583,7 @@ done:
 /* Of channels: of more, zeros take longer than nodes. */
 static const int64_t most_channels = 9;
 
-static void rational_free(ritz_nodes *s)
+static void rational_free(rational_nodes *s)
 {
     ritz_direct_free(&s->full);
     ritz_whole_free(&s->whole);
@@ -603,7 +604,7 @@ static void rational_free(ritz_nodes *s)
 }
 
 static ritz_status start(const ritz_response_request *request,
-                         const ritz_responder *out, ritz_nodes *s)
+                         const ritz_responder *out, rational_nodes *s)
 {
     const ritz_io *io = &request->component->io;
     double unit = 2.0 * RITZ_PI * request->to_hz;
@@ -645,7 +646,7 @@ static ritz_status make(const ritz_response_request *request,
                         ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_nodes *s = NULL;
+    rational_nodes *s = NULL;
 
     RITZ_NEW(s, 1);
     RITZ_TRY(ritz_direct_new(request->component, request->damping,

@@ -185,15 +185,15 @@ done:
     return status;
 }
 
-typedef struct states {
+typedef struct state_responder {
     ritz_poles poles;
     hessenberg h;
     const ritz_state_space *model; /* borrowed */
-} states;
+} state_responder;
 
 static void free_states(void *state)
 {
-    states *s = state;
+    state_responder *s = state;
 
     ritz_poles_free(&s->poles);
     finish(&s->h);
@@ -202,7 +202,7 @@ static void free_states(void *state)
 
 static ritz_status at(void *state, double hertz, double _Complex *H)
 {
-    states *s = state;
+    state_responder *s = state;
     hessenberg *h = &s->h;
 
     RITZ_CHECK(solve(h, hertz));
@@ -217,7 +217,7 @@ static ritz_status make(const ritz_response_request *request,
                         ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
-    states *s = NULL;
+    state_responder *s = NULL;
 
     RITZ_NEW(s, 1);
     s->model = request->states;

@@ -100,7 +100,8 @@ static double _Complex *impedance(const ritz_component *c, double _Complex s)
 }
 
 /* f = B b + (C + s Cv + s^2 Ca)' c, with b before c. */
-static double _Complex *force(const ritz_component *c, const ritz_probe *probe)
+static double _Complex *force(const ritz_component *c,
+                              const ritz_interpolation_point *probe)
 {
     const ritz_io *io = &c->io;
     const double _Complex *b = probe->b;
