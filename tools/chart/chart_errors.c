@@ -41,36 +41,19 @@ typedef struct panel {
     double x_low, x_high, y_low, y_high, tolerance;
 } panel;
 
-/* A chart in the making. */
+/* A chart in the making; arrays are the picture's. */
 typedef struct work {
     const form *form;
-    records all;
-    int64_t num_measures;
-    measure *measure;
-    panel *panel; /* of each measure */
-    int64_t num_methods;
-    const char **method;
-    int64_t *which; /* method of each record */
-    double *x, *y;  /* of each record, as drawn; NaN: not in this panel */
+    selection s;
+    panel *panel;        /* of each measure */
+    double *x, *y;       /* of each record, as drawn; NaN: not in this panel */
+    double *at_x, *at_y; /* the same in pixels of the panel */
+    int64_t *group;      /* of points that may hide each other */
     bool *front, *keep;
     int64_t *order;           /* records in the order of a line */
     int64_t lifted, left_out; /* to be said below */
     picture *picture;
 } work;
-
-static void free_work(work *w)
-{
-    free(w->all.item);
-    free(w->measure);
-    free(w->panel);
-    free(w->method);
-    free(w->which);
-    free(w->x);
-    free(w->y);
-    free(w->front);
-    free(w->keep);
-    free(w->order);
-}
 
 /* --- scales --------------------------------------------------------------- */
 
@@ -104,9 +87,9 @@ static void place_records(work *w, const measure *m, panel *p)
     chart_range y = {0.0, 0.0};
     int64_t lifted = 0;
 
-    for (int64_t k = 0; k < w->all.count; k++) {
-        w->x[k] = w->form->x(&w->all.item[k]);
-        w->y[k] = record_error(&w->all.item[k], m->name);
+    for (int64_t k = 0; k < w->s.all.count; k++) {
+        w->x[k] = w->form->x(&w->s.all.item[k]);
+        w->y[k] = record_error(&w->s.all.item[k], m->name);
         if (!isfinite(w->y[k]) || !isfinite(w->x[k]) ||
             (w->form->seconds && !(w->x[k] > 0.0))) {
             w->left_out++;
@@ -116,7 +99,7 @@ static void place_records(work *w, const measure *m, panel *p)
         least = fmin(least, w->x[k]);
         most = fmax(most, w->x[k]);
     }
-    y = chart_decades(w->all.count, w->y, RECORDS_ROUNDING, &lifted);
+    y = chart_decades(w->s.all.count, w->y, RECORDS_ROUNDING, &lifted);
     w->lifted += lifted;
     *p = (panel){.x_low = least > most ? 0.5 : 0.7 * least,
                  .x_high = least > most ? 2.0 : 1.3 * most,
@@ -131,22 +114,17 @@ static void place_records(work *w, const measure *m, panel *p)
         if (m->tolerance >= y.high)
             p->y_high = 2.0 * m->tolerance;
     }
-    for (int64_t k = 0; k < w->all.count; k++)
+    for (int64_t k = 0; k < w->s.all.count; k++)
         w->y[k] = isnan(w->y[k]) ? w->y[k] : fmax(w->y[k], p->y_low);
     p->y_low *= pow(p->y_low / p->y_high, foot_part);
-}
-
-/* Pixels of a value in a panel. */
-static double pixel_x(const work *w, const panel *p, double x)
-{
-    return w->form->seconds
-               ? PANEL_WIDE * log(x / p->x_low) / log(p->x_high / p->x_low)
-               : PANEL_WIDE * x / p->x_high;
-}
-
-static double pixel_y(const panel *p, double y)
-{
-    return PANEL_HIGH * log(y / p->y_low) / log(p->y_high / p->y_low);
+    for (int64_t k = 0; k < w->s.all.count; k++) {
+        w->at_x[k] = PANEL_WIDE *
+                     (w->form->seconds
+                          ? log(w->x[k] / p->x_low) / log(p->x_high / p->x_low)
+                          : w->x[k] / p->x_high);
+        w->at_y[k] =
+            PANEL_HIGH * log(w->y[k] / p->y_low) / log(p->y_high / p->y_low);
+    }
 }
 
 /* --- front and lines ------------------------------------------------------ */
@@ -154,11 +132,11 @@ static double pixel_y(const panel *p, double y)
 /* What nothing beats: no other point is left of it and as low. */
 static void find_front(work *w)
 {
-    for (int64_t k = 0; k < w->all.count; k++) {
-        bool best = !isnan(w->x[k]) && !w->all.item[k].incomplete;
+    for (int64_t k = 0; k < w->s.all.count; k++) {
+        bool best = !isnan(w->x[k]) && !w->s.all.item[k].incomplete;
 
-        for (int64_t i = 0; best && i < w->all.count; i++) {
-            if (isnan(w->x[i]) || i == k || w->all.item[i].incomplete)
+        for (int64_t i = 0; best && i < w->s.all.count; i++) {
+            if (isnan(w->x[i]) || i == k || w->s.all.item[i].incomplete)
                 continue;
             best = !(w->x[i] <= w->x[k] && w->y[i] <= w->y[k] &&
                      (w->x[i] < w->x[k] || w->y[i] < w->y[k] || i < k));
@@ -181,11 +159,11 @@ static int64_t list_line(work *w, int64_t method)
 {
     int64_t count = 0, kept = 0;
 
-    for (int64_t k = 0; k < w->all.count; k++) {
+    for (int64_t k = 0; k < w->s.all.count; k++) {
         int64_t at = count;
 
-        if (isnan(w->x[k]) || w->all.item[k].incomplete ||
-            (method < 0 ? !w->front[k] : w->which[k] != method))
+        if (isnan(w->x[k]) || w->s.all.item[k].incomplete ||
+            (method < 0 ? !w->front[k] : w->s.which[k] != method))
             continue;
         for (; at > 0 && is_before(w, k, w->order[at - 1]); at--)
             w->order[at] = w->order[at - 1];
@@ -228,13 +206,13 @@ static void say_point(work *w, const record *r, const measure *m)
 /* A row; its word is the order, if it is to be written beside the point. */
 static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
 {
-    const record *r = &w->all.item[k];
+    const record *r = &w->s.all.item[k];
     FILE *file = w->picture->data.file;
 
     fprintf(file, "%lld\t%lld\t%d\t%.9g\t%.9g\t", (long long)p,
-            (long long)w->which[k], style, w->x[k], w->y[k]);
+            (long long)w->s.which[k], style, w->x[k], w->y[k]);
     if (style <= MISSES)
-        say_point(w, r, &w->measure[p]);
+        say_point(w, r, &w->s.measure[p]);
     fprintf(file, "\t%lld\t", (long long)r->order);
     html_line(file, r->method);
     fprintf(file, "\t");
@@ -255,14 +233,12 @@ static void put_line(work *w, int64_t p, int64_t method)
 
     for (int64_t i = 0; i < count; i++) {
         const int64_t k = w->order[i];
-        const double at_x = pixel_x(w, &w->panel[p], w->x[k]);
-        const double at_y = pixel_y(&w->panel[p], w->y[k]);
-        const bool word =
-            method < 0 && (at_x - x > word_wide || y - at_y > word_high);
+        const bool word = method < 0 && (w->at_x[k] - x > word_wide ||
+                                         y - w->at_y[k] > word_high);
 
         if (word) {
-            x = at_x;
-            y = at_y;
+            x = w->at_x[k];
+            y = w->at_y[k];
         }
         put_row(w, p, k, method < 0 ? ON_FRONT : ON_LINE, word);
     }
@@ -272,29 +248,19 @@ static void put_line(work *w, int64_t p, int64_t method)
 /* Points, of those that hide each other the lowest of a method; lines. */
 static ritz_status put_panel(work *w, int64_t p)
 {
-    ritz_status status = RITZ_OK;
-    const size_t count = (size_t)w->all.count + 1;
-    double *at = calloc(2 * count, sizeof *at);
-    int64_t *group = calloc(count, sizeof *group);
-
-    RITZ_FAIL_IF(!at || !group, RITZ_ERR_MEMORY, "no memory for a chart");
     find_front(w);
-    for (int64_t k = 0; k < w->all.count; k++) {
-        const record *r = &w->all.item[k];
+    for (int64_t k = 0; k < w->s.all.count; k++) {
+        const record *r = &w->s.all.item[k];
 
         w->keep[k] = w->front[k] || r->chosen || r->runner_up;
-        group[k] = isnan(w->x[k]) ? -1 : 2 * w->which[k] + r->feasible;
-        if (group[k] < 0)
-            continue;
-        at[k] = pixel_x(w, &w->panel[p], w->x[k]);
-        at[count + (size_t)k] = pixel_y(&w->panel[p], w->y[k]);
+        w->group[k] = isnan(w->x[k]) ? -1 : 2 * w->s.which[k] + r->feasible;
     }
-    RITZ_TRY(
-        picture_thin(w->all.count, at, at + count, mark_apart, group, w->keep));
-    for (int64_t k = 0; k < w->all.count; k++) {
-        const record *r = &w->all.item[k];
+    RITZ_CHECK(picture_thin(w->s.all.count, w->at_x, w->at_y, mark_apart,
+                            w->group, w->keep));
+    for (int64_t k = 0; k < w->s.all.count; k++) {
+        const record *r = &w->s.all.item[k];
 
-        if (isnan(w->x[k]) || !w->keep[k])
+        if (w->group[k] < 0 || !w->keep[k])
             continue;
         put_row(w, p, k, r->feasible ? MEETS : MISSES, false);
         if (r->chosen || r->runner_up)
@@ -302,12 +268,9 @@ static ritz_status put_panel(work *w, int64_t p)
     }
     if (w->form->front)
         put_line(w, p, -1);
-    for (int64_t s = 0; w->form->lines && s < w->num_methods; s++)
+    for (int64_t s = 0; w->form->lines && s < w->s.num_methods; s++)
         put_line(w, p, s);
-done:
-    free(at);
-    free(group);
-    return status;
+    return RITZ_OK;
 }
 
 static void put_table(const work *w)
@@ -315,17 +278,17 @@ static void put_table(const work *w)
     FILE *file = w->picture->table.file;
 
     fprintf(file, "method\torder\tto reduce, s\tone simulated second, s");
-    for (int64_t m = 0; m < w->num_measures; m++)
-        fprintf(file, "\t%s", w->measure[m].title);
+    for (int64_t m = 0; m < w->s.num_measures; m++)
+        fprintf(file, "\t%s", w->s.measure[m].title);
     fprintf(file, "\tverdict\n");
-    for (int64_t k = 0; k < w->all.count; k++) {
-        const record *r = &w->all.item[k];
+    for (int64_t k = 0; k < w->s.all.count; k++) {
+        const record *r = &w->s.all.item[k];
 
         html_line(file, r->method);
         fprintf(file, "\t%lld\t%.4g\t%.4g", (long long)r->order, r->cpu,
                 r->cost);
-        for (int64_t m = 0; m < w->num_measures; m++)
-            fprintf(file, "\t%.4g", record_error(r, w->measure[m].name));
+        for (int64_t m = 0; m < w->s.num_measures; m++)
+            fprintf(file, "\t%.4g", record_error(r, w->s.measure[m].name));
         fprintf(file, "\t%s\n",
                 r->chosen      ? "chosen"
                 : r->runner_up ? "runner-up"
@@ -351,21 +314,21 @@ static void add_signs(work *w)
     const record *chosen = NULL, *second = NULL;
     bool hollow = false, limit = false, uncertain = false;
 
-    for (int64_t s = 0; s < w->num_methods && s < PICTURE_SIGNS - 7; s++) {
+    for (int64_t s = 0; s < w->s.num_methods && s < PICTURE_SIGNS - 7; s++) {
         picture_sign sign = {.colour = svg_series((int)(s % SVG_SERIES)),
                              .mark = chart_mark(s)};
 
-        snprintf(sign.name, sizeof sign.name, "%.60s", w->method[s]);
+        snprintf(sign.name, sizeof sign.name, "%.60s", w->s.method[s]);
         picture_add_sign(w->picture, &sign);
     }
-    for (int64_t k = w->all.count - 1; k >= 0; k--) {
-        const record *r = &w->all.item[k];
+    for (int64_t k = w->s.all.count - 1; k >= 0; k--) {
+        const record *r = &w->s.all.item[k];
 
         chosen = r->chosen ? r : chosen;
         second = r->runner_up && !r->chosen ? r : second;
         hollow = hollow || !r->feasible;
     }
-    for (int64_t p = 0; p < w->num_measures; p++) {
+    for (int64_t p = 0; p < w->s.num_measures; p++) {
         limit = limit || w->panel[p].tolerance > 0.0;
         uncertain = uncertain || (w->panel[p].y_low <= uncertainty &&
                                   uncertainty <= w->panel[p].y_high);
@@ -413,14 +376,14 @@ static void say_missing(work *w)
 static ritz_status compose(work *w)
 {
     static const int64_t stride = sizeof(panel) / sizeof(double);
-    const int64_t n = w->num_measures, across = n > 1 ? 2 : 1;
+    const int64_t n = w->s.num_measures, across = n > 1 ? 2 : 1;
     picture *p = w->picture;
     const panel *first = w->panel;
 
     fprintf(p->data.file,
             "area\tseries\tstyle\tx\ty\ttip\torder\tmethod\tword\n");
     for (int64_t k = 0; k < n; k++) {
-        place_records(w, &w->measure[k], &w->panel[k]);
+        place_records(w, &w->s.measure[k], &w->panel[k]);
         RITZ_CHECK(put_panel(w, k));
     }
     p->wide = (double)(across * CELL_WIDE);
@@ -429,10 +392,10 @@ static ritz_status compose(work *w)
     p->body = (double)(down * CELL_HIGH);
     fprintf(p->given.file,
             "panels = %lld\nacross = %lld\nmethods = %lld\nseconds = %d\n",
-            (long long)n, (long long)across, (long long)w->num_methods,
+            (long long)n, (long long)across, (long long)w->s.num_methods,
             w->form->seconds);
     picture_give_text(p, "xlabel", w->form->xlabel);
-    picture_give_texts(p, "title", n, w->measure->title, sizeof(measure));
+    picture_give_texts(p, "title", n, w->s.measure->title, sizeof(measure));
     picture_give_reals(p, "x_low", n, &first->x_low, stride);
     picture_give_reals(p, "x_high", n, &first->x_high, stride);
     picture_give_reals(p, "y_low", n, &first->y_low, stride);
@@ -444,59 +407,70 @@ static ritz_status compose(work *w)
     return picture_draw(p, "errors.gp", w->form->title, w->form->xlabel);
 }
 
-/* Measures of which every error is rounding have nothing to show. */
-static void drop_rounding(work *w)
-{
-    int64_t kept = 0;
-
-    for (int64_t m = 0; m < w->num_measures; m++)
-        if (m == 0 || records_matter(&w->all, &w->measure[m]))
-            w->measure[kept++] = w->measure[m];
-    w->num_measures = kept;
-}
-
 /* Of measures the first @p kept are taken. */
-static ritz_status refuse_measure(const work *w, const char *asked,
+static ritz_status refuse_measure(const selection *s, const char *asked,
                                   int64_t kept)
 {
     char names[16 * RITZ_NAME_SIZE] = "";
     size_t used = 0;
 
-    for (int64_t k = 0; k < w->num_measures; k++) {
-        RITZ_REFUSE_IF(k < kept && strcmp(w->measure[k].name, asked) == 0,
+    for (int64_t k = 0; k < s->num_measures; k++) {
+        RITZ_REFUSE_IF(k < kept && strcmp(s->measure[k].name, asked) == 0,
                        RITZ_ERR_ARGUMENT, "--measure '%s' is given twice",
                        asked);
         if (used < sizeof names)
             used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
-                                     used > 0 ? ", " : "", w->measure[k].name);
+                                     used > 0 ? ", " : "", s->measure[k].name);
     }
     return ritz_fail(RITZ_ERR_ARGUMENT, "no record has an error '%s', but %s",
                      asked, names);
 }
 
-/* Measures that are asked for, or all. */
-static ritz_status choose_measures(work *w, const cli_list *asked)
+/* Measures that are asked for, or all of which any error is not rounding. */
+static ritz_status choose_measures(selection *s, const cli_list *asked)
 {
     int64_t kept = 0;
 
-    RITZ_CHECK(records_measures(&w->all, &w->num_measures, &w->measure));
-    if (asked->count == 0)
-        drop_rounding(w);
+    for (int64_t m = 0; asked->count == 0 && m < s->num_measures; m++)
+        if (m == 0 || records_matter(&s->all, &s->measure[m]))
+            s->measure[kept++] = s->measure[m];
     for (int a = 0; a < asked->count; a++) {
         int64_t k = kept;
 
-        while (k < w->num_measures &&
-               strcmp(w->measure[k].name, asked->text[a]) != 0)
+        while (k < s->num_measures &&
+               strcmp(s->measure[k].name, asked->text[a]) != 0)
             k++;
-        if (k >= w->num_measures)
-            return refuse_measure(w, asked->text[a], kept);
-        measure found = w->measure[k];
+        if (k >= s->num_measures)
+            return refuse_measure(s, asked->text[a], kept);
+        const measure found = s->measure[k];
 
-        w->measure[k] = w->measure[kept];
-        w->measure[kept++] = found;
+        s->measure[k] = s->measure[kept];
+        s->measure[kept++] = found;
     }
-    if (asked->count > 0)
-        w->num_measures = kept;
+    s->num_measures = kept;
+    return RITZ_OK;
+}
+
+static ritz_status prepare(work *w, const chart_wish *wish)
+{
+    const int64_t n = w->s.all.count;
+    bool any = false;
+
+    RITZ_CHECK(choose_measures(&w->s, &wish->measure));
+    for (int64_t k = 0; k < n; k++)
+        any = any || isfinite(w->form->x(&w->s.all.item[k]));
+    RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
+                   "no record says what its model cost");
+    RITZ_CHECK(picture_new(wish->path, wish->keep, w->picture));
+    PICTURE_NEW(w->picture, w->panel, w->s.num_measures);
+    PICTURE_NEW(w->picture, w->x, n);
+    PICTURE_NEW(w->picture, w->y, n);
+    PICTURE_NEW(w->picture, w->at_x, n);
+    PICTURE_NEW(w->picture, w->at_y, n);
+    PICTURE_NEW(w->picture, w->group, n);
+    PICTURE_NEW(w->picture, w->front, n);
+    PICTURE_NEW(w->picture, w->keep, n);
+    PICTURE_NEW(w->picture, w->order, n);
     return RITZ_OK;
 }
 
@@ -506,28 +480,12 @@ static ritz_status draw_errors(const chart_sources *sources,
 {
     ritz_status status = RITZ_OK;
     work w = {.form = how, .picture = out};
-    size_t room = 0;
-    bool any = false;
 
-    RITZ_TRY(records_select(&sources->runs, wish->subject, &w.all));
-    RITZ_TRY(choose_measures(&w, &wish->measure));
-    RITZ_TRY(records_methods(&w.all, &w.num_methods, &w.method, &w.which));
-    room = (size_t)w.all.count + 1;
-    w.x = calloc(room, sizeof *w.x);
-    w.y = calloc(room, sizeof *w.y);
-    w.front = calloc(room, sizeof *w.front);
-    w.keep = calloc(room, sizeof *w.keep);
-    w.order = calloc(room, sizeof *w.order);
-    w.panel = calloc((size_t)w.num_measures + 1, sizeof *w.panel);
-    RITZ_FAIL_IF(!w.x || !w.y || !w.front || !w.keep || !w.order || !w.panel,
-                 RITZ_ERR_MEMORY, "no memory for a chart");
-    for (int64_t k = 0; k < w.all.count; k++)
-        any = any || isfinite(how->x(&w.all.item[k]));
-    RITZ_FAIL_IF(!any, RITZ_ERR_ARGUMENT, "no record says what its model cost");
-    RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(selection_new(&sources->runs, wish->subject, &w.s));
+    RITZ_TRY(prepare(&w, wish));
     RITZ_TRY(compose(&w));
 done:
-    free_work(&w);
+    selection_free(&w.s);
     return status;
 }
 

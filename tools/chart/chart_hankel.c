@@ -51,13 +51,13 @@ static double height_of(const contest *all, int64_t c, int64_t number)
 }
 
 /* Numbers that are among the first few of some ranking, ascending. */
-static ritz_status pick_numbers(const contest *all, int64_t most,
+static ritz_status pick_numbers(picture *p, const contest *all, int64_t most,
                                 int64_t *count, int64_t **out)
 {
-    int64_t *number = calloc((size_t)(all->count * most) + 1, sizeof *number);
+    int64_t *number = NULL;
     int64_t n = 0;
 
-    RITZ_REFUSE_IF(!number, RITZ_ERR_MEMORY, "no memory for a chart");
+    PICTURE_NEW(p, number, all->count * most);
     for (int64_t c = 0; c < all->count; c++)
         for (int64_t k = 0; k < all->ranking[c]->count && k < most; k++) {
             int64_t wanted = number_of(all, c, all->ranking[c]->order[k]);
@@ -129,16 +129,15 @@ static void put_data(picture *p, const contest *all, int64_t count,
 static ritz_status draw_rankings(picture *p, const char *title,
                                  const contest *all, int64_t most)
 {
-    ritz_status status = RITZ_OK;
     double largest = 0.0;
     int64_t *number = NULL;
     int64_t count = 0;
 
     for (int64_t c = 0; c < all->count; c++)
         largest = fmax(largest, largest_of(all->ranking[c]));
-    RITZ_FAIL_IF(!(largest > 0.0), RITZ_ERR_ARGUMENT,
-                 "no mode has a value that could be drawn");
-    RITZ_TRY(pick_numbers(all, most, &count, &number));
+    RITZ_REFUSE_IF(!(largest > 0.0), RITZ_ERR_ARGUMENT,
+                   "no mode has a value that could be drawn");
+    RITZ_CHECK(pick_numbers(p, all, most, &count, &number));
     put_data(p, all, count, number);
     p->wide = 220.0 + (double)(count * (14 + 7 * all->count));
     p->wide = fmin(fmax(p->wide, 640.0), 2400.0);
@@ -150,10 +149,7 @@ static ritz_status draw_rankings(picture *p, const char *title,
     picture_give_text(p, "ylabel",
                       is_mixed(all) ? "part of the largest value"
                                     : all->ranking[0]->by);
-    RITZ_TRY(picture_draw(p, "hankel.gp", title, "values of modes as bars"));
-done:
-    free(number);
-    return status;
+    return picture_draw(p, "hankel.gp", title, "values of modes as bars");
 }
 
 ritz_status chart_rankings(const char *path, const char *title,
@@ -170,13 +166,11 @@ done:
 }
 
 /* Rankings as ritz-rank holds them; they stay the sources'. */
-static ritz_status borrow_rankings(const chart_sources *sources,
+static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
                                    rank_result *out)
 {
-    out->group = calloc((size_t)sources->count + 1, sizeof *out->group);
-    out->file = calloc((size_t)sources->count + 1, sizeof *out->file);
-    RITZ_REFUSE_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
-                   "no memory for rankings");
+    PICTURE_NEW(p, out->group, sources->count);
+    PICTURE_NEW(p, out->file, sources->count);
     for (int64_t k = 0; k < sources->count; k++) {
         const chart_file *file = &sources->file[k];
 
@@ -199,15 +193,13 @@ ritz_status chart_hankel(const chart_sources *sources, const chart_wish *wish,
     contest all = {0};
     char title[256];
 
-    RITZ_TRY(borrow_rankings(sources, &result));
+    RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(borrow_rankings(sources, out, &result));
     RITZ_TRY(rank_contest(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,
              rankings_damping(all.ranking[0]));
-    RITZ_TRY(picture_new(wish->path, wish->keep, out));
     RITZ_TRY(draw_rankings(out, title, &all, wish->top));
 done:
     rank_contest_free(&all);
-    free(result.group);
-    free(result.file);
     return status;
 }

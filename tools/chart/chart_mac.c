@@ -155,7 +155,6 @@ static ritz_status give_modes(picture *p, const char *name, const mac_shapes *s)
     for (int64_t k = 0; k < s->count; k++)
         say_mode(s, k, word[k]);
     picture_give_texts(p, name, s->count, word[0], SIZE);
-    free(word);
     return RITZ_OK;
 }
 

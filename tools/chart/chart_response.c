@@ -288,14 +288,20 @@ static void set_decades(double least, double most, double *low, double *high)
 
 /* --- data ----------------------------------------------------------------- */
 
+/* Frequencies over decades get a logarithmic axis. */
+static bool is_decades(const ritz_response *r)
+{
+    return r->hertz[0] > 0.0 && r->hertz[r->count - 1] >= 10.0 * r->hertz[0];
+}
+
 /* Pixel column of a frequency in a panel. */
 static int64_t column_of(const ritz_response *r, double hertz)
 {
     const double low = r->hertz[0], high = r->hertz[r->count - 1];
-    const bool is_log = low > 0.0 && high / low >= 10.0;
+    const double part = is_decades(r) ? log(hertz / low) / log(high / low)
+                                      : (hertz - low) / (high - low);
 
-    return (int64_t)(PANEL_WIDE * (is_log ? log(hertz / low) / log(high / low)
-                                          : (hertz - low) / (high - low)));
+    return fabs(part) < 10.0 ? (int64_t)floor(PANEL_WIDE * part) : -1;
 }
 
 /* "NaN" leaves a gap in a line, "nan" is bridged. */
@@ -310,74 +316,67 @@ static void put_real(FILE *file, double value)
 /* A point of a line: magnitude, degrees, errors. */
 enum { VALUES = 2 + STRIPS, FEW = 2 * VALUES };
 
-static void take_values(const overlay *o, int64_t w, int64_t k, int64_t c,
-                        int64_t line, double most, double out[VALUES])
-{
-    double _Complex H = value_of(o, w, k, c, line);
-
-    out[0] = cabs(H);
-    out[1] = is_singular(o, c) ? nan("") : carg(H) * 180.0 / M_PI;
-    measure_errors(o, w, k, c, line, most, out + 2);
-}
+typedef struct point {
+    double value[VALUES];
+    bool keep;
+} point;
 
 /*
- * Points k to end of a line are in one column of pixels: of many the first, the
+ * So many points of a line are in one column of pixels: of many the first, the
  * last, and the least and largest of magnitude and errors stay, and gaps.
  */
-static void keep_extremes(const double (*value)[VALUES], int64_t k, int64_t end,
-                          bool *keep)
+static void keep_extremes(int64_t count, point *p)
 {
-    for (int64_t p = k; p < end; p++)
-        keep[p] = end - k <= FEW || p == k || p == end - 1;
+    for (int64_t k = 0; k < count; k++)
+        p[k].keep =
+            count <= FEW || k == 0 || k == count - 1 ||
+            isnan(p[k].value[2 + DECIBELS]) != isnan(p[0].value[2 + DECIBELS]);
     for (int v = 0; v < VALUES; v++) {
-        int64_t least = k, most = k;
+        int64_t least = 0, most = 0;
 
-        for (int64_t p = k; p < end; p++) {
-            least = value[p][v] < value[least][v] ? p : least;
-            most = value[p][v] > value[most][v] ? p : most;
-            keep[p] = keep[p] || isnan(value[p][2 + DECIBELS]) !=
-                                     isnan(value[k][2 + DECIBELS]);
+        for (int64_t k = 0; k < count; k++) {
+            least = p[k].value[v] < p[least].value[v] ? k : least;
+            most = p[k].value[v] > p[most].value[v] ? k : most;
         }
-        keep[least] = keep[most] = true;
+        p[least].keep = p[most].keep = true;
     }
 }
 
 static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
                             int64_t line, double most)
 {
-    ritz_status status = RITZ_OK;
     const ritz_response *r = o->curve[w];
-    const size_t count = (size_t)r->count + 1;
-    double(*value)[VALUES] = calloc(count, sizeof *value);
-    bool *keep = calloc(count, sizeof *keep);
     FILE *file = o->picture->data.file;
+    point *all = NULL;
 
-    RITZ_FAIL_IF(!value || !keep, RITZ_ERR_MEMORY, "no memory for a chart");
-    for (int64_t k = 0; k < r->count; k++)
-        take_values(o, w, k, c, line, most, value[k]);
+    PICTURE_NEW(o->picture, all, r->count);
+    for (int64_t k = 0; k < r->count; k++) {
+        const double _Complex H = value_of(o, w, k, c, line);
+
+        all[k].value[0] = cabs(H);
+        all[k].value[1] = is_singular(o, c) ? nan("") : carg(H) * 180.0 / M_PI;
+        measure_errors(o, w, k, c, line, most, all[k].value + 2);
+    }
     for (int64_t k = 0, end = 0; k < r->count; k = end) {
         const int64_t column = column_of(o->curve[0], r->hertz[k]);
 
         while (end < r->count &&
                column_of(o->curve[0], r->hertz[end]) == column)
             end++;
-        keep_extremes((const double(*)[VALUES])value, k, end, keep);
+        keep_extremes(end - k, all + k);
     }
     for (int64_t k = 0; k < r->count; k++) {
-        if (!keep[k])
+        if (!all[k].keep)
             continue;
         fprintf(file, "%lld\t%lld\t%lld", (long long)c, (long long)w,
                 (long long)line);
         put_real(file, r->hertz[k]);
         for (int v = 0; v < VALUES; v++)
-            put_real(file, value[k][v]);
+            put_real(file, all[k].value[v]);
         fprintf(file, "\t\n");
     }
     fputc('\n', file);
-done:
-    free(value);
-    free(keep);
-    return status;
+    return RITZ_OK;
 }
 
 /* Peaks of the first curve, largest first: where a reader points at. */
@@ -621,7 +620,7 @@ static void give_channels(const overlay *o, const channel *all)
             (long long)o->num_channels, o->num_channels > 1 ? 2 : 1,
             cell_high(o), (long long)o->count,
             o->strip[RELATIVE] + o->strip[DECIBELS], o->strip[DECIBELS], low,
-            high > low ? high : low + 1.0, low > 0.0 && high / low >= 10.0);
+            high > low ? high : low + 1.0, is_decades(r));
     picture_give_texts(o->picture, "title", o->num_channels, all->title,
                        sizeof *all);
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)

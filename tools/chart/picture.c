@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -36,6 +37,25 @@ ritz_status picture_new(const char *path, bool keep, picture *out)
     RITZ_CHECK(cli_table_new(&out->data));
     RITZ_CHECK(cli_table_new(&out->given));
     return cli_table_new(&out->table);
+}
+
+/* Each room has the one before it in front. */
+typedef union room {
+    union room *before;
+    max_align_t align;
+} room;
+
+void *picture_room(picture *p, int64_t count, size_t size)
+{
+    room *made = calloc(1, sizeof *made + (size_t)count * size + 1);
+
+    if (!made) {
+        (void)ritz_fail(RITZ_ERR_MEMORY, "no memory for a chart");
+        return NULL;
+    }
+    made->before = p->rooms;
+    p->rooms = made;
+    return made + 1;
 }
 
 void picture_add_sign(picture *p, const picture_sign *sign)
@@ -354,6 +374,10 @@ done:
 
 void picture_free(picture *p)
 {
+    for (room *r = p->rooms, *before = NULL; r; r = before) {
+        before = r->before;
+        free(r);
+    }
     free(p->drawn);
     cli_table_free(&p->data);
     cli_table_free(&p->given);

@@ -44,6 +44,7 @@ typedef struct picture {
     int num_signs;
     picture_sign sign[PICTURE_SIGNS];
     char *drawn; /* what gnuplot drew */
+    void *rooms; /* memory that is freed with it */
     char title[4 * PICTURE_WORD];
     const char *summary;
 } picture;
@@ -56,6 +57,16 @@ typedef struct picture {
  *                  appear beside path
  */
 ritz_status picture_new(const char *path, bool keep, picture *out);
+
+/** Zeroed memory that is freed with the picture; NULL, with a message: none. */
+void *picture_room(picture *p, int64_t count, size_t size);
+
+#define PICTURE_NEW(picture, pointer, count)                                   \
+    do {                                                                       \
+        (pointer) = picture_room((picture), (count), sizeof *(pointer));       \
+        if (!(pointer))                                                        \
+            return RITZ_ERR_MEMORY;                                            \
+    } while (0)
 
 /** Another sign of the legend; what is more than there is room for is left. */
 void picture_add_sign(picture *p, const picture_sign *sign);

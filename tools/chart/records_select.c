@@ -47,39 +47,34 @@ static void put_down(const record *r, records *some)
     some->item[some->count++] = *r;
 }
 
-ritz_status records_select(const records *all, const char *subject,
-                           records *out)
+/* Those of one subject that can be drawn, each once. */
+static ritz_status select_records(const records *all, const char *subject,
+                                  records *some)
 {
-    ritz_status status = RITZ_OK;
-    records some = {0};
     const record *first = NULL;
 
-    some.item = calloc((size_t)all->count + 1, sizeof *some.item);
-    RITZ_FAIL_IF(!some.item, RITZ_ERR_MEMORY, "no memory for records");
+    some->item = calloc((size_t)all->count + 1, sizeof *some->item);
+    RITZ_REFUSE_IF(!some->item, RITZ_ERR_MEMORY, "no memory for records");
     for (int64_t k = 0; k < all->count; k++) {
         const record *r = &all->item[k];
 
         if (!usable(r) || (subject && strcmp(r->subject, subject) != 0))
             continue;
         first = first ? first : r;
-        RITZ_FAIL_IF(!subject && strcmp(r->subject, first->subject) != 0,
-                     RITZ_ERR_ARGUMENT,
-                     "records of '%.60s' and of '%.60s' do not compare: choose "
-                     "by --subject",
-                     first->subject, r->subject);
-        put_down(r, &some);
+        RITZ_REFUSE_IF(!subject && strcmp(r->subject, first->subject) != 0,
+                       RITZ_ERR_ARGUMENT,
+                       "records of '%.60s' and of '%.60s' do not compare: "
+                       "choose by --subject",
+                       first->subject, r->subject);
+        put_down(r, some);
     }
-    RITZ_FAIL_IF(some.count == 0 && subject && *subject, RITZ_ERR_ARGUMENT,
-                 "no record of '%.60s' has a method, an order and errors",
-                 subject);
-    RITZ_FAIL_IF(some.count == 0, RITZ_ERR_ARGUMENT,
-                 "no record has a method, an order and errors: those of "
-                 "ritz-verify and ritz-fit do");
-    *out = some;
-    some = (records){0};
-done:
-    free(some.item);
-    return status;
+    RITZ_REFUSE_IF(some->count == 0 && subject && *subject, RITZ_ERR_ARGUMENT,
+                   "no record of '%.60s' has a method, an order and errors",
+                   subject);
+    RITZ_REFUSE_IF(some->count == 0, RITZ_ERR_ARGUMENT,
+                   "no record has a method, an order and errors: those of "
+                   "ritz-verify and ritz-fit do");
+    return RITZ_OK;
 }
 
 static bool has(const records *all, const char *name)
@@ -109,63 +104,52 @@ static double tolerance_of(const records *all, const char *name)
     return nan("");
 }
 
-enum { MOST_MEASURES = 12 };
-
-static void add(const records *all, const char *name, int64_t *count,
-                measure *list)
+static void add_measure(const char *name, selection *s)
 {
-    for (int64_t k = 0; k < *count; k++)
-        if (strcmp(list[k].name, name) == 0)
+    measure *m = &s->measure[s->num_measures];
+
+    for (int64_t k = 0; k < s->num_measures; k++)
+        if (strcmp(s->measure[k].name, name) == 0)
             return;
-    if (*count == MOST_MEASURES || !has(all, name) ||
+    if (s->num_measures == SELECTION_MEASURES || !has(&s->all, name) ||
         strlen(name) >= RITZ_NAME_SIZE)
         return;
-    snprintf(list[*count].name, RITZ_NAME_SIZE, "%s", name);
-    snprintf(list[*count].title, RITZ_NAME_SIZE, "%s", title_of(name));
-    list[*count].tolerance = tolerance_of(all, name);
-    ++*count;
+    snprintf(m->name, RITZ_NAME_SIZE, "%s", name);
+    snprintf(m->title, RITZ_NAME_SIZE, "%s", title_of(name));
+    m->tolerance = tolerance_of(&s->all, name);
+    s->num_measures++;
 }
 
-/* Those known, in their order; then others, of which @p wanted is true. */
-static void add_all(const records *all, json_t *const *values, bool others,
-                    int64_t *count, measure *list)
+/* Those known, in their order; then others, relative ones or all. */
+static void add_measures(json_t *values, bool others, selection *s)
 {
     const char *name = NULL;
     json_t *value = NULL;
 
     for (int k = 0; by_importance(k); k++)
-        if (json_object_get(*values, by_importance(k)->name))
-            add(all, by_importance(k)->name, count, list);
-    json_object_foreach(*values, name, value)
+        if (json_object_get(values, by_importance(k)->name))
+            add_measure(by_importance(k)->name, s);
+    json_object_foreach(values, name, value)
     {
         const char *end = strrchr(name, '-');
 
         if (others || (end && strcmp(end, "-relative") == 0))
-            add(all, name, count, list);
+            add_measure(name, s);
     }
 }
 
-ritz_status records_measures(const records *all, int64_t *count, measure **out)
+/* Measures with a tolerance first, then relative errors by importance. */
+static ritz_status list_measures(selection *s)
 {
-    ritz_status status = RITZ_OK;
-    measure *list = calloc(MOST_MEASURES, sizeof *list);
-
-    *count = 0;
-    RITZ_FAIL_IF(!list, RITZ_ERR_MEMORY, "no memory for measures");
-    for (int64_t k = 0; k < all->count; k++)
-        if (all->item[k].tolerance)
-            add_all(all, &all->item[k].tolerance, true, count, list);
+    for (int64_t k = 0; k < s->all.count; k++)
+        add_measures(s->all.item[k].tolerance, true, s);
     for (int k = 0; by_importance(k); k++)
-        add(all, by_importance(k)->name, count, list);
-    for (int64_t k = 0; k < all->count; k++)
-        add_all(all, &all->item[k].errors, false, count, list);
-    RITZ_FAIL_IF(*count == 0, RITZ_ERR_ARGUMENT,
-                 "no record has a relative error that could be drawn");
-    *out = list;
-    list = NULL;
-done:
-    free(list);
-    return status;
+        add_measure(by_importance(k)->name, s);
+    for (int64_t k = 0; k < s->all.count; k++)
+        add_measures(s->all.item[k].errors, false, s);
+    RITZ_REFUSE_IF(s->num_measures == 0, RITZ_ERR_ARGUMENT,
+                   "no record has a relative error that could be drawn");
+    return RITZ_OK;
 }
 
 bool records_matter(const records *all, const measure *m)
@@ -197,31 +181,41 @@ static int by_name(const void *a, const void *b)
     return strcmp(*x, *y);
 }
 
-ritz_status records_methods(const records *all, int64_t *count,
-                            const char ***out, int64_t **which)
+/* Methods in order of their names, and of each record which it is. */
+static ritz_status list_methods(selection *s)
 {
-    ritz_status status = RITZ_OK;
-    const char **name = calloc((size_t)all->count + 1, sizeof *name);
-    int64_t *of = calloc((size_t)all->count + 1, sizeof *of);
+    const records *all = &s->all;
     int64_t n = 0;
 
-    RITZ_FAIL_IF(!name || !of, RITZ_ERR_MEMORY, "no memory for methods");
+    s->method = calloc((size_t)all->count + 1, sizeof *s->method);
+    s->which = calloc((size_t)all->count + 1, sizeof *s->which);
+    RITZ_REFUSE_IF(!s->method || !s->which, RITZ_ERR_MEMORY,
+                   "no memory for methods");
     for (int64_t k = 0; k < all->count; k++)
-        name[k] = all->item[k].method;
-    qsort(name, (size_t)all->count, sizeof *name, by_name);
+        s->method[k] = all->item[k].method;
+    qsort(s->method, (size_t)all->count, sizeof *s->method, by_name);
     for (int64_t k = 0; k < all->count; k++)
-        if (n == 0 || strcmp(name[n - 1], name[k]) != 0)
-            name[n++] = name[k];
+        if (n == 0 || strcmp(s->method[n - 1], s->method[k]) != 0)
+            s->method[n++] = s->method[k];
     for (int64_t k = 0; k < all->count; k++)
-        while (strcmp(name[of[k]], all->item[k].method) != 0)
-            of[k]++;
-    *count = n;
-    *out = name;
-    *which = of;
-    name = NULL;
-    of = NULL;
-done:
-    free(name);
-    free(of);
-    return status;
+        while (strcmp(s->method[s->which[k]], all->item[k].method) != 0)
+            s->which[k]++;
+    s->num_methods = n;
+    return RITZ_OK;
+}
+
+ritz_status selection_new(const records *all, const char *subject,
+                          selection *out)
+{
+    RITZ_CHECK(select_records(all, subject, &out->all));
+    RITZ_CHECK(list_methods(out));
+    return list_measures(out);
+}
+
+void selection_free(selection *s)
+{
+    free(s->all.item);
+    free(s->method);
+    free(s->which);
+    *s = (selection){0};
 }

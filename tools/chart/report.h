@@ -37,9 +37,9 @@ ritz_status report_figure(report_page *p, const char *kind,
 ritz_status report_records(report_page *p);
 
 /** Which method, how large, how wrong, how fast: of one subject. */
-ritz_status report_verdict(FILE *file, const records *all);
+void report_verdict(FILE *file, const selection *s);
 
 /** Methods at equal order, and at equal error. */
-ritz_status report_tables(FILE *file, const records *all);
+void report_tables(FILE *file, const selection *s);
 
 #endif

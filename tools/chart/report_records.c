@@ -38,39 +38,33 @@ static ritz_status list_subjects(const records *all, int64_t *count,
  * what simulators pay, where it is known of some models but not of all: of
  * others it is not worth measuring.
  */
-static ritz_status put_errors(report_page *p, const records *all,
+static ritz_status put_errors(report_page *p, const selection *s,
                               const char *kind, chart_wish wish)
 {
-    ritz_status status = RITZ_OK;
     const bool times = strcmp(kind, "pareto") == 0;
-    int64_t count = 0;
-    measure *m = NULL;
     bool some = false;
     char text[200];
 
-    RITZ_TRY(records_measures(all, &count, &m));
-    for (int64_t k = 0; k < all->count; k++)
-        some = some || isfinite(all->item[k].cost);
-    wish.measure = (cli_list){.count = 1, .text = {m->name}};
+    for (int64_t k = 0; k < s->all.count; k++)
+        some = some || isfinite(s->all.item[k].cost);
+    wish.measure = (cli_list){.count = 1, .text = {s->measure[0].name}};
     if (times && some && !records_cost(&p->sources->runs)) {
         chart_wish costs = wish;
 
         costs.against = "simulate";
-        RITZ_TRY(report_figure(p, kind, p->sources, &costs,
-                               "what simulating costs, of the models where "
-                               "that was measured"));
+        RITZ_CHECK(report_figure(p, kind, p->sources, &costs,
+                                 "what simulating costs, of the models where "
+                                 "that was measured"));
     }
-    for (int64_t k = 0; k < count && k < 4; k++) {
-        if (k > 0 && !records_matter(all, &m[k]))
+    for (int64_t k = 0; k < s->num_measures && k < 4; k++) {
+        if (k > 0 && !records_matter(&s->all, &s->measure[k]))
             continue;
-        wish.measure.text[0] = m[k].name;
+        wish.measure.text[0] = s->measure[k].name;
         snprintf(text, sizeof text, "%.60s against %s, every method",
-                 m[k].title, times ? "time" : "order");
-        RITZ_TRY(report_figure(p, kind, p->sources, &wish, text));
+                 s->measure[k].title, times ? "time" : "order");
+        RITZ_CHECK(report_figure(p, kind, p->sources, &wish, text));
     }
-done:
-    free(m);
-    return status;
+    return RITZ_OK;
 }
 
 static bool knows_cost(const records *all)
@@ -90,17 +84,14 @@ static void begin_section(report_page *p, const char *title, const char *name)
     report_begin(p, text);
 }
 
-/* All that records of one subject say; its name, if there are several. */
-static ritz_status put_subject(report_page *p, const char *subject,
-                               const char *name)
+/* Charts and tables of one subject; its name, if there are several. */
+static ritz_status put_charts(report_page *p, const selection *s,
+                              const char *subject, const char *name)
 {
-    ritz_status status = RITZ_OK;
     chart_wish wish = *p->wish;
-    records all = {0};
 
     wish.subject = subject;
-    RITZ_TRY(records_select(&p->sources->runs, subject, &all));
-    if (knows_cost(&all)) {
+    if (knows_cost(&s->all)) {
         begin_section(p, "Speed against accuracy", name);
         fprintf(p->body.file,
                 "<p>Left and low is better. Nothing beats what lies on the "
@@ -109,52 +100,51 @@ static ritz_status put_subject(report_page *p, const char *subject,
                 "below the dashed one models are themselves less certain than "
                 "their reductions. Numbers beside the stairs are orders.</p>"
                 "\n");
-        RITZ_TRY(put_errors(p, &all, "pareto", wish));
-        RITZ_TRY(report_end(p));
+        RITZ_CHECK(put_errors(p, s, "pareto", wish));
+        RITZ_CHECK(report_end(p));
     }
     begin_section(p, "Convergence", name);
-    RITZ_TRY(put_errors(p, &all, "convergence", wish));
-    RITZ_TRY(report_end(p));
+    RITZ_CHECK(put_errors(p, s, "convergence", wish));
+    RITZ_CHECK(report_end(p));
     begin_section(p, "Methods side by side", name);
-    RITZ_TRY(report_tables(p->body.file, &all));
-    RITZ_TRY(report_end(p));
-done:
-    free(all.item);
-    return status;
+    report_tables(p->body.file, s);
+    return report_end(p);
 }
 
-static ritz_status put_verdict(report_page *p, const char *subject,
-                               long long number)
+static void put_verdict(report_page *p, const selection *s, const char *subject,
+                        long long number)
 {
-    ritz_status status = RITZ_OK;
-    records all = {0};
-
-    RITZ_TRY(records_select(&p->sources->runs, subject, &all));
     html_print(p->body.file,
                "<section aria-labelledby=\"v%lld\">\n<h2 id=\"v%lld\">%s</h2>"
                "\n",
                number, number, *subject ? subject : "What was found");
-    RITZ_TRY(report_verdict(p->body.file, &all));
+    report_verdict(p->body.file, s);
     fprintf(p->body.file, "</section>\n");
-done:
-    free(all.item);
-    return status;
 }
 
 ritz_status report_records(report_page *p)
 {
     ritz_status status = RITZ_OK;
     const char **subject = NULL;
+    selection s = {0};
     int64_t count = 0;
 
     if (p->sources->runs.count == 0)
         return RITZ_OK;
     RITZ_TRY(list_subjects(&p->sources->runs, &count, &subject));
-    for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(put_verdict(p, subject[k], k));
-    for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(put_subject(p, subject[k], count > 1 ? subject[k] : ""));
+    /* verdicts of all subjects come first */
+    for (int64_t k = 0; k < 2 * count; k++) {
+        const char *of = subject[k % count];
+
+        RITZ_TRY(selection_new(&p->sources->runs, of, &s));
+        if (k < count)
+            put_verdict(p, &s, of, k);
+        else
+            RITZ_TRY(put_charts(p, &s, of, count > 1 ? of : ""));
+        selection_free(&s);
+    }
 done:
+    selection_free(&s);
     free(subject);
     return status;
 }

@@ -3,18 +3,8 @@
 #include "chart/report.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { MOST_ORDERS = 8 };
-
-typedef struct side {
-    const records *all;
-    int64_t num_methods;
-    const char **method;
-    int64_t *which;
-    measure *measure;
-    int64_t num_measures;
-} side;
 
 /* Least order above another; INT64_MAX: none. */
 static int64_t next_order(const records *all, int64_t above)
@@ -41,12 +31,12 @@ static int64_t pick_orders(const records *all, int64_t out[MOST_ORDERS])
 }
 
 /* Least error of a method with at most so many coordinates; NaN: none. */
-static double least_error(const side *s, int64_t method, int64_t order)
+static double least_error(const selection *s, int64_t method, int64_t order)
 {
     double least = nan("");
 
-    for (int64_t k = 0; k < s->all->count; k++) {
-        const record *r = &s->all->item[k];
+    for (int64_t k = 0; k < s->all.count; k++) {
+        const record *r = &s->all.item[k];
         double error = record_error(r, s->measure->name);
 
         if (s->which[k] == method && r->order <= order && !r->incomplete &&
@@ -57,12 +47,13 @@ static double least_error(const side *s, int64_t method, int64_t order)
 }
 
 /* Smallest record of a method that is good enough; NULL: none. */
-static const record *find_smallest(const side *s, int64_t method, double level)
+static const record *find_smallest(const selection *s, int64_t method,
+                                   double level)
 {
     const record *best = NULL;
 
-    for (int64_t k = 0; k < s->all->count; k++) {
-        const record *r = &s->all->item[k];
+    for (int64_t k = 0; k < s->all.count; k++) {
+        const record *r = &s->all.item[k];
         bool good = isnan(level) ? r->feasible && r->tolerance
                                  : record_error(r, s->measure->name) <= level &&
                                        !r->incomplete;
@@ -90,11 +81,11 @@ static void put_cell(FILE *file, const char *text, const char *small, bool best)
                text, small);
 }
 
-static void put_orders(FILE *file, const side *s)
+static void put_orders(FILE *file, const selection *s)
 {
     int64_t order[MOST_ORDERS];
     double best[MOST_ORDERS];
-    const int64_t count = pick_orders(s->all, order);
+    const int64_t count = pick_orders(&s->all, order);
     char text[PICTURE_WORD];
 
     snprintf(text, sizeof text, "Least %s with at most so many coordinates",
@@ -134,17 +125,17 @@ static void put_smallest(FILE *file, const record *r, bool best, bool simulate)
     put_cell(file, order, word, best);
 }
 
-static void put_levels(FILE *file, const side *s)
+static void put_levels(FILE *file, const selection *s)
 {
     static const double levels[] = {(double)NAN, 0.1, 1e-2, 1e-3, 1e-4};
     enum { LEVELS = sizeof levels / sizeof *levels };
-    const bool simulate = records_cost(s->all);
+    const bool simulate = records_cost(&s->all);
     int64_t best[LEVELS];
     bool limits = false;
     char text[PICTURE_WORD], word[32];
 
-    for (int64_t k = 0; k < s->all->count; k++)
-        limits = limits || s->all->item[k].tolerance;
+    for (int64_t k = 0; k < s->all.count; k++)
+        limits = limits || s->all.item[k].tolerance;
     snprintf(text, sizeof text,
              "Fewest coordinates for a %s of at most so much, and %s",
              s->measure->title,
@@ -174,22 +165,12 @@ static void put_levels(FILE *file, const side *s)
     fprintf(file, "</tbody></table></div>\n");
 }
 
-ritz_status report_tables(FILE *file, const records *all)
+void report_tables(FILE *file, const selection *s)
 {
-    ritz_status status = RITZ_OK;
-    side s = {.all = all};
-
-    RITZ_TRY(records_measures(all, &s.num_measures, &s.measure));
-    RITZ_TRY(records_methods(all, &s.num_methods, &s.method, &s.which));
     fprintf(file, "<h3>At equal order</h3>\n");
-    put_orders(file, &s);
+    put_orders(file, s);
     fprintf(file, "<h3>At equal error</h3>\n");
-    put_levels(file, &s);
+    put_levels(file, s);
     fprintf(file, "<p class=\"note\">The best of each column stands in bold. "
                   "Models that miss a mode of the band do not count.</p>\n");
-done:
-    free(s.measure);
-    free(s.method);
-    free(s.which);
-    return status;
 }

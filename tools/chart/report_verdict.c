@@ -5,8 +5,6 @@
 #include <ritz/measures.h>
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Why a record is the answer. */
 typedef enum reason { CHOSEN, SMALLEST, NEAREST } reason;
@@ -214,31 +212,24 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                 (long long)count);
 }
 
-ritz_status report_verdict(FILE *file, const records *all)
+void report_verdict(FILE *file, const selection *s)
 {
-    ritz_status status = RITZ_OK;
     reason why = NEAREST;
-    const record *r = find_answer(all, &why);
-    measure *m = NULL;
-    int64_t count = 0;
+    const record *r = find_answer(&s->all, &why);
 
     if (!r) {
         fprintf(file,
                 "<p>%lld model%s measured. No record says which was chosen, "
                 "and none has a tolerance that its errors can be held "
                 "against.</p>\n",
-                (long long)all->count, all->count == 1 ? " was" : "s were");
-        return RITZ_OK;
+                (long long)s->all.count, s->all.count == 1 ? " was" : "s were");
+        return;
     }
-    RITZ_TRY(records_measures(all, &count, &m));
     fprintf(file, "<dl class=\"cards\">\n");
-    say_method(file, r, find_second(all));
+    say_method(file, r, find_second(&s->all));
     say_size(file, r);
-    say_errors(file, r, count, m);
+    say_errors(file, r, s->num_measures, s->measure);
     say_cost(file, r);
     fprintf(file, "</dl>\n");
-    say_why(file, r, why, all->count);
-done:
-    free(m);
-    return status;
+    say_why(file, r, why, s->all.count);
 }

@@ -49,16 +49,6 @@ bool records_is(const char *path);
  */
 void records_join(records *all);
 
-/**
- * Those that a chart can show: with a method, an order and errors, of one
- * subject.
- *
- * @param[in]  subject  the only one to be taken; NULL: there must be one alone
- * @param[out] out      borrows from @p all; free its item alone
- */
-ritz_status records_select(const records *all, const char *subject,
-                           records *out);
-
 /* An error measure as it is drawn, less being better. */
 typedef struct measure {
     char name[RITZ_NAME_SIZE];
@@ -72,11 +62,26 @@ double record_value(const json_t *values, const char *name);
 /** An error as it is drawn: of MAC, what it lacks of one. */
 double record_error(const record *r, const char *name);
 
+enum { SELECTION_MEASURES = 12 };
+
+/* Those that a chart can show: with a method, an order and errors, of one
+   subject, a line that is repeated once. They borrow from the records. */
+typedef struct selection {
+    records all;
+    int64_t num_measures; /* with a tolerance first, then by importance */
+    measure measure[SELECTION_MEASURES];
+    int64_t num_methods; /* in order of their names */
+    const char **method;
+    int64_t *which; /* method of each record */
+} selection;
+
 /**
- * Measures that can be drawn: those with a tolerance first, then relative
- * errors by importance.
+ * @param[in]  subject  the only one to be taken; NULL: there must be one alone
+ * @param[out] out      to be freed, even on failure
  */
-ritz_status records_measures(const records *all, int64_t *count, measure **out);
+ritz_status selection_new(const records *all, const char *subject,
+                          selection *out);
+void selection_free(selection *s);
 
 /* Errors below are rounding of the solvers, and as good as none. */
 #define RECORDS_ROUNDING 1e-9
@@ -86,10 +91,6 @@ bool records_matter(const records *all, const measure *m);
 
 /** Whether every record with errors knows what simulating it costs. */
 bool records_cost(const records *all);
-
-/** Methods in order of their names, and of each record which it is. */
-ritz_status records_methods(const records *all, int64_t *count,
-                            const char ***out, int64_t **which);
 
 void records_free(records *all);
 
