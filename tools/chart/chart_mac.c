@@ -1,15 +1,416 @@
 /*
- * How like the modes of two models are: at the dofs that both have; of two
- * configurations of the same bodies by their masses, if these are named; of
- * anything else with a system by what inputs drive and outputs see.
+ * How like the modes of two models are,
+ *
+ *     MAC_ij = (u_i'M v_j)^2 / (u_i'M u_i v_j'M v_j)
+ *
+ * with M = 1 at the dofs that both have; of two configurations of the same
+ * bodies with the masses of these, if they are named; of anything else with a
+ * system by inputs and outputs, M being 1 over the square of the largest of
+ * each, so that units do not matter.
  */
-#include "chart/chart_mac.h"
+#include "chart/chart.h"
 #include "chart/html.h"
+
+#include <ritz/eigen.h>
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { MOST_FILES = 70 };
+/* More modes would not be told apart. */
+enum {
+    MOST_MODES = 60,
+    MOST_FILES = 70,
+    MOST_BODIES = 64,
+    LABEL = RITZ_NAME_SIZE + 16,
+};
+
+/* Of the largest of M: what assembly and files lose. */
+static const double rounding = 1e-6;
+
+/* What has modes: a container and, of a system, one configuration of it. */
+typedef struct mac_side {
+    const chart_file *file;
+    const ritz_configuration *at; /* NULL: it is no system */
+} mac_side;
+
+/* Shapes of flexible modes, or columns of a basis, and what their rows are. */
+typedef struct mac_shapes {
+    ritz_dense U;  /* n x count */
+    ritz_dense MU; /* the same times the mass of bodies; {0}: U itself */
+    double hertz[MOST_MODES]; /* NaN: none */
+    int64_t count;
+    const ritz_dof *dof;    /* n, borrowed; NULL: rows are not dofs */
+    int64_t num_common;     /* inputs and outputs in common, once matched */
+    char (*channel)[LABEL]; /* n, inputs and outputs; NULL: rows are none */
+    char name[2 * PICTURE_WORD]; /* "system.h5, clock=60" */
+} mac_shapes;
+
+static void free_shapes(mac_shapes *s)
+{
+    ritz_dense_free(&s->U);
+    ritz_dense_free(&s->MU);
+    free(s->channel);
+}
+
+/* --- modes, at dofs and by inputs and outputs ----------------------------- */
+
+static void name_side(const mac_side *side, mac_shapes *out)
+{
+    snprintf(out->name, sizeof out->name, "%.80s%s%.80s",
+             chart_base(side->file->path), side->at ? ", " : "",
+             side->at ? side->at->at : "");
+}
+
+/* Flexible modes among so many, behind the rigid ones. */
+static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
+                               mac_shapes *out)
+{
+    out->count = all - rigid < MOST_MODES ? all - rigid : MOST_MODES;
+    RITZ_REFUSE_IF(out->count < 1, RITZ_ERR_ARGUMENT,
+                   "there is no flexible mode");
+    for (int64_t k = 0; k < out->count; k++)
+        out->hertz[k] = ritz_eigen_hertz(lambda[rigid + k]);
+    return RITZ_OK;
+}
+
+/* In the coordinates of the model; those of a configuration are its modes. */
+static ritz_status find_modes(const mac_side *side, mac_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_span span = {.modes = MOST_MODES};
+    const ritz_configuration *at = side->at;
+    const model *m = &side->file->model;
+    ritz_pairs pairs = {0};
+
+    if (at) {
+        RITZ_CHECK(count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
+        RITZ_CHECK(ritz_dense_new(at->K.ncol, out->count, &out->U));
+        for (int64_t k = 0; k < out->count; k++)
+            ritz_dense_col(&out->U, k)[at->num_rigid + k] = 1.0;
+        return RITZ_OK;
+    }
+    if (m->kind == MODEL_REDUCED)
+        RITZ_TRY(ritz_eigen_dense(&m->reduced.K, &m->reduced.M, &pairs));
+    else
+        RITZ_TRY(
+            ritz_eigen_sparse(&m->component.K, &m->component.M, &span, &pairs));
+    RITZ_TRY(count_modes(pairs.Phi.ncol, pairs.num_rigid, pairs.lambda, out));
+    RITZ_TRY(
+        ritz_dense_columns(&pairs.Phi, pairs.num_rigid, out->count, &out->U));
+done:
+    ritz_pairs_free(&pairs);
+    return status;
+}
+
+/* Shapes at the dofs of a component, a reduced component or a basis. */
+static ritz_status shapes_at_dofs(const mac_side *side, mac_shapes *out)
+{
+    const model *m = &side->file->model;
+    const ritz_basis *b = &m->basis;
+
+    name_side(side, out);
+    if (m->kind == MODEL_BASIS) {
+        out->count = b->T.ncol < MOST_MODES ? b->T.ncol : MOST_MODES;
+        for (int64_t k = 0; k < out->count; k++)
+            out->hertz[k] = b->columns.hertz[k];
+        return ritz_dense_columns(&b->T, 0, out->count, &out->U);
+    }
+    RITZ_REFUSE_IF(m->kind == MODEL_REDUCED && !m->reduced.dof,
+                   RITZ_ERR_ARGUMENT,
+                   "it was made without its basis, it has no shapes");
+    RITZ_CHECK(find_modes(side, out));
+    out->dof = m->component.dof;
+    if (m->kind == MODEL_REDUCED) {
+        ritz_dense Phi = out->U;
+        ritz_status status = RITZ_OK;
+
+        out->U = (ritz_dense){0};
+        out->dof = m->reduced.dof;
+        status = ritz_dense_mul(&m->reduced.T, &Phi, &out->U);
+        ritz_dense_free(&Phi);
+        return status;
+    }
+    return RITZ_OK;
+}
+
+/* Rows: inputs, then displacements, velocities and accelerations of outputs. */
+static ritz_status stack_channels(const ritz_io *io, mac_shapes *out)
+{
+    static const char *const kind[] = {"output", "velocity", "acceleration"};
+    const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
+    int64_t n = io->num_inputs + 3 * io->num_outputs, row = 0;
+
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
+    out->channel = calloc((size_t)n + 1, sizeof *out->channel);
+    RITZ_REFUSE_IF(!out->channel, RITZ_ERR_MEMORY, "no memory for modes");
+    for (int64_t j = 0; j < io->num_inputs; j++, row++) {
+        snprintf(out->channel[row], LABEL, "input %s", io->input[j]);
+        for (int64_t k = 0; k < out->count; k++)
+            ritz_dense_col(&out->U, k)[row] = ritz_dense_col(&io->B, j)[k];
+    }
+    for (int t = 0; t < 3; t++)
+        for (int64_t i = 0; i < io->num_outputs; i++, row++) {
+            snprintf(out->channel[row], LABEL, "%s %s", kind[t], io->output[i]);
+            for (int64_t k = 0; k < out->count; k++)
+                ritz_dense_col(&out->U, k)[row] = ritz_dense_col(C[t], k)[i];
+        }
+    return RITZ_OK;
+}
+
+/* What each input drives and each output senses of the modes of anything but a
+   basis. */
+static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+    const model *m = &side->file->model;
+    const ritz_io *io = side->at                   ? &side->at->io
+                        : m->kind == MODEL_REDUCED ? &m->reduced.io
+                                                   : &m->component.io;
+    ritz_io own = {0};
+
+    name_side(side, out);
+    RITZ_FAIL_IF(m->kind == MODEL_BASIS || io->num_inputs + io->num_outputs < 1,
+                 RITZ_ERR_ARGUMENT,
+                 "it has no inputs and outputs, by which its modes could be "
+                 "compared with those of a system");
+    RITZ_TRY(find_modes(side, out));
+    RITZ_TRY(ritz_io_project(io, &out->U, &own));
+    ritz_dense_free(&out->U);
+    RITZ_TRY(stack_channels(&own, out));
+done:
+    ritz_io_free(&own);
+    return status;
+}
+
+/* --- by masses ------------------------------------------------------------ */
+
+/*
+ * Shapes of a configuration in the coordinates of all its bodies, each fixed in
+ * its own axes, so that a turned body needs no turning back:
+ *
+ *     u = (P_1 x, P_2 x, ...),    u'M v = sum_c (P_c x)' M_c (P_c' x')
+ *
+ * as ritz_track has it. A system does not hold M_c: the reduced components do
+ * that it was assembled from, which sum_c P_c' M_c P_c = M of it shows.
+ */
+
+static ritz_status refuse_bodies(const mac_side *side, const char *why)
+{
+    const ritz_system *s = &side->file->model.system;
+    char list[400] = "";
+    size_t used = 0;
+
+    for (int64_t c = 0; c < s->num_components && used < sizeof list; c++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s'%.63s'",
+                                 c > 0 ? ", " : "", s->component[c]);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "the bodies of '%s' (%s) are not these: %s",
+                     side->file->path, list, why);
+}
+
+/* The first file for each body that has as many coordinates. */
+static ritz_status assign_bodies(const mac_side *side, int64_t count,
+                                 const chart_file *const *body,
+                                 const ritz_reduced *of[MOST_BODIES])
+{
+    const ritz_system *s = &side->file->model.system;
+    bool taken[MOST_BODIES] = {false};
+    char why[120];
+
+    if (count != s->num_components || count > MOST_BODIES) {
+        snprintf(why, sizeof why, "%lld bodies, %lld named",
+                 (long long)s->num_components, (long long)count);
+        return refuse_bodies(side, why);
+    }
+    for (int64_t c = 0; c < count; c++) {
+        int64_t k = 0;
+
+        while (k < count &&
+               (taken[k] || body[k]->model.reduced.K.ncol != s->order[c]))
+            k++;
+        if (k == count) {
+            snprintf(why, sizeof why, "none left has %lld coordinates",
+                     (long long)s->order[c]);
+            return refuse_bodies(side, why);
+        }
+        taken[k] = true;
+        of[c] = &body[k]->model.reduced;
+    }
+    return RITZ_OK;
+}
+
+/* Flexible columns of P_c, and M_c times them, into their rows. */
+static ritz_status put_block(const ritz_dense *P, const ritz_dense *M,
+                             int64_t rigid, int64_t first, mac_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense part = ritz_dense_part(P, rigid, out->count);
+    ritz_dense MP = {0};
+
+    RITZ_TRY(ritz_dense_mul(M, &part, &MP));
+    for (int64_t k = 0; k < out->count; k++)
+        for (int64_t i = 0; i < P->nrow; i++) {
+            ritz_dense_col(&out->U, k)[first + i] = ritz_dense_col(&part, k)[i];
+            ritz_dense_col(&out->MU, k)[first + i] = ritz_dense_col(&MP, k)[i];
+        }
+done:
+    ritz_dense_free(&MP);
+    return status;
+}
+
+/* Whether U'MU is what M of the configuration says. */
+static ritz_status check_mass(const mac_side *side, const mac_shapes *s)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_dense *M = &side->at->M;
+    int64_t rigid = side->at->num_rigid;
+    ritz_dense product = {0};
+    double apart = 0.0, most = 0.0;
+
+    RITZ_TRY(ritz_dense_mul_tn(&s->U, &s->MU, &product));
+    for (int64_t j = 0; j < s->count; j++)
+        for (int64_t i = 0; i < s->count; i++) {
+            double due = ritz_dense_col(M, rigid + j)[rigid + i];
+
+            apart = fmax(apart, fabs(ritz_dense_col(&product, j)[i] - due));
+            most = fmax(most, fabs(due));
+        }
+    if (!(apart <= rounding * most))
+        status = refuse_bodies(side, "their masses are not its mass");
+done:
+    ritz_dense_free(&product);
+    return status;
+}
+
+/* Coordinates of all bodies of a configuration, and their masses times them;
+   the bodies' files come in any order that fits. */
+static ritz_status shapes_of_bodies(const mac_side *side, int64_t count,
+                                    const chart_file *const *body,
+                                    mac_shapes *out)
+{
+    const ritz_system *s = &side->file->model.system;
+    const ritz_configuration *at = side->at;
+    const ritz_reduced *of[MOST_BODIES] = {NULL};
+    int64_t n = 0, first = 0;
+
+    name_side(side, out);
+    RITZ_CHECK(assign_bodies(side, count, body, of));
+    for (int64_t c = 0; c < s->num_components; c++)
+        n += s->order[c];
+    RITZ_CHECK_IN(side->file->path,
+                  count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->MU));
+    for (int64_t c = 0; c < s->num_components; c++) {
+        RITZ_CHECK(put_block(&at->P[c], &of[c]->M, at->num_rigid, first, out));
+        first += s->order[c];
+    }
+    return check_mass(side, out);
+}
+
+/* --- rows in common, and MAC ---------------------------------------------- */
+
+static bool is_same(const mac_shapes *a, int64_t k, const mac_shapes *b,
+                    int64_t i)
+{
+    if (a->channel)
+        return strcmp(a->channel[k], b->channel[i]) == 0;
+    return a->dof[k].grid == b->dof[i].grid &&
+           a->dof[k].component == b->dof[i].component;
+}
+
+static double largest_in(const mac_shapes *s, int64_t row)
+{
+    double most = 0.0;
+
+    for (int64_t k = 0; k < s->count; k++)
+        most = fmax(most, fabs(ritz_dense_col(&s->U, k)[row]));
+    return most;
+}
+
+static void divide_row(mac_shapes *s, int64_t row, double by)
+{
+    for (int64_t k = 0; k < s->count; k++)
+        ritz_dense_col(&s->U, k)[row] /= by;
+}
+
+/* Each input and output counts as much as any other, whatever its unit. */
+static ritz_status scale_rows(mac_shapes *a, mac_shapes *b, const int64_t *row)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < a->U.nrow; k++) {
+        double most =
+            row[k] < 0 ? 0.0 : fmax(largest_in(a, k), largest_in(b, row[k]));
+
+        if (!(most > 0.0))
+            continue;
+        divide_row(a, k, most);
+        divide_row(b, row[k], most);
+        count++;
+    }
+    RITZ_REFUSE_IF(
+        count < 2, RITZ_ERR_ARGUMENT,
+        "'%s' and '%s' have %s in common by which modes could be told "
+        "apart; configurations of the same bodies can be compared by "
+        "their masses: name their reduced components too",
+        a->name, b->name,
+        count == 0 ? "no input or output" : "but one input or output");
+    a->num_common = b->num_common = count;
+    return RITZ_OK;
+}
+
+static ritz_status match_rows(mac_shapes *a, mac_shapes *b, picture *p,
+                              int64_t **out)
+{
+    int64_t n = a->U.nrow, m = b->U.nrow, common = 0;
+    int64_t *row = NULL;
+    bool named = (a->dof && b->dof) || (a->channel && b->channel);
+
+    PICTURE_NEW(p, row, n);
+    RITZ_REFUSE_IF(!named && n != m, RITZ_ERR_ARGUMENT,
+                   "a basis names no dofs: '%s' has %lld rows and '%s' %lld",
+                   a->name, (long long)n, b->name, (long long)m);
+    for (int64_t k = 0, guess = 0; k < n; k++) {
+        row[k] = named ? -1 : k;
+        for (int64_t i = 0; named && i < m && row[k] < 0; i++) {
+            int64_t at = (guess + i) % m; /* they mostly come in one order */
+
+            if (is_same(a, k, b, at))
+                row[k] = at;
+        }
+        guess = row[k] >= 0 ? row[k] + 1 : guess;
+        common += row[k] >= 0;
+    }
+    if (a->channel && b->channel)
+        RITZ_CHECK(scale_rows(a, b, row));
+    RITZ_REFUSE_IF(common == 0, RITZ_ERR_ARGUMENT,
+                   "'%s' and '%s' have no dof in common", a->name, b->name);
+    *out = row;
+    return RITZ_OK;
+}
+
+static double mac_of(const mac_shapes *a, const mac_shapes *b,
+                     const int64_t *row, int64_t i, int64_t j)
+{
+    const ritz_dense *MA = a->MU.val ? &a->MU : &a->U;
+    const ritz_dense *MB = b->MU.val ? &b->MU : &b->U;
+    const double *u = a->U.val + i * a->U.nrow, *Mu = MA->val + i * a->U.nrow;
+    const double *v = b->U.val + j * b->U.nrow, *Mv = MB->val + j * b->U.nrow;
+    double uv = 0.0, uu = 0.0, vv = 0.0;
+
+    for (int64_t k = 0; k < a->U.nrow; k++) {
+        if (row[k] < 0)
+            continue;
+        uv += u[k] * Mv[row[k]];
+        uu += u[k] * Mu[k];
+        vv += v[row[k]] * Mv[row[k]];
+    }
+    return uu > 0.0 && vv > 0.0 ? uv * uv / (uu * vv) : nan("");
+}
+
+/* --- which two ------------------------------------------------------------ */
 
 /* What is compared, and by which bodies. */
 typedef struct choice {
@@ -123,12 +524,14 @@ static ritz_status shapes_of(const choice *chosen, const char **how,
                        chosen->body[k]->path);
     for (int k = 0; k < 2; k++)
         if (chosen->num_bodies > 0)
-            RITZ_CHECK(mac_shapes_of_bodies(
-                &chosen->side[k], chosen->num_bodies, chosen->body, &set[k]));
+            RITZ_CHECK(shapes_of_bodies(&chosen->side[k], chosen->num_bodies,
+                                        chosen->body, &set[k]));
         else if (systems)
-            RITZ_CHECK(mac_shapes_of_channels(&chosen->side[k], &set[k]));
+            RITZ_CHECK_IN(chosen->side[k].file->path,
+                          shapes_by_channels(&chosen->side[k], &set[k]));
         else
-            RITZ_CHECK(mac_shapes_of_dofs(&chosen->side[k], &set[k]));
+            RITZ_CHECK_IN(chosen->side[k].file->path,
+                          shapes_at_dofs(&chosen->side[k], &set[k]));
     return RITZ_OK;
 }
 
@@ -149,9 +552,9 @@ static void say_mode(const mac_shapes *s, int64_t k, char out[32])
 static ritz_status give_modes(picture *p, const char *name, const mac_shapes *s)
 {
     enum { SIZE = 32 };
-    char(*word)[SIZE] = calloc((size_t)s->count + 1, SIZE);
+    char(*word)[SIZE] = NULL;
 
-    RITZ_REFUSE_IF(!word, RITZ_ERR_MEMORY, "no memory for a chart");
+    PICTURE_NEW(p, word, s->count);
     for (int64_t k = 0; k < s->count; k++)
         say_mode(s, k, word[k]);
     picture_give_texts(p, name, s->count, word[0], SIZE);
@@ -204,11 +607,12 @@ static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
                    (double)(LEFT + LETTER * letters));
     p->body = HEAD + FOOT + cell * (double)a->count;
     /* as many modes can be told apart as there are inputs and outputs */
-    if (a->num_seen > 0 && (a->num_seen < a->count || a->num_seen < b->count))
+    if (a->num_common > 0 &&
+        (a->num_common < a->count || a->num_common < b->count))
         snprintf(p->note, sizeof p->note,
                  "%lld inputs and outputs tell no more modes apart than that: "
                  "likeness can be chance",
-                 (long long)a->num_seen);
+                 (long long)a->num_common);
     fprintf(p->given.file,
             "across = %lld\ndown = %lld\ncell = %.6g\nleft = %d\n"
             "numbered = %d\n",
@@ -236,12 +640,11 @@ ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
 
     RITZ_TRY(choose(sources, &wish->at, &chosen));
     RITZ_TRY(shapes_of(&chosen, &how, set));
-    RITZ_TRY(mac_match(&set[0], &set[1], &row));
     RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(match_rows(&set[0], &set[1], out, &row));
     RITZ_TRY(draw_mac(&set[0], &set[1], row, how, out));
 done:
-    free(row);
-    mac_shapes_free(&set[0]);
-    mac_shapes_free(&set[1]);
+    free_shapes(&set[0]);
+    free_shapes(&set[1]);
     return status;
 }

@@ -49,12 +49,13 @@ static void put_down(const record *r, records *some)
 
 /* Those of one subject that can be drawn, each once. */
 static ritz_status select_records(const records *all, const char *subject,
-                                  records *some)
+                                  records *out)
 {
+    records some = {.item = calloc((size_t)all->count + 1, sizeof *some.item)};
     const record *first = NULL;
 
-    some->item = calloc((size_t)all->count + 1, sizeof *some->item);
-    RITZ_REFUSE_IF(!some->item, RITZ_ERR_MEMORY, "no memory for records");
+    out->item = some.item;
+    RITZ_REFUSE_IF(!some.item, RITZ_ERR_MEMORY, "no memory for records");
     for (int64_t k = 0; k < all->count; k++) {
         const record *r = &all->item[k];
 
@@ -66,14 +67,15 @@ static ritz_status select_records(const records *all, const char *subject,
                        "records of '%.60s' and of '%.60s' do not compare: "
                        "choose by --subject",
                        first->subject, r->subject);
-        put_down(r, some);
+        put_down(r, &some);
     }
-    RITZ_REFUSE_IF(some->count == 0 && subject && *subject, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(some.count == 0 && subject && *subject, RITZ_ERR_ARGUMENT,
                    "no record of '%.60s' has a method, an order and errors",
                    subject);
-    RITZ_REFUSE_IF(some->count == 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(some.count == 0, RITZ_ERR_ARGUMENT,
                    "no record has a method, an order and errors: those of "
                    "ritz-verify and ritz-fit do");
+    out->count = some.count;
     return RITZ_OK;
 }
 
@@ -207,6 +209,7 @@ static ritz_status list_methods(selection *s)
 ritz_status selection_new(const records *all, const char *subject,
                           selection *out)
 {
+    *out = (selection){0};
     RITZ_CHECK(select_records(all, subject, &out->all));
     RITZ_CHECK(list_methods(out));
     return list_measures(out);

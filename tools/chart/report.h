@@ -36,10 +36,4 @@ ritz_status report_figure(report_page *p, const char *kind,
 /** Verdicts, charts and tables of records, if there are any. */
 ritz_status report_records(report_page *p);
 
-/** Which method, how large, how wrong, how fast: of one subject. */
-void report_verdict(FILE *file, const selection *s);
-
-/** Methods at equal order, and at equal error. */
-void report_tables(FILE *file, const selection *s);
-
 #endif

@@ -1,10 +1,420 @@
-/* Sections of the page that records make: verdicts, charts, tables. */
+/*
+ * Sections of the page that records make: the verdict (which method, how large,
+ * how wrong, how fast), charts, and methods side by side.
+ */
 #include "chart/html.h"
 #include "chart/report.h"
+
+#include <ritz/measures.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* --- the verdict ---------------------------------------------------------- */
+
+/* Why a record is the answer. */
+typedef enum reason { CHOSEN, SMALLEST, NEAREST } reason;
+
+/* How many times its tolerance the worst error is; infinite: not known. */
+static double excess_of(const record *r)
+{
+    const char *name = NULL;
+    json_t *limit = NULL;
+    double worst = 0.0;
+
+    if (r->incomplete)
+        return HUGE_VAL;
+    json_object_foreach(r->tolerance, name, limit)
+    {
+        double times = ritz_measure_ratio(name, record_value(r->errors, name),
+                                          json_number_value(limit));
+
+        if (isnan(times))
+            return HUGE_VAL;
+        worst = fmax(worst, times);
+    }
+    return worst;
+}
+
+static bool is_better(const record *r, const record *than)
+{
+    if (!than)
+        return true;
+    if (r->feasible != than->feasible)
+        return r->feasible;
+    if (!r->feasible)
+        return excess_of(r) < excess_of(than);
+    return r->order < than->order ||
+           (r->order == than->order && r->cost < than->cost);
+}
+
+/*
+ * What was chosen; else the smallest that meets the tolerance; else what comes
+ * nearest to it; NULL: no tolerance is known.
+ */
+static const record *find_answer(const records *all, reason *why)
+{
+    const record *best = NULL;
+
+    for (int64_t k = 0; k < all->count; k++) {
+        const record *r = &all->item[k];
+
+        if (r->chosen) {
+            *why = CHOSEN;
+            return r;
+        }
+        if (r->tolerance && (r->feasible || excess_of(r) < HUGE_VAL) &&
+            is_better(r, best))
+            best = r;
+    }
+    *why = best && best->feasible ? SMALLEST : NEAREST;
+    return best;
+}
+
+static const record *find_second(const records *all)
+{
+    for (int64_t k = 0; k < all->count; k++)
+        if (all->item[k].runner_up)
+            return &all->item[k];
+    return NULL;
+}
+
+static void begin_card(FILE *file, const char *question, const char *answer)
+{
+    html_print(file, "<div><dt>%s</dt><dd><div class=\"big\">%s</div><ul>",
+               question, answer);
+}
+
+static void end_card(FILE *file)
+{
+    fprintf(file, "</ul></dd></div>\n");
+}
+
+static void say_method(FILE *file, const record *r, const record *second)
+{
+    begin_card(file, "Which method", r->method);
+    if (second)
+        html_print(file, "<li>runner-up: %s, order %lld</li>", second->method,
+                   (long long)second->order);
+    end_card(file);
+}
+
+/* "14 + 2 modes asked for": of each component of a scene. */
+static void say_size(FILE *file, const record *r)
+{
+    const json_t *full = json_object_get(r->json, "dofs_full");
+    const json_t *modes = json_object_get(r->json, "modes");
+    const size_t count = json_array_size(modes);
+    char order[32];
+
+    snprintf(order, sizeof order, "%lld", (long long)r->order);
+    begin_card(file, "How large", order);
+    fprintf(file, "<li>coordinates");
+    if (json_integer_value(full) > 0)
+        fprintf(file, ", of %lld dofs of the full model",
+                (long long)json_integer_value(full));
+    fprintf(file, count > 0 ? "</li><li>" : "</li>");
+    for (size_t k = 0; k < count; k++)
+        fprintf(file, "%s%lld", k > 0 ? " + " : "",
+                (long long)json_integer_value(json_array_get(modes, k)));
+    if (count > 0)
+        fprintf(file, " modes asked for%s</li>",
+                count > 1 ? ", component by component" : "");
+    end_card(file);
+}
+
+/* Bounds that are proven without measuring; those above 1 say nothing. */
+static void say_bounds(FILE *file, const record *r)
+{
+    const json_t *estimates = json_object_get(r->json, "estimates");
+    char word[32];
+
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+        double bound = kind->bound && kind->label
+                           ? record_value(estimates, kind->bound)
+                           : nan("");
+
+        if (!(bound <= 1.0))
+            continue;
+        chart_say_error(bound, word);
+        html_print(file, "<li>proven: %s at most %s</li>", kind->label, word);
+    }
+}
+
+static void say_errors(FILE *file, const record *r, int64_t count,
+                       const measure *m)
+{
+    char word[32], limit[32];
+
+    chart_say_error(record_error(r, m->name), word);
+    begin_card(file, "How wrong", word);
+    for (int64_t k = 0; k < count; k++) {
+        double error = record_error(r, m[k].name);
+
+        if (isnan(error))
+            continue;
+        chart_say_error(error, word);
+        html_print(file, "<li>%s: %s", m[k].title, word);
+        if (m[k].tolerance > 0.0) {
+            chart_say_error(m[k].tolerance, limit);
+            fprintf(file, ", allowed <span class=\"whole\">%s</span>", limit);
+        }
+        fprintf(file, "</li>");
+    }
+    say_bounds(file, r);
+    end_card(file);
+}
+
+static void say_cost(FILE *file, const record *r)
+{
+    const json_t *cost = json_object_get(r->json, "cost");
+    const double step = record_value(cost, "step");
+    const double highest = record_value(cost, "highest_hz");
+    const char *by = json_string_value(json_object_get(cost, "integrator"));
+    const bool simulated = isfinite(r->cost);
+    char word[32];
+
+    chart_say_seconds(simulated ? r->cost : r->cpu, word);
+    begin_card(file, "How fast", word);
+    if (simulated)
+        fprintf(file, "<li>for one simulated second, %.0f times real time</li>",
+                1.0 / r->cost);
+    if (simulated && isfinite(step)) {
+        chart_say_seconds(step, word);
+        html_print(file, "<li>step %s%s%s</li>", word, by ? ", " : "",
+                   by ? by : "");
+    }
+    if (simulated && isfinite(highest))
+        fprintf(file, "<li>highest mode %.4g Hz</li>", highest);
+    chart_say_seconds(r->cpu, word);
+    if (isfinite(r->cpu))
+        fprintf(file, "<li>%s%sto make basis and reduction</li>",
+                simulated ? word : "", simulated ? " " : "");
+    end_card(file);
+}
+
+static void say_why(FILE *file, const record *r, reason why, int64_t count)
+{
+    const char *text = json_string_value(json_object_get(r->json, "why"));
+
+    if (r->tolerance)
+        fprintf(file, "<p class=\"%s\">%s</p>\n",
+                r->feasible ? "meets" : "misses",
+                r->feasible ? "&#10003; It meets every tolerance."
+                            : "&#10007; It misses a tolerance.");
+    if (text)
+        html_print(file, "<p>Why: %s</p>\n", text);
+    if (why != CHOSEN)
+        fprintf(file,
+                "<p class=\"note\">No record says which was chosen: this is "
+                "the %s.</p>\n",
+                why == SMALLEST ? "smallest that meets the tolerance"
+                                : "one that comes nearest to its tolerance");
+    if (count > 1)
+        fprintf(file,
+                "<p class=\"note\">One of %lld models that were "
+                "measured.</p>\n",
+                (long long)count);
+}
+
+static void put_answer(FILE *file, const selection *s)
+{
+    reason why = NEAREST;
+    const record *r = find_answer(&s->all, &why);
+
+    if (!r) {
+        fprintf(file,
+                "<p>%lld model%s measured. No record says which was chosen, "
+                "and none has a tolerance that its errors can be held "
+                "against.</p>\n",
+                (long long)s->all.count, s->all.count == 1 ? " was" : "s were");
+        return;
+    }
+    fprintf(file, "<dl class=\"cards\">\n");
+    say_method(file, r, find_second(&s->all));
+    say_size(file, r);
+    say_errors(file, r, s->num_measures, s->measure);
+    say_cost(file, r);
+    fprintf(file, "</dl>\n");
+    say_why(file, r, why, s->all.count);
+}
+
+/* --- methods side by side ------------------------------------------------- */
+
+enum { MOST_ORDERS = 8 };
+
+/* Least order above another; INT64_MAX: none. */
+static int64_t next_order(const records *all, int64_t above)
+{
+    int64_t least = INT64_MAX;
+
+    for (int64_t k = 0; k < all->count; k++)
+        if (all->item[k].order > above && all->item[k].order < least)
+            least = all->item[k].order;
+    return least;
+}
+
+/* Up to eight orders, spread over those there are. */
+static int64_t pick_orders(const records *all, int64_t out[MOST_ORDERS])
+{
+    int64_t n = 0, kept = 0, at = 0;
+
+    for (int64_t o = -1; (o = next_order(all, o)) < INT64_MAX;)
+        n++;
+    for (int64_t o = -1; (o = next_order(all, o)) < INT64_MAX; at++)
+        if (n <= MOST_ORDERS || at == kept * (n - 1) / (MOST_ORDERS - 1))
+            out[kept++] = o;
+    return kept;
+}
+
+/* Least error of a method with at most so many coordinates; NaN: none. */
+static double least_error(const selection *s, int64_t method, int64_t order)
+{
+    double least = nan("");
+
+    for (int64_t k = 0; k < s->all.count; k++) {
+        const record *r = &s->all.item[k];
+        double error = record_error(r, s->measure->name);
+
+        if (s->which[k] == method && r->order <= order && !r->incomplete &&
+            !isnan(error) && !(least <= error))
+            least = error;
+    }
+    return least < RECORDS_ROUNDING ? 0.5 * RECORDS_ROUNDING : least;
+}
+
+/* Smallest record of a method that is good enough; NULL: none. */
+static const record *find_smallest(const selection *s, int64_t method,
+                                   double level)
+{
+    const record *best = NULL;
+
+    for (int64_t k = 0; k < s->all.count; k++) {
+        const record *r = &s->all.item[k];
+        bool good = isnan(level) ? r->feasible && r->tolerance
+                                 : record_error(r, s->measure->name) <= level &&
+                                       !r->incomplete;
+
+        if (s->which[k] == method && good && (!best || r->order < best->order))
+            best = r;
+    }
+    return best;
+}
+
+static void begin_table(FILE *file, const char *caption)
+{
+    html_print(file,
+               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+               "aria-label=\"%s\"><table><caption>%s</caption><thead><tr>"
+               "<th scope=\"col\">method</th>",
+               caption, caption);
+}
+
+static void put_cell(FILE *file, const char *text, const char *small, bool best)
+{
+    fprintf(file, "<td%s>", best ? " class=\"best\"" : "");
+    html_print(file,
+               *small ? "%s <span class=\"small\">%s</span></td>" : "%s%s</td>",
+               text, small);
+}
+
+static void put_orders(FILE *file, const selection *s)
+{
+    int64_t order[MOST_ORDERS];
+    double best[MOST_ORDERS];
+    const int64_t count = pick_orders(&s->all, order);
+    char text[PICTURE_WORD];
+
+    snprintf(text, sizeof text, "Least %s with at most so many coordinates",
+             s->measure->title);
+    begin_table(file, text);
+    for (int64_t k = 0; k < count; k++) {
+        fprintf(file, "<th scope=\"col\">%lld</th>", (long long)order[k]);
+        best[k] = HUGE_VAL;
+        for (int64_t m = 0; m < s->num_methods; m++)
+            best[k] = fmin(best[k], least_error(s, m, order[k]));
+    }
+    fprintf(file, "</tr></thead><tbody>\n");
+    for (int64_t m = 0; m < s->num_methods; m++) {
+        html_print(file, "<tr><th scope=\"row\">%s</th>", s->method[m]);
+        for (int64_t k = 0; k < count; k++) {
+            const double error = least_error(s, m, order[k]);
+            char word[32];
+
+            chart_say_error(error, word);
+            put_cell(file, isnan(error) ? "\xe2\x80\x93" : word, "",
+                     error <= best[k]);
+        }
+        fprintf(file, "</tr>\n");
+    }
+    fprintf(file, "</tbody></table></div>\n");
+}
+
+static void put_smallest(FILE *file, const record *r, bool best, bool simulate)
+{
+    const double time = r ? simulate ? r->cost : r->cpu : nan("");
+    char order[32] = "\xe2\x80\x93", word[32] = "";
+
+    if (r)
+        snprintf(order, sizeof order, "%lld", (long long)r->order);
+    if (isfinite(time))
+        chart_say_seconds(time, word);
+    put_cell(file, order, word, best);
+}
+
+static void put_levels(FILE *file, const selection *s)
+{
+    static const double levels[] = {(double)NAN, 0.1, 1e-2, 1e-3, 1e-4};
+    enum { LEVELS = sizeof levels / sizeof *levels };
+    const bool simulate = records_cost(&s->all);
+    int64_t best[LEVELS];
+    bool limits = false;
+    char text[PICTURE_WORD], word[32];
+
+    for (int64_t k = 0; k < s->all.count; k++)
+        limits = limits || s->all.item[k].tolerance;
+    snprintf(text, sizeof text,
+             "Fewest coordinates for a %s of at most so much, and %s",
+             s->measure->title,
+             simulate ? "time for one simulated second" : "time to reduce");
+    begin_table(file, text);
+    for (int k = !limits; k < LEVELS; k++) {
+        best[k] = INT64_MAX;
+        for (int64_t m = 0; m < s->num_methods; m++) {
+            const record *r = find_smallest(s, m, levels[k]);
+
+            best[k] = r && r->order < best[k] ? r->order : best[k];
+        }
+        chart_say_error(levels[k], word);
+        fprintf(file, "<th scope=\"col\">%s</th>",
+                k == 0 ? "every tolerance" : word);
+    }
+    fprintf(file, "</tr></thead><tbody>\n");
+    for (int64_t m = 0; m < s->num_methods; m++) {
+        html_print(file, "<tr><th scope=\"row\">%s</th>", s->method[m]);
+        for (int k = !limits; k < LEVELS; k++) {
+            const record *r = find_smallest(s, m, levels[k]);
+
+            put_smallest(file, r, r && r->order == best[k], simulate);
+        }
+        fprintf(file, "</tr>\n");
+    }
+    fprintf(file, "</tbody></table></div>\n");
+}
+
+static void put_tables(FILE *file, const selection *s)
+{
+    fprintf(file, "<h3>At equal order</h3>\n");
+    put_orders(file, s);
+    fprintf(file, "<h3>At equal error</h3>\n");
+    put_levels(file, s);
+    fprintf(file, "<p class=\"note\">The best of each column stands in bold. "
+                  "Models that miss a mode of the band do not count.</p>\n");
+}
+
+/* --- sections ------------------------------------------------------------- */
 
 /* Subjects of records that can be drawn, each once; borrowed names. */
 static ritz_status list_subjects(const records *all, int64_t *count,
@@ -107,7 +517,7 @@ static ritz_status put_charts(report_page *p, const selection *s,
     RITZ_CHECK(put_errors(p, s, "convergence", wish));
     RITZ_CHECK(report_end(p));
     begin_section(p, "Methods side by side", name);
-    report_tables(p->body.file, s);
+    put_tables(p->body.file, s);
     return report_end(p);
 }
 
@@ -118,7 +528,7 @@ static void put_verdict(report_page *p, const selection *s, const char *subject,
                "<section aria-labelledby=\"v%lld\">\n<h2 id=\"v%lld\">%s</h2>"
                "\n",
                number, number, *subject ? subject : "What was found");
-    report_verdict(p->body.file, s);
+    put_answer(p->body.file, s);
     fprintf(p->body.file, "</section>\n");
 }
 
