@@ -110,6 +110,13 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
                             ritz_dense *Y);
 
 /**
+ * The same as if summed with twice the digits: each entry to its own rounding,
+ * whatever cancels in it. @cost five times as much
+ */
+ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
+                                    ritz_dense *Y);
+
+/**
  * Hold a matrix that came from outside to what the rest of Ritz relies on:
  * pointers and rows ascend, rows lie in the matrix, values are finite.
  *

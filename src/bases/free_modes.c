@@ -212,11 +212,13 @@ static double kept_flexibility(const residual_problem *p, int64_t j)
 
 /*
  * Independent columns by pivoted Cholesky of R = F' Psi scaled to a unit
- * diagonal: the square of what is new in a column must exceed the tolerance.
- * keep[j] says whether column j stays; R is destroyed.
+ * diagonal: the square of what is new in a column must exceed the tolerance. Of
+ * those that are equal to six digits the first is taken, lest the rounding of a
+ * processor choose. keep[j] says whether column j stays; R is destroyed.
  */
 static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 {
+    const double more = 1.0 + 1e-6;
     int64_t a = R->ncol;
 
     for (;;) {
@@ -225,7 +227,8 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
         double d = tolerance;
 
         for (int64_t j = 0; j < a; j++)
-            if (!keep[j] && ritz_dense_col(R, j)[j] > d) {
+            if (!keep[j] &&
+                ritz_dense_col(R, j)[j] > (pivot < 0 ? d : more * d)) {
                 pivot = j;
                 d = ritz_dense_col(R, j)[j];
             }

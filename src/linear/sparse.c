@@ -234,6 +234,42 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
     return RITZ_OK;
 }
 
+/* y + low := y + low + a x, its rounding of eps^2 [OgitaRumpOishi2005]. */
+static void add_product(double a, double x, double *y, double *low)
+{
+    double product = a * x;
+    double sum = *y + product;
+    double part = sum - *y;
+
+    *low += fma(a, x, -product) + (*y - (sum - part)) + (product - part);
+    *y = sum;
+}
+
+ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
+                                    ritz_dense *Y)
+{
+    ritz_status status = RITZ_OK;
+    double *low = NULL;
+
+    RITZ_NEW(low, A->nrow);
+    RITZ_TRY(ritz_dense_new(A->nrow, X->ncol, Y));
+    for (int64_t k = 0; k < X->ncol; k++) {
+        double *y = ritz_dense_col(Y, k);
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+                add_product(A->val[p], ritz_dense_col(X, k)[j],
+                            &y[A->rowind[p]], &low[A->rowind[p]]);
+        for (int64_t i = 0; i < A->nrow; i++) {
+            y[i] += low[i];
+            low[i] = 0.0;
+        }
+    }
+done:
+    free(low);
+    return status;
+}
+
 static ritz_status check_column(const ritz_sparse *A, int64_t j)
 {
     int64_t above = -1;

@@ -4,6 +4,7 @@
 #include <ritz/reduced.h>
 
 #include <float.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,6 +40,60 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
     ritz_dense_symmetrise(Kr);
 done:
     ritz_dense_free(&most);
+    return status;
+}
+
+/* Whether columns of T combine to nothing, to six digits or more. */
+static ritz_status nearly_depend(const ritz_dense *T, bool *out)
+{
+    const double six_digits = 1e-12; /* squared, as T'T has them */
+    ritz_status status = RITZ_OK;
+    int r = (int)T->ncol;
+    double rcond = 0.0, norm = 0.0;
+    ritz_dense G = {0}, scaled = {0};
+
+    *out = false;
+    if (r == 0 || T->nrow == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_mul_tn(T, T, &G));
+    RITZ_TRY(ritz_dense_copy(&G, &scaled));
+    for (int64_t j = 0; j < r; j++)
+        for (int64_t i = 0; i < r; i++)
+            ritz_dense_col(&scaled, j)[i] /=
+                sqrt(ritz_dense_col(&G, i)[i] * ritz_dense_col(&G, j)[j]);
+    norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', r, scaled.val, r);
+    if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, scaled.val, r) == 0)
+        (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, scaled.val, r, norm,
+                             &rcond);
+    *out = !(rcond > six_digits);
+done:
+    ritz_dense_free(&G);
+    ritz_dense_free(&scaled);
+    return status;
+}
+
+/*
+ * T'KT. A direction d in which columns of T nearly depend on each other has a
+ * stiffness d'Kd and a coupling phi'Kd that are far below the rounding of
+ * |T|'|K||T|, and what is made of them, (phi'Kd)^2 / d'Kd, would be off in the
+ * modes that are kept: K T is then summed with twice the digits.
+ */
+static ritz_status project_stiffness(const ritz_sparse *K, const ritz_dense *T,
+                                     ritz_dense *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense KT = {0};
+    bool twofold = false;
+
+    RITZ_TRY(nearly_depend(T, &twofold));
+    if (!twofold)
+        return ritz_sparse_project(K, T, out);
+    RITZ_TRY(ritz_sparse_mul_twofold(K, T, &KT));
+    RITZ_TRY(ritz_dense_mul_tn(T, &KT, out));
+    if (ritz_sparse_asymmetry(K) == 0.0)
+        ritz_dense_symmetrise(out);
+done:
+    ritz_dense_free(&KT);
     return status;
 }
 
@@ -163,7 +218,7 @@ ritz_status ritz_reduce(const ritz_component *component,
                  "the basis is for %lld dofs, the component has %lld",
                  (long long)T->nrow, (long long)component->num_dofs);
     RITZ_TRY(keep_names(component, basis, &reduced));
-    RITZ_TRY(ritz_sparse_project(&component->K, T, &reduced.K));
+    RITZ_TRY(project_stiffness(&component->K, T, &reduced.K));
     RITZ_TRY(settle_rigid(&component->K, basis, &reduced.K));
     RITZ_TRY(ritz_sparse_project(&component->M, T, &reduced.M));
     RITZ_TRY(ritz_sparse_project(&component->D, T, &reduced.D));
