@@ -261,4 +261,297 @@
    equal. */
 #define RITZ_EQUAL_VALUES 1e-12
 
+/* Linear algebra */
+
+/* An entry of a product below this part of the same product in
+   magnitudes is rounding: 64 eps. */
+#define RITZ_SUM_ROUNDING 0x1p-46
+/* Asymmetry that a few sums of products leave of a symmetric matrix: 8 eps.
+   More is told apart, where a symmetric form saves work and digits. */
+#define RITZ_SYMMETRIC_SUMS 0x1p-49
+/* Convergence of ARPACK: eigenvalues err by its square. */
+#define RITZ_ARNOLDI_SETTLED 1e-12
+/* Entries of a vector this near to its largest are as large: the first of
+   them gives the sign, on every processor. */
+#define RITZ_LIKE_LARGEST 1e-9
+/* A mass of unit diagonal with a worse reciprocal condition is taken as
+   singular, and motions without mass are condensed. */
+#define RITZ_MASS_WELL_CONDITIONED 1e-8
+/* E of unit diagonal with a worse reciprocal condition is not divided out. */
+#define RITZ_FRAME_CONDITION 1e-8
+/* Rounding that scaling may add, over that of the matrices as given. */
+#define RITZ_FRAME_GROWTH 1e4
+/* An eigenvalue of a dense pencil below this part of the largest has lost
+   six digits and more, and is found again among its like. */
+#define RITZ_EIGEN_FAR_BELOW 1e-6
+/* Residual of a sparse eigenpair after inverse iteration: a larger one is
+   refused. */
+#define RITZ_EIGEN_RESIDUAL 1e-11
+/* Place within a gap of eigenvalues where the modes below are counted,
+   if its middle is hit. */
+#define RITZ_COUNT_PLACE 0.3
+/* First shift below 0, of the median of K_jj / M_jj. */
+#define RITZ_FIRST_SHIFT 1e-5
+/* A shift this many times the first flexible eigenvalue blurs it: another is
+   taken. */
+#define RITZ_SHIFT_BLURRED 1e3
+/* A rigid motion whose stiffness is below this part of the first flexible
+   eigenvalue is free: half of the digits of a double are beyond it. */
+#define RITZ_FREE_MOTION 1e-8
+/* Eigenvalues of a free body below this part of the largest may be rigid: a
+   matrix written with ten digits leaves them there. */
+#define RITZ_RIGID_DIGITS 1e-9
+/* A pivot of a matrix of unit diagonal above this hides no eigenvalue of the
+   size of rounding, and a column with it is independent of those before. */
+#define RITZ_PIVOT_STRONG 1e-3
+/* Smallest eigenvalue of a definite matrix of unit diagonal that is not
+   rounding: eps, measured in test_factor.c. */
+#define RITZ_SINGULAR_SPD 0x1p-52
+/* Smallest |H y| / |y| of rows scaled to one that is not rounding: 4 eps. */
+#define RITZ_SINGULAR_LDL 0x1p-50
+/* Rounding of each entry of a column after all sums of an
+   orthogonalisation, in eps. */
+#define RITZ_ENTRY_ROUNDING 100.0
+/* Square of eps: a squared norm below this part of another is 0. */
+#define RITZ_NEGLIGIBLE_SQUARE 0x1p-104
+/* A peak below this part of the highest is not followed between points. */
+#define RITZ_PEAK_WORTH 0.5
+/* A bracket of a peak this short, relative to its upper end, is done: a peak
+   is flat there to the square of it. */
+#define RITZ_PEAK_PLACED 1e-9
+/* The same where a peak may be infinite for want of damping. */
+#define RITZ_PEAK_SHARP 1e-10
+/* A value that grows by the factor below while its bracket shrinks from this
+   to RITZ_PEAK_SHARP is infinite. */
+#define RITZ_PEAK_LATE 1e-8
+/* See above. */
+#define RITZ_PEAK_GROWTH 1.5
+
+/* Modal models and states */
+
+/* What a shifted solve leaves of the share of motions without mass where
+   they have none, relative. */
+#define RITZ_MASSLESS_SHARE 1e-8
+/* Singular values of the rigid motions of a tie below this part of the
+   largest are rounding of positions: beneath the root of eps a position of
+   half the digits decides. */
+#define RITZ_LOOSE_MOTION 1.5e-8
+/* A loose motion is known to eps over that gap: a row that has more than this
+   part of it depends on it. */
+#define RITZ_LOOSE_PART 1e-6
+/* Reciprocal condition of constraint equations below which half the digits
+   of what follows from them are lost: they leave their dof undetermined. */
+#define RITZ_UNDETERMINED 1e-8
+/* Settings of a joint, in degrees or lengths, that differ by less are one. */
+#define RITZ_SAME_SETTING 1e-9
+
+/* Gramians */
+
+/* Hankel values whose relative gap is below this count once in the bound.
+   Two of one sign with the gap g need in one channel a pole g^2 / 16 of the
+   others: below this it is rounding, above it both count, as the error of
+   such a system is the sum of both. */
+#define RITZ_HANKEL_REPEATED 1e-9
+/* Distance of W'E T from I up to which a value still has a direction. */
+#define RITZ_BALANCED_DEFECT 0.1
+/* Residual of a low-rank Gramian, if none is asked for. */
+#define RITZ_ADI_TOLERANCE 1e-10
+/* What is left of a load without rigid motion below this part, squared, is
+   rounding: there is nothing flexible to iterate on. */
+#define RITZ_ADI_NOTHING 1e-24
+/* Columns of a factor below this part of the longest are dropped. */
+#define RITZ_SHORT_COLUMN 1e-14
+/* Bytes that one factor may take: three of them stay below 4 GiB. */
+#define RITZ_FACTOR_BYTES 1.4e9
+/* What sparse products leave of a rigid motion, of the same product in
+   magnitudes, where there is none. */
+#define RITZ_RIGID_LOAD 1e-10
+/* Eigenvalues of the Gram matrix of unit columns below this are dependent
+   columns: rounding, twice over. */
+#define RITZ_WINDOW_DEPENDENT 1e-12
+/* An imaginary part below this of the real one makes a shift real. */
+#define RITZ_SHIFT_REAL 1e-3
+/* Least |Re p| / |p| of a shift that can be told from none: 64 eps. */
+#define RITZ_SHIFT_DAMPED 0x1p-46
+/* Damping between two modes, over the root of their own, above which they
+   are coupled: the closed forms err by its square. */
+#define RITZ_DAMPING_COUPLES 1e-6
+/* The same of the largest damping of all, which rounding leaves. */
+#define RITZ_DAMPING_ROUNDING 1e-12
+/* Roundings on the way to a band Gramian, of the magnitudes of its sum:
+   8 eps. */
+#define RITZ_BAND_ROUNDING 0x1p-49
+/* Up to this ratio a mode is eliminated as a whole: eigenvectors of its two
+   poles are no better than its block. */
+#define RITZ_NEARLY_CRITICAL 1.001
+
+/* Poles, zeros and norms */
+
+/* Backward error of LAPACK's eigensolvers, in eps. Measured, what the middle
+   of a symmetric structure observes of modes that are zero there: 0.1 to 1.8
+   times the first-order bound with 1 for it, of rows of 5 to 767 masses and
+   clamped beams of 4 to 128 elements. */
+#define RITZ_BACKWARD_ERROR 8.0
+/* A gain below this part of its error is rounding. */
+#define RITZ_NO_GAIN 1e-14
+/* A modal matrix with smaller entries, against its diagonal, is diagonal:
+   the error is of its square. */
+#define RITZ_DIAGONAL_WITHIN 1e-9
+/* A mode whose participation in all channels is below this part of the
+   product of the largest is not controllable and observable. */
+#define RITZ_UNOBSERVED 1e-10
+/* D is a M + b K up to this part of |D|: more than rounding leaves of
+   matrices in text of few digits. */
+#define RITZ_PROPORTIONAL_WITHIN 1e-6
+/* A step of inverse iteration this small, of |s|, is the last. */
+#define RITZ_REFINED 1e-12
+/* One below this that no longer shrinks is the last too: slow poles of stiff
+   models err by eps |K| / |s|. */
+#define RITZ_REFINED_NEARLY 1e-6
+/* So far from an eigenvalue, relative, a matrix can be factored. */
+#define RITZ_BESIDE_EIGENVALUE 1e-9
+/* What the series of modes that are left out is good to, of the whole
+   response at the end of the range. */
+#define RITZ_SERIES_WITHIN 1e-12
+/* A change of a term of that series this small, of its largest value, is the
+   last. */
+#define RITZ_SERIES_SETTLED 1e-14
+/* Rounding of an ill-conditioned K may keep a term from that, not from this. */
+#define RITZ_SERIES_UNSETTLED 1e-6
+/* A change below this part of the whole response is not seen: eps / 2. */
+#define RITZ_SERIES_NEGLIGIBLE 0x1p-53
+/* Shift below 0 of that series, of the last eigenvalue that is kept: a step
+   then shrinks by 100. */
+#define RITZ_SERIES_SHIFT 0.01
+/* A shift below this part of the largest K_jj / M_jj is lost in the rounding
+   of K. */
+#define RITZ_SHIFT_LOST 1e-10
+/* Terms must fall by this factor each: forty of them reach
+   RITZ_SERIES_WITHIN. */
+#define RITZ_SERIES_FALLS 0.5
+/* A static response to a damper of which less than this is new adds nothing
+   to the undamped modes. */
+#define RITZ_STATIC_DEPENDENT 1e-8
+/* Undamped modes are taken to this factor of what is asked for, in number
+   and in frequency: damping moves poles across. */
+#define RITZ_SPECTRUM_BEYOND 2.0
+/* Inverse iteration that moves s further than this, relative, went to
+   another pole. */
+#define RITZ_REFINED_ELSEWHERE 0.1
+/* Shapes of equal poles that correlate more than this are one; of a double
+   pole they are apart. */
+#define RITZ_SAME_SHAPE 0.9
+/* Square of what an entry of a motion without mass may err by, of its
+   largest. */
+#define RITZ_MASSLESS_VECTOR 1e-24
+/* Damping between a motion without mass and others, of the largest, above
+   which it must be damped itself. */
+#define RITZ_MASSLESS_COUPLED 1e-8
+/* A step of a zero no larger than this part of it is the last: 4 eps. */
+#define RITZ_ZERO_STEP 0x1p-50
+/* A zero that rounding may move by this part of its distance from 0 and from
+   all poles is one at infinity. */
+#define RITZ_ZERO_DOUBT 0.1
+/* A coupled modal system with a worse reciprocal condition is on a pole. */
+#define RITZ_COUPLED_RCOND 1e-16
+
+/* Checks of models */
+
+/* Asymmetry of a matrix, relative to its largest entry, that importing
+   averages away: rounding leaves 6e-7 in superelements as supplied. */
+#define RITZ_SYMMETRIC_SOURCE 1e-6
+/* Whole numbers of some unit up to this are meant as they stand, not
+   rounded, unless harm is seen. */
+#define RITZ_SHORT_NUMBERS 1e6
+/* Negative eigenvalues of a matrix of unit diagonal that a static
+   condensation leaves: commercial superelements stay below, measured. Also
+   those of matrices in text of ten digits. */
+#define RITZ_CONDENSATION_LOSS 1e-10
+/* A row of an interface whose entries are below this part of the largest
+   moves nothing. */
+#define RITZ_ROW_UNMOVED 1e-12
+/* Columns with this part of the largest share of a motion are named with it. */
+#define RITZ_WORTH_NAMING 0.3
+/* A rigid motion driven by less than this part of the softest flexible
+   eigenvalue has not moved a radius in 1e6 of that mode's radians. */
+#define RITZ_DRIFT_UNNOTICED 1e-12
+/* A rigid motion held by no more than this part of the first flexible
+   eigenvalue is meant to be free. */
+#define RITZ_NEARLY_FREE 1e-4
+/* Eigenvalues of R'MR below this part of the largest: a rigid motion without
+   mass. */
+#define RITZ_MOTION_WITHOUT_MASS 1e-10
+/* Forces of a rigid motion that elements computed in double precision leave:
+   1024 eps; a commercial code left 290 in a solid, measured. */
+#define RITZ_ELEMENT_ROUNDING 0x1p-42
+/* Rounding of positions and frames kept in single precision, or as eight
+   letters of a card. */
+#define RITZ_SINGLE_PRECISION 0x1p-24
+/* Digits of a source that lose nothing of the differences of stiffness. */
+#define RITZ_ENOUGH_DIGITS 12.0
+/* Sine of the angle between rigid eigenvectors and the motions that
+   positions give: of six digits of a position. */
+#define RITZ_MOTIONS_AGREE 1e-6
+/* Beyond this sine a position or a frame is wrong. */
+#define RITZ_MOTIONS_BEARABLE 1e-3
+/* Relative difference of the masses along the axes, and of what couples
+   them, that lumping, averaging and single precision leave. */
+#define RITZ_MASS_AGREES 1e-6
+/* Beyond this no averaging explains them. */
+#define RITZ_MASS_BEARABLE 1e-2
+/* Grids no further apart than this part of the component's size are in one
+   place. */
+#define RITZ_SAME_PLACE 1e-9
+/* A motion that a port holds by less than this part of the best is not held. */
+#define RITZ_PORT_HELD 1e-6
+/* Entries of a rigid motion below this, per unit of size, are no motion. */
+#define RITZ_MOTION_PRESENT 1e-9
+/* Square of what an entry of a motion without mass may err by, of its
+   largest, where its damping is judged. */
+#define RITZ_MASSLESS_DAMPING 1e-20
+/* A free motion this small is not followed any more. */
+#define RITZ_DIED_OUT 1e-3
+/* Rounding that squaring e^(A t) may have added up when it ends. */
+#define RITZ_POWERS_ROUNDING 1e-7
+/* Growth of the energy of a free motion that squaring e^(A t) leaves. */
+#define RITZ_GROWTH_ROUNDING 1e-6
+/* Error of a state per step that integrators let pass unless they are told
+   otherwise: what grows by more than its inverse is lost in it. */
+#define RITZ_INTEGRATOR_ERROR 1e-3
+/* A zero beyond this times the largest pole is met by stiffer attachments
+   alone. */
+#define RITZ_ZEROS_REACH 1e3
+/* A zero no further right of the axis, of |s|, is on it. */
+#define RITZ_ZERO_ON_AXIS 1e-7
+/* There is no response this close to a pole, of w. */
+#define RITZ_SAMPLER_POLE 1e-13
+/* Width of a pole that is taken at least, of |s|, to place frequencies
+   around it. */
+#define RITZ_LEAST_WIDTH 1e-3
+/* An eigenvalue of a Hamiltonian pencil no further from the axis, of |s|, is
+   on it. */
+#define RITZ_PENCIL_ON_AXIS 1e-6
+/* Negative part of a response, of |G|, that rounding may leave of a passive
+   model. */
+#define RITZ_PASSIVE 1e-9
+
+/* Simulation */
+
+/* What rounding of an output may have grown to, of what could be shown: more
+   is an error of the step. */
+#define RITZ_ROUNDING_GROWN 1e-9
+/* Elongation of the period of the highest wanted mode, for which the step of
+   an accurate simulation is quoted. */
+#define RITZ_PERIOD_ERROR 1e-3
+/* Least processor time of one measurement of a step. */
+#define RITZ_MEASURED_SECONDS 2e-3
+/* A march whose states have grown by this factor is unstable. */
+#define RITZ_GROWN_ENOUGH 1e12
+/* More steps are a mistake in a step or an end. */
+#define RITZ_MOST_STEPS 1e10
+/* A step that ends within this part of itself of the end, ends there. */
+#define RITZ_STEP_ROUNDING 1e-6
+/* Inputs that do nothing are scaled by this, which is not 0. */
+#define RITZ_LEAST_SCALE 1e-300
+
 #endif

@@ -2,6 +2,7 @@
 #include "check/check.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 
 #include <math.h>
@@ -148,9 +149,6 @@ done:
     return status;
 }
 
-/* Rows whose motion is below this, of the largest entry, do not move. */
-static const double unmoved = 1e-12;
-
 /* Column j of @p Lt is a row of the interface, if it moves. */
 static bool keep_column(ritz_dense *Lt, int64_t j, double largest)
 {
@@ -158,7 +156,7 @@ static bool keep_column(ritz_dense *Lt, int64_t j, double largest)
 
     for (int64_t i = 0; i < Lt->nrow; i++)
         most = fmax(most, fabs(ritz_dense_col(Lt, j)[i]));
-    return most > unmoved * largest;
+    return most > RITZ_ROW_UNMOVED * largest;
 }
 
 /* Rows of all ports as columns of Lt, and what they are called. */

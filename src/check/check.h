@@ -26,10 +26,6 @@ enum {
     RITZ_NEEDS_PORTS = 8,
 };
 
-/* The bound on what rounding does to a pole is of first order, and eigensolvers
-   are backward stable within a few eps. */
-#define RITZ_PROBE_TIMES 8.0
-
 /* Forces K r of rigid motions, and what an error of size 1 leaves of them. */
 typedef struct ritz_forces {
     double largest;

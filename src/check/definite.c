@@ -7,6 +7,7 @@
  * antisymmetric does no work.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 #include "poles/massless.h"
 
@@ -17,13 +18,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Below this, of the largest, D and K4 are as indefinite as text is that was
-   rounded to ten digits. */
-static const double slight_within = 1e-10;
-
-/* Columns that a line names, and the least share of the largest. */
+/* Columns that a line names, at most. */
 enum { SHOWN = 3 };
-static const double worth_naming = 0.3;
 
 /* "column 3 constraint, grid 101 T3", "column 7 normal, 12.3 Hz" */
 static void name_column(const ritz_reduced *reduced, int64_t j,
@@ -77,7 +73,7 @@ static void name_columns(const ritz_checker *it, const double *motion,
         }
         if (shown == 0)
             largest = best;
-        if (at < 0 || best < worth_naming * largest)
+        if (at < 0 || best < RITZ_WORTH_NAMING * largest)
             return;
         name_column(it->reduced, at, text);
         ritz_checker_list(where, text);
@@ -136,7 +132,7 @@ ritz_status ritz_check_reduced_mass(ritz_checker *it)
     static const char name[] = "mass-definite";
     ritz_status status = RITZ_OK;
     const ritz_dense *M = &it->model.M;
-    double limit = -RITZ_PROBE_TIMES * (double)M->nrow * DBL_EPSILON;
+    double limit = -RITZ_POLE_BOUND_FACTOR * (double)M->nrow * DBL_EPSILON;
     least_value found = {0};
     char where[RITZ_WHERE_SIZE];
 
@@ -161,15 +157,15 @@ static ritz_status damping_of_massless(const ritz_dense *D, const ritz_dense *N,
                                        ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
-    const double rounding = 64.0 * DBL_EPSILON;
     /* what an entry of N may err by, of its largest, squared */
-    double floor = 1e-20 * ritz_dense_max(D) * pow(ritz_dense_max(N), 2.0);
+    double floor =
+        RITZ_MASSLESS_DAMPING * ritz_dense_max(D) * pow(ritz_dense_max(N), 2.0);
     ritz_dense most = {0};
 
     RITZ_TRY(ritz_dense_project(D, N, out));
     RITZ_TRY(ritz_dense_terms(D, N, &most));
     for (int64_t k = 0; k < out->nrow * out->ncol; k++)
-        if (fabs(out->val[k]) <= rounding * most.val[k] + floor)
+        if (fabs(out->val[k]) <= RITZ_SUM_ROUNDING * most.val[k] + floor)
             out->val[k] = 0.0;
 done:
     ritz_dense_free(&most);
@@ -190,7 +186,7 @@ static ritz_status find_massless(const ritz_checker *it, least_value *out)
     RITZ_TRY(damping_of_massless(&it->model.D, &N, &D));
     RITZ_TRY(ritz_dense_new(N.ncol, N.ncol, &unit));
     RITZ_TRY(find_least(&D, &unit, &found));
-    if (found.value < -slight_within) {
+    if (found.value < -RITZ_CONDENSATION_LOSS) {
         RITZ_NEW(out->motion, N.nrow);
         out->value = found.value;
         for (int64_t j = 0; j < N.ncol; j++)
@@ -227,7 +223,7 @@ static void say_damping(ritz_checker *it, const least_value *found,
 {
     static const char name[] = "damping-definite";
     double skew = skew_of(&it->model.D);
-    bool slight = found->value >= -slight_within;
+    bool slight = found->value >= -RITZ_CONDENSATION_LOSS;
     char where[RITZ_WHERE_SIZE] = "";
 
     if (found->value >= limit && skew > 0.0) {
@@ -253,8 +249,8 @@ ritz_status ritz_check_reduced_damping(ritz_checker *it)
 {
     ritz_status status = RITZ_OK;
     const ritz_dense *D = &it->model.D;
-    double limit =
-        -RITZ_PROBE_TIMES * RITZ_PROBE_TIMES * (double)D->nrow * DBL_EPSILON;
+    double limit = -RITZ_POLE_BOUND_FACTOR * RITZ_POLE_BOUND_FACTOR *
+                   (double)D->nrow * DBL_EPSILON;
     least_value found = {0}, massless = {0};
     char where[RITZ_WHERE_SIZE];
 
@@ -286,10 +282,10 @@ ritz_status ritz_check_reduced_structural(ritz_checker *it)
     bool holds = true;
 
     RITZ_TRY(find_least(K4, &it->model.M, &found));
-    holds = found.value >= -slight_within;
+    holds = found.value >= -RITZ_CONDENSATION_LOSS;
     if (!holds)
         name_columns(it, found.motion, where);
-    ritz_checker_say(it, name, found.value, -slight_within,
+    ritz_checker_say(it, name, found.value, -RITZ_CONDENSATION_LOSS,
                      holds ? RITZ_PASS : RITZ_FAIL, where, "%s",
                      holds ? "no negative eigenvalue"
                            : "structural damping with a negative eigenvalue: "
@@ -304,12 +300,6 @@ done:
  * phi has none: phi'K phi beyond rounding is that of matrices of too few digits,
  * which hold a free body or drive it.
  */
-
-/* Of the softest flexible eigenvalue: a rigid motion that is held or driven by
-   more is wrong, as of an audited component; by less than the second it has not
-   moved a radius in 1e6 of that mode's radians. */
-static const double driven = 1e-8;
-static const double unnoticed = 1e-12;
 
 /* Modes are found here: that they are there is part of the answer. */
 static ritz_status find_modes(ritz_checker *it, bool *singular)
@@ -343,7 +333,7 @@ static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
     for (int64_t k = 0; k < Phi.ncol; k++) {
         double value = ritz_dense_col(&own, k)[k];
 
-        if (fabs(value) > 64.0 * DBL_EPSILON * ritz_dense_col(&most, k)[k] &&
+        if (fabs(value) > RITZ_SUM_ROUNDING * ritz_dense_col(&most, k)[k] &&
             fabs(value) > fabs(*out)) {
             *out = value;
             *at = k;
@@ -366,14 +356,15 @@ static ritz_status say_rigid(ritz_checker *it, bool *said)
     char where[RITZ_WHERE_SIZE] = "";
 
     RITZ_CHECK(rigid_stiffness(it, &value, &at));
-    *said = value < -unnoticed * softest || value > driven * softest;
+    *said = value < -RITZ_DRIFT_UNNOTICED * softest ||
+            value > RITZ_FREE_MOTION * softest;
     if (!*said)
         return RITZ_OK;
     it->definite = value > 0.0;
     name_columns(it, ritz_dense_col(&modes->Phi, at), where);
     ritz_checker_say(
-        it, "stiffness-definite", value / softest, -driven,
-        value < -driven * softest ? RITZ_FAIL : RITZ_WARN, where,
+        it, "stiffness-definite", value / softest, -RITZ_FREE_MOTION,
+        value < -RITZ_FREE_MOTION * softest ? RITZ_FAIL : RITZ_WARN, where,
         "%s stiffness of a rigid motion, %.2g of the softest flexible one: too "
         "few digits, a free body is not free",
         value < 0.0 ? "negative" : "positive", value / softest);

@@ -14,6 +14,7 @@
  * gives what is reached at most.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/eigenvalues.h"
 #include "linear/exponential.h"
@@ -37,10 +38,6 @@ enum {
     MOST_STATES = 400, /* of whose exponential powers are taken */
     FOURTHS = 4,       /* of an octave */
 };
-/* Of a free motion so small nothing is said any more. */
-static const double died_out = 1e-3;
-/* Of |A| t: squaring has added up rounding to 1e-7 then. */
-static const double long_enough = 1e-7 / DBL_EPSILON;
 
 ritz_status ritz_probe_energy_matrix(const ritz_modal_model *modes,
                                      ritz_dense *out)
@@ -65,7 +62,7 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
     double size = 1.0;
 
     RITZ_TRY(ritz_exponential(A, h, 0, NULL, &E, NULL));
-    for (int k = 0; size > died_out && h * ldexp(1.0, k) <= most; k++) {
+    for (int k = 0; size > RITZ_DIED_OUT && h * ldexp(1.0, k) <= most; k++) {
         RITZ_TRY(ritz_dense_copy(&E, &next));
         RITZ_TRY(ritz_general_norm(&next, &size));
         ritz_dense_free(&next);
@@ -130,7 +127,8 @@ static ritz_status measure_growth(const ritz_dense *A, growth *out)
         return RITZ_OK;
     for (int k = 0; k < FOURTHS; k++)
         RITZ_CHECK(follow_powers(A, 0.25 / size * exp2((double)k / FOURTHS),
-                                 long_enough / size, out));
+                                 RITZ_POWERS_ROUNDING / DBL_EPSILON / size,
+                                 out));
     out->most = fmax(out->most, out->met);
     return RITZ_OK;
 }
@@ -158,9 +156,6 @@ static void say_growth(ritz_checker *it, const growth *found, double limit,
  * States have no energy, and non-normal growth is no instability: what poles do
  * not explain is told, in units of states of the check's own making.
  */
-/* Of a state, per step: the error that integrators let pass unless they are
-   told otherwise. What grows by more than its inverse is lost in it. */
-static const double let_pass = 1e-3;
 
 /*
  * Units of states are nobody's growth. They are scaled until what goes into
@@ -236,7 +231,8 @@ static ritz_status grow_states(ritz_checker *it)
     RITZ_TRY(ritz_split_new(&A, &none, &split));
     RITZ_TRY(measure_growth(&split.S, &found));
     RITZ_TRY(pole_spread(&split.S, &explained));
-    say_growth(it, &found, explained / (let_pass * let_pass),
+    say_growth(it, &found,
+               explained / (RITZ_INTEGRATOR_ERROR * RITZ_INTEGRATOR_ERROR),
                "square of scaled states");
 done:
     ritz_split_free(&split);
@@ -253,7 +249,7 @@ static ritz_status grow_modes(ritz_checker *it)
     RITZ_TRY(ritz_probe_energy_matrix(&it->modes, &A));
     RITZ_TRY(measure_growth(&A, &found));
     /* squaring doubles rounding each time */
-    say_growth(it, &found, 1.0 + 1e-6, "energy");
+    say_growth(it, &found, 1.0 + RITZ_GROWTH_ROUNDING, "energy");
 done:
     ritz_dense_free(&A);
     return status;

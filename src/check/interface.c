@@ -7,6 +7,7 @@
  * its zeros.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/general.h"
 
@@ -20,10 +21,6 @@
 
 static const double times_own[] = {1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3};
 enum { TIMES = sizeof times_own / sizeof *times_own };
-/* Of the largest pole: a zero beyond is met by stiffer attachments alone. */
-static const double beyond = 1e3;
-/* Of |s|: a zero no further right is on the axis. */
-static const double on_axis = 1e-7;
 
 /* Middle of what |y_i / u_i| is over the grid; k_i is one over it. */
 static ritz_status own_gains(const ritz_collocated *pairs, double *gain)
@@ -142,7 +139,8 @@ static int64_t worst_zero(const ritz_collocated *pairs, int64_t count,
     int64_t worst = -1;
 
     for (int64_t k = 0; k < count; k++)
-        if (cabs(zero[k]) > least && cabs(zero[k]) <= beyond * radius &&
+        if (cabs(zero[k]) > least &&
+            cabs(zero[k]) <= RITZ_ZEROS_REACH * radius &&
             (worst < 0 || creal(zero[k]) / cabs(zero[k]) >
                               creal(zero[worst]) / cabs(zero[worst])))
             worst = k;
@@ -159,16 +157,16 @@ static void say_locked(ritz_checker *it, int64_t count,
     bool fails = false;
 
     if (at < 0) {
-        ritz_checker_say(it, name, 0.0, on_axis, RITZ_PASS, "",
+        ritz_checker_say(it, name, 0.0, RITZ_ZERO_ON_AXIS, RITZ_PASS, "",
                          "with its outputs held nothing is left that moves");
         return;
     }
-    fails = creal(zero[at]) > on_axis * cabs(zero[at]);
+    fails = creal(zero[at]) > RITZ_ZERO_ON_AXIS * cabs(zero[at]);
     probe.pole[0] = creal(zero[at]);
     probe.pole[1] = fabs(cimag(zero[at]));
     ritz_probe_print(&probe, text);
-    ritz_checker_say(it, name, creal(zero[at]) / cabs(zero[at]), on_axis,
-                     fails ? RITZ_FAIL : RITZ_PASS, "",
+    ritz_checker_say(it, name, creal(zero[at]) / cabs(zero[at]),
+                     RITZ_ZERO_ON_AXIS, fails ? RITZ_FAIL : RITZ_PASS, "",
                      "with its outputs held: %s", text);
 }
 
@@ -249,9 +247,6 @@ done:
  * and a from 1e-3 to 1e3. Where M, K and D are semidefinite, so are all of
  * these, and nothing is computed.
  */
-
-/* Of the largest: rows of smaller singular values are dependent. */
-static const double dependent = 1e-9;
 
 /* A model as an assembly makes it of this one, and the worst of several. */
 typedef struct trial {
@@ -428,7 +423,7 @@ static ritz_status locked_reduced(ritz_checker *it)
     }
     RITZ_TRY(ritz_general_svd(&scaled, &U, &sigma, &V));
     while (rank < scaled.nrow && rank < scaled.ncol &&
-           sigma[rank] > dependent * sigma[0])
+           sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
     N = ritz_dense_part(&V, rank, V.ncol - rank);
     RITZ_TRY(ritz_dense_congruence(&it->model.K, &N, &t.K));
@@ -567,7 +562,7 @@ static ritz_status take_rows(const ritz_checker *it, joint *j)
     RITZ_TRY(pick_columns(&it->L, j->count, j->force, false, &Cp));
     RITZ_TRY(pick_columns(&it->L, it->L.ncol - j->count, j->other, false, &Cq));
     RITZ_TRY(ritz_general_svd(&Cp, &U, &sigma, NULL));
-    while (rank < most && sigma[rank] > dependent * sigma[0])
+    while (rank < most && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
     kept = ritz_dense_part(&U, 0, rank);
     RITZ_TRY(ritz_dense_mul_tn(&kept, &Cq, &j->Cq));

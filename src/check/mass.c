@@ -1,5 +1,6 @@
 /* What moves and what is connected: dofs, separate bodies, mass properties. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 
 #include <ritz/eigen.h>
@@ -203,16 +204,11 @@ done:
  * without any dof, as in plane models, are passed over.
  */
 
-/* Relative, as of symmetry: lumping, averaging and single precision stay
- * below; a mass that is not the same along all axes does not. */
-static const double agree_within = 1e-6;
-static const double bearable = 1e-2;
-
 static ritz_verdict verdict_of(double value)
 {
-    if (value <= agree_within)
+    if (value <= RITZ_MASS_AGREES)
         return RITZ_PASS;
-    return value <= bearable ? RITZ_WARN : RITZ_FAIL;
+    return value <= RITZ_MASS_BEARABLE ? RITZ_WARN : RITZ_FAIL;
 }
 
 /* R'MR, about the mass centre where positions are known. */
@@ -255,16 +251,17 @@ static double check_masses(ritz_checker *it, const ritz_dense *A)
         most = fmax(most, ritz_dense_col(A, j)[j]);
     }
     if (!(most > 0.0)) {
-        ritz_checker_say(it, "mass-translations", nan(""), agree_within,
+        ritz_checker_say(it, "mass-translations", nan(""), RITZ_MASS_AGREES,
                          RITZ_WARN, NULL, "no mass moves with a translation");
         return 0.0;
     }
     spread = (most - least) / most;
-    ritz_checker_say(
-        it, "mass-translations", spread, agree_within, verdict_of(spread), NULL,
-        spread <= agree_within ? "mass %.9g, the same along all axes"
-                               : "mass %.9g along one axis, %.9g along another",
-        most, least);
+    ritz_checker_say(it, "mass-translations", spread, RITZ_MASS_AGREES,
+                     verdict_of(spread), NULL,
+                     spread <= RITZ_MASS_AGREES
+                         ? "mass %.9g, the same along all axes"
+                         : "mass %.9g along one axis, %.9g along another",
+                     most, least);
     return most;
 }
 
@@ -287,14 +284,15 @@ static void check_coupling(ritz_checker *it, const ritz_dense *A, double mass,
             worst = fmax(worst, fabs(ritz_dense_col(A, j)[i]) / scale);
         }
     if (it->placed)
-        ritz_checker_say(
-            it, "mass-coupling", worst, agree_within, verdict_of(worst), NULL,
-            "mass centre at %.6g %.6g %.6g", centre[0], centre[1], centre[2]);
+        ritz_checker_say(it, "mass-coupling", worst, RITZ_MASS_AGREES,
+                         verdict_of(worst), NULL,
+                         "mass centre at %.6g %.6g %.6g", centre[0], centre[1],
+                         centre[2]);
     else
-        ritz_checker_say(it, "mass-coupling", worst, agree_within,
+        ritz_checker_say(it, "mass-coupling", worst, RITZ_MASS_AGREES,
                          verdict_of(worst), NULL,
                          "translations are %scoupled by mass",
-                         worst <= agree_within ? "not " : "");
+                         worst <= RITZ_MASS_AGREES ? "not " : "");
 }
 
 /* Principal moments of inertia, ascending. */
@@ -331,11 +329,12 @@ static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
     RITZ_CHECK(find_moments(A, J));
     margin = J[2] > 0.0 ? (J[0] + J[1] - J[2]) / J[2] : 0.0;
     ritz_checker_say(
-        it, "inertia-tensor", margin, -agree_within,
-        margin >= -agree_within && J[0] >= -agree_within * J[2] ? RITZ_PASS
-                                                                : RITZ_FAIL,
+        it, "inertia-tensor", margin, -RITZ_MASS_AGREES,
+        margin >= -RITZ_MASS_AGREES && J[0] >= -RITZ_MASS_AGREES * J[2]
+            ? RITZ_PASS
+            : RITZ_FAIL,
         NULL, "principal moments %.6g %.6g %.6g%s", J[0], J[1], J[2],
-        margin >= -agree_within ? "" : ": no body has these moments");
+        margin >= -RITZ_MASS_AGREES ? "" : ": no body has these moments");
     return RITZ_OK;
 }
 

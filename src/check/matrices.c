@@ -3,6 +3,7 @@
  * many digits, no negative eigenvalue, proportional damping or other.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 #include "poles/proportional.h"
 
@@ -33,9 +34,6 @@ enum {
     LEAST = 5,        /* that a writer of stiffness leaves, as of %.4e */
     TELLING = 8,      /* values; less than half of so many: 1 in 2000 */
 };
-/* Whole numbers of some unit up to this are nobody's rounding, unless harm is
-   seen. */
-static const double small_whole = 1e6;
 
 typedef struct decimals {
     int64_t count;     /* of values looked at, each once */
@@ -141,15 +139,12 @@ static ritz_status find_digits(ritz_checker *it)
         needed = d.digits;
     it->declared = !exact && c->digits > 0.0 && c->digits <= needed;
     it->digits = it->declared ? c->digits : needed;
-    if (d.digits < FEW && d.largest <= small_whole * pow(10.0, d.place))
+    if (d.digits < FEW && d.largest <= RITZ_SHORT_NUMBERS * pow(10.0, d.place))
         it->declared = false;
     return RITZ_OK;
 }
 
 /* Values: finite and symmetric. */
-
-/* Asymmetry that importing lets pass, contracts.md. */
-static const double symmetric_within = 1e-6;
 
 /* Entries that are not finite; their rows are flagged. */
 static int64_t count_infinite(const ritz_sparse *A, bool *flag)
@@ -201,16 +196,16 @@ static void check_symmetry(ritz_checker *it)
         if (all[k]->colptr)
             now = fmax(now, ritz_sparse_asymmetry(all[k]));
     found = fmax(now, c->asymmetry);
-    if (now > symmetric_within)
-        ritz_checker_say(it, "symmetry", found, symmetric_within, RITZ_FAIL,
-                         NULL, "the matrices are not symmetric");
-    else if (found > symmetric_within)
-        ritz_checker_say(it, "symmetry", found, symmetric_within, RITZ_WARN,
-                         NULL,
+    if (now > RITZ_SYMMETRIC_SOURCE)
+        ritz_checker_say(it, "symmetry", found, RITZ_SYMMETRIC_SOURCE,
+                         RITZ_FAIL, NULL, "the matrices are not symmetric");
+    else if (found > RITZ_SYMMETRIC_SOURCE)
+        ritz_checker_say(it, "symmetry", found, RITZ_SYMMETRIC_SOURCE,
+                         RITZ_WARN, NULL,
                          "the source was not symmetric, and was averaged");
     else
         ritz_checker_say(
-            it, "symmetry", found, symmetric_within, RITZ_PASS, NULL,
+            it, "symmetry", found, RITZ_SYMMETRIC_SOURCE, RITZ_PASS, NULL,
             found > 0.0 ? "rounding only, averaged away" : "exactly symmetric");
 }
 
@@ -368,8 +363,9 @@ static ritz_status check_definite(ritz_checker *it, const ritz_sparse *A,
     if (count > 0) {
         double rounding = 0.5 * pow(10.0, 1.0 - it->digits) * sum;
 
-        RITZ_TRY(count_negative(A, diagonal, tol + fmax(rounding, 1e-10), &sum,
-                                &other, &left));
+        RITZ_TRY(count_negative(A, diagonal,
+                                tol + fmax(rounding, RITZ_CONDENSATION_LOSS),
+                                &sum, &other, &left));
     }
     say_negative(it, name, count, weak, left == 0);
 done:

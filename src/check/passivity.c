@@ -25,9 +25,6 @@ struct ritz_sampler {
     const ritz_collocated *model; /* borrowed D and powers */
 };
 
-/* Of w: there is no response this close to a pole. */
-static const double on_pole = 1e-13;
-
 ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
 {
     ritz_status status = RITZ_OK;
@@ -53,7 +50,8 @@ const double _Complex *ritz_sampler_at(ritz_sampler *s, double w)
 
     for (int64_t k = 0; k < p * p; k++)
         s->H[k] = D->val[k];
-    if (!ritz_resolvent_add(&s->resolvent, ritz_complex(0.0, w), on_pole, s->H))
+    if (!ritz_resolvent_add(&s->resolvent, ritz_complex(0.0, w),
+                            RITZ_SAMPLER_POLE, s->H))
         return NULL;
     for (int64_t i = 0; i < p; i++)
         for (int64_t j = 0; j < p; j++) {
@@ -91,9 +89,7 @@ void ritz_sampler_free(ritz_sampler **sampler)
 
 /* Widths beside a pole, of |Re s| or, where that is less, of |s| / 1000. */
 static const double beside[] = {0.25, 1.0, 4.0};
-static const double least_width = 1e-3;
 /* Of its upper end: the length of a bracket that is not divided any more. */
-static const double close_enough = 1e-9;
 enum { DESCENTS = 3, MOST_STATES = 200, PER_POLE = 9 };
 
 /* (G + G^*) / 2 and its eigenvalues, and where they were least. */
@@ -121,7 +117,8 @@ static int64_t sort_frequencies(int64_t count, double *w)
 
     qsort(w, (size_t)count, sizeof *w, ascending);
     for (int64_t k = 0; k < count; k++)
-        if (w[k] > 0.0 && (kept == 0 || w[k] > w[kept - 1] * (1.0 + 1e-12)))
+        if (w[k] > 0.0 &&
+            (kept == 0 || w[k] > w[kept - 1] * (1.0 + RITZ_RANGE_ROUNDING)))
             w[kept++] = w[k];
     return kept;
 }
@@ -138,7 +135,7 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
     RITZ_NEW(w, 2 * (PER_POLE * poles.count + 2));
     for (int64_t k = 0; k < poles.count; k++) {
         double size = hypot(poles.re[k], poles.im[k]);
-        double width = fmax(fabs(poles.re[k]), least_width * size);
+        double width = fmax(fabs(poles.re[k]), RITZ_LEAST_WIDTH * size);
 
         w[n++] = size;
         w[n++] = fabs(poles.im[k]);
@@ -207,7 +204,7 @@ static ritz_status descend_between(descent *s, double low, double high)
     const ritz_curve curve = {ease_at, s};
     double most = 0.0;
 
-    return ritz_curve_between(&curve, close_enough, &low, &high, &most);
+    return ritz_curve_between(&curve, RITZ_PEAK_PLACED, &low, &high, &most);
 }
 
 /* The lowest points of the grid, each with its neighbours. */
@@ -239,7 +236,8 @@ static ritz_status meet_crossings(descent *s, const ritz_collocated *model)
 
     if (model->A.nrow > MOST_STATES || s->scale == 0.0)
         return RITZ_OK;
-    RITZ_TRY(ritz_passivity_crossings(model, 1e-9 * s->scale, &count, &w));
+    RITZ_TRY(
+        ritz_passivity_crossings(model, RITZ_PASSIVE * s->scale, &count, &w));
     for (int64_t k = 0; k < count; k++) {
         meet_at(s, w[k]);
         meet_at(s, k > 0 ? sqrt(w[k - 1] * w[k]) : 0.5 * w[k]);
@@ -285,8 +283,6 @@ done:
  *     [ C  B'  D + D' ]     [ 0 0 0 ]
  */
 
-/* Of |s|: an eigenvalue of the pencil no further from the axis is on it. */
-static const double on_axis = 1e-6;
 /* Velocities: C A and C B of what is a displacement. */
 static ritz_status take_velocities(const ritz_collocated *model, ritz_dense *C,
                                    ritz_dense *D)
@@ -371,7 +367,8 @@ ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
                  RITZ_ERR_CONVERGENCE,
                  "eigenvalues of a Hamiltonian pencil were not found");
     for (int64_t k = 0; k < all; k++)
-        if (beta[k] > 0.0 && im[k] > 0.0 && fabs(re[k]) <= on_axis * im[k] &&
+        if (beta[k] > 0.0 && im[k] > 0.0 &&
+            fabs(re[k]) <= RITZ_PENCIL_ON_AXIS * im[k] &&
             isfinite(im[k] / beta[k]))
             w[found++] = im[k] / beta[k];
     *count = sort_frequencies(found, w);
@@ -391,9 +388,6 @@ done:
  * Pairs of an input and an output of one name in a state space: a force, and
  * the displacement, velocity or acceleration of where it acts.
  */
-
-/* Passivity that is met better by less than this is met as well. */
-static const double no_better = 1e-9;
 
 static int64_t output_of(const ritz_state_space *model, int64_t input)
 {
@@ -482,7 +476,7 @@ static ritz_status guess_quantity(const ritz_collocated *all, int64_t i)
         one.power = NULL;
         ritz_collocated_free(&one);
         RITZ_TRY(status);
-        if (found.value > best + no_better) {
+        if (found.value > best + RITZ_PASSIVE) {
             best = found.value;
             all->power[i] = power;
         }
@@ -508,9 +502,6 @@ done:
 }
 
 /* Whether energy can come out of the interface, and where it does. */
-
-/* Of |G|: what rounding of a response may leave. */
-static const double rounding = 1e-9;
 
 /* From forces along the interface to its velocities, by the modes. */
 static ritz_status collocated_of_modes(const ritz_checker *it,
@@ -585,16 +576,17 @@ static ritz_status say_passivity(ritz_checker *it, const ritz_collocated *model)
     char where[RITZ_WHERE_SIZE] = "";
 
     RITZ_CHECK(ritz_passivity_of(model, &found));
-    if (found.value >= -rounding) {
+    if (found.value >= -RITZ_PASSIVE) {
         if (it->space)
             name_pairs(model, where);
-        ritz_checker_say(it, "passivity", found.value, -rounding, RITZ_PASS,
+        ritz_checker_say(it, "passivity", found.value, -RITZ_PASSIVE, RITZ_PASS,
                          where, "no energy comes out at any frequency met");
         return RITZ_OK;
     }
     snprintf(where, sizeof where, "%.6g Hz, %s", found.hertz,
              model->name[found.port]);
-    ritz_checker_say(it, "passivity", found.value, -rounding, RITZ_WARN, where,
+    ritz_checker_say(it, "passivity", found.value, -RITZ_PASSIVE, RITZ_WARN,
+                     where,
                      "energy comes out of the interface: with some passive "
                      "neighbour it can be unstable");
     return RITZ_OK;

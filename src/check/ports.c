@@ -1,5 +1,6 @@
 /* Ports: how many dofs, whose, where, and whether the body is behind them. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 
 #include <ritz/eigen.h>
@@ -10,9 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the component's size: grids no further apart are in one place. */
-static const double same_place = 1e-9;
-
 /*
  * Ports. What a port can hold is the rank of the rigid motions R_p of its dofs,
  * rotations about its origin and lengths over its size: six if it is a body's
@@ -20,8 +18,6 @@ static const double same_place = 1e-9;
  * The measure is sqrt(smallest / largest eigenvalue of R_p'R_p) over the
  * motions that the component itself has, less than six in plane models.
  */
-
-static const double held_above = 1e-6;
 
 /* What the k-th dof of a port is. */
 static ritz_dof dof_of(const ritz_checker *it, const ritz_port *port, int64_t k)
@@ -47,7 +43,7 @@ static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
             square += pow(c->grids.position[3 * g + i] - port->origin[i], 2.0);
         size = fmax(size, sqrt(square));
     }
-    size = size > same_place * it->size ? size : 1.0;
+    size = size > RITZ_SAME_PLACE * it->size ? size : 1.0;
     RITZ_TRY(ritz_rigid_geometry(c, port->origin, &R));
     RITZ_TRY(ritz_dense_new(p, 6, &S));
     for (int64_t j = 0; j < 6; j++)
@@ -75,7 +71,8 @@ static int64_t drop_absent(const ritz_checker *it, ritz_dense *S)
         bool present = false;
 
         for (int64_t i = 0; i < it->R.nrow; i++)
-            present = present || fabs(ritz_dense_col(&it->R, j)[i]) > 1e-9;
+            present = present ||
+                      fabs(ritz_dense_col(&it->R, j)[i]) > RITZ_MOTION_PRESENT;
         if (!present)
             continue;
         if (kept < j)
@@ -109,7 +106,7 @@ static ritz_status measure_hold(const ritz_checker *it, const ritz_port *port,
 
         ratio = pairs.lambda[j] > 0.0 ? sqrt(ratio) : 0.0;
         *worst = fmin(*worst, ratio);
-        *loose += !(ratio > held_above);
+        *loose += !(ratio > RITZ_PORT_HELD);
     }
 done:
     ritz_dense_free(&S);
@@ -148,10 +145,10 @@ static ritz_status check_collinear(ritz_checker *it)
             ritz_checker_list(where, port->name);
     }
     if (most == 0)
-        ritz_checker_say(it, "port-collinear", worst, held_above, RITZ_PASS,
+        ritz_checker_say(it, "port-collinear", worst, RITZ_PORT_HELD, RITZ_PASS,
                          where, "no port has its grids on one line");
     else
-        ritz_checker_say(it, "port-collinear", worst, held_above, RITZ_WARN,
+        ritz_checker_say(it, "port-collinear", worst, RITZ_PORT_HELD, RITZ_WARN,
                          where,
                          "grids on one line, translations only: %" PRId64
                          " rotation%s not held",
@@ -240,7 +237,7 @@ static int64_t count_double(const ritz_checker *it, const ritz_port *port,
                 square +=
                     pow(grids->position[3 * i + k] - grids->position[3 * j + k],
                         2.0);
-            if (sqrt(square) > same_place * it->size)
+            if (sqrt(square) > RITZ_SAME_PLACE * it->size)
                 continue;
             count++;
             snprintf(name, sizeof name, "grid %" PRId64, grids->id[i]);

@@ -1,5 +1,6 @@
 /* Rigid-body motions: by geometry, by what holds them, and by eigenvectors. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "check/check.h"
 
 #include <ritz/eigen.h>
@@ -106,7 +107,7 @@ static void keep_massive(const ritz_pairs *pairs, ritz_dense *V)
     int64_t kept = 0;
 
     for (int64_t j = 0; j < k; j++) {
-        if (!(pairs->lambda[j] > 1e-10 * largest))
+        if (!(pairs->lambda[j] > RITZ_MOTION_WITHOUT_MASS * largest))
             continue;
         for (int64_t i = 0; i < V->nrow; i++)
             ritz_dense_col(V, kept)[i] =
@@ -219,7 +220,6 @@ static bool is_rounded(const ritz_checker *it, const ritz_forces *f)
 static void say_grounding(ritz_checker *it, const char *name,
                           const ritz_forces *f)
 {
-    const double single = ldexp(1.0, -24);
     double held = worst_hold(it);
     double limit = f->fine * f->bound;
     char dof[RITZ_DOF_NAME_SIZE] = "";
@@ -228,17 +228,17 @@ static void say_grounding(ritz_checker *it, const char *name,
         ritz_dof_name(it->component->dof[f->row], dof);
     if (f->largest <= limit) {
         ritz_checker_say(it, name, f->largest, limit, RITZ_PASS, dof,
-                         f->fine < single
+                         f->fine < RITZ_SINGLE_PRECISION
                              ? "free: no more than rounding"
                              : "free: no more than positions kept in single "
                                "precision leave");
     } else if (is_rounded(it, f)) {
         ritz_checker_say(it, name, f->largest, limit,
-                         held <= 1e-8 ? RITZ_WARN : RITZ_FAIL, dof,
+                         held <= RITZ_FREE_MOTION ? RITZ_WARN : RITZ_FAIL, dof,
                          "a free body is not free: rounding to %.0f digits "
                          "holds it, by %.1e of the first flexible eigenvalue",
                          it->digits, held);
-    } else if (f->largest <= 16.0 * single * f->bound) {
+    } else if (f->largest <= 16.0 * RITZ_SINGLE_PRECISION * f->bound) {
         ritz_checker_say(it, name, f->largest, limit, RITZ_WARN, dof,
                          "free but for a geometry in single precision");
     } else {
@@ -252,14 +252,15 @@ static void say_grounding(ritz_checker *it, const char *name,
 /* What the source's digits mean, now that their effect is known. */
 static void check_digits(ritz_checker *it)
 {
-    const double enough = 12.0;
     ritz_verdict verdict = RITZ_PASS;
 
-    if (it->digits < enough && it->rounded && worst_hold(it) > 1e-8)
+    if (it->digits < RITZ_ENOUGH_DIGITS && it->rounded &&
+        worst_hold(it) > RITZ_FREE_MOTION)
         verdict = RITZ_FAIL;
-    else if (it->digits < enough && it->declared)
+    else if (it->digits < RITZ_ENOUGH_DIGITS && it->declared)
         verdict = RITZ_WARN;
-    ritz_checker_say(it, "source-digits", it->digits, enough, verdict, NULL,
+    ritz_checker_say(it, "source-digits", it->digits, RITZ_ENOUGH_DIGITS,
+                     verdict, NULL,
                      verdict == RITZ_FAIL
                          ? "%.0f digits are too few: the body is held by them"
                      : verdict == RITZ_WARN
@@ -279,13 +280,13 @@ static bool has_turned_axes(const ritz_grids *grids)
 
 ritz_status ritz_check_forces(ritz_checker *it)
 {
-    const double rounding = 1024.0 * DBL_EPSILON;
-    const double single = ldexp(1.0, -24);
     bool turned = has_turned_axes(&it->component->grids);
 
-    RITZ_CHECK(find_forces(it, 0, turned ? single : rounding, &it->shift));
+    RITZ_CHECK(find_forces(
+        it, 0, turned ? RITZ_SINGLE_PRECISION : RITZ_ELEMENT_ROUNDING,
+        &it->shift));
     if (it->R.ncol == 6)
-        RITZ_CHECK(find_forces(it, 3, single, &it->turn));
+        RITZ_CHECK(find_forces(it, 3, RITZ_SINGLE_PRECISION, &it->turn));
     it->rounded = is_rounded(it, &it->shift) || is_rounded(it, &it->turn);
     return RITZ_OK;
 }
@@ -314,9 +315,6 @@ ritz_status ritz_check_grounding(ritz_checker *it)
  *     E = Phi - X X'M Phi,    sin^2 = largest eigenvalue of E'ME.
  */
 
-static const double cleanly_free = 1e-8; /* of lambda_f, as eigen.h has it */
-static const double nearly_free = 1e-4;
-
 /* Trace of K over trace of M: an eigenvalue that is certainly not rigid. */
 static double typical_eigenvalue(const ritz_component *c)
 {
@@ -338,7 +336,7 @@ static void check_geometry(ritz_checker *it)
 
     it->num_free = 0;
     for (int64_t k = 0; k < motions; k++)
-        if (fabs(it->mu[k]) <= nearly_free * scale) {
+        if (fabs(it->mu[k]) <= RITZ_NEARLY_FREE * scale) {
             it->num_free++;
             worst = fmax(worst, fabs(it->mu[k]) / scale);
         }
@@ -355,13 +353,13 @@ static void check_geometry(ritz_checker *it)
                          "stiffness holds the others",
                          it->num_free, motions);
     else
-        ritz_checker_say(it, "rigid-modes-geometry", (double)it->num_free,
-                         (double)motions,
-                         worst <= cleanly_free ? RITZ_PASS : RITZ_WARN, NULL,
-                         "all %" PRId64 " rigid motions are free: the most "
-                         "that one is held is %.1e of the first flexible "
-                         "eigenvalue",
-                         motions, worst);
+        ritz_checker_say(
+            it, "rigid-modes-geometry", (double)it->num_free, (double)motions,
+            worst <= RITZ_FREE_MOTION ? RITZ_PASS : RITZ_WARN, NULL,
+            "all %" PRId64 " rigid motions are free: the most "
+            "that one is held is %.1e of the first flexible "
+            "eigenvalue",
+            motions, worst);
 }
 
 /* How far the free motions leave the span of X. */
@@ -375,7 +373,7 @@ static ritz_status measure_angle(const ritz_checker *it, const ritz_dense *X,
 
     RITZ_TRY(ritz_dense_new(it->Phi.nrow, it->num_free, &Phi));
     for (int64_t k = 0, kept = 0; kept < it->num_free; k++)
-        if (fabs(it->mu[k]) <= nearly_free * it->softest) {
+        if (fabs(it->mu[k]) <= RITZ_NEARLY_FREE * it->softest) {
             for (int64_t i = 0; i < Phi.nrow; i++)
                 ritz_dense_col(&Phi, kept)[i] = ritz_dense_col(&it->Phi, k)[i];
             kept++;
@@ -402,8 +400,8 @@ done:
 
 static void say_agreement(ritz_checker *it, int64_t eigen, double sine)
 {
-    const double limit = 1e-6;
-    const double bearable = 1e-3;
+    const double limit = RITZ_MOTIONS_AGREE;
+    const double bearable = RITZ_MOTIONS_BEARABLE;
     const char *const name = "rigid-modes-agree";
 
     if (it->rounded && eigen < it->Phi.ncol)

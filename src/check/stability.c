@@ -20,8 +20,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double times = RITZ_PROBE_TIMES;
-
 ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
 {
     ritz_status status = RITZ_OK;
@@ -33,10 +31,10 @@ ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
     out->count = poles.count;
     out->radius = poles.radius;
     out->verdict = RITZ_STABLE;
-    k = ritz_eigenvalues_worst(&poles, times);
+    k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
     if (k < 0)
         goto done;
-    error = times * poles.error[k];
+    error = RITZ_POLE_BOUND_FACTOR * poles.error[k];
     out->pole[0] = poles.re[k] + 0.0; /* -0 reads as if it decayed */
     out->pole[1] = fabs(poles.im[k]);
     out->tolerance = poles.radius > 0.0 ? error / poles.radius : 0.0;
@@ -106,7 +104,8 @@ static ritz_status probe_mass(const ritz_dense *M, ritz_probe *out)
                 ritz_dense_col(&scaled, j)[i] /= size;
         }
     RITZ_TRY(extremes(&scaled, &least, &most));
-    if (least < -times * (double)n * DBL_EPSILON * fabs(most)) {
+    if (least <
+        -RITZ_POLE_BOUND_FACTOR * (double)n * DBL_EPSILON * fabs(most)) {
         out->verdict = RITZ_UNSTABLE;
         snprintf(out->why, sizeof out->why,
                  "mass with a negative eigenvalue, %.2g of the largest",

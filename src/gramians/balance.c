@@ -11,6 +11,7 @@
  * leave it out whatever was asked for. [Moore1981], [Tombs1987]
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 #include "linear/product_svd.h"
 
@@ -19,17 +20,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Of equal values, which no truncation may tell apart. */
-static const double tie = 1e-6;
-/*
- * Of values the bound counts once. Two of one sign whose relative gap is g need
- * in one channel a pole g^2 / 16 of the others: below this it is rounding, above
- * it both count, as the error of such a system is the sum of both.
- */
-static const double repeated = 1e-9;
-/* Of W'E T from I, in which states a value still has a direction. */
-static const double most_defect = 0.1;
 
 static const ritz_dense *descriptor_times(const ritz_gramians *gramians)
 {
@@ -59,7 +49,7 @@ double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept)
     double last = 0.0;
 
     for (int64_t k = 0; k < count; k++) {
-        if (k > 0 && last - sigma[k] <= repeated * last)
+        if (k > 0 && last - sigma[k] <= RITZ_HANKEL_REPEATED * last)
             continue;
         last = sigma[k];
         if (k >= kept)
@@ -95,7 +85,7 @@ static int64_t count_close(const ritz_dense *G)
 
             sum += upper * upper + (i < j ? lower * lower : 0.0);
         }
-        if (!(sqrt(sum) <= most_defect))
+        if (!(sqrt(sum) <= RITZ_BALANCED_DEFECT))
             return j;
     }
     return G->ncol;
@@ -111,7 +101,7 @@ static int64_t cut(int64_t count, const double *sigma, int64_t order,
            sigma[kept] >= tolerance * sigma[0])
         kept++;
     while (kept > 0 && kept < count &&
-           sigma[kept - 1] - sigma[kept] <= tie * sigma[kept - 1])
+           sigma[kept - 1] - sigma[kept] <= RITZ_CLUSTER_GAP * sigma[kept - 1])
         kept--;
     return kept;
 }

@@ -20,6 +20,7 @@
 #include "gramians/low_rank.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 
 #include <ritz/monitor.h>
@@ -288,10 +289,6 @@ done:
     return status;
 }
 
-static const double default_tolerance = 1e-10;
-/* Of a start without rigid motion: nothing is left but rounding. */
-static const double nothing = 1e-24;
-
 enum {
     TOGETHER = 2,  /* shifts of one projection */
     GROWN_BY = 256 /* columns beside twice what was left, to compress again */
@@ -333,13 +330,14 @@ static ritz_status start_sweep(const ritz_gramians_request *request,
                    RITZ_ERR_ARGUMENT, "a tolerance is between 0 and 1, not %g",
                    request->tolerance);
     sweep->tolerance =
-        request->tolerance > 0.0 ? request->tolerance : default_tolerance;
+        request->tolerance > 0.0 ? request->tolerance : RITZ_ADI_TOLERANCE;
     sweep->least = 1.0;
     RITZ_CHECK(ritz_low_rank_model_new(request, model));
     for (int side = 0; side < RITZ_SIDES; side++) {
         RITZ_CHECK(ritz_low_rank_size(model, side, &sweep->first[side]));
-        sweep->open[side] = model->num_starts > 0 &&
-                            sweep->first[side] > nothing * model->whole[side];
+        sweep->open[side] =
+            model->num_starts > 0 &&
+            sweep->first[side] > RITZ_ADI_NOTHING * model->whole[side];
         sweep->residual[side] = sweep->open[side] ? 1.0 : 0.0;
     }
     RITZ_CHECK(ritz_low_rank_window_new(model, &sweep->window));

@@ -5,6 +5,7 @@
  * out.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 
 #include <float.h>
@@ -14,10 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the longest column. */
-static const double short_below = 1e-14;
-/* Bytes that one factor may take: three of them stay below 4 GiB. */
-static const double most_bytes = 1.4e9;
 /* Columns to begin with. */
 enum { ROOM = 64 };
 
@@ -32,7 +29,7 @@ ritz_status ritz_low_rank_reserve(int64_t n, int64_t more,
     while (room < Z->count + more)
         room += room / 2;
     RITZ_REFUSE_IF((double)(2 * n) * (double)(Z->count + more) * 8.0 >
-                       most_bytes,
+                       RITZ_FACTOR_BYTES,
                    RITZ_ERR_CONVERGENCE,
                    "the Gramians have no low rank: %" PRId64
                    " columns of a factor are more than memory shall hold, take "
@@ -152,7 +149,7 @@ static ritz_status find_long_columns(ritz_dense *R, ritz_dense *out)
                           1, NULL, 1, super);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
                  "a factor could not be compressed");
-    while (r < m && s[r] > short_below * s[0])
+    while (r < m && s[r] > RITZ_SHORT_COLUMN * s[0])
         r++;
     RITZ_TRY(ritz_dense_new(k, r, out));
     for (int64_t j = 0; j < r; j++)

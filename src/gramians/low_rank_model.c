@@ -1,5 +1,6 @@
 /* The matrices, loads and slow modes that the low-rank iteration starts from. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 
 #include <ritz/eigen.h>
@@ -24,9 +25,6 @@
  *
  * Feedthrough is left out: it is the same whatever is kept.
  */
-
-/* Of the same product in magnitudes: smaller is rounding. */
-static const double unseen = 1e-10;
 
 /* Rows of C as columns, divided by limits. */
 static ritz_status turn_outputs(const ritz_io *io, const ritz_dense *C,
@@ -112,8 +110,9 @@ static ritz_status refuse_improper(const ritz_low_rank_model *model,
     RITZ_TRY(
         ritz_dense_rows(Ct, model->massless.count, model->massless.at, &C_m));
     RITZ_TRY(ritz_dense_mul_tn(&C_m, &X, &seen));
-    RITZ_FAIL_IF(ritz_dense_max(&seen) >
-                     unseen * ritz_dense_max(&C_m) * ritz_dense_max(&X),
+    RITZ_FAIL_IF(ritz_dense_max(&seen) > RITZ_RIGID_LOAD *
+                                             ritz_dense_max(&C_m) *
+                                             ritz_dense_max(&X),
                  RITZ_ERR_ARGUMENT,
                  "an output is the %s of a dof without mass that an input "
                  "drives: no states can give it",
@@ -238,9 +237,6 @@ done:
     return status;
 }
 
-/* Of |D||Phi|: what damping leaves of a rigid motion is rounding. */
-static const double rounding = 1e-10;
-
 /* D := D + a M + b K */
 static ritz_status add_rayleigh(const ritz_sparse *M, const ritz_sparse *K,
                                 const ritz_damping *damping, ritz_sparse *D)
@@ -352,7 +348,7 @@ static ritz_status check_apart(const ritz_sparse *D,
 
     RITZ_TRY(ritz_sparse_mul(D, &model->Phi, &DPhi));
     RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, &DPhi));
-    RITZ_FAIL_IF(ritz_dense_max(&DPhi) > rounding * ritz_sparse_max(D) *
+    RITZ_FAIL_IF(ritz_dense_max(&DPhi) > RITZ_RIGID_LOAD * ritz_sparse_max(D) *
                                              ritz_dense_max(&model->Phi),
                  RITZ_ERR_ARGUMENT,
                  "damping couples rigid motion to deformation, which engine "

@@ -13,6 +13,7 @@
  * more blocks and the choice by shares are our own.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 
 #include <cblas.h>
@@ -29,9 +30,6 @@
 
 /* Twice the columns of a step at least, or this many. */
 enum { COLUMNS = 96 };
-
-/* Of the Gram matrix of columns of length one: rounding, twice over. */
-static const double dependent = 1e-12;
 
 ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
                                      ritz_low_rank_window *out)
@@ -154,7 +152,7 @@ static ritz_status orthonormal(const ritz_low_rank_window *window,
             ritz_dense_col(&G, j)[i] =
                 size[i] * ritz_dense_col(&window->G[0], j)[i] * size[j];
     RITZ_TRY(symmetric_modes(&G, e));
-    while (first < c && !(e[first] > dependent * e[c - 1]))
+    while (first < c && !(e[first] > RITZ_WINDOW_DEPENDENT * e[c - 1]))
         first++;
     RITZ_TRY(ritz_dense_columns(&G, first, c - first, out));
     for (int64_t j = 0; j < out->ncol; j++)
@@ -221,11 +219,6 @@ void ritz_low_rank_window_free(ritz_low_rank_window *window)
         ritz_dense_free(&window->G[k]);
     *window = (ritz_low_rank_window){0};
 }
-
-/* Imaginary part, of the real one, that makes a pole no pair. */
-static const double nearly_real = 1e-3;
-/* Least |Re p| / |p| that can be told from none. */
-static const double undamped = 64.0 * DBL_EPSILON;
 
 /* Modes of the window and poles of its states. */
 typedef struct small {
@@ -410,12 +403,12 @@ static ritz_status choose(small *s, int64_t most, int64_t *count,
             break;
         size = hypot(s->re[best], s->im[best]);
         RITZ_REFUSE_IF(
-            !(s->re[best] < -undamped * size), RITZ_ERR_ARGUMENT,
+            !(s->re[best] < -RITZ_SHIFT_DAMPED * size), RITZ_ERR_ARGUMENT,
             "a motion near %.4g Hz is not damped, or even fed, by D: "
             "it has no Gramian",
             size / (2.0 * acos(-1.0)));
         out[*count] = s->re[best];
-        if (fabs(s->im[best]) > nearly_real * fabs(s->re[best]))
+        if (fabs(s->im[best]) > RITZ_SHIFT_REAL * fabs(s->re[best]))
             out[*count] += fabs(s->im[best]) * (double _Complex)_Complex_I;
         s->share[best] = 0.0;
     }

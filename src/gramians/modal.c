@@ -10,6 +10,7 @@
  * and the feedthrough Ca b u is left out: it is the same whatever is kept.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/cluster.h"
 #include "gramians/modal_modes.h"
 
@@ -21,12 +22,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the damping of the modes themselves; beneath is what rounding leaves. */
-static const double coupled_above = 1e-6;
-static const double rounding = 1e-12;
-/* Relative gap of frequencies within a cluster. */
-static const double near = 1e-6;
-
 /* One past the last of the modes at the frequency of mode `first`. */
 static int64_t end_of_cluster(const ritz_modal_model *modes, int64_t first)
 {
@@ -35,7 +30,7 @@ static int64_t end_of_cluster(const ritz_modal_model *modes, int64_t first)
     while (last < modes->count) {
         double w = sqrt(modes->lambda[last]);
 
-        if (w - sqrt(modes->lambda[last - 1]) > near * w)
+        if (w - sqrt(modes->lambda[last - 1]) > RITZ_CLUSTER_GAP * w)
             break;
         last++;
     }
@@ -154,11 +149,12 @@ bool ritz_modes_coupled(const ritz_modal_model *modes, ritz_coupling *out)
             double off = fmax(fabs(ritz_dense_col(d, j)[i]),
                               fabs(ritz_dense_col(d, i)[j]));
 
-            if (off <= coupled_above * own + rounding * largest)
+            if (off <=
+                RITZ_DAMPING_COUPLES * own + RITZ_DAMPING_ROUNDING * largest)
                 continue;
             out->hertz[0] = ritz_eigen_hertz(modes->lambda[i]);
             out->hertz[1] = ritz_eigen_hertz(modes->lambda[j]);
-            out->ratio = off / fmax(own, rounding * largest);
+            out->ratio = off / fmax(own, RITZ_DAMPING_ROUNDING * largest);
             return true;
         }
     return false;
@@ -246,7 +242,7 @@ int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first)
     int64_t last = first + 1;
 
     while (last < modal->count && modal->omega[last] - modal->omega[last - 1] <=
-                                      near * modal->omega[last])
+                                      RITZ_CLUSTER_GAP * modal->omega[last])
         last++;
     return last;
 }

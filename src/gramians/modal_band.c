@@ -30,9 +30,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Of the magnitudes of a sum: roundings on the way to it. */
-static const double few = 8.0 * DBL_EPSILON;
-
 /* S of a mode, in states (q, q'). */
 typedef struct response {
     double s[2][2];
@@ -193,7 +190,7 @@ static ritz_status roots(const filtered *f, double *root)
 {
     for (int64_t k = 0; k < f->W.nrow; k++) {
         double own = ritz_dense_col(&f->W, k)[k];
-        double rounding = few * ritz_dense_col(&f->terms, k)[k];
+        double rounding = RITZ_BAND_ROUNDING * ritz_dense_col(&f->terms, k)[k];
 
         RITZ_REFUSE_IF(!(own >= -rounding), RITZ_ERR_CONVERGENCE,
                        "the Gramian of a band is negative beyond rounding");
@@ -255,7 +252,7 @@ static ritz_status factor(filtered *f, ritz_dense *out)
     RITZ_NEW(s, n);
     RITZ_TRY(roots(f, root));
     (void)scale(&f->W, root);
-    rounding = few * scale(&f->terms, root);
+    rounding = RITZ_BAND_ROUNDING * scale(&f->terms, root);
     if (n > 0)
         info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, f->W.val, n, s);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,

@@ -16,6 +16,7 @@
  * turn it into the other equation. The tests hold both to it.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 
 #include <ritz/modal.h>
@@ -234,9 +235,6 @@ done:
  * [LiWhite2002], [Moore1981]
  */
 
-/* Ratios up to here: eigenvectors of a mode are no better than its block. */
-static const double nearly_critical = 1.001;
-
 /* One mode, or one real pole of it: v' of its rows of B is what is left. */
 typedef struct unit {
     int64_t mode;
@@ -274,7 +272,7 @@ static void add_units(elimination *e, int64_t k)
     double a = e->model->d[k] / 2.0;
     double pole[2];
 
-    if (a <= nearly_critical * w) {
+    if (a <= RITZ_NEARLY_CRITICAL * w) {
         e->units[e->num_units++] =
             (unit){.mode = k, .v = {{1.0, 0.0}, {0.0, 1.0}}};
         return;

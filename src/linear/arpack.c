@@ -7,6 +7,7 @@
  * range of the operator and stays there.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/shifted.h"
 
 #include <ritz/monitor.h>
@@ -23,8 +24,6 @@ enum {
     INVARIANT = -9999, /* info of dsaupd */
     RITZ_VALUES = 5,   /* of ipntr */
 };
-
-static const double tolerance = 1e-12; /* eigenvalues err by its square */
 
 typedef struct lanczos {
     a_int n, nev, ncv, lworkl, info;
@@ -116,9 +115,9 @@ static ritz_status iterate(const ritz_shifted *S, lanczos *L)
         ritz_dense X = {L->n, 1, NULL};
         double *y = NULL;
 
-        dsaupd_c(&ido, "G", L->n, "LM", L->nev, tolerance, L->resid, L->ncv,
-                 L->V.val, L->n, L->iparam, L->ipntr, L->workd, L->workl,
-                 L->lworkl, &L->info);
+        dsaupd_c(&ido, "G", L->n, "LM", L->nev, RITZ_ARNOLDI_SETTLED, L->resid,
+                 L->ncv, L->V.val, L->n, L->iparam, L->ipntr, L->workd,
+                 L->workl, L->lworkl, &L->info);
         X.val = L->workd + L->ipntr[0] - 1;
         y = L->workd + L->ipntr[1] - 1;
         if (ido == 2) {
@@ -153,8 +152,8 @@ static double reach_of(const lanczos *L, double sigma)
 static ritz_status extract(const ritz_shifted *S, lanczos *L)
 {
     dseupd_c(1, "A", L->select, L->d, L->V.val, L->n, S->sigma, "G", L->n, "LM",
-             L->nev, tolerance, L->resid, L->ncv, L->V.val, L->n, L->iparam,
-             L->ipntr, L->workd, L->workl, L->lworkl, &L->info);
+             L->nev, RITZ_ARNOLDI_SETTLED, L->resid, L->ncv, L->V.val, L->n,
+             L->iparam, L->ipntr, L->workd, L->workl, L->lworkl, &L->info);
     RITZ_REFUSE_IF(L->info != 0, RITZ_ERR_CONVERGENCE,
                    "the eigenvectors cannot be found, ARPACK says %d",
                    (int)L->info);

@@ -1,5 +1,6 @@
 /* Dense matrices and their products. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/dense.h>
 
@@ -9,8 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double equal_within = 1e-9;
 
 ritz_status ritz_dense_new(int64_t nrow, int64_t ncol, ritz_dense *out)
 {
@@ -126,7 +125,8 @@ void ritz_dense_orient(ritz_dense *A)
 
         for (int64_t i = 0; i < A->nrow; i++)
             largest = fmax(largest, fabs(a[i]));
-        while (first < A->nrow && fabs(a[first]) < largest * (1 - equal_within))
+        while (first < A->nrow &&
+               fabs(a[first]) < largest * (1 - RITZ_LIKE_LARGEST))
             first++;
         if (first < A->nrow && a[first] < 0.0)
             for (int64_t i = 0; i < A->nrow; i++)

@@ -60,7 +60,7 @@ static int64_t below(const cut *c, int64_t count, const double *lambda)
 int64_t ritz_eigen_rigid(int64_t count, const double *lambda, double lambda_max)
 {
     const double rounding = DBL_EPSILON * fabs(lambda_max);
-    const double ten_digits = 1e-9 * fabs(lambda_max);
+    const double ten_digits = RITZ_RIGID_DIGITS * fabs(lambda_max);
     const double negative = count > 0 ? fmax(-lambda[0], 0.0) : 0.0;
     const cut body = {ten_digits, rounding, 1e4};
     const cut noisy = {fmin(100.0 * negative, ten_digits), rounding, 1e4};
@@ -75,7 +75,7 @@ int64_t ritz_eigen_rigid(int64_t count, const double *lambda, double lambda_max)
     }
     found = below(&clean, count, lambda);
     for (int64_t k = 0; found == 0 && 2 * (k + 1) <= count; k++)
-        if (fabs(lambda[k]) <= 1e-8 * lambda[k + 1])
+        if (fabs(lambda[k]) <= RITZ_FREE_MOTION * lambda[k + 1])
             found = k + 1;
     return found;
 }

@@ -11,6 +11,7 @@
 #include "linear/eigen_dense.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 
@@ -37,9 +38,6 @@
  *
  *     T = Q_r - N (N' K N)^-1 N' K Q_r,   T' K T y = lambda diag(m_r) y.
  */
-
-/* Of M scaled to unit diagonal: worse than this is condensed. */
-static const double well_conditioned = 1e-8;
 
 /* out = S A S, exactly symmetric. */
 static ritz_status scale(const ritz_dense *A, const double *s, ritz_dense *out)
@@ -101,7 +99,7 @@ static ritz_status is_definite(const ritz_dense *M, ritz_dense *C, bool *out)
         return RITZ_OK;
     RITZ_CHECK(lapack_status(
         LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, C->val, n, norm, &rcond)));
-    *out = rcond > well_conditioned;
+    *out = rcond > RITZ_MASS_WELL_CONDITIONED;
     return RITZ_OK;
 }
 

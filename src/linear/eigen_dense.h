@@ -4,10 +4,6 @@
 
 #include <ritz/dense.h>
 
-/* Of the largest: an eigenvalue below has lost six digits and more, and
-   ritz_eigen_dense finds it again among its like. */
-#define RITZ_EIGEN_FAR_BELOW 1e-6
-
 /**
  * K x = lambda M x, M semidefinite; lambda ascending, in error by few eps of
  * the largest.

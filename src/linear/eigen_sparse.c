@@ -15,6 +15,7 @@
  * and with dofs without mass.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/shifted.h"
 
 #include <ritz/monitor.h>
@@ -35,11 +36,6 @@ enum {
     POLISHES = 3, /* inverse iterations, most often one */
 };
 
-static const double same_cluster = 1e-6; /* relative */
-static const double lowest_part = 0.3;   /* of a gap, where modes are counted */
-static const double first_shift = 1e-5;  /* of the median of K_jj / M_jj */
-static const double blurred = 1e3;       /* -sigma over the first flexible */
-
 typedef struct search {
     const ritz_span *span;
     double limit;   /* of lambda by frequency, a little above */
@@ -55,7 +51,7 @@ typedef struct search {
 
 static bool clustered(double a, double b)
 {
-    return fabs(b - a) <= same_cluster * fmax(fabs(a), fabs(b));
+    return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
 }
 
 /* How many of the pairs were asked for. */
@@ -117,7 +113,6 @@ static ritz_status shift_near(search *s, double sigma)
 /* s->found from the vectors in X, which it takes. */
 static ritz_status refine(search *s, ritz_dense *X)
 {
-    const double limit = 1e-11;
     double worst = HUGE_VAL;
 
     ritz_pairs_free(&s->found);
@@ -125,12 +120,13 @@ static ritz_status refine(search *s, ritz_dense *X)
     *X = (ritz_dense){0};
     RITZ_CHECK_NEW(s->found.lambda, s->found.Phi.ncol);
     RITZ_CHECK_NEW(s->found.residual, s->found.Phi.ncol);
-    for (int k = 0; k < POLISHES && !(worst <= limit); k++) {
+    for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
         RITZ_CHECK(ritz_shifted_polish(&s->S, &s->found.Phi, s->found.lambda));
         worst = ritz_shifted_assess(&s->S, &s->found);
     }
-    RITZ_REFUSE_IF(!(worst <= limit), RITZ_ERR_CONVERGENCE,
-                   "a residual of %.1e stays above %.0e", worst, limit);
+    RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
+                   "a residual of %.1e stays above %.0e", worst,
+                   RITZ_EIGEN_RESIDUAL);
     return RITZ_OK;
 }
 
@@ -188,7 +184,8 @@ static ritz_status come_closer(search *s, bool *moved)
     const ritz_pairs *P = &s->found;
     double first = P->num_rigid < P->Phi.ncol ? P->lambda[P->num_rigid] : 0.0;
 
-    *moved = first > 0.0 && s->S.sigma < -blurred * first && first > s->broken;
+    *moved = first > 0.0 && s->S.sigma < -RITZ_SHIFT_BLURRED * first &&
+             first > s->broken;
     if (*moved)
         RITZ_CHECK(shift_near(s, -first));
     return RITZ_OK;
@@ -225,7 +222,7 @@ static double between(const ritz_pairs *P, int64_t k, double part)
 /* Modes below a place between pairs k - 1 and k, none of which it may hit. */
 static ritz_status count_below(const search *s, int64_t k, int64_t *out)
 {
-    const double parts[] = {0.5, lowest_part, 0.7};
+    const double parts[] = {0.5, RITZ_COUNT_PLACE, 0.7};
     ritz_status status = RITZ_ERR_SINGULAR;
 
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++)
@@ -265,7 +262,7 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
                    count);
     *done = count == at;
     s->found.proven_to =
-        P->Phi.ncol > 0 ? between(P, *end, lowest_part) : HUGE_VAL;
+        P->Phi.ncol > 0 ? between(P, *end, RITZ_COUNT_PLACE) : HUGE_VAL;
     if (!*done) {
         s->misses++;
         RITZ_CHECK(ask_more(s, count - at));
@@ -337,7 +334,7 @@ static ritz_status begin(search *s)
     double sigma = 0.0;
 
     RITZ_CHECK(ritz_shifted_survey(s->S.K, s->S.M, &s->seen));
-    sigma = first_shift * s->seen.typical;
+    sigma = RITZ_FIRST_SHIFT * s->seen.typical;
     s->ask = BODY + s->span->modes + s->span->modes / 10 + SPARE;
     if (s->span->modes < 0) {
         RITZ_CHECK(count_target(s));
@@ -387,7 +384,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + 1e-8);
     end = wanted(&P, span, limit);
     if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
-        P.proven_to = fmax(limit, between(&P, end, lowest_part));
+        P.proven_to = fmax(limit, between(&P, end, RITZ_COUNT_PLACE));
     truncate(&P, end);
     *out = P;
     P = (ritz_pairs){0};

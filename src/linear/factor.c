@@ -11,6 +11,7 @@
  * A(j,j).
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/factor.h>
 
@@ -26,12 +27,6 @@ enum {
     BLOCK = 32, /* right-hand sides at once: more gain nothing, cost room */
     SWEEPS = 3, /* of inverse iteration: one finds a lone small eigenvalue */
 };
-
-/* Above this, no pivot can hide an eigenvalue of the size of rounding. */
-static const double strong_pivot = 1e-3;
-
-/* Smallest eigenvalue of H that is not rounding; measured in test_factor.c. */
-static const double singular_below = 1.0 * DBL_EPSILON;
 
 struct ritz_factor {
     cholmod_common common;
@@ -185,12 +180,12 @@ static ritz_status judge(ritz_factor *F, const double *a, int64_t *weak)
         lambda = 0.0;
     } else {
         RITZ_TRY(weakest_pivot(F->L, a, &ratio, &row));
-        if (row >= 0 && !(ratio > strong_pivot))
+        if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))
             RITZ_TRY(smallest_eigenvalue(F, a, row, &lambda));
     }
     if (weak)
         *weak = row;
-    RITZ_FAIL_IF(!(lambda > singular_below), RITZ_ERR_SINGULAR,
+    RITZ_FAIL_IF(!(lambda > RITZ_SINGULAR_SPD), RITZ_ERR_SINGULAR,
                  "not positive definite, is a rigid-body motion left free?");
 done:
     return status;

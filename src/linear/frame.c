@@ -5,6 +5,7 @@
 #include "linear/frame.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <cblas.h>
 #include <float.h>
@@ -13,13 +14,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Of what asymmetry sums of products leave. */
-static const double symmetric_within = 8.0 * DBL_EPSILON;
-/* Beyond this condition of E, scaled to a unit diagonal, it is not reduced. */
-static const double least_rcond = 1e-8;
-/* Of the rounding that scaling may add, over that of the given matrices. */
-static const double most_growth = 1e4;
 
 /* E = L L' in place, its lower triangle; false if it cannot be trusted. */
 static ritz_status cholesky(ritz_dense *E, bool *good)
@@ -46,7 +40,7 @@ static ritz_status cholesky(ritz_dense *E, bool *good)
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = j; i < n; i++)
             ritz_dense_col(E, j)[i] *= root[i];
-    *good = rcond > least_rcond;
+    *good = rcond > RITZ_FRAME_CONDITION;
 done:
     free(root);
     return status;
@@ -61,7 +55,7 @@ static ritz_status reduce(const ritz_dense *A, const ritz_dense *E,
     int n = (int)E->nrow;
 
     *reduced = false;
-    if (ritz_dense_asymmetry(E) > symmetric_within)
+    if (ritz_dense_asymmetry(E) > RITZ_SYMMETRIC_SUMS)
         goto done;
     RITZ_TRY(ritz_dense_copy(E, &L));
     RITZ_TRY(cholesky(&L, reduced));
@@ -133,7 +127,7 @@ static ritz_status balance(ritz_frame *f)
         RITZ_TRY(ritz_dense_copy(&f->E, &E));
     if (n > 0)
         RITZ_TRY(scale(f));
-    most = most_growth * least_of(n, f->left) * least_of(n, f->right);
+    most = RITZ_FRAME_GROWTH * least_of(n, f->left) * least_of(n, f->right);
     if (n > 0 && (size_of(&f->A) > most * size_of(&A) ||
                   (E.val && size_of(&f->E) > most * size_of(&E)))) {
         memcpy(f->A.val, A.val, (size_t)(n * n) * sizeof *A.val);

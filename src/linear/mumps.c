@@ -1,5 +1,6 @@
 #include "linear/mumps.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <cblas.h>
 #include <float.h>
@@ -13,9 +14,6 @@ enum {
     SWEEPS = 3,         /* of inverse iteration */
     MORE_ROOM = 8,      /* times the workspace may grow */
 };
-
-/* Smallest |H y| / |y| that is not rounding, of a row scaled to one. */
-static const double singular_below = 4.0 * DBL_EPSILON;
 
 /* Indices from zero of the control arrays, ICNTL(k) of the manual being k - 1.
  */
@@ -262,7 +260,7 @@ ritz_status ritz_mumps_judge(const ritz_mumps *mumps,
         divide(s, count, mumps->width, y);
         smallest = 1.0 / normalise(count, y);
     }
-    RITZ_FAIL_IF(!(smallest > singular_below), RITZ_ERR_SINGULAR,
+    RITZ_FAIL_IF(!(smallest > RITZ_SINGULAR_LDL), RITZ_ERR_SINGULAR,
                  "the matrix is singular to working accuracy");
 done:
     free(s);

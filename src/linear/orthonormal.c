@@ -13,6 +13,7 @@
  */
 #include "linear/orthonormal.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/sparse.h>
 
@@ -21,9 +22,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Of the energy of a column: less is left to the next round. */
-static const double strong_pivot = 1e-3;
 
 /* WR := W R; W NULL is the identity. */
 static ritz_status weigh_columns(const ritz_sparse *W, const ritz_dense *R,
@@ -58,10 +56,10 @@ static int64_t find_pivots(ritz_dense *G, int64_t most, int64_t *order)
 
         for (int64_t j = 1; j < p; j++)
             if (ritz_dense_col(G, j)[j] >
-                ritz_dense_col(G, pivot)[pivot] * (1.0 + 1e-9))
+                ritz_dense_col(G, pivot)[pivot] * RITZ_TIE)
                 pivot = j;
         d = ritz_dense_col(G, pivot)[pivot];
-        if (!(d > strong_pivot))
+        if (!(d > RITZ_PIVOT_STRONG))
             break;
         order[count++] = pivot;
         for (int64_t j = 0; j < p; j++) {
@@ -123,9 +121,6 @@ done:
 }
 
 enum { MOST_PASSES = 8 };
-
-/* Of eps: rounding of each entry of a column after all sums. */
-static const double rounded = 100.0;
 
 /* A block on its way; column j of R was column source[j] of what came in. */
 typedef struct block {
@@ -252,7 +247,7 @@ static double largest_energy(const ritz_sparse *W, const double *r, int64_t n)
  */
 static void scale_block(const ritz_sparse *W, block *b)
 {
-    const double eps = rounded * DBL_EPSILON;
+    const double eps = RITZ_ENTRY_ROUNDING * DBL_EPSILON;
 
     drop_columns(b, 0.0);
     for (int64_t j = 0; j < b->R.ncol; j++) {

@@ -16,13 +16,12 @@
 #include "linear/product_svd.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const double negligible = DBL_EPSILON * DBL_EPSILON;
 
 /* A P = Q R as LAPACK leaves it. */
 typedef struct pivoted {
@@ -143,7 +142,7 @@ static ritz_status compress(pivoted *of_F, ritz_dense *G)
     int64_t r = of_F->rank;
 
     while (r > 0 && !(fabs(ritz_dense_col(R, r - 1)[r - 1]) >
-                      negligible * fabs(R->val[0])))
+                      RITZ_NEGLIGIBLE_SQUARE * fabs(R->val[0])))
         r--;
     of_F->rank = r;
     RITZ_CHECK(ritz_dense_new(R->ncol, r, G));

@@ -1,18 +1,13 @@
 #include "linear/search.h"
 
+#include "base/tolerances.h"
+
 #include <math.h>
 #include <stdbool.h>
 
-/* Points that stand out: so many, and no lower than so much of the highest. */
+/* Peaks that are followed between points, at most. */
 enum { MOST_PEAKS = 12 };
-static const double worth_climbing = 0.5;
 static const double golden = 0.61803398874989485;
-/* Of a bracket's length when it is done, relative to its frequency. */
-static const double close_enough = 1e-10;
-/* A value that grows by so much while the bracket shrinks from `late` to that
-   does so for want of damping. */
-static const double late = 1e-8;
-static const double still_growing = 1.5;
 
 typedef struct climb {
     const ritz_curve *curve;
@@ -69,9 +64,9 @@ static ritz_status between(climb *c, double low, double high)
     const ritz_curve seen = {look, c};
     double before = 0.0, most = 0.0;
 
-    RITZ_CHECK(ritz_curve_between(&seen, late, &low, &high, &before));
-    RITZ_CHECK(ritz_curve_between(&seen, close_enough, &low, &high, &most));
-    if (most > still_growing * before) {
+    RITZ_CHECK(ritz_curve_between(&seen, RITZ_PEAK_LATE, &low, &high, &before));
+    RITZ_CHECK(ritz_curve_between(&seen, RITZ_PEAK_SHARP, &low, &high, &most));
+    if (most > RITZ_PEAK_GROWTH * before) {
         c->best = HUGE_VAL;
         c->where = (low + high) / 2.0;
     }
@@ -110,7 +105,7 @@ ritz_status ritz_curve_peak(int64_t count, const double *hertz,
         c.where = hertz[k];
     }
     for (int t = 0; curve && k >= 0 && t < MOST_PEAKS; t++) {
-        if (value[k] < worth_climbing * c.best)
+        if (value[k] < RITZ_PEAK_WORTH * c.best)
             break;
         if (k > 0)
             RITZ_CHECK(between(&c, hertz[k - 1], hertz[k]));

@@ -16,6 +16,7 @@
 #include "linear/split.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/frame.h"
 #include "linear/general.h"
 #include "linear/schur.h"
@@ -27,17 +28,13 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* The bound on a pole's rounding is of first order, and eigensolvers are
-   backward stable within a few eps. */
-static const double times = 8.0;
-
 /* Whether no rounding of the matrices makes a pole unstable; all are left. */
 static ritz_status prove(const ritz_schur *schur, bool *proven)
 {
     ritz_status status = RITZ_OK;
     int n = (int)schur->count;
     ritz_dense one = {0}, F = {0};
-    double change = times * DBL_EPSILON * 2.0;
+    double change = RITZ_POLE_BOUND_FACTOR * DBL_EPSILON * 2.0;
 
     RITZ_TRY(ritz_dense_new(n, n, &one));
     for (int64_t i = 0; i < n; i++)
@@ -60,7 +57,7 @@ static ritz_status choose_stable(const ritz_schur *schur, bool *stable)
     bool all_left = true, doubt = false, proven = false;
 
     for (int64_t k = 0; k < schur->count; k++) {
-        stable[k] = schur->re[k] < -times * schur->error[k];
+        stable[k] = schur->re[k] < -RITZ_POLE_BOUND_FACTOR * schur->error[k];
         all_left = all_left && schur->re[k] < 0.0;
         doubt = doubt || !stable[k];
     }

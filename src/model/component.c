@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/component.h>
 
@@ -6,9 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* What rounding leaves in superelements as supplied (6e-7 was met). */
-static const double symmetric_within = 1e-6;
 
 static ritz_status check_matrix(const ritz_sparse *A, int64_t n)
 {
@@ -26,10 +24,11 @@ static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
 
     RITZ_CHECK(check_matrix(A, n));
     asymmetry = ritz_sparse_asymmetry(A);
-    RITZ_REFUSE_IF(asymmetry > symmetric_within && !symmetrise, RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(asymmetry > RITZ_SYMMETRIC_SOURCE && !symmetrise,
+                   RITZ_ERR_FORMAT,
                    "unsymmetric by %.1e of its largest entry, %.0e is let pass "
                    "(--symmetrise averages it away)",
-                   asymmetry, symmetric_within);
+                   asymmetry, RITZ_SYMMETRIC_SOURCE);
     if (asymmetry > 0.0)
         RITZ_CHECK(ritz_sparse_symmetrise(A));
     *worst = fmax(*worst, asymmetry);
@@ -55,7 +54,7 @@ static ritz_status settle_damping(ritz_sparse *D, int64_t n, bool symmetrise,
     if (!D->colptr)
         return RITZ_OK;
     RITZ_CHECK(check_matrix(D, n));
-    if (symmetrise || ritz_sparse_asymmetry(D) <= symmetric_within)
+    if (symmetrise || ritz_sparse_asymmetry(D) <= RITZ_SYMMETRIC_SOURCE)
         RITZ_CHECK(settle_matrix(D, n, symmetrise, worst));
     return RITZ_OK;
 }

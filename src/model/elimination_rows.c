@@ -2,6 +2,7 @@
 #include "model/elimination_rows.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <lapacke.h>
 
@@ -109,8 +110,7 @@ static ritz_status solve(const ritz_eliminator *s, const int64_t *circle,
         RITZ_FAIL_IF(LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, A->val, n, size,
                                     &rcond) != 0,
                      RITZ_ERR_MEMORY, "no memory for the constraints");
-    /* half the digits of what follows from it would be lost */
-    RITZ_FAIL_IF(!(rcond > 1e-8), RITZ_ERR_SINGULAR,
+    RITZ_FAIL_IF(!(rcond > RITZ_UNDETERMINED), RITZ_ERR_SINGULAR,
                  "%s leaves '%s' undetermined%s",
                  ritz_equations_cite(eq, eq->source[circle[0]], cited),
                  ritz_dof_name(eq->dependent[circle[0]], name),

@@ -12,6 +12,7 @@
 #include "model/modal.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 
 #include <ritz/eigen.h>
@@ -21,11 +22,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Of the same product in magnitudes: smaller entries are rounding. */
-static const double rounding = 64.0 * DBL_EPSILON;
-/* What a shifted solve leaves of a share that is zero, relative. */
-static const double unseen = 1e-8;
 
 static ritz_status refuse_structural(bool there)
 {
@@ -110,7 +106,7 @@ static ritz_status project_damping(const ritz_dense *D, ritz_modal_model *model)
         for (int64_t i = 0; i < model->count; i++)
             if ((i < model->num_rigid || j < model->num_rigid) &&
                 fabs(ritz_dense_col(&model->Delta, j)[i]) <=
-                    rounding * ritz_dense_col(&most, j)[i])
+                    RITZ_SUM_ROUNDING * ritz_dense_col(&most, j)[i])
                 ritz_dense_col(&model->Delta, j)[i] = 0.0;
 done:
     ritz_dense_free(&most);
@@ -179,7 +175,8 @@ static ritz_status is_improper(const ritz_dense *C, const ritz_dense *RB,
     ritz_dense seen = {0};
 
     RITZ_TRY(ritz_dense_mul(C, RB, &seen));
-    *out = ritz_dense_max(&seen) > unseen * ritz_dense_max(C) * size;
+    *out =
+        ritz_dense_max(&seen) > RITZ_MASSLESS_SHARE * ritz_dense_max(C) * size;
 done:
     ritz_dense_free(&seen);
     return status;
@@ -198,7 +195,7 @@ static ritz_status add_massless(const ritz_structure *model, const ritz_io *io,
 
     if (model->D.val && !damped) {
         RITZ_TRY(massless_share(model, modes, &model->D, &RD, &size));
-        damped = ritz_dense_max(&RD) > unseen * size;
+        damped = ritz_dense_max(&RD) > RITZ_MASSLESS_SHARE * size;
     }
     RITZ_FAIL_IF(damped, RITZ_ERR_ARGUMENT,
                  "dofs without mass are damped, and have no state of their "
@@ -212,7 +209,8 @@ static ritz_status add_massless(const ritz_structure *model, const ritz_io *io,
                  improper[0] ? "velocity" : "acceleration");
     RITZ_TRY(ritz_dense_mul(&io->C, &RB, &feed));
     for (int64_t k = 0; k < feed.nrow * feed.ncol; k++)
-        if (fabs(feed.val[k]) > unseen * ritz_dense_max(&io->C) * size)
+        if (fabs(feed.val[k]) >
+            RITZ_MASSLESS_SHARE * ritz_dense_max(&io->C) * size)
             modes->feed.val[k] += feed.val[k];
 done:
     ritz_dense_free(&RB);

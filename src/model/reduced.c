@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "model/mass_columns.h"
 
 #include <ritz/reduced.h>
@@ -25,7 +26,6 @@ static bool may_be_rigid(ritz_column_kind kind)
 static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)
 {
-    const double rounding = 64.0 * DBL_EPSILON;
     ritz_status status = RITZ_OK;
     ritz_dense most = {0};
 
@@ -35,7 +35,7 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
             if ((may_be_rigid(basis->columns.kind[i]) ||
                  may_be_rigid(basis->columns.kind[j])) &&
                 fabs(ritz_dense_col(Kr, j)[i]) <=
-                    rounding * ritz_dense_col(&most, j)[i])
+                    RITZ_SUM_ROUNDING * ritz_dense_col(&most, j)[i])
                 ritz_dense_col(Kr, j)[i] = 0.0;
     ritz_dense_symmetrise(Kr);
 done:

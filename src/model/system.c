@@ -1,14 +1,13 @@
 #include <ritz/system.h>
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double same_setting = 1e-9; /* degrees, or lengths */
 
 void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
                              const double *setting, char out[RITZ_NAME_SIZE])
@@ -49,7 +48,8 @@ static ritz_status read_part(const ritz_system *system, const char *part,
 static bool matches(const ritz_configuration *c, const double *wanted)
 {
     for (int64_t k = 0; k < c->num_settings; k++)
-        if (!isnan(wanted[k]) && fabs(c->setting[k] - wanted[k]) > same_setting)
+        if (!isnan(wanted[k]) &&
+            fabs(c->setting[k] - wanted[k]) > RITZ_SAME_SETTING)
             return false;
     return true;
 }

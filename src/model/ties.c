@@ -8,6 +8,7 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/tolerances.h"
 
 #include <lapacke.h>
 
@@ -164,9 +165,8 @@ static ritz_status solve_rigid(ritz_dense *S_n, const ritz_dense *S_m,
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, 6, 6, S_n->val, 6, pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, 'I', 6, S_n->val, 6, size,
                              &rcond);
-    /* below the root of epsilon a position of half the digits decides */
     RITZ_REFUSE_IF(
-        !(rcond > 1.5e-8), RITZ_ERR_SINGULAR,
+        !(rcond > RITZ_LOOSE_MOTION), RITZ_ERR_SINGULAR,
         "the independent dofs leave it free to move as a rigid body");
     if (count > 0)
         RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', 6, count, S_n->val,

@@ -7,6 +7,7 @@
  * so that A S = I for all motions that the dofs can tell, and the forces A' f
  * at them are those that a force f at the point is spread to: S' A' f = f.
  */
+#include "base/tolerances.h"
 #include "model/ties.h"
 
 #include "base/alloc.h"
@@ -18,9 +19,6 @@
 #include <string.h>
 
 enum { SIX = 6 };
-
-/* Singular values below this, of the largest, are rounding of positions. */
-static const double loose_below = 1.5e-8;
 
 static void weigh(const ritz_ties *over, ritz_dense *S)
 {
@@ -98,7 +96,7 @@ ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
                                     (lapack_int)count, Vt, SIX, work) != 0,
                      RITZ_ERR_CONVERGENCE,
                      "singular values of the average do not converge");
-    while (rank < least && sigma[rank] > loose_below * sigma[0])
+    while (rank < least && sigma[rank] > RITZ_LOOSE_MOTION * sigma[0])
         rank++;
     list_loose(rank, Vt, &new);
     RITZ_TRY(multiply(over, &U, rank, sigma, Vt, &new));
@@ -125,8 +123,8 @@ bool ritz_average_tells(const ritz_average *average, const double row[static 6])
 
         for (int64_t i = 0; i < SIX; i++)
             part += scaled[i] * average->loose[SIX * k + i];
-        /* a loose motion is known to eps over the gap, loose_below */
-        if (fabs(part) > 1e-6 * norm)
+        /* a loose motion is known to eps over the gap, RITZ_LOOSE_MOTION */
+        if (fabs(part) > RITZ_LOOSE_PART * norm)
             return false;
     }
     return true;

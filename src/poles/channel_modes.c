@@ -14,6 +14,7 @@
 #include "poles/channel_modes.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/eigen_dense.h"
 #include "linear/general.h"
 
@@ -21,11 +22,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Of eps: LAPACK's backward error. Measured, what a middle sees of modes that
-   are zero there: 0.1 to 1.8 times `mixing` with 1 for it, of rows of 5 to 767
-   masses and clamped beams of 4 to 128 elements. */
-static const double few = 8.0;
 
 /* What acts, and what is seen. */
 enum { FORCE, PLACE, SPEED, PUSH, KINDS };
@@ -44,8 +40,9 @@ static double mixing(const sight *s, int64_t j, int64_t k)
     double norm = fmin(s->highest, fmax(l_j, l_k) / RITZ_EIGEN_FAR_BELOW);
     double gap = fabs(s->modes->lambda[j] - s->modes->lambda[k]);
 
-    return few * DBL_EPSILON * norm < gap ? few * DBL_EPSILON * norm / gap
-                                          : 1.0;
+    return RITZ_BACKWARD_ERROR * DBL_EPSILON * norm < gap
+               ? RITZ_BACKWARD_ERROR * DBL_EPSILON * norm / gap
+               : 1.0;
 }
 
 static sight eyes_on(const ritz_modal_model *modes)
@@ -56,7 +53,8 @@ static sight eyes_on(const ritz_modal_model *modes)
     return (sight){.modes = modes,
                    .highest = highest,
                    .same = (double)modes->num_dofs * DBL_EPSILON * highest,
-                   .eps = ((double)modes->num_dofs + few) * DBL_EPSILON};
+                   .eps = ((double)modes->num_dofs + RITZ_BACKWARD_ERROR) *
+                          DBL_EPSILON};
 }
 
 /* a'phi_k of all modes; of equal poles only the sum is asked for. */
@@ -140,7 +138,8 @@ static ritz_channel_row row_of(const sight *s, int64_t k)
     const ritz_modal_model *m = s->modes;
     double v[KINDS], d[KINDS], c = m->C.val[k], cv = m->Cv.val[k];
     double l = fabs(m->lambda[k]), rate = ritz_dense_col(&m->Delta, k)[k];
-    double off = few * DBL_EPSILON * fmin(s->highest, l / RITZ_EIGEN_FAR_BELOW);
+    double off = RITZ_BACKWARD_ERROR * DBL_EPSILON *
+                 fmin(s->highest, l / RITZ_EIGEN_FAR_BELOW);
     double off_rate = s->eps * ritz_dense_col(&s->most, k)[k];
 
     for (int kind = 0; kind < KINDS; kind++) {

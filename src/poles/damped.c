@@ -6,6 +6,7 @@
 #include "poles/damped.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/refine.h"
 
 #include <ritz/monitor.h>
@@ -151,7 +152,7 @@ static bool in_band(const ritz_poles *poles, int64_t k, const double band_hz[2])
 {
     double hertz = ritz_eigen_hertz(poles->lambda[k]);
 
-    return hertz >= band_hz[0] && hertz <= band_hz[1] * (1.0 + 1e-9);
+    return hertz >= band_hz[0] && hertz <= band_hz[1] * RITZ_RANGE_END;
 }
 
 /* s of ratio zeta and size |s|. */

@@ -7,6 +7,7 @@
 #include "poles/massless.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 
 #include <ritz/eigen.h>
@@ -145,9 +146,6 @@ done:
  * and what motions without mass add to it.
  */
 
-/* A gain this much smaller than its error is rounding. */
-static const double no_gain = 1e-14;
-
 ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
                              const ritz_io *io, int64_t num_rigid,
                              ritz_dense *out)
@@ -191,7 +189,9 @@ ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
         apart.val[k] -= G.val[k];
     RITZ_TRY_IN("static gain", ritz_general_norm(&G, &size));
     RITZ_TRY_IN("static gain", ritz_general_norm(&apart, &error));
-    *out = error == 0.0 ? 0.0 : size > no_gain * error ? error / size : nan("");
+    *out = error == 0.0                  ? 0.0
+           : size > RITZ_NO_GAIN * error ? error / size
+                                         : nan("");
 done:
     ritz_dense_free(&G);
     ritz_dense_free(&apart);

@@ -41,11 +41,8 @@ typedef struct peak {
     double w, value; /* the largest that was met, and where */
 } peak;
 
-/* Points that stand out: so many, and no lower than so much of the highest. */
+/* Peaks that are followed between points, at most. */
 enum { MOST_PEAKS = 8 };
-static const double worth_climbing = 0.5;
-/* Of a bracket's length when it is done, relative to its frequency. */
-static const double close_enough = 1e-9;
 
 static void peak_free(peak *s)
 {
@@ -123,7 +120,7 @@ static ritz_status choose_frequencies(const peak *s, int64_t *count,
     }
     qsort(w, (size_t)n + 1, sizeof *w, ascending);
     for (int64_t k = 0; k <= n; k++)
-        if (kept == 0 || w[k] - w[kept - 1] > close_enough * w[k])
+        if (kept == 0 || w[k] - w[kept - 1] > RITZ_PEAK_PLACED * w[k])
             w[kept++] = w[k];
     w[kept] = 2.0 * w[kept - 1] + 1.0; /* the last bracket ends there */
     *count = kept;
@@ -145,7 +142,7 @@ static ritz_status climb_between(peak *s, double low, double high)
     const ritz_curve curve = {value_at, s};
     double most = 0.0;
 
-    return ritz_curve_between(&curve, close_enough, &low, &high, &most);
+    return ritz_curve_between(&curve, RITZ_PEAK_PLACED, &low, &high, &most);
 }
 
 /* Index of the largest that was not yet taken, -1 if there is none. */
@@ -190,7 +187,7 @@ static ritz_status peak_search(peak *s)
     for (int t = 0; t < MOST_PEAKS; t++) {
         int64_t k = next_highest_point(count, value);
 
-        if (k < 0 || value[k] < worth_climbing * s->value)
+        if (k < 0 || value[k] < RITZ_PEAK_WORTH * s->value)
             break;
         value[k] = -1.0;
         RITZ_TRY(climb_around(s, w, k));

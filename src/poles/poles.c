@@ -83,7 +83,7 @@ static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
         q[k] = poles->io.B.val[k];
     equilibrate(m, inputs, Z, q, s);
     info = factor(poles->skew, (int)m, Z, pivot, &rcond);
-    RITZ_FAIL_IF(info != 0 || !(rcond > 1e-16), RITZ_ERR_SINGULAR,
+    RITZ_FAIL_IF(info != 0 || !(rcond > RITZ_COUPLED_RCOND), RITZ_ERR_SINGULAR,
                  "the response at %.9g Hz is infinite: an undamped mode, or at "
                  "0 Hz a rigid-body motion",
                  hertz);
@@ -102,17 +102,6 @@ done:
     return status;
 }
 
-/* Modal matrices whose other entries are smaller than this, against what
-   stands on the diagonal, are diagonal: the error is of its square. */
-static const double diagonal_within = 1e-9;
-/* Of w^2: nearer to an undamped pole than this there is no answer. */
-static const double pole_within = 1e-12;
-/* Of the product of all modes' shares: what is below is not driven and seen. */
-static const double unseen_below = 1e-10;
-
-/* A skew part beyond rounding, of what was projected: gyroscopic damping. */
-static const double symmetric_within = 1e-12;
-
 static bool couples_modes(const ritz_dense *A)
 {
     double largest = 0.0;
@@ -125,7 +114,7 @@ static bool couples_modes(const ritz_dense *A)
                               fabs(ritz_dense_col(A, j)[j]));
 
             if (i != j && !(fabs(ritz_dense_col(A, j)[i]) <=
-                            diagonal_within * own + 1e-15 * largest))
+                            RITZ_DIAGONAL_WITHIN * own + 1e-15 * largest))
                 return true;
         }
     return false;
@@ -148,7 +137,7 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
         for (int64_t k = 0; k < poles->count; k++)
             poles->rate[k] += ritz_dense_col(D, k)[k];
         poles->coupled = couples_modes(D);
-        poles->skew = ritz_dense_asymmetry(D) > symmetric_within;
+        poles->skew = ritz_dense_asymmetry(D) > RITZ_SYMMETRIC;
         RITZ_CHECK(copy_dense(D, &poles->D));
     } else if (has_k4) {
         RITZ_CHECK(ritz_dense_new(poles->count, poles->count, &poles->D));
@@ -217,7 +206,7 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
             for (int64_t m = 0; m < poles->count; m++)
                 seen = fmax(seen, participation_of(poles, i, m));
             if (fabs(b[k]) * participation_of(poles, i, k) >
-                unseen_below * driven * seen)
+                RITZ_UNOBSERVED * driven * seen)
                 return true;
         }
     }
@@ -231,7 +220,7 @@ static ritz_status invert_mode(const ritz_poles *poles, int64_t k, double hertz,
     double w = 2.0 * RITZ_PI * hertz;
     double _Complex z =
         ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
-    bool on_pole = cabs(z) <= pole_within * (poles->lambda[k] + w * w);
+    bool on_pole = cabs(z) <= RITZ_POLE_HIT * (poles->lambda[k] + w * w);
 
     *out = 0.0;
     if (on_pole) {

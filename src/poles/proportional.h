@@ -4,9 +4,6 @@
 
 #include <ritz/component.h>
 
-/* Of |D|: beyond what rounding leaves of matrices in text of few digits. */
-#define RITZ_PROPORTIONAL_WITHIN 1e-6
-
 /**
  * The a and b for which |D - a M - b K| is least in the Frobenius norm.
  *

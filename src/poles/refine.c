@@ -1,18 +1,13 @@
 #include "poles/refine.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/poles.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 enum { MOST_STEPS = 12, MOST_MATRICES = 4 };
-/* Of |s|: a step this small is the last; and one below the second that no
- * longer shrinks, as slow poles of stiff models err by eps |K| / |s|. */
-static const double settled = 1e-12;
-static const double nearly = 1e-6;
-/* So far from an eigenvalue Z can be factored. */
-static const double beside = 1e-9;
 
 ritz_status ritz_refiner_new(const ritz_component *component, bool structural,
                              ritz_refiner *out)
@@ -103,7 +98,7 @@ static ritz_status step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
     *move = 0.0;
     last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x, beside it */
     if (last)
-        status = factor(r, *s * (1.0 + beside));
+        status = factor(r, *s * (1.0 + RITZ_BESIDE_EIGENVALUE));
     if (last && status == RITZ_ERR_SINGULAR)
         return RITZ_OK;
     RITZ_TRY(status);
@@ -134,8 +129,9 @@ ritz_status ritz_refine(ritz_refiner *refiner, ritz_dense *x,
     RITZ_NEW(u, x->nrow);
     for (int t = 0; t < MOST_STEPS && !still; t++) {
         RITZ_TRY(step(refiner, x, s, u, &move));
-        still = move <= settled * cabs(*s) ||
-                (move <= nearly * cabs(*s) && move >= 0.5 * before);
+        still =
+            move <= RITZ_REFINED * cabs(*s) ||
+            (move <= RITZ_REFINED_NEARLY * cabs(*s) && move >= 0.5 * before);
         before = move;
     }
     RITZ_FAIL_IF(!still, RITZ_ERR_CONVERGENCE,

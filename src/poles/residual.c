@@ -13,6 +13,7 @@
  * at the end of the range: powers of rad^2/s^2 leave all bounds.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/poles.h"
 #include "poles/proportional.h"
 
@@ -37,9 +38,6 @@
  * the range, of the whole answer there, and not to its own size.
  */
 
-/* Of the whole answer at the end of the range, what its series is good to. */
-#define RITZ_SERIES_WITHIN 1e-12
-
 typedef struct ritz_rest_solver {
     const ritz_sparse *M;  /* borrowed, as Phi is */
     const ritz_dense *Phi; /* the modes that are known */
@@ -53,14 +51,6 @@ typedef struct ritz_rest_solver {
 /* Steps shrink by 100 or more, so that 8 reach rounding; a body of which no
    flexible mode is kept may need more. */
 enum { MOST_STEPS = 200 };
-static const double settled = 1e-14;
-/* Rounding of an ill-conditioned K may keep it from that, not from this. */
-static const double unsettled = 1e-6;
-/* Of the whole answer: a change that is not seen. */
-static const double negligible = 0x1p-53;
-static const double small_shift = 0.01;
-/* Of the largest K_jj / M_jj. */
-static const double lost_in_K = 1e-10;
 
 static void rest_solver_free(ritz_rest_solver *s)
 {
@@ -83,10 +73,11 @@ static double rigid_shift(const ritz_component *component,
         double m = ritz_sparse_diagonal(&component->M, j);
 
         if (m > 0.0)
-            least = fmax(least, lost_in_K *
+            least = fmax(least, RITZ_SHIFT_LOST *
                                     ritz_sparse_diagonal(&component->K, j) / m);
     }
-    return -fmin(usual, fmax(least, small_shift * ritz_eigen_lambda(out_hz)));
+    return -fmin(usual,
+                 fmax(least, RITZ_SERIES_SHIFT * ritz_eigen_lambda(out_hz)));
 }
 
 /*
@@ -133,7 +124,7 @@ static ritz_status rest_solver_new(const ritz_component *component,
     s->Phi = &pairs->Phi;
     s->sigma = rigid_shift(component, pairs, out_hz);
     if (m > pairs->num_rigid)
-        s->sigma = -small_shift * pairs->lambda[m - 1];
+        s->sigma = -RITZ_SERIES_SHIFT * pairs->lambda[m - 1];
     else if (m == 0) /* nothing moves freely: K is definite */
         s->sigma = 0.0;
     RITZ_TRY(ritz_sparse_mul(s->M, s->Phi, &s->MPhi));
@@ -166,9 +157,10 @@ static void measure_change(const ritz_rest_solver *s, const ritz_dense *R,
                                      ritz_dense_col(last, j)[i]));
         if (!(moved > 0.0))
             continue;
-        *change = fmax(*change, moved / (settled * size + negligible * seen));
-        *apart = fmax(*apart,
-                      moved / (unsettled * size + RITZ_SERIES_WITHIN * seen));
+        *change = fmax(*change, moved / (RITZ_SERIES_SETTLED * size +
+                                         RITZ_SERIES_NEGLIGIBLE * seen));
+        *apart = fmax(*apart, moved / (RITZ_SERIES_UNSETTLED * size +
+                                       RITZ_SERIES_WITHIN * seen));
     }
 }
 
@@ -204,7 +196,7 @@ static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
     RITZ_FAIL_IF(!(apart <= 1.0), RITZ_ERR_CONVERGENCE,
                  "what modes above the band answer did not settle in %d steps: "
                  "the last one changed it by %.1e",
-                 (int)MOST_STEPS, apart * unsettled);
+                 (int)MOST_STEPS, apart * RITZ_SERIES_UNSETTLED);
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)
         s->whole[j] = fmax(s->whole[j], ritz_dense_col_max(&R, j));
     s->begun = true;
@@ -217,8 +209,6 @@ done:
 }
 
 enum { MOST_TERMS = 40 };
-/* falls_enough^MOST_TERMS = RITZ_SERIES_WITHIN */
-static const double falls_enough = 0.5;
 
 /* Term j as the outputs see it. */
 static ritz_status put_term(const ritz_dense *C, const ritz_dense *R, int64_t j,
@@ -293,7 +283,7 @@ static int64_t count_terms(double to_hz, double out_hz, ritz_residual *r)
     double lambda = ritz_eigen_lambda(out_hz);
     double mu = w * hypot(w, r->a) / hypot(1.0, w * r->b);
 
-    if (mu > w * w && mu > falls_enough * lambda) {
+    if (mu > w * w && mu > RITZ_SERIES_FALLS * lambda) {
         mu = w * w;
         r->a = r->b = 0.0;
         r->known = false;

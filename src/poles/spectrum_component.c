@@ -1,5 +1,6 @@
 /* Lowest damped poles of a component, made exact on its full matrices. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/orthonormal.h"
 #include "poles/refine.h"
 #include "poles/spectrum_parts.h"
@@ -23,8 +24,6 @@
  *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
  */
 
-/* A column of which less than this is new is linearly dependent. */
-static const double dependent = 1e-8;
 /* Undamped modes to scan with, at least; and for each mode before the one. */
 enum { LEAST_MODES = 20, EACH_MODE = 2 };
 
@@ -42,7 +41,7 @@ static ritz_status span_space(const ritz_component *component,
     ritz_basis basis = {0};
 
     RITZ_TRY(ritz_sparse_add(1.0, &component->K, -sigma, &component->M, &A));
-    RITZ_TRY(ritz_orthonormal_new(n, &A, dependent, &set));
+    RITZ_TRY(ritz_orthonormal_new(n, &A, RITZ_STATIC_DEPENDENT, &set));
     RITZ_TRY(ritz_dense_copy(&pairs->Phi, &X));
     RITZ_TRY(ritz_orthonormal_append(&set, &X, n, NULL));
     if (component->dampers.count > 0) {
@@ -134,12 +133,6 @@ done:
 
 /* Beyond what is wanted, of modes and of frequencies. */
 enum { MORE_MODES = 8 };
-static const double beyond = 2.0;
-/* Inverse iteration that moves s further than this went somewhere else. */
-static const double near = 0.1;
-/* Poles and shapes nearer than this are one. */
-static const double same = 1e-9;
-static const double same_shape = 0.9;
 
 /* Add a given ratio to a pole: |s| stays. */
 static double _Complex add_ratio(double _Complex s, double ratio)
@@ -177,8 +170,8 @@ static bool is_listed(const ritz_spectrum *spectrum, int64_t count,
                       double _Complex s, const ritz_dense *x)
 {
     for (int64_t j = 0; j < count; j++)
-        if (cabs(spectrum->s[j] - s) <= same * cabs(s) &&
-            correlation(spectrum, j, x) > same_shape)
+        if (cabs(spectrum->s[j] - s) <= RITZ_SAME_POLE * cabs(s) &&
+            correlation(spectrum, j, x) > RITZ_SAME_SHAPE)
             return true;
     return false;
 }
@@ -201,7 +194,8 @@ static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
     status = ritz_refine(refiner, &x, &s);
     if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE)
         goto done;
-    if (status == RITZ_OK && cabs(s - spectrum->s[j]) <= near * cabs(s) &&
+    if (status == RITZ_OK &&
+        cabs(s - spectrum->s[j]) <= RITZ_REFINED_ELSEWHERE * cabs(s) &&
         !is_listed(spectrum, j, s, &x)) {
         spectrum->s[j] = s;
         memcpy(re, x.val, (size_t)n * sizeof *re);
@@ -219,7 +213,8 @@ done:
 /* The first that are asked for. */
 static void keep_first(const ritz_span *span, ritz_spectrum *spectrum)
 {
-    double limit = sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + same);
+    double limit =
+        sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + RITZ_SAME_POLE);
     int64_t count = 0;
 
     while (count < spectrum->count &&
@@ -261,8 +256,9 @@ static ritz_status solve_projected(const ritz_component *component,
     const ritz_span wide = {
         .modes = span->modes < 0
                      ? -1
-                     : (int64_t)(beyond * (double)span->modes) + MORE_MODES,
-        .up_to_hz = beyond * span->up_to_hz,
+                     : (int64_t)(RITZ_SPECTRUM_BEYOND * (double)span->modes) +
+                           MORE_MODES,
+        .up_to_hz = RITZ_SPECTRUM_BEYOND * span->up_to_hz,
     };
     ritz_reduced small = {0};
     const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,

@@ -1,6 +1,7 @@
 #include "poles/state.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "model/modal.h"
 #include "poles/massless.h"
 
@@ -82,13 +83,6 @@ done:
     return status;
 }
 
-/* Of what its terms add up to in magnitude, an entry of X'DX is rounding. */
-static const double rounding = 64.0 * DBL_EPSILON;
-/* Square of what an entry of N may err by, of its largest. */
-static const double unseen = 1e-24;
-/* Eigenvalues more negative than this, of the largest, are no rigid motion. */
-static const double unstable = 1e-9;
-
 /* X'AX whose entries are 0 where they are rounding alone. */
 static ritz_status project_above_rounding(const ritz_dense *A,
                                           const ritz_dense *X, ritz_dense *out)
@@ -99,7 +93,7 @@ static ritz_status project_above_rounding(const ritz_dense *A,
     RITZ_TRY(ritz_dense_project(A, X, out));
     RITZ_TRY(ritz_dense_terms(A, X, &most));
     for (int64_t i = 0; i < out->nrow * out->ncol; i++)
-        if (fabs(out->val[i]) <= rounding * most.val[i])
+        if (fabs(out->val[i]) <= RITZ_SUM_ROUNDING * most.val[i])
             out->val[i] = 0.0;
 done:
     ritz_dense_free(&most);
@@ -125,7 +119,8 @@ static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
     m = pairs->Phi.ncol;
     for (int64_t j = 0; j < m; j++)
         largest = fmax(largest, fabs(pairs->lambda[j]));
-    while (negative < m && pairs->lambda[negative] < -unstable * largest)
+    while (negative < m &&
+           pairs->lambda[negative] < -RITZ_RIGID_DIGITS * largest)
         negative++;
     if (negative > 0)
         pairs->num_rigid =
@@ -181,7 +176,8 @@ static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
         largest = fmax(largest, fabs(delta[j]));
     *count = 0;
     for (int64_t j = 0; j < k; j++)
-        *count += -delta[j] > fmax(floor, (double)k * rounding * largest);
+        *count +=
+            -delta[j] > fmax(floor, (double)k * RITZ_SUM_ROUNDING * largest);
     RITZ_TRY(ritz_dense_mul(N, &V, &turned));
     ritz_dense_free(N);
     *N = turned;
@@ -200,8 +196,10 @@ static ritz_status check_rest(const ritz_dense *D, int64_t from)
 
     for (int64_t j = from; j < D->ncol; j++)
         for (int64_t i = 0; i < D->nrow; i++)
-            RITZ_REFUSE_IF(fabs(ritz_dense_col(D, j)[i]) > 1e-8 * largest ||
-                               fabs(ritz_dense_col(D, i)[j]) > 1e-8 * largest,
+            RITZ_REFUSE_IF(fabs(ritz_dense_col(D, j)[i]) >
+                                   RITZ_MASSLESS_COUPLED * largest ||
+                               fabs(ritz_dense_col(D, i)[j]) >
+                                   RITZ_MASSLESS_COUPLED * largest,
                            RITZ_ERR_ARGUMENT,
                            "the damping matrix couples a motion without mass "
                            "that it does not damp: are its gyroscopic terms at "
@@ -248,7 +246,8 @@ static ritz_status take_massless(const ritz_second_order *model,
         if (pass == 0)
             RITZ_TRY(turn_massless(&s->D, m,
                                    is_present(model->D)
-                                       ? unseen * ritz_dense_max(model->D) *
+                                       ? RITZ_MASSLESS_VECTOR *
+                                             ritz_dense_max(model->D) *
                                              pow(ritz_dense_max(&N), 2.0)
                                        : 0.0,
                                    &N, &s->k));

@@ -1,5 +1,6 @@
 /* Zeros: found from the pencil, made exact where the model says more. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/resolvent.h"
 #include "model/modal.h"
 #include "poles/channel.h"
@@ -357,12 +358,6 @@ static void triangle_at(const triangle *t, double _Complex z, sample *out)
 
 enum { MOST_SWEEPS = 60 };
 
-/* Steps that are no more than this of a zero end its way. */
-static const double small_step = 4.0 * DBL_EPSILON;
-/* A zero that rounding may move by this share of its distance from 0 and from
-   all poles is taken for one at infinity. */
-static const double too_far = 0.1;
-
 static double _Complex pole_at(const triangle *t, int64_t k)
 {
     return t->T[k + k * t->n];
@@ -445,7 +440,7 @@ static double _Complex step_of(triangle *t, int64_t count,
 static double _Complex beside_poles(const triangle *t, double _Complex z)
 {
     while (room_around(t, z) == 0.0)
-        z = z != 0.0 ? z * (1.0 + small_step) : DBL_EPSILON;
+        z = z != 0.0 ? z * (1.0 + RITZ_ZERO_STEP) : DBL_EPSILON;
     return z;
 }
 
@@ -460,7 +455,7 @@ static void sweep_zeros(triangle *t, int64_t count, double _Complex *zero,
         if (!done[i]) {
             zero[i] = beside_poles(t, zero[i]);
             move = step_of(t, count, zero, i);
-            done[i] = cabs(move) <= small_step * cabs(zero[i]);
+            done[i] = cabs(move) <= RITZ_ZERO_STEP * cabs(zero[i]);
             zero[i] -= move;
         }
         if (pair) {
@@ -480,7 +475,8 @@ static void drop_far(triangle *t, int64_t *count, double _Complex *zero)
         sample s;
 
         triangle_at(t, z, &s);
-        if (!(doubt_of(&s) > too_far * fmax(cabs(z), room_around(t, z))))
+        if (!(doubt_of(&s) >
+              RITZ_ZERO_DOUBT * fmax(cabs(z), room_around(t, z))))
             zero[kept++] = zero[i];
     }
     *count = kept;

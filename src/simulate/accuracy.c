@@ -8,6 +8,7 @@
 #include <ritz/simulate.h>
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "simulate/run.h"
 
 #include <float.h>
@@ -19,9 +20,6 @@
 /* Steps, and values at all of them, that are worth trying: 2 GiB. */
 static const int64_t most_steps = INT64_C(1) << 23;
 static const int64_t most_values = INT64_C(1) << 28;
-/* Of what could be shown: a few roundings, and what they may have grown to. */
-static const double rounding = 64.0 * DBL_EPSILON;
-static const double grown = 1e-9;
 
 enum { STEPS = 50, PER_PERIOD = 10, IN_VAIN = 3 };
 
@@ -59,8 +57,8 @@ static void trial_free(trial *t)
 /* Whether it is the rounding of what could be shown that keeps it apart. */
 static bool is_rounding(double size, double off, double shown, int in_vain)
 {
-    return size <= rounding * shown ||
-           (in_vain >= IN_VAIN && off <= grown * shown);
+    return size <= RITZ_SUM_ROUNDING * shown ||
+           (in_vain >= IN_VAIN && off <= RITZ_ROUNDING_GROWN * shown);
 }
 
 static void judge(const ritz_simulation *exact, const ritz_simulation *made,

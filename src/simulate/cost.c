@@ -24,9 +24,7 @@
 #include <string.h>
 #include <time.h>
 
-static const double elongation = 1e-3;
 /* Least processor time of one measurement, and how many there are. */
-static const double long_enough = 2e-3;
 enum { MEASUREMENTS = 5, FIRST_STEPS = 16 };
 
 static double processor_seconds(void)
@@ -92,7 +90,7 @@ static ritz_status measure(ritz_march *march, const double *u, double *out)
     double spent = 0.0, least = HUGE_VAL;
 
     RITZ_CHECK(take_steps(march, steps, u, &spent));
-    while (spent < long_enough) {
+    while (spent < RITZ_MEASURED_SECONDS) {
         steps *= 2;
         RITZ_CHECK(take_steps(march, steps, u, &spent));
     }
@@ -149,7 +147,7 @@ ritz_status ritz_simulate_cost(const ritz_second_order *model,
     cost.step_explicit = root > 0.0 ? 2.0 / root : HUGE_VAL;
     if (end <= 0.0)
         end = cost.highest_hz > 0.0 ? cost.highest_hz : 1.0;
-    cost.step_accurate = sqrt(12.0 * elongation) / (2.0 * RITZ_PI * end);
+    cost.step_accurate = sqrt(12.0 * RITZ_PERIOD_ERROR) / (2.0 * RITZ_PI * end);
     cost.step = cost.step_accurate;
     (void)snprintf(cost.integrator, sizeof cost.integrator, "%s",
                    ritz_integrator_trapezoidal.name);
@@ -196,7 +194,7 @@ ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)
         for (int64_t i = 0; i < order; i++)
             ritz_dense_col(&A, j)[i] = i == j ? 2.0 : 1.0 / (double)order;
     RITZ_TRY(factors(&A, count, &work, &spent));
-    while (spent < long_enough) {
+    while (spent < RITZ_MEASURED_SECONDS) {
         count *= 2;
         RITZ_TRY(factors(&A, count, &work, &spent));
     }

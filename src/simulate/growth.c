@@ -4,6 +4,7 @@
  * energy and no way of growing is missed for long. The march itself is that of
  * full matrices; modes only read the energy: q = Phi'M x.
  */
+#include "base/tolerances.h"
 #include "simulate/run.h"
 
 #include "base/alloc.h"
@@ -11,8 +12,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-static const double enough = 1e12;
 
 /* SplitMix64 [Steele2014]: between -1 and 1, away from 0. */
 static double noise(uint64_t *seed)
@@ -82,7 +81,7 @@ static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
     RITZ_CHECK(from_modes(t->modes, t->motion, &t->mass, t->v, march->v));
     if (march->settle)
         RITZ_CHECK(march->settle(march, t->u));
-    for (int64_t k = 0; k < steps && *worst < enough; k++) {
+    for (int64_t k = 0; k < steps && *worst < RITZ_GROWN_ENOUGH; k++) {
         double now = 0.0;
 
         RITZ_CHECK(march->advance(march, t->u, t->u));
@@ -109,7 +108,8 @@ static ritz_status run_all(trial *t, const ritz_integrator *integrator,
         RITZ_TRY_IN(
             "M", ritz_effective_new(t->motion, 1.0, 0.0, 0.0, false, &t->mass));
     RITZ_TRY(ritz_march_new(t->motion, integrator, step, 0.8, &march));
-    for (int64_t k = 0; t->modes->n > 0 && k < count[1] && worst < enough; k++)
+    for (int64_t k = 0;
+         t->modes->n > 0 && k < count[1] && worst < RITZ_GROWN_ENOUGH; k++)
         RITZ_TRY(free_motion(t, &march, count[0], &seed, &worst));
     *out = worst;
 done:

@@ -12,6 +12,7 @@
  * exponential.c, exact as well.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/exponential.h"
 #include "simulate/oscillator.h"
 #include "simulate/states.h"
@@ -54,7 +55,7 @@ static ritz_status groups_new(const ritz_dense *D, groups *out)
     bool *seen = NULL;
     int64_t n = D->nrow;
     int64_t end = 0; /* of members */
-    double floor = 64.0 * DBL_EPSILON * ritz_dense_max(D);
+    double floor = RITZ_SUM_ROUNDING * ritz_dense_max(D);
 
     RITZ_NEW(g.first, n + 1);
     RITZ_NEW(g.member, n);
@@ -177,7 +178,7 @@ static ritz_status prepare_group(const ritz_motion *m, double h, group *part)
     ritz_dense A = {0}, Q[2] = {{0}, {0}};
     int64_t j = part->mode[0];
 
-    part->scale = fmax(ritz_dense_max(&m->B), 1e-300);
+    part->scale = fmax(ritz_dense_max(&m->B), RITZ_LEAST_SCALE);
     if (part->count == 1) {
         part->o =
             ritz_oscillator_over(m->lambda[j], ritz_dense_col(&m->D, j)[j], h);

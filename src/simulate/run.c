@@ -2,6 +2,7 @@
 #include "simulate/run.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "simulate/motion.h"
 #include "simulate/reach.h"
 
@@ -245,11 +246,8 @@ void ritz_reach_free(ritz_reach *reach)
     *reach = (ritz_reach){0};
 }
 
-static const double most_steps = 1e10;
 /* Of more values than this a file is not to be made. */
 static const int64_t most_values = INT64_C(1) << 31;
-/* A step that ends within this part of itself of the end, ends there. */
-static const double close = 1e-6;
 
 ritz_status ritz_request_steps(const ritz_simulation_request *request,
                                int64_t *out)
@@ -261,9 +259,9 @@ ritz_status ritz_request_steps(const ritz_simulation_request *request,
                    request->seconds);
     RITZ_REFUSE_IF(!isfinite(request->step) || request->step <= 0.0,
                    RITZ_ERR_ARGUMENT, "%g s is no step", request->step);
-    RITZ_REFUSE_IF(steps > most_steps, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(steps > RITZ_MOST_STEPS, RITZ_ERR_ARGUMENT,
                    "%g steps are too many", steps);
-    *out = (int64_t)ceil(steps - close);
+    *out = (int64_t)ceil(steps - RITZ_STEP_ROUNDING);
     if (*out < 1)
         *out = 1;
     return RITZ_OK;

@@ -10,6 +10,7 @@
 #include "simulate/states.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/exponential.h"
 #include "linear/general.h"
 
@@ -93,7 +94,7 @@ ritz_status ritz_states_exact(const ritz_motion *motion, double step,
     ritz_status status = RITZ_OK;
     int64_t n = motion->n;
     int64_t p = motion->B.ncol;
-    double scale = fmax(ritz_dense_max(&motion->B), 1e-300);
+    double scale = fmax(ritz_dense_max(&motion->B), RITZ_LEAST_SCALE);
     ritz_dense A = {0}, E = {0};
     states *s = NULL;
 
