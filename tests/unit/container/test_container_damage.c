@@ -15,16 +15,6 @@ static const char path[] = "test_container_damage.h5";
 static const char again[] = "test_container_damage_again.h5";
 static const ritz_stamp stamp = {.command = "ritz-verb"};
 
-/*
- * HDF5 1.10.8 itself loses the header of an object that it finds damaged (424
- * bytes, in H5O_protect). What Ritz leaves open is counted instead.
- */
-const char *__lsan_default_suppressions(void); /* NOLINT: its name */
-const char *__lsan_default_suppressions(void)  /* NOLINT: its name */
-{
-    return "leak:libhdf5";
-}
-
 static int tear_down(void **state)
 {
     (void)state;

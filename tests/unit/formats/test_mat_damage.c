@@ -7,13 +7,6 @@
 
 #include <stdlib.h>
 
-/* HDF5 1.10 forgets 240 bytes where it meets a damaged object. */
-const char *__lsan_default_suppressions(void); /* NOLINT: its name */
-const char *__lsan_default_suppressions(void)  /* NOLINT */
-{
-    return "leak:libhdf5";
-}
-
 /* A bytes' copy as it is read; damage may be found or not, but no more. */
 static void assert_bears(const char *at, int64_t size)
 {
