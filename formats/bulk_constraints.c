@@ -32,8 +32,8 @@ ritz_status ritz_bulk_keep_sentence(char **out)
 }
 
 /* Fail with file, line and the name of the element before the sentence. */
-static ritz_status tying_refuse(const ritz_bulk_tying *it, const char *format,
-                                ...)
+[[gnu::format(printf, 2, 3)]] static ritz_status
+tying_refuse(const ritz_bulk_tying *it, const char *format, ...)
 {
     char sentence[300];
     va_list args;
