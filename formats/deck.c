@@ -14,8 +14,8 @@ const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size)
     return NULL;
 }
 
-static ritz_status parse_bytes(const char *path, const char *bytes,
-                               int64_t size, const char *folder, ritz_deck *out)
+ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
+                            const char *folder, ritz_deck *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_deck_format *format = ritz_deck_recognise(bytes, size);
@@ -33,12 +33,6 @@ done:
     return status;
 }
 
-ritz_status ritz_deck_parse(const char *path, const char *text,
-                            const char *folder, ritz_deck *out)
-{
-    return parse_bytes(path, text, (int64_t)strlen(text), folder, out);
-}
-
 ritz_status ritz_deck_read(const char *path, ritz_deck *out)
 {
     ritz_status status = RITZ_OK;
@@ -48,7 +42,7 @@ ritz_status ritz_deck_read(const char *path, ritz_deck *out)
 
     RITZ_TRY(ritz_path_folder(path, &folder));
     RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
-    RITZ_TRY(parse_bytes(path, bytes, size, folder, out));
+    RITZ_TRY(ritz_deck_parse(path, bytes, size, folder, out));
 done:
     free(bytes);
     free(folder);

@@ -40,8 +40,8 @@ typedef struct ritz_dmig_header {
     int64_t form;
     bool complex, polar;
     int64_t digits;
-    int64_t first, count; /* its terms, once sorted */
-    int64_t rank;         /* place in the file */
+    int64_t count; /* of its terms */
+    int64_t rank;  /* place in the file */
 } ritz_dmig_header;
 
 /* A(row, col) = re + i im, as a column card gives it. */
@@ -49,13 +49,13 @@ typedef struct ritz_dmig_term {
     ritz_dof row, col;
     double re, im;
     int64_t line;
-    int64_t matrix; /* index of the header */
 } ritz_dmig_term;
 
 typedef struct ritz_dmig_cards {
     ritz_cards cards;
     int64_t num_headers, headers_room;
     int64_t num_terms, terms_room;
+    int64_t wanted;           /* rank of the matrix whose terms are taken */
     ritz_dmig_header *header; /* sorted by name once taken */
     ritz_dmig_term *term;
 } ritz_dmig_cards;
@@ -157,7 +157,7 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
                             const ritz_card *card, int64_t k, ritz_dof col)
 {
     static const double RADIANS = RITZ_PI / 180.0;
-    ritz_dmig_term new = {.col = col, .matrix = owner - all->header};
+    ritz_dmig_term new = {.col = col};
     double a = 0.0;
     double b = 0.0;
     int64_t digits = 0;
@@ -199,6 +199,8 @@ static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
         goto done;
     }
     RITZ_TRY(take_dof(card, 1, &col));
+    if (owner->rank != all->wanted)
+        goto done;
     for (int64_t k = 4; k < card->count; k += 4)
         if (!is_empty_group(card, k))
             RITZ_TRY(add_term(all, owner, card, k, col));
@@ -226,14 +228,6 @@ static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
 done:
     ritz_card_free(&card);
     return status;
-}
-
-/* Headers and terms of the deck, as its cards give them. */
-static ritz_status take_deck(ritz_dmig_cards *all)
-{
-    RITZ_CHECK(take_cards(all, true));
-    RITZ_CHECK(sort_headers(all));
-    return take_cards(all, false);
 }
 
 /* The dofs that occur as rows, as columns or as either, ascending. */
@@ -319,15 +313,13 @@ static int compare_whole(int64_t a, int64_t b)
     return (a > b) - (a < b);
 }
 
-/* By matrix, then column, then row, then line. */
+/* By column, then row, then line. */
 static int compare_terms(const void *a, const void *b)
 {
     const ritz_dmig_term *left = a;
     const ritz_dmig_term *right = b;
-    int order = compare_whole(left->matrix, right->matrix);
+    int order = ritz_dof_compare(&left->col, &right->col);
 
-    if (!order)
-        order = ritz_dof_compare(&left->col, &right->col);
     if (!order)
         order = ritz_dof_compare(&left->row, &right->row);
     return order ? order : compare_whole(left->line, right->line);
@@ -351,36 +343,29 @@ static void swap_to_lower(ritz_dmig_term *one)
     }
 }
 
-/* Terms of symmetric matrices all to the lower triangle; by matrix, sorted. */
-static void sort_terms(ritz_dmig_cards *all)
+/* Terms of a symmetric matrix all to the lower triangle; sorted. */
+static void sort_terms(const ritz_dmig_header *owner, ritz_dmig_cards *all)
 {
-    int64_t first = 0;
-
     for (int64_t k = 0; k < all->num_terms; k++)
-        if (all->header[all->term[k].matrix].form == RITZ_DMIG_SYMMETRIC)
+        if (owner->form == RITZ_DMIG_SYMMETRIC)
             swap_to_lower(&all->term[k]);
     if (all->num_terms > 1)
         qsort(all->term, (size_t)all->num_terms, sizeof *all->term,
               compare_terms);
-    for (int64_t k = 0; k < all->num_headers; k++) {
-        all->header[k].first = first;
-        first += all->header[k].count;
-    }
 }
 
-/* No place is given twice, and symmetric ones give one triangle of each. */
-static ritz_status check_terms(const ritz_dmig_cards *all)
+/* No place is given twice, and a symmetric one gives one triangle. */
+static ritz_status check_terms(const ritz_dmig_header *owner,
+                               const ritz_dmig_cards *all)
 {
     char row[RITZ_DOF_NAME_SIZE];
     char col[RITZ_DOF_NAME_SIZE];
 
     for (int64_t k = 1; k < all->num_terms; k++) {
         const ritz_dmig_term *one = &all->term[k];
-        const ritz_dmig_header *owner = &all->header[one->matrix];
         const char *both = "";
 
-        if (one[-1].matrix != one->matrix ||
-            ritz_dof_compare(&one[-1].col, &one->col) != 0 ||
+        if (ritz_dof_compare(&one[-1].col, &one->col) != 0 ||
             ritz_dof_compare(&one[-1].row, &one->row) != 0)
             continue;
         if (owner->form == RITZ_DMIG_SYMMETRIC)
@@ -390,44 +375,75 @@ static ritz_status check_terms(const ritz_dmig_cards *all)
                                      owner->name, ritz_dof_name(one->row, row),
                                      ritz_dof_name(one->col, col), both));
     }
-    for (int64_t k = 0; k < all->num_headers; k++)
-        if (all->header[k].count == 0 && all->cards.num_skipped > 0)
-            RITZ_CHECK(
-                ritz_cards_refuse(&all->cards, all->header[k].line,
-                                  "DMIG '%s' has no columns here, and "
-                                  "INCLUDE is not followed without a folder",
-                                  all->header[k].name));
+    if (owner->count == 0 && all->cards.num_skipped > 0)
+        RITZ_CHECK(ritz_cards_refuse(&all->cards, owner->line,
+                                     "DMIG '%s' has no columns here, and "
+                                     "INCLUDE is not followed without a folder",
+                                     owner->name));
     return RITZ_OK;
 }
 
-static ritz_status read_dmig(const char *bytes, int64_t size,
-                             const char *folder, ritz_matrices *out)
+static void free_cards(ritz_dmig_cards *all)
+{
+    ritz_cards_free(&all->cards);
+    free(all->header);
+    free(all->term);
+}
+
+/* The deck and its headers. */
+static ritz_status take_headers(const ritz_foreign *file, ritz_dmig_cards *all)
+{
+    RITZ_CHECK(ritz_cards_parse(NULL, file->bytes, file->size, file->folder,
+                                &all->cards));
+    RITZ_CHECK(take_cards(all, true));
+    return sort_headers(all);
+}
+
+/* Sizes follow from the columns: headers do not state them. */
+static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_dmig_cards all = {0};
-    ritz_matrices new = {0};
+    ritz_dmig_cards all = {.wanted = -1};
 
-    RITZ_TRY(ritz_cards_parse(NULL, bytes, size, folder, &all.cards));
-    RITZ_TRY(take_deck(&all));
+    RITZ_TRY(take_headers(file, &all));
+    RITZ_TRY(take_cards(&all, false)); /* columns without a header */
     RITZ_FAIL_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                  "there is no DMIG card in the bulk data");
-    sort_terms(&all);
-    RITZ_TRY(check_terms(&all));
     qsort(all.header, (size_t)all.num_headers, sizeof *all.header,
           compare_ranks);
-    RITZ_NEW(new.matrix, all.num_headers);
-    for (; new.count < all.num_headers; new.count++)
-        RITZ_TRY(make_matrix(&all.header[new.count],
-                             all.term + all.header[new.count].first,
-                             &new.matrix[new.count]));
-    snprintf(new.format, sizeof new.format, "%s", ritz_format_dmig.name);
-    *out = new;
-    new = (ritz_matrices){0};
+    for (int64_t k = 0; k < all.num_headers; k++) {
+        const ritz_dmig_header *header = &all.header[k];
+        ritz_listed item = {.nrow = -1,
+                            .ncol = -1,
+                            .symmetric = header->form == RITZ_DMIG_SYMMETRIC,
+                            .is_complex = header->complex,
+                            .at = header->rank};
+
+        memcpy(item.name, header->name, sizeof item.name);
+        RITZ_TRY(ritz_listing_add(out, &item));
+    }
 done:
-    ritz_cards_free(&all.cards);
-    free(all.header);
-    free(all.term);
-    ritz_matrices_free(&new);
+    free_cards(&all);
+    return status;
+}
+
+static ritz_status read_matrix(const ritz_foreign *file,
+                               const ritz_listed *which, ritz_matrix *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dmig_cards all = {.wanted = which->at};
+    const ritz_dmig_header *header = NULL;
+
+    RITZ_TRY(take_headers(file, &all));
+    RITZ_TRY(take_cards(&all, false));
+    header = all.header;
+    while (header->rank != which->at)
+        header++;
+    sort_terms(header, &all);
+    RITZ_TRY(check_terms(header, &all));
+    RITZ_TRY(make_matrix(header, all.term, out));
+done:
+    free_cards(&all);
     return status;
 }
 
@@ -464,5 +480,6 @@ const ritz_format ritz_format_dmig = {
     .summary = "NASTRAN DMIG cards, in bulk data or a punch file",
     .reference = "Nastran1986",
     .recognise = recognise_dmig,
-    .read = read_dmig,
+    .list = list_file,
+    .read = read_matrix,
 };

@@ -1,5 +1,6 @@
 /* Files of matrices: recognised by content, and what a user may ask of them. */
 #include "base/alloc.h"
+#include "base/array.h"
 #include "base/path.h"
 
 #include <ritz/foreign.h>
@@ -20,61 +21,117 @@ static void list_formats(char *text, size_t size)
                                  k > 0 ? ", " : "", ritz_formats[k]->name);
 }
 
-static ritz_status parse(const char *bytes, int64_t size, const char *folder,
-                         ritz_matrices *out)
+static const ritz_format *recognise_bytes(const char *bytes, int64_t size)
 {
-    const ritz_format *format = NULL;
-    char known[128] = "";
-
-    RITZ_REFUSE_IF(size == 0, RITZ_ERR_FORMAT, "is empty");
-    for (int k = 0; ritz_formats[k] && !format; k++)
+    for (int k = 0; ritz_formats[k]; k++)
         if (ritz_formats[k]->recognise(bytes, size))
-            format = ritz_formats[k];
-    list_formats(known, sizeof known);
-    RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
-                   "holds no matrix in a format that is known: %s", known);
-    RITZ_CHECK(format->read(bytes, size, folder, out));
-    snprintf(out->format, sizeof out->format, "%s", format->name);
-    return RITZ_OK;
+            return ritz_formats[k];
+    return NULL;
 }
 
-enum { QUOTED = 192 }; /* room for a quoted path */
-
-/* "'kgg.op4'", cut to what leaves room for the rest of a sentence. */
-static void quote(const char *path, char out[QUOTED])
+ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
 {
-    size_t length = strlen(path);
-    size_t most = QUOTED - 8;
+    ritz_status status = RITZ_OK;
+    ritz_foreign file = {0};
 
-    if (length <= most)
-        snprintf(out, QUOTED, "'%s'", path);
-    else
-        snprintf(out, QUOTED, "'...%s'", path + length - most);
+    RITZ_TRY(ritz_bytes_read(path, &file.size, &file.owned));
+    RITZ_TRY(ritz_path_folder(path, &file.folder));
+    RITZ_NEW(file.path, (int64_t)strlen(path) + 1);
+    memcpy(file.path, path, strlen(path) + 1);
+    file.bytes = file.owned;
+    ritz_digest_bytes(file.bytes, (size_t)file.size, file.digest);
+    file.format = recognise_bytes(file.bytes, file.size);
+    *out = file;
+    file = (ritz_foreign){0};
+done:
+    ritz_foreign_close(&file);
+    return status;
+}
+
+ritz_status ritz_foreign_list(ritz_foreign *file)
+{
+    char known[128] = "";
+
+    RITZ_REFUSE_IF(file->size == 0, RITZ_ERR_FORMAT, "is empty");
+    list_formats(known, sizeof known);
+    RITZ_REFUSE_IF(!file->format, RITZ_ERR_FORMAT,
+                   "holds no matrix in a format that is known: %s", known);
+    if (file->listing.count > 0) /* it is there already */
+        return RITZ_OK;
+    return file->format->list(file, &file->listing);
+}
+
+ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
+                              ritz_matrix *out)
+{
+    return file->format->read(file, &file->listing.item[k], out);
+}
+
+/* A long path is cut to what leaves room for the rest of a sentence. */
+ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status)
+{
+    enum { MOST = 184 };
+    char what[MOST + 8];
+    size_t length = strlen(file->path);
+    bool cut = length > MOST;
+
+    snprintf(what, sizeof what, "'%s%s'", cut ? "..." : "",
+             file->path + (cut ? length - MOST : 0));
+    return ritz_context(status, what);
+}
+
+void ritz_foreign_close(ritz_foreign *file)
+{
+    free(file->path);
+    free(file->folder);
+    free(file->owned);
+    free(file->listing.item);
+    *file = (ritz_foreign){0};
+}
+
+/* ---- all matrices at once ----------------------------------------------- */
+
+static ritz_status take_all(ritz_foreign *file, ritz_matrices *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_matrices all = {0};
+
+    RITZ_TRY(ritz_foreign_list(file));
+    RITZ_NEW(all.matrix, file->listing.count);
+    for (; all.count < file->listing.count; all.count++)
+        RITZ_TRY(ritz_foreign_take(file, all.count, &all.matrix[all.count]));
+    snprintf(all.format, sizeof all.format, "%s", file->format->name);
+    *out = all;
+    all = (ritz_matrices){0};
+done:
+    ritz_matrices_free(&all);
+    return status;
 }
 
 ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
                                ritz_matrices *out)
 {
-    return parse(bytes, size, NULL, out);
+    ritz_foreign file = {
+        .bytes = bytes, .size = size, .format = recognise_bytes(bytes, size)};
+    ritz_status status = take_all(&file, out);
+
+    ritz_foreign_close(&file);
+    return status;
 }
 
 ritz_status ritz_foreign_read(const char *path, ritz_matrices *out)
 {
     ritz_status status = RITZ_OK;
-    char what[QUOTED];
-    char *bytes = NULL;
-    char *folder = NULL;
-    int64_t size = 0;
+    ritz_foreign file = {0};
 
-    RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
-    RITZ_TRY(ritz_path_folder(path, &folder));
-    quote(path, what);
-    RITZ_TRY_IN(what, parse(bytes, size, folder, out));
+    RITZ_TRY(ritz_foreign_open(path, &file));
+    RITZ_TRY(ritz_foreign_context(&file, take_all(&file, out)));
 done:
-    free(bytes);
-    free(folder);
+    ritz_foreign_close(&file);
     return status;
 }
+
+/* ---- one by name -------------------------------------------------------- */
 
 static char fold(char c)
 {
@@ -144,38 +201,38 @@ ritz_status ritz_foreign_path(const char *spec_text, char **out)
 }
 
 /* As they stand, or failing that whatever their case. */
-static bool is_named(const ritz_matrices *all, const spec *s, int64_t k)
+static bool is_named(const ritz_listing *all, const spec *s, int64_t k)
 {
-    const char *name = all->matrix[k].name;
+    const char *name = all->item[k].name;
 
     if (!s->name)
-        return !all->matrix[k].other[0];
+        return !all->item[k].other[0];
     for (int64_t i = 0; i < all->count; i++)
-        if (strlen(all->matrix[i].name) == (size_t)s->length &&
-            strncmp(all->matrix[i].name, s->name, (size_t)s->length) == 0)
+        if (strlen(all->item[i].name) == (size_t)s->length &&
+            strncmp(all->item[i].name, s->name, (size_t)s->length) == 0)
             return strlen(name) == (size_t)s->length &&
                    strncmp(name, s->name, (size_t)s->length) == 0;
     return same_name(name, s->name, s->length);
 }
 
-static int64_t count_name(const ritz_matrices *all, const char *name,
+static int64_t count_name(const ritz_listing *all, const char *name,
                           int64_t from)
 {
     int64_t count = 0;
 
     for (int64_t k = from; k < all->count; k++)
-        count += same_name(all->matrix[k].name, name, (int64_t)strlen(name));
+        count += same_name(all->item[k].name, name, (int64_t)strlen(name));
     return count;
 }
 
 /* "KAA (3 times), MAA": each name once, in the file's order. */
-static void list_names(const ritz_matrices *all, char *text, size_t size)
+static void list_names(const ritz_listing *all, char *text, size_t size)
 {
     size_t used = 0;
 
     text[0] = '\0';
     for (int64_t k = 0; k < all->count; k++) {
-        const char *name = all->matrix[k].name;
+        const char *name = all->item[k].name;
         int64_t times = count_name(all, name, 0);
         int more = 0;
 
@@ -195,11 +252,11 @@ static void list_names(const ritz_matrices *all, char *text, size_t size)
 }
 
 /* The index of the matrix that the spec names. */
-static ritz_status find(const ritz_matrices *all, const spec *s,
-                        const char *file, int64_t *out)
+static ritz_status find_index(const ritz_listing *all, const spec *s,
+                              const char *file, int64_t *out)
 {
     char holds[220];
-    const char *first = all->matrix[0].name;
+    const char *first = all->item[0].name;
     const char *base = strrchr(file, '/');
     int64_t found = -1;
     int64_t times = 0;
@@ -232,25 +289,103 @@ static ritz_status find(const ritz_matrices *all, const spec *s,
     return RITZ_OK;
 }
 
-ritz_status ritz_foreign_select(const char *spec_text, ritz_matrix *out)
+/* The matrix that a spec of this file names. */
+static ritz_status take_named(ritz_foreign *file, const char *spec_text,
+                              ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
     spec s = split_spec(spec_text);
-    ritz_matrices all = {0};
-    char *path = NULL;
     int64_t which = 0;
 
-    RITZ_TRY(ritz_foreign_path(spec_text, &path));
-    RITZ_TRY(ritz_foreign_read(path, &all));
-    RITZ_FAIL_IF(all.count == 0, RITZ_ERR_FORMAT, "'%.200s' holds no matrix",
-                 path);
-    RITZ_TRY(find(&all, &s, path, &which));
-    RITZ_FAIL_IF(all.matrix[which].other[0], RITZ_ERR_FORMAT, "'%.200s' is %s",
-                 spec_text, all.matrix[which].other);
-    *out = all.matrix[which];
-    all.matrix[which] = (ritz_matrix){0};
+    RITZ_CHECK(ritz_foreign_context(file, ritz_foreign_list(file)));
+    RITZ_REFUSE_IF(!file->format || file->listing.count == 0, RITZ_ERR_FORMAT,
+                   "'%.200s' holds no matrix", file->path);
+    RITZ_CHECK(find_index(&file->listing, &s, file->path, &which));
+    RITZ_REFUSE_IF(file->listing.item[which].other[0], RITZ_ERR_FORMAT,
+                   "'%.200s' is %s", spec_text,
+                   file->listing.item[which].other);
+    return ritz_foreign_context(file, ritz_foreign_take(file, which, out));
+}
+
+/* ---- several ------------------------------------------------------------ */
+
+ritz_status ritz_file_sums_add(ritz_file_sums *sums, const ritz_foreign *file)
+{
+    char *path = NULL;
+
+    RITZ_CHECK_ROOM(sums->sum, sums->count, sums->room);
+    RITZ_CHECK_NEW(path, (int64_t)strlen(file->path) + 1);
+    memcpy(path, file->path, strlen(file->path) + 1);
+    sums->sum[sums->count].path = path;
+    memcpy(sums->sum[sums->count++].digest, file->digest, sizeof file->digest);
+    return RITZ_OK;
+}
+
+void ritz_file_sums_free(ritz_file_sums *sums)
+{
+    for (int64_t k = 0; k < sums->count; k++)
+        free(sums->sum[k].path);
+    free(sums->sum);
+    *sums = (ritz_file_sums){0};
+}
+
+/* Whether a spec names a matrix of the file that is open. */
+static bool is_of_file(const ritz_foreign *file, const char *spec_text)
+{
+    spec s = split_spec(spec_text);
+
+    return strlen(file->path) == (size_t)s.path &&
+           memcmp(file->path, spec_text, (size_t)s.path) == 0;
+}
+
+static ritz_status add_context(const char *what, ritz_status status)
+{
+    return what ? ritz_context(status, what) : status;
+}
+
+/* Take all that is wanted of the file of wanted[k]. */
+static ritz_status take_of_file(int64_t k, int64_t count,
+                                const ritz_wanted *wanted, bool *taken,
+                                ritz_file_sums *sums)
+{
+    ritz_status status = RITZ_OK;
+    ritz_foreign file = {0};
+    char *path = NULL;
+
+    RITZ_TRY(ritz_foreign_path(wanted[k].spec, &path));
+    RITZ_TRY(add_context(wanted[k].what, ritz_foreign_open(path, &file)));
+    if (sums)
+        RITZ_TRY(ritz_file_sums_add(sums, &file));
+    for (; k < count; k++) {
+        if (taken[k] || !is_of_file(&file, wanted[k].spec))
+            continue;
+        taken[k] = true;
+        RITZ_TRY(add_context(
+            wanted[k].what, take_named(&file, wanted[k].spec, wanted[k].into)));
+    }
 done:
-    ritz_matrices_free(&all);
+    ritz_foreign_close(&file);
     free(path);
     return status;
+}
+
+ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,
+                                 ritz_file_sums *sums)
+{
+    ritz_status status = RITZ_OK;
+    bool *taken = NULL;
+
+    RITZ_NEW(taken, count);
+    for (int64_t k = 0; k < count; k++)
+        if (!taken[k])
+            RITZ_TRY(take_of_file(k, count, wanted, taken, sums));
+done:
+    free(taken);
+    return status;
+}
+
+ritz_status ritz_foreign_select(const char *spec_text, ritz_matrix *out)
+{
+    const ritz_wanted one = {.spec = spec_text, .into = out};
+
+    return ritz_foreign_collect(1, &one, NULL);
 }

@@ -31,12 +31,14 @@ typedef struct ritz_mat_values {
     bool swap; /* of the other byte order */
 } ritz_mat_values;
 
-/* Matrices read so far, with room for more. */
+/* A file that is gone through, to list what it holds or to read one of it. */
 typedef struct ritz_mat_list {
-    ritz_matrices all;
-    int64_t room;
-    int64_t bytes;        /* of the file, which bound what it can hold */
-    const char *spelling; /* "MAT level 5" */
+    ritz_listing *listing; /* NULL: one matrix is read */
+    int64_t wanted;        /* that one, counted from 0 */
+    ritz_matrix matrix;    /* once it was met */
+    int64_t count;         /* matrices met so far */
+    int64_t bytes;         /* of the file, which bound what it can hold */
+    const char *spelling;  /* "MAT level 5" */
 } ritz_mat_list;
 
 /** Bytes of a value, 0 if the type is none of values. */
@@ -46,6 +48,9 @@ double ritz_mat_value(const ritz_mat_values *values, int64_t k);
 
 /** An unsigned number of 1 to 8 bytes. */
 uint64_t ritz_mat_bits(const unsigned char *at, int64_t size, bool swap);
+
+/** Count a matrix that is not wanted; false: it is to be added. */
+bool ritz_mat_pass(ritz_mat_list *list);
 
 /** A matrix that is not there: why it is none. */
 ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
@@ -80,24 +85,5 @@ ritz_status ritz_mat_read_level5(const char *bytes, int64_t size,
                                  ritz_mat_list *list);
 ritz_status ritz_mat_read_hdf5(const char *bytes, int64_t size,
                                ritz_mat_list *list);
-
-/* Bytes of Level 5 that are gone through element by element. */
-typedef struct ritz_mat_reader {
-    const unsigned char *begin, *at, *end;
-    bool swap;
-} ritz_mat_reader;
-
-typedef struct ritz_mat_element {
-    int type;
-    const unsigned char *at;
-    int64_t bytes;
-} ritz_mat_element;
-
-/** Take the next element. @return RITZ_ERR_FORMAT if it is not all there */
-ritz_status ritz_mat_take(ritz_mat_reader *reader, ritz_mat_element *out);
-
-/** The inside of an array element, and of structs in it. */
-ritz_status ritz_mat_read_array(const ritz_mat_reader *reader,
-                                ritz_mat_list *list);
 
 #endif

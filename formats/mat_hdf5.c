@@ -306,6 +306,8 @@ static ritz_status add_set(walk *w, hid_t set, const char *name)
         RITZ_TRY(ritz_mat_add_other(w->list, name, why));
         goto done;
     }
+    if (ritz_mat_pass(w->list))
+        goto done;
     count = (int64_t)(shape.dims[0] * shape.dims[1]);
     if (kind_of(set) == 'r') {
         RITZ_TRY(read_part(set, name, NULL, count, &part[0]));

@@ -2,6 +2,7 @@
 #include "formats/matrix.h"
 
 #include "base/alloc.h"
+#include "base/array.h"
 
 #include <stdlib.h>
 
@@ -70,4 +71,11 @@ void ritz_matrices_free(ritz_matrices *matrices)
         ritz_matrix_free(&matrices->matrix[k]);
     free(matrices->matrix);
     *matrices = (ritz_matrices){0};
+}
+
+ritz_status ritz_listing_add(ritz_listing *listing, const ritz_listed *item)
+{
+    RITZ_CHECK_ROOM(listing->item, listing->count, listing->room);
+    listing->item[listing->count++] = *item;
+    return RITZ_OK;
 }

@@ -30,4 +30,7 @@ ritz_status ritz_triplets_compress(const ritz_triplets *list, int64_t nrow,
 
 void ritz_triplets_free(ritz_triplets *list);
 
+/** Append to a directory. */
+ritz_status ritz_listing_add(ritz_listing *listing, const ritz_listed *item);
+
 #endif

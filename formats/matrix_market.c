@@ -13,6 +13,7 @@
 #include "base/alloc.h"
 #include "formats/decimal.h"
 #include "formats/lines.h"
+#include "formats/matrix.h"
 
 #include <ritz/foreign.h>
 
@@ -418,7 +419,7 @@ static int64_t array_values(const ritz_market *m, int64_t bytes)
     return m->symmetry == RITZ_MARKET_SKEW ? n * (n - 1) / 2 : n * (n + 1) / 2;
 }
 
-/* Sizes, and room for entries: each takes at least two bytes of the file. */
+/* Sizes; an entry takes at least two bytes of the file. */
 static ritz_status read_size(ritz_market *m)
 {
     int64_t n[3] = {0};
@@ -453,11 +454,10 @@ static ritz_status read_size(ritz_market *m)
                    "line %" PRId64 ": declares more entries than %" PRId64
                    " bytes can hold",
                    m->text.number, bytes);
-    RITZ_CHECK_NEW(m->entry, m->most);
     return RITZ_OK;
 }
 
-static bool recognise(const char *bytes, int64_t size)
+static bool has_banner(const char *bytes, int64_t size)
 {
     static const char *const banner[] = {"%%MatrixMarket", NULL};
     const char *at = bytes;
@@ -465,36 +465,49 @@ static bool recognise(const char *bytes, int64_t size)
     return take_word(&at, bytes + size, banner) == 0;
 }
 
-static ritz_status read_all(const char *bytes, int64_t size, const char *folder,
-                            ritz_matrices *out)
+static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
+{
+    ritz_market m = {
+        .text = {.at = file->bytes, .end = file->bytes + file->size}};
+    ritz_listed item = {0};
+
+    RITZ_CHECK(read_banner(&m));
+    RITZ_CHECK(read_size(&m));
+    item.nrow = m.nrow;
+    item.ncol = m.ncol;
+    item.symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
+    item.is_complex = m.field == RITZ_MARKET_COMPLEX;
+    return ritz_listing_add(out, &item);
+}
+
+static int64_t count_digits(const ritz_market *m)
+{
+    if (m->field == RITZ_MARKET_INTEGER || m->field == RITZ_MARKET_PATTERN ||
+        m->digits > 17)
+        return 17; /* whole numbers are exact */
+    return m->digits < 1 ? 1 : m->digits;
+}
+
+static ritz_status read_matrix(const ritz_foreign *file,
+                               const ritz_listed *which, ritz_matrix *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_market m = {.text = {.at = bytes, .end = bytes + size}};
-    ritz_matrix *matrix = NULL;
+    ritz_market m = {
+        .text = {.at = file->bytes, .end = file->bytes + file->size}};
 
-    (void)folder; /* the format includes no other file */
+    (void)which; /* there is one */
     RITZ_TRY(read_banner(&m));
     RITZ_TRY(read_size(&m));
+    RITZ_NEW(m.entry, m.most);
     RITZ_TRY(read_entries(&m));
     RITZ_TRY(settle_entries(&m));
-    RITZ_NEW(matrix, 1);
-    RITZ_TRY(compress_columns(&m, matrix));
-    matrix->symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
-    matrix->digits = m.digits;
-    if (m.field == RITZ_MARKET_INTEGER || m.field == RITZ_MARKET_PATTERN ||
-        m.digits > 17)
-        matrix->digits = 17; /* whole numbers are exact */
-    if (matrix->digits < 1)
-        matrix->digits = 1;
-    snprintf(matrix->spelling, sizeof matrix->spelling,
-             "Matrix Market %s, %s, %s", layouts[m.layout], fields[m.field],
-             m.kind);
-    out->count = 1;
-    out->matrix = matrix;
-    matrix = NULL;
+    RITZ_TRY(compress_columns(&m, out));
+    out->symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
+    out->digits = count_digits(&m);
+    snprintf(out->spelling, sizeof out->spelling, "Matrix Market %s, %s, %s",
+             layouts[m.layout], fields[m.field], m.kind);
 done:
     free(m.entry);
-    free(matrix);
     return status;
 }
 
@@ -502,6 +515,7 @@ const ritz_format ritz_format_matrix_market = {
     .name = "matrix-market",
     .summary = "Matrix Market, coordinate or array",
     .reference = "BoisvertPozoRemington1996",
-    .recognise = recognise,
-    .read = read_all,
+    .recognise = has_banner,
+    .list = list_file,
+    .read = read_matrix,
 };

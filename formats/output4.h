@@ -28,6 +28,7 @@ typedef struct ritz_output4_build {
     int64_t numbers;  /* per value: 1 real, 2 complex */
     int64_t nnz;      /* entries so far */
     int64_t room;     /* and how many there is room for */
+    int64_t columns;  /* that it may still declare, by the limit above */
     int64_t pointers; /* room in colptr */
     int64_t column;   /* the one being read, from 0; -1 before the first */
     int64_t below;    /* rows up to here are taken in this column */
@@ -35,13 +36,6 @@ typedef struct ritz_output4_build {
     int64_t wide;     /* and words of a real by it; 0: none yet */
     bool sparse;      /* a column came in strings */
 } ritz_output4_build;
-
-/* All matrices of a file; `columns` is what is left of the limit above. */
-typedef struct ritz_output4_list {
-    ritz_matrices all;
-    int64_t room;
-    int64_t columns;
-} ritz_output4_list;
 
 /* A string of a sparse column: consecutive rows. */
 typedef struct ritz_output4_string {
@@ -66,10 +60,9 @@ bool ritz_output4_decode(const ritz_output4_build *build, int64_t rule,
                          int64_t wide, const int64_t *integers, int64_t left,
                          ritz_output4_string *out);
 
-/** Begin a matrix, with room for @p nnz entries. */
-ritz_status ritz_output4_begin(ritz_output4_list *list,
-                               const ritz_output4_header *header, int64_t nnz,
-                               ritz_output4_build *out);
+/** Begin a matrix of a file of @p size bytes, with room for @p nnz entries. */
+ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
+                               int64_t nnz, ritz_output4_build *out);
 
 /** Begin column @p column, from 1; those between are null. */
 ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column);
@@ -98,19 +91,28 @@ static inline void ritz_output4_put(ritz_output4_build *build, int64_t row,
 /** Refuse a value that is not finite. */
 ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row);
 
-/** After the last column: obey FORM and append to the list. */
-ritz_status ritz_output4_end(ritz_output4_list *list,
-                             ritz_output4_build *build);
+/** After the last column: obey FORM and hand the matrix over. */
+ritz_status ritz_output4_end(ritz_output4_build *build, ritz_matrix *out);
+
+/** Append what a header says to a directory. */
+ritz_status ritz_output4_list(ritz_listing *listing,
+                              const ritz_output4_header *header, int64_t at,
+                              int64_t line);
 
 /** Copy a name without its padding. */
 void ritz_output4_name(const char *bytes, int64_t size,
                        char out[RITZ_NAME_SIZE]);
 
+/* Each spelling: whether bytes look like it, its directory, one matrix. */
 bool ritz_output4_is_text(const char *bytes, int64_t size);
-ritz_status ritz_output4_read_text(const char *bytes, int64_t size,
-                                   ritz_output4_list *list);
+ritz_status ritz_output4_list_text(const ritz_foreign *file, ritz_listing *out);
+ritz_status ritz_output4_read_text(const ritz_foreign *file,
+                                   const ritz_listed *which, ritz_matrix *out);
 bool ritz_output4_is_binary(const char *bytes, int64_t size);
-ritz_status ritz_output4_read_binary(const char *bytes, int64_t size,
-                                     ritz_output4_list *list);
+ritz_status ritz_output4_list_binary(const ritz_foreign *file,
+                                     ritz_listing *out);
+ritz_status ritz_output4_read_binary(const ritz_foreign *file,
+                                     const ritz_listed *which,
+                                     ritz_matrix *out);
 
 #endif

@@ -314,29 +314,29 @@ static ritz_status read_column(ritz_binary *b, ritz_output4_build *build,
     return RITZ_OK;
 }
 
-static ritz_status read_matrix(ritz_binary *b, const ritz_binary_record *first,
-                               ritz_output4_list *list)
+/* The matrix whose header was taken. */
+static ritz_status read_columns(ritz_binary *b,
+                                const ritz_output4_header *header,
+                                ritz_matrix *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_output4_header header = {0};
     ritz_output4_build build = {0};
     bool last = false;
 
-    RITZ_TRY(take_header(b, first, &header));
-    b->real = header.type % 2 == 1 && b->integer == 4 ? 4 : 8;
+    b->real = header->type % 2 == 1 && b->integer == 4 ? 4 : 8;
     RITZ_TRY(ritz_output4_begin(
-        list, &header,
-        count_numbers(b, header.ncol) / (header.type > 2 ? 2 : 1), &build));
+        header, b->end - b->begin,
+        count_numbers(b, header->ncol) / (header->type > 2 ? 2 : 1), &build));
     while (!last)
         RITZ_TRY(read_column(b, &build, &last));
     build.matrix.digits = b->real == 4 ? 7 : 17;
     snprintf(build.matrix.spelling, sizeof build.matrix.spelling,
              "OUTPUT4 binary, %s, %s-endian, %d-byte integers",
-             !build.sparse   ? "dense"
-             : header.bigmat ? "bigmat"
-                             : "sparse",
+             !build.sparse    ? "dense"
+             : header->bigmat ? "bigmat"
+                              : "sparse",
              b->big_endian ? "big" : "little", (int)b->integer);
-    RITZ_TRY(ritz_output4_end(list, &build));
+    RITZ_TRY(ritz_output4_end(&build, out));
 done:
     ritz_matrix_free(&build.matrix);
     return status;
@@ -349,18 +349,77 @@ bool ritz_output4_is_binary(const char *bytes, int64_t size)
     return find_spelling(bytes, size, &b);
 }
 
-ritz_status ritz_output4_read_binary(const char *bytes, int64_t size,
-                                     ritz_output4_list *list)
+/* ---- directory ---------------------------------------------------------- */
+
+/* Move behind a matrix by its records alone; false if these do not fit. */
+static bool skip_columns(ritz_binary *b, const ritz_output4_header *header)
+{
+    ritz_binary_record column = {0};
+    int64_t last = 0;
+
+    while (last <= header->ncol) {
+        int64_t number = 0;
+
+        if (take_record(b, &column) != RITZ_OK || !column.at ||
+            column.size < 3 * b->integer)
+            return false;
+        number = load_integer(b, column.at, b->integer);
+        if (number <= last || number > header->ncol + 1)
+            return false;
+        last = number;
+    }
+    return true;
+}
+
+/* Where records do not lead behind a matrix, it is read: that, or the sentence
+ * that says what is wrong. */
+static ritz_status pass_matrix(ritz_binary *b,
+                               const ritz_output4_header *header)
+{
+    ritz_status status = RITZ_OK;
+    ritz_binary ahead = *b;
+    ritz_matrix unused = {0};
+
+    if (skip_columns(&ahead, header))
+        *b = ahead;
+    else
+        status = read_columns(b, header, &unused);
+    ritz_matrix_free(&unused);
+    return status;
+}
+
+ritz_status ritz_output4_list_binary(const ritz_foreign *file,
+                                     ritz_listing *out)
 {
     ritz_binary b = {0};
     ritz_binary_record first = {0};
+    ritz_output4_header header = {0};
 
-    (void)find_spelling(bytes, size, &b);
+    (void)find_spelling(file->bytes, file->size, &b);
     for (;;) {
+        int64_t at = b.at - b.begin;
+
         RITZ_CHECK(take_record(&b, &first));
         if (first.size < 0)
             return RITZ_OK;
-        RITZ_CHECK(read_matrix(&b, &first, list));
+        RITZ_CHECK(take_header(&b, &first, &header));
+        RITZ_CHECK(ritz_output4_list(out, &header, at, 0));
+        RITZ_CHECK(pass_matrix(&b, &header));
     }
-    return RITZ_OK;
+}
+
+ritz_status ritz_output4_read_binary(const ritz_foreign *file,
+                                     const ritz_listed *which, ritz_matrix *out)
+{
+    ritz_binary b = {0};
+    ritz_binary_record first = {0};
+    ritz_output4_header header = {0};
+
+    (void)find_spelling(file->bytes, file->size, &b);
+    b.at = b.begin + which->at;
+    RITZ_CHECK(take_record(&b, &first));
+    RITZ_REFUSE_IF(first.size < 0, RITZ_ERR_FORMAT,
+                   "byte %td: no matrix begins here", b.at - b.begin);
+    RITZ_CHECK(take_header(&b, &first, &header));
+    return read_columns(&b, &header, out);
 }

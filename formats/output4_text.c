@@ -357,34 +357,44 @@ static ritz_status read_column(ritz_output4_text *t, ritz_output4_build *build,
     return read_numbers(t, build, n[1] - 1, n[2]);
 }
 
-static ritz_status read_matrix(ritz_output4_text *t, ritz_output4_list *list)
+/* The matrix whose header was taken. */
+static ritz_status read_columns(ritz_output4_text *t,
+                                const ritz_output4_header *header, int64_t size,
+                                ritz_matrix *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_output4_header header = {0};
     ritz_output4_build build = {0};
 
-    RITZ_FAIL_IF(!take_header(t, &header), RITZ_ERR_FORMAT,
-                 "line %" PRId64 ": '%.*s' begins no matrix", t->lines.number,
-                 ritz_lines_quoted(t->lines.line, t->lines.line_end),
-                 t->lines.line);
-    RITZ_TRY(ritz_output4_begin(list, &header, 0, &build));
+    RITZ_TRY(ritz_output4_begin(header, size, 0, &build));
     for (bool last = false; !last;) {
         RITZ_FAIL_IF(!take_filled_line(t), RITZ_ERR_FORMAT,
                      "'%s' ends after column %" PRId64 " of %" PRId64,
-                     header.name, build.column + 1, header.ncol);
+                     header->name, build.column + 1, header->ncol);
         RITZ_TRY(read_column(t, &build, &last));
     }
     build.matrix.digits = t->digits;
     snprintf(build.matrix.spelling, sizeof build.matrix.spelling,
              "OUTPUT4 text, %s, %s",
-             !build.sparse   ? "dense"
-             : header.bigmat ? "bigmat"
-                             : "sparse",
+             !build.sparse    ? "dense"
+             : header->bigmat ? "bigmat"
+                              : "sparse",
              t->format);
-    RITZ_TRY(ritz_output4_end(list, &build));
+    RITZ_TRY(ritz_output4_end(&build, out));
 done:
     ritz_matrix_free(&build.matrix);
     return status;
+}
+
+/* The next header; false at the end of the file. */
+static ritz_status next_header(ritz_output4_text *t, ritz_output4_header *out,
+                               bool *found)
+{
+    *found = take_filled_line(t);
+    RITZ_REFUSE_IF(*found && !take_header(t, out), RITZ_ERR_FORMAT,
+                   "line %" PRId64 ": '%.*s' begins no matrix", t->lines.number,
+                   ritz_lines_quoted(t->lines.line, t->lines.line_end),
+                   t->lines.line);
+    return RITZ_OK;
 }
 
 bool ritz_output4_is_text(const char *bytes, int64_t size)
@@ -395,12 +405,100 @@ bool ritz_output4_is_text(const char *bytes, int64_t size)
     return take_filled_line(&t) && take_header(&t, &header);
 }
 
-ritz_status ritz_output4_read_text(const char *bytes, int64_t size,
-                                   ritz_output4_list *list)
-{
-    ritz_output4_text t = {.lines = {.at = bytes, .end = bytes + size}};
+/* ---- directory ---------------------------------------------------------- */
 
-    while (take_filled_line(&t))
-        RITZ_CHECK(read_matrix(&t, list));
-    return RITZ_OK;
+static bool skip_lines(ritz_output4_text *t, int64_t count)
+{
+    for (; count > 0; count--)
+        if (!take_line(t))
+            return false;
+    return true;
+}
+
+/*
+ * Strings of a sparse column, up to the header of the next one, which alone has
+ * three integers: headers of strings have one or two, numbers have a point.
+ */
+static bool skip_strings(ritz_output4_text *t)
+{
+    ritz_output4_text ahead = *t;
+    int64_t n[3];
+
+    while (take_line(&ahead)) {
+        int64_t length = ahead.lines.line_end - ahead.lines.line;
+
+        if (!memchr(ahead.lines.line, '.', (size_t)length) &&
+            take_integers(&ahead, 3, n))
+            return true;
+        *t = ahead;
+    }
+    return false;
+}
+
+/* Move behind a matrix by its counts alone; false if these do not fit. */
+static bool skip_columns(ritz_output4_text *t,
+                         const ritz_output4_header *header)
+{
+    const ritz_output4_build build = {.header = *header};
+    int64_t column = 0;
+    int64_t n[3] = {0};
+
+    for (;;) {
+        if (!take_filled_line(t) || !take_integers(t, 3, n) || n[1] < 0 ||
+            n[2] < 1 || n[0] <= column || n[0] > header->ncol + 1)
+            return false;
+        column = n[0];
+        if (column > header->ncol)
+            return skip_last(t, &build, n[2]) == RITZ_OK;
+        if (n[1] == 0 ? !skip_strings(t)
+                      : !skip_lines(t, (n[2] - 1) / t->per_line + 1))
+            return false;
+    }
+}
+
+/* Where counts do not lead behind a matrix, it is read: that, or the sentence
+ * that says what is wrong. */
+static ritz_status pass_matrix(ritz_output4_text *t,
+                               const ritz_output4_header *header, int64_t size)
+{
+    ritz_status status = RITZ_OK;
+    ritz_output4_text ahead = *t;
+    ritz_matrix unused = {0};
+
+    if (skip_columns(&ahead, header))
+        *t = ahead;
+    else
+        status = read_columns(t, header, size, &unused);
+    ritz_matrix_free(&unused);
+    return status;
+}
+
+ritz_status ritz_output4_list_text(const ritz_foreign *file, ritz_listing *out)
+{
+    ritz_output4_text t = {
+        .lines = {.at = file->bytes, .end = file->bytes + file->size}};
+    ritz_output4_header header = {0};
+    bool found = false;
+
+    for (;;) {
+        RITZ_CHECK(next_header(&t, &header, &found));
+        if (!found)
+            return RITZ_OK;
+        RITZ_CHECK(ritz_output4_list(out, &header, t.lines.line - file->bytes,
+                                     t.lines.number));
+        RITZ_CHECK(pass_matrix(&t, &header, file->size));
+    }
+}
+
+ritz_status ritz_output4_read_text(const ritz_foreign *file,
+                                   const ritz_listed *which, ritz_matrix *out)
+{
+    ritz_output4_text t = {.lines = {.at = file->bytes + which->at,
+                                     .end = file->bytes + file->size,
+                                     .number = which->line - 1}};
+    ritz_output4_header header = {0};
+    bool found = false;
+
+    RITZ_CHECK(next_header(&t, &header, &found));
+    return read_columns(&t, &header, file->size, out);
 }

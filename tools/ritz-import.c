@@ -21,7 +21,7 @@ static ritz_status take_matrix(cli_run *run, const char *spec)
     if (!spec)
         return RITZ_OK;
     RITZ_TRY(ritz_foreign_path(spec, &path));
-    RITZ_TRY(cli_input(run, path));
+    RITZ_TRY(cli_input_unread(run, path));
 done:
     free(path);
     return status;
@@ -56,6 +56,14 @@ static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
         RITZ_CHECK(cli_input(run, request->bulk));
     if (request->dofs)
         RITZ_CHECK(cli_input(run, request->dofs));
+    return RITZ_OK;
+}
+
+/* Sums of the files that were read for their matrices. */
+static ritz_status take_sums(cli_run *run, const ritz_file_sums *sums)
+{
+    for (int64_t k = 0; k < sums->count; k++)
+        RITZ_CHECK(cli_input_sum(run, sums->sum[k].path, sums->sum[k].digest));
     return RITZ_OK;
 }
 
@@ -161,20 +169,24 @@ static void report(cli_run *run, const ritz_component *component,
     cli_record(run, "import", component->num_dofs);
 }
 
-static ritz_status import(cli_run *run, const ritz_import_request *request)
+static ritz_status import(cli_run *run, ritz_import_request *request)
 {
     ritz_status status = RITZ_OK;
     ritz_component component = {0};
     ritz_import_report done = {0};
+    ritz_file_sums sums = {0};
     ritz_stamp stamp = {0};
 
     RITZ_TRY(take_inputs(run, request));
+    request->sums = &sums;
     RITZ_TRY(ritz_import(request, &component, &done));
+    RITZ_TRY(take_sums(run, &sums));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_component(run->output, &component, &stamp));
     report(run, &component, &done);
 done:
     ritz_import_report_free(&done);
+    ritz_file_sums_free(&sums);
     ritz_component_free(&component);
     return status;
 }
@@ -194,20 +206,24 @@ done:
 }
 
 static ritz_status import_space(cli_run *run,
-                                const ritz_import_space_request *request)
+                                ritz_import_space_request *request)
 {
     ritz_status status = RITZ_OK;
     ritz_state_space space = {0};
+    ritz_file_sums sums = {0};
     ritz_stamp stamp = {0};
 
     RITZ_TRY(take_space_inputs(run, request->matrices));
+    request->sums = &sums;
     RITZ_TRY_IN("--state-space", ritz_import_state_space(request, &space));
+    RITZ_TRY(take_sums(run, &sums));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_state_space(run->output, &space, &stamp));
     cli_say(run, "%s:", run->output);
     RITZ_TRY(describe_states(run, &space));
     cli_record(run, "import", space.A.nrow);
 done:
+    ritz_file_sums_free(&sums);
     ritz_state_space_free(&space);
     return status;
 }

@@ -94,34 +94,17 @@ done:
     return status;
 }
 
-static bool is_matrix_file(const char *bytes, int64_t size)
-{
-    for (const ritz_format *const *f = ritz_formats; *f; f++)
-        if ((*f)->recognise(bytes, size))
-            return true;
-    return false;
-}
-
-static ritz_status describe_foreign(cli_run *run, const char *path)
+static ritz_status describe_bytes(cli_run *run, const ritz_foreign *file)
 {
     ritz_status status = RITZ_OK;
-    ritz_matrices matrices = {0};
     ritz_deck deck = {0};
-    char *bytes = NULL;
-    int64_t size = 0;
 
-    RITZ_TRY(cli_input(run, path));
-    RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
-    if (is_matrix_file(bytes, size)) {
-        RITZ_TRY_IN(path, ritz_foreign_parse(bytes, size, &matrices));
-        describe_matrices(run, &matrices);
-        goto done;
-    }
-    RITZ_FAIL_IF(size == 0, RITZ_ERR_FORMAT, "'%s' is empty", path);
-    RITZ_FAIL_IF(!ritz_deck_recognise(bytes, size), RITZ_ERR_FORMAT,
+    RITZ_FAIL_IF(file->size == 0, RITZ_ERR_FORMAT, "'%s' is empty", file->path);
+    RITZ_FAIL_IF(!ritz_deck_recognise(file->bytes, file->size), RITZ_ERR_FORMAT,
                  "'%s' is neither a container nor a matrix file nor text",
-                 path);
-    RITZ_TRY(ritz_deck_read(path, &deck));
+                 file->path);
+    RITZ_TRY(ritz_deck_parse(file->path, file->bytes, file->size, file->folder,
+                             &deck));
     RITZ_FAIL_IF(deck.grids.count + deck.num_points + deck.num_fixed +
                          deck.num_constraints + deck.num_sets[RITZ_SET_A] +
                          deck.num_sets[RITZ_SET_B] +
@@ -130,17 +113,35 @@ static ritz_status describe_foreign(cli_run *run, const char *path)
                  RITZ_ERR_FORMAT,
                  "'%s' is no container, no matrix file that Ritz knows, and "
                  "no bulk data with grids",
-                 path);
+                 file->path);
     describe_deck(run, &deck);
 done:
-    free(bytes);
-    ritz_matrices_free(&matrices);
     ritz_deck_free(&deck);
     return status;
 }
 
+static ritz_status describe_foreign(cli_run *run, bool directory,
+                                    const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_foreign file = {0};
+
+    RITZ_TRY(cli_input_unread(run, path));
+    RITZ_TRY(ritz_foreign_open(path, &file));
+    RITZ_TRY(cli_input_sum(run, path, file.digest));
+    if (file.format) {
+        RITZ_TRY_IN(path, ritz_foreign_list(&file));
+        RITZ_TRY_IN(path, describe_matrices(run, &file, directory));
+    } else {
+        RITZ_TRY(describe_bytes(run, &file));
+    }
+done:
+    ritz_foreign_close(&file);
+    return status;
+}
+
 /* Keys of a single file stand in the report itself too. */
-static ritz_status inform(cli_run *run, bool members)
+static ritz_status inform(cli_run *run, bool members, bool directory)
 {
     sink_list(run, "files");
     for (int k = 0; k < run->num_operands; k++) {
@@ -151,7 +152,7 @@ static ritz_status inform(cli_run *run, bool members)
         cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
         RITZ_CHECK(ritz_container_is(path)
                        ? describe_container(run, members, path)
-                       : describe_foreign(run, path));
+                       : describe_foreign(run, directory, path));
         sink_end(run);
     }
     sink_end(run);
@@ -166,9 +167,12 @@ static ritz_status inform(cli_run *run, bool members)
 int main(int argc, char **argv)
 {
     bool members = false;
+    bool directory = false;
     const cli_option options[] = {
         {CLI_FLAG(&members), .name = "members",
          .help = "list what a container holds, with sizes"},
+        {CLI_FLAG(&directory), .name = "directory",
+         .help = "list a matrix file without reading values"},
         {CLI_ACTION(list_members), .name = "list",
          .help = "list what containers can hold, with its meaning"},
         {0}};
@@ -188,5 +192,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    return cli_finish(&run, inform(&run, members));
+    return cli_finish(&run, inform(&run, members, directory));
 }

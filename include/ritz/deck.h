@@ -69,8 +69,8 @@ const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size);
 /** Recognise and read; @return RITZ_ERR_FORMAT if no format knows it. */
 ritz_status ritz_deck_read(const char *path, ritz_deck *out);
 
-/** Read a deck from text. */
-ritz_status ritz_deck_parse(const char *path, const char *text,
+/** The same of bytes, which a NUL follows; @p path and @p folder as above. */
+ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
                             const char *folder, ritz_deck *out);
 
 void ritz_deck_free(ritz_deck *deck);

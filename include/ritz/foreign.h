@@ -32,6 +32,33 @@ typedef struct ritz_matrices {
     char format[RITZ_NAME_SIZE]; /* of the descriptor that read them */
 } ritz_matrices;
 
+/* What is known of a matrix before its values are read. */
+typedef struct ritz_listed {
+    char name[RITZ_NAME_SIZE];
+    int64_t nrow, ncol; /* as its header has them; -1: only reading tells */
+    bool symmetric, is_complex;
+    int64_t at;   /* where it begins: byte of the file, or place among others */
+    int64_t line; /* of that byte, where the format is text */
+    char other[RITZ_NAME_SIZE]; /* as in ritz_matrix */
+} ritz_listed;
+
+typedef struct ritz_listing {
+    int64_t count, room;
+    ritz_listed *item;
+} ritz_listing;
+
+/* A file of matrices that was read, and the directory of what it holds. */
+typedef struct ritz_foreign {
+    char *path;        /* NULL: bytes without a file */
+    const char *bytes; /* a NUL follows those of a file */
+    int64_t size;
+    char *folder; /* where files that it includes lie; NULL: none is followed */
+    char digest[RITZ_DIGEST_SIZE];    /* SHA-256 of a file */
+    const struct ritz_format *format; /* NULL: none knows it */
+    ritz_listing listing;
+    char *owned; /* the bytes of a file */
+} ritz_foreign;
+
 typedef struct ritz_format {
     const char *name;      /* "output4" */
     const char *summary;   /* one line */
@@ -39,11 +66,13 @@ typedef struct ritz_format {
     /** Whether these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
     /**
-     * All matrices; files that they include are looked for in @p folder, NULL:
-     * those are not followed. @return RITZ_ERR_FORMAT naming line or byte
+     * Append what the file holds, without its values where the format allows
+     * that. @return RITZ_ERR_FORMAT naming line or byte
      */
-    ritz_status (*read)(const char *bytes, int64_t size, const char *folder,
-                        ritz_matrices *out);
+    ritz_status (*list)(const ritz_foreign *file, ritz_listing *out);
+    /** Read one matrix of the list. @return as list */
+    ritz_status (*read)(const ritz_foreign *file, const ritz_listed *which,
+                        ritz_matrix *out);
 } ritz_format;
 
 /** All formats of matrices, ended by NULL. */
@@ -53,7 +82,21 @@ extern const ritz_format ritz_format_mat;
 extern const ritz_format ritz_format_matrix_market;
 extern const ritz_format ritz_format_output4;
 
-/** Recognise and read; @return RITZ_ERR_FORMAT if no format knows it. */
+/** Read the bytes of a file once, sum them up and recognise their format. */
+ritz_status ritz_foreign_open(const char *path, ritz_foreign *out);
+
+/** Fill the directory; @return RITZ_ERR_FORMAT if no format knows the file. */
+ritz_status ritz_foreign_list(ritz_foreign *file);
+
+/** Read matrix @p k of the directory. */
+ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
+                              ritz_matrix *out);
+
+/** Put the path of a file before what is wrong with it. */
+ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status);
+void ritz_foreign_close(ritz_foreign *file);
+
+/** All matrices of a file, or of bytes, at once. */
 ritz_status ritz_foreign_read(const char *path, ritz_matrices *out);
 ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
                                ritz_matrices *out);
@@ -67,6 +110,37 @@ ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
  * @return RITZ_ERR_ARGUMENT listing what the file holds
  */
 ritz_status ritz_foreign_select(const char *spec, ritz_matrix *out);
+
+/* Files that were read, and their SHA-256. */
+typedef struct ritz_file_sum {
+    char *path;
+    char digest[RITZ_DIGEST_SIZE];
+} ritz_file_sum;
+
+typedef struct ritz_file_sums {
+    int64_t count, room;
+    ritz_file_sum *sum;
+} ritz_file_sums;
+
+/** Append a file. */
+ritz_status ritz_file_sums_add(ritz_file_sums *sums, const ritz_foreign *file);
+void ritz_file_sums_free(ritz_file_sums *sums);
+
+/* A matrix that is wanted. */
+typedef struct ritz_wanted {
+    const char *spec; /* as of ritz_foreign_select */
+    const char *what; /* "stiffness", before messages; NULL: nothing is */
+    ritz_matrix *into;
+} ritz_wanted;
+
+/**
+ * Select several matrices. Each file is read once, one file at a time, and of
+ * its matrices only those that are wanted.
+ *
+ * @param[in,out] sums  gets the files; NULL: not asked
+ */
+ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,
+                                 ritz_file_sums *sums);
 
 /** The part of a spec that names the file; the caller frees @p out. */
 ritz_status ritz_foreign_path(const char *spec, char **out);

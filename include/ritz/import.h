@@ -3,6 +3,7 @@
 #define RITZ_IMPORT_H
 
 #include <ritz/component.h>
+#include <ritz/foreign.h>
 #include <ritz/state_space.h>
 
 #pragma GCC visibility push(default)
@@ -27,6 +28,7 @@ typedef struct ritz_import_request {
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
     bool symmetrise;
+    ritz_file_sums *sums; /* gets the files of matrices; NULL: not asked */
 } ritz_import_request;
 
 /* A grid that was made for a port. */
@@ -97,6 +99,7 @@ typedef struct ritz_import_space_request {
     const char *inputs;   /* "NAME,NAME"; u1, u2, ... */
     const char *outputs;  /* "NAME[@LIMIT],NAME"; y1, y2, ... */
     const char *units;
+    ritz_file_sums *sums; /* gets the files of matrices; NULL: not asked */
 } ritz_import_space_request;
 
 /**

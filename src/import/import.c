@@ -246,18 +246,32 @@ static ritz_status check_matrix(const ritz_part *part)
     return RITZ_OK;
 }
 
-/* Read a matrix, if one is asked for. */
-static ritz_status take_part(const char *spec, ritz_sparse *becomes,
-                             ritz_parts *parts)
+static void add_part(const char *spec, const char *what, ritz_sparse *becomes,
+                     ritz_parts *parts)
 {
-    ritz_part *part = &parts->part[parts->count];
+    if (spec)
+        parts->part[parts->count++] =
+            (ritz_part){.spec = spec, .what = what, .becomes = becomes};
+}
 
-    if (!spec)
-        return RITZ_OK;
-    *part = (ritz_part){.spec = spec, .becomes = becomes};
-    RITZ_CHECK(ritz_foreign_select(spec, &part->matrix));
-    parts->count++;
-    return check_matrix(part);
+/* Read the matrices of all parts: each file once. */
+static ritz_status read_parts(ritz_parts *parts, ritz_file_sums *sums)
+{
+    ritz_status status = RITZ_OK;
+    ritz_wanted *wanted = NULL;
+
+    RITZ_NEW(wanted, parts->count);
+    for (int64_t k = 0; k < parts->count; k++) {
+        ritz_part *part = &parts->part[k];
+
+        wanted[k] = (ritz_wanted){part->spec, part->what, &part->matrix};
+    }
+    RITZ_TRY(ritz_foreign_collect(parts->count, wanted, sums));
+    for (int64_t k = 0; k < parts->count; k++)
+        RITZ_TRY_IN(parts->part[k].what, check_matrix(&parts->part[k]));
+done:
+    free(wanted);
+    return status;
 }
 
 /* "F@LOAD": geometric stiffness of a unit load. */
@@ -277,7 +291,8 @@ static ritz_status take_load(const char *text, ritz_component *component,
     RITZ_CHECK_NEW(*spec, at - text + 1);
     memcpy(*spec, text, (size_t)(at - text));
     component->num_loads++;
-    return take_part(*spec, &load->KG, parts);
+    add_part(*spec, "geometric stiffness", &load->KG, parts);
+    return RITZ_OK;
 }
 
 static ritz_status take_parts(const ritz_import_request *request,
@@ -300,12 +315,11 @@ static ritz_status take_parts(const ritz_import_request *request,
     RITZ_CHECK_NEW(parts->part, most + request->num_loads);
     RITZ_CHECK_NEW(component->load, request->num_loads);
     for (int64_t k = 0; k < most; k++)
-        RITZ_CHECK_IN(table[k].option,
-                      take_part(table[k].spec, table[k].becomes, parts));
+        add_part(table[k].spec, table[k].option, table[k].becomes, parts);
     for (int64_t k = 0; k < request->num_loads; k++)
         RITZ_CHECK_IN("geometric stiffness",
                       take_load(request->load[k], component, &specs[k], parts));
-    return RITZ_OK;
+    return read_parts(parts, request->sums);
 }
 
 /*

@@ -13,6 +13,7 @@
 /* A matrix that was asked for, and which one of the component it becomes. */
 typedef struct ritz_part {
     const char *spec; /* "kgg.op4:KGG", for messages */
+    const char *what; /* "stiffness" */
     ritz_matrix matrix;
     ritz_sparse *becomes;
     int64_t *place; /* row of the component-to-be of each of its rows */

@@ -71,8 +71,9 @@ bool ritz_import_space_next(const char **at, char *out)
     return true;
 }
 
-/* "A=F,B=F,..." */
-static ritz_status take_listed(const char *text, char *spec, parts *out)
+/* The specs of "A=F,B=F,..." one behind the other in @p specs. */
+static ritz_status list_specs(const char *text, char *specs, parts *out,
+                              int *count, ritz_wanted wanted[NUM_PARTS])
 {
     while (*text) {
         int k = letter_of(text);
@@ -81,11 +82,29 @@ static ritz_status take_listed(const char *text, char *spec, parts *out)
                        "'%s' is not of the form A=F,B=F,C=F[,D=F][,E=F]", text);
         RITZ_REFUSE_IF(out->there[k], RITZ_ERR_ARGUMENT, "'%c' is given twice",
                        letters[k]);
-        ritz_import_space_next(&text, spec);
-        RITZ_CHECK(ritz_foreign_select(spec, &out->matrix[k]));
+        ritz_import_space_next(&text, specs);
+        wanted[(*count)++] =
+            (ritz_wanted){.spec = specs, .into = &out->matrix[k]};
         out->there[k] = true;
+        specs += strlen(specs) + 1;
     }
     return RITZ_OK;
+}
+
+static ritz_status take_listed(const char *text, ritz_file_sums *sums,
+                               parts *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_wanted wanted[NUM_PARTS];
+    char *specs = NULL;
+    int count = 0;
+
+    RITZ_NEW(specs, (int64_t)strlen(text) + 1);
+    RITZ_TRY(list_specs(text, specs, out, &count, wanted));
+    RITZ_TRY(ritz_foreign_collect(count, wanted, sums));
+done:
+    free(specs);
+    return status;
 }
 
 static char folded(char c)
@@ -94,13 +113,14 @@ static char folded(char c)
 }
 
 /* Index of "STEM.A" or "A"; as it stands before other case; -1: none. */
-static int64_t find(const ritz_matrices *all, const char *stem, char letter)
+static int64_t find_letter(const ritz_listing *all, const char *stem,
+                           char letter)
 {
     int64_t found = -1;
     size_t length = strlen(stem);
 
     for (int64_t k = 0; k < all->count; k++) {
-        const char *name = all->matrix[k].name;
+        const char *name = all->item[k].name;
 
         if (strncmp(name, stem, length) != 0)
             continue;
@@ -116,16 +136,16 @@ static int64_t find(const ritz_matrices *all, const char *stem, char letter)
 }
 
 /* The stem of "sys.A" if no other struct has an A; "" if there is none. */
-static ritz_status find_stem(const ritz_matrices *all, const char *file,
+static ritz_status find_stem(const ritz_listing *all, const char *file,
                              char stem[RITZ_NAME_SIZE])
 {
     int64_t found = 0;
 
     stem[0] = '\0';
-    if (find(all, "", 'A') >= 0)
+    if (find_letter(all, "", 'A') >= 0)
         return RITZ_OK;
     for (int64_t k = 0; k < all->count; k++) {
-        const char *name = all->matrix[k].name;
+        const char *name = all->item[k].name;
         const char *dot = strrchr(name, '.');
 
         if (!dot || folded(dot[1]) != 'A' || dot[2])
@@ -141,34 +161,47 @@ static ritz_status find_stem(const ritz_matrices *all, const char *file,
     return RITZ_OK;
 }
 
+/* The matrices of one stem in a file that is open. */
+static ritz_status take_stem(const ritz_foreign *file, const char *stem,
+                             parts *out)
+{
+    const ritz_listing *all = &file->listing;
+
+    for (int k = 0; k < NUM_PARTS; k++) {
+        int64_t at = find_letter(all, stem, letters[k]);
+
+        if (at < 0)
+            continue;
+        RITZ_REFUSE_IF(all->item[at].other[0], RITZ_ERR_FORMAT,
+                       "'%s' of '%s' is %s", all->item[at].name, file->path,
+                       all->item[at].other);
+        RITZ_CHECK(ritz_foreign_context(
+            file, ritz_foreign_take(file, at, &out->matrix[k])));
+        out->there[k] = true;
+    }
+    return RITZ_OK;
+}
+
 /* "FILE[:NAME]" */
-static ritz_status take_file(const char *text, parts *out)
+static ritz_status take_file(const char *text, ritz_file_sums *sums, parts *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_matrices all = {0};
+    ritz_foreign file = {0};
     char stem[RITZ_NAME_SIZE] = "";
     char *path = NULL;
 
     RITZ_TRY(ritz_foreign_path(text, &path));
-    RITZ_TRY(ritz_foreign_read(path, &all));
+    RITZ_TRY(ritz_foreign_open(path, &file));
+    if (sums)
+        RITZ_TRY(ritz_file_sums_add(sums, &file));
+    RITZ_TRY(ritz_foreign_context(&file, ritz_foreign_list(&file)));
     if (strlen(path) < strlen(text))
         snprintf(stem, sizeof stem, "%s", text + strlen(path) + 1);
     else
-        RITZ_TRY(find_stem(&all, path, stem));
-    for (int k = 0; k < NUM_PARTS; k++) {
-        int64_t at = find(&all, stem, letters[k]);
-
-        if (at < 0)
-            continue;
-        RITZ_FAIL_IF(all.matrix[at].other[0], RITZ_ERR_FORMAT,
-                     "'%s' of '%s' is %s", all.matrix[at].name, path,
-                     all.matrix[at].other);
-        out->matrix[k] = all.matrix[at];
-        all.matrix[at] = (ritz_matrix){0};
-        out->there[k] = true;
-    }
+        RITZ_TRY(find_stem(&file.listing, path, stem));
+    RITZ_TRY(take_stem(&file, stem, out));
 done:
-    ritz_matrices_free(&all);
+    ritz_foreign_close(&file);
     free(path);
     return status;
 }
@@ -333,20 +366,17 @@ ritz_status ritz_import_state_space(const ritz_import_space_request *request,
     ritz_status status = RITZ_OK;
     ritz_state_space model = {0};
     parts p = {0};
-    char *spec = NULL;
 
-    RITZ_NEW(spec, (int64_t)strlen(request->matrices) + 1);
     if (letter_of(request->matrices) >= 0)
-        RITZ_TRY(take_listed(request->matrices, spec, &p));
+        RITZ_TRY(take_listed(request->matrices, request->sums, &p));
     else
-        RITZ_TRY(take_file(request->matrices, &p));
+        RITZ_TRY(take_file(request->matrices, request->sums, &p));
     RITZ_TRY(check(&p));
     RITZ_TRY(make(request, &p, &model));
     *out = model;
     model = (ritz_state_space){0};
 done:
     parts_free(&p);
-    free(spec);
     ritz_state_space_free(&model);
     return status;
 }

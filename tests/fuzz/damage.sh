@@ -78,6 +78,7 @@ awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print i, 0 }' >k.dofs
 
 cat >cases <<'CASES'
 stator.op4   ritz-info @
+stator.op4   ritz-info --directory @
 binary.op4   ritz-info @
 k.mtx        ritz-info @
 stator.bdf   ritz-info @

@@ -397,6 +397,7 @@ END
 # --- the demo's model --------------------------------------------------------------
 
 expect 0 'OUTPUT4' ritz-info "$data/dualspin/rotor.op4"
+expect 0 '246 x 246 symmetric' ritz-info --directory "$data/dualspin/rotor.op4"
 import_body stator -q --port bearing=1 -o stator.h5
 # far below what rounding makes of rigid modes
 expect 0 '6 rigid, 6 residual' \

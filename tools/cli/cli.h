@@ -143,6 +143,10 @@ void cli_pair(const cli_program *program, const char *option, const char *text,
  */
 ritz_status cli_input(cli_run *run, const char *path);
 
+/** The same of a file that its reader sums up, by cli_input_sum. */
+ritz_status cli_input_unread(cli_run *run, const char *path);
+ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest);
+
 /**
  * Whether a file can be made at @p path, before the work that it is to hold:
  * one is, beside it, and removed. cli_input asks it of -o by itself.

@@ -7,6 +7,7 @@
 
 #include <cblas.h>
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -69,7 +70,26 @@ static void limit_threads(cli_run *run, const struct stat *file)
         execv(self, run->argv);
 }
 
-ritz_status cli_input(cli_run *run, const char *path)
+static ritz_status check_opens(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+
+    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                   strerror(errno));
+    fclose(file);
+    return RITZ_OK;
+}
+
+/* The line of an input, "SUM  PATH"; NULL if it is none yet. */
+static char **find_input(const cli_run *run, const char *path)
+{
+    for (int64_t k = 0; k < run->num_inputs; k++)
+        if (strcmp(strstr(run->input[k], "  ") + 2, path) == 0)
+            return &run->input[k];
+    return NULL;
+}
+
+static ritz_status add_input(cli_run *run, const char *path, bool sum)
 {
     ritz_status status = RITZ_OK;
     char digest[RITZ_DIGEST_SIZE] = "-";
@@ -77,13 +97,14 @@ ritz_status cli_input(cli_run *run, const char *path)
     char **more = NULL;
     struct stat there = {0};
 
-    for (int64_t k = 0; k < run->num_inputs; k++)
-        if (strcmp(strstr(run->input[k], "  ") + 2, path) == 0)
-            return RITZ_OK;
+    if (find_input(run, path))
+        return RITZ_OK;
     if (stat(path, &there) == 0)
         limit_threads(run, &there);
-    if (S_ISREG(there.st_mode) || there.st_mode == 0)
+    if ((S_ISREG(there.st_mode) && sum) || there.st_mode == 0)
         RITZ_TRY(ritz_digest_file(path, digest));
+    else if (S_ISREG(there.st_mode))
+        RITZ_TRY(check_opens(path));
     RITZ_FAIL_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
                  path);
     line = malloc(strlen(digest) + strlen(path) + 3);
@@ -100,6 +121,34 @@ ritz_status cli_input(cli_run *run, const char *path)
 done:
     free(line);
     return status;
+}
+
+ritz_status cli_input(cli_run *run, const char *path)
+{
+    return add_input(run, path, true);
+}
+
+ritz_status cli_input_unread(cli_run *run, const char *path)
+{
+    return add_input(run, path, false);
+}
+
+ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest)
+{
+    char **line = find_input(run, path);
+    size_t size = strlen(digest) + strlen(path) + 3;
+    struct stat there = {0};
+    char *whole = NULL;
+
+    if (!line || (*line)[0] != '-' || stat(path, &there) != 0 ||
+        !S_ISREG(there.st_mode))
+        return RITZ_OK;
+    whole = malloc(size);
+    RITZ_REFUSE_IF(!whole, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    snprintf(whole, size, "%s  %s", digest, path);
+    free(*line);
+    *line = whole;
+    return RITZ_OK;
 }
 
 ritz_status cli_can_write(const char *path)

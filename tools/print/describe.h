@@ -15,7 +15,9 @@ ritz_status describe_system(cli_run *run, const ritz_system *system);
 void describe_response(cli_run *run, const ritz_response *response);
 void describe_simulation(cli_run *run, const ritz_simulation *simulation);
 ritz_status describe_states(cli_run *run, const ritz_state_space *states);
-void describe_matrices(cli_run *run, const ritz_matrices *matrices);
+/** @param[in] directory  names and sizes alone: no values are read */
+ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
+                              bool directory);
 void describe_deck(cli_run *run, const ritz_deck *deck);
 
 /** Any of them, and rankings, by its kind. */

@@ -32,35 +32,80 @@ static void describe_matrix(cli_run *run, const ritz_matrix *a, const char *sum)
 }
 
 /* Variables of a file that are no matrices are told by what they are. */
-void describe_matrices(cli_run *run, const ritz_matrices *m)
+static void describe_other(cli_run *run, const ritz_listed *one)
 {
+    sink_object(run, NULL);
+    sink_set(run, "name", "%s", one->name);
+    sink_say(run, ",,other", "  %-10s %17s %s", *one->name ? one->name : "-",
+             "-", one->other);
+    sink_end(run);
+}
+
+/* What the directory says of a matrix; sizes are not in every format's. */
+static void describe_listed(cli_run *run, const ritz_listed *one)
+{
+    char size[48] = "-";
+
+    if (one->nrow >= 0)
+        snprintf(size, sizeof size, "%lld x %lld", (long long)one->nrow,
+                 (long long)one->ncol);
+    sink_object(run, NULL);
+    sink_set(run, "name,symmetric,complex", "%s %d %d", one->name,
+             one->symmetric, one->is_complex);
+    if (one->nrow >= 0)
+        sink_set(run, "rows,columns", "%lld %lld", (long long)one->nrow,
+                 (long long)one->ncol);
+    cli_say(run, "  %-10s %17s %s%s", *one->name ? one->name : "-", size,
+            one->symmetric ? "symmetric" : "",
+            one->is_complex ? " complex" : "");
+    sink_end(run);
+}
+
+/* One matrix of the file is held at a time. */
+static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
+                                   int64_t k)
+{
+    char sum[RITZ_DIGEST_SIZE] = "";
+    ritz_matrix matrix = {0};
+
+    RITZ_CHECK(ritz_foreign_take(file, k, &matrix));
+    checksum_sparse(&matrix.A, sum);
+    checksum_set(run, matrix.name, sum);
+    sink_list(run, "matrices");
+    describe_matrix(run, &matrix, sum);
+    ritz_matrix_free(&matrix);
+    return RITZ_OK;
+}
+
+ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
+                              bool directory)
+{
+    const ritz_listing *all = &file->listing;
+
     sink_set(run, "kind", "%s", "matrices");
-    sink_field(run, "format", "format", "%s, %lld matrices", m->format,
-               (long long)m->count);
-    cli_say(run, "  %-10s %17s %10s %-17s %6s %9s  %s", "name", "size",
-            "entries", "form", "digits", "asymmetry", "spelling");
+    sink_field(run, "format", "format", "%s, %lld matrices", file->format->name,
+               (long long)all->count);
+    if (directory)
+        cli_say(run, "  %-10s %17s %s", "name", "size", "form");
+    else
+        cli_say(run, "  %-10s %17s %10s %-17s %6s %9s  %s", "name", "size",
+                "entries", "form", "digits", "asymmetry", "spelling");
     sink_object(run, "checksums");
     sink_end(run);
-    for (int64_t k = 0; k < m->count; k++) {
-        const ritz_matrix *a = &m->matrix[k];
-        char sum[RITZ_DIGEST_SIZE] = "";
+    for (int64_t k = 0; k < all->count; k++) {
+        bool values = !directory && !*all->item[k].other;
 
-        if (!*a->other) {
-            checksum_sparse(&a->A, sum);
-            checksum_set(run, a->name, sum);
-        }
-        sink_list(run, "matrices");
-        if (*a->other) {
-            sink_object(run, NULL);
-            sink_set(run, "name", "%s", a->name);
-            sink_say(run, ",,other", "  %-10s %17s %s",
-                     *a->name ? a->name : "-", "-", a->other);
-            sink_end(run);
-        } else {
-            describe_matrix(run, a, sum);
-        }
+        if (values)
+            RITZ_CHECK(describe_values(run, file, k));
+        else
+            sink_list(run, "matrices");
+        if (*all->item[k].other)
+            describe_other(run, &all->item[k]);
+        else if (directory)
+            describe_listed(run, &all->item[k]);
         sink_end(run);
     }
+    return RITZ_OK;
 }
 
 void describe_deck(cli_run *run, const ritz_deck *deck)

@@ -10,7 +10,7 @@
 
 static ritz_status parse(const char *text, ritz_deck *out)
 {
-    return ritz_deck_parse("t.dat", text, ".", out);
+    return ritz_deck_parse("t.dat", text, (int64_t)strlen(text), ".", out);
 }
 
 static void assert_vector(const double *actual, double x, double y, double z,

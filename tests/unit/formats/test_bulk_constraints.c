@@ -10,7 +10,7 @@
 
 static ritz_status parse(const char *text, ritz_deck *out)
 {
-    return ritz_deck_parse("deck.bdf", text, NULL, out);
+    return ritz_deck_parse("deck.bdf", text, (int64_t)strlen(text), NULL, out);
 }
 
 /* The sum of shares of a dof in the equation of another; NaN if there is none. */

@@ -7,9 +7,31 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* All matrices of bytes that are taken for DMIG. */
+static ritz_status parse_bytes(const char *bytes, int64_t size,
+                               ritz_matrices *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_foreign file = {
+        .bytes = bytes, .size = size, .format = &ritz_format_dmig};
+    ritz_matrices all = {0};
+
+    RITZ_TRY(ritz_format_dmig.list(&file, &file.listing));
+    all.matrix = calloc((size_t)file.listing.count, sizeof *all.matrix);
+    RITZ_FAIL_IF(!all.matrix, RITZ_ERR_MEMORY, "no memory");
+    for (; all.count < file.listing.count; all.count++)
+        RITZ_TRY(ritz_foreign_take(&file, all.count, &all.matrix[all.count]));
+    *out = all;
+    all = (ritz_matrices){0};
+done:
+    ritz_matrices_free(&all);
+    ritz_foreign_close(&file);
+    return status;
+}
+
 static ritz_status parse(const char *text, ritz_matrices *out)
 {
-    return ritz_format_dmig.read(text, (int64_t)strlen(text), NULL, out);
+    return parse_bytes(text, (int64_t)strlen(text), out);
 }
 
 /* A(i,j), 0 where nothing is stored. */
@@ -184,7 +206,7 @@ static void try_bytes(const char *bytes, int64_t size)
     assert_non_null(copy);
     memcpy(copy, bytes, (size_t)size);
     (void)ritz_format_dmig.recognise(copy, size);
-    if (ritz_format_dmig.read(copy, size, NULL, &all) == RITZ_OK)
+    if (parse_bytes(copy, size, &all) == RITZ_OK)
         ritz_matrices_free(&all);
     else
         assert_null(all.matrix);

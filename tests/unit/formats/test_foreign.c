@@ -120,6 +120,117 @@ static void the_file_of_a_spec_is_what_stands_before_the_colon(void **state)
     }
 }
 
+/* The value of the second matrix is none: its file can still be listed. */
+static void a_directory_is_read_without_values(void **state)
+{
+    static const char text[] =
+        ONE("KAA     ", "1.0") ONE("MAA     ", "?.0") ONE("KGG     ", "3.0");
+    ritz_foreign file = {0};
+    ritz_matrix m = {0};
+    (void)state;
+
+    put("foreign.op4", text);
+    assert_ok(ritz_foreign_open("foreign.op4", &file));
+    assert_ptr_equal(file.format, &ritz_format_output4);
+    assert_ok(ritz_foreign_list(&file));
+    assert_int_equal(file.listing.count, 3);
+    assert_string_equal(file.listing.item[2].name, "KGG");
+    assert_int_equal(file.listing.item[2].nrow, 1);
+    assert_true(file.listing.item[2].symmetric);
+    assert_ok(ritz_foreign_take(&file, 2, &m));
+    assert_true(m.A.val[0] == 3.0);
+    ritz_matrix_free(&m);
+    assert_fails(ritz_foreign_take(&file, 1, &m), RITZ_ERR_FORMAT,
+                 "line 8: '  ?.0E+00' in column 1 of 'MAA' is not a number");
+    ritz_foreign_close(&file);
+    remove("foreign.op4");
+}
+
+/* Columns with gaps, and one that is null, of a 7 x 5 matrix. */
+static void make_matrix(const char *name, double scale, ritz_matrix *out)
+{
+    static const int64_t start[] = {0, 3, 4, 4, 8, 9};
+    static const int64_t row[] = {0, 1, 5, 6, 0, 2, 3, 6, 4};
+
+    *out = (ritz_matrix){.digits = 17};
+    snprintf(out->name, sizeof out->name, "%s", name);
+    assert_ok(ritz_sparse_new(7, 5, 9, &out->A));
+    memcpy(out->A.colptr, start, sizeof start);
+    memcpy(out->A.rowind, row, sizeof row);
+    for (int k = 0; k < 9; k++)
+        out->A.val[k] = scale * (k + 1);
+}
+
+static void matrices_are_taken_in_any_order(const ritz_output4_style *style)
+{
+    static const char *const names[] = {"K", "M", "D"};
+    ritz_matrix all[3];
+    ritz_foreign file = {0};
+
+    for (int k = 0; k < 3; k++)
+        make_matrix(names[k], k + 0.5, &all[k]);
+    assert_ok(ritz_output4_write("foreign.op4", 3, all, style));
+    assert_ok(ritz_foreign_open("foreign.op4", &file));
+    assert_ok(ritz_foreign_list(&file));
+    assert_int_equal(file.listing.count, 3);
+    for (int k = 2; k >= 0; k--) {
+        ritz_matrix m = {0};
+
+        assert_string_equal(file.listing.item[k].name, names[k]);
+        assert_int_equal(file.listing.item[k].nrow, 7);
+        assert_int_equal(file.listing.item[k].ncol, 5);
+        assert_ok(ritz_foreign_take(&file, k, &m));
+        assert_memory_equal(m.A.colptr, all[k].A.colptr, 6 * sizeof(int64_t));
+        assert_memory_equal(m.A.rowind, all[k].A.rowind, 9 * sizeof(int64_t));
+        assert_memory_equal(m.A.val, all[k].A.val, 9 * sizeof(double));
+        ritz_matrix_free(&m);
+        ritz_matrix_free(&all[k]);
+    }
+    ritz_foreign_close(&file);
+    remove("foreign.op4");
+}
+
+static void every_spelling_of_output4_has_a_directory(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++)
+        matrices_are_taken_in_any_order(&(ritz_output4_style){
+            .text = k & 1, .sparse = (k & 2) != 0, .digits = 17});
+}
+
+static void files_are_read_once_for_all_that_is_wanted(void **state)
+{
+    ritz_matrix m[3] = {0};
+    const ritz_wanted wanted[] = {{"foreign.op4:KAA#2", "stiffness", &m[0]},
+                                  {"foreign_one.op4", "mass", &m[1]},
+                                  {"foreign.op4:MAA", "damping", &m[2]}};
+    const ritz_wanted wrong = {"foreign.op4:X", "mass", &m[0]};
+    char digest[RITZ_DIGEST_SIZE];
+    ritz_file_sums sums = {0};
+    (void)state;
+
+    put("foreign.op4", several);
+    put("foreign_one.op4", ONE("KAA     ", "7.0"));
+    assert_ok(ritz_foreign_collect(3, wanted, &sums));
+    assert_true(m[0].A.val[0] == 3.0);
+    assert_true(m[1].A.val[0] == 7.0);
+    assert_true(m[2].A.val[0] == 2.0);
+    assert_int_equal(sums.count, 2);
+    assert_string_equal(sums.sum[0].path, "foreign.op4");
+    assert_string_equal(sums.sum[1].path, "foreign_one.op4");
+    for (int k = 0; k < 2; k++) {
+        assert_ok(ritz_digest_file(sums.sum[k].path, digest));
+        assert_string_equal(sums.sum[k].digest, digest);
+    }
+    ritz_file_sums_free(&sums);
+    for (int k = 0; k < 3; k++)
+        ritz_matrix_free(&m[k]);
+    assert_fails(ritz_foreign_collect(1, &wrong, NULL), RITZ_ERR_ARGUMENT,
+                 "mass: 'foreign.op4' holds no 'X'");
+    remove("foreign.op4");
+    remove("foreign_one.op4");
+}
+
 static ritz_status select_and_drop(const char *spec)
 {
     ritz_matrix m = {0};
@@ -166,6 +277,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(an_unclear_spec_lists_what_the_file_holds),
     cmocka_unit_test(files_that_are_none_are_refused),
     cmocka_unit_test(the_file_of_a_spec_is_what_stands_before_the_colon),
+    cmocka_unit_test(a_directory_is_read_without_values),
+    cmocka_unit_test(every_spelling_of_output4_has_a_directory),
+    cmocka_unit_test(files_are_read_once_for_all_that_is_wanted),
     cmocka_unit_test(every_allocation_may_fail),
     cmocka_unit_test(nas2cam_holds_three_components),
 };

@@ -354,7 +354,7 @@ static void find_axes(double A[9])
     ritz_deck bulk = {0};
     int64_t k = 0;
 
-    assert_ok(ritz_deck_parse(NULL, CUBE, NULL, &bulk));
+    assert_ok(ritz_deck_parse(NULL, CUBE, (int64_t)strlen(CUBE), NULL, &bulk));
     k = ritz_grids_find(&bulk.grids, 6);
     memcpy(A, bulk.grids.axes + 9 * bulk.grids.frame[k], 9 * sizeof *A);
     ritz_deck_free(&bulk);
