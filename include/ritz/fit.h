@@ -35,17 +35,17 @@ typedef struct ritz_fit_candidate {
     int64_t columns;      /* of all flexible bodies together */
     ritz_measures errors; /* worst of all configurations; {0} if refused */
     ritz_measures estimates; /* of a scene: worst of the places looked at */
-    double excess;   /* largest error over its tolerance; 1 or less: feasible */
-    int64_t binding; /* measure that decides it; -1: none */
-    bool feasible;   /* and stable, and confirmed at random places */
-    bool caught;     /* it met the grid, and not what confirms */
-    bool screened;   /* bounds alone ruled it out: it has no errors */
-    bool held;       /* bounds alone said that a component's grid holds: it was
+    double ratio;  /* largest error over its tolerance; 1 or less: feasible */
+    int64_t worst; /* measure that decides it; -1: none */
+    bool feasible; /* and stable, and confirmed at random places */
+    bool unconfirmed; /* it met the grid, and not what confirms */
+    bool ruled_out;   /* bounds alone ruled it out: it has no errors */
+    bool bounded;     /* bounds alone said that a component's grid holds: it was
                         measured where it is confirmed, and there alone */
-    ritz_fit_watch spent; /* to make basis and reduction */
-    double highest_hz;    /* of the model; 0: not known */
-    ritz_cost cost;       /* if it is feasible; order 0: not measured */
-    char refusal[256];    /* why it could not be made, or is unstable; "" */
+    ritz_fit_watch making; /* to make basis and reduction */
+    double highest_hz;     /* of the model; 0: not known */
+    ritz_cost cost;        /* if it is feasible; order 0: not measured */
+    char refusal[256];     /* why it could not be made, or is unstable; "" */
 } ritz_fit_candidate;
 
 /* Called with each candidate as it is done. */
@@ -128,8 +128,8 @@ typedef struct ritz_fit_row {
     int64_t order;   /* of the largest system */
     ritz_measures errors; /* worst of all listed and random configurations; {0}
                              if refused */
-    double excess;        /* as of candidates */
-    int64_t binding;
+    double ratio;         /* as of candidates */
+    int64_t worst;
     bool feasible;
     char refusal[256]; /* why it could not be joined, or would be feasible and
                           is unstable; "" */

@@ -35,6 +35,8 @@ typedef struct ritz_request {
         .modes = -1, .tolerance = 1e-10                                        \
     }
 
+enum { RITZ_NAMED_FOR_COMPONENTS = 1, RITZ_NAMED_FOR_SCENES = 2 };
+
 typedef struct ritz_method {
     const char *name;      /* as typed on the command line */
     const char *summary;   /* one line for --list */
@@ -42,7 +44,9 @@ typedef struct ritz_method {
     /* what a newcomer chooses by, a line of --list each: for which components,
        at what cost, what is guaranteed, where it fails */
     const char *when, *cost, *holds, *fails;
-    int uses; /* RITZ_USES_... */
+    int uses;       /* RITZ_USES_... */
+    int only_named; /* ritz-fit tries it only where it is named: sum of
+                       RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
     ritz_status (*make)(const ritz_request *request, ritz_basis *out);
 } ritz_method;

@@ -36,5 +36,6 @@ const ritz_method ritz_method_balanced_band = {
     .fails = "one reduction in ten is unstable; coupled damping",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
             RITZ_USES_AMONG | RITZ_USES_BAND,
+    .only_named = RITZ_NAMED_FOR_COMPONENTS,
     .make = make,
 };

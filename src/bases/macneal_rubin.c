@@ -149,6 +149,7 @@ const ritz_method ritz_method_dual_craig_bampton = {
     .holds = "nothing: interfaces are met weakly",
     .fails = "systems have a negative eigenvalue for each interface force",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .only_named = RITZ_NAMED_FOR_COMPONENTS | RITZ_NAMED_FOR_SCENES,
     .make = make_dual,
 };
 

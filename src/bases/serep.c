@@ -309,5 +309,6 @@ const ritz_method ritz_method_serep = {
     .holds = "kept frequencies and shapes",
     .fails = "statics; modes that the measured dofs do not tell apart",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .only_named = RITZ_NAMED_FOR_SCENES,
     .make = make,
 };

@@ -1,5 +1,5 @@
 /* The answer in words: what decides it, and what else there was. */
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -33,7 +33,7 @@ static void add_bound(ritz_fit *fit, const ritz_fit_candidate *c)
         add(fit,
             "the error of 'frequency' is %.2e at least (%s) where %g is "
             "allowed, or a mode is missing",
-            m->value, m->where, m->value / c->excess);
+            m->value, m->where, m->value / c->ratio);
 }
 
 /* "the error of 'response' is 2.1e-02 (3.41 Hz) where 1.0e-02 is allowed" */
@@ -46,11 +46,11 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c)
         add(fit, "it is refused: %s", c->refusal);
         return;
     }
-    if (c->screened)
+    if (c->ruled_out)
         add_bound(fit, c);
-    if (c->binding < 0)
+    if (c->worst < 0)
         return;
-    m = &c->errors.item[c->binding];
+    m = &c->errors.item[c->worst];
     kind = ritz_measure_kind_find(m->name);
     if (strcmp(m->name, "missing-modes") == 0)
         add(fit, "%.0f mode%s of the band %s missing (%s)", m->value,
@@ -79,21 +79,47 @@ static const ritz_fit_candidate *smaller(const ritz_fit *fit,
             c->refusal[0])
             continue;
         if (!best || c->order > best->order ||
-            (c->order == best->order && c->excess < best->excess))
+            (c->order == best->order && c->ratio < best->ratio))
             best = c;
     }
     return best;
 }
 
-static void explain_none(ritz_fit *fit)
+/* What ended a method, but where a number says it. */
+static const char *const words[] = {
+    [RITZ_FIT_END_WHOLE] = "there are no more modes to be had",
+    [RITZ_FIT_END_SAME] = "more modes give it no more columns",
+    [RITZ_FIT_END_FLAT] = "more modes no longer made the error smaller",
+    [RITZ_FIT_END_REFERENCE] =
+        "what it is compared with, a first stage, has no more modes",
+    [RITZ_FIT_END_REFUSED] = "the next larger one cannot be made",
+};
+
+static void explain_end(const ritz_fitter *f, int64_t near, ritz_fit *fit)
+{
+    ritz_fit_end end = fit->end[near];
+
+    if (end == RITZ_FIT_END_LARGEST)
+        add(fit, "; more than %" PRId64 " columns were not tried (--largest)",
+            f->largest);
+    else if (end == RITZ_FIT_END_FAR)
+        add(fit, "; more than %" PRId64 " modes were not tried (--largest)",
+            f->num_steps);
+    else if (end != RITZ_FIT_END_NONE)
+        add(fit, "; %s", words[end]);
+}
+
+static void explain_none(const ritz_fitter *f, ritz_fit *fit)
 {
     const ritz_fit_candidate *near = NULL;
+    int64_t method = -1;
 
     for (int64_t m = 0; m < fit->num_methods; m++)
         if (fit->reached[m] >= 0) {
             const ritz_fit_candidate *c = &fit->candidate[fit->reached[m]];
 
-            near = !near || ritz_fit_is_nearer(c, near) ? c : near;
+            method = !near || ritz_fit_is_nearer(c, near) ? m : method;
+            near = &fit->candidate[fit->reached[method]];
         }
     if (!near) {
         add(fit, "every method was refused");
@@ -109,6 +135,7 @@ static void explain_none(ritz_fit *fit)
         " column%s, where ",
         near->method->name, near->order, near->order == 1 ? "" : "s");
     add_error(fit, near);
+    explain_end(f, method, fit);
 }
 
 static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
@@ -116,14 +143,14 @@ static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
     const ritz_fit_candidate *second = &fit->candidate[fit->runner_up];
     int64_t more = second->order - c->order;
 
-    if (more == 0 && fabs(second->excess - c->excess) < 0.005)
+    if (more == 0 && fabs(second->ratio - c->ratio) < 0.005)
         add(fit, "; %s is as small, and as near to its tolerance",
             second->method->name);
     else if (more == 0)
         add(fit,
             "; %s is as small, and comes to %.2f of its tolerance where "
             "%s comes to %.2f",
-            second->method->name, second->excess, c->method->name, c->excess);
+            second->method->name, second->ratio, c->method->name, c->ratio);
     else
         add(fit, "; the runner-up, %s, needs %" PRId64 " column%s more",
             second->method->name, more, more == 1 ? "" : "s");
@@ -167,7 +194,7 @@ static void add_vacuous(const ritz_fitter *fitter, ritz_fit *fit,
     }
 }
 
-ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
+ritz_status ritz_fit_explain(const ritz_fitter *fitter, ritz_fit *fit)
 {
     const ritz_fit_candidate *c = NULL;
     const ritz_fit_candidate *less = NULL;
@@ -175,7 +202,7 @@ ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
 
     fit->why[0] = '\0';
     if (fit->chosen < 0) {
-        explain_none(fit);
+        explain_none(fitter, fit);
         return RITZ_OK;
     }
     c = &fit->candidate[fit->chosen];
@@ -200,7 +227,7 @@ ritz_status ritz_fit_explain(ritz_fitter *fitter, ritz_fit *fit)
                  "hold the rest, ask for 'flexible'");
     add_vacuous(fitter, fit, c);
     for (int64_t k = 0; k < fit->count; k++)
-        caught += fit->candidate[k].caught;
+        caught += fit->candidate[k].unconfirmed;
     if (caught > 0)
         add(fit, "; %" PRId64 " candidate%s the grid and failed at %s%s",
             caught, caught == 1 ? " met" : "s met",

@@ -6,7 +6,6 @@
 #include "fit/order.h"
 
 #include "base/alloc.h"
-#include "fit/fit_parts.h"
 
 #include <ritz/eigen.h>
 #include <ritz/monitor.h>
@@ -63,12 +62,11 @@ done:
 }
 
 ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
-                               ritz_fit_excess *excess, void *context,
+                               ritz_fit_ratio *ratio, void *context,
                                ritz_fit_order *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_fit_order made = {
-        .count = count, .excess = excess, .context = context};
+    ritz_fit_order made = {.count = count, .ratio = ratio, .context = context};
 
     RITZ_NEW(made.column, count);
     RITZ_NEW(made.trial, count);
@@ -93,7 +91,7 @@ static ritz_status without(const ritz_fit_order *o, int64_t left, int64_t which,
     memcpy(o->trial, o->column, (size_t)left * sizeof *o->trial);
     memmove(o->trial + which, o->trial + which + 1,
             (size_t)(left - which - 1) * sizeof *o->trial);
-    return o->excess(o->context, left - 1, o->trial, most, out);
+    return o->ratio(o->context, left - 1, o->trial, most, out);
 }
 
 ritz_status ritz_fit_order_alone(ritz_fit_order *o)
@@ -122,11 +120,11 @@ static ritz_status drop(ritz_fit_order *o, int64_t left)
     int64_t here = 0;
 
     for (int64_t t = 0; t < TRIED && left - 1 - t >= o->fixed; t++) {
-        double excess = 0.0;
+        double ratio = 0.0;
 
-        RITZ_CHECK(without(o, left, left - 1 - t, least, &excess));
-        if (excess < least) {
-            least = excess;
+        RITZ_CHECK(without(o, left, left - 1 - t, least, &ratio));
+        if (ratio < least) {
+            least = ratio;
             worst = left - 1 - t;
         }
     }

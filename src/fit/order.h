@@ -10,18 +10,22 @@
  * if it is none. Once it is known to be @p most or more it need not be known
  * better.
  */
-typedef ritz_status ritz_fit_excess(void *context, int64_t count,
-                                    const int64_t *column, double most,
-                                    double *out);
+typedef ritz_status ritz_fit_ratio(void *context, int64_t count,
+                                   const int64_t *column, double most,
+                                   double *out);
 
 typedef struct ritz_fit_order {
     int64_t count, fixed; /* columns; those that stay, first */
     int64_t *column;      /* count, what matters most first */
-    ritz_fit_excess *excess;
-    void *context;  /* of excess; borrowed */
+    ritz_fit_ratio *ratio;
+    void *context;  /* of ratio; borrowed */
     int64_t *trial; /* to work in */
-    double *alone;  /* of each column: the excess without it */
+    double *alone;  /* of each column: the ratio without it */
 } ritz_fit_order;
+
+/** Whether a column must stay: without it a body could not move rigidly, or
+ * would not have its interface. */
+bool ritz_fit_stays(ritz_column_kind kind);
 
 /**
  * What the columns of a body are. One that takes part in its rigid motion is
@@ -33,7 +37,7 @@ ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
 
 /** Columns as they were made, but that those that must stay are first. */
 ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
-                               ritz_fit_excess *excess, void *context,
+                               ritz_fit_ratio *ratio, void *context,
                                ritz_fit_order *out);
 
 /** Those that may go, by how far the model without each of them alone is off.

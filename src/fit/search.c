@@ -1,199 +1,586 @@
-/* Over all methods: which are tried, which of them is the answer. */
-#include "fit/fit_parts.h"
+/*
+ * The search of one method: rungs 0, 1, 2, 4, 8, ... of its ladder until one is
+ * feasible, then bisection, and then the rungs below one by one, since an error
+ * may rise where a mode is added and fall again with the next.
+ */
+#include "fit/search.h"
 
 #include "base/alloc.h"
 
 #include <ritz/monitor.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Second-order models by a number of modes; others only if they are named. */
-static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
-{
-    const int special =
-        RITZ_USES_SPACE | RITZ_USES_GRAMIAN | RITZ_USES_OPERATOR;
-    const int joined = RITZ_USES_MODES | RITZ_USES_ATTACHED;
+/* --- candidates that were tried ---------------------------------------------------- */
 
-    if (fitter->scene)
-        return (method->uses & joined) == joined &&
-               method != &ritz_method_dual_craig_bampton &&
-               method != &ritz_method_serep;
-    return (method->uses & RITZ_USES_MODES) && !(method->uses & special) &&
-           !(method->uses & RITZ_USES_NEIGHBOUR) &&
-           method != &ritz_method_dual_craig_bampton &&
-           method != &ritz_method_balanced_band; /* its models are of states */
+/* Of a tolerance so much may be the first stage's own error. */
+static const double may_leave = 0.1;
+/* A richer stage has modes so much farther, and a quarter more of them. */
+static const double farther = 1.5;
+enum { PART = 4 };
+/* Richer stages that are no better by a tenth, before it is given up. */
+enum { MOST_FLAT_STAGES = 3 };
+static const double better = 0.9;
+enum { MOST_GIVEN = 4 };
+/* Rungs below the best that are tried although the one just below failed. */
+enum { COMPONENT_BELOW = 8, SCENE_BELOW = 3 };
+/* Twice the best of the others and some: beyond it a method is given up. */
+enum { FAR = 2, BESIDE = 8 };
+/* A method that was refused so often is. */
+enum { MOST_REFUSED = 4 };
+/* Ladders that are longer and come no nearer, before a method is given up; what
+   is nearer has so much of the error, or less. */
+enum { MOST_FLAT = 2 };
+static const double nearer = 0.9;
+
+bool ritz_fit_was_made(const ritz_fit_candidate *c)
+{
+    return c->refusal[0] == '\0';
 }
 
-/* What is asked, or all that is usual: of joined bodies `compare` too. */
-static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
+ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate)
 {
-    const ritz_fit_request *asked = &fitter->request;
-    bool joined = fitter->scene && fitter->scene->num_components > 1;
-    int64_t all = 0;
+    ritz_fit_candidate *more = NULL;
 
-    while (ritz_methods[all])
-        all++;
-    if (asked->num_methods > 0)
-        all = asked->num_methods;
-    RITZ_CHECK_NEW(fit->method,
-                   all + 1); /* NOLINT: an array of pointers is meant */
-    RITZ_CHECK_NEW(fit->best, all + 1);
-    RITZ_CHECK_NEW(fit->reached, all + 1);
-    RITZ_CHECK_NEW(fit->end, all + 1);
-    for (int64_t k = 0; k < all; k++)
-        if (asked->num_methods > 0)
-            fit->method[fit->num_methods++] = asked->methods[k];
-        else if (is_usual(fitter, ritz_methods[k]))
-            fit->method[fit->num_methods++] = ritz_methods[k];
-    if (asked->num_methods == 0 && joined)
-        fit->method[fit->num_methods++] = &ritz_fit_compare;
-    for (int64_t m = 0; m < fit->num_methods; m++) {
-        fit->best[m] = fit->reached[m] = -1;
-        if (fitter->scene && fit->method[m] == &ritz_fit_compare)
-            RITZ_CHECK(ritz_fit_second_make(fitter));
-    }
+    RITZ_CHECK_NEW(more, fit->count + 1);
+    if (fit->count > 0)
+        memcpy(more, fit->candidate, (size_t)fit->count * sizeof *more);
+    free(fit->candidate);
+    fit->candidate = more;
+    more[fit->count++] = *candidate;
+    *candidate = (ritz_fit_candidate){0};
     return RITZ_OK;
 }
 
-/* The best of all methods, and the best of the others. */
-static void choose(ritz_fit *fit)
+static bool is_same(const ritz_fit_candidate *c, const ritz_method *method,
+                    const int64_t *modes)
 {
-    int64_t *const into[] = {&fit->chosen, &fit->runner_up};
+    if (c->method != method || c->left_out > 0)
+        return false;
+    for (int64_t k = 0; k < c->num_bodies; k++)
+        if (c->modes[k] != (method->uses & RITZ_USES_MODES ? modes[k] : -1))
+            return false;
+    return true;
+}
 
-    for (int t = 0; t < 2; t++) {
-        *into[t] = -1;
-        for (int64_t m = 0; m < fit->num_methods; m++) {
-            int64_t k = fit->best[m];
+ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                           const int64_t *modes, int64_t *at)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_candidate candidate = {0};
 
-            if (k < 0 || (t == 1 && k == fit->chosen))
-                continue;
-            if (*into[t] < 0 || ritz_fit_is_better(&fit->candidate[k],
-                                                   &fit->candidate[*into[t]]))
-                *into[t] = k;
+    for (int64_t k = 0; k < fit->count; k++)
+        if (is_same(&fit->candidate[k], fit->method[method], modes)) {
+            *at = k;
+            return RITZ_OK;
         }
-    }
-}
-
-/* How wrong the two best can be, wherever a scene is listed. */
-static ritz_status bound(ritz_fitter *fitter, ritz_fit *fit)
-{
-    const int64_t both[] = {fit->chosen, fit->runner_up};
-
-    for (int t = 0; t < 2; t++)
-        if (both[t] >= 0)
-            RITZ_CHECK(ritz_fit_bound(fitter, &fit->candidate[both[t]]));
-    return RITZ_OK;
-}
-
-/* Columns that matter to nothing are left out of one method's best. */
-static ritz_status trim_one(ritz_fitter *fitter, int64_t at, ritz_fit *fit)
-{
-    ritz_status status = RITZ_OK;
-    ritz_fit_candidate less = {0};
-
-    ritz_monitor_step("columns to be left out", at, fit->count);
-    RITZ_TRY((fitter->scene ? ritz_fit_trim_scene : ritz_fit_trim)(
-        fitter, &fit->candidate[at], &less));
-    if (less.order > 0) {
-        if (fitter->request.observe)
-            fitter->request.observe(&less, fitter->request.context);
-        RITZ_TRY(ritz_fit_append(fit, &less));
-    }
+    ritz_monitor_step(fit->method[method]->name, fit->count, 0);
+    RITZ_TRY(ritz_fitter_try(fitter, fit->method[method], modes, &candidate));
+    RITZ_TRY(ritz_fit_append(fit, &candidate));
+    *at = fit->count - 1;
 done:
-    ritz_fit_candidate_free(&less);
+    ritz_fit_candidate_free(&candidate);
     return status;
 }
 
-/* So much larger than the smallest a model may be to become it yet. */
-static const double within_reach = 1.5;
-
-static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
+/* Of two that are as small and as near the one that came first. */
+bool ritz_fit_is_better(const ritz_fit_candidate *a,
+                        const ritz_fit_candidate *b)
 {
-    double most = 0.0;
+    if (a->order != b->order)
+        return a->order < b->order;
+    return a->ratio < b->ratio * (1.0 - 1e-6);
+}
 
-    if (fit->chosen >= 0)
-        most = within_reach * (double)fit->candidate[fit->chosen].order;
-    for (int64_t m = 0; m < fit->num_methods; m++) {
-        int64_t at = fit->best[m];
+int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order)
+{
+    int64_t best = -1;
 
-        if (at >= 0 &&
-            ((double)fit->candidate[at].order <= most || at == fit->runner_up))
-            RITZ_CHECK(trim_one(fitter, at, fit));
+    for (int64_t k = 0; k < fit->count; k++) {
+        const ritz_fit_candidate *c = &fit->candidate[k];
+        const ritz_fit_candidate *b = best < 0 ? NULL : &fit->candidate[best];
+
+        if (c->method != fit->method[method] || !ritz_fit_was_made(c) ||
+            c->order > order)
+            continue;
+        if (!b || c->order > b->order ||
+            (c->order == b->order && c->ratio < b->ratio))
+            best = k;
     }
+    return best;
+}
+
+/* The best and the nearest of a method. */
+void ritz_fit_conclude(ritz_fit *fit, int64_t method)
+{
+    fit->best[method] = fit->reached[method] = -1;
+    for (int64_t k = 0; k < fit->count; k++) {
+        const ritz_fit_candidate *c = &fit->candidate[k];
+        int64_t best = fit->best[method];
+        int64_t reached = fit->reached[method];
+
+        if (c->method != fit->method[method])
+            continue;
+        if (c->feasible &&
+            (best < 0 || ritz_fit_is_better(c, &fit->candidate[best])))
+            fit->best[method] = k;
+        if (ritz_fit_was_made(c) &&
+            (reached < 0 || ritz_fit_is_nearer(c, &fit->candidate[reached])))
+            fit->reached[method] = k;
+    }
+}
+
+/* --- COMPARE's first stage ---------------------------------------------------------- */
+
+/* How far COMPARE is off with nothing removed, whatever its order. */
+static ritz_status excess_of_all(ritz_fitter *f, double *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_fit_request request = f->request;
+    const int64_t largest = f->largest;
+    ritz_fit_candidate whole = {
+        .method = &ritz_fit_compare, .num_bodies = f->num_bodies, .worst = -1};
+
+    RITZ_NEW(whole.modes, f->num_bodies);
+    ritz_fit_rung(f, whole.method, ritz_fit_rungs(f, whole.method),
+                  whole.modes);
+    f->largest = INT64_MAX;
+    f->request.thorough = true; /* measured, not bounded */
+    f->request.costs = false;
+    status = ritz_fit_try(f, &whole);
+    f->request = request;
+    f->largest = largest;
+    RITZ_TRY(status);
+    *out = whole.refusal[0] ? 0.0 : whole.ratio; /* its sentence is told */
+done:
+    ritz_fit_candidate_free(&whole);
+    return status;
+}
+
+/* Modes of bodies up to a frequency, as far as the ladder has them. */
+static int64_t count_to(const ritz_fitter *f, double hertz)
+{
+    int64_t count = 0;
+
+    while (count < f->num_steps && f->step_hz[count] <= hertz)
+        count++;
+    return count;
+}
+
+/* The frequency to which a richer stage has modes. */
+static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
+{
+    const double from = f->second.rich_hz;
+    int64_t count = 0, more = 0;
+
+    *end = RITZ_FIT_END_NONE;
+    for (;;) {
+        count = count_to(f, from);
+        more = count + count / PART + 1;
+        if ((count_to(f, farther * from) < f->num_steps &&
+             more <= f->num_steps) ||
+            *end != RITZ_FIT_END_NONE)
+            break;
+        RITZ_CHECK(ritz_fit_extend(f, end));
+    }
+    if (count == f->num_steps)
+        return RITZ_OK;
+    *end = RITZ_FIT_END_NONE;
+    more = more < f->num_steps ? more : f->num_steps;
+    *hertz = fmax(farther * from, f->step_hz[more - 1] * (1.0 + 1e-9));
+    return RITZ_OK;
+}
+
+/*
+ * Make COMPARE's first stage richer until, with nothing removed, it leaves at
+ * most a tenth of the tolerance, or does not get better; `end` is what ended it.
+ */
+ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
+{
+    ritz_status status = RITZ_OK;
+    double excess = 0.0, before = HUGE_VAL, hertz = 0.0;
+    bool made = false;
+
+    *end = RITZ_FIT_END_NONE;
+    RITZ_TRY(ritz_fit_second_make(f));
+    if (f->second.status != RITZ_OK)
+        return RITZ_OK;
+    RITZ_TRY(excess_of_all(f, &excess));
+    for (int flat = 0; excess > may_leave;) {
+        RITZ_TRY(next_hz(f, &hertz, end));
+        if (*end != RITZ_FIT_END_NONE)
+            break;
+        *end = RITZ_FIT_END_REFUSED;
+        RITZ_TRY(ritz_fit_second_remake(f, hertz, &made));
+        if (!made)
+            break;
+        ritz_fit_forget(f, &ritz_fit_compare);
+        before = excess;
+        RITZ_TRY(excess_of_all(f, &excess));
+        flat = excess > better * before ? flat + 1 : 0;
+        *end = flat == MOST_FLAT_STAGES ? RITZ_FIT_END_FLAT : RITZ_FIT_END_NONE;
+        if (*end != RITZ_FIT_END_NONE)
+            break;
+    }
+done:
+    return status;
+}
+
+/*
+ * Fewer modes than one cut for all bodies gives: from each body in turn one is
+ * taken, that whose loss hurts least is gone for good; where none can go, bodies
+ * exchange modes, several of one for fewer of another.
+ */
+
+typedef struct thinning {
+    ritz_fitter *fitter;
+    ritz_fit *fit;
+    int64_t method;
+    int64_t *from, *modes; /* of the best so far, and to work in */
+    int64_t best;          /* candidate */
+} thinning;
+
+/* Try `from` with @p less modes of one body and @p more of another. */
+static ritz_status move_modes(thinning *t, int64_t i, int64_t less, int64_t j,
+                              int64_t more)
+{
+    const ritz_fit_candidate *all = NULL;
+    int64_t at = 0;
+
+    if (t->from[i] < less)
+        return RITZ_OK;
+    memcpy(t->modes, t->from, (size_t)t->fitter->num_bodies * sizeof *t->modes);
+    t->modes[i] -= less;
+    t->modes[j] += more;
+    RITZ_CHECK(ritz_fit_visit(t->fitter, t->fit, t->method, t->modes, &at));
+    all = t->fit->candidate;
+    if (all[at].feasible && ritz_fit_is_better(&all[at], &all[t->best]))
+        t->best = at;
+    return RITZ_OK;
+}
+
+static ritz_status take_modes(thinning *t)
+{
+    for (int64_t i = 0; i < t->fitter->num_bodies; i++)
+        RITZ_CHECK(move_modes(t, i, 1, i, 0));
+    return RITZ_OK;
+}
+
+static ritz_status exchange_modes(thinning *t)
+{
+    int64_t bodies = t->fitter->num_bodies;
+
+    for (int64_t given = 1; given <= MOST_GIVEN; given++)
+        for (int64_t i = 0; i < bodies; i++)
+            for (int64_t j = 0; j < bodies; j++)
+                if (i != j)
+                    RITZ_CHECK(move_modes(t, i, given + 1, j, given));
+    return RITZ_OK;
+}
+
+static ritz_status thin_modes(ritz_fitter *fitter, ritz_fit *fit,
+                              int64_t method, int64_t *best)
+{
+    ritz_status status = RITZ_OK;
+    size_t size = (size_t)fitter->num_bodies * sizeof(int64_t);
+    thinning t = {
+        .fitter = fitter, .fit = fit, .method = method, .best = *best};
+
+    RITZ_NEW(t.from, fitter->num_bodies);
+    RITZ_NEW(t.modes, fitter->num_bodies);
+    for (int64_t before = -1; before != t.best;) {
+        before = t.best;
+        memcpy(t.from, fit->candidate[before].modes, size);
+        RITZ_TRY(take_modes(&t));
+        if (t.best == before)
+            RITZ_TRY(exchange_modes(&t));
+    }
+    *best = t.best;
+done:
+    free(t.from);
+    free(t.modes);
+    return status;
+}
+
+/* --- the ladder --------------------------------------------------------------------- */
+
+/* One method on its ladder. */
+typedef struct ladder {
+    ritz_fitter *fitter;
+    ritz_fit *fit;
+    int64_t method, top;
+    int64_t length; /* rungs of the scene's ladder as far as it is used */
+    bool on; /* beyond the first ladder's end, and no farther than in reach */
+    int64_t *modes;        /* to work in */
+    int64_t last, earlier; /* candidates: the highest rungs that were made */
+    ritz_fit_end end;      /* why there is no higher one; NONE: there is */
+} ladder;
+
+static ritz_status rung(const ladder *l, int64_t t, int64_t *at)
+{
+    ritz_fit_rung(l->fitter, l->fit->method[l->method], t, l->modes);
+    return ritz_fit_visit(l->fitter, l->fit, l->method, l->modes, at);
+}
+
+static const ritz_fit_candidate *get(const ladder *l, int64_t at)
+{
+    return &l->fit->candidate[at];
+}
+
+/* What a refused candidate tells of those above it. */
+static ritz_fit_end wall_of(const ladder *l, int64_t at)
+{
+    return get(l, at)->order > l->fitter->largest ? RITZ_FIT_END_LARGEST
+                                                  : RITZ_FIT_END_REFUSED;
+}
+
+/* Order of the best of all methods but one; INT64_MAX: there is none. */
+static int64_t least_order(const ritz_fit *fit, int64_t but)
+{
+    int64_t least = INT64_MAX;
+
     for (int64_t m = 0; m < fit->num_methods; m++)
-        ritz_fit_conclude(fit, m);
-    choose(fit);
-    return RITZ_OK;
+        if (m != but && fit->best[m] >= 0 &&
+            fit->candidate[fit->best[m]].order < least)
+            least = fit->candidate[fit->best[m]].order;
+    return least;
 }
 
-ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
+/* Whether others do not do with far less than a candidate. */
+static bool in_reach(const ladder *l, int64_t at)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit fit = {.chosen = -1, .runner_up = -1};
+    int64_t least = least_order(l->fit, l->method);
 
-    RITZ_TRY(list_methods(fitter, &fit));
-    for (int64_t m = 0; m < fit.num_methods; m++)
-        RITZ_TRY(ritz_fit_search(fitter, &fit, m, false));
-    for (int64_t m = 0; m < fit.num_methods; m++)
-        if (fitter->scene && fit.best[m] < 0 &&
-            fit.method[m] != &ritz_fit_compare)
-            RITZ_TRY(ritz_fit_search(fitter, &fit, m, true));
-    choose(&fit);
-    RITZ_TRY(trim(fitter, &fit));
-    RITZ_TRY(bound(fitter, &fit));
-    RITZ_TRY(ritz_fit_explain(fitter, &fit));
-    ritz_fit_explain_end(fitter, &fit);
-    *out = fit;
-    fit = (ritz_fit){0};
-done:
-    ritz_fit_free(&fit);
-    return status;
+    return l->fitter->request.thorough || least == INT64_MAX ||
+           (double)get(l, at)->order < RITZ_FIT_REACH * (double)least;
 }
 
-/* Of one method the largest that is no larger than that, by bisection. */
-static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
-                            int64_t *modes, ritz_fit *fit)
+/*
+ * Up: [low, high] with high the first feasible rung that was met, or -1; low
+ * the last below that was made and is not feasible, -1 if none. Where a rung is
+ * refused for its size, the highest that is not is sought between.
+ */
+static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
 {
-    const ritz_method *asked = fit->method[method];
-    bool met = false;
-    int64_t low = -1, at = 0;
-    int64_t high = 1 + (fitter->scene ? ritz_fit_rungs(fitter, asked) : order);
+    int64_t refused = 0, at = 0, wall = l->top + 1, before = -1;
 
-    if (!(asked->uses & RITZ_USES_MODES))
-        high = 1;
-    while (high - low > 1) {
-        int64_t t = low + (high - low) / 2;
+    *low = *high = l->last = l->earlier = -1;
+    l->end = RITZ_FIT_END_NONE;
+    for (int64_t t = 0; t < wall && *high < 0;) {
         const ritz_fit_candidate *c = NULL;
 
-        ritz_fit_rung(fitter, asked, t, modes);
-        RITZ_CHECK(ritz_fit_visit(fitter, fit, method, modes, &at));
-        c = &fit->candidate[at];
-        if (ritz_fit_was_made(c) && c->order <= order) {
-            low = t;
-            met = true;
-        } else if (ritz_fit_was_made(c) || met || c->order > fitter->largest) {
-            high = t;
-        } else {
-            low = t; /* refused for being too small, perhaps */
+        RITZ_CHECK(rung(l, t, &at));
+        c = get(l, at);
+        if (c->feasible) {
+            *high = t;
+        } else if (ritz_fit_was_made(c)) {
+            l->earlier = l->last;
+            l->last = at;
+            if (t > 4 && c->order == before) { /* it has no more to give */
+                l->end = RITZ_FIT_END_SAME;
+                break;
+            }
+            before = c->order;
+            *low = t;
+            if (l->on && !in_reach(l, at))
+                break;
+        } else if (*low >= 0) {
+            l->end = wall_of(l, at);
+            wall = t;
+        } else if (++refused == MOST_REFUSED) {
+            l->end = wall_of(l, at);
+            break;
         }
+        t = wall <= l->top || t == l->top ? wall
+            : t == 0                      ? 1
+            : 2 * t < l->top              ? 2 * t
+                                          : l->top;
+    }
+    for (int64_t t = 0; *high < 0 && *low >= 0 && wall - *low > 1;) {
+        t = *low + (wall - *low) / 2;
+        if (wall > l->top) /* all that was tried was made */
+            break;
+        RITZ_CHECK(rung(l, t, &at));
+        if (get(l, at)->feasible)
+            *high = t;
+        else if (ritz_fit_was_made(get(l, at)))
+            *low = t;
+        else
+            wall = t;
     }
     return RITZ_OK;
 }
 
-ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
-                              int64_t *at)
+/* Whether one comes nearer than another of fewer modes; what bounds no longer
+   rule out does. */
+static bool falls(const ritz_fit_candidate *now, const ritz_fit_candidate *then)
+{
+    if (now->ruled_out != then->ruled_out)
+        return then->ruled_out;
+    return ritz_fit_is_nearer(now, then) &&
+           (ritz_fit_misses(now) < ritz_fit_misses(then) ||
+            now->ratio < nearer * then->ratio);
+}
+
+/*
+ * How far a method is pursued: while others do with far less, not at all. Rungs
+ * are modes, of which there are no more than columns.
+ */
+static int64_t top_of(const ladder *l)
+{
+    const ritz_fitter *fitter = l->fitter;
+    const ritz_method *method = l->fit->method[l->method];
+    int64_t top = fitter->scene ? l->length : fitter->largest;
+    int64_t least = least_order(l->fit, l->method);
+
+    if (!(method->uses & RITZ_USES_MODES))
+        return 0;
+    if (!fitter->request.thorough && least < INT64_MAX &&
+        FAR * least + BESIDE < top)
+        top = FAR * least + BESIDE;
+    return top;
+}
+
+/* Up, as long as the ladder is by itself. */
+static ritz_status climb_first(ladder *l, int64_t *low, int64_t *high)
+{
+    const ritz_method *method = l->fit->method[l->method];
+    const bool composite = method == &ritz_fit_compare;
+    ritz_fit_end whole = RITZ_FIT_END_NONE;
+
+    if (l->fitter->scene && composite)
+        RITZ_CHECK(ritz_fit_enrich(l->fitter, &whole));
+    l->length =
+        composite ? ritz_fit_rungs(l->fitter, method) : l->fitter->num_first;
+    l->top = top_of(l);
+    RITZ_CHECK(climb(l, low, high));
+    if (l->end == RITZ_FIT_END_NONE && l->top == l->length)
+        l->end = whole;
+    if (l->end == RITZ_FIT_END_NONE && l->fitter->component &&
+        (method->uses & RITZ_USES_MODES) && l->top == l->fitter->largest)
+        l->end = l->top < l->fitter->component->num_dofs ? RITZ_FIT_END_LARGEST
+                                                         : RITZ_FIT_END_WHOLE;
+    return RITZ_OK;
+}
+
+/* Whether it is worth while to go on beyond the ladder's end. */
+static bool goes_on(const ladder *l)
+{
+    const ritz_method *method = l->fit->method[l->method];
+
+    if (l->end != RITZ_FIT_END_NONE || l->last < 0 || l->top < l->length ||
+        !l->fitter->scene || !(method->uses & RITZ_USES_MODES))
+        return false;
+    return in_reach(l, l->last);
+}
+
+/* Twice as long, of what is there or can be had. */
+static ritz_status lengthen(ladder *l)
+{
+    const int64_t twice = 2 * l->length + BESIDE;
+
+    if (l->fitter->num_steps < twice)
+        RITZ_CHECK(ritz_fit_extend(l->fitter, &l->end));
+    if (l->fitter->num_steps > l->length)
+        l->end = RITZ_FIT_END_NONE;
+    l->length = twice < l->fitter->num_steps ? twice : l->fitter->num_steps;
+    l->top = top_of(l);
+    return RITZ_OK;
+}
+
+/* Up, on a ladder that is made longer while nothing is met and errors fall. */
+static ritz_status climb_on(ladder *l, int64_t *low, int64_t *high)
+{
+    int64_t flat = 0;
+
+    while (*high < 0 && goes_on(l)) {
+        flat = l->earlier >= 0 && falls(get(l, l->last), get(l, l->earlier))
+                   ? 0
+                   : flat + 1;
+        if (flat == MOST_FLAT) {
+            l->end = RITZ_FIT_END_FLAT;
+            break;
+        }
+        RITZ_CHECK(lengthen(l));
+        if (l->end == RITZ_FIT_END_NONE)
+            RITZ_CHECK(climb(l, low, high));
+    }
+    return RITZ_OK;
+}
+
+/* Between, and then below. */
+static ritz_status descend(const ladder *l, int64_t low, int64_t high)
+{
+    int64_t below = l->fitter->scene ? SCENE_BELOW : COMPONENT_BELOW;
+    int64_t at = 0;
+
+    while (high - low > 1) {
+        int64_t t = low + (high - low) / 2;
+
+        RITZ_CHECK(rung(l, t, &at));
+        *(get(l, at)->feasible ? &high : &low) = t;
+    }
+    for (int64_t t = high - 1; t >= 0 && t >= high - below; t--) {
+        RITZ_CHECK(rung(l, t, &at));
+        if (get(l, at)->feasible)
+            high = t;
+    }
+    return RITZ_OK;
+}
+
+/*
+ * Of a method that met nothing the largest model is measured, if bounds had
+ * ruled it out: it says how near the method comes.
+ */
+static ritz_status measure_largest(const ladder *l)
 {
     ritz_status status = RITZ_OK;
-    int64_t *modes = NULL;
+    ritz_fitter *fitter = l->fitter;
+    const bool thorough = fitter->request.thorough;
+    const int64_t at = ritz_fit_largest_of(l->fit, l->method, INT64_MAX);
+    ritz_fit_candidate *c = at < 0 ? NULL : &l->fit->candidate[at];
+    ritz_fit_candidate again = {0};
 
-    RITZ_NEW(modes, fitter->num_bodies);
-    for (int64_t m = 0; m < fit->num_methods; m++) {
-        RITZ_TRY(approach(fitter, order, m, modes, fit));
-        ritz_fit_conclude(fit, m);
-        at[m] = ritz_fit_largest_of(fit, m, order);
+    if (!c || !c->ruled_out)
+        return RITZ_OK;
+    fitter->request.thorough = true;
+    status = ritz_fitter_try(fitter, c->method, c->modes, &again);
+    fitter->request.thorough = thorough;
+    RITZ_TRY(status);
+    ritz_fit_candidate_free(c);
+    *c = again;
+done:
+    return status;
+}
+
+ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                            bool on)
+{
+    ritz_status status = RITZ_OK;
+    ladder l = {.fitter = fitter, .fit = fit, .method = method};
+    int64_t low = -1, high = -1;
+
+    RITZ_NEW(l.modes, fitter->num_bodies);
+    RITZ_TRY(climb_first(&l, &low, &high));
+    l.on = on;
+    if (on)
+        RITZ_TRY(climb_on(&l, &low, &high));
+    if (high >= 0)
+        RITZ_TRY(descend(&l, low, high));
+    ritz_fit_conclude(fit, method);
+    fit->end[method] = high < 0 ? l.end : RITZ_FIT_END_NONE;
+    if (fit->best[method] < 0) {
+        RITZ_TRY(measure_largest(&l));
+        ritz_fit_conclude(fit, method);
+    }
+    if (fitter->scene && fit->best[method] >= 0 &&
+        (!on || in_reach(&l, fit->best[method]))) {
+        RITZ_TRY(thin_modes(fitter, fit, method, &fit->best[method]));
+        ritz_fit_conclude(fit, method);
     }
 done:
-    free(modes);
+    free(l.modes);
     return status;
 }

@@ -46,15 +46,15 @@ static json_t *candidate_json(const ritz_fit_candidate *c)
     json_object_set_new(object, "modes", modes_json(c));
     json_object_set_new(
         object, "seconds",
-        json_pack("{s:f, s:f}", "wall", c->spent.wall, "cpu", c->spent.cpu));
+        json_pack("{s:f, s:f}", "wall", c->making.wall, "cpu", c->making.cpu));
     json_object_set_new(object, "errors", fit_values_json(&c->errors));
     json_object_set_new(object, "estimates", fit_values_json(&c->estimates));
     if (c->cost.order > 0)
         json_object_set_new(object, "cost", model_cost_json(&c->cost));
     json_object_set_new(object, "left_out", json_integer(c->left_out));
-    json_object_set_new(object, "screened", json_boolean(c->screened));
-    json_object_set_new(object, "held", json_boolean(c->held));
-    json_object_set_new(object, "caught", json_boolean(c->caught));
+    json_object_set_new(object, "screened", json_boolean(c->ruled_out));
+    json_object_set_new(object, "held", json_boolean(c->bounded));
+    json_object_set_new(object, "caught", json_boolean(c->unconfirmed));
     json_object_set_new(object, "feasible", json_boolean(c->feasible));
     if (c->refusal[0])
         json_object_set_new(object, "refused", cli_string(c->refusal));
@@ -117,14 +117,13 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
     }
     if (c->cost.order > 0)
         snprintf(cost, sizeof cost, "%.2g", c->cost.seconds_per_second);
-    snprintf(error, sizeof error, "%s%.2g", c->screened ? ">" : "", c->excess);
+    snprintf(error, sizeof error, "%s%.2g", c->ruled_out ? ">" : "", c->ratio);
     cli_say(run, "%-18s %6lld %8s  %8s %-10s %8.2g %9s  %s", c->method->name,
             (long long)c->order, modes, error,
-            c->screened ? "frequency"
-            : c->binding < 0
-                ? ""
-                : ritz_tolerance_word(c->errors.item[c->binding].name),
-            c->spent.cpu, cost, c->feasible ? "" : "not met");
+            c->ruled_out   ? "frequency"
+            : c->worst < 0 ? ""
+                           : ritz_tolerance_word(c->errors.item[c->worst].name),
+            c->making.cpu, cost, c->feasible ? "" : "not met");
 }
 
 static void say_head(const cli_run *run)
@@ -218,7 +217,7 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     cli_report_int(run, "order", c->order);
     cli_report_int(run, "columns", c->columns);
     json_object_set_new(run->report, "modes", modes_json(c));
-    json_object_set_new(run->report, "error", cli_real(c->excess));
+    json_object_set_new(run->report, "error", cli_real(c->ratio));
     json_object_set_new(run->report, "measures",
                         model_measures_json(&c->errors, "measured"));
     json_object_set_new(run->report, "estimates",

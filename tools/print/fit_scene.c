@@ -16,7 +16,7 @@ static json_t *row_json(const ritz_fitter *fitter, const ritz_fit_row *row)
     json_object_set_new(object, "order",
                         row->order > 0 ? json_integer(row->order)
                                        : json_null());
-    json_object_set_new(object, "error", cli_real(row->excess));
+    json_object_set_new(object, "error", cli_real(row->ratio));
     json_object_set_new(object, "errors", fit_values_json(&row->errors));
     json_object_set_new(object, "feasible", json_boolean(row->feasible));
     if (row->refusal[0])
@@ -49,9 +49,8 @@ static void say_step(const cli_run *run, const ritz_fitter *fitter,
 {
     char orders[256];
     const char *word =
-        row->binding < 0
-            ? ""
-            : ritz_tolerance_word(row->errors.item[row->binding].name);
+        row->worst < 0 ? ""
+                       : ritz_tolerance_word(row->errors.item[row->worst].name);
 
     print_bodies(fitter, row, sizeof orders, orders);
     if (row->refusal[0])
@@ -59,7 +58,7 @@ static void say_step(const cli_run *run, const ritz_fitter *fitter,
                 row->refusal);
     else
         cli_say(run, "%s  %8lld %6lld  %8.2g %s%s", orders,
-                (long long)row->columns, (long long)row->order, row->excess,
+                (long long)row->columns, (long long)row->order, row->ratio,
                 word, row->feasible ? "" : ", not met");
 }
 

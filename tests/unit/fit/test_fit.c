@@ -169,8 +169,8 @@ static void estimates_rule_out_candidates_and_change_no_answer(void **state)
     for (int64_t k = 0; k < fit.count; k++) {
         const ritz_fit_candidate *c = &fit.candidate[k];
 
-        screened += c->screened;
-        assert_true(!c->screened || (!c->feasible && c->errors.count == 0));
+        screened += c->ruled_out;
+        assert_true(!c->ruled_out || (!c->feasible && c->errors.count == 0));
     }
     assert_true(screened > 0 && screened < fit.count);
     ritz_fit_free(&fit);

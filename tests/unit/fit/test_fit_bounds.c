@@ -180,13 +180,13 @@ static void assert_rightly_screened(ritz_fitter *measuring, const ritz_fit *fit)
         const ritz_fit_candidate *c = &fit->candidate[k];
         ritz_fit_candidate again = {0};
 
-        if (!c->screened)
+        if (!c->ruled_out)
             continue;
         screened++;
         assert_int_equal(c->errors.count, 0);
         assert_ok(ritz_fitter_try(measuring, c->method, c->modes, &again));
         assert_false(again.feasible);
-        assert_false(again.screened);
+        assert_false(again.ruled_out);
         if (!(value_of(&again.errors, "missing-modes") > 0.0))
             assert_true(value_of(&again.errors, "frequency-relative") >=
                         value_of(&c->estimates, "frequency-relative-least"));

@@ -3,7 +3,7 @@
 
 #include "answers.h"
 #include "dualspin.h"
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "frame.h"
@@ -109,7 +109,7 @@ static void its_bodies_are_nested_and_say_so(void **state)
     for (int k = 0; k < 2; k++) /* the first rung: neither is held */
         assert_int_equal(a.fit.candidate[0].modes[k], 1);
     assert_string_equal(a.fit.candidate[0].refusal, "");
-    assert_true(chosen->feasible && chosen->spent.wall > 0.0);
+    assert_true(chosen->feasible && chosen->making.wall > 0.0);
     answer_system(&a, chosen);
     assert_int_equal(a.system.configuration[0].K.ncol, chosen->order);
     for (int k = 0; k < 2; k++) {

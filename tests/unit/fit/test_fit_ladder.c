@@ -6,7 +6,8 @@
 #include "fit_scenes.h"
 #include "folder.h"
 
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
+#include "fit/search.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,8 @@
 
 #include "answers.h"
 #include "dualspin.h"
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
+#include "fit/order.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
@@ -94,15 +95,15 @@ static void a_path_leads_from_the_answer_to_what_must_stay(void **state)
     answer_make(fit_scenes_beams, &request, &ritz_method_craig_bampton, modes,
                 &a);
     assert_int_equal(a.path.row[0].order, a.whole.order);
-    assert_near(a.path.row[0].excess, a.whole.excess, 1e-9);
+    assert_near(a.path.row[0].ratio, a.whole.ratio, 1e-9);
     for (int64_t t = 0; t < a.path.count; t++) {
         const ritz_fit_row *row = &a.path.row[t];
 
         assert_int_equal(row->columns, a.whole.columns - t);
         assert_int_equal(row->first[0] + row->first[1], row->columns);
         assert_int_equal(row->order, a.whole.order - t);
-        assert_true(row->binding >= 0);
-        assert_int_equal(row->feasible, row->excess <= 1.0);
+        assert_true(row->worst >= 0);
+        assert_int_equal(row->feasible, row->ratio <= 1.0);
     }
     for (int k = 0; k < 2; k++) {
         const ritz_reduced *body = &a.body[k];

@@ -27,8 +27,8 @@ static void what_meets_the_listed_angles_alone_is_caught(void **state)
     for (int64_t k = 0; k < a.fit.count; k++) {
         const ritz_fit_candidate *c = &a.fit.candidate[k];
 
-        caught += c->caught;
-        assert_false(c->caught && c->feasible);
+        caught += c->unconfirmed;
+        assert_false(c->unconfirmed && c->feasible);
     }
     assert_true(caught > 0);
     assert_non_null(strstr(a.fit.why, "met the grid and failed at random"));

@@ -2,7 +2,7 @@
 #include "testing.h"
 
 #include "answers.h"
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
 #include "fit/order.h"
 #include "fit_scenes.h"
 #include "folder.h"
@@ -66,7 +66,7 @@ static void what_has_nothing_to_spare_stays(void **state)
     (void)state;
     open_beams(3, 3, "response=1", &a);
     assert_ok(ritz_fitter_try(a.fitter, one[0], none, &a.whole));
-    assert_ok(ritz_fit_trim_scene(a.fitter, &a.whole, &less));
+    assert_ok(ritz_fit_trim(a.fitter, &a.whole, &less));
     assert_int_equal(less.order, 0);
     ritz_fit_candidate_free(&less);
     answer_free(&a);
@@ -92,7 +92,7 @@ static void a_cut_of_another_scene_is_refused(void **state)
 static ritz_status trim(ritz_fitter *fitter, const ritz_fit_candidate *from)
 {
     ritz_fit_candidate less = {0};
-    ritz_status status = ritz_fit_trim_scene(fitter, from, &less);
+    ritz_status status = ritz_fit_trim(fitter, from, &less);
 
     ritz_fit_candidate_free(&less);
     return status;

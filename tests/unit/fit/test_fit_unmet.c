@@ -6,7 +6,7 @@
 #include "folder.h"
 #include "project.h"
 
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
 
 #include <math.h>
 
@@ -36,12 +36,12 @@ static void the_largest_of_a_method_that_fails_is_measured(void **state)
     (void)state;
     fit(&a);
     for (int64_t k = 0; k < a.fit.count; k++)
-        screened += a.fit.candidate[k].screened;
+        screened += a.fit.candidate[k].ruled_out;
     assert_true(screened > 0);
     for (int64_t m = 0; m < METHODS; m++) {
         const ritz_fit_candidate *c = &a.fit.candidate[a.fit.reached[m]];
 
-        assert_false(c->screened);
+        assert_false(c->ruled_out);
         assert_true(find_measure(&c->errors, "frequency-relative")->value >
                     1e-9);
         for (int64_t k = 0; k < a.fit.count; k++)
@@ -58,8 +58,8 @@ static void the_largest_of_a_method_that_fails_is_measured(void **state)
 static void what_misses_fewer_modes_is_nearer(void **state)
 {
     static const struct {
-        double missing, limit, excess;
-        bool screened;
+        double missing, limit, ratio;
+        bool ruled_out;
     } table[] = {/* each farther than the one before */
                  {0.0, 0.0, 30.0, false}, {0.0, 0.0, 40.0, false},
                  {0.0, 0.0, 1e6, false},  {1.0, 0.0, 2.0, false},
@@ -70,9 +70,9 @@ static void what_misses_fewer_modes_is_nearer(void **state)
 
     (void)state;
     for (int k = 0; k < ROWS; k++) {
-        row[k].excess = table[k].excess;
-        row[k].screened = table[k].screened;
-        if (!table[k].screened)
+        row[k].ratio = table[k].ratio;
+        row[k].ruled_out = table[k].ruled_out;
+        if (!table[k].ruled_out)
             assert_ok(ritz_measures_add(&row[k].errors, "missing-modes",
                                         table[k].missing, table[k].limit, ""));
     }

@@ -1,5 +1,8 @@
-/* A scene's bodies: which are flexible, in which order they get modes. */
-#include "fit/fit_parts.h"
+/*
+ * Flexible bodies: which they are, in which order they get modes (the ladder),
+ * and how they are joined to the bodies that stay as they are.
+ */
+#include "fit/fitter.h"
 
 #include "base/alloc.h"
 
@@ -25,6 +28,7 @@ static ritz_status load_bodies(ritz_fitter *f)
     const ritz_scene *scene = f->scene;
     ritz_component full = {0};
 
+    f->num_components = scene->num_components;
     RITZ_NEW(f->still, scene->num_components);
     RITZ_NEW(f->model, scene->num_components);
     RITZ_NEW(f->body, scene->num_components);
@@ -61,15 +65,15 @@ done:
 }
 
 /* A flexible mode of a body. */
-typedef struct rung {
+typedef struct body_mode {
     double hertz;
     int64_t body;
-} rung;
+} body_mode;
 
 static int by_hertz(const void *left, const void *right)
 {
-    const rung *a = left;
-    const rung *b = right;
+    const body_mode *a = left;
+    const body_mode *b = right;
 
     if (a->hertz != b->hertz)
         return (a->hertz > b->hertz) - (a->hertz < b->hertz);
@@ -77,19 +81,19 @@ static int by_hertz(const void *left, const void *right)
 }
 
 /* Flexible modes of all bodies, while they are gathered. */
-typedef struct rungs {
+typedef struct body_modes {
     int64_t count;
-    rung *all;
+    body_mode *all;
     double limit; /* Hz: up to it no body lacks any */
-} rungs;
+} body_modes;
 
 /* Those of one body; so many as were asked for, or all up to a frequency. */
-static ritz_status gather(const ritz_fitter *f, int64_t k,
-                          const ritz_span *span, rungs *r)
+static ritz_status gather_modes(const ritz_fitter *f, int64_t k,
+                                const ritz_span *span, body_modes *r)
 {
     ritz_status status = RITZ_OK;
     ritz_pairs pairs = {0};
-    rung *more = NULL;
+    body_mode *more = NULL;
     int64_t found = 0;
 
     RITZ_TRY_IN(
@@ -102,7 +106,7 @@ static ritz_status gather(const ritz_fitter *f, int64_t k,
     free(r->all);
     r->all = more;
     for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++)
-        r->all[r->count++] = (rung){ritz_eigen_hertz(pairs.lambda[j]), k};
+        r->all[r->count++] = (body_mode){ritz_eigen_hertz(pairs.lambda[j]), k};
     if (span->modes >= 0 && found >= span->modes && found > 0)
         r->limit = fmin(r->limit, r->all[r->count - 1].hertz);
 done:
@@ -111,7 +115,7 @@ done:
 }
 
 /* They become the ladder, as far as no body lacks any. */
-static ritz_status climb_by(rungs *r, ritz_fitter *f)
+static ritz_status set_ladder(body_modes *r, ritz_fitter *f)
 {
     ritz_status status = RITZ_OK;
     int64_t *step = NULL;
@@ -145,11 +149,11 @@ static ritz_status make_ladder(ritz_fitter *f)
 {
     ritz_status status = RITZ_OK;
     const ritz_span span = {.modes = -1, .up_to_hz = ladder_to * f->rich_hz};
-    rungs r = {.limit = HUGE_VAL};
+    body_modes r = {.limit = HUGE_VAL};
 
     for (int64_t k = 0; k < f->num_bodies; k++)
-        RITZ_TRY(gather(f, k, &span, &r));
-    RITZ_TRY(climb_by(&r, f));
+        RITZ_TRY(gather_modes(f, k, &span, &r));
+    RITZ_TRY(set_ladder(&r, f));
     f->num_first = f->num_steps;
 done:
     free(r.all);
@@ -157,7 +161,7 @@ done:
 }
 
 /* Modes of a body that are on the ladder. */
-static int64_t on_ladder(const ritz_fitter *f, int64_t body)
+static int64_t count_on_ladder(const ritz_fitter *f, int64_t body)
 {
     int64_t count = 0;
 
@@ -169,7 +173,7 @@ static int64_t on_ladder(const ritz_fitter *f, int64_t body)
 ritz_status ritz_fit_extend(ritz_fitter *f, ritz_fit_end *end)
 {
     ritz_status status = RITZ_OK;
-    rungs r = {.limit = f->rich ? f->rich_hz : HUGE_VAL};
+    body_modes r = {.limit = f->rich ? f->rich_hz : HUGE_VAL};
     const int64_t before = f->num_steps;
     int64_t room =
         f->request.largest > furthest ? f->request.largest : furthest;
@@ -179,14 +183,14 @@ ritz_status ritz_fit_extend(ritz_fitter *f, ritz_fit_end *end)
     if (room <= 0)
         return RITZ_OK;
     for (int64_t k = 0; k < f->num_bodies; k++) {
-        int64_t has = on_ladder(f, k);
+        int64_t has = count_on_ladder(f, k);
         int64_t more = has + AT_FIRST < room ? has + AT_FIRST : room;
         const ritz_span span = {.modes = has + more};
 
         ritz_monitor_step("modes of bodies", k, f->num_bodies);
-        RITZ_TRY(gather(f, k, &span, &r));
+        RITZ_TRY(gather_modes(f, k, &span, &r));
     }
-    RITZ_TRY(climb_by(&r, f));
+    RITZ_TRY(set_ladder(&r, f));
     *end = f->num_steps > before ? RITZ_FIT_END_NONE
            : f->rich             ? RITZ_FIT_END_REFERENCE
                                  : RITZ_FIT_END_WHOLE;
@@ -203,4 +207,100 @@ ritz_status ritz_fit_bodies(ritz_fitter *f)
 {
     RITZ_CHECK(load_bodies(f));
     return make_ladder(f);
+}
+
+int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method)
+{
+    return method == &ritz_fit_compare ? fitter->second.num_steps
+                                       : fitter->num_steps;
+}
+
+void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
+                   int64_t rung, int64_t *modes)
+{
+    const ritz_fit_second *second = &fitter->second;
+    const bool composite = method == &ritz_fit_compare;
+    const int64_t *step = composite ? second->step : fitter->step;
+
+    if (!fitter->scene) {
+        modes[0] = rung;
+        return;
+    }
+    for (int64_t k = 0; k < fitter->num_bodies; k++)
+        modes[k] = composite && second->rigid && second->rigid[k] == 0;
+    for (int64_t k = 0; k < rung && k < ritz_fit_rungs(fitter, method); k++)
+        modes[step[k]]++;
+}
+
+/* Bodies that stay as they are, lent to a stage, come home. */
+static void take_back(ritz_fitter *f, ritz_reduced *body)
+{
+    for (int64_t k = 0; body && k < f->num_components; k++) {
+        bool flexible = false;
+
+        for (int64_t j = 0; j < f->num_bodies; j++)
+            flexible = flexible || f->body[j] == k;
+        if (flexible)
+            continue;
+        f->still[k] = body[k]; /* its dampers may be installed by now */
+        body[k] = (ritz_reduced){0};
+    }
+}
+
+ritz_status ritz_fit_join(ritz_fitter *f, ritz_reduced *flexible,
+                          ritz_stage *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced *body = NULL;
+
+    RITZ_NEW(body, f->num_components);
+    for (int64_t k = 0; k < f->num_components; k++)
+        body[k] = f->still[k];
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        body[f->body[k]] = flexible[k];
+    status = f->scene ? ritz_stage_from(f->scene, body, out)
+                      : ritz_reduced_install(&body[0]);
+    if (status == RITZ_OK && !f->scene) {
+        *out = (ritz_stage){.count = 1, .body = body};
+        body = NULL;
+    }
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        flexible[k] = status == RITZ_OK ? (ritz_reduced){0} : body[f->body[k]];
+    if (status != RITZ_OK)
+        take_back(f, body);
+done:
+    free(body);
+    return status;
+}
+
+void ritz_fit_part(ritz_fitter *f, ritz_stage *stage, ritz_reduced *flexible)
+{
+    take_back(f, stage->body);
+    for (int64_t k = 0; stage->body && flexible && k < f->num_bodies; k++) {
+        flexible[k] = stage->body[f->body[k]];
+        stage->body[f->body[k]] = (ritz_reduced){0};
+    }
+    ritz_stage_free(stage);
+}
+
+ritz_status ritz_fit_rich(ritz_fitter *f, double up_to_hz, ritz_stage *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced *body = NULL;
+
+    RITZ_NEW(body, f->num_bodies);
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        ritz_scene_component item = f->scene->component[f->body[k]];
+
+        item.modes = -1;
+        item.up_to_hz = up_to_hz;
+        RITZ_TRY_IN(item.name, ritz_stage_reduce(f->scene, f->body[k], &item,
+                                                 &f->model[k], &body[k]));
+    }
+    RITZ_TRY(ritz_fit_join(f, body, out));
+done:
+    for (int64_t k = 0; body && k < f->num_bodies; k++)
+        ritz_reduced_free(&body[k]);
+    free(body);
+    return status;
 }

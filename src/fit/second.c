@@ -8,7 +8,7 @@
  * what inputs and outputs see; where it is of modes, all the same. Nothing is
  * kept exactly by that: each candidate is measured like any other.
  */
-#include "fit/fit_parts.h"
+#include "fit/fitter.h"
 
 #include "base/alloc.h"
 
@@ -183,7 +183,7 @@ static ritz_status make(ritz_fitter *f, double up_to_hz,
     }
     RITZ_TRY(keep_steps(f, &composite, second));
 done:
-    ritz_fit_rich_free(f, &stage);
+    ritz_fit_part(f, &stage, NULL);
     ritz_composite_free(&composite);
     return status;
 }
@@ -204,7 +204,7 @@ ritz_status ritz_fit_second_make(ritz_fitter *f)
         (void)snprintf(made.refusal, sizeof made.refusal, "%s",
                        ritz_error_message());
     }
-    made.spent = ritz_fit_since(watch);
+    made.making = ritz_fit_since(watch);
     f->second = made;
     return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
 }
@@ -221,8 +221,7 @@ ritz_status ritz_fit_second_remake(ritz_fitter *f, double up_to_hz, bool *made)
         ritz_fit_second_free(f->num_bodies, &more);
         return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
     }
-    more.spent = ritz_fit_since(watch);
-    ritz_fit_forget(f, &ritz_fit_compare);
+    more.making = ritz_fit_since(watch);
     ritz_fit_second_free(f->num_bodies, &f->second);
     f->second = more;
     *made = true;

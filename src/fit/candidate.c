@@ -1,0 +1,702 @@
+/*
+ * One candidate: its bodies are made, each once, lent to a stage, bounded,
+ * measured at every listed configuration and, where it meets the tolerance
+ * there, confirmed at random frequencies and configurations.
+ */
+#include "fit/fitter.h"
+
+#include "base/alloc.h"
+
+#include <ritz/probe.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Entries of T of all bodies that were made: half a gigabyte. */
+static const int64_t most_entries = INT64_C(1) << 26;
+
+static double seconds(clockid_t clock)
+{
+    struct timespec now = {0};
+
+    (void)clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+ritz_fit_watch ritz_fit_start(void)
+{
+    return (ritz_fit_watch){seconds(CLOCK_MONOTONIC),
+                            seconds(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+ritz_fit_watch ritz_fit_since(ritz_fit_watch start)
+{
+    ritz_fit_watch now = ritz_fit_start();
+
+    return (ritz_fit_watch){now.wall - start.wall, now.cpu - start.cpu};
+}
+
+/* --- judged -------------------------------------------------------------------- */
+
+static void set_refusal(const char *why, ritz_fit_candidate *candidate)
+{
+    (void)snprintf(candidate->refusal, sizeof candidate->refusal, "%s", why);
+    candidate->feasible = false;
+    candidate->ratio = HUGE_VAL;
+}
+
+ritz_status ritz_fit_refuse(ritz_status status, ritz_fit_candidate *candidate)
+{
+    if (status == RITZ_OK || status == RITZ_ERR_MEMORY)
+        return status;
+    set_refusal(ritz_error_message(), candidate);
+    return RITZ_OK;
+}
+
+void ritz_fit_judge(const ritz_verify_request *limits,
+                    ritz_fit_candidate *candidate)
+{
+    candidate->ratio = 0.0;
+    candidate->worst = -1;
+    for (int64_t k = 0; k < candidate->errors.count; k++) {
+        ritz_measure *m = &candidate->errors.item[k];
+        double ratio = 0.0;
+
+        if (isnan(m->limit))
+            m->limit = ritz_measure_limit(limits->limit, m->name);
+        if (isnan(m->limit))
+            continue;
+        ratio = ritz_measure_ratio(m->name, m->value, m->limit);
+        if (candidate->worst < 0 || ratio > candidate->ratio) {
+            candidate->ratio = ratio;
+            candidate->worst = k;
+        }
+    }
+    candidate->feasible = candidate->ratio <= 1.0;
+}
+
+double ritz_fit_misses(const ritz_fit_candidate *c)
+{
+    const ritz_measure *m = ritz_measures_find(&c->errors, "missing-modes");
+
+    return m && m->value > m->limit ? m->value : 0.0;
+}
+
+/* Of what was not measured nobody knows more than how far off it is at least;
+ * errors of the modes that are there say little where others are missing. */
+bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
+                        const ritz_fit_candidate *b)
+{
+    double more = ritz_fit_misses(a) - ritz_fit_misses(b);
+
+    if (a->ruled_out != b->ruled_out)
+        return b->ruled_out;
+    return more != 0.0 ? more < 0.0 : a->ratio < b->ratio;
+}
+
+ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
+                           ritz_measures *worst)
+{
+    char where[RITZ_NAME_SIZE];
+
+    for (int64_t k = 0; k < more->count; k++) {
+        const ritz_measure *m = &more->item[k];
+        ritz_measure *old = ritz_measures_find(worst, m->name);
+
+        if (at[0])
+            (void)snprintf(where, sizeof where, "%.28s%s%.32s", at,
+                           m->where[0] ? ": " : "", m->where);
+        else
+            memcpy(where, m->where, sizeof where);
+        if (!old) {
+            RITZ_CHECK(
+                ritz_measures_add(worst, m->name, m->value, m->limit, where));
+        } else if (ritz_measure_is_worse(m->name, m->value, old->value)) {
+            old->value = m->value;
+            memcpy(old->where, where, sizeof where);
+        }
+    }
+    return RITZ_OK;
+}
+
+/* --- its bodies ------------------------------------------------------------------ */
+
+/* What this method heeds of what all are told; its damping is everybody's. */
+static ritz_choice choose_options(const ritz_fitter *fitter,
+                                  const ritz_method *method)
+{
+    const ritz_verify_request *limits = &fitter->request.tolerance;
+    ritz_choice choice = fitter->request.choice;
+    int absent = ~choice.given;
+
+    if (absent & method->uses & RITZ_USES_DAMPING &&
+        limits->damping.kind != RITZ_DAMPING_NONE) {
+        choice.damping = limits->damping;
+        choice.given |= RITZ_USES_DAMPING;
+    }
+    if (absent & method->uses & RITZ_USES_BAND) {
+        memcpy(choice.band_hz, limits->band_hz, sizeof choice.band_hz);
+        choice.given |= RITZ_USES_BAND;
+    }
+    if (absent & method->uses & RITZ_USES_SIDES) {
+        choice.one_sided = true; /* symmetric, as all that are compared */
+        choice.given |= RITZ_USES_SIDES;
+    }
+    choice.given &= method->uses;
+    return choice;
+}
+
+static ritz_status reduce_component(const ritz_fitter *f,
+                                    const ritz_method *method, int64_t modes,
+                                    ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_request request = RITZ_REQUEST_NONE;
+    ritz_basis basis = {0};
+
+    request.component = f->component;
+    request.modes = modes;
+    request.choice = choose_options(f, method);
+    request.attached = f->attached; /* borrowed */
+    RITZ_TRY(ritz_basis_make(method, &request, &basis));
+    RITZ_TRY(ritz_reduce(f->component, &basis, out));
+done:
+    ritz_basis_free(&basis);
+    return status;
+}
+
+ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
+                          int64_t modes, ritz_reduced *out)
+{
+    ritz_scene_component item = {0};
+
+    if (!f->scene)
+        return reduce_component(f, method, modes, out);
+    if (method == &ritz_fit_compare)
+        return ritz_fit_second_body(f, k, modes, out);
+    item = f->scene->component[f->body[k]];
+    (void)snprintf(item.basis, sizeof item.basis, "%s", method->name);
+    item.modes = modes;
+    item.up_to_hz = 0.0;
+    if (f->request.choice.given)
+        item.choice = f->request.choice;
+    item.choice.given &= method->uses;
+    return ritz_context(
+        ritz_stage_reduce(f->scene, f->body[k], &item, &f->model[k], out),
+        item.name);
+}
+
+static void free_made(ritz_fit_made *made)
+{
+    ritz_reduced_free(&made->reduced);
+    *made = (ritz_fit_made){0};
+}
+
+void ritz_fit_forget(ritz_fitter *f, const ritz_method *method)
+{
+    int64_t kept = 0;
+
+    for (int64_t k = 0; k < f->num_made; k++)
+        if (f->made[k].method == method)
+            free_made(&f->made[k]);
+        else
+            f->made[kept++] = f->made[k];
+    f->num_made = kept;
+}
+
+/* Whether there is room for one more T: bounds need those of all bodies, and
+   MAC needs that of a component. */
+static bool keeps_basis(const ritz_fitter *f, const ritz_dense *T)
+{
+    int64_t held = T->nrow * T->ncol;
+
+    for (int64_t k = 0; k < f->num_made; k++)
+        held += f->made[k].reduced.T.nrow * f->made[k].reduced.T.ncol;
+    return !f->scene || (f->place[0].estimator && held <= most_entries);
+}
+
+/* That body in that basis, made once; of what cannot be, why. */
+static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
+                             int64_t body, int64_t modes, int64_t *at)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_made made = {.method = method, .body = body, .modes = modes};
+    ritz_fit_made *more = NULL;
+    ritz_fit_watch watch = {0};
+
+    for (*at = 0; *at < f->num_made; (*at)++) {
+        const ritz_fit_made *m = &f->made[*at];
+
+        if (m->method == method && m->body == body && m->modes == modes)
+            return RITZ_OK;
+    }
+    watch = ritz_fit_start();
+    status = ritz_fit_body(f, method, body, modes, &made.reduced);
+    if (status == RITZ_ERR_MEMORY)
+        goto done;
+    if (status != RITZ_OK)
+        (void)snprintf(made.refusal, sizeof made.refusal, "%s",
+                       ritz_error_message());
+    made.status = status;
+    made.making = ritz_fit_since(watch);
+    if (!keeps_basis(f, &made.reduced.T))
+        ritz_dense_free(&made.reduced.T);
+    RITZ_NEW(more, f->num_made + 1);
+    if (f->num_made > 0)
+        memcpy(more, f->made, (size_t)f->num_made * sizeof *more);
+    free(f->made);
+    f->made = more;
+    f->made[f->num_made++] = made;
+    made = (ritz_fit_made){0};
+    status = RITZ_OK;
+done:
+    free_made(&made);
+    return status;
+}
+
+/* All of them, and what they took; a refused one refuses the candidate. */
+static ritz_status make_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
+                               int64_t *at)
+{
+    candidate->making = (ritz_fit_watch){0};
+    candidate->columns = 0;
+    if (f->scene && candidate->method == &ritz_fit_compare) {
+        RITZ_CHECK(ritz_fit_second_make(f));
+        candidate->making = f->second.making;
+    }
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        const ritz_fit_made *made = NULL;
+
+        RITZ_CHECK(
+            make_body(f, candidate->method, k, candidate->modes[k], &at[k]));
+        made = &f->made[at[k]];
+        if (made->status != RITZ_OK) {
+            set_refusal(made->refusal, candidate);
+            return RITZ_OK;
+        }
+        candidate->making.wall += made->making.wall;
+        candidate->making.cpu += made->making.cpu;
+        candidate->columns += made->reduced.K.ncol;
+    }
+    return RITZ_OK;
+}
+
+/* What is done with the candidate once it is a stage. */
+typedef ritz_status ritz_fit_use(ritz_fitter *f, const ritz_stage *stage,
+                                 ritz_fit_candidate *candidate);
+
+static ritz_status with_stage(ritz_fitter *f, ritz_fit_use *use,
+                              ritz_fit_candidate *candidate)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced *lent = NULL;
+    int64_t *at = NULL;
+    ritz_stage stage = {0};
+
+    RITZ_NEW(lent, f->num_bodies);
+    RITZ_NEW(at, f->num_bodies);
+    RITZ_TRY(make_bodies(f, candidate, at));
+    if (candidate->refusal[0])
+        goto done;
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        lent[k] = f->made[at[k]].reduced;
+    status = ritz_fit_join(f, lent, &stage);
+    if (status == RITZ_OK) {
+        status = use(f, &stage, candidate);
+        ritz_fit_part(f, &stage, lent);
+    }
+    for (int64_t k = 0; k < f->num_bodies; k++) /* their dampers may be in */
+        f->made[at[k]].reduced = lent[k];
+done:
+    if (!f->scene) /* one of its candidates shares nothing with another */
+        ritz_fit_forget(f, candidate->method);
+    free(lent);
+    free(at);
+    return status;
+}
+
+/* --- a stage at a place --------------------------------------------------------- */
+
+/* The reduced model at one place. */
+typedef struct ritz_fit_model {
+    const ritz_fit_place *place;
+    const ritz_stage *stage;
+    ritz_configuration at; /* of a scene */
+    ritz_reduced lent;     /* its matrices, and T of a component; borrowed */
+} ritz_fit_model;
+
+static ritz_status open_model(const ritz_fitter *f, const ritz_stage *stage,
+                              const ritz_fit_place *place, ritz_fit_model *m)
+{
+    m->place = place;
+    m->stage = stage;
+    if (!f->scene) {
+        m->lent = stage->body[0];
+        return RITZ_OK;
+    }
+    RITZ_CHECK(ritz_stage_assemble(stage, place->setting, &m->at));
+    m->lent = (ritz_reduced){.K = m->at.K,
+                             .M = m->at.M,
+                             .D = m->at.D,
+                             .K4 = m->at.K4,
+                             .io = m->at.io};
+    return RITZ_OK;
+}
+
+/* A model that moves by itself is none, however near its frequencies are. */
+static ritz_status check_stability(const ritz_fitter *f,
+                                   const ritz_fit_model *m,
+                                   ritz_fit_candidate *candidate)
+{
+    ritz_probe found = {0};
+    char what[2 * RITZ_NAME_SIZE];
+    char why[sizeof what + 16];
+
+    RITZ_CHECK(ritz_probe_second_order(&m->lent.K, &m->lent.M, &m->lent.D,
+                                       &f->request.tolerance.damping, &found));
+    if (found.verdict != RITZ_UNSTABLE)
+        return RITZ_OK;
+    ritz_probe_print(&found, what);
+    (void)snprintf(why, sizeof why, "unstable: %s", what);
+    set_refusal(why, candidate);
+    return RITZ_OK;
+}
+
+static ritz_status take_cost(const ritz_fitter *f, const ritz_fit_model *m,
+                             ritz_fit_candidate *candidate)
+{
+    const ritz_verify_request *limits = &f->request.tolerance;
+    const ritz_second_order model = {&m->lent.K, &m->lent.M, &m->lent.D, NULL,
+                                     &m->lent.io};
+    ritz_status status = RITZ_OK;
+
+    if (!f->request.costs)
+        return RITZ_OK;
+    status = ritz_simulate_cost(&model, &limits->damping, limits->band_hz,
+                                &candidate->cost);
+    if (status != RITZ_OK && status != RITZ_ERR_MEMORY) {
+        candidate->cost = (ritz_cost){0}; /* it has none, and is no worse */
+        status = RITZ_OK;
+    }
+    return status;
+}
+
+/* Its errors there are among the worst so far. */
+static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
+                                 int points, ritz_fit_candidate *candidate)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_verify_request *limits = &f->request.tolerance;
+    const ritz_reference *reference = m->place->reference;
+    ritz_measures found = {0};
+
+    RITZ_TRY(f->scene ? ritz_reference_measure_at(reference, &m->at, limits,
+                                                  points, &found)
+                      : ritz_reference_measure(reference, &m->lent, limits,
+                                               points, &found));
+    RITZ_TRY(ritz_fit_worst(&found, m->place->at, &candidate->errors));
+    ritz_fit_judge(limits, candidate);
+    if (candidate->feasible && points)
+        RITZ_TRY(check_stability(f, m, candidate));
+done:
+    ritz_measures_free(&found);
+    return status;
+}
+
+ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
+                                const ritz_fit_place *place, int points,
+                                ritz_fit_candidate *candidate)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_model m = {0};
+
+    RITZ_TRY(open_model(f, stage, place, &m));
+    if (m.lent.K.ncol > candidate->order)
+        candidate->order = m.lent.K.ncol;
+    RITZ_TRY(measure_model(f, &m, points, candidate));
+done:
+    ritz_configuration_free(&m.at);
+    return status;
+}
+
+/* --- bounds ---------------------------------------------------------------------- */
+
+/*
+ * What bounds decide before anything is measured. A candidate fails for certain
+ * if its worst frequency error is at least more than is allowed; a component's
+ * holds on the grid if every measure that has a tolerance has a bound within.
+ */
+typedef enum ritz_fit_verdict {
+    RITZ_FIT_OPEN, /* measure it */
+    RITZ_FIT_HOLDS,
+    RITZ_FIT_FAILS,
+} ritz_fit_verdict;
+
+/* Whether all bodies have their T. */
+static bool has_bases(const ritz_stage *stage)
+{
+    bool all = true;
+
+    for (int64_t k = 0; k < stage->count; k++)
+        all = all && stage->body[k].T.val;
+    return all;
+}
+
+/* Whether bounds say that every measure with a tolerance holds: one without a
+   bound is not known to. Where frequencies are to be near, no mode may be
+   missing. */
+static bool surely_holds(const ritz_verify_request *limits,
+                         const ritz_measures *found)
+{
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const char *bound = ritz_measure_table[k].bound;
+        double limit = limits->limit[k];
+
+        if (k == RITZ_MEASURE_MISSING &&
+            !isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
+            limit = fmax(limit, 0.0);
+        if (!isnan(limit) &&
+            !(bound && ritz_measures_value(found, bound) <= limit))
+            return false;
+    }
+    return true;
+}
+
+/* Where modes may be missing, no error is certain. */
+static bool surely_fails(const ritz_verify_request *limits,
+                         const ritz_measures *found, double *ratio)
+{
+    double least = ritz_measures_value(found, "frequency-relative-least");
+
+    *ratio = least / limits->limit[RITZ_MEASURE_FREQUENCY];
+    return !(limits->limit[RITZ_MEASURE_MISSING] > 0.0) && *ratio > 1.0;
+}
+
+/* Bounds of a model, or what its error is at least; none where nothing can be
+   known, which is no failure. */
+static ritz_status bound_model(const ritz_fitter *f, const ritz_fit_model *m,
+                               bool least, ritz_measures *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_fit_place *place = m->place;
+    ritz_dense T = {0};
+    ritz_basis basis = {.T = m->lent.T};
+
+    if (f->scene) {
+        RITZ_TRY(ritz_stage_basis(m->stage, &m->at, place->full.num_dofs,
+                                  place->master, &T));
+        basis.T = T;
+    }
+    status =
+        least ? ritz_estimator_least(place->estimator, &basis, &m->lent, out)
+              : ritz_estimator_measure(place->estimator, &basis, &m->lent, out);
+    status = status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+done:
+    ritz_dense_free(&T);
+    return status;
+}
+
+/* Where modes are missing the worst error of the others may be 0. */
+static void forget_least(ritz_measures *found)
+{
+    ritz_measure *least = ritz_measures_find(found, "frequency-relative-least");
+
+    if (!least || !(ritz_measures_value(found, "missing-modes-bound") > 0.0))
+        return;
+    found->count--;
+    memmove(least, least + 1,
+            (size_t)(found->item + found->count - least) * sizeof *least);
+}
+
+/*
+ * A component's bounds stand beside the errors of every candidate. Of a scene
+ * measuring costs less than they do, save that what is off at one configuration
+ * need not be measured at all: so that is asked alone.
+ */
+static ritz_status foresee(const ritz_fitter *f, const ritz_fit_model *m,
+                           ritz_fit_candidate *candidate,
+                           ritz_fit_verdict *verdict)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_verify_request *limits = &f->request.tolerance;
+    ritz_measures found = {0};
+    double ratio = 0.0;
+
+    if (f->scene && isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
+        return RITZ_OK;
+    RITZ_TRY(bound_model(f, m, f->scene != NULL, &found));
+    if (!f->request.thorough && surely_holds(limits, &found)) {
+        *verdict = RITZ_FIT_HOLDS;
+    } else if (!f->request.thorough && surely_fails(limits, &found, &ratio)) {
+        *verdict = RITZ_FIT_FAILS;
+        candidate->ruled_out = true;
+        candidate->ratio = ratio;
+    }
+    if (!candidate->ruled_out) /* otherwise it is the reason */
+        forget_least(&found);
+    RITZ_TRY(ritz_fit_worst(&found, m->place->at, &candidate->estimates));
+done:
+    ritz_measures_free(&found);
+    return status;
+}
+
+/* What was said of a candidate while it was sought was of one place. Its errors
+ * are of random ones too, and so are its bounds. */
+ritz_status ritz_fit_bound_stage(ritz_fitter *f, const ritz_stage *stage,
+                                 ritz_fit_candidate *candidate)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures found = {0};
+    ritz_fit_model m = {0};
+
+    ritz_measures_free(&candidate->estimates);
+    for (int64_t k = 0; k < f->num_places && has_bases(stage); k++) {
+        ritz_fit_place *place = &f->place[k];
+
+        if (!f->place[0].estimator)
+            continue;
+        if (!place->estimator)
+            RITZ_TRY(ritz_fit_estimator(f, &place->full, place));
+        RITZ_TRY(open_model(f, stage, place, &m));
+        RITZ_TRY(bound_model(f, &m, false, &found));
+        forget_least(&found);
+        RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->estimates));
+        ritz_measures_free(&found);
+        ritz_configuration_free(&m.at);
+    }
+done:
+    ritz_measures_free(&found);
+    ritz_configuration_free(&m.at);
+    return status;
+}
+
+/* --- a candidate ----------------------------------------------------------------- */
+
+int ritz_fit_points(const ritz_reference *reference,
+                    const ritz_measures *errors)
+{
+    const bool extra = ritz_measures_value(errors, "extra-modes") > 0.0;
+
+    return extra || !ritz_reference_factors(reference)
+               ? RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM
+               : RITZ_AT_RANDOM;
+}
+
+/* What bounds leave open is measured. */
+static ritz_status look_at(ritz_fitter *f, const ritz_stage *stage,
+                           const ritz_fit_place *place, int points, bool bounds,
+                           ritz_fit_candidate *candidate)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_verdict verdict = RITZ_FIT_OPEN;
+    ritz_fit_model m = {0};
+
+    RITZ_TRY(open_model(f, stage, place, &m));
+    if (m.lent.K.ncol > candidate->order)
+        candidate->order = m.lent.K.ncol;
+    RITZ_FAIL_IF(candidate->order > f->largest, RITZ_ERR_ARGUMENT,
+                 "an order of %" PRId64 " is more than the %" PRId64
+                 " that are tried",
+                 candidate->order, f->largest);
+    if (bounds)
+        RITZ_TRY(foresee(f, &m, candidate, &verdict));
+    if (verdict == RITZ_FIT_OPEN)
+        RITZ_TRY(measure_model(f, &m, points, candidate));
+    if (candidate->feasible && points && place == f->place)
+        RITZ_TRY(take_cost(f, &m, candidate));
+    candidate->bounded = verdict == RITZ_FIT_HOLDS;
+    candidate->feasible = candidate->feasible || candidate->bounded;
+done:
+    ritz_configuration_free(&m.at);
+    return status;
+}
+
+/*
+ * Bounds are asked where the candidate before was worst, as that is where the
+ * next one fails, if it does.
+ */
+static ritz_status meet_grid(ritz_fitter *f, const ritz_stage *stage,
+                             ritz_fit_candidate *candidate)
+{
+    const int64_t first = f->hardest;
+    bool bounds = f->place[0].estimator && has_bases(stage) &&
+                  !(f->scene && f->request.thorough);
+    double worst = 0.0;
+
+    RITZ_CHECK(look_at(f, stage, &f->place[first], 0, bounds, candidate));
+    worst = candidate->ratio;
+    for (int64_t k = 0; k < f->num_places && !candidate->ruled_out; k++) {
+        if (!f->place[k].listed || k == first)
+            continue;
+        RITZ_CHECK(look_at(f, stage, &f->place[k], 0, false, candidate));
+        if (candidate->ratio > worst)
+            f->hardest = k;
+        worst = candidate->ratio;
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_stage *stage,
+                             ritz_fit_candidate *candidate)
+{
+    bool bounded = false;
+    int points = 0;
+
+    RITZ_CHECK(meet_grid(f, stage, candidate));
+    bounded = candidate->bounded;
+    if (!candidate->feasible || candidate->ruled_out)
+        return RITZ_OK;
+    points = ritz_fit_points(f->place[0].reference, &candidate->errors);
+    ritz_measures_free(&candidate->errors);
+    for (int64_t k = 0; k < f->num_places && candidate->refusal[0] == '\0'; k++)
+        RITZ_CHECK(look_at(f, stage, &f->place[k], points, false, candidate));
+    candidate->bounded = bounded;
+    candidate->unconfirmed =
+        !candidate->feasible && candidate->refusal[0] == '\0';
+    return RITZ_OK;
+}
+
+ritz_status ritz_fit_try(ritz_fitter *f, ritz_fit_candidate *candidate)
+{
+    return ritz_fit_refuse(with_stage(f, ritz_fit_measure, candidate),
+                           candidate);
+}
+
+ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
+{
+    return f->scene && f->place[0].estimator && candidate->left_out == 0
+               ? with_stage(f, ritz_fit_bound_stage, candidate)
+               : RITZ_OK;
+}
+
+ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
+                            const int64_t *modes, ritz_fit_candidate *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_candidate candidate = {
+        .method = method, .num_bodies = fitter->num_bodies, .worst = -1};
+
+    RITZ_NEW(candidate.modes, fitter->num_bodies);
+    for (int64_t k = 0; k < fitter->num_bodies; k++)
+        candidate.modes[k] = method->uses & RITZ_USES_MODES ? modes[k] : -1;
+    RITZ_TRY(ritz_fit_try(fitter, &candidate));
+    if (fitter->request.observe)
+        fitter->request.observe(&candidate, fitter->request.context);
+    *out = candidate;
+    candidate = (ritz_fit_candidate){0};
+done:
+    ritz_fit_candidate_free(&candidate);
+    return status;
+}
+
+void ritz_fit_candidate_free(ritz_fit_candidate *candidate)
+{
+    free(candidate->modes);
+    ritz_measures_free(&candidate->errors);
+    ritz_measures_free(&candidate->estimates);
+    *candidate = (ritz_fit_candidate){0};
+}

@@ -1,0 +1,203 @@
+/* Over all methods: which are tried, which of them is the answer. */
+#include "fit/search.h"
+
+#include "base/alloc.h"
+
+#include <ritz/monitor.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Second-order models by a number of modes; others only if they are named. */
+static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
+{
+    const int special =
+        RITZ_USES_SPACE | RITZ_USES_GRAMIAN | RITZ_USES_OPERATOR;
+    const int joined = RITZ_USES_MODES | RITZ_USES_ATTACHED;
+
+    if (fitter->scene)
+        return (method->uses & joined) == joined &&
+               !(method->only_named & RITZ_NAMED_FOR_SCENES);
+    return (method->uses & RITZ_USES_MODES) && !(method->uses & special) &&
+           !(method->uses & RITZ_USES_NEIGHBOUR) &&
+           !(method->only_named & RITZ_NAMED_FOR_COMPONENTS);
+}
+
+/* What is asked, or all that is usual: of joined bodies `compare` too. */
+static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
+{
+    const ritz_fit_request *asked = &fitter->request;
+    bool joined = fitter->scene && fitter->scene->num_components > 1;
+    int64_t all = 0;
+
+    while (ritz_methods[all])
+        all++;
+    if (asked->num_methods > 0)
+        all = asked->num_methods;
+    RITZ_CHECK_NEW(fit->method, all + 1); /* NOLINT: of pointers */
+    RITZ_CHECK_NEW(fit->best, all + 1);
+    RITZ_CHECK_NEW(fit->reached, all + 1);
+    RITZ_CHECK_NEW(fit->end, all + 1);
+    for (int64_t k = 0; k < all; k++)
+        if (asked->num_methods > 0)
+            fit->method[fit->num_methods++] = asked->methods[k];
+        else if (is_usual(fitter, ritz_methods[k]))
+            fit->method[fit->num_methods++] = ritz_methods[k];
+    if (asked->num_methods == 0 && joined)
+        fit->method[fit->num_methods++] = &ritz_fit_compare;
+    for (int64_t m = 0; m < fit->num_methods; m++) {
+        fit->best[m] = fit->reached[m] = -1;
+        if (fitter->scene && fit->method[m] == &ritz_fit_compare)
+            RITZ_CHECK(ritz_fit_second_make(fitter));
+    }
+    return RITZ_OK;
+}
+
+/* The best of all methods, and the best of the others. */
+static void choose(ritz_fit *fit)
+{
+    int64_t *const into[] = {&fit->chosen, &fit->runner_up};
+
+    for (int t = 0; t < 2; t++) {
+        *into[t] = -1;
+        for (int64_t m = 0; m < fit->num_methods; m++) {
+            int64_t k = fit->best[m];
+
+            if (k < 0 || (t == 1 && k == fit->chosen))
+                continue;
+            if (*into[t] < 0 || ritz_fit_is_better(&fit->candidate[k],
+                                                   &fit->candidate[*into[t]]))
+                *into[t] = k;
+        }
+    }
+}
+
+/* How wrong the two best can be, wherever a scene is listed. */
+static ritz_status bound(ritz_fitter *fitter, ritz_fit *fit)
+{
+    const int64_t both[] = {fit->chosen, fit->runner_up};
+
+    for (int t = 0; t < 2; t++)
+        if (both[t] >= 0)
+            RITZ_CHECK(ritz_fit_bound(fitter, &fit->candidate[both[t]]));
+    return RITZ_OK;
+}
+
+/* Columns that matter to nothing are left out of one method's best. */
+static ritz_status trim_one(ritz_fitter *fitter, int64_t at, ritz_fit *fit)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit_candidate less = {0};
+
+    ritz_monitor_step("columns to be left out", at, fit->count);
+    RITZ_TRY(ritz_fit_trim(fitter, &fit->candidate[at], &less));
+    if (less.order > 0) {
+        if (fitter->request.observe)
+            fitter->request.observe(&less, fitter->request.context);
+        RITZ_TRY(ritz_fit_append(fit, &less));
+    }
+done:
+    ritz_fit_candidate_free(&less);
+    return status;
+}
+
+static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
+{
+    double most = 0.0;
+
+    if (fit->chosen >= 0)
+        most = RITZ_FIT_REACH * (double)fit->candidate[fit->chosen].order;
+    for (int64_t m = 0; m < fit->num_methods; m++) {
+        int64_t at = fit->best[m];
+
+        if (at >= 0 &&
+            ((double)fit->candidate[at].order <= most || at == fit->runner_up))
+            RITZ_CHECK(trim_one(fitter, at, fit));
+    }
+    for (int64_t m = 0; m < fit->num_methods; m++)
+        ritz_fit_conclude(fit, m);
+    choose(fit);
+    return RITZ_OK;
+}
+
+ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_fit fit = {.chosen = -1, .runner_up = -1};
+
+    RITZ_TRY(list_methods(fitter, &fit));
+    for (int64_t m = 0; m < fit.num_methods; m++)
+        RITZ_TRY(ritz_fit_search(fitter, &fit, m, false));
+    for (int64_t m = 0; m < fit.num_methods; m++)
+        if (fitter->scene && fit.best[m] < 0 &&
+            fit.method[m] != &ritz_fit_compare)
+            RITZ_TRY(ritz_fit_search(fitter, &fit, m, true));
+    choose(&fit);
+    RITZ_TRY(trim(fitter, &fit));
+    RITZ_TRY(bound(fitter, &fit));
+    RITZ_TRY(ritz_fit_explain(fitter, &fit));
+    *out = fit;
+    fit = (ritz_fit){0};
+done:
+    ritz_fit_free(&fit);
+    return status;
+}
+
+/* Of one method the largest that is no larger than that, by bisection. */
+static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
+                            int64_t *modes, ritz_fit *fit)
+{
+    const ritz_method *asked = fit->method[method];
+    bool met = false;
+    int64_t low = -1, at = 0;
+    int64_t high = 1 + (fitter->scene ? ritz_fit_rungs(fitter, asked) : order);
+
+    if (!(asked->uses & RITZ_USES_MODES))
+        high = 1;
+    while (high - low > 1) {
+        int64_t t = low + (high - low) / 2;
+        const ritz_fit_candidate *c = NULL;
+
+        ritz_fit_rung(fitter, asked, t, modes);
+        RITZ_CHECK(ritz_fit_visit(fitter, fit, method, modes, &at));
+        c = &fit->candidate[at];
+        if (ritz_fit_was_made(c) && c->order <= order) {
+            low = t;
+            met = true;
+        } else if (ritz_fit_was_made(c) || met || c->order > fitter->largest) {
+            high = t;
+        } else {
+            low = t; /* refused for being too small, perhaps */
+        }
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
+                              int64_t *at)
+{
+    ritz_status status = RITZ_OK;
+    int64_t *modes = NULL;
+
+    RITZ_NEW(modes, fitter->num_bodies);
+    for (int64_t m = 0; m < fit->num_methods; m++) {
+        RITZ_TRY(approach(fitter, order, m, modes, fit));
+        ritz_fit_conclude(fit, m);
+        at[m] = ritz_fit_largest_of(fit, m, order);
+    }
+done:
+    free(modes);
+    return status;
+}
+
+void ritz_fit_free(ritz_fit *fit)
+{
+    for (int64_t k = 0; k < fit->count; k++)
+        ritz_fit_candidate_free(&fit->candidate[k]);
+    free(fit->candidate);
+    free(fit->method);
+    free(fit->best);
+    free(fit->reached);
+    free(fit->end);
+    *fit = (ritz_fit){0};
+}
