@@ -46,9 +46,6 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
                                     const ritz_damping *damping,
                                     ritz_probe *out);
 
-/** The same with its dampers and its own damping. */
-ritz_status ritz_probe_reduced(const ritz_reduced *reduced, ritz_probe *out);
-
 /**
  * Everything that can grow, alone or in an assembly. docs/methods/stability.md
  * says what each check measures and where its limit comes from:

@@ -1,4 +1,4 @@
-/* Searching ascending whole numbers: ids, and rows of a sparse column. */
+/* Order: searching ascending whole numbers, and sorting. */
 #ifndef RITZ_BASE_SEARCH_H
 #define RITZ_BASE_SEARCH_H
 
@@ -28,6 +28,15 @@ static inline int64_t ritz_search(int64_t count, const int64_t *sorted,
     int64_t k = ritz_lower_bound(count, sorted, value);
 
     return k < count && sorted[k] == value ? k : -1;
+}
+
+/** For qsort: numbers in ascending order. */
+static inline int ritz_ascending(const void *left, const void *right)
+{
+    double a = *(const double *)left;
+    double b = *(const double *)right;
+
+    return (a > b) - (a < b);
 }
 
 #endif

@@ -224,21 +224,9 @@ done:
 /* Structural damping, of harmonic motion alone, has a check of its own. */
 static ritz_status take_reduced(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_reduced *reduced = it->reduced;
-    ritz_dampers dampers = {0};
-
-    RITZ_TRY(ritz_damping_parse(reduced->damping, &it->damping));
-    RITZ_TRY(ritz_dense_copy(&reduced->K, &it->model.K));
-    RITZ_TRY(ritz_dense_copy(&reduced->M, &it->model.M));
-    if (reduced->D.val)
-        RITZ_TRY(ritz_dense_copy(&reduced->D, &it->model.D));
-    RITZ_TRY(ritz_dampers_copy(&reduced->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install(&dampers, &it->model.K, &it->model.D));
-    RITZ_TRY(take_interface(it));
-done:
-    ritz_dampers_free(&dampers);
-    return status;
+    RITZ_CHECK(ritz_damping_parse(it->reduced->damping, &it->damping));
+    RITZ_CHECK(ritz_structure_of_reduced(it->reduced, &it->model));
+    return take_interface(it);
 }
 
 ritz_status ritz_probe_audit_reduced(const ritz_reduced *reduced,

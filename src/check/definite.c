@@ -297,7 +297,7 @@ done:
 
 /*
  * Stiffness, by the modes of (K, M), which other checks use too. A rigid motion
- * phi has none: phi'K phi beyond rounding is that of matrices of too few digits,
+ * phi has none: phi'K phi beyond rounding is of matrices of too few digits,
  * which hold a free body or drive it.
  */
 

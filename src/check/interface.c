@@ -242,7 +242,7 @@ done:
  *
  * with rows l_i of the interface, each with its own stiffness and mass,
  *
- *     1 / k_i = l_i Phi_f Lambda_f^-1 Phi_f' l_i',   1 / m_i = l_i Phi Phi' l_i'
+ *     1 / k_i = l_i Phi_f Lambda_f^-1 Phi_f' l_i',  1 / m_i = l_i Phi Phi' l_i'
  *
  * and a from 1e-3 to 1e3. Where M, K and D are semidefinite, so are all of
  * these, and nothing is computed.

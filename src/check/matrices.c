@@ -3,6 +3,7 @@
  * many digits, no negative eigenvalue, proportional damping or other.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "poles/proportional.h"
@@ -65,13 +66,6 @@ static int digits_of(double value, int *place)
     return digits;
 }
 
-static int ascending(const void *left, const void *right)
-{
-    const double *a = left, *b = right;
-
-    return (*a > *b) - (*a < *b);
-}
-
 /* Some entries of K, magnitudes, each once and none of them 0. */
 static int64_t sample_entries(const ritz_sparse *K, double *value)
 {
@@ -81,7 +75,7 @@ static int64_t sample_entries(const ritz_sparse *K, double *value)
     for (int64_t p = 0; p < nnz; p += step)
         if (K->val[p] != 0.0)
             value[count++] = fabs(K->val[p]);
-    qsort(value, (size_t)count, sizeof *value, ascending);
+    qsort(value, (size_t)count, sizeof *value, ritz_ascending);
     for (int64_t k = 0; k < count; k++)
         if (kept == 0 ||
             value[k] - value[kept - 1] > 4.0 * DBL_EPSILON * value[k])

@@ -6,6 +6,7 @@
  */
 #include "base/alloc.h"
 #include "base/complex.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/eigenvalues.h"
@@ -83,8 +84,8 @@ void ritz_sampler_free(ritz_sampler **sampler)
  *     (G(i w) + G(i w)^*) / 2 >= 0     for all w
  *
  * [AndersonVongpanitlerd1973]. It is met at and around every pole and between
- * them, down from the lowest of these, and where the pencil below says that a grid
- * may have stepped over something.
+ * them, down from the lowest of these, and where the pencil below says that a
+ * grid may have stepped over something.
  */
 
 /* Widths beside a pole, of |Re s| or, where that is less, of |s| / 1000. */
@@ -102,20 +103,12 @@ typedef struct descent {
     ritz_passivity found;
 } descent;
 
-static int ascending(const void *left, const void *right)
-{
-    const double *a = left;
-    const double *b = right;
-
-    return (*a > *b) - (*a < *b);
-}
-
 /* Sort, leave out what is not positive or there twice; how many are left. */
 static int64_t sort_frequencies(int64_t count, double *w)
 {
     int64_t kept = 0;
 
-    qsort(w, (size_t)count, sizeof *w, ascending);
+    qsort(w, (size_t)count, sizeof *w, ritz_ascending);
     for (int64_t k = 0; k < count; k++)
         if (w[k] > 0.0 &&
             (kept == 0 || w[k] > w[kept - 1] * (1.0 + RITZ_RANGE_ROUNDING)))

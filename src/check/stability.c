@@ -169,27 +169,6 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
-ritz_status ritz_probe_reduced(const ritz_reduced *reduced, ritz_probe *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
-    ritz_dampers dampers = {0};
-    ritz_damping damping = {0};
-
-    RITZ_TRY(ritz_damping_parse(reduced->damping, &damping));
-    RITZ_TRY(ritz_dense_copy(&reduced->K, &model.K));
-    if (reduced->D.val)
-        RITZ_TRY(ritz_dense_copy(&reduced->D, &model.D));
-    RITZ_TRY(ritz_dampers_copy(&reduced->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install(&dampers, &model.K, &model.D));
-    RITZ_TRY(ritz_probe_second_order(&model.K, &reduced->M, &model.D, &damping,
-                                     out));
-done:
-    ritz_dampers_free(&dampers);
-    ritz_structure_free(&model);
-    return status;
-}
-
 ritz_status ritz_check_poles(ritz_checker *it)
 {
     ritz_status status = RITZ_OK;

@@ -243,9 +243,7 @@ static ritz_status modes_up_to(const ritz_gramians_request *request,
     ritz_pairs pairs = {0};
     ritz_modal_model modes = {0};
 
-    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no states, "
-                 "give it as a modal ratio");
+    RITZ_TRY(ritz_structure_refuse(component->K4.colptr != NULL));
     RITZ_TRY(install_dampers(component, &s));
     RITZ_TRY(ritz_eigen_sparse(&s.K, &component->M, &span, &pairs));
     ritz_modal_model_take(&pairs, component->num_dofs, &modes);

@@ -1,4 +1,4 @@
-/* The matrices, loads and slow modes that the low-rank iteration starts from. */
+/* Matrices, loads and slow modes that the low-rank iteration starts from. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"

@@ -174,10 +174,10 @@ done:
 }
 
 /*
- * Sigma far beyond the first flexible mode blurs it: come closer, if may be. Up
- * to `blurred` times beyond it Lanczos still tells modes apart at its tolerance,
- * and to begin anew would cost as much again as it has (measured: half of all
- * solves).
+ * A shift far beyond the first flexible mode blurs it: come closer where that
+ * is possible. Up to RITZ_SHIFT_BLURRED times beyond it Lanczos still tells modes
+ * apart at its tolerance, and to begin anew would cost as much again (measured:
+ * half of all solves).
  */
 static ritz_status come_closer(search *s, bool *moved)
 {

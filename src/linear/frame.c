@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 
 #include <cblas.h>
 #include <float.h>
@@ -186,6 +187,32 @@ ritz_status ritz_frame_forward(const ritz_frame *f, const double *scale,
         for (int64_t i = 0; i < V->nrow; i++)
             ritz_dense_col(out, j)[i] *= scale[i];
     return RITZ_OK;
+}
+
+ritz_status ritz_frame_system(const ritz_dense *A, const ritz_dense *E,
+                              const ritz_dense *B, const ritz_dense *C,
+                              ritz_dense *out_A, ritz_dense *out_B,
+                              ritz_dense *out_C)
+{
+    ritz_status status = RITZ_OK;
+    ritz_frame frame = {0};
+    ritz_dense one = {0}, back = {0};
+
+    RITZ_TRY(ritz_frame_new(A, E, &frame));
+    RITZ_TRY(ritz_dense_copy(&frame.A, out_A));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.left, B, out_B));
+    RITZ_TRY(ritz_general_transpose(C, &one));
+    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
+    RITZ_TRY(ritz_general_transpose(&back, out_C));
+    if (frame.E.val && A->nrow > 0) {
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, out_A));
+        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, out_B));
+    }
+done:
+    ritz_frame_free(&frame);
+    ritz_dense_free(&one);
+    ritz_dense_free(&back);
+    return status;
 }
 
 void ritz_frame_free(ritz_frame *f)

@@ -23,6 +23,17 @@ void ritz_frame_turn_back(const ritz_frame *f, const double *scale,
 ritz_status ritz_frame_forward(const ritz_frame *f, const double *scale,
                                const ritz_dense *V, ritz_dense *out);
 
+/**
+ * E x' = A x + B u, y = C x in such coordinates, E divided out.
+ *
+ * @param[in]  E                    {0}: the identity
+ * @param[out] out_A, out_B, out_C  the caller's to free, if it fails too
+ */
+ritz_status ritz_frame_system(const ritz_dense *A, const ritz_dense *E,
+                              const ritz_dense *B, const ritz_dense *C,
+                              ritz_dense *out_A, ritz_dense *out_B,
+                              ritz_dense *out_C);
+
 void ritz_frame_free(ritz_frame *f);
 
 #endif

@@ -1,17 +1,10 @@
 /* What K and M show before they are factored, and pairs after. */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "linear/shifted.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a;
-    const double *y = b;
-
-    return (*x > *y) - (*x < *y);
-}
 
 ritz_status ritz_shifted_survey(const ritz_sparse *K, const ritz_sparse *M,
                                 ritz_survey *out)
@@ -35,7 +28,7 @@ ritz_status ritz_shifted_survey(const ritz_sparse *K, const ritz_sparse *M,
         if (k > 0.0 && m > 0.0)
             ratio[count++] = k / m;
     }
-    qsort(ratio, (size_t)count, sizeof *ratio, ascending);
+    qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s.typical = count > 0 ? ratio[count / 2] : 1.0;
     *out = s;
     s = (ritz_survey){0};

@@ -23,10 +23,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static ritz_status refuse_structural(bool there)
+ritz_status ritz_structure_refuse(bool structural)
 {
     RITZ_REFUSE_IF(
-        there, RITZ_ERR_ARGUMENT,
+        structural, RITZ_ERR_ARGUMENT,
         "structural damping is of harmonic motion and has no states, "
         "give it as a modal ratio");
     return RITZ_OK;
@@ -55,7 +55,7 @@ ritz_status ritz_structure_of_component(const ritz_component *component,
                  "%" PRId64 " dofs are too many for dense matrices of states, "
                  "there can be %d: reduce it by another method first",
                  component->num_dofs, RITZ_STATE_DOFS);
-    RITZ_TRY(refuse_structural(component->K4.colptr != NULL));
+    RITZ_TRY(ritz_structure_refuse(component->K4.colptr != NULL));
     RITZ_TRY(ritz_sparse_dense(&component->K, &model.K));
     RITZ_TRY(ritz_sparse_dense(&component->M, &model.M));
     if (component->D.colptr)
@@ -74,7 +74,6 @@ ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
     ritz_status status = RITZ_OK;
     ritz_structure model = {0};
 
-    RITZ_TRY(refuse_structural(reduced->K4.val != NULL));
     RITZ_TRY(ritz_dense_copy(&reduced->K, &model.K));
     RITZ_TRY(ritz_dense_copy(&reduced->M, &model.M));
     if (reduced->D.val)

@@ -20,8 +20,12 @@ typedef struct ritz_structure {
 /** @return RITZ_ERR_ARGUMENT if it is too large or has structural damping */
 ritz_status ritz_structure_of_component(const ritz_component *component,
                                         ritz_structure *out);
+/** Structural damping is left out. */
 ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
                                       ritz_structure *out);
+/** RITZ_ERR_ARGUMENT, and its sentence, if there is structural damping. */
+ritz_status ritz_structure_refuse(bool structural);
+
 void ritz_structure_free(ritz_structure *model);
 
 typedef struct ritz_modal_model {

@@ -426,6 +426,7 @@ ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
     ritz_status status = RITZ_OK;
     ritz_structure model = {0};
 
+    RITZ_TRY(ritz_structure_refuse(reduced->K4.val != NULL));
     RITZ_TRY(ritz_structure_of_reduced(reduced, &model));
     RITZ_TRY(convert(&model, &reduced->io, damping, out));
     memcpy(out->units, reduced->units, sizeof out->units);

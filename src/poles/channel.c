@@ -2,7 +2,6 @@
 #include "poles/channel.h"
 
 #include "linear/frame.h"
-#include "linear/general.h"
 #include "poles/channel_modes.h"
 
 #include <math.h>
@@ -30,32 +29,6 @@ static ritz_status channel_check(int64_t outputs, int64_t inputs,
     return RITZ_OK;
 }
 
-/* In coordinates of the library's own scaling, E divided out. */
-static ritz_status scale_states(const ritz_state_space *model,
-                                ritz_channel *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_frame frame = {0};
-    ritz_dense one = {0}, back = {0};
-
-    RITZ_TRY(ritz_frame_new(&model->A, &model->E, &frame));
-    RITZ_TRY(ritz_dense_copy(&frame.A, &out->A));
-    RITZ_TRY(ritz_frame_forward(&frame, frame.left, &model->B, &out->B));
-    RITZ_TRY(ritz_general_transpose(&model->C, &one));
-    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
-    RITZ_TRY(ritz_general_transpose(&back, &out->C));
-    RITZ_TRY(ritz_dense_copy(&model->D, &out->D));
-    if (frame.E.val && model->A.nrow > 0) {
-        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &out->A));
-        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &out->B));
-    }
-done:
-    ritz_frame_free(&frame);
-    ritz_dense_free(&one);
-    ritz_dense_free(&back);
-    return status;
-}
-
 ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
                                 int64_t input, ritz_channel *out)
 {
@@ -64,7 +37,9 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
 
     RITZ_TRY(
         channel_check(model->num_outputs, model->num_inputs, output, input));
-    RITZ_TRY(scale_states(model, &all));
+    RITZ_TRY(ritz_frame_system(&model->A, &model->E, &model->B, &model->C,
+                               &all.A, &all.B, &all.C));
+    RITZ_TRY(ritz_dense_copy(&model->D, &all.D));
     if (output == RITZ_ALL_CHANNELS) {
         *out = all;
         all = (ritz_channel){0};

@@ -10,6 +10,7 @@
  * [Bruinsma1990], [Hammarling1982]
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
 #include "linear/resolvent.h"
@@ -95,14 +96,6 @@ static ritz_status peak_at(peak *s, double w, double *value)
     return RITZ_OK;
 }
 
-static int ascending(const void *left, const void *right)
-{
-    const double *a = left;
-    const double *b = right;
-
-    return (*a > *b) - (*a < *b);
-}
-
 /* 0 and, of every pole, where it alone answers most, else its magnitude. */
 static ritz_status choose_frequencies(const peak *s, int64_t *count,
                                       double **out)
@@ -118,7 +111,7 @@ static ritz_status choose_frequencies(const peak *s, int64_t *count,
 
         w[k + 1] = gap > 0.0 ? sqrt(gap) : cabs(pole);
     }
-    qsort(w, (size_t)n + 1, sizeof *w, ascending);
+    qsort(w, (size_t)n + 1, sizeof *w, ritz_ascending);
     for (int64_t k = 0; k <= n; k++)
         if (kept == 0 || w[k] - w[kept - 1] > RITZ_PEAK_PLACED * w[k])
             w[kept++] = w[k];

@@ -120,13 +120,6 @@ static bool couples_modes(const ritz_dense *A)
     return false;
 }
 
-static ritz_status copy_dense(const ritz_dense *A, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol, out));
-    memcpy(out->val, A->val, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
-    return RITZ_OK;
-}
-
 /* K4 is kept whole where there is any: it has no rate. */
 static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
                                 ritz_poles *poles)
@@ -138,13 +131,13 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
             poles->rate[k] += ritz_dense_col(D, k)[k];
         poles->coupled = couples_modes(D);
         poles->skew = ritz_dense_asymmetry(D) > RITZ_SYMMETRIC;
-        RITZ_CHECK(copy_dense(D, &poles->D));
+        RITZ_CHECK(ritz_dense_copy(D, &poles->D));
     } else if (has_k4) {
         RITZ_CHECK(ritz_dense_new(poles->count, poles->count, &poles->D));
     }
     if (has_k4) {
         poles->coupled = true;
-        RITZ_CHECK(copy_dense(K4, &poles->K4));
+        RITZ_CHECK(ritz_dense_copy(K4, &poles->K4));
     }
     for (int64_t k = 0; poles->D.val && k < poles->count; k++)
         ritz_dense_col(&poles->D, k)[k] = poles->rate[k];

@@ -8,8 +8,8 @@
  *     lambda (1 + i w b) + i w a - w^2 = (1 + i w b) (lambda - mu),
  *     mu = (w^2 - i w a) / (1 + i w b)
  *
- * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall by
- * |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the |mu|
+ * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall
+ * by |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the |mu|
  * at the end of the range: powers of rad^2/s^2 leave all bounds.
  */
 #include "base/alloc.h"

@@ -4,6 +4,7 @@
  * own step is wider. With `refine` each gets its peak and points on both sides
  * that lie 1/4 to 8 widths away.
  */
+#include "base/search.h"
 #include "poles/poles.h"
 
 #include "base/alloc.h"
@@ -77,19 +78,11 @@ static void around(double omega, double zeta, double out[static AROUND])
     }
 }
 
-static int ascending(const void *left, const void *right)
-{
-    double a = *(const double *)left;
-    double b = *(const double *)right;
-
-    return (a > b) - (a < b);
-}
-
 static int64_t distinct(int64_t count, double *f)
 {
     int64_t kept = 0;
 
-    qsort(f, (size_t)count, sizeof *f, ascending);
+    qsort(f, (size_t)count, sizeof *f, ritz_ascending);
     for (int64_t k = 0; k < count; k++)
         if (kept == 0 || f[k] - f[kept - 1] > RITZ_SAME_POINT * f[k])
             f[kept++] = f[k];

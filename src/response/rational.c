@@ -1,5 +1,6 @@
 
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "model/modal.h"
 #include "poles/spectrum_parts.h"
@@ -293,14 +294,6 @@ static void add_candidate(rational_nodes *s, double hertz, double low,
         s->hertz[s->count++] = hertz;
 }
 
-static int ascending(const void *left, const void *right)
-{
-    const double *a = left;
-    const double *b = right;
-
-    return (*a > *b) - (*a < *b);
-}
-
 /* Beside resonances, between them, and so many towards both ends that among
  * them are Leja points, which gather there. */
 static ritz_status place_nodes(rational_nodes *s, double low, double high)
@@ -330,7 +323,7 @@ static ritz_status place_nodes(rational_nodes *s, double low, double high)
             add_candidate(s, hertz + offset[o] * width, low, high);
         }
     }
-    qsort(at, (size_t)n, sizeof *at, ascending);
+    qsort(at, (size_t)n, sizeof *at, ritz_ascending);
     for (int64_t k = 0; k + 1 < n; k++)
         for (int part = 0; part <= BETWEEN; part++)
             if (part < BETWEEN || k + 2 == n)
@@ -460,8 +453,8 @@ static ritz_status take_whole(rational_nodes *s)
         return RITZ_OK;
     RITZ_TRY(ritz_dense_copy(&full->MPhi, &scaled));
     for (int64_t k = 0; k < full->m; k++) {
-        double rate = ritz_modal_rate(
-            &full->damping, k - full->poles.num_rigid, full->poles.lambda[k]);
+        double rate = ritz_modal_rate(&full->damping, k - full->poles.num_rigid,
+                                      full->poles.lambda[k]);
 
         for (int64_t i = 0; i < full->n; i++)
             ritz_dense_col(&scaled, k)[i] *= rate;

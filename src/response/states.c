@@ -48,31 +48,6 @@ static int at_least_one(int n)
     return n > 1 ? n : 1;
 }
 
-/* A, B and C in coordinates of the library's own scaling. */
-static ritz_status set_up(const ritz_state_space *model, hessenberg *h)
-{
-    ritz_status status = RITZ_OK;
-    int64_t n = model->A.nrow;
-    ritz_frame frame = {0};
-    ritz_dense one = {0}, back = {0};
-
-    RITZ_TRY(ritz_frame_new(&model->A, &model->E, &frame));
-    RITZ_TRY(ritz_dense_copy(&frame.A, &h->A));
-    RITZ_TRY(ritz_frame_forward(&frame, frame.left, &model->B, &h->B));
-    RITZ_TRY(ritz_general_transpose(&model->C, &one));
-    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
-    RITZ_TRY(ritz_general_transpose(&back, &h->C));
-    if (frame.E.val && n > 0) {
-        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &h->A));
-        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, &h->B));
-    }
-done:
-    ritz_frame_free(&frame);
-    ritz_dense_free(&one);
-    ritz_dense_free(&back);
-    return status;
-}
-
 static ritz_status start(const ritz_state_space *model, hessenberg *h)
 {
     int n = (int)model->A.nrow;
@@ -82,7 +57,8 @@ static ritz_status start(const ritz_state_space *model, hessenberg *h)
     h->p = (int)model->num_outputs;
     h->room = at_least_one(3 * n + (n > h->m ? n : h->m) + h->p);
     h->zroom = at_least_one(n * n + 2 * n);
-    RITZ_CHECK(set_up(model, h));
+    RITZ_CHECK(ritz_frame_system(&model->A, &model->E, &model->B, &model->C,
+                                 &h->A, &h->B, &h->C));
     RITZ_CHECK_NEW(h->iwork, n + 1);
     RITZ_CHECK_NEW(h->re, n + 1);
     RITZ_CHECK_NEW(h->im, n + 1);

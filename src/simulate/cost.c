@@ -161,7 +161,7 @@ done:
     return status;
 }
 
-/* Cholesky factors of a well-conditioned matrix, until they take long enough. */
+/* Cholesky factors of a well-conditioned matrix until they take long enough. */
 static ritz_status factors(const ritz_dense *A, int64_t count, ritz_dense *work,
                            double *out)
 {

@@ -5,6 +5,7 @@
  * row of the table of measures.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "poles/dense_poles.h"
 #include "verify/sides.h"
 #include "verify/states.h"
@@ -40,14 +41,6 @@ double ritz_random_next(uint64_t *state)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-static int ascending(const void *left, const void *right)
-{
-    double a = *(const double *)left;
-    double b = *(const double *)right;
-
-    return (a > b) - (a < b);
-}
-
 void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
                        double *out)
 {
@@ -56,7 +49,7 @@ void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
 
     for (int64_t k = 0; k < count; k++)
         out[k] = band_hz[0] + ((double)k + ritz_random_next(&seed)) * part;
-    qsort(out, (size_t)count, sizeof *out, ascending);
+    qsort(out, (size_t)count, sizeof *out, ritz_ascending);
 }
 
 /* The flexible gain C Phi Lambda^-1 Phi'B of the modes, and of the rest. */

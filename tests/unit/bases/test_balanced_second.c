@@ -248,7 +248,8 @@ static void one_side_keeps_definiteness(void **state)
         assert_true(is_definite(&reduced.K));
         assert_true(is_definite(&reduced.M));
         assert_true(is_definite(&reduced.D));
-        assert_ok(ritz_probe_reduced(&reduced, &probe));
+        assert_ok(ritz_probe_second_order(&reduced.K, &reduced.M, &reduced.D,
+                                          NULL, &probe));
         assert_int_equal(probe.verdict, RITZ_STABLE);
         ritz_reduced_free(&reduced);
         ritz_basis_free(&basis);
