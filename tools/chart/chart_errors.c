@@ -233,8 +233,11 @@ static void put_line(work *w, int64_t p, int64_t method)
 
     for (int64_t i = 0; i < count; i++) {
         const int64_t k = w->order[i];
-        const bool word = method < 0 && (w->at_x[k] - x > word_wide ||
-                                         y - w->at_y[k] > word_high);
+        const record *r = &w->s.all.item[k];
+        /* the legend has the orders of what was chosen, which has a ring */
+        const bool word =
+            method < 0 && !r->chosen && !r->runner_up &&
+            (w->at_x[k] - x > word_wide || y - w->at_y[k] > word_high);
 
         if (word) {
             x = w->at_x[k];
