@@ -8,6 +8,8 @@
 #include <ritz/damping.h>
 #include <ritz/status.h>
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #pragma GCC visibility push(default)
@@ -77,13 +79,29 @@ typedef struct ritz_choice {
     bool one_sided;    /* of second order: W = T, which keeps symmetry */
 } ritz_choice;
 
-/* A word, and how its value is taken from a text. */
+/* What the value of a word is. */
+typedef enum ritz_choice_kind {
+    RITZ_CHOICE_SHIFTS,
+    RITZ_CHOICE_SET,   /* some of its words, as bits of an int */
+    RITZ_CHOICE_ENUM,  /* one of its words, as an int */
+    RITZ_CHOICE_FLAG,  /* the first of two words is false */
+    RITZ_CHOICE_COUNT, /* int64_t, 1 or more */
+    RITZ_CHOICE_HERTZ, /* above 0 */
+    RITZ_CHOICE_BAND,
+    RITZ_CHOICE_DAMPING,
+} ritz_choice_kind;
+
+/* A word, and what it sets. */
 typedef struct ritz_choice_word {
     const char *key;      /* "shift_hz" in scenes, --shift-hz as option */
     const char *argument; /* of the option: "F[,F]" */
     const char *help;
     int uses; /* bit of a method that heeds it */
-    ritz_status (*take)(const char *text, ritz_choice *choice);
+    ritz_choice_kind kind;
+    size_t offset;           /* of the field in ritz_choice */
+    const char *what;        /* what sentences call a value */
+    const char (*value)[16]; /* words that it can be */
+    int64_t num_values;
 } ritz_choice_word;
 
 /* All words, ended by one without a key. */

@@ -1,4 +1,7 @@
-/* The words of a choice: each one's text is parsed here and nowhere else. */
+/*
+ * The words of a choice, by kind: one table says what each is, and one function
+ * for each kind reads and prints it.
+ */
 #include <ritz/choice.h>
 
 #include "model/names.h"
@@ -7,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The next of some words with commas between them; NULL past the last. */
+/* Copy the first of some words with commas between them; the rest, or NULL. */
 static const char *next_word(const char *text, char word[RITZ_SHORT_SIZE])
 {
     size_t length = strcspn(text, ",");
@@ -16,15 +19,6 @@ static const char *next_word(const char *text, char word[RITZ_SHORT_SIZE])
     memcpy(word, text, kept);
     word[kept] = '\0';
     return text[length] ? text + length + 1 : NULL;
-}
-
-/* Which of some words a text is. */
-static ritz_status take_word(const char *what, const char *text, int64_t count,
-                             const char (*words)[16], int64_t *out)
-{
-    const ritz_names names = {what, count, words[0], sizeof *words};
-
-    return ritz_words_find(&names, text, out);
 }
 
 static ritz_status take_shifts(const char *text, ritz_choice *choice)
@@ -51,111 +45,7 @@ static ritz_status take_shifts(const char *text, ritz_choice *choice)
     return RITZ_OK;
 }
 
-static const char loads[][16] = {"attached", "inputs", "outputs", "dampers"};
-
-static ritz_status take_loads(const char *text, ritz_choice *choice)
-{
-    char word[RITZ_SHORT_SIZE];
-    int64_t at = 0;
-    int sum = 0;
-
-    for (const char *rest = text; rest;) {
-        rest = next_word(rest, word);
-        RITZ_CHECK(
-            take_word("load", word, sizeof loads / sizeof *loads, loads, &at));
-        sum |= 1 << at;
-    }
-    choice->loads = sum;
-    return RITZ_OK;
-}
-
-static const char inners[][16] = {
-    [RITZ_INNER_STIFFNESS] = "stiffness",
-    [RITZ_INNER_MASS] = "mass",
-};
-
-static ritz_status take_inner(const char *text, ritz_choice *choice)
-{
-    int64_t at = choice->inner;
-    ritz_status status = take_word("inner product", text, 2, inners, &at);
-
-    choice->inner = (ritz_inner)at;
-    return status;
-}
-
-static ritz_status take_interface_modes(const char *text, ritz_choice *choice)
-{
-    char cut[RITZ_SHORT_SIZE];
-    int64_t count = 0;
-
-    RITZ_REFUSE_IF(!ritz_text_whole(text, &count) || count < 1,
-                   RITZ_ERR_ARGUMENT,
-                   "'%s' is no number of interface modes, 1 or more",
-                   ritz_text_short(text, cut));
-    choice->interface_modes = count;
-    return RITZ_OK;
-}
-
-static const char gramians[][16] = {
-    [RITZ_GRAMIAN_INPUTS] = "inputs",
-    [RITZ_GRAMIAN_OUTPUTS] = "outputs",
-};
-
-static ritz_status take_gramian(const char *text, ritz_choice *choice)
-{
-    int64_t at = choice->gramian;
-    ritz_status status = take_word("Gramian", text, 2, gramians, &at);
-
-    choice->gramian = (ritz_gramian)at;
-    return status;
-}
-
-static const char operators[][16] = {"state", "inverse"};
-
-static ritz_status take_operator(const char *text, ritz_choice *choice)
-{
-    int64_t at = choice->inverse;
-    ritz_status status = take_word("operator", text, 2, operators, &at);
-
-    choice->inverse = at == 1;
-    return status;
-}
-
-static ritz_status take_damping(const char *text, ritz_choice *choice)
-{
-    return ritz_damping_parse(text, &choice->damping);
-}
-
-static const char engines[][16] = {
-    [RITZ_ENGINE_AUTO] = "auto",
-    [RITZ_ENGINE_DENSE] = "dense",
-    [RITZ_ENGINE_MODAL] = "modal",
-    [RITZ_ENGINE_LOW_RANK] = "low-rank",
-};
-
-static ritz_status take_engine(const char *text, ritz_choice *choice)
-{
-    int64_t at = choice->engine;
-    ritz_status status = take_word(
-        "engine", text, sizeof engines / sizeof *engines, engines, &at);
-
-    choice->engine = (ritz_engine)at;
-    return status;
-}
-
-static ritz_status take_among(const char *text, ritz_choice *choice)
-{
-    char cut[RITZ_SHORT_SIZE];
-    double hertz = 0.0;
-
-    RITZ_REFUSE_IF(!ritz_text_real(text, &hertz) || !(hertz > 0.0),
-                   RITZ_ERR_ARGUMENT, "'%s' is no frequency above 0 Hz",
-                   ritz_text_short(text, cut));
-    choice->among_hz = hertz;
-    return RITZ_OK;
-}
-
-static ritz_status take_band(const char *text, ritz_choice *choice)
+static ritz_status take_band(const char *text, double *band)
 {
     char word[2][RITZ_SHORT_SIZE] = {"", ""};
     char cut[RITZ_SHORT_SIZE];
@@ -170,132 +60,235 @@ static ritz_status take_band(const char *text, ritz_choice *choice)
                    RITZ_ERR_ARGUMENT,
                    "'%s' is no band: two ascending frequencies, 0 Hz or above",
                    ritz_text_short(text, cut));
-    choice->band_hz[0] = hertz[0];
-    choice->band_hz[1] = hertz[1];
+    memcpy(band, hertz, sizeof hertz);
     return RITZ_OK;
 }
 
+static const char loads[][16] = {"attached", "inputs", "outputs", "dampers"};
+static const char inners[][16] = {
+    [RITZ_INNER_STIFFNESS] = "stiffness",
+    [RITZ_INNER_MASS] = "mass",
+};
+static const char gramians[][16] = {
+    [RITZ_GRAMIAN_INPUTS] = "inputs",
+    [RITZ_GRAMIAN_OUTPUTS] = "outputs",
+};
+static const char operators[][16] = {"state", "inverse"};
+static const char engines[][16] = {
+    [RITZ_ENGINE_AUTO] = "auto",
+    [RITZ_ENGINE_DENSE] = "dense",
+    [RITZ_ENGINE_MODAL] = "modal",
+    [RITZ_ENGINE_LOW_RANK] = "low-rank",
+};
 static const char remainders[][16] = {"dropped", "static"};
+static const char sides[][16] = {"two", "one"};
 
-static ritz_status take_remainder(const char *text, ritz_choice *choice)
-{
-    int64_t at = choice->perturb;
-    ritz_status status = take_word("remainder", text, 2, remainders, &at);
-
-    choice->perturb = at == 1;
-    return status;
-}
-
-static const char sides[][16] = {"one", "two"};
-
-static ritz_status take_sides(const char *text, ritz_choice *choice)
-{
-    int64_t at = !choice->one_sided;
-    ritz_status status = take_word("side", text, 2, sides, &at);
-
-    choice->one_sided = at == 0;
-    return status;
-}
+#define FIELD(field) offsetof(ritz_choice, field)
+#define WORDS(words) words, sizeof(words) / sizeof *(words)
 
 const ritz_choice_word ritz_choice_words[] = {
     {"shift_hz", "F[,F]", "expansion points of Krylov vectors [0]",
-     RITZ_USES_SHIFTS, take_shifts},
+     RITZ_USES_SHIFTS, RITZ_CHOICE_SHIFTS, FIELD(shift_hz), NULL, NULL, 0},
     {"loads", "WORD[,WORD]",
      "forces that vectors answer: attached, inputs, outputs, dampers",
-     RITZ_USES_LOADS, take_loads},
+     RITZ_USES_LOADS, RITZ_CHOICE_SET, FIELD(loads), "load", WORDS(loads)},
     {"inner", "WORD", "inner product of Krylov vectors: stiffness or mass",
-     RITZ_USES_INNER, take_inner},
+     RITZ_USES_INNER, RITZ_CHOICE_ENUM, FIELD(inner), "inner product",
+     WORDS(inners)},
     {"interface_modes", "N",
      "replace attached dofs by N characteristic constraint modes",
-     RITZ_USES_INTERFACE, take_interface_modes},
+     RITZ_USES_INTERFACE, RITZ_CHOICE_COUNT, FIELD(interface_modes),
+     "interface modes", NULL, 0},
     {"gramian", "WORD", "whose Gramian Lanczos works in: inputs or outputs",
-     RITZ_USES_GRAMIAN, take_gramian},
+     RITZ_USES_GRAMIAN, RITZ_CHOICE_ENUM, FIELD(gramian), "Gramian",
+     WORDS(gramians)},
     {"operator", "WORD", "Lanczos on the matrix of states: state or inverse",
-     RITZ_USES_OPERATOR, take_operator},
+     RITZ_USES_OPERATOR, RITZ_CHOICE_FLAG, FIELD(inverse), "operator",
+     WORDS(operators)},
     {"damping", "TEXT", "'modal 0.01', instead of the component's own",
-     RITZ_USES_DAMPING, take_damping},
+     RITZ_USES_DAMPING, RITZ_CHOICE_DAMPING, FIELD(damping), NULL, NULL, 0},
     {"engine", "WORD", "how Gramians are found: auto, dense, modal, low-rank",
-     RITZ_USES_ENGINE, take_engine},
+     RITZ_USES_ENGINE, RITZ_CHOICE_ENUM, FIELD(engine), "engine",
+     WORDS(engines)},
     {"among_hz", "F", "modal Gramians: of the modes up to this frequency",
-     RITZ_USES_AMONG, take_among},
-    {"band_hz", "F,F", "where the response matters", RITZ_USES_BAND, take_band},
+     RITZ_USES_AMONG, RITZ_CHOICE_HERTZ, FIELD(among_hz), NULL, NULL, 0},
+    {"band_hz", "F,F", "where the response matters", RITZ_USES_BAND,
+     RITZ_CHOICE_BAND, FIELD(band_hz), NULL, NULL, 0},
     {"remainder", "WORD", "what becomes of other states: dropped or static",
-     RITZ_USES_REMAINDER, take_remainder},
+     RITZ_USES_REMAINDER, RITZ_CHOICE_FLAG, FIELD(perturb), "remainder",
+     WORDS(remainders)},
     {"sides", "WORD", "project by one side, which keeps symmetry, or by two",
-     RITZ_USES_SIDES, take_sides},
+     RITZ_USES_SIDES, RITZ_CHOICE_FLAG, FIELD(one_sided), "side", WORDS(sides)},
     {0},
 };
+
+static ritz_status find_word(const ritz_choice_word *of, const char *text,
+                             int64_t *out)
+{
+    const ritz_names names = {of->what, of->num_values, of->value[0],
+                              sizeof *of->value};
+
+    return ritz_words_find(&names, text, out);
+}
+
+/* Bits of the words that are listed, the first word 1. */
+static ritz_status take_set(const ritz_choice_word *of, const char *text,
+                            int *out)
+{
+    char word[RITZ_SHORT_SIZE];
+    int64_t at = 0;
+    int sum = 0;
+
+    for (const char *rest = text; rest;) {
+        rest = next_word(rest, word);
+        RITZ_CHECK(find_word(of, word, &at));
+        sum |= 1 << at;
+    }
+    *out = sum;
+    return RITZ_OK;
+}
+
+/* Index of a word, as an enumeration of int or as a flag. */
+static ritz_status take_word(const ritz_choice_word *of, const char *text,
+                             void *field)
+{
+    int64_t at = 0;
+
+    RITZ_CHECK(find_word(of, text, &at));
+    if (of->kind == RITZ_CHOICE_FLAG)
+        *(bool *)field = at == 1;
+    else
+        *(int *)field = (int)at;
+    return RITZ_OK;
+}
+
+static ritz_status take_value(const ritz_choice_word *word, const char *text,
+                              ritz_choice *choice)
+{
+    void *field = (char *)choice + word->offset;
+    char cut[RITZ_SHORT_SIZE];
+    int64_t count = 0;
+    double hertz = 0.0;
+
+    switch (word->kind) {
+    case RITZ_CHOICE_SHIFTS:
+        return take_shifts(text, choice);
+    case RITZ_CHOICE_SET:
+        return take_set(word, text, field);
+    case RITZ_CHOICE_ENUM:
+    case RITZ_CHOICE_FLAG:
+        return take_word(word, text, field);
+    case RITZ_CHOICE_COUNT:
+        RITZ_REFUSE_IF(!ritz_text_whole(text, &count) || count < 1,
+                       RITZ_ERR_ARGUMENT, "'%s' is no number of %s, 1 or more",
+                       ritz_text_short(text, cut), word->what);
+        *(int64_t *)field = count;
+        return RITZ_OK;
+    case RITZ_CHOICE_HERTZ:
+        RITZ_REFUSE_IF(!ritz_text_real(text, &hertz) || !(hertz > 0.0),
+                       RITZ_ERR_ARGUMENT, "'%s' is no frequency above 0 Hz",
+                       ritz_text_short(text, cut));
+        *(double *)field = hertz;
+        return RITZ_OK;
+    case RITZ_CHOICE_BAND:
+        return take_band(text, field);
+    case RITZ_CHOICE_DAMPING:
+        return ritz_damping_parse(text, field);
+    }
+    return RITZ_OK;
+}
 
 ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
                              ritz_choice *choice)
 {
-    RITZ_CHECK(word->take(text, choice));
+    RITZ_CHECK(take_value(word, text, choice));
     choice->given |= word->uses;
     return RITZ_OK;
 }
 
-/* Append to what stands in out. */
-static void append(int64_t size, char *out, const char *text)
+/* Append "key value" to what stands in out, with '-' for '_' in the key. */
+static void append_word(int64_t size, char *out, const char *key,
+                        const char *value)
 {
     size_t used = strlen(out);
+    size_t from = used + (used > 0);
 
-    snprintf(out + used, (size_t)size - used, "%s%s", used > 0 ? " " : "",
-             text);
+    snprintf(out + used, (size_t)size - used, "%s%s %s", used > 0 ? " " : "",
+             key, value);
+    for (size_t k = from; out[k] && out[k] != ' '; k++)
+        if (out[k] == '_')
+            out[k] = '-';
 }
 
-/* The same of a key and its word. */
-static void append_word(int64_t size, char *out, const char *key,
-                        const char *word)
+static void print_reals(int64_t count, const double *x, size_t size, char *out)
 {
-    append(size, out, key);
-    append(size, out, word);
+    size_t used = 0;
+
+    for (int64_t k = 0; k < count && used < size; k++)
+        used += (size_t)snprintf(out + used, size - used, "%s%.17g",
+                                 k > 0 ? "," : "", x[k]);
 }
 
+/* Every load that is in the set; the index that an enumeration or flag is. */
+static void print_names(const ritz_choice_word *word, const void *field,
+                        int64_t size, char *out)
+{
+    int value = word->kind == RITZ_CHOICE_FLAG ? (int)*(const bool *)field
+                                               : *(const int *)field;
+    bool set = word->kind == RITZ_CHOICE_SET;
+
+    for (int k = 0; k < word->num_values; k++)
+        if (set ? value >> k & 1 : value == k)
+            append_word(size, out, set ? word->what : word->key,
+                        word->value[k]);
+}
+
+static void print_value(const ritz_choice_word *word, const ritz_choice *choice,
+                        int64_t size, char *out)
+{
+    const void *field = (const char *)choice + word->offset;
+    char text[RITZ_MOST_SHIFTS * 32] = "";
+
+    switch (word->kind) {
+    case RITZ_CHOICE_SHIFTS:
+        print_reals(choice->num_shifts, field, sizeof text, text);
+        break;
+    case RITZ_CHOICE_COUNT:
+        snprintf(text, sizeof text, "%" PRId64, *(const int64_t *)field);
+        break;
+    case RITZ_CHOICE_HERTZ:
+        print_reals(1, field, sizeof text, text);
+        break;
+    case RITZ_CHOICE_BAND:
+        print_reals(2, field, sizeof text, text);
+        break;
+    default:
+        print_names(word, field, size, out);
+        return;
+    }
+    append_word(size, out, word->key, text);
+}
+
+/* Shifts and loads may also be set without their word; damping comes last. */
 void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out)
 {
-    char text[2 * RITZ_NAME_SIZE] = "";
+    char damping[RITZ_DAMPING_SIZE];
 
-    for (int64_t k = 0; k < choice->num_shifts; k++) {
-        snprintf(text, sizeof text, k == 0 ? "shift-hz %.17g" : ",%.17g",
-                 choice->shift_hz[k]);
-        if (k == 0)
-            append(size, out, text);
-        else
-            snprintf(out + strlen(out), (size_t)size - strlen(out), "%s", text);
+    for (const ritz_choice_word *word = ritz_choice_words; word->key; word++) {
+        bool given = choice->given & word->uses;
+
+        if (word->kind == RITZ_CHOICE_SHIFTS)
+            given = choice->num_shifts > 0;
+        if (word->kind == RITZ_CHOICE_SET)
+            given = true;
+        if (given && word->kind != RITZ_CHOICE_DAMPING)
+            print_value(word, choice, size, out);
     }
-    for (size_t k = 0; k < sizeof loads / sizeof *loads; k++)
-        if (choice->loads & (1 << k))
-            append_word(size, out, "load", loads[k]);
-    if (choice->given & RITZ_USES_INNER)
-        append_word(size, out, "inner", inners[choice->inner]);
-    if (choice->given & RITZ_USES_INTERFACE) {
-        snprintf(text, sizeof text, "interface-modes %" PRId64,
-                 choice->interface_modes);
-        append(size, out, text);
-    }
-    if (choice->given & RITZ_USES_GRAMIAN)
-        append_word(size, out, "gramian", gramians[choice->gramian]);
-    if (choice->given & RITZ_USES_OPERATOR)
-        append_word(size, out, "operator", operators[choice->inverse]);
-    if (choice->given & RITZ_USES_ENGINE)
-        append_word(size, out, "engine", engines[choice->engine]);
-    if (choice->given & RITZ_USES_AMONG) {
-        snprintf(text, sizeof text, "among-hz %.17g", choice->among_hz);
-        append(size, out, text);
-    }
-    if (choice->given & RITZ_USES_BAND) {
-        snprintf(text, sizeof text, "band-hz %.17g,%.17g", choice->band_hz[0],
-                 choice->band_hz[1]);
-        append(size, out, text);
-    }
-    if (choice->given & RITZ_USES_REMAINDER)
-        append_word(size, out, "remainder", remainders[choice->perturb]);
-    if (choice->given & RITZ_USES_SIDES)
-        append_word(size, out, "sides", sides[!choice->one_sided]);
     if (choice->given & RITZ_USES_DAMPING) {
-        char damping[RITZ_DAMPING_SIZE];
+        size_t used = strlen(out);
 
         ritz_damping_print(&choice->damping, damping);
-        append(size, out, damping);
+        snprintf(out + used, (size_t)size - used, "%s%s", used > 0 ? " " : "",
+                 damping);
     }
 }
