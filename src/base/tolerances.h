@@ -17,6 +17,9 @@
 /* What orthogonalisation leaves of a vector, relative to its length: less
    is a combination of those before it. */
 #define RITZ_DEPENDENT 1e-10
+/* Reciprocal condition of T'T, its columns scaled, below which columns of T
+   depend on each other to six digits. */
+#define RITZ_SQUARED_DEPENDENT 1e-12
 /* Frequencies, or eigenvalues, closer than this are one cluster: vectors
    within it are any mixture, so that it is kept, tracked and ranked whole. */
 #define RITZ_CLUSTER_GAP 1e-6

@@ -3,16 +3,244 @@
  *
  *     u_m = R_mm u_m + R_mn u_n,    G_m = (I - R_mm)^-1 R_mn
  *
- * Dependents that depend on dependents are put in an order in which each comes
- * after those it needs, the strongly connected components of the graph of R_mm
- * as they are found depth first [Tarjan1972]. One alone is substitution; a
- * circle of s of them is a dense system of that size.
+ * Dependents that depend on dependents are ordered so that each comes after
+ * those it needs: the strongly connected components of the graph of R_mm, as
+ * depth-first search finds them [Tarjan1972]. A single one is found by
+ * substitution, a circle of s of them by a dense system of order s.
  */
-#include "model/elimination_rows.h"
-
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
+#include <ritz/equations.h>
+
+#include <inttypes.h>
+#include <lapacke.h>
+#include <stdbool.h>
 #include <stdlib.h>
+
+/* ---- rows of G_m ------------------------------------------------------- */
+
+/* A row of G_m, by columns. */
+typedef struct elimination_row {
+    int64_t count;
+    int64_t *col; /* among all dofs */
+    double *val;
+} elimination_row;
+
+typedef struct eliminator {
+    const ritz_equations *equations;
+    int64_t num_all;
+    const ritz_dof *dof;
+    int64_t *at;       /* of each term of the equations, its dof among all */
+    int64_t *equation; /* of each dof among all, -1 if it is not dependent */
+    elimination_row *found; /* of each equation */
+    double *sum;            /* among all dofs, zero between uses */
+    bool *used;             /* the same of places in `sum` */
+    int64_t *list;          /* these places */
+    int64_t num_used;
+    int64_t *member;  /* of each equation, place in the circle at hand or -1 */
+    int64_t num_kept; /* entries of all rows found */
+} eliminator;
+
+enum {
+    MOST_COUPLED = 2000,      /* in one circle: a factor of 32 MB */
+    MOST_ENTRIES = 200000000, /* of all rows: 3 GB */
+};
+
+static void add(eliminator *s, int64_t col, double value)
+{
+    if (!s->used[col]) {
+        s->used[col] = true;
+        s->list[s->num_used++] = col;
+    }
+    s->sum[col] += value;
+}
+
+/*
+ * Equation e with all that is known substituted, in `sum`; shares of members
+ * of its own circle are taken from row i of I - R_mm instead.
+ */
+static void substitute(eliminator *s, int64_t e, int64_t i, ritz_dense *A)
+{
+    const ritz_equations *eq = s->equations;
+
+    for (int64_t k = eq->first[e]; k < eq->first[e + 1]; k++) {
+        int64_t of = s->equation[s->at[k]];
+        const elimination_row *known = of < 0 ? NULL : &s->found[of];
+
+        if (of < 0)
+            add(s, s->at[k], eq->share[k]);
+        else if (s->member[of] >= 0)
+            ritz_dense_col(A, s->member[of])[i] -= eq->share[k];
+        else
+            for (int64_t j = 0; j < known->count; j++)
+                add(s, known->col[j], eq->share[k] * known->val[j]);
+    }
+}
+
+static void clear(eliminator *s)
+{
+    for (int64_t k = 0; k < s->num_used; k++) {
+        s->sum[s->list[k]] = 0.0;
+        s->used[s->list[k]] = false;
+    }
+    s->num_used = 0;
+}
+
+static ritz_status count_entries(eliminator *s, int64_t count)
+{
+    RITZ_REFUSE_IF(count > MOST_ENTRIES - s->num_kept, RITZ_ERR_FORMAT,
+                   "the constraints spread over more than %d entries: a chain "
+                   "of them sums up too much",
+                   MOST_ENTRIES);
+    s->num_kept += count;
+    return RITZ_OK;
+}
+
+/* What lies in `sum`, or in column i of X by the places in `sum`, as a row. */
+static ritz_status keep_row(eliminator *s, const ritz_dense *X, int64_t i,
+                            elimination_row *out)
+{
+    ritz_status status = RITZ_OK;
+    elimination_row new = {0};
+
+    RITZ_TRY(count_entries(s, s->num_used));
+    RITZ_NEW(new.col, s->num_used);
+    RITZ_NEW(new.val, s->num_used);
+    for (int64_t k = 0; k < s->num_used; k++) {
+        double value = X ? ritz_dense_col(X, k)[i] : s->sum[s->list[k]];
+
+        if (value == 0.0)
+            continue;
+        new.col[new.count] = s->list[k];
+        new.val[new.count++] = value;
+    }
+    *out = new;
+    new = (elimination_row){0};
+done:
+    free(new.col);
+    free(new.val);
+    return status;
+}
+
+/* X := A^-1 X. The rows of A are of entries about 1, its own scale. */
+static ritz_status solve(const eliminator *s, const int64_t *circle,
+                         ritz_dense *A, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_equations *eq = s->equations;
+    lapack_int n = (lapack_int)A->nrow;
+    lapack_int *pivot = NULL;
+    double size = 0.0;
+    double rcond = 0.0;
+    char name[RITZ_DOF_NAME_SIZE];
+    char cited[RITZ_CITATION_SIZE];
+
+    RITZ_NEW(pivot, n);
+    size = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, A->val, n);
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, A->val, n, pivot) == 0)
+        RITZ_FAIL_IF(LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, A->val, n, size,
+                                    &rcond) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+    RITZ_FAIL_IF(!(rcond > RITZ_UNDETERMINED), RITZ_ERR_SINGULAR,
+                 "%s leaves '%s' undetermined%s",
+                 ritz_equations_cite(eq, eq->source[circle[0]], cited),
+                 ritz_dof_name(eq->dependent[circle[0]], name),
+                 n > 1 ? ", together with the constraints that depend on it"
+                       : ": it depends on itself alone");
+    if (X->ncol > 0)
+        RITZ_FAIL_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', n,
+                                    (lapack_int)X->ncol, A->val, n, pivot,
+                                    X->val, n) != 0,
+                     RITZ_ERR_MEMORY, "no memory for the constraints");
+done:
+    free(pivot);
+    return status;
+}
+
+/* Right-hand sides of a circle: columns as they come to be used. */
+static ritz_status gather(eliminator *s, int64_t count, const int64_t *circle,
+                          ritz_dense *A, ritz_dense *X)
+{
+    ritz_status status = RITZ_OK;
+    elimination_row *side = NULL;
+
+    RITZ_NEW(side, count);
+    for (int64_t i = 0; i < count; i++) {
+        substitute(s, circle[i], i, A);
+        RITZ_TRY(keep_row(s, NULL, 0, &side[i]));
+        for (int64_t k = 0; k < s->num_used; k++)
+            s->sum[s->list[k]] = 0.0;
+    }
+    RITZ_TRY(ritz_dense_new(count, s->num_used, X));
+    for (int64_t k = 0; k < s->num_used; k++)
+        s->sum[s->list[k]] = (double)k;
+    for (int64_t i = 0; i < count; i++)
+        for (int64_t k = 0; k < side[i].count; k++)
+            ritz_dense_col(X, (int64_t)s->sum[side[i].col[k]])[i] =
+                side[i].val[k];
+done:
+    for (int64_t i = 0; side && i < count; i++) {
+        free(side[i].col);
+        free(side[i].val);
+    }
+    free(side);
+    return status;
+}
+
+static ritz_status solve_circle(eliminator *s, int64_t count,
+                                const int64_t *circle)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense A = {0}, X = {0};
+
+    RITZ_FAIL_IF(count > MOST_COUPLED, RITZ_ERR_FORMAT,
+                 "%" PRId64 " dofs depend on each other in a circle, of at "
+                 "most %d that is solved",
+                 count, MOST_COUPLED);
+    RITZ_TRY(ritz_dense_new(count, count, &A));
+    for (int64_t i = 0; i < count; i++)
+        ritz_dense_col(&A, i)[i] = 1.0;
+    RITZ_TRY(gather(s, count, circle, &A, &X));
+    RITZ_TRY(solve(s, circle, &A, &X));
+    for (int64_t i = 0; i < count; i++)
+        RITZ_TRY(keep_row(s, &X, i, &s->found[circle[i]]));
+done:
+    clear(s);
+    ritz_dense_free(&A);
+    ritz_dense_free(&X);
+    return status;
+}
+
+static bool needs_itself(const eliminator *s, int64_t e)
+{
+    const ritz_equations *eq = s->equations;
+
+    for (int64_t k = eq->first[e]; k < eq->first[e + 1]; k++)
+        if (s->equation[s->at[k]] == e)
+            return true;
+    return false;
+}
+
+/* Members of a circle, or one equation that all it needs is known of. */
+static ritz_status settle_circle(eliminator *s, int64_t count,
+                                 const int64_t *circle)
+{
+    ritz_status status = RITZ_OK;
+
+    if (count == 1 && !needs_itself(s, circle[0])) {
+        substitute(s, circle[0], 0, NULL);
+        status = keep_row(s, NULL, 0, &s->found[circle[0]]);
+        clear(s);
+        return status;
+    }
+    for (int64_t i = 0; i < count; i++)
+        s->member[circle[i]] = i;
+    RITZ_CHECK(solve_circle(s, count, circle));
+    for (int64_t i = 0; i < count; i++)
+        s->member[circle[i]] = -1;
+    return RITZ_OK;
+}
 
 /* ---- names ------------------------------------------------------------- */
 
@@ -29,7 +257,7 @@ static int compare_places(const void *left, const void *right)
     return ritz_dof_compare(&a->dof, &b->dof);
 }
 
-static ritz_status find_place(const ritz_eliminator *s, const place *sorted,
+static ritz_status find_place(const eliminator *s, const place *sorted,
                               ritz_dof dof, int64_t source, int64_t *out)
 {
     const place wanted = {.dof = dof};
@@ -46,7 +274,7 @@ static ritz_status find_place(const ritz_eliminator *s, const place *sorted,
     return RITZ_OK;
 }
 
-static ritz_status refuse_second(const ritz_eliminator *s, int64_t first,
+static ritz_status refuse_second(const eliminator *s, int64_t first,
                                  int64_t second)
 {
     const ritz_equations *eq = s->equations;
@@ -65,7 +293,7 @@ static ritz_status refuse_second(const ritz_eliminator *s, int64_t first,
 }
 
 /* Dependents: each once, and free to move. */
-static ritz_status name_dependents(ritz_eliminator *s, const place *sorted,
+static ritz_status name_dependents(eliminator *s, const place *sorted,
                                    const bool *fixed)
 {
     const ritz_equations *eq = s->equations;
@@ -88,7 +316,7 @@ static ritz_status name_dependents(ritz_eliminator *s, const place *sorted,
     return RITZ_OK;
 }
 
-static ritz_status name_terms(ritz_eliminator *s, const bool *fixed)
+static ritz_status name_terms(eliminator *s, const bool *fixed)
 {
     ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
@@ -133,7 +361,7 @@ static void enter(const ritz_equations *eq, int64_t e, walk *w)
 }
 
 /* The next equation that e needs and that was not met; -1 if there is none. */
-static int64_t advance(const ritz_eliminator *s, int64_t e, walk *w)
+static int64_t advance(const eliminator *s, int64_t e, walk *w)
 {
     const ritz_equations *eq = s->equations;
 
@@ -150,7 +378,7 @@ static int64_t advance(const ritz_eliminator *s, int64_t e, walk *w)
     return -1;
 }
 
-static ritz_status leave(ritz_eliminator *s, int64_t e, walk *w)
+static ritz_status leave(eliminator *s, int64_t e, walk *w)
 {
     int64_t from = w->height;
 
@@ -162,12 +390,12 @@ static ritz_status leave(ritz_eliminator *s, int64_t e, walk *w)
     do
         w->waiting[w->stack[--from]] = false;
     while (w->stack[from] != e);
-    RITZ_CHECK(ritz_eliminator_settle(s, w->height - from, w->stack + from));
+    RITZ_CHECK(settle_circle(s, w->height - from, w->stack + from));
     w->height = from;
     return RITZ_OK;
 }
 
-static ritz_status settle_all(ritz_eliminator *s)
+static ritz_status settle_all(eliminator *s)
 {
     ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
@@ -206,7 +434,7 @@ done:
 /* ---- all together ------------------------------------------------------ */
 
 /* Which dofs stay; column[k] is the column of G of each, -1 of the others. */
-static ritz_status split(const ritz_eliminator *s, int64_t *column,
+static ritz_status split(const eliminator *s, int64_t *column,
                          ritz_elimination *out)
 {
     RITZ_CHECK_NEW(out->kept.at, s->num_all - s->equations->count);
@@ -223,7 +451,7 @@ static ritz_status split(const ritz_eliminator *s, int64_t *column,
     return RITZ_OK;
 }
 
-static ritz_status build(const ritz_eliminator *s, ritz_elimination *out)
+static ritz_status build(const eliminator *s, ritz_elimination *out)
 {
     ritz_status status = RITZ_OK;
     int64_t *column = NULL, *line = NULL, *col = NULL;
@@ -239,7 +467,7 @@ static ritz_status build(const ritz_eliminator *s, ritz_elimination *out)
     RITZ_TRY(split(s, column, out));
     count = 0;
     for (int64_t k = 0; k < s->num_all; k++) {
-        const ritz_elimination_row *known =
+        const elimination_row *known =
             s->equation[k] < 0 ? NULL : &s->found[s->equation[k]];
 
         for (int64_t j = 0; j < (known ? known->count : 1); j++) {
@@ -264,7 +492,7 @@ ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
 {
     ritz_status status = RITZ_OK;
     ritz_elimination new = {0};
-    ritz_eliminator s = {.equations = equations, .num_all = count, .dof = dof};
+    eliminator s = {.equations = equations, .num_all = count, .dof = dof};
     int64_t terms =
         equations->count > 0 ? equations->first[equations->count] : 0;
 

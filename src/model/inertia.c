@@ -5,9 +5,14 @@
  *     R'MR = |  m I     -m c~ |     c the centre of mass, c~ x = c x x,
  *            |  m c~     J_o  |     J_c = J_o - m (c'c I - c c')
  */
+#include "base/alloc.h"
+#include "model/nodes.h"
+
 #include <ritz/reduced.h>
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* R'MR, 6 x 6. */
 static ritz_status condense(const ritz_component *component, ritz_dense *out)
@@ -98,4 +103,250 @@ ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
 done:
     ritz_dense_free(&A);
     return status;
+}
+
+/*
+ * Inertia invariants from M, T and the places of grids.
+ *
+ * The 3 x 3 block of M that joins the translations of grids i and j, along the
+ * basic axes, is m_ij I3 for solids and lumped masses; of others the mean of
+ * its diagonal is taken,
+ *
+ *     m_ij = sum_pq M_ip,jq (a_ip . a_jq) / sum_pq (a_ip . a_jq)^2
+ *
+ * over the translations p of i and q of j that there are, along axes a: the
+ * denominator counts the directions that both have, three of whole grids.
+ */
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Directions that nodes i and j both have; 1 if they have less than one. */
+static double common(const ritz_nodes *nodes, int64_t i, int64_t j)
+{
+    const double *a = ritz_nodes_axes(nodes, i);
+    const double *b = ritz_nodes_axes(nodes, j);
+    double sum = 0.0;
+
+    for (int64_t p = 0; p < 3; p++)
+        for (int64_t q = 0; q < 3; q++)
+            if (nodes->row[3 * i + p] >= 0 && nodes->row[3 * j + q] >= 0) {
+                double cosine = dot(a + 3 * p, b + 3 * q);
+
+                sum += cosine * cosine;
+            }
+    return fmax(sum, 1.0);
+}
+
+/* Contributions to m, element by element of M. */
+typedef struct triplets {
+    int64_t count;
+    int64_t *row, *col;
+    double *val;
+} triplets;
+
+/* place[i]: 3 node + direction of row i of the component, -1 if neither. */
+static void gather(const ritz_sparse *M, const ritz_nodes *nodes,
+                   const int64_t *place, triplets *t)
+{
+    for (int64_t c = 0; c < M->ncol; c++)
+        for (int64_t e = M->colptr[c]; e < M->colptr[c + 1]; e++) {
+            int64_t at = place[M->rowind[e]];
+            int64_t to = place[c];
+            double cosine = 0.0;
+
+            if (at < 0 || to < 0)
+                continue;
+            cosine = dot(ritz_nodes_axes(nodes, at / 3) + 3 * (at % 3),
+                         ritz_nodes_axes(nodes, to / 3) + 3 * (to % 3));
+            if (cosine == 0.0)
+                continue;
+            if (t->val) {
+                t->row[t->count] = at / 3;
+                t->col[t->count] = to / 3;
+                t->val[t->count] =
+                    M->val[e] * (cosine / common(nodes, at / 3, to / 3));
+            }
+            t->count++;
+        }
+}
+
+/* m, one row a node. */
+static ritz_status nodal_mass(const ritz_component *component,
+                              const ritz_nodes *nodes, ritz_sparse *out)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_sparse *M = &component->M;
+    int64_t *place = NULL;
+    triplets t = {0};
+
+    RITZ_NEW(place, component->num_dofs);
+    for (int64_t i = 0; i < component->num_dofs; i++)
+        place[i] = -1;
+    for (int64_t k = 0; k < 3 * nodes->count; k++)
+        if (nodes->row[k] >= 0)
+            place[nodes->row[k]] = k;
+    gather(M, nodes, place, &t); /* how many */
+    RITZ_NEW(t.row, t.count);
+    RITZ_NEW(t.col, t.count);
+    RITZ_NEW(t.val, t.count);
+    t.count = 0;
+    gather(M, nodes, place, &t);
+    RITZ_TRY(ritz_sparse_from_triplets(nodes->count, nodes->count, t.count,
+                                       t.row, t.col, t.val, out));
+done:
+    free(place);
+    free(t.row);
+    free(t.col);
+    free(t.val);
+    return status;
+}
+
+/* R'MR and R'MT. */
+static ritz_status find_momenta(const ritz_component *component,
+                                const ritz_dense *T, ritz_invariants *out)
+{
+    ritz_status status = RITZ_OK;
+    const double origin[3] = {0.0, 0.0, 0.0};
+    ritz_dense R = {0}, MR = {0}, A = {0};
+
+    RITZ_TRY(ritz_rigid_geometry(component, origin, &R));
+    RITZ_TRY(ritz_sparse_mul(&component->M, &R, &MR));
+    RITZ_TRY(ritz_dense_mul_tn(&R, &MR, &A));
+    ritz_dense_symmetrise(&A);
+    memcpy(out->rigid, A.val, sizeof out->rigid);
+    RITZ_TRY(ritz_dense_mul_tn(&MR, T, &out->momentum));
+done:
+    ritz_dense_free(&R);
+    ritz_dense_free(&MR);
+    ritz_dense_free(&A);
+    return status;
+}
+
+static ritz_status positions(const ritz_nodes *nodes, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(nodes->count, 3, out));
+    for (int a = 0; a < 3; a++)
+        for (int64_t i = 0; i < nodes->count; i++)
+            ritz_dense_col(out, a)[i] =
+                nodes->grids->position[3 * nodes->grid[i] + a];
+    return RITZ_OK;
+}
+
+/* Put A at (row, col) of `out`, and A' at (col, row) if that is asked. */
+static void put(const ritz_dense *A, int64_t row, int64_t col, bool mirror,
+                ritz_dense *out)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++) {
+            double value = ritz_dense_col(A, j)[i];
+
+            ritz_dense_col(out, col + j)[row + i] = value;
+            if (mirror)
+                ritz_dense_col(out, row + i)[col + j] = value;
+        }
+}
+
+/* X_a' m T_b and T_a' m T_b of all a <= b for one b. */
+static ritz_status find_products(const ritz_nodes *nodes, const ritz_sparse *m,
+                                 const ritz_dense *T, int b,
+                                 ritz_invariants *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t r = T->ncol;
+    ritz_dense X = {0}, T_b = {0}, mT = {0}, T_a = {0}, P = {0};
+
+    RITZ_TRY(ritz_nodes_along(nodes, T, b, &T_b));
+    RITZ_TRY(ritz_sparse_mul(m, &T_b, &mT));
+    RITZ_TRY(positions(nodes, &X));
+    RITZ_TRY(ritz_dense_mul_tn(&X, &mT, &P));
+    put(&P, 0, b * r, false, &out->position);
+    ritz_dense_free(&P);
+    RITZ_TRY(ritz_dense_mul_tn(&T_b, &mT, &P));
+    ritz_dense_symmetrise(&P);
+    put(&P, b * r, b * r, false, &out->product);
+    ritz_dense_free(&T_b);
+    for (int a = 0; a < b; a++) {
+        ritz_dense_free(&P);
+        RITZ_TRY(ritz_nodes_along(nodes, T, a, &T_a));
+        RITZ_TRY(ritz_dense_mul_tn(&T_a, &mT, &P));
+        put(&P, a * r, b * r, true, &out->product);
+        ritz_dense_free(&T_a);
+    }
+done:
+    ritz_dense_free(&X);
+    ritz_dense_free(&T_b);
+    ritz_dense_free(&mT);
+    ritz_dense_free(&T_a);
+    ritz_dense_free(&P);
+    return status;
+}
+
+ritz_status ritz_invariants_of(const ritz_component *component,
+                               const ritz_dense *T, ritz_invariants *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t r = T->ncol;
+    ritz_nodes nodes = {0};
+    ritz_sparse m = {0};
+    ritz_invariants found = {0};
+
+    if (component->grids.count == 0 || r > RITZ_INVARIANT_COLUMNS)
+        return RITZ_OK;
+    RITZ_TRY(ritz_nodes_of(component->num_dofs, component->dof,
+                           &component->grids, &nodes));
+    RITZ_TRY(nodal_mass(component, &nodes, &m));
+    RITZ_TRY(find_momenta(component, T, &found));
+    RITZ_TRY(ritz_dense_new(3, 3 * r, &found.position));
+    RITZ_TRY(ritz_dense_new(3 * r, 3 * r, &found.product));
+    for (int b = 0; b < 3; b++)
+        RITZ_TRY(find_products(&nodes, &m, T, b, &found));
+    *out = found;
+    found = (ritz_invariants){0};
+done:
+    ritz_nodes_free(&nodes);
+    ritz_sparse_free(&m);
+    ritz_invariants_free(&found);
+    return status;
+}
+
+/* I3 (x) V, which T V does to the three blocks of columns. */
+static ritz_status thrice(const ritz_dense *V, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, out));
+    for (int b = 0; b < 3; b++)
+        put(V, b * V->nrow, b * V->ncol, false, out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_invariants_project(const ritz_invariants *invariants,
+                                    const ritz_dense *V, ritz_invariants *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_invariants second = {0};
+    ritz_dense V3 = {0};
+
+    if (!invariants->momentum.val)
+        return RITZ_OK;
+    memcpy(second.rigid, invariants->rigid, sizeof second.rigid);
+    RITZ_TRY(thrice(V, &V3));
+    RITZ_TRY(ritz_dense_mul(&invariants->momentum, V, &second.momentum));
+    RITZ_TRY(ritz_dense_mul(&invariants->position, &V3, &second.position));
+    RITZ_TRY(ritz_dense_congruence(&invariants->product, &V3, &second.product));
+    *out = second;
+    second = (ritz_invariants){0};
+done:
+    ritz_dense_free(&V3);
+    ritz_invariants_free(&second);
+    return status;
+}
+
+void ritz_invariants_free(ritz_invariants *invariants)
+{
+    ritz_dense_free(&invariants->momentum);
+    ritz_dense_free(&invariants->position);
+    ritz_dense_free(&invariants->product);
+    *invariants = (ritz_invariants){0};
 }

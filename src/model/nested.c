@@ -3,10 +3,10 @@
  *
  *     K := S'K S, ..., T := T S
  *
- * which moves numbers and changes none of them.
+ * which selects entries and rounds nothing. What is known of each prefix, its
+ * errors by measure, is a table; orders ascend in it, and so do names.
  */
 #include "base/alloc.h"
-#include "model/nested_parts.h"
 
 #include <ritz/nested.h>
 
@@ -15,6 +15,98 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+void ritz_nested_free(ritz_nested *nested)
+{
+    free(nested->order);
+    free(nested->error);
+    ritz_dense_free(&nested->value);
+    *nested = (ritz_nested){0};
+}
+
+static ritz_status new_nested(int64_t smallest, int64_t count, int64_t errors,
+                              ritz_nested *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_nested made = {
+        .smallest = smallest, .count = count, .num_errors = errors};
+
+    RITZ_NEW(made.order, count);
+    RITZ_NEW(made.error, errors);
+    RITZ_TRY(ritz_dense_new(count, errors, &made.value));
+    for (int64_t k = 0; k < count * errors; k++)
+        made.value.val[k] = nan("");
+    *out = made;
+    made = (ritz_nested){0};
+done:
+    ritz_nested_free(&made);
+    return status;
+}
+
+static ritz_status check_order(const ritz_reduced *in, int64_t order)
+{
+    RITZ_REFUSE_IF(in->nested.smallest == 0, RITZ_ERR_ARGUMENT,
+                   "it is not nested: its %" PRId64
+                   " columns are one model, and some of them are none",
+                   in->K.ncol);
+    RITZ_REFUSE_IF(
+        order < in->nested.smallest || order > in->K.ncol, RITZ_ERR_ARGUMENT,
+        "there is no prefix of %" PRId64 " columns, there are those of "
+        "%" PRId64 " to %" PRId64,
+        order, in->nested.smallest, in->K.ncol);
+    return RITZ_OK;
+}
+
+/* A copy with a new row for an order, or a new column for a name, or both. */
+static ritz_status widen(const ritz_nested *in, int64_t row, bool new_row,
+                         int64_t col, bool new_col, ritz_nested *out)
+{
+    RITZ_CHECK(new_nested(in->smallest, in->count + new_row,
+                          in->num_errors + new_col, out));
+    for (int64_t k = 0; k < in->count; k++)
+        out->order[k + (new_row && k >= row)] = in->order[k];
+    for (int64_t j = 0; j < in->num_errors; j++) {
+        int64_t to = j + (new_col && j >= col);
+
+        memcpy(out->error[to], in->error[j], sizeof in->error[j]);
+        for (int64_t k = 0; k < in->count; k++)
+            ritz_dense_col(&out->value, to)[k + (new_row && k >= row)] =
+                ritz_dense_col(&in->value, j)[k];
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
+                             const char *name, double value)
+{
+    ritz_status status = RITZ_OK;
+    ritz_nested *n = &reduced->nested;
+    ritz_nested wide = {0};
+    char copy[RITZ_NAME_SIZE] = "";
+    int64_t row = 0, col = 0;
+
+    RITZ_TRY(check_order(reduced, order));
+    RITZ_TRY(ritz_name_copy(name, copy));
+    RITZ_FAIL_IF(!isfinite(value), RITZ_ERR_ARGUMENT,
+                 "'%s' of %" PRId64 " columns is %g, which is no measure", name,
+                 order, value);
+    while (row < n->count && n->order[row] < order)
+        row++;
+    while (col < n->num_errors && strcmp(n->error[col], copy) < 0)
+        col++;
+    RITZ_TRY(widen(n, row, row == n->count || n->order[row] != order, col,
+                   col == n->num_errors || strcmp(n->error[col], copy) != 0,
+                   &wide));
+    wide.order[row] = order;
+    memcpy(wide.error[col], copy, sizeof copy);
+    ritz_dense_col(&wide.value, col)[row] = value;
+    ritz_nested_free(n);
+    *n = wide;
+    wide = (ritz_nested){0};
+done:
+    ritz_nested_free(&wide);
+    return status;
+}
 
 static ritz_status pick_columns(const ritz_dense *A, int64_t count,
                                 const int64_t *at, ritz_dense *out)
@@ -125,7 +217,7 @@ ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
 
     RITZ_TRY(check_columns(in->K.ncol, count, order_of_columns, smallest));
     RITZ_TRY(pick(in, count, order_of_columns, &made));
-    RITZ_TRY(ritz_nested_new(smallest, 0, 0, &made.nested));
+    RITZ_TRY(new_nested(smallest, 0, 0, &made.nested));
     if (count == in->K.ncol) {
         RITZ_TRY(ritz_measures_copy(&in->estimates, &made.estimates));
         RITZ_TRY(ritz_measures_copy(&in->errors, &made.errors));
@@ -145,7 +237,7 @@ static ritz_status shorten(const ritz_nested *in, int64_t order,
 
     while (count < in->count && in->order[count] <= order)
         count++;
-    RITZ_CHECK(ritz_nested_new(in->smallest, count, in->num_errors, out));
+    RITZ_CHECK(new_nested(in->smallest, count, in->num_errors, out));
     for (int64_t k = 0; k < count; k++)
         out->order[k] = in->order[k];
     for (int64_t j = 0; j < in->num_errors; j++) {
@@ -195,7 +287,7 @@ ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
     ritz_reduced made = {0};
     int64_t *first = NULL;
 
-    RITZ_TRY(ritz_nested_check(in, order));
+    RITZ_TRY(check_order(in, order));
     RITZ_NEW(first, order);
     for (int64_t j = 0; j < order; j++)
         first[j] = j;

@@ -1,6 +1,6 @@
+/* Reduced components: projection of a component on a basis. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "model/mass_columns.h"
 
 #include <ritz/reduced.h>
 
@@ -10,6 +10,92 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Residual flexibility without mass has zero rows and columns in M and D. */
+static void clear_massless(const ritz_columns *columns, ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            if (columns->kind[i] == RITZ_COLUMN_MASSLESS ||
+                columns->kind[j] == RITZ_COLUMN_MASSLESS)
+                ritz_dense_col(A, j)[i] = 0.0;
+}
+
+/* T with zeros for massless columns, so that invariants agree with M. */
+static ritz_status copy_mass_columns(const ritz_basis *basis, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_copy(&basis->T, out));
+    for (int64_t j = 0; j < out->ncol; j++)
+        if (basis->columns.kind[j] == RITZ_COLUMN_MASSLESS)
+            memset(ritz_dense_col(out, j), 0,
+                   (size_t)out->nrow * sizeof *out->val);
+    return RITZ_OK;
+}
+
+/*
+ * A column that combines massless dofs alone has a mass that is rounding. An
+ * eigenvalue above 1/eps times `fast`, the largest of motions with mass, cannot
+ * be told from an infinite one: such a mass is set to zero. fast = 0: all
+ * motions have mass.
+ */
+static void clear_rounding(double fast, const ritz_dense *K, ritz_dense *M)
+{
+    double limit = fast / DBL_EPSILON;
+
+    for (int64_t j = 0; j < M->ncol && limit > 0.0; j++) {
+        if (ritz_dense_col(K, j)[j] <= limit * fabs(ritz_dense_col(M, j)[j]))
+            continue;
+        for (int64_t i = 0; i < M->nrow; i++)
+            ritz_dense_col(M, j)[i] = ritz_dense_col(M, i)[j] = 0.0;
+    }
+}
+
+/* Largest K_jj / M_jj of dofs with mass; 0 if all of them have mass. */
+static double fastest_dof(const ritz_component *component)
+{
+    double most = 0.0;
+    bool any = false;
+
+    for (int64_t j = 0; j < component->num_dofs; j++) {
+        double m = ritz_sparse_diagonal(&component->M, j);
+
+        if (m > 0.0)
+            most = fmax(most, ritz_sparse_diagonal(&component->K, j) / m);
+        else
+            any = true;
+    }
+    return any ? most : 0.0;
+}
+
+static void settle_mass(const ritz_component *component,
+                        const ritz_columns *columns, ritz_reduced *reduced)
+{
+    clear_rounding(fastest_dof(component), &reduced->K, &reduced->M);
+    clear_massless(columns, &reduced->M);
+    clear_massless(columns, &reduced->D);
+}
+
+/* Largest K_jj / M_jj of coordinates with mass; 0 if all of them have mass. */
+static double fastest_coordinate(const ritz_reduced *reduced)
+{
+    double most = 0.0;
+    bool any = false;
+
+    for (int64_t j = 0; j < reduced->M.ncol; j++) {
+        double m = ritz_dense_col(&reduced->M, j)[j];
+
+        if (m > 0.0)
+            most = fmax(most, ritz_dense_col(&reduced->K, j)[j] / m);
+        else
+            any = true;
+    }
+    return any ? most : 0.0;
+}
+
+static void settle_mass_again(const ritz_reduced *from, ritz_reduced *to)
+{
+    clear_rounding(fastest_coordinate(from), &to->K, &to->M);
+}
 
 /* Columns that may be rigid-body motion, or be so together. */
 static bool may_be_rigid(ritz_column_kind kind)
@@ -46,7 +132,6 @@ done:
 /* Whether columns of T combine to nothing, to six digits or more. */
 static ritz_status nearly_depend(const ritz_dense *T, bool *out)
 {
-    const double six_digits = 1e-12; /* squared, as T'T has them */
     ritz_status status = RITZ_OK;
     int r = (int)T->ncol;
     double rcond = 0.0, norm = 0.0;
@@ -65,7 +150,7 @@ static ritz_status nearly_depend(const ritz_dense *T, bool *out)
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, scaled.val, r) == 0)
         (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, scaled.val, r, norm,
                              &rcond);
-    *out = !(rcond > six_digits);
+    *out = !(rcond > RITZ_SQUARED_DEPENDENT);
 done:
     ritz_dense_free(&G);
     ritz_dense_free(&scaled);
@@ -192,7 +277,7 @@ static ritz_status keep_names(const ritz_component *component,
     RITZ_TRY(ritz_elements_copy(&component->elements, &reduced->elements));
     RITZ_TRY(ritz_recovery_copy(&component->recovery, &reduced->recovery));
     RITZ_TRY(ritz_inertia_of(component, &reduced->inertia));
-    RITZ_TRY(ritz_mass_columns(basis, &T));
+    RITZ_TRY(copy_mass_columns(basis, &T));
     RITZ_TRY(ritz_invariants_of(component, &T, &reduced->invariants));
 done:
     ritz_dense_free(&T);
@@ -222,7 +307,7 @@ ritz_status ritz_reduce(const ritz_component *component,
     RITZ_TRY(settle_rigid(&component->K, basis, &reduced.K));
     RITZ_TRY(ritz_sparse_project(&component->M, T, &reduced.M));
     RITZ_TRY(ritz_sparse_project(&component->D, T, &reduced.D));
-    ritz_mass_settle(component, &basis->columns, &reduced);
+    settle_mass(component, &basis->columns, &reduced);
     RITZ_TRY(ritz_sparse_project(&component->K4, T, &reduced.K4));
     RITZ_TRY(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_TRY(map_ports(component, T, &reduced));
@@ -272,7 +357,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         second.columns.kind[j] = RITZ_COLUMN_SYSTEM;
     RITZ_TRY(ritz_dense_congruence(&reduced->K, V, &second.K));
     RITZ_TRY(ritz_dense_congruence(&reduced->M, V, &second.M));
-    ritz_mass_settle_again(reduced, &second);
+    settle_mass_again(reduced, &second);
     if (reduced->D.val)
         RITZ_TRY(ritz_dense_project(&reduced->D, V, &second.D));
     if (reduced->K4.val)

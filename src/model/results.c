@@ -1,12 +1,18 @@
 /*
- * Results that containers keep: responses, simulations, rankings. Whoever
- * computes one stands above the container, so that freeing it is done here.
+ * Results that containers keep: measures, responses, simulations, rankings.
+ * Rooms above the container compute them, so that they are freed here.
  */
+#include "base/alloc.h"
+
 #include <ritz/ranking.h>
+#include <ritz/reduced.h>
 #include <ritz/response.h>
 #include <ritz/simulate.h>
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void ritz_response_free(ritz_response *response)
 {
@@ -57,4 +63,59 @@ void ritz_rankings_free(ritz_rankings *rankings)
     free(rankings->item);
     free(rankings->track);
     *rankings = (ritz_rankings){0};
+}
+
+ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
+                              double value, double limit, const char *where)
+{
+    ritz_measure *more = NULL;
+    ritz_measure *last = NULL;
+
+    RITZ_CHECK_NEW(more, measures->count + 1);
+    if (measures->count > 0)
+        memcpy(more, measures->item, (size_t)measures->count * sizeof *more);
+    last = &more[measures->count];
+    snprintf(last->name, sizeof last->name, "%s", name);
+    snprintf(last->where, sizeof last->where, "%s", where ? where : "");
+    last->value = value;
+    last->limit = limit;
+    free(measures->item);
+    measures->item = more;
+    measures->count++;
+    return RITZ_OK;
+}
+
+ritz_measure *ritz_measures_find(const ritz_measures *measures,
+                                 const char *name)
+{
+    for (int64_t k = 0; k < measures->count; k++)
+        if (strcmp(measures->item[k].name, name) == 0)
+            return &measures->item[k];
+    return NULL;
+}
+
+double ritz_measures_value(const ritz_measures *measures, const char *name)
+{
+    const ritz_measure *found = ritz_measures_find(measures, name);
+
+    return found ? found->value : nan("");
+}
+
+ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out)
+{
+    ritz_measures made = {0};
+
+    RITZ_CHECK_NEW(made.item, from->count);
+    made.count = from->count;
+    if (from->count > 0)
+        memcpy(made.item, from->item, (size_t)made.count * sizeof *made.item);
+    ritz_measures_free(out);
+    *out = made;
+    return RITZ_OK;
+}
+
+void ritz_measures_free(ritz_measures *measures)
+{
+    free(measures->item);
+    *measures = (ritz_measures){0};
 }

@@ -5,7 +5,7 @@
 #ifndef RITZ_MODEL_TIES_H
 #define RITZ_MODEL_TIES_H
 
-#include "model/equations_build.h"
+#include "model/equations.h"
 
 #include <ritz/component.h>
 
@@ -33,22 +33,6 @@ static inline bool ritz_tie_has(const ritz_tie *tie, int64_t c)
 /** u(grid, c) = out . [t; r] of a motion about @p origin. */
 void ritz_tie_row(const ritz_grids *grids, int64_t grid, int64_t c,
                   const double origin[static 3], double out[static 6]);
-
-/** Mean distance of grids from a point, a grid that is listed twice counting
- * once; 1 if that is nothing. */
-ritz_status ritz_tie_length(const ritz_grids *grids, const ritz_ties *list,
-                            const double origin[static 3], double *out);
-
-/**
- * Rows of the dofs of ties about a point, so scaled that lengths cancel:
- * columns of rotations divided by a length, rows of rotations times it.
- *
- * @param[out] S    dofs x 6
- * @param[out] dof  dofs
- */
-void ritz_tie_rows(const ritz_grids *grids, const ritz_ties *list,
-                   const double origin[static 3], double length, ritz_dense *S,
-                   ritz_dof *dof);
 
 /** Factor by which a dof is scaled there. */
 static inline double ritz_tie_scale(ritz_dof dof, double length)

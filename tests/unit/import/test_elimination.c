@@ -1,7 +1,7 @@
 /* Equations between dofs and their elimination; recovery of what is gone. */
 #include "testing.h"
 
-#include "model/equations_build.h"
+#include "model/equations.h"
 
 #include <stdio.h>
 #include <stdlib.h>

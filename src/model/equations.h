@@ -1,6 +1,6 @@
-/* Putting equations together, one term after the other. Not for users. */
-#ifndef RITZ_MODEL_EQUATIONS_BUILD_H
-#define RITZ_MODEL_EQUATIONS_BUILD_H
+/* Building constraint equations, one term after the other. */
+#ifndef RITZ_MODEL_EQUATIONS_H
+#define RITZ_MODEL_EQUATIONS_H
 
 #include <ritz/equations.h>
 
