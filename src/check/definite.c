@@ -40,7 +40,7 @@ static void name_column(const ritz_reduced *reduced, int64_t j,
 }
 
 /* Share of coordinate j: energies compare, lengths and angles do not. */
-static double share(const ritz_checker *it, const double *motion, int64_t j)
+static double share_of(const ritz_checker *it, const double *motion, int64_t j)
 {
     double m = fabs(ritz_dense_col(&it->model.M, j)[j]);
     double k = fabs(ritz_dense_col(&it->model.K, j)[j]);
@@ -64,7 +64,7 @@ static void name_columns(const ritz_checker *it, const double *motion,
         int64_t at = -1;
 
         for (int64_t j = 0; j < it->model.K.nrow; j++) {
-            double s = share(it, motion, j);
+            double s = share_of(it, motion, j);
 
             if (s < below && s > best) {
                 best = s;

@@ -87,7 +87,7 @@ done:
     return status;
 }
 
-static const char *attachment(const ritz_collocated *pairs, int64_t only)
+static const char *attachment_name(const ritz_collocated *pairs, int64_t only)
 {
     static const char *const names[] = {"a mass", "a damper", "a spring"};
 
@@ -119,7 +119,7 @@ static ritz_status try_all_pairs(ritz_checker *it, const double *gain,
             most = growth;
             *worst = probe;
             snprintf(where, RITZ_WHERE_SIZE, "%s of %g times its own at %s",
-                     attachment(pairs, only), times_own[k],
+                     attachment_name(pairs, only), times_own[k],
                      only < 0 ? "all pairs" : pairs->name[only]);
         }
 done:

@@ -64,7 +64,8 @@ done:
 }
 
 /* Least and largest eigenvalue of a symmetric A. */
-static ritz_status extremes(const ritz_dense *A, double *least, double *most)
+static ritz_status find_extremes(const ritz_dense *A, double *least,
+                                 double *most)
 {
     ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
@@ -103,7 +104,7 @@ static ritz_status probe_mass(const ritz_dense *M, ritz_probe *out)
             if (size > 0.0)
                 ritz_dense_col(&scaled, j)[i] /= size;
         }
-    RITZ_TRY(extremes(&scaled, &least, &most));
+    RITZ_TRY(find_extremes(&scaled, &least, &most));
     if (least <
         -RITZ_POLE_BOUND_FACTOR * (double)n * DBL_EPSILON * fabs(most)) {
         out->verdict = RITZ_UNSTABLE;

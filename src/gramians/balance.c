@@ -107,8 +107,9 @@ static int64_t cut(int64_t count, const double *sigma, int64_t order,
 }
 
 /* Z times columns of a side of the product, over the roots of s. */
-static ritz_status side(const ritz_dense *Z, const ritz_dense *vectors,
-                        const double *sigma, int64_t count, ritz_dense *out)
+static ritz_status project_side(const ritz_dense *Z, const ritz_dense *vectors,
+                                const double *sigma, int64_t count,
+                                ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense V = {0};
@@ -124,8 +125,8 @@ done:
 }
 
 /* The leading columns of W times G^-1 of the leading rows and columns. */
-static ritz_status correct(const ritz_dense *W, const ritz_dense *G,
-                           int64_t count, ritz_dense *out)
+static ritz_status correct_sides(const ritz_dense *W, const ritz_dense *G,
+                                 int64_t count, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense leading = {0}, X = {0};
@@ -148,23 +149,24 @@ done:
  * T and W of as many values as there are, then cut. G = (E T)'W is I but for
  * rounding, some eps |Z_o| |E Z_c| / sigma, and W := W G^-1 takes that away.
  */
-static ritz_status project(const ritz_gramians *gramians,
-                           const ritz_product_svd *svd, int64_t order,
-                           double tolerance, ritz_balanced *out)
+static ritz_status project_balanced(const ritz_gramians *gramians,
+                                    const ritz_product_svd *svd, int64_t order,
+                                    double tolerance, ritz_balanced *out)
 {
     ritz_status status = RITZ_OK;
     int64_t count = count_true(gramians, svd);
     ritz_dense T = {0}, ET = {0}, W = {0}, G = {0};
 
-    RITZ_TRY(side(&gramians->Zc, &svd->V, svd->s, count, &T));
-    RITZ_TRY(side(&gramians->Zo, &svd->U, svd->s, count, &W));
-    RITZ_TRY(side(descriptor_times(gramians), &svd->V, svd->s, count, &ET));
+    RITZ_TRY(project_side(&gramians->Zc, &svd->V, svd->s, count, &T));
+    RITZ_TRY(project_side(&gramians->Zo, &svd->U, svd->s, count, &W));
+    RITZ_TRY(
+        project_side(descriptor_times(gramians), &svd->V, svd->s, count, &ET));
     RITZ_TRY(ritz_dense_mul_tn(&ET, &W, &G));
     out->count = count_close(&G);
     out->kept = cut(out->count, svd->s, order, tolerance);
     out->bound = ritz_hankel_bound(out->count, svd->s, out->kept);
     RITZ_TRY(ritz_dense_columns(&T, 0, out->kept, &out->T));
-    RITZ_TRY(correct(&W, &G, out->kept, &out->W));
+    RITZ_TRY(correct_sides(&W, &G, out->kept, &out->W));
 done:
     ritz_dense_free(&T);
     ritz_dense_free(&ET);
@@ -187,7 +189,7 @@ ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
     RITZ_TRY_IN("balancing",
                 ritz_product_svd_new(&gramians->Zo, descriptor_times(gramians),
                                      true, &svd));
-    RITZ_TRY(project(gramians, &svd, order, tolerance, &balanced));
+    RITZ_TRY(project_balanced(gramians, &svd, order, tolerance, &balanced));
     balanced.sigma = svd.s;
     svd.s = NULL;
     *out = balanced;

@@ -56,8 +56,8 @@ static void clear_rows(const ritz_dofs *rows, ritz_dense *A)
 }
 
 /* X := K_mm^-1 of rows m of A. */
-static ritz_status hold(const ritz_low_rank_model *model, ritz_factor *F,
-                        const ritz_dense *A, ritz_dense *X)
+static ritz_status solve_held(const ritz_low_rank_model *model, ritz_factor *F,
+                              const ritz_dense *A, ritz_dense *X)
 {
     RITZ_CHECK(
         ritz_dense_rows(A, model->massless.count, model->massless.at, X));
@@ -65,14 +65,14 @@ static ritz_status hold(const ritz_low_rank_model *model, ritz_factor *F,
 }
 
 /* A := T'A */
-static ritz_status condense(const ritz_low_rank_model *model,
-                            const ritz_sparse *K_rm, ritz_factor *F,
-                            ritz_dense *A)
+static ritz_status condense_massless(const ritz_low_rank_model *model,
+                                     const ritz_sparse *K_rm, ritz_factor *F,
+                                     ritz_dense *A)
 {
     ritz_status status = RITZ_OK;
     ritz_dense X = {0}, Y = {0};
 
-    RITZ_TRY(hold(model, F, A, &X));
+    RITZ_TRY(solve_held(model, F, A, &X));
     RITZ_TRY(ritz_sparse_mul(K_rm, &X, &Y));
     add_rows(&model->massive, -1.0, &Y, A);
     clear_rows(&model->massless, A);
@@ -83,14 +83,14 @@ done:
 }
 
 /* A := T A, whose rows m are zero. */
-static ritz_status follow(const ritz_low_rank_model *model, ritz_factor *F,
-                          ritz_dense *A)
+static ritz_status follow_rows(const ritz_low_rank_model *model, ritz_factor *F,
+                               ritz_dense *A)
 {
     ritz_status status = RITZ_OK;
     ritz_dense KA = {0}, X = {0};
 
     RITZ_TRY(ritz_sparse_mul(&model->K, A, &KA));
-    RITZ_TRY(hold(model, F, &KA, &X));
+    RITZ_TRY(solve_held(model, F, &KA, &X));
     add_rows(&model->massless, -1.0, &X, A);
 done:
     ritz_dense_free(&KA);
@@ -106,7 +106,7 @@ static ritz_status refuse_improper(const ritz_low_rank_model *model,
     ritz_status status = RITZ_OK;
     ritz_dense X = {0}, C_m = {0}, seen = {0};
 
-    RITZ_TRY(hold(model, F, B, &X));
+    RITZ_TRY(solve_held(model, F, B, &X));
     RITZ_TRY(
         ritz_dense_rows(Ct, model->massless.count, model->massless.at, &C_m));
     RITZ_TRY(ritz_dense_mul_tn(&C_m, &X, &seen));
@@ -145,7 +145,7 @@ static ritz_status condense_all(const ritz_low_rank_model *model,
     RITZ_TRY(refuse_improper(model, *F, parts[0], parts[2], "velocity"));
     RITZ_TRY(refuse_improper(model, *F, parts[0], parts[3], "acceleration"));
     for (int k = 0; k < 4; k++)
-        RITZ_TRY(condense(model, &K_rm, *F, parts[k]));
+        RITZ_TRY(condense_massless(model, &K_rm, *F, parts[k]));
 done:
     ritz_sparse_free(&K_mm);
     ritz_sparse_free(&K_rm);
@@ -153,7 +153,7 @@ done:
 }
 
 /* X := T M_rr^-1 X; M_rr must be definite in any case. */
-static ritz_status accelerate(const ritz_low_rank_model *model, ritz_factor *F,
+static ritz_status solve_free(const ritz_low_rank_model *model, ritz_factor *F,
                               ritz_dense *X)
 {
     ritz_status status = RITZ_OK;
@@ -178,7 +178,7 @@ static ritz_status accelerate(const ritz_low_rank_model *model, ritz_factor *F,
     clear_rows(r, X);
     add_rows(r, 1.0, &Y, X);
     if (F)
-        RITZ_TRY(follow(model, F, X));
+        RITZ_TRY(follow_rows(model, F, X));
 done:
     ritz_sparse_free(&M_rr);
     ritz_factor_free(&mass);
@@ -186,8 +186,8 @@ done:
     return status;
 }
 
-static ritz_status subtract(const ritz_sparse *A, const ritz_dense *X,
-                            ritz_dense *from)
+static ritz_status subtract_product(const ritz_sparse *A, const ritz_dense *X,
+                                    ritz_dense *from)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AX = {0};
@@ -217,9 +217,10 @@ static ritz_status find_loads(const ritz_io *io, ritz_low_rank_model *model)
     RITZ_TRY(turn_outputs(io, &io->Cv, Cv));
     RITZ_TRY(turn_outputs(io, &io->Ca, &X));
     RITZ_TRY(condense_all(model, (ritz_dense *[]){B, C, Cv, &X}, &F));
-    RITZ_TRY(accelerate(model, F, &X));
-    RITZ_TRY(subtract(&model->K, &X, C));
-    RITZ_TRY(subtract(model->Dt.colptr ? &model->Dt : &model->D, &X, Cv));
+    RITZ_TRY(solve_free(model, F, &X));
+    RITZ_TRY(subtract_product(&model->K, &X, C));
+    RITZ_TRY(
+        subtract_product(model->Dt.colptr ? &model->Dt : &model->D, &X, Cv));
     if (model->massless.count > 0) { /* K X has rounding there */
         clear_rows(&model->massless, C);
         clear_rows(&model->massless, Cv);

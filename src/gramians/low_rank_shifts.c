@@ -51,8 +51,8 @@ done:
 }
 
 /* g := X'y, count entries. */
-static void project(const ritz_low_rank_window *window, const double *y,
-                    double *g)
+static void project_window(const ritz_low_rank_window *window, const double *y,
+                           double *g)
 {
     int n = (int)window->X.nrow;
 
@@ -67,10 +67,10 @@ static void put_products(int64_t at, const double *Ax, const double *Atx,
 {
     double *column = ritz_dense_col(G, at);
 
-    project(window, Atx, column);
+    project_window(window, Atx, column);
     for (int64_t j = 0; j < window->count; j++)
         ritz_dense_col(G, j)[at] = column[j];
-    project(window, Ax, column);
+    project_window(window, Ax, column);
 }
 
 static void put_column(const double *x, ritz_low_rank_window *window,
@@ -130,8 +130,8 @@ static ritz_status symmetric_modes(ritz_dense *A, double *e)
 }
 
 /* F with F'GF = I, G = X'MX, of what is independent in X. */
-static ritz_status orthonormal(const ritz_low_rank_window *window,
-                               ritz_dense *out)
+static ritz_status orthonormal_window(const ritz_low_rank_window *window,
+                                      ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int64_t c = window->count;
@@ -166,8 +166,9 @@ done:
 }
 
 /* F'GF of the columns that are there. */
-static ritz_status between(const ritz_low_rank_window *window, int which,
-                           const ritz_dense *F, ritz_dense *out)
+static ritz_status product_between(const ritz_low_rank_window *window,
+                                   int which, const ritz_dense *F,
+                                   ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int64_t c = window->count;
@@ -191,13 +192,13 @@ ritz_status ritz_low_rank_window_modes(const ritz_low_rank_window *window,
     ritz_dense V = {0}, K = {0}, modes = {0};
     double *w = NULL;
 
-    RITZ_TRY(orthonormal(window, &V));
-    RITZ_TRY(between(window, 1, &V, &K));
+    RITZ_TRY(orthonormal_window(window, &V));
+    RITZ_TRY(product_between(window, 1, &V, &K));
     RITZ_NEW(w, K.nrow);
     ritz_dense_symmetrise(&K);
     RITZ_TRY(symmetric_modes(&K, w));
     RITZ_TRY(ritz_dense_mul(&V, &K, &modes));
-    RITZ_TRY(between(window, 2, &modes, Delta));
+    RITZ_TRY(product_between(window, 2, &modes, Delta));
     for (int64_t k = 0; k < K.nrow; k++) /* the last one is exact enough */
         w[k] = sqrt(fmax(w[k], DBL_EPSILON * w[K.nrow - 1]));
     *F = modes;
@@ -342,8 +343,8 @@ static double seen_by(int64_t n, const double *x, const double *y,
 }
 
 /* |y'x|^2 of a left and a right vector. */
-static double cosine(int64_t n, const double *y, const double *y_im,
-                     const double *x, const double *x_im)
+static double cosine_of(int64_t n, const double *y, const double *y_im,
+                        const double *x, const double *x_im)
 {
     double re = 0.0;
     double im = 0.0;
@@ -356,7 +357,7 @@ static double cosine(int64_t n, const double *y, const double *y_im,
 }
 
 /* Squares of both shares, each of the largest, added. */
-static ritz_status weigh(const bool open[static RITZ_SIDES], small *s)
+static ritz_status weigh_poles(const bool open[static RITZ_SIDES], small *s)
 {
     ritz_status status = RITZ_OK;
     int64_t n = s->A.nrow;
@@ -370,7 +371,7 @@ static ritz_status weigh(const bool open[static RITZ_SIDES], small *s)
         const double *x = ritz_dense_col(&s->right, k);
         const double *y = ritz_dense_col(&s->left, k);
         const double angle =
-            cosine(n, y, pair ? y + n : NULL, x, pair ? x + n : NULL);
+            cosine_of(n, y, pair ? y + n : NULL, x, pair ? x + n : NULL);
         double *in = ritz_dense_col(&part, RITZ_REACHED) + k;
         double *seen = ritz_dense_col(&part, RITZ_SEEN) + k;
 
@@ -389,8 +390,8 @@ done:
 }
 
 /* The poles with the largest shares, of a pair the first. */
-static ritz_status choose(small *s, int64_t most, int64_t *count,
-                          double _Complex *out)
+static ritz_status choose_shifts(small *s, int64_t most, int64_t *count,
+                                 double _Complex *out)
 {
     for (*count = 0; *count < most; (*count)++) {
         int64_t best = -1;
@@ -428,8 +429,8 @@ ritz_status ritz_low_rank_shifts(const ritz_low_rank_model *model,
 
     RITZ_TRY(find_poles(window, &s));
     RITZ_TRY(project_loads(model, window, &s));
-    RITZ_TRY(weigh(open, &s));
-    RITZ_TRY(choose(&s, most, count, out));
+    RITZ_TRY(weigh_poles(open, &s));
+    RITZ_TRY(choose_shifts(&s, most, count, out));
 done:
     free_small(&s);
     return status;

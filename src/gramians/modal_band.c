@@ -36,7 +36,7 @@ typedef struct response {
 } response;
 
 /* 2 pi g at w */
-static double slope(double wk, double d, double w)
+static double slope_at(double wk, double d, double w)
 {
     double h = wk * wk + w * w;
     double square = (wk - d / 2.0) * (wk + d / 2.0);
@@ -55,7 +55,7 @@ static double slope(double wk, double d, double w)
 }
 
 /* 2 pi (p(w2) - p(w1)) */
-static double turned(double wk, double d, const double w[static 2])
+static double turned_angle(double wk, double d, const double w[static 2])
 {
     double below = (wk - w[0]) * (wk + w[0]);
     double above = (wk - w[1]) * (wk + w[1]);
@@ -69,15 +69,16 @@ static double turned(double wk, double d, const double w[static 2])
 static response response_of(double wk, double zeta, const double w[static 2])
 {
     double d = 2.0 * zeta * wk;
-    double p = turned(wk, d, w) / (2.0 * RITZ_PI);
-    double g = (slope(wk, d, w[1]) - slope(wk, d, w[0])) / (2.0 * RITZ_PI);
+    double p = turned_angle(wk, d, w) / (2.0 * RITZ_PI);
+    double g =
+        (slope_at(wk, d, w[1]) - slope_at(wk, d, w[0])) / (2.0 * RITZ_PI);
 
     return (response){{{p + g * d / 2.0, g}, {-g * wk * wk, p - g * d / 2.0}}};
 }
 
 /* Row i of S W, or of S'W, at column j. */
-static double applied(const response *S, bool transposed, const ritz_dense *W,
-                      int64_t i, int64_t j)
+static double applied_at(const response *S, bool transposed,
+                         const ritz_dense *W, int64_t i, int64_t j)
 {
     const double(*s)[2] = S[i / 2].s;
     const double *x = ritz_dense_col(W, j) + 2 * (i / 2);
@@ -88,14 +89,14 @@ static double applied(const response *S, bool transposed, const ritz_dense *W,
 }
 
 /* S W + W S', exactly symmetric as W is. */
-static ritz_status filter(const response *S, bool transposed,
-                          const ritz_dense *W, ritz_dense *out)
+static ritz_status filter_gramian(const response *S, bool transposed,
+                                  const ritz_dense *W, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(W->nrow, W->ncol, out));
     for (int64_t j = 0; j < W->ncol; j++)
         for (int64_t i = 0; i <= j; i++) {
-            double x = applied(S, transposed, W, i, j) +
-                       applied(S, transposed, W, j, i);
+            double x = applied_at(S, transposed, W, i, j) +
+                       applied_at(S, transposed, W, j, i);
 
             ritz_dense_col(out, j)[i] = x;
             ritz_dense_col(out, i)[j] = x;
@@ -108,7 +109,7 @@ typedef struct filtered {
     ritz_dense W, terms;
 } filtered;
 
-static void release(filtered *f)
+static void filtered_free(filtered *f)
 {
     ritz_dense_free(&f->W);
     ritz_dense_free(&f->terms);
@@ -122,8 +123,8 @@ static ritz_status filter_both(const response *S, const response *size,
     ritz_dense magnitude = {0};
 
     RITZ_TRY(ritz_dense_abs(W, &magnitude));
-    RITZ_TRY(filter(S, transposed, W, &out->W));
-    RITZ_TRY(filter(size, transposed, &magnitude, &out->terms));
+    RITZ_TRY(filter_gramian(S, transposed, W, &out->W));
+    RITZ_TRY(filter_gramian(size, transposed, &magnitude, &out->terms));
 done:
     ritz_dense_free(&magnitude);
     return status;
@@ -180,13 +181,13 @@ ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
     *Wo = of[1].W;
     of[0].W = of[1].W = (ritz_dense){0};
 done:
-    release(&of[0]);
-    release(&of[1]);
+    filtered_free(&of[0]);
+    filtered_free(&of[1]);
     return status;
 }
 
 /* Roots of the diagonal, 0 where that is rounding. */
-static ritz_status roots(const filtered *f, double *root)
+static ritz_status find_roots(const filtered *f, double *root)
 {
     for (int64_t k = 0; k < f->W.nrow; k++) {
         double own = ritz_dense_col(&f->W, k)[k];
@@ -200,7 +201,7 @@ static ritz_status roots(const filtered *f, double *root)
 }
 
 /* A(i,j) / (root_i root_j); returns its largest sum of a column. */
-static double scale(ritz_dense *A, const double *root)
+static double scale_matrix(ritz_dense *A, const double *root)
 {
     double largest = 0.0;
 
@@ -220,8 +221,8 @@ static double scale(ritz_dense *A, const double *root)
 }
 
 /* root V s^1/2 of the eigenvalues s above what is rounding of others. */
-static ritz_status put(const ritz_dense *V, const double *s, const double *root,
-                       ritz_dense *out)
+static ritz_status put_factor(const ritz_dense *V, const double *s,
+                              const double *root, ritz_dense *out)
 {
     int64_t n = V->nrow;
     int64_t first = 0;
@@ -240,7 +241,7 @@ static ritz_status put(const ritz_dense *V, const double *s, const double *root,
 }
 
 /* Overwrites both matrices. */
-static ritz_status factor(filtered *f, ritz_dense *out)
+static ritz_status factor_filtered(filtered *f, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int n = (int)f->W.nrow;
@@ -250,9 +251,9 @@ static ritz_status factor(filtered *f, ritz_dense *out)
 
     RITZ_NEW(root, n);
     RITZ_NEW(s, n);
-    RITZ_TRY(roots(f, root));
-    (void)scale(&f->W, root);
-    rounding = RITZ_BAND_ROUNDING * scale(&f->terms, root);
+    RITZ_TRY(find_roots(f, root));
+    (void)scale_matrix(&f->W, root);
+    rounding = RITZ_BAND_ROUNDING * scale_matrix(&f->terms, root);
     if (n > 0)
         info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, f->W.val, n, s);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
@@ -261,7 +262,7 @@ static ritz_status factor(filtered *f, ritz_dense *out)
                  "the Gramian of a band has an eigenvalue of %.1e of its "
                  "diagonal, beyond rounding (%.1e)",
                  s[0], rounding);
-    RITZ_TRY(put(&f->W, s, root, out));
+    RITZ_TRY(put_factor(&f->W, s, root, out));
 done:
     free(root);
     free(s);
@@ -277,14 +278,14 @@ ritz_status ritz_modal_factors_band(const ritz_modal *modal,
     ritz_dense C = {0}, O = {0};
 
     RITZ_TRY(band_gramians(modal, band_hz, of));
-    RITZ_TRY(factor(&of[0], &C));
-    RITZ_TRY(factor(&of[1], &O));
+    RITZ_TRY(factor_filtered(&of[0], &C));
+    RITZ_TRY(factor_filtered(&of[1], &O));
     *Zc = C;
     *Zo = O;
     C = O = (ritz_dense){0};
 done:
-    release(&of[0]);
-    release(&of[1]);
+    filtered_free(&of[0]);
+    filtered_free(&of[1]);
     ritz_dense_free(&C);
     ritz_dense_free(&O);
     return status;

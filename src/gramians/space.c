@@ -15,7 +15,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static ritz_status check(const ritz_state_space *model)
+static ritz_status check_space(const ritz_state_space *model)
 {
     RITZ_CHECK(ritz_state_space_check(model));
     RITZ_REFUSE_IF(model->A.nrow == 0, RITZ_ERR_ARGUMENT,
@@ -32,8 +32,8 @@ static ritz_status check(const ritz_state_space *model)
 }
 
 /* X'C', its columns over the limits. */
-static ritz_status seen(const ritz_state_space *model, const ritz_dense *X,
-                        ritz_dense *out)
+static ritz_status observed_by(const ritz_state_space *model,
+                               const ritz_dense *X, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense Ct = {0};
@@ -50,14 +50,14 @@ done:
 }
 
 /* Z_c and Z_o of the stable part. */
-static ritz_status factor(const ritz_state_space *model,
-                          const ritz_split *split, ritz_gramians *out)
+static ritz_status factor_stable(const ritz_state_space *model,
+                                 const ritz_split *split, ritz_gramians *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense B = {0}, C = {0}, F = {0};
 
     RITZ_TRY(ritz_dense_mul_tn(&split->Y, &model->B, &B));
-    RITZ_TRY(seen(model, &split->X, &C));
+    RITZ_TRY(observed_by(model, &split->X, &C));
     RITZ_TRY(ritz_general_hammarling(&split->S, &split->P, false, &B, &F));
     RITZ_TRY(ritz_dense_mul(&split->X, &F, &out->Zc));
     ritz_dense_free(&F);
@@ -79,9 +79,9 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
     ritz_split split = {0};
     ritz_gramians gramians = {0};
 
-    RITZ_TRY(check(model));
+    RITZ_TRY(check_space(model));
     RITZ_TRY(ritz_split_new(&model->A, &model->E, &split));
-    RITZ_TRY(factor(model, &split, &gramians));
+    RITZ_TRY(factor_stable(model, &split, &gramians));
     gramians.T = split.T;
     gramians.W = split.W;
     split.T = (ritz_dense){0};

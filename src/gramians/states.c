@@ -105,9 +105,9 @@ done:
 }
 
 /* out(first.., column..) = A diag(s) (rows row.. of Z); s NULL: I */
-static ritz_status lift(const ritz_dense *A, const double *s,
-                        const ritz_dense *Z, int64_t row, int64_t first,
-                        int64_t column, ritz_dense *out)
+static ritz_status lift_states(const ritz_dense *A, const double *s,
+                               const ritz_dense *Z, int64_t row, int64_t first,
+                               int64_t column, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense part = {0}, lifted = {0};
@@ -166,10 +166,10 @@ static ritz_status put_states(const ritz_states *states, const ritz_dense *T,
         inverse[k] = 1.0 / states->scale[k];
     RITZ_TRY(ritz_dense_columns(&modes->Phi, r, m, &Phi));
     RITZ_TRY(ritz_dense_columns(&modes->MPhi, r, m, &MPhi));
-    RITZ_TRY(lift(&Phi, inverse, T, 0, 0, 2 * r, &basis->T));
-    RITZ_TRY(lift(&Phi, NULL, T, m, n, 2 * r, &basis->T));
-    RITZ_TRY(lift(&MPhi, states->scale, W, 0, 0, 2 * r, &basis->W));
-    RITZ_TRY(lift(&Phi, NULL, W, m, n, 2 * r, &basis->W));
+    RITZ_TRY(lift_states(&Phi, inverse, T, 0, 0, 2 * r, &basis->T));
+    RITZ_TRY(lift_states(&Phi, NULL, T, m, n, 2 * r, &basis->T));
+    RITZ_TRY(lift_states(&MPhi, states->scale, W, 0, 0, 2 * r, &basis->W));
+    RITZ_TRY(lift_states(&Phi, NULL, W, m, n, 2 * r, &basis->W));
 done:
     ritz_dense_free(&Phi);
     ritz_dense_free(&MPhi);

@@ -34,15 +34,15 @@ typedef struct lanczos {
 } lanczos;
 
 /* Uniform in (-1, 1), the same on every machine. */
-static double noise(uint64_t *state)
+static double next_noise(uint64_t *state)
 {
     *state = *state * 6364136223846793005U + 1442695040888963407U;
     return (double)(int64_t)*state / (double)INT64_MAX;
 }
 
 /* y := M X, X a column, which y may be. */
-static ritz_status multiply(const ritz_sparse *M, const ritz_dense *X,
-                            double *y)
+static ritz_status multiply_mass(const ritz_sparse *M, const ritz_dense *X,
+                                 double *y)
 {
     ritz_status status = RITZ_OK;
     ritz_dense Y = {0};
@@ -55,7 +55,8 @@ done:
 }
 
 /* y := A^-1 x, which may be one and the same. */
-static ritz_status solve(const ritz_shifted *S, const double *x, double *y)
+static ritz_status solve_shifted(const ritz_shifted *S, const double *x,
+                                 double *y)
 {
     ritz_dense Y = {S->M->nrow, 1, y};
 
@@ -64,7 +65,8 @@ static ritz_status solve(const ritz_shifted *S, const double *x, double *y)
     return ritz_factor_solve(S->A, &Y);
 }
 
-static ritz_status allocate(const ritz_shifted *S, int64_t k, lanczos *L)
+static ritz_status allocate_lanczos(const ritz_shifted *S, int64_t k,
+                                    lanczos *L)
 {
     int64_t n = S->M->nrow;
     int64_t ncv = 2 * k + 1 > k + 20 ? 2 * k + 1 : k + 20;
@@ -90,12 +92,12 @@ static ritz_status allocate(const ritz_shifted *S, int64_t k, lanczos *L)
     RITZ_CHECK_NEW(L->select, ncv);
     RITZ_CHECK(ritz_dense_new(n, ncv, &L->V));
     for (int64_t i = 0; i < n; i++)
-        L->resid[i] = noise(&seed);
-    RITZ_CHECK(multiply(S->M, &(ritz_dense){n, 1, L->resid}, L->resid));
-    return solve(S, L->resid, L->resid);
+        L->resid[i] = next_noise(&seed);
+    RITZ_CHECK(multiply_mass(S->M, &(ritz_dense){n, 1, L->resid}, L->resid));
+    return solve_shifted(S, L->resid, L->resid);
 }
 
-static void release(lanczos *L)
+static void lanczos_free(lanczos *L)
 {
     free(L->resid);
     free(L->workd);
@@ -106,7 +108,7 @@ static void release(lanczos *L)
 }
 
 /* Do what ARPACK asks for until it asks no more. */
-static ritz_status iterate(const ritz_shifted *S, lanczos *L)
+static ritz_status iterate_lanczos(const ritz_shifted *S, lanczos *L)
 {
     a_int ido = 0;
     int64_t solves = 0;
@@ -121,15 +123,16 @@ static ritz_status iterate(const ritz_shifted *S, lanczos *L)
         X.val = L->workd + L->ipntr[0] - 1;
         y = L->workd + L->ipntr[1] - 1;
         if (ido == 2) {
-            RITZ_CHECK(multiply(S->M, &X, y));
+            RITZ_CHECK(multiply_mass(S->M, &X, y));
             continue;
         }
         if (ido != 1 && ido != -1)
             break;
         ritz_monitor_step("eigenvectors", ++solves, 0);
         if (ido == -1)
-            RITZ_CHECK(multiply(S->M, &X, y));
-        RITZ_CHECK(solve(S, ido == 1 ? L->workd + L->ipntr[2] - 1 : y, y));
+            RITZ_CHECK(multiply_mass(S->M, &X, y));
+        RITZ_CHECK(
+            solve_shifted(S, ido == 1 ? L->workd + L->ipntr[2] - 1 : y, y));
     }
     return RITZ_OK;
 }
@@ -149,7 +152,7 @@ static double reach_of(const lanczos *L, double sigma)
     return sigma + 1.0 / sorted[L->nev - 1];
 }
 
-static ritz_status extract(const ritz_shifted *S, lanczos *L)
+static ritz_status extract_pairs(const ritz_shifted *S, lanczos *L)
 {
     dseupd_c(1, "A", L->select, L->d, L->V.val, L->n, S->sigma, "G", L->n, "LM",
              L->nev, RITZ_ARNOLDI_SETTLED, L->resid, L->ncv, L->V.val, L->n,
@@ -166,8 +169,8 @@ ritz_status ritz_lanczos_lowest(const ritz_shifted *S, int64_t k, ritz_dense *X,
     ritz_status status = RITZ_OK;
     lanczos L = {0};
 
-    RITZ_TRY(allocate(S, k, &L));
-    RITZ_TRY(iterate(S, &L));
+    RITZ_TRY(allocate_lanczos(S, k, &L));
+    RITZ_TRY(iterate_lanczos(S, &L));
     if (L.info == INVARIANT) {
         *end = RITZ_LANCZOS_EXHAUSTED;
         goto done;
@@ -179,11 +182,11 @@ ritz_status ritz_lanczos_lowest(const ritz_shifted *S, int64_t k, ritz_dense *X,
     *end = L.info == 0 ? RITZ_LANCZOS_FOUND : RITZ_LANCZOS_SLOW;
     if (*end != RITZ_LANCZOS_FOUND)
         goto done;
-    RITZ_TRY(extract(S, &L));
+    RITZ_TRY(extract_pairs(S, &L));
     *X = L.V;
     X->ncol = L.nev;
     L.V = (ritz_dense){0};
 done:
-    release(&L);
+    lanczos_free(&L);
     return status;
 }

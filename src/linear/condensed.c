@@ -13,7 +13,7 @@
 #include <stdlib.h>
 
 /* G := G^-1, symmetric positive definite. */
-static ritz_status invert(ritz_dense *G)
+static ritz_status invert_matrix(ritz_dense *G)
 {
     int n = (int)G->nrow;
     int info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, G->val, n);
@@ -56,7 +56,7 @@ ritz_status ritz_condensed_all(const ritz_shifted *S, int64_t count,
             ritz_dense_col(&W, j)[heavy[j]] = 1.0;
         RITZ_TRY(ritz_factor_solve(S->A, &W));
         RITZ_TRY(ritz_dense_rows(&W, count, heavy, &G));
-        RITZ_TRY(invert(&G));
+        RITZ_TRY(invert_matrix(&G));
     }
     RITZ_TRY(pick_mass(S->M, count, heavy, &M_hh));
     RITZ_TRY(ritz_eigen_dense(&G, &M_hh, &small));

@@ -148,9 +148,9 @@ void ritz_dense_free(ritz_dense *A)
 /* Products of dense matrices, and what is made of two of them. */
 
 /* C = op(A) op(B), m x q with p summed over. */
-static ritz_status multiply(CBLAS_TRANSPOSE left, const ritz_dense *A,
-                            CBLAS_TRANSPOSE right, const ritz_dense *B,
-                            ritz_dense *C)
+static ritz_status multiply_dense(CBLAS_TRANSPOSE left, const ritz_dense *A,
+                                  CBLAS_TRANSPOSE right, const ritz_dense *B,
+                                  ritz_dense *C)
 {
     int64_t m = left == CblasTrans ? A->ncol : A->nrow;
     int64_t p = left == CblasTrans ? A->nrow : A->ncol;
@@ -170,19 +170,19 @@ static ritz_status multiply(CBLAS_TRANSPOSE left, const ritz_dense *A,
 ritz_status ritz_dense_mul(const ritz_dense *A, const ritz_dense *B,
                            ritz_dense *C)
 {
-    return multiply(CblasNoTrans, A, CblasNoTrans, B, C);
+    return multiply_dense(CblasNoTrans, A, CblasNoTrans, B, C);
 }
 
 ritz_status ritz_dense_mul_tn(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *C)
 {
-    return multiply(CblasTrans, A, CblasNoTrans, B, C);
+    return multiply_dense(CblasTrans, A, CblasNoTrans, B, C);
 }
 
 ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *C)
 {
-    return multiply(CblasNoTrans, A, CblasTrans, B, C);
+    return multiply_dense(CblasNoTrans, A, CblasTrans, B, C);
 }
 
 double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,

@@ -40,7 +40,8 @@
  */
 
 /* out = S A S, exactly symmetric. */
-static ritz_status scale(const ritz_dense *A, const double *s, ritz_dense *out)
+static ritz_status scale_pencil(const ritz_dense *A, const double *s,
+                                ritz_dense *out)
 {
     int64_t n = A->nrow;
 
@@ -104,7 +105,7 @@ static ritz_status is_definite(const ritz_dense *M, ritz_dense *C, bool *out)
 }
 
 /* K := eigenvectors of K. */
-static ritz_status standard(ritz_dense *K, double *lambda)
+static ritz_status solve_standard(ritz_dense *K, double *lambda)
 {
     int n = (int)K->nrow;
 
@@ -121,14 +122,15 @@ static ritz_status by_cholesky(const ritz_dense *C, ritz_dense *K,
 
     RITZ_CHECK(lapack_status(
         LAPACKE_dsygst(LAPACK_COL_MAJOR, 1, 'L', n, K->val, n, C->val, n)));
-    RITZ_CHECK(standard(K, lambda));
+    RITZ_CHECK(solve_standard(K, lambda));
     cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit,
                 n, n, 1.0, C->val, n, K->val, n);
     return RITZ_OK;
 }
 
 /* T, n x rank, written over the last columns of Q; see the head. */
-static ritz_status condense(const ritz_dense *K, ritz_dense *N, ritz_dense *Q_r)
+static ritz_status condense_massless(const ritz_dense *K, ritz_dense *N,
+                                     ritz_dense *Q_r)
 {
     ritz_status status = RITZ_OK;
     ritz_dense KN = {0}, NKN = {0}, NKQ = {0}, fall = {0};
@@ -175,7 +177,7 @@ static ritz_status solve_condensed(const ritz_dense *K, ritz_dense *T,
             ritz_dense_col(T, j)[i] /= sqrt(m[j]);
     RITZ_TRY(ritz_dense_mul(K, T, &KT));
     RITZ_TRY(ritz_dense_mul_tn(T, &KT, &K_r));
-    RITZ_TRY(standard(&K_r, lambda));
+    RITZ_TRY(solve_standard(&K_r, lambda));
     RITZ_TRY(ritz_dense_mul(T, &K_r, X));
 done:
     ritz_dense_free(&KT);
@@ -196,7 +198,7 @@ static ritz_status by_condensing(const ritz_dense *K, ritz_dense *M,
     double limit = 0.0;
 
     RITZ_NEW(m, n);
-    RITZ_TRY(standard(M, m));
+    RITZ_TRY(solve_standard(M, m));
     limit = 4.0 * (double)n * DBL_EPSILON * fmax(m[n - 1], 0.0);
     RITZ_FAIL_IF(m[0] < -limit, RITZ_ERR_SINGULAR,
                  "mass is not positive definite: it has the eigenvalue %.3e "
@@ -207,7 +209,7 @@ static ritz_status by_condensing(const ritz_dense *K, ritz_dense *M,
     N = ritz_dense_part(M, 0, null);
     Q_r = ritz_dense_part(M, null, n - null);
     if (null > 0)
-        RITZ_TRY(condense(K, &N, &Q_r));
+        RITZ_TRY(condense_massless(K, &N, &Q_r));
     RITZ_TRY(solve_condensed(K, &Q_r, m + null, lambda, X));
 done:
     free(m);
@@ -224,8 +226,8 @@ ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
 
     RITZ_NEW(s, K->nrow);
     RITZ_TRY(choose_scale(K, M, s));
-    RITZ_TRY(scale(K, s, &K_s));
-    RITZ_TRY(scale(M, s, &M_s));
+    RITZ_TRY(scale_pencil(K, s, &K_s));
+    RITZ_TRY(scale_pencil(M, s, &M_s));
     RITZ_TRY(is_definite(&M_s, &C, &definite));
     if (definite) {
         RITZ_TRY(by_cholesky(&C, &K_s, lambda));
@@ -256,8 +258,8 @@ static double norm_of(double t, const ritz_dense *B, ritz_dense *A, int64_t j)
 }
 
 /* |K x - lambda M x| / ||K||x| + |lambda||M||x||, || taken entry by entry. */
-static ritz_status residuals(const ritz_dense *K, const ritz_dense *M,
-                             ritz_pairs *pairs)
+static ritz_status find_residuals(const ritz_dense *K, const ritz_dense *M,
+                                  ritz_pairs *pairs)
 {
     ritz_status status = RITZ_OK;
     const ritz_dense *const matrix[] = {K, M};
@@ -300,8 +302,8 @@ static int64_t count_low(int64_t count, const double *lambda)
 }
 
 /* The first columns of X, and their eigenvalues, from K and M in their span. */
-static ritz_status settle(const ritz_dense *K, const ritz_dense *M,
-                          int64_t count, double *lambda, ritz_dense *X)
+static ritz_status project_pairs(const ritz_dense *K, const ritz_dense *M,
+                                 int64_t count, double *lambda, ritz_dense *X)
 {
     ritz_status status = RITZ_OK;
     ritz_dense first = ritz_dense_part(X, 0, count);
@@ -320,8 +322,8 @@ done:
     return status;
 }
 
-static ritz_status solve(const ritz_dense *K, const ritz_dense *M,
-                         double *lambda, ritz_dense *X)
+static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
+                                double *lambda, ritz_dense *X)
 {
     int64_t count = 0, low = 0;
 
@@ -329,7 +331,7 @@ static ritz_status solve(const ritz_dense *K, const ritz_dense *M,
     count = X->ncol;
     for (low = count_low(count, lambda); low > 0 && low < count;
          low = count_low(count, lambda)) {
-        RITZ_CHECK(settle(K, M, low, lambda, X));
+        RITZ_CHECK(project_pairs(K, M, low, lambda, X));
         count = low;
     }
     return RITZ_OK;
@@ -350,12 +352,12 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     RITZ_NEW(pairs.lambda, n);
     RITZ_NEW(pairs.residual, n);
     if (n > 0)
-        RITZ_TRY(solve(K, M, pairs.lambda, &pairs.Phi));
+        RITZ_TRY(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
     else
         RITZ_TRY(ritz_dense_new(0, 0, &pairs.Phi));
     n = pairs.Phi.ncol;
     ritz_dense_orient(&pairs.Phi);
-    RITZ_TRY(residuals(K, M, &pairs));
+    RITZ_TRY(find_residuals(K, M, &pairs));
     pairs.num_rigid = ritz_eigen_rigid(
         n, pairs.lambda, n > 0 ? fmax(pairs.lambda[n - 1], 0.0) : 0.0);
     snprintf(pairs.engine, sizeof pairs.engine, "dense LAPACK");

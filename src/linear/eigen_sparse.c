@@ -49,7 +49,7 @@ typedef struct search {
     ritz_pairs found;
 } search;
 
-static bool clustered(double a, double b)
+static bool is_clustered(double a, double b)
 {
     return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
 }
@@ -65,13 +65,13 @@ static int64_t wanted(const ritz_pairs *P, const ritz_span *span, double limit)
             end++;
     end = end < count ? end : count;
     while (end > 0 && end < count &&
-           clustered(P->lambda[end - 1], P->lambda[end]))
+           is_clustered(P->lambda[end - 1], P->lambda[end]))
         end++;
     return end;
 }
 
 /* Keep the first @p end pairs. */
-static void truncate(ritz_pairs *P, int64_t end)
+static void truncate_pairs(ritz_pairs *P, int64_t end)
 {
     P->Phi.ncol = end;
     P->num_rigid = P->num_rigid < end ? P->num_rigid : end;
@@ -111,7 +111,7 @@ static ritz_status shift_near(search *s, double sigma)
 }
 
 /* s->found from the vectors in X, which it takes. */
-static ritz_status refine(search *s, ritz_dense *X)
+static ritz_status refine_pairs(search *s, ritz_dense *X)
 {
     double worst = HUGE_VAL;
 
@@ -147,7 +147,7 @@ static ritz_status shift_elsewhere(search *s, double reach)
 }
 
 /* Fill s->found; it is empty if sigma or the number asked had to change. */
-static ritz_status look(search *s)
+static ritz_status find_pairs(search *s)
 {
     ritz_status status = RITZ_OK;
     ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
@@ -163,7 +163,7 @@ static ritz_status look(search *s)
     else
         RITZ_TRY(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
-        RITZ_TRY(refine(s, &X));
+        RITZ_TRY(refine_pairs(s, &X));
     if (end == RITZ_LANCZOS_SLOW)
         RITZ_TRY(shift_elsewhere(s, reach));
     if (end == RITZ_LANCZOS_EXHAUSTED)
@@ -209,7 +209,7 @@ static int64_t widest_gap(const ritz_pairs *P, int64_t end)
 }
 
 /* A place between pairs k - 1 and k, part of the way. */
-static double between(const ritz_pairs *P, int64_t k, double part)
+static double place_between(const ritz_pairs *P, int64_t k, double part)
 {
     double above = k < P->Phi.ncol ? P->lambda[k] : HUGE_VAL;
     double below = k > 0 ? P->lambda[k - 1] : above - fabs(above) - DBL_MIN;
@@ -227,7 +227,7 @@ static ritz_status count_below(const search *s, int64_t k, int64_t *out)
 
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++)
         status = ritz_eigen_count(s->S.K, s->S.M,
-                                  between(&s->found, k, parts[i]), out);
+                                  place_between(&s->found, k, parts[i]), out);
     return status;
 }
 
@@ -262,7 +262,7 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
                    count);
     *done = count == at;
     s->found.proven_to =
-        P->Phi.ncol > 0 ? between(P, *end, RITZ_COUNT_PLACE) : HUGE_VAL;
+        P->Phi.ncol > 0 ? place_between(P, *end, RITZ_COUNT_PLACE) : HUGE_VAL;
     if (!*done) {
         s->misses++;
         RITZ_CHECK(ask_more(s, count - at));
@@ -298,7 +298,7 @@ static ritz_status search_proven(search *s, int64_t *end)
     bool moved = false;
 
     for (int k = 0; k < ATTEMPTS && !done; k++) {
-        RITZ_CHECK(look(s));
+        RITZ_CHECK(find_pairs(s));
         if (!s->found.lambda)
             continue;
         RITZ_CHECK(come_closer(s, &moved));
@@ -329,7 +329,7 @@ static ritz_status count_target(search *s)
     return status;
 }
 
-static ritz_status begin(search *s)
+static ritz_status begin_search(search *s)
 {
     double sigma = 0.0;
 
@@ -351,9 +351,9 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
     search s = {.span = span, .S = {.K = K, .M = M}};
     int64_t end = 0;
 
-    RITZ_TRY(begin(&s));
+    RITZ_TRY(begin_search(&s));
     RITZ_TRY(search_proven(&s, &end));
-    truncate(&s.found, end);
+    truncate_pairs(&s.found, end);
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     snprintf(s.found.engine, sizeof s.found.engine, "%s",
@@ -384,8 +384,8 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + 1e-8);
     end = wanted(&P, span, limit);
     if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
-        P.proven_to = fmax(limit, between(&P, end, RITZ_COUNT_PLACE));
-    truncate(&P, end);
+        P.proven_to = fmax(limit, place_between(&P, end, RITZ_COUNT_PLACE));
+    truncate_pairs(&P, end);
     *out = P;
     P = (ritz_pairs){0};
 done:

@@ -29,7 +29,7 @@ static int by_magnitude(const void *left, const void *right)
     return (b->im > a->im) - (b->im < a->im);
 }
 
-static ritz_status check(const ritz_dense *A)
+static ritz_status check_matrix(const ritz_dense *A)
 {
     RITZ_REFUSE_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
                    "a matrix of %lld x %lld has no eigenvalues",
@@ -40,7 +40,7 @@ static ritz_status check(const ritz_dense *A)
     return RITZ_OK;
 }
 
-static ritz_status find(const ritz_dense *A, value *out)
+static ritz_status find_eigenvalues(const ritz_dense *A, value *out)
 {
     ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
@@ -81,13 +81,13 @@ ritz_status ritz_eigenvalues_of(const ritz_dense *A, ritz_eigenvalues *out)
     ritz_eigenvalues eigenvalues = {.count = A->nrow};
     value *values = NULL;
 
-    RITZ_TRY(check(A));
+    RITZ_TRY(check_matrix(A));
     RITZ_NEW(values, A->nrow);
     RITZ_NEW(eigenvalues.re, A->nrow);
     RITZ_NEW(eigenvalues.im, A->nrow);
     RITZ_NEW(eigenvalues.error, A->nrow);
     if (A->nrow > 0)
-        RITZ_TRY(find(A, values));
+        RITZ_TRY(find_eigenvalues(A, values));
     qsort(values, (size_t)A->nrow, sizeof *values, by_magnitude);
     for (int64_t k = 0; k < A->nrow; k++) {
         eigenvalues.re[k] = values[k].re;

@@ -23,19 +23,19 @@
 /* (1/2)^17 / 17! and 1 / 19! are below the rounding of 1. */
 enum { TERMS = 17, INTEGRAL_TERMS = 20, MOST_DOUBLINGS = 60 };
 
-static void scale(double factor, ritz_dense *A)
+static void scale_matrix(double factor, ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         A->val[k] *= factor;
 }
 
-static void add(double factor, const ritz_dense *X, ritz_dense *A)
+static void add_scaled(double factor, const ritz_dense *X, ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         A->val[k] += factor * X->val[k];
 }
 
-static void replace(ritz_dense *A, ritz_dense *by)
+static void replace_matrix(ritz_dense *A, ritz_dense *by)
 {
     ritz_dense_free(A);
     *A = *by;
@@ -43,7 +43,7 @@ static void replace(ritz_dense *A, ritz_dense *by)
 }
 
 /* A := D^-1 A D with D = diag(d) of powers of two. */
-static ritz_status balance(ritz_dense *A, double *d)
+static ritz_status balance_matrix(ritz_dense *A, double *d)
 {
     lapack_int low = 0, high = 0;
     int n = (int)A->nrow;
@@ -55,7 +55,7 @@ static ritz_status balance(ritz_dense *A, double *d)
 }
 
 /* A(i,j) *= d(i)^row d(j)^col, powers being 1 or -1. */
-static void turn(const double *d, int row, int col, ritz_dense *A)
+static void turn_matrix(const double *d, int row, int col, ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
@@ -64,7 +64,7 @@ static void turn(const double *d, int row, int col, ritz_dense *A)
 }
 
 /* E = I + A (I + A / 2 (I + A / 3 (...))) */
-static ritz_status series(const ritz_dense *A, ritz_dense *E)
+static ritz_status sum_series(const ritz_dense *A, ritz_dense *E)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AE = {0};
@@ -74,10 +74,10 @@ static ritz_status series(const ritz_dense *A, ritz_dense *E)
         ritz_dense_col(E, j)[j] = 1.0;
     for (int k = TERMS; k > 0; k--) {
         RITZ_TRY(ritz_dense_mul(A, E, &AE));
-        scale(1.0 / k, &AE);
+        scale_matrix(1.0 / k, &AE);
         for (int64_t j = 0; j < A->nrow; j++)
             ritz_dense_col(&AE, j)[j] += 1.0;
-        replace(E, &AE);
+        replace_matrix(E, &AE);
     }
 done:
     ritz_dense_free(&AE);
@@ -85,21 +85,21 @@ done:
 }
 
 /* The integral over t of A t = `A`. */
-static ritz_status integral(const ritz_dense *A, double t, const ritz_dense *Q,
-                            ritz_dense *W)
+static ritz_status sum_integral(const ritz_dense *A, double t,
+                                const ritz_dense *Q, ritz_dense *W)
 {
     ritz_status status = RITZ_OK;
     ritz_dense X = {0}, XA = {0};
 
     RITZ_TRY(ritz_dense_copy(Q, &X));
-    scale(t, &X);
+    scale_matrix(t, &X);
     RITZ_TRY(ritz_dense_copy(&X, W));
     for (int k = 2; k <= INTEGRAL_TERMS; k++) {
         RITZ_TRY(ritz_dense_mul(&X, A, &XA));
         ritz_dense_symmetrise(&XA); /* half of X A + A'X */
-        scale(2.0 / k, &XA);
-        replace(&X, &XA);
-        add(1.0, &X, W);
+        scale_matrix(2.0 / k, &XA);
+        replace_matrix(&X, &XA);
+        add_scaled(1.0, &X, W);
     }
 done:
     ritz_dense_free(&X);
@@ -114,15 +114,16 @@ static ritz_status double_integral(const ritz_dense *E, ritz_dense *W)
     ritz_dense more = {0};
 
     RITZ_TRY(ritz_dense_congruence(W, E, &more));
-    add(1.0, &more, W);
+    add_scaled(1.0, &more, W);
 done:
     ritz_dense_free(&more);
     return status;
 }
 
 /* Over t first, then doubled; A is scaled to A t. */
-static ritz_status propagate(ritz_dense *A, double h, int count, ritz_dense *Q,
-                             ritz_dense *E, ritz_dense *W)
+static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
+                                      ritz_dense *Q, ritz_dense *E,
+                                      ritz_dense *W)
 {
     ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
@@ -138,15 +139,15 @@ static ritz_status propagate(ritz_dense *A, double h, int count, ritz_dense *Q,
                  RITZ_ERR_ARGUMENT,
                  "a step of %g s is too long for the fastest of its states", h);
     h = ldexp(h, -doublings);
-    scale(h, A);
-    RITZ_TRY(series(A, E));
+    scale_matrix(h, A);
+    RITZ_TRY(sum_series(A, E));
     for (int k = 0; k < count; k++)
-        RITZ_TRY(integral(A, h, &Q[k], &W[k]));
+        RITZ_TRY(sum_integral(A, h, &Q[k], &W[k]));
     for (int j = 0; j < doublings; j++) {
         for (int k = 0; k < count; k++)
             RITZ_TRY(double_integral(E, &W[k]));
         RITZ_TRY(ritz_dense_mul(E, E, &square));
-        replace(E, &square);
+        replace_matrix(E, &square);
     }
 done:
     ritz_dense_free(&square);
@@ -165,15 +166,15 @@ ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
     RITZ_NEW(d, A->nrow);
     RITZ_TRY(ritz_dense_copy(A, &scaled));
     if (A->nrow > 0)
-        RITZ_TRY(balance(&scaled, d));
+        RITZ_TRY(balance_matrix(&scaled, d));
     for (int k = 0; k < count; k++) {
         RITZ_TRY(ritz_dense_copy(&Q[k], &form[k]));
-        turn(d, 1, 1, &form[k]);
+        turn_matrix(d, 1, 1, &form[k]);
     }
-    RITZ_TRY(propagate(&scaled, h, count, form, &made, whole));
-    turn(d, 1, -1, &made);
+    RITZ_TRY(propagate_doubling(&scaled, h, count, form, &made, whole));
+    turn_matrix(d, 1, -1, &made);
     for (int k = 0; k < count; k++) {
-        turn(d, -1, -1, &whole[k]);
+        turn_matrix(d, -1, -1, &whole[k]);
         W[k] = whole[k];
         whole[k] = (ritz_dense){0};
     }

@@ -129,7 +129,7 @@ done:
 }
 
 /* y := y / |y|, and |y|; an infinite one stays as it is. */
-static double normalise(int64_t n, double *y)
+static double normalise_vector(int64_t n, double *y)
 {
     double largest = 0.0;
     double sum = 0.0;
@@ -160,14 +160,14 @@ static ritz_status smallest_eigenvalue(ritz_factor *F, const double *a,
         RITZ_TRY(ritz_factor_solve(F, &y));
         for (int64_t i = 0; i < n; i++)
             y.val[i] *= sqrt(a[i]);
-        *out = 1.0 / normalise(n, y.val);
+        *out = 1.0 / normalise_vector(n, y.val);
     }
 done:
     ritz_dense_free(&y);
     return status;
 }
 
-static ritz_status judge(ritz_factor *F, const double *a, int64_t *weak)
+static ritz_status judge_pivots(ritz_factor *F, const double *a, int64_t *weak)
 {
     ritz_status status = RITZ_OK;
     const int64_t *perm = F->L->Perm;
@@ -192,7 +192,7 @@ done:
 }
 
 /* Supernodal or not, and which ordering, CHOLMOD decides by the fill. */
-static ritz_status factorise(ritz_factor *F, const ritz_sparse *A)
+static ritz_status factorise_sparse(ritz_factor *F, const ritz_sparse *A)
 {
     ritz_status status = RITZ_OK;
     cholmod_sparse view = view_sparse(A);
@@ -229,8 +229,8 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
     RITZ_NEW(a, A->nrow);
     RITZ_TRY(copy_diagonal(A, a));
     RITZ_NEW(F, 1);
-    RITZ_TRY(factorise(F, A));
-    RITZ_TRY(judge(F, a, weak));
+    RITZ_TRY(factorise_sparse(F, A));
+    RITZ_TRY(judge_pivots(F, a, weak));
     *out = F;
     F = NULL;
 done:

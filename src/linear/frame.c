@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* E = L L' in place, its lower triangle; false if it cannot be trusted. */
-static ritz_status cholesky(ritz_dense *E, bool *good)
+static ritz_status factor_cholesky(ritz_dense *E, bool *good)
 {
     ritz_status status = RITZ_OK;
     int n = (int)E->nrow;
@@ -48,8 +48,8 @@ done:
 }
 
 /* A := L^-1 A L^-T, symmetric if A is, if E is symmetric and definite. */
-static ritz_status reduce(const ritz_dense *A, const ritz_dense *E,
-                          ritz_frame *f, bool *reduced)
+static ritz_status reduce_pencil(const ritz_dense *A, const ritz_dense *E,
+                                 ritz_frame *f, bool *reduced)
 {
     ritz_status status = RITZ_OK;
     ritz_dense L = {0};
@@ -59,7 +59,7 @@ static ritz_status reduce(const ritz_dense *A, const ritz_dense *E,
     if (ritz_dense_asymmetry(E) > RITZ_SYMMETRIC_SUMS)
         goto done;
     RITZ_TRY(ritz_dense_copy(E, &L));
-    RITZ_TRY(cholesky(&L, reduced));
+    RITZ_TRY(factor_cholesky(&L, reduced));
     if (!*reduced)
         goto done;
     cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans,
@@ -90,7 +90,7 @@ static double least_of(int64_t count, const double *value)
     return least;
 }
 
-static ritz_status scale(ritz_frame *f)
+static ritz_status scale_frame(ritz_frame *f)
 {
     int n = (int)f->A.nrow;
     lapack_int low = 0, high = 0;
@@ -114,7 +114,7 @@ static ritz_status scale(ritz_frame *f)
  * given one. Where entries are themselves rounding, scaling takes them for what
  * they are not, and that grows beyond all bounds: then there is none.
  */
-static ritz_status balance(ritz_frame *f)
+static ritz_status balance_frame(ritz_frame *f)
 {
     ritz_status status = RITZ_OK;
     int64_t n = f->A.nrow;
@@ -127,7 +127,7 @@ static ritz_status balance(ritz_frame *f)
     if (f->E.val)
         RITZ_TRY(ritz_dense_copy(&f->E, &E));
     if (n > 0)
-        RITZ_TRY(scale(f));
+        RITZ_TRY(scale_frame(f));
     most = RITZ_FRAME_GROWTH * least_of(n, f->left) * least_of(n, f->right);
     if (n > 0 && (size_of(&f->A) > most * size_of(&A) ||
                   (E.val && size_of(&f->E) > most * size_of(&E)))) {
@@ -152,10 +152,10 @@ ritz_status ritz_frame_new(const ritz_dense *A, const ritz_dense *E,
 
     RITZ_TRY(ritz_dense_copy(A, &f.A));
     if (E->val)
-        RITZ_TRY(reduce(A, E, &f, &reduced));
+        RITZ_TRY(reduce_pencil(A, E, &f, &reduced));
     if (!reduced)
         RITZ_TRY(ritz_dense_copy(E, &f.E));
-    RITZ_TRY(balance(&f));
+    RITZ_TRY(balance_frame(&f));
     *out = f;
     f = (ritz_frame){0};
 done:

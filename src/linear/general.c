@@ -16,7 +16,7 @@ void sb03od_(/* NOLINT: its name */ const char *dico, const char *fact,
              double *work, const int *ldwork, int *info, size_t dico_length,
              size_t fact_length, size_t trans_length);
 
-static int larger(int64_t a, int64_t b)
+static int larger_of(int64_t a, int64_t b)
 {
     return (int)(a > b ? a : b);
 }
@@ -126,7 +126,7 @@ ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
     ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
     int m = (int)B->ncol;
-    int room = larger(1, 4 * A->nrow * 32 + B->ncol);
+    int room = larger_of(1, 4 * A->nrow * 32 + B->ncol);
     int info = 0;
     double scale = 1.0;
     ritz_dense S = {0}, Q = {0}, X = {0}, factor = {0};
@@ -137,7 +137,7 @@ ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
     RITZ_NEW(im, n);
     RITZ_TRY(ritz_dense_copy(A, &S));
     RITZ_TRY(ritz_dense_new(n, n, &Q));
-    RITZ_TRY(ritz_dense_new(n, larger(m, n), &X));
+    RITZ_TRY(ritz_dense_new(n, larger_of(m, n), &X));
     RITZ_TRY(ritz_dense_new(n, n, &factor));
     for (int64_t k = 0; k < B->nrow * B->ncol; k++)
         X.val[k] = B->val[k];

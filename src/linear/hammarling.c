@@ -32,7 +32,7 @@ typedef struct equation {
     double scale;
 } equation;
 
-static void discard(equation *e)
+static void equation_free(equation *e)
 {
     ritz_dense_free(&e->S);
     ritz_dense_free(&e->P);
@@ -45,7 +45,7 @@ static void discard(equation *e)
     free(e->work);
 }
 
-static ritz_status identity(int64_t n, ritz_dense *out)
+static ritz_status identity_matrix(int64_t n, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(n, n, out));
     for (int64_t i = 0; i < n; i++)
@@ -68,17 +68,17 @@ static ritz_status copy_right_side(const ritz_dense *B, equation *e)
     return RITZ_OK;
 }
 
-static ritz_status prepare(const ritz_dense *S, const ritz_dense *P,
-                           const ritz_dense *B, equation *e)
+static ritz_status prepare_equation(const ritz_dense *S, const ritz_dense *P,
+                                    const ritz_dense *B, equation *e)
 {
     e->n = (int)S->nrow;
     e->m = (int)B->ncol;
     e->room = 64 * (e->n + e->m) + 64;
     RITZ_CHECK(ritz_dense_copy(S, &e->S));
-    RITZ_CHECK(identity(e->n, &e->Q));
+    RITZ_CHECK(identity_matrix(e->n, &e->Q));
     if (P->val) {
         RITZ_CHECK(ritz_dense_copy(P, &e->P));
-        RITZ_CHECK(identity(e->n, &e->Z));
+        RITZ_CHECK(identity_matrix(e->n, &e->Z));
     }
     RITZ_CHECK(copy_right_side(B, e));
     RITZ_CHECK_NEW(e->re, e->n);
@@ -88,7 +88,7 @@ static ritz_status prepare(const ritz_dense *S, const ritz_dense *P,
     return RITZ_OK;
 }
 
-static ritz_status solve(equation *e)
+static ritz_status solve_equation(equation *e)
 {
     const char *trans = e->transposed ? "N" : "T";
     int n = e->n;
@@ -136,10 +136,10 @@ ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
 
     if (S->nrow == 0 || B->ncol == 0)
         return ritz_dense_new(S->nrow, S->nrow, F);
-    RITZ_TRY(prepare(S, P, B, &e));
-    RITZ_TRY(solve(&e));
+    RITZ_TRY(prepare_equation(S, P, B, &e));
+    RITZ_TRY(solve_equation(&e));
     RITZ_TRY(take_triangle(&e, F));
 done:
-    discard(&e);
+    equation_free(&e);
     return status;
 }

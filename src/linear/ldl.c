@@ -18,7 +18,7 @@ struct ritz_ldl {
     double *val;
 };
 
-static void call(void *id)
+static void call_mumps(void *id)
 {
     dmumps_c(id);
 }
@@ -32,11 +32,11 @@ static void set_rhs(void *id, int n, int k, void *x)
     d->lrhs = n;
 }
 
-static ritz_mumps view(ritz_ldl *F)
+static ritz_mumps view_mumps(ritz_ldl *F)
 {
     return (ritz_mumps){
         .id = &F->id,
-        .call = call,
+        .call = call_mumps,
         .set_rhs = set_rhs,
         .job = &F->id.job,
         .icntl = F->id.icntl,
@@ -59,9 +59,9 @@ static ritz_status copy_values(const ritz_sparse *A, int64_t nnz, double **out)
     return RITZ_OK;
 }
 
-static ritz_status factorise(ritz_ldl *F)
+static ritz_status factorise_mumps(ritz_ldl *F)
 {
-    ritz_mumps mumps = view(F);
+    ritz_mumps mumps = view_mumps(F);
 
     F->id.sym = 2;
     F->id.par = 1;
@@ -88,7 +88,7 @@ ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
     RITZ_TRY(ritz_mumps_unite(1, &A, false, &F->pattern));
     RITZ_TRY(copy_values(A, F->pattern.nnz, &F->val));
     if (A->nrow > 0)
-        RITZ_TRY(factorise(F));
+        RITZ_TRY(factorise_mumps(F));
     if (negative)
         *negative = A->nrow > 0 ? F->id.infog[NEGATIVE_PIVOTS] : 0;
     *out = F;
@@ -100,7 +100,7 @@ done:
 
 ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)
 {
-    ritz_mumps mumps = view(F);
+    ritz_mumps mumps = view_mumps(F);
 
     RITZ_REFUSE_IF(X->nrow != F->pattern.n, RITZ_ERR_ARGUMENT,
                    "a factor of %" PRId64 " rows meets %" PRId64, F->pattern.n,

@@ -140,7 +140,7 @@ static const outcome outcomes[] = {
     {-52, RITZ_ERR_MEMORY, "the matrix is too large for its ordering"},
 };
 
-static ritz_status report(const MUMPS_INT *infog)
+static ritz_status report_failure(const MUMPS_INT *infog)
 {
     if (infog[OUTCOME] >= 0)
         return RITZ_OK;
@@ -163,7 +163,7 @@ ritz_status ritz_mumps_run(const ritz_mumps *mumps, int job)
         *mumps->job = job;
         mumps->call(mumps->id);
     }
-    RITZ_CHECK(report(mumps->infog));
+    RITZ_CHECK(report_failure(mumps->infog));
     RITZ_REFUSE_IF(job == RITZ_MUMPS_FACTOR &&
                        mumps->infog[NUM_NULL_PIVOTS] > 0,
                    RITZ_ERR_SINGULAR, "the matrix is singular, %d times",
@@ -171,14 +171,14 @@ ritz_status ritz_mumps_run(const ritz_mumps *mumps, int job)
     return RITZ_OK;
 }
 
-static double magnitude(const double *val, int64_t k, int width)
+static double magnitude_of(const double *val, int64_t k, int width)
 {
     return width == 1 ? fabs(val[k]) : hypot(val[2 * k], val[2 * k + 1]);
 }
 
 /* S such that the largest |S A S| of every row and column is near one. */
-static ritz_status equilibrate(const ritz_mumps_pattern *P, const double *val,
-                               int width, double *s)
+static ritz_status equilibrate_rows(const ritz_mumps_pattern *P,
+                                    const double *val, int width, double *s)
 {
     ritz_status status = RITZ_OK;
     double *largest = NULL;
@@ -192,7 +192,7 @@ static ritz_status equilibrate(const ritz_mumps_pattern *P, const double *val,
         for (int64_t k = 0; k < P->nnz; k++) {
             int64_t i = P->row[k] - 1;
             int64_t j = P->col[k] - 1;
-            double a = s[i] * magnitude(val, k, width) * s[j];
+            double a = s[i] * magnitude_of(val, k, width) * s[j];
 
             largest[i] = fmax(largest[i], a);
             largest[j] = fmax(largest[j], a);
@@ -218,14 +218,14 @@ ritz_status ritz_mumps_solve(const ritz_mumps *mumps, int64_t n, int64_t k,
 }
 
 /* Every entry counts, none equal: no eigenvector is likely to be missed. */
-static void start(int64_t count, double *y)
+static void start_vector(int64_t count, double *y)
 {
     for (int64_t i = 0; i < count; i++)
         y[i] = cos((double)i);
 }
 
 /* y := y / |y|, and |y|. */
-static double normalise(int64_t count, double *y)
+static double normalise_vector(int64_t count, double *y)
 {
     double size = cblas_dnrm2((int)count, y, 1);
 
@@ -234,7 +234,7 @@ static double normalise(int64_t count, double *y)
     return size;
 }
 
-static void divide(const double *s, int64_t count, int width, double *y)
+static void divide_rows(const double *s, int64_t count, int width, double *y)
 {
     for (int64_t i = 0; i < count; i++)
         y[i] /= s[i / width];
@@ -251,14 +251,14 @@ ritz_status ritz_mumps_judge(const ritz_mumps *mumps,
 
     RITZ_NEW(s, P->n);
     RITZ_NEW(y, count);
-    RITZ_TRY(equilibrate(P, val, mumps->width, s));
-    start(count, y);
-    normalise(count, y);
+    RITZ_TRY(equilibrate_rows(P, val, mumps->width, s));
+    start_vector(count, y);
+    normalise_vector(count, y);
     for (int k = 0; k < SWEEPS && P->n > 0; k++) {
-        divide(s, count, mumps->width, y);
+        divide_rows(s, count, mumps->width, y);
         RITZ_TRY(ritz_mumps_solve(mumps, P->n, 1, y));
-        divide(s, count, mumps->width, y);
-        smallest = 1.0 / normalise(count, y);
+        divide_rows(s, count, mumps->width, y);
+        smallest = 1.0 / normalise_vector(count, y);
     }
     RITZ_FAIL_IF(!(smallest > RITZ_SINGULAR_LDL), RITZ_ERR_SINGULAR,
                  "the matrix is singular to working accuracy");

@@ -186,7 +186,7 @@ static bool still_falls(const block *b, const double *before, double tolerance)
 }
 
 /* Until no column shrinks any more: twice, or oftener where W blurs sums. */
-static ritz_status orthogonalise(const ritz_orthonormal *set, block *b)
+static ritz_status orthogonalise_block(const ritz_orthonormal *set, block *b)
 {
     ritz_status status = RITZ_OK;
     double *before = NULL;
@@ -325,7 +325,7 @@ static ritz_status go_round(ritz_orthonormal *set, block *b, int64_t most,
     ritz_status status = RITZ_OK;
     ritz_dense G = {0};
 
-    RITZ_TRY(orthogonalise(set, b));
+    RITZ_TRY(orthogonalise_block(set, b));
     drop_columns(b, set->tolerance);
     if (b->R.ncol == 0)
         return RITZ_OK;
@@ -362,7 +362,7 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
     scale_block(set->W, &b);
     while (b.R.ncol > 0 && set->count - before < most)
         RITZ_TRY(go_round(set, &b, most - (set->count - before), order, taken));
-    RITZ_TRY(orthogonalise(set, &b));
+    RITZ_TRY(orthogonalise_block(set, &b));
     drop_columns(&b, set->tolerance);
     set->left = b.R.ncol;
 done:

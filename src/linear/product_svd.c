@@ -31,14 +31,14 @@ typedef struct pivoted {
     int64_t rank;   /* min(nrow, ncol), or as far as R is not negligible */
 } pivoted;
 
-static void discard(pivoted *f)
+static void pivoted_free(pivoted *f)
 {
     ritz_dense_free(&f->A);
     free(f->tau);
     free(f->at);
 }
 
-static ritz_status check(const ritz_dense *A)
+static ritz_status check_factor(const ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_ARGUMENT,
@@ -47,7 +47,7 @@ static ritz_status check(const ritz_dense *A)
 }
 
 /* Of f->A. */
-static ritz_status factor(pivoted *f)
+static ritz_status factor_pivoted(pivoted *f)
 {
     int m = (int)f->A.nrow;
     int n = (int)f->A.ncol;
@@ -63,7 +63,8 @@ static ritz_status factor(pivoted *f)
 }
 
 /* Q V, V of as many rows as R has. */
-static ritz_status turn(const pivoted *f, const ritz_dense *V, ritz_dense *out)
+static ritz_status turn_columns(const pivoted *f, const ritz_dense *V,
+                                ritz_dense *out)
 {
     int m = (int)f->A.nrow;
 
@@ -97,8 +98,8 @@ done:
 }
 
 /* (D Y)' */
-static ritz_status scale(const ritz_dense *Y, const double *length,
-                         ritz_dense *out)
+static ritz_status scale_rows(const ritz_dense *Y, const double *length,
+                              ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(Y->ncol, Y->nrow, out));
     for (int64_t j = 0; j < Y->ncol; j++)
@@ -108,8 +109,8 @@ static ritz_status scale(const ritz_dense *Y, const double *length,
 }
 
 /* F = (P' D^-1 X)' R' */
-static ritz_status multiply(const ritz_dense *X, const double *length,
-                            const pivoted *of_Y, ritz_dense *F)
+static ritz_status multiply_scaled(const ritz_dense *X, const double *length,
+                                   const pivoted *of_Y, ritz_dense *F)
 {
     ritz_status status = RITZ_OK;
     int64_t n = X->nrow;
@@ -136,7 +137,7 @@ done:
 }
 
 /* G = P_F R_F', as far as R_F is not negligible. */
-static ritz_status compress(pivoted *of_F, ritz_dense *G)
+static ritz_status compress_factor(pivoted *of_F, ritz_dense *G)
 {
     const ritz_dense *R = &of_F->A;
     int64_t r = of_F->rank;
@@ -153,8 +154,8 @@ static ritz_status compress(pivoted *of_F, ritz_dense *G)
 }
 
 /* G = U diag(s) V'; LAPACK scales values that would over- or underflow. */
-static ritz_status rotate(ritz_dense *G, bool vectors, double *s, ritz_dense *U,
-                          ritz_dense *V)
+static ritz_status rotate_columns(ritz_dense *G, bool vectors, double *s,
+                                  ritz_dense *U, ritz_dense *V)
 {
     int q = (int)G->nrow;
     int r = (int)G->ncol;
@@ -177,8 +178,8 @@ static ritz_status rotate(ritz_dense *G, bool vectors, double *s, ritz_dense *U,
 }
 
 /* Y has no more columns than X. */
-static ritz_status find(const ritz_dense *X, const ritz_dense *Y, bool vectors,
-                        ritz_product_svd *out)
+static ritz_status find_svd(const ritz_dense *X, const ritz_dense *Y,
+                            bool vectors, ritz_product_svd *out)
 {
     ritz_status status = RITZ_OK;
     pivoted of_Y = {0}, of_F = {0};
@@ -190,22 +191,22 @@ static ritz_status find(const ritz_dense *X, const ritz_dense *Y, bool vectors,
         return ritz_dense_new(Y->ncol, 0, &out->V);
     }
     RITZ_TRY(row_lengths(X, &length));
-    RITZ_TRY(scale(Y, length, &of_Y.A));
-    RITZ_TRY(factor(&of_Y));
+    RITZ_TRY(scale_rows(Y, length, &of_Y.A));
+    RITZ_TRY(factor_pivoted(&of_Y));
     out->count = of_Y.rank;
     RITZ_NEW(out->s, out->count);
-    RITZ_TRY(multiply(X, length, &of_Y, &of_F.A));
-    RITZ_TRY(factor(&of_F));
-    RITZ_TRY(compress(&of_F, &G));
+    RITZ_TRY(multiply_scaled(X, length, &of_Y, &of_F.A));
+    RITZ_TRY(factor_pivoted(&of_F));
+    RITZ_TRY(compress_factor(&of_F, &G));
     out->rank = of_F.rank;
-    RITZ_TRY(rotate(&G, vectors, out->s, &U, &V));
+    RITZ_TRY(rotate_columns(&G, vectors, out->s, &U, &V));
     if (vectors) {
-        RITZ_TRY(turn(&of_F, &V, &out->U));
-        RITZ_TRY(turn(&of_Y, &U, &out->V));
+        RITZ_TRY(turn_columns(&of_F, &V, &out->U));
+        RITZ_TRY(turn_columns(&of_Y, &U, &out->V));
     }
 done:
-    discard(&of_Y);
-    discard(&of_F);
+    pivoted_free(&of_Y);
+    pivoted_free(&of_F);
     ritz_dense_free(&G);
     ritz_dense_free(&U);
     ritz_dense_free(&V);
@@ -223,9 +224,9 @@ ritz_status ritz_product_svd_new(const ritz_dense *X, const ritz_dense *Y,
 
     RITZ_FAIL_IF(X->nrow != Y->nrow, RITZ_ERR_ARGUMENT,
                  "the factors of a product do not fit each other");
-    RITZ_TRY(check(X));
-    RITZ_TRY(check(Y));
-    RITZ_TRY(find(swap ? Y : X, swap ? X : Y, vectors, &svd));
+    RITZ_TRY(check_factor(X));
+    RITZ_TRY(check_factor(Y));
+    RITZ_TRY(find_svd(swap ? Y : X, swap ? X : Y, vectors, &svd));
     if (swap) {
         U = svd.U;
         svd.U = svd.V;

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* A with complex entries, by column. */
-static ritz_status widen(const ritz_dense *A, double _Complex **out)
+static ritz_status widen_matrix(const ritz_dense *A, double _Complex **out)
 {
     RITZ_CHECK_NEW(*out, A->nrow * A->ncol);
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
@@ -36,7 +36,7 @@ static void turn_loads(const double _Complex *Q, const double _Complex *Z,
     }
 }
 
-static ritz_status triangularise(ritz_resolvent *r)
+static ritz_status triangularise_pencil(ritz_resolvent *r)
 {
     ritz_status status = RITZ_OK;
     int n = r->n;
@@ -74,15 +74,15 @@ ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
     ritz_resolvent r = {
         .n = (int)A->nrow, .m = (int)B->ncol, .p = (int)C->nrow};
 
-    RITZ_TRY(widen(A, &r.S));
+    RITZ_TRY(widen_matrix(A, &r.S));
     if (P->val)
-        RITZ_TRY(widen(P, &r.P));
-    RITZ_TRY(widen(B, &r.B));
-    RITZ_TRY(widen(C, &r.C));
+        RITZ_TRY(widen_matrix(P, &r.P));
+    RITZ_TRY(widen_matrix(B, &r.B));
+    RITZ_TRY(widen_matrix(C, &r.C));
     RITZ_NEW(r.T, (int64_t)r.n * r.n);
     RITZ_NEW(r.X, (int64_t)r.n * r.m);
     if (r.n > 0)
-        RITZ_TRY(triangularise(&r));
+        RITZ_TRY(triangularise_pencil(&r));
     *out = r;
     r = (ritz_resolvent){0};
 done:
@@ -99,7 +99,7 @@ double _Complex ritz_resolvent_pole(const ritz_resolvent *resolvent, int64_t k)
 }
 
 /* T = z P - S, upper triangle; false if its diagonal is near 0. */
-static bool shift(ritz_resolvent *r, double _Complex z, double near)
+static bool shift_triangle(ritz_resolvent *r, double _Complex z, double near)
 {
     double least = near * cabs(z);
 
@@ -125,7 +125,7 @@ bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
 
     if (n == 0 || m == 0 || p == 0)
         return true;
-    if (!shift(r, z, near))
+    if (!shift_triangle(r, z, near))
         return false;
     memcpy(r->X, r->B, (size_t)n * (size_t)m * sizeof *r->X);
     cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,

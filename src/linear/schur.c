@@ -20,13 +20,13 @@ typedef struct vectors {
     ritz_dense left, right, Eright;
 } vectors;
 
-static double frobenius(const ritz_dense *A)
+static double frobenius_norm(const ritz_dense *A)
 {
     return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
                           A->val, (int)A->nrow);
 }
 
-static void discard(vectors *v)
+static void vectors_free(vectors *v)
 {
     ritz_dense_free(&v->left);
     ritz_dense_free(&v->right);
@@ -58,7 +58,7 @@ static ritz_status find_vectors(ritz_schur *schur, vectors *out)
 }
 
 /* |y'E x| / |x| |y| of column k, or of the pair that begins there. */
-static double cosine(const vectors *v, int64_t k, bool pair)
+static double cosine_of(const vectors *v, int64_t k, bool pair)
 {
     const ritz_dense *Ex = v->Eright.val ? &v->Eright : &v->right;
     double x = ritz_dense_dot(&v->right, k, &v->right, k);
@@ -80,8 +80,8 @@ static ritz_status find_errors(ritz_schur *schur)
 {
     ritz_status status = RITZ_OK;
     vectors v = {0};
-    double size = frobenius(&schur->S);
-    double size_of_E = schur->T.val ? frobenius(&schur->T) : 0.0;
+    double size = frobenius_norm(&schur->S);
+    double size_of_E = schur->T.val ? frobenius_norm(&schur->T) : 0.0;
     int64_t step = 1;
 
     RITZ_TRY(find_vectors(schur, &v));
@@ -89,7 +89,7 @@ static ritz_status find_errors(ritz_schur *schur)
         bool pair = k + 1 < schur->count && schur->im[k] != 0.0;
         double lambda = hypot(schur->re[k], schur->im[k]);
         double moves = size + lambda * size_of_E;
-        double s = cosine(&v, k, pair);
+        double s = cosine_of(&v, k, pair);
         /* no vector of unit length is better known than to eps */
         double least = DBL_EPSILON * (schur->T.val ? size_of_E : 1.0);
 
@@ -98,15 +98,15 @@ static ritz_status find_errors(ritz_schur *schur)
             schur->error[i] = DBL_EPSILON * moves / fmax(s, least);
     }
 done:
-    discard(&v);
+    vectors_free(&v);
     return status;
 }
 
 /* A symmetric matrix has its eigenvectors for Schur vectors. */
-static ritz_status diagonalise(ritz_schur *schur)
+static ritz_status diagonalise_blocks(ritz_schur *schur)
 {
     int n = (int)schur->count;
-    double size = frobenius(&schur->S);
+    double size = frobenius_norm(&schur->S);
 
     for (int64_t k = 0; k < schur->count * schur->count; k++) {
         schur->Q.val[k] = schur->S.val[k];
@@ -122,13 +122,13 @@ static ritz_status diagonalise(ritz_schur *schur)
     return RITZ_OK;
 }
 
-static ritz_status factor(ritz_schur *schur)
+static ritz_status factor_schur(ritz_schur *schur)
 {
     int n = (int)schur->count;
     lapack_int none = 0;
 
     if (ritz_dense_asymmetry(&schur->S) == 0.0)
-        return diagonalise(schur);
+        return diagonalise_blocks(schur);
     RITZ_REFUSE_IF(LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n,
                                  schur->S.val, n, &none, schur->re, schur->im,
                                  schur->Q.val, n) != 0,
@@ -137,9 +137,9 @@ static ritz_status factor(ritz_schur *schur)
 }
 
 /* lambda = alpha / beta, beta the diagonal of T. */
-static ritz_status divide(ritz_schur *schur, const double *beta)
+static ritz_status divide_eigenvalues(ritz_schur *schur, const double *beta)
 {
-    double least = DBL_EPSILON * frobenius(&schur->T);
+    double least = DBL_EPSILON * frobenius_norm(&schur->T);
 
     for (int64_t k = 0; k < schur->count; k++) {
         RITZ_REFUSE_IF(!(fabs(beta[k]) > least), RITZ_ERR_SINGULAR,
@@ -165,7 +165,7 @@ static ritz_status factor_pair(const ritz_dense *E, ritz_schur *schur)
                                schur->re, schur->im, beta, schur->Q.val, n,
                                schur->Z.val, n) != 0,
                  RITZ_ERR_CONVERGENCE, "poles were not found");
-    RITZ_TRY(divide(schur, beta));
+    RITZ_TRY(divide_eigenvalues(schur, beta));
     RITZ_TRY(find_errors(schur));
 done:
     free(beta);
@@ -186,7 +186,7 @@ ritz_status ritz_schur_new(const ritz_dense *A, const ritz_dense *E,
     if (A->nrow > 0 && E && E->val)
         RITZ_TRY(factor_pair(E, &schur));
     else if (A->nrow > 0)
-        RITZ_TRY(factor(&schur));
+        RITZ_TRY(factor_schur(&schur));
     *out = schur;
     schur = (ritz_schur){0};
 done:
@@ -195,8 +195,8 @@ done:
 }
 
 /* Work space is ours: LAPACKE gives none where LAPACK reports its size. */
-static int reorder(ritz_schur *schur, const lapack_logical *select,
-                   double *work, lapack_int *moved)
+static int reorder_schur(ritz_schur *schur, const lapack_logical *select,
+                         double *work, lapack_int *moved)
 {
     int n = (int)schur->count;
     int room = 4 * n + 16;
@@ -227,11 +227,11 @@ ritz_status ritz_schur_order(ritz_schur *schur, const bool *first,
     for (int64_t k = 0; k < schur->count; k++)
         select[k] = first[k];
     if (schur->count > 0)
-        RITZ_FAIL_IF(reorder(schur, select, work, &count) != 0,
+        RITZ_FAIL_IF(reorder_schur(schur, select, work, &count) != 0,
                      RITZ_ERR_CONVERGENCE,
                      "poles that must be told apart are too close to be");
     if (schur->T.val)
-        RITZ_TRY(divide(schur, work));
+        RITZ_TRY(divide_eigenvalues(schur, work));
     *moved = count;
 done:
     free(select);

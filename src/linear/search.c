@@ -14,7 +14,7 @@ typedef struct climb {
     double where, best;
 } climb;
 
-static ritz_status look(void *state, double hertz, double *value)
+static ritz_status look_at(void *state, double hertz, double *value)
 {
     climb *c = state;
     ritz_status status = c->curve->at(c->curve->state, hertz, value);
@@ -59,9 +59,9 @@ ritz_status ritz_curve_between(const ritz_curve *curve, double within,
 }
 
 /* The most between two frequencies, or that it grows without end. */
-static ritz_status between(climb *c, double low, double high)
+static ritz_status climb_between(climb *c, double low, double high)
 {
-    const ritz_curve seen = {look, c};
+    const ritz_curve seen = {look_at, c};
     double before = 0.0, most = 0.0;
 
     RITZ_CHECK(ritz_curve_between(&seen, RITZ_PEAK_LATE, &low, &high, &before));
@@ -108,9 +108,9 @@ ritz_status ritz_curve_peak(int64_t count, const double *hertz,
         if (value[k] < RITZ_PEAK_WORTH * c.best)
             break;
         if (k > 0)
-            RITZ_CHECK(between(&c, hertz[k - 1], hertz[k]));
+            RITZ_CHECK(climb_between(&c, hertz[k - 1], hertz[k]));
         if (k < count - 1)
-            RITZ_CHECK(between(&c, hertz[k], hertz[k + 1]));
+            RITZ_CHECK(climb_between(&c, hertz[k], hertz[k + 1]));
         k = next_highest(count, value, value[k], k);
     }
     *where = c.where;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* X := X Q. */
-static ritz_status rotate(const ritz_dense *Q, ritz_dense *X)
+static ritz_status rotate_vectors(const ritz_dense *Q, ritz_dense *X)
 {
     ritz_dense XQ = {0};
 
@@ -18,7 +18,7 @@ static ritz_status rotate(const ritz_dense *Q, ritz_dense *X)
 }
 
 /* A_r := (A_r + A_r') / 2, with unit diagonal of M_r: Y_j / |Y_j|_M. */
-static void balance(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
+static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
 {
     int64_t k = Y->ncol;
 
@@ -43,8 +43,8 @@ static void balance(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
  * theta = q' A_r q of each column: nearly diagonal, so even the lowest comes
  * without the rounding of the highest that the small eigenproblem leaves.
  */
-static ritz_status quotients(const ritz_dense *A_r, const ritz_dense *Q,
-                             double *theta)
+static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
+                                  double *theta)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AQ = {0};
@@ -79,13 +79,13 @@ ritz_status ritz_shifted_polish(const ritz_shifted *S, ritz_dense *X,
     RITZ_TRY(ritz_dense_mul_tn(X, &MX, &A_r));
     RITZ_TRY(ritz_sparse_mul(S->M, X, &MY));
     RITZ_TRY(ritz_dense_mul_tn(X, &MY, &M_r));
-    balance(&A_r, &M_r, X);
+    balance_projection(&A_r, &M_r, X);
     RITZ_TRY(ritz_eigen_dense(&A_r, &M_r, &small));
     RITZ_FAIL_IF(small.Phi.ncol < X->ncol, RITZ_ERR_CONVERGENCE,
                  "%" PRId64 " eigenvectors depend on each other",
                  X->ncol - small.Phi.ncol);
-    RITZ_TRY(rotate(&small.Phi, X));
-    RITZ_TRY(quotients(&A_r, &small.Phi, lambda));
+    RITZ_TRY(rotate_vectors(&small.Phi, X));
+    RITZ_TRY(find_quotients(&A_r, &small.Phi, lambda));
     for (int64_t j = 0; j < X->ncol; j++)
         lambda[j] += S->sigma;
 done:

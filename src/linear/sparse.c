@@ -30,7 +30,7 @@ done:
 }
 
 /* Turn counts kept in start[1..n] into offsets start[0..n]. */
-static void accumulate(int64_t n, int64_t *start)
+static void accumulate_counts(int64_t n, int64_t *start)
 {
     for (int64_t j = 0; j < n; j++)
         start[j + 1] += start[j];
@@ -46,7 +46,7 @@ static ritz_status sort_by_row(int64_t nrow, int64_t count, const int64_t *row,
     RITZ_NEW(start, nrow + 1);
     for (int64_t k = 0; k < count; k++)
         start[row[k] + 1]++;
-    accumulate(nrow, start);
+    accumulate_counts(nrow, start);
     for (int64_t k = 0; k < count; k++)
         order[start[row[k]]++] = k;
 done:
@@ -55,7 +55,7 @@ done:
 }
 
 /* Close the gaps that summing left: column j holds entries up to end[j]. */
-static void squeeze(ritz_sparse *A, const int64_t *end)
+static void squeeze_zeros(ritz_sparse *A, const int64_t *end)
 {
     int64_t kept = 0;
 
@@ -93,7 +93,7 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
     RITZ_TRY(ritz_sparse_new(nrow, ncol, count, &A));
     for (int64_t k = 0; k < count; k++)
         A.colptr[col[k] + 1]++;
-    accumulate(ncol, A.colptr);
+    accumulate_counts(ncol, A.colptr);
 
     /* Rows arrive ascending, so entries to be summed meet as neighbours. */
     RITZ_NEW(end, ncol);
@@ -110,7 +110,7 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
             end[col[k]]++;
         }
     }
-    squeeze(&A, end);
+    squeeze_zeros(&A, end);
     *out = A;
     A = (ritz_sparse){0};
 done:
@@ -299,7 +299,7 @@ ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz)
 }
 
 /* A(i,j), 0 where nothing is stored. */
-static double entry(const ritz_sparse *A, int64_t i, int64_t j)
+static double entry_at(const ritz_sparse *A, int64_t i, int64_t j)
 {
     int64_t p = A->colptr[j];
     int64_t k = ritz_search(A->colptr[j + 1] - p, A->rowind + p, i);
@@ -307,7 +307,7 @@ static double entry(const ritz_sparse *A, int64_t i, int64_t j)
     return k < 0 ? 0.0 : A->val[p + k];
 }
 
-static bool stored(const ritz_sparse *A, int64_t i, int64_t j)
+static bool is_stored(const ritz_sparse *A, int64_t i, int64_t j)
 {
     int64_t p = A->colptr[j];
 
@@ -339,7 +339,7 @@ double ritz_sparse_asymmetry(const ritz_sparse *A)
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             largest = fmax(largest, fabs(A->val[p]));
-            gap = fmax(gap, fabs(A->val[p] - entry(A, j, A->rowind[p])));
+            gap = fmax(gap, fabs(A->val[p] - entry_at(A, j, A->rowind[p])));
         }
     return gap > 0.0 ? gap / largest : 0.0;
 }
@@ -353,11 +353,11 @@ double ritz_sparse_skew(const ritz_sparse *A)
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             int64_t i = A->rowind[p];
-            double gap = 0.5 * (A->val[p] - entry(A, j, i));
+            double gap = 0.5 * (A->val[p] - entry_at(A, j, i));
 
             all = hypot(all, A->val[p]);
             skew = hypot(skew, gap);
-            if (!stored(A, j, i)) /* the other place is not met */
+            if (!is_stored(A, j, i)) /* the other place is not met */
                 skew = hypot(skew, gap);
         }
     return all > 0.0 ? skew / all : 0.0;
@@ -522,8 +522,8 @@ done:
 }
 
 /* T'AT as it comes. */
-static ritz_status condense(const ritz_sparse *A, const ritz_dense *T,
-                            ritz_dense *out)
+static ritz_status condense_block(const ritz_sparse *A, const ritz_dense *T,
+                                  ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AT = {0};
@@ -538,7 +538,7 @@ done:
 ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
                                  ritz_dense *out)
 {
-    RITZ_CHECK(condense(A, T, out));
+    RITZ_CHECK(condense_block(A, T, out));
     ritz_dense_symmetrise(out);
     return RITZ_OK;
 }
@@ -548,7 +548,7 @@ ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
 {
     if (!A->colptr)
         return RITZ_OK;
-    RITZ_CHECK(condense(A, T, out));
+    RITZ_CHECK(condense_block(A, T, out));
     if (ritz_sparse_asymmetry(A) == 0.0)
         ritz_dense_symmetrise(out);
     return RITZ_OK;

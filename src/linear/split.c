@@ -29,7 +29,7 @@
 #include <stdlib.h>
 
 /* Whether no rounding of the matrices makes a pole unstable; all are left. */
-static ritz_status prove(const ritz_schur *schur, bool *proven)
+static ritz_status prove_stable(const ritz_schur *schur, bool *proven)
 {
     ritz_status status = RITZ_OK;
     int n = (int)schur->count;
@@ -62,15 +62,15 @@ static ritz_status choose_stable(const ritz_schur *schur, bool *stable)
         doubt = doubt || !stable[k];
     }
     if (doubt && all_left)
-        RITZ_CHECK(prove(schur, &proven));
+        RITZ_CHECK(prove_stable(schur, &proven));
     for (int64_t k = 0; k < schur->count && proven; k++)
         stable[k] = true;
     return RITZ_OK;
 }
 
 /* R and G of m stable poles and the others. */
-static ritz_status decouple(const ritz_schur *schur, int64_t m, ritz_dense *R,
-                            ritz_dense *G)
+static ritz_status decouple_blocks(const ritz_schur *schur, int64_t m,
+                                   ritz_dense *R, ritz_dense *G)
 {
     int n = (int)schur->count;
     int a = n - (int)m;
@@ -103,14 +103,15 @@ static ritz_status decouple(const ritz_schur *schur, int64_t m, ritz_dense *R,
 }
 
 /* out = base + sign factor, of the same size. */
-static void add(double sign, const ritz_dense *term, ritz_dense *out)
+static void add_scaled(double sign, const ritz_dense *term, ritz_dense *out)
 {
     for (int64_t k = 0; k < out->nrow * out->ncol; k++)
         out->val[k] += sign * term->val[k];
 }
 
 /* X, T, Y, W in the coordinates of the form's own matrices. */
-static ritz_status assemble(const ritz_schur *schur, int64_t m, ritz_split *out)
+static ritz_status assemble_split(const ritz_schur *schur, int64_t m,
+                                  ritz_split *out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = schur->count, a = n - m;
@@ -119,15 +120,15 @@ static ritz_status assemble(const ritz_schur *schur, int64_t m, ritz_split *out)
     ritz_dense Q2 = ritz_dense_part(&schur->Q, m, a);
     ritz_dense R = {0}, G = {0}, Z1R = {0}, Q2G = {0};
 
-    RITZ_TRY(decouple(schur, m, &R, &G));
+    RITZ_TRY(decouple_blocks(schur, m, &R, &G));
     RITZ_TRY(ritz_dense_mul(&Z1, &R, &Z1R));
     RITZ_TRY(ritz_dense_mul_nt(&Q2, &G, &Q2G));
     RITZ_TRY(ritz_dense_columns(Z, 0, m, &out->X));
     RITZ_TRY(ritz_dense_columns(&schur->Q, 0, m, &out->Y));
     RITZ_TRY(ritz_dense_columns(Z, m, a, &out->T));
     RITZ_TRY(ritz_dense_columns(&schur->Q, m, a, &out->W));
-    add(1.0, &Z1R, &out->T);
-    add(-1.0, &Q2G, &out->Y);
+    add_scaled(1.0, &Z1R, &out->T);
+    add_scaled(-1.0, &Q2G, &out->Y);
     if (schur->T.val && a > 0)
         cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasTrans,
                     CblasNonUnit, (int)n, (int)a, 1.0, schur->T.val + m * n + m,
@@ -140,7 +141,7 @@ done:
     return status;
 }
 
-static ritz_status leading(const ritz_dense *A, int64_t m, ritz_dense *out)
+static ritz_status take_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(m, m, out));
     for (int64_t j = 0; j < m; j++)
@@ -164,10 +165,10 @@ ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
     RITZ_NEW(stable, A->nrow);
     RITZ_TRY(choose_stable(&schur, stable));
     RITZ_TRY(ritz_schur_order(&schur, stable, &m));
-    RITZ_TRY(leading(&schur.S, m, &split.S));
+    RITZ_TRY(take_leading(&schur.S, m, &split.S));
     if (schur.T.val)
-        RITZ_TRY(leading(&schur.T, m, &split.P));
-    RITZ_TRY(assemble(&schur, m, &split));
+        RITZ_TRY(take_leading(&schur.T, m, &split.P));
+    RITZ_TRY(assemble_split(&schur, m, &split));
     ritz_frame_turn_back(&f, f.right, &split.X);
     ritz_frame_turn_back(&f, f.right, &split.T);
     ritz_frame_turn_back(&f, f.left, &split.Y);

@@ -39,8 +39,8 @@ done:
 }
 
 /* Residual of one pair, as ritz_eigen.h defines it; *energy = |x|'|K||x|. */
-static double residual(const ritz_shifted *S, const double *x, double lambda,
-                       double *energy)
+static double residual_of(const ritz_shifted *S, const double *x, double lambda,
+                          double *energy)
 {
     const ritz_sparse *K = S->K;
     const ritz_sparse *M = S->M;
@@ -78,7 +78,7 @@ double ritz_shifted_assess(const ritz_shifted *S, ritz_pairs *P)
         double energy = 0.0;
 
         P->residual[j] =
-            residual(S, ritz_dense_col(&P->Phi, j), P->lambda[j], &energy);
+            residual_of(S, ritz_dense_col(&P->Phi, j), P->lambda[j], &energy);
         scale = fmax(scale, energy);
         worst = P->residual[j] <= worst ? worst : P->residual[j];
     }

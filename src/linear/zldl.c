@@ -27,7 +27,7 @@ struct ritz_zldl {
     int64_t *place; /* of each row among the entries of one column */
 };
 
-static void call(void *id)
+static void call_mumps(void *id)
 {
     zmumps_c(id);
 }
@@ -41,11 +41,11 @@ static void set_rhs(void *id, int n, int k, void *x)
     z->lrhs = n;
 }
 
-static ritz_mumps view(ritz_zldl *F)
+static ritz_mumps view_mumps(ritz_zldl *F)
 {
     return (ritz_mumps){
         .id = &F->id,
-        .call = call,
+        .call = call_mumps,
         .set_rhs = set_rhs,
         .job = &F->id.job,
         .icntl = F->id.icntl,
@@ -55,9 +55,9 @@ static ritz_mumps view(ritz_zldl *F)
     };
 }
 
-static ritz_status analyse(ritz_zldl *F)
+static ritz_status analyse_pattern(ritz_zldl *F)
 {
-    ritz_mumps mumps = view(F);
+    ritz_mumps mumps = view_mumps(F);
 
     F->id.sym = F->whole ? 0 : 2;
     F->id.par = 1;
@@ -90,7 +90,7 @@ ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
         F->A[k] = *A[k];
     F->count = count;
     if (F->pattern.n > 0)
-        RITZ_TRY(analyse(F));
+        RITZ_TRY(analyse_pattern(F));
     *out = F;
     F = NULL;
 done:
@@ -105,7 +105,7 @@ void ritz_zldl_definite(ritz_zldl *F)
 }
 
 /* val += c A, or its lower triangle. */
-static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
+static void add_values(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
 {
     int64_t at = 0;
 
@@ -120,7 +120,7 @@ static void add(const ritz_sparse *A, double _Complex c, ritz_zldl *F)
 
 ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
 {
-    ritz_mumps mumps = view(F);
+    ritz_mumps mumps = view_mumps(F);
 
     F->factored = false;
     memset(F->val, 0, (size_t)F->pattern.nnz * sizeof *F->val);
@@ -128,7 +128,7 @@ ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
         RITZ_REFUSE_IF(
             !isfinite(creal(c[k])) || !isfinite(cimag(c[k])), RITZ_ERR_ARGUMENT,
             "coefficient %" PRId64 " of the matrices is not finite", k + 1);
-        add(&F->A[k], c[k], F);
+        add_values(&F->A[k], c[k], F);
     }
     if (F->pattern.n > 0) {
         RITZ_CHECK(ritz_mumps_run(&mumps, RITZ_MUMPS_FACTOR));
@@ -140,7 +140,7 @@ ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
 
 ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X)
 {
-    ritz_mumps mumps = view(F);
+    ritz_mumps mumps = view_mumps(F);
 
     RITZ_REFUSE_IF(!F->factored, RITZ_ERR_ARGUMENT,
                    "a solve needs a factor first");

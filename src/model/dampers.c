@@ -28,7 +28,8 @@ done:
 }
 
 /* Names and numbers of `from` in place first and behind. */
-static void put(const ritz_dampers *from, int64_t first, ritz_dampers *to)
+static void put_damper(const ritz_dampers *from, int64_t first,
+                       ritz_dampers *to)
 {
     size_t bytes = (size_t)from->count * sizeof *from->c;
 
@@ -49,7 +50,7 @@ ritz_status ritz_dampers_project(const ritz_dampers *dampers,
     if (dampers->count == 0)
         return RITZ_OK;
     RITZ_TRY(ritz_dampers_new(0, dampers->count, &projected));
-    put(dampers, 0, &projected);
+    put_damper(dampers, 0, &projected);
     ritz_dense_free(&projected.B);
     RITZ_TRY(ritz_dense_mul_tn(T, &dampers->B, &projected.B));
     *out = projected;
@@ -75,7 +76,7 @@ done:
 }
 
 /* "owner/name" */
-static ritz_status own(const char *owner, char name[RITZ_NAME_SIZE])
+static ritz_status own_name(const char *owner, char name[RITZ_NAME_SIZE])
 {
     char whole[2 * RITZ_NAME_SIZE + 2];
     int length = snprintf(whole, sizeof whole, "%s/%s", owner, name);
@@ -99,18 +100,18 @@ ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
         return RITZ_OK;
     RITZ_TRY(ritz_dampers_new(n, count + more->count, &all));
     if (count > 0) {
-        put(dampers, 0, &all);
+        put_damper(dampers, 0, &all);
         memcpy(all.B.val, dampers->B.val,
                (size_t)(n * count) * sizeof *all.B.val);
     }
-    put(more, count, &all);
+    put_damper(more, count, &all);
     for (int64_t k = 0; k < more->count; k++) {
         if (more->B.nrow > 0)
             memcpy(ritz_dense_col(&all.B, count + k) + first,
                    ritz_dense_col(&more->B, k),
                    (size_t)more->B.nrow * sizeof *all.B.val);
         if (owner)
-            RITZ_TRY(own(owner, all.name[count + k]));
+            RITZ_TRY(own_name(owner, all.name[count + k]));
     }
     ritz_dampers_free(dampers);
     *dampers = all;
@@ -236,8 +237,8 @@ static double more_k(const ritz_dampers *dampers, int64_t j)
     return dampers->k[j] - dampers->held_k[j];
 }
 
-static bool any(const ritz_dampers *dampers,
-                double (*more)(const ritz_dampers *, int64_t))
+static bool has_any(const ritz_dampers *dampers,
+                    double (*more)(const ritz_dampers *, int64_t))
 {
     for (int64_t j = 0; j < dampers->count; j++)
         if (more(dampers, j) != 0.0)
@@ -245,7 +246,7 @@ static bool any(const ritz_dampers *dampers,
     return false;
 }
 
-static void settle(ritz_dampers *dampers)
+static void note_installed(ritz_dampers *dampers)
 {
     for (int64_t j = 0; j < dampers->count; j++) {
         dampers->held_c[j] = dampers->c[j];
@@ -254,8 +255,9 @@ static void settle(ritz_dampers *dampers)
 }
 
 /* A += sum more_j b_j b_j', whose two triangles are the same to the bit. */
-static void add(const ritz_dampers *dampers,
-                double (*more)(const ritz_dampers *, int64_t), ritz_dense *A)
+static void add_influence(const ritz_dampers *dampers,
+                          double (*more)(const ritz_dampers *, int64_t),
+                          ritz_dense *A)
 {
     for (int64_t j = 0; j < dampers->count; j++) {
         const double *b = ritz_dense_col(&dampers->B, j);
@@ -276,11 +278,11 @@ ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
                    RITZ_ERR_ARGUMENT,
                    "dampers of %" PRId64 " coordinates in a model of %" PRId64,
                    dampers->B.nrow, n);
-    if (any(dampers, more_c) && !D->val)
+    if (has_any(dampers, more_c) && !D->val)
         RITZ_CHECK(ritz_dense_new(n, n, D));
-    add(dampers, more_c, D);
-    add(dampers, more_k, K);
-    settle(dampers);
+    add_influence(dampers, more_c, D);
+    add_influence(dampers, more_k, K);
+    note_installed(dampers);
     return RITZ_OK;
 }
 
@@ -294,9 +296,9 @@ static int64_t count_entries(const ritz_dense *B, int64_t j)
 }
 
 /* sum more_j b_j b_j' of few entries each. */
-static ritz_status outer(const ritz_dampers *dampers,
-                         double (*more)(const ritz_dampers *, int64_t),
-                         ritz_sparse *out)
+static ritz_status outer_product(const ritz_dampers *dampers,
+                                 double (*more)(const ritz_dampers *, int64_t),
+                                 ritz_sparse *out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = dampers->B.nrow;
@@ -346,9 +348,9 @@ static ritz_status add_sparse(const ritz_dampers *dampers,
     ritz_sparse part = {0};
     ritz_sparse sum = {0};
 
-    if (!any(dampers, more))
+    if (!has_any(dampers, more))
         return RITZ_OK;
-    RITZ_TRY(outer(dampers, more, &part));
+    RITZ_TRY(outer_product(dampers, more, &part));
     if (A->colptr) {
         RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &part, &sum));
         ritz_sparse_free(A);
@@ -373,6 +375,6 @@ ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
                    dampers->B.nrow, K->nrow);
     RITZ_CHECK(add_sparse(dampers, more_c, D));
     RITZ_CHECK(add_sparse(dampers, more_k, K));
-    settle(dampers);
+    note_installed(dampers);
     return RITZ_OK;
 }

@@ -33,7 +33,8 @@ ritz_status ritz_structure_refuse(bool structural)
 }
 
 /* K and D with the dampers that are kept apart. */
-static ritz_status install(const ritz_dampers *apart, ritz_structure *model)
+static ritz_status install_dampers(const ritz_dampers *apart,
+                                   ritz_structure *model)
 {
     ritz_status status = RITZ_OK;
     ritz_dampers dampers = {0};
@@ -60,7 +61,7 @@ ritz_status ritz_structure_of_component(const ritz_component *component,
     RITZ_TRY(ritz_sparse_dense(&component->M, &model.M));
     if (component->D.colptr)
         RITZ_TRY(ritz_sparse_dense(&component->D, &model.D));
-    RITZ_TRY(install(&component->dampers, &model));
+    RITZ_TRY(install_dampers(&component->dampers, &model));
     *out = model;
     model = (ritz_structure){0};
 done:
@@ -78,7 +79,7 @@ ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
     RITZ_TRY(ritz_dense_copy(&reduced->M, &model.M));
     if (reduced->D.val)
         RITZ_TRY(ritz_dense_copy(&reduced->D, &model.D));
-    RITZ_TRY(install(&reduced->dampers, &model));
+    RITZ_TRY(install_dampers(&reduced->dampers, &model));
     *out = model;
     model = (ritz_structure){0};
 done:

@@ -32,7 +32,7 @@ typedef struct large {
     ritz_dense KT, F; /* K T_q; all of it */
 } large;
 
-static void release(large *m)
+static void large_free(large *m)
 {
     ritz_sparse_free(&m->K);
     ritz_sparse_free(&m->D);
@@ -44,7 +44,8 @@ static void release(large *m)
     ritz_dense_free(&m->F);
 }
 
-static ritz_status half(const ritz_dense *T, int64_t first, ritz_dense *out)
+static ritz_status take_half(const ritz_dense *T, int64_t first,
+                             ritz_dense *out)
 {
     int64_t n = T->nrow / 2;
 
@@ -55,7 +56,7 @@ static ritz_status half(const ritz_dense *T, int64_t first, ritz_dense *out)
     return RITZ_OK;
 }
 
-static ritz_status install(const ritz_component *component, large *m)
+static ritz_status install_dampers(const ritz_component *component, large *m)
 {
     ritz_status status = RITZ_OK;
     ritz_dampers dampers = {0};
@@ -90,7 +91,7 @@ static ritz_status stiffness_times(const large *m, const ritz_dense *X,
 }
 
 /* A := A + factor B */
-static void add(double factor, const ritz_dense *B, ritz_dense *A)
+static void add_scaled(double factor, const ritz_dense *B, ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         A->val[k] += factor * B->val[k];
@@ -119,7 +120,7 @@ static ritz_status add_ratios(const ritz_damping *damping, double among_hz,
                 ritz_modal_rate(damping, k - modes.num_rigid, modes.lambda[k]);
     RITZ_TRY(ritz_dense_mul(&modes.Phi, &q, &rate));
     RITZ_TRY(ritz_sparse_mul(M, &rate, &force));
-    add(1.0, &force, &m->F);
+    add_scaled(1.0, &force, &m->F);
 done:
     ritz_pairs_free(&modes);
     ritz_dense_free(&q);
@@ -138,13 +139,13 @@ static ritz_status add_damping(const ritz_damping *damping, double among_hz,
     RITZ_TRY(ritz_dense_copy(&m->KT, &m->F));
     if (m->D.colptr) {
         RITZ_TRY(ritz_sparse_mul(&m->D, &m->T_v, &part));
-        add(1.0, &part, &m->F);
+        add_scaled(1.0, &part, &m->F);
     }
     if (ritz_damping_is_rayleigh(damping)) {
         ritz_dense_free(&part);
         RITZ_TRY(stiffness_times(m, &m->T_v, &part));
-        add(damping->b, &part, &m->F);
-        add(damping->a, MT, &m->F);
+        add_scaled(damping->b, &part, &m->F);
+        add_scaled(damping->a, MT, &m->F);
     } else if (damping->kind != RITZ_DAMPING_NONE) {
         RITZ_TRY(add_ratios(damping, among_hz, MT, m));
     }
@@ -154,8 +155,8 @@ done:
 }
 
 /* S := |X|'|Y| */
-static ritz_status magnitudes(const ritz_dense *X, const ritz_dense *Y,
-                              ritz_dense *S)
+static ritz_status multiply_magnitudes(const ritz_dense *X, const ritz_dense *Y,
+                                       ritz_dense *S)
 {
     ritz_status status = RITZ_OK;
     ritz_dense x = {0}, y = {0};
@@ -180,9 +181,9 @@ static ritz_status settle_rigid(const large *m, const ritz_dense *const left[2],
     double rounding = (double)(left[0]->nrow + 64) * DBL_EPSILON;
     ritz_dense first = {0}, second = {0};
 
-    RITZ_TRY(magnitudes(left[0], right[0], &first));
-    RITZ_TRY(magnitudes(left[1], right[1], &second));
-    add(1.0, &second, &first);
+    RITZ_TRY(multiply_magnitudes(left[0], right[0], &first));
+    RITZ_TRY(multiply_magnitudes(left[1], right[1], &second));
+    add_scaled(1.0, &second, &first);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             if (is_rigid(m, i) != is_rigid(m, j) &&
@@ -196,7 +197,7 @@ done:
 }
 
 /* A := W_q'T_v - W_v'F, where rigid rows see nothing of K. */
-static ritz_status motion(const large *m, ritz_dense *A)
+static ritz_status project_forces(const large *m, ritz_dense *A)
 {
     ritz_status status = RITZ_OK;
     ritz_dense WF = {0}, WK = {0};
@@ -219,7 +220,7 @@ done:
 }
 
 /* C := C - Y'F, D := Y'B; M Y = Ca' */
-static ritz_status accelerations(const large *m, ritz_state_space *out)
+static ritz_status fill_accelerations(const large *m, ritz_state_space *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_io *io = &m->component->io;
@@ -236,10 +237,10 @@ static ritz_status accelerations(const large *m, ritz_state_space *out)
     RITZ_TRY(status);
     RITZ_TRY(ritz_factor_solve(L, &Y));
     RITZ_TRY(ritz_dense_mul_tn(&Y, &m->F, &part));
-    add(-1.0, &part, &out->C);
+    add_scaled(-1.0, &part, &out->C);
     ritz_dense_free(&part);
     RITZ_TRY(ritz_dense_mul_tn(&Y, &io->B, &part));
-    add(1.0, &part, &out->D);
+    add_scaled(1.0, &part, &out->D);
 done:
     ritz_factor_free(&L);
     ritz_dense_free(&Y);
@@ -247,7 +248,7 @@ done:
     return status;
 }
 
-static ritz_status see(const large *m, ritz_state_space *out)
+static ritz_status fill_outputs(const large *m, ritz_state_space *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_io *io = &m->component->io;
@@ -258,8 +259,8 @@ static ritz_status see(const large *m, ritz_state_space *out)
     RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
     RITZ_TRY(ritz_dense_mul(&io->C, &m->T_q, &out->C));
     RITZ_TRY(ritz_dense_mul(&io->Cv, &m->T_v, &rate));
-    add(1.0, &rate, &out->C);
-    RITZ_TRY(accelerations(m, out));
+    add_scaled(1.0, &rate, &out->C);
+    RITZ_TRY(fill_accelerations(m, out));
 done:
     ritz_dense_free(&rate);
     return status;
@@ -296,23 +297,23 @@ ritz_status ritz_states_project(const ritz_component *component,
     ritz_dense MT = {0}, inertia = {0};
 
     RITZ_TRY(refuse_massless_inputs(component));
-    RITZ_TRY(install(component, &m));
-    RITZ_TRY(half(T, 0, &m.T_q));
-    RITZ_TRY(half(T, n, &m.T_v));
-    RITZ_TRY(half(W, 0, &m.W_q));
-    RITZ_TRY(half(W, n, &m.W_v));
+    RITZ_TRY(install_dampers(component, &m));
+    RITZ_TRY(take_half(T, 0, &m.T_q));
+    RITZ_TRY(take_half(T, n, &m.T_v));
+    RITZ_TRY(take_half(W, 0, &m.W_q));
+    RITZ_TRY(take_half(W, n, &m.W_v));
     RITZ_TRY(ritz_sparse_mul(&component->M, &m.T_v, &MT));
     RITZ_TRY(stiffness_times(&m, &m.T_q, &m.KT));
     RITZ_TRY(add_damping(damping, basis->among_hz, &MT, &m));
-    RITZ_TRY(motion(&m, &out->A));
-    RITZ_TRY(see(&m, out));
+    RITZ_TRY(project_forces(&m, &out->A));
+    RITZ_TRY(fill_outputs(&m, out));
     RITZ_TRY(ritz_dense_mul_tn(&m.W_q, &m.T_q, E));
     RITZ_TRY(ritz_dense_mul_tn(&m.W_v, &MT, &inertia));
-    add(1.0, &inertia, E);
+    add_scaled(1.0, &inertia, E);
     RITZ_TRY(settle_rigid(&m, (const ritz_dense *[]){&m.W_q, &m.W_v},
                           (const ritz_dense *[]){&m.T_q, &MT}, E));
 done:
-    release(&m);
+    large_free(&m);
     ritz_dense_free(&MT);
     ritz_dense_free(&inertia);
     return status;

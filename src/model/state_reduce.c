@@ -25,8 +25,8 @@
 #include <string.h>
 
 /* A'(rows first..first + n - 1 of X) */
-static ritz_status take(const ritz_dense *A, const ritz_dense *X, int64_t first,
-                        ritz_dense *out)
+static ritz_status take_rows(const ritz_dense *A, const ritz_dense *X,
+                             int64_t first, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense part = {0};
@@ -42,7 +42,7 @@ done:
 }
 
 /* A := A + sign B */
-static void add(double sign, const ritz_dense *B, ritz_dense *A)
+static void add_scaled(double sign, const ritz_dense *B, ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         A->val[k] += sign * B->val[k];
@@ -58,16 +58,16 @@ static ritz_status two_products(const ritz_dense *A, const ritz_dense *B,
 
     RITZ_TRY(ritz_dense_mul_tn(A, B, out));
     RITZ_TRY(ritz_dense_mul_tn(C, D, &second));
-    add(sign, &second, out);
+    add_scaled(sign, &second, out);
 done:
     ritz_dense_free(&second);
     return status;
 }
 
 /* Lambda T_q + Delta T_v */
-static ritz_status restoring(const ritz_modal_model *modes,
-                             const ritz_dense *T_q, const ritz_dense *T_v,
-                             ritz_dense *out)
+static ritz_status find_restoring(const ritz_modal_model *modes,
+                                  const ritz_dense *T_q, const ritz_dense *T_v,
+                                  ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_mul(&modes->Delta, T_v, out));
     for (int64_t j = 0; j < T_q->ncol; j++)
@@ -87,11 +87,11 @@ static ritz_status project_outputs(const ritz_modal_model *modes,
 
     RITZ_TRY(ritz_dense_mul(&modes->C, T_q, &C));
     RITZ_TRY(ritz_dense_mul(&modes->Cv, T_v, &rate));
-    add(1.0, &rate, &C);
+    add_scaled(1.0, &rate, &C);
     ritz_dense_free(&out->C);
     out->C = C;
     C = (ritz_dense){0};
-    add(1.0, &modes->feed, &out->D);
+    add_scaled(1.0, &modes->feed, &out->D);
 done:
     ritz_dense_free(&C);
     ritz_dense_free(&rate);
@@ -99,8 +99,8 @@ done:
 }
 
 /* Sum of |A(k,i) X(first + k,j)|: n eps of it is rounding of what they add to. */
-static double terms(const ritz_dense *A, int64_t i, const ritz_dense *X,
-                    int64_t first, int64_t j)
+static double largest_terms(const ritz_dense *A, int64_t i, const ritz_dense *X,
+                            int64_t first, int64_t j)
 {
     double sum = 0.0;
 
@@ -125,7 +125,7 @@ static void settle_rigid(const ritz_modal_model *modes,
         double *x = ritz_dense_col(part, j);
 
         for (int64_t i = 0; i < modes->num_rigid && !rigid; i++)
-            if (fabs(x[i]) <= rounding * terms(A, i, X, first, j))
+            if (fabs(x[i]) <= rounding * largest_terms(A, i, X, first, j))
                 x[i] = 0.0;
         for (int64_t i = modes->num_rigid; i < part->nrow && rigid; i++)
             x[i] = 0.0;
@@ -138,7 +138,7 @@ static ritz_status take_settled(const ritz_modal_model *modes,
                                 const ritz_dense *A, const ritz_dense *X,
                                 int64_t first, ritz_dense *out)
 {
-    RITZ_CHECK(take(A, X, first, out));
+    RITZ_CHECK(take_rows(A, X, first, out));
     settle_rigid(modes, columns, A, X, first, out);
     return RITZ_OK;
 }
@@ -160,7 +160,7 @@ static ritz_status project(const ritz_modal_model *modes,
     RITZ_TRY(take_settled(modes, columns, &modes->MPhi, &basis->T, n, &T_v));
     RITZ_TRY(take_settled(modes, columns, &modes->Phi, W, 0, &W_q));
     RITZ_TRY(take_settled(modes, columns, &modes->MPhi, W, n, &W_v));
-    RITZ_TRY(restoring(modes, &T_q, &T_v, &F));
+    RITZ_TRY(find_restoring(modes, &T_q, &T_v, &F));
     RITZ_TRY(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
     RITZ_TRY(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
     RITZ_TRY(ritz_dense_mul_tn(&W_v, &modes->B, &out->B));
@@ -268,8 +268,8 @@ static ritz_status check(const ritz_component *component,
 }
 
 /* out = [upper 0; 0 lower] */
-static ritz_status stack(const ritz_dense *upper, const ritz_dense *lower,
-                         ritz_dense *out)
+static ritz_status stack_halves(const ritz_dense *upper,
+                                const ritz_dense *lower, ritz_dense *out)
 {
     int64_t n = upper->nrow;
     size_t size = (size_t)n * sizeof *out->val;
@@ -294,8 +294,8 @@ static ritz_status to_states(const ritz_component *component,
 
     states.origin = basis->origin;
     RITZ_TRY(ritz_sparse_mul(&component->M, &basis->W, &MW));
-    RITZ_TRY(stack(&basis->T, &basis->T, &states.T));
-    RITZ_TRY(stack(&MW, &basis->W, &states.W));
+    RITZ_TRY(stack_halves(&basis->T, &basis->T, &states.T));
+    RITZ_TRY(stack_halves(&MW, &basis->W, &states.W));
     RITZ_TRY(ritz_columns_new(2 * r, &states.columns));
     for (int64_t j = 0; j < 2 * r; j++) {
         states.columns.kind[j] = columns->kind[j % r];
@@ -363,8 +363,8 @@ static ritz_status check_space_basis(const ritz_state_space *full,
 }
 
 /* W'A T */
-static ritz_status between(const ritz_dense *W, const ritz_dense *A,
-                           const ritz_dense *T, ritz_dense *out)
+static ritz_status product_between(const ritz_dense *W, const ritz_dense *A,
+                                   const ritz_dense *T, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AT = {0};
@@ -395,8 +395,8 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
 
     RITZ_TRY(check_space_basis(full, basis));
     RITZ_TRY(ritz_state_space_new(T->ncol, &io, &reduced));
-    RITZ_TRY(between(W, &full->A, T, &reduced.A));
-    RITZ_TRY(between(W, &full->E, T, &E));
+    RITZ_TRY(product_between(W, &full->A, T, &reduced.A));
+    RITZ_TRY(product_between(W, &full->E, T, &E));
     ritz_dense_free(&reduced.B);
     RITZ_TRY(ritz_dense_mul_tn(W, &full->B, &reduced.B));
     ritz_dense_free(&reduced.C);

@@ -32,8 +32,8 @@
  * G = [A B; C D].
  */
 
-static void copy(const ritz_dense *from, int64_t row, int64_t col,
-                 ritz_dense *G)
+static void copy_part(const ritz_dense *from, int64_t row, int64_t col,
+                      ritz_dense *G)
 {
     for (int64_t j = 0; j < from->ncol; j++)
         for (int64_t i = 0; i < from->nrow; i++)
@@ -41,29 +41,30 @@ static void copy(const ritz_dense *from, int64_t row, int64_t col,
 }
 
 /* A becomes rows row.. and columns col.. of G. */
-static void paste(const ritz_dense *G, int64_t row, int64_t col, ritz_dense *A)
+static void paste_block(const ritz_dense *G, int64_t row, int64_t col,
+                        ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(A, j)[i] = ritz_dense_col(G, col + j)[row + i];
 }
 
-static ritz_status join(const ritz_state_space *model, ritz_dense *out)
+static ritz_status join_matrices(const ritz_state_space *model, ritz_dense *out)
 {
     int64_t n = model->A.nrow;
 
     RITZ_CHECK(
         ritz_dense_new(n + model->num_outputs, n + model->num_inputs, out));
-    copy(&model->A, 0, 0, out);
-    copy(&model->B, 0, n, out);
-    copy(&model->C, n, 0, out);
-    copy(&model->D, n, n, out);
+    copy_part(&model->A, 0, 0, out);
+    copy_part(&model->B, 0, n, out);
+    copy_part(&model->C, n, 0, out);
+    copy_part(&model->D, n, n, out);
     return RITZ_OK;
 }
 
 /* Numbers below @p count of those that stay: states, and all that follow. */
-static ritz_status choose(const ritz_columns *columns, int64_t count,
-                          bool perturbed, int64_t *kept, int64_t **out)
+static ritz_status choose_states(const ritz_columns *columns, int64_t count,
+                                 bool perturbed, int64_t *kept, int64_t **out)
 {
     int64_t *at = NULL;
     int64_t next = 0;
@@ -82,8 +83,9 @@ static ritz_status choose(const ritz_columns *columns, int64_t count,
 }
 
 /* Rows and columns of G. */
-static ritz_status pick(const ritz_dense *G, int64_t nrow, const int64_t *rows,
-                        int64_t ncol, const int64_t *cols, ritz_dense *out)
+static ritz_status pick_block(const ritz_dense *G, int64_t nrow,
+                              const int64_t *rows, int64_t ncol,
+                              const int64_t *cols, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(nrow, ncol, out));
     for (int64_t j = 0; j < ncol; j++)
@@ -93,22 +95,23 @@ static ritz_status pick(const ritz_dense *G, int64_t nrow, const int64_t *rows,
 }
 
 /* G11 - G12 G22^-1 G21, with the states of kind perturbed second. */
-static ritz_status eliminate(const ritz_state_space *model,
-                             const ritz_columns *columns, ritz_dense *out)
+static ritz_status eliminate_static(const ritz_state_space *model,
+                                    const ritz_columns *columns,
+                                    ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense G = {0}, G12 = {0}, G21 = {0}, G22 = {0}, change = {0};
     int64_t *rows = NULL, *cols = NULL, *rest = NULL;
     int64_t nrow = 0, ncol = 0, count = 0;
 
-    RITZ_TRY(join(model, &G));
-    RITZ_TRY(choose(columns, G.nrow, false, &nrow, &rows));
-    RITZ_TRY(choose(columns, G.ncol, false, &ncol, &cols));
-    RITZ_TRY(choose(columns, columns->count, true, &count, &rest));
-    RITZ_TRY(pick(&G, nrow, rows, ncol, cols, out));
-    RITZ_TRY(pick(&G, nrow, rows, count, rest, &G12));
-    RITZ_TRY(pick(&G, count, rest, ncol, cols, &G21));
-    RITZ_TRY(pick(&G, count, rest, count, rest, &G22));
+    RITZ_TRY(join_matrices(model, &G));
+    RITZ_TRY(choose_states(columns, G.nrow, false, &nrow, &rows));
+    RITZ_TRY(choose_states(columns, G.ncol, false, &ncol, &cols));
+    RITZ_TRY(choose_states(columns, columns->count, true, &count, &rest));
+    RITZ_TRY(pick_block(&G, nrow, rows, ncol, cols, out));
+    RITZ_TRY(pick_block(&G, nrow, rows, count, rest, &G12));
+    RITZ_TRY(pick_block(&G, count, rest, ncol, cols, &G21));
+    RITZ_TRY(pick_block(&G, count, rest, count, rest, &G22));
     status = ritz_general_solve(&G22, false, &G21);
     RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
                  "the remainder has no static answer: a motion that nothing "
@@ -150,13 +153,14 @@ static ritz_status keep_columns(const ritz_columns *columns, int64_t kept,
     return RITZ_OK;
 }
 
-static ritz_status perturb(const ritz_columns *columns, ritz_state_space *model)
+static ritz_status perturb_states(const ritz_columns *columns,
+                                  ritz_state_space *model)
 {
     ritz_status status = RITZ_OK;
     ritz_dense G = {0};
     int64_t r = 0;
 
-    RITZ_TRY(eliminate(model, columns, &G));
+    RITZ_TRY(eliminate_static(model, columns, &G));
     r = G.nrow - model->num_outputs;
     ritz_dense_free(&model->A);
     ritz_dense_free(&model->B);
@@ -164,10 +168,10 @@ static ritz_status perturb(const ritz_columns *columns, ritz_state_space *model)
     RITZ_TRY(ritz_dense_new(r, r, &model->A));
     RITZ_TRY(ritz_dense_new(r, model->num_inputs, &model->B));
     RITZ_TRY(ritz_dense_new(model->num_outputs, r, &model->C));
-    paste(&G, 0, 0, &model->A);
-    paste(&G, 0, r, &model->B);
-    paste(&G, r, 0, &model->C);
-    paste(&G, r, r, &model->D);
+    paste_block(&G, 0, 0, &model->A);
+    paste_block(&G, 0, r, &model->B);
+    paste_block(&G, r, 0, &model->C);
+    paste_block(&G, r, r, &model->D);
     RITZ_TRY(keep_columns(columns, r, &model->columns));
 done:
     ritz_dense_free(&G);
@@ -201,7 +205,7 @@ ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
         ritz_columns_free(&model->columns);
         RITZ_CHECK(ritz_columns_copy(&basis->columns, &model->columns));
     } else {
-        RITZ_CHECK(perturb(&basis->columns, model));
+        RITZ_CHECK(perturb_states(&basis->columns, model));
     }
     RITZ_CHECK(note_bound(basis, model));
     model->origin = basis->origin;
@@ -299,9 +303,9 @@ done:
 }
 
 /* K, D and B are M^-1 K and so on here. */
-static ritz_status fill(const ritz_dense *K, const ritz_dense *D,
-                        const ritz_dense *B, const ritz_io *io,
-                        ritz_state_space *out)
+static ritz_status fill_dofs(const ritz_dense *K, const ritz_dense *D,
+                             const ritz_dense *B, const ritz_io *io,
+                             ritz_state_space *out)
 {
     int64_t n = K->nrow;
 
@@ -340,7 +344,7 @@ static ritz_status by_dofs(const ritz_structure *model, const ritz_dense *D,
         RITZ_TRY(ritz_general_solve(&model->M, false, &solved[k]));
     }
     RITZ_TRY(ritz_state_space_new(2 * D->nrow, io, &made));
-    RITZ_TRY(fill(&solved[0], &solved[1], &solved[2], io, &made));
+    RITZ_TRY(fill_dofs(&solved[0], &solved[1], &solved[2], io, &made));
     *out = made;
     made = (ritz_state_space){0};
 done:
@@ -383,8 +387,10 @@ done:
     return status;
 }
 
-static ritz_status convert(const ritz_structure *model, const ritz_io *io,
-                           const ritz_damping *damping, ritz_state_space *out)
+static ritz_status convert_structure(const ritz_structure *model,
+                                     const ritz_io *io,
+                                     const ritz_damping *damping,
+                                     ritz_state_space *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense D = {0};
@@ -412,7 +418,7 @@ ritz_status ritz_state_space_of_component(const ritz_component *component,
     ritz_structure model = {0};
 
     RITZ_TRY(ritz_structure_of_component(component, &model));
-    RITZ_TRY(convert(&model, &component->io, damping, out));
+    RITZ_TRY(convert_structure(&model, &component->io, damping, out));
     memcpy(out->units, component->units, sizeof out->units);
 done:
     ritz_structure_free(&model);
@@ -428,7 +434,7 @@ ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
 
     RITZ_TRY(ritz_structure_refuse(reduced->K4.val != NULL));
     RITZ_TRY(ritz_structure_of_reduced(reduced, &model));
-    RITZ_TRY(convert(&model, &reduced->io, damping, out));
+    RITZ_TRY(convert_structure(&model, &reduced->io, damping, out));
     memcpy(out->units, reduced->units, sizeof out->units);
     out->origin = reduced->origin;
 done:

@@ -34,7 +34,7 @@ typedef struct sight {
     ritz_dense most;         /* |Phi|'|D||Phi| */
 } sight;
 
-static double mixing(const sight *s, int64_t j, int64_t k)
+static double mixing_of(const sight *s, int64_t j, int64_t k)
 {
     double l_j = fabs(s->modes->lambda[j]), l_k = fabs(s->modes->lambda[k]);
     double norm = fmin(s->highest, fmax(l_j, l_k) / RITZ_EIGEN_FAR_BELOW);
@@ -74,7 +74,7 @@ static void project_rows(const sight *s, const double *a, double *value,
     for (int64_t k = 0; k < s->modes->count; k++)
         for (int64_t j = 0; j < s->modes->count; j++)
             if (fabs(lambda[j] - lambda[k]) > s->same)
-                doubt[k] += mixing(s, j, k) * fabs(value[j]);
+                doubt[k] += mixing_of(s, j, k) * fabs(value[j]);
 }
 
 /* a'phi_k of every mode, and what rounding may make of it; added to what is
@@ -93,7 +93,7 @@ static double channel_mixing(const ritz_modal_model *modes, int64_t j,
 {
     const sight s = eyes_on(modes);
 
-    return mixing(&s, j, k);
+    return mixing_of(&s, j, k);
 }
 
 static ritz_status open_eyes(const ritz_modal_model *modes, const ritz_dense *D,
@@ -125,7 +125,7 @@ static bool is_coupled(const sight *s)
                 fabs(ritz_dense_col(Delta, i)[i] - ritz_dense_col(Delta, j)[j]);
 
             if (i != j && fabs(ritz_dense_col(Delta, j)[i]) >
-                              mixing(s, i, j) * apart +
+                              mixing_of(s, i, j) * apart +
                                   s->eps * ritz_dense_col(&s->most, j)[i])
                 return true;
         }

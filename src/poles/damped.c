@@ -30,7 +30,7 @@ static void modal_free(damped_modal *m)
 }
 
 /* Rows and columns of the modes. */
-static ritz_status lead(const ritz_dense *A, int64_t m, ritz_dense *out)
+static ritz_status take_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
 {
     if (!A->val)
         return RITZ_OK;
@@ -47,8 +47,8 @@ static ritz_status modal_new(const ritz_poles *poles, damped_modal *out)
 
     RITZ_CHECK(ritz_dense_new(m, m, &out->K));
     RITZ_CHECK(ritz_dense_new(m, m, &out->M));
-    RITZ_CHECK(lead(&poles->D, m, &out->D));
-    RITZ_CHECK(lead(&poles->K4, m, &out->K4));
+    RITZ_CHECK(take_leading(&poles->D, m, &out->D));
+    RITZ_CHECK(take_leading(&poles->K4, m, &out->K4));
     for (int64_t k = 0; k < m; k++) {
         ritz_dense_col(&out->K, k)[k] = poles->lambda[k];
         ritz_dense_col(&out->M, k)[k] = 1.0;
@@ -57,7 +57,7 @@ static ritz_status modal_new(const ritz_poles *poles, damped_modal *out)
 }
 
 /* How much of the shape of pole j is of mode k; 0 of what does not oscillate.*/
-static double share(const ritz_spectrum *spectrum, int64_t k, int64_t j)
+static double share_of(const ritz_spectrum *spectrum, int64_t k, int64_t j)
 {
     if (!(cimag(spectrum->s[j]) > 0.0))
         return 0.0;
@@ -71,8 +71,8 @@ static double share(const ritz_spectrum *spectrum, int64_t k, int64_t j)
  * largest of what is left; else an overdamped mode would be given the ratio of
  * a neighbour.
  */
-static ritz_status assign(const ritz_poles *poles,
-                          const ritz_spectrum *spectrum, int64_t *of)
+static ritz_status assign_poles(const ritz_poles *poles,
+                                const ritz_spectrum *spectrum, int64_t *of)
 {
     ritz_status status = RITZ_OK;
     bool *taken = NULL;
@@ -87,8 +87,8 @@ static ritz_status assign(const ritz_poles *poles,
         for (int64_t j = 0; j < spectrum->count; j++)
             for (int64_t k = poles->num_rigid; k < poles->count && !taken[j];
                  k++)
-                if (of[k] < 0 && share(spectrum, k, j) > best) {
-                    best = share(spectrum, k, j);
+                if (of[k] < 0 && share_of(spectrum, k, j) > best) {
+                    best = share_of(spectrum, k, j);
                     mode = k;
                     pole = j;
                 }
@@ -131,8 +131,9 @@ done:
 }
 
 /* x = Phi q, n x 2, of modal shape j. */
-static ritz_status shape(const ritz_dense *Phi, const ritz_spectrum *spectrum,
-                         int64_t j, ritz_dense *out)
+static ritz_status shape_of(const ritz_dense *Phi,
+                            const ritz_spectrum *spectrum, int64_t j,
+                            ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int64_t m = Phi->ncol;
@@ -183,7 +184,7 @@ static ritz_status refine_band(const ritz_poles *poles,
         if (of[k] < 0 || !in_band(poles, k, band_hz))
             continue;
         s = damped->listing.s[of[k]];
-        RITZ_TRY(shape(&pairs->Phi, &damped->listing, of[k], &x));
+        RITZ_TRY(shape_of(&pairs->Phi, &damped->listing, of[k], &x));
         RITZ_TRY(ritz_refine(&refiner, &x, &s));
         ritz_dense_free(&x);
         zeta = ritz_spectrum_ratio(s) + given_ratio(poles, own, k);
@@ -211,7 +212,7 @@ static ritz_status take_coupled(const ritz_poles *poles,
     RITZ_NEW(of, poles->count);
     RITZ_TRY(modal_new(poles, &m));
     RITZ_TRY(ritz_spectrum_dense(&model, NULL, &damped->listing));
-    RITZ_TRY(assign(poles, &damped->listing, of));
+    RITZ_TRY(assign_poles(poles, &damped->listing, of));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {
         damped->s[k] =
             of[k] < 0 ? ritz_complex(nan(""), 0.0) : damped->listing.s[of[k]];

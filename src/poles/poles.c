@@ -32,8 +32,8 @@ static void assemble_coupled(const ritz_poles *poles, double w,
 
 /* S Z S and S q, of unit diagonal: w^2 of rigid motion is small beside Lambda
  * where nothing is wrong. */
-static void equilibrate(int64_t m, int64_t inputs, double _Complex *Z,
-                        double _Complex *q, double *s)
+static void equilibrate_coupled(int64_t m, int64_t inputs, double _Complex *Z,
+                                double _Complex *q, double *s)
 {
     for (int64_t j = 0; j < m; j++) {
         double own = cabs(Z[j + j * m]);
@@ -49,8 +49,8 @@ static void equilibrate(int64_t m, int64_t inputs, double _Complex *Z,
 }
 
 /* Z := its factors, complex symmetric or not; LAPACK's info. */
-static int factor(bool skew, int m, double _Complex *Z, lapack_int *pivot,
-                  double *rcond)
+static int factor_coupled(bool skew, int m, double _Complex *Z,
+                          lapack_int *pivot, double *rcond)
 {
     double norm = LAPACKE_zlange(LAPACK_COL_MAJOR, '1', m, m, Z, m);
     int info = skew ? LAPACKE_zgetrf(LAPACK_COL_MAJOR, m, m, Z, m, pivot)
@@ -81,8 +81,8 @@ static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
     assemble_coupled(poles, 2.0 * RITZ_PI * hertz, Z);
     for (int64_t k = 0; k < m * inputs; k++)
         q[k] = poles->io.B.val[k];
-    equilibrate(m, inputs, Z, q, s);
-    info = factor(poles->skew, (int)m, Z, pivot, &rcond);
+    equilibrate_coupled(m, inputs, Z, q, s);
+    info = factor_coupled(poles->skew, (int)m, Z, pivot, &rcond);
     RITZ_FAIL_IF(info != 0 || !(rcond > RITZ_COUPLED_RCOND), RITZ_ERR_SINGULAR,
                  "the response at %.9g Hz is infinite: an undamped mode, or at "
                  "0 Hz a rigid-body motion",

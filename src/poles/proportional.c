@@ -9,8 +9,8 @@
 #include <math.h>
 
 /* Sum of the products of entries of A and B at the same places. */
-static ritz_status inner(const ritz_sparse *A, const ritz_sparse *B,
-                         double *out)
+static ritz_status inner_product(const ritz_sparse *A, const ritz_sparse *B,
+                                 double *out)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse a = {0}, b = {0}; /* on the union of both patterns */
@@ -29,8 +29,8 @@ done:
 }
 
 /* |D - a M - b K| / |D| */
-static ritz_status residual(const ritz_component *c, double a, double b,
-                            double *out)
+static ritz_status residual_of(const ritz_component *c, double a, double b,
+                               double *out)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse sum = {0}, rest = {0};
@@ -51,16 +51,17 @@ done:
 }
 
 /* a and b; b = 0 without stiffness, or where K is a multiple of M. */
-static ritz_status fit(const ritz_component *c, double *a, double *b)
+static ritz_status fit_coefficients(const ritz_component *c, double *a,
+                                    double *b)
 {
     double mm = 0.0, mk = 0.0, kk = 0.0, md = 0.0, kd = 0.0;
     double ee = 0.0;
 
-    RITZ_CHECK(inner(&c->M, &c->M, &mm));
-    RITZ_CHECK(inner(&c->M, &c->K, &mk));
-    RITZ_CHECK(inner(&c->K, &c->K, &kk));
-    RITZ_CHECK(inner(&c->M, &c->D, &md));
-    RITZ_CHECK(inner(&c->K, &c->D, &kd));
+    RITZ_CHECK(inner_product(&c->M, &c->M, &mm));
+    RITZ_CHECK(inner_product(&c->M, &c->K, &mk));
+    RITZ_CHECK(inner_product(&c->K, &c->K, &kk));
+    RITZ_CHECK(inner_product(&c->M, &c->D, &md));
+    RITZ_CHECK(inner_product(&c->K, &c->D, &kd));
     ee = mm > 0.0 ? kk - mk * (mk / mm) : kk;
     *b = ee > 1e-12 * kk ? (kd - (mm > 0.0 ? md * (mk / mm) : 0.0)) / ee : 0.0;
     *a = mm > 0.0 ? (md - *b * mk) / mm : 0.0;
@@ -70,6 +71,6 @@ static ritz_status fit(const ritz_component *c, double *a, double *b)
 ritz_status ritz_proportional(const ritz_component *component, double *a,
                               double *b, double *left)
 {
-    RITZ_CHECK(fit(component, a, b));
-    return residual(component, *a, *b, left);
+    RITZ_CHECK(fit_coefficients(component, a, b));
+    return residual_of(component, *a, *b, left);
 }

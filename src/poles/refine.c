@@ -27,7 +27,7 @@ ritz_status ritz_refiner_new(const ritz_component *component, bool structural,
     return RITZ_OK;
 }
 
-static double norm(const ritz_dense *x)
+static double norm_of(const ritz_dense *x)
 {
     double sum = 0.0;
 
@@ -37,8 +37,8 @@ static double norm(const ritz_dense *x)
 }
 
 /* u += c A x. */
-static ritz_status add(const ritz_sparse *A, double _Complex c,
-                       const ritz_dense *x, double _Complex *u)
+static ritz_status add_product(const ritz_sparse *A, double _Complex c,
+                               const ritz_dense *x, double _Complex *u)
 {
     ritz_status status = RITZ_OK;
     ritz_dense Ax = {0};
@@ -66,7 +66,7 @@ static void add_most(const ritz_sparse *A, double c, const ritz_dense *x,
                 c * fabs(A->val[p]) * hypot(x->val[j], x->val[n + j]);
 }
 
-static ritz_status factor(ritz_refiner *r, double _Complex s)
+static ritz_status factor_at(ritz_refiner *r, double _Complex s)
 {
     double _Complex c[MOST_MATRICES] = {1.0, s * s};
     int64_t count = 2;
@@ -79,11 +79,11 @@ static ritz_status factor(ritz_refiner *r, double _Complex s)
 }
 
 /* One step; how far it moved s, 0 where s is the eigenvalue. */
-static ritz_status step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
-                        double _Complex *u, double *move)
+static ritz_status take_step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
+                             double _Complex *u, double *move)
 {
     ritz_status status = RITZ_OK;
-    double size = norm(x);
+    double size = norm_of(x);
     double _Complex xu = 0.0;
     int64_t n = x->nrow;
     bool last = false;
@@ -92,13 +92,13 @@ static ritz_status step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
         x->val[i] /= size;
     for (int64_t i = 0; i < n; i++)
         u[i] = 0.0;
-    RITZ_TRY(add(&r->component->M, 2.0 * *s, x, u));
-    RITZ_TRY(add(&r->component->D, 1.0, x, u));
-    status = factor(r, *s);
+    RITZ_TRY(add_product(&r->component->M, 2.0 * *s, x, u));
+    RITZ_TRY(add_product(&r->component->D, 1.0, x, u));
+    status = factor_at(r, *s);
     *move = 0.0;
     last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x, beside it */
     if (last)
-        status = factor(r, *s * (1.0 + RITZ_BESIDE_EIGENVALUE));
+        status = factor_at(r, *s * (1.0 + RITZ_BESIDE_EIGENVALUE));
     if (last && status == RITZ_ERR_SINGULAR)
         return RITZ_OK;
     RITZ_TRY(status);
@@ -128,7 +128,7 @@ ritz_status ritz_refine(ritz_refiner *refiner, ritz_dense *x,
 
     RITZ_NEW(u, x->nrow);
     for (int t = 0; t < MOST_STEPS && !still; t++) {
-        RITZ_TRY(step(refiner, x, s, u, &move));
+        RITZ_TRY(take_step(refiner, x, s, u, &move));
         still =
             move <= RITZ_REFINED * cabs(*s) ||
             (move <= RITZ_REFINED_NEARLY * cabs(*s) && move >= 0.5 * before);
@@ -163,7 +163,7 @@ ritz_status ritz_refiner_residual(const ritz_refiner *refiner,
     RITZ_NEW(u, x->nrow);
     RITZ_NEW(most, x->nrow);
     for (int k = 0; k < MOST_MATRICES; k++) {
-        RITZ_TRY(add(terms[k].A, terms[k].c, x, u));
+        RITZ_TRY(add_product(terms[k].A, terms[k].c, x, u));
         add_most(terms[k].A, cabs(terms[k].c), x, most);
     }
     for (int64_t i = 0; i < x->nrow; i++) {

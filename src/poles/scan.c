@@ -9,7 +9,7 @@
 
 static const int64_t most_points = 100000;
 
-static ritz_status check(const ritz_scan_request *request, int64_t *count)
+static ritz_status check_range(const ritz_scan_request *request, int64_t *count)
 {
     double steps = (request->to - request->from) / request->step;
 
@@ -26,8 +26,8 @@ static ritz_status check(const ritz_scan_request *request, int64_t *count)
 }
 
 /* The mode-th oscillating pole. */
-static ritz_status begin(const ritz_spectrum *spectrum, int64_t mode,
-                         double _Complex *out)
+static ritz_status begin_scan(const ritz_spectrum *spectrum, int64_t mode,
+                              double _Complex *out)
 {
     int64_t seen = 0;
     bool found = false;
@@ -46,7 +46,8 @@ static ritz_status begin(const ritz_spectrum *spectrum, int64_t mode,
     return RITZ_OK;
 }
 
-static double _Complex nearest(const ritz_spectrum *spectrum, double _Complex s)
+static double _Complex nearest_pole(const ritz_spectrum *spectrum,
+                                    double _Complex s)
 {
     double _Complex best = nan("");
     double least = HUGE_VAL;
@@ -106,7 +107,7 @@ ritz_status ritz_scan_dampers(const ritz_second_order *model,
     ritz_spectrum spectrum = {0};
     bench b = {0};
 
-    RITZ_TRY(check(request, &scan.count));
+    RITZ_TRY(check_range(request, &scan.count));
     RITZ_TRY(bench_new(model, dampers, &b));
     RITZ_NEW(scan.c, scan.count);
     RITZ_NEW(scan.s, scan.count);
@@ -114,11 +115,11 @@ ritz_status ritz_scan_dampers(const ritz_second_order *model,
         scan.c[k] = request->from + (double)k * request->step;
         RITZ_TRY(poles_at(&b, request, damping, scan.c[k], &spectrum));
         if (k == 0)
-            RITZ_TRY(begin(&spectrum, request->mode, &scan.s[0]));
+            RITZ_TRY(begin_scan(&spectrum, request->mode, &scan.s[0]));
         else
-            scan.s[k] = nearest(&spectrum,
-                                k == 1 ? scan.s[0]
-                                       : 2.0 * scan.s[k - 1] - scan.s[k - 2]);
+            scan.s[k] = nearest_pole(&spectrum, k == 1 ? scan.s[0]
+                                                       : 2.0 * scan.s[k - 1] -
+                                                             scan.s[k - 2]);
         if (ritz_spectrum_ratio(scan.s[k]) >
             ritz_spectrum_ratio(scan.s[scan.best]))
             scan.best = k;

@@ -181,8 +181,8 @@ done:
 }
 
 /* Which are listed, in order; those up to `zero` are counted. */
-static int64_t choose(const found *f, bool structural, double zero,
-                      place *order, int64_t *zeros)
+static int64_t choose_listed(const found *f, bool structural, double zero,
+                             place *order, int64_t *zeros)
 {
     int64_t count = 0;
 
@@ -199,8 +199,8 @@ static int64_t choose(const found *f, bool structural, double zero,
 }
 
 /* x = X [p; a] of y = [W p; p'; a], with |x| = 1. */
-static void shape(const ritz_state *state, const double _Complex *y, double *re,
-                  double *im)
+static void put_shape(const ritz_state *state, const double _Complex *y,
+                      double *re, double *im)
 {
     int64_t n = state->X.nrow;
     double size = 0.0;
@@ -224,8 +224,10 @@ static void shape(const ritz_state *state, const double _Complex *y, double *re,
 }
 
 /* Columns y of the poles that are listed, real or imaginary parts. */
-static ritz_status pick(const found *f, int64_t count, const place *order,
-                        double (*part)(double _Complex), ritz_dense *out)
+static ritz_status pick_columns(const found *f, int64_t count,
+                                const place *order,
+                                double (*part)(double _Complex),
+                                ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(f->size, count, out));
     for (int64_t j = 0; j < count; j++)
@@ -260,8 +262,8 @@ static ritz_status find_residuals(const ritz_state *state, const found *f,
     RITZ_TRY(ritz_state_matrix(state, &A));
     for (int64_t i = 0; i < A.nrow * A.ncol; i++)
         size = hypot(size, A.val[i]);
-    RITZ_TRY(pick(f, out->count, order, creal, &re));
-    RITZ_TRY(pick(f, out->count, order, cimag, &im));
+    RITZ_TRY(pick_columns(f, out->count, order, creal, &re));
+    RITZ_TRY(pick_columns(f, out->count, order, cimag, &im));
     RITZ_TRY(ritz_dense_mul(&A, &re, &Are));
     RITZ_TRY(ritz_dense_mul(&A, &im, &Aim));
     add_structural(state, &im, -1.0, &Are);
@@ -289,8 +291,8 @@ done:
     return status;
 }
 
-static ritz_status list(const ritz_state *state, const found *f,
-                        ritz_spectrum *out)
+static ritz_status list_poles(const ritz_state *state, const found *f,
+                              ritz_spectrum *out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = state->X.nrow;
@@ -300,15 +302,15 @@ static ritz_status list(const ritz_state *state, const found *f,
     RITZ_NEW(order, f->count);
     out->num_zero = 2 * state->num_free;
     RITZ_TRY(find_zero(state, &zero));
-    out->count = choose(f, state->K4.val, zero, order, &out->num_zero);
+    out->count = choose_listed(f, state->K4.val, zero, order, &out->num_zero);
     RITZ_NEW(out->s, out->count);
     RITZ_NEW(out->residual, out->count);
     RITZ_TRY(ritz_dense_new(n, out->count, &out->re));
     RITZ_TRY(ritz_dense_new(n, out->count, &out->im));
     for (int64_t j = 0; j < out->count; j++) {
         out->s[j] = f->s[order[j].index];
-        shape(state, f->y + order[j].index * f->size,
-              ritz_dense_col(&out->re, j), ritz_dense_col(&out->im, j));
+        put_shape(state, f->y + order[j].index * f->size,
+                  ritz_dense_col(&out->re, j), ritz_dense_col(&out->im, j));
     }
     RITZ_TRY(find_residuals(state, f, order, out));
 done:
@@ -331,7 +333,7 @@ ritz_status ritz_spectrum_dense(const ritz_second_order *model,
         RITZ_TRY(solve_complex(&state, &f));
     else
         RITZ_TRY(solve_real(&state, &f));
-    RITZ_TRY(list(&state, &f, &spectrum));
+    RITZ_TRY(list_poles(&state, &f, &spectrum));
     (void)snprintf(spectrum.engine, sizeof spectrum.engine, "dense LAPACK");
     *out = spectrum;
     spectrum = (ritz_spectrum){0};

@@ -148,8 +148,8 @@ static double _Complex add_ratio(double _Complex s, double ratio)
 }
 
 /* |x^H y| / (|x||y|) of column j and y, real and imaginary part. */
-static double correlation(const ritz_spectrum *spectrum, int64_t j,
-                          const ritz_dense *y)
+static double correlation_of(const ritz_spectrum *spectrum, int64_t j,
+                             const ritz_dense *y)
 {
     const double *re = ritz_dense_col(&spectrum->re, j);
     const double *im = ritz_dense_col(&spectrum->im, j);
@@ -171,7 +171,7 @@ static bool is_listed(const ritz_spectrum *spectrum, int64_t count,
 {
     for (int64_t j = 0; j < count; j++)
         if (cabs(spectrum->s[j] - s) <= RITZ_SAME_POLE * cabs(s) &&
-            correlation(spectrum, j, x) > RITZ_SAME_SHAPE)
+            correlation_of(spectrum, j, x) > RITZ_SAME_SHAPE)
             return true;
     return false;
 }

@@ -61,8 +61,9 @@ static bool is_rounding(double size, double off, double shown, int in_vain)
            (in_vain >= IN_VAIN && off <= RITZ_ROUNDING_GROWN * shown);
 }
 
-static void judge(const ritz_simulation *exact, const ritz_simulation *made,
-                  const ritz_reach *reach, double tolerance, trial *t)
+static void judge_outputs(const ritz_simulation *exact,
+                          const ritz_simulation *made, const ritz_reach *reach,
+                          double tolerance, trial *t)
 {
     t->found = (ritz_accuracy){.left = -1};
     for (int64_t i = 0; i < t->num_outputs; i++) {
@@ -92,9 +93,9 @@ static void judge(const ritz_simulation *exact, const ritz_simulation *made,
 }
 
 /* Differences at a step, from `modal` (or itself) at half of it. */
-static ritz_status measure(const ritz_simulated *subject,
-                           const ritz_simulation_request *request,
-                           double tolerance, trial *t)
+static ritz_status measure_errors(const ritz_simulated *subject,
+                                  const ritz_simulation_request *request,
+                                  double tolerance, trial *t)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request coarse = *request, fine = *request;
@@ -108,7 +109,7 @@ static ritz_status measure(const ritz_simulated *subject,
         fine.integrator = &ritz_integrator_modal;
     RITZ_TRY(ritz_simulate_noting(subject, &coarse, false, NULL, &made));
     RITZ_TRY(ritz_simulate_noting(subject, &fine, false, &reach, &exact));
-    judge(&exact, &made, &reach, tolerance, t);
+    judge_outputs(&exact, &made, &reach, tolerance, t);
 done:
     ritz_simulation_free(&made);
     ritz_simulation_free(&exact);
@@ -142,9 +143,9 @@ static int64_t most_tried(int64_t values)
 }
 
 /* @p last is what kept the last step from being taken, if anything did. */
-static ritz_status refuse(const ritz_simulation_request *request, int64_t most,
-                          const ritz_accuracy *found, double tolerance,
-                          ritz_status last)
+static ritz_status refuse_steps(const ritz_simulation_request *request,
+                                int64_t most, const ritz_accuracy *found,
+                                double tolerance, ritz_status last)
 {
     char what[64];
 
@@ -191,10 +192,10 @@ ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
     RITZ_TRY(trial_new(outputs, &t));
     while (true) {
         if (asked.seconds / asked.step > (double)most) {
-            status = refuse(&asked, most, &t.found, tolerance, status);
+            status = refuse_steps(&asked, most, &t.found, tolerance, status);
             goto done;
         }
-        status = measure(subject, &asked, tolerance, &t);
+        status = measure_errors(subject, &asked, tolerance, &t);
         if (status == RITZ_OK && t.found.error <= tolerance)
             break;
         /* an explicit integrator may refuse what is too coarse */

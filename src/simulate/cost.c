@@ -36,7 +36,7 @@ static double processor_seconds(void)
 }
 
 /* s, of modes. */
-static ritz_status fastest(const ritz_motion *modes, double *out)
+static ritz_status find_fastest(const ritz_motion *modes, double *out)
 {
     ritz_status status = RITZ_OK;
     int64_t m = modes->n;
@@ -84,7 +84,8 @@ static ritz_status take_steps(ritz_march *march, int64_t steps, const double *u,
 }
 
 /* Fewer at first: until they take long enough to be measured. */
-static ritz_status measure(ritz_march *march, const double *u, double *out)
+static ritz_status measure_march(ritz_march *march, const double *u,
+                                 double *out)
 {
     int64_t steps = FIRST_STEPS;
     double spent = 0.0, least = HUGE_VAL;
@@ -121,7 +122,7 @@ ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
     RITZ_TRY(ritz_motion_new(&subject, &request, &motion));
     RITZ_NEW(u, motion.B.ncol);
     RITZ_TRY(ritz_march_new(&motion, integrator, step, request.rho, &march));
-    RITZ_TRY(measure(&march, u, out));
+    RITZ_TRY(measure_march(&march, u, out));
 done:
     free(u);
     ritz_march_free(&march);
@@ -142,7 +143,7 @@ ritz_status ritz_simulate_cost(const ritz_second_order *model,
     RITZ_FAIL_IF(!isfinite(end) || end < 0.0, RITZ_ERR_ARGUMENT,
                  "a band to %g Hz makes no sense", end);
     RITZ_TRY(ritz_motion_dense(model, damping, true, &modes));
-    RITZ_TRY(fastest(&modes, &root));
+    RITZ_TRY(find_fastest(&modes, &root));
     cost.highest_hz = sqrt(modes.highest) / (2.0 * RITZ_PI);
     cost.step_explicit = root > 0.0 ? 2.0 / root : HUGE_VAL;
     if (end <= 0.0)
@@ -162,8 +163,8 @@ done:
 }
 
 /* Cholesky factors of a well-conditioned matrix until they take long enough. */
-static ritz_status factors(const ritz_dense *A, int64_t count, ritz_dense *work,
-                           double *out)
+static ritz_status measure_factors(const ritz_dense *A, int64_t count,
+                                   ritz_dense *work, double *out)
 {
     int n = (int)A->nrow;
     size_t size = (size_t)(A->nrow * A->ncol) * sizeof *A->val;
@@ -193,14 +194,14 @@ ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)
     for (int64_t j = 0; j < order; j++)
         for (int64_t i = 0; i < order; i++)
             ritz_dense_col(&A, j)[i] = i == j ? 2.0 : 1.0 / (double)order;
-    RITZ_TRY(factors(&A, count, &work, &spent));
+    RITZ_TRY(measure_factors(&A, count, &work, &spent));
     while (spent < RITZ_MEASURED_SECONDS) {
         count *= 2;
-        RITZ_TRY(factors(&A, count, &work, &spent));
+        RITZ_TRY(measure_factors(&A, count, &work, &spent));
     }
     least = spent;
     for (int k = 1; k < MEASUREMENTS; k++) {
-        RITZ_TRY(factors(&A, count, &work, &spent));
+        RITZ_TRY(measure_factors(&A, count, &work, &spent));
         least = fmin(least, spent);
     }
     *out = least / (double)count;

@@ -89,8 +89,9 @@ static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
 }
 
 /* The sum of the sparse matrices. */
-static ritz_status combine(const ritz_motion *motion, const double c[3],
-                           bool fill, ritz_sparse *out)
+static ritz_status combine_matrices(const ritz_motion *motion,
+                                    const double c[3], bool fill,
+                                    ritz_sparse *out)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse sum = {0}, more = {0};
@@ -131,7 +132,7 @@ static ritz_status factor_sparse(const ritz_motion *motion, const double c[3],
     const ritz_sparse *sum = NULL;
 
     RITZ_NEW(F->kept, 1);
-    RITZ_TRY(combine(motion, c, fill, F->kept));
+    RITZ_TRY(combine_matrices(motion, c, fill, F->kept));
     sum = F->kept;
     if (skew) {
         RITZ_NEW(F->z, motion->n);

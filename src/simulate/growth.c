@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 /* SplitMix64 [Steele2014]: between -1 and 1, away from 0. */
-static double noise(uint64_t *seed)
+static double next_noise(uint64_t *seed)
 {
     uint64_t z = (*seed += UINT64_C(0x9e3779b97f4a7c15));
     double value = 0.0;
@@ -26,7 +26,8 @@ static double noise(uint64_t *seed)
 }
 
 /* E of modal coordinates. */
-static double energy(const ritz_motion *modes, const double *q, const double *v)
+static double energy_of(const ritz_motion *modes, const double *q,
+                        const double *v)
 {
     double sum = 0.0;
 
@@ -73,10 +74,10 @@ static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
     for (int64_t k = 0; k < t->modes->n; k++) {
         double w = sqrt(fabs(t->modes->lambda[k]));
 
-        t->q[k] = w > 0.0 ? noise(seed) / w : 0.0;
-        t->v[k] = noise(seed);
+        t->q[k] = w > 0.0 ? next_noise(seed) / w : 0.0;
+        t->v[k] = next_noise(seed);
     }
-    start = energy(t->modes, t->q, t->v);
+    start = energy_of(t->modes, t->q, t->v);
     RITZ_CHECK(from_modes(t->modes, t->motion, &t->mass, t->q, march->x));
     RITZ_CHECK(from_modes(t->modes, t->motion, &t->mass, t->v, march->v));
     if (march->settle)
@@ -87,7 +88,7 @@ static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
         RITZ_CHECK(march->advance(march, t->u, t->u));
         to_modes(t->modes, t->motion, march->x, t->q);
         to_modes(t->modes, t->motion, march->v, t->v);
-        now = energy(t->modes, t->q, t->v) / start;
+        now = energy_of(t->modes, t->q, t->v) / start;
         *worst = isfinite(now) ? fmax(*worst, now) : HUGE_VAL;
     }
     return RITZ_OK;

@@ -119,9 +119,9 @@ static void find_empty(const ritz_sparse *A, bool *out)
             out[A->rowind[k]] = false;
 }
 
-static ritz_status check(const ritz_component *component,
-                         const ritz_damping *damping, const bool *massless,
-                         const ritz_sparse *D)
+static ritz_status check_sparse(const ritz_component *component,
+                                const ritz_damping *damping,
+                                const bool *massless, const ritz_sparse *D)
 {
     const ritz_io *io = &component->io;
 
@@ -198,8 +198,8 @@ static ritz_status find_push(ritz_effective *mass, ritz_motion *m)
     return ritz_effective_solve(mass, m->push.ncol, m->push.val);
 }
 
-static ritz_status fill(const ritz_component *component,
-                        const ritz_damping *damping, ritz_motion *m)
+static ritz_status fill_sparse(const ritz_component *component,
+                               const ritz_damping *damping, ritz_motion *m)
 {
     ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
@@ -225,7 +225,7 @@ static ritz_status fill(const ritz_component *component,
             D = (ritz_sparse){0};
         }
     }
-    RITZ_TRY(check(component, damping, m->massless, &m->sD));
+    RITZ_TRY(check_sparse(component, damping, m->massless, &m->sD));
     RITZ_TRY(ritz_dense_copy(&io->B, &m->B));
     RITZ_TRY(ritz_dense_copy(&io->C, &m->C));
     RITZ_TRY(ritz_dense_copy(&io->Cv, &m->Cv));
@@ -244,7 +244,7 @@ static ritz_status motion_of_sparse(const ritz_component *component,
     ritz_motion m = {.form = RITZ_FORM_SPARSE, .highest = nan("")};
     ritz_effective mass = {0};
 
-    RITZ_TRY(fill(component, damping ? damping : &none, &m));
+    RITZ_TRY(fill_sparse(component, damping ? damping : &none, &m));
     RITZ_TRY_IN("M", ritz_effective_new(&m, 1.0, 0.0, 0.0, true, &mass));
     RITZ_TRY(find_push(&mass, &m));
     RITZ_TRY(write_out_sparse(&component->io, &mass, &m));
@@ -256,13 +256,13 @@ done:
     return status;
 }
 
-static bool present(const ritz_dense *A)
+static bool is_present(const ritz_dense *A)
 {
     return A && A->val;
 }
 
 /* A += alpha X; A of zeros if it is {0}. */
-static ritz_status add(double alpha, const ritz_dense *X, ritz_dense *A)
+static ritz_status add_scaled(double alpha, const ritz_dense *X, ritz_dense *A)
 {
     if (!A->val)
         RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, A));
@@ -272,7 +272,8 @@ static ritz_status add(double alpha, const ritz_dense *X, ritz_dense *A)
 }
 
 /* C -= A X */
-static ritz_status take(const ritz_dense *A, const ritz_dense *X, ritz_dense *C)
+static ritz_status subtract_product(const ritz_dense *A, const ritz_dense *X,
+                                    ritz_dense *C)
 {
     ritz_status status = RITZ_OK;
     ritz_dense AX = {0};
@@ -280,7 +281,7 @@ static ritz_status take(const ritz_dense *A, const ritz_dense *X, ritz_dense *C)
     if (!X->val)
         return RITZ_OK;
     RITZ_TRY(ritz_dense_mul(A, X, &AX));
-    RITZ_TRY(add(-1.0, &AX, C));
+    RITZ_TRY(add_scaled(-1.0, &AX, C));
 done:
     ritz_dense_free(&AX);
     return status;
@@ -297,10 +298,10 @@ static ritz_status write_out(const ritz_dense *Ca, ritz_motion *m)
     RITZ_TRY(ritz_general_transpose(Ca, &X));
     RITZ_TRY_IN("M", ritz_general_solve(&m->M, true, &X));
     RITZ_TRY(ritz_general_transpose(&X, &W));
-    RITZ_TRY(take(&W, &m->K, &m->C));
-    RITZ_TRY(take(&W, &m->D, &m->Cv));
+    RITZ_TRY(subtract_product(&W, &m->K, &m->C));
+    RITZ_TRY(subtract_product(&W, &m->D, &m->Cv));
     RITZ_TRY(ritz_dense_mul(&W, &m->B, &feed));
-    RITZ_TRY(add(1.0, &feed, &m->feed));
+    RITZ_TRY(add_scaled(1.0, &feed, &m->feed));
 done:
     ritz_dense_free(&X);
     ritz_dense_free(&W);
@@ -309,7 +310,7 @@ done:
 }
 
 /* B, C, Cv, feed and push of full matrices. */
-static ritz_status drive(const ritz_io *io, ritz_motion *m)
+static ritz_status drive_dense(const ritz_io *io, ritz_motion *m)
 {
     RITZ_CHECK(ritz_dense_copy(&io->B, &m->B));
     RITZ_CHECK(ritz_dense_copy(&io->C, &m->C));
@@ -345,7 +346,7 @@ static ritz_status fill_dense(const ritz_structure *s, const ritz_io *io,
     if (s->D.val)
         RITZ_CHECK(ritz_dense_copy(&s->D, &m->D));
     RITZ_CHECK(ritz_modal_damping(s, damping, &m->D));
-    return drive(io, m);
+    return drive_dense(io, m);
 }
 
 ritz_status ritz_motion_dense(const ritz_second_order *model,
@@ -356,13 +357,14 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
     ritz_status status = RITZ_OK;
     /* borrowed */
     const ritz_structure s = {*model->K, *model->M,
-                              present(model->D) ? *model->D : (ritz_dense){0}};
+                              is_present(model->D) ? *model->D
+                                                   : (ritz_dense){0}};
     ritz_modal_model modes = {0};
     ritz_motion m = {0};
     double highest = 0.0;
 
     damping = damping ? damping : &none;
-    RITZ_TRY(refuse_structural(present(model->K4) &&
+    RITZ_TRY(refuse_structural(is_present(model->K4) &&
                                ritz_dense_max(model->K4) > 0.0));
     RITZ_TRY(ritz_modal_model_new(&s, model->io, damping, &modes));
     for (int64_t j = 0; j < modes.count; j++)

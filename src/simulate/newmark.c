@@ -51,7 +51,7 @@ static void release(void *own)
 }
 
 /* a from equilibrium; dofs without mass have none. */
-static ritz_status settle(ritz_march *march, const double *u)
+static ritz_status settle_start(ritz_march *march, const double *u)
 {
     ritz_status status = RITZ_OK;
     const ritz_motion *m = march->motion;
@@ -85,8 +85,8 @@ static void follow_jumps(const ritz_motion *m, const double *u, newmark *s)
 }
 
 /* The right side: loads and what the predictors leave of equilibrium. */
-static void load(const ritz_march *march, const double *u0, const double *u1,
-                 newmark *s)
+static void load_step(const ritz_march *march, const double *u0,
+                      const double *u1, newmark *s)
 {
     const ritz_motion *m = march->motion;
     const ritz_newmark *w = &s->w;
@@ -109,7 +109,7 @@ static void load(const ritz_march *march, const double *u0, const double *u1,
 }
 
 /* x, v and a at the end; a_1 is in rhs. */
-static void move(ritz_march *march, newmark *s)
+static void move_step(ritz_march *march, newmark *s)
 {
     const ritz_newmark *w = &s->w;
     double h = march->step;
@@ -125,8 +125,8 @@ static void move(ritz_march *march, newmark *s)
     }
 }
 
-static void account(ritz_march *march, const double *u0, const double *u1,
-                    newmark *s)
+static void account_energy(ritz_march *march, const double *u0,
+                           const double *u1, newmark *s)
 {
     const ritz_motion *m = march->motion;
 
@@ -149,11 +149,11 @@ static ritz_status advance(ritz_march *march, const double *u0,
     follow_jumps(m, u0, s);
     if (m->energies)
         memcpy(s->x0, march->x, (size_t)m->n * sizeof *s->x0);
-    load(march, u0, u1, s);
+    load_step(march, u0, u1, s);
     RITZ_CHECK(ritz_effective_solve(&s->F, 1, s->rhs));
-    move(march, s);
+    move_step(march, s);
     if (m->energies)
-        account(march, u0, u1, s);
+        account_energy(march, u0, u1, s);
     memcpy(s->last, u1, (size_t)m->B.ncol * sizeof *u1);
     return RITZ_OK;
 }
@@ -177,7 +177,7 @@ ritz_status ritz_newmark_start(const ritz_motion *motion, double step,
                                 f1 * w->beta * step * step, false, &s->F));
     out->own = s;
     out->advance = advance;
-    out->settle = settle;
+    out->settle = settle_start;
     out->free = release;
     s = NULL;
 done:

@@ -47,7 +47,7 @@ static ritz_oscillator by_series(double lambda, double d, double h)
 }
 
 /* (exp(s h) - 1 - s h) / s^2 */
-static double second(double s, double h)
+static double second_difference(double s, double h)
 {
     double z = s * h;
     double sum = 0.0;
@@ -74,7 +74,7 @@ static ritz_oscillator by_real_roots(double lambda, double d, double h)
     o.rate = exp(big * h) + small * o.S;
     o.hold = exp(big * h) - big * o.S;
     o.P = (o.S - first) / big;
-    o.R = (o.P - second(small, h)) / big;
+    o.R = (o.P - second_difference(small, h)) / big;
     return o;
 }
 

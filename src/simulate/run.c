@@ -59,7 +59,7 @@ static void see_outputs(const ritz_march *march, const double *u, double *y)
 }
 
 /* x'A x / 2 column by column, without room for A x. */
-static double quadratic(const ritz_dense *A, const double *x)
+static double quadratic_form(const ritz_dense *A, const double *x)
 {
     double sum = 0.0;
 
@@ -92,8 +92,8 @@ void ritz_march_energy(const ritz_march *march, double *kinetic,
         }
         break;
     case RITZ_FORM_DENSE:
-        *kinetic = quadratic(&m->M, march->v);
-        *potential = quadratic(&m->K, march->x);
+        *kinetic = quadratic_form(&m->M, march->v);
+        *potential = quadratic_form(&m->K, march->x);
         break;
     case RITZ_FORM_SPARSE:
         *kinetic = sparse_quadratic(&m->sM, march->v);
@@ -117,7 +117,7 @@ static double sparse_diagonal(const ritz_sparse *A, int64_t j)
 }
 
 /* M or K of dof j by itself. */
-static double diagonal(const ritz_simulated *s, bool mass, int64_t j)
+static double diagonal_at(const ritz_simulated *s, bool mass, int64_t j)
 {
     if (s->component)
         return sparse_diagonal(mass ? &s->component->M : &s->component->K, j);
@@ -132,13 +132,14 @@ static void add_weight(const ritz_dense *C, int64_t j, int64_t i, double by,
         *weight = hypot(*weight, ritz_dense_col(C, j)[i] / sqrt(by));
 }
 
-static void weigh(const ritz_simulated *s, const ritz_io *io, ritz_reach *reach)
+static void weigh_outputs(const ritz_simulated *s, const ritz_io *io,
+                          ritz_reach *reach)
 {
     int64_t n = s->component ? s->component->num_dofs : s->model->M->nrow;
 
     for (int64_t j = 0; j < n; j++) {
-        double m = diagonal(s, true, j);
-        double k = m > 0.0 ? 0.0 : diagonal(s, false, j);
+        double m = diagonal_at(s, true, j);
+        double k = m > 0.0 ? 0.0 : diagonal_at(s, false, j);
 
         for (int64_t i = 0; i < reach->count; i++) {
             double *weight = reach->weight + i * WAYS;
@@ -162,9 +163,10 @@ ritz_status ritz_reach_new(const ritz_simulated *subject,
         RITZ_NEW(reach.weight, WAYS * reach.count);
         RITZ_NEW(reach.last, motion->n);
         RITZ_NEW(reach.work, motion->n);
-        weigh(subject,
-              subject->model ? subject->model->io : &subject->component->io,
-              &reach);
+        weigh_outputs(subject,
+                      subject->model ? subject->model->io
+                                     : &subject->component->io,
+                      &reach);
     }
     *out = reach;
     reach = (ritz_reach){0};
@@ -174,7 +176,7 @@ done:
 }
 
 /* sqrt(x'M x) */
-static double norm(const ritz_motion *motion, const double *x, double *work)
+static double norm_of(const ritz_motion *motion, const double *x, double *work)
 {
     if (motion->form == RITZ_FORM_MODAL)
         return sqrt(ritz_motion_dot(motion->n, x, x));
@@ -197,8 +199,8 @@ static void note_states(ritz_reach *reach, const ritz_march *march)
 }
 
 /* x'' as the quotient of two velocities: nothing of it at the start. */
-static double acceleration(ritz_reach *reach, const ritz_march *march,
-                           double seconds)
+static double acceleration_of(ritz_reach *reach, const ritz_march *march,
+                              double seconds)
 {
     double by = seconds - reach->seconds;
     double size = 0.0;
@@ -206,7 +208,7 @@ static double acceleration(ritz_reach *reach, const ritz_march *march,
     for (int64_t k = 0; k < march->motion->n; k++)
         reach->last[k] = march->v[k] - reach->last[k];
     if (by > 0.0)
-        size = norm(march->motion, reach->last, reach->work) / by;
+        size = norm_of(march->motion, reach->last, reach->work) / by;
     memcpy(reach->last, march->v, (size_t)march->motion->n * sizeof(double));
     reach->seconds = seconds;
     return size;
@@ -224,9 +226,9 @@ static void note_reach(ritz_reach *reach, const ritz_march *march,
         return;
     }
     ritz_march_energy(march, &kinetic, &potential);
-    size[BY_PLACE] = norm(march->motion, march->x, reach->work);
+    size[BY_PLACE] = norm_of(march->motion, march->x, reach->work);
     size[BY_RATE] = sqrt(2.0 * fmax(kinetic, 0.0));
-    size[BY_ACCELERATION] = acceleration(reach, march, seconds);
+    size[BY_ACCELERATION] = acceleration_of(reach, march, seconds);
     size[BY_STRAIN] = sqrt(2.0 * fmax(potential, 0.0));
     for (int64_t i = 0; i < reach->count; i++) {
         double sum = 0.0;
@@ -313,7 +315,8 @@ static void inputs_at(const ritz_simulation_request *request, int64_t step,
 }
 
 /* out = to'from, or from. */
-static void place(const ritz_motion *motion, const double *from, double *out)
+static void transform_start(const ritz_motion *motion, const double *from,
+                            double *out)
 {
     if (!from)
         return;
@@ -368,8 +371,9 @@ done:
 }
 
 /* Impulses: a jump of x' (of x of states), and the work it takes. */
-static void push(const ritz_motion *motion,
-                 const ritz_simulation_request *request, ritz_march *march)
+static void push_impulses(const ritz_motion *motion,
+                          const ritz_simulation_request *request,
+                          ritz_march *march)
 {
     double *moved = march->v ? march->v : march->x;
     double before = 0.0, after = 0.0, potential = 0.0;
@@ -389,8 +393,8 @@ static void push(const ritz_motion *motion,
     march->work += after - before;
 }
 
-static void note(const ritz_march *march, double start, int64_t k,
-                 const double *u, ritz_simulation *s)
+static void note_energy(const ritz_march *march, double start, int64_t k,
+                        const double *u, ritz_simulation *s)
 {
     for (int64_t j = 0; j < s->num_inputs; j++)
         s->u[k * s->num_inputs + j] = u[j];
@@ -414,20 +418,20 @@ static bool is_finite(const ritz_march *march)
 }
 
 /* Before the first step; what energy there is before impulses act. */
-static ritz_status begin(const ritz_motion *motion,
-                         const ritz_simulation_request *request,
-                         const double *u, ritz_march *march, double *energy)
+static ritz_status begin_run(const ritz_motion *motion,
+                             const ritz_simulation_request *request,
+                             const double *u, ritz_march *march, double *energy)
 {
     double kinetic = 0.0, potential = 0.0;
 
-    place(motion, request->x0, march->x);
+    transform_start(motion, request->x0, march->x);
     if (march->v)
-        place(motion, request->v0, march->v);
+        transform_start(motion, request->v0, march->v);
     RITZ_CHECK(balance_massless(motion, u, march->x));
     if (march->v)
         ritz_march_energy(march, &kinetic, &potential);
     *energy = kinetic + potential;
-    push(motion, request, march);
+    push_impulses(motion, request, march);
     if (march->settle)
         RITZ_CHECK(march->settle(march, u));
     return RITZ_OK;
@@ -455,8 +459,8 @@ static ritz_status run_march(const ritz_motion *motion,
     RITZ_TRY(ritz_march_new(motion, request->integrator, request->step,
                             request->rho, &march));
     inputs_at(request, 0, s.num_inputs, u1);
-    RITZ_TRY(begin(motion, request, u1, &march, &energy));
-    note(&march, energy, 0, u1, &s);
+    RITZ_TRY(begin_run(motion, request, u1, &march, &energy));
+    note_energy(&march, energy, 0, u1, &s);
     if (reach)
         note_reach(reach, &march, 0.0);
     for (int64_t k = 1; k <= steps; k++) {
@@ -473,7 +477,7 @@ static ritz_status run_march(const ritz_motion *motion,
                      "stable?",
                      t);
         s.seconds[k / every] = t;
-        note(&march, energy, k / every, u1, &s);
+        note_energy(&march, energy, k / every, u1, &s);
         if (reach)
             note_reach(reach, &march, t);
         ritz_monitor_step("simulation", k, steps);
@@ -493,8 +497,8 @@ const ritz_integrator *ritz_integrator_find(const char *name)
     return ritz_row_find(ritz_integrators, "integrator", name);
 }
 
-static ritz_status check(const ritz_simulated *subject,
-                         const ritz_simulation_request *request)
+static ritz_status check_subject(const ritz_simulated *subject,
+                                 const ritz_simulation_request *request)
 {
     int64_t steps = 0;
 
@@ -536,7 +540,7 @@ ritz_status ritz_simulate_noting(const ritz_simulated *subject,
     ritz_motion motion = {0};
     ritz_reach found = {0};
 
-    RITZ_TRY(check(subject, request));
+    RITZ_TRY(check_subject(subject, request));
     RITZ_TRY(ritz_motion_new(subject, request, &motion));
     motion.energies = energies && motion.form != RITZ_FORM_STATES;
     if (reach)

@@ -28,7 +28,7 @@ static const struct word {
 
 enum { NUM_WORDS = sizeof words / sizeof *words };
 
-static const struct word *find(const char *text)
+static const struct word *find_word(const char *text)
 {
     size_t length = strcspn(text, ":*");
 
@@ -41,11 +41,11 @@ static const struct word *find(const char *text)
 
 bool ritz_signal_is_file(const char *text)
 {
-    return find(text) == NULL;
+    return find_word(text) == NULL;
 }
 
 /* "F0,F1" */
-static bool numbers(char *text, int count, double *out)
+static bool read_numbers(char *text, int count, double *out)
 {
     for (int k = 0; k < count; k++) {
         char *comma = strchr(text, ',');
@@ -80,7 +80,7 @@ static ritz_status parse_word(const struct word *word, const char *text,
     colon = strchr(copy, ':');
     RITZ_REFUSE_IF(
         (colon != NULL) != (word->numbers > 0) ||
-            (colon && !numbers(colon + 1, word->numbers, signal.hertz)),
+            (colon && !read_numbers(colon + 1, word->numbers, signal.hertz)),
         RITZ_ERR_ARGUMENT, "'%s': %s is followed by %s", text, word->name,
         word->numbers == 0   ? "nothing but '*' and an amplitude"
         : word->numbers == 1 ? "':' and a frequency in Hz"
@@ -161,7 +161,7 @@ done:
 
 ritz_status ritz_signal_parse(const char *text, ritz_signal *out)
 {
-    const struct word *word = find(text);
+    const struct word *word = find_word(text);
     ritz_status status =
         word ? parse_word(word, text, out) : read_table(text, out);
 

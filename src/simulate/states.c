@@ -77,8 +77,8 @@ static void hand_over(states **s, ritz_march *out)
 }
 
 /* Rows 0..n-1 of some columns, times a factor. */
-static ritz_status block(const ritz_dense *A, int64_t n, int64_t first,
-                         int64_t count, double factor, ritz_dense *out)
+static ritz_status take_block(const ritz_dense *A, int64_t n, int64_t first,
+                              int64_t count, double factor, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(n, count, out));
     for (int64_t j = 0; j < count; j++)
@@ -110,9 +110,9 @@ ritz_status ritz_states_exact(const ritz_motion *motion, double step,
         ritz_dense_col(&A, n + p + j)[n + j] = 1.0 / step;
     }
     RITZ_TRY(ritz_exponential(&A, step, 0, NULL, &E, NULL));
-    RITZ_TRY(block(&E, n, 0, n, 1.0, &s->E));
-    RITZ_TRY(block(&E, n, n, p, scale, &s->G));
-    RITZ_TRY(block(&E, n, n + p, p, scale, &s->H));
+    RITZ_TRY(take_block(&E, n, 0, n, 1.0, &s->E));
+    RITZ_TRY(take_block(&E, n, n, p, scale, &s->G));
+    RITZ_TRY(take_block(&E, n, n + p, p, scale, &s->H));
     hand_over(&s, out);
 done:
     ritz_dense_free(&A);
@@ -139,10 +139,10 @@ ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
         left.val[k] = one - 0.5 * step * left.val[k];
         s->E.val[k] = one + 0.5 * step * s->E.val[k];
     }
-    RITZ_TRY(block(&motion->B, n, 0, motion->B.ncol, step, &s->G));
+    RITZ_TRY(take_block(&motion->B, n, 0, motion->B.ncol, step, &s->G));
     RITZ_TRY(ritz_general_solve(&left, false, &s->E));
     RITZ_TRY(ritz_general_solve(&left, false, &s->G));
-    RITZ_TRY(block(&s->G, n, 0, s->G.ncol, 0.5, &s->H));
+    RITZ_TRY(take_block(&s->G, n, 0, s->G.ncol, 0.5, &s->H));
     hand_over(&s, out);
 done:
     ritz_dense_free(&left);
