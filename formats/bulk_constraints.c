@@ -12,6 +12,7 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/tolerances.h"
 #include "formats/bulk.h"
 
 #include <lapacke.h>
@@ -519,7 +520,7 @@ static ritz_status solve_moved(const ritz_bulk_tying *it, ritz_dense *E)
 
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, m, m, E->val, m, pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', m, E->val, m, size, &rcond);
-    if (!(rcond > 1.5e-8))
+    if (!(rcond > RITZ_LOOSE_MOTION))
         RITZ_CHECK(
             tying_refuse(it, "cannot be solved for the dofs that UM names"));
     if (rest > 0)

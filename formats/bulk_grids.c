@@ -3,7 +3,6 @@
 #include "base/tolerances.h"
 #include "formats/bulk.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 
@@ -131,9 +130,7 @@ static void find_axes(const ritz_bulk_frame *frame,
         for (int j = 0; j < 3; j++)
             p[i] += frame->axes[3 * i + j] * (position[j] - frame->origin[j]);
     r = hypot(p[0], p[1]);
-    /* On the axis up to the rounding of the position: some ten operations on
-     * numbers up to the scale. */
-    if (frame->kind == RITZ_RECTANGULAR || r <= 16.0 * DBL_EPSILON * scale)
+    if (frame->kind == RITZ_RECTANGULAR || r <= RITZ_ON_AXIS * scale)
         return;
     local_axes(frame->kind, p, r, local);
     for (int64_t i = 0; i < 3; i++)
@@ -167,8 +164,8 @@ static ritz_status orient_frame(const ritz_bulk_cards *all,
         divide(e_z, z);
     cross(e_z, to_C, e_y);
     y = norm(e_y);
-    /* below the root of epsilon, x would keep less than half its digits */
-    if (!(z > 0.0 && y > 1.5e-8 * norm(to_C) && isfinite(z) && isfinite(y)))
+    if (!(z > 0.0 && y > RITZ_POINTS_ON_A_LINE * norm(to_C) && isfinite(z) &&
+          isfinite(y)))
         RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
                                      "the three points of coordinate system "
                                      "%" PRId64 " lie on a line",

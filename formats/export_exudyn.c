@@ -5,6 +5,7 @@
  */
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "base/tolerances.h"
 #include "container/h5.h"
 #include "formats/exudyn.h"
 
@@ -218,16 +219,14 @@ static ritz_status say_losses(const ritz_reduced *reduced, const exudyn_body *b,
             "rotations of %lld grids left out: they count in mass, inertia and "
             "frequencies, not in shapes",
             (long long)b->num_rotating));
-    /* rounding, of modes that 98 columns make: 3e-9, measured */
-    if (b->num_rotating > 0 || loss > 1e-6)
+    if (b->num_rotating > 0 || loss > RITZ_ENERGY_LOST)
         RITZ_CHECK(ritz_export_say(
             report,
             "translations alone change the kinetic energy of a mode by %.2g "
             "at most, of mode %lld",
             loss, (long long)mode + 1));
-    /* 1e-6: the asymmetry that import averages away */
     if (fabs(rigid[0] - m) + fabs(rigid[7] - m) + fabs(rigid[14] - m) >
-        1e-6 * m)
+        RITZ_MASS_BY_DIRECTION * m)
         RITZ_CHECK(ritz_export_say(report,
                                    "mass differs by direction, %.6g %.6g %.6g: "
                                    "are dofs fixed? Their mean is taken",

@@ -1,5 +1,7 @@
 /* Modes and constant matrices of a body for Exudyn. */
 #include "formats/exudyn.h"
+#include "base/tolerances.h"
+#include "linear/orthonormal.h"
 
 #include <ritz/eigen.h>
 
@@ -43,16 +45,16 @@ static double dot(int64_t n, const double *x, const double *y)
 }
 
 /*
- * Take from x its part along the first k columns of Q, twice, which makes it
+ * Take from x its part along the columns of a set, twice, which makes it
  * orthogonal to rounding; returns |x| after over |x| before, 0 of nothing.
  */
-static double remove_part(const ritz_dense *Q, int64_t k, double *x)
+static double remove_part(const ritz_orthonormal *set, double *x)
 {
-    int64_t n = Q->nrow;
+    int64_t n = set->V.nrow;
     double before = sqrt(dot(n, x, x));
 
-    for (int64_t j = 0; j < 2 * k; j++) {
-        const double *q = ritz_dense_col(Q, j % k);
+    for (int64_t j = 0; j < 2 * set->count; j++) {
+        const double *q = ritz_dense_col(&set->V, j % set->count);
         double part = dot(n, q, x);
 
         for (int64_t i = 0; i < n; i++)
@@ -61,32 +63,7 @@ static double remove_part(const ritz_dense *Q, int64_t k, double *x)
     return before > 0.0 ? sqrt(dot(n, x, x)) / before : 0.0;
 }
 
-/* Orthonormal columns in front; how many there are. */
-static int64_t orthonormalise(ritz_dense *R)
-{
-    int64_t k = 0;
-
-    for (int64_t j = 0; j < R->ncol; j++) {
-        double *x = ritz_dense_col(R, k);
-        double norm = 0.0;
-
-        memmove(x, ritz_dense_col(R, j), (size_t)R->nrow * sizeof *x);
-        /* of grids on a line one rotation is no motion: it drops out */
-        if (remove_part(R, k, x) < 1e-8)
-            continue;
-        norm = sqrt(dot(R->nrow, x, x));
-        for (int64_t i = 0; i < R->nrow; i++)
-            x[i] /= norm;
-        k++;
-    }
-    return k;
-}
-
-/*
- * Motions T Z are those of a rigid body. The allowance of 1e-3 lies between
- * what matrices of six digits may do to a rigid mode (1e-5, a judgement) and
- * the order of 1 by which a loose part differs.
- */
+/* Refuse motions T Z that are not those of a rigid body. */
 static ritz_status demand_rigid(const ritz_reduced *reduced,
                                 const ritz_dense *Z)
 {
@@ -95,13 +72,16 @@ static ritz_status demand_rigid(const ritz_reduced *reduced,
                                  .dof = reduced->dof,
                                  .grids = reduced->grids};
     ritz_dense R = {0}, U = {0};
-    int64_t k = 0;
+    ritz_orthonormal rigid = {0};
 
     RITZ_TRY(ritz_rigid_geometry(&body, reduced->inertia.centre, &R));
     RITZ_TRY(ritz_dense_mul(&reduced->T, Z, &U));
-    k = orthonormalise(&R);
+    RITZ_TRY(
+        ritz_orthonormal_new(R.nrow, NULL, RITZ_ROTATION_ON_A_LINE, &rigid));
+    RITZ_TRY(ritz_orthonormal_append(&rigid, &R, R.ncol, NULL));
     for (int64_t j = 0; j < U.ncol; j++)
-        RITZ_FAIL_IF(remove_part(&R, k, ritz_dense_col(&U, j)) > 1e-3,
+        RITZ_FAIL_IF(remove_part(&rigid, ritz_dense_col(&U, j)) >
+                         RITZ_LOOSE_IN_FRAME,
                      RITZ_ERR_ARGUMENT,
                      "of %lld motions without stiffness number %lld is not "
                      "that of a rigid body: a part is loose, and a moving "
@@ -110,6 +90,7 @@ static ritz_status demand_rigid(const ritz_reduced *reduced,
 done:
     ritz_dense_free(&R);
     ritz_dense_free(&U);
+    ritz_orthonormal_free(&rigid);
     return status;
 }
 

@@ -538,6 +538,32 @@
    model. */
 #define RITZ_PASSIVE 1e-9
 
+/* Decks and files of other programs */
+
+/* Shares of a tie, scaled so that lengths cancel, below this part of the
+   largest of their row are rounding and would only fill the matrices: 16
+   eps. */
+#define RITZ_TIE_ROUNDING 0x1p-48
+/* Sine of the angle of three points of a coordinate system, at the root of
+   eps: below it the x axis keeps less than half its digits. */
+#define RITZ_POINTS_ON_A_LINE 1.5e-8
+/* A grid this near to the axis of a curved system, of its distance from the
+   origin, is on it: 16 eps, some ten operations on a position. */
+#define RITZ_ON_AXIS 0x1p-48
+/* A rotation that is new by less than this part is no motion: grids on a
+   line have five. */
+#define RITZ_ROTATION_ON_A_LINE 1e-8
+/* Part of a motion without stiffness that no rigid motion explains: between
+   what matrices of six digits do to a rigid mode (1e-5, a judgement) and the
+   order of 1 of a loose part. */
+#define RITZ_LOOSE_IN_FRAME 1e-3
+/* A loss of kinetic energy that is said: rounding of modes that 98 columns
+   make is 3e-9, measured. */
+#define RITZ_ENERGY_LOST 1e-6
+/* Masses by direction that differ by less are one: the asymmetry that import
+   averages away. */
+#define RITZ_MASS_BY_DIRECTION 1e-6
+
 /* Simulation */
 
 /* What rounding of an output may have grown to, of what could be shown: more

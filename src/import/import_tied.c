@@ -6,6 +6,7 @@
  * Forces on it are spread to the dofs as A' f, and nothing is stiffened.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "import/import.h"
 #include "model/ties.h"
 
@@ -154,10 +155,10 @@ static int64_t count_open(const ritz_dense *A)
 
     (void)LAPACKE_dtrcon(LAPACK_COL_MAJOR, '1', 'U', 'N', SIX, A->val, SIX,
                          &rcond);
-    if (rcond > 1.5e-8) /* as of positions: half the digits are lost */
+    if (rcond > RITZ_LOOSE_MOTION)
         return 0;
-    while (rank < SIX - 1 &&
-           fabs(ritz_dense_col(A, rank)[rank]) > 1.5e-8 * fabs(A->val[0]))
+    while (rank < SIX - 1 && fabs(ritz_dense_col(A, rank)[rank]) >
+                                 RITZ_LOOSE_MOTION * fabs(A->val[0]))
         rank++;
     return SIX - rank;
 }

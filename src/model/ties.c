@@ -236,7 +236,7 @@ done:
 
 enum { SIX = 6 };
 
-static void weigh(const ritz_ties *over, ritz_dense *S)
+static void weigh_rows(const ritz_ties *over, ritz_dense *S)
 {
     int64_t at = 0;
 
@@ -260,9 +260,9 @@ static void list_loose(int64_t rank, const double *Vt, ritz_average *out)
 }
 
 /* A = V Sigma^-1 U' W^1/2, of dofs and motions as they are. */
-static ritz_status multiply(const ritz_ties *over, const ritz_dense *U,
-                            int64_t rank, const double *sigma, const double *Vt,
-                            ritz_average *out)
+static ritz_status multiply_average(const ritz_ties *over, const ritz_dense *U,
+                                    int64_t rank, const double *sigma,
+                                    const double *Vt, ritz_average *out)
 {
     int64_t at = 0;
 
@@ -302,7 +302,7 @@ ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
     RITZ_TRY(ritz_dense_new(count, SIX, &S));
     RITZ_TRY(ritz_dense_new(count, SIX, &U));
     scale_rows(grids, over, origin, new.length, &S, new.dof);
-    weigh(over, &S);
+    weigh_rows(over, &S);
     for (int k = 0; k < SIX * SIX; k += SIX + 1)
         Vt[k] = 1.0;
     if (least > 0)
@@ -315,7 +315,7 @@ ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
     while (rank < least && sigma[rank] > RITZ_LOOSE_MOTION * sigma[0])
         rank++;
     list_loose(rank, Vt, &new);
-    RITZ_TRY(multiply(over, &U, rank, sigma, Vt, &new));
+    RITZ_TRY(multiply_average(over, &U, rank, sigma, Vt, &new));
     *out = new;
     new = (ritz_average){0};
 done:

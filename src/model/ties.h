@@ -40,10 +40,6 @@ static inline double ritz_tie_scale(ritz_dof dof, double length)
     return dof.component > 3 ? length : 1.0;
 }
 
-/* Scaled shares below this times the largest of their row are rounding, and
- * would only fill the matrices: 16 eps. */
-#define RITZ_TIE_ROUNDING 0x1p-48
-
 /**
  * Equations of a rigid body: dependents follow the independent dofs, six that
  * hold it.
