@@ -70,14 +70,13 @@ int main(int argc, char **argv)
     const char *tracks = NULL;
     bool full = false;
     const cli_option options[] = {
-        {CLI_TEXT(&at), .name = "at",
-         .argument = "JOINT=SETTING[,JOINT=SETTING]",
-         .help = "one configuration, degrees and lengths [all of the scene's]"},
-        {CLI_FLAG(&full), .name = "full",
-         .help = "reduce nothing: one component with the dofs of all"},
-        {CLI_TEXT(&tracks), .name = "tracks", .argument = "FILE",
-         .help = "write which mode is which at every configuration, as a table "
-                 "with tabs"},
+        CLI_TEXT("at", &at, "JOINT=SETTING[,JOINT=SETTING]",
+                 "one configuration, degrees and lengths [all of the scene's]"),
+        CLI_FLAG("full", &full,
+                 "reduce nothing: one component with the dofs of all"),
+        CLI_TEXT("tracks", &tracks, "FILE",
+                 "write which mode is which at every configuration, as a table "
+                 "with tabs"),
         {0},
     };
     const cli_program program = {

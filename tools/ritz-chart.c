@@ -70,30 +70,30 @@ int main(int argc, char **argv)
 {
     chart_wish wish = {.keep = true, .top = 10, .up_to_hz = 1e12};
     const cli_option options[] = {
-        {CLI_LIST(&wish.measure), .name = "measure", .argument = "NAME",
-         .help = "of records: errors to be drawn [all that are relative]"},
-        {CLI_TEXT(&wish.subject), .name = "subject", .argument = "NAME",
-         .help = "of records: those of one component or scene"},
-        {CLI_TEXT(&wish.against), .name = "against", .argument = "WORD",
-         .help = "pareto: time to 'reduce' or to 'simulate' [simulate, if all "
-                 "records know it]"},
-        {CLI_LIST(&wish.channel), .name = "channel", .argument = "OUTPUT/INPUT",
-         .help = "response: what is drawn [the first four]; "
-                 "'singular-values' of files that hold them"},
-        {CLI_TEXT(&wish.error), .name = "error", .argument = "WORD",
-         .help = "response: 'relative' to the largest, in 'decibels' of each "
-                 "point, or 'both' [relative]"},
-        {CLI_LIST(&wish.at), .name = "at", .argument = "JOINT=SETTING[,...]",
-         .help = "mac: configuration of each system, or two of one [the only "
+        CLI_LIST("measure", &wish.measure, "NAME",
+                 "of records: errors to be drawn [all that are relative]"),
+        CLI_TEXT("subject", &wish.subject, "NAME",
+                 "of records: those of one component or scene"),
+        CLI_TEXT("against", &wish.against, "WORD",
+                 "pareto: time to 'reduce' or to 'simulate' [simulate, if all "
+                 "records know it]"),
+        CLI_LIST("channel", &wish.channel, "OUTPUT/INPUT",
+                 "response: what is drawn [the first four]; "
+                 "'singular-values' of files that hold them"),
+        CLI_TEXT("error", &wish.error, "WORD",
+                 "response: 'relative' to the largest, in 'decibels' of each "
+                 "point, or 'both' [relative]"),
+        CLI_LIST("at", &wish.at, "JOINT=SETTING[,...]",
+                 "mac: configuration of each system, or two of one [the only "
                  "ones]; they are compared by the masses of all bodies, if "
                  "their reduced components are named too, else by what inputs "
-                 "drive and outputs see"},
-        {CLI_INT(&wish.top), .name = "top", .argument = "N", .min = 1,
-         .max = 1000, .help = "hankel: so many modes of each ranking"},
-        {CLI_REAL(&wish.up_to_hz), .name = "up-to-hz", .argument = "F",
-         .min = 0.0, .max = 1e12, .help = "tracks: modes up to here"},
-        {CLI_ACTION(list_kinds), .name = "list",
-         .help = "list charts and what they are made from"},
+                 "drive and outputs see"),
+        CLI_INT("top", &wish.top, "N", 1, 1000,
+                "hankel: so many modes of each ranking"),
+        CLI_REAL("up-to-hz", &wish.up_to_hz, "F", 0.0, 1e12,
+                 "tracks: modes up to here"),
+        CLI_ACTION("list", list_kinds,
+                   "list charts and what they are made from"),
         {0},
     };
     const cli_program program = {

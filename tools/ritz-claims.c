@@ -70,9 +70,9 @@ done:
         nftw(state.folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
     json_decref(state.answer);
     json_object_set_new(run->report, "claims", state.list);
-    cli_report_int(run, "holds", state.holds);
-    cli_report_int(run, "fails", state.fails);
-    cli_report_int(run, "skipped", state.skipped);
+    sink_set(run, "holds,fails,skipped", "%lld %lld %lld",
+             (long long)state.holds, (long long)state.fails,
+             (long long)state.skipped);
     return status;
 }
 
@@ -80,8 +80,8 @@ int main(int argc, char **argv)
 {
     const char *data = NULL;
     const cli_option options[] = {
-        {CLI_TEXT(&data), .name = "data", .argument = "FOLDER",
-         .help = "files of others, $DATA in claims [RITZ_EXTERNAL_DATA]"},
+        CLI_TEXT("data", &data, "FOLDER",
+                 "files of others, $DATA in claims [RITZ_EXTERNAL_DATA]"),
         {0},
     };
     const cli_program program = {

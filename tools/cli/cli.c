@@ -20,14 +20,20 @@ enum { MAX_OPTIONS = 32, EXIT_USAGE = 2, WORD = 32 };
 static void gather(const cli_program *program, cli_run *run, cli_option *all)
 {
     const cli_option common[] = {
-        {CLI_TEXT(&run->output), .letter = 'o', .name = "output",
-         .argument = "FILE", .help = program->output},
-        {CLI_FLAG(&run->quiet), .letter = 'q', .name = "quiet",
+        {.kind = CLI_KIND_TEXT,
+         .to.text = &run->output,
+         .letter = 'o',
+         .name = "output",
+         .argument = "FILE",
+         .help = program->output},
+        {.kind = CLI_KIND_FLAG,
+         .to.flag = &run->quiet,
+         .letter = 'q',
+         .name = "quiet",
          .help = "print nothing but errors"},
-        {CLI_FLAG(&run->json), .name = "json",
-         .help = "print one JSON object instead of text"},
-        {CLI_TEXT(&run->record), .name = "record", .argument = "FILE",
-         .help = "append time, memory and errors of this run as one JSON line"},
+        CLI_FLAG("json", &run->json, "print one JSON object instead of text"),
+        CLI_TEXT("record", &run->record, "FILE",
+                 "append time, memory and errors of this run as one JSON line"),
         {.kind = CLI_KIND_VERSION,
          .name = "version",
          .help = "print the version"},
@@ -147,6 +153,46 @@ void cli_refuse_name(const cli_program *program, const char *what,
         fprintf(stderr, ", is '%s' meant?", nearest);
     free(known);
     give_up(program);
+}
+
+const void *cli_choose(const cli_program *program, const char *what,
+                       const char *word, const void *table)
+{
+    enum { MOST = 64 };
+    const char *names[MOST];
+    int64_t count = 0;
+
+    for (; count < MOST; count++) {
+        const char *const *row = NULL;
+
+        memcpy(&row, (const char *)table + (size_t)count * sizeof row,
+               sizeof row);
+        if (!row)
+            break;
+        if (strcmp(*row, word) == 0)
+            return row;
+        names[count] = *row;
+    }
+    cli_refuse_name(program, what, word, count, names);
+}
+
+bool cli_next(const char **list, char word[RITZ_NAME_SIZE])
+{
+    const char *at = *list;
+    int length = at ? (int)strcspn(at, ",") : 0;
+
+    if (!at)
+        return false;
+    snprintf(word, RITZ_NAME_SIZE, "%.*s", length < 60 ? length : 60, at);
+    *list = at[length] ? at + length + 1 : NULL;
+    return true;
+}
+
+bool cli_given(const cli_option *option)
+{
+    return (option->kind == CLI_KIND_FLAG && *option->to.flag) ||
+           (option->kind == CLI_KIND_TEXT && *option->to.text) ||
+           (option->kind == CLI_KIND_LIST && option->to.list->count > 0);
 }
 
 void cli_pair(const cli_program *program, const char *option, const char *text,

@@ -59,13 +59,38 @@ typedef struct cli_option {
     const char *help;
 } cli_option;
 
-/* Kind and place of an answer, held to each other by the compiler. */
-#define CLI_ACTION(function) .kind = CLI_KIND_ACTION, .to.action = (function)
-#define CLI_FLAG(place)      .kind = CLI_KIND_FLAG, .to.flag = (place)
-#define CLI_INT(place)       .kind = CLI_KIND_INT, .to.whole = (place)
-#define CLI_REAL(place)      .kind = CLI_KIND_REAL, .to.real = (place)
-#define CLI_TEXT(place)      .kind = CLI_KIND_TEXT, .to.text = (place)
-#define CLI_LIST(place)      .kind = CLI_KIND_LIST, .to.list = (place)
+/* Rows of a table: kind and place of an answer, held to each other by the
+   compiler. */
+#define CLI_ACTION(word, function, says)                                       \
+    {                                                                          \
+        .kind = CLI_KIND_ACTION, .name = (word), .to.action = (function),      \
+        .help = (says)                                                         \
+    }
+#define CLI_FLAG(word, place, says)                                            \
+    {                                                                          \
+        .kind = CLI_KIND_FLAG, .name = (word), .to.flag = (place),             \
+        .help = (says)                                                         \
+    }
+#define CLI_INT(word, place, value, low, high, says)                           \
+    {                                                                          \
+        .kind = CLI_KIND_INT, .name = (word), .to.whole = (place),             \
+        .argument = (value), .min = (low), .max = (high), .help = (says)       \
+    }
+#define CLI_REAL(word, place, value, low, high, says)                          \
+    {                                                                          \
+        .kind = CLI_KIND_REAL, .name = (word), .to.real = (place),             \
+        .argument = (value), .min = (low), .max = (high), .help = (says)       \
+    }
+#define CLI_TEXT(word, place, value, says)                                     \
+    {                                                                          \
+        .kind = CLI_KIND_TEXT, .name = (word), .to.text = (place),             \
+        .argument = (value), .help = (says)                                    \
+    }
+#define CLI_LIST(word, place, value, says)                                     \
+    {                                                                          \
+        .kind = CLI_KIND_LIST, .name = (word), .to.list = (place),             \
+        .argument = (value), .help = (says)                                    \
+    }
 
 typedef struct cli_operand {
     const char *name; /* "COMPONENT" */
@@ -128,6 +153,21 @@ _Noreturn void cli_refuse_name(const cli_program *program, const char *what,
                                const char *word, int64_t count,
                                const char *const *names);
 
+/**
+ * The row of a table that has that name, or the end of the program.
+ *
+ * @param[in] table  pointers, NULL at the end, to structs that begin with their
+ *                   name
+ */
+const void *cli_choose(const cli_program *program, const char *what,
+                       const char *word, const void *table);
+
+/** The next word of "A,B,C", which is cut off; false if none is left. */
+bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
+
+/** Whether the command line gave an option that is a flag, a text or a list. */
+bool cli_given(const cli_option *option);
+
 /** "LOW,HIGH" of an option, or the end of the program. */
 void cli_pair(const cli_program *program, const char *option, const char *text,
               double out[2]);
@@ -170,12 +210,6 @@ ritz_status cli_save(cli_run *run, const char *path);
 /** Values that JSON cannot hold become null, or '?' in a text. */
 json_t *cli_real(double value);
 json_t *cli_string(const char *text);
-
-/** Keys of the report. cli_report_reals leaves out NaN. */
-void cli_report_reals(cli_run *run, const char *key, int64_t count,
-                      const double *values);
-void cli_report_int(cli_run *run, const char *key, int64_t value);
-void cli_report_text(cli_run *run, const char *key, const char *text);
 
 /** Method and order (-1: none) of the line that --record appends. */
 void cli_record(cli_run *run, const char *method, int64_t order);

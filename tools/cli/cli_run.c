@@ -78,27 +78,6 @@ json_t *cli_string(const char *text)
     return string ? string : json_null();
 }
 
-void cli_report_reals(cli_run *run, const char *key, int64_t count,
-                      const double *values)
-{
-    json_t *array = json_array();
-
-    for (int64_t k = 0; k < count; k++)
-        if (!isnan(values[k]))
-            json_array_append_new(array, cli_real(values[k]));
-    json_object_set_new(run->report, key, array);
-}
-
-void cli_report_int(cli_run *run, const char *key, int64_t value)
-{
-    json_object_set_new(run->report, key, json_integer(value));
-}
-
-void cli_report_text(cli_run *run, const char *key, const char *text)
-{
-    json_object_set_new(run->report, key, cli_string(text));
-}
-
 void cli_record(cli_run *run, const char *method, int64_t order)
 {
     if (method && *method)

@@ -1,7 +1,11 @@
 #include "cli/model.h"
 
 #include <ritz/eigen.h>
+#include <ritz/nested.h>
+#include <ritz/probe.h>
+#include <ritz/zeros.h>
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,23 +50,289 @@ static ritz_status read_simulation(const char *path, model *out)
     return ritz_container_read_simulation(path, &out->simulation);
 }
 
+static ritz_status write_reduced(const model *m, const char *path,
+                                 const ritz_stamp *stamp)
+{
+    return ritz_container_write_reduced(path, &m->reduced, stamp);
+}
+
+static ritz_status write_system(const model *m, const char *path,
+                                const ritz_stamp *stamp)
+{
+    return ritz_container_write_system(path, &m->system, stamp);
+}
+
+static ritz_status write_states(const model *m, const char *path,
+                                const ritz_stamp *stamp)
+{
+    return ritz_container_write_state_space(path, &m->states, stamp);
+}
+
+static ritz_io io_of_component(const model *m)
+{
+    return m->component.io;
+}
+
+static ritz_io io_of_matrices(const model *m)
+{
+    return *model_matrices(m).io;
+}
+
+static ritz_io io_of_states(const model *m)
+{
+    return (ritz_io){.num_inputs = m->states.num_inputs,
+                     .num_outputs = m->states.num_outputs,
+                     .input = m->states.input,
+                     .output = m->states.output,
+                     .limit = m->states.limit};
+}
+
+static int64_t order_of_component(const model *m)
+{
+    return m->component.num_dofs;
+}
+
+static int64_t order_of_matrices(const model *m)
+{
+    return model_matrices(m).K->nrow;
+}
+
+static int64_t order_of_states(const model *m)
+{
+    return m->states.A.nrow;
+}
+
+static ritz_status spectrum_of_component(const model *m,
+                                         const ritz_damping *damping,
+                                         const ritz_span *span,
+                                         ritz_spectrum *out)
+{
+    return ritz_spectrum_component(&m->component, damping, span, out);
+}
+
+static ritz_status spectrum_of_matrices(const model *m,
+                                        const ritz_damping *damping,
+                                        const ritz_span *span,
+                                        ritz_spectrum *out)
+{
+    const ritz_second_order matrices = model_matrices(m);
+
+    (void)span;
+    return ritz_spectrum_dense(&matrices, damping, out);
+}
+
+/* One pole of each pair; a state space has no shapes and so no residuals. */
+static ritz_status spectrum_of_states(const model *m,
+                                      const ritz_damping *damping,
+                                      const ritz_span *span, ritz_spectrum *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_spectrum found = {.engine = "dense LAPACK"};
+    int64_t count = 0;
+
+    (void)damping;
+    (void)span;
+    RITZ_TRY(ritz_state_space_poles(&m->states, &count, &found.s));
+    found.residual = calloc((size_t)count + 1, sizeof *found.residual);
+    RITZ_FAIL_IF(!found.residual, RITZ_ERR_MEMORY, "no memory for poles");
+    for (int64_t k = 0; k < count; k++) {
+        if (cimag(found.s[k]) < 0.0)
+            continue;
+        found.residual[found.count] = (double)NAN;
+        found.s[found.count++] = found.s[k];
+    }
+    *out = found;
+    found = (ritz_spectrum){0};
+done:
+    ritz_spectrum_free(&found);
+    return status;
+}
+
+/* Second-order models as they are: their modes tell more than states. */
+static ritz_status zeros_of_component(const model *m,
+                                      const ritz_damping *damping,
+                                      const int64_t at[2], int64_t *count,
+                                      double _Complex **out)
+{
+    return ritz_zeros_component(&m->component, damping, at[0], at[1], count,
+                                out);
+}
+
+static ritz_status zeros_of_matrices(const model *m,
+                                     const ritz_damping *damping,
+                                     const int64_t at[2], int64_t *count,
+                                     double _Complex **out)
+{
+    const ritz_second_order matrices = model_matrices(m);
+
+    return ritz_zeros_dense(&matrices, damping, at[0], at[1], count, out);
+}
+
+static ritz_status zeros_of_states(const model *m, const ritz_damping *damping,
+                                   const int64_t at[2], int64_t *count,
+                                   double _Complex **out)
+{
+    (void)damping;
+    return ritz_zeros_states(&m->states, at[0], at[1], count, out);
+}
+
+static ritz_status states_of_component(const model *m,
+                                       const ritz_damping *damping,
+                                       ritz_state_space *made,
+                                       const ritz_state_space **out)
+{
+    *out = NULL;
+    if (m->component.num_dofs > MODEL_MOST_DOFS || m->component.K4.colptr)
+        return RITZ_OK;
+    *out = made;
+    return ritz_state_space_of_component(&m->component, damping, made);
+}
+
+static ritz_status states_of_matrices(const model *m,
+                                      const ritz_damping *damping,
+                                      ritz_state_space *made,
+                                      const ritz_state_space **out)
+{
+    const ritz_second_order view = model_matrices(m);
+    ritz_reduced bare = {0}; /* borrowed; dampers are in K and D already */
+
+    *out = NULL;
+    if (view.K4 && view.K4->val)
+        return RITZ_OK;
+    bare.K = *view.K;
+    bare.M = *view.M;
+    bare.io = *view.io;
+    if (view.D)
+        bare.D = *view.D;
+    *out = made;
+    return ritz_state_space_of_reduced(&bare, damping, made);
+}
+
+static ritz_status states_of_states(const model *m, const ritz_damping *damping,
+                                    ritz_state_space *made,
+                                    const ritz_state_space **out)
+{
+    (void)damping;
+    (void)made;
+    *out = &m->states;
+    return RITZ_OK;
+}
+
+static ritz_status audit_component(const model *m, ritz_audit *out)
+{
+    return ritz_audit_component(&m->component, out);
+}
+
+static ritz_status audit_reduced(const model *m, ritz_audit *out)
+{
+    return ritz_probe_audit_reduced(&m->reduced, out);
+}
+
+static ritz_status audit_states(const model *m, ritz_audit *out)
+{
+    return ritz_probe_audit_states(&m->states, out);
+}
+
+/* What can be asked of every kind; empty where nothing can. */
 static const struct kind {
     const char *name; /* in files */
     const char *noun; /* in sentences */
     model_kind kind;
+    size_t offset; /* of the object in a model */
     ritz_status (*read)(const char *path, model *out);
+    ritz_status (*write)(const model *m, const char *path,
+                         const ritz_stamp *stamp);
+    ritz_io (*io)(const model *m);
+    int64_t (*order)(const model *m);
+    ritz_status (*spectrum)(const model *m, const ritz_damping *damping,
+                            const ritz_span *span, ritz_spectrum *out);
+    ritz_status (*zeros)(const model *m, const ritz_damping *damping,
+                         const int64_t at[2], int64_t *count,
+                         double _Complex **out);
+    ritz_status (*states)(const model *m, const ritz_damping *damping,
+                          ritz_state_space *made, const ritz_state_space **out);
+    ritz_status (*audit)(const model *m, ritz_audit *out);
 } kinds[] = {
-    {"component", "a component", MODEL_COMPONENT, read_component},
-    {"basis", "a basis", MODEL_BASIS, read_basis},
-    {"reduced", "a reduced component", MODEL_REDUCED, read_reduced},
-    {"system", "a system", MODEL_SYSTEM, read_system},
-    {"response", "a response", MODEL_RESPONSE, read_response},
-    {"ranking", "a ranking", MODEL_RANKING, read_ranking},
-    {"state-space", "a state space", MODEL_STATES, read_states},
-    {"simulation", "a time response", MODEL_SIMULATION, read_simulation},
+    {"component", "a component", MODEL_COMPONENT, offsetof(model, component),
+     read_component, NULL, io_of_component, order_of_component,
+     spectrum_of_component, zeros_of_component, states_of_component,
+     audit_component},
+    {"basis", "a basis", MODEL_BASIS, offsetof(model, basis),
+     .read = read_basis},
+    {"reduced", "a reduced component", MODEL_REDUCED, offsetof(model, reduced),
+     read_reduced, write_reduced, io_of_matrices, order_of_matrices,
+     spectrum_of_matrices, zeros_of_matrices, states_of_matrices,
+     audit_reduced},
+    {"system", "a system", MODEL_SYSTEM, offsetof(model, system), read_system,
+     write_system, io_of_matrices, order_of_matrices, spectrum_of_matrices,
+     zeros_of_matrices, states_of_matrices, NULL},
+    {"response", "a response", MODEL_RESPONSE, offsetof(model, response),
+     .read = read_response},
+    {"ranking", "a ranking", MODEL_RANKING, offsetof(model, rankings),
+     .read = read_ranking},
+    {"state-space", "a state space", MODEL_STATES, offsetof(model, states),
+     read_states, write_states, io_of_states, order_of_states,
+     spectrum_of_states, zeros_of_states, states_of_states, audit_states},
+    {"simulation", "a time response", MODEL_SIMULATION,
+     offsetof(model, simulation), .read = read_simulation},
 };
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
+
+/* The row of a model that was read. */
+static const struct kind *kind_of(const model *m)
+{
+    int k = 0;
+
+    while (kinds[k].kind != m->kind)
+        k++;
+    return &kinds[k];
+}
+
+const void *model_object(const model *m)
+{
+    return (const char *)m + kind_of(m)->offset;
+}
+
+ritz_io model_io(const model *m)
+{
+    return kind_of(m)->io(m);
+}
+
+int64_t model_order(const model *m)
+{
+    return kind_of(m)->order(m);
+}
+
+ritz_status model_write(const model *m, const char *path,
+                        const ritz_stamp *stamp)
+{
+    return kind_of(m)->write(m, path, stamp);
+}
+
+ritz_status model_spectrum(const model *m, const ritz_damping *damping,
+                           const ritz_span *span, ritz_spectrum *out)
+{
+    return kind_of(m)->spectrum(m, damping, span, out);
+}
+
+ritz_status model_zeros(const model *m, const ritz_damping *damping,
+                        const int64_t at[2], int64_t *count,
+                        double _Complex **out)
+{
+    return kind_of(m)->zeros(m, damping, at, count, out);
+}
+
+ritz_status model_states(const model *m, const ritz_damping *damping,
+                         ritz_state_space *made, const ritz_state_space **out)
+{
+    return kind_of(m)->states(m, damping, made, out);
+}
+
+ritz_status model_audit(const model *m, ritz_audit *out)
+{
+    return kind_of(m)->audit(m, out);
+}
 
 /* "a component or a system" */
 static void list_kinds(int wanted, char *out, size_t room)
@@ -161,21 +431,91 @@ ritz_status model_at(model *m, const char *path, const char *at)
     return RITZ_OK;
 }
 
-model_view model_look(const model *m)
+ritz_status model_prefix(model *m, const char *path, int64_t order)
+{
+    ritz_reduced prefix = {0};
+
+    if (order == 0)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(m->kind != MODEL_REDUCED, RITZ_ERR_ARGUMENT,
+                   "'%s' is no reduced component, --order has no columns to "
+                   "choose from",
+                   path);
+    RITZ_CHECK_IN(path, ritz_reduced_prefix(&m->reduced, order, &prefix));
+    ritz_reduced_free(&m->reduced);
+    m->reduced = prefix;
+    return RITZ_OK;
+}
+
+ritz_status model_settle(model *m, const char *path, const model_wish *asked,
+                         ritz_damping *damping)
+{
+    RITZ_CHECK(model_prefix(m, path, asked->order));
+    RITZ_CHECK(model_at(m, path, asked->at));
+    RITZ_REFUSE_IF(m->kind == MODEL_STATES && asked->damping, RITZ_ERR_ARGUMENT,
+                   "a state space is damped as it was made: --damping is for "
+                   "ritz-basis");
+    RITZ_CHECK_IN(path, model_install(m, &asked->damper));
+    return model_damping(m, asked->damping, damping);
+}
+
+ritz_second_order model_matrices(const model *m)
 {
     const ritz_reduced *r = &m->reduced;
 
     if (m->at)
-        return (model_view){
-            {&m->at->K, &m->at->M, &m->at->D, &m->at->K4, &m->at->io},
-            m->system.damping};
-    return (model_view){{&r->K, &r->M, &r->D, &r->K4, &r->io}, r->damping};
+        return (ritz_second_order){&m->at->K, &m->at->M, &m->at->D, &m->at->K4,
+                                   &m->at->io};
+    return (ritz_second_order){&r->K, &r->M, &r->D, &r->K4, &r->io};
+}
+
+ritz_measures *model_errors(model *m)
+{
+    if (m->kind == MODEL_STATES)
+        return &m->states.errors;
+    return m->at ? &m->at->errors : &m->reduced.errors;
+}
+
+ritz_status model_scan(model *m, const ritz_damping *damping,
+                       const ritz_scan_request *request, ritz_scan *out)
+{
+    const ritz_second_order matrices = model_matrices(m);
+
+    if (m->kind == MODEL_COMPONENT)
+        return ritz_scan_component(&m->component, damping, request, out);
+    return ritz_scan_dampers(&matrices, model_dampers(m), damping, request,
+                             out);
+}
+
+ritz_dampers *model_dampers(model *m)
+{
+    if (m->kind == MODEL_COMPONENT)
+        return &m->component.dampers;
+    return m->at ? &m->at->dampers : &m->reduced.dampers;
+}
+
+ritz_status model_tune(model *m, const cli_list *texts)
+{
+    for (int k = 0; texts && k < texts->count; k++)
+        RITZ_CHECK_IN("--damper",
+                      ritz_dampers_tune(model_dampers(m), texts->text[k]));
+    return RITZ_OK;
+}
+
+ritz_status model_install(model *m, const cli_list *texts)
+{
+    RITZ_CHECK(model_tune(m, texts));
+    if (m->kind == MODEL_COMPONENT)
+        return ritz_component_install(&m->component);
+    return m->at ? ritz_configuration_install(m->at)
+                 : ritz_reduced_install(&m->reduced);
 }
 
 ritz_status model_damping(const model *m, const char *asked, ritz_damping *out)
 {
     const char *own = m->kind == MODEL_COMPONENT ? m->component.damping
-                                                 : model_look(m).damping;
+                      : m->kind == MODEL_SYSTEM  ? m->system.damping
+                                                 : m->reduced.damping;
 
     return ritz_context(ritz_damping_parse(asked ? asked : own, out),
                         asked ? "--damping" : "damping of the model");
@@ -267,54 +607,31 @@ void model_set_cost(cli_run *run, const ritz_cost *cost)
     sink_end(run);
 }
 
-ritz_io model_io_of_states(const ritz_state_space *states)
+ritz_status model_body_path(const char *prefix, const char *name,
+                            char out[MODEL_PATH])
 {
-    return (ritz_io){.num_inputs = states->num_inputs,
-                     .num_outputs = states->num_outputs,
-                     .input = states->input,
-                     .output = states->output,
-                     .limit = states->limit};
+    int length = snprintf(out, MODEL_PATH, "%s%s.h5", prefix, name);
+
+    RITZ_REFUSE_IF(length < 0 || length >= MODEL_PATH, RITZ_ERR_ARGUMENT,
+                   "--components '%.40s...' is too long", prefix);
+    return RITZ_OK;
 }
 
-json_t *model_measures_json(const ritz_measures *measures, const char *known)
+ritz_status model_write_bodies(cli_run *run, const char *prefix,
+                               const ritz_scene *scene,
+                               const ritz_reduced *body)
 {
-    json_t *array = json_array();
+    ritz_stamp stamp = cli_stamp(run);
+    char path[MODEL_PATH];
 
-    for (int64_t k = 0; k < measures->count; k++) {
-        const ritz_measure *m = &measures->item[k];
-        json_t *item = json_object();
-
-        json_object_set_new(item, "name", cli_string(m->name));
-        json_object_set_new(item, "value", cli_real(m->value));
-        json_object_set_new(item, "limit", cli_real(m->limit));
-        json_object_set_new(item, "verdict", json_string(verdict(m, known)));
-        json_object_set_new(item, "where", cli_string(m->where));
-        json_array_append_new(array, item);
+    sink_list(run, "component_files");
+    for (int64_t k = 0; prefix && k < scene->num_components; k++) {
+        RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
+        RITZ_CHECK(ritz_container_write_reduced(path, &body[k], &stamp));
+        sink_add(run, "%s", path);
     }
-    return array;
-}
-
-json_t *model_cost_json(const ritz_cost *cost)
-{
-    json_t *object = json_object();
-
-    json_object_set_new(object, "highest_hz", cli_real(cost->highest_hz));
-    json_object_set_new(object, "step_explicit", cli_real(cost->step_explicit));
-    json_object_set_new(object, "step_accurate", cli_real(cost->step_accurate));
-    json_object_set_new(object, "step", cli_real(cost->step));
-    json_object_set_new(object, "seconds_per_second",
-                        cli_real(cost->seconds_per_second));
-    json_object_set_new(object, "integrator", cli_string(cost->integrator));
-    return object;
-}
-
-json_t *model_reals_json(int64_t count, const double *values)
-{
-    json_t *array = json_array();
-
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(array, cli_real(values[k]));
-    return array;
+    sink_end(run);
+    return RITZ_OK;
 }
 
 bool model_band(const ritz_columns *columns, double *low, double *high)

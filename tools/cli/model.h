@@ -4,9 +4,11 @@
 
 #include "cli/sink.h"
 
+#include <ritz/audit.h>
 #include <ritz/container.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
+#include <ritz/spectrum.h>
 #include <ritz/verify.h>
 
 /* Up to here two triangles differ by rounding, which is no cause to warn. */
@@ -24,6 +26,12 @@ typedef enum model_kind {
     MODEL_ANY = 255,
 } model_kind;
 
+/* Those that have poles and responses. */
+enum {
+    MODEL_DYNAMIC =
+        MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES
+};
+
 /* A container that was read: the object that `kind` names, others empty. */
 typedef struct model {
     model_kind kind;
@@ -38,11 +46,13 @@ typedef struct model {
     ritz_configuration *at; /* of a system, once model_at has chosen */
 } model;
 
-/* The small matrices of a reduced component or of a system as it stands. */
-typedef struct model_view {
-    ritz_second_order matrices;
-    const char *damping; /* of the model; "" none */
-} model_view;
+/* What is asked of a model before anything is made of it. */
+typedef struct model_wish {
+    const char *at;      /* configuration of a system; NULL: the only one */
+    const char *damping; /* NULL: the model's own */
+    cli_list damper;     /* "NAME=C[*K]", other values of dampers */
+    int64_t order;       /* columns of a nested component; 0: all */
+} model_wish;
 
 /** The kind of a container, and how sentences call it: "a system". */
 ritz_status model_peek(const char *path, model_kind *kind, const char **noun);
@@ -60,8 +70,84 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
 /** Choose the configuration of --at; @p at given for no system is refused. */
 ritz_status model_at(model *model, const char *path, const char *at);
 
-/** Of a reduced component or a system with its configuration chosen. */
-model_view model_look(const model *model);
+/**
+ * Take the first @p order columns of what was read, before anything is made of
+ * it; 0: all.
+ *
+ * @return RITZ_ERR_ARGUMENT if it is no reduced component, or has no such
+ *         prefix
+ */
+ritz_status model_prefix(model *model, const char *path, int64_t order);
+
+/**
+ * All that is asked of a model that was read: its first columns, its
+ * configuration, its dampers with their values, installed, and its damping.
+ *
+ * @return RITZ_ERR_ARGUMENT if a state space is to be damped otherwise
+ */
+ritz_status model_settle(model *model, const char *path,
+                         const model_wish *asked, ritz_damping *damping);
+
+/*
+ * What tools ask of a component, reduced component, system with its
+ * configuration chosen, or state space, whichever it is.
+ */
+
+/** The object that was read, whatever its kind. */
+const void *model_object(const model *model);
+
+/** Names and limits of inputs and outputs, with matrices where it has them;
+ * borrowed. */
+ritz_io model_io(const model *model);
+
+/** Coordinates, dofs or states. */
+int64_t model_order(const model *model);
+
+/** Matrices of a reduced component or a system; borrowed. */
+ritz_second_order model_matrices(const model *model);
+
+/** Errors that ritz-verify measured. */
+ritz_measures *model_errors(model *model);
+
+ritz_status model_write(const model *model, const char *path,
+                        const ritz_stamp *stamp);
+
+/** Poles; @p span is heeded of components alone, others give all. */
+ritz_status model_spectrum(const model *model, const ritz_damping *damping,
+                           const ritz_span *span, ritz_spectrum *out);
+
+/** Poles through a range of dampers' constants; no state space. */
+ritz_status model_scan(model *model, const ritz_damping *damping,
+                       const ritz_scan_request *request, ritz_scan *out);
+
+/** Zeros of one channel, @p at being its output and its input. */
+ritz_status model_zeros(const model *model, const ritz_damping *damping,
+                        const int64_t at[2], int64_t *count,
+                        double _Complex **out);
+
+/* Of a component with more dofs no first-order model is made just to be asked
+   for its poles or zeros. */
+enum { MODEL_MOST_DOFS = 400 };
+
+/**
+ * The model as states: of a state space itself, borrowed; of others made, and
+ * to be freed.
+ *
+ * @param[out] out  NULL if it has none: structural damping, or a component of
+ *                  too many dofs
+ */
+ritz_status model_states(const model *model, const ritz_damping *damping,
+                         ritz_state_space *made, const ritz_state_space **out);
+
+/** Audit of a component; stability checks of a small model; no system. */
+ritz_status model_audit(const model *model, ritz_audit *out);
+
+/** Dampers of a model, and the values that --damper gives them. */
+ritz_dampers *model_dampers(model *model);
+ritz_status model_tune(model *model, const cli_list *texts);
+
+/** Tune them, and install them in the model's D and K; NULL: as they are. */
+ritz_status model_install(model *model, const cli_list *texts);
 
 /** The damping of --damping, or else the model's own. */
 ritz_status model_damping(const model *model, const char *asked,
@@ -84,15 +170,19 @@ void model_say_measures(cli_run *run, const char *key,
 void model_set_measures(cli_run *run, const char *key,
                         const ritz_measures *measures, const char *known);
 
-json_t *model_measures_json(const ritz_measures *measures, const char *known);
-json_t *model_cost_json(const ritz_cost *cost);
-json_t *model_reals_json(int64_t count, const double *values);
-
 /** What a simulator pays, as the object `cost`. */
 void model_set_cost(cli_run *run, const ritz_cost *cost);
 
-/** Names of inputs and outputs, and limits, borrowed; no matrices. */
-ritz_io model_io_of_states(const ritz_state_space *states);
+enum { MODEL_PATH = 4096 };
+
+/** PREFIXname.h5 @return RITZ_ERR_ARGUMENT if that is too long */
+ritz_status model_body_path(const char *prefix, const char *name,
+                            char out[MODEL_PATH]);
+
+/** Reduced components of a scene as PREFIXname.h5; NULL: none is written. */
+ritz_status model_write_bodies(cli_run *run, const char *prefix,
+                               const ritz_scene *scene,
+                               const ritz_reduced *body);
 
 /** "1.2 to 30.5 Hz" of the columns that have a frequency; false if none. */
 bool model_band(const ritz_columns *columns, double *low, double *high);

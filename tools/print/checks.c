@@ -1,57 +1,37 @@
 #include "print/checks.h"
 
-#include <math.h>
-
-static void say_check(const cli_run *run, const ritz_check *check)
+static int64_t count_checks(const ritz_audit *audit, ritz_verdict verdict)
 {
-    char value[24] = "-";
-    char limit[24] = "-";
+    int64_t count = 0;
 
-    if (!isnan(check->value))
-        snprintf(value, sizeof value, "%.4g", check->value);
-    if (!isnan(check->limit))
-        snprintf(limit, sizeof limit, "%.4g", check->limit);
-    cli_say(run, "%-28s %12s %12s  %-7s  %s", check->name, value, limit,
-            check->verdict == RITZ_FAIL ? "FAIL"
-                                        : ritz_verdict_name(check->verdict),
-            check->where);
-    if (*check->says)
-        cli_say(run, "    %s", check->says);
+    for (int64_t k = 0; k < audit->count; k++)
+        count += audit->check[k].verdict == verdict;
+    return count;
 }
 
-void checks_say(const cli_run *run, const ritz_audit *audit)
+void checks_say(cli_run *run, const char *key, const ritz_audit *audit)
 {
     cli_say(run, "%-28s %12s %12s  %-7s  %s", "check", "measured", "limit",
             "verdict", "where");
-    for (int64_t k = 0; k < audit->count; k++)
-        say_check(run, &audit->check[k]);
+    sink_list(run, key);
+    for (int64_t k = 0; k < audit->count; k++) {
+        const ritz_check *c = &audit->check[k];
+        const char *verdict = ritz_verdict_name(c->verdict);
+
+        sink_object(run, NULL);
+        sink_say(run, "name,value,limit,,where",
+                 "%-28s %12.4g %12.4g  %-7s  %s", c->name, c->value, c->limit,
+                 c->verdict == RITZ_FAIL ? "FAIL" : verdict, c->where);
+        sink_set(run, "verdict,says", "%s %s", verdict, c->says);
+        if (*c->says)
+            cli_say(run, "    %s", c->says);
+        sink_end(run);
+    }
+    sink_end(run);
     cli_say(run, "%lld pass, %lld warn, %lld fail",
-            (long long)checks_count(audit, RITZ_PASS),
-            (long long)checks_count(audit, RITZ_WARN),
-            (long long)checks_count(audit, RITZ_FAIL));
-}
-
-static json_t *check_json(const ritz_check *check)
-{
-    json_t *item = json_object();
-
-    json_object_set_new(item, "name", cli_string(check->name));
-    json_object_set_new(item, "value", cli_real(check->value));
-    json_object_set_new(item, "limit", cli_real(check->limit));
-    json_object_set_new(item, "verdict",
-                        json_string(ritz_verdict_name(check->verdict)));
-    json_object_set_new(item, "where", cli_string(check->where));
-    json_object_set_new(item, "says", cli_string(check->says));
-    return item;
-}
-
-json_t *checks_json(const ritz_audit *audit)
-{
-    json_t *checks = json_array();
-
-    for (int64_t k = 0; k < audit->count; k++)
-        json_array_append_new(checks, check_json(&audit->check[k]));
-    return checks;
+            (long long)count_checks(audit, RITZ_PASS),
+            (long long)count_checks(audit, RITZ_WARN),
+            (long long)count_checks(audit, RITZ_FAIL));
 }
 
 const ritz_check *checks_first(const ritz_audit *audit)
@@ -62,11 +42,32 @@ const ritz_check *checks_first(const ritz_audit *audit)
     return NULL;
 }
 
-int64_t checks_count(const ritz_audit *audit, ritz_verdict verdict)
+ritz_status checks_run(cli_run *run)
 {
-    int64_t count = 0;
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    const ritz_check *first = NULL;
+    model m = {0};
+    ritz_audit audit = {0};
 
-    for (int64_t k = 0; k < audit->count; k++)
-        count += audit->check[k].verdict == verdict;
-    return count;
+    RITZ_TRY(model_read(run, path,
+                        MODEL_COMPONENT | MODEL_REDUCED | MODEL_STATES, &m));
+    cli_record(run, m.kind == MODEL_COMPONENT ? "audit" : "probe",
+               model_order(&m));
+    RITZ_TRY_IN(path, model_audit(&m, &audit));
+    checks_say(run, "checks", &audit);
+    for (int64_t k = 0; k < audit.count; k++)
+        cli_record_error(run, audit.check[k].name, audit.check[k].value);
+    if (run->output)
+        RITZ_TRY(cli_save(run, run->output));
+    first = checks_first(&audit);
+    RITZ_FAIL_IF(first, RITZ_ERR_FORMAT,
+                 "'%s': %lld of %lld checks fail, first '%s'%s%s", path,
+                 (long long)count_checks(&audit, RITZ_FAIL),
+                 (long long)audit.count, first->name,
+                 *first->where ? " at " : "", first->where);
+done:
+    ritz_audit_free(&audit);
+    model_free(&m);
+    return status;
 }

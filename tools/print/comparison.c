@@ -1,48 +1,41 @@
-/*
- * The report of ritz-compare: what was reduced, how far, how wrong it is. Its
- * tables of choices are in comparison_choices.c, that of modes in
- * comparison_modes.c.
- */
+/* The report of ritz-compare: what was reduced, how far, how wrong it is. */
 #include "print/comparison.h"
 
+#include "cli/cli_table.h"
+#include "print/tracks.h"
+
+#include <ritz/eigen.h>
+
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static int64_t order_of(const ritz_reduced *body)
-{
-    return body->K.nrow > 0 ? body->K.nrow : body->M.nrow;
-}
-
 static void say_orders(cli_run *run, const ritz_stage *first,
                        const ritz_stage *second)
 {
-    json_t *array = json_array();
     int64_t sum[3] = {0};
 
     cli_say(run, "%-20s %10s %10s %10s  %s", "component", "full dofs",
             "stage 1", "stage 2", "basis of stage 1");
+    sink_list(run, "components");
     for (int64_t k = 0; k < first->count; k++) {
         const ritz_reduced *body = &first->body[k];
-        const char *name = first->scene->component[k].name;
-        int64_t order[] = {body->num_dofs, order_of(body),
-                           order_of(&second->body[k])};
-        json_t *item = json_object();
+        const ritz_reduced *last = &second->body[k];
+        int64_t order[] = {body->num_dofs,
+                           body->K.nrow > 0 ? body->K.nrow : body->M.nrow,
+                           last->K.nrow > 0 ? last->K.nrow : last->M.nrow};
 
         for (int i = 0; i < 3; i++)
             sum[i] += order[i];
-        cli_say(run, "%-20s %10lld %10lld %10lld  %s", name,
-                (long long)order[0], (long long)order[1], (long long)order[2],
-                body->origin.method);
-        json_object_set_new(item, "name", cli_string(name));
-        json_object_set_new(item, "dofs_full", json_integer(order[0]));
-        json_object_set_new(item, "stage1", json_integer(order[1]));
-        json_object_set_new(item, "dofs", json_integer(order[2]));
-        json_array_append_new(array, item);
+        sink_say(run, "name,dofs_full,stage1,dofs",
+                 "%-20s %10lld %10lld %10lld  %s",
+                 first->scene->component[k].name, (long long)order[0],
+                 (long long)order[1], (long long)order[2], body->origin.method);
     }
+    sink_end(run);
     cli_say(run, "%-20s %10lld %10lld %10lld", "total", (long long)sum[0],
             (long long)sum[1], (long long)sum[2]);
-    json_object_set_new(run->report, "components", array);
     cli_record(run, "compare", sum[2]);
 }
 
@@ -88,8 +81,11 @@ static void say_composite(cli_run *run, const ritz_stage *first,
     describe_choice(scene, choice);
     for (int64_t k = 0; k < c->num_rows; k++)
         completed += c->row[k].listed ? c->row[k].num_completed : 0;
-    cli_say(run, "Composite set: %lld vectors from %lld configurations, %s,",
-            (long long)c->composite, (long long)count, choice);
+    sink_set(run, "removed,completed", "%d %lld", c->removed,
+             (long long)completed);
+    sink_say(run, "composite",
+             "Composite set: %lld vectors from %lld configurations, %s,",
+             (long long)c->composite, (long long)count, choice);
     cli_say(run, "vectors dependent within %g removed on each component.",
             scene->composite_tolerance);
     if (completed > 0)
@@ -97,20 +93,84 @@ static void say_composite(cli_run *run, const ritz_stage *first,
                 "%lld modes are kept beside those chosen, as a cluster is "
                 "never split.",
                 (long long)completed);
-    if (!c->removed)
-        cli_warn(run, "stage two removed nothing: every component kept its "
-                      "order; choose fewer modes (select: tolerance) or a "
-                      "looser composite tolerance");
-    if (!c->removed)
-        cli_say(run, "STAGE TWO REMOVED NOTHING: the reduced components are as "
-                     "large as those of stage 1.");
-    json_object_set_new(run->report, "removed", json_boolean(c->removed));
-    cli_report_int(run, "composite", c->composite);
-    cli_report_int(run, "completed", completed);
+    if (c->removed)
+        return;
+    cli_warn(run, "stage two removed nothing: every component kept its "
+                  "order; choose fewer modes (select: tolerance) or a "
+                  "looser composite tolerance");
+    cli_say(run, "STAGE TWO REMOVED NOTHING: the reduced components are as "
+                 "large as those of stage 1.");
 }
 
-void comparison_name_row(const ritz_stage *stage, const ritz_comparison *c,
-                         const ritz_compare_row *row, char out[RITZ_NAME_SIZE])
+/* "31+19+6", and the same as a list. */
+static void print_orders(cli_run *run, int64_t count, const int64_t *order,
+                         char out[80])
+{
+    out[0] = '\0';
+    for (int64_t k = 0; k < count && strlen(out) < 72; k++)
+        sink_append(out, 80, "%s%lld", k > 0 ? "+" : "", (long long)order[k]);
+    sink_wholes(run, "orders", count, order);
+}
+
+static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
+{
+    char orders[80];
+    char where[RITZ_NAME_SIZE + 32] = "";
+
+    sink_object(run, NULL);
+    print_orders(run, bodies, k->order, orders);
+    if (!isnan(k->deviation) && k->deviation > 0.0)
+        snprintf(where, sizeof where, "%.4g Hz%s%s", k->hertz,
+                 *k->at ? ", " : "", k->at);
+    sink_say(run, ",attached,,dofs,gain_listed,gain_between,singular_value",
+             "%c %-28s %-16s %6lld %9.1e %9.1e %9.1e  %s",
+             k->chosen ? '>' : ' ', k->name, orders, (long long)k->largest,
+             k->gain_listed, k->gain_between, k->deviation, where);
+    sink_set(run, "hertz,at,chosen", "%g %s %d", k->hertz, k->at, k->chosen);
+    sink_end(run);
+}
+
+/* Static corrections by the forces that they answer; there may be none. */
+static void say_candidates(cli_run *run, const ritz_stage *first,
+                           const ritz_comparison *c)
+{
+    const ritz_scene *scene = first->scene;
+    bool open = scene->attached == RITZ_ATTACHED_AUTO;
+    double chosen = 0.0;
+
+    sink_list(run, "candidates");
+    if (c->num_candidates > 0) {
+        cli_say(run,
+                "\nStatic corrections of %s, by the forces that they answer",
+                c->candidate[0].level == RITZ_AUGMENT_COMPONENT
+                    ? "each component, with its rigid modes, once for all "
+                      "angles"
+                    : "the system");
+        cli_say(run, "  %-28s %-16s %6s %9s %9s %9s", "attached", "orders",
+                "system", "gain", "gain *", "sigma max");
+    }
+    for (int64_t k = 0; k < c->num_candidates; k++) {
+        say_candidate(run, first->count, &c->candidate[k]);
+        if (c->candidate[k].chosen)
+            chosen = c->candidate[k].deviation;
+    }
+    sink_end(run);
+    if (c->num_candidates == 0)
+        return;
+    cli_say(run, "  worst relative errors: of the static gain at listed angles "
+                 "and between them (*), of the largest singular");
+    cli_say(run, "  value of H(i w) in the band at listed angles, and where; > "
+                 "is what stage 2 was made with");
+    if (open && !(chosen <= scene->attached_tolerance))
+        cli_warn(run,
+                 "no set of attached dofs brings the largest singular value "
+                 "within %g: the nearest is %.1e off",
+                 scene->attached_tolerance, chosen);
+}
+
+/* "clock=60,cone=0" of a row. */
+static void name_row(const ritz_stage *stage, const ritz_comparison *c,
+                     const ritz_compare_row *row, char out[RITZ_NAME_SIZE])
 {
     const ritz_system *system = &c->second_system;
 
@@ -121,59 +181,57 @@ void comparison_name_row(const ritz_stage *stage, const ritz_comparison *c,
                                 row->setting, out);
 }
 
-static json_t *row_json(const ritz_compare_row *row, const char *at)
-{
-    json_t *item = json_object();
-    json_t *errors = json_object();
-
-    json_object_set_new(errors, "frequency", cli_real(row->frequency_error));
-    json_object_set_new(errors, "frequency_allowed", cli_real(row->allowed));
-    json_object_set_new(errors, "rigid_hz", cli_real(row->rigid_error));
-    json_object_set_new(errors, "gain", cli_real(row->gain_error));
-    json_object_set_new(errors, "response", cli_real(row->response_error));
-    json_object_set_new(errors, "mac", cli_real(row->mac));
-    json_object_set_new(errors, "moments", cli_real(row->moment_error));
-    json_object_set_new(item, "at", cli_string(at));
-    json_object_set_new(item, "listed", json_boolean(row->listed));
-    json_object_set_new(item, "rigid", json_integer(row->num_rigid));
-    json_object_set_new(item, "flexible", json_integer(row->num_flexible));
-    json_object_set_new(item, "dofs", json_integer(row->order));
-    json_object_set_new(item, "vectors", json_integer(row->num_vectors));
-    json_object_set_new(item, "moments", json_integer(row->num_moments));
-    json_object_set_new(item, "errors", errors);
-    return item;
-}
-
-/* "1.0e-03", or "-" where there is none. */
-static const char *print_error(double error, char out[16])
-{
-    snprintf(out, 16, isnan(error) ? "-" : "%.1e", error);
-    return out;
-}
-
-/* One row of the table; listed ones are numbered. */
-static void say_row(cli_run *run, const ritz_compare_row *row, int64_t number,
-                    const char *at)
+/* A line of the table of errors; listed configurations are numbered. */
+static void say_errors(cli_run *run, const ritz_compare_row *row,
+                       int64_t number, const char *at)
 {
     char first[24] = "*";
     char chosen[24];
-    char text[6][16];
     int64_t kept = row->num_vectors > 0 ? row->num_vectors : row->num_kept;
 
     if (row->listed)
         snprintf(first, sizeof first, "%lld", (long long)number);
     snprintf(chosen, sizeof chosen, row->listed ? "%lld" : "(%lld)",
              (long long)kept);
-    cli_say(run, "%3s  %-28s %5lld %4lld %4s %5lld %9s %9s %9s %9s %9s %9s",
-            first, at, (long long)row->num_rigid, (long long)row->num_flexible,
-            chosen, (long long)row->order,
-            print_error(row->frequency_error, text[0]),
-            print_error(row->allowed, text[1]),
-            print_error(row->rigid_error, text[2]),
-            print_error(row->gain_error, text[3]),
-            print_error(row->response_error, text[4]),
-            print_error(isnan(row->mac) ? row->mac : fmax(1.0 - row->mac, 0.0),
-                        text[5]));
+    sink_set(run, "at,listed,rigid,flexible,dofs,vectors,moments",
+             "%s %d %lld %lld %lld %lld %lld", at, row->listed,
+             (long long)row->num_rigid, (long long)row->num_flexible,
+             (long long)row->order, (long long)row->num_vectors,
+             (long long)row->num_moments);
+    sink_object(run, "errors");
+    sink_say(run, ",,,,,,frequency,frequency_allowed,rigid_hz,gain,response",
+             "%3s  %-28s %5lld %4lld %4s %5lld %9.1e %9.1e %9.1e %9.1e %9.1e "
+             "%9.1e",
+             first, at, (long long)row->num_rigid, (long long)row->num_flexible,
+             chosen, (long long)row->order, row->frequency_error, row->allowed,
+             row->rigid_error, row->gain_error, row->response_error,
+             isnan(row->mac) ? row->mac : fmax(1.0 - row->mac, 0.0));
+    sink_set(run, "mac,moments", "%g %g", row->mac, row->moment_error);
+    sink_end(run);
+}
+
+/* Extraneous modes of a row, and all frequencies of its system if it has one
+   in the output. */
+static ritz_status set_modes(cli_run *run, const ritz_compare_row *row,
+                             const ritz_configuration *at)
+{
+    double *hertz = NULL;
+
+    sink_list(run, "extraneous");
+    for (int64_t i = 0; i < row->num_strays; i++) {
+        const ritz_stray *s = &row->stray[i];
+
+        sink_set(run, "mode,hertz,like,mac,removed", "%lld %g %lld %g %d",
+                 (long long)s->mode + 1, s->hertz, (long long)s->like + 1,
+                 s->mac, s->removed);
+    }
+    sink_end(run);
+    if (!at)
+        return RITZ_OK;
+    RITZ_CHECK(model_hertz_at(at, &hertz));
+    sink_reals(run, "frequencies_hz", at->K.nrow, hertz);
+    free(hertz);
+    return RITZ_OK;
 }
 
 static void say_legend(cli_run *run, const ritz_comparison *c)
@@ -204,40 +262,288 @@ static void say_legend(cli_run *run, const ritz_comparison *c)
                 (long long)moments, worst);
 }
 
-static void say_rows(cli_run *run, const ritz_stage *stage,
-                     const ritz_comparison *c)
+static ritz_status say_rows(cli_run *run, const ritz_stage *stage,
+                            const ritz_comparison *c)
 {
-    json_t *array = json_array();
-    json_t *kept = json_array();
+    const ritz_system *system = &c->second_system;
     double worst = 0.0;
 
     cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "#",
             "configuration", "rigid", "flex", "kept", "order", "frequency",
             "allowed", "rigid Hz", "gain", "response", "1 - MAC");
+    sink_list(run, "configurations");
     for (int64_t k = 0; k < c->num_rows; k++) {
         const ritz_compare_row *row = &c->row[k];
-        json_t *modes = json_array();
         char at[RITZ_NAME_SIZE];
 
-        comparison_name_row(stage, c, row, at);
-        say_row(run, row, k + 1, at);
-        json_array_append_new(array, row_json(row, at));
-        for (int64_t i = 0; row->listed && i < row->num_kept; i++)
-            json_array_append_new(modes, json_integer(row->kept[i] + 1));
-        if (row->listed)
-            json_array_append(kept, modes);
-        json_decref(modes);
-        if (row->response_error > worst)
-            worst = row->response_error;
+        name_row(stage, c, row, at);
+        sink_object(run, NULL);
+        say_errors(run, row, k + 1, at);
+        RITZ_CHECK(set_modes(
+            run, row,
+            k < system->num_configurations ? &system->configuration[k] : NULL));
+        sink_end(run);
+        worst = fmax(worst, row->response_error);
     }
+    sink_end(run);
+    sink_list(run, "kept");
+    for (int64_t k = 0; k < c->num_rows; k++)
+        if (c->row[k].listed)
+            sink_numbers(run, NULL, c->row[k].num_kept, c->row[k].kept);
+    sink_end(run);
     say_legend(run, c);
-    json_object_set_new(run->report, "configurations", array);
-    json_object_set_new(run->report, "kept", kept);
     cli_record_error(run, "response", worst);
+    return RITZ_OK;
 }
 
-ritz_status comparison_say(cli_run *run, const ritz_stage *first,
+/* The angle with the worst errors between listed ones, if there is any. */
+static void say_suggestion(cli_run *run, const ritz_stage *first,
                            const ritz_comparison *c)
+{
+    const ritz_suggestion *s = &c->suggestion;
+    char at[RITZ_NAME_SIZE];
+
+    if (s->row < 0)
+        return;
+    name_row(first, c, &c->row[s->row], at);
+    sink_object(run, "suggestion");
+    sink_set(run, "at,measure,error,listed,worth", "%s %s %g %g %d", at,
+             s->measure, s->error, s->listed, s->worth);
+    sink_end(run);
+    if (s->worth)
+        cli_say(run,
+                "  add %s: %s error %.1e there, %.1e at listed configurations",
+                at, s->measure, s->error, s->listed);
+    else
+        cli_say(run,
+                "  no angle need be added: the worst %s error between listed "
+                "ones is %.1e, at %s",
+                s->measure, s->error, at);
+}
+
+/* Frequencies of one row's, as many as fit a line. */
+static void say_stray_row(cli_run *run, const char *at,
+                          const ritz_compare_row *row)
+{
+    enum { WIDTH = 72 };
+    char line[WIDTH + 64] = "";
+    int64_t shown = 0;
+
+    while (shown < row->num_strays && strlen(line) < WIDTH) {
+        const ritz_stray *stray = &row->stray[shown++];
+
+        sink_append(line, sizeof line, " %.5g%s%s", stray->hertz,
+                    stray->mac >= 0.9 ? "~" : "", stray->removed ? "x" : "");
+    }
+    if (shown < row->num_strays)
+        cli_say(run, "  %-28s %4lld %s ...", at, (long long)row->num_strays,
+                line);
+    else
+        cli_say(run, "  %-28s %4lld %s", at, (long long)row->num_strays, line);
+}
+
+/* How many of the listed rows' extraneous modes were removed. */
+static int64_t count_removed(const ritz_comparison *c)
+{
+    int64_t removed = 0;
+
+    for (int64_t k = 0; k < c->num_rows; k++)
+        for (int64_t i = 0; c->row[k].listed && i < c->row[k].num_strays; i++)
+            removed += c->row[k].stray[i].removed;
+    return removed;
+}
+
+static void say_strays(cli_run *run, const ritz_stage *first,
+                       const ritz_comparison *c)
+{
+    int64_t removed = count_removed(c);
+    int64_t total = 0;
+
+    for (int64_t k = 0; k < c->num_rows; k++)
+        total += c->row[k].listed ? c->row[k].num_strays : 0;
+    sink_set(run, "extraneous_removed", "%lld", (long long)removed);
+    if (total == 0)
+        return;
+    cli_say(run, "\nExtraneous modes of the stage-2 system, Hz: those that "
+                 "stand for no mode that was kept");
+    for (int64_t k = 0; k < c->num_rows; k++) {
+        char at[RITZ_NAME_SIZE];
+
+        if (!c->row[k].listed)
+            continue;
+        name_row(first, c, &c->row[k], at);
+        say_stray_row(run, at, &c->row[k]);
+    }
+    cli_say(run, "  ~ yet has the shape of a mode of stage 1, MAC 0.9 or more; "
+                 "x removed from the system that was written");
+    if (removed > 0)
+        cli_say(run,
+                "  %lld of %lld were removed; the components still contain "
+                "them%s",
+                (long long)removed, (long long)total,
+                first->scene->augment == RITZ_AUGMENT_NONE
+                    ? ""
+                    : ". What carries the static gain was among them: the "
+                      "errors above are without");
+}
+
+/*
+ * The last table of the report is Table 1 of [LeeTsuha1992]: a column for each
+ * reduced component and one for each configuration; a dagger stands at modes of
+ * the system that were kept and are those of the first stage.
+ */
+typedef struct mode_column {
+    char title[RITZ_NAME_SIZE];
+    int64_t count;
+    double *hertz;
+    bool *kept;
+} mode_column;
+
+static void free_columns(int64_t count, mode_column *columns)
+{
+    for (int64_t k = 0; columns && k < count; k++) {
+        free(columns[k].hertz);
+        free(columns[k].kept);
+    }
+    free(columns);
+}
+
+/*
+ * The stage-2 mode nearest to each kept mode of stage 1 is marked if it is as
+ * near as rounding allows: eps lambda_max / lambda_k, times 1000 for the two
+ * projections and eigenproblems between them, or 1e-9.
+ */
+static void mark_kept(const ritz_compare_row *row,
+                      const ritz_configuration *first,
+                      const ritz_configuration *second, mode_column *out)
+{
+    double highest = first->lambda[first->K.nrow - 1];
+
+    for (int64_t i = 0; i < row->num_kept; i++) {
+        double asked = first->lambda[first->num_rigid + row->kept[i]];
+        double best = (double)INFINITY;
+        int64_t at = -1;
+
+        for (int64_t k = 0; k < out->count; k++) {
+            double apart =
+                fabs(second->lambda[second->num_rigid + k] - asked) / asked;
+
+            if (apart < best && !out->kept[k]) {
+                best = apart;
+                at = k;
+            }
+        }
+        if (at >= 0 && best <= fmax(1e-9, 1e3 * DBL_EPSILON * highest / asked))
+            out->kept[at] = true;
+    }
+}
+
+static ritz_status new_column(const char *title, int64_t count,
+                              mode_column *out)
+{
+    out->hertz = calloc((size_t)count + 1, sizeof *out->hertz);
+    out->kept = calloc((size_t)count + 1, sizeof *out->kept);
+    RITZ_REFUSE_IF(!out->hertz || !out->kept, RITZ_ERR_MEMORY,
+                   "no memory for the report");
+    out->count = count;
+    snprintf(out->title, sizeof out->title, "%s", title);
+    return RITZ_OK;
+}
+
+static ritz_status find_body_column(const char *name, const ritz_reduced *body,
+                                    mode_column *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t rigid = 0;
+    int64_t count = 0;
+    double *hertz = NULL;
+
+    RITZ_TRY(model_hertz(&body->K, &body->M, &rigid, &count, &hertz));
+    RITZ_TRY(new_column(name, count - rigid, out));
+    for (int64_t k = 0; k < count - rigid; k++)
+        out->hertz[k] = hertz[rigid + k];
+done:
+    free(hertz);
+    return status;
+}
+
+static ritz_status find_system_column(int64_t number, const ritz_comparison *c,
+                                      mode_column *out)
+{
+    const ritz_configuration *first = &c->first_system.configuration[number];
+    const ritz_configuration *second = &c->second_system.configuration[number];
+    char title[32];
+
+    snprintf(title, sizeof title, "#%lld", (long long)number + 1);
+    RITZ_CHECK(new_column(title, second->K.nrow - second->num_rigid, out));
+    for (int64_t k = 0; k < out->count; k++)
+        out->hertz[k] = ritz_eigen_hertz(second->lambda[second->num_rigid + k]);
+    mark_kept(&c->row[number], first, second, out);
+    return RITZ_OK;
+}
+
+static void say_mode_line(cli_run *run, int64_t mode, int64_t count,
+                          const mode_column *columns)
+{
+    enum { WIDTH = 13, MOST = 512 };
+    char line[MOST] = "";
+    size_t used = 0;
+
+    for (int64_t k = 0; k < count && strlen(line) + WIDTH + WIDTH < MOST; k++) {
+        const mode_column *c = &columns[k];
+
+        if (mode < 0)
+            sink_append(line, MOST, " %10.10s  ", c->title);
+        else if (mode < c->count)
+            sink_append(line, MOST, " %10.5f%s", c->hertz[mode],
+                        c->kept[mode] ? " \u2020" : "  ");
+        else
+            sink_append(line, MOST, "%13s", "");
+    }
+    for (used = strlen(line); used > 0 && line[used - 1] == ' ';)
+        line[--used] = '\0';
+    if (mode < 0)
+        cli_say(run, "%5s%s", "mode", line);
+    else
+        cli_say(run, "%5lld%s", (long long)mode + 1, line);
+}
+
+static ritz_status say_modes(cli_run *run, const ritz_comparison *c)
+{
+    enum { MOST_SYSTEMS = 12 };
+    ritz_status status = RITZ_OK;
+    const ritz_stage *stage = &c->second;
+    int64_t systems = c->second_system.num_configurations;
+    int64_t shown = systems < MOST_SYSTEMS ? systems : MOST_SYSTEMS;
+    int64_t count = stage->count + shown;
+    int64_t longest = 0;
+    mode_column *columns = calloc((size_t)count + 1, sizeof *columns);
+
+    RITZ_FAIL_IF(!columns, RITZ_ERR_MEMORY, "no memory for the report");
+    for (int64_t k = 0; k < count; k++) {
+        int64_t at = k - stage->count;
+
+        RITZ_TRY(at < 0 ? find_body_column(stage->scene->component[k].name,
+                                           &stage->body[k], &columns[k])
+                        : find_system_column(at, c, &columns[k]));
+        longest = columns[k].count > longest ? columns[k].count : longest;
+    }
+    cli_say(run, "\nFlexible modes after stage 2, Hz: of each component by "
+                 "itself, and of the system at each configuration");
+    for (int64_t mode = -1; mode < longest; mode++)
+        say_mode_line(run, mode, count, columns);
+    cli_say(run, "  \u2020 a mode of the stage-1 system that was kept, and is "
+                 "there exactly");
+    if (shown < systems)
+        cli_say(run, "  %lld more configurations are in the output",
+                (long long)(systems - shown));
+done:
+    free_columns(count, columns);
+    return status;
+}
+
+static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
+                                  const ritz_comparison *c)
 {
     const ritz_scene *scene = first->scene;
     char band[64] = "no band";
@@ -253,11 +559,116 @@ ritz_status comparison_say(cli_run *run, const ritz_stage *first,
     say_orders(run, first, &c->second);
     cli_say(run, "%s", "");
     say_composite(run, first, c);
-    comparison_say_candidates(run, first, c);
+    say_candidates(run, first, c);
     cli_say(run, "\nErrors of the stage-2 system against the stage-1 system");
-    say_rows(run, first, c);
-    comparison_say_suggestion(run, first, c);
-    comparison_say_strays(run, first, c);
-    cli_say(run, "%s", "");
-    return comparison_say_frequencies(run, c);
+    RITZ_CHECK(say_rows(run, first, c));
+    say_suggestion(run, first, c);
+    say_strays(run, first, c);
+    return say_modes(run, c);
+}
+
+static void say_tolerances(cli_run *run, const ritz_stage *first, int64_t count,
+                           const ritz_tolerance_row *rows)
+{
+    cli_say(run, "\nComposite tolerance against orders, and worst errors at "
+                 "listed configurations");
+    cli_say(run, "%10s  %-16s %6s %6s %9s %9s %9s", "tolerance", "orders",
+            "total", "system", "frequency", "gain", "response");
+    sink_list(run, "tolerances");
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_tolerance_row *row = &rows[k];
+        char orders[80];
+
+        sink_object(run, NULL);
+        print_orders(run, first->count, row->order, orders);
+        sink_set(run, "removed", "%d", row->removed);
+        sink_say(run, "tolerance,,,dofs,frequency,gain,response",
+                 "%10.0e  %-16s %6lld %6lld %9.1e %9.1e %9.1e%s",
+                 row->tolerance, orders, (long long)row->total,
+                 (long long)row->largest, row->frequency_error, row->gain_error,
+                 row->response_error,
+                 row->removed ? "" : "  stage two removed nothing");
+        sink_end(run);
+    }
+    sink_end(run);
+}
+
+static ritz_status write_tolerances(const char *path, const ritz_stage *first,
+                                    int64_t count,
+                                    const ritz_tolerance_row *rows)
+{
+    ritz_status status = RITZ_OK;
+    cli_table table = {0};
+
+    RITZ_TRY(cli_table_new(&table));
+    fprintf(table.file, "tolerance\ttotal\tsystem\tremoved\tfrequency\tgain\t"
+                        "response");
+    for (int64_t b = 0; b < first->count; b++)
+        fprintf(table.file, "\t%s", first->scene->component[b].name);
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_tolerance_row *row = &rows[k];
+
+        fprintf(table.file, "\n%g\t%lld\t%lld\t%s\t%.6e\t%.6e\t%.6e",
+                row->tolerance, (long long)row->total, (long long)row->largest,
+                row->removed ? "yes" : "no", row->frequency_error,
+                row->gain_error, row->response_error);
+        for (int64_t b = 0; b < first->count; b++)
+            fprintf(table.file, "\t%lld", (long long)row->order[b]);
+    }
+    fprintf(table.file, "\n");
+    RITZ_TRY(cli_table_save(&table, path));
+done:
+    cli_table_free(&table);
+    return status;
+}
+
+/* The chart of the composite tolerance. */
+static ritz_status chart_tolerances(cli_run *run, const comparison_wish *asked,
+                                    const ritz_stage *stage,
+                                    const ritz_comparison *comparison)
+{
+    ritz_status status = RITZ_OK;
+    int64_t count = asked->num_tolerances;
+    ritz_tolerance_row *rows = NULL;
+
+    if (count == 0)
+        return RITZ_OK;
+    RITZ_TRY_IN("tolerances", ritz_compare_tolerances(stage, comparison, count,
+                                                      asked->tolerance, &rows));
+    say_tolerances(run, stage, count, rows);
+    if (asked->tolerance_table)
+        RITZ_TRY(write_tolerances(asked->tolerance_table, stage, count, rows));
+done:
+    ritz_tolerances_free(count, &rows);
+    return status;
+}
+
+ritz_status comparison_run(cli_run *run, const comparison_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    ritz_scene scene = {0};
+    ritz_stage stage = {0};
+    ritz_comparison c = {0};
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY(model_scene(run, run->operand[0], &scene));
+    if (asked->extraneous)
+        RITZ_TRY_IN("--extraneous",
+                    ritz_scene_set_extraneous(&scene, asked->extraneous));
+    RITZ_TRY(ritz_stage_new(&scene, &stage));
+    RITZ_TRY(ritz_compare(&stage, &c));
+    RITZ_TRY(model_write_bodies(run, asked->prefix, &scene, c.second.body));
+    stamp = cli_stamp(run);
+    RITZ_TRY(
+        ritz_container_write_system(run->output, &c.second_system, &stamp));
+    RITZ_TRY(say_comparison(run, &stage, &c));
+    RITZ_TRY(tracks_report(run, &stage, &c.first_system, asked->tracks));
+    RITZ_TRY(chart_tolerances(run, asked, &stage, &c));
+    if (asked->report)
+        RITZ_TRY(cli_save(run, asked->report));
+done:
+    ritz_comparison_free(&c);
+    ritz_stage_free(&stage);
+    ritz_scene_free(&scene);
+    return status;
 }

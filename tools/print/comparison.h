@@ -1,4 +1,4 @@
-/* The report of ritz-compare. */
+/* Two-stage reduction of a scene and its report: ritz-compare. */
 #ifndef RITZ_TOOLS_PRINT_COMPARISON_H
 #define RITZ_TOOLS_PRINT_COMPARISON_H
 
@@ -6,32 +6,16 @@
 
 #include <ritz/compare.h>
 
-/** Orders, errors at every configuration, frequencies; the same as JSON. */
-ritz_status comparison_say(cli_run *run, const ritz_stage *first,
-                           const ritz_comparison *comparison);
+enum { COMPARISON_MOST_TOLERANCES = 64 };
 
-/** The composite tolerance against orders and errors; the same as JSON. */
-void comparison_say_tolerances(cli_run *run, const ritz_stage *first,
-                               int64_t count, const ritz_tolerance_row *rows);
+/* What is asked beside the scene; NULL: not said. */
+typedef struct comparison_wish {
+    const char *prefix, *report, *tracks, *extraneous, *tolerance_table;
+    int64_t num_tolerances;
+    double tolerance[COMPARISON_MOST_TOLERANCES];
+} comparison_wish;
 
-/** The same as a table with tabs. */
-ritz_status comparison_write_tolerances(const char *path,
-                                        const ritz_stage *first, int64_t count,
-                                        const ritz_tolerance_row *rows);
-
-/* Parts of the report, each of which may have nothing to say. */
-void comparison_say_candidates(cli_run *run, const ritz_stage *first,
-                               const ritz_comparison *comparison);
-void comparison_say_suggestion(cli_run *run, const ritz_stage *first,
-                               const ritz_comparison *comparison);
-void comparison_say_strays(cli_run *run, const ritz_stage *first,
-                           const ritz_comparison *comparison);
-ritz_status comparison_say_frequencies(cli_run *run,
-                                       const ritz_comparison *comparison);
-
-/** "clock=60,cone=0" of a row. */
-void comparison_name_row(const ritz_stage *stage,
-                         const ritz_comparison *comparison,
-                         const ritz_compare_row *row, char out[RITZ_NAME_SIZE]);
+/** Reduce, write, and report orders, errors and frequencies. */
+ritz_status comparison_run(cli_run *run, const comparison_wish *asked);
 
 #endif

@@ -2,12 +2,12 @@
 
 #include "base/tolerances.h"
 #include "print/checksum.h"
-#include "print/nested.h"
-#include "print/rankings.h"
 
+#include <ritz/nested.h>
 #include <ritz/probe.h>
 
 #include <complex.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -379,6 +379,52 @@ static void describe_measures(cli_run *run, const char *key,
         model_set_measures(run, key, m, known);
 }
 
+/* A row a measure and a column an order, some orders at a time. */
+static void describe_nested_errors(cli_run *run, const ritz_nested *nested)
+{
+    enum { ACROSS = 6, WIDTH = 9 };
+
+    for (int64_t k = 0; k < nested->count; k += ACROSS) {
+        int64_t end = k + ACROSS < nested->count ? k + ACROSS : nested->count;
+        char line[ACROSS * WIDTH + 1] = "";
+
+        for (int64_t i = k; i < end; i++)
+            sink_append(line, sizeof line, " %8" PRId64, nested->order[i]);
+        cli_say(run, "    %-35s%s", "errors of the first", line);
+        for (int64_t j = 0; j < nested->num_errors; j++) {
+            const double *value = ritz_dense_col(&nested->value, j);
+
+            line[0] = '\0';
+            for (int64_t i = k; i < end; i++)
+                if (isnan(value[i])) /* it was not measured */
+                    sink_append(line, sizeof line, " %8s", "-");
+                else
+                    sink_append(line, sizeof line, " %8.1e", value[i]);
+            cli_say(run, "      %-33s%s", nested->error[j], line);
+        }
+    }
+}
+
+/* Prefixes that are models too, with their errors; there may be none. */
+static void describe_nested(cli_run *run, const ritz_nested *nested,
+                            int64_t columns)
+{
+    if (nested->smallest == 0)
+        return;
+    sink_object(run, "nested");
+    sink_field(run, "nested", "smallest",
+               "first %" PRId64 " to %" PRId64 " columns (--order N)",
+               nested->smallest, columns);
+    describe_nested_errors(run, nested);
+    sink_wholes(run, "order", nested->count, nested->order);
+    sink_object(run, "errors");
+    for (int64_t j = 0; j < nested->num_errors; j++)
+        sink_reals(run, nested->error[j], nested->count,
+                   ritz_dense_col(&nested->value, j));
+    sink_end(run);
+    sink_end(run);
+}
+
 ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
 {
     ritz_status status = RITZ_OK;
@@ -412,7 +458,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_io(run, &r->io);
     describe_measures(run, "estimates", &r->estimates, "estimated");
     describe_measures(run, "errors", &r->errors, "measured");
-    nested_describe(run, &r->nested, r->K.ncol);
+    describe_nested(run, &r->nested, r->K.ncol);
 done:
     free(hertz);
     return status;
@@ -590,7 +636,11 @@ static void describe_poles(cli_run *run, int64_t count,
 ritz_status describe_states(cli_run *run, const ritz_state_space *states)
 {
     ritz_status status = RITZ_OK;
-    const ritz_io io = model_io_of_states(states);
+    const ritz_io io = {.num_inputs = states->num_inputs,
+                        .num_outputs = states->num_outputs,
+                        .input = states->input,
+                        .output = states->output,
+                        .limit = states->limit};
     ritz_probe probe = {0};
     double _Complex *pole = NULL;
     int64_t count = 0;
@@ -621,34 +671,4 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
 done:
     free(pole);
     return status;
-}
-
-ritz_status describe_model(cli_run *run, const model *m)
-{
-    switch (m->kind) {
-    case MODEL_COMPONENT:
-        describe_component(run, &m->component);
-        return RITZ_OK;
-    case MODEL_BASIS:
-        describe_basis(run, &m->basis);
-        return RITZ_OK;
-    case MODEL_REDUCED:
-        return describe_reduced(run, &m->reduced);
-    case MODEL_SYSTEM:
-        return describe_system(run, &m->system);
-    case MODEL_RESPONSE:
-        describe_response(run, &m->response);
-        return RITZ_OK;
-    case MODEL_RANKING:
-        rankings_describe(run, &m->rankings);
-        return RITZ_OK;
-    case MODEL_STATES:
-        return describe_states(run, &m->states);
-    case MODEL_SIMULATION:
-        describe_simulation(run, &m->simulation);
-        return RITZ_OK;
-    case MODEL_ANY:
-        break;
-    }
-    return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
 }

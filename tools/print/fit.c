@@ -1,110 +1,232 @@
 #include "print/fit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-json_t *fit_values_json(const ritz_measures *measures)
+/* "craig-bampton,rubin", or "all" there are. */
+static void read_methods(const cli_program *program, fit_wish *asked)
 {
-    json_t *object = json_object();
+    ritz_fit_request *request = &asked->request;
+    const char *list = asked->methods;
+    char word[RITZ_NAME_SIZE];
 
+    request->methods = asked->method;
+    if (strcmp(list, "all") == 0) {
+        for (int k = 0; ritz_methods[k]; k++)
+            asked->method[request->num_methods++] = ritz_methods[k];
+        asked->method[request->num_methods++] = &ritz_fit_compare;
+        return;
+    }
+    while (cli_next(&list, word)) {
+        const ritz_method *found = ritz_fit_method_find(word);
+
+        if (!found)
+            cli_refuse(program, "%s", ritz_error_message());
+        if (request->num_methods == FIT_MOST_METHODS)
+            cli_refuse(program, "--methods takes %d methods, not more",
+                       (int)FIT_MOST_METHODS);
+        asked->method[request->num_methods++] = found;
+    }
+}
+
+void fit_take(const cli_program *program, fit_wish *asked)
+{
+    ritz_verify_request *tolerance = &asked->request.tolerance;
+
+    if (!asked->tolerance)
+        cli_refuse(program, "--tolerance says what is to hold");
+    if (ritz_tolerance_take(asked->tolerance, tolerance) != RITZ_OK)
+        cli_refuse(program, "--tolerance: %s", ritz_error_message());
+    if (asked->band)
+        cli_pair(program, "band-hz", asked->band, tolerance->band_hz);
+    if (asked->methods)
+        read_methods(program, asked);
+    asked->request.seed = (uint64_t)asked->seed;
+}
+
+/* Measures by name, in an object of their own. */
+static void set_values(cli_run *run, const char *key,
+                       const ritz_measures *measures)
+{
+    sink_object(run, key);
     for (int64_t k = 0; k < measures->count; k++)
-        json_object_set_new(object, measures->item[k].name,
-                            cli_real(measures->item[k].value));
-    return object;
+        sink_set(run, measures->item[k].name, "%g", measures->item[k].value);
+    sink_end(run);
 }
 
 /* "response-relative": 0.01 of each measure that has a tolerance. */
-static json_t *tolerance_json(const ritz_verify_request *limits)
+static void set_tolerance(cli_run *run, const ritz_verify_request *limits)
 {
-    json_t *object = json_object();
-
+    sink_object(run, "tolerance");
     for (int k = 0; k < RITZ_MEASURES; k++)
         if (!isnan(limits->limit[k]))
-            json_object_set_new(object, ritz_measure_table[k].name,
-                                cli_real(limits->limit[k]));
-    return object;
+            sink_set(run, ritz_measure_table[k].name, "%g", limits->limit[k]);
+    sink_end(run);
 }
 
-static json_t *modes_json(const ritz_fit_candidate *c)
+/* Modes of each body; null where there is no number to choose. */
+static void set_modes(cli_run *run, const ritz_fit_candidate *c)
 {
-    json_t *array = json_array();
-
+    sink_list(run, "modes");
     for (int64_t k = 0; k < c->num_bodies; k++)
-        json_array_append_new(
-            array, c->modes[k] < 0 ? json_null() : json_integer(c->modes[k]));
-    return array;
+        if (c->modes[k] < 0)
+            sink_add(run, "%g", (double)NAN);
+        else
+            sink_add(run, "%lld", (long long)c->modes[k]);
+    sink_end(run);
 }
 
-static json_t *candidate_json(const ritz_fit_candidate *c)
+/* An order, or null of what was refused. */
+static void set_order(cli_run *run, int64_t order)
 {
-    json_t *object = json_object();
+    if (order > 0)
+        sink_set(run, "order", "%lld", (long long)order);
+    else
+        sink_set(run, "order", "%g", (double)NAN);
+}
 
-    json_object_set_new(object, "method", cli_string(c->method->name));
-    json_object_set_new(object, "order",
-                        c->order > 0 ? json_integer(c->order) : json_null());
-    json_object_set_new(object, "columns", json_integer(c->columns));
-    json_object_set_new(object, "modes", modes_json(c));
-    json_object_set_new(
-        object, "seconds",
-        json_pack("{s:f, s:f}", "wall", c->making.wall, "cpu", c->making.cpu));
-    json_object_set_new(object, "errors", fit_values_json(&c->errors));
-    json_object_set_new(object, "estimates", fit_values_json(&c->estimates));
+static void set_candidate(cli_run *run, const ritz_fit_candidate *c)
+{
+    sink_set(run, "method,columns,left_out,screened,held,caught,feasible",
+             "%s %lld %lld %d %d %d %d", c->method->name, (long long)c->columns,
+             (long long)c->left_out, c->ruled_out, c->bounded, c->unconfirmed,
+             c->feasible);
+    set_order(run, c->order);
+    set_modes(run, c);
+    sink_object(run, "seconds");
+    sink_set(run, "wall,cpu", "%g %g", c->making.wall, c->making.cpu);
+    sink_end(run);
+    set_values(run, "errors", &c->errors);
+    set_values(run, "estimates", &c->estimates);
     if (c->cost.order > 0)
-        json_object_set_new(object, "cost", model_cost_json(&c->cost));
-    json_object_set_new(object, "left_out", json_integer(c->left_out));
-    json_object_set_new(object, "screened", json_boolean(c->ruled_out));
-    json_object_set_new(object, "held", json_boolean(c->bounded));
-    json_object_set_new(object, "caught", json_boolean(c->unconfirmed));
-    json_object_set_new(object, "feasible", json_boolean(c->feasible));
+        model_set_cost(run, &c->cost);
     if (c->refusal[0])
-        json_object_set_new(object, "refused", cli_string(c->refusal));
-    return object;
+        sink_set(run, "refused", "%s", c->refusal);
 }
 
-void fit_record(fit_run *fit, const ritz_fit_candidate *c, fit_mark mark)
-{
-    ritz_status status = RITZ_OK;
-    json_t *line = candidate_json(c);
+/* A file that an answer makes, and whether something was there before. */
+typedef struct fit_file {
+    char *path;
+    bool there;
+} fit_file;
 
-    json_object_set_new(line, "ok", json_boolean(!c->refusal[0]));
-    json_object_set_new(line, "subject", cli_string(fit->subject));
-    json_object_set_new(line, "chosen", json_boolean(mark.chosen));
-    json_object_set_new(line, "runner_up", json_boolean(mark.runner_up));
+typedef struct fit_files {
+    int64_t count;
+    fit_file *file;
+} fit_files;
+
+/* A run of ritz-fit, for the observer that records candidates. */
+typedef struct fit_run {
+    cli_run *run;
+    char subject[RITZ_NAME_SIZE];
+    const ritz_verify_request *limits; /* NULL: not known yet */
+    ritz_status recorded;              /* the first failure to append */
+    fit_files files;                   /* that an answer makes */
+} fit_run;
+
+/* What a candidate was found to be. */
+typedef struct fit_mark {
+    bool chosen, runner_up;
+    const char *why; /* NULL: none */
+} fit_mark;
+
+/* Append a candidate to the file of --record. */
+static void record_candidate(fit_run *fit, const ritz_fit_candidate *c,
+                             fit_mark mark)
+{
+    cli_run *run = fit->run;
+    ritz_status status = RITZ_OK;
+
+    sink_record(run);
+    set_candidate(run, c);
+    sink_set(run, "ok,subject,chosen,runner_up", "%d %s %d %d", !c->refusal[0],
+             fit->subject, mark.chosen, mark.runner_up);
     if (fit->limits) {
-        json_object_set_new(line, "tolerance", tolerance_json(fit->limits));
-        json_object_set_new(line, "band_hz",
-                            model_reals_json(2, fit->limits->band_hz));
+        set_tolerance(run, fit->limits);
+        sink_reals(run, "band_hz", 2, fit->limits->band_hz);
     }
     if (mark.why)
-        json_object_set_new(line, "why", cli_string(mark.why));
-    status = cli_record_line(fit->run, line);
+        sink_set(run, "why", "%s", mark.why);
+    status = sink_end_record(run);
     if (fit->recorded == RITZ_OK)
         fit->recorded = status;
 }
 
-void fit_observe(const ritz_fit_candidate *candidate, void *context)
+static void observe_candidate(const ritz_fit_candidate *candidate,
+                              void *context)
 {
-    fit_record(context, candidate, (fit_mark){0});
+    record_candidate(context, candidate, (fit_mark){0});
+}
+
+static ritz_status add_file(fit_files *files, const char *path)
+{
+    fit_file *more = NULL;
+    struct stat there;
+
+    RITZ_CHECK(cli_can_write(path));
+    more = realloc(files->file, (size_t)(files->count + 1) * sizeof *more);
+    RITZ_REFUSE_IF(!more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    files->file = more;
+    more[files->count] = (fit_file){strdup(path), lstat(path, &there) == 0};
+    RITZ_REFUSE_IF(!more[files->count].path, RITZ_ERR_MEMORY,
+                   "no memory for '%s'", path);
+    files->count++;
+    return RITZ_OK;
+}
+
+/* Every file that an answer makes: that it can be made is known before the
+   search. */
+static ritz_status foresee_files(const cli_run *run, const char *prefix,
+                                 const char *report, const ritz_scene *scene,
+                                 fit_files *out)
+{
+    if (run->output)
+        RITZ_CHECK(add_file(out, run->output));
+    if (report)
+        RITZ_CHECK(add_file(out, report));
+    for (int64_t k = 0; prefix && scene && k < scene->num_components; k++) {
+        char path[MODEL_PATH];
+
+        RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
+        RITZ_CHECK(add_file(out, path));
+    }
+    return RITZ_OK;
+}
+
+/* Remove those that were not there before. */
+static void discard_files(const fit_files *files)
+{
+    for (int64_t k = 0; k < files->count; k++)
+        if (!files->file[k].there)
+            (void)remove(files->file[k].path);
+}
+
+static void free_files(fit_files *files)
+{
+    for (int64_t k = 0; k < files->count; k++)
+        free(files->file[k].path);
+    free(files->file);
+    *files = (fit_files){0};
 }
 
 /* "1.2e-03" of the measure that decides, or what stood in the way. */
-static void say_row(const cli_run *run, const ritz_fit_candidate *c,
-                    const char *name)
+static void say_candidate(const cli_run *run, const ritz_fit_candidate *c,
+                          const char *name)
 {
-    char modes[64] = "-";
+    char modes[64] = "";
     char cost[32] = "-"; /* of what is not met it is not measured */
     char error[32];
-    size_t used = 0;
 
     if (!c) {
         cli_say(run, "%-18s refused", name);
         return;
     }
     for (int64_t k = 0; k < c->num_bodies && c->modes[0] >= 0; k++)
-        if (used < sizeof modes - 8)
-            used +=
-                (size_t)snprintf(modes + used, sizeof modes - used, "%s%lld",
-                                 k > 0 ? "+" : "", (long long)c->modes[k]);
+        if (strlen(modes) < sizeof modes - 8)
+            sink_append(modes, sizeof modes, "%s%lld", k > 0 ? "+" : "",
+                        (long long)c->modes[k]);
     if (c->refusal[0]) {
         const char *why = c->refusal;
         const size_t length = strlen(name);
@@ -119,7 +241,7 @@ static void say_row(const cli_run *run, const ritz_fit_candidate *c,
         snprintf(cost, sizeof cost, "%.2g", c->cost.seconds_per_second);
     snprintf(error, sizeof error, "%s%.2g", c->ruled_out ? ">" : "", c->ratio);
     cli_say(run, "%-18s %6lld %8s  %8s %-10s %8.2g %9s  %s", c->method->name,
-            (long long)c->order, modes, error,
+            (long long)c->order, *modes ? modes : "-", error,
             c->ruled_out   ? "frequency"
             : c->worst < 0 ? ""
                            : ritz_tolerance_word(c->errors.item[c->worst].name),
@@ -133,7 +255,7 @@ static void say_head(const cli_run *run)
 }
 
 /* Why the first candidate of a method was refused. */
-static const ritz_fit_candidate *first_of(const ritz_fit *fit, int64_t method)
+static const ritz_fit_candidate *find_first(const ritz_fit *fit, int64_t method)
 {
     for (int64_t k = 0; k < fit->count; k++)
         if (fit->candidate[k].method == fit->method[method])
@@ -141,26 +263,25 @@ static const ritz_fit_candidate *first_of(const ritz_fit *fit, int64_t method)
     return NULL;
 }
 
-static const ritz_fit_candidate *of_method(const ritz_fit *fit, int64_t m)
+static const ritz_fit_candidate *find_best(const ritz_fit *fit, int64_t m)
 {
     if (fit->best[m] >= 0)
         return &fit->candidate[fit->best[m]];
     if (fit->reached[m] >= 0)
         return &fit->candidate[fit->reached[m]];
-    return first_of(fit, m);
+    return find_first(fit, m);
 }
 
-static json_t *methods_json(const ritz_fit *fit)
+/* The same as an item, if there is a candidate. */
+static void say_item(cli_run *run, const ritz_fit_candidate *c,
+                     const char *name)
 {
-    json_t *array = json_array();
-
-    for (int64_t m = 0; m < fit->num_methods; m++) {
-        const ritz_fit_candidate *c = of_method(fit, m);
-
-        if (c)
-            json_array_append_new(array, candidate_json(c));
-    }
-    return array;
+    say_candidate(run, c, name);
+    if (!c)
+        return;
+    sink_object(run, NULL);
+    set_candidate(run, c);
+    sink_end(run);
 }
 
 static void say_cost(cli_run *run, const ritz_fitter *fitter,
@@ -182,7 +303,7 @@ static void say_cost(cli_run *run, const ritz_fitter *fitter,
             "Suggested step %.3g s, which resolves the band to %g Hz: %.3g s "
             "of processor a second simulated (%s, measured).",
             cost->step, band[1], cost->seconds_per_second, cost->integrator);
-    json_object_set_new(run->report, "cost", model_cost_json(cost));
+    model_set_cost(run, cost);
 }
 
 /* How wrong it can be, where that is known; modes one by one are in the file. */
@@ -213,20 +334,23 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     model_say_measures(run, "measures", &c->errors, "measured");
     say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);
-    cli_report_text(run, "method", c->method->name);
-    cli_report_int(run, "order", c->order);
-    cli_report_int(run, "columns", c->columns);
-    json_object_set_new(run->report, "modes", modes_json(c));
-    json_object_set_new(run->report, "error", cli_real(c->ratio));
-    json_object_set_new(run->report, "measures",
-                        model_measures_json(&c->errors, "measured"));
-    json_object_set_new(run->report, "estimates",
-                        model_measures_json(&c->estimates, "estimated"));
-    json_object_set_new(run->report, "runner_up",
-                        second ? candidate_json(second) : json_null());
+    sink_set(run, "method,order,columns,error", "%s %lld %lld %g",
+             c->method->name, (long long)c->order, (long long)c->columns,
+             c->ratio);
+    set_modes(run, c);
+    model_set_measures(run, "estimates", &c->estimates, "estimated");
+    if (!second) {
+        sink_set(run, "runner_up", "%g", (double)NAN);
+        return;
+    }
+    sink_object(run, "runner_up");
+    set_candidate(run, second);
+    sink_end(run);
 }
 
-void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit)
+/* What was searched, and the answer. */
+static void say_fit(cli_run *run, const ritz_fitter *fitter,
+                    const ritz_fit *fit)
 {
     const ritz_verify_request *limits = ritz_fitter_tolerance(fitter);
     char what[256];
@@ -234,46 +358,320 @@ void fit_say(cli_run *run, const ritz_fitter *fitter, const ritz_fit *fit)
 
     ritz_fitter_describe(fitter, sizeof what, what);
     ritz_tolerance_print(limits, sizeof tolerance, tolerance);
-    cli_say(run, "Fitted to %s from %g to %g Hz, against %s:", tolerance,
-            limits->band_hz[0], limits->band_hz[1], what);
-    cli_say(run,
-            "%lld candidates of %lld method%s; errors in parts of their "
-            "tolerance, > at least.\n",
-            (long long)fit->count, (long long)fit->num_methods,
-            fit->num_methods == 1 ? "" : "s");
+    set_tolerance(run, limits);
+    sink_say(run, ",,,reference",
+             "Fitted to %s from %g to %g Hz, against %s:", tolerance,
+             limits->band_hz[0], limits->band_hz[1], what);
+    sink_say(run, "candidates",
+             "%lld candidates of %lld method%s; errors in parts of their "
+             "tolerance, > at least.\n",
+             (long long)fit->count, (long long)fit->num_methods,
+             fit->num_methods == 1 ? "" : "s");
     say_head(run);
+    sink_list(run, "methods");
     for (int64_t m = 0; m < fit->num_methods; m++)
-        say_row(run, of_method(fit, m), fit->method[m]->name);
+        say_item(run, find_best(fit, m), fit->method[m]->name);
+    sink_end(run);
     if (fit->chosen >= 0)
         say_answer(run, fitter, fit);
-    cli_say(run, "\nWhy: %s.", fit->why);
-    cli_report_text(run, "reference", what);
-    json_object_set_new(run->report, "tolerance", tolerance_json(limits));
-    json_object_set_new(run->report, "methods", methods_json(fit));
-    cli_report_text(run, "why", fit->why);
-    cli_report_int(run, "candidates", fit->count);
+    sink_say(run, "why", "\nWhy: %s.", fit->why);
 }
 
-void fit_say_all(cli_run *run, const ritz_fit *fit, int64_t equal_order,
-                 const int64_t *equal)
+/* Every method at one number of columns, or as few as it has. */
+static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
+                      const int64_t *equal)
 {
-    json_t *array = json_array();
-
     cli_say(run, "\nThe same at equal order, %lld or the nearest below:\n",
-            (long long)equal_order);
+            (long long)order);
     say_head(run);
+    sink_list(run, "equal_order");
     for (int64_t m = 0; m < fit->num_methods; m++) {
         const ritz_fit_candidate *c =
-            equal[m] >= 0 ? &fit->candidate[equal[m]] : first_of(fit, m);
+            equal[m] >= 0 ? &fit->candidate[equal[m]] : find_first(fit, m);
 
-        if (equal[m] < 0 && c && !c->refusal[0]) {
+        if (equal[m] < 0 && c && !c->refusal[0])
             cli_say(run, "%-18s has no fewer than %lld", fit->method[m]->name,
                     (long long)c->order);
-            continue;
-        }
-        say_row(run, c, fit->method[m]->name);
-        if (c)
-            json_array_append_new(array, candidate_json(c));
+        else
+            say_item(run, c, fit->method[m]->name);
     }
-    json_object_set_new(run->report, "equal_order", array);
+    sink_end(run);
+}
+
+/* What an answer comes to if its bodies are cut to their first columns. */
+static void set_step(cli_run *run, const ritz_fitter *fitter,
+                     const ritz_fit_row *row)
+{
+    sink_object(run, NULL);
+    sink_object(run, "orders");
+    for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++)
+        sink_set(run, ritz_fitter_body(fitter, k), "%lld",
+                 (long long)row->first[k]);
+    sink_end(run);
+    sink_set(run, "columns,error,feasible", "%lld %g %d",
+             (long long)row->columns, row->ratio, row->feasible);
+    set_order(run, row->order);
+    set_values(run, "errors", &row->errors);
+    if (row->refusal[0])
+        sink_set(run, "refused", "%s", row->refusal);
+    sink_end(run);
+}
+
+/* " %9lld" of each body, or its name in the head. */
+static void print_bodies(const ritz_fitter *fitter, const ritz_fit_row *row,
+                         size_t size, char *out)
+{
+    out[0] = '\0';
+    for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++) {
+        if (strlen(out) + 16 >= size)
+            return;
+        if (row)
+            sink_append(out, size, " %9lld", (long long)row->first[k]);
+        else
+            sink_append(out, size, " %9.9s", ritz_fitter_body(fitter, k));
+    }
+}
+
+/* "        26        20        46     42      0.47 frequency" */
+static void say_step(const cli_run *run, const ritz_fitter *fitter,
+                     const ritz_fit_row *row)
+{
+    char orders[256];
+    const char *word =
+        row->worst < 0 ? ""
+                       : ritz_tolerance_word(row->errors.item[row->worst].name);
+
+    print_bodies(fitter, row, sizeof orders, orders);
+    if (row->refusal[0])
+        cli_say(run, "%s  %8lld refused: %s", orders, (long long)row->columns,
+                row->refusal);
+    else
+        cli_say(run, "%s  %8lld %6lld  %8.2g %s%s", orders,
+                (long long)row->columns, (long long)row->order, row->ratio,
+                word, row->feasible ? "" : ", not met");
+}
+
+/* The fewest columns that do, if they are not all. */
+static void say_enough(cli_run *run, const ritz_fitter *fitter,
+                       const ritz_fit_path *path)
+{
+    int64_t last = 0;
+    char orders[256] = "";
+
+    for (int64_t k = 0; k < path->count; k++)
+        last = path->row[k].feasible ? k : last;
+    if (last == 0)
+        return;
+    for (int64_t k = 0;
+         k < path->num_bodies && strlen(orders) + 80 < sizeof orders; k++)
+        sink_append(orders, sizeof orders, "%s%s to %lld", k > 0 ? ", " : "",
+                    ritz_fitter_body(fitter, k),
+                    (long long)path->row[last].first[k]);
+    cli_say(run, "\nThe tolerance holds down to order %lld: cut %s.",
+            (long long)path->row[last].order, orders);
+}
+
+static void say_path(cli_run *run, const ritz_fitter *fitter,
+                     const ritz_fit_path *path)
+{
+    char bodies[256];
+    /* some twenty lines, the first and the last among them */
+    const int64_t step = (path->count + 19) / 20;
+
+    print_bodies(fitter, NULL, sizeof bodies, bodies);
+    cli_say(run, "\nWith the first columns alone ('order: N' of a body's file "
+                 "in a scene):\n");
+    cli_say(run, "%s  %8s %6s  %8s of", bodies, "columns", "order", "error");
+    sink_list(run, "path");
+    for (int64_t k = 0; k < path->count; k++) {
+        set_step(run, fitter, &path->row[k]);
+        if (k % step == 0 || k == path->count - 1)
+            say_step(run, fitter, &path->row[k]);
+    }
+    sink_end(run);
+    say_enough(run, fitter, path);
+}
+
+/* Its bodies as PREFIXname.h5 if @p prefix is there, and its system to the
+   output if there is one. */
+static ritz_status write_scene(cli_run *run, const char *prefix,
+                               const ritz_scene *scene, ritz_fitter *fitter,
+                               const ritz_fit_candidate *chosen)
+{
+    ritz_status status = RITZ_OK;
+    ritz_stamp stamp = cli_stamp(run);
+    ritz_system system = {0};
+    ritz_fit_path path = {0};
+    ritz_reduced *body = NULL;
+
+    RITZ_TRY(ritz_fitter_system(fitter, chosen, &body, &path, &system));
+    say_path(run, fitter, &path);
+    RITZ_TRY(model_write_bodies(run, prefix, scene, body));
+    if (run->output)
+        RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
+done:
+    for (int64_t k = 0; body && k < scene->num_components; k++)
+        ritz_reduced_free(&body[k]);
+    free(body);
+    ritz_fit_path_free(&path);
+    ritz_system_free(&system);
+    return status;
+}
+
+/* Equal order: all methods once more, at one number of columns. */
+static ritz_status compare_methods(cli_run *run, const fit_wish *a,
+                                   ritz_fitter *fitter, ritz_fit *fit)
+{
+    ritz_status status = RITZ_OK;
+    int64_t order = a->order;
+    int64_t *equal = NULL;
+
+    if (!a->all)
+        return RITZ_OK;
+    RITZ_FAIL_IF(order == 0 && fit->chosen < 0, RITZ_ERR_ARGUMENT,
+                 "%s: say at which --order methods are to be compared",
+                 fit->why);
+    if (order == 0)
+        order = fit->candidate[fit->chosen].order;
+    equal = calloc((size_t)fit->num_methods + 1, sizeof *equal);
+    RITZ_FAIL_IF(!equal, RITZ_ERR_MEMORY, "no memory for a table");
+    RITZ_TRY(ritz_fitter_equal(fitter, order, fit, equal));
+    say_equal(run, fit, order, equal);
+done:
+    free(equal);
+    return status;
+}
+
+static ritz_status write_component(cli_run *run, ritz_fitter *fitter,
+                                   const ritz_fit_candidate *chosen)
+{
+    ritz_status status = RITZ_OK;
+    ritz_reduced reduced = {0};
+    ritz_stamp stamp = cli_stamp(run);
+
+    RITZ_TRY(ritz_fitter_reduced(fitter, chosen, &reduced));
+    RITZ_TRY(ritz_container_write_reduced(run->output, &reduced, &stamp));
+done:
+    ritz_reduced_free(&reduced);
+    return status;
+}
+
+/* What inputs and outputs see was held to the tolerance, what other bodies feel
+   at a port was not, unless the method keeps ports. */
+static void warn_of_ports(cli_run *run, const ritz_component *component,
+                          const ritz_fit_candidate *chosen)
+{
+    if (component->num_ports == 0 || chosen->method->uses & RITZ_USES_ATTACHED)
+        return;
+    cli_warn(run,
+             "%s keeps nothing for port '%s': the tolerance was held against "
+             "inputs and outputs alone. Where other bodies are joined to it, "
+             "fit their scene, or name --methods that keep ports",
+             chosen->method->name, component->port[0].name);
+}
+
+/* Search, say, record, write; nothing is written if nothing is found. */
+static ritz_status find_answer(fit_run *f, const fit_wish *a,
+                               const ritz_scene *scene, const model *full,
+                               ritz_fitter *fitter)
+{
+    ritz_status status = RITZ_OK;
+    cli_run *run = f->run;
+    ritz_fit fit = {0};
+    const ritz_fit_candidate *chosen = NULL;
+
+    f->limits = ritz_fitter_tolerance(fitter);
+    RITZ_TRY(ritz_fitter_search(fitter, &fit));
+    say_fit(run, fitter, &fit);
+    RITZ_TRY(compare_methods(run, a, fitter, &fit));
+    RITZ_FAIL_IF(fit.chosen < 0, RITZ_ERR_CONVERGENCE, "%s", fit.why);
+    chosen = &fit.candidate[fit.chosen];
+    if (fit.runner_up >= 0)
+        record_candidate(f, &fit.candidate[fit.runner_up],
+                         (fit_mark){.runner_up = true});
+    record_candidate(f, chosen, (fit_mark){.chosen = true, .why = fit.why});
+    RITZ_TRY(f->recorded);
+    if (!scene)
+        warn_of_ports(run, &full->component, chosen);
+    if (run->output || a->prefix)
+        RITZ_TRY(scene ? write_scene(run, a->prefix, scene, fitter, chosen)
+                       : write_component(run, fitter, chosen));
+    if (a->report)
+        RITZ_TRY(cli_save(run, a->report));
+done:
+    if (status != RITZ_OK)
+        discard_files(&f->files);
+    ritz_fit_free(&fit);
+    return status;
+}
+
+/* The name of the file without folder and ending, as charts call it. */
+static void name_subject(const char *path, char out[RITZ_NAME_SIZE])
+{
+    const char *slash = strrchr(path, '/');
+
+    snprintf(out, RITZ_NAME_SIZE, "%s", slash ? slash + 1 : path);
+    if (strrchr(out, '.'))
+        *strrchr(out, '.') = '\0';
+}
+
+static ritz_status fit_component(fit_run *f, const fit_wish *a)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = f->run->operand[0];
+    ritz_fitter *fitter = NULL;
+    model full = {0};
+
+    RITZ_FAIL_IF(a->prefix, RITZ_ERR_ARGUMENT,
+                 "'%s' is a component: --components is for scenes", path);
+    RITZ_TRY(model_read(f->run, path, MODEL_COMPONENT, &full));
+    RITZ_TRY_IN(path, model_tune(&full, &a->damper));
+    RITZ_TRY(foresee_files(f->run, NULL, a->report, NULL, &f->files));
+    RITZ_TRY_IN(path, ritz_fitter_new(&full.component, &a->request, &fitter));
+    RITZ_TRY(find_answer(f, a, NULL, &full, fitter));
+done:
+    ritz_fitter_free(&fitter);
+    model_free(&full);
+    return status;
+}
+
+static ritz_status fit_scene(fit_run *f, const fit_wish *a)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = f->run->operand[0];
+    ritz_fitter *fitter = NULL;
+    ritz_scene scene = {0};
+
+    RITZ_FAIL_IF(a->damper.count > 0 || a->request.attach, RITZ_ERR_ARGUMENT,
+                 "'%s' is a scene: --damper and --attach are for components",
+                 path);
+    RITZ_TRY(model_scene(f->run, path, &scene));
+    RITZ_TRY(foresee_files(f->run, a->prefix, a->report, &scene, &f->files));
+    if (*scene.name)
+        snprintf(f->subject, sizeof f->subject, "%s", scene.name);
+    RITZ_TRY_IN(path, ritz_fitter_scene(&scene, &a->request, &fitter));
+    RITZ_TRY(find_answer(f, a, &scene, NULL, fitter));
+done:
+    ritz_fitter_free(&fitter);
+    ritz_scene_free(&scene);
+    return status;
+}
+
+ritz_status fit_search(cli_run *run, fit_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    fit_run f = {.run = run};
+
+    asked->request.observe = observe_candidate;
+    asked->request.thorough = asked->all;
+    asked->request.context = &f;
+    name_subject(run->operand[0], f.subject);
+    if (asked->damping)
+        RITZ_CHECK_IN("--damping",
+                      ritz_damping_parse(asked->damping,
+                                         &asked->request.tolerance.damping));
+    status = ritz_container_is(run->operand[0]) ? fit_component(&f, asked)
+                                                : fit_scene(&f, asked);
+    free_files(&f.files);
+    return status;
 }

@@ -1,7 +1,5 @@
 #include "print/loops.h"
 
-#include "print/responses.h"
-
 #include <ritz/probe.h>
 
 #include <math.h>
@@ -21,21 +19,13 @@ void loops_check(const cli_program *program, const loops_wish *asked)
         cli_refuse_name(program, "no feedback", asked->feedback, 2, signs);
 }
 
-static ritz_ends ends_of_io(const ritz_io *io)
+static ritz_ends find_ends(const model *m)
 {
-    return (ritz_ends){io->num_inputs, io->num_outputs,
-                       (const char(*)[RITZ_NAME_SIZE])io->input,
-                       (const char(*)[RITZ_NAME_SIZE])io->output};
-}
+    const ritz_io io = model_io(m);
 
-static ritz_ends ends_of(const model *m)
-{
-    if (m->kind == MODEL_STATES)
-        return (ritz_ends){m->states.num_inputs, m->states.num_outputs,
-                           (const char(*)[RITZ_NAME_SIZE])m->states.input,
-                           (const char(*)[RITZ_NAME_SIZE])m->states.output};
-    return ends_of_io(m->kind == MODEL_COMPONENT ? &m->component.io
-                                                 : model_look(m).matrices.io);
+    return (ritz_ends){io.num_inputs, io.num_outputs,
+                       (const char(*)[RITZ_NAME_SIZE])io.input,
+                       (const char(*)[RITZ_NAME_SIZE])io.output};
 }
 
 ritz_status loops_read(cli_run *run, const loops_wish *asked, loop_run *out)
@@ -45,12 +35,11 @@ ritz_status loops_read(cli_run *run, const loops_wish *asked, loop_run *out)
                              : RITZ_OK;
 }
 
-static ritz_status join(cli_run *run, const loops_wish *asked, const model *m,
-                        loop_run *out)
+static ritz_status join_signals(cli_run *run, const loops_wish *asked,
+                                const model *m, loop_run *out)
 {
-    ritz_ends plant = ends_of(m), inner;
+    ritz_ends plant = find_ends(m), inner = find_ends(&out->controller);
 
-    inner = ends_of(&out->controller);
     RITZ_CHECK_IN(asked->controller,
                   ritz_loop_match(&plant, &inner, asked->connect.count,
                                   asked->connect.text, &out->loop));
@@ -68,8 +57,8 @@ static ritz_status join(cli_run *run, const loops_wish *asked, const model *m,
 }
 
 /* A response of an unstable loop is the response of nothing. */
-static ritz_status judge(cli_run *run, const ritz_state_space *closed,
-                         bool force)
+static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
+                                 bool force)
 {
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
@@ -78,8 +67,7 @@ static ritz_status judge(cli_run *run, const ritz_state_space *closed,
     RITZ_CHECK(ritz_probe_states(closed, &probe));
     ritz_probe_print(&probe, text);
     verdict = ritz_stability_name(probe.verdict);
-    cli_report_text(run, "stability", verdict);
-    cli_say(run, "the loop is %s: %s", verdict, text);
+    sink_say(run, "stability", "the loop is %s: %s", verdict, text);
     RITZ_REFUSE_IF(
         probe.verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
         "the loop is unstable, %s: it has no steady response; compute "
@@ -103,7 +91,7 @@ static ritz_status find_poles(cli_run *run, const loops_wish *asked,
     const ritz_state_space *plant = NULL;
     ritz_stamp stamp = {0};
 
-    RITZ_TRY(responses_states(m, damping, &made, &plant));
+    RITZ_TRY(model_states(m, damping, &made, &plant));
     RITZ_FAIL_IF(!plant && asked->states, RITZ_ERR_ARGUMENT,
                  "--closed-loop: the plant is too large for states, or has "
                  "structural damping: reduce it");
@@ -111,12 +99,12 @@ static ritz_status find_poles(cli_run *run, const loops_wish *asked,
         cli_warn(run, "whether the loop is stable is not known: the plant is "
                       "too large for that, or has structural damping; reduce "
                       "it");
-        cli_report_text(run, "stability", "unknown");
+        sink_set(run, "stability", "%s", "unknown");
         goto done;
     }
     RITZ_TRY(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
                               &closed));
-    RITZ_TRY(judge(run, &closed, asked->force));
+    RITZ_TRY(say_stability(run, &closed, asked->force));
     RITZ_TRY(ritz_state_space_poles(&closed, count, pole));
     if (asked->states) {
         stamp = cli_stamp(run);
@@ -143,7 +131,7 @@ ritz_status loops_close(cli_run *run, const loops_wish *asked, const model *m,
 
     if (!asked->controller)
         return RITZ_OK;
-    RITZ_TRY(join(run, asked, m, out));
+    RITZ_TRY(join_signals(run, asked, m, out));
     RITZ_TRY(find_poles(run, asked, m, damping, out, &count, &pole));
     request.states = &out->controller.states;
     RITZ_TRY_IN(asked->controller,
@@ -156,39 +144,39 @@ done:
     return status;
 }
 
-static void say(cli_run *run, json_t *keys, const char *key, const char *text,
-                double value, double hertz)
+/* One of the margins, and where it is. */
+static void say_margin(cli_run *run, const char *key, const char *text,
+                       double value, double hertz)
 {
-    json_t *item = json_object();
-
-    json_object_set_new(item, "value", cli_real(value));
-    json_object_set_new(item, "at_hz", cli_real(hertz));
-    json_object_set_new(keys, key, item);
-    if (!isnan(value))
-        cli_say(run, "  %-39s %14.6g %14.7g", text, value, hertz);
+    sink_object(run, key);
+    if (isnan(value))
+        sink_set(run, "value,at_hz", "%g %g", value, hertz);
+    else
+        sink_say(run, ",value,at_hz", "  %-39s %14.6g %14.7g", text, value,
+                 hertz);
+    sink_end(run);
 }
 
 ritz_status loops_report(cli_run *run, const loop_run *loop,
                          ritz_responder *plant, const ritz_response *response)
 {
     ritz_margins m = {0};
-    json_t *keys = NULL;
 
     if (!loop->closed)
         return RITZ_OK;
     RITZ_CHECK(ritz_loop_margins(&loop->loop, plant, loop->inner,
                                  response->count, response->hertz, &m));
-    keys = json_object();
-    json_object_set_new(run->report, "loop", keys);
+    sink_object(run, "loop");
     cli_say(run, "loop, in this range: %38s", "at Hz");
-    say(run, keys, "gain", "largest gain of the open loop", m.gain, m.gain_hz);
-    say(run, keys, "sensitivity", "largest sensitivity |(I + F G)^-1|",
-        m.sensitivity, m.sensitivity_hz);
-    say(run, keys, "gain_up", "gain margin, a factor of", m.gain_up,
-        m.gain_up_hz);
-    say(run, keys, "gain_down", "gain margin downwards, a factor of",
-        m.gain_down, m.gain_down_hz);
-    say(run, keys, "phase", "phase margin, degrees", m.phase, m.phase_hz);
+    say_margin(run, "gain", "largest gain of the open loop", m.gain, m.gain_hz);
+    say_margin(run, "sensitivity", "largest sensitivity |(I + F G)^-1|",
+               m.sensitivity, m.sensitivity_hz);
+    say_margin(run, "gain_up", "gain margin, a factor of", m.gain_up,
+               m.gain_up_hz);
+    say_margin(run, "gain_down", "gain margin downwards, a factor of",
+               m.gain_down, m.gain_down_hz);
+    say_margin(run, "phase", "phase margin, degrees", m.phase, m.phase_hz);
+    sink_end(run);
     return RITZ_OK;
 }
 

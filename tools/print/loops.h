@@ -12,21 +12,6 @@ typedef struct loops_wish {
     bool force;
 } loops_wish;
 
-/* Rows of the option table. */
-#define LOOPS_OPTIONS(wish)                                                    \
-    {CLI_TEXT(&(wish)->controller), .name = "controller", .argument = "FILE",  \
-     .help = "close a loop with this state space"},                            \
-        {CLI_LIST(&(wish)->connect), .name = "connect", .argument = "OUT=IN",  \
-         .help = "join signals of plant and controller whose names differ"},   \
-        {CLI_TEXT(&(wish)->feedback), .name = "feedback", .argument = "SIGN",  \
-         .help = "negative or positive [negative]"},                           \
-        {CLI_TEXT(&(wish)->states), .name = "closed-loop", .argument = "FILE", \
-         .help = "write the closed loop as a state space"},                    \
-    {                                                                          \
-        CLI_FLAG(&(wish)->force),                                              \
-            .name = "force", .help = "respond even if the loop is unstable"    \
-    }
-
 /* A loop that is closed, and what it is made of. */
 typedef struct loop_run {
     model controller;
@@ -51,7 +36,7 @@ ritz_status loops_close(cli_run *run, const loops_wish *asked, const model *m,
                         const ritz_damping *damping, ritz_responder *plant,
                         const double range_hz[2], loop_run *out);
 
-/** Margins and the largest gains, at and between the points of a response. */
+/** Margins of a loop at the points of a response; nothing if there is none. */
 ritz_status loops_report(cli_run *run, const loop_run *loop,
                          ritz_responder *plant, const ritz_response *response);
 

@@ -1,10 +1,16 @@
 #include "print/poles.h"
 
+#include "base/tolerances.h"
+#include "print/describe.h"
+
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double two_pi = 6.28318530717958647692;
+/* Poles of a large component that are listed where nothing is asked for. */
+enum { SOME_MODES = 20 };
+
 /* A pole of a larger residual is not to be relied on. */
 static const double exact = 1e-6;
 /* Growth below this, of |s|, is rounding. */
@@ -12,7 +18,7 @@ static const double neutral = 1e-10;
 
 static double hertz_of(double _Complex s)
 {
-    return cabs(s) / two_pi;
+    return cabs(s) / (2.0 * RITZ_PI);
 }
 
 static const char *note_of(double _Complex s)
@@ -22,18 +28,14 @@ static const char *note_of(double _Complex s)
     return cimag(s) == 0.0 ? "real, does not oscillate" : "";
 }
 
-static json_t *pole_json(double _Complex s)
+/* Keys of a pole, in the object that is open. */
+static void set_pole(cli_run *run, double _Complex s)
 {
-    json_t *item = json_object();
-
-    json_object_set_new(item, "hertz", cli_real(hertz_of(s)));
-    json_object_set_new(item, "zeta", cli_real(ritz_spectrum_ratio(s)));
-    json_object_set_new(item, "real", cli_real(creal(s)));
-    json_object_set_new(item, "imaginary", cli_real(cimag(s)));
-    return item;
+    sink_set(run, "hertz,zeta,real,imaginary", "%g %g %g %g", hertz_of(s),
+             ritz_spectrum_ratio(s), creal(s), cimag(s));
 }
 
-static void judge(cli_run *run, const ritz_spectrum *spectrum)
+static void warn_poles(cli_run *run, const ritz_spectrum *spectrum)
 {
     int64_t rough = 0;
 
@@ -51,99 +53,89 @@ static void judge(cli_run *run, const ritz_spectrum *spectrum)
                  (long long)rough, exact);
 }
 
-void poles_say(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
+/* A table, and a warning for each pole that is unstable or not exact. */
+static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
 {
-    json_t *array = json_array();
-
     if (tsv)
         cli_say(run, "mode\thertz\trad_per_s\tzeta\treal\timaginary\tresidual");
     else
         cli_say(run, "%5s %13s %13s %12s %13s %13s %9s", "", "|s|/2pi Hz",
                 "|s| rad/s", "zeta %", "Re s", "Im s", "residual");
+    sink_list(run, "poles");
     for (int64_t j = 0; j < spectrum->count; j++) {
         double _Complex s = spectrum->s[j];
-        json_t *item = pole_json(s);
-        char residual[32] = "-";
+        double zeta = ritz_spectrum_ratio(s);
 
-        if (!isnan(spectrum->residual[j]))
-            snprintf(residual, sizeof residual, "%.1e", spectrum->residual[j]);
-        json_object_set_new(item, "residual", cli_real(spectrum->residual[j]));
-        json_array_append_new(array, item);
+        sink_object(run, NULL);
+        set_pole(run, s);
+        sink_set(run, "residual", "%g", spectrum->residual[j]);
         if (tsv)
             cli_say(run, "%lld\t%.12g\t%.12g\t%.12g\t%.12g\t%.12g\t%.3e",
-                    (long long)j + 1, hertz_of(s), cabs(s),
-                    ritz_spectrum_ratio(s), creal(s), cimag(s),
-                    spectrum->residual[j]);
+                    (long long)j + 1, hertz_of(s), cabs(s), zeta, creal(s),
+                    cimag(s), spectrum->residual[j]);
         else
-            cli_say(run, "%5lld %13.7g %13.7g %12.6g %13.6g %13.7g %9s%s%s",
-                    (long long)j + 1, hertz_of(s), cabs(s),
-                    100.0 * ritz_spectrum_ratio(s), creal(s), cimag(s),
-                    residual, *note_of(s) ? "  " : "", note_of(s));
+            cli_say(run, "%5lld %13.7g %13.7g %12.6g %13.6g %13.7g %9.1e%s%s",
+                    (long long)j + 1, hertz_of(s), cabs(s), 100.0 * zeta,
+                    creal(s), cimag(s), spectrum->residual[j],
+                    *note_of(s) ? "  " : "", note_of(s));
+        sink_end(run);
     }
+    sink_end(run);
+    sink_set(run, "zero,engine", "%lld %s", (long long)spectrum->num_zero,
+             spectrum->engine);
     if (spectrum->num_zero > 0 && !tsv)
         cli_say(run, "%lld poles at 0 are not listed: rigid-body motion",
                 (long long)spectrum->num_zero);
-    json_object_set_new(run->report, "poles", array);
-    cli_report_int(run, "zero", spectrum->num_zero);
-    cli_report_text(run, "engine", spectrum->engine);
-    judge(run, spectrum);
+    warn_poles(run, spectrum);
 }
 
-void poles_say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
+/* A table, and the best constant. */
+static void say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
 {
-    json_t *array = json_array();
-    json_t *best = NULL;
+    const json_t *scanned = NULL;
 
-    cli_say(run, tsv ? "c\thertz\tzeta" : "%13s %13s %12s", "c", "|s|/2pi Hz",
-            "zeta %");
+    cli_say(run, tsv ? "%s\t%s\t%s" : "%13s %13s %12s", "c",
+            tsv ? "hertz" : "|s|/2pi Hz", tsv ? "zeta" : "zeta %");
+    sink_list(run, "scan");
     for (int64_t k = 0; k < scan->count; k++) {
+        double hertz = hertz_of(scan->s[k]);
         double zeta = ritz_spectrum_ratio(scan->s[k]);
-        json_t *item = pole_json(scan->s[k]);
 
-        json_object_set_new(item, "c", cli_real(scan->c[k]));
-        json_array_append(array, item);
-        if (k == scan->best)
-            best = json_incref(item);
-        json_decref(item);
+        sink_object(run, NULL);
+        set_pole(run, scan->s[k]);
         if (tsv)
-            cli_say(run, "%.12g\t%.12g\t%.12g", scan->c[k],
-                    hertz_of(scan->s[k]), zeta);
+            sink_say(run, "c", "%.12g\t%.12g\t%.12g", scan->c[k], hertz, zeta);
         else
-            cli_say(run, "%13g %13.7g %12.6g%s", scan->c[k],
-                    hertz_of(scan->s[k]), 100.0 * zeta,
-                    k == scan->best ? "  best" : "");
+            sink_say(run, "c", "%13g %13.7g %12.6g%s", scan->c[k], hertz,
+                     100.0 * zeta, k == scan->best ? "  best" : "");
+        sink_end(run);
     }
-    json_object_set_new(run->report, "scan", array);
-    json_object_set_new(run->report, "best", best);
+    scanned = sink_here(run);
+    sink_end(run);
+    json_object_set(run->report, "best",
+                    json_array_get(scanned, (size_t)scan->best));
     if (scan->best == 0 || scan->best == scan->count - 1)
         cli_warn(run, "the best c, %g, is at an end of the range",
                  scan->c[scan->best]);
 }
 
-/* The names before '=', as indices. */
+/* The names before '=', as indices; to be freed. */
 static ritz_status take_names(char *names, const ritz_dampers *dampers,
-                              poles_scan *out)
+                              int64_t *count, int64_t **out)
 {
-    ritz_status status = RITZ_OK;
     char *rest = NULL;
-    int64_t count = 0;
 
-    out->damper = calloc(strlen(names) + 1, sizeof *out->damper);
-    RITZ_FAIL_IF(!out->damper, RITZ_ERR_MEMORY, "no memory for a scan");
+    *out = calloc(strlen(names) + 1, sizeof **out);
+    RITZ_REFUSE_IF(!*out, RITZ_ERR_MEMORY, "no memory for a scan");
     for (char *at = strtok_r(names, ",", &rest); at;
          at = strtok_r(NULL, ",", &rest)) {
         int64_t j = ritz_dampers_find(dampers, at);
 
-        if (j < 0) {
-            status = RITZ_ERR_ARGUMENT;
-            goto done;
-        }
-        out->damper[count++] = j;
+        if (j < 0)
+            return RITZ_ERR_ARGUMENT;
+        (*out)[(*count)++] = j;
     }
-    out->request.count = count;
-    out->request.damper = out->damper;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* "FROM:TO:STEP". */
@@ -160,8 +152,9 @@ static bool take_range(char *text, ritz_scan_request *request)
            ritz_text_real(step, &request->step);
 }
 
-ritz_status poles_scan_parse(const char *text, const ritz_dampers *dampers,
-                             poles_scan *out)
+/* "NAME[,NAME]=FROM:TO:STEP"; @p damper is to be freed. */
+static ritz_status parse_scan(const char *text, const ritz_dampers *dampers,
+                              ritz_scan_request *out, int64_t **damper)
 {
     ritz_status status = RITZ_OK;
     char *copy = strdup(text);
@@ -170,12 +163,96 @@ ritz_status poles_scan_parse(const char *text, const ritz_dampers *dampers,
     RITZ_FAIL_IF(!copy, RITZ_ERR_MEMORY, "no memory for a scan");
     if (equals)
         *equals = '\0';
-    RITZ_FAIL_IF(!equals || equals == copy ||
-                     !take_range(equals + 1, &out->request),
+    RITZ_FAIL_IF(!equals || equals == copy || !take_range(equals + 1, out),
                  RITZ_ERR_ARGUMENT,
                  "'%s' is not of the form NAME[,NAME]=FROM:TO:STEP", text);
-    RITZ_TRY(take_names(copy, dampers, out));
+    RITZ_TRY(take_names(copy, dampers, &out->count, damper));
+    out->damper = *damper;
 done:
     free(copy);
     return ritz_context(status, "--scan");
+}
+
+static ritz_status scan_dampers(cli_run *run, model *m, const poles_wish *asked,
+                                const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+    ritz_scan_request request = {0};
+    int64_t *damper = NULL;
+    ritz_scan found = {0};
+
+    RITZ_TRY(parse_scan(asked->scan, model_dampers(m), &request, &damper));
+    request.mode = asked->mode - 1;
+    RITZ_TRY(model_scan(m, damping, &request, &found));
+    say_scan(run, &found, asked->tsv);
+done:
+    free(damper);
+    ritz_scan_free(&found);
+    return status;
+}
+
+/* Those that are asked for, of what a small model gives. */
+static ritz_status find_poles(cli_run *run, const model *m,
+                              const poles_wish *asked,
+                              const ritz_damping *damping)
+{
+    ritz_status status = RITZ_OK;
+    ritz_spectrum found = {0};
+    bool by_hertz = !isnan(asked->up_to_hz);
+    double limit = 2.0 * RITZ_PI * asked->up_to_hz * (1.0 + 1e-9);
+    ritz_span span = {.modes = asked->modes > 0 ? asked->modes : SOME_MODES};
+
+    if (by_hertz)
+        span = (ritz_span){.modes = -1, .up_to_hz = asked->up_to_hz};
+    RITZ_TRY(model_spectrum(m, damping, &span, &found));
+    while (m->kind != MODEL_COMPONENT && found.count > 0 &&
+           ((asked->modes > 0 && found.count > asked->modes) ||
+            (by_hertz && cabs(found.s[found.count - 1]) > limit)))
+        found.count--;
+    say_poles(run, &found, asked->tsv);
+    cli_record(run, "poles", found.count);
+done:
+    ritz_spectrum_free(&found);
+    return status;
+}
+
+/* The damping that poles are of. */
+static void say_damping(cli_run *run, model *m, const ritz_damping *damping)
+{
+    char text[RITZ_DAMPING_SIZE] = "";
+
+    ritz_damping_print(damping, text);
+    cli_say(run, "%s:", run->operand[0]);
+    describe_damping(run, m->kind == MODEL_STATES ? m->states.damping : text);
+    if (m->kind != MODEL_STATES)
+        describe_dampers(run, model_dampers(m));
+}
+
+ritz_status poles_report(cli_run *run, const poles_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    model m = {0};
+    ritz_damping damping = {0};
+
+    RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_FAIL_IF(m.kind == MODEL_STATES &&
+                     (asked->model.damping || asked->scan ||
+                      asked->model.damper.count > 0),
+                 RITZ_ERR_ARGUMENT,
+                 "'%s' is a state space, damped as it is: --damping, --damper "
+                 "and --scan are not for it",
+                 path);
+    RITZ_TRY(model_settle(&m, path, &asked->model, &damping));
+    if (!asked->tsv)
+        say_damping(run, &m, &damping);
+    if (asked->scan)
+        RITZ_TRY_IN(path, scan_dampers(run, &m, asked, &damping));
+    else
+        RITZ_TRY_IN(path, find_poles(run, &m, asked, &damping));
+    if (run->output)
+        RITZ_TRY(cli_save(run, run->output));
+done:
+    model_free(&m);
+    return status;
 }

@@ -4,22 +4,15 @@
 
 #include "cli/model.h"
 
-#include <ritz/spectrum.h>
+typedef struct poles_wish {
+    int64_t modes, mode; /* the lowest, 0: all; the one that a scan follows */
+    double up_to_hz;     /* NaN: not said */
+    const char *scan;    /* "NAME[,NAME]=FROM:TO:STEP"; NULL: none */
+    model_wish model;
+    bool tsv;
+} poles_wish;
 
-/** Table and key `poles`; a warning for each that is unstable or not exact. */
-void poles_say(cli_run *run, const ritz_spectrum *spectrum, bool tsv);
-
-/** Table, what was found best, and keys `scan` and `best`. */
-void poles_say_scan(cli_run *run, const ritz_scan *scan, bool tsv);
-
-/* "NAME[,NAME]=FROM:TO:STEP" as a request; free `damper`. */
-typedef struct poles_scan {
-    ritz_scan_request request;
-    int64_t *damper;
-} poles_scan;
-
-/** @return RITZ_ERR_ARGUMENT if it is of another form, or a name unknown */
-ritz_status poles_scan_parse(const char *text, const ritz_dampers *dampers,
-                             poles_scan *out);
+/** Poles of a model, or one of them through a range of dampers. */
+ritz_status poles_report(cli_run *run, const poles_wish *asked);
 
 #endif

@@ -1,8 +1,5 @@
 #include "print/rankings_make.h"
 
-#include "print/dampers.h"
-#include "print/nested.h"
-
 #include <ritz/gramians.h>
 #include <ritz/text.h>
 
@@ -111,6 +108,43 @@ static ritz_status read_tracks(cli_run *run, const char *path,
 done:
     free(text);
     return ritz_context(status, path);
+}
+
+/* Words of Gramians that are a choice of components. */
+static void take_choice(const cli_program *program, const char *key,
+                        const char *text, ritz_choice *choice)
+{
+    for (const ritz_choice_word *w = ritz_choice_words; text && w->key; w++)
+        if (strcmp(w->key, key) == 0 &&
+            ritz_choice_take(w, text, choice) != RITZ_OK)
+            cli_refuse(program, "%s", ritz_error_message());
+}
+
+void rank_take(const cli_run *run, rank_wish *asked)
+{
+    const cli_program *program = run->program;
+    const char *list = asked->by;
+    char word[RITZ_NAME_SIZE];
+
+    if (asked->compare && (asked->at || asked->damping.count > 0 ||
+                           asked->tracks || asked->keep > 0))
+        cli_refuse(program, "--compare takes rankings as they are");
+    if (!asked->compare && run->num_operands > 1)
+        cli_refuse(program, "one model is ranked; rankings of several go to "
+                            "--compare");
+    if (asked->at && asked->tracks)
+        cli_refuse(program, "--tracks follows modes over configurations, --at "
+                            "leaves one");
+    while (cli_next(&list, word)) {
+        if (asked->num_rankers == RANK_MOST)
+            cli_refuse(program, "--by takes up to %d rankings", RANK_MOST);
+        asked->ranker[asked->num_rankers++] =
+            cli_choose(program, "no ranking", word, ritz_rankers);
+    }
+    if (asked->band)
+        cli_pair(program, "band-hz", asked->band, asked->band_hz);
+    take_choice(program, "engine", asked->engine, &asked->choice);
+    take_choice(program, "among_hz", asked->among, &asked->choice);
 }
 
 /* What one model is ranked with. */
@@ -235,8 +269,8 @@ static ritz_status install_dampers(subject *s)
     for (int64_t k = 0; k < count; k++) {
         if (all)
             m->at = &m->system.configuration[k];
-        RITZ_TRY_IN(path, dampers_install(m, NULL));
-        structural = structural || model_look(m).matrices.K4->val;
+        RITZ_TRY_IN(path, model_install(m, NULL));
+        structural = structural || model_matrices(m).K4->val;
     }
     if (structural)
         cli_warn(s->run,
@@ -427,7 +461,8 @@ done:
     return status;
 }
 
-ritz_status rank_model(cli_run *run, const rank_wish *asked, rank_result *out)
+static ritz_status rank_model(cli_run *run, const rank_wish *asked,
+                              rank_result *out)
 {
     ritz_status status = RITZ_OK;
     model m = {0};
@@ -435,7 +470,7 @@ ritz_status rank_model(cli_run *run, const rank_wish *asked, rank_result *out)
     RITZ_TRY(model_read(
         run, run->operand[0],
         MODEL_REDUCED | MODEL_SYSTEM | MODEL_COMPONENT | MODEL_STATES, &m));
-    RITZ_TRY(nested_take(run->operand[0], asked->order, &m));
+    RITZ_TRY(model_prefix(&m, run->operand[0], asked->order));
     RITZ_TRY(m.kind == MODEL_REDUCED || m.kind == MODEL_SYSTEM
                  ? rank_modes(run, asked, &m, out)
                  : rank_values(run, asked, &m, out));
@@ -444,7 +479,8 @@ done:
     return status;
 }
 
-ritz_status rank_read(cli_run *run, rank_result *out)
+/* Rankings of --compare. */
+static ritz_status read_rankings(cli_run *run, rank_result *out)
 {
     ritz_status status = RITZ_OK;
     int64_t count = run->num_operands;
@@ -479,4 +515,51 @@ void rank_result_free(rank_result *result)
     free(result->group);
     free(result->file);
     *result = (rank_result){0};
+}
+
+/* What was ranked, as files, a comparison and a chart. */
+static ritz_status report_rankings(cli_run *run, const rank_wish *asked,
+                                   const rank_result *result)
+{
+    ritz_status status = RITZ_OK;
+    contest all = {0};
+    char title[256];
+    const ritz_ranking *first = ranked_whole(result->group);
+
+    if (run->output) {
+        ritz_stamp stamp = cli_stamp(run);
+
+        RITZ_TRY(rank_write(run->output, result, &stamp));
+    }
+    RITZ_TRY(rank_contest(result, true, &all));
+    if (asked->table)
+        RITZ_TRY(rankings_write_table(asked->table, &all));
+    rank_contest_free(&all);
+    RITZ_TRY(rank_contest(result, false, &all));
+    if (all.count > 1)
+        RITZ_TRY(rankings_compare(run, &all, asked->top));
+    snprintf(title, sizeof title, "%.100s, damping %.100s", run->operand[0],
+             rankings_damping(first));
+    if (asked->chart)
+        RITZ_TRY(asked->draw(asked->chart, title, &all, asked->top));
+    cli_record(run, first->by,
+               first->count > 0 ? first->count : first->num_system);
+done:
+    rank_contest_free(&all);
+    return status;
+}
+
+ritz_status rank_run(cli_run *run, const rank_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    rank_result result = {0};
+
+    if (asked->compare)
+        RITZ_TRY(read_rankings(run, &result));
+    else
+        RITZ_TRY(rank_model(run, asked, &result));
+    RITZ_TRY(report_rankings(run, asked, &result));
+done:
+    rank_result_free(&result);
+    return status;
 }

@@ -2,6 +2,7 @@
 #ifndef RITZ_TOOLS_PRINT_RANKINGS_MAKE_H
 #define RITZ_TOOLS_PRINT_RANKINGS_MAKE_H
 
+#include "cli/model.h"
 #include "print/rankings.h"
 
 #include <ritz/choice.h>
@@ -12,12 +13,15 @@ typedef struct rank_wish {
     int64_t num_rankers;
     const ritz_ranker *ranker[RANK_MOST];
     cli_list damping;
+    const char *by, *band, *engine, *among; /* words that rank_take reads */
     const char *at, *input_weights, *output_weights, *tracks, *table, *chart;
     double band_hz[2]; /* [0, 0]: the model's */
     int64_t keep, top; /* keep 0: weights stay */
     int64_t order;     /* columns of a nested component; 0: all */
     bool compare;
-    ritz_choice choice; /* of a component's Gramians */
+    ritz_status (*draw)(const char *path, const char *title, const contest *all,
+                        int64_t most); /* for `chart` */
+    ritz_choice choice;                /* of a component's Gramians */
 } rank_wish;
 
 /* A group for each ranking and each damping, or for each file. */
@@ -27,11 +31,11 @@ typedef struct rank_result {
     char (*file)[RITZ_NAME_SIZE]; /* of groups that were read; else NULL */
 } rank_result;
 
-/** Rank what the operand holds, and say so. */
-ritz_status rank_model(cli_run *run, const rank_wish *asked, rank_result *out);
+/** Take words of the command line, or end the program. */
+void rank_take(const cli_run *run, rank_wish *asked);
 
-/** Read rankings of --compare. */
-ritz_status rank_read(cli_run *run, rank_result *out);
+/** Rank what the operand holds, or read rankings of --compare, and report. */
+ritz_status rank_run(cli_run *run, const rank_wish *asked);
 
 /**
  * What can be compared: of several groups the whole of each, of one its

@@ -2,17 +2,178 @@
 
 #include "base/tolerances.h"
 
-#include <ritz/zeros.h>
+#include <ritz/singular.h>
 
 #include <complex.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a component with more dofs no first-order model is made just to be asked
-   for its poles or zeros. */
-enum { MOST_DOFS = 400 };
+/* Even points, where nothing is said; with a tolerance, to begin with. */
+static const int64_t usual_points = 400;
+static const int64_t first_points = 20;
+
+/* An engine may take this part of the tolerance between points. */
+static const double engine_share = 0.1;
+
+void responses_list(void)
+{
+    printf("%-12s %s\n", "auto",
+           "the one that the model asks for, and says why");
+    for (const ritz_response_engine *const *e = ritz_response_engines; *e;
+         e++) {
+        const struct {
+            const char *word, *text;
+        } lines[] = {{"when", (*e)->when},
+                     {"cost", (*e)->cost},
+                     {"holds", (*e)->holds},
+                     {"fails", (*e)->fails}};
+
+        printf("\n%-12s %s", (*e)->name, (*e)->summary);
+        printf((*e)->reference ? " [%s]\n" : "\n", (*e)->reference);
+        for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
+            printf("  %-6s %s\n", lines[k].word, lines[k].text);
+    }
+}
+
+void responses_check(const cli_program *program, const responses_wish *asked)
+{
+    enum { MOST = 16 };
+    const char *names[MOST + 1] = {"auto"};
+    int64_t count = 1;
+
+    for (int k = 0; ritz_response_engines[k] && count <= MOST; k++)
+        names[count++] = ritz_response_engines[k]->name;
+    for (int64_t k = 0; k < count; k++)
+        if (strcmp(asked->method, names[k]) == 0)
+            return;
+    cli_refuse_name(program, "no method", asked->method, count, names);
+}
+
+/* As which kind an engine takes it. */
+static int find_kind(const model *m)
+{
+    switch (m->kind) {
+    case MODEL_COMPONENT:
+        return RITZ_RESPONDS_COMPONENT;
+    case MODEL_STATES:
+        return RITZ_RESPONDS_STATES;
+    default:
+        return RITZ_RESPONDS_MATRICES;
+    }
+}
+
+/* The engine that is asked for, if it is for such a model. */
+static ritz_status choose_engine(cli_run *run, const model *m,
+                                 const char *method,
+                                 const ritz_response_request *request,
+                                 const ritz_response_engine **out)
+{
+    const char *why = NULL;
+    int kind = find_kind(m);
+
+    *out = strcmp(method, "auto") == 0
+               ? ritz_response_engine_choose(request, &why)
+               : ritz_response_engine_find(method);
+    RITZ_REFUSE_IF(!((*out)->takes & kind) && kind == RITZ_RESPONDS_COMPONENT,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is a component: --method %s is not for it",
+                   run->operand[0], method);
+    RITZ_REFUSE_IF(!((*out)->takes & kind), RITZ_ERR_ARGUMENT,
+                   "'%s' is small and dense: --method %s is for components",
+                   run->operand[0], method);
+    if (why && kind == RITZ_RESPONDS_COMPONENT)
+        cli_say(run, "method %s: %s", (*out)->name, why);
+    return RITZ_OK;
+}
+
+/* Make a model ready for the range of a grid; @p view is borrowed. */
+static ritz_status
+new_responder(cli_run *run, const model *m, const responses_wish *asked,
+              const ritz_damping *damping, const ritz_grid *grid,
+              const ritz_second_order *view, ritz_responder **out)
+{
+    const ritz_response_engine *engine = NULL;
+    const char *why = NULL; /* said before */
+    ritz_response_request request = {
+        .damping = damping,
+        .up_to_hz = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz,
+        .tolerance =
+            isnan(asked->tolerance) ? 0.0 : engine_share * asked->tolerance,
+        .from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz,
+        .to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz};
+
+    if (m->kind == MODEL_STATES)
+        request.states = &m->states;
+    else if (m->kind == MODEL_COMPONENT)
+        request.component = &m->component;
+    else
+        request.matrices = view;
+    RITZ_CHECK(choose_engine(run, m, asked->method, &request, &engine));
+    if (request.component && strcmp(asked->method, "modal") == 0 &&
+        (m->component.D.colptr || m->component.K4.colptr))
+        cli_warn(run,
+                 "the damping matrices of '%s' act on the modes that are "
+                 "summed alone, --method krylov leaves out nothing",
+                 run->operand[0]);
+    if (strcmp(asked->method, "auto") == 0)
+        RITZ_CHECK(ritz_responder_auto(&request, &why, out));
+    else
+        RITZ_CHECK(ritz_responder_new(engine, &request, out));
+    if (ritz_responder_remark(*out)[0])
+        sink_say(run, "note", "  %s", ritz_responder_remark(*out));
+    return RITZ_OK;
+}
+
+/*
+ * From the band of the system where nothing is said. A band that starts at 0
+ * starts a thousandth up instead: a free body has no static response.
+ */
+static ritz_status place_points(const model *m, const responses_wish *asked,
+                                ritz_grid *out)
+{
+    double from = asked->from_hz;
+    double to = asked->to_hz;
+
+    if (isnan(to) && m->kind == MODEL_SYSTEM && m->system.band_hz[1] > 0.0)
+        to = m->system.band_hz[1];
+    RITZ_REFUSE_IF(isnan(to), RITZ_ERR_ARGUMENT,
+                   "the model states no band: give --to-hz");
+    if (isnan(from) && m->kind == MODEL_SYSTEM && m->system.band_hz[0] > 0.0 &&
+        m->system.band_hz[0] < to)
+        from = m->system.band_hz[0];
+    if (isnan(from))
+        from = to / 1000.0;
+    RITZ_REFUSE_IF(!(from < to), RITZ_ERR_ARGUMENT,
+                   "no band from %g to %g Hz: --from-hz lies above --to-hz",
+                   from, to);
+    RITZ_REFUSE_IF(asked->log && !(from > 0.0), RITZ_ERR_ARGUMENT,
+                   "--log needs --from-hz above 0");
+    *out = (ritz_grid){.from_hz = from,
+                       .to_hz = to,
+                       .count = asked->points > 0         ? asked->points
+                                : isnan(asked->tolerance) ? usual_points
+                                                          : first_points,
+                       .log = asked->log,
+                       .refine = !asked->no_refine};
+    return RITZ_OK;
+}
+
+/* The points of another response, which can then be subtracted. */
+static ritz_status borrow_points(cli_run *run, const responses_wish *asked,
+                                 model *other, ritz_grid *out)
+{
+    const ritz_response *r = &other->response;
+
+    RITZ_CHECK(model_read(run, asked->points_of, MODEL_RESPONSE, other));
+    RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT, "'%s' has no points",
+                   asked->points_of);
+    *out = (ritz_grid){.from_hz = r->hertz[0],
+                       .to_hz = r->hertz[r->count - 1],
+                       .count = r->count,
+                       .hertz = r->hertz};
+    return RITZ_OK;
+}
 
 /* "NAME=X" of --input-size. */
 static ritz_status take_size(const ritz_response *r, const char *text,
@@ -37,20 +198,11 @@ static ritz_status take_size(const ritz_response *r, const char *text,
     return RITZ_OK;
 }
 
-/* Limits of the outputs; NULL if the model has no place for any. */
-static const double *limits_of(const model *m)
-{
-    if (m->kind == MODEL_STATES)
-        return m->states.limit;
-    return m->kind == MODEL_COMPONENT ? m->component.io.limit
-                                      : model_look(m).matrices.io->limit;
-}
-
 static ritz_status find_scales(const responses_wish *asked, const model *m,
                                const ritz_response *r, double *size,
                                ritz_scales *out)
 {
-    const double *limit = limits_of(m);
+    const double *limit = model_io(m).limit;
     bool any = false;
 
     for (int64_t j = 0; j < r->num_inputs; j++)
@@ -66,27 +218,20 @@ static ritz_status find_scales(const responses_wish *asked, const model *m,
     return RITZ_OK;
 }
 
-static void add_measure(cli_run *run, const char *name, double value,
+/* A value that is told as a measure without a limit. */
+static void set_measure(cli_run *run, const char *name, double value,
                         double hertz)
 {
-    json_t *item = json_object();
-    json_t *measures = json_object_get(run->report, "measures");
-
-    json_object_set_new(item, "name", cli_string(name));
-    json_object_set_new(item, "value", cli_real(value));
-    json_object_set_new(item, "at_hz", cli_real(hertz));
-    json_object_set_new(item, "limit", json_null());
-    json_object_set_new(item, "verdict", json_string("pass"));
-    if (!measures) {
-        measures = json_array();
-        json_object_set_new(run->report, "measures", measures);
-    }
-    json_array_append_new(measures, item);
+    sink_list(run, "measures");
+    sink_set(run, "name,value,at_hz,limit,verdict", "%s %g %g %g %s", name,
+             value, hertz, (double)NAN, "pass");
+    sink_end(run);
 }
 
-ritz_status responses_singular(cli_run *run, const responses_wish *asked,
-                               const model *m, ritz_responder *responder,
-                               ritz_response *response)
+/* Singular values into the response, and the largest of them. */
+static ritz_status find_singular(cli_run *run, const responses_wish *asked,
+                                 const model *m, ritz_responder *responder,
+                                 ritz_response *response)
 {
     ritz_status status = RITZ_OK;
     ritz_scales scales = {0};
@@ -105,146 +250,169 @@ ritz_status responses_singular(cli_run *run, const responses_wish *asked,
     cli_say(run, "%-41s %14.6e %14.7g", "largest singular value", value, hertz);
     if (isinf(value))
         cli_warn(run, "it is infinite: a pole at %.7g Hz is not damped", hertz);
-    add_measure(run, "largest singular value", value, hertz);
+    set_measure(run, "largest singular value", value, hertz);
 done:
     free(size);
     return status;
 }
 
-ritz_status responses_states(const model *m, const ritz_damping *damping,
-                             ritz_state_space *made,
-                             const ritz_state_space **out)
+static void say_zeros(cli_run *run, int64_t count, const double _Complex *zero)
 {
-    ritz_second_order view = {0};
-    ritz_reduced bare = {0}; /* borrowed; dampers are in K and D already */
-
-    *out = NULL;
-    if (m->kind == MODEL_STATES) {
-        *out = &m->states;
-        return RITZ_OK;
-    }
-    if (m->kind == MODEL_COMPONENT) {
-        if (m->component.num_dofs > MOST_DOFS || m->component.K4.colptr)
-            return RITZ_OK;
-        RITZ_CHECK(ritz_state_space_of_component(&m->component, damping, made));
-    } else {
-        view = model_look(m).matrices;
-        if (view.K4 && view.K4->val)
-            return RITZ_OK;
-        bare.K = *view.K;
-        bare.M = *view.M;
-        bare.io = *view.io;
-        if (view.D)
-            bare.D = *view.D;
-        RITZ_CHECK(ritz_state_space_of_reduced(&bare, damping, made));
-    }
-    *out = made;
-    return RITZ_OK;
-}
-
-static json_t *say_zeros(cli_run *run, int64_t count,
-                         const double _Complex *zero)
-{
-    json_t *list = json_array();
-
+    sink_list(run, "zeros");
     for (int64_t k = 0; k < count; k++) {
-        double size = cabs(zero[k]);
-        json_t *item = json_object();
+        double re = creal(zero[k]), im = cimag(zero[k]);
+        double hertz = cabs(zero[k]) / (2.0 * RITZ_PI);
 
-        json_object_set_new(item, "re", cli_real(creal(zero[k])));
-        json_object_set_new(item, "im", cli_real(cimag(zero[k])));
-        json_object_set_new(item, "hz", cli_real(size / (2.0 * RITZ_PI)));
-        json_array_append_new(list, item);
-        if (k > 0 && zero[k] == conj(zero[k - 1]) && cimag(zero[k]) != 0.0)
+        sink_set(run, "re,im,hz", "%g %g %g", re, im, hertz);
+        if (k > 0 && zero[k] == conj(zero[k - 1]) && im != 0.0)
             continue; /* said with the other of the pair */
-        cli_say(run, "  %14.7g Hz  %12.5g %s %.7g i rad/s",
-                size / (2.0 * RITZ_PI), creal(zero[k]),
-                cimag(zero[k]) != 0.0 ? "+-" : "+", fabs(cimag(zero[k])));
+        cli_say(run, "  %14.7g Hz  %12.5g %s %.7g i rad/s", hertz, re,
+                im != 0.0 ? "+-" : "+", fabs(im));
     }
+    sink_end(run);
     if (count == 0)
         cli_say(run, "  none is finite");
-    return list;
 }
 
-/* Second-order models as they are: their modes tell more than states. */
-static ritz_status zeros_of(const model *m, const ritz_damping *damping,
-                            const int64_t at[2], int64_t *count,
-                            double _Complex **out)
+/* One channel; one that has no transfer function says so. */
+static ritz_status find_zeros(cli_run *run, const model *m,
+                              const ritz_damping *damping, const int64_t at[2])
 {
-    ritz_second_order view = {0};
-
-    if (m->kind == MODEL_STATES)
-        return ritz_zeros_states(&m->states, at[0], at[1], count, out);
-    if (m->kind == MODEL_COMPONENT)
-        return ritz_zeros_component(&m->component, damping, at[0], at[1], count,
-                                    out);
-    view = model_look(m).matrices;
-    return ritz_zeros_dense(&view, damping, at[0], at[1], count, out);
-}
-
-/* What drives and is seen of it, by name. */
-static ritz_io names_of(const model *m)
-{
-    const ritz_state_space *states = &m->states;
-
-    if (m->kind == MODEL_STATES)
-        return (ritz_io){.num_inputs = states->num_inputs,
-                         .num_outputs = states->num_outputs,
-                         .input = states->input,
-                         .output = states->output};
-    return m->kind == MODEL_COMPONENT ? m->component.io
-                                      : *model_look(m).matrices.io;
-}
-
-static ritz_status list(cli_run *run, const model *m,
-                        const ritz_damping *damping, json_t *zeros)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_io io = names_of(m);
+    const ritz_io io = model_io(m);
     double _Complex *zero = NULL;
+    int64_t count = 0;
+    ritz_status status = RITZ_OK;
 
-    for (int64_t i = 0; i < io.num_outputs; i++)
-        for (int64_t j = 0; j < io.num_inputs; j++) {
-            const int64_t at[2] = {i, j};
-            json_t *item = json_object();
-            int64_t count = 0;
-
-            json_array_append_new(zeros, item);
-            json_object_set_new(item, "output", cli_string(io.output[i]));
-            json_object_set_new(item, "input", cli_string(io.input[j]));
-            cli_say(run, "zeros of %s / %s:", io.output[i], io.input[j]);
-            status = zeros_of(m, damping, at, &count, &zero);
-            if (status == RITZ_ERR_SINGULAR) {
-                cli_say(run, "  %s", ritz_error_message());
-                status = RITZ_OK;
-                continue;
-            }
-            RITZ_TRY(status);
-            json_object_set_new(item, "zeros", say_zeros(run, count, zero));
-            free(zero);
-            zero = NULL;
-        }
-done:
+    sink_object(run, NULL);
+    sink_say(run, "output,input", "zeros of %s / %s:", io.output[at[0]],
+             io.input[at[1]]);
+    status = model_zeros(m, damping, at, &count, &zero);
+    if (status == RITZ_OK)
+        say_zeros(run, count, zero);
+    if (status == RITZ_ERR_SINGULAR) {
+        cli_say(run, "  %s", ritz_error_message());
+        status = RITZ_OK;
+    }
+    sink_end(run);
     free(zero);
     return status;
 }
 
-ritz_status responses_zeros(cli_run *run, const responses_wish *asked,
-                            const model *m, const ritz_damping *damping)
+static ritz_status find_all_zeros(cli_run *run, const model *m,
+                                  const ritz_damping *damping)
 {
     const ritz_component *whole = &m->component;
-    json_t *zeros = NULL;
+    const ritz_io io = model_io(m);
 
-    if (!asked->zeros)
-        return RITZ_OK;
     RITZ_REFUSE_IF(
         m->kind == MODEL_COMPONENT &&
-            (whole->num_dofs > MOST_DOFS || whole->K4.colptr),
+            (whole->num_dofs > MODEL_MOST_DOFS || whole->K4.colptr),
         RITZ_ERR_ARGUMENT,
         "--zeros: of a component with structural damping, or of more "
         "than %d dofs, there are none to be had: reduce it",
-        MOST_DOFS);
-    zeros = json_array();
-    json_object_set_new(run->report, "zeros", zeros);
-    return list(run, m, damping, zeros);
+        MODEL_MOST_DOFS);
+    sink_list(run, "zeros");
+    for (int64_t i = 0; i < io.num_outputs; i++)
+        for (int64_t j = 0; j < io.num_inputs; j++)
+            RITZ_CHECK(find_zeros(run, m, damping, (int64_t[]){i, j}));
+    sink_end(run);
+    return RITZ_OK;
+}
+
+/* The highest point of each channel, and where it is. */
+static void say_peaks(cli_run *run, const ritz_response *r)
+{
+    cli_say(run, "%s: %s response, %lld points from %g to %g Hz", run->output,
+            r->method, (long long)r->count, r->hertz[0],
+            r->hertz[r->count - 1]);
+    cli_say(run, "%-20s %-20s %14s %14s", "output", "input", "peak |H|",
+            "at Hz");
+    for (int64_t i = 0; i < r->num_outputs; i++) {
+        for (int64_t j = 0; j < r->num_inputs; j++) {
+            char name[2 * RITZ_NAME_SIZE + 16];
+            int64_t best = 0;
+            double peak = -1.0;
+
+            for (int64_t k = 0; k < r->count; k++) {
+                double h =
+                    cabs(r->H[(k * r->num_outputs + i) * r->num_inputs + j]);
+
+                best = h > peak ? k : best;
+                peak = h > peak ? h : peak;
+            }
+            cli_say(run, "%-20s %-20s %14.6e %14.7g", r->output[i], r->input[j],
+                    peak, r->hertz[best]);
+            snprintf(name, sizeof name, "peak %s / %s", r->output[i],
+                     r->input[j]);
+            set_measure(run, name, peak, r->hertz[best]);
+        }
+    }
+    sink_set(run, "method,damping,points", "%s %s %lld", r->method, r->damping,
+             (long long)r->count);
+    cli_record(run, r->method, r->count);
+}
+
+/* The model, or the loop that is closed around it, at the points. */
+static ritz_status respond(cli_run *run, const model *m,
+                           const responses_wish *asked,
+                           const ritz_damping *damping, const ritz_grid *grid,
+                           loop_run *loop, ritz_response *out)
+{
+    ritz_status status = RITZ_OK;
+    const double range[2] = {grid->from_hz, grid->to_hz};
+    const ritz_second_order view = model_matrices(m);
+    ritz_responder *plant = NULL, *whole = NULL;
+
+    RITZ_TRY(new_responder(run, m, asked, damping, grid, &view, &plant));
+    RITZ_TRY(loops_close(run, &asked->loops, m, damping, plant, range, loop));
+    whole = loop->closed ? loop->closed : plant;
+    RITZ_TRY(isnan(asked->tolerance)
+                 ? ritz_responder_sample(whole, grid, out)
+                 : ritz_responder_follow(whole, grid, asked->tolerance, out));
+    RITZ_TRY(loops_report(run, loop, plant, out));
+    say_peaks(run, out);
+    if (asked->singular)
+        RITZ_TRY(find_singular(run, asked, m, whole, out));
+    if (asked->zeros)
+        RITZ_TRY(find_all_zeros(run, m, damping));
+done:
+    ritz_responder_free(&loop->closed); /* it borrows the plant */
+    ritz_responder_free(&plant);
+    return status;
+}
+
+ritz_status responses_run(cli_run *run, const responses_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    model m = {0};
+    model other = {0};
+    ritz_damping damping = {0};
+    ritz_grid grid = {0};
+    ritz_response response = {0};
+    loop_run loop = {0};
+    ritz_stamp stamp = {0};
+    ritz_io ends; /* borrowed */
+
+    RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_TRY(loops_read(run, &asked->loops, &loop));
+    RITZ_TRY(model_settle(&m, path, &asked->model, &damping));
+    if (asked->points_of)
+        RITZ_TRY(borrow_points(run, asked, &other, &grid));
+    else
+        RITZ_TRY_IN(path, place_points(&m, asked, &grid));
+    ends = model_io(&m);
+    RITZ_FAIL_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
+                 RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
+                 path, ends.num_inputs == 0 ? "inputs" : "outputs");
+    RITZ_TRY_IN(path,
+                respond(run, &m, asked, &damping, &grid, &loop, &response));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_response(run->output, &response, &stamp));
+done:
+    ritz_response_free(&response);
+    loop_run_free(&loop);
+    model_free(&m);
+    model_free(&other);
+    return status;
 }

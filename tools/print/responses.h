@@ -1,49 +1,28 @@
-/* What ritz-frf says of a response beside its channels: singular values, zeros. */
+/* Frequency responses, their singular values and zeros: ritz-frf. */
 #ifndef RITZ_TOOLS_PRINT_RESPONSES_H
 #define RITZ_TOOLS_PRINT_RESPONSES_H
 
-#include "cli/model.h"
-
-#include <ritz/singular.h>
+#include "print/loops.h"
 
 typedef struct responses_wish {
-    bool singular, over_limits, zeros;
+    double from_hz, to_hz, up_to_hz; /* NaN: not said */
+    double tolerance;                /* between points; NaN: a grid is enough */
+    int64_t points;
+    const char *method;    /* "auto", or a name of the table */
+    const char *points_of; /* another response; NULL: none */
+    bool log, no_refine, singular, over_limits, zeros;
     cli_list input_size;
+    model_wish model;
+    loops_wish loops;
 } responses_wish;
 
-/* Rows of the option table. */
-#define RESPONSES_OPTIONS(wish)                                                \
-    {CLI_FLAG(&(wish)->singular), .name = "singular-values",                   \
-     .help = "of H at each point too, and the largest between points"},        \
-        {CLI_FLAG(&(wish)->over_limits), .name = "over-limits",                \
-         .help = "singular values of outputs divided by their limits"},        \
-        {CLI_LIST(&(wish)->input_size), .name = "input-size",                  \
-         .argument = "NAME=X",                                                 \
-         .help = "singular values of this input multiplied by X"},             \
-    {                                                                          \
-        CLI_FLAG(&(wish)->zeros), .name = "zeros",                             \
-                                  .help = "list the zeros of every channel"    \
-    }
+/** Print the table of methods. */
+void responses_list(void);
 
-/** Singular values into the response, and the largest said; nothing if they are
- * not asked for. */
-ritz_status responses_singular(cli_run *run, const responses_wish *asked,
-                               const model *m, ritz_responder *responder,
-                               ritz_response *response);
+/** End the program if there is no such method. */
+void responses_check(const cli_program *program, const responses_wish *asked);
 
-/** The zeros of every channel of a model, if they are asked for. */
-ritz_status responses_zeros(cli_run *run, const responses_wish *asked,
-                            const model *m, const ritz_damping *damping);
-
-/**
- * The model as states: of a state space itself, borrowed; of others made, and
- * to be freed.
- *
- * @param[out] known  false if it has none: structural damping, or a component
- *                    of too many dofs
- */
-ritz_status responses_states(const model *m, const ritz_damping *damping,
-                             ritz_state_space *made,
-                             const ritz_state_space **out);
+/** Respond, and say what other options ask for. */
+ritz_status responses_run(cli_run *run, const responses_wish *asked);
 
 #endif

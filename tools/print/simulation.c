@@ -1,83 +1,88 @@
 #include "print/simulation.h"
 
+#include "print/describe.h"
+
 #include <ritz/eigen.h>
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-ritz_simulated simulation_subject(const model *m, const ritz_second_order *view,
-                                  const ritz_damping *damping)
+/* Costs are told at explicit steps so far below their limit. */
+static const double margin = 0.95;
+/* Steps of the band over which costs are told, where no time is given. */
+static const double default_steps = 1000.0;
+
+void simulation_take(const cli_run *run, simulation_wish *asked)
 {
-    if (m->kind == MODEL_STATES)
-        return (ritz_simulated){.states = &m->states};
-    if (m->kind == MODEL_COMPONENT)
-        return (ritz_simulated){.component = &m->component, .damping = damping};
-    return (ritz_simulated){.model = view, .damping = damping};
+    const cli_program *program = run->program;
+
+    asked->integrator =
+        cli_choose(program, "no integrator", asked->method, ritz_integrators);
+    asked->hold_zero = strcmp(asked->hold, "zero") == 0;
+    if (strcmp(asked->hold, "first") != 0 && !asked->hold_zero)
+        cli_refuse(program, "--hold is first or zero, not '%s'", asked->hold);
+    if (asked->band)
+        cli_pair(program, "--band-hz", asked->band, asked->band_hz);
+    if (!run->output && !asked->cost)
+        cli_refuse(program, "nothing to do: give -o, or --cost");
+    if (run->output && isnan(asked->seconds))
+        cli_refuse(program, "how long? give --seconds");
+    if (!isnan(asked->step) && !isnan(asked->accuracy))
+        cli_refuse(program, "--step or --accuracy, one of them");
+    if (isnan(asked->accuracy))
+        asked->accuracy = 1e-3;
 }
 
-static const char (*input_names(const ritz_simulated *s,
-                                int64_t *count))[RITZ_NAME_SIZE]
-{
-    const ritz_io *io = s->model       ? s->model->io
-                        : s->component ? &s->component->io
-                                       : NULL;
+/* What is simulated, and what drives it. */
+typedef struct drive {
+    ritz_io io; /* borrowed */
+    ritz_simulated subject;
+    ritz_signal *signal; /* of each input */
+    double *x0, *v0;     /* NULL: at rest */
+} drive;
 
-    *count = io ? io->num_inputs : s->states->num_inputs;
-    return (const char(*)[RITZ_NAME_SIZE])(io ? io->input : s->states->input);
-}
-
-static int64_t coordinates(const ritz_simulated *s)
-{
-    if (s->model)
-        return s->model->K->nrow;
-    return s->component ? s->component->num_dofs : s->states->A.nrow;
-}
-
-static ritz_status take_input(cli_run *run, const ritz_simulated *subject,
-                              const char *text, simulation_drive *drive)
+static ritz_status take_input(cli_run *run, const char *text, drive *d)
 {
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
-    const char(*name)[RITZ_NAME_SIZE] = input_names(subject, &drive->count);
+    int64_t count = d->io.num_inputs;
+    char(*name)[RITZ_NAME_SIZE] = d->io.input;
     char word[RITZ_NAME_SIZE] = "";
     int64_t j = 0;
 
     RITZ_REFUSE_IF(!equals || length == 0 || length >= sizeof word,
                    RITZ_ERR_ARGUMENT, "'%s' is not NAME=SIGNAL", text);
     memcpy(word, text, length);
-    while (j < drive->count && strcmp(name[j], word) != 0)
+    while (j < count && strcmp(name[j], word) != 0)
         j++;
-    if (j == drive->count) {
+    if (j == count) {
         const char *nearest =
-            drive->count > 0
-                ? ritz_text_nearest(word, drive->count, name[0], sizeof *name)
-                : NULL;
+            count > 0 ? ritz_text_nearest(word, count, name[0], sizeof *name)
+                      : NULL;
 
-        if (!nearest && drive->count > 0)
+        if (!nearest && count > 0)
             return ritz_fail(RITZ_ERR_ARGUMENT, "no input '%s', but '%s'%s",
-                             word, name[0], drive->count > 1 ? ", ..." : "");
+                             word, name[0], count > 1 ? ", ..." : "");
         return ritz_fail(RITZ_ERR_ARGUMENT, "no input '%s'%s%s%s", word,
                          nearest ? ", is '" : "", nearest ? nearest : "",
                          nearest ? "' meant?" : "");
     }
-    RITZ_REFUSE_IF(drive->signal[j].kind != RITZ_SIGNAL_ZERO, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(d->signal[j].kind != RITZ_SIGNAL_ZERO, RITZ_ERR_ARGUMENT,
                    "input '%s' is given twice", word);
-    RITZ_CHECK(ritz_signal_parse(equals + 1, &drive->signal[j]));
+    RITZ_CHECK(ritz_signal_parse(equals + 1, &d->signal[j]));
     if (ritz_signal_is_file(equals + 1))
         RITZ_CHECK(cli_input(run, equals + 1));
     return RITZ_OK;
 }
 
-ritz_status simulation_inputs(cli_run *run, const ritz_simulated *subject,
-                              const cli_list *texts, simulation_drive *drive)
+static ritz_status take_inputs(cli_run *run, const cli_list *texts, drive *d)
 {
-    (void)input_names(subject, &drive->count);
-    drive->signal = calloc((size_t)drive->count + 1, sizeof *drive->signal);
-    RITZ_REFUSE_IF(!drive->signal, RITZ_ERR_MEMORY, "no memory for inputs");
+    d->signal = calloc((size_t)d->io.num_inputs + 1, sizeof *d->signal);
+    RITZ_REFUSE_IF(!d->signal, RITZ_ERR_MEMORY, "no memory for inputs");
     for (int k = 0; k < texts->count; k++)
-        RITZ_CHECK_IN("--input",
-                      take_input(run, subject, texts->text[k], drive));
+        RITZ_CHECK_IN("--input", take_input(run, texts->text[k], d));
     return RITZ_OK;
 }
 
@@ -102,10 +107,10 @@ static ritz_status parse_mode(const char *text, int64_t *mode, double *amount)
     return RITZ_OK;
 }
 
-static ritz_status take_mode(const ritz_simulated *s, const char *text,
-                             simulation_drive *drive)
+static ritz_status take_mode(const char *text, drive *d)
 {
     ritz_status status = RITZ_OK;
+    const ritz_simulated *s = &d->subject;
     ritz_pairs pairs = {0};
     int64_t mode = 0;
     double amount = 1.0;
@@ -125,15 +130,14 @@ static ritz_status take_mode(const ritz_simulated *s, const char *text,
                  "there are %" PRId64 " modes, not %" PRId64, pairs.Phi.ncol,
                  mode);
     for (int64_t k = 0; k < pairs.Phi.nrow; k++)
-        drive->x0[k] = amount * ritz_dense_col(&pairs.Phi, mode - 1)[k];
+        d->x0[k] = amount * ritz_dense_col(&pairs.Phi, mode - 1)[k];
 done:
     ritz_pairs_free(&pairs);
     return status;
 }
 
 /* A value, and its rate if there is one, a row. */
-static ritz_status take_values(const char *path, int64_t n,
-                               simulation_drive *drive)
+static ritz_status take_values(const char *path, int64_t n, drive *d)
 {
     static const char blank[] = " \t\r,;\n";
     ritz_status status = RITZ_OK;
@@ -154,10 +158,10 @@ static ritz_status take_values(const char *path, int64_t n,
         if (!word || word[0] == '#')
             continue;
         RITZ_FAIL_IF(
-            row == n || !ritz_text_real(word, &drive->x0[row]), RITZ_ERR_FORMAT,
+            row == n || !ritz_text_real(word, &d->x0[row]), RITZ_ERR_FORMAT,
             "row %" PRId64 " is not a value of %" PRId64 " in all", row + 1, n);
         word = strtok_r(NULL, blank, &place);
-        RITZ_FAIL_IF(word && !ritz_text_real(word, &drive->v0[row]),
+        RITZ_FAIL_IF(word && !ritz_text_real(word, &d->v0[row]),
                      RITZ_ERR_FORMAT, "row %" PRId64 ": '%s' is no rate",
                      row + 1, word);
         row++;
@@ -169,30 +173,257 @@ done:
     return ritz_context(status, path);
 }
 
-ritz_status simulation_initial(cli_run *run, const ritz_simulated *subject,
-                               const char *text, simulation_drive *drive)
+static ritz_status take_initial(cli_run *run, const char *text, int64_t n,
+                                drive *d)
 {
     static const char mode[] = "mode:";
-    int64_t n = coordinates(subject);
 
     if (!text)
         return RITZ_OK;
-    drive->x0 = calloc((size_t)n + 1, sizeof *drive->x0);
-    drive->v0 = calloc((size_t)n + 1, sizeof *drive->v0);
-    RITZ_REFUSE_IF(!drive->x0 || !drive->v0, RITZ_ERR_MEMORY,
+    d->x0 = calloc((size_t)n + 1, sizeof *d->x0);
+    d->v0 = calloc((size_t)n + 1, sizeof *d->v0);
+    RITZ_REFUSE_IF(!d->x0 || !d->v0, RITZ_ERR_MEMORY,
                    "no memory for initial values");
     if (strncmp(text, mode, sizeof mode - 1) == 0)
-        return take_mode(subject, text + sizeof mode - 1, drive);
+        return take_mode(text + sizeof mode - 1, d);
     RITZ_CHECK(cli_input(run, text));
-    return take_values(text, n, drive);
+    return take_values(text, n, d);
 }
 
-void simulation_free(simulation_drive *drive)
+static void free_drive(drive *d)
 {
-    for (int64_t j = 0; drive->signal && j < drive->count; j++)
-        ritz_signal_free(&drive->signal[j]);
-    free(drive->signal);
-    free(drive->x0);
-    free(drive->v0);
-    *drive = (simulation_drive){0};
+    for (int64_t j = 0; d->signal && j < d->io.num_inputs; j++)
+        ritz_signal_free(&d->signal[j]);
+    free(d->signal);
+    free(d->x0);
+    free(d->v0);
+}
+
+/* Largest relative difference from the same by the modal integrator. */
+static ritz_status measure_difference(const ritz_simulated *subject,
+                                      ritz_simulation_request request,
+                                      double *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_simulation made = {0}, exact = {0};
+
+    RITZ_TRY(ritz_simulate(subject, &request, &made));
+    request.integrator = &ritz_integrator_modal;
+    RITZ_TRY(ritz_simulate(subject, &request, &exact));
+    RITZ_TRY(ritz_simulation_difference(&exact, &made, out));
+done:
+    ritz_simulation_free(&made);
+    ritz_simulation_free(&exact);
+    return status;
+}
+
+static ritz_status say_integrator(cli_run *run, const ritz_simulated *subject,
+                                  ritz_simulation_request request)
+{
+    const ritz_integrator *integrator = request.integrator;
+    double spent = 0.0, error = 0.0;
+
+    RITZ_CHECK(ritz_simulate_step_cost(subject->model, subject->damping,
+                                       integrator, request.step, &spent));
+    RITZ_CHECK(measure_difference(subject, request, &error));
+    sink_say(run, "name,step,seconds_per_second,error",
+             "%-20s %12.4g %14.3g %12.2e", integrator->name, request.step,
+             spent / request.step, error);
+    return RITZ_OK;
+}
+
+/* A simulator that makes and factors its mass matrix at each step. */
+static ritz_status say_refactored(cli_run *run, const ritz_cost *cost)
+{
+    double factor = 0.0, total = 0.0;
+
+    if (cost->order < 1)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_simulate_refactor_cost(cost->order, &factor));
+    total = cost->seconds_per_second + factor / cost->step;
+    sink_say(
+        run, ",seconds_per_second_refactored_estimate",
+        "\na simulator that factors the mass matrix anew at each such step "
+        "of %s:\nabout %.3g s a second (an estimate: r^3/3 flops a step at "
+        "the rate of one factor)",
+        cost->integrator, total);
+    return RITZ_OK;
+}
+
+static void say_cost_head(const cli_run *run, const ritz_cost *cost)
+{
+    cli_say(run, "order %lld, highest frequency %.6g Hz",
+            (long long)cost->order, cost->highest_hz);
+    cli_say(run,
+            "explicit steps are stable up to %.4g s (damping half a step "
+            "old)",
+            cost->step_explicit);
+    cli_say(run,
+            "periods at the band's end come out right to 1e-3 up to "
+            "%.4g s (trapezoidal)\n",
+            cost->step_accurate);
+    cli_say(run, "%-20s %12s %14s %12s", "integrator", "step, s", "s a second",
+            "error");
+}
+
+/* Where nothing is asked for: all inputs sweep from 0 Hz to the band's end. */
+static void sweep_inputs(const ritz_cost *cost, const double band_hz[2],
+                         drive *d)
+{
+    double end = band_hz[1] > 0.0 ? band_hz[1] : fmax(cost->highest_hz, 1.0);
+
+    for (int64_t j = 0; j < d->io.num_inputs; j++)
+        d->signal[j] = (ritz_signal){
+            .kind = RITZ_SIGNAL_CHIRP, .amplitude = 1.0, .hertz = {0.0, end}};
+}
+
+/* The cost of a model, in the line of --record. */
+static ritz_status record_cost(cli_run *run, const ritz_simulated *subject,
+                               const double band_hz[2], ritz_cost *cost)
+{
+    RITZ_CHECK(
+        ritz_simulate_cost(subject->model, subject->damping, band_hz, cost));
+    sink_line(run);
+    model_set_cost(run, cost);
+    sink_end(run);
+    return RITZ_OK;
+}
+
+/* All integrators at the step that each needs: cost of a second, and error
+   against modal. */
+static ritz_status say_costs(cli_run *run, const simulation_wish *asked,
+                             const model *m, const double band_hz[2], drive *d)
+{
+    ritz_cost cost = {0};
+    ritz_simulation_request request = RITZ_SIMULATION_NONE;
+
+    RITZ_REFUSE_IF(!d->subject.model, RITZ_ERR_ARGUMENT,
+                   "--cost is of reduced components and systems");
+    RITZ_CHECK(record_cost(run, &d->subject, band_hz, &cost));
+    model_set_cost(run, &cost);
+    say_cost_head(run, &cost);
+    if (asked->input.count == 0 && !asked->initial)
+        sweep_inputs(&cost, band_hz, d);
+    request.signal = d->signal;
+    request.x0 = d->x0;
+    request.v0 = d->v0;
+    request.seconds = isnan(asked->seconds) ? default_steps * cost.step_accurate
+                                            : asked->seconds;
+    sink_list(run, "integrators");
+    for (const ritz_integrator *const *i = ritz_integrators; *i; i++) {
+        request.integrator = *i;
+        request.step = cost.step_accurate;
+        if ((*i)->is_explicit)
+            request.step = fmin(request.step, margin * cost.step_explicit);
+        RITZ_CHECK_IN((*i)->name, say_integrator(run, &d->subject, request));
+    }
+    sink_end(run);
+    RITZ_CHECK(say_refactored(run, &cost));
+    cli_record(run, m->kind == MODEL_REDUCED ? m->reduced.origin.method : "",
+               model_order(m));
+    return RITZ_OK;
+}
+
+static void warn_of_rounding(cli_run *run, double accuracy,
+                             const ritz_accuracy *reached,
+                             const ritz_simulation *s)
+{
+    char more[32] = "";
+
+    if (reached->num_left == 0)
+        return;
+    if (reached->num_left > 1)
+        (void)snprintf(more, sizeof more, ", and %lld more",
+                       (long long)reached->num_left - 1);
+    cli_warn(run,
+             "output '%s' is rounding or next to it: accurate to %.1e of what "
+             "the motion could show by it, not to %g of its own largest%s",
+             s->output[reached->left], reached->rounding, accuracy, more);
+}
+
+static ritz_status simulate_response(cli_run *run, const simulation_wish *asked,
+                                     const drive *d)
+{
+    ritz_status status = RITZ_OK;
+    ritz_simulation_request request = {
+        .integrator = asked->integrator,
+        .seconds = asked->seconds,
+        .step = isnan(asked->step) ? 0.0 : asked->step,
+        .hold = asked->hold_zero ? RITZ_HOLD_ZERO : RITZ_HOLD_FIRST,
+        .rho = asked->rho,
+        .up_to_hz = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz,
+        .every = asked->every,
+        .signal = d->signal,
+        .x0 = d->x0,
+        .v0 = d->v0,
+    };
+    ritz_simulation s = {0};
+    ritz_stamp stamp = {0};
+    ritz_accuracy reached = {.left = -1};
+
+    RITZ_FAIL_IF(asked->input.count == 0 && !asked->initial, RITZ_ERR_ARGUMENT,
+                 "nothing moves it: give --input NAME=SIGNAL or --initial");
+    if (isnan(asked->step)) {
+        RITZ_TRY(ritz_simulate_accurate(&d->subject, &request, asked->accuracy,
+                                        &reached, &s));
+        cli_record_error(run, "integration", reached.error);
+        warn_of_rounding(run, asked->accuracy, &reached, &s);
+    } else {
+        RITZ_TRY(ritz_simulate(&d->subject, &request, &s));
+    }
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_simulation(run->output, &s, &stamp));
+    cli_say(run, "%s:", run->output);
+    describe_simulation(run, &s);
+    if (isnan(asked->step))
+        sink_field(run, "accurate to", "error",
+                   "%.1e of each output's largest, by half the step",
+                   reached.error);
+    cli_record(run, s.integrator, s.order);
+done:
+    ritz_simulation_free(&s);
+    return status;
+}
+
+static ritz_simulated find_subject(const model *m,
+                                   const ritz_second_order *view,
+                                   const ritz_damping *damping)
+{
+    if (m->kind == MODEL_STATES)
+        return (ritz_simulated){.states = &m->states};
+    if (m->kind == MODEL_COMPONENT)
+        return (ritz_simulated){.component = &m->component, .damping = damping};
+    return (ritz_simulated){.model = view, .damping = damping};
+}
+
+ritz_status simulation_run(cli_run *run, const simulation_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    const double *band_hz = asked->band_hz;
+    model m = {0};
+    ritz_second_order view = {0};
+    ritz_damping damping = {0};
+    ritz_cost cost = {0};
+    drive d = {0};
+
+    RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_TRY(model_settle(&m, path, &asked->model, &damping));
+    view = model_matrices(&m);
+    d.io = model_io(&m);
+    d.subject = find_subject(&m, &view, &damping);
+    if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
+        band_hz = m.system.band_hz;
+    RITZ_TRY_IN(path, take_inputs(run, &asked->input, &d));
+    RITZ_TRY_IN(path, take_initial(run, asked->initial, model_order(&m), &d));
+    if (run->output)
+        RITZ_TRY_IN(path, simulate_response(run, asked, &d));
+    if (asked->cost)
+        RITZ_TRY_IN(path, say_costs(run, asked, &m, band_hz, &d));
+    else if (run->record && d.subject.model)
+        RITZ_TRY(record_cost(run, &d.subject, band_hz, &cost));
+done:
+    free_drive(&d);
+    model_free(&m);
+    return status;
 }

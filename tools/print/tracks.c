@@ -37,10 +37,9 @@ static void name_middle(const ritz_system *system, const ritz_track_event *e,
                             middle, out);
 }
 
-static void say_swap(cli_run *run, const ritz_system *system,
-                     const ritz_tracking *t, const ritz_track_event *e)
+static void say_swap(cli_run *run, const ritz_tracking *t,
+                     const ritz_track_event *e)
 {
-    (void)system;
     cli_say(run,
             "    modes %lld and %lld (%.5g, %.5g Hz) change places (%.5g, %.5g "
             "Hz), MAC %.2f and %.2f",
@@ -49,10 +48,9 @@ static void say_swap(cli_run *run, const ritz_system *system,
             hertz_of(t, e->to, e->other[1]), e->mac[0], e->mac[1]);
 }
 
-static void say_tie(cli_run *run, const ritz_system *system,
-                    const ritz_tracking *t, const ritz_track_event *e)
+static void say_tie(cli_run *run, const ritz_tracking *t,
+                    const ritz_track_event *e)
 {
-    (void)system;
     cli_say(
         run,
         "    mode %lld (%.5g Hz) is nearly as like %.5g Hz (MAC %.2f) as %.5g "
@@ -61,10 +59,9 @@ static void say_tie(cli_run *run, const ritz_system *system,
         e->mac[1], hertz_of(t, e->to, e->other[0]), e->mac[0]);
 }
 
-static void say_avoided(cli_run *run, const ritz_system *system,
-                        const ritz_tracking *t, const ritz_track_event *e)
+static void say_avoided(cli_run *run, const ritz_tracking *t,
+                        const ritz_track_event *e)
 {
-    (void)system;
     cli_say(
         run,
         "    modes %lld and %lld (%.5g, %.5g Hz) mix as they avoid each other, "
@@ -73,88 +70,82 @@ static void say_avoided(cli_run *run, const ritz_system *system,
         hertz_of(t, e->from, e->mode[1]), e->mac[0], e->mac[1], e->shared);
 }
 
-static void say_lost(cli_run *run, const ritz_system *system,
-                     const ritz_tracking *t, const ritz_track_event *e)
-{
-    char middle[RITZ_NAME_SIZE];
-
-    (void)t;
-    name_middle(system, e, middle);
-    cli_say(
-        run,
-        "    mode %lld (%.5g Hz) is like none there, best MAC %.2f: too far "
-        "apart, list %s",
-        (long long)e->mode[0] + 1, e->hertz, e->mac[0], middle);
-}
-
 static const struct kind {
     const char *key;   /* in JSON */
     const char *title; /* of its lines */
-    void (*say)(cli_run *run, const ritz_system *system, const ritz_tracking *t,
-                const ritz_track_event *e);
+    void (*say)(cli_run *run, const ritz_tracking *t,
+                const ritz_track_event *e); /* NULL: of a lost mode */
 } kinds[] = {
     [RITZ_TRACK_SWAP] = {"swaps", "changes of order", say_swap},
     [RITZ_TRACK_TIE] = {"near_ties", "near-ties", say_tie},
     [RITZ_TRACK_AVOIDED] = {"avoided_crossings", "avoided crossings",
                             say_avoided},
-    [RITZ_TRACK_LOST] = {"lost", "modes that are lost", say_lost},
+    [RITZ_TRACK_LOST] = {"lost", "modes that are lost", NULL},
 };
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
 
-static json_t *event_json(const ritz_system *system, const ritz_track_event *e)
+/* Of two at most; one that is not there is below 0. */
+static int64_t count_modes(const int64_t mode[2])
 {
-    json_t *item = json_object();
-    json_t *modes = json_array();
-    json_t *others = json_array();
-    json_t *macs = json_array();
+    return (mode[0] >= 0) + (mode[1] >= 0);
+}
 
-    for (int k = 0; k < 2; k++) {
-        if (e->mode[k] >= 0)
-            json_array_append_new(modes, json_integer(e->mode[k] + 1));
-        if (e->other[k] < 0)
-            continue;
-        json_array_append_new(others, json_integer(e->other[k] + 1));
-        json_array_append_new(macs, cli_real(e->mac[k]));
-    }
-    json_object_set_new(item, "from", cli_string(at_of(system, e->from)));
-    json_object_set_new(item, "to", cli_string(at_of(system, e->to)));
-    json_object_set_new(item, "modes", modes);
-    json_object_set_new(item, "become", others);
-    json_object_set_new(item, "mac", macs);
-    json_object_set_new(item, "hertz", cli_real(e->hertz));
-    if (e->kind == RITZ_TRACK_LOST) {
+static void set_event(cli_run *run, const ritz_system *system,
+                      const ritz_track_event *e)
+{
+    sink_set(run, "from,to,hertz", "%s %s %g", at_of(system, e->from),
+             at_of(system, e->to), e->hertz);
+    sink_numbers(run, "modes", count_modes(e->mode), e->mode);
+    sink_numbers(run, "become", count_modes(e->other), e->other);
+    sink_reals(run, "mac", count_modes(e->other), e->mac);
+}
+
+/* An event as an item, and as a line if it is one of the first. */
+static void say_event(cli_run *run, const ritz_system *system,
+                      const ritz_tracking *t, const ritz_track_event *e,
+                      bool said)
+{
+    sink_object(run, NULL);
+    set_event(run, system, e);
+    if (kinds[e->kind].say && said) {
+        kinds[e->kind].say(run, t, e);
+    } else if (!kinds[e->kind].say) {
         char middle[RITZ_NAME_SIZE];
 
         name_middle(system, e, middle);
-        json_object_set_new(item, "list", cli_string(middle));
+        sink_set(run, "list", "%s", middle);
+        if (said)
+            cli_say(run,
+                    "    mode %lld (%.5g Hz) is like none there, best MAC "
+                    "%.2f: too far apart, list %s",
+                    (long long)e->mode[0] + 1, e->hertz, e->mac[0], middle);
     }
-    return item;
+    sink_end(run);
 }
 
 static void say_kind(cli_run *run, const ritz_system *system,
-                     const ritz_tracking *t, int which, json_t *keys)
+                     const ritz_tracking *t, int which)
 {
-    json_t *array = json_array();
     int64_t count = 0;
     int64_t from = -1, to = -1;
 
-    json_object_set_new(keys, kinds[which].key, array);
+    sink_list(run, kinds[which].key);
     for (int64_t k = 0; k < t->num_events; k++) {
         const ritz_track_event *e = &t->event[k];
+        bool said = count < MOST_SAID;
 
         if ((int)e->kind != which)
             continue;
-        json_array_append_new(array, event_json(system, e));
-        if (++count > MOST_SAID)
-            continue;
-        if (e->from != from || e->to != to)
+        count++;
+        if (said && (e->from != from || e->to != to))
             cli_say(run, "  %s to %s, %s:", at_of(system, e->from),
                     at_of(system, e->to), kinds[which].title);
         from = e->from;
         to = e->to;
-        kinds[which].say(run, system, t, e);
+        say_event(run, system, t, e, said);
     }
+    sink_end(run);
     if (count > MOST_SAID)
         cli_say(run, "  and %lld more %s", (long long)(count - MOST_SAID),
                 kinds[which].title);
@@ -185,11 +176,10 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
 {
     ritz_status status = RITZ_OK;
     ritz_tracking t = {0};
-    json_t *keys = json_object();
 
-    json_object_set_new(run->report, "tracking", keys);
+    sink_object(run, "tracking");
     RITZ_TRY_IN("tracks", ritz_track(stage, system, system->band_hz[1], &t));
-    json_object_set_new(keys, "tracks", json_integer(t.num_tracks));
+    sink_set(run, "tracks", "%lld", (long long)t.num_tracks);
     if (path)
         RITZ_TRY(write_table(path, system, &t));
     if (t.num_configurations > 1)
@@ -201,7 +191,8 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
                                   : "; events",
                 system->band_hz[1] > 0.0 ? " in the band" : "");
     for (int k = 0; k < NUM_KINDS; k++)
-        say_kind(run, system, &t, k, keys);
+        say_kind(run, system, &t, k);
+    sink_end(run);
 done:
     ritz_tracking_free(&t);
     return status;

@@ -2,7 +2,7 @@
 #ifndef RITZ_TOOLS_PRINT_TRACKS_H
 #define RITZ_TOOLS_PRINT_TRACKS_H
 
-#include "cli/cli.h"
+#include "cli/sink.h"
 
 #include <ritz/tracking.h>
 

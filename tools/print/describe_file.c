@@ -1,8 +1,14 @@
-/* Matrix files and decks of other codes. */
+/* Files: containers, and matrix files and decks of other codes. */
 #include "print/checksum.h"
 #include "print/describe.h"
+#include "print/rankings.h"
+
+#include <ritz/deck.h>
+#include <ritz/foreign.h>
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* One matrix of a file: a line and an item; its checksum comes later. */
 static void describe_matrix(cli_run *run, const ritz_matrix *a, const char *sum)
@@ -34,11 +40,11 @@ static void describe_matrix(cli_run *run, const ritz_matrix *a, const char *sum)
 /* Variables of a file that are no matrices are told by what they are. */
 static void describe_other(cli_run *run, const ritz_listed *one)
 {
-    sink_object(run, NULL);
-    sink_set(run, "name", "%s", one->name);
-    sink_say(run, ",,other", "  %-10s %17s %s", *one->name ? one->name : "-",
-             "-", one->other);
+    sink_list(run, "matrices");
+    sink_set(run, "name,other", "%s %s", one->name, one->other);
     sink_end(run);
+    cli_say(run, "  %-10s %17s %s", *one->name ? one->name : "-", "-",
+            one->other);
 }
 
 /* What the directory says of a matrix; sizes are not in every format's. */
@@ -49,6 +55,7 @@ static void describe_listed(cli_run *run, const ritz_listed *one)
     if (one->nrow >= 0)
         snprintf(size, sizeof size, "%lld x %lld", (long long)one->nrow,
                  (long long)one->ncol);
+    sink_list(run, "matrices");
     sink_object(run, NULL);
     sink_set(run, "name,symmetric,complex", "%s %d %d", one->name,
              one->symmetric, one->is_complex);
@@ -58,6 +65,7 @@ static void describe_listed(cli_run *run, const ritz_listed *one)
     cli_say(run, "  %-10s %17s %s%s", *one->name ? one->name : "-", size,
             one->symmetric ? "symmetric" : "",
             one->is_complex ? " complex" : "");
+    sink_end(run);
     sink_end(run);
 }
 
@@ -73,12 +81,13 @@ static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
     checksum_set(run, matrix.name, sum);
     sink_list(run, "matrices");
     describe_matrix(run, &matrix, sum);
+    sink_end(run);
     ritz_matrix_free(&matrix);
     return RITZ_OK;
 }
 
-ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
-                              bool directory)
+static ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
+                                     bool directory)
 {
     const ritz_listing *all = &file->listing;
 
@@ -93,22 +102,17 @@ ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
     sink_object(run, "checksums");
     sink_end(run);
     for (int64_t k = 0; k < all->count; k++) {
-        bool values = !directory && !*all->item[k].other;
-
-        if (values)
-            RITZ_CHECK(describe_values(run, file, k));
-        else
-            sink_list(run, "matrices");
         if (*all->item[k].other)
             describe_other(run, &all->item[k]);
         else if (directory)
             describe_listed(run, &all->item[k]);
-        sink_end(run);
+        else
+            RITZ_CHECK(describe_values(run, file, k));
     }
     return RITZ_OK;
 }
 
-void describe_deck(cli_run *run, const ritz_deck *deck)
+static void describe_deck(cli_run *run, const ritz_deck *deck)
 {
     static const char *const name[] = {"a_set", "b_set", "q_set"};
     static const char *const title[] = {"a-set", "b-set", "q-set"};
@@ -144,4 +148,128 @@ void describe_deck(cli_run *run, const ritz_deck *deck)
                 (long long)deck->equations.count);
     if (deck->equations.refused)
         cli_say(run, "  %-14s %s", "", deck->equations.refused);
+}
+
+/* Any of them, by its kind. */
+static ritz_status describe_model(cli_run *run, const model *m)
+{
+    switch (m->kind) {
+    case MODEL_COMPONENT:
+        describe_component(run, &m->component);
+        return RITZ_OK;
+    case MODEL_BASIS:
+        describe_basis(run, &m->basis);
+        return RITZ_OK;
+    case MODEL_REDUCED:
+        return describe_reduced(run, &m->reduced);
+    case MODEL_SYSTEM:
+        return describe_system(run, &m->system);
+    case MODEL_RESPONSE:
+        describe_response(run, &m->response);
+        return RITZ_OK;
+    case MODEL_RANKING:
+        rankings_describe(run, &m->rankings);
+        return RITZ_OK;
+    case MODEL_STATES:
+        return describe_states(run, &m->states);
+    case MODEL_SIMULATION:
+        describe_simulation(run, &m->simulation);
+        return RITZ_OK;
+    case MODEL_ANY:
+        break;
+    }
+    return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
+}
+
+static void describe_member(const ritz_container_row *row, void *data)
+{
+    cli_run *run = data;
+
+    sink_say(run, "member,type,shape", "  %-30s %-16s %s", row->name, row->type,
+             row->shape);
+}
+
+static ritz_status describe_container(cli_run *run, const char *path,
+                                      bool members)
+{
+    ritz_status status = RITZ_OK;
+    ritz_summary summary = {0};
+    model m = {0};
+
+    sink_list(run, "made_from");
+    sink_end(run);
+    RITZ_TRY(model_read(run, path, MODEL_ANY, &m));
+    RITZ_TRY(ritz_container_summary(path, &summary));
+    RITZ_TRY_IN(path, describe_model(run, &m));
+    if (members) {
+        sink_list(run, "members");
+        ritz_container_members(summary.kind, model_object(&m), describe_member,
+                               run);
+        sink_end(run);
+    }
+    sink_field(run, "made by", "command", "%s", summary.command);
+    sink_field(run, "version", "made_by_version", "ritz %s", summary.version);
+    sink_list(run, "made_from");
+    for (int64_t k = 0; k < summary.num_inputs; k++) {
+        cli_say(run, "  %-14s %s", k > 0 ? "" : "from", summary.input[k]);
+        sink_add(run, "%s", summary.input[k]);
+    }
+    sink_end(run);
+done:
+    model_free(&m);
+    ritz_summary_free(&summary);
+    return status;
+}
+
+static ritz_status describe_text(cli_run *run, const ritz_foreign *file)
+{
+    ritz_status status = RITZ_OK;
+    ritz_deck deck = {0};
+
+    RITZ_FAIL_IF(file->size == 0, RITZ_ERR_FORMAT, "'%s' is empty", file->path);
+    RITZ_FAIL_IF(!ritz_deck_recognise(file->bytes, file->size), RITZ_ERR_FORMAT,
+                 "'%s' is neither a container nor a matrix file nor text",
+                 file->path);
+    RITZ_TRY(ritz_deck_parse(file->path, file->bytes, file->size, file->folder,
+                             &deck));
+    RITZ_FAIL_IF(deck.grids.count + deck.num_points + deck.num_fixed +
+                         deck.num_constraints + deck.num_sets[RITZ_SET_A] +
+                         deck.num_sets[RITZ_SET_B] +
+                         deck.num_sets[RITZ_SET_Q] ==
+                     0,
+                 RITZ_ERR_FORMAT,
+                 "'%s' is no container, no matrix file that Ritz knows, and "
+                 "no bulk data with grids",
+                 file->path);
+    describe_deck(run, &deck);
+done:
+    ritz_deck_free(&deck);
+    return status;
+}
+
+static ritz_status describe_foreign(cli_run *run, const char *path,
+                                    bool directory)
+{
+    ritz_status status = RITZ_OK;
+    ritz_foreign file = {0};
+
+    RITZ_TRY(cli_input_unread(run, path));
+    RITZ_TRY(ritz_foreign_open(path, &file));
+    RITZ_TRY(cli_input_sum(run, path, file.digest));
+    if (file.format) {
+        RITZ_TRY_IN(path, ritz_foreign_list(&file));
+        RITZ_TRY_IN(path, describe_matrices(run, &file, directory));
+    } else {
+        RITZ_TRY(describe_text(run, &file));
+    }
+done:
+    ritz_foreign_close(&file);
+    return status;
+}
+
+ritz_status describe_file(cli_run *run, const char *path, bool members,
+                          bool directory)
+{
+    return ritz_container_is(path) ? describe_container(run, path, members)
+                                   : describe_foreign(run, path, directory);
 }

@@ -1,8 +1,8 @@
-#include "cli/words.h"
+#include "cli/options.h"
 
 #include <string.h>
 
-void words_add(words *all, int except, cli_option *options)
+void words_add(choice_words *all, int except, cli_option *options)
 {
     int count = 0;
 
@@ -15,13 +15,12 @@ void words_add(words *all, int except, cli_option *options)
         snprintf(name, WORDS_NAME, "%s", word->key);
         for (char *at = strchr(name, '_'); at; at = strchr(at, '_'))
             *at = '-';
-        options[count++] =
-            (cli_option){CLI_TEXT(&all->text[k]), .name = name,
-                         .argument = word->argument, .help = word->help};
+        options[count++] = (cli_option)CLI_TEXT(name, &all->text[k],
+                                                word->argument, word->help);
     }
 }
 
-void words_take(const cli_program *program, const words *all,
+void words_take(const cli_program *program, const choice_words *all,
                 ritz_choice *choice)
 {
     for (int k = 0; ritz_choice_words[k].key && k < WORDS_MOST; k++)

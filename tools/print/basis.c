@@ -1,0 +1,294 @@
+#include "print/basis.h"
+
+#include "print/describe.h"
+
+#include <ritz/probe.h>
+#include <ritz/synthesis.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_PATH = 4096 };
+
+/* One neighbour as it was typed. */
+typedef struct typed_neighbour {
+    char port[RITZ_NAME_SIZE], other[RITZ_NAME_SIZE];
+    char path[MAX_PATH];
+} typed_neighbour;
+
+/* "PORT=FILE:PORT": the last ':' ends the file's name. */
+static ritz_status split_neighbour(const char *text, typed_neighbour *out)
+{
+    const char *equals = strchr(text, '=');
+    const char *colon = strrchr(text, ':');
+    size_t length = equals ? (size_t)(equals - text) : 0;
+    size_t path = equals && colon > equals ? (size_t)(colon - equals - 1) : 0;
+
+    RITZ_REFUSE_IF(length == 0 || path == 0 || colon[1] == '\0',
+                   RITZ_ERR_ARGUMENT, "'%s' is not PORT=FILE:PORT", text);
+    RITZ_REFUSE_IF(length >= sizeof out->port || path >= sizeof out->path ||
+                       strlen(colon + 1) >= sizeof out->other,
+                   RITZ_ERR_ARGUMENT, "'%.60s...' has too long a name", text);
+    snprintf(out->port, sizeof out->port, "%.*s", (int)length, text);
+    snprintf(out->path, sizeof out->path, "%.*s", (int)path, equals + 1);
+    snprintf(out->other, sizeof out->other, "%s", colon + 1);
+    return RITZ_OK;
+}
+
+static ritz_status add_neighbour(cli_run *run, const char *text,
+                                 const ritz_component *component,
+                                 const ritz_dofs *attached, ritz_neighbour *sum)
+{
+    ritz_status status = RITZ_OK;
+    typed_neighbour of = {0};
+    model far = {0};
+    ritz_joint joint = {.type = RITZ_JOINT_FIXED, .name = "neighbour"};
+    ritz_joined side[2] = {{run->operand[1], component}, {0}};
+
+    RITZ_TRY(split_neighbour(text, &of));
+    RITZ_TRY(model_read(run, of.path, MODEL_COMPONENT, &far));
+    side[1] = (ritz_joined){of.path, &far.component};
+    snprintf(joint.between[0].port, sizeof joint.between[0].port, "%s",
+             of.port);
+    snprintf(joint.between[1].port, sizeof joint.between[1].port, "%s",
+             of.other);
+    RITZ_TRY(ritz_joint_neighbour(&joint, NULL, side, 0, attached, sum));
+done:
+    model_free(&far);
+    return status;
+}
+
+static ritz_status read_neighbours(cli_run *run, const cli_list *given,
+                                   const ritz_component *component,
+                                   const ritz_dofs *attached,
+                                   ritz_neighbour *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_neighbour sum = {0};
+
+    RITZ_TRY(ritz_neighbour_new(attached->count, &sum));
+    for (int k = 0; k < given->count; k++)
+        RITZ_TRY_IN("--neighbour", add_neighbour(run, given->text[k], component,
+                                                 attached, &sum));
+    *out = sum;
+    sum = (ritz_neighbour){0};
+done:
+    ritz_neighbour_free(&sum);
+    return status;
+}
+
+/* Frequencies and residuals stand side by side: one of each for each mode. */
+static void say_basis(cli_run *run, const ritz_basis *basis)
+{
+    const ritz_columns *c = &basis->columns;
+    double worst = (double)NAN;
+
+    cli_say(run, "%s:", run->output);
+    describe_basis(run, basis);
+    sink_list(run, "residuals");
+    for (int64_t k = 0; k < c->count; k++) {
+        if (isnan(c->hertz[k]))
+            continue;
+        sink_add(run, "%g", c->residual[k]);
+        worst = fmax(worst, c->residual[k]);
+    }
+    sink_end(run);
+    if (!isnan(worst)) {
+        cli_say(run, "  %-14s %.1e relative, of the worst mode", "residual",
+                worst);
+        cli_record_error(run, "residual", worst);
+    }
+    if (basis->remark[0])
+        sink_field(run, "note", "note", "%s", basis->remark);
+    sink_set(run, "vectors", "%lld", (long long)c->count);
+    cli_record(run, basis->origin.method, c->count);
+}
+
+ritz_status basis_run(cli_run *run, basis_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const ritz_method *method = asked->method;
+    ritz_request *request = &asked->request;
+    model m = {0};
+    ritz_neighbour neighbour = {0};
+    ritz_basis basis = {0};
+    ritz_stamp stamp = {0};
+
+    cli_record(run, method->name, -1);
+    RITZ_TRY(model_read(run, run->operand[1],
+                        MODEL_COMPONENT |
+                            (method->uses & RITZ_USES_SPACE ? MODEL_STATES : 0),
+                        &m));
+    if (m.kind == MODEL_STATES)
+        request->space = &m.states;
+    else
+        request->component = &m.component;
+    if (request->component && method->uses & RITZ_USES_ATTACHED)
+        RITZ_TRY_IN(run->operand[1],
+                    ritz_component_attached(&m.component, asked->ports,
+                                            &request->attached));
+    if (asked->neighbours.count > 0) {
+        RITZ_TRY(read_neighbours(run, &asked->neighbours, &m.component,
+                                 &request->attached, &neighbour));
+        request->neighbour = &neighbour;
+    }
+    RITZ_TRY_IN(run->operand[1], ritz_basis_make(method, request, &basis));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_basis(
+        run->output, &basis,
+        request->space ? m.states.units : m.component.units, &stamp));
+    say_basis(run, &basis);
+done:
+    ritz_dofs_free(&request->attached);
+    ritz_neighbour_free(&neighbour);
+    ritz_basis_free(&basis);
+    model_free(&m);
+    return status;
+}
+
+/* Without T nobody can recover the full mesh, but the file is small. */
+static void drop_basis(ritz_reduced *reduced)
+{
+    ritz_dense_free(&reduced->T);
+    ritz_grids_free(&reduced->grids);
+    ritz_elements_free(&reduced->elements);
+    ritz_recovery_free(&reduced->recovery);
+    free(reduced->dof);
+    reduced->dof = NULL;
+}
+
+static void record_errors(cli_run *run, const ritz_measures *estimates)
+{
+    for (int64_t k = 0; k < estimates->count; k++)
+        cli_record_error(run, estimates->item[k].name,
+                         estimates->item[k].value);
+}
+
+static ritz_status say_reduced(cli_run *run, const ritz_reduced *reduced)
+{
+    const ritz_columns *c = &reduced->columns;
+
+    cli_say(run, "%s:", run->output);
+    RITZ_CHECK(describe_reduced(run, reduced));
+    sink_set(run, "vectors", "%lld", (long long)c->count);
+    sink_list(run, "residuals");
+    for (int64_t k = 0; k < c->count; k++)
+        if (!isnan(c->residual[k]))
+            sink_add(run, "%g", c->residual[k]);
+    sink_end(run);
+    cli_record(run, reduced->origin.method, reduced->K.nrow);
+    record_errors(run, &reduced->estimates);
+    return RITZ_OK;
+}
+
+static ritz_status reduce_to_matrices(cli_run *run, const ritz_component *full,
+                                      const ritz_basis *basis,
+                                      const reduce_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *what = run->operand[1];
+    ritz_reduced reduced = {0};
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY_IN(what, ritz_reduce(full, basis, &reduced));
+    RITZ_TRY_IN(what, ritz_estimate(full, basis, &asked->estimate, &reduced));
+    if (asked->without_basis)
+        drop_basis(&reduced);
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_reduced(run->output, &reduced, &stamp));
+    RITZ_TRY(say_reduced(run, &reduced));
+done:
+    ritz_reduced_free(&reduced);
+    return status;
+}
+
+/* A model of either kind, in a basis that makes states of it. */
+static ritz_status project_model(const model *full, const ritz_basis *basis,
+                                 ritz_state_space *out)
+{
+    ritz_damping damping = {0};
+
+    if (full->kind == MODEL_STATES)
+        return ritz_reduce_space(&full->states, basis, out);
+    RITZ_CHECK(ritz_damping_parse(basis->damping, &damping));
+    if (basis->states)
+        RITZ_CHECK(ritz_reduce_states(&full->component, &damping, basis, out));
+    else
+        RITZ_CHECK(
+            ritz_reduce_companion(&full->component, &damping, basis, out));
+    return RITZ_OK;
+}
+
+/* Of states it is known whether they are stable and, of some, a bound. */
+static ritz_status reduce_to_states(cli_run *run, const model *full,
+                                    const ritz_basis *basis)
+{
+    ritz_status status = RITZ_OK;
+    const char *what = run->operand[1];
+    ritz_state_space states = {0};
+    ritz_probe probe = {0};
+    ritz_stamp stamp = {0};
+    char text[2 * RITZ_NAME_SIZE];
+
+    RITZ_TRY_IN(what, project_model(full, basis, &states));
+    RITZ_TRY_IN(what, ritz_probe_states(&states, &probe));
+    RITZ_TRY(ritz_probe_record(&probe, &states.estimates));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_state_space(run->output, &states, &stamp));
+    cli_say(run, "%s:", run->output);
+    RITZ_TRY(describe_states(run, &states));
+    sink_set(run, "vectors", "%lld", (long long)states.columns.count);
+    cli_record(run, states.origin.method, states.A.nrow);
+    record_errors(run, &states.estimates);
+    ritz_probe_print(&probe, text);
+    if (probe.verdict == RITZ_UNSTABLE)
+        cli_warn(run, "'%s' is unstable: %s", run->output, text);
+done:
+    ritz_state_space_free(&states);
+    return status;
+}
+
+/* Whether a basis was made for as many dofs, or states, as there are. */
+static ritz_status check_rows(const cli_run *run, const model *full,
+                              const ritz_basis *basis)
+{
+    bool space = full->kind == MODEL_STATES;
+    int64_t due = model_order(full);
+    int64_t rows = basis->T.nrow / (basis->states && !space ? 2 : 1);
+
+    RITZ_REFUSE_IF(space && !basis->states, RITZ_ERR_ARGUMENT,
+                   "'%s' is a basis of displacements, '%s' is a state space",
+                   run->operand[1], run->operand[0]);
+    RITZ_REFUSE_IF(rows != due, RITZ_ERR_ARGUMENT,
+                   "'%s' is a basis for %lld %s, '%s' has %lld",
+                   run->operand[1], (long long)rows, space ? "states" : "dofs",
+                   run->operand[0], (long long)due);
+    return RITZ_OK;
+}
+
+ritz_status reduce_run(cli_run *run, reduce_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *what = run->operand[1];
+    model full = {0};
+    model basis = {0};
+
+    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
+                        &full));
+    RITZ_TRY(model_read(run, what, MODEL_BASIS, &basis));
+    RITZ_TRY(check_rows(run, &full, &basis.basis));
+    RITZ_TRY(model_damping(&full, asked->damping, &asked->estimate.damping));
+    RITZ_FAIL_IF(asked->without_basis && full.kind == MODEL_STATES,
+                 RITZ_ERR_ARGUMENT,
+                 "a reduced state space keeps no basis, --without-basis is for "
+                 "components");
+    if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
+        RITZ_TRY(reduce_to_states(run, &full, &basis.basis));
+    else
+        RITZ_TRY(reduce_to_matrices(run, &full.component, &basis.basis, asked));
+done:
+    model_free(&basis);
+    model_free(&full);
+    return status;
+}

@@ -1,0 +1,355 @@
+#include "print/export.h"
+
+#include "print/checks.h"
+
+#include <ritz/probe.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* K, M, D and K4. */
+enum { NUM_MATRICES = 4 };
+enum { SUM_SIZE = 2 * RITZ_WHERE_SIZE + RITZ_NAME_SIZE + 8 };
+
+/* What a file of few digits holds is what its reader integrates. */
+static void round_matrix(int64_t digits, ritz_dense *A)
+{
+    char text[40];
+
+    for (int64_t k = 0; A->val && k < A->nrow * A->ncol; k++) {
+        snprintf(text, sizeof text, "%.*e", (int)digits - 1, A->val[k]);
+        A->val[k] = strtod(text, NULL);
+    }
+}
+
+/* Digits that are left of what is written; 17: all. */
+static int64_t digits_of(const ritz_export_request *request)
+{
+    return request->text && request->digits > 0 ? request->digits : 17;
+}
+
+/* The probe of what will be written, rounded to as many digits. */
+static ritz_status audit_reduced(const ritz_reduced *reduced,
+                                 const ritz_export_request *request,
+                                 ritz_audit *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t digits = digits_of(request);
+    ritz_reduced rounded = *reduced; /* borrowed but for its matrices */
+    const ritz_dense *from[NUM_MATRICES] = {&reduced->K, &reduced->M,
+                                            &reduced->D, &reduced->K4};
+    ritz_dense *to[NUM_MATRICES] = {&rounded.K, &rounded.M, &rounded.D,
+                                    &rounded.K4};
+
+    if (digits > 16)
+        return ritz_probe_audit_reduced(reduced, out);
+    for (int k = 0; k < NUM_MATRICES; k++)
+        *to[k] = (ritz_dense){0};
+    for (int k = 0; k < NUM_MATRICES; k++) {
+        if (from[k]->val)
+            RITZ_TRY(ritz_dense_copy(from[k], to[k]));
+        round_matrix(digits, to[k]);
+    }
+    RITZ_TRY(ritz_probe_audit_reduced(&rounded, out));
+done:
+    for (int k = 0; k < NUM_MATRICES; k++)
+        ritz_dense_free(to[k]);
+    return status;
+}
+
+static ritz_status audit_states(const ritz_state_space *states,
+                                const ritz_export_request *request,
+                                ritz_audit *out)
+{
+    ritz_status status = RITZ_OK;
+    int64_t digits = digits_of(request);
+    ritz_state_space rounded = *states;
+
+    if (digits > 16)
+        return ritz_probe_audit_states(states, out);
+    rounded.A = rounded.E = (ritz_dense){0};
+    RITZ_TRY(ritz_dense_copy(&states->A, &rounded.A));
+    if (states->E.val)
+        RITZ_TRY(ritz_dense_copy(&states->E, &rounded.E));
+    round_matrix(digits, &rounded.A);
+    round_matrix(digits, &rounded.E);
+    RITZ_TRY(ritz_probe_audit_states(&rounded, out));
+done:
+    ritz_dense_free(&rounded.A);
+    ritz_dense_free(&rounded.E);
+    return status;
+}
+
+/* "stable: pole at ...", or the first check that fails. */
+static void sum_up(const ritz_audit *audit, const char **verdict,
+                   char text[SUM_SIZE])
+{
+    const ritz_check *first = checks_first(audit);
+
+    *verdict = first ? "unstable" : "stable";
+    text[0] = '\0';
+    if (first)
+        snprintf(text, SUM_SIZE, "%s (%s%s%s)", first->says, first->name,
+                 *first->where ? ", " : "", first->where);
+    for (int64_t k = 0; !first && k < audit->count; k++)
+        if (strcmp(audit->check[k].name, "poles") == 0) {
+            snprintf(text, SUM_SIZE, "%s", audit->check[k].where);
+            /* on the axis to rounding */
+            if (fabs(audit->check[k].value) <= audit->check[k].limit)
+                *verdict = "marginal";
+        }
+}
+
+/* No simulator is handed a model that grows by itself or in an assembly, or one
+   of a method that promises nothing, unless it is wanted. */
+static ritz_status check_stability(cli_run *run, const ritz_audit *audit,
+                                   const char *method, bool force)
+{
+    static const char unproven[] = "lanczos-two-sided";
+    bool fails = checks_first(audit) != NULL;
+    const char *verdict = NULL;
+    char text[SUM_SIZE];
+
+    sum_up(audit, &verdict, text);
+    sink_set(run, "stability", "%s", verdict);
+    checks_say(run, "probe", audit);
+    RITZ_REFUSE_IF(fails && !force, RITZ_ERR_ARGUMENT,
+                   "'%s' is unstable: %s; export it all the same with --force",
+                   run->operand[0], text);
+    RITZ_REFUSE_IF(strcmp(method, unproven) == 0 && !force, RITZ_ERR_ARGUMENT,
+                   "'%s' was made by %s, which promises no stability (now %s: "
+                   "%s); export it all the same with --force",
+                   run->operand[0], method, verdict, text);
+    if (fails)
+        cli_warn(run, "'%s' is unstable: %s", run->operand[0], text);
+    else
+        cli_say(run, "%s: %s", verdict, text);
+    for (int64_t k = 0; k < audit->count; k++)
+        if (audit->check[k].verdict == RITZ_WARN)
+            cli_warn(run, "%s (%s, %s)", audit->check[k].says,
+                     audit->check[k].name, audit->check[k].where);
+    return RITZ_OK;
+}
+
+/* Which errors are known of it: no number without its error. */
+static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
+                              const ritz_measures *estimates, bool force)
+{
+    const char *rests = errors->count > 0      ? "measured"
+                        : estimates->count > 0 ? "estimated"
+                                               : "unknown";
+    const ritz_measures *known = errors->count > 0 ? errors : estimates;
+
+    sink_set(run, "errors_rest_on", "%s", rests);
+    if (known->count == 0)
+        model_set_measures(run, "errors", known, rests);
+    RITZ_REFUSE_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
+                   "'%s' carries neither estimated nor measured errors: run "
+                   "ritz-verify, or export it all the same with --force",
+                   run->operand[0]);
+    if (known->count == 0) {
+        cli_warn(run, "nothing is known of the errors of '%s'",
+                 run->operand[0]);
+        return RITZ_OK;
+    }
+    cli_say(run, "errors %s by %s:", rests,
+            errors->count > 0 ? "ritz-verify or ritz-compare"
+                              : "ritz-reduce, not verified");
+    model_say_measures(run, "errors", known, rests);
+    for (int64_t k = 0; k < known->count; k++) {
+        cli_record_error(run, known->item[k].name, known->item[k].value);
+        if (!ritz_measure_holds(&known->item[k]))
+            cli_warn(run, "'%s' does not meet its limit", known->item[k].name);
+    }
+    return RITZ_OK;
+}
+
+/* Other codes join bodies by displacements, as which force columns are those
+   of macneal-rubin. */
+static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
+                                bool force)
+{
+    static const char sentence[] =
+        "'%s' has columns for a joint by forces, which no other code makes of "
+        "them: export the same made by macneal-rubin";
+    bool any = false;
+
+    for (int64_t k = 0; k < columns->count; k++)
+        any = any || columns->kind[k] == RITZ_COLUMN_FORCE;
+    RITZ_REFUSE_IF(any && !force, RITZ_ERR_ARGUMENT, sentence, run->operand[0]);
+    if (any)
+        cli_warn(run, sentence, run->operand[0]);
+    return RITZ_OK;
+}
+
+static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
+                                  const export_wish *asked,
+                                  ritz_export_report *done)
+{
+    ritz_status status = RITZ_OK;
+    ritz_audit audit = {0};
+    bool force = asked->force;
+
+    for (int64_t j = 0; j < reduced->dampers.count; j++)
+        cli_say(run, "damper '%s' installed: c = %g, k = %g",
+                reduced->dampers.name[j], reduced->dampers.c[j],
+                reduced->dampers.k[j]);
+    RITZ_TRY(say_errors(run, &reduced->errors, &reduced->estimates, force));
+    RITZ_TRY(check_forces(run, &reduced->columns, force));
+    RITZ_TRY_IN(run->operand[0],
+                audit_reduced(reduced, &asked->request, &audit));
+    RITZ_TRY(check_stability(run, &audit, reduced->origin.method, force));
+    RITZ_TRY(asked->exporter->write_reduced(reduced, &asked->request, done));
+done:
+    ritz_audit_free(&audit);
+    return status;
+}
+
+/* What was imported is no reduction and has no errors; of some reductions
+   nothing but their stability is known. */
+static ritz_status say_state_errors(cli_run *run,
+                                    const ritz_state_space *states, bool force)
+{
+    bool bounded = false;
+
+    if (!*states->origin.method && states->errors.count == 0)
+        return RITZ_OK;
+    for (int64_t k = 0; k < states->estimates.count; k++)
+        bounded = bounded || strcmp(states->estimates.item[k].name,
+                                    "growth-relative") != 0;
+    if (states->errors.count > 0 || bounded)
+        return say_errors(run, &states->errors, &states->estimates, force);
+    cli_warn(run, "nothing is known of the errors of '%s' but its stability",
+             run->operand[0]);
+    return RITZ_OK;
+}
+
+static ritz_status export_states(cli_run *run, const ritz_state_space *states,
+                                 const export_wish *asked,
+                                 ritz_export_report *done)
+{
+    ritz_status status = RITZ_OK;
+    ritz_audit audit = {0};
+
+    RITZ_TRY_IN(run->operand[0], audit_states(states, &asked->request, &audit));
+    RITZ_TRY(check_stability(run, &audit, states->origin.method, asked->force));
+    RITZ_TRY(say_state_errors(run, states, asked->force));
+    RITZ_TRY(asked->exporter->write_states(states, &asked->request, done));
+done:
+    ritz_audit_free(&audit);
+    return status;
+}
+
+static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
+                                     const export_wish *asked, ritz_shapes *out)
+{
+    ritz_status status = RITZ_OK;
+    model of = {0};
+
+    RITZ_FAIL_IF(!asked->component, RITZ_ERR_ARGUMENT,
+                 "'%s' is a basis, which knows no places: name its component "
+                 "with --component",
+                 run->operand[0]);
+    RITZ_TRY(model_read(run, asked->component, MODEL_COMPONENT, &of));
+    RITZ_TRY(
+        ritz_shapes_of_basis(basis, &of.component, asked->request.modes, out));
+done:
+    model_free(&of);
+    return status;
+}
+
+/* Modes of a reduced component or of a component, or columns of a basis. */
+static ritz_status find_shapes(cli_run *run, const model *m,
+                               const export_wish *asked, ritz_shapes *out)
+{
+    const char *modes = asked->request.modes;
+
+    RITZ_REFUSE_IF(
+        asked->component && m->kind != MODEL_BASIS, RITZ_ERR_ARGUMENT,
+        "--component is for a basis, '%s' knows its places", run->operand[0]);
+    if (m->kind == MODEL_BASIS)
+        return find_basis_shapes(run, &m->basis, asked, out);
+    return m->kind == MODEL_COMPONENT
+               ? ritz_shapes_of_component(&m->component, modes, out)
+               : ritz_shapes_of_reduced(&m->reduced, modes, out);
+}
+
+static ritz_status export_shapes(cli_run *run, const model *m,
+                                 const export_wish *asked,
+                                 ritz_export_report *done)
+{
+    ritz_status status = RITZ_OK;
+    ritz_shapes shapes = {0};
+
+    sink_list(run, "shapes");
+    RITZ_TRY_IN(run->operand[0], find_shapes(run, m, asked, &shapes));
+    cli_record(run, asked->exporter->name, shapes.count);
+    for (int64_t k = 0; k < shapes.count; k++)
+        sink_add(run, "%s", shapes.name[k]);
+    sink_end(run);
+    RITZ_TRY(asked->exporter->write_shapes(&shapes, &asked->request, done));
+done:
+    ritz_shapes_free(&shapes);
+    return status;
+}
+
+/* What an exporter takes: kinds of model, summed. */
+static int kinds_of(const ritz_exporter *exporter)
+{
+    if (strcmp(exporter->kind, "response") == 0)
+        return MODEL_RESPONSE |
+               (exporter->write_simulation ? MODEL_SIMULATION : 0);
+    if (exporter->write_shapes)
+        return MODEL_REDUCED | MODEL_COMPONENT | MODEL_BASIS;
+    return MODEL_REDUCED | (exporter->write_states ? MODEL_STATES : 0);
+}
+
+/* Whatever it holds, as the exporter writes that. */
+static ritz_status export_model(cli_run *run, model *m,
+                                const export_wish *asked,
+                                ritz_export_report *done)
+{
+    const ritz_exporter *exporter = asked->exporter;
+
+    if (m->kind == MODEL_RESPONSE)
+        return exporter->write_response(&m->response, &asked->request, done);
+    if (m->kind == MODEL_SIMULATION)
+        return exporter->write_simulation(&m->simulation, &asked->request,
+                                          done);
+    if (!exporter->write_shapes)
+        cli_record(run, exporter->name, model_order(m));
+    if (m->kind == MODEL_STATES)
+        return export_states(run, &m->states, asked, done);
+    RITZ_CHECK_IN(run->operand[0], model_install(m, &asked->damper));
+    return exporter->write_shapes
+               ? export_shapes(run, m, asked, done)
+               : export_reduced(run, &m->reduced, asked, done);
+}
+
+ritz_status export_run(cli_run *run, const export_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[0];
+    model m = {0};
+    ritz_export_report done = {0};
+
+    sink_set(run, "format", "%s", asked->exporter->name);
+    sink_list(run, "said");
+    sink_end(run);
+    cli_record(run, asked->exporter->name, -1);
+    RITZ_TRY(model_read(run, path, kinds_of(asked->exporter), &m));
+    RITZ_TRY(model_prefix(&m, path, asked->order));
+    RITZ_TRY(export_model(run, &m, asked, &done));
+    cli_say(run, "%s: %s", run->output, asked->exporter->summary);
+    sink_list(run, "said");
+    for (int64_t k = 0; k < done.count; k++) {
+        cli_say(run, "  %s", done.line[k]);
+        sink_add(run, "%s", done.line[k]);
+    }
+    sink_end(run);
+done:
+    ritz_export_report_free(&done);
+    model_free(&m);
+    return status;
+}

@@ -1,0 +1,242 @@
+#include "print/import.h"
+
+#include "print/describe.h"
+
+#include <ritz/foreign.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Remember the file of "FILE[:NAME[#K]]"; NULL: none was given. */
+static ritz_status take_matrix(cli_run *run, const char *spec)
+{
+    ritz_status status = RITZ_OK;
+    char *path = NULL;
+
+    if (!spec)
+        return RITZ_OK;
+    RITZ_TRY(ritz_foreign_path(spec, &path));
+    RITZ_TRY(cli_input_unread(run, path));
+done:
+    free(path);
+    return status;
+}
+
+/* The same of "FILE@LOAD". */
+static ritz_status take_load(cli_run *run, const char *spec)
+{
+    ritz_status status = RITZ_OK;
+    const char *at = strrchr(spec, '@');
+    char *file = NULL;
+
+    RITZ_FAIL_IF(!at || at == spec || !at[1], RITZ_ERR_ARGUMENT,
+                 "--geometric-stiffness '%s' is not FILE@LOAD", spec);
+    file = strndup(spec, (size_t)(at - spec));
+    RITZ_FAIL_IF(!file, RITZ_ERR_MEMORY, "no memory for '%s'", spec);
+    RITZ_TRY(take_matrix(run, file));
+done:
+    free(file);
+    return status;
+}
+
+static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
+{
+    RITZ_CHECK(take_matrix(run, request->stiffness));
+    RITZ_CHECK(take_matrix(run, request->mass));
+    RITZ_CHECK(take_matrix(run, request->damping));
+    RITZ_CHECK(take_matrix(run, request->structural_damping));
+    for (int64_t k = 0; k < request->num_loads; k++)
+        RITZ_CHECK(take_load(run, request->load[k]));
+    if (request->bulk)
+        RITZ_CHECK(cli_input(run, request->bulk));
+    if (request->dofs)
+        RITZ_CHECK(cli_input(run, request->dofs));
+    return RITZ_OK;
+}
+
+/* Sums of the files that were read for their matrices. */
+static ritz_status take_sums(cli_run *run, const ritz_file_sums *sums)
+{
+    for (int64_t k = 0; k < sums->count; k++)
+        RITZ_CHECK(cli_input_sum(run, sums->sum[k].path, sums->sum[k].digest));
+    return RITZ_OK;
+}
+
+/* Rows that are gone: the first few by name, all of them in JSON. */
+static void say_removed(cli_run *run, const ritz_import_report *report)
+{
+    enum { SHOWN = 8 };
+    char name[RITZ_DOF_NAME_SIZE];
+    char text[SHOWN * (RITZ_DOF_NAME_SIZE + 2) + 1] = "";
+
+    sink_list(run, "removed");
+    for (int64_t k = 0; k < report->num_removed; k++) {
+        ritz_dof_name(report->removed[k], name);
+        sink_add(run, "%s", name);
+        if (k < SHOWN)
+            sink_append(text, sizeof text, "%s%s", k > 0 ? ", " : "", name);
+    }
+    sink_end(run);
+    if (report->num_removed > 0)
+        cli_say(run, "%lld rows empty in stiffness and mass removed: %s%s",
+                (long long)report->num_removed, text,
+                report->num_removed > SHOWN ? ", ..." : "");
+}
+
+/* "RBE2 600, MPC 12, ..." */
+static void list_constraints(cli_run *run, const ritz_import_report *report,
+                             size_t size, char *text)
+{
+    enum { SHOWN = 6 };
+
+    text[0] = '\0';
+    sink_list(run, "constraints");
+    for (int64_t k = 0; k < report->num_constraints; k++) {
+        sink_add(run, "%s", report->constraint[k]);
+        if (k < SHOWN)
+            sink_append(text, size, "%s%s", k > 0 ? ", " : "",
+                        report->constraint[k]);
+    }
+    sink_end(run);
+    if (report->num_constraints > SHOWN)
+        sink_append(text, size, ", ...");
+}
+
+/* What depends on what, by elements of the deck and by grids of ports. */
+static void say_constraints(cli_run *run, const ritz_import_report *report)
+{
+    char text[512];
+
+    list_constraints(run, report, sizeof text, text);
+    sink_set(run, "eliminated,not_recovered", "%lld %lld",
+             (long long)report->num_eliminated, (long long)report->num_lost);
+    if (report->num_eliminated > 0)
+        cli_say(run, "%lld rows eliminated, of dofs that depend on others%s%s",
+                (long long)report->num_eliminated, *text ? ": " : "", text);
+    else if (report->num_recovered > 0 && *text)
+        cli_say(run, "the matrices are without what depends by %s", text);
+    if (report->num_lost > 0)
+        cli_say(run,
+                "%lld dofs are not recovered: they depend on dofs that the "
+                "matrices have not",
+                (long long)report->num_lost);
+    if (report->unknown)
+        cli_warn(run, "nothing is recovered: %s", report->unknown);
+    for (int64_t k = 0; k < report->num_grids; k++)
+        cli_say(run, "port '%s' is the new grid %lld, tied to %lld dofs",
+                report->grid[k].port, (long long)report->grid[k].id,
+                (long long)report->grid[k].num_tied);
+}
+
+static void say_import(cli_run *run, const ritz_component *component,
+                       const ritz_import_report *done)
+{
+    cli_say(run, "%s:", run->output);
+    describe_component(run, component);
+    sink_say(run, "map", "  rows named by  %s", done->map);
+    say_removed(run, done);
+    say_constraints(run, done);
+    sink_set(run, "massless,floating,elements,elements_left_out",
+             "%lld %lld %lld %lld", (long long)done->num_massless,
+             (long long)done->num_floating,
+             (long long)component->elements.count, (long long)done->num_hidden);
+    if (done->num_massless > 0)
+        cli_say(run, "%lld rows have stiffness but no mass, kept",
+                (long long)done->num_massless);
+    if (done->num_floating > 0)
+        cli_say(run,
+                "%lld rows have mass but no stiffness, kept: they move "
+                "freely",
+                (long long)done->num_floating);
+    if (component->elements.count + done->num_hidden > 0)
+        cli_say(run,
+                "%lld elements for pictures; %lld left out, as not all of "
+                "their grids are there",
+                (long long)component->elements.count,
+                (long long)done->num_hidden);
+    if (component->asymmetry > MODEL_ROUNDING)
+        cli_warn(run, "unsymmetric by %.1e of the largest entry, averaged away",
+                 component->asymmetry);
+    cli_record(run, "import", component->num_dofs);
+}
+
+/* Lists of options as the request has them. */
+static void take_lists(import_wish *lists)
+{
+    ritz_import_request *request = &lists->request;
+
+    request->num_loads = lists->load.count;
+    request->load = lists->load.text;
+    request->num_ports = lists->port.count;
+    request->port = lists->port.text;
+    request->num_rigid_ports = lists->rigid.count;
+    request->rigid_port = lists->rigid.text;
+    request->num_averaged_ports = lists->averaged.count;
+    request->averaged_port = lists->averaged.text;
+    request->num_inputs = lists->input.count;
+    request->input = lists->input.text;
+    request->num_outputs = lists->output.count;
+    request->output = lists->output.text;
+    request->num_dampers = lists->damper.count;
+    request->damper = lists->damper.text;
+}
+
+ritz_status import_component(cli_run *run, import_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    ritz_import_request *request = &asked->request;
+    ritz_file_sums sums = {0};
+    ritz_component component = {0};
+    ritz_import_report done = {0};
+    ritz_stamp stamp = {0};
+
+    take_lists(asked);
+    RITZ_TRY(take_inputs(run, request));
+    request->sums = &sums;
+    RITZ_TRY(ritz_import(request, &component, &done));
+    RITZ_TRY(take_sums(run, &sums));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_component(run->output, &component, &stamp));
+    say_import(run, &component, &done);
+done:
+    ritz_import_report_free(&done);
+    ritz_file_sums_free(&sums);
+    ritz_component_free(&component);
+    return status;
+}
+
+/* Files of "A=F,B=F,..." or one file. */
+static ritz_status take_space_inputs(cli_run *run, const char *matrices)
+{
+    ritz_status status = RITZ_OK;
+    char *spec = malloc(strlen(matrices) + 1);
+
+    RITZ_FAIL_IF(!spec, RITZ_ERR_MEMORY, "no memory for '%s'", matrices);
+    while (ritz_import_space_next(&matrices, spec))
+        RITZ_TRY(take_matrix(run, spec));
+done:
+    free(spec);
+    return status;
+}
+
+ritz_status import_states(cli_run *run, ritz_import_space_request *request)
+{
+    ritz_status status = RITZ_OK;
+    ritz_state_space space = {0};
+    ritz_file_sums sums = {0};
+    ritz_stamp stamp = {0};
+
+    RITZ_TRY(take_space_inputs(run, request->matrices));
+    request->sums = &sums;
+    RITZ_TRY_IN("--state-space", ritz_import_state_space(request, &space));
+    RITZ_TRY(take_sums(run, &sums));
+    stamp = cli_stamp(run);
+    RITZ_TRY(ritz_container_write_state_space(run->output, &space, &stamp));
+    cli_say(run, "%s:", run->output);
+    RITZ_TRY(describe_states(run, &space));
+    cli_record(run, "import", space.A.nrow);
+done:
+    ritz_file_sums_free(&sums);
+    ritz_state_space_free(&space);
+    return status;
+}

@@ -1,0 +1,192 @@
+#include "print/verification.h"
+
+#include <math.h>
+#include <string.h>
+
+static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
+{
+    const ritz_measure *first = NULL;
+    int64_t failed = 0;
+    int64_t asked = 0;
+
+    model_say_measures(run, "measures", measures, "measured");
+    for (int64_t k = 0; k < measures->count; k++) {
+        const ritz_measure *m = &measures->item[k];
+
+        asked += !isnan(m->limit);
+        if (ritz_measure_holds(m))
+            continue;
+        first = first ? first : m;
+        failed++;
+    }
+    RITZ_REFUSE_IF(first, RITZ_ERR_CONVERGENCE,
+                   "'%s': %lld of %lld limits not met, first '%s', %.3e where "
+                   "%.3e is asked",
+                   run->operand[1], (long long)failed, (long long)asked,
+                   first->name, first->value, first->limit);
+    return RITZ_OK;
+}
+
+/* A limit of what is not there is met, and nothing was compared. */
+static void warn_unmeasured(cli_run *run, const verify_wish *asked,
+                            const ritz_measures *measures)
+{
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+
+        if (isnan(asked->verify.limit[k]) ||
+            ritz_measures_find(measures, kind->name) ||
+            (kind->other && ritz_measures_find(measures, kind->other)))
+            continue;
+        cli_warn(run, "--limit-%s: nothing of '%s' is there to be compared",
+                 kind->word, run->operand[1]);
+    }
+}
+
+static ritz_status check_limits(const cli_run *run, const verify_wish *asked,
+                                bool states)
+{
+    for (int k = 0; k < RITZ_MEASURES; k++) {
+        const ritz_measure_kind *kind = &ritz_measure_table[k];
+
+        RITZ_REFUSE_IF(!isnan(asked->verify.limit[k]) &&
+                           (states ? !kind->of_states : !kind->of_modes),
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' is %s state space, --limit-%s is not for it",
+                       run->operand[1], states ? "a" : "no", kind->word);
+    }
+    return RITZ_OK;
+}
+
+/* Write what was measured, limits met or not, and refuse what is not met. */
+static ritz_status keep_measures(cli_run *run, const verify_wish *asked,
+                                 ritz_measures *measures, model *reduced)
+{
+    ritz_measures *place = model_errors(reduced);
+    ritz_stamp stamp = cli_stamp(run);
+
+    ritz_measures_free(place);
+    *place = *measures;
+    *measures = (ritz_measures){0};
+    for (int64_t k = 0; k < place->count; k++)
+        cli_record_error(run, place->item[k].name, place->item[k].value);
+    RITZ_CHECK(model_write(reduced, run->output, &stamp));
+    warn_unmeasured(run, asked, place);
+    return say_measures(run, place);
+}
+
+/* The full model as states: as it is, or a component that is small enough. */
+static ritz_status find_states(const cli_run *run, model *full,
+                               const model *reduced, const verify_wish *asked)
+{
+    const char *path = run->operand[0];
+    const char *own = asked->model.damping;
+    ritz_damping damping = {0};
+
+    RITZ_REFUSE_IF(asked->model.damper.count > 0, RITZ_ERR_ARGUMENT,
+                   "'%s' holds its dampers in A: --damper cannot change them",
+                   run->operand[1]);
+    RITZ_REFUSE_IF(full->kind == MODEL_STATES && own, RITZ_ERR_ARGUMENT,
+                   "'%s' is damped as it is: --damping is for components",
+                   path);
+    if (full->kind == MODEL_STATES)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(
+        full->component.num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+        "'%s' has %lld dofs, of more than %d no norms are taken: "
+        "compare the responses that ritz-frf gives of both",
+        path, (long long)full->component.num_dofs, (int)RITZ_STATE_DOFS);
+    RITZ_CHECK_IN(
+        own ? "--damping" : run->operand[1],
+        ritz_damping_parse(own ? own : reduced->states.damping, &damping));
+    RITZ_CHECK_IN(path, ritz_state_space_of_component(&full->component,
+                                                      &damping, &full->states));
+    return RITZ_OK;
+}
+
+static ritz_status verify_states(cli_run *run, model *full, model *reduced,
+                                 const verify_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    ritz_measures measures = {0};
+
+    cli_record(run, reduced->states.origin.method, model_order(reduced));
+    RITZ_TRY(find_states(run, full, reduced, asked));
+    RITZ_TRY_IN(run->operand[1],
+                ritz_verify_states(&full->states, &reduced->states,
+                                   &asked->verify, &measures));
+    RITZ_TRY(keep_measures(run, asked, &measures, reduced));
+done:
+    ritz_measures_free(&measures);
+    return status;
+}
+
+/* A reduced component is written with its dampers apart, as it was read. */
+static ritz_status take_apart(cli_run *run, const verify_wish *asked,
+                              model *reduced)
+{
+    const char *path = run->operand[1];
+
+    if (reduced->kind != MODEL_REDUCED)
+        return RITZ_OK;
+    model_free(reduced);
+    RITZ_CHECK(model_read(run, path, MODEL_REDUCED, reduced));
+    RITZ_CHECK(model_prefix(reduced, path, asked->model.order));
+    return ritz_context(model_tune(reduced, &asked->model.damper), path);
+}
+
+static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
+                                   verify_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    ritz_verify_request *request = &asked->verify;
+    const cli_list *damper = &asked->model.damper;
+    ritz_measures measures = {0};
+
+    RITZ_FAIL_IF(full->kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+                 "'%s' is a state space and '%s' is none: there is nothing to "
+                 "compare by",
+                 run->operand[0], run->operand[1]);
+    RITZ_TRY(model_damping(reduced, asked->model.damping, &request->damping));
+    if (reduced->at && !(request->band_hz[1] > 0.0))
+        memcpy(request->band_hz, reduced->system.band_hz,
+               sizeof request->band_hz);
+    cli_record(run, reduced->at ? "system" : reduced->reduced.origin.method,
+               model_order(reduced));
+    RITZ_TRY_IN(run->operand[0], model_install(full, damper));
+    RITZ_TRY_IN(run->operand[1], model_install(reduced, damper));
+    RITZ_TRY_IN(run->operand[1],
+                reduced->at
+                    ? ritz_verify_system(&full->component, reduced->at, request,
+                                         &measures)
+                    : ritz_verify_reduced(&full->component, &reduced->reduced,
+                                          request, &measures));
+    RITZ_TRY(take_apart(run, asked, reduced));
+    RITZ_TRY(keep_measures(run, asked, &measures, reduced));
+done:
+    ritz_measures_free(&measures);
+    return status;
+}
+
+ritz_status verify_run(cli_run *run, verify_wish *asked)
+{
+    ritz_status status = RITZ_OK;
+    const char *path = run->operand[1];
+    model full = {0};
+    model reduced = {0};
+
+    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
+                        &full));
+    RITZ_TRY(model_read(run, path, MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES,
+                        &reduced));
+    RITZ_TRY(model_prefix(&reduced, path, asked->model.order));
+    RITZ_TRY(model_at(&reduced, path, asked->model.at));
+    RITZ_TRY(check_limits(run, asked, reduced.kind == MODEL_STATES));
+    RITZ_TRY(reduced.kind == MODEL_STATES
+                 ? verify_states(run, &full, &reduced, asked)
+                 : verify_matrices(run, &full, &reduced, asked));
+done:
+    model_free(&reduced);
+    model_free(&full);
+    return status;
+}
