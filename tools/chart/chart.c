@@ -6,24 +6,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-const chart_kind chart_kinds[] = {
-    {"pareto", "errors against the time to reduce or to simulate",
-     CHART_RECORDS, "run records", chart_pareto},
-    {"convergence", "errors against order, a line for each method",
-     CHART_RECORDS, "run records", chart_convergence},
-    {"hankel", "values of modes as bars, by configuration or ranking",
-     CHART_RANKING, "rankings", chart_hankel},
-    {"response", "responses over each other, errors below", CHART_RESPONSE,
-     "responses, the reference first", chart_response},
-    {"mac", "how like the modes of two models are", CHART_MODES | CHART_SYSTEM,
-     "two of component, reduced, basis, system", chart_mac},
-    {"tracks", "frequencies of modes over configurations", CHART_TRACKS,
-     "a table of --tracks", chart_tracks},
-    {"simulation", "outputs over time, over each other", CHART_SIMULATION,
-     "time responses", chart_simulation},
-    {0},
-};
-
 static const struct content {
     int holds, model;
     const char *noun;
