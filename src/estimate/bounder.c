@@ -1,4 +1,4 @@
-/* What a bound of responses is made of, once; see estimate_response.c. */
+/* The bound of a response at a frequency; its equations are in response.c. */
 #include "estimate/bounder.h"
 #include "base/alloc.h"
 
@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a sum: one is due, the rest is room. */
+/* Roundings, in eps, of a sum of terms that cancel: one is due, the rest is
+   room. */
 static const double roundings = 4.0;
 
 static double square(double x)
@@ -16,7 +17,7 @@ static double square(double x)
     return x * x;
 }
 
-/* The stiffness of a trial mode, its rate of damping. */
+/* The stiffness of a trial mode, 0 of a rigid one. */
 static double stiffness_of(const ritz_bounder *r, int64_t j)
 {
     return j < r->num_rigid ? 0.0 : r->trial->theta[j];
@@ -31,13 +32,13 @@ static double rate_at(const ritz_bounder *r, double lambda)
 
 double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j)
 {
-    if (r->given)
-        return r->given[j];
+    if (r->rates)
+        return r->rates[j];
     return j < r->num_rigid && !r->rayleigh ? 0.0
                                             : rate_at(r, stiffness_of(r, j));
 }
 
-/* A X from a column of V on; nothing of no A. */
+/* Put A X into V from column `at` on; zeros if there is no A. */
 static ritz_status multiply_damping(const ritz_sparse *A, const ritz_bounder *r,
                                     int64_t at, ritz_dense *V)
 {
@@ -54,7 +55,7 @@ done:
     return status;
 }
 
-/* [R b_o c_o D_o K4_o], with M X X' of all but R taken out. */
+/* V = [R b_o c_o D_o K4_o]: all but R less their part M X X' in the trial. */
 static ritz_status stack_vectors(const ritz_estimator *estimator,
                                  ritz_bounder *r, ritz_dense *V)
 {
@@ -91,7 +92,7 @@ done:
     return status;
 }
 
-/* G, Q and the norms of V's columns. */
+/* G = V'A^-1 V, Q = V'A^-1 M A^-1 V and the norms of V's columns. */
 static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
 {
     ritz_status status = RITZ_OK;
@@ -104,9 +105,9 @@ static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
     RITZ_TRY(ritz_dense_mul_tn(&V, &E, &r->G));
     ritz_dense_symmetrise(&r->G);
     RITZ_TRY(ritz_sparse_condense(&estimator->component->M, &E, &r->Q));
-    RITZ_NEW(r->size_of, r->size);
+    RITZ_NEW(r->vector_norm, r->size);
     for (int64_t j = 0; j < r->size; j++)
-        r->size_of[j] = sqrt(fmax(ritz_dense_col(&r->G, j)[j], 0.0));
+        r->vector_norm[j] = sqrt(fmax(ritz_dense_col(&r->G, j)[j], 0.0));
 done:
     ritz_dense_free(&V);
     ritz_dense_free(&E);
@@ -163,7 +164,7 @@ static ritz_status take_sines(ritz_bounder *r)
     return RITZ_OK;
 }
 
-/* How much faster w d grows with an eigenvalue than that does itself. */
+/* d(w d_j) / d theta: how a change of a stiffness changes its damping. */
 static double damping_over(const ritz_bounder *r, double w, double theta)
 {
     return r->rayleigh ? w * r->b : w * r->zeta / sqrt(theta);
@@ -183,8 +184,8 @@ static double rounding_at(const ritz_bounder *r, double w, const ritz_side *in,
     double mass[2] = {0.0, 0.0};
 
     for (int64_t j = 0; j < r->trial->count; j++) {
-        double off = r->trial->rounding[j] + r->trial->reduced[j];
-        double own = w * sqrt(r->trial->inertia[j]);
+        double off = r->trial->rounding[j] + r->trial->reduced_rounding[j];
+        double own = w * sqrt(r->trial->mass_terms[j]);
         double each = sqrt(
             off * (1.0 + damping_over(r, w, fmax(r->trial->theta[j], off))));
 
@@ -226,14 +227,14 @@ static ritz_status open_coupled(const ritz_component *full, ritz_bounder *r)
 {
     int64_t m = r->trial->count;
     int64_t sides = r->io->num_inputs + r->io->num_outputs;
-    const double *rates = r->given;
+    const double *rates = r->rates;
 
     RITZ_CHECK(condense_on_modes(&full->D, &r->trial->X, &r->D));
     RITZ_CHECK(condense_on_modes(&full->K4, &r->trial->X, &r->K4));
     for (int64_t j = r->num_rigid; j < m; j++)
-        ritz_dense_col(&r->D, j)[j] += rates[j] - r->matrices[j];
+        ritz_dense_col(&r->D, j)[j] += rates[j] - r->matrix_rates[j];
     RITZ_CHECK_NEW(r->Z, m * m);
-    RITZ_CHECK_NEW(r->answers, m * sides);
+    RITZ_CHECK_NEW(r->responses, m * sides);
     RITZ_CHECK_NEW(r->pivot, m);
     return RITZ_OK;
 }
@@ -247,11 +248,11 @@ static void fill_side(const ritz_bounder *r, double w,
 
     for (int64_t j = 0; j < m; j++) {
         s->eta[j] = eta[j];
-        s->alpha[j] = -eta[j];
-        s->alpha[last + j] = -ritz_complex(0.0, w) * eta[j];
-        s->alpha[last + m + j] = -ritz_complex(0.0, 1.0) * eta[j];
+        s->residual[j] = -eta[j];
+        s->residual[last + j] = -ritz_complex(0.0, w) * eta[j];
+        s->residual[last + m + j] = -ritz_complex(0.0, 1.0) * eta[j];
     }
-    s->change = s->damped = s->quarter = s->three = 0.0;
+    s->change = s->damping_part = s->defect_quarter = s->defect_three = 0.0;
 }
 
 /* eta and alpha of all sides at @p w, whose modal shares are there. */
@@ -259,7 +260,7 @@ static void solve_coupled(ritz_bounder *r, double w)
 {
     int m = (int)r->trial->count;
     int sides = (int)(r->io->num_inputs + r->io->num_outputs);
-    double _Complex *at = r->answers;
+    double _Complex *at = r->responses;
 
     for (int64_t j = 0; j < m; j++)
         for (int64_t i = 0; i < m; i++)
@@ -272,7 +273,7 @@ static void solve_coupled(ritz_bounder *r, double w)
                                  : &r->out[side - r->io->num_inputs];
 
         for (int64_t j = 0; j < m; j++)
-            at[j + (int64_t)side * m] = s->modal[j];
+            at[j + (int64_t)side * m] = s->participation[j];
     }
     if (LAPACKE_zgesv(LAPACK_COL_MAJOR, m, sides, r->Z, m, r->pivot, at, m))
         for (int64_t k = 0; k < (int64_t)m * sides; k++)
@@ -288,7 +289,7 @@ static void free_coupled(ritz_bounder *r)
     ritz_dense_free(&r->D);
     ritz_dense_free(&r->K4);
     free(r->Z);
-    free(r->answers);
+    free(r->responses);
     free(r->pivot);
 }
 
@@ -297,12 +298,12 @@ static ritz_status new_sides(const ritz_bounder *r, int64_t count,
 {
     RITZ_CHECK_NEW(*out, count);
     for (int64_t k = 0; k < count; k++) {
-        RITZ_CHECK_NEW((*out)[k].alpha, r->size);
-        RITZ_CHECK_NEW((*out)[k].modal, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].residual, r->size);
+        RITZ_CHECK_NEW((*out)[k].participation, r->trial->count);
         RITZ_CHECK_NEW((*out)[k].eta, r->trial->count);
-        RITZ_CHECK_NEW((*out)[k].slope, r->size);
-        RITZ_CHECK_NEW((*out)[k].first, r->trial->count);
-        RITZ_CHECK_NEW((*out)[k].second, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].residual_slope, r->size);
+        RITZ_CHECK_NEW((*out)[k].participation_slope, r->trial->count);
+        RITZ_CHECK_NEW((*out)[k].curvature, r->trial->count);
     }
     return RITZ_OK;
 }
@@ -310,12 +311,12 @@ static ritz_status new_sides(const ritz_bounder *r, int64_t count,
 static void free_sides(int64_t count, ritz_side *sides)
 {
     for (int64_t k = 0; sides && k < count; k++) {
-        free(sides[k].alpha);
-        free(sides[k].modal);
+        free(sides[k].residual);
+        free(sides[k].participation);
         free(sides[k].eta);
-        free(sides[k].slope);
-        free(sides[k].first);
-        free(sides[k].second);
+        free(sides[k].residual_slope);
+        free(sides[k].participation_slope);
+        free(sides[k].curvature);
     }
     free(sides);
 }
@@ -329,7 +330,7 @@ void ritz_bounder_free(ritz_bounder *r)
     ritz_dense_free(&r->B);
     for (int k = 0; k < KINDS; k++)
         ritz_dense_free(&r->C[k]);
-    free(r->size_of);
+    free(r->vector_norm);
     free(r->sin2);
     free(r->GV);
     free(r->QV);
@@ -360,7 +361,7 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
 
 /*
  * The bound of |H - H_r| of each pair of an input and an output, at a frequency
- * or anywhere in an interval: see estimate_response.c.
+ * or anywhere in an interval; the equations are in response.c.
  */
 
 typedef double _Complex number;
@@ -384,7 +385,7 @@ static double norm_of(const ritz_bounder *r, const number *x, number *work)
     return sqrt(fmax(sum, 0.0));
 }
 
-/* Of c eta_j within h of w: what it is at most, and its second derivative. */
+/* Bounds of |c eta_j| and of its second derivative within h of w. */
 static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
                     double w, double h, double out[2])
 {
@@ -393,9 +394,9 @@ static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
     double off = h * (2.0 * w + h) + h * d;
     double z = fmax(hypot(theta - w * w, w * d) - off, fmax(w - h, 0.0) * d);
     double z1 = hypot(2.0 * (w + h), d);
-    double second = s->second[j];
-    double first = cabs(s->first[j]) + h * second;
-    double share = cabs(s->modal[j]) + h * first;
+    double second = s->curvature[j];
+    double first = cabs(s->participation_slope[j]) + h * second;
+    double share = cabs(s->participation[j]) + h * first;
     double b = r->rayleigh ? r->b : 0.0;
     double eta1 = (first + share * z1 / z) / z;
     double eta2 = (second + 2.0 * first * z1 / z +
@@ -422,34 +423,37 @@ static void solve_side(ritz_bounder *r, double w, double h, double bent,
     number c = ritz_complex(1.0, w * b);
     double curve = bent;
 
-    s->damped = s->quarter = s->three = 0.0;
+    s->damping_part = s->defect_quarter = s->defect_three = 0.0;
     for (int64_t j = 0; j < r->trial->count; j++) {
         double theta = stiffness_of(r, j);
         double d = ritz_bounder_rate_of(r, j);
         number z = ritz_complex(theta - w * w, w * d);
         number z1 = ritz_complex(-2.0 * w, d);
-        double size = r->size_of[j];
+        double size = r->vector_norm[j];
         double most[2];
 
-        s->eta[j] = s->modal[j] / z;
-        s->alpha[j] = -c * s->eta[j];
-        s->slope[j] = -ritz_complex(0.0, b) * s->eta[j] -
-                      c * (s->first[j] - s->eta[j] * z1) / z;
+        s->eta[j] = s->participation[j] / z;
+        s->residual[j] = -c * s->eta[j];
+        s->residual_slope[j] =
+            -ritz_complex(0.0, b) * s->eta[j] -
+            c * (s->participation_slope[j] - s->eta[j] * z1) / z;
         most_of(r, s, j, w, h, most);
         if (h > 0.0)
             curve += size * most[1];
         if (r->rayleigh || theta <= 0.0)
             continue;
-        s->damped += size * most[0] * 2.0 * r->zeta * (w + h) / sqrt(theta);
-        s->quarter += size * most[0] / sqrt(sqrt(theta));
-        s->three += size * most[0] / (sqrt(theta) * sqrt(sqrt(theta)));
+        s->damping_part +=
+            size * most[0] * 2.0 * r->zeta * (w + h) / sqrt(theta);
+        s->defect_quarter += size * most[0] / sqrt(sqrt(theta));
+        s->defect_three += size * most[0] / (sqrt(theta) * sqrt(sqrt(theta)));
     }
-    s->norm = norm_of(r, s->alpha, r->GV);
+    s->residual_norm = norm_of(r, s->residual, r->GV);
     s->change =
-        h > 0.0 ? h * norm_of(r, s->slope, r->GV) + 0.5 * h * h * curve : 0.0;
+        h > 0.0 ? h * norm_of(r, s->residual_slope, r->GV) + 0.5 * h * h * curve
+                : 0.0;
 }
 
-/* Sides of all inputs and outputs. */
+/* Participation, response and residual of all inputs and outputs. */
 static void solve_all(ritz_bounder *r, double w, double h)
 {
     const ritz_io *io = r->io;
@@ -457,10 +461,10 @@ static void solve_all(ritz_bounder *r, double w, double h)
     int64_t p = io->num_outputs;
 
     for (int64_t k = 0; k < io->num_inputs; k++) {
-        memset(r->in[k].alpha, 0, (size_t)r->size * sizeof(number));
-        r->in[k].alpha[m + k] = 1.0;
+        memset(r->in[k].residual, 0, (size_t)r->size * sizeof(number));
+        r->in[k].residual[m + k] = 1.0;
         for (int64_t j = 0; j < m; j++)
-            r->in[k].modal[j] = ritz_dense_col(&r->B, k)[j];
+            r->in[k].participation[j] = ritz_dense_col(&r->B, k)[j];
         if (!r->coupled)
             solve_side(r, w, h, 0.0, &r->in[k]);
     }
@@ -468,44 +472,44 @@ static void solve_all(ritz_bounder *r, double w, double h)
         ritz_side *s = &r->out[k];
         int64_t at = m + io->num_inputs + k;
 
-        memset(s->alpha, 0, (size_t)r->size * sizeof(number));
-        s->alpha[at] = 1.0;
-        s->alpha[at + p] = ritz_complex(0.0, w);
-        s->alpha[at + 2 * p] = -w * w;
-        s->slope[at + p] = ritz_complex(0.0, 1.0);
-        s->slope[at + 2 * p] = -2.0 * w;
+        memset(s->residual, 0, (size_t)r->size * sizeof(number));
+        s->residual[at] = 1.0;
+        s->residual[at + p] = ritz_complex(0.0, w);
+        s->residual[at + 2 * p] = -w * w;
+        s->residual_slope[at + p] = ritz_complex(0.0, 1.0);
+        s->residual_slope[at + 2 * p] = -2.0 * w;
         for (int64_t j = 0; j < m; j++) {
             double cv = ritz_dense_col(&r->C[1], j)[k];
             double ca = ritz_dense_col(&r->C[2], j)[k];
 
-            s->modal[j] = ritz_complex(
+            s->participation[j] = ritz_complex(
                 ritz_dense_col(&r->C[0], j)[k] - w * w * ca, w * cv);
-            s->first[j] = ritz_complex(-2.0 * w * ca, cv);
-            s->second[j] = 2.0 * fabs(ca);
+            s->participation_slope[j] = ritz_complex(-2.0 * w * ca, cv);
+            s->curvature[j] = 2.0 * fabs(ca);
         }
         if (!r->coupled)
-            solve_side(r, w, h, 2.0 * r->size_of[at + 2 * p], s);
+            solve_side(r, w, h, 2.0 * r->vector_norm[at + 2 * p], s);
     }
     if (!r->coupled)
         return;
     solve_coupled(r, w);
     for (int64_t k = 0; k < io->num_inputs; k++)
-        r->in[k].norm = norm_of(r, r->in[k].alpha, r->GV);
+        r->in[k].residual_norm = norm_of(r, r->in[k].residual, r->GV);
     for (int64_t k = 0; k < p; k++)
-        r->out[k].norm = norm_of(r, r->out[k].alpha, r->GV);
+        r->out[k].residual_norm = norm_of(r, r->out[k].residual, r->GV);
 }
 
-/* At one interval of frequencies. */
-typedef struct place {
+/* One interval of frequencies. */
+typedef struct frequency_interval {
     double low, high; /* w, both ends */
     number c, s;
     double most_s;   /* |s| anywhere within */
     double least_c2; /* |c|^2 */
-} place;
+} frequency_interval;
 
-/* Largest |rest| of a mode whose lambda lies in [low, high]. */
-static double rest_of(const ritz_bounder *r, const place *at, double low,
-                      double high)
+/* Bound of |rest| of a mode whose lambda lies in [low, high]. */
+static double rest_of(const ritz_bounder *r, const frequency_interval *at,
+                      double low, double high)
 {
     double apart =
         fmax(0.0, fmax(low - at->high * at->high, at->low * at->low - high));
@@ -526,13 +530,14 @@ static double rest_of(const ritz_bounder *r, const place *at, double low,
 }
 
 /*
- * What modes make of the rest and of what damping adds: of N lowest ones by
- * what is not held of them, of the others together; N is what suits best.
+ * The rest, and what damping adds, summed over modes: the N lowest take part only
+ * by what the trial space does not hold of them, sin^2; all others together. N
+ * is the number that makes the bound least.
  *
  * @param[in] all, added  products of norms that either goes with
  */
-static double bound_rest(const ritz_bounder *r, const place *at, double all,
-                         double added)
+static double bound_rest(const ritz_bounder *r, const frequency_interval *at,
+                         double all, double added)
 {
     const ritz_enclosure *e = r->e;
     double sigma = r->trial->sigma;
@@ -553,33 +558,34 @@ static double bound_rest(const ritz_bounder *r, const place *at, double all,
     return best;
 }
 
-/* Bound of one pair; *response is its |H_r|. */
-static double bound_pair(const ritz_bounder *r, const place *at, double h,
-                         const ritz_side *in, const ritz_side *out,
+/* Bound of |H - H_r| of one input and output; *response is its |H_r|. */
+static double bound_pair(const ritz_bounder *r, const frequency_interval *at,
+                         double h, const ritz_side *in, const ritz_side *out,
                          double *response)
 {
     double sigma = -r->trial->sigma;
     double c = cabs(at->c);
-    double P = in->norm + in->change;
-    double D = out->norm + out->change;
-    double varied = in->norm * out->change + in->change * D;
+    double P = in->residual_norm + in->change;
+    double D = out->residual_norm + out->change;
+    double varied = in->residual_norm * out->change + in->change * D;
     double turned = r->rayleigh ? h * r->b : 0.0;
     double moved = h * (2.0 * at->high + fabs(r->a + r->b * -sigma));
-    double all = (P + in->damped) * (D + out->damped);
+    double all = (P + in->damping_part) * (D + out->damping_part);
     double w = at->high;
     double defect = 0.0;
     number lead = 0.0;
     number H = 0.0;
 
     for (int64_t i = 0; i < r->size; i++)
-        lead += out->alpha[i] *
+        lead += out->residual[i] *
                 (r->GV[i] / at->c + at->s * r->QV[i] / (at->c * at->c));
     for (int64_t j = 0; j < r->trial->count; j++)
-        H += out->modal[j] * in->eta[j];
+        H += out->participation[j] * in->eta[j];
     *response = cabs(H);
     if (!r->rayleigh)
         defect = r->zeta * w *
-                 (in->quarter * out->quarter + sigma * in->three * out->three);
+                 (in->defect_quarter * out->defect_quarter +
+                  sigma * in->defect_three * out->defect_three);
     return cabs(lead) + defect +
            varied * (1.0 / c + cabs(at->s) / (c * c * sigma)) +
            (turned + moved / sigma +
@@ -589,10 +595,10 @@ static double bound_pair(const ritz_bounder *r, const place *at, double h,
            rounding_at(r, at->high, in, out);
 }
 
-static place place_of(const ritz_bounder *r, double w, double h)
+static frequency_interval interval_of(const ritz_bounder *r, double w, double h)
 {
     double sigma = r->trial->sigma;
-    place at = {
+    frequency_interval at = {
         .low = fmax(w - h, 0.0), .high = w + h, .c = 1.0, .least_c2 = 1.0};
 
     at.s = w * w - sigma;
@@ -611,13 +617,13 @@ static place place_of(const ritz_bounder *r, double w, double h)
 double ritz_bound_at(ritz_bounder *r, double w, double h)
 {
     const ritz_io *io = r->io;
-    place at = place_of(r, w, h);
+    frequency_interval at = interval_of(r, w, h);
     double largest = 0.0;
 
     solve_all(r, w, h);
     for (int64_t j = 0; j < io->num_inputs; j++) {
-        multiply(&r->G, r->in[j].alpha, r->GV);
-        multiply(&r->Q, r->in[j].alpha, r->QV);
+        multiply(&r->G, r->in[j].residual, r->GV);
+        multiply(&r->Q, r->in[j].residual, r->QV);
         for (int64_t i = 0; i < io->num_outputs; i++) {
             double response = 0.0;
             double one =

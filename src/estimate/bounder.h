@@ -1,4 +1,4 @@
-/* The parts of estimate_response.c, whose head has the equations. */
+/* The bound of a response, whose equations are at the head of response.c. */
 #ifndef RITZ_ESTIMATE_BOUNDER_H
 #define RITZ_ESTIMATE_BOUNDER_H
 
@@ -10,47 +10,56 @@
 /* C, Cv and Ca of outputs. */
 enum { KINDS = 3 };
 
-/* One side at a frequency: an input's b or an output's c + i w cv - w^2 ca. */
+/*
+ * One input or output at a frequency w: its vector b, or c + i w cv - w^2 ca,
+ * the reduced modes' response eta to it, and the residual r that the full
+ * equations leave of that, as a combination of the vectors V of the bounder.
+ */
 typedef struct ritz_side {
-    double _Complex *alpha;         /* of [R b_o c_o], what r is */
-    double _Complex *modal;         /* X'b, or c'X */
-    double _Complex *eta;           /* of each trial mode */
-    double _Complex *slope, *first; /* derivatives of alpha and of modal */
-    double *second;                 /* most of another one of modal */
-    double norm;    /* |r| at the frequency, what damping adds left out */
-    double change;  /* most that it changes in the interval */
-    double damped;  /* most that damping adds */
-    double quarter; /* sum |eta_j||R_j| theta_j^(-1/4), for the defect */
-    double three;   /* and theta_j^(-3/4) */
+    double _Complex *participation; /* X'b, or c'X */
+    double _Complex *eta;           /* response of each trial mode */
+    double _Complex *residual;      /* coordinates of r in V */
+    /* derivatives by w of the residual and of the participation, and a bound of
+       the second derivative of the latter */
+    double _Complex *residual_slope, *participation_slope;
+    double *curvature;
+    double residual_norm; /* |r|_(A^-1), without what damping adds */
+    double change;        /* bound of its change in the interval */
+    double damping_part;  /* bound of what damping ratios add to |r| */
+    /* sums over j of |eta_j||R_j| theta_j^(-1/4), and theta_j^(-3/4), that
+       bound the defect of reduced damping */
+    double defect_quarter, defect_three;
 } ritz_side;
 
 typedef struct ritz_bounder {
     const ritz_lehmann *trial;
     const ritz_enclosure *e;
     const ritz_io *io;
-    int64_t num_rigid, size; /* size: of G */
-    bool rayleigh;
+    int64_t num_rigid;
+    bool rayleigh; /* D = a M + b K; else the ratio zeta of all modes */
     double zeta, a, b;
-    const double *given; /* rates of trial modes, by D; NULL: by zeta */
-    ritz_dense G, Q; /* of V = [R b_o c_o D_o K4_o]: V'A^-1 V, and M inside */
+    const double *rates;    /* modal damping by D; NULL: by zeta, a and b */
+    int64_t size;           /* columns of V = [R b_o c_o D_o K4_o] */
+    ritz_dense G, Q;        /* V'A^-1 V and V'A^-1 M A^-1 V */
+    double *vector_norm;    /* |V_j|_(A^-1) */
     ritz_dense B, C[KINDS]; /* X'B; C X, Cv X, Ca X */
-    double *size_of;        /* |V_j| */
-    double *sin2;           /* of full modes */
+    double *sin2;           /* of each full mode to the trial space, at most */
     ritz_side *in, *out;
-    double _Complex *GV, *QV; /* G and Q times alpha of an input */
-    bool coupled;             /* by D or K4: see estimate_coupled.c */
-    const double *matrices;   /* what of given comes from them */
-    ritz_dense D, K4;         /* of trial modes */
-    double _Complex *Z, *answers;
+    double _Complex *GV, *QV; /* G and Q times the residual of an input */
+    bool coupled;             /* D or K4 couples modes: an estimate, no bound */
+    const double *matrix_rates; /* the part of rates that is of D and K4 */
+    ritz_dense D, K4;           /* of trial modes */
+    double _Complex *Z, *responses;
     int *pivot;
     double largest; /* |H_r| at points */
-    double least;   /* |H_r| less its bound: the largest so far */
+    double least;   /* largest |H_r| less its bound: |H| is at least this */
 } ritz_bounder;
 
-/** Forms, sines and room for sides, of a bounder with all else filled in. */
+/** Fill V's forms, angles and sides of a bounder that has the rest. */
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
 void ritz_bounder_free(ritz_bounder *r);
 
+/** Rate of damping of trial mode @p j: 2 zeta omega, or a + b lambda. */
 double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j);
 
 /**

@@ -15,19 +15,20 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* Bound over error that is good enough. */
+/* Ratio of bound to error that is good enough. */
 static const double wanted = 3.0;
-/* An error that no gap is known from. */
+/* Relative error above which a mode is in no known gap. */
 static const double coarse = 0.1;
-/* The first count: so many times the band, in lambda. */
+/* The first count lies between these multiples of the band's end, in lambda. */
 static const double near = 2.0, far = 8.0;
-/* And one for responses. */
+/* A count for responses lies below this multiple of it. */
 static const double farthest = 40.0;
-/* rho - sigma over theta - sigma that leaves nothing to gain. */
+/* Ratio (rho - sigma) / (theta - sigma) beyond which a count gains nothing. */
 static const double enough = 3.0;
-/* Ends of a gap so close, beside its distance, that nothing is gained. */
+/* A gap narrower than this part of its distance to the mode gains nothing. */
 static const double close = 0.3;
-/* Of the band, in lambda: what is below may be a rigid motion held badly. */
+/* Part of the band's end, in lambda, below which a reduced mode may be a rigid
+   motion that the basis holds badly. */
 static const double slow = 1e-6;
 /* Gaps narrower than this, relative, hold no count. */
 static const double narrow = 1e-6;
@@ -67,13 +68,14 @@ static bool counted_within(const ritz_estimator *estimator, double low,
     return false;
 }
 
-/* Nearer to the lower end: reduced modes are too high. */
+/* A point of a gap, nearer to its lower end: reduced modes are too high. */
 static double within(double low, double high)
 {
     return low + 0.3 * (high - low);
 }
 
-/* The widest gap i, i + 1 of first <= i < last without a count. */
+/* A point in the widest gap theta_i, theta_i+1 without a count, of first <= i <
+   last; NaN: none. */
 static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
                      int64_t first, int64_t last)
 {
@@ -95,7 +97,8 @@ static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
     return rho;
 }
 
-/* Above all of the band, the reduced model reaching so far or not. */
+/* A point in the widest gap between `from` and `to`, which are above the band;
+   NaN if a count is there, or no gap. */
 static double above_band(const ritz_estimator *estimator,
                          const ritz_lehmann *trial, double from, double to)
 {
@@ -114,7 +117,7 @@ static double above_band(const ritz_estimator *estimator,
 
 static bool satisfied(const ritz_claim *claim, double rounding)
 {
-    return claim->number >= 0 &&
+    return claim->full_mode >= 0 &&
            claim->bound <= 2.0 * rounding + wanted * fmin(claim->least, coarse);
 }
 
@@ -128,7 +131,8 @@ static int64_t trial_below(const ritz_lehmann *trial, double rho)
     return below;
 }
 
-/* The counts next to a mode; below all of them there is nothing. */
+/* The counts next to a mode, and how many full modes each has more than the
+   reduced model. */
 typedef struct sides {
     double low, high;          /* rho; HUGE_VAL: none above */
     int64_t low_off, high_off; /* full less reduced modes */
@@ -158,7 +162,8 @@ static sides sides_of(const ritz_estimator *estimator,
     return s;
 }
 
-/* Between two ends, unless they are close beside their distance to theta. */
+/* A point between two ends; NaN if they are close compared with their distance
+   to theta. */
 static double between(double low, double high, double theta)
 {
     double off = fmin(fabs(low - theta), fabs(high - theta));
@@ -168,7 +173,8 @@ static double between(double low, double high, double theta)
     return low > 0.0 ? sqrt(low * high) : 0.1 * high;
 }
 
-/* Modes are missing between the counts around k: on which side of it? */
+/* Where modes are missing between the counts around mode k: a count that tells
+   on which side of it. */
 static double locate(const ritz_estimator *estimator, const ritz_lehmann *trial,
                      const sides *s, int64_t k, double least)
 {
@@ -185,7 +191,8 @@ static double locate(const ritz_estimator *estimator, const ritz_lehmann *trial,
     return nan("");
 }
 
-/* Full mode p it is: counts further off, in the gaps above and below it. */
+/* Where mode k is known to be full mode p: a count in the gap above or below
+   it, further off than those there are. */
 static double spread(const ritz_lehmann *trial, const ritz_enclosure *e,
                      const sides *s, int64_t k, int64_t p)
 {
@@ -242,7 +249,7 @@ bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
     return theta <= slow * band && ritz_counted_more(estimator, k, 0.5 * theta);
 }
 
-/* For one mode: where to count, NaN if it is told well enough. */
+/* Where to count for one mode; NaN if its claim is good enough. */
 static double next_for(const ritz_estimator *estimator,
                        const ritz_lehmann *trial,
                        const ritz_enclosure *enclosure, int64_t k, double band)
@@ -251,7 +258,7 @@ static double next_for(const ritz_estimator *estimator,
     ritz_claim claim = ritz_claim_of(trial, enclosure, k, theta);
 
     if (ritz_counted_rigid(estimator, k, theta, band) ||
-        satisfied(&claim, trial->reduced[k] / theta))
+        satisfied(&claim, trial->reduced_rounding[k] / theta))
         return nan("");
     if (theta <= slow * band)
         return 0.1 * theta;

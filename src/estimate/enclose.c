@@ -1,11 +1,30 @@
 /*
- * Ritz pairs of the full matrices in the range of T, anew: a reduced model's
- * own are theirs to rounding, unless some of its columns have lost their mass.
+ * Enclosures of eigenvalues by Lehmann's method with Goerisch's choice of norm.
+ * Y = A^1/2 X Theta_t^-1/2, theta_t = theta - sigma, is orthonormal and
  *
- * Rounding. K x is summed up from |K||x|: so x'Kx is off by some eps times
- * |x|'|K||x|, and so may any other program's be; M x too. Pairs of a dense
- * pencil err by eps times its largest eigenvalue beside. Modes nearer to each
- * other than that may change places: what one of them is, the other may be.
+ *     Y'SY = diag(k_j) = Theta_t^-1,   Y'S^2 Y = diag(k_j)^2 + G^,
+ *     G^_ij = G_ij / (t_i t_j)^3/2,    G = R'A^-1 R
+ *
+ * so that nothing cancels where residuals are small. Let N eigenvalues kappa of
+ * S be above kappa_rho, as an inertia count says. (S - kappa_rho)^-1 has N
+ * positive eigenvalues, and in the range of (S - kappa_rho) Y the Ritz values
+ * tau of
+ *
+ *     D z = tau (D^2 + G^) z,   D = diag(k_j - kappa_rho)
+ *
+ * which are below them: the i-th least of n positive ones gives
+ *
+ *     kappa_(N - n + i) <= kappa_rho + 1 / tau_i
+ *
+ * and the i-th most negative of the others kappa_(N + i) >= the same. To first
+ * order kappa_k is overestimated by G^_kk / (k_k - kappa_rho), and because
+ *
+ *     kappa_k >= eigenvalue k of X'M A^-1 M X = Theta_t^-1 + G / (t_i t_j)
+ *
+ * it is in error by G^_kk / k_k at least: bound over error is no more than
+ * k_k / (k_k - kappa_rho), nearly, which is what makes a good rho.
+ *
+ * [Lehmann1963], [BeattieGoerisch1995]
  */
 #include "base/alloc.h"
 #include "estimate/estimator.h"
@@ -21,6 +40,16 @@ enum { MOST_SHIFTS = 16 };
 static const double roundings = 4.0;
 /* Of the rounding of eigenvalues beside: how far a count may be off. */
 static const double margin = 2.0;
+
+/*
+ * Ritz pairs of the full matrices in the range of T, anew: a reduced model's
+ * own are theirs to rounding, unless some of its columns have lost their mass.
+ *
+ * Rounding. K x is summed up from |K||x|: so x'Kx is off by some eps times
+ * |x|'|K||x|, and so may any other program's be; M x too. Pairs of a dense
+ * pencil err by eps times its largest eigenvalue beside. Modes nearer to each
+ * other than that may change places: what one of them is, the other may be.
+ */
 
 ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma)
 {
@@ -91,7 +120,7 @@ static ritz_status take_residuals(const ritz_component *full,
     if (trial->count > 0)
         largest = trial->theta[trial->count - 1];
     RITZ_NEW(trial->rounding, trial->count);
-    RITZ_NEW(trial->inertia, trial->count);
+    RITZ_NEW(trial->mass_terms, trial->count);
     RITZ_TRY(ritz_sparse_mul(&full->K, &trial->X, &trial->R));
     RITZ_TRY(ritz_sparse_mul(&full->M, &trial->X, &MX));
     for (int64_t j = 0; j < trial->count; j++) {
@@ -100,11 +129,11 @@ static ritz_status take_residuals(const ritz_component *full,
 
         for (int64_t i = 0; i < MX.nrow; i++)
             r[i] -= trial->theta[j] * ritz_dense_col(&MX, j)[i];
-        trial->inertia[j] = magnitude(&full->M, x);
+        trial->mass_terms[j] = magnitude(&full->M, x);
         trial->rounding[j] =
             roundings * DBL_EPSILON *
             (magnitude(&full->K, x) +
-             (fabs(trial->theta[j]) - trial->sigma) * trial->inertia[j] +
+             (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
     }
 done:
@@ -119,12 +148,12 @@ static void bound_reduced(const ritz_pairs *pairs, ritz_lehmann *trial)
     double most = -HUGE_VAL;
 
     for (int64_t j = 0; j < trial->count; j++) {
-        most = fmax(most, pairs->lambda[j] + trial->reduced[j]);
-        trial->most[j] = most;
+        most = fmax(most, pairs->lambda[j] + trial->reduced_rounding[j]);
+        trial->reduced_high[j] = most;
     }
     for (int64_t j = trial->count - 1; j >= 0; j--) {
-        least = fmin(least, pairs->lambda[j] - trial->reduced[j]);
-        trial->least[j] = least;
+        least = fmin(least, pairs->lambda[j] - trial->reduced_rounding[j]);
+        trial->reduced_low[j] = least;
     }
 }
 
@@ -140,17 +169,18 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
     ritz_dense K = {0};
     ritz_dense M = {0};
 
-    RITZ_NEW(trial->reduced, trial->count);
-    RITZ_NEW(trial->least, trial->count);
-    RITZ_NEW(trial->most, trial->count);
+    RITZ_NEW(trial->reduced_rounding, trial->count);
+    RITZ_NEW(trial->reduced_low, trial->count);
+    RITZ_NEW(trial->reduced_high, trial->count);
     RITZ_TRY(ritz_dense_terms(&reduced->K, &Q, &K));
     RITZ_TRY(ritz_dense_terms(&reduced->M, &Q, &M));
     for (int64_t j = 0; j < trial->count; j++) {
-        trial->inertia[j] += ritz_dense_col(&M, j)[j];
-        trial->reduced[j] = roundings * DBL_EPSILON *
-                            (ritz_dense_col(&K, j)[j] +
-                             fabs(pairs->lambda[j]) * ritz_dense_col(&M, j)[j] +
-                             pairs->lambda[pairs->Phi.ncol - 1]);
+        trial->mass_terms[j] += ritz_dense_col(&M, j)[j];
+        trial->reduced_rounding[j] =
+            roundings * DBL_EPSILON *
+            (ritz_dense_col(&K, j)[j] +
+             fabs(pairs->lambda[j]) * ritz_dense_col(&M, j)[j] +
+             pairs->lambda[pairs->Phi.ncol - 1]);
     }
     bound_reduced(pairs, trial);
 done:
@@ -229,15 +259,15 @@ void ritz_lehmann_free(ritz_lehmann *trial)
     ritz_dense_free(&trial->G);
     free(trial->theta);
     free(trial->rounding);
-    free(trial->inertia);
-    free(trial->reduced);
-    free(trial->least);
-    free(trial->most);
+    free(trial->mass_terms);
+    free(trial->reduced_rounding);
+    free(trial->reduced_low);
+    free(trial->reduced_high);
     *trial = (ritz_lehmann){0};
 }
 
 /*
- * The Ritz values tau of estimate_enclose.c, as their inverses. Rounding of a
+ * The Ritz values tau of Lehmann's method below, as their inverses. Rounding of a
  * dense problem is eps times its largest value, and tau is large where rho is
  * close to a mode: so nu = 1 / tau is sought, whose largest belong to the modes
  * furthest from rho. With J = sign D and z = |D|^-1/2 u
@@ -309,7 +339,7 @@ done:
 }
 
 /*
- * nu of estimate_values.c for rho, ascending; none where rho is too close to a
+ * nu for rho, ascending; none where rho is too close to a
  * mode of the trial.
  */
 static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
@@ -341,35 +371,6 @@ done:
     ritz_dense_free(&one);
     return status;
 }
-
-/*
- * Enclosures of eigenvalues by Lehmann's method with Goerisch's choice of norm.
- * Y = A^1/2 X Theta_t^-1/2, theta_t = theta - sigma, is orthonormal and
- *
- *     Y'SY = diag(k_j) = Theta_t^-1,   Y'S^2 Y = diag(k_j)^2 + G^,
- *     G^_ij = G_ij / (t_i t_j)^3/2,    G = R'A^-1 R
- *
- * so that nothing cancels where residuals are small. Let N eigenvalues kappa of
- * S be above kappa_rho, as an inertia count says. (S - kappa_rho)^-1 has N
- * positive eigenvalues, and in the range of (S - kappa_rho) Y the Ritz values
- * tau of
- *
- *     D z = tau (D^2 + G^) z,   D = diag(k_j - kappa_rho)
- *
- * which are below them: the i-th least of n positive ones gives
- *
- *     kappa_(N - n + i) <= kappa_rho + 1 / tau_i
- *
- * and the i-th most negative of the others kappa_(N + i) >= the same. To first
- * order kappa_k is overestimated by G^_kk / (k_k - kappa_rho), and because
- *
- *     kappa_k >= eigenvalue k of X'M A^-1 M X = Theta_t^-1 + G / (t_i t_j)
- *
- * it is in error by G^_kk / k_k at least: bound over error is no more than
- * k_k / (k_k - kappa_rho), nearly, which is what makes a good rho.
- *
- * [Lehmann1963], [BeattieGoerisch1995]
- */
 
 static double shifted(const ritz_lehmann *trial, int64_t j)
 {

@@ -1,6 +1,10 @@
 /*
- * Where counts and inverse iterations are spent: on the reduced modes in the
- * band, then on what verify pairs with the full modes in it.
+ * How far a reduced model can be off, told by one factor of the full matrices,
+ * by the residuals of its modes, and by counts of full modes below some
+ * frequencies. Counts and inverse iterations are spent first on the reduced
+ * modes in the band, then on what ritz-verify pairs with the full modes in it;
+ * what is known then is reported as named numbers. Enclosures are in enclose.c,
+ * the choice of counts in count.c, partners in judge.c, responses in response.c.
  */
 #include "base/alloc.h"
 #include "estimate/estimator.h"
@@ -11,25 +15,32 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Gaps behind the band where a count may show that no mode is missing. */
 enum { GAPS = 3 };
-/* Counts that one reduction may ask for: some, and some for each mode. */
+/* Most counts for one reduction: some, and some for each mode in the band. */
 enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
-/* Inverse iterations that full modes without a partner may ask for. */
+/* Most inverse iterations, and most counts beside modes, while partners are
+   unclear. */
 enum { ITERATIONS = 4, MOST_BESIDE = 16 };
-/* Behind the end of the band, in lambda: further than verify counts to it. */
+/* A count at the band's end lies so far behind it, in lambda: further than what
+   ritz-verify takes to be in the band. */
 static const double behind = 8e-9;
-/* Of the band, in lambda: what is below is a rigid motion. */
+/* Part of the band's end, in lambda, below which a mode is rigid. */
 static const double slow = 0.5e-6;
+/* Most modes that are reported one by one. */
 enum { MOST_LISTED = 100 };
-/* sigma, of the band: smaller is tighter at its end, larger rounds less. */
+/* -sigma as a part of the band's end in lambda: a smaller one makes bounds at the
+   end tighter, a larger one rounds less. */
 static const double shift = 0.1;
-/* Trial modes so far beyond the band, in lambda, and as many beyond. */
+/* The trial holds modes to this multiple of the band's end, in lambda, and as
+   many beyond the band's last. */
 static const double beyond = 30.0;
 enum { MORE = 10 };
-/* Of the band, in lambda: what rounding hides below is a rigid motion. */
+/* Part of the band's end, in lambda: a mode below that is not above its own
+   rounding may be a rigid motion. */
 static const double as_rigid = 1e-6;
 
-/* Count there; what cannot be factored is not counted. */
+/* Take a count; `end` if K - rho M cannot be factored there. */
 static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
 {
     ritz_status status = ritz_estimator_count(estimator, rho);
@@ -38,11 +49,20 @@ static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
     return *end ? RITZ_OK : status;
 }
 
+static ritz_status enclose_modes(const ritz_estimator *estimator,
+                                 ritz_measuring *m)
+{
+    ritz_enclosure_free(&m->enclosure);
+    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
+                              &m->enclosure);
+}
+
 /*
- * Count where it helps, until every mode is told or enough is spent; but an
- * inverse iteration helps first.
+ * Take counts where they help, until every mode's claim is good or enough is
+ * spent. Before the first count for a single mode the trial gets an inverse
+ * iteration.
  */
-static ritz_status refine(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status refine_modes(ritz_estimator *estimator, ritz_measuring *m)
 {
     ritz_status status = RITZ_OK;
     int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->reach - m->first);
@@ -54,9 +74,7 @@ static ritz_status refine(ritz_estimator *estimator, ritz_measuring *m)
         double rho = nan("");
         int64_t mode = -1;
 
-        ritz_enclosure_free(&m->enclosure);
-        RITZ_TRY(ritz_enclosure_new(estimator, &m->trial, &m->polished,
-                                    &m->enclosure));
+        RITZ_TRY(enclose_modes(estimator, m));
         if (budget-- > 0 && estimator->num_counts < RITZ_MOST_COUNTS)
             rho = ritz_propose_count(estimator, &m->trial, &m->enclosure,
                                      &pursuit, &mode);
@@ -75,7 +93,8 @@ done:
     return status;
 }
 
-/* One more far above the band: the further, the less the rest answers. */
+/* One count far above the band, for responses: the further modes are, the less
+   they respond. */
 static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
 {
     double rho = ritz_propose_above(estimator, &m->trial,
@@ -85,12 +104,10 @@ static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
     if (end)
         return RITZ_OK;
     RITZ_CHECK(count_at(estimator, rho, &end));
-    ritz_enclosure_free(&m->enclosure);
-    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
-                              &m->enclosure);
+    return enclose_modes(estimator, m);
 }
 
-/* Where to count modes of the band: at its end, or in a gap behind. */
+/* Where to count for missing modes: at the band's end, or in a gap behind. */
 static double end_of_band(const ritz_measuring *m, int64_t gap)
 {
     double end = ritz_eigen_lambda(m->band_hz[1]) * (1.0 + DBL_EPSILON);
@@ -118,39 +135,33 @@ static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
     return RITZ_OK;
 }
 
-static ritz_status enclose(const ritz_estimator *estimator, ritz_measuring *m)
-{
-    ritz_enclosure_free(&m->enclosure);
-    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
-                              &m->enclosure);
-}
-
-/* Which full modes are in the band is told by a count at its end. */
+/* Where intervals do not tell which full modes are in the band, count at its
+   ends. */
 static ritz_status count_ends(ritz_estimator *estimator, ritz_measuring *m)
 {
     double end = ritz_eigen_lambda(m->band_hz[1]);
     bool none = false;
 
-    if ((!m->matched.known || m->matched.astride) &&
+    if ((!m->prediction.counted || m->prediction.edge_unclear) &&
         estimator->num_counts < RITZ_MOST_COUNTS)
         RITZ_CHECK(count_at(estimator, end * (1.0 + behind), &none));
-    if (m->matched.slow && estimator->num_counts < RITZ_MOST_COUNTS)
+    if (m->prediction.rigid_unclear && estimator->num_counts < RITZ_MOST_COUNTS)
         RITZ_CHECK(count_at(estimator, slow * end, &none));
-    RITZ_CHECK(enclose(estimator, m));
-    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
-    if (m->matched.full > m->reach)
-        m->reach = m->matched.full;
+    RITZ_CHECK(enclose_modes(estimator, m));
+    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
+    if (m->prediction.num_full > m->reach)
+        m->reach = m->prediction.num_full;
     if (m->reach > m->trial.count)
         m->reach = m->trial.count;
     if (m->reach > m->last) {
-        RITZ_CHECK(refine(estimator, m));
-        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+        RITZ_CHECK(refine_modes(estimator, m));
+        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
     }
     return RITZ_OK;
 }
 
 /* One more inverse iteration, of what there is. */
-static ritz_status iterate(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status iterate_trial(ritz_estimator *estimator, ritz_measuring *m)
 {
     ritz_lehmann next = {0};
 
@@ -168,30 +179,28 @@ static ritz_status refine_all(ritz_estimator *estimator, bool response,
     int iterations = 0, counts = 0;
 
     m->reach = m->last;
-    RITZ_CHECK(refine(estimator, m));
+    RITZ_CHECK(refine_modes(estimator, m));
     if (response)
         RITZ_CHECK(count_above(estimator, m));
     RITZ_CHECK(count_band(estimator, m));
-    RITZ_CHECK(enclose(estimator, m));
-    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+    RITZ_CHECK(enclose_modes(estimator, m));
+    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
     RITZ_CHECK(count_ends(estimator, m));
-    while (m->matched.open || m->matched.unsettled) {
+    while (m->prediction.loose || m->prediction.partner_unclear) {
         bool none = false;
 
-        if (!isnan(m->matched.rho) && counts++ < MOST_BESIDE &&
+        if (!isnan(m->prediction.count_at) && counts++ < MOST_BESIDE &&
             estimator->num_counts < RITZ_MOST_COUNTS)
-            RITZ_CHECK(count_at(estimator, m->matched.rho, &none));
+            RITZ_CHECK(count_at(estimator, m->prediction.count_at, &none));
         else if (iterations++ < ITERATIONS)
-            RITZ_CHECK(iterate(estimator, m));
+            RITZ_CHECK(iterate_trial(estimator, m));
         else
             break;
-        RITZ_CHECK(enclose(estimator, m));
-        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->matched));
+        RITZ_CHECK(enclose_modes(estimator, m));
+        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
     }
     return RITZ_OK;
 }
-
-/* What was found of a reduced model's modes, as named numbers. */
 
 /* "mode 7, 3.41 Hz", and which of the full model if it is another. */
 static void say_where(const ritz_claim *claim, int64_t k, double theta,
@@ -201,30 +210,31 @@ static void say_where(const ritz_claim *claim, int64_t k, double theta,
                         k + 1, ritz_eigen_hertz(theta));
     size_t left = (size_t)(RITZ_NAME_SIZE - used);
 
-    if (claim->number < 0)
+    if (claim->full_mode < 0)
         (void)snprintf(where + used, left, ", near some full mode");
-    else if (claim->number != k)
+    else if (claim->full_mode != k)
         (void)snprintf(where + used, left, ", full mode %" PRId64,
-                       claim->number + 1);
+                       claim->full_mode + 1);
 }
 
 /*
- * What mode k says of the worst error at least: however the first k full modes
- * are paired with reduced ones, one of them has a partner of number k or more,
- * which is above the highest that mode k of the full model can be.
+ * A lower bound of the worst error from mode k: however the first k full modes
+ * are paired, one of them has a reduced partner of number k or more, whose
+ * frequency is above the highest that full mode k can have.
  */
 static double least_of(const ritz_measuring *m, int64_t k)
 {
     double theta = m->pairs.lambda[k];
-    double rounding = 0.5 * m->trial.reduced[k] / theta;
-    double low = fmax(fmin(theta, m->trial.least[k]), 0.0);
+    double rounding = 0.5 * m->trial.reduced_rounding[k] / theta;
+    double low = fmax(fmin(theta, m->trial.reduced_low[k]), 0.0);
 
     return sqrt(low / m->enclosure.high[k]) - 1.0 - rounding;
 }
 
 /*
- * Of full modes that are in the band for certain, wherever their partners lie.
- * Modes below a band need no partner, so nothing is sure of it.
+ * The largest of these over full modes that are certainly in the band. Nothing
+ * can be said of a band that does not begin at 0, as modes below it need no
+ * partner.
  */
 static ritz_status report_least(const ritz_estimator *estimator,
                                 const ritz_measuring *m, ritz_measures *out)
@@ -251,18 +261,19 @@ static ritz_status report_least(const ritz_estimator *estimator,
     return RITZ_OK;
 }
 
-/* The same claim of the mode of its own number, if anything is known of it, and
- * that it is another than the one that is claimed: of a cluster any will do. */
-static ritz_claim own(const ritz_measuring *m, int64_t k, ritz_claim claim)
+/* Where no mode is missing: the claim on the full mode of the same number, if
+   its interval is known and apart from that of the mode that was claimed. */
+static ritz_claim own_claim(const ritz_measuring *m, int64_t k,
+                            ritz_claim claim)
 {
     const ritz_enclosure *e = &m->enclosure;
-    const int64_t p = claim.number;
+    const int64_t p = claim.full_mode;
     double same = ritz_claim_same(&m->trial, e, k, m->pairs.lambda[k]);
     bool apart = e->high[k] < e->low[p] || e->high[p] < e->low[k];
 
     if (isfinite(same) && apart) {
         claim.bound = same;
-        claim.number = k;
+        claim.full_mode = k;
     }
     return claim;
 }
@@ -273,7 +284,6 @@ static ritz_status list_modes(const ritz_estimator *estimator,
 {
     double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
     double at = 0.0;
-    /* where none is missing all are the full model's by their numbers */
     bool complete = ritz_missing_modes(estimator, m, &at) == 0;
     char name[RITZ_NAME_SIZE];
     char where[RITZ_NAME_SIZE];
@@ -284,8 +294,8 @@ static ritz_status list_modes(const ritz_estimator *estimator,
 
         if (ritz_counted_rigid(estimator, k, theta, band))
             continue;
-        if (complete && claim.number >= 0 && claim.number != k)
-            claim = own(m, k, claim);
+        if (complete && claim.full_mode >= 0 && claim.full_mode != k)
+            claim = own_claim(m, k, claim);
         (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
         say_where(&claim, k, theta, where);
         RITZ_CHECK(ritz_measures_add(out, name, claim.bound, nan(""), where));
@@ -293,36 +303,36 @@ static ritz_status list_modes(const ritz_estimator *estimator,
     return RITZ_OK;
 }
 
-/* Of a pair: "mode 7, 3.41 Hz, full mode 8". */
+/* A value with its place, "mode 7, 3.41 Hz, full mode 8". */
 static ritz_status add_pair(const ritz_measuring *m, const char *name,
-                            double value, int64_t k, int64_t number,
+                            double value, int64_t k, int64_t full_mode,
                             ritz_measures *out)
 {
-    const ritz_claim claim = {.number = number};
+    const ritz_claim claim = {.full_mode = full_mode};
     char where[RITZ_NAME_SIZE];
 
     say_where(&claim, k, m->pairs.lambda[k], where);
     return ritz_measures_add(out, name, value, nan(""), where);
 }
 
-/* The worst mode of the band, and each. */
+/* Report the worst mode of the band, then each. */
 static ritz_status report_modes(const ritz_estimator *estimator,
                                 const ritz_measuring *m, ritz_measures *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_matched *v = &m->matched;
+    const ritz_prediction *v = &m->prediction;
     ritz_measures each = {0};
 
     RITZ_TRY(list_modes(estimator, m, &each));
-    if (!v->known && (v->any || each.count > 0))
+    if (!v->counted && (v->any_in_band || each.count > 0))
         RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
                                    nan(""), "modes are not counted"));
     else if (v->bound >= 0.0)
-        RITZ_TRY(add_pair(m, "frequency-relative-bound", v->bound, v->mode,
-                          v->number, out));
+        RITZ_TRY(add_pair(m, "frequency-relative-bound", v->bound,
+                          v->bound_mode, v->bound_full, out));
     if (v->least > 0.0)
         RITZ_TRY(add_pair(m, "frequency-relative-least", v->least,
-                          v->least_mode, v->least_number, out));
+                          v->least_mode, v->least_full, out));
     for (int64_t k = 0; k < each.count; k++)
         RITZ_TRY(ritz_measures_add(out, each.item[k].name, each.item[k].value,
                                    nan(""), each.item[k].where));
@@ -333,24 +343,19 @@ done:
 
 static ritz_status report_missing(const ritz_measuring *m, ritz_measures *out)
 {
-    const ritz_matched *v = &m->matched;
+    const ritz_prediction *v = &m->prediction;
     char where[RITZ_NAME_SIZE] = "";
 
-    if (!v->known)
+    if (!v->counted)
         return RITZ_OK;
-    if (v->first >= 0)
-        (void)snprintf(
-            where, sizeof where, "first: full mode %" PRId64 ", below %.4g Hz",
-            v->first + 1, ritz_eigen_hertz(m->enclosure.high[v->first]));
-    return ritz_measures_add(out, "missing-modes-bound", (double)v->missing,
+    if (v->first_missing >= 0)
+        (void)snprintf(where, sizeof where,
+                       "first: full mode %" PRId64 ", below %.4g Hz",
+                       v->first_missing + 1,
+                       ritz_eigen_hertz(m->enclosure.high[v->first_missing]));
+    return ritz_measures_add(out, "missing-modes-bound", (double)v->num_missing,
                              nan(""), where);
 }
-
-/*
- * How far a reduced model can be off, told by one factor of the full matrices,
- * by what they leave of its modes, and by how many modes lie below some
- * frequencies. See estimate_enclose.c.
- */
 
 ritz_status ritz_estimator_new(const ritz_component *full,
                                const ritz_estimate_request *request,
@@ -379,7 +384,7 @@ void ritz_estimator_free(ritz_estimator **estimator)
     *estimator = NULL;
 }
 
-/* Half of the highest frequency that the basis knows of. */
+/* Half of the highest frequency of the basis's columns, or of its modes. */
 static double trusted_hertz(const ritz_basis *basis, const ritz_pairs *pairs)
 {
     double highest = 0.0;
@@ -392,7 +397,7 @@ static double trusted_hertz(const ritz_basis *basis, const ritz_pairs *pairs)
     return 0.5 * highest;
 }
 
-/* Flexible modes in the band, without one asked at least one if any. */
+/* The flexible modes in the band; where no band was asked for, one at least. */
 static void choose_modes(const ritz_estimator *estimator,
                          const ritz_basis *basis, ritz_measuring *m)
 {
@@ -415,7 +420,7 @@ static void choose_modes(const ritz_estimator *estimator,
     }
 }
 
-/* Trial modes that serve those of the band. */
+/* Size of the trial space. */
 static int64_t count_trial(const ritz_measuring *m, bool response)
 {
     double reach = beyond * ritz_eigen_lambda(m->band_hz[1]);
@@ -447,7 +452,7 @@ static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
     double slowest = as_rigid * ritz_eigen_lambda(m->band_hz[1]);
 
     while (m->first < m->last) {
-        double rounding = m->trial.reduced[m->first];
+        double rounding = m->trial.reduced_rounding[m->first];
         double rho = 2.0 * fmax(rounding, m->trial.rounding[m->first]);
 
         if (m->pairs.lambda[m->first] > rounding || rho > slowest)

@@ -1,9 +1,10 @@
 /*
- * What estimates are made of, all with A = K - sigma M, sigma < 0, and
+ * Enclosures of a full model's eigenvalues by Lehmann's method, from Ritz pairs
+ * and counts of modes. Throughout, A = K - sigma M with sigma < 0, and
  *
- *     S = A^-1/2 M A^-1/2,   kappa = 1 / (lambda - sigma)
+ *     S = A^-1/2 M A^-1/2
  *
- * its eigenvalues: 0 where there is no mass.
+ * has the eigenvalues kappa = 1 / (lambda - sigma), 0 for massless motions.
  */
 #ifndef RITZ_ESTIMATE_ESTIMATOR_H
 #define RITZ_ESTIMATE_ESTIMATOR_H
@@ -26,25 +27,28 @@ struct ritz_estimator {
     const ritz_component *component; /* borrowed */
     ritz_estimate_request request;
     double sigma;
-    ritz_factor *A; /* of K - sigma M; NULL: not made yet */
+    ritz_factor *A; /* factor of K - sigma M; NULL: not made yet */
     int64_t num_counts;
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
 };
 
 /*
- * The lowest Ritz pairs in the range of a basis, anew from the full matrices,
- * and how the full model resists them: R = K X - M X Theta.
+ * The trial space: the lowest Ritz pairs in the range of a basis, computed anew
+ * from the full matrices, and their residuals.
  */
 typedef struct ritz_lehmann {
     int64_t count;    /* m */
     ritz_dense X;     /* n x m, X'MX = I, X'KX = Theta */
     double *theta;    /* m, ascending */
-    double *rounding; /* m, of theta, absolute: eps |x|'|K||x| and more */
-    double *reduced; /* m, of the reduced model's: eps |q|'|K_r||q| and so on */
-    double *inertia; /* m, of x'Mx = 1 in both: |q|'|M_r||q| and so on */
-    double *least, *most; /* m, its eigenvalues, which rounding may exchange */
-    ritz_dense R, E;      /* n x m; E = A^-1 R */
-    ritz_dense G;         /* m x m, R'A^-1 R */
+    double *rounding; /* m, absolute error of theta: eps |x|'|K||x| and more */
+    double *reduced_rounding; /* m, of the reduced model's eigenvalues */
+    double *mass_terms; /* m, |x|'|M||x| + |q|'|M_r||q|: sums behind x'Mx = 1 */
+    /* m, ends of what the reduced model's eigenvalue can be; where rounding may
+       exchange modes they share one interval */
+    double *reduced_low, *reduced_high;
+    ritz_dense R; /* n x m, residuals K X - M X Theta */
+    ritz_dense E; /* n x m, A^-1 R */
+    ritz_dense G; /* m x m, R'A^-1 R */
     double sigma;
 } ritz_lehmann;
 
@@ -72,48 +76,50 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out);
 void ritz_lehmann_free(ritz_lehmann *trial);
 
-/* Enclosures of the full model's lowest eigenvalues, and of trial modes. */
+/* Intervals that hold the full model's lowest eigenvalues. */
 typedef struct ritz_enclosure {
-    int64_t count; /* of full modes */
-    double *low;   /* count, ascending; 0 if nothing is known */
-    double *high;  /* count, ascending; HUGE_VAL if nothing is known */
-    int64_t num_near;
-    double *near_low, *near_high; /* num_near, each holds some full mode */
+    int64_t count;    /* full modes, by their number */
+    double *low;      /* count, ascending; 0 if nothing is known */
+    double *high;     /* count, ascending; HUGE_VAL if nothing is known */
+    int64_t num_near; /* intervals around trial modes, each of which */
+    double *near_low, *near_high; /* holds a full mode of unknown number */
 } ritz_enclosure;
 
-/* What verify would find of full modes in the band; see estimate_judge.c. */
-typedef struct ritz_matched {
-    bool known;      /* there are no more than `full` up to its end */
-    bool any;        /* some may be in it */
-    bool astride;    /* of some it is not known whether they are */
-    bool slow;       /* or whether they are rigid */
-    bool open;       /* the bound may be far above the error */
-    bool unsettled;  /* some mode's partner is not known */
-    double rho;      /* where a count may help; NaN: nowhere */
-    int64_t full;    /* so many full modes may lie below its end */
-    int64_t missing; /* so many of the band are not proven to have partners */
-    int64_t first;   /* of these; -1: none */
-    double bound;    /* worst |f_r - f| / f; below 0: none has a partner */
-    int64_t mode, number; /* reduced and full mode where it is */
-    double least;         /* what that is at least */
-    int64_t least_mode, least_number;
-} ritz_matched;
+/* What ritz-verify would find of the full modes in the band. */
+typedef struct ritz_prediction {
+    bool counted;       /* at most num_full modes lie below the band's end */
+    bool any_in_band;   /* some full mode may be in the band */
+    bool edge_unclear;  /* an interval reaches across the band's end */
+    bool rigid_unclear; /* the first flexible mode may be a rigid one */
+    bool loose;         /* the bound may be far above the error */
+    bool
+        partner_unclear; /* it is not known which mode is some mode's partner */
+    double count_at;     /* where a count may help; NaN: nowhere */
+    int64_t num_full;    /* full modes that may lie below the band's end */
+    int64_t num_missing; /* those in the band without a proven partner */
+    int64_t first_missing; /* -1: there is none */
+    double bound; /* worst |f_r - f| / f; below 0: no mode has a partner */
+    int64_t bound_mode, bound_full; /* of which reduced and full mode */
+    double least; /* the worst |f_r - f| / f is at least this */
+    int64_t least_mode, least_full;
+} ritz_prediction;
 
-/* One reduction at work. */
+/* One reduced model while it is estimated. */
 typedef struct ritz_measuring {
-    ritz_pairs pairs; /* of the reduced model, as it is */
+    ritz_pairs pairs; /* of the reduced matrices as they are */
     double band_hz[2];
     const ritz_dense *T; /* borrowed */
     int64_t first, last; /* its flexible modes in the band: first .. last - 1 */
-    int64_t reach; /* last, or further: numbers of full modes in the band */
-    ritz_lehmann trial, polished;
+    int64_t reach;       /* at least last: modes that counts are spent on */
+    ritz_lehmann trial, polished; /* polished: after an inverse iteration */
     ritz_enclosure enclosure;
-    ritz_matched matched;
+    ritz_prediction prediction;
 } ritz_measuring;
 
 /**
- * From the trial, that after an inverse iteration, {0} if there is none, and
- * all that was counted, by Lehmann's method.
+ * Enclose by Lehmann's method, with every count that was taken.
+ *
+ * @param[in] polished  the trial after an inverse iteration; {0}: none
  */
 ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
                                const ritz_lehmann *trial,
@@ -121,26 +127,28 @@ ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
                                ritz_enclosure *out);
 void ritz_enclosure_free(ritz_enclosure *enclosure);
 
-/* How far a reduced mode can be off, and which mode of the full model it is. */
+/* How far a reduced mode can be from a full one, and from which. */
 typedef struct ritz_claim {
-    double bound;   /* |f_k - f| / f, f of that full mode */
-    double least;   /* what it is about at least */
-    int64_t number; /* of the full mode, from 0; -1: some mode is so near */
+    double bound;      /* |f_k - f| / f is at most this */
+    double least;      /* and about this at least */
+    int64_t full_mode; /* number from 0; -1: near one of unknown number */
 } ritz_claim;
 
-/** Of mode @p k, whose eigenvalue in the reduced model is @p theta. */
+/** Of reduced mode @p k with eigenvalue @p theta the claim with the least
+ * bound. */
 ritz_claim ritz_claim_of(const ritz_lehmann *trial,
                          const ritz_enclosure *enclosure, int64_t k,
                          double theta);
 
-/** How far mode @p k can be from the full one of its number. */
+/** Bound of |f_k - f| / f for the full mode of the same number. */
 double ritz_claim_same(const ritz_lehmann *trial,
                        const ritz_enclosure *enclosure, int64_t k,
                        double theta);
 
 /**
- * Whether mode @p k, so slow beside the band, is a rigid motion that the basis
- * holds badly: the full model's is below half of it.
+ * Whether reduced mode @p k is a rigid motion that the basis holds badly: it is
+ * far below the band, and a count shows the full mode of its number below half
+ * its eigenvalue.
  */
 bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
                         double theta, double band);
@@ -148,35 +156,35 @@ bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
 /** Whether more than @p k full modes were counted at or below @p rho. */
 bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho);
 
-/* Modes first .. last - 1, and how many counts were taken for each. */
+/* Reduced modes that counts are spent on, and how many each has had. */
 typedef struct ritz_pursuit {
-    int64_t first, last;
-    int64_t *tries;
+    int64_t first, last; /* modes first .. last - 1 */
+    int64_t *tries;      /* last - first */
 } ritz_pursuit;
 
 /**
- * Where to count next, so that these modes are told better.
+ * Where a count would tighten these modes' enclosures most.
  *
- * @param[out] mode  for which; -1: for all
- * @return NaN: nowhere
+ * @param[out] mode  the mode that it is for; -1: all of them
+ * @return NaN if no count helps
  */
 double ritz_propose_count(const ritz_estimator *estimator,
                           const ritz_lehmann *trial,
                           const ritz_enclosure *enclosure,
                           const ritz_pursuit *pursuit, int64_t *mode);
 
-/** Where to count far above a band that ends at @p band; NaN: nowhere. */
+/** A gap to count in, far above the band's end @p band; NaN: none. */
 double ritz_propose_above(const ritz_estimator *estimator,
                           const ritz_lehmann *trial, double band);
 
-/** What verify would find of the band, as far as enclosures tell it. */
+/** Predict what ritz-verify finds of the band, as far as enclosures tell. */
 ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
-                                 const ritz_measuring *m, ritz_matched *out);
+                                 const ritz_measuring *m, ritz_prediction *out);
 
 /**
- * Full modes less reduced ones below the end of the band, or below a count
- * above it: a mode just within the band may have its partner just outside. -1
- * if nothing was counted there.
+ * Fewest full modes less reduced ones below any count at or above the band's
+ * end: a mode just within the band may have its partner just outside. -1 if
+ * nothing was counted there.
  *
  * @param[out] at  rho of that count
  */

@@ -1,12 +1,13 @@
 /*
- * What is said of one reduced mode, and of which: within what share of which
- * full mode it is. Any full mode may be named whose interval is known; and
- * without a number
+ * What ritz-verify would find, told from enclosures alone.
+ *
+ * A claim says how far one reduced mode can be from a full mode: from any whose
+ * interval is known or, without a number, from one that is near by
  *
  *     |kappa - 1/t| <= eps / t,   eps = |R|_(A^-1) / |x|_A
  *
- * holds for some kappa of the full model, as it does of the same vector after
- * an inverse iteration, where eps is far smaller.
+ * which holds for some kappa of the full model, also of the same vector after an
+ * inverse iteration, where eps is far smaller. Partners follow below.
  */
 #include "base/alloc.h"
 #include "estimate/estimator.h"
@@ -15,41 +16,45 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The mode of the same number is preferred to another one that is nearer. */
+/* The full mode of the same number is named unless another one's bound is
+   smaller by this factor. */
 static const double favour = 4.0;
-/* What verify takes for a partner holds so much of a mode. */
+/* ritz-verify takes a reduced mode for a partner if it has this |c|^2. */
 static const double half = 0.5;
-/* Vectors are a group's if they turn away by no more than this, sin^2. */
+/* Largest sin^2 of the angle between a group and a vector that stands for it. */
 static const double near = 0.1;
-/* Of a share: its own rounding, and that of the vectors of another program. */
+/* Rounding of |c|^2, here and in ritz-verify. */
 static const double rounded = 1e-6;
-/* A little more beyond the ends of the band, in lambda, than verify counts. */
+/* The band is taken so much wider, in lambda: ritz-verify allows 2e-9. */
 static const double edge = 4e-9;
-/* Of the band, in lambda: what is below may be a rigid motion. */
+/* Part of the band's end, in lambda, below which a mode may be rigid. */
 static const double slow = 1e-6;
-/* Bound over error that is good enough, beside what is no matter. */
+/* A bound is good enough if it is at most `wanted` times the least error, or
+   `nothing`. */
 static const double wanted = 3.0, nothing = 1e-9;
-/* Counts are taken so far beside a mode, relative, and no further. */
+/* Least and largest relative distance of a count from the mode it is for. */
 static const double beside = 1e-7, too_far = 0.03;
 
-/*
- * Largest |f' - f| / f, f' of [least, most], as rounding of the reduced model
- * has it, and f of [low, high].
- */
-static double apart(const ritz_lehmann *trial, int64_t k, double theta,
-                    double low, double high)
+/* Largest |f' - f| / f of f'^2 in [least, most] and f^2 in [low, high]. */
+static double relative_most(double least, double most, double low, double high)
 {
-    double least = fmax(fmin(theta, trial->least[k]), 0.0);
-    double most = fmax(theta, trial->most[k]);
-
     if (!(low > 0.0))
         return HUGE_VAL;
     return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
 }
 
-/* Of modes beyond the trial nothing but the eigenvalue is known. */
-static double bounded_by(const ritz_measuring *m, const double *ends, int64_t k,
-                         double sign)
+/* The same of reduced mode k, whose eigenvalue is known but for rounding. */
+static double claim_error(const ritz_lehmann *trial, int64_t k, double theta,
+                          double low, double high)
+{
+    return relative_most(fmax(fmin(theta, trial->reduced_low[k]), 0.0),
+                         fmax(theta, trial->reduced_high[k]), low, high);
+}
+
+/* One end of a reduced eigenvalue's interval: below for sign -1, above for 1.
+   Of modes beyond the trial rounding is not known. */
+static double reduced_end(const ritz_measuring *m, const double *ends,
+                          int64_t k, double sign)
 {
     double theta = m->pairs.lambda[k];
 
@@ -58,23 +63,20 @@ static double bounded_by(const ritz_measuring *m, const double *ends, int64_t k,
     return fmax(theta, 0.0);
 }
 
-/* The same of a full mode in [low, high]; how far it is off at least. */
+/* |f_k - f| / f at most, and at least, of a full mode in [low, high]. */
 static double error_at_most(const ritz_measuring *m, int64_t k, double low,
                             double high)
 {
-    double least = bounded_by(m, m->trial.least, k, -1.0);
-    double most = bounded_by(m, m->trial.most, k, 1.0);
-
-    if (!(low > 0.0))
-        return HUGE_VAL;
-    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
+    return relative_most(reduced_end(m, m->trial.reduced_low, k, -1.0),
+                         reduced_end(m, m->trial.reduced_high, k, 1.0), low,
+                         high);
 }
 
 static double error_at_least(const ritz_measuring *m, int64_t k, double low,
                              double high)
 {
-    double least = bounded_by(m, m->trial.least, k, -1.0);
-    double most = bounded_by(m, m->trial.most, k, 1.0);
+    double least = reduced_end(m, m->trial.reduced_low, k, -1.0);
+    double most = reduced_end(m, m->trial.reduced_high, k, 1.0);
 
     if (!(low > 0.0))
         return 0.0;
@@ -86,28 +88,28 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
                          double theta)
 {
     const ritz_enclosure *e = enclosure;
-    ritz_claim claim = {.bound = HUGE_VAL, .number = k};
-    double same = apart(trial, k, theta, e->low[k], e->high[k]);
+    ritz_claim claim = {.bound = HUGE_VAL, .full_mode = k};
+    double same = claim_error(trial, k, theta, e->low[k], e->high[k]);
     double some = HUGE_VAL;
 
     for (int64_t p = 0; p < e->count; p++) {
-        double bound = apart(trial, k, theta, e->low[p], e->high[p]);
+        double bound = claim_error(trial, k, theta, e->low[p], e->high[p]);
 
         if (bound < claim.bound) {
             claim.bound = bound;
-            claim.number = p;
+            claim.full_mode = p;
         }
     }
     if (same <= favour * claim.bound) {
         claim.bound = same;
-        claim.number = k;
+        claim.full_mode = k;
     }
     for (int64_t j = 0; j < e->num_near; j++)
-        some =
-            fmin(some, apart(trial, k, theta, e->near_low[j], e->near_high[j]));
+        some = fmin(some, claim_error(trial, k, theta, e->near_low[j],
+                                      e->near_high[j]));
     if (favour * some < claim.bound) {
         claim.bound = some;
-        claim.number = -1;
+        claim.full_mode = -1;
     }
     claim.least = 0.5 * ritz_dense_col(&trial->G, k)[k] /
                   ((trial->theta[k] - trial->sigma) * fabs(trial->theta[k]));
@@ -117,40 +119,40 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
 double ritz_claim_same(const ritz_lehmann *trial, const ritz_enclosure *e,
                        int64_t k, double theta)
 {
-    return apart(trial, k, theta, e->low[k], e->high[k]);
+    return claim_error(trial, k, theta, e->low[k], e->high[k]);
 }
 
 /*
- * Which reduced modes can be what ritz-verify takes for a full mode of the
- * band, wherever they lie: those that hold half of it. Full modes nearer to
- * each other than it tells apart are one group, [low, high]. Of u with M-norm 1,
- * u = sum c_j phi_j, theta = u'Ku and G = |Ku - theta Mu|^2 in A^-1,
+ * Partners. ritz-verify pairs a full mode with the reduced mode that holds most
+ * of it, half at least, wherever that lies. Full modes closer than it tells
+ * apart form a group, [low, high]. Of a vector u, u'Mu = 1, u = sum c_j phi_j,
+ * theta = u'Ku, the squared residual G = |Ku - theta Mu|^2 in A^-1 is
  *
  *     G = sum c_j^2 (lambda_j - theta)^2 / (lambda_j - sigma)
  *
- * so what it holds of modes beyond some lambda is no more than G (lambda -
- * sigma) / (lambda - theta)^2. Vectors of a trial turn away from the group
- * by Delta at most, sin^2 Delta the sum of these; and a reduced mode at the
- * angle alpha to them is at alpha + Delta to the group at most, and at alpha -
- * Delta at least if they are as many as its modes.
+ * so modes beyond some lambda have at most G (lambda - sigma) / (lambda -
+ * theta)^2 of |c|^2. Hence trial vectors near a group make an angle of at most
+ * Delta with it, sin^2 Delta the sum of these. A reduced mode at the angle alpha
+ * to the vectors is at most alpha + Delta from the group, and at least alpha -
+ * Delta if there are as many vectors as modes.
  */
 
-/* Full modes first .. last - 1, which are not known to be apart. */
-typedef struct ritz_group {
+/* Full modes first .. last - 1, not known to be apart. */
+typedef struct ritz_mode_group {
     int64_t first, last;
-    bool one;  /* but known to be one cluster */
-    int which; /* 0: vectors of the trial are near them; 1: polished ones */
-    int64_t from, to; /* vectors from .. to - 1, as many as modes or fewer */
-    double sin2;      /* of the angle between these and it, at most */
-} ritz_group;
+    bool is_cluster; /* they are known to be one cluster */
+    int vectors;     /* near it are vectors of the trial (0), or polished (1) */
+    int64_t first_vector, end_vector; /* as many as modes or fewer */
+    double sin2; /* of the angle between vectors and group, at most */
+} ritz_mode_group;
 
 typedef struct ritz_partners {
     int64_t count;
-    ritz_group *group;
-    ritz_dense Q[2]; /* reduced modes against the trial, the polished one */
+    ritz_mode_group *group;
+    ritz_dense Q[2]; /* reduced modes times M times trial, polished vectors */
 } ritz_partners;
 
-/* |c|^2 that a mode holds of a group. */
+/* Bounds of the |c|^2 that a reduced mode has of a group. */
 typedef struct ritz_share {
     double least, most;
 } ritz_share;
@@ -160,12 +162,13 @@ static double square(double x)
     return x * x;
 }
 
-/* Most of |c|^2 / G that one mode at lambda has of a vector at theta. */
+/* Bound of |c|^2 / G for modes beyond lambda of a vector at theta. */
 static double weight(const ritz_lehmann *trial, double lambda, double theta)
 {
     return (lambda - trial->sigma) / square(lambda - theta);
 }
 
+/* G of vector s, and what rounding adds. */
 static double residual(const ritz_lehmann *trial, int64_t s)
 {
     double t = trial->theta[s] - trial->sigma;
@@ -174,9 +177,9 @@ static double residual(const ritz_lehmann *trial, int64_t s)
            square(trial->rounding[s]) / t;
 }
 
-/* |c|^2 of all modes but the group's, of vector s; 1 if nothing is known. */
+/* Bound of the |c|^2 of vector s outside the group; 1 if nothing is known. */
 static double outside(const ritz_lehmann *trial, const ritz_enclosure *e,
-                      const ritz_group *g, int64_t s)
+                      const ritz_mode_group *g, int64_t s)
 {
     double theta = trial->theta[s];
     double below = g->first > 0 ? e->high[g->first - 1] : -HUGE_VAL;
@@ -191,9 +194,10 @@ static double outside(const ritz_lehmann *trial, const ritz_enclosure *e,
     return fmin(1.0, residual(trial, s) * most);
 }
 
-/* The vectors of a trial that are near a group, if better than those known. */
+/* Take a trial's vectors near a group if they are more, or nearer, than those
+   it has. */
 static void choose_vectors(const ritz_lehmann *trial, const ritz_enclosure *e,
-                           int which, ritz_group *g)
+                           int which, ritz_mode_group *g)
 {
     int64_t size = g->last - g->first;
     int64_t from = 0, to = 0;
@@ -208,13 +212,13 @@ static void choose_vectors(const ritz_lehmann *trial, const ritz_enclosure *e,
             break;
         sum += sin2;
     }
-    if (to - from < g->to - g->from ||
-        (to - from == g->to - g->from && sum >= g->sin2))
+    if (to - from < g->end_vector - g->first_vector ||
+        (to - from == g->end_vector - g->first_vector && sum >= g->sin2))
         return;
     g->sin2 = sum;
-    g->from = from;
-    g->to = to;
-    g->which = which;
+    g->first_vector = from;
+    g->end_vector = to;
+    g->vectors = which;
 }
 
 static bool certainly_apart(const ritz_enclosure *e, int64_t p)
@@ -230,14 +234,14 @@ static bool certainly_close(const ritz_enclosure *e, int64_t p)
 }
 
 /* The group that begins with mode `first`. */
-static ritz_group group_of(const ritz_measuring *m, int64_t first)
+static ritz_mode_group group_of(const ritz_measuring *m, int64_t first)
 {
     const ritz_enclosure *e = &m->enclosure;
-    ritz_group g = {
-        .first = first, .last = first + 1, .one = true, .sin2 = 1.0};
+    ritz_mode_group g = {
+        .first = first, .last = first + 1, .is_cluster = true, .sin2 = 1.0};
 
     while (g.last < e->count && !certainly_apart(e, g.last - 1)) {
-        g.one = g.one && certainly_close(e, g.last - 1);
+        g.is_cluster = g.is_cluster && certainly_close(e, g.last - 1);
         g.last++;
     }
     choose_vectors(&m->trial, e, 0, &g);
@@ -265,18 +269,18 @@ done:
     return status;
 }
 
-/* Whether rounding of the reduced model may turn mode r among others. */
+/* Whether rounding of the reduced matrices may mix mode r with a neighbour. */
 static bool turned(const ritz_measuring *m, int64_t r)
 {
     const ritz_lehmann *t = &m->trial;
 
-    return (r > 0 && t->most[r - 1] >= t->least[r]) ||
-           (r + 1 < t->count && t->least[r + 1] <= t->most[r]);
+    return (r > 0 && t->reduced_high[r - 1] >= t->reduced_low[r]) ||
+           (r + 1 < t->count && t->reduced_low[r + 1] <= t->reduced_high[r]);
 }
 
-/* By its residual alone, what reduced mode r holds of a group at most. */
-static double most_by_residual(const ritz_measuring *m, const ritz_group *g,
-                               int64_t r)
+/* Bound of the |c|^2 that reduced mode r has of a group, by its residual. */
+static double most_by_residual(const ritz_measuring *m,
+                               const ritz_mode_group *g, int64_t r)
 {
     const ritz_lehmann *trial = &m->trial;
     double low = fmax(m->enclosure.low[g->first], 0.0);
@@ -291,30 +295,30 @@ static double most_by_residual(const ritz_measuring *m, const ritz_group *g,
     return 1.0;
 }
 
-static ritz_share share_of(const ritz_partners *p, const ritz_group *g,
+static ritz_share share_of(const ritz_partners *p, const ritz_mode_group *g,
                            int64_t r)
 {
-    const ritz_dense *Q = &p->Q[g->which];
+    const ritz_dense *Q = &p->Q[g->vectors];
     double sum = 0.0;
     double alpha = 0.0, delta = 0.0;
     ritz_share share = {0.0, 1.0};
 
-    if (g->to == g->from || g->sin2 >= 1.0)
+    if (g->end_vector == g->first_vector || g->sin2 >= 1.0)
         return share;
-    for (int64_t s = g->from; s < g->to; s++)
+    for (int64_t s = g->first_vector; s < g->end_vector; s++)
         sum += square(ritz_dense_col(Q, s)[r]);
     alpha = acos(fmin(1.0, sqrt(sum)));
     delta = asin(sqrt(g->sin2));
     if (alpha + delta < acos(0.0))
         share.least = square(cos(alpha + delta));
-    if (g->to - g->from == g->last - g->first)
+    if (g->end_vector - g->first_vector == g->last - g->first)
         share.most = square(cos(fmax(0.0, alpha - delta)));
     return share;
 }
 
 /* Whether reduced mode @p r can hold half of the group; whether it does. */
 static bool can_be_partner(const ritz_measuring *m, const ritz_partners *p,
-                           const ritz_group *g, int64_t r)
+                           const ritz_mode_group *g, int64_t r)
 {
     ritz_share share = share_of(p, g, r);
     double elsewhere = 0.0;
@@ -327,7 +331,7 @@ static bool can_be_partner(const ritz_measuring *m, const ritz_partners *p,
     return 1.0 - elsewhere >= half - rounded;
 }
 
-static bool must_be_partner(const ritz_partners *p, const ritz_group *g,
+static bool must_be_partner(const ritz_partners *p, const ritz_mode_group *g,
                             int64_t r)
 {
     return share_of(p, g, r).least > half + rounded;
@@ -341,7 +345,7 @@ static void free_partners(ritz_partners *partners)
     *partners = (ritz_partners){0};
 }
 
-/* Groups from full mode @p first on, of all up to @p last and beyond. */
+/* Groups of full modes first .. last - 1. */
 static ritz_status group_modes(const ritz_estimator *estimator,
                                const ritz_measuring *m, int64_t first,
                                int64_t last, ritz_partners *out)
@@ -364,21 +368,21 @@ done:
 }
 
 /*
- * What ritz-verify would find of the full modes of the band, at most and at
- * least: each one's partner, wherever it lies, and how many have none. Of one
- * cluster it takes partners in their order.
+ * The prediction: bounds of the worst frequency error and of the number of modes
+ * without a partner, over all full modes that may be in the band and all their
+ * possible partners. In a cluster ritz-verify takes partners in their order.
  */
 
-typedef struct judge {
+typedef struct ritz_judge {
     const ritz_estimator *estimator;
     const ritz_measuring *m;
     const ritz_partners *partners;
     double low, high; /* the band, in lambda */
     int64_t *found;   /* reduced modes that can be partners of a group */
-    ritz_matched v;
-} judge;
+    ritz_prediction v;
+} ritz_judge;
 
-static bool may_be_in(const judge *j, int64_t p)
+static bool may_be_in(const ritz_judge *j, int64_t p)
 {
     const ritz_enclosure *e = &j->m->enclosure;
 
@@ -386,15 +390,16 @@ static bool may_be_in(const judge *j, int64_t p)
            e->high[p] >= j->low * (1.0 - edge);
 }
 
-static bool surely_in(const judge *j, int64_t p)
+static bool surely_in(const ritz_judge *j, int64_t p)
 {
     const ritz_enclosure *e = &j->m->enclosure;
 
     return e->high[p] <= j->high && e->low[p] >= j->low;
 }
 
-/* Reduced mode r is the partner of full mode p, or can be. */
-static void note_pair(judge *j, int64_t p, int64_t r, bool sure)
+/* Take the errors of full mode p with partner r into the prediction; `sure` if
+   r is its partner, not only can be. */
+static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
 {
     const ritz_enclosure *e = &j->m->enclosure;
     double low = fmax(e->low[p], j->low * (1.0 - edge));
@@ -405,19 +410,21 @@ static void note_pair(judge *j, int64_t p, int64_t r, bool sure)
 
     if (most > j->v.bound) {
         j->v.bound = most;
-        j->v.mode = r;
-        j->v.number = p;
-        j->v.open = !(most <= wanted * least + nothing);
+        j->v.bound_mode = r;
+        j->v.bound_full = p;
+        j->v.loose = !(most <= wanted * least + nothing);
     }
     if (least > j->v.least) {
         j->v.least = least;
         j->v.least_mode = r;
-        j->v.least_number = p;
+        j->v.least_full = p;
     }
 }
 
-/* Reduced modes that can be partners; how many of them are. */
-static int64_t find_partners(judge *j, const ritz_group *g, int64_t *can)
+/* List the `can` reduced modes that can be partners; returns how many of them
+   certainly are. */
+static int64_t find_partners(ritz_judge *j, const ritz_mode_group *g,
+                             int64_t *can)
 {
     int64_t must = 0;
 
@@ -432,8 +439,10 @@ static int64_t find_partners(judge *j, const ritz_group *g, int64_t *can)
     return must;
 }
 
-/* Of one mode: what holds more than half leaves less to others. */
-static int64_t keep_partner(judge *j, const ritz_group *g, int64_t can)
+/* Of a single mode: one reduced mode that has more than half of it is its only
+   partner. */
+static int64_t keep_partner(ritz_judge *j, const ritz_mode_group *g,
+                            int64_t can)
 {
     for (int64_t i = 0; i < can; i++)
         if (must_be_partner(j->partners, g, j->found[i]))
@@ -453,17 +462,17 @@ static bool counted_within(const ritz_estimator *estimator, double low,
 }
 
 /*
- * Counts on both sides of vectors that are nearly modes tell how many others
- * are where they are, and apart from them.
+ * Where partners are unclear, counts on both sides of a vector that is nearly a
+ * mode tell how many full modes are there, and how many are apart from it.
  */
-static void propose_count(judge *j, const ritz_group *g)
+static void propose_count(ritz_judge *j, const ritz_mode_group *g)
 {
     const ritz_lehmann *trial =
         j->m->polished.X.val ? &j->m->polished : &j->m->trial;
     double low = j->m->enclosure.low[g->first];
     double high = j->m->enclosure.high[g->last - 1];
 
-    for (int64_t s = 0; s < trial->count && isnan(j->v.rho); s++) {
+    for (int64_t s = 0; s < trial->count && isnan(j->v.count_at); s++) {
         double theta = trial->theta[s];
         double t = theta - trial->sigma;
         double eps = sqrt(fmax(ritz_dense_col(&trial->G, s)[s], 0.0) / t);
@@ -473,22 +482,22 @@ static void propose_count(judge *j, const ritz_group *g)
             !(off < too_far))
             continue;
         if (!counted_within(j->estimator, theta, theta * (1.0 + 2.0 * off)))
-            j->v.rho = theta * (1.0 + off);
+            j->v.count_at = theta * (1.0 + off);
         else if (!counted_within(j->estimator, theta * (1.0 - 2.0 * off),
                                  theta))
-            j->v.rho = theta * (1.0 - off);
+            j->v.count_at = theta * (1.0 - off);
     }
 }
 
-static void judge_group(judge *j, const ritz_group *g)
+static void judge_group(ritz_judge *j, const ritz_mode_group *g)
 {
     int64_t size = g->last - g->first;
     int64_t can = 0, in = 0;
     int64_t must = find_partners(j, g, &can);
     bool sure = false;
 
-    if (!g->one)
-        must = 0; /* of which of them? */
+    if (!g->is_cluster)
+        must = 0; /* of which mode of the group is not known */
     if (size == 1 && must > 0)
         can = must = keep_partner(j, g, can);
     sure = must == size && can == size;
@@ -499,18 +508,18 @@ static void judge_group(judge *j, const ritz_group *g)
         for (int64_t i = 0; i < can; i++)
             if (!sure || i == p - g->first)
                 note_pair(j, p, j->found[i], sure);
-        if (j->v.first < 0 && must < size)
-            j->v.first = p;
+        if (j->v.first_missing < 0 && must < size)
+            j->v.first_missing = p;
     }
-    j->v.any = j->v.any || in > 0;
+    j->v.any_in_band = j->v.any_in_band || in > 0;
     if (in > 0 && can > 0 && !sure) {
-        j->v.unsettled = true;
+        j->v.partner_unclear = true;
         propose_count(j, g);
     }
-    j->v.missing += in < size - must ? in : size - must;
+    j->v.num_missing += in < size - must ? in : size - must;
 }
 
-/* The full model's first mode that is no rigid motion. */
+/* Number of the full model's first flexible mode. */
 static int64_t first_flexible(const ritz_measuring *m, double band)
 {
     int64_t first = m->pairs.num_rigid;
@@ -522,29 +531,31 @@ static int64_t first_flexible(const ritz_measuring *m, double band)
 }
 
 ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
-                                 const ritz_measuring *m, ritz_matched *out)
+                                 const ritz_measuring *m, ritz_prediction *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_enclosure *e = &m->enclosure;
     ritz_partners partners = {0};
-    judge j = {.estimator = estimator,
-               .m = m,
-               .partners = &partners,
-               .low = ritz_eigen_lambda(m->band_hz[0]),
-               .high = ritz_eigen_lambda(m->band_hz[1]),
-               .v = {.bound = -1.0, .first = -1, .rho = nan("")}};
+    ritz_judge j = {
+        .estimator = estimator,
+        .m = m,
+        .partners = &partners,
+        .low = ritz_eigen_lambda(m->band_hz[0]),
+        .high = ritz_eigen_lambda(m->band_hz[1]),
+        .v = {.bound = -1.0, .first_missing = -1, .count_at = nan("")}};
     int64_t first = first_flexible(m, j.high);
 
-    while (j.v.full < e->count && e->low[j.v.full] <= j.high * (1.0 + edge))
-        j.v.full++;
-    j.v.known = j.v.full < e->count;
-    for (int64_t p = first; p < j.v.full; p++)
-        j.v.astride = j.v.astride || e->high[p] > j.high;
-    j.v.slow = first < j.v.full && !(e->low[first] > 0.0);
+    while (j.v.num_full < e->count &&
+           e->low[j.v.num_full] <= j.high * (1.0 + edge))
+        j.v.num_full++;
+    j.v.counted = j.v.num_full < e->count;
+    for (int64_t p = first; p < j.v.num_full; p++)
+        j.v.edge_unclear = j.v.edge_unclear || e->high[p] > j.high;
+    j.v.rigid_unclear = first < j.v.num_full && !(e->low[first] > 0.0);
     RITZ_NEW(j.found, m->pairs.Phi.ncol);
     RITZ_TRY(group_modes(estimator, m, first, e->count, &partners));
     for (int64_t k = 0; k < partners.count; k++)
-        if (partners.group[k].first < j.v.full)
+        if (partners.group[k].first < j.v.num_full)
             judge_group(&j, &partners.group[k]);
     *out = j.v;
 done:

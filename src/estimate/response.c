@@ -1,7 +1,33 @@
 /*
- * D as a M + b K, if it is that to rounding: least squares over the diagonals
- * d, m, k, by Gram-Schmidt, once more of what it leaves, and then held to every
- * entry.
+ * How far a reduced response can be off. In the trial's coordinates, with
+ * z_j(w) = theta_j - w^2 + i w d_j and d the modal damping,
+ *
+ *     eta_j = x_j'b / z_j,   r_p = b - Z X eta = b_o - c X_R eta,
+ *
+ * b_o = b - M X X'b, X_R = R and c = 1; of D = a M + b K, c = 1 + i w b. The
+ * same of an output's row, transposed, is r_d, and
+ *
+ *     H - H_r = defect + r_d' Z^-1 r_p.
+ *
+ * In exact modes, with mu = lambda - sigma and z = c mu - s,
+ *
+ *     1 / z = 1 / (c mu) + s / (c mu)^2 + rest(lambda) / mu
+ *
+ * the first two are forms in A^-1 and A^-1 M A^-1, known exactly, and the rest
+ * is small for all modes far above w. Modes k that the reduced model holds take
+ * part in r only by what it does not hold of them:
+ *
+ *     |phi_k'r| <= sqrt(mu_k) sin_k |r|_(A^-1),
+ *     sum_(k<=N) (kappa_k - kappa_(N+1)) sin_k^2
+ *                                <= sum_(k<=N) (kappa_k - 1 / t_k)
+ *
+ * from the trace of S in the span of the N lowest trial modes. The rest of mode
+ * k is bounded over the interval that is known to hold lambda_k.
+ *
+ * Ratios zeta of exact modes are not those of reduced ones: D X is 2 zeta times
+ * M X Theta^1/2 and, in exact modes, R times 2 zeta / (sqrt lambda_k + sqrt
+ * theta_j) beside: bounded by |R_j|. The defect X'D X - D_r is a second
+ * difference of sqrt lambda, of order |R_i||R_j|.
  */
 #include "base/alloc.h"
 #include "estimate/bounder.h"
@@ -15,22 +41,28 @@
 /* Of sqrt(d_ii d_jj): rounding of matrices printed with 15 digits. */
 static const double within = 1e-13;
 enum { PASSES = 3 };
-/* Eigenvalues nearer than this, relative, are those of a pair. */
+/* Eigenvalues closer than this, relative, are a pair. */
 static const double pair = 1e-3;
-/* Of what other modes do: rounding of vectors, not of a force or a sensor. */
+/* A participation below this part of the largest is rounding. */
 static const double no_part = 1e-9;
 static const double two_pi = 6.28318530717958647693;
 /* A free body has no response at rest: as ritz-verify begins. */
 static const double above_rest = 1e-3;
-/* Residual of a rigid mode, relative: its square is far below rounding. */
+/* Largest relative residual of a rigid mode: its square is far below rounding. */
 static const double as_rigid = 1e-7;
-/* Of the largest |H_r|: intervals are not split for less. */
+/* Intervals are not split for a bound below this part of the largest |H_r|. */
 static const double nothing = 1e-12;
-/* Between points the bound may exceed what it is at points by so much. */
+/* An interval is split until its bound is within this factor of the points'. */
 static const double slack = 1.05;
 enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };
-/* Of D, relative; a gyroscopic part is no damping. */
+/* Relative asymmetry of D above which it has a gyroscopic part. */
 static const double symmetric = 1e-9;
+
+/*
+ * D as a M + b K, if it is that to rounding: least squares over the diagonals
+ * d, m, k, by Gram-Schmidt, once more of what it leaves, and then held to every
+ * entry.
+ */
 
 typedef struct sums {
     double mm, mk, md;
@@ -126,9 +158,9 @@ done:
     return status;
 }
 
-/* Rates of trial modes where no ratio is common to all. */
+/* Modal damping where no ratio is common to all modes. */
 
-/* Diagonal of X'A X, 0 of no A. */
+/* Diagonal of X'A X; unchanged if there is no A. */
 static ritz_status diagonal(const ritz_sparse *D, const ritz_dense *X,
                             double *out)
 {
@@ -151,7 +183,7 @@ done:
  */
 static bool is_lost(const ritz_lehmann *trial, int64_t j, double damping)
 {
-    return fabs(damping) <= trial->rounding[j] + trial->reduced[j];
+    return fabs(damping) <= trial->rounding[j] + trial->reduced_rounding[j];
 }
 
 /*
@@ -182,8 +214,8 @@ static ritz_status take_rates(const ritz_estimator *estimator, ritz_bounder *r,
         else
             r->zeta = fmin(r->zeta, fmax(0.5 * rates[j] / w, 0.0));
     }
-    r->given = rates;
-    r->matrices = matrices;
+    r->rates = rates;
+    r->matrix_rates = matrices;
     r->coupled =
         estimator->component->D.colptr || estimator->component->K4.colptr;
     r->rayleigh = false;
@@ -198,11 +230,11 @@ done:
  */
 static bool is_at_odds(const ritz_bounder *r)
 {
-    for (int64_t j = r->num_rigid; r->given && j + 1 < r->trial->count; j++) {
+    for (int64_t j = r->num_rigid; r->rates && j + 1 < r->trial->count; j++) {
         double low = r->trial->theta[j];
         double high = r->trial->theta[j + 1];
-        double zeta = r->given[j] / sqrt(fmax(low, DBL_MIN));
-        double next = r->given[j + 1] / sqrt(fmax(high, DBL_MIN));
+        double zeta = r->rates[j] / sqrt(fmax(low, DBL_MIN));
+        double next = r->rates[j + 1] / sqrt(fmax(high, DBL_MIN));
 
         if (!r->coupled && high - low <= pair * high &&
             fabs(zeta - next) > pair * next)
@@ -240,10 +272,10 @@ static bool takes_part(const ritz_bounder *r, const ritz_dense *V, bool rows,
 /* Whether a mode of the band that is driven and seen has no damping. */
 static bool has_undamped(const ritz_bounder *r, const double band_hz[2])
 {
-    for (int64_t j = r->num_rigid; r->given && j < r->trial->count; j++) {
+    for (int64_t j = r->num_rigid; r->rates && j < r->trial->count; j++) {
         double hertz = ritz_eigen_hertz(r->trial->theta[j]);
 
-        if (r->given[j] == 0.0 && hertz >= band_hz[0] && hertz <= band_hz[1] &&
+        if (r->rates[j] == 0.0 && hertz >= band_hz[0] && hertz <= band_hz[1] &&
             takes_part(r, &r->B, true, j) &&
             (takes_part(r, &r->C[0], false, j) ||
              takes_part(r, &r->C[1], false, j) ||
@@ -252,38 +284,6 @@ static bool has_undamped(const ritz_bounder *r, const double band_hz[2])
     }
     return false;
 }
-
-/*
- * How far a reduced response can be off. In the trial's coordinates, with
- * z_j(w) = theta_j - w^2 + i w d_j and d the modal damping,
- *
- *     eta_j = x_j'b / z_j,   r_p = b - Z X eta = b_o - c X_R eta,
- *
- * b_o = b - M X X'b, X_R = R and c = 1; of D = a M + b K, c = 1 + i w b. The
- * same of an output's row, transposed, is r_d, and
- *
- *     H - H_r = defect + r_d' Z^-1 r_p.
- *
- * In exact modes, with mu = lambda - sigma and z = c mu - s,
- *
- *     1 / z = 1 / (c mu) + s / (c mu)^2 + rest(lambda) / mu
- *
- * the first two are forms in A^-1 and A^-1 M A^-1, known exactly, and the rest
- * is small for all modes far above w. Modes k that the reduced model holds take
- * part in r only by what it does not hold of them:
- *
- *     |phi_k'r| <= sqrt(mu_k) sin_k |r|_(A^-1),
- *     sum_(k<=N) (kappa_k - kappa_(N+1)) sin_k^2
- *                                <= sum_(k<=N) (kappa_k - 1 / t_k)
- *
- * from the trace of S in the span of the N lowest trial modes. The rest of mode
- * k is bounded over the interval that is known to hold lambda_k.
- *
- * Ratios zeta of exact modes are not those of reduced ones: D X is 2 zeta times
- * M X Theta^1/2 and, in exact modes, R times 2 zeta / (sqrt lambda_k + sqrt
- * theta_j) beside: bounded by |R_j|. The defect X'D X - D_r is a second
- * difference of sqrt lambda, of order |R_i||R_j|.
- */
 
 /* Between a and b, split until the bound is near the best of the points. */
 static double bound_interval(ritz_bounder *r, double a, double b, double *best,
@@ -316,7 +316,7 @@ static double bound_interval(ritz_bounder *r, double a, double b, double *best,
     return top;
 }
 
-/* Points of the band, at and beside the reduced model's poles. */
+/* Points of the band, refined at the reduced model's poles. */
 static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
                                int64_t *count, double **hertz)
 {
