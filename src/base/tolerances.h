@@ -345,6 +345,9 @@
 /* Reciprocal condition of constraint equations below which half the digits
    of what follows from them are lost: they leave their dof undetermined. */
 #define RITZ_UNDETERMINED 1e-8
+/* Sine of the angle between the two axes of a joint below which they are
+   parallel: scenes give axes with six digits. */
+#define RITZ_PARALLEL_AXES 1e-6
 /* Settings of a joint, in degrees or lengths, that differ by less are one. */
 #define RITZ_SAME_SETTING 1e-9
 

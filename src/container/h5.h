@@ -26,8 +26,8 @@
 
 enum {
     RITZ_H5_RANK = 3,     /* most dimensions that anything has */
-    RITZ_H5_LONG = 16384, /* bytes from which text is a data set, as HDF5 moves
-                             an attribute of 64 KiB to a heap without checksum */
+    RITZ_H5_LONG = 16384, /* bytes from which text is a data set: HDF5 moves an
+                             attribute of 64 KiB to a heap without checksum */
 };
 
 /* Sizes, the last running fastest; rank 0 is a single value. */

@@ -1,7 +1,7 @@
 /*
  * Containers of rankings: a single one has its members in the file itself,
- * several have theirs in `rankings/0`, 1, ... Files of releases before clusters,
- * parts and configurations lack those members, and are read.
+ * several have theirs in `rankings/0`, 1, ... Files written before there were
+ * clusters, parts and configurations lack those members, and are read.
  */
 #include "container/schema.h"
 

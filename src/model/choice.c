@@ -4,7 +4,7 @@
  */
 #include <ritz/choice.h>
 
-#include "model/names.h"
+#include "base/names.h"
 
 #include <inttypes.h>
 #include <stdio.h>

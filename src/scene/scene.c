@@ -2,9 +2,8 @@
  * A scene as a whole: its keys in any order, then its parts in the order in
  * which they name each other.
  */
-#include "scene/scene_parts.h"
-
 #include "base/alloc.h"
+#include "scene/scene_parts.h"
 
 #include <ritz/container.h>
 
@@ -12,6 +11,121 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- band and damping --------------------------------------------------- */
+
+static ritz_status take_band(const ritz_yaml *yaml, const yaml_node_t *node,
+                             void *field)
+{
+    double *band = (double *)field;
+
+    RITZ_CHECK(ritz_yaml_reals(yaml, node, 2, band));
+    RITZ_REFUSE_AT(!(band[0] >= 0.0 && band[1] > band[0]), yaml, node,
+                   "the band %g to %g Hz does not ascend from 0 or above",
+                   band[0], band[1]);
+    return RITZ_OK;
+}
+
+static ritz_status take_modal(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_damping *damping = (ritz_damping *)field;
+
+    damping->kind = RITZ_DAMPING_MODAL;
+    RITZ_CHECK(ritz_yaml_real(yaml, node, &damping->zeta));
+    return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
+}
+
+static ritz_status take_bands(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_damping *damping = (ritz_damping *)field;
+    int64_t count = 0;
+
+    damping->kind = RITZ_DAMPING_BANDS;
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count < 1 || count > RITZ_MAX_BANDS, yaml, node,
+                   "1 to %d bands can be given, not %" PRId64, RITZ_MAX_BANDS,
+                   count);
+    for (int64_t k = 0; k < count; k++) {
+        const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
+
+        RITZ_CHECK(ritz_yaml_reals(yaml, item, 3, damping->band[k]));
+        damping->count = k + 1;
+        RITZ_CHECK(ritz_yaml_at(yaml, item, ritz_damping_check(damping)));
+    }
+    return RITZ_OK;
+}
+
+static ritz_status take_rayleigh(const ritz_yaml *yaml, const yaml_node_t *node,
+                                 void *field)
+{
+    ritz_damping *damping = (ritz_damping *)field;
+    double number[2] = {0.0};
+
+    RITZ_CHECK(ritz_yaml_reals(yaml, node, 2, number));
+    *damping = (ritz_damping){
+        .kind = RITZ_DAMPING_RAYLEIGH, .a = number[0], .b = number[1]};
+    return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
+}
+
+static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
+                              void *field)
+{
+    ritz_damping *damping = (ritz_damping *)field;
+
+    damping->kind = RITZ_DAMPING_MODES;
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &damping->count));
+    RITZ_REFUSE_AT(damping->count < 1 || damping->count > RITZ_MOST_RATIOS,
+                   yaml, node,
+                   "1 to %d ratios of modes can be given, not %" PRId64,
+                   RITZ_MOST_RATIOS, damping->count);
+    RITZ_CHECK(ritz_yaml_reals(yaml, node, damping->count, damping->ratio));
+    return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
+}
+
+static ritz_status take_fit(const ritz_yaml *yaml, const yaml_node_t *node,
+                            void *field)
+{
+    ritz_damping *damping = (ritz_damping *)field;
+
+    damping->kind = RITZ_DAMPING_FIT;
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &damping->count));
+    RITZ_REFUSE_AT(damping->count < 2 || damping->count > RITZ_MOST_POINTS,
+                   yaml, node,
+                   "2 to %d points of a fit can be given, not %" PRId64,
+                   RITZ_MOST_POINTS, damping->count);
+    for (int64_t k = 0; k < damping->count; k++)
+        RITZ_CHECK(ritz_yaml_reals(yaml, ritz_yaml_item(yaml, node, k), 2,
+                                   damping->point[k]));
+    RITZ_CHECK(ritz_yaml_at(yaml, node, ritz_damping_check(damping)));
+    ritz_damping_fit(damping);
+    return RITZ_OK;
+}
+
+static const ritz_yaml_key damping_keys[] = {
+    {"modal", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_modal},
+    {"modes", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_modes},
+    {"bands", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_bands},
+    {"rayleigh", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_rayleigh},
+    {"rayleigh_fit", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_fit},
+};
+
+static ritz_status take_damping(const ritz_yaml *yaml, const yaml_node_t *node,
+                                void *field)
+{
+    enum { NUM_KEYS = sizeof damping_keys / sizeof *damping_keys };
+    const yaml_node_t *value[NUM_KEYS];
+    int64_t count = 0;
+
+    RITZ_CHECK(ritz_yaml_pairs(yaml, node, &count));
+    RITZ_REFUSE_AT(count != 1, yaml, node,
+                   "damping is one of modal, modes, bands, rayleigh and "
+                   "rayleigh_fit");
+    return ritz_yaml_mapping(yaml, node, NUM_KEYS, damping_keys, field, value);
+}
+
+/* ---- the whole ---------------------------------------------------------- */
 
 enum {
     SCENE,
@@ -30,19 +144,21 @@ enum {
 };
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
-    [SCENE] = {"scene", true, ritz_yaml_name, offsetof(ritz_scene, name)},
-    [COMPONENTS] = {"components", true, NULL, 0},
-    [JOINTS] = {"joints", false, NULL, 0},
-    [CONFIGURATIONS] = {"configurations", false, NULL, 0},
-    [INPUTS] = {"inputs", false, NULL, 0},
-    [OUTPUTS] = {"outputs", false, NULL, 0},
-    [BAND] = {"band_hz", false, ritz_scene_band, offsetof(ritz_scene, band_hz)},
-    [DAMPING] = {"damping", false, ritz_scene_damping,
-                 offsetof(ritz_scene, damping)},
-    [SELECT] = {"select", false, NULL, 0},
-    [COMPOSITE] = {"composite", false, NULL, 0},
-    [AUGMENT] = {"augment", false, NULL, 0},
-    [EXTRANEOUS] = {"extraneous", false, NULL, 0},
+    [SCENE] = {"scene", true, RITZ_YAML_NAME,
+               .offset = offsetof(ritz_scene, name)},
+    [COMPONENTS] = {.name = "components", .required = true},
+    [JOINTS] = {.name = "joints"},
+    [CONFIGURATIONS] = {.name = "configurations"},
+    [INPUTS] = {.name = "inputs"},
+    [OUTPUTS] = {.name = "outputs"},
+    [BAND] = {"band_hz", false, RITZ_YAML_BY_HAND,
+              .offset = offsetof(ritz_scene, band_hz), .take = take_band},
+    [DAMPING] = {"damping", false, RITZ_YAML_BY_HAND,
+                 .offset = offsetof(ritz_scene, damping), .take = take_damping},
+    [SELECT] = {.name = "select"},
+    [COMPOSITE] = {.name = "composite"},
+    [AUGMENT] = {.name = "augment"},
+    [EXTRANEOUS] = {.name = "extraneous"},
 };
 
 static const struct {

@@ -30,10 +30,6 @@ ritz_scene_part ritz_scene_composite;
 ritz_scene_part ritz_scene_augment;
 ritz_scene_part ritz_scene_extraneous;
 
-/* What stands alone; fields band_hz, damping. */
-ritz_yaml_take ritz_scene_band;
-ritz_yaml_take ritz_scene_damping;
-
 /** Number of items of a list of parts, refused if it is too long. */
 ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
                              int64_t *count);

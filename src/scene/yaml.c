@@ -1,4 +1,5 @@
 #include "scene/yaml.h"
+#include "base/alloc.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -23,8 +24,8 @@ static yaml_mark_t mark_of(const char *text, size_t offset)
 }
 
 /* What libyaml says of a failure, in one sentence. */
-static ritz_status explain(const char *path, const char *text,
-                           const yaml_parser_t *parser)
+static ritz_status explain_failure(const char *path, const char *text,
+                                   const yaml_parser_t *parser)
 {
     yaml_mark_t mark = parser->problem_mark;
 
@@ -40,8 +41,8 @@ static ritz_status explain(const char *path, const char *text,
                      parser->context ? parser->context : "");
 }
 
-static ritz_status start(yaml_parser_t *parser, const char *path,
-                         const char *text)
+static ritz_status start_parser(yaml_parser_t *parser, const char *path,
+                                const char *text)
 {
     if (!yaml_parser_initialize(parser))
         return ritz_fail(RITZ_ERR_MEMORY, "no memory is left to read '%s'",
@@ -67,7 +68,7 @@ static int step_of(yaml_token_type_t type)
 }
 
 /* Go through the tokens alone, to refuse what loading would take ages for. */
-static ritz_status guard(const char *path, const char *text)
+static ritz_status guard_size(const char *path, const char *text)
 {
     ritz_status status = RITZ_OK;
     yaml_parser_t parser = {0};
@@ -76,10 +77,10 @@ static ritz_status guard(const char *path, const char *text)
     int depth = 0;
     int anchors = 0;
 
-    RITZ_TRY(start(&parser, path, text));
+    RITZ_TRY(start_parser(&parser, path, text));
     while (!at_end) {
         if (!yaml_parser_scan(&parser, &token))
-            RITZ_TRY(explain(path, text, &parser));
+            RITZ_TRY(explain_failure(path, text, &parser));
         at_end = token.type == YAML_STREAM_END_TOKEN;
         depth += step_of(token.type);
         anchors += token.type == YAML_ANCHOR_TOKEN;
@@ -98,11 +99,11 @@ done:
 }
 
 /* One document more from the stream; without a root at its end. */
-static ritz_status load(yaml_parser_t *parser, const char *text,
-                        ritz_yaml *yaml)
+static ritz_status load_document(yaml_parser_t *parser, const char *text,
+                                 ritz_yaml *yaml)
 {
     if (!yaml_parser_load(parser, &yaml->document))
-        return explain(yaml->path, text, parser);
+        return explain_failure(yaml->path, text, parser);
     yaml->loaded = true;
     return RITZ_OK;
 }
@@ -114,12 +115,12 @@ ritz_status ritz_yaml_load(const char *path, const char *text, ritz_yaml *out)
     ritz_yaml yaml = {.path = path};
     ritz_yaml second = {.path = path};
 
-    RITZ_TRY(guard(path, text));
-    RITZ_TRY(start(&parser, path, text));
-    RITZ_TRY(load(&parser, text, &yaml));
+    RITZ_TRY(guard_size(path, text));
+    RITZ_TRY(start_parser(&parser, path, text));
+    RITZ_TRY(load_document(&parser, text, &yaml));
     RITZ_FAIL_IF(!ritz_yaml_root(&yaml), RITZ_ERR_FORMAT,
                  "%s:1:1: the file is empty", path);
-    RITZ_TRY(load(&parser, text, &second));
+    RITZ_TRY(load_document(&parser, text, &second));
     RITZ_YAML_FAIL_IF(ritz_yaml_root(&second), &second, ritz_yaml_root(&second),
                       "a second document begins here, a scene is one");
     *out = yaml;
@@ -168,8 +169,8 @@ static const char *const plain_tag[] = {
     [YAML_MAPPING_NODE] = YAML_DEFAULT_MAPPING_TAG,
 };
 
-static ritz_status expect(const ritz_yaml *yaml, const yaml_node_t *node,
-                          yaml_node_type_t type)
+static ritz_status expect_type(const ritz_yaml *yaml, const yaml_node_t *node,
+                               yaml_node_type_t type)
 {
     const char *tag = (const char *)node->tag;
     char text[RITZ_SHORT_SIZE];
@@ -186,7 +187,7 @@ static ritz_status expect(const ritz_yaml *yaml, const yaml_node_t *node,
 ritz_status ritz_yaml_list(const ritz_yaml *yaml, const yaml_node_t *node,
                            int64_t *count)
 {
-    RITZ_CHECK(expect(yaml, node, YAML_SEQUENCE_NODE));
+    RITZ_CHECK(expect_type(yaml, node, YAML_SEQUENCE_NODE));
     *count = node->data.sequence.items.top - node->data.sequence.items.start;
     return RITZ_OK;
 }
@@ -200,7 +201,7 @@ const yaml_node_t *ritz_yaml_item(const ritz_yaml *yaml,
 ritz_status ritz_yaml_pairs(const ritz_yaml *yaml, const yaml_node_t *node,
                             int64_t *count)
 {
-    RITZ_CHECK(expect(yaml, node, YAML_MAPPING_NODE));
+    RITZ_CHECK(expect_type(yaml, node, YAML_MAPPING_NODE));
     *count = node->data.mapping.pairs.top - node->data.mapping.pairs.start;
     return RITZ_OK;
 }
@@ -222,7 +223,7 @@ ritz_status ritz_yaml_text(const ritz_yaml *yaml, const yaml_node_t *node,
 {
     const char *text = NULL;
 
-    RITZ_CHECK(expect(yaml, node, YAML_SCALAR_NODE));
+    RITZ_CHECK(expect_type(yaml, node, YAML_SCALAR_NODE));
     text = (const char *)node->data.scalar.value;
     RITZ_REFUSE_AT(node->data.scalar.length == 0, yaml, node,
                    "a name or value is missing here");
@@ -237,4 +238,224 @@ void ritz_yaml_free(ritz_yaml *yaml)
     if (yaml->loaded)
         yaml_document_delete(&yaml->document);
     *yaml = (ritz_yaml){0};
+}
+
+ritz_status ritz_yaml_word(const ritz_yaml *yaml, const yaml_node_t *node,
+                           const ritz_names *names, int64_t *out)
+{
+    const char *text = NULL;
+
+    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
+    return ritz_yaml_at(yaml, node, ritz_words_find(names, text, out));
+}
+
+static bool has_key(const ritz_yaml *yaml, const yaml_node_t *node,
+                    const char *name)
+{
+    int64_t pairs =
+        node->data.mapping.pairs.top - node->data.mapping.pairs.start;
+
+    for (int64_t k = 0; k < pairs; k++) {
+        const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
+
+        if (word->type == YAML_SCALAR_NODE &&
+            strcmp((const char *)word->data.scalar.value, name) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* A mistyped key is rather one that the mapping has not got yet. */
+static ritz_status suggest_key(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const ritz_names *names, const char *word)
+{
+    enum { MOST_KEYS = 16 };
+    char absent[MOST_KEYS][sizeof(((ritz_yaml_key *)0)->name)];
+    ritz_names left = {names->what, 0, absent[0], sizeof *absent};
+    int64_t at = 0;
+
+    for (int64_t k = 0; k < names->count && left.count < MOST_KEYS; k++) {
+        const char *name = names->first + (size_t)k * names->stride;
+
+        if (!has_key(yaml, node, name))
+            memcpy(absent[left.count++], name, sizeof *absent);
+    }
+    if (ritz_text_nearest(word, left.count, left.first, left.stride))
+        RITZ_CHECK(ritz_words_find(&left, word, &at));
+    return ritz_words_find(names, word, &at);
+}
+
+/* Index of the key that a node of a mapping names. */
+static ritz_status find_key(const ritz_yaml *yaml, const yaml_node_t *node,
+                            const yaml_node_t *word, const ritz_names *names,
+                            int64_t *out)
+{
+    const char *text = NULL;
+
+    RITZ_CHECK(ritz_yaml_text(yaml, word, &text));
+    *out = ritz_names_index(names, text);
+    if (*out < 0)
+        RITZ_CHECK(
+            ritz_yaml_at(yaml, word, suggest_key(yaml, node, names, text)));
+    return RITZ_OK;
+}
+
+ritz_status ritz_yaml_mapping(const ritz_yaml *yaml, const yaml_node_t *node,
+                              int64_t count, const ritz_yaml_key *keys,
+                              void *object, const yaml_node_t **value)
+{
+    ritz_names names = {"key", count, keys->name, sizeof *keys};
+    int64_t pairs = 0;
+
+    for (int64_t k = 0; k < count; k++)
+        value[k] = NULL;
+    RITZ_CHECK(ritz_yaml_pairs(yaml, node, &pairs));
+    for (int64_t k = 0; k < pairs; k++) {
+        const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
+        int64_t at = 0;
+
+        RITZ_CHECK(find_key(yaml, node, word, &names, &at));
+        RITZ_REFUSE_AT(value[at], yaml, word, "key '%s' is given twice",
+                       keys[at].name);
+        value[at] = ritz_yaml_value_at(yaml, node, k);
+        RITZ_CHECK(ritz_yaml_value(yaml, value[at], &keys[at], object));
+    }
+    for (int64_t k = 0; k < count; k++)
+        RITZ_REFUSE_AT(keys[k].required && !value[k], yaml, node,
+                       "key '%s' is missing", keys[k].name);
+    return RITZ_OK;
+}
+
+ritz_status ritz_yaml_name(const ritz_yaml *yaml, const yaml_node_t *node,
+                           char out[RITZ_NAME_SIZE])
+{
+    const char *text = NULL;
+
+    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
+    return ritz_yaml_at(yaml, node, ritz_name_copy(text, out));
+}
+
+ritz_status ritz_yaml_real(const ritz_yaml *yaml, const yaml_node_t *node,
+                           double *out)
+{
+    const char *text = NULL;
+    char cut[RITZ_SHORT_SIZE];
+
+    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
+    RITZ_REFUSE_AT(!ritz_text_real(text, out), yaml, node,
+                   "'%s' is not a finite number", ritz_text_short(text, cut));
+    return RITZ_OK;
+}
+
+ritz_status ritz_yaml_whole(const ritz_yaml *yaml, const yaml_node_t *node,
+                            int64_t *out)
+{
+    const char *text = NULL;
+    char cut[RITZ_SHORT_SIZE];
+
+    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
+    RITZ_REFUSE_AT(!ritz_text_whole(text, out), yaml, node,
+                   "'%s' is not a whole number", ritz_text_short(text, cut));
+    return RITZ_OK;
+}
+
+ritz_status ritz_yaml_reals(const ritz_yaml *yaml, const yaml_node_t *node,
+                            int64_t count, double *out)
+{
+    int64_t found = 0;
+
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &found));
+    RITZ_REFUSE_AT(found != count, yaml, node,
+                   "%" PRId64 " numbers are expected here, not %" PRId64, count,
+                   found);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_CHECK(
+            ritz_yaml_real(yaml, ritz_yaml_item(yaml, node, k), &out[k]));
+    return RITZ_OK;
+}
+
+/* ---- values by kind ----------------------------------------------------- */
+
+static ritz_status take_text(const ritz_yaml *yaml, const yaml_node_t *node,
+                             char **out)
+{
+    const char *text = NULL;
+    char *copy = NULL;
+
+    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
+    RITZ_CHECK_NEW(copy, (int64_t)strlen(text) + 1);
+    memcpy(copy, text, strlen(text) + 1);
+    *out = copy;
+    return RITZ_OK;
+}
+
+static ritz_status take_real(const ritz_yaml *yaml, const yaml_node_t *node,
+                             ritz_yaml_kind kind, double *out)
+{
+    double value = 0.0;
+
+    RITZ_CHECK(ritz_yaml_real(yaml, node, &value));
+    RITZ_REFUSE_AT(kind == RITZ_YAML_POSITIVE && !(value > 0.0), yaml, node,
+                   "%g is not above 0", value);
+    RITZ_REFUSE_AT(kind == RITZ_YAML_FRACTION && !(value > 0.0 && value < 1.0),
+                   yaml, node, "%g is not between 0 and 1", value);
+    *out = value;
+    return RITZ_OK;
+}
+
+static ritz_status take_whole(const ritz_yaml *yaml, const yaml_node_t *node,
+                              const ritz_yaml_key *key, int64_t *out)
+{
+    int64_t value = 0;
+
+    RITZ_CHECK(ritz_yaml_whole(yaml, node, &value));
+    RITZ_REFUSE_AT(value < key->least || value > key->most, yaml, node,
+                   "%s%" PRId64 "%s", key->before ? key->before : "", value,
+                   key->after ? key->after : "");
+    *out = value;
+    return RITZ_OK;
+}
+
+/* Fields of words are flags, enumerations or whole numbers. */
+static ritz_status take_word(const ritz_yaml *yaml, const yaml_node_t *node,
+                             const ritz_yaml_key *key, void *field)
+{
+    int64_t at = 0;
+
+    RITZ_CHECK(ritz_yaml_word(yaml, node, &key->words, &at));
+    if (key->size == sizeof(int64_t))
+        *(int64_t *)field = at;
+    else if (key->size == sizeof(int))
+        *(int *)field = (int)at;
+    else
+        *(bool *)field = at == 1;
+    return RITZ_OK;
+}
+
+ritz_status ritz_yaml_value(const ritz_yaml *yaml, const yaml_node_t *node,
+                            const ritz_yaml_key *key, void *object)
+{
+    void *field = (char *)object + key->offset;
+
+    switch (key->kind) {
+    case RITZ_YAML_LATER:
+        break;
+    case RITZ_YAML_NAME:
+        return ritz_yaml_name(yaml, node, field);
+    case RITZ_YAML_TEXT:
+        return take_text(yaml, node, field);
+    case RITZ_YAML_REAL:
+    case RITZ_YAML_POSITIVE:
+    case RITZ_YAML_FRACTION:
+        return take_real(yaml, node, key->kind, field);
+    case RITZ_YAML_REALS:
+        return ritz_yaml_reals(yaml, node, key->count, field);
+    case RITZ_YAML_WHOLE:
+        return take_whole(yaml, node, key, field);
+    case RITZ_YAML_WORD:
+        return take_word(yaml, node, key, field);
+    case RITZ_YAML_BY_HAND:
+        return key->take(yaml, node, field);
+    }
+    return RITZ_OK;
 }

@@ -9,7 +9,7 @@
 #ifndef RITZ_SCENE_YAML_H
 #define RITZ_SCENE_YAML_H
 
-#include "model/names.h"
+#include "base/names.h"
 
 #include <yaml.h>
 
@@ -23,12 +23,40 @@ typedef struct ritz_yaml {
 typedef ritz_status ritz_yaml_take(const ritz_yaml *yaml,
                                    const yaml_node_t *node, void *field);
 
+/* What the value of a key is, and the field it is stored in. */
+typedef enum ritz_yaml_kind {
+    RITZ_YAML_LATER,    /* the caller looks at it */
+    RITZ_YAML_NAME,     /* char[RITZ_NAME_SIZE] */
+    RITZ_YAML_TEXT,     /* char *, the owner's */
+    RITZ_YAML_REAL,     /* double */
+    RITZ_YAML_POSITIVE, /* double above 0 */
+    RITZ_YAML_FRACTION, /* double between 0 and 1, neither of them */
+    RITZ_YAML_REALS,    /* double[count] */
+    RITZ_YAML_WHOLE,    /* int64_t from least to most */
+    RITZ_YAML_WORD,     /* index of a word, as an integer of `size` bytes */
+    RITZ_YAML_BY_HAND,  /* as `take` does */
+} ritz_yaml_kind;
+
 typedef struct ritz_yaml_key {
     char name[16];
     bool required;
-    ritz_yaml_take *take; /* NULL: the caller looks at the value */
-    size_t offset;        /* of the field in the object */
+    ritz_yaml_kind kind;
+    size_t offset; /* of the field in the object */
+    size_t size;
+    int64_t count;
+    int64_t least, most;
+    const char *before, *after; /* the number, in the sentence of refusal */
+    ritz_names words;
+    ritz_yaml_take *take;
 } ritz_yaml_key;
+
+/* Offset of a field, and its size. */
+#define RITZ_YAML_FIELD(type, field)                                           \
+    .offset = offsetof(type, field), .size = sizeof(((type *)0)->field)
+
+/* Words of an array of char[]. */
+#define RITZ_YAML_WORDS(what, list)                                            \
+    .words = {what, sizeof(list) / sizeof *(list), (list)[0], sizeof *(list)}
 
 /**
  * The only document of @p text.
@@ -90,6 +118,18 @@ ritz_status ritz_yaml_mapping(const ritz_yaml *yaml, const yaml_node_t *node,
 ritz_status ritz_yaml_text(const ritz_yaml *yaml, const yaml_node_t *node,
                            const char **out);
 
+/** The value of one key, in the field of an object. */
+ritz_status ritz_yaml_value(const ritz_yaml *yaml, const yaml_node_t *node,
+                            const ritz_yaml_key *key, void *object);
+
+/** A name, which must fit; a finite number; a whole one. */
+ritz_status ritz_yaml_name(const ritz_yaml *yaml, const yaml_node_t *node,
+                           char out[RITZ_NAME_SIZE]);
+ritz_status ritz_yaml_real(const ritz_yaml *yaml, const yaml_node_t *node,
+                           double *out);
+ritz_status ritz_yaml_whole(const ritz_yaml *yaml, const yaml_node_t *node,
+                            int64_t *out);
+
 /** A list of exactly @p count numbers. */
 ritz_status ritz_yaml_reals(const ritz_yaml *yaml, const yaml_node_t *node,
                             int64_t count, double *out);
@@ -97,14 +137,6 @@ ritz_status ritz_yaml_reals(const ritz_yaml *yaml, const yaml_node_t *node,
 /** Index of a word among names. */
 ritz_status ritz_yaml_word(const ritz_yaml *yaml, const yaml_node_t *node,
                            const ritz_names *names, int64_t *out);
-
-/* Fields: char[RITZ_NAME_SIZE]; char * of the owner's; double; int64_t. */
-ritz_yaml_take ritz_yaml_name;
-ritz_yaml_take ritz_yaml_copy;
-ritz_yaml_take ritz_yaml_real;
-ritz_yaml_take ritz_yaml_positive; /* above 0 */
-ritz_yaml_take ritz_yaml_fraction; /* between 0 and 1, neither of them */
-ritz_yaml_take ritz_yaml_whole;
 
 void ritz_yaml_free(ritz_yaml *yaml);
 

@@ -46,17 +46,6 @@ static ritz_status take_directions(const ritz_yaml *yaml,
     return RITZ_OK;
 }
 
-static ritz_status take_grid(const ritz_yaml *yaml, const yaml_node_t *node,
-                             void *field)
-{
-    int64_t grid = 0;
-
-    RITZ_CHECK(ritz_yaml_whole(yaml, node, &grid));
-    RITZ_REFUSE_AT(grid < 1, yaml, node, "%" PRId64 " is no grid", grid);
-    *(int64_t *)field = grid;
-    return RITZ_OK;
-}
-
 static ritz_status take_scale(const ritz_yaml *yaml, const yaml_node_t *node,
                               void *field)
 {
@@ -71,33 +60,37 @@ static ritz_status take_scale(const ritz_yaml *yaml, const yaml_node_t *node,
 static const char quantities[][16] = {"displacement", "velocity",
                                       "acceleration"};
 
-static ritz_status take_quantity(const ritz_yaml *yaml, const yaml_node_t *node,
-                                 void *field)
-{
-    ritz_names names = {"quantity", 3, quantities[0], sizeof *quantities};
-
-    return ritz_yaml_word(yaml, node, &names, (int64_t *)field);
-}
-
 enum { NAME, AT, COMPONENT, GRID, NUM_SHARED };
 enum { NUM_INPUT_KEYS = NUM_SHARED + 2, NUM_OUTPUT_KEYS = NUM_SHARED + 2 };
 enum { AGAINST = NUM_SHARED }; /* of an input */
 
 #define SHARED_KEYS                                                            \
-    [NAME] = {"name", true, ritz_yaml_name, offsetof(ritz_scene_io, name)},    \
-    [AT] = {"at", true, NULL, 0}, [COMPONENT] = {"component", true, NULL, 0},  \
-    [GRID] = {"grid", false, take_grid, offsetof(ritz_scene_io, grid)}
+    [NAME] = {"name", true, RITZ_YAML_NAME,                                    \
+              .offset = offsetof(ritz_scene_io, name)},                        \
+    [AT] = {.name = "at", .required = true},                                   \
+    [COMPONENT] = {.name = "component", .required = true},                     \
+    [GRID] = {"grid",                                                          \
+              false,                                                           \
+              RITZ_YAML_WHOLE,                                                 \
+              .offset = offsetof(ritz_scene_io, grid),                         \
+              .least = 1,                                                      \
+              .most = INT64_MAX,                                               \
+              .after = " is no grid"}
 
 static const ritz_yaml_key input_keys[NUM_INPUT_KEYS] = {
     SHARED_KEYS,
-    [AGAINST] = {"against", false, NULL, 0},
-    {"scale", false, take_scale, offsetof(ritz_scene_io, scale)},
+    [AGAINST] = {.name = "against"},
+    {"scale", false, RITZ_YAML_BY_HAND,
+     .offset = offsetof(ritz_scene_io, scale), .take = take_scale},
 };
 
 static const ritz_yaml_key output_keys[NUM_OUTPUT_KEYS] = {
     SHARED_KEYS,
-    {"quantity", false, take_quantity, offsetof(ritz_scene_io, derivative)},
-    {"limit", false, ritz_yaml_positive, offsetof(ritz_scene_io, limit)},
+    {"quantity", false, RITZ_YAML_WORD,
+     RITZ_YAML_FIELD(ritz_scene_io, derivative),
+     RITZ_YAML_WORDS("quantity", quantities)},
+    {"limit", false, RITZ_YAML_POSITIVE,
+     .offset = offsetof(ritz_scene_io, limit)},
 };
 
 /* What tells inputs from outputs. */

@@ -1,6 +1,6 @@
 /* Names in sentences: looked up with a suggestion, cut to a readable length. */
-#ifndef RITZ_MODEL_NAMES_H
-#define RITZ_MODEL_NAMES_H
+#ifndef RITZ_BASE_NAMES_H
+#define RITZ_BASE_NAMES_H
 
 #include <ritz/text.h>
 

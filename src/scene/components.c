@@ -67,45 +67,24 @@ done:
     return status;
 }
 
-static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
-                              void *field)
-{
-    int64_t modes = 0;
-
-    RITZ_CHECK(ritz_yaml_whole(yaml, node, &modes));
-    RITZ_REFUSE_AT(modes < 0, yaml, node, "%" PRId64 " modes cannot be kept",
-                   modes);
-    *(int64_t *)field = modes;
-    return RITZ_OK;
-}
-
-static ritz_status take_order(const ritz_yaml *yaml, const yaml_node_t *node,
-                              void *field)
-{
-    int64_t order = 0;
-
-    RITZ_CHECK(ritz_yaml_whole(yaml, node, &order));
-    RITZ_REFUSE_AT(order < 1, yaml, node, "%" PRId64 " columns are no model",
-                   order);
-    *(int64_t *)field = order;
-    return RITZ_OK;
-}
-
 enum { MODEL, BASIS, ORDER, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
-    [MODEL] = {"model", true, ritz_yaml_copy,
-               offsetof(ritz_scene_component, model)},
-    [BASIS] = {"basis", false, ritz_yaml_name,
-               offsetof(ritz_scene_component, basis)},
-    [ORDER] = {"order", false, take_order,
-               offsetof(ritz_scene_component, order)},
-    [MODES] = {"modes", false, take_modes,
-               offsetof(ritz_scene_component, modes)},
-    [UP_TO] = {"up_to_hz", false, ritz_yaml_positive,
-               offsetof(ritz_scene_component, up_to_hz)},
-    [ATTACH] = {"attach", false, take_attach,
-                offsetof(ritz_scene_component, attach)},
+    [MODEL] = {"model", true, RITZ_YAML_TEXT,
+               .offset = offsetof(ritz_scene_component, model)},
+    [BASIS] = {"basis", false, RITZ_YAML_NAME,
+               .offset = offsetof(ritz_scene_component, basis)},
+    [ORDER] = {"order", false, RITZ_YAML_WHOLE,
+               .offset = offsetof(ritz_scene_component, order), .least = 1,
+               .most = INT64_MAX, .after = " columns are no model"},
+    [MODES] = {"modes", false, RITZ_YAML_WHOLE,
+               .offset = offsetof(ritz_scene_component, modes),
+               .most = INT64_MAX, .after = " modes cannot be kept"},
+    [UP_TO] = {"up_to_hz", false, RITZ_YAML_POSITIVE,
+               .offset = offsetof(ritz_scene_component, up_to_hz)},
+    [ATTACH] = {"attach", false, RITZ_YAML_BY_HAND,
+                .offset = offsetof(ritz_scene_component, attach),
+                .take = take_attach},
 };
 
 /* [0, 5] is taken as "0,5", a scalar as it is. */
