@@ -33,6 +33,10 @@ static const double word_wide = 28.0, word_high = 15.0;
    order. */
 static const double foot_part = 0.07;
 
+/* Ends of a logarithmic axis of times: it holds two of 1, 2 and 5 of a decade,
+   which have numbers. */
+static const double least_ratio = 6.25;
+
 /* Styles of rows of the data. */
 enum { MEETS, MISSES, CHOSEN, RUNNER_UP, ON_FRONT, ON_LINE };
 
@@ -105,6 +109,10 @@ static void place_records(work *w, const measure *m, panel *p)
                  .x_high = least > most ? 2.0 : 1.3 * most,
                  .y_low = y.low,
                  .y_high = y.high};
+    if (p->x_high < least_ratio * p->x_low) {
+        p->x_low *= sqrt(p->x_high / p->x_low / least_ratio);
+        p->x_high = least_ratio * p->x_low;
+    }
     if (!w->form->seconds)
         p->x_high = most > 0.0 ? 1.05 * most : 1.0;
     if (m->tolerance > 0.0) {

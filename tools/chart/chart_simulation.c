@@ -18,6 +18,7 @@ typedef struct runs {
     const ritz_simulation *run[MOST_RUNS];
     const char *name[MOST_RUNS];
     int64_t num_outputs;
+    double low[MOST_OUTPUTS], high[MOST_OUTPUTS]; /* of all runs */
     picture *picture;
 } runs;
 
@@ -58,7 +59,7 @@ static ritz_status take_runs(const chart_sources *sources, runs *out)
 }
 
 /* One output of one run; of each few points the least and the largest stay. */
-static void put_line(const runs *all, int64_t i, int64_t w)
+static void put_line(runs *all, int64_t i, int64_t w)
 {
     const ritz_simulation *s = all->run[w];
     const int64_t few = 1 + 2 * s->count / MOST_POINTS, n = s->num_outputs;
@@ -84,6 +85,8 @@ static void put_line(const runs *all, int64_t i, int64_t w)
                     (long long)w, s->seconds[p], s->y[p * n + output]);
         }
     }
+    all->low[i] = w > 0 ? fmin(all->low[i], low) : low;
+    all->high[i] = w > 0 ? fmax(all->high[i], high) : high;
     fputc('\n', file);
     html_line(table, s->output[output]);
     fprintf(table, "\t");
@@ -92,7 +95,7 @@ static void put_line(const runs *all, int64_t i, int64_t w)
             s->y[(s->count - 1) * n + output], s->integrator);
 }
 
-static ritz_status compose(const runs *all)
+static ritz_status compose(runs *all)
 {
     const ritz_simulation *first = all->run[0];
     picture *p = all->picture;
@@ -112,15 +115,24 @@ static ritz_status compose(const runs *all)
     fprintf(p->data.file, "output\tsimulation\tseconds\tvalue\n");
     fprintf(p->table.file,
             "output\tsimulation\tleast\tmost\tlast\tintegrator\n");
-    for (int64_t i = 0; i < all->num_outputs; i++)
+    for (int64_t i = 0; i < all->num_outputs; i++) {
+        double room = 0.0;
+
         for (int64_t w = 0; w < all->count; w++)
             put_line(all, i, w);
+        room = 0.05 * (all->high[i] - all->low[i]);
+        room = room > 0.0 ? room : fmax(0.05 * fabs(all->high[i]), 0.5);
+        all->low[i] -= room;
+        all->high[i] += room;
+    }
     fprintf(p->given.file,
             "outputs = %lld\nruns = %lld\nx_low = %.9g\nx_high = %.9g\n",
             (long long)all->num_outputs, (long long)all->count,
             first->seconds[0], first->seconds[first->count - 1]);
     picture_give_texts(p, "title", all->num_outputs, first->output[0],
                        sizeof *first->output);
+    picture_give_reals(p, "y_low", all->num_outputs, all->low, 1);
+    picture_give_reals(p, "y_high", all->num_outputs, all->high, 1);
     return picture_draw(p, "simulation.gp", "Time responses",
                         "outputs over time, one below the other");
 }

@@ -243,7 +243,7 @@ static void put_answer(FILE *file, const selection *s)
 
 /* --- methods side by side ------------------------------------------------- */
 
-enum { MOST_ORDERS = 8 };
+enum { MOST_COLUMNS = 8 };
 
 /* Least order above another; INT64_MAX: none. */
 static int64_t next_order(const records *all, int64_t above)
@@ -257,15 +257,15 @@ static int64_t next_order(const records *all, int64_t above)
 }
 
 /* Up to eight orders, spread over those there are. */
-static int64_t pick_orders(const records *all, int64_t out[MOST_ORDERS])
+static int64_t pick_orders(const records *all, double out[MOST_COLUMNS])
 {
     int64_t n = 0, kept = 0, at = 0;
 
     for (int64_t o = -1; (o = next_order(all, o)) < INT64_MAX;)
         n++;
     for (int64_t o = -1; (o = next_order(all, o)) < INT64_MAX; at++)
-        if (n <= MOST_ORDERS || at == kept * (n - 1) / (MOST_ORDERS - 1))
-            out[kept++] = o;
+        if (n <= MOST_COLUMNS || at == kept * (n - 1) / (MOST_COLUMNS - 1))
+            out[kept++] = (double)o;
     return kept;
 }
 
@@ -303,101 +303,72 @@ static const record *find_smallest(const selection *s, int64_t method,
     return best;
 }
 
-static void begin_table(FILE *file, const char *caption)
+/* One of a method and a column; less is better. */
+typedef struct cell {
+    double value;
+    char text[32], small[32];
+} cell;
+
+/* What stands in a column: of an order the least error, of an error the fewest
+   coordinates. */
+typedef cell (*find_cell)(const selection *s, int64_t method, double column);
+
+static cell error_at_order(const selection *s, int64_t method, double order)
 {
+    cell c = {.value = least_error(s, method, (int64_t)order)};
+
+    chart_say_error(c.value, c.text);
+    return c;
+}
+
+static cell order_at_error(const selection *s, int64_t method, double level)
+{
+    const record *r = find_smallest(s, method, level);
+    const double time = !r ? nan("") : records_cost(&s->all) ? r->cost : r->cpu;
+    cell c = {.value = r ? (double)r->order : nan("")};
+
+    snprintf(c.text, sizeof c.text, "%.0f", c.value);
+    if (isfinite(time))
+        chart_say_seconds(time, c.small);
+    return c;
+}
+
+/* A row for each method; the best of each column stands in bold. */
+static void put_methods(FILE *file, const selection *s, const char *caption,
+                        int64_t count, const double *column, find_cell find)
+{
+    double best[MOST_COLUMNS];
+    char word[32];
+
     html_print(file,
                "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
                "aria-label=\"%s\"><table><caption>%s</caption><thead><tr>"
                "<th scope=\"col\">method</th>",
                caption, caption);
-}
-
-static void put_cell(FILE *file, const char *text, const char *small, bool best)
-{
-    fprintf(file, "<td%s>", best ? " class=\"best\"" : "");
-    html_print(file,
-               *small ? "%s <span class=\"small\">%s</span></td>" : "%s%s</td>",
-               text, small);
-}
-
-static void put_orders(FILE *file, const selection *s)
-{
-    int64_t order[MOST_ORDERS];
-    double best[MOST_ORDERS];
-    const int64_t count = pick_orders(&s->all, order);
-    char text[PICTURE_WORD];
-
-    snprintf(text, sizeof text, "Least %s with at most so many coordinates",
-             s->measure->title);
-    begin_table(file, text);
     for (int64_t k = 0; k < count; k++) {
-        fprintf(file, "<th scope=\"col\">%lld</th>", (long long)order[k]);
         best[k] = HUGE_VAL;
         for (int64_t m = 0; m < s->num_methods; m++)
-            best[k] = fmin(best[k], least_error(s, m, order[k]));
+            best[k] = fmin(best[k], find(s, m, column[k]).value);
+        if (find == error_at_order)
+            snprintf(word, sizeof word, "%.0f", column[k]);
+        else if (isnan(column[k]))
+            snprintf(word, sizeof word, "every tolerance");
+        else
+            chart_say_error(column[k], word);
+        html_print(file, "<th scope=\"col\">%s</th>", word);
     }
     fprintf(file, "</tr></thead><tbody>\n");
     for (int64_t m = 0; m < s->num_methods; m++) {
         html_print(file, "<tr><th scope=\"row\">%s</th>", s->method[m]);
         for (int64_t k = 0; k < count; k++) {
-            const double error = least_error(s, m, order[k]);
-            char word[32];
+            const cell c = find(s, m, column[k]);
 
-            chart_say_error(error, word);
-            put_cell(file, isnan(error) ? "\xe2\x80\x93" : word, "",
-                     error <= best[k]);
-        }
-        fprintf(file, "</tr>\n");
-    }
-    fprintf(file, "</tbody></table></div>\n");
-}
-
-static void put_smallest(FILE *file, const record *r, bool best, bool simulate)
-{
-    const double time = r ? simulate ? r->cost : r->cpu : nan("");
-    char order[32] = "\xe2\x80\x93", word[32] = "";
-
-    if (r)
-        snprintf(order, sizeof order, "%lld", (long long)r->order);
-    if (isfinite(time))
-        chart_say_seconds(time, word);
-    put_cell(file, order, word, best);
-}
-
-static void put_levels(FILE *file, const selection *s)
-{
-    static const double levels[] = {(double)NAN, 0.1, 1e-2, 1e-3, 1e-4};
-    enum { LEVELS = sizeof levels / sizeof *levels };
-    const bool simulate = records_cost(&s->all);
-    int64_t best[LEVELS];
-    bool limits = false;
-    char text[PICTURE_WORD], word[32];
-
-    for (int64_t k = 0; k < s->all.count; k++)
-        limits = limits || s->all.item[k].tolerance;
-    snprintf(text, sizeof text,
-             "Fewest coordinates for a %s of at most so much, and %s",
-             s->measure->title,
-             simulate ? "time for one simulated second" : "time to reduce");
-    begin_table(file, text);
-    for (int k = !limits; k < LEVELS; k++) {
-        best[k] = INT64_MAX;
-        for (int64_t m = 0; m < s->num_methods; m++) {
-            const record *r = find_smallest(s, m, levels[k]);
-
-            best[k] = r && r->order < best[k] ? r->order : best[k];
-        }
-        chart_say_error(levels[k], word);
-        fprintf(file, "<th scope=\"col\">%s</th>",
-                k == 0 ? "every tolerance" : word);
-    }
-    fprintf(file, "</tr></thead><tbody>\n");
-    for (int64_t m = 0; m < s->num_methods; m++) {
-        html_print(file, "<tr><th scope=\"row\">%s</th>", s->method[m]);
-        for (int k = !limits; k < LEVELS; k++) {
-            const record *r = find_smallest(s, m, levels[k]);
-
-            put_smallest(file, r, r && r->order == best[k], simulate);
+            fprintf(file, "<td%s>",
+                    c.value <= best[k] ? " class=\"best\"" : "");
+            html_print(file, "%s", isnan(c.value) ? "\xe2\x80\x93" : c.text);
+            if (*c.small)
+                html_print(file, " <span class=\"small\">%s</span>", c.small);
+            fprintf(file, "</td>");
         }
         fprintf(file, "</tr>\n");
     }
@@ -406,10 +377,26 @@ static void put_levels(FILE *file, const selection *s)
 
 static void put_tables(FILE *file, const selection *s)
 {
+    static const double levels[] = {(double)NAN, 0.1, 1e-2, 1e-3, 1e-4};
+    double order[MOST_COLUMNS];
+    const int64_t count = pick_orders(&s->all, order);
+    bool limits = false;
+    char text[PICTURE_WORD];
+
+    for (int64_t k = 0; k < s->all.count; k++)
+        limits = limits || s->all.item[k].tolerance;
     fprintf(file, "<h3>At equal order</h3>\n");
-    put_orders(file, s);
+    snprintf(text, sizeof text, "Least %s with at most so many coordinates",
+             s->measure->title);
+    put_methods(file, s, text, count, order, error_at_order);
     fprintf(file, "<h3>At equal error</h3>\n");
-    put_levels(file, s);
+    snprintf(text, sizeof text,
+             "Fewest coordinates for a %s of at most so much, and %s",
+             s->measure->title,
+             records_cost(&s->all) ? "time for one simulated second"
+                                   : "time to reduce");
+    put_methods(file, s, text, limits ? 5 : 4, limits ? levels : levels + 1,
+                order_at_error);
     fprintf(file, "<p class=\"note\">The best of each column stands in bold. "
                   "Models that miss a mode of the band do not count.</p>\n");
 }

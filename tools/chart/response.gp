@@ -27,7 +27,9 @@ do for [c=1:channels] {
     set format y '10^{%L}'
     set yrange [y_low[c]:y_high[c]]
     many = ceil(log10(y_high[c] / y_low[c]) / 12)
-    set ytics 10.0**many
+    few = 10.0**many
+    # the lowest number would touch the highest of a strip below it
+    set ytics y_low[c] * (below ? few : 1), few
     set format x (below ? '' : '%g')
     set xlabel (below ? '' : 'Hz')
     plot for [w=0:curves - 1] data skip 1 \
@@ -55,7 +57,8 @@ do for [c=1:channels] {
         eval heading
         eval label_left
         set yrange [from:to]
-        set ytics 10.0**many
+        few = 10.0**many
+        set ytics from * (s < below ? few : 1), few
         if (from <= level && level <= to) {
             set arrow from graph 0, first level to graph 1, first level \
                 nohead lw 1.2 dt 2 lc rgb ink

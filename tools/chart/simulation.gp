@@ -1,11 +1,18 @@
 # --- simulation: outputs over time, one below the other ---
-# outputs, title[], runs, x_low, x_high. Data: output simulation seconds value.
+# outputs, runs, x_low, x_high; of each output title[], y_low[], y_high[]. Data:
+# output simulation seconds value.
 set xrange [x_low:x_high]
-set offsets graph 0, graph 0, graph 0.05, graph 0.05
 set xlabel 's'
 do for [i=1:outputs] {
     bottom = (outputs - i) * 210
     eval panel(76, bottom + 48, wide - 22, bottom + 180)
+    # four or five numbers, 1, 2 or 5 of a decade apart
+    apart = (y_high[i] - y_low[i]) / 5
+    decade = 10.0**floor(log10(apart))
+    times = ceil(apart / decade) > 5 ? 10 : ceil(apart / decade) > 2 ? 5 : 2
+    few = times * decade
+    set yrange [y_low[i]:y_high[i]]
+    set ytics few
     head = title[i]
     eval heading
     plot for [w=0:runs - 1] data skip 1 \
