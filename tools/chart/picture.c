@@ -17,10 +17,11 @@
 
 enum {
     NO_PROGRAM = 127,
-    TIP_SIZE = 1000,    /* a label of gnuplot's has 1024 bytes at most */
-    SIGN_WIDE = 60,     /* pixels of a sign and the space around its name */
-    LETTER_TENTHS = 75, /* of a pixel: no letter of a legend is wider */
+    TIP_SIZE = 1000, /* a label of gnuplot's has 1024 bytes at most */
 };
+
+/* Of a legend, pixels: a sign and the space around its name; a letter. */
+static const double sign_wide = 60.0, letter_wide = 8.5;
 
 ritz_status picture_new(const char *path, bool keep, picture *out)
 {
@@ -194,12 +195,17 @@ static void put_name(FILE *file, const char *variable, const char *path,
     fputc('\n', file);
 }
 
-static size_t count_letters(const char *text)
+/* Letters of a text; more than there may be are cut, which three dots say. */
+static size_t count_letters(char *text, size_t most)
 {
     size_t count = 0;
 
-    for (; *text; text++)
-        count += ((unsigned char)*text & 0xc0) != 0x80;
+    for (char *c = text; *c; c++) {
+        if (((unsigned char)*c & 0xc0) == 0x80 || ++count <= most)
+            continue;
+        snprintf(c, 4, "...");
+        break;
+    }
     return count;
 }
 
@@ -207,33 +213,32 @@ static size_t count_letters(const char *text)
 static void put_legend(const picture *p, FILE *file)
 {
     const int count = p->keep ? p->num_signs : 0;
-    char name[2 * PICTURE_WORD];
+    const size_t space = (size_t)((p->wide - sign_wide) / letter_wide) - 3;
     size_t most = 1;
 
+    if (count > 0)
+        fprintf(file, "array key_name[%d]\narray key_sign[%d]\n", count, count);
     for (int k = 0; k < count; k++) {
         const picture_sign *s = &p->sign[k];
+        char name[2 * PICTURE_WORD];
+        size_t letters = 0;
 
-        snprintf(name, sizeof name, "%s%s%s", s->name, s->role ? ", " : "",
+        snprintf(name, sizeof name - 4, "%s%s%s", s->name, s->role ? ", " : "",
                  s->role ? s->role : "");
-        most = count_letters(name) > most ? count_letters(name) : most;
-        if (k == 0)
-            fprintf(file, "array key_name[%d]\narray key_sign[%d]\n", count,
-                    count);
+        letters = count_letters(name, space);
+        most = letters > most ? letters : most;
         fprintf(file, "key_name[%d] = ", k + 1);
         quote(file, name);
+        fprintf(file, "\nkey_sign[%d] = 'with ", k + 1);
         if (s->mark > 0)
-            fprintf(file,
-                    "\nkey_sign[%d] = 'with points pt %d ps 0.9 lw 1.6 "
-                    "lc rgb %s'\n",
-                    k + 1, s->mark, s->colour);
+            fprintf(file, "points pt %d ps 0.9 lw 1.6", s->mark);
         else
-            fprintf(file,
-                    "\nkey_sign[%d] = 'with lines lw %g dt %d lc rgb %s'\n",
-                    k + 1, s->wide, s->dash > 1 ? s->dash : 1, s->colour);
+            fprintf(file, "lines lw %g dt %d", s->wide,
+                    s->dash > 1 ? s->dash : 1);
+        fprintf(file, " lc rgb %s'\n", s->colour);
     }
     fprintf(file, "keys = %d\ncolumns = %d\n", count,
-            (int)fmax(1.0, p->wide / (SIGN_WIDE +
-                                      0.1 * LETTER_TENTHS * (double)most)));
+            (int)fmax(1.0, p->wide / (sign_wide + letter_wide * (double)most)));
 }
 
 static void put_template(FILE *file, const char *name)
