@@ -83,7 +83,7 @@ done:
     return status;
 }
 
-/* What the model has of what a check may need. */
+/* Features of the model that checks may need. */
 static unsigned find_features(const ritz_checker *it)
 {
     const ritz_component *c = it->component;

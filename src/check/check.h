@@ -11,14 +11,14 @@
 #include <ritz/eigen.h>
 #include <ritz/probe.h>
 
-/* What a check is made of. */
+/* Kinds of models a check applies to. */
 enum {
     RITZ_OF_COMPONENT = 1,
     RITZ_OF_REDUCED = 2,
     RITZ_OF_STATES = 4,
 };
 
-/* What a check needs, and is left out without. */
+/* Features without which a check is left out. */
 enum {
     RITZ_NEEDS_STIFFNESS = 1, /* K has entries */
     RITZ_NEEDS_DAMPING = 2,   /* D has */
@@ -63,7 +63,7 @@ typedef struct ritz_checker {
     const ritz_reduced *reduced;
     const ritz_state_space *space;
 
-    /* Of a component. */
+    /* Filled by checks of a component. */
     double digits;           /* of K, at most 17 */
     int64_t *part;           /* n, connected part of each dof, from 0 */
     int64_t largest;         /* the part with most dofs */
@@ -76,7 +76,7 @@ typedef struct ritz_checker {
     double *mu;       /* k, Phi'K Phi, ascending  [rad^2/s^2] */
     int64_t num_free; /* of Phi, that meet no stiffness */
 
-    /* Of a reduced component. */
+    /* Of a reduced component; `modes` are filled by its checks. */
     ritz_structure model; /* with dampers installed */
     ritz_damping damping;
     ritz_modal_model modes;
@@ -158,8 +158,8 @@ ritz_status ritz_probe_energy_matrix(const ritz_modal_model *modes,
                                      ritz_dense *out);
 
 /**
- * Inputs and outputs of one name as pairs; what each output is, displacement,
- * velocity or acceleration, is what breaks passivity least.
+ * Inputs and outputs of one name as pairs; an output is taken for the
+ * displacement, velocity or acceleration that violates passivity least.
  *
  * @param[out] out  without columns if there are none
  */

@@ -172,7 +172,7 @@ done:
     return status;
 }
 
-/* Of motions without mass N the least n'D n: k + c s = 0 grows if c < 0. */
+/* Least n'D n of motions without mass, N: k + c s = 0 grows if c < 0. */
 static ritz_status find_massless(const ritz_checker *it, least_value *out)
 {
     ritz_status status = RITZ_OK;
@@ -301,7 +301,7 @@ done:
  * which hold a free body or drive it.
  */
 
-/* Modes are found here: that they are there is part of the answer. */
+/* The modes are found here: whether they exist is part of the check. */
 static ritz_status find_modes(ritz_checker *it, bool *singular)
 {
     ritz_status status = RITZ_OK;

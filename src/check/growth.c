@@ -111,7 +111,7 @@ done:
     return status;
 }
 
-/* Of a stable A. @cost O(n^3), some hundred products up to 400 states */
+/* Growth of a stable A. @cost O(n^3), some hundred products up to 400 states */
 static ritz_status measure_growth(const ritz_dense *A, growth *out)
 {
     double size = norm_one(A);

@@ -1,5 +1,5 @@
 /*
- * What is hung on the pairs of a state space. Whatever an output is,
+ * Attachments to the pairs of a state space. Whatever quantity an output is,
  *
  *     u = -k y,    A - B k (I + D k)^-1 C
  *
@@ -235,8 +235,8 @@ done:
 }
 
 /*
- * What an assembly does with a reduced component: hold its interface, hang it
- * on springs, hang masses on it, or join it by forces.
+ * What an assembly may do with a reduced component: hold its interface, attach
+ * springs or masses to it, or join it by forces.
  *
  *     L q = 0;    K + a sum k_i l_i' l_i;    M + a sum m_i l_i' l_i
  *
@@ -490,8 +490,8 @@ ritz_status ritz_check_sprung(ritz_checker *it)
 
 /*
  * Columns of kind force, p, are made to join bodies by interface forces lambda,
- * to which they answer statically: C_q q + C_p p = 0, p = -K_pp^-1 C_p' lambda,
- * with C the rows of the ports. Held to the ground so, a body is
+ * to which they respond statically: C_q q + C_p p = 0, p = -K_pp^-1 C_p'
+ * lambda, with C the rows of the ports. Held to the ground so, a body is
  *
  *     K = [ K_qq   C_q'               ]     M = [ M_qq   0         ]
  *         [ C_q   -C_p K_pp^-1 C_p'   ],        [ 0      H M_pp H' ],
@@ -550,7 +550,7 @@ static ritz_status pick_columns(const ritz_dense *A, int64_t count,
     return RITZ_OK;
 }
 
-/* C := U'C, U the directions of forces that force columns answer to. */
+/* C := U'C, U the directions of forces that force columns respond to. */
 static ritz_status take_rows(const ritz_checker *it, joint *j)
 {
     ritz_status status = RITZ_OK;

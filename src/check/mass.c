@@ -1,4 +1,4 @@
-/* What moves and what is connected: dofs, separate bodies, mass properties. */
+/* Dofs without mass or stiffness, separate bodies, mass properties. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
@@ -266,8 +266,8 @@ static double check_masses(ritz_checker *it, const ritz_dense *A)
 }
 
 /*
- * What couples translations with each other, and with rotations about the mass
- * centre, against m and m times the size.
+ * Mass that couples translations with each other, relative to m, and with
+ * rotations about the mass centre, relative to m times the size.
  */
 static void check_coupling(ritz_checker *it, const ritz_dense *A, double mass,
                            const double *centre)

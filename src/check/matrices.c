@@ -1,6 +1,6 @@
 /*
- * What the matrices of a component hold: finite and symmetric values, of how
- * many digits, no negative eigenvalue, proportional damping or other.
+ * Matrices of a component: whether values are finite and symmetric, how many
+ * digits they have, negative eigenvalues, proportional damping.
  */
 #include "base/alloc.h"
 #include "base/search.h"

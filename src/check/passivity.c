@@ -88,7 +88,8 @@ void ritz_sampler_free(ritz_sampler **sampler)
  * grid may have stepped over something.
  */
 
-/* Widths beside a pole, of |Re s| or, where that is less, of |s| / 1000. */
+/* Distances from a pole at which a frequency is placed, in units of |Re s|
+   or, where that is less, of |s| / 1000. */
 static const double beside[] = {0.25, 1.0, 4.0};
 /* Of its upper end: the length of a bracket that is not divided any more. */
 enum { DESCENTS = 3, MOST_STATES = 200, PER_POLE = 9 };
@@ -155,7 +156,7 @@ done:
     return status;
 }
 
-/* Least eigenvalue over |G| at w; positive where there is no answer. */
+/* Least eigenvalue over |G| at w; positive where there is no response. */
 static double meet_at(descent *s, double w)
 {
     const double _Complex *G = ritz_sampler_at(s->sampler, w);
@@ -450,7 +451,8 @@ done:
     return status;
 }
 
-/* What output i is: what breaks passivity least; of equals a displacement. */
+/* Take output i for the quantity that violates passivity least, a
+   displacement if equal. */
 static ritz_status guess_quantity(const ritz_collocated *all, int64_t i)
 {
     ritz_status status = RITZ_OK;

@@ -19,7 +19,7 @@
  * motions that the component itself has, less than six in plane models.
  */
 
-/* What the k-th dof of a port is. */
+/* The k-th dof of a port. */
 static ritz_dof dof_of(const ritz_checker *it, const ritz_port *port, int64_t k)
 {
     return it->component->dof[port->dofs.at[k]];

@@ -249,7 +249,7 @@ static void say_grounding(ritz_checker *it, const char *name,
     }
 }
 
-/* What the source's digits mean, now that their effect is known. */
+/* Verdict on the source's digits, now that their effect is known. */
 static void check_digits(ritz_checker *it)
 {
     ritz_verdict verdict = RITZ_PASS;

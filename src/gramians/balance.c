@@ -5,10 +5,10 @@
  *
  *     W'E T = I,   T'... of W_c = T S T', W_o = W S W' in the kept states
  *
- * so that both Gramians of the states W'E x are S: what is reached by little
- * input and what is seen by little output stand in the same order. A value no
- * larger than the rounding of the product has no direction of its own: T and W
- * leave it out whatever was asked for. [Moore1981], [Tombs1987]
+ * so that both Gramians of the states W'E x are S: what is controllable by
+ * little input and what is observable by little output stand in the same order.
+ * A value no larger than the rounding of the product has no direction of its
+ * own: T and W leave it out whatever was asked for. [Moore1981], [Tombs1987]
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -73,7 +73,7 @@ static int64_t count_true(const ritz_gramians *gramians,
     return count;
 }
 
-/* Of the leading rows and columns of G those that are close to I. */
+/* Number of leading rows and columns of G that are close to I. */
 static int64_t count_close(const ritz_dense *G)
 {
     double sum = 0.0;

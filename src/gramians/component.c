@@ -129,8 +129,8 @@ done:
 
 /*
  * A component's Gramians by SLICOT, in states z = [S q; q'] of its modes
- * (states.h). Rigid modes that damping does not couple to others stand apart
- * before, whatever else does not decay is told apart by its poles.
+ * (states.h). Rigid modes that damping does not couple to others are split off
+ * first; whatever else does not decay is split off by its poles.
  */
 
 /* A, B and C of the states as a state space, which takes them. */
@@ -155,7 +155,7 @@ done:
     return status;
 }
 
-/* By SLICOT, in modal coordinates; what does not decay stands apart. */
+/* By SLICOT, in modal coordinates; what does not decay is split off. */
 static ritz_status find_dense(const ritz_gramians_request *request,
                               ritz_gramians *out)
 {
@@ -187,8 +187,8 @@ done:
 }
 
 /*
- * A component's Gramians in closed form (modal_gramians.c, modal_band.c): of all
- * its modes by dense matrices, or of those up to a frequency by sparse ones.
+ * A component's Gramians in closed form (modal_gramians.c, modal_band.c): of
+ * all its modes by dense matrices, or of those up to a frequency by sparse ones.
  */
 
 static ritz_status all_modes(const ritz_gramians_request *request,
@@ -272,7 +272,7 @@ ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
     return ritz_modes_turn(out);
 }
 
-/* Of modes that damping does not couple. */
+/* Gramians of modes that damping does not couple. */
 static ritz_status closed_form(const ritz_gramians_request *request,
                                const ritz_modal_model *modes,
                                ritz_gramians *out)
@@ -318,7 +318,8 @@ done:
     return status;
 }
 
-/* The same unless damping couples modes: then *fits is false, and no more. */
+/* Closed form unless damping couples modes: then *fits is false, and nothing
+   is found. */
 static ritz_status find_modal_if(const ritz_gramians_request *request,
                                  bool *fits, ritz_gramians *out)
 {
@@ -335,7 +336,7 @@ done:
     return status;
 }
 
-/* What an engine is called, and what it heeds. */
+/* Name of an engine, and the options it takes. */
 typedef struct engine_row {
     const char *name;
     ritz_status (*find)(const ritz_gramians_request *request,

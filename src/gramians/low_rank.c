@@ -61,7 +61,8 @@ static void free_block(block *v)
     }
 }
 
-/* What was solved for: v_1 of what is reached, v_2 of what is seen. */
+/* The half of v that is solved for: v_1 for controllability, v_2 for
+   observability. */
 static int solved_half(int side)
 {
     return side == RITZ_REACHED ? RITZ_ABOVE : RITZ_BELOW;

@@ -6,7 +6,8 @@
 
 /**
  * Factors of both Gramians from sparse M, D, K; first-order matrices are never
- * formed. Rigid modes stand apart, dofs without mass follow statically.
+ * formed. Rigid modes are split off, dofs without mass are condensed
+ * statically.
  *
  * @return RITZ_ERR_ARGUMENT if damping is no sparse matrix (ratios of modes,
  *         K4), there is none, it couples rigid motion to others or acts on

@@ -327,7 +327,7 @@ static ritz_status split_dofs(const ritz_component *component,
     return ritz_dofs_complement(&model->massless, model->n, &model->massive);
 }
 
-/* What a dof has of stiffness and mass: units that residuals are told in. */
+/* Stiffness and mass of each dof: the units in which residuals are measured. */
 static ritz_status weigh_dofs(double lambda, ritz_low_rank_model *model)
 {
     RITZ_CHECK_NEW(model->stiff, model->n);

@@ -18,7 +18,7 @@ enum {
 enum { RITZ_REACHED, RITZ_SEEN, RITZ_SIDES };
 enum { RITZ_ABOVE, RITZ_BELOW, RITZ_HALVES };
 
-/* What is solved: M v' + D v + K u = 0 from a start W. */
+/* The equation M v' + D v + K u = 0 with its loads W. */
 typedef struct ritz_low_rank_model {
     int64_t n;
     ritz_sparse K, D;  /* with damping of words and dampers installed */
@@ -26,7 +26,7 @@ typedef struct ritz_low_rank_model {
     ritz_sparse M;     /* borrowed */
     ritz_dofs massive; /* dofs with mass */
     ritz_dofs massless;
-    ritz_dense Phi, MPhi; /* n x a, rigid modes, which stand apart */
+    ritz_dense Phi, MPhi; /* n x a, rigid modes, which are split off */
     ritz_dense W[RITZ_SIDES][RITZ_HALVES]; /* n x inputs, n x outputs */
     double whole[RITZ_SIDES];              /* |W'W| with rigid motion */
     double *stiff, *mass;                  /* n, what a dof has of each */

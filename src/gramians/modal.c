@@ -172,7 +172,7 @@ ritz_status ritz_coupling_refuse(const ritz_coupling *coupling, const char *why)
                      coupling->hertz[0], coupling->hertz[1], own, why);
 }
 
-/* Of so many modes, all zero. */
+/* A model of `count` modes, all zero. */
 static ritz_status modal_empty(int64_t count, int64_t inputs, int64_t outputs,
                                ritz_modal *out)
 {

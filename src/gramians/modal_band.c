@@ -294,8 +294,8 @@ done:
 
 /*
  * Exact Hankel singular values of a modal model: those of Z_o'Z_c, of factors
- * in closed form. Modes that are not reached, or not seen,
- * get zero and not a failure.
+ * in closed form. Modes that are not controllable or not observable get zero
+ * and not a failure.
  *
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */

@@ -3,7 +3,7 @@
  *
  *     Y'E X z' = Y'A X z + Y'B u,   y = C X z,   Y'A X quasi-triangular,
  *
- * has Hammarling's factors: Z_c = X F_c, Z_o = Y F_o. The rest stands apart, as
+ * has Hammarling's factors: Z_c = X F_c, Z_o = Y F_o. The rest is split off, as
  * T and W. [Hammarling1982], [Penzl1998]
  */
 #include "base/alloc.h"

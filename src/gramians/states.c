@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rigid modes stand apart if Delta does not join them to flexible ones. */
+/* Rigid modes are split off if Delta does not couple them with flexible
+   ones. */
 static int64_t count_apart(const ritz_modal_model *modes)
 {
     int64_t r = modes->num_rigid;

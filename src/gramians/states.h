@@ -9,11 +9,11 @@
 /*
  * z = [S q; q'] of the modes, S = diag(w) where w > 0: A is then near skew, and
  * a state's size is the root of its energy. Rigid modes that no damping couples
- * to others stand apart, and are no part of A, B and C.
+ * with others are split off: they are no part of A, B and C.
  */
 typedef struct ritz_states {
     ritz_modal_model modes;
-    int64_t num_apart; /* rigid modes that stand apart, the first ones */
+    int64_t num_apart; /* rigid modes that are split off, the first ones */
     int64_t count;     /* of states in A */
     double *scale;     /* count / 2 */
     double alpha;      /* A is less alpha I [rad/s] */
@@ -40,8 +40,8 @@ ritz_status ritz_states_operator(const ritz_dense *A, bool inverse,
                                  ritz_dense *out);
 
 /**
- * Vectors for x = [u; u']: rigid modes that stand apart, positions and then
- * velocities, before those that @p T and @p W have in z.
+ * Vectors for x = [u; u']: positions and then velocities of the rigid modes
+ * that are split off, before those that @p T and @p W have in z.
  *
  * @param[in] T,W  count x k, W'T = I
  */

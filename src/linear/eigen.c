@@ -1,4 +1,4 @@
-/* What all eigensolvers share: counts, rigid modes, units. */
+/* Shared by all eigensolvers: counts of modes, rigid modes, units. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/shifted.h"

@@ -95,7 +95,8 @@ done:
     return status;
 }
 
-/* The same, further away for as long as the factor breaks down. */
+/* Shift and factor; the shift moves further away while the factor breaks
+   down. */
 static ritz_status shift_near(search *s, double sigma)
 {
     ritz_status status = shift_to(s, sigma);
@@ -175,9 +176,9 @@ done:
 
 /*
  * A shift far beyond the first flexible mode blurs it: come closer where that
- * is possible. Up to RITZ_SHIFT_BLURRED times beyond it Lanczos still tells modes
- * apart at its tolerance, and to begin anew would cost as much again (measured:
- * half of all solves).
+ * is possible. Up to RITZ_SHIFT_BLURRED times beyond it Lanczos still tells
+ * modes apart at its tolerance, and to begin anew would cost as much again
+ * (measured: half of all solves).
  */
 static ritz_status come_closer(search *s, bool *moved)
 {
@@ -242,7 +243,8 @@ static ritz_status ask_more(search *s, int64_t more)
     return RITZ_OK;
 }
 
-/* By number: is the end of what was asked for seen, and none missed? */
+/* Modes asked for by number: whether all are found, and none below them is
+   missed. */
 static ritz_status prove_number(search *s, int64_t *end, bool *done)
 {
     const ritz_pairs *P = &s->found;

@@ -95,7 +95,7 @@ static void supernodal_diagonal(const cholmod_factor *L, double *d)
     }
 }
 
-/* The same of a simplicial one: the first entry of each column. */
+/* Pivots of a simplicial factor: the first entry of each column. */
 static void simplicial_diagonal(const cholmod_factor *L, double *d)
 {
     const int64_t *p = L->p;

@@ -111,8 +111,8 @@ static ritz_status scale_frame(ritz_frame *f)
 
 /*
  * Rounding of the scaled matrix, eps |A|, is eps |A| / (left_i right_j) of the
- * given one. Where entries are themselves rounding, scaling takes them for what
- * they are not, and that grows beyond all bounds: then there is none.
+ * given one. Where entries are themselves rounding, scaling magnifies them
+ * without bound: then the matrices are left unscaled.
  */
 static ritz_status balance_frame(ritz_frame *f)
 {

@@ -36,7 +36,7 @@ ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
                                  ritz_dense *U);
 
 /**
- * The same of a pair in Schur form, S quasi-triangular and P triangular, P {0}
+ * Gramian of a pair in Schur form, S quasi-triangular and P triangular, P {0}
  * the identity:
  *
  *     S W P' + P W S' + B B' = 0,   W = F F'

@@ -23,7 +23,7 @@ void sg03bd_(/* NOLINT: its name */ const char *dico, const char *fact,
              double *beta, double *work, const int *ldwork, int *info,
              size_t dico_length, size_t fact_length, size_t trans_length);
 
-/* What SLICOT is given and may overwrite. */
+/* Arguments of SLICOT, which it may overwrite. */
 typedef struct equation {
     int n, m, ldb, room;
     bool transposed;

@@ -118,7 +118,7 @@ void ritz_mumps_configure(const ritz_mumps *mumps)
     mumps->cntl[NULL_PIVOT_SIZE] = DBL_EPSILON / 16.0; /* judge() does more */
 }
 
-/* What MUMPS reports, in INFOG(1). */
+/* Failures that MUMPS reports in INFOG(1). */
 typedef struct outcome {
     int code;
     ritz_status status;

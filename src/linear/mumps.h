@@ -1,5 +1,5 @@
 /*
- * What the real and the complex factor by sequential MUMPS have in common.
+ * The common part of the real and the complex factor by sequential MUMPS.
  *
  * MUMPS has a struct for each arithmetic; both have the fields below, so each
  * describes its own by a ritz_mumps of pointers and the rest is written once.

@@ -242,8 +242,9 @@ static double largest_energy(const ritz_sparse *W, const double *r, int64_t n)
 }
 
 /*
- * What came in, scaled to one; columns of zero are dropped. Entries of r are
- * known to eps, so that e' W e <= eps^2 |r|' |W| |r| is rounding.
+ * Columns of the incoming block are scaled to one, and zero columns dropped.
+ * Entries of r are known to eps, so that e' W e <= eps^2 |r|' |W| |r| is
+ * rounding.
  */
 static void scale_block(const ritz_sparse *W, block *b)
 {

@@ -46,7 +46,7 @@ static ritz_status check_factor(const ritz_dense *A)
     return RITZ_OK;
 }
 
-/* Of f->A. */
+/* QR factors of f->A with pivoted columns. */
 static ritz_status factor_pivoted(pivoted *f)
 {
     int m = (int)f->A.nrow;

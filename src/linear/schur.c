@@ -1,6 +1,6 @@
 /*
  * With right and left eigenvectors x, y of a pair, A x = lambda E x, an
- * eigenvalue of matrices rounded by eps |A| and eps |E| moves, to first order, by
+ * eigenvalue of matrices rounded by eps |A| and eps |E| moves to first order by
  *
  *     eps (|A| + |lambda| |E|) |x| |y| / |y'E x|
  *
@@ -15,7 +15,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the form, before vectors are turned by Q and Z: lengths stay. */
+/* Eigenvectors of the Schur form itself: Q and Z leave their lengths as they
+   are. */
 typedef struct vectors {
     ritz_dense left, right, Eright;
 } vectors;

@@ -79,7 +79,7 @@ static bool stands_out(int64_t count, const double *value, int64_t k)
            (k == count - 1 || value[k] >= value[k + 1]);
 }
 
-/* The highest below the last that stands out, -1 if there is none. */
+/* Index of the next lower local maximum, -1 if there is none. */
 static int64_t next_highest(int64_t count, const double *value, double below,
                             int64_t after)
 {

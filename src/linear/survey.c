@@ -1,4 +1,5 @@
-/* What K and M show before they are factored, and pairs after. */
+/* Scales of K and M before they are factored, and residuals of eigenpairs
+   after. */
 #include "base/alloc.h"
 #include "base/search.h"
 #include "linear/shifted.h"

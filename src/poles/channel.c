@@ -100,7 +100,7 @@ static ritz_status channel_of_rows(int64_t count, const ritz_channel_row *rows,
     return fill_decoupled(count, rows, squared, feed, out);
 }
 
-/* All of it, in the same coordinates. */
+/* A model whose damping couples modes, or of several inputs and outputs. */
 static ritz_status channel_of_coupled(const ritz_modal_model *f,
                                       ritz_channel *out)
 {
@@ -109,7 +109,7 @@ static ritz_status channel_of_coupled(const ritz_modal_model *f,
     return ritz_dense_copy(&f->feed, &out->D);
 }
 
-/* The same without damping, of several outputs and inputs. */
+/* x'' = A x + B u of an undamped model, several outputs and inputs. */
 static ritz_status channel_of_undamped(const ritz_modal_model *f,
                                        ritz_channel *out)
 {
@@ -186,8 +186,8 @@ static ritz_status take_channel(const ritz_io *io, int64_t output,
     return RITZ_OK;
 }
 
-/* Of a velocity alone, or an acceleration, the displacement; how many
-   derivatives that was. */
+/* An output that is a velocity alone, or an acceleration alone, is replaced
+   by the displacement; the number of derivatives taken away. */
 static int64_t integrate_outputs(ritz_io *io)
 {
     ritz_dense *kind[] = {&io->C, &io->Cv, &io->Ca};

@@ -1,5 +1,5 @@
 /*
- * What zeros are sought of: some inputs and outputs of
+ * The transfer function whose zeros are sought: some inputs and outputs of
  *
  *     x' = A x + B u,    y = C x + D u
  *

@@ -23,7 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What acts, and what is seen. */
+/* A mode's input, and its output as displacement, velocity, acceleration. */
 enum { FORCE, PLACE, SPEED, PUSH, KINDS };
 
 typedef struct sight {
@@ -87,7 +87,7 @@ static void channel_see(const ritz_modal_model *modes, const double *a,
     project_rows(&s, a, value, doubt);
 }
 
-/* What rounding of K and M may bring of mode j into mode k. */
+/* How much of mode j rounding of K and M may mix into mode k. */
 static double channel_mixing(const ritz_modal_model *modes, int64_t j,
                              int64_t k)
 {
@@ -229,13 +229,14 @@ done:
 
 /*
  * Free rigid motions have no frequency, so any orthogonal basis of them are
- * modes. With those that damping acts on set apart,
+ * modes. Without those that damping acts on,
  *
  *     q'' = B_r u,    y = C_r q + Cv_r q'
  *
- * stands for itself, and only range(B_r) moves; of it only what C_r and Cv_r
- * tell from rest is seen. All else is a pair of poles at 0 that zeros cancel:
- * it would be found as such only up to the square root of eps.
+ * is decoupled from the rest. Only range(B_r) is controllable, and only the
+ * part of it that C_r and Cv_r do not map to 0 is observable. All else is a
+ * pair of poles at 0 that zeros cancel; numerically they would cancel only up
+ * to the square root of eps.
  */
 
 /* Rigid motions by columns: a basis of those that count, so far. */
@@ -271,8 +272,8 @@ done:
     return status;
 }
 
-/* Of Delta_ik and Delta_ki, i rigid: that of the product itself, and what
-   flexible modes that rounding mixes into i bring of theirs. */
+/* Rounding error of Delta_ik and Delta_ki, i rigid: of the product itself,
+   and of the flexible modes that rounding mixes into i. */
 static double doubt_of_damping(const sieve *s, const ritz_dense *most,
                                int64_t i, int64_t k)
 {
@@ -287,7 +288,8 @@ static double doubt_of_damping(const sieve *s, const ritz_dense *most,
     return sum;
 }
 
-/* Of Delta, rows and columns of rigid motions, against its rounding. */
+/* Split rigid motions into damped and undamped: rows and columns of Delta
+   are compared with their rounding error. */
 static ritz_status set_apart(const ritz_dense *D, sieve *s)
 {
     ritz_status status = RITZ_OK;
@@ -337,7 +339,8 @@ done:
     return status;
 }
 
-/* Of `left` what the columns of A, r x ., reach; each is known up to 1. */
+/* Restrict `left` to what the columns of A, r x ., reach; each entry of A is
+   known up to 1. */
 static ritz_status keep_reached(const ritz_dense *A, sieve *s)
 {
     ritz_status status = RITZ_OK;

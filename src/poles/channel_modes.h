@@ -5,16 +5,16 @@
 #include "model/modal.h"
 #include "poles/channel.h"
 
-/* Modes of one channel as they are summed, c + s cv over s^2 + rate s + lambda;
-   of equal poles one, with the share of all. What rounding may make of each
-   stands beside it. */
+/* Modes of one channel as they are summed, c + s cv over s^2 + rate s +
+   lambda; modes with equal poles are one row, their participation summed.
+   The rounding error of each number is in `doubt_`. */
 typedef struct ritz_channel_row {
     double lambda, rate, c, cv;
     double doubt_rate, doubt_c, doubt_cv;
 } ritz_channel_row;
 
 /**
- * Modes that are driven and seen beyond rounding.
+ * Modes that are controllable and observable beyond rounding.
  *
  * @param[in]  D     that Delta was projected from; {0}: none
  * @param[in]  io    of one input and one output
@@ -26,7 +26,8 @@ ritz_status ritz_channel_rows(const ritz_modal_model *modes,
                               int64_t *count, ritz_channel_row **out);
 
 /**
- * Without the free rigid motions that no input drives or no output sees.
+ * The model without the free rigid motions that are not controllable or not
+ * observable.
  *
  * @param[in] D   that Delta was projected from; {0}: none
  * @param[in] io  any inputs and outputs

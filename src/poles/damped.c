@@ -102,7 +102,7 @@ done:
     return status;
 }
 
-/* What D leaves out: given ratios are in the rates, D's in the matrices. */
+/* Damping ratio stated beside D: `rate` holds both, `own` that of D alone. */
 static double given_ratio(const ritz_poles *poles, const double *own, int64_t k)
 {
     return (poles->rate[k] - own[k]) / (2.0 * sqrt(poles->lambda[k]));

@@ -16,11 +16,11 @@ ritz_status ritz_poles_of_dense(const ritz_second_order *model,
                                 ritz_poles *out);
 
 /**
- * The same of pairs that are known: all modes of finite frequency, `lambda`
- * with room for as many as there are coordinates.
+ * Poles of pairs that are known: all modes of finite frequency, `lambda` with
+ * room for as many as there are coordinates.
  *
- * @param[in]     beside  take motions without mass as coordinates even where
- *                        no damping acts on them
+ * @param[in]     beside  whether motions without mass become coordinates even
+ *                        where no damping acts on them
  * @param[in,out] pairs   gets their shapes behind those of its modes
  */
 ritz_status ritz_poles_of_pairs(const ritz_second_order *model,

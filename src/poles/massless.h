@@ -5,8 +5,8 @@
 #include "poles/poles.h"
 
 /**
- * The answer of a dense model to its inputs beside that of its modes, at all
- * frequencies the same: with N of ritz_massless, C N N' B. No term where every
+ * The part of a dense model's response that its modes do not have, the same at
+ * all frequencies: with N of ritz_massless, C N N' B. No term where every
  * motion has mass; damping of such motions is left out.
  *
  * @param[in] pairs  of ritz_eigen_dense: all modes of finite frequency

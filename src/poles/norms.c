@@ -1,5 +1,6 @@
 /*
- * Norms of what stable poles answer, in the Schur form that tells them apart:
+ * Norms of the transfer function of a stable model, in the Schur form that
+ * proves it stable:
  *
  *     |G|_inf = max_w sigma_1(C (i w P - S)^-1 B + D),
  *     |G|_2   = |C F_c|_F,   S W_c P' + P W_c S' + B B' = 0,   W_c = F_c F_c'
@@ -96,7 +97,8 @@ static ritz_status peak_at(peak *s, double w, double *value)
     return RITZ_OK;
 }
 
-/* 0 and, of every pole, where it alone answers most, else its magnitude. */
+/* 0 and, for every pole, the frequency at which its own response peaks, or
+   its magnitude if it has no peak. */
 static ritz_status choose_frequencies(const peak *s, int64_t *count,
                                       double **out)
 {
@@ -129,7 +131,7 @@ static ritz_status value_at(void *state, double w, double *value)
     return peak_at(state, w, value);
 }
 
-/* What is met is remembered by the peak. */
+/* The largest value so far is kept in the peak. */
 static ritz_status climb_between(peak *s, double low, double high)
 {
     const ritz_curve curve = {value_at, s};
@@ -256,7 +258,7 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
     return RITZ_OK;
 }
 
-/* What AB13DD is given, and its work space. */
+/* Arguments of AB13DD, and its work space. */
 typedef struct hamiltonian {
     ritz_dense S, P, B, C, D;
     int *iwork;

@@ -30,8 +30,10 @@ static void assemble_coupled(const ritz_poles *poles, double w,
     }
 }
 
-/* S Z S and S q, of unit diagonal: w^2 of rigid motion is small beside Lambda
- * where nothing is wrong. */
+/*
+ * S Z S and S q, of unit diagonal: w^2 of rigid motion may be small against
+ * Lambda without being singular.
+ */
 static void equilibrate_coupled(int64_t m, int64_t inputs, double _Complex *Z,
                                 double _Complex *q, double *s)
 {
@@ -172,7 +174,8 @@ done:
     return status;
 }
 
-/* How much output i sees of mode k; a rigid acceleration is no pole. */
+/* Participation of mode k in output i; an acceleration of a rigid mode has
+   no pole. */
 static double participation_of(const ritz_poles *poles, int64_t i, int64_t k)
 {
     const ritz_io *io = &poles->io;

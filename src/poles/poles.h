@@ -15,12 +15,12 @@
 #include <ritz/response.h>
 
 /*
- * What the modes that were left out answer, damped by a M + b K: with K^+ the
+ * Response of the modes that were left out, damped by a M + b K: with K^+ the
  * inverse of K where they live, R_0 = K^+ B and R_j = K^+ M R_(j-1),
  *
  *     X = sum_j mu^j R_j / (1 + i w b),    mu = (w^2 - i w a) / (1 + i w b)
  *
- * of it only what the outputs see. No ratio damps them.
+ * of which only the outputs are kept. Damping ratios do not act on it.
  */
 typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
@@ -43,7 +43,7 @@ typedef struct ritz_poles {
     ritz_dense D;       /* count x count, with `rate` on its diagonal, or {0} */
     ritz_dense K4;      /* count x count, or {0} */
     ritz_io io;         /* for the modes */
-    ritz_residual rest; /* what motions without mass answer; {0}: none */
+    ritz_residual rest; /* response of motions without mass; {0}: none */
     double _Complex *q; /* count x num_inputs, to work in: one thread */
 } ritz_poles;
 
@@ -57,19 +57,19 @@ ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
  *
  * @param[out] q  count + massless rows, num_inputs columns
  * @return RITZ_ERR_SINGULAR if that is on an undamped pole, or at 0 Hz where
- *         rigid modes are driven and seen
+ *         rigid modes are controllable and observable
  */
 ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
                              double _Complex *q);
 
 /**
- * Whether any output sees, through mode k, any input: more than rounding of
- * what it sees through all.
+ * Whether mode k is controllable and observable: whether it adds to any
+ * transfer function more than the rounding of all modes.
  */
 bool ritz_poles_matter(const ritz_poles *poles, int64_t k);
 
 /**
- * Add what the modes, and motions without mass, answer to H, num_outputs x
+ * H += response of the modes and of motions without mass; num_outputs x
  * num_inputs, row by row.
  */
 ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
@@ -100,9 +100,10 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
                                     ritz_poles *out);
 
 /**
- * What the modes beside @p pairs answer, damped as @p damping, if it is
- * a M + b K, and D say together. Of a D that is no such sum, of K4, and where
- * a is so large that there is no series, nothing is heeded.
+ * Response of the modes that are not in @p pairs, damped by @p damping, if it
+ * is a M + b K, and by D, if it is such a sum. Other damping of these modes is
+ * neglected: by another D, by K4, and where a is so large that the series does
+ * not converge.
  *
  * @param[in] damping  NULL: none beside D
  * @param[in] to_hz    where the series is to be good to 1e-12

@@ -1,5 +1,5 @@
 /*
- * The answer of all modes above those of `pairs`, free bodies included:
+ * Response of all modes above those of `pairs`, free bodies included:
  *
  *     K R_0 = B - M Phi Phi'B,   K R_j = M R_(j-1),   Phi'M R_j = 0
  *
@@ -9,8 +9,8 @@
  *     mu = (w^2 - i w a) / (1 + i w b)
  *
  * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall
- * by |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the |mu|
- * at the end of the range: powers of rad^2/s^2 leave all bounds.
+ * by |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the
+ * |mu| at the end of the range: powers of rad^2/s^2 would overflow.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -44,8 +44,9 @@ typedef struct ritz_rest_solver {
     ritz_dense MPhi;
     ritz_factor *F;
     double sigma;
-    double *whole; /* of each input, what all modes and R_0 answer at the end */
-    bool begun;    /* R_0 is known */
+    double *
+        whole; /* of each input, the response of all modes and R_0 at the end */
+    bool begun; /* R_0 is known */
 } ritz_rest_solver;
 
 /* Steps shrink by 100 or more, so that 8 reach rounding; a body of which no
@@ -60,8 +61,9 @@ static void rest_solver_free(ritz_rest_solver *s)
 }
 
 /*
- * Of a body of which nothing but rigid motion is kept: a hundredth of what all
- * others are above, but no less than what the rounding of K leaves definite.
+ * Shift for a body of which only rigid modes are kept: a hundredth of the
+ * eigenvalue that all others exceed, but large enough that K - sigma M stays
+ * definite in spite of rounding.
  */
 static double rigid_shift(const ritz_component *component,
                           const ritz_pairs *pairs, double out_hz)
@@ -82,7 +84,7 @@ static double rigid_shift(const ritz_component *component,
 
 /*
  * The largest value of sum_k |phi_k| |phi_k'b| / max(lambda_k, w^2), of each
- * input: how large the modes answer between their resonances.
+ * input: the size of the modal response between resonances.
  */
 static ritz_status size_modes(const ritz_pairs *pairs, const ritz_dense *B,
                               double to_hz, double *out)
@@ -138,9 +140,9 @@ done:
 }
 
 /*
- * The last change of a term, worst of all inputs, over what is small beside
- * its largest value, or beside the whole answer at the end of the range:
- * @p change as it should be, @p apart as it must be.
+ * Last change of a term, the worst of all inputs, relative to what is negligible
+ * against its largest value or against the whole response at the end of the
+ * range: @p change over what is wanted, @p apart over what is required.
  */
 static void measure_change(const ritz_rest_solver *s, const ritz_dense *R,
                            const ritz_dense *last, double *change,
@@ -164,7 +166,7 @@ static void measure_change(const ritz_rest_solver *s, const ritz_dense *R,
     }
 }
 
-/* As M-orthogonal to the modes as rounding leaves it: twice is enough. */
+/* M-orthogonal to the modes up to rounding: two passes are enough. */
 static ritz_status take_out_twice(const ritz_dense *left,
                                   const ritz_dense *right, ritz_dense *X)
 {

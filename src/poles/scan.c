@@ -60,7 +60,7 @@ static double _Complex nearest_pole(const ritz_spectrum *spectrum,
     return best;
 }
 
-/* What is being scanned: copies of K, D and the dampers. */
+/* The model that is scanned: copies of K, D and the dampers. */
 typedef struct bench {
     ritz_dense K, D;
     ritz_dampers dampers;

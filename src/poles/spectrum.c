@@ -107,7 +107,8 @@ done:
     return status;
 }
 
-/* With K4 beside: what has Im s < 0 is of the conjugate problem, and left. */
+/* Poles with K4: those with Im s < 0 belong to the conjugate problem and are
+   dropped later. */
 static ritz_status solve_complex(const ritz_state *state, found *out)
 {
     ritz_status status = RITZ_OK;
@@ -156,8 +157,8 @@ static int ascending(const void *left, const void *right)
 }
 
 /*
- * What of |s| is rounding where rigid motion is kept, as D acts on it: eps of
- * the matrix.
+ * Magnitude below which a pole is a rounded 0, where rigid motion is kept
+ * because D acts on it: a few eps of the matrix.
  */
 static ritz_status find_zero(const ritz_state *state, double *out)
 {
@@ -237,7 +238,7 @@ static ritz_status pick_columns(const found *f, int64_t count,
     return RITZ_OK;
 }
 
-/* What K4 adds to A: rows m .. 2m - 1 of its imaginary part. */
+/* Ay += (imaginary part of A, which K4 makes) y: rows m .. 2m - 1. */
 static void add_structural(const ritz_state *state, const ritz_dense *y,
                            double sign, ritz_dense *Ay)
 {

@@ -17,8 +17,8 @@
  * The space in which damped poles of a large component are sought. Undamped
  * modes alone mislead where dampers are discrete: the motion that a truncated
  * set leaves across a damper is far from the true one, and so is the ratio.
- * With the static answers X to a force along each influence vector beside them
- * the small model is near enough for inverse iteration to settle on what is
+ * With the static responses X to a force along each influence vector the small
+ * model is near enough for inverse iteration to converge to the poles that are
  * sought.
  *
  *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
@@ -165,7 +165,8 @@ static double correlation_of(const ritz_spectrum *spectrum, int64_t j,
     return hypot(real, imaginary) / sqrt(xx * yy);
 }
 
-/* Whether a pair is one of those before; double poles have shapes apart. */
+/* Whether a pole is one of the `count` before it; double poles have
+   different shapes. */
 static bool is_listed(const ritz_spectrum *spectrum, int64_t count,
                       double _Complex s, const ritz_dense *x)
 {
@@ -283,7 +284,8 @@ done:
     return status;
 }
 
-/* a M + b K in D itself: `seen` is the component but for D, which is its own.*/
+/* D := D + a M + b K: `seen` borrows all of the component but D, which it
+   owns. */
 static ritz_status add_rayleigh(const ritz_component *component,
                                 const ritz_damping *damping,
                                 ritz_component *seen)

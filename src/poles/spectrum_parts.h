@@ -1,4 +1,4 @@
-/* What poles and scans of components share. */
+/* Shared by poles and scans of components. */
 #ifndef RITZ_POLES_SPECTRUM_PARTS_H
 #define RITZ_POLES_SPECTRUM_PARTS_H
 
@@ -13,7 +13,7 @@ typedef struct ritz_whole {
     ritz_second_order model; /* of these; io NULL */
 } ritz_whole;
 
-/** What ritz_spectrum_component does with larger ones. */
+/* * Poles of a component of more dofs than that, by a projection. */
 ritz_status ritz_spectrum_large(const ritz_component *component,
                                 const ritz_damping *damping,
                                 const ritz_span *span, ritz_spectrum *out);

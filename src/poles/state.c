@@ -131,7 +131,8 @@ static ritz_status take_modes(const ritz_second_order *model, ritz_pairs *pairs)
     return RITZ_OK;
 }
 
-/* What stated damping adds to D; of N, where M is 0 and K is 1, only b K. */
+/* D += stated damping. In the coordinates N, where M is 0 and K is 1, a M +
+   b K is b. */
 static void add_given(const ritz_damping *damping, const ritz_pairs *pairs,
                       ritz_dense *D)
 {

@@ -71,7 +71,8 @@ static void pencil_free(pencil *s)
     free(s->beta);
 }
 
-/* The same with largest entry 1, unless it is zero; what it was. */
+/* A scaled to a largest entry of 1; `size` is what it was, or 1 if A is
+   zero. */
 static ritz_status copy_scaled(const ritz_dense *A, double *size,
                                ritz_dense *out)
 {
@@ -179,8 +180,8 @@ done:
  *     f(z)   = d + c x,            (z I - T) x = b,  w (z I - T) = c
  *     f'(z)  = -w x,               f''(z) = 2 w y,   (z I - T) y = x
  *
- * Where modes are apart it is diagonal, or of blocks of two that are brought to
- * it in closed form.
+ * Where modes are decoupled A is diagonal, or has blocks of two that are
+ * triangularised in closed form.
  */
 
 static void fill_diagonal(const ritz_channel *channel, triangle *t)

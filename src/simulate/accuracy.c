@@ -1,9 +1,10 @@
 /*
  * The step at which outputs are as accurate as asked: halved until they are.
  *
- * Halving cannot help an output that is rounding. It is known by its size
- * beside what the motion could show by it, or by a difference that is small
- * beside that and does not fall, where second order has it fall fourfold.
+ * Halving cannot help an output that is rounding. It is recognised by its size
+ * relative to what the motion could produce at it, or by a difference that is
+ * small relative to that and does not fall, where second order makes it fall
+ * fourfold.
  */
 #include <ritz/simulate.h>
 
@@ -54,7 +55,8 @@ static void trial_free(trial *t)
     *t = (trial){0};
 }
 
-/* Whether it is the rounding of what could be shown that keeps it apart. */
+/* Whether the difference of two runs is rounding of what the output could
+   be. */
 static bool is_rounding(double size, double off, double shown, int in_vain)
 {
     return size <= RITZ_SUM_ROUNDING * shown ||
@@ -117,7 +119,7 @@ done:
     return status;
 }
 
-/* Not at multiples of a period, where a sine is not seen. */
+/* Not at multiples of a period, where a sine is 0. */
 static double first_step(const ritz_simulation_request *request,
                          int64_t num_inputs)
 {

@@ -1,8 +1,8 @@
 /*
  * Exact propagation by modes [Sirlin1992]: inputs that are held, or linear,
- * over a step leave no error but rounding, at any step. Modes that D leaves
- * apart go by the closed forms of oscillator.c; those it couples go together,
- * each group by one exponential of
+ * over a step leave no error but rounding, at any step. Modes that D does not
+ * couple are propagated by the closed forms of oscillator.c; those it couples
+ * together, each group by one exponential of
  *
  *     z = [q; q'; s u; s u'],   z' = [0 I 0 0; -L -D B/s 0; 0 0 0 I; 0 0 0 0] z
  *

@@ -62,7 +62,7 @@ static ritz_status find_rest(const ritz_component *component, double up_to_hz,
     return ritz_residual_new(component, NULL, pairs, 0.0, up_to_hz, out);
 }
 
-/* Modal, up to a frequency, with the static answer of all above in `feed`. */
+/* Modal, up to a frequency, with the static response of all above in `feed`. */
 static ritz_status motion_of_modes(const ritz_component *component,
                                    const ritz_damping *damping, double up_to_hz,
                                    ritz_motion *out)

@@ -5,7 +5,7 @@
  *     q_1  = (S' + d S) q_0 +      S  v_0 + P f + R g
  *     v_1  =   -lambda S q_0 +     S' v_0 + S f + P g
  *
- * S is the answer of q to a unit velocity, S' its rate, P and R its first and
+ * S is the response of q to a unit velocity, S' its rate, P and R its first and
  * second integral.
  */
 #ifndef RITZ_SIMULATE_OSCILLATOR_H
@@ -16,7 +16,8 @@ typedef struct ritz_oscillator {
     double S, rate, P, R;
 } ritz_oscillator;
 
-/** Of any real lambda and d, without loss where roots meet or vanish. */
+/* * For any real lambda and d, without loss of digits where roots meet or
+   vanish. */
 ritz_oscillator ritz_oscillator_over(double lambda, double d, double h);
 
 #endif

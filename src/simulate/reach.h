@@ -1,6 +1,6 @@
 /*
- * What a motion could show by each output, which its rounding is of: with
- * |x|^2 = x'M x, and M in M^-1 by its diagonal alone,
+ * The largest value that a motion could give an output; its rounding is
+ * relative to that: with |x|^2 = x'M x, and M in M^-1 by its diagonal alone,
  *
  *     |c x + cv x' + ca x''| <= |c| |x| + |cv| |x'| + |ca| |x''|,
  *     |c|^2 = c M^-1 c',

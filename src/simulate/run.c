@@ -248,7 +248,7 @@ void ritz_reach_free(ritz_reach *reach)
     *reach = (ritz_reach){0};
 }
 
-/* Of more values than this a file is not to be made. */
+/* A file of more values than this is refused. */
 static const int64_t most_values = INT64_C(1) << 31;
 
 ritz_status ritz_request_steps(const ritz_simulation_request *request,
