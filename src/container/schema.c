@@ -19,14 +19,6 @@
 
 /* Letters and shapes. */
 
-static int64_t get_whole(const void *object, size_t offset)
-{
-    int64_t value = 0;
-
-    memcpy(&value, (const char *)object + offset, sizeof value);
-    return value;
-}
-
 static const ritz_size *find_size(const ritz_schema *schema, char letter)
 {
     for (const ritz_size *s = schema->sizes; s && s->letter; s++)
@@ -37,14 +29,16 @@ static const ritz_size *find_size(const ritz_schema *schema, char letter)
 
 int64_t ritz_schema_size(const ritz_place *place, char letter)
 {
-    for (; place; place = place->outer) {
-        const ritz_size *s = find_size(place->schema, letter);
+    const ritz_size *s = NULL;
+    int64_t value = 0;
 
-        if (s)
-            return s->count ? s->count(place->object)
-                            : get_whole(place->object, s->offset);
-    }
-    return 0;
+    for (; place && !s; place = s ? place : place->outer)
+        s = find_size(place->schema, letter);
+    if (s && s->count)
+        return s->count(place->object);
+    if (s)
+        memcpy(&value, (const char *)place->object + s->offset, sizeof value);
+    return value;
 }
 
 /* "12", "n", "3r", "n+1" or "-1"; returns what follows. */
@@ -149,25 +143,16 @@ static void copy_group(const char *path, ritz_name out)
 static bool has_link(hid_t at, const char *path)
 {
     ritz_name group = "";
-    hid_t id = 0;
-    bool has = false;
 
     copy_group(path, group);
-    if (!group[0])
-        return ritz_h5_has(at, path);
-    if (!ritz_h5_has(at, group))
-        return false;
-    id = H5Gopen2(at, group, H5P_DEFAULT);
-    has = id > 0 && ritz_h5_has(id, strchr(path, '/') + 1);
-    ritz_h5_close(id);
-    return has;
+    return (!group[0] || ritz_h5_has(at, group)) && ritz_h5_has(at, path);
 }
 
-static const void *pointer_at(const void *object, size_t offset)
+static const void *pointer_in(const void *field)
 {
     const void *pointer = NULL;
 
-    memcpy(&pointer, (const char *)object + offset, sizeof pointer);
+    memcpy(&pointer, field, sizeof pointer);
     return pointer;
 }
 
@@ -195,23 +180,15 @@ static bool is_empty(const ritz_place *place, const ritz_member *row)
 {
     const void *field = field_of(place, row);
 
-    switch (row->kind) {
-    case ATTRIBUTE_TEXT:
+    if (row->kind == ATTRIBUTE_TEXT)
         return !*(const char *)field;
-    case ATTRIBUTE_FLAG:
+    if (row->kind == ATTRIBUTE_FLAG)
         return !*(const bool *)field;
-    case SET_WHOLE:
-    case SET_REAL:
-    case SET_NAMES:
-    case SET_WORDS:
-        return !pointer_at(field, 0);
-    case MATRIX_DENSE:
+    if (row->kind == MATRIX_DENSE)
         return !((const ritz_dense *)field)->val;
-    case MATRIX_SPARSE:
+    if (row->kind == MATRIX_SPARSE)
         return !((const ritz_sparse *)field)->colptr;
-    default:
-        return false;
-    }
+    return row->kind >= SET_WHOLE && !pointer_in(field);
 }
 
 /* Whether the object says that it has this member. */
@@ -239,8 +216,7 @@ static bool is_due(const ritz_place *place, const ritz_member *row)
     return has_link(place->at, *what ? what : row->name);
 }
 
-/* Arrays: values in the file, gathered from and scattered to items. */
-
+/* Arrays: gathered from the items of an object, and scattered to them. */
 static size_t width_in_file(const ritz_member *row)
 {
     return row->kind == SET_WHOLE || row->kind == SET_REAL ? sizeof(int64_t)
@@ -249,10 +225,10 @@ static size_t width_in_file(const ritz_member *row)
 
 static size_t width_of_item(const ritz_member *row)
 {
-    if (row->size > 0)
-        return row->size;
-    return row->kind == SET_COLUMN_KINDS ? sizeof(ritz_column_kind)
-                                         : width_in_file(row);
+    size_t value = row->kind == SET_COLUMN_KINDS ? sizeof(ritz_column_kind)
+                                                 : width_in_file(row);
+
+    return row->size > 0 ? row->size : value;
 }
 
 static hid_t type_of(const ritz_member *row)
@@ -341,7 +317,7 @@ static ritz_status write_array(const ritz_place *place, hid_t at,
     char *values = NULL;
 
     RITZ_NEW(values, count * (int64_t)width_in_file(row));
-    gather(row, count, row->inside ? field : pointer_at(field, 0), values);
+    gather(row, count, row->inside ? field : pointer_in(field), values);
     if (row->kind == SET_NAMES)
         RITZ_TRY_IN(name_of(row), check_names(count, (void *)values));
     RITZ_TRY(ritz_h5_write(at, name_of(row), type, shape, values));
@@ -409,21 +385,15 @@ static ritz_status write_attribute(const ritz_place *place, hid_t at,
                                    const ritz_member *row)
 {
     const void *field = field_of(place, row);
-    const int64_t one = 1;
+    const int64_t one = 1; /* of a flag */
 
-    switch (row->kind) {
-    case ATTRIBUTE_TEXT:
+    if (row->kind == ATTRIBUTE_TEXT)
         return ritz_h5_set_text(at, row->name, field);
-    case ATTRIBUTE_FLAG:
-        return ritz_h5_set(at, row->name, H5T_STD_I64LE, ritz_h5_scalar(),
-                           &one);
-    case ATTRIBUTE_WHOLE:
-        return ritz_h5_set(at, row->name, H5T_STD_I64LE,
-                           ritz_schema_shape(place, row), field);
-    default:
-        return ritz_h5_set(at, row->name, H5T_IEEE_F64LE,
-                           ritz_schema_shape(place, row), field);
-    }
+    return ritz_h5_set(at, row->name,
+                       row->kind == ATTRIBUTE_REAL ? H5T_IEEE_F64LE
+                                                   : H5T_STD_I64LE,
+                       ritz_schema_shape(place, row),
+                       row->kind == ATTRIBUTE_FLAG ? &one : field);
 }
 
 static ritz_status check_attribute(const ritz_place *place,
@@ -493,17 +463,16 @@ static ritz_status move_part(const ritz_place *place, const ritz_member *row)
 {
     ritz_status status = RITZ_OK;
     ritz_place part = ritz_schema_part(place, row);
-    hid_t group = 0;
 
     if (is_read(place))
         part.target = target_of(place, row);
     if (!*row->name)
         return ritz_schema_move(&part);
-    RITZ_TRY(open_group(place, row->name, &group));
-    part.at = group;
+    part.at = 0;
+    RITZ_TRY(open_group(place, row->name, &part.at));
     RITZ_TRY(ritz_schema_move(&part));
 done:
-    ritz_h5_close(group);
+    ritz_h5_close(part.at);
     return ritz_context(status, row->name);
 }
 
@@ -543,7 +512,7 @@ ritz_status ritz_schema_items(const ritz_place *place, const ritz_member *row,
                               int64_t *count, ritz_name **out)
 {
     ritz_status status = RITZ_OK;
-    const char *item = pointer_at(field_of(place, row), 0);
+    const char *item = pointer_in(field_of(place, row));
     ritz_name *name = NULL;
 
     *count = ritz_schema_size(place, *row->shape);
@@ -586,7 +555,7 @@ static ritz_status move_list(const ritz_place *place, const ritz_member *row)
     RITZ_TRY(open_group(place, row->name, &item.at));
     RITZ_TRY(is_read(place) ? find_items(place, row, item.at, &count, &name)
                             : ritz_schema_items(place, row, &count, &name));
-    item.object = pointer_at(field_of(place, row), 0);
+    item.object = pointer_in(field_of(place, row));
     if (is_read(place))
         memcpy(&item.target, field_of(place, row), sizeof item.target);
     for (; item.index < count; item.index++) {
@@ -702,27 +671,20 @@ static ritz_status read_sizes(const ritz_place *place)
     return RITZ_OK;
 }
 
-/* What stands for an attribute that files of earlier releases lack. */
-static void set_absent(const ritz_place *place, const ritz_member *row)
-{
-    const double none = nan("");
-
-    if (row->kind == ATTRIBUTE_REAL && row->values == VALUES_OR_NAN)
-        memcpy(target_of(place, row), &none, sizeof none);
-}
-
 ritz_status ritz_schema_move(const ritz_place *place)
 {
     ritz_status status = RITZ_OK;
     row_group open = {0};
+    const double none = nan(""); /* for what earlier releases did not write */
 
     if (is_read(place))
         RITZ_CHECK(read_sizes(place));
     for (const ritz_member *row = place->schema->members; row->name; row++) {
         if (!(is_read(place) ? is_due(place, row)
                              : ritz_schema_is_given(place, row))) {
-            if (is_read(place) && row->optional)
-                set_absent(place, row);
+            if (is_read(place) && row->kind == ATTRIBUTE_REAL &&
+                row->optional && row->values == VALUES_OR_NAN)
+                memcpy(target_of(place, row), &none, sizeof none);
             continue;
         }
         RITZ_TRY(follow_group(place, row, &open));

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void ritz_scene_row_clear(const ritz_scene *scene, double *row)
+static void clear_row(const ritz_scene *scene, double *row)
 {
     for (int64_t k = 0; k < scene->num_sweeps; k++)
         row[k] = nan("");
@@ -36,8 +36,9 @@ static ritz_status find_sweep(const ritz_scene *scene, const char *name,
     return ritz_words_find(&sweeps, name, out);
 }
 
-ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *name,
-                               double setting, double *row)
+/* Put a setting in a row, once; the sweep is named "clock" or "wrist.2". */
+static ritz_status set_in_row(const ritz_scene *scene, const char *name,
+                              double setting, double *row)
 {
     int64_t k = 0;
 
@@ -48,7 +49,8 @@ ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *name,
     return RITZ_OK;
 }
 
-ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row)
+/* A sweep with one setting alone need not be given. */
+static ritz_status fill_row(const ritz_scene *scene, double *row)
 {
     for (int64_t k = 0; k < scene->num_sweeps; k++) {
         const ritz_sweep *sweep = &scene->sweep[k];
@@ -62,12 +64,13 @@ ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row)
     return RITZ_OK;
 }
 
-ritz_status ritz_scene_row_read(const ritz_yaml *yaml, const yaml_node_t *node,
-                                const ritz_scene *scene, double *row)
+/* The row of {clock: 60, slide: 0.5}. */
+static ritz_status read_row(const ritz_yaml *yaml, const yaml_node_t *node,
+                            const ritz_scene *scene, double *row)
 {
     int64_t count = 0;
 
-    ritz_scene_row_clear(scene, row);
+    clear_row(scene, row);
     RITZ_CHECK(ritz_yaml_pairs(yaml, node, &count));
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
@@ -77,10 +80,10 @@ ritz_status ritz_scene_row_read(const ritz_yaml *yaml, const yaml_node_t *node,
         RITZ_CHECK(ritz_yaml_text(yaml, word, &name));
         RITZ_CHECK(
             ritz_yaml_real(yaml, ritz_yaml_value_at(yaml, node, k), &setting));
-        RITZ_CHECK(ritz_yaml_at(yaml, word,
-                                ritz_scene_row_set(scene, name, setting, row)));
+        RITZ_CHECK(
+            ritz_yaml_at(yaml, word, set_in_row(scene, name, setting, row)));
     }
-    return ritz_yaml_at(yaml, node, ritz_scene_row_fill(scene, row));
+    return ritz_yaml_at(yaml, node, fill_row(scene, row));
 }
 
 /* One "clock=60" of a text, `length` letters long. */
@@ -101,7 +104,7 @@ static ritz_status set_part(const ritz_scene *scene, const char *part,
     RITZ_REFUSE_IF(!ritz_text_real(equals + 1, &setting), RITZ_ERR_ARGUMENT,
                    "'%s' of joint '%s' is not a finite number",
                    ritz_text_short(equals + 1, cut), text);
-    return ritz_scene_row_set(scene, text, setting, row);
+    return set_in_row(scene, text, setting, row);
 }
 
 ritz_status ritz_scene_settings(const ritz_scene *scene, const char *at,
@@ -111,14 +114,14 @@ ritz_status ritz_scene_settings(const ritz_scene *scene, const char *at,
     double *row = NULL;
 
     RITZ_NEW(row, scene->num_sweeps);
-    ritz_scene_row_clear(scene, row);
+    clear_row(scene, row);
     for (const char *part = *at ? at : NULL; part;) {
         size_t length = strcspn(part, ",");
 
         RITZ_TRY(set_part(scene, part, length, row));
         part = part[length] ? part + length + 1 : NULL;
     }
-    RITZ_TRY(ritz_scene_row_fill(scene, row));
+    RITZ_TRY(fill_row(scene, row));
     if (scene->num_sweeps > 0)
         memcpy(setting, row, (size_t)scene->num_sweeps * sizeof *row);
 done:
@@ -190,7 +193,7 @@ static ritz_status new_settings(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* All combinations: row c counts with a digit for each sweep, the last fastest. */
+/* All combinations: row c counts with a digit a sweep, the last fastest. */
 static ritz_status combine_settings(const ritz_yaml *yaml, ritz_scene *scene)
 {
     int64_t n = scene->num_sweeps;
@@ -228,8 +231,8 @@ ritz_status ritz_scene_configurations(const ritz_yaml *yaml,
                    "combination of settings is one");
     RITZ_CHECK(new_settings(yaml, node, (double)count, scene));
     for (int64_t c = 0; c < count; c++)
-        RITZ_CHECK(ritz_scene_row_read(yaml, ritz_yaml_item(yaml, node, c),
-                                       scene, scene->setting + c * n));
+        RITZ_CHECK(read_row(yaml, ritz_yaml_item(yaml, node, c), scene,
+                            scene->setting + c * n));
     RITZ_CHECK(ritz_rows_repeated(count, n, scene->setting, &again));
     RITZ_REFUSE_AT(again >= 0, yaml, ritz_yaml_item(yaml, node, again),
                    "this configuration is listed before");
@@ -252,7 +255,7 @@ static ritz_status find_reference(const ritz_yaml *yaml,
     int64_t n = scene->num_sweeps;
     int64_t c = 0;
 
-    RITZ_CHECK(ritz_scene_row_read(yaml, node, scene, row));
+    RITZ_CHECK(read_row(yaml, node, scene, row));
     while (c < scene->num_configurations &&
            !rows_agree(n, row, scene->setting + c * n))
         c++;

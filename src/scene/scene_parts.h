@@ -40,26 +40,6 @@ ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
                                   const ritz_scene *scene,
                                   ritz_scene_place *out);
 
-/** Nothing set yet of any sweep. */
-void ritz_scene_row_clear(const ritz_scene *scene, double *row);
-
-/**
- * Put a setting in a row, once.
- *
- * @param[in] name  of the sweep: "clock", "wrist.2"
- * @return RITZ_ERR_ARGUMENT if there is no such sweep or it has its setting
- */
-ritz_status ritz_scene_row_set(const ritz_scene *scene, const char *name,
-                               double setting, double *row);
-
-/** Sweeps without a setting get their only one; RITZ_ERR_ARGUMENT if it is not.
- */
-ritz_status ritz_scene_row_fill(const ritz_scene *scene, double *row);
-
-/** The row of settings of {clock: 60, slide: 0.5}. */
-ritz_status ritz_scene_row_read(const ritz_yaml *yaml, const yaml_node_t *node,
-                                const ritz_scene *scene, double *row);
-
 /** First of @p count rows of @p n numbers that repeats one before it, or -1. */
 ritz_status ritz_rows_repeated(int64_t count, int64_t n, const double *val,
                                int64_t *out);
