@@ -179,7 +179,7 @@ static ritz_status take_constraint(ritz_bulk_cards *all, const ritz_card *card,
     return RITZ_OK;
 }
 
-/* What each card is; sorted by name. */
+/* The cards that are read, and by which function; sorted by name. */
 static const struct kind {
     const char *name;
     taker *take;
@@ -287,7 +287,8 @@ static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
     return RITZ_OK;
 }
 
-/* What is said of an SPC with a motion, once matrices are to obey it. */
+/* Keep a sentence that refuses an SPC with a motion: it fails the import only
+ * if matrices are to obey it. */
 static ritz_status note_imposed(const ritz_cards *cards,
                                 const ritz_bulk_range *range, ritz_deck *out)
 {
@@ -380,9 +381,6 @@ static ritz_status list_dofs(ritz_deck *out)
 /* Put together what all cards say. */
 static ritz_status build_deck(ritz_bulk_cards *all, ritz_deck *out)
 {
-    RITZ_CHECK(ritz_bulk_settle_grids(all));
-    RITZ_CHECK(ritz_bulk_settle_frames(all));
-    RITZ_CHECK(ritz_bulk_resolve_frames(all));
     RITZ_CHECK(ritz_bulk_place_grids(all, &out->grids));
     RITZ_CHECK(ritz_bulk_list_points(all, out));
     RITZ_CHECK(list_dofs(out));

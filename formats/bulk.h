@@ -1,4 +1,4 @@
-/* What the parts of the bulk data reader hand each other; private to them. */
+/* Bulk data between its cards and the deck: private to the reader. */
 #ifndef RITZ_FORMATS_BULK_H
 #define RITZ_FORMATS_BULK_H
 
@@ -86,18 +86,12 @@ ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all,
 ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
                                  int32_t kind, bool by_grids);
 
-/** Sort grids and frames, once all cards are there; each id once. */
-ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all);
-ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all);
-
-/** Find origin and axes of every frame. @cost O(n log n) */
-ritz_status ritz_bulk_resolve_frames(ritz_bulk_cards *all);
-
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
                                           int64_t id);
 
-/** Positions and displacement frames of all grids. */
-ritz_status ritz_bulk_place_grids(const ritz_bulk_cards *all, ritz_grids *out);
+/** Settle and place all grids and frames, once all cards are there; each id
+ * counts once. @cost O(n log n) */
+ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out);
 
 /** Append a range to a set. */
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range);
@@ -118,7 +112,7 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
 /** Copy the sentence of the latest failure. */
 ritz_status ritz_bulk_keep_sentence(char **out);
 
-/** Which grids elements join. */
+/** Append the elements, by the grids that they join. */
 ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out);
 
 /**

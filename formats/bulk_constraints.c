@@ -81,7 +81,7 @@ static ritz_status tying_mask(const ritz_bulk_tying *it, int64_t k,
     return RITZ_OK;
 }
 
-/* Whether field @p k holds a number with a point. */
+/* A number with a point is a thermal expansion coefficient, not a grid. */
 static bool tying_is_real(const ritz_bulk_tying *it, int64_t k)
 {
     return strchr(ritz_card_text(it->card, k), '.') != NULL;

@@ -1,10 +1,9 @@
 /*
- * Elements as a picture needs them: which grids each of them joins. What else
- * their cards say is of no concern here, so one that is not understood is no
- * failure: it is left out of pictures, and counted.
+ * Elements for pictures: the grids that each of them joins. An element that is
+ * not understood is no failure: it is left out of pictures, and counted.
  *
- * Nodes between corners come in another order in wedges and bricks: edges below,
- * upright, above here; below, above, upright in VTK.
+ * Nodes between corners of wedges and bricks are listed in the order lower,
+ * vertical, upper edges here, and lower, upper, vertical edges in VTK.
  *
  * [Nastran1986], section 2.4.
  */

@@ -24,27 +24,27 @@
  * are the frame's own axes x, y, z, which is what the public NASTRAN does.
  */
 
-static void cross(const double a[static 3], const double b[static 3],
-                  double out[static 3])
+static void cross_product(const double a[static 3], const double b[static 3],
+                          double out[static 3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double norm(const double a[static 3])
+static double length_of(const double a[static 3])
 {
     return hypot(hypot(a[0], a[1]), a[2]);
 }
 
-static void divide(double a[static 3], double by)
+static void divide_vector(double a[static 3], double by)
 {
     for (int k = 0; k < 3; k++)
         a[k] /= by;
 }
 
 /* sin and cos of an angle in degrees, exact where they are 0 or 1. */
-static void turn(double degrees, double *sine, double *cosine)
+static void turn_degrees(double degrees, double *sine, double *cosine)
 {
     static const double EXACT[] = {0.0, 1.0, 0.0, -1.0, 0.0};
     double angle = degrees * (RITZ_PI / 180.0);
@@ -61,8 +61,8 @@ static void turn(double degrees, double *sine, double *cosine)
 }
 
 /* Coordinates of a kind of frame as x, y, z along its axes. */
-static void straighten(int32_t kind, const double x[static 3],
-                       double out[static 3])
+static void straighten_point(int32_t kind, const double x[static 3],
+                             double out[static 3])
 {
     double s = 0.0;
     double c = 1.0;
@@ -72,13 +72,13 @@ static void straighten(int32_t kind, const double x[static 3],
     memcpy(out, x, 3 * sizeof *out);
     if (kind == RITZ_RECTANGULAR)
         return;
-    turn(x[1], &s, &c);
+    turn_degrees(x[1], &s, &c);
     if (kind == RITZ_CYLINDRICAL) {
         out[0] = x[0] * c;
         out[1] = x[0] * s;
         return;
     }
-    turn(x[2], &s_phi, &c_phi);
+    turn_degrees(x[2], &s_phi, &c_phi);
     out[0] = x[0] * s * c_phi;
     out[1] = x[0] * s * s_phi;
     out[2] = x[0] * c;
@@ -94,7 +94,7 @@ static void place_point(const ritz_bulk_frame *frame, const double x[static 3],
         memcpy(out, x, 3 * sizeof *out);
         return;
     }
-    straighten(frame->kind, x, local);
+    straighten_point(frame->kind, x, local);
     for (int j = 0; j < 3; j++)
         out[j] = frame->origin[j] + local[0] * frame->axes[j] +
                  local[1] * frame->axes[3 + j] + local[2] * frame->axes[6 + j];
@@ -104,7 +104,7 @@ static void place_point(const ritz_bulk_frame *frame, const double x[static 3],
 static void local_axes(int32_t kind, const double p[static 3], double r,
                        double out[static 9])
 {
-    double radius = norm(p);
+    double radius = length_of(p);
     double c_phi = p[0] / r;
     double s_phi = p[1] / r;
     double s = r / radius;
@@ -122,7 +122,7 @@ static void find_axes(const ritz_bulk_frame *frame,
 {
     double p[3] = {0.0, 0.0, 0.0};
     double local[9];
-    double scale = norm(position) + norm(frame->origin);
+    double scale = length_of(position) + length_of(frame->origin);
     double r = 0.0;
 
     memcpy(out, frame->axes, sizeof frame->axes);
@@ -159,19 +159,19 @@ static ritz_status orient_frame(const ritz_bulk_cards *all,
         e_z[k] = B[k] - A[k];
         to_C[k] = C[k] - A[k];
     }
-    z = norm(e_z);
+    z = length_of(e_z);
     if (z > 0.0)
-        divide(e_z, z);
-    cross(e_z, to_C, e_y);
-    y = norm(e_y);
-    if (!(z > 0.0 && y > RITZ_POINTS_ON_A_LINE * norm(to_C) && isfinite(z) &&
-          isfinite(y)))
+        divide_vector(e_z, z);
+    cross_product(e_z, to_C, e_y);
+    y = length_of(e_y);
+    if (!(z > 0.0 && y > RITZ_POINTS_ON_A_LINE * length_of(to_C) &&
+          isfinite(z) && isfinite(y)))
         RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
                                      "the three points of coordinate system "
                                      "%" PRId64 " lie on a line",
                                      frame->id));
-    divide(e_y, y);
-    cross(e_y, e_z, e_x);
+    divide_vector(e_y, y);
+    cross_product(e_y, e_z, e_x);
     return RITZ_OK;
 }
 
@@ -243,7 +243,7 @@ static int compare_grids(const void *a, const void *b)
                  : (left->line > right->line) - (left->line < right->line);
 }
 
-static void complete(int64_t *value, int64_t given)
+static void complete_field(int64_t *value, int64_t given)
 {
     if (*value == RITZ_BULK_BLANK)
         *value = given == RITZ_BULK_BLANK ? 0 : given;
@@ -263,7 +263,7 @@ static bool is_sorted(const ritz_bulk_cards *all)
     return true;
 }
 
-ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all)
+static ritz_status settle_grids(ritz_bulk_cards *all)
 {
     int64_t kept = 0;
 
@@ -273,9 +273,9 @@ ritz_status ritz_bulk_settle_grids(ritz_bulk_cards *all)
     for (int64_t k = 0; k < all->num_grids; k++) {
         ritz_bulk_grid *grid = &all->grid[k];
 
-        complete(&grid->cp, all->defaults.cp);
-        complete(&grid->cd, all->defaults.cd);
-        complete(&grid->spc, all->defaults.spc);
+        complete_field(&grid->cp, all->defaults.cp);
+        complete_field(&grid->cd, all->defaults.cd);
+        complete_field(&grid->spc, all->defaults.spc);
         if (kept == 0 || all->grid[kept - 1].id != grid->id) {
             all->grid[kept++] = *grid;
             continue;
@@ -374,7 +374,7 @@ static bool same_frame(const ritz_bulk_frame *a, const ritz_bulk_frame *b)
     return same;
 }
 
-ritz_status ritz_bulk_settle_frames(ritz_bulk_cards *all)
+static ritz_status settle_frames(ritz_bulk_cards *all)
 {
     int64_t kept = 0;
 
@@ -467,7 +467,8 @@ done:
     return status;
 }
 
-static ritz_status resolve(const ritz_bulk_cards *all, ritz_bulk_frame *frame)
+static ritz_status resolve_frame(const ritz_bulk_cards *all,
+                                 ritz_bulk_frame *frame)
 {
     double p[3][3];
 
@@ -506,13 +507,13 @@ static ritz_status resolve_from(const ritz_bulk_cards *all, int64_t first,
             below->progress = OPEN;
             stack[depth++] = below - all->frame;
         } else {
-            RITZ_CHECK(resolve(all, &all->frame[stack[--depth]]));
+            RITZ_CHECK(resolve_frame(all, &all->frame[stack[--depth]]));
         }
     }
     return RITZ_OK;
 }
 
-ritz_status ritz_bulk_resolve_frames(ritz_bulk_cards *all)
+static ritz_status resolve_frames(ritz_bulk_cards *all)
 {
     ritz_status status = RITZ_OK;
     int64_t *stack = NULL;
@@ -579,7 +580,8 @@ done:
     return status;
 }
 
-static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
+static ritz_status place_grid(const ritz_bulk_cards *all, int64_t k,
+                              builder *build)
 {
     const ritz_bulk_grid *grid = &all->grid[k];
     double *position = &build->grids.position[3 * k];
@@ -611,11 +613,14 @@ static ritz_status place(const ritz_bulk_cards *all, int64_t k, builder *build)
     return RITZ_OK;
 }
 
-ritz_status ritz_bulk_place_grids(const ritz_bulk_cards *all, ritz_grids *out)
+ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out)
 {
     ritz_status status = RITZ_OK;
     builder build = {.room = 1};
 
+    RITZ_TRY(settle_grids(all));
+    RITZ_TRY(settle_frames(all));
+    RITZ_TRY(resolve_frames(all));
     RITZ_NEW(build.row, all->num_frames);
     RITZ_NEW(build.grids.id, all->num_grids);
     RITZ_NEW(build.grids.position, 3 * all->num_grids);
@@ -626,7 +631,7 @@ ritz_status ritz_bulk_place_grids(const ritz_bulk_cards *all, ritz_grids *out)
     build.grids.num_frames = 1;
     build.grids.count = all->num_grids;
     for (int64_t k = 0; k < all->num_grids; k++)
-        RITZ_TRY(place(all, k, &build));
+        RITZ_TRY(place_grid(all, k, &build));
     *out = build.grids;
     build.grids = (ritz_grids){0};
 done:

@@ -30,7 +30,7 @@ static int compare_ranges(const void *a, const void *b)
 }
 
 /* Ranges that overlap or touch become one; returns how many are left. */
-static int64_t merge(int64_t count, ritz_bulk_range *range)
+static int64_t merge_ranges(int64_t count, ritz_bulk_range *range)
 {
     int64_t kept = 0;
 
@@ -74,7 +74,7 @@ ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
     if (all->points.count > 0)
         memcpy(range, all->points.range,
                (size_t)all->points.count * sizeof *range);
-    count = merge(all->points.count, range);
+    count = merge_ranges(all->points.count, range);
     RITZ_TRY(count_ids(&all->cards, count, range, &num));
     RITZ_NEW(point, num);
     num = 0;
@@ -111,7 +111,7 @@ static ritz_status add_dof(dofs *list, int64_t grid, int64_t component)
     return RITZ_OK;
 }
 
-static bool has(const ritz_bulk_range *range, int64_t c)
+static bool has_direction(const ritz_bulk_range *range, int64_t c)
 {
     return (((unsigned)range->mask >> (unsigned)c) & 1U) != 0;
 }
@@ -128,12 +128,12 @@ static ritz_status add_named(const ritz_bulk_cards *all,
         RITZ_CHECK(ritz_cards_refuse(
             &all->cards, one->line,
             "scalar point %" PRId64 " has no directions", one->from));
-    if (grid && has(one, 0))
+    if (grid && has_direction(one, 0))
         RITZ_CHECK(ritz_cards_refuse(
             &all->cards, one->line,
             "no directions of GRID %" PRId64 " are given", one->from));
     for (int64_t c = 0; c <= 6; c++)
-        if (has(one, c))
+        if (has_direction(one, c))
             RITZ_CHECK(add_dof(list, one->from, point ? 0 : c));
     return RITZ_OK;
 }
@@ -173,9 +173,9 @@ static ritz_status add_direction(const ritz_bulk_cards *all,
 
     RITZ_NEW(range, given->count);
     for (int64_t k = 0; k < given->count; k++)
-        if (!given->range[k].each && has(&given->range[k], c))
+        if (!given->range[k].each && has_direction(&given->range[k], c))
             range[count++] = given->range[k];
-    count = merge(count, range);
+    count = merge_ranges(count, range);
     if (built->grids.count + built->num_points == 0)
         RITZ_TRY(add_all(all, c, count, range, list));
     else if (c == 0)

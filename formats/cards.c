@@ -199,7 +199,7 @@ done:
     return status;
 }
 
-static ritz_status include(ritz_scanner *scan, const char *path)
+static ritz_status include_file(ritz_scanner *scan, const char *path)
 {
     char *bytes = NULL;
 
@@ -236,7 +236,7 @@ static ritz_status follow_include(ritz_scanner *scan, const char *rest)
         goto done;
     }
     RITZ_TRY(join_path(top->folder, name, &path));
-    RITZ_TRY_IN(where, include(scan, path));
+    RITZ_TRY_IN(where, include_file(scan, path));
 done:
     free(path);
     return status;

@@ -96,13 +96,13 @@ ritz_status ritz_card_take(const ritz_cards *cards, int64_t k, ritz_card *card);
 /** Field @p k of a card, from 0; "" behind its end. */
 const char *ritz_card_text(const ritz_card *card, int64_t k);
 
-/** The same as a number; a blank one is @p blank. */
+/** Field @p k as a number; @p blank if the field is blank. */
 ritz_status ritz_card_whole(const ritz_card *card, int64_t k, int64_t blank,
                             int64_t *out);
 ritz_status ritz_card_real(const ritz_card *card, int64_t k, double blank,
                            double *out);
 
-/** The same where a positive number must be. */
+/** Field @p k as a positive whole number. */
 ritz_status ritz_card_id(const ritz_card *card, int64_t k, int64_t *out);
 
 /** Numbers as NASTRAN writes them: 1.5D+3, 1.5+3, .5, -1.-3. */
@@ -126,10 +126,10 @@ void ritz_cards_free(ritz_cards *cards);
 /** Order of two int64_t, and of structs that begin with an id. */
 int ritz_cards_compare_ids(const void *left, const void *right);
 
-/** Whether a set of SPC or MPC cards acts; those selected are sorted. */
+/** True if a set of SPC or MPC cards acts; the selected sets are sorted. */
 bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set);
 
-/** Whether a field is @p word, which is in capitals. */
+/** True if a field is @p word, which is in capitals. */
 bool ritz_card_is_word(const char *text, const char *word);
 
 /** Directions "123" as digits; @return false if they are not distinct 0-6 */

@@ -141,7 +141,7 @@ static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
     return RITZ_OK;
 }
 
-/* Whether anything but blanks stands in a free line after item k. */
+/* True if a free line has anything but blanks after item k. */
 static bool more_items(const ritz_view *line, int64_t k)
 {
     const char *text = NULL;

@@ -29,7 +29,7 @@ void ritz_card_trim(const char **text, int64_t *length);
 /** Leave out what stands behind a '$'. */
 void ritz_card_uncomment(const char *line, int64_t *length);
 
-/** Whether a line begins with @p word, capitals; *rest: what follows it. */
+/** True if a line begins with @p word, in capitals; *rest: the text behind. */
 bool ritz_card_begins(const char *line, int64_t length, const char *word,
                       const char **rest);
 
@@ -52,7 +52,7 @@ void ritz_view_name(const ritz_view *line, const char **text, int64_t *length);
 bool ritz_view_item(const ritz_view *line, int64_t k, const char **text,
                     int64_t *length);
 
-/** Whether a free item is a marker, +C1 or *, rather than a number. */
+/** True if a free item is a marker, +C1 or *, rather than a number. */
 bool ritz_view_is_marker(const char *text, int64_t length);
 
 /**

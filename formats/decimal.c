@@ -185,7 +185,7 @@ static const char *scan_exponent(const char *at, const char *end, reading *r)
     return at;
 }
 
-/* Numbers that are none. */
+/* "nan" and "inf", which are read as such. */
 static bool scan_word(const char **at, const char *c, const char *end,
                       ritz_decimal *out)
 {

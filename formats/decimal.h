@@ -18,13 +18,13 @@ typedef struct ritz_decimal {
  */
 bool ritz_decimal_scan(const char **at, const char *end, ritz_decimal *out);
 
-/** The same of a whole number of at most 18 digits. */
+/** Scan a whole number of at most 18 digits, as above. */
 bool ritz_decimal_scan_whole(const char **at, const char *end, int64_t *out);
 
 /** Move over blanks and tabs; NUL is a blank too, as old files pad so. */
 const char *ritz_decimal_skip(const char *at, const char *end);
 
-/** Whether @p at is neither the end nor a blank: a word goes on. */
+/** True if @p at is neither the end nor a blank: a word goes on. */
 bool ritz_decimal_is_inside(const char *at, const char *end);
 
 /** @p count whole numbers and nothing else, apart by blanks. */

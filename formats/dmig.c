@@ -33,7 +33,7 @@ enum {
     RITZ_DMIG_COLUMNS = 9,
 };
 
-/* What a header says. */
+/* A header card. */
 typedef struct ritz_dmig_header {
     char name[RITZ_NAME_SIZE];
     int64_t line; /* in the deck */
@@ -68,7 +68,7 @@ static int compare_names(const void *a, const void *b)
     return strcmp(left->name, right->name);
 }
 
-static char upper(char letter)
+static char upper_case(char letter)
 {
     return (char)toupper((unsigned char)letter);
 }
@@ -83,7 +83,7 @@ static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
     for (; name[k]; k++) {
         if (iscntrl((unsigned char)name[k]) || name[k] == '/')
             return ritz_card_refuse(card, 0, "the name of a matrix");
-        out[k] = upper(name[k]);
+        out[k] = upper_case(name[k]);
     }
     out[k] = '\0';
     return RITZ_OK;
@@ -231,8 +231,9 @@ done:
 }
 
 /* The dofs that occur as rows, as columns or as either, ascending. */
-static ritz_status collect(const ritz_dmig_term *terms, int64_t count,
-                           bool rows, bool cols, int64_t *found, ritz_dof **out)
+static ritz_status collect_dofs(const ritz_dmig_term *terms, int64_t count,
+                                bool rows, bool cols, int64_t *found,
+                                ritz_dof **out)
 {
     ritz_dof *dof = NULL;
     int64_t n = 0;
@@ -249,7 +250,8 @@ static ritz_status collect(const ritz_dmig_term *terms, int64_t count,
     return RITZ_OK;
 }
 
-static int64_t position(ritz_dof wanted, int64_t count, const ritz_dof *dof)
+static int64_t find_position(ritz_dof wanted, int64_t count,
+                             const ritz_dof *dof)
 {
     const ritz_dof *found =
         bsearch(&wanted, dof, (size_t)count, sizeof wanted, ritz_dof_compare);
@@ -266,8 +268,8 @@ static ritz_status list_terms(const ritz_dmig_header *owner,
     RITZ_CHECK(ritz_triplets_new(2 * owner->count, out));
     for (int64_t k = 0; k < owner->count; k++) {
         const ritz_dmig_term *one = &terms[k];
-        int64_t i = position(one->row, nrow, row);
-        int64_t j = position(one->col, ncol, col);
+        int64_t i = find_position(one->row, nrow, row);
+        int64_t j = find_position(one->col, ncol, col);
 
         ritz_triplets_put(out, i, j, one->re, one->im);
         if (owner->form == RITZ_DMIG_SYMMETRIC && i != j)
@@ -293,10 +295,11 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     snprintf(new.spelling, sizeof new.spelling, "DMIG, form %d%s%s",
              (int)owner->form, owner->complex ? ", complex" : "",
              owner->polar ? ", polar" : "");
-    RITZ_TRY(collect(terms, owner->count, true, square, &nrow, &new.row));
+    RITZ_TRY(collect_dofs(terms, owner->count, true, square, &nrow, &new.row));
     ncol = nrow;
     if (!square)
-        RITZ_TRY(collect(terms, owner->count, false, true, &ncol, &new.col));
+        RITZ_TRY(
+            collect_dofs(terms, owner->count, false, true, &ncol, &new.col));
     RITZ_TRY(list_terms(owner, terms, nrow, new.row, ncol,
                         square ? new.row : new.col, &list));
     RITZ_TRY(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
@@ -447,7 +450,7 @@ done:
     return status;
 }
 
-/* Whether a line begins with DMIG, in any case, as a word. */
+/* True if a line begins with the word DMIG, in any case. */
 static bool is_dmig(const char *line, int64_t length)
 {
     static const char WORD[] = "DMIG";

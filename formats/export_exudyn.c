@@ -262,7 +262,7 @@ static hid_t text_type(void)
     return type;
 }
 
-static ritz_status label(hid_t at, const char *datatype)
+static ritz_status label_object(hid_t at, const char *datatype)
 {
     hid_t type = text_type();
     ritz_status status =
@@ -278,7 +278,7 @@ static ritz_status label_set(hid_t file, const char *name, const char *datatype)
     hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
 
     RITZ_FAIL_IF(set < 0, RITZ_ERR_FILE, "cannot open '%s'", name);
-    RITZ_TRY(label(set, datatype));
+    RITZ_TRY(label_object(set, datatype));
 done:
     ritz_h5_close(set);
     return status;
@@ -368,14 +368,14 @@ static ritz_status write_file(hid_t file, const ritz_reduced *reduced,
     RITZ_TRY(write_text(file, "rigidBodyNodeType",
                         "NodeType.RotationEulerParameters"));
     RITZ_TRY(ritz_h5_group(file, "postProcessingModes", &group));
-    RITZ_TRY(label(group, "dict"));
+    RITZ_TRY(label_object(group, "dict"));
 done:
     ritz_h5_close(group);
     return status;
 }
 
-static ritz_status publish(const char *path, const ritz_reduced *reduced,
-                           const exudyn_body *b)
+static ritz_status publish_file(const char *path, const ritz_reduced *reduced,
+                                const exudyn_body *b)
 {
     ritz_status status = RITZ_OK;
     ritz_draft draft = {0};
@@ -396,16 +396,16 @@ done:
     return status;
 }
 
-static ritz_status write(const ritz_reduced *reduced,
-                         const ritz_export_request *request,
-                         ritz_export_report *report)
+static ritz_status write_body(const ritz_reduced *reduced,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
 {
     ritz_status status = RITZ_OK;
     exudyn_body b = {0};
 
     RITZ_TRY(exudyn_body_of(reduced, &b));
     RITZ_TRY(exudyn_body_say(reduced, &b, report));
-    RITZ_TRY(publish(request->output, reduced, &b));
+    RITZ_TRY(publish_file(request->output, reduced, &b));
 done:
     exudyn_body_free(&b);
     return status;
@@ -416,5 +416,5 @@ const ritz_exporter ritz_exporter_exudyn = {
     .summary = "a flexible body for Exudyn (FFRF, reduced order), HDF5",
     .reference = "Gerstmayr2023",
     .kind = "reduced",
-    .write_reduced = write,
+    .write_reduced = write_body,
 };

@@ -157,7 +157,7 @@ static ritz_status sheet_open(const char *path, sheet *out)
     return RITZ_OK;
 }
 
-/* Whether the file holds the matrices that were to be written, to the bit. */
+/* True if the file holds the matrices that were to be written, to the bit. */
 static ritz_status check(const char *path, const ritz_matrices *list)
 {
     ritz_status status = RITZ_OK;
@@ -202,7 +202,7 @@ static void sheet_free(sheet *s)
     ritz_draft_free(&s->draft);
 }
 
-/* All that a reduced component has but T, which may be large. */
+/* All matrices of a reduced component but T, which may be large. */
 static void list_all(const ritz_reduced *r, size_t room, char *out)
 {
     const struct {

@@ -1,6 +1,6 @@
 /*
- * Shapes as a VTK unstructured grid in XML, all of it text [Schroeder2006]: one vector
- * field a shape, and the number of each grid.
+ * Shapes as a VTK unstructured grid in XML, all of it text [Schroeder2006]: one
+ * vector field for each shape, and the number of each grid.
  */
 #include "base/draft.h"
 #include "formats/sink.h"

@@ -1,5 +1,5 @@
 /*
- * Shapes as XDMF [Clarke2007]: a small XML file, and an HDF5 file beside it that
+ * Shapes as XDMF [Clarke2007]: a small XML file, and beside it an HDF5 file that
  * holds the numbers and is named after it. Cells are drawn by their corners, as
  * few readers know others in a mixed mesh.
  */

@@ -35,7 +35,7 @@ static ritz_status select_columns(const ritz_columns *columns, bool rigid,
     return RITZ_OK;
 }
 
-static double dot(int64_t n, const double *x, const double *y)
+static double dot_product(int64_t n, const double *x, const double *y)
 {
     double sum = 0.0;
 
@@ -51,16 +51,16 @@ static double dot(int64_t n, const double *x, const double *y)
 static double remove_part(const ritz_orthonormal *set, double *x)
 {
     int64_t n = set->V.nrow;
-    double before = sqrt(dot(n, x, x));
+    double before = sqrt(dot_product(n, x, x));
 
     for (int64_t j = 0; j < 2 * set->count; j++) {
         const double *q = ritz_dense_col(&set->V, j % set->count);
-        double part = dot(n, q, x);
+        double part = dot_product(n, q, x);
 
         for (int64_t i = 0; i < n; i++)
             x[i] -= part * q[i];
     }
-    return before > 0.0 ? sqrt(dot(n, x, x)) / before : 0.0;
+    return before > 0.0 ? sqrt(dot_product(n, x, x)) / before : 0.0;
 }
 
 /* Refuse motions T Z that are not those of a rigid body. */
@@ -94,7 +94,8 @@ done:
     return status;
 }
 
-static ritz_status project(const ritz_reduced *reduced, exudyn_modes *modes)
+static ritz_status project_matrices(const ritz_reduced *reduced,
+                                    exudyn_modes *modes)
 {
     RITZ_CHECK(ritz_dense_congruence(&reduced->K, &modes->V, &modes->K));
     return ritz_dense_congruence(&reduced->M, &modes->V, &modes->M);
@@ -120,7 +121,7 @@ static ritz_status keep_columns(const ritz_reduced *reduced,
     RITZ_TRY(select_columns(&reduced->columns, false, &kept.V));
     if (Z.ncol == 0 || kept.V.ncol == 0)
         goto done;
-    RITZ_TRY(project(reduced, &kept));
+    RITZ_TRY(project_matrices(reduced, &kept));
     RITZ_TRY(ritz_eigen_dense(&kept.K, &kept.M, &pairs));
     if (pairs.num_rigid > 0 || pairs.Phi.ncol < kept.V.ncol)
         goto done;
@@ -136,7 +137,8 @@ done:
     return status;
 }
 
-static ritz_status diagonalise(const ritz_reduced *reduced, exudyn_modes *modes)
+static ritz_status diagonalise_body(const ritz_reduced *reduced,
+                                    exudyn_modes *modes)
 {
     ritz_status status = RITZ_OK;
     ritz_dense Z = {0};
@@ -150,7 +152,7 @@ static ritz_status diagonalise(const ritz_reduced *reduced, exudyn_modes *modes)
     RITZ_TRY(demand_rigid(reduced, &Z));
     RITZ_TRY(ritz_dense_columns(&pairs.Phi, pairs.num_rigid,
                                 pairs.Phi.ncol - pairs.num_rigid, &modes->V));
-    RITZ_TRY(project(reduced, modes));
+    RITZ_TRY(project_matrices(reduced, modes));
     modes->num_rigid = pairs.num_rigid;
     note_band(&pairs, modes);
 done:
@@ -166,7 +168,7 @@ ritz_status exudyn_modes_of(const ritz_reduced *reduced, exudyn_modes *out)
 
     RITZ_TRY(keep_columns(reduced, &modes));
     if (!modes.V.val)
-        RITZ_TRY(diagonalise(reduced, &modes));
+        RITZ_TRY(diagonalise_body(reduced, &modes));
     *out = modes;
     modes = (exudyn_modes){0};
 done:

@@ -43,7 +43,7 @@ ritz_status exudyn_terms_of(const ritz_invariants *invariants,
                             const ritz_inertia *inertia, exudyn_terms *out);
 void exudyn_terms_free(exudyn_terms *terms);
 
-/* All that the file holds. */
+/* The contents of the file. */
 typedef struct exudyn_body {
     int64_t num_dofs; /* of the component, and recovered ones behind them */
     ritz_dof *dof;
@@ -63,7 +63,7 @@ typedef struct exudyn_body {
  */
 ritz_status exudyn_body_of(const ritz_reduced *reduced, exudyn_body *out);
 
-/** What was left to the frame, and what is lost. */
+/** Report the motions left to the moving frame, and the losses. */
 ritz_status exudyn_body_say(const ritz_reduced *reduced, const exudyn_body *b,
                             ritz_export_report *report);
 void exudyn_body_free(exudyn_body *b);

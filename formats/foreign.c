@@ -133,7 +133,7 @@ done:
 
 /* ---- one by name -------------------------------------------------------- */
 
-static char fold(char c)
+static char fold_case(char c)
 {
     return (char)(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
 }
@@ -154,7 +154,7 @@ static bool same_name(const char *a, const char *b, int64_t length)
     if (n != length)
         return false;
     for (int64_t k = 0; k < n; k++)
-        if (fold(a[k]) != fold(b[k]))
+        if (fold_case(a[k]) != fold_case(b[k]))
             return false;
     return true;
 }
@@ -200,7 +200,7 @@ ritz_status ritz_foreign_path(const char *spec_text, char **out)
     return RITZ_OK;
 }
 
-/* As they stand, or failing that whatever their case. */
+/* Names are compared as they stand; if none is equal, without their case. */
 static bool is_named(const ritz_listing *all, const spec *s, int64_t k)
 {
     const char *name = all->item[k].name;
@@ -328,7 +328,7 @@ void ritz_file_sums_free(ritz_file_sums *sums)
     *sums = (ritz_file_sums){0};
 }
 
-/* Whether a spec names a matrix of the file that is open. */
+/* True if a spec names a matrix of the file that is open. */
 static bool is_of_file(const ritz_foreign *file, const char *spec_text)
 {
     spec s = split_spec(spec_text);

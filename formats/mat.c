@@ -33,7 +33,7 @@ static bool is_mat(const char *bytes, int64_t size)
     return find_level(bytes, size) != NULL;
 }
 
-/* Values are looked at too: a matrix that is not finite is none. */
+/* Values are read too: a matrix with NaN is listed as unusable. */
 static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
 {
     const struct level *level = find_level(file->bytes, file->size);

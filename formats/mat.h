@@ -1,4 +1,4 @@
-/* What the parts of the MAT reader hand each other. */
+/* Matrices of MAT files between their levels: private to the reader. */
 #ifndef RITZ_FORMATS_MAT_H
 #define RITZ_FORMATS_MAT_H
 
@@ -41,7 +41,7 @@ typedef struct ritz_mat_list {
     const char *spelling;  /* "MAT level 5" */
 } ritz_mat_list;
 
-/** Bytes of a value, 0 if the type is none of values. */
+/** Bytes of a value; 0 if the type is not a number. */
 int64_t ritz_mat_size(int type);
 
 double ritz_mat_value(const ritz_mat_values *values, int64_t k);
@@ -52,7 +52,7 @@ uint64_t ritz_mat_bits(const unsigned char *at, int64_t size, bool swap);
 /** Count a matrix that is not wanted; false: it is to be added. */
 bool ritz_mat_pass(ritz_mat_list *list);
 
-/** A matrix that is not there: why it is none. */
+/** Add a variable that is not a matrix, and the reason. */
 ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
                                const char *why);
 

@@ -32,7 +32,7 @@ typedef struct group {
     char name[RITZ_NAME_SIZE];
 } group;
 
-/* Groups in the order in which they are met, structs behind what they are in. */
+/* Groups in the order in which they are met, structs behind their group. */
 typedef struct walk {
     ritz_mat_list *list;
     int64_t members;
@@ -70,7 +70,7 @@ done:
     return status;
 }
 
-/* Whether no filter is needed but those that bound what comes out. */
+/* True if all filters are known ones: their output is bounded. */
 static bool is_plain(hid_t set)
 {
     static const H5Z_filter_t known[] = {H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE,
@@ -169,7 +169,7 @@ static ritz_mat_values values_of(const double *values, int64_t count)
                              RITZ_MAT_DOUBLE, *first == 0};
 }
 
-/* What kind of values: 'r' real, 'c' complex, 0 neither. */
+/* Kind of the values: 'r' real, 'c' complex, 0 neither. */
 static char kind_of(hid_t set)
 {
     hid_t type = H5Dget_type(set);
@@ -215,7 +215,7 @@ done:
 }
 
 /* One number of an attribute; -1 if it is not there. */
-static double attribute(hid_t at, const char *name)
+static double read_attribute(hid_t at, const char *name)
 {
     double value = -1.0;
     hid_t id = H5Aexists(at, name) > 0 ? H5Aopen(at, name, H5P_DEFAULT) : -1;
@@ -234,7 +234,7 @@ static ritz_status add_sparse(walk *w, hid_t at, const char *name)
     ritz_status status = RITZ_OK;
     double *row[2] = {0}, *start[2] = {0}, *value[2] = {0};
     int64_t count[3] = {0};
-    double nrow = attribute(at, "MATLAB_sparse");
+    double nrow = read_attribute(at, "MATLAB_sparse");
     ritz_mat_entries e = {.starts = true};
     int64_t bytes = w->list->bytes;
 
@@ -282,7 +282,7 @@ static const char *why_none(hid_t set, const ritz_h5_shape *shape)
             return none[k].why;
     if (!kind_of(set))
         return "an object";
-    if (attribute(set, "MATLAB_empty") > 0.0)
+    if (read_attribute(set, "MATLAB_empty") > 0.0)
         return "empty";
     if (shape->rank != 2)
         return "not an array of two dimensions";

@@ -1,10 +1,10 @@
 /*
  * MAT Level 4: one matrix after another, each with a head of five words,
  *
- *     1000 M + 10 P + T,  rows,  columns,  imaginary part or not,  length of name
+ *     1000 M + 10 P + T, rows, columns, imaginary part or not, length of name
  *
- * M byte order, P type of value, T full, text or sparse; then name and values by
- * columns. A sparse one is stored as rows (i, j, value), the last one its size.
+ * M byte order, P type of value, T full, text or sparse; then the name, and the
+ * values by columns. A sparse one is stored as rows (i, j, value), the last one its size.
  */
 #include "formats/mat.h"
 
@@ -105,8 +105,8 @@ static ritz_status add_sparse(ritz_mat_list *list, const char *name,
     return RITZ_OK;
 }
 
-static ritz_status add(ritz_mat_list *list, const char *name, const head *h,
-                       const char *values)
+static ritz_status add_variable(ritz_mat_list *list, const char *name,
+                                const head *h, const char *values)
 {
     int64_t count = h->nrow * h->ncol;
     ritz_mat_values re = {(const unsigned char *)values, count, h->type,
@@ -150,7 +150,7 @@ ritz_status ritz_mat_read_level4(const char *bytes, int64_t size,
                        "'%s' is %" PRId64 " x %" PRId64 ", but %" PRId64
                        " bytes are left",
                        name, h.nrow, h.ncol, left);
-        RITZ_CHECK(add(list, name, &h, bytes + at));
+        RITZ_CHECK(add_variable(list, name, &h, bytes + at));
         at += h.nrow * h.ncol * h.parts * ritz_mat_size(h.type);
     }
     return RITZ_OK;

@@ -29,7 +29,7 @@ typedef struct mat_element {
     int64_t bytes;
 } mat_element;
 
-/* ---- elements of the file ------------------------------------------------- */
+/* ---- elements of the file ----------------------------------------------- */
 
 enum {
     HEAD = 128,
@@ -95,7 +95,7 @@ static ritz_status take_element(mat_reader *r, mat_element *out)
     return RITZ_OK;
 }
 
-/* ---- the inside of an array ----------------------------------------------- */
+/* ---- the inside of an array --------------------------------------------- */
 
 /*
  * Flags, dimensions, name, and then by class
@@ -129,8 +129,8 @@ typedef struct mat_array {
 } mat_array;
 
 /* An element of one type, of so many bytes; -1: any number. */
-static ritz_status take(mat_reader *r, const char *what, int type,
-                        int64_t bytes, mat_element *out)
+static ritz_status take_typed(mat_reader *r, const char *what, int type,
+                              int64_t bytes, mat_element *out)
 {
     RITZ_CHECK(take_element(r, out));
     RITZ_REFUSE_IF(out->type != type || (bytes >= 0 && out->bytes != bytes),
@@ -155,8 +155,8 @@ static ritz_status take_values(mat_reader *r, ritz_mat_values *out)
 }
 
 /* The name in the file, after what it is a part of. */
-static ritz_status join(const char *outer, const char *name, int64_t length,
-                        char out[JOINED])
+static ritz_status join_names(const char *outer, const char *name,
+                              int64_t length, char out[JOINED])
 {
     char own[RITZ_NAME_SIZE] = "";
     char clean[RITZ_NAME_SIZE] = "";
@@ -173,13 +173,13 @@ static ritz_status read_head(mat_reader *r, const char *outer, mat_array *out)
     mat_element e = {0};
     uint64_t flags = 0;
 
-    RITZ_CHECK(take(r, "array flags", RITZ_MAT_UINT32, 8, &e));
+    RITZ_CHECK(take_typed(r, "array flags", RITZ_MAT_UINT32, 8, &e));
     flags = ritz_mat_bits(e.at, 4, r->swap);
     out->class = (int)(flags & 0xff);
     out->complex = flags & FLAG_COMPLEX;
     out->nrow = out->ncol = 1;
     if (out->class != CLASS_OPAQUE) {
-        RITZ_CHECK(take(r, "dimensions", RITZ_MAT_INT32, -1, &e));
+        RITZ_CHECK(take_typed(r, "dimensions", RITZ_MAT_INT32, -1, &e));
         out->num_dims = (int)(e.bytes / 4);
         RITZ_REFUSE_IF(out->num_dims < 2, RITZ_ERR_FORMAT,
                        "an array of %d dimensions", out->num_dims);
@@ -189,8 +189,8 @@ static ritz_status read_head(mat_reader *r, const char *outer, mat_array *out)
                        "an array of %" PRId64 " x %" PRId64, out->nrow,
                        out->ncol);
     }
-    RITZ_CHECK(take(r, "a name's letters", RITZ_MAT_INT8, -1, &e));
-    return join(outer, (const char *)e.at, e.bytes, out->name);
+    RITZ_CHECK(take_typed(r, "a name's letters", RITZ_MAT_INT8, -1, &e));
+    return join_names(outer, (const char *)e.at, e.bytes, out->name);
 }
 
 static ritz_status read_numbers(mat_reader *r, const mat_array *a,
@@ -259,7 +259,7 @@ static ritz_status take_field(mat_reader *r, const mat_array *a,
     RITZ_REFUSE_IF(field.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
                    "'%s': a field of type %d where an array is due", a->name,
                    field.type);
-    RITZ_CHECK(join(a->name, name, length, whole));
+    RITZ_CHECK(join_names(a->name, name, length, whole));
     snprintf(out->outer, sizeof out->outer, "%.*s", RITZ_NAME_SIZE - 1, whole);
     out->inside =
         (mat_reader){field.at, field.at, field.at + field.bytes, r->swap};
@@ -273,9 +273,9 @@ static ritz_status read_struct(mat_reader *r, const mat_array *a, int depth,
     mat_element size = {0};
     int64_t length = 0;
 
-    RITZ_CHECK(take(r, "lengths of names", RITZ_MAT_INT32, 4, &size));
+    RITZ_CHECK(take_typed(r, "lengths of names", RITZ_MAT_INT32, 4, &size));
     length = (int32_t)(uint32_t)ritz_mat_bits(size.at, 4, r->swap);
-    RITZ_CHECK(take(r, "names of fields", RITZ_MAT_INT8, -1, &names));
+    RITZ_CHECK(take_typed(r, "names of fields", RITZ_MAT_INT8, -1, &names));
     RITZ_REFUSE_IF(length < 1 || names.bytes % length != 0, RITZ_ERR_FORMAT,
                    "'%s': %" PRId64 " bytes are no names of %" PRId64 " each",
                    a->name, names.bytes, length);
@@ -314,7 +314,7 @@ static const char *why_none(const mat_array *a, int depth)
     return NULL;
 }
 
-/* A matrix, what is none, or a struct, whose fields then wait. */
+/* Read a matrix, list another variable, or queue the fields of a struct. */
 static ritz_status read_one(pending *p, ritz_mat_list *list, queue *fields)
 {
     mat_reader *r = &p->inside;
@@ -358,7 +358,7 @@ done:
     return status;
 }
 
-/* ---- arrays that are deflated -------------------------------------------- */
+/* ---- arrays that are deflated ------------------------------------------- */
 
 /* Inflate until `room` bytes stand in out; the number that do. */
 static int64_t inflate_into(z_stream *stream, unsigned char *out, int64_t room)
@@ -391,8 +391,8 @@ static ritz_status inflate_rest(z_stream *stream, unsigned char *out,
 }
 
 /* The element that a compressed one holds, whole, with its tag. */
-static ritz_status expand(const mat_element *packed, bool swap, int64_t *size,
-                          unsigned char **out)
+static ritz_status inflate_element(const mat_element *packed, bool swap,
+                                   int64_t *size, unsigned char **out)
 {
     ritz_status status = RITZ_OK;
     z_stream stream = {0};
@@ -435,7 +435,7 @@ static ritz_status read_element(const mat_element *e, bool swap,
     int64_t size = 0;
 
     if (e->type == RITZ_MAT_COMPRESSED) {
-        RITZ_TRY(expand(e, swap, &size, &bytes));
+        RITZ_TRY(inflate_element(e, swap, &size, &bytes));
         inside = (mat_reader){bytes, bytes, bytes + size, swap};
         RITZ_TRY(take_element(&inside, &array));
     }

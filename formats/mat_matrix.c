@@ -110,7 +110,7 @@ done:
     return status;
 }
 
-/* Whether all values are finite; if not, `why` says where. */
+/* True if all values are finite; if not, `why` says where. */
 static bool is_finite(const ritz_triplets *t, char why[RITZ_NAME_SIZE])
 {
     for (int64_t k = 0; k < t->count; k++)
@@ -124,9 +124,9 @@ static bool is_finite(const ritz_triplets *t, char why[RITZ_NAME_SIZE])
 }
 
 /* Triplets without zeros become a matrix of the list. */
-static ritz_status compress(ritz_mat_list *list, const char *name,
-                            const ritz_mat_entries *e, const char *form,
-                            const ritz_triplets *t)
+static ritz_status compress_triplets(ritz_mat_list *list, const char *name,
+                                     const ritz_mat_entries *e,
+                                     const char *form, const ritz_triplets *t)
 {
     ritz_status status = RITZ_OK;
     char why[RITZ_NAME_SIZE];
@@ -149,8 +149,8 @@ done:
     return status;
 }
 
-static void put(ritz_triplets *t, int64_t row, int64_t col, double re,
-                double im)
+static void put_entry(ritz_triplets *t, int64_t row, int64_t col, double re,
+                      double im)
 {
     if (re == 0.0 && im == 0.0)
         return;
@@ -174,17 +174,17 @@ ritz_status ritz_mat_add_full(ritz_mat_list *list, const char *name,
         return RITZ_OK;
     RITZ_TRY(ritz_triplets_new(entries.count, &t));
     for (int64_t k = 0; k < entries.count; k++)
-        put(&t, k % nrow, k / nrow, ritz_mat_value(re, k),
-            im->at ? ritz_mat_value(im, k) : 0.0);
-    RITZ_TRY(compress(list, name, &entries, "full", &t));
+        put_entry(&t, k % nrow, k / nrow, ritz_mat_value(re, k),
+                  im->at ? ritz_mat_value(im, k) : 0.0);
+    RITZ_TRY(compress_triplets(list, name, &entries, "full", &t));
 done:
     ritz_triplets_free(&t);
     return status;
 }
 
-/* A place from 0, or -1 if it is none of `most`. */
-static int64_t place(const ritz_mat_values *v, int64_t k, int64_t base,
-                     int64_t most)
+/* Value k as an index from 0, or -1 if it is not one below `most`. */
+static int64_t find_place(const ritz_mat_values *v, int64_t k, int64_t base,
+                          int64_t most)
 {
     double at = ritz_mat_value(v, k) - (double)base;
 
@@ -195,10 +195,10 @@ static int64_t place(const ritz_mat_values *v, int64_t k, int64_t base,
 static ritz_status spread_starts(const char *name, const ritz_mat_entries *e,
                                  int64_t *col)
 {
-    int64_t from = place(&e->col, 0, 0, 1);
+    int64_t from = find_place(&e->col, 0, 0, 1);
 
     for (int64_t j = 0; j < e->ncol; j++) {
-        int64_t to = place(&e->col, j + 1, 0, e->count + 1);
+        int64_t to = find_place(&e->col, j + 1, 0, e->count + 1);
 
         RITZ_REFUSE_IF(from < 0 || to < from, RITZ_ERR_FORMAT,
                        "'%s': the entries of column %" PRId64
@@ -231,18 +231,18 @@ ritz_status ritz_mat_add_sparse(ritz_mat_list *list, const char *name,
     if (e->starts)
         RITZ_TRY(spread_starts(name, e, col));
     for (int64_t k = 0; k < e->count; k++) {
-        int64_t i = place(&e->row, k, e->base, e->nrow);
+        int64_t i = find_place(&e->row, k, e->base, e->nrow);
 
         if (!e->starts)
-            col[k] = place(&e->col, k, e->base, e->ncol);
+            col[k] = find_place(&e->col, k, e->base, e->ncol);
         RITZ_FAIL_IF(i < 0 || col[k] < 0, RITZ_ERR_FORMAT,
                      "'%s': entry %" PRId64 " lies outside %" PRId64
                      " x %" PRId64,
                      name, k + 1, e->nrow, e->ncol);
-        put(&t, i, col[k], ritz_mat_value(&e->re, k),
-            e->im.at ? ritz_mat_value(&e->im, k) : 0.0);
+        put_entry(&t, i, col[k], ritz_mat_value(&e->re, k),
+                  e->im.at ? ritz_mat_value(&e->im, k) : 0.0);
     }
-    RITZ_TRY(compress(list, name, e, "sparse", &t));
+    RITZ_TRY(compress_triplets(list, name, e, "sparse", &t));
 done:
     free(col);
     ritz_triplets_free(&t);

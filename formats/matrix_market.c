@@ -234,7 +234,7 @@ static ritz_status read_number(ritz_market *m, const char **at, double *out)
     return RITZ_OK;
 }
 
-static ritz_status append(ritz_market *m, ritz_market_entry e)
+static ritz_status append_entry(ritz_market *m, ritz_market_entry e)
 {
     int64_t row = e.row;
 
@@ -292,7 +292,7 @@ static ritz_status read_entry(ritz_market *m)
                    RITZ_ERR_FORMAT,
                    "line %" PRId64 ": more than an entry on the line",
                    m->text.number);
-    return append(m, e);
+    return append_entry(m, e);
 }
 
 /* Values of an array on one line, which follow those of the lines before. */
@@ -308,7 +308,7 @@ static ritz_status read_values(ritz_market *m, ritz_market_entry *next)
                        "line %" PRId64 ": more values than the %" PRId64
                        " that are declared",
                        m->text.number, m->most);
-        RITZ_CHECK(append(m, *next));
+        RITZ_CHECK(append_entry(m, *next));
         next->row++;
         if (next->row == m->nrow) {
             next->col++;

@@ -24,7 +24,7 @@ typedef struct job {
 } job;
 
 /* Place of A(i,j) among the entries; -1 if nothing is stored there. */
-static int64_t find(const ritz_sparse *A, int64_t i, int64_t j)
+static int64_t find_entry(const ritz_sparse *A, int64_t i, int64_t j)
 {
     int64_t p = A->colptr[j];
     int64_t k = ritz_search(A->colptr[j + 1] - p, A->rowind + p, i);
@@ -32,12 +32,12 @@ static int64_t find(const ritz_sparse *A, int64_t i, int64_t j)
     return k < 0 ? -1 : p + k;
 }
 
-/* Whether A(j,i) is stored and the same for each A(i,j). */
+/* True if A(j,i) is stored and equal for each A(i,j). */
 static bool is_mirrored(const ritz_matrix *m)
 {
     for (int64_t j = 0; j < m->A.ncol; j++)
         for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++) {
-            int64_t q = find(&m->A, j, m->A.rowind[p]);
+            int64_t q = find_entry(&m->A, j, m->A.rowind[p]);
 
             if (q < 0 || m->A.val[p] != m->A.val[q] ||
                 (m->imaginary && m->imaginary[p] != m->imaginary[q]))
@@ -147,9 +147,9 @@ done:
     return status;
 }
 
-static ritz_status write(const ritz_matrices *list, const char *method,
-                         const ritz_export_request *request,
-                         ritz_export_report *report)
+static ritz_status write_list(const ritz_matrices *list, const char *method,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
 {
     RITZ_REFUSE_IF(list->count != 1 && !strchr(request->output, '%'),
                    RITZ_ERR_ARGUMENT,
@@ -161,7 +161,8 @@ static ritz_status write(const ritz_matrices *list, const char *method,
 }
 
 /* One file takes one matrix, a pattern of names all of them. */
-static const char *choose(const ritz_export_request *request, const char *one)
+static const char *choose_matrices(const ritz_export_request *request,
+                                   const char *one)
 {
     if (request->matrices || strchr(request->output, '%'))
         return request->matrices;
@@ -175,8 +176,9 @@ static ritz_status write_reduced(const ritz_reduced *reduced,
     ritz_status status = RITZ_OK;
     ritz_matrices list = {0};
 
-    RITZ_TRY(ritz_reduced_matrices(reduced, choose(request, "K"), &list));
-    RITZ_TRY(write(&list, reduced->origin.method, request, report));
+    RITZ_TRY(
+        ritz_reduced_matrices(reduced, choose_matrices(request, "K"), &list));
+    RITZ_TRY(write_list(&list, reduced->origin.method, request, report));
 done:
     ritz_matrices_free(&list);
     return status;
@@ -189,8 +191,8 @@ static ritz_status write_states(const ritz_state_space *model,
     ritz_status status = RITZ_OK;
     ritz_matrices list = {0};
 
-    RITZ_TRY(ritz_state_matrices(model, choose(request, "A"), &list));
-    RITZ_TRY(write(&list, model->origin.method, request, report));
+    RITZ_TRY(ritz_state_matrices(model, choose_matrices(request, "A"), &list));
+    RITZ_TRY(write_list(&list, model->origin.method, request, report));
 done:
     ritz_matrices_free(&list);
     return status;

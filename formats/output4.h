@@ -13,7 +13,7 @@
  */
 enum { RITZ_OUTPUT4_NULL_COLUMNS = 32000000 };
 
-/* What the header of a matrix says. */
+/* The header of a matrix. */
 typedef struct ritz_output4_header {
     int64_t ncol, nrow;
     bool bigmat; /* its strings have two integers in front */

@@ -30,7 +30,7 @@
 
 enum { DIAGONAL = 3, SYMMETRIC = 6, IDENTITY = 8 };
 
-/* Whether entries lie beside the diagonal, and all on the same side of it. */
+/* True if entries lie beside the diagonal, and all on one side of it. */
 static bool is_triangle(const ritz_sparse *A)
 {
     bool above = false;
@@ -44,7 +44,7 @@ static bool is_triangle(const ritz_sparse *A)
     return above != below;
 }
 
-/* Which matrix an entry of the file stands for. */
+/* The matrix that an entry of the file is a shorthand of. */
 typedef enum shape { MIRRORED, ON_DIAGONAL, UNIT } shape;
 
 /* The entries that the file's own stand for, as the n x n matrix has them. */
@@ -73,7 +73,7 @@ static ritz_status list_entries(const ritz_matrix *m, shape as, int64_t n,
 }
 
 /* m := the n x n matrix that its entries are a shorthand of. */
-static ritz_status expand(ritz_matrix *m, shape as, int64_t n)
+static ritz_status expand_form(ritz_matrix *m, shape as, int64_t n)
 {
     ritz_status status = RITZ_OK;
     ritz_triplets list = {0};
@@ -102,10 +102,10 @@ static ritz_status obey_form(ritz_output4_build *build)
                    build->header.name, n);
     if (vector || unit) {
         build->columns -= n;
-        RITZ_CHECK(expand(m, unit ? UNIT : ON_DIAGONAL, n));
+        RITZ_CHECK(expand_form(m, unit ? UNIT : ON_DIAGONAL, n));
     }
     if (form == SYMMETRIC && nrow == ncol && is_triangle(&m->A))
-        RITZ_CHECK(expand(m, MIRRORED, n));
+        RITZ_CHECK(expand_form(m, MIRRORED, n));
     m->symmetric = m->A.nrow == m->A.ncol &&
                    (form == SYMMETRIC || form == DIAGONAL || form == IDENTITY);
     return RITZ_OK;
@@ -148,7 +148,7 @@ bool ritz_output4_decode(const ritz_output4_build *build, int64_t rule,
 }
 
 /* Room for `need` entries, doubled so that growing costs O(1) an entry. */
-static ritz_status grow(ritz_output4_build *build, int64_t need)
+static ritz_status grow_entries(ritz_output4_build *build, int64_t need)
 {
     ritz_status status = RITZ_OK;
     ritz_matrix *m = &build->matrix;
@@ -225,7 +225,7 @@ ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
     build.numbers = header->type > 2 ? 2 : 1;
     build.rule = header->bigmat ? BIGMAT : WORDS;
     memcpy(build.matrix.name, header->name, sizeof build.matrix.name);
-    RITZ_TRY(grow(&build, nnz > 0 ? nnz : 1));
+    RITZ_TRY(grow_entries(&build, nnz > 0 ? nnz : 1));
     RITZ_TRY(grow_pointers(&build, -1));
     *out = build;
     build = (ritz_output4_build){0};
@@ -277,7 +277,7 @@ ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
         build->header.nrow);
     build->below = row + count;
     if (count > build->room - build->nnz)
-        RITZ_CHECK(grow(build, build->nnz + count));
+        RITZ_CHECK(grow_entries(build, build->nnz + count));
     return RITZ_OK;
 }
 

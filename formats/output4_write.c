@@ -140,7 +140,7 @@ static void put_header(const ritz_output4_writer *w)
 
 enum { MOST_RECORD = 0x7fffffff };
 
-/* All that one file gets. */
+/* The matrices of one file. */
 typedef struct job {
     int64_t count;
     const ritz_matrix *matrix;
@@ -229,8 +229,9 @@ static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
     return RITZ_OK;
 }
 
-/* What cannot be written is refused before anything is. */
-static ritz_status check(const ritz_matrix *m, const ritz_output4_style *style)
+/* Refuse a matrix that cannot be written, before anything is written. */
+static ritz_status check_matrix(const ritz_matrix *m,
+                                const ritz_output4_style *style)
 {
     int64_t most = INT32_MAX - 1;
 
@@ -242,7 +243,7 @@ static ritz_status check(const ritz_matrix *m, const ritz_output4_style *style)
     return ritz_sink_check(m);
 }
 
-/* Whether its exponent takes three digits once rounded. */
+/* True if the exponent takes three digits after rounding. */
 static bool is_long(double x)
 {
     x = fabs(x);
@@ -265,7 +266,7 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
     ritz_output4_writer w = {.file = file, .matrix = m, .style = *style};
     int64_t last = m->A.ncol;
 
-    RITZ_CHECK(check(m, style));
+    RITZ_CHECK(check_matrix(m, style));
     w.numbers = m->imaginary ? 2 : 1;
     w.width = number_width(m, style->digits);
     w.integer =
@@ -314,9 +315,9 @@ ritz_status ritz_output4_write(const char *path, int64_t count,
 
 /* ---- exporter ----------------------------------------------------------- */
 
-static ritz_status write(const ritz_matrices *list,
-                         const ritz_export_request *request,
-                         ritz_export_report *report)
+static ritz_status write_list(const ritz_matrices *list,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
 {
     const ritz_output4_style style = {
         .text = request->text,
@@ -347,7 +348,7 @@ static ritz_status write_reduced(const ritz_reduced *reduced,
     ritz_matrices list = {0};
 
     RITZ_TRY(ritz_reduced_matrices(reduced, request->matrices, &list));
-    RITZ_TRY(write(&list, request, report));
+    RITZ_TRY(write_list(&list, request, report));
 done:
     ritz_matrices_free(&list);
     return status;
@@ -361,7 +362,7 @@ static ritz_status write_states(const ritz_state_space *model,
     ritz_matrices list = {0};
 
     RITZ_TRY(ritz_state_matrices(model, request->matrices, &list));
-    RITZ_TRY(write(&list, request, report));
+    RITZ_TRY(write_list(&list, request, report));
 done:
     ritz_matrices_free(&list);
     return status;

@@ -48,7 +48,8 @@ static const ritz_dense *dense_of(const void *object, const entry *e)
 }
 
 /* Every entry stored, zeros too. */
-static ritz_status fill(const entry *e, const ritz_dense *A, ritz_matrix *out)
+static ritz_status fill_matrix(const entry *e, const ritz_dense *A,
+                               ritz_matrix *out)
 {
     int64_t at = 0;
 
@@ -66,7 +67,8 @@ static ritz_status fill(const entry *e, const ritz_dense *A, ritz_matrix *out)
     return RITZ_OK;
 }
 
-static const entry *find(const entry *among, const char *name, size_t length)
+static const entry *find_entry(const entry *among, const char *name,
+                               size_t length)
 {
     for (; among->name; among++)
         if (strlen(among->name) == length &&
@@ -85,7 +87,7 @@ static ritz_status list_matrices(const matrix_kind *kind, const void *object,
     RITZ_NEW(list.matrix, (int64_t)strlen(at) + 1);
     while (*at) {
         size_t length = strcspn(at, ",");
-        const entry *e = find(kind->entry, at, length);
+        const entry *e = find_entry(kind->entry, at, length);
 
         RITZ_FAIL_IF(!e, RITZ_ERR_ARGUMENT,
                      "there is no matrix '%.*s', there are %s", (int)length, at,
@@ -95,7 +97,7 @@ static ritz_status list_matrices(const matrix_kind *kind, const void *object,
                          RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
         RITZ_FAIL_IF(!dense_of(object, e)->val, RITZ_ERR_ARGUMENT,
                      "this %s has no '%s'", kind->noun, e->name);
-        RITZ_TRY(fill(e, dense_of(object, e), &list.matrix[list.count]));
+        RITZ_TRY(fill_matrix(e, dense_of(object, e), &list.matrix[list.count]));
         list.count++;
         at += length + (at[length] != '\0');
     }

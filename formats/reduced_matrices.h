@@ -14,7 +14,7 @@
 ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,
                                   const char *names, ritz_matrices *out);
 
-/** The same of a state space: A, B, C, D, E; NULL: all but an absent E. */
+/** Matrices of a state space, A, B, C, D, E; NULL: all but an absent E. */
 ritz_status ritz_state_matrices(const ritz_state_space *model,
                                 const char *names, ritz_matrices *out);
 

@@ -48,8 +48,8 @@ static bool read_part(const char *text, size_t length, int64_t *from,
 }
 
 /* Twice: to count, and to fill `at` unless it is NULL. */
-static ritz_status walk(const char *list, const char *what, int64_t most,
-                        shapes_choice *out)
+static ritz_status walk_list(const char *list, const char *what, int64_t most,
+                             shapes_choice *out)
 {
     const char *end = list + strlen(list);
 
@@ -99,10 +99,10 @@ static ritz_status choose_modes(const char *list, const char *what,
     shapes_choice made = {.count = most};
 
     if (list)
-        RITZ_TRY(walk(list, what, most, &made));
+        RITZ_TRY(walk_list(list, what, most, &made));
     RITZ_NEW(made.at, made.count + 1);
     if (list)
-        RITZ_TRY(walk(list, what, most, &made));
+        RITZ_TRY(walk_list(list, what, most, &made));
     for (int64_t k = 0; !list && k < most; k++)
         made.at[k] = k;
     *out = made;
@@ -171,7 +171,7 @@ static void place_motion(const shapes_motion *m, const int64_t *index,
     }
 }
 
-static bool rotates(const shapes_motion *m)
+static bool has_rotations(const shapes_motion *m)
 {
     for (int64_t i = 0; i < m->num_dofs; i++)
         if (m->dof[i].component > 3)
@@ -217,7 +217,7 @@ static ritz_status place_shapes(const shapes_motion *m, ritz_shapes *out)
     RITZ_NEW(index, m->grids->count);
     RITZ_TRY(list_points(m, index, out));
     RITZ_TRY(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->u));
-    if (rotates(m))
+    if (has_rotations(m))
         RITZ_TRY(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->turn));
     place_motion(m, index, out);
     RITZ_TRY(list_cells(m, out));
@@ -229,8 +229,9 @@ done:
 /* ---- which shapes ------------------------------------------------------- */
 
 /* Chosen columns, and room for what they are called. */
-static ritz_status pick(const ritz_dense *from, const shapes_choice *which,
-                        ritz_dense *T, ritz_shapes *out)
+static ritz_status pick_shapes(const ritz_dense *from,
+                               const shapes_choice *which, ritz_dense *T,
+                               ritz_shapes *out)
 {
     RITZ_CHECK(ritz_dense_new(from->nrow, which->count, T));
     RITZ_CHECK_NEW(out->name, which->count + 1);
@@ -246,7 +247,7 @@ static ritz_status pick_modes(const ritz_pairs *pairs,
                               const shapes_choice *which, ritz_dense *Phi,
                               ritz_shapes *out)
 {
-    RITZ_CHECK(pick(&pairs->Phi, which, Phi, out));
+    RITZ_CHECK(pick_shapes(&pairs->Phi, which, Phi, out));
     for (int64_t j = 0; j < which->count; j++) {
         int64_t k = which->at[j];
         double hertz =
@@ -267,8 +268,8 @@ typedef struct body {
     const ritz_elements *elements;
 } body;
 
-static ritz_status finish(const body *of, const ritz_dense *T,
-                          ritz_shapes *shapes)
+static ritz_status finish_shapes(const body *of, const ritz_dense *T,
+                                 ritz_shapes *shapes)
 {
     ritz_status status = RITZ_OK;
     ritz_dof *all = NULL;
@@ -314,7 +315,7 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     RITZ_TRY(choose_modes(list, "mode", pairs.Phi.ncol, &which));
     RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
     RITZ_TRY(ritz_dense_mul(&reduced->T, &Phi, &T));
-    RITZ_TRY(finish(&whole, &T, &shapes));
+    RITZ_TRY(finish_shapes(&whole, &T, &shapes));
     *out = shapes;
     shapes = (ritz_shapes){0};
 done:
@@ -357,7 +358,7 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
     if (!list && which.count > pairs.Phi.ncol)
         which.count = pairs.Phi.ncol;
     RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
-    RITZ_TRY(finish(&whole, &Phi, &shapes));
+    RITZ_TRY(finish_shapes(&whole, &Phi, &shapes));
     *out = shapes;
     shapes = (ritz_shapes){0};
 done:
@@ -376,7 +377,7 @@ static ritz_status pick_columns(const ritz_basis *basis,
                                 const shapes_choice *which, ritz_dense *T,
                                 ritz_shapes *out)
 {
-    RITZ_CHECK(pick(&basis->T, which, T, out));
+    RITZ_CHECK(pick_shapes(&basis->T, which, T, out));
     for (int64_t j = 0; j < which->count; j++) {
         int64_t k = which->at[j];
         const char *kind = ritz_column_name(basis->columns.kind[k]);
@@ -410,7 +411,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
                  basis->T.nrow, component->num_dofs);
     RITZ_TRY(choose_modes(list, "column", basis->T.ncol, &which));
     RITZ_TRY(pick_columns(basis, &which, &T, &shapes));
-    RITZ_TRY(finish(&whole, &T, &shapes));
+    RITZ_TRY(finish_shapes(&whole, &T, &shapes));
     *out = shapes;
     shapes = (ritz_shapes){0};
 done:

@@ -1,4 +1,4 @@
-/* What exporters share: files, lines of their reports, XML. */
+/* Files that exporters write, lines of their reports, XML text. */
 #include "formats/sink.h"
 
 #include "base/alloc.h"

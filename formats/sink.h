@@ -1,4 +1,4 @@
-/* What exporters share. */
+/* Files, reports and XML that exporters share. */
 #ifndef RITZ_FORMATS_SINK_H
 #define RITZ_FORMATS_SINK_H
 

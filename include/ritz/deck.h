@@ -42,7 +42,7 @@ typedef struct ritz_deck_format {
     const char *name;      /* "bulk" */
     const char *title;     /* "NASTRAN bulk data" */
     const char *reference; /* key in docs/references.bib */
-    /** Whether these bytes look like the format. @p size may be 0. */
+    /** True if these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
     /**
      * Read the deck; a NUL follows its bytes. A constraint that is not
@@ -69,7 +69,7 @@ const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size);
 /** Recognise and read; @return RITZ_ERR_FORMAT if no format knows it. */
 ritz_status ritz_deck_read(const char *path, ritz_deck *out);
 
-/** The same of bytes, which a NUL follows; @p path and @p folder as above. */
+/** Recognise and read bytes, which a NUL follows. */
 ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
                             const char *folder, ritz_deck *out);
 

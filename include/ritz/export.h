@@ -10,7 +10,7 @@
 
 #pragma GCC visibility push(default)
 
-/* What may be asked of an exporter; zero where not given. */
+/* Options of an exporter; zero where not given. */
 typedef struct ritz_export_request {
     const char *output;   /* path */
     const char *matrices; /* "K,M"; NULL: all that the format takes */
@@ -19,13 +19,13 @@ typedef struct ritz_export_request {
     const char *modes;    /* of shapes, "1-6,9"; NULL: see shapes.h */
 } ritz_export_request;
 
-/* What an exporter says it lost or did: lines for people. */
+/* Lines for the user: what was written, and what was lost. */
 typedef struct ritz_export_report {
     int64_t count;
     char (*line)[256];
 } ritz_export_report;
 
-/* Which fields of a request an exporter heeds; others must be left alone. */
+/* The fields of a request that an exporter uses; others must not be set. */
 enum {
     RITZ_EXPORT_MATRICES = 1,
     RITZ_EXPORT_STYLE = 2,
@@ -52,7 +52,7 @@ typedef struct ritz_exporter {
     ritz_status (*write_simulation)(const ritz_simulation *simulation,
                                     const ritz_export_request *request,
                                     ritz_export_report *report);
-    /** Of kind "shapes", alone. */
+    /** For kind "shapes" only. */
     ritz_status (*write_shapes)(const ritz_shapes *shapes,
                                 const ritz_export_request *request,
                                 ritz_export_report *report);

@@ -1,5 +1,6 @@
 /*
- * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market, MAT.
+ * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market,
+ * MAT.
  * A format is recognised by content, never by name.
  */
 #ifndef RITZ_FOREIGN_H
@@ -32,7 +33,7 @@ typedef struct ritz_matrices {
     char format[RITZ_NAME_SIZE]; /* of the descriptor that read them */
 } ritz_matrices;
 
-/* What is known of a matrix before its values are read. */
+/* An entry of the directory: a matrix whose values were not read. */
 typedef struct ritz_listed {
     char name[RITZ_NAME_SIZE];
     int64_t nrow, ncol; /* as its header has them; -1: only reading tells */
@@ -63,7 +64,7 @@ typedef struct ritz_format {
     const char *name;      /* "output4" */
     const char *summary;   /* one line */
     const char *reference; /* key in docs/references.bib */
-    /** Whether these bytes look like the format. @p size may be 0. */
+    /** True if these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
     /**
      * Append what the file holds, without its values where the format allows

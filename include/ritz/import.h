@@ -38,7 +38,7 @@ typedef struct ritz_import_grid {
     int64_t num_tied; /* dofs that it is tied to */
 } ritz_import_grid;
 
-/* What was done that a user should know. */
+/* What an import did beyond reading, for the user. */
 typedef struct ritz_import_report {
     int64_t num_removed; /* rows empty in K and M */
     ritz_dof *removed;
@@ -68,9 +68,10 @@ typedef struct ritz_import_report {
  *
  * Rows are named by, in this order: --dofs; the map in the file (DMIG); the
  * deck, if its dofs (of NASTRAN six for each grid, ascending, one for scalar
- * points) or its a-set, or dofs less its SPCs, fit the size; without a deck a size that is a
- * multiple of six: grids 1..n/6. A size that does not fit is refused. Matrices
- * that name their rows may hold different ones: the component has all of them.
+ * points) or its a-set, or its dofs without supports, fit the size; without a
+ * deck a size that is a multiple of six: grids 1..n/6. A size that does not fit
+ * is refused. Matrices that name their rows may hold different ones: the
+ * component has all of them.
  *
  * Whatever names them, rows that the deck fixes (ritz_deck.fixed) are taken
  * out. Constraint elements (ritz_deck.equations) are applied if the matrices

@@ -21,8 +21,8 @@
  * A(place, place) of the rows that stay. Zeros are left out, so that a dense
  * and a sparse spelling of a matrix become the same.
  */
-static ritz_status scatter(const ritz_part *part, const int64_t *stays,
-                           int64_t n, ritz_sparse *out)
+static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
+                                int64_t n, ritz_sparse *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_sparse *A = &part->matrix.A;
@@ -50,7 +50,7 @@ done:
     return status;
 }
 
-/* Which rows hold stiffness, mass, and anything else. */
+/* Rows with stiffness, with mass, with other entries, and fixed ones. */
 typedef struct presence {
     bool *K, *M, *other, *fixed;
 } presence;
@@ -210,8 +210,8 @@ static ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_deck *deck,
     RITZ_TRY(find_presence(parts, deck, names, component, &at));
     RITZ_TRY(sort_rows(&at, names, rigid, stays, report, component));
     for (int64_t k = 0; k < parts->count; k++)
-        RITZ_TRY(scatter(&parts->part[k], stays, component->num_dofs,
-                         parts->part[k].becomes));
+        RITZ_TRY(scatter_part(&parts->part[k], stays, component->num_dofs,
+                              parts->part[k].becomes));
     memcpy(report->map, names->map, sizeof report->map);
 done:
     free(stays);
@@ -430,25 +430,6 @@ done:
     return status;
 }
 
-/* Ports, inputs and outputs find their rows by name. */
-static ritz_status attach(const ritz_import_request *request,
-                          const ritz_deck *deck,
-                          const ritz_import_report *report,
-                          ritz_component *component)
-{
-    ritz_status status = RITZ_OK;
-    ritz_extended extended = {0};
-
-    RITZ_TRY(ritz_extended_new(component, &deck->equations, &extended));
-    RITZ_TRY_IN("port",
-                ritz_import_ports(request, report, &extended, component));
-    RITZ_TRY(ritz_import_io(request, &extended, component));
-    RITZ_TRY_IN("damper", ritz_import_dampers(request, &extended, component));
-done:
-    ritz_extended_free(&extended);
-    return status;
-}
-
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
                         ritz_import_report *report)
 {
@@ -463,7 +444,8 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     RITZ_TRY(take_parts(request, &component, specs, &parts));
     RITZ_TRY(make_component(request, &parts, &deck, &component, &done_what));
     ritz_parts_free(&parts); /* the larger half of the memory, done with */
-    RITZ_TRY(attach(request, &deck, &done_what, &component));
+    RITZ_TRY(
+        ritz_import_attach(request, &deck.equations, &done_what, &component));
     RITZ_TRY(ritz_component_settle(&component, request->symmetrise));
     *out = component;
     component = (ritz_component){0};

@@ -24,7 +24,7 @@ typedef struct ritz_parts {
     ritz_part *part;
 } ritz_parts;
 
-/* What the rows of all matrices are, before empty ones are left out. */
+/* The dofs of all rows, before empty rows are left out. */
 typedef struct ritz_names {
     int64_t count;
     ritz_dof *dof;
@@ -110,7 +110,7 @@ ritz_status ritz_tying_ports(const ritz_import_request *request,
 ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
                              ritz_names *kept, ritz_import_report *report);
 
-/** What dofs that are gone follow from, among the rows of the component. */
+/** Set the recovery: eliminated dofs as combinations of the rows. */
 ritz_status ritz_tying_recover(const ritz_tying *tying,
                                ritz_component *component,
                                ritz_import_report *report);
@@ -128,10 +128,18 @@ typedef struct ritz_extended {
     const ritz_equations *equations; /* for messages; NULL: there are none */
 } ritz_extended;
 
-ritz_status ritz_extended_new(const ritz_component *component,
-                              const ritz_equations *equations,
-                              ritz_extended *out);
 void ritz_extended_free(ritz_extended *extended);
+
+/**
+ * Ports, those of grids made for ports too, inputs, outputs and dampers as the
+ * request states them.
+ *
+ * @param[in] equations  for messages about dofs that depend on others
+ */
+ritz_status ritz_import_attach(const ritz_import_request *request,
+                               const ritz_equations *equations,
+                               const ritz_import_report *report,
+                               ritz_component *component);
 
 /**
  * One port; its dofs are rows of @p extended, and no recovered ones.
@@ -141,22 +149,6 @@ void ritz_extended_free(ritz_extended *extended);
  */
 ritz_status ritz_import_port(const char *text, bool whole,
                              const ritz_extended *extended, ritz_port *out);
-
-/** Ports as the request states them, and those of grids made for ports. */
-ritz_status ritz_import_ports(const ritz_import_request *request,
-                              const ritz_import_report *report,
-                              const ritz_extended *extended,
-                              ritz_component *component);
-
-/** Inputs and outputs as the request states them. */
-ritz_status ritz_import_io(const ritz_import_request *request,
-                           const ritz_extended *extended,
-                           ritz_component *component);
-
-/** Dampers as the request states them. */
-ritz_status ritz_import_dampers(const ritz_import_request *request,
-                                const ritz_extended *extended,
-                                ritz_component *component);
 
 /** A label, in which '/' divides: "N/mm". @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE]);

@@ -1,4 +1,4 @@
-/* What the rows of all matrices are, and how a row is found by name. */
+/* The dofs of the rows of all matrices, and rows found by dof. */
 #include "base/alloc.h"
 #include "import/import.h"
 
@@ -198,7 +198,7 @@ static bool same_names(const ritz_names *a, const ritz_names *b)
 
 enum { ALL, SETS, FREE, LESS, LEAST, KINDS };
 
-/* What each list is called beside its size. */
+/* Names of the lists in messages. */
 static const char *const WORDS[KINDS] = {"", "a-set", "grids less SPCs",
                                          "grids less dependents",
                                          "grids less SPCs and dependents"};
@@ -411,7 +411,7 @@ static const ritz_part *first_unnamed(const ritz_parts *parts)
 }
 
 /* All rows that any file names, ascending by grid and direction. */
-static ritz_status unite(const ritz_parts *parts, ritz_names *out)
+static ritz_status unite_rows(const ritz_parts *parts, ritz_names *out)
 {
     int64_t total = 0;
 
@@ -492,7 +492,7 @@ static ritz_status choose_names(const ritz_import_request *request,
     if (request->dofs)
         RITZ_CHECK(name_by_file(request->dofs, parts, out));
     else if (!unnamed)
-        RITZ_CHECK(unite(parts, out));
+        RITZ_CHECK(unite_rows(parts, out));
     else if (request->bulk)
         RITZ_CHECK(list_deck_names(deck, n, unnamed->spec, out));
     else

@@ -10,9 +10,9 @@
 
 /* ---- rows and what follows from them ------------------------------------ */
 
-ritz_status ritz_extended_new(const ritz_component *component,
-                              const ritz_equations *equations,
-                              ritz_extended *out)
+static ritz_status extend_rows(const ritz_component *component,
+                               const ritz_equations *equations,
+                               ritz_extended *out)
 {
     ritz_status status = RITZ_OK;
     ritz_extended new = {.view = *component,
@@ -250,7 +250,7 @@ static ritz_status add_part(const char *text, size_t length, draft *it)
     return dash ? add_range(from, to, it) : add_grid(from, it);
 }
 
-static ritz_status fill(const char *text, draft *it)
+static ritz_status fill_port(const char *text, draft *it)
 {
     const char *grids = NULL;
     const char *colon = NULL;
@@ -276,7 +276,7 @@ static ritz_status fill(const char *text, draft *it)
 }
 
 /* A port's list has room for all rows until it is known; then it is cut. */
-static ritz_status shorten(ritz_dofs *dofs)
+static ritz_status shorten_dofs(ritz_dofs *dofs)
 {
     ritz_dofs fit = {0};
     ritz_status status = ritz_dofs_copy(dofs, &fit);
@@ -296,8 +296,8 @@ ritz_status ritz_import_port(const char *text, bool whole,
 
     RITZ_NEW(it.taken, extended->view.num_dofs);
     RITZ_NEW(it.port.dofs.at, extended->view.num_dofs);
-    RITZ_TRY(fill(text, &it));
-    RITZ_TRY(shorten(&it.port.dofs));
+    RITZ_TRY(fill_port(text, &it));
+    RITZ_TRY(shorten_dofs(&it.port.dofs));
     *out = it.port;
     it.port = (ritz_port){0};
 done:
@@ -330,10 +330,10 @@ done:
     return status;
 }
 
-ritz_status ritz_import_ports(const ritz_import_request *request,
-                              const ritz_import_report *report,
-                              const ritz_extended *extended,
-                              ritz_component *component)
+static ritz_status add_ports(const ritz_import_request *request,
+                             const ritz_import_report *report,
+                             const ritz_extended *extended,
+                             ritz_component *component)
 {
     ritz_port port = {0};
 
@@ -491,7 +491,7 @@ static ritz_status make_input(const char *text, const ritz_extended *extended,
     return RITZ_OK;
 }
 
-/* What is put out: displacement unless a word behind '/' says otherwise. */
+/* The quantity of an output: displacement unless a word follows '/'. */
 static ritz_status take_quantity(const char *text, size_t *length, ritz_io *io,
                                  ritz_dense **out)
 {
@@ -565,9 +565,9 @@ static ritz_status check_new(const char (*name)[RITZ_NAME_SIZE], int64_t k,
     return RITZ_OK;
 }
 
-ritz_status ritz_import_io(const ritz_import_request *request,
-                           const ritz_extended *extended,
-                           ritz_component *component)
+static ritz_status add_io(const ritz_import_request *request,
+                          const ritz_extended *extended,
+                          ritz_component *component)
 {
     ritz_io *io = &component->io;
 
@@ -645,9 +645,9 @@ static ritz_status make_damper(const char *text, const ritz_extended *extended,
     return RITZ_OK;
 }
 
-ritz_status ritz_import_dampers(const ritz_import_request *request,
-                                const ritz_extended *extended,
-                                ritz_component *component)
+static ritz_status add_dampers(const ritz_import_request *request,
+                               const ritz_extended *extended,
+                               ritz_component *component)
 {
     ritz_dampers *dampers = &component->dampers;
 
@@ -659,4 +659,23 @@ ritz_status ritz_import_dampers(const ritz_import_request *request,
         RITZ_CHECK_IN(request->damper[j],
                       make_damper(request->damper[j], extended, j, dampers));
     return ritz_dampers_check(dampers, component->num_dofs);
+}
+
+/* ---- all of them -------------------------------------------------------- */
+
+ritz_status ritz_import_attach(const ritz_import_request *request,
+                               const ritz_equations *equations,
+                               const ritz_import_report *report,
+                               ritz_component *component)
+{
+    ritz_status status = RITZ_OK;
+    ritz_extended extended = {0};
+
+    RITZ_TRY(extend_rows(component, equations, &extended));
+    RITZ_TRY_IN("port", add_ports(request, report, &extended, component));
+    RITZ_TRY(add_io(request, &extended, component));
+    RITZ_TRY_IN("damper", add_dampers(request, &extended, component));
+done:
+    ritz_extended_free(&extended);
+    return status;
 }

@@ -37,7 +37,7 @@ static void parts_free(parts *p)
         ritz_matrix_free(&p->matrix[k]);
 }
 
-/* Which letter "X=..." begins with, -1: none. */
+/* Index of the letter that "X=..." begins with; -1: none. */
 static int letter_of(const char *text)
 {
     const char *found = *text ? strchr(letters, *text) : NULL;
@@ -107,7 +107,7 @@ done:
     return status;
 }
 
-static char folded(char c)
+static char fold_case(char c)
 {
     return (char)(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
 }
@@ -129,7 +129,7 @@ static int64_t find_letter(const ritz_listing *all, const char *stem,
             continue;
         if (name[0] && !name[1] && name[0] == letter)
             return k;
-        if (name[0] && !name[1] && folded(name[0]) == letter && found < 0)
+        if (name[0] && !name[1] && fold_case(name[0]) == letter && found < 0)
             found = k;
     }
     return found;
@@ -148,7 +148,7 @@ static ritz_status find_stem(const ritz_listing *all, const char *file,
         const char *name = all->item[k].name;
         const char *dot = strrchr(name, '.');
 
-        if (!dot || folded(dot[1]) != 'A' || dot[2])
+        if (!dot || fold_case(dot[1]) != 'A' || dot[2])
             continue;
         RITZ_REFUSE_IF(found++ > 0, RITZ_ERR_ARGUMENT,
                        "'%s' holds several state spaces: name one, as %s:%s",
@@ -207,7 +207,7 @@ done:
 }
 
 /* A, B and C are there, all are real, and they are as large as A says. */
-static ritz_status check(const parts *p)
+static ritz_status check_parts(const parts *p)
 {
     const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
     const int64_t n = p->matrix[PART_A].A.nrow;
@@ -320,7 +320,7 @@ static bool is_identity(const ritz_dense *E)
 }
 
 /* Dense matrices in the place of those that are zero. */
-static ritz_status fill(const parts *p, ritz_state_space *model)
+static ritz_status fill_matrices(const parts *p, ritz_state_space *model)
 {
     ritz_dense *const into[NUM_PARTS] = {&model->A, &model->B, &model->C,
                                          &model->D, &model->E};
@@ -336,8 +336,8 @@ static ritz_status fill(const parts *p, ritz_state_space *model)
     return RITZ_OK;
 }
 
-static ritz_status make(const ritz_import_space_request *request,
-                        const parts *p, ritz_state_space *out)
+static ritz_status make_space(const ritz_import_space_request *request,
+                              const parts *p, ritz_state_space *out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = p->matrix[PART_A].A.nrow;
@@ -351,7 +351,7 @@ static ritz_status make(const ritz_import_space_request *request,
         "--output-names",
         name_ends(request->outputs, 'y', io.num_outputs, io.output, io.limit));
     RITZ_TRY(ritz_state_space_new(n, &io, out));
-    RITZ_TRY(fill(p, out));
+    RITZ_TRY(fill_matrices(p, out));
     RITZ_TRY(ritz_state_space_check(out));
     if (request->units)
         RITZ_TRY_IN("--units", ritz_import_units(request->units, out->units));
@@ -371,8 +371,8 @@ ritz_status ritz_import_state_space(const ritz_import_space_request *request,
         RITZ_TRY(take_listed(request->matrices, request->sums, &p));
     else
         RITZ_TRY(take_file(request->matrices, request->sums, &p));
-    RITZ_TRY(check(&p));
-    RITZ_TRY(make(request, &p, &model));
+    RITZ_TRY(check_parts(&p));
+    RITZ_TRY(make_space(request, &p, &model));
     *out = model;
     model = (ritz_state_space){0};
 done:

@@ -34,7 +34,7 @@ typedef struct ritz_tied {
 
 enum { SIX = 6 };
 
-/* What follows in the equations is of this port. */
+/* Name this port as the source of the equations that follow. */
 static ritz_status cite_port(const ritz_tied *it)
 {
     ritz_equation_source from = {.file = -1};
@@ -44,7 +44,7 @@ static ritz_status cite_port(const ritz_tied *it)
     return ritz_equations_cite_next(&it->deck->equations, from);
 }
 
-/* Say that @p open motions are left open. */
+/* Refuse dofs that leave rigid motions of their grid undetermined. */
 static ritz_status refuse_open(int64_t open)
 {
     return ritz_fail(RITZ_ERR_ARGUMENT,
@@ -93,8 +93,8 @@ static int64_t place_columns(const ritz_tied *it, const ritz_sparse *turned,
     return first;
 }
 
-static void spread(const ritz_tied *it, const ritz_sparse *turned,
-                   const int64_t *row, const int64_t *place, reach *out)
+static void spread_average(const ritz_tied *it, const ritz_sparse *turned,
+                           const int64_t *row, const int64_t *place, reach *out)
 {
     const ritz_average *average = &it->average;
     const ritz_tying *tying = it->tying;
@@ -118,8 +118,8 @@ static void spread(const ritz_tied *it, const ritz_sparse *turned,
         }
 }
 
-static ritz_status substitute(const ritz_tied *it, const ritz_sparse *turned,
-                              reach *out)
+static ritz_status substitute_dependents(const ritz_tied *it,
+                                         const ritz_sparse *turned, reach *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_tying *tying = it->tying;
@@ -139,7 +139,7 @@ static ritz_status substitute(const ritz_tied *it, const ritz_sparse *turned,
     found = place_columns(it, turned, row, true, out->num_free, place);
     RITZ_NEW(out->dof, found);
     RITZ_TRY(ritz_dense_new(SIX, found, &out->A));
-    spread(it, turned, row, place, out);
+    spread_average(it, turned, row, place, out);
 done:
     free(row);
     free(place);
@@ -177,7 +177,7 @@ static ritz_status check_open(const reach *over, int64_t open)
 }
 
 /* A := Q' A with A_p = Q R in front, by pivoting among the free columns. */
-static ritz_status factor(reach *over, lapack_int *order, double *tau)
+static ritz_status factor_columns(reach *over, lapack_int *order, double *tau)
 {
     ritz_dense *A = &over->A;
     int64_t k = over->num_free;
@@ -197,13 +197,13 @@ static ritz_status factor(reach *over, lapack_int *order, double *tau)
 }
 
 /* X = R_p^-1 [Q', -R_r]: u_p = X [q; u_r]. */
-static ritz_status pivot(reach *over, lapack_int *order, ritz_dense *X)
+static ritz_status pivot_columns(reach *over, lapack_int *order, ritz_dense *X)
 {
     const ritz_dense *A = &over->A;
     lapack_int k = (lapack_int)A->ncol;
     double tau[SIX];
 
-    RITZ_CHECK(factor(over, order, tau));
+    RITZ_CHECK(factor_columns(over, order, tau));
     RITZ_CHECK(ritz_dense_new(SIX, k, X));
     for (int64_t j = 0; j < SIX; j++)
         ritz_dense_col(X, j)[j] = 1.0;
@@ -219,8 +219,8 @@ static ritz_status pivot(reach *over, lapack_int *order, ritz_dense *X)
     return RITZ_OK;
 }
 
-static ritz_status put(const ritz_tied *it, const ritz_dense *X,
-                       const ritz_dof *dof, const lapack_int *order)
+static ritz_status put_equations(const ritz_tied *it, const ritz_dense *X,
+                                 const ritz_dof *dof, const lapack_int *order)
 {
     ritz_equations *eq = &it->deck->equations;
     double length = it->average.length;
@@ -259,11 +259,11 @@ static ritz_status tie_average(const ritz_tied *it, const ritz_sparse *turned)
     ritz_dense X = {0};
     lapack_int *order = NULL;
 
-    RITZ_TRY(substitute(it, turned, &over));
+    RITZ_TRY(substitute_dependents(it, turned, &over));
     RITZ_NEW(order, over.A.ncol);
-    RITZ_TRY(pivot(&over, order, &X));
+    RITZ_TRY(pivot_columns(&over, order, &X));
     RITZ_TRY(cite_port(it));
-    RITZ_TRY(put(it, &X, over.dof, order));
+    RITZ_TRY(put_equations(it, &X, over.dof, order));
 done:
     free(over.dof);
     free(order);
@@ -276,7 +276,7 @@ done:
 
 /* ---- the dofs that there are -------------------------------------------- */
 
-/* Whether all that a dependent dof follows is known. */
+/* True if all dofs that a dependent one follows are known. */
 static bool is_known(const ritz_tying *tying, const ritz_sparse *turned,
                      int64_t dof)
 {
@@ -314,7 +314,7 @@ done:
     return status;
 }
 
-/* The same as a component of which ports can be made. */
+/* These dofs as a component, on which ports can be defined. */
 static ritz_status list_present(const ritz_tying *tying,
                                 const ritz_sparse *turned, ritz_extended *out)
 {
@@ -437,7 +437,8 @@ done:
 
 /* ---- one after the other ------------------------------------------------ */
 
-/* What ports hold must not depend: that of --port, and grids made before. */
+/* Dofs of ports must not depend on others: mark those of --port and of the
+ * grids that were made before. */
 static ritz_status find_held(const ritz_extended *present,
                              const ritz_import_report *report, ritz_tied *it)
 {
@@ -466,7 +467,7 @@ done:
     return status;
 }
 
-static ritz_status tie(ritz_tied *it, const ritz_import_report *report)
+static ritz_status tie_port(ritz_tied *it, const ritz_import_report *report)
 {
     ritz_status status = RITZ_OK;
     ritz_extended present = {0};
@@ -497,7 +498,7 @@ static ritz_status add_port(ritz_tied *it, ritz_import_report *report)
     ritz_status status = RITZ_OK;
     ritz_import_grid *grid = &report->grid[report->num_grids];
 
-    RITZ_TRY_IN(it->text, tie(it, report));
+    RITZ_TRY_IN(it->text, tie_port(it, report));
     memcpy(grid->port, it->port.name, sizeof grid->port);
     grid->id = it->id;
     grid->num_tied = it->port.dofs.count;

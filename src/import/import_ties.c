@@ -157,8 +157,9 @@ done:
     return status;
 }
 
-/* What is not understood matters where the dofs are still there. */
-static ritz_status heed_refusal(ritz_deck *deck, const ritz_tying *it,
+/* A constraint that is not understood is refused only if the matrices still
+ * have its dofs. */
+static ritz_status pass_refusal(ritz_deck *deck, const ritz_tying *it,
                                 ritz_import_report *report)
 {
     ritz_equations *eq = &deck->equations;
@@ -232,7 +233,7 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
 
     *names = (ritz_names){0};
     RITZ_TRY(find_action(deck, &new));
-    RITZ_TRY(heed_refusal(deck, &new, report));
+    RITZ_TRY(pass_refusal(deck, &new, report));
     RITZ_NEW(new.fixed, new.names.count);
     RITZ_NEW(new.alive, new.names.count);
     RITZ_NEW(new.outside, new.names.count);
@@ -296,7 +297,7 @@ done:
 }
 
 /* A := G'AG, unsymmetric as it was: what is averaged away is to be reported. */
-static ritz_status project(const ritz_sparse *G, ritz_sparse *A)
+static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse AG = {0}, turned = {0}, C = {0};
@@ -332,7 +333,7 @@ static ritz_status list_kept(const ritz_tying *tying, int64_t *column,
     return RITZ_OK;
 }
 
-/* Whether every row of G that a part has is one of the identity. */
+/* True if no row of the part is eliminated: G is the identity there. */
 static bool is_kept(const ritz_tying *tying, const ritz_part *part)
 {
     const ritz_dofs *gone = &tying->by.gone;
@@ -343,8 +344,9 @@ static bool is_kept(const ritz_tying *tying, const ritz_part *part)
     return true;
 }
 
-static ritz_status apply(const ritz_tying *tying, const ritz_sparse *turned,
-                         const int64_t *column, int64_t n, ritz_part *part)
+static ritz_status apply_part(const ritz_tying *tying,
+                              const ritz_sparse *turned, const int64_t *column,
+                              int64_t n, ritz_part *part)
 {
     ritz_status status = RITZ_OK;
     ritz_sparse G = {0};
@@ -358,7 +360,7 @@ static ritz_status apply(const ritz_tying *tying, const ritz_sparse *turned,
         goto done;
     }
     RITZ_TRY(rows_of(turned, part, column, n, &G));
-    RITZ_TRY(project(&G, &part->matrix.A));
+    RITZ_TRY(project_matrix(&G, &part->matrix.A));
     free(part->place);
     RITZ_NEW(part->place, n);
     for (int64_t j = 0; j < n; j++)
@@ -399,7 +401,8 @@ ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
     RITZ_TRY(count_eliminated(tying, parts, &report->num_eliminated));
     RITZ_TRY(ritz_sparse_transpose(&tying->by.G, &turned));
     for (int64_t k = 0; k < parts->count; k++)
-        RITZ_TRY(apply(tying, &turned, column, names.count, &parts->part[k]));
+        RITZ_TRY(
+            apply_part(tying, &turned, column, names.count, &parts->part[k]));
     *kept = names;
     names = (ritz_names){0};
 done:
@@ -442,8 +445,9 @@ static bool is_known(const ritz_sparse *turned, int64_t of, const int64_t *row)
 }
 
 /* Rows of G of the dofs that are gone, as far as they are known. */
-static ritz_status gather(const ritz_tying *tying, const ritz_sparse *turned,
-                          const int64_t *row, int64_t n, ritz_recovery *out)
+static ritz_status gather_rows(const ritz_tying *tying,
+                               const ritz_sparse *turned, const int64_t *row,
+                               int64_t n, ritz_recovery *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_dofs *gone = &tying->by.gone;
@@ -493,7 +497,7 @@ ritz_status ritz_tying_recover(const ritz_tying *tying,
     RITZ_NEW(row, tying->by.kept.count);
     RITZ_TRY(list_rows(tying, component, row));
     RITZ_TRY(ritz_sparse_transpose(&tying->by.G, &turned));
-    RITZ_TRY(gather(tying, &turned, row, component->num_dofs, &recovery));
+    RITZ_TRY(gather_rows(tying, &turned, row, component->num_dofs, &recovery));
     report->num_recovered = recovery.count;
     report->num_lost = tying->by.gone.count - recovery.count;
     if (recovery.count == 0)
