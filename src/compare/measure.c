@@ -7,7 +7,7 @@
 #include "base/tolerances.h"
 
 #include "compare/compare.h"
-#include "poles/dense_poles.h"
+#include "poles/poles.h"
 
 #include <ritz/eigen.h>
 #include <ritz/verify.h>

@@ -69,15 +69,6 @@ ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
 ritz_status ritz_low_rank_window_add(const ritz_low_rank_model *model,
                                      const ritz_dense *X,
                                      ritz_low_rank_window *window);
-/**
- * Modes X F of the small model, M-orthonormal: F, frequencies and F'X'DX F.
- *
- * @param[out] F      count x r
- * @param[out] omega  r, positive, to be freed
- */
-ritz_status ritz_low_rank_window_modes(const ritz_low_rank_window *window,
-                                       ritz_dense *F, double **omega,
-                                       ritz_dense *Delta);
 void ritz_low_rank_window_free(ritz_low_rank_window *window);
 
 /**

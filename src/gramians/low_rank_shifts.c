@@ -184,9 +184,15 @@ done:
     return status;
 }
 
-ritz_status ritz_low_rank_window_modes(const ritz_low_rank_window *window,
-                                       ritz_dense *F, double **omega,
-                                       ritz_dense *Delta)
+/*
+ * Modes X F of the small model, M-orthonormal: F, frequencies and F'X'DX F.
+ *
+ * @param[out] F      count x r
+ * @param[out] omega  r, positive, to be freed
+ */
+static ritz_status find_window_modes(const ritz_low_rank_window *window,
+                                     ritz_dense *F, double **omega,
+                                     ritz_dense *Delta)
 {
     ritz_status status = RITZ_OK;
     ritz_dense V = {0}, K = {0}, modes = {0};
@@ -255,7 +261,7 @@ static ritz_status find_poles(const ritz_low_rank_window *window, small *s)
     int n = 0;
     int info = 0;
 
-    RITZ_TRY(ritz_low_rank_window_modes(window, &s->F, &s->omega, &Delta));
+    RITZ_TRY(find_window_modes(window, &s->F, &s->omega, &Delta));
     r = s->F.ncol;
     n = (int)(2 * r);
     RITZ_TRY(ritz_dense_new(n, n, &s->A));

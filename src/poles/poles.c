@@ -5,6 +5,7 @@
 #include "base/tolerances.h"
 #include "model/io.h"
 #include "model/modal.h"
+#include "poles/massless.h"
 
 #include <complex.h>
 #include <lapacke.h>
@@ -146,9 +147,10 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
     return RITZ_OK;
 }
 
-ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
-                           const ritz_dense *K4, const ritz_io *io,
-                           const ritz_damping *damping, ritz_poles *out)
+/* Modal matrices are borrowed until the call ends; {0} or NULL: none. */
+static ritz_status poles_new(const ritz_pairs *pairs, const ritz_dense *D,
+                             const ritz_dense *K4, const ritz_io *io,
+                             const ritz_damping *damping, ritz_poles *out)
 {
     ritz_status status = RITZ_OK;
     ritz_poles poles = {.count = pairs->Phi.ncol,
@@ -335,7 +337,7 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
     RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, &span, &found));
     RITZ_TRY(ritz_sparse_project(&component->D, &found.Phi, &D));
     RITZ_TRY(ritz_sparse_project(&component->K4, &found.Phi, &K4));
-    RITZ_TRY(ritz_poles_new(&found, &D, &K4, &component->io, damping, out));
+    RITZ_TRY(poles_new(&found, &D, &K4, &component->io, damping, out));
     if (pairs) {
         *pairs = found;
         found = (ritz_pairs){0};
@@ -344,5 +346,150 @@ done:
     ritz_pairs_free(&found);
     ritz_dense_free(&D);
     ritz_dense_free(&K4);
+    return status;
+}
+
+/* Phi'A Phi; {0} of an absent one. */
+static ritz_status project_if(const ritz_dense *A, const ritz_dense *Phi,
+                              ritz_dense *out)
+{
+    return A && A->val ? ritz_dense_project(A, Phi, out) : RITZ_OK;
+}
+
+/*
+ * Far below 0 an eigenvalue is no rounding: -3e-9 of the largest was seen. All
+ * of a rigid body are rounding, of a stiffness that they do not tell of: the
+ * largest that matters is then that of the response, (2 pi f)^2.
+ */
+static ritz_status refuse_unstable(const ritz_pairs *pairs, double to_hz)
+{
+    int64_t m = pairs->Phi.ncol;
+    double largest = pow(2.0 * RITZ_PI * to_hz, 2.0);
+
+    if (m > 0)
+        largest = fmax(largest, fabs(pairs->lambda[m - 1]));
+    RITZ_REFUSE_IF(m > 0 &&
+                       pairs->lambda[0] < -RITZ_NEGATIVE_STIFFNESS * largest,
+                   RITZ_ERR_ARGUMENT,
+                   "the stiffness has a negative eigenvalue, %.3g where the "
+                   "largest is %.3g: an unstable model has no steady response",
+                   pairs->lambda[0], pairs->lambda[m - 1]);
+    return RITZ_OK;
+}
+
+/* Whether A moves with any of N, beyond rounding. */
+static ritz_status acts_on(const ritz_dense *A, const ritz_dense *N, bool *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense AN = {0}, NA = {0};
+
+    if (!A || !A->val || N->ncol == 0)
+        return RITZ_OK;
+    RITZ_TRY(ritz_dense_mul(A, N, &AN));
+    RITZ_TRY(ritz_dense_mul_tn(A, N, &NA));
+    if (fmax(ritz_dense_max(&AN), ritz_dense_max(&NA)) >
+        RITZ_NO_COUPLING * ritz_dense_max(A) * ritz_dense_max(N))
+        *out = true;
+done:
+    ritz_dense_free(&AN);
+    ritz_dense_free(&NA);
+    return status;
+}
+
+/*
+ * Damping of motions without mass couples them with the modes: they are taken
+ * beside them, as X = [Phi N], and their lambda is N'KN = 1.
+ */
+static ritz_status take_massless(const ritz_second_order *model, bool beside,
+                                 ritz_pairs *pairs, int64_t *count)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense N = {0}, X = {0};
+    int64_t m = pairs->Phi.ncol;
+    bool damped = beside;
+
+    *count = 0;
+    if (m == pairs->Phi.nrow)
+        return RITZ_OK;
+    RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    RITZ_TRY(acts_on(model->D, &N, &damped));
+    RITZ_TRY(acts_on(model->K4, &N, &damped));
+    if (!damped)
+        goto done;
+    RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &X));
+    ritz_dense_free(&pairs->Phi);
+    pairs->Phi = X;
+    *count = N.ncol;
+    for (int64_t j = m; j < X.ncol; j++) /* lambda has room for all rows */
+        pairs->lambda[j] = 1.0;
+done:
+    ritz_dense_free(&N);
+    return status;
+}
+
+/* The last coordinates are no modes: no ratio acts on them. */
+static ritz_status mark_massless(int64_t count, const ritz_dense *D,
+                                 const ritz_damping *damping, ritz_poles *poles)
+{
+    double b = damping && ritz_damping_is_rayleigh(damping) ? damping->b : 0.0;
+
+    poles->count -= count;
+    poles->massless = count;
+    poles->coupled = poles->coupled || count > 0;
+    if (count > 0 && !poles->D.val) /* beside modes that nothing couples */
+        RITZ_CHECK(ritz_dense_new(poles->count + count, poles->count + count,
+                                  &poles->D));
+    for (int64_t j = 0; j < poles->count && count > 0; j++)
+        ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
+    for (int64_t j = poles->count; j < poles->count + count; j++) {
+        poles->rate[j] = b + (D->val ? ritz_dense_col(D, j)[j] : 0.0);
+        ritz_dense_col(&poles->D, j)[j] = poles->rate[j];
+    }
+    return RITZ_OK;
+}
+
+/* Every mode of a small dense model, for a response by all of them. */
+
+ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
+                                const ritz_damping *damping, bool beside,
+                                ritz_pairs *pairs, ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_dense D = {0};
+    ritz_dense K4 = {0};
+    ritz_residual rest = {0};
+    int64_t massless = 0;
+
+    RITZ_TRY(ritz_static_rest(model, pairs, &rest));
+    RITZ_TRY(take_massless(model, beside, pairs, &massless));
+    RITZ_TRY_IN("D", project_if(model->D, &pairs->Phi, &D));
+    RITZ_TRY_IN("K4", project_if(model->K4, &pairs->Phi, &K4));
+    RITZ_TRY(poles_new(pairs, &D, &K4, model->io, damping, out));
+    RITZ_TRY(mark_massless(massless, &D, damping, out));
+    if (massless == 0) {
+        out->rest = rest;
+        if (damping && ritz_damping_is_rayleigh(damping))
+            out->rest.b = damping->b;
+        rest = (ritz_residual){0};
+    }
+done:
+    ritz_dense_free(&D);
+    ritz_dense_free(&K4);
+    ritz_residual_free(&rest);
+    return status;
+}
+
+ritz_status ritz_poles_of_dense(const ritz_second_order *model,
+                                const ritz_damping *damping, double to_hz,
+                                ritz_poles *out)
+{
+    ritz_status status = RITZ_OK;
+    ritz_pairs pairs = {0};
+
+    RITZ_TRY(ritz_eigen_dense(model->K, model->M, &pairs));
+    RITZ_TRY(refuse_unstable(&pairs, to_hz));
+    RITZ_TRY(ritz_poles_of_pairs(model, damping, false, &pairs, out));
+done:
+    ritz_pairs_free(&pairs);
     return status;
 }

@@ -47,11 +47,6 @@ typedef struct ritz_poles {
     double _Complex *q; /* count x num_inputs, to work in: one thread */
 } ritz_poles;
 
-/* Modal matrices are borrowed until the call ends; {0} or NULL: none. */
-ritz_status ritz_poles_new(const ritz_pairs *pairs, const ritz_dense *D,
-                           const ritz_dense *K4, const ritz_io *io,
-                           const ritz_damping *damping, ritz_poles *out);
-
 /**
  * Modal coordinates at one frequency.
  *
@@ -80,6 +75,29 @@ ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
                               double **zeta);
 
 void ritz_poles_free(ritz_poles *poles);
+
+/**
+ * Poles of all modes.
+ *
+ * @param[in] to_hz  where responses end that are of interest; 0: not known
+ * @return RITZ_ERR_ARGUMENT if an eigenvalue is negative beyond rounding, of
+ *         the largest eigenvalue or of (2 pi to_hz)^2
+ */
+ritz_status ritz_poles_of_dense(const ritz_second_order *model,
+                                const ritz_damping *damping, double to_hz,
+                                ritz_poles *out);
+
+/**
+ * Poles of pairs that are known: all modes of finite frequency, `lambda` with
+ * room for as many as there are coordinates.
+ *
+ * @param[in]     beside  whether motions without mass become coordinates even
+ *                        where no damping acts on them
+ * @param[in,out] pairs   gets their shapes behind those of its modes
+ */
+ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
+                                const ritz_damping *damping, bool beside,
+                                ritz_pairs *pairs, ritz_poles *out);
 
 /** Whether a grid is one. @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_grid_check(const ritz_grid *grid);

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "model/modal.h"
-#include "poles/dense_poles.h"
+#include "poles/poles.h"
 
 #include <complex.h>
 #include <math.h>
@@ -305,8 +305,8 @@ done:
 static void take_ratios(const ritz_direct *direct, ritz_poles *poles)
 {
     for (int64_t k = direct->m; direct->ratios && k < poles->count; k++) {
-        double given = ritz_modal_rate(
-            &direct->damping, k - poles->num_rigid, poles->lambda[k]);
+        double given = ritz_modal_rate(&direct->damping, k - poles->num_rigid,
+                                       poles->lambda[k]);
 
         poles->rate[k] -= given;
         if (poles->D.val)

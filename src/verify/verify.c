@@ -6,7 +6,7 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
-#include "poles/dense_poles.h"
+#include "poles/poles.h"
 #include "verify/sides.h"
 #include "verify/states.h"
 

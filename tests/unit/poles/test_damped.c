@@ -4,7 +4,7 @@
 #include "folder.h"
 #include "frame.h"
 #include "poles/damped.h"
-#include "poles/dense_poles.h"
+#include "poles/poles.h"
 #include "project.h"
 #include "scenes.h"
 #include "spring_chain.h"
