@@ -31,7 +31,7 @@ static const chart_kind *find(const cli_program *program, const char *word)
 }
 
 static ritz_status draw(cli_run *run, const chart_kind *kind,
-                        const chart_wish *wish)
+                        const chart_request *request)
 {
     ritz_status status = RITZ_OK;
     chart_sources sources = {0};
@@ -40,9 +40,9 @@ static ritz_status draw(cli_run *run, const chart_kind *kind,
     RITZ_TRY(chart_read(run, run->num_operands - 1, run->operand + 1,
                         kind ? kind->holds : ~CHART_SYSTEM, &sources));
     if (kind)
-        RITZ_TRY(kind->draw(&sources, wish, &drawn));
+        RITZ_TRY(kind->draw(&sources, request, &drawn));
     else
-        RITZ_TRY(report_write(&sources, wish));
+        RITZ_TRY(report_write(&sources, request));
     cli_say(run, "%s", run->output);
 done:
     picture_free(&drawn);
@@ -51,9 +51,9 @@ done:
 }
 
 /* Options that take one of a few words. */
-static void check(const cli_program *program, const chart_wish *wish)
+static void check(const cli_program *program, const chart_request *request)
 {
-    const char *const against = wish->against, *const error = wish->error;
+    const char *const against = request->against, *const error = request->error;
 
     if (against && strcmp(against, "reduce") != 0 &&
         strcmp(against, "simulate") != 0)
@@ -68,29 +68,29 @@ static void check(const cli_program *program, const chart_wish *wish)
 
 int main(int argc, char **argv)
 {
-    chart_wish wish = {.keep = true, .top = 10, .up_to_hz = 1e12};
+    chart_request request = {.keep = true, .top = 10, .up_to_hz = 1e12};
     const cli_option options[] = {
-        CLI_LIST("measure", &wish.measure, "NAME",
+        CLI_LIST("measure", &request.measure, "NAME",
                  "of records: errors to be drawn [all that are relative]"),
-        CLI_TEXT("subject", &wish.subject, "NAME",
+        CLI_TEXT("subject", &request.subject, "NAME",
                  "of records: those of one component or scene"),
-        CLI_TEXT("against", &wish.against, "WORD",
+        CLI_TEXT("against", &request.against, "WORD",
                  "pareto: time to 'reduce' or to 'simulate' [simulate, if all "
                  "records know it]"),
-        CLI_LIST("channel", &wish.channel, "OUTPUT/INPUT",
+        CLI_LIST("channel", &request.channel, "OUTPUT/INPUT",
                  "response: what is drawn [the first four]; "
                  "'singular-values' of files that hold them"),
-        CLI_TEXT("error", &wish.error, "WORD",
+        CLI_TEXT("error", &request.error, "WORD",
                  "response: 'relative' to the largest, in 'decibels' of each "
                  "point, or 'both' [relative]"),
-        CLI_LIST("at", &wish.at, "JOINT=SETTING[,...]",
+        CLI_LIST("at", &request.at, "JOINT=SETTING[,...]",
                  "mac: configuration of each system, or two of one [the only "
                  "ones]; they are compared by the masses of all bodies, if "
                  "their reduced components are named too, else by what inputs "
                  "drive and outputs see"),
-        CLI_INT("top", &wish.top, "N", 1, 1000,
+        CLI_INT("top", &request.top, "N", 1, 1000,
                 "hankel: so many modes of each ranking"),
-        CLI_REAL("up-to-hz", &wish.up_to_hz, "F", 0.0, 1e12,
+        CLI_REAL("up-to-hz", &request.up_to_hz, "F", 0.0, 1e12,
                  "tracks: modes up to here"),
         CLI_ACTION("list", list_kinds,
                    "list charts and what they are made from"),
@@ -116,7 +116,7 @@ int main(int argc, char **argv)
 
     cli_parse(&program, argc, argv, &run);
     kind = find(&program, run.operand[0]);
-    check(&program, &wish);
-    wish.path = run.output;
-    return cli_finish(&run, draw(&run, kind, &wish));
+    check(&program, &request);
+    request.path = run.output;
+    return cli_finish(&run, draw(&run, kind, &request));
 }

@@ -38,7 +38,7 @@ static bool is_tracks(const char *path)
     return is;
 }
 
-/* Containers of those kinds that charts are made from. */
+/* Kinds of containers (MODEL_...) that hold one of these (CHART_...). */
 static int models_of(int holds)
 {
     int sum = 0;
@@ -49,7 +49,7 @@ static int models_of(int holds)
     return sum;
 }
 
-/* Of text: what it holds. */
+/* Noun for what a text file holds. */
 static const char *noun_of(int found)
 {
     for (int k = 0; k < NUM_CONTENTS; k++)

@@ -35,7 +35,7 @@ typedef struct chart_sources {
     chart_file *file;
 } chart_sources;
 
-typedef struct chart_wish {
+typedef struct chart_request {
     const char *path; /* of the picture */
     bool keep;        /* see picture_new */
     cli_list measure, channel;
@@ -45,33 +45,33 @@ typedef struct chart_wish {
     const char *error;   /* "relative", "decibels", "both" */
     double up_to_hz;     /* of tracks */
     int64_t top;         /* so many modes at most */
-} chart_wish;
+} chart_request;
 
 typedef struct chart_kind {
     const char *name, *summary;
     int holds; /* of files that it takes */
     const char *files;
-    ritz_status (*draw)(const chart_sources *sources, const chart_wish *wish,
-                        picture *out);
+    ritz_status (*draw)(const chart_sources *sources,
+                        const chart_request *request, picture *out);
 } chart_kind;
 
 /** All kinds, ended by one without a name. */
 extern const chart_kind chart_kinds[];
 
-ritz_status chart_pareto(const chart_sources *sources, const chart_wish *wish,
-                         picture *out);
+ritz_status chart_pareto(const chart_sources *sources,
+                         const chart_request *request, picture *out);
 ritz_status chart_convergence(const chart_sources *sources,
-                              const chart_wish *wish, picture *out);
-ritz_status chart_hankel(const chart_sources *sources, const chart_wish *wish,
-                         picture *out);
-ritz_status chart_response(const chart_sources *sources, const chart_wish *wish,
-                           picture *out);
-ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
-                      picture *out);
+                              const chart_request *request, picture *out);
+ritz_status chart_hankel(const chart_sources *sources,
+                         const chart_request *request, picture *out);
+ritz_status chart_response(const chart_sources *sources,
+                           const chart_request *request, picture *out);
+ritz_status chart_mac(const chart_sources *sources,
+                      const chart_request *request, picture *out);
 ritz_status chart_simulation(const chart_sources *sources,
-                             const chart_wish *wish, picture *out);
-ritz_status chart_tracks(const chart_sources *sources, const chart_wish *wish,
-                         picture *out);
+                             const chart_request *request, picture *out);
+ritz_status chart_tracks(const chart_sources *sources,
+                         const chart_request *request, picture *out);
 
 /** Read files, each by its content; one that is none of @p holds is refused. */
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,

@@ -9,15 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Models are themselves wrong by about so much: see docs/chart.md. */
+/* A finite element model is itself wrong by about this: see docs/chart.md. */
 static const double uncertainty = 0.1;
 
 typedef struct form {
     const char *title, *xlabel;
     bool seconds;                 /* x is a time, on a logarithmic axis */
     double (*x)(const record *r); /* NaN: not known */
-    bool front;                   /* what nothing beats in both */
-    bool lines;                   /* from order to order of a method */
+    bool front;                   /* with the Pareto front */
+    bool lines;                   /* with a line for each method */
 } form;
 
 /* Pixels, as errors.gp has them: of a cell, and of its panel. */
@@ -26,36 +26,37 @@ enum { CELL_WIDE = 490, CELL_HIGH = 380, PANEL_WIDE = 376, PANEL_HIGH = 280 };
 /* Two marks nearer than this are one to the eye; pixels. */
 static const double mark_apart = 4.0;
 
-/* An order at the front is written if it is so far from the last, pixels. */
+/* The order of a point of the front is written if the point is this far from
+   the last one with its order, in one direction or the other; pixels. */
 static const double word_wide = 28.0, word_high = 15.0;
 
-/* Of the height of a panel: room below the lowest point, for its mark and its
-   order. */
+/* Part of the height of a panel that stays free below the lowest point, for its
+   mark and its order. */
 static const double foot_part = 0.07;
 
-/* Ends of a logarithmic axis of times: it holds two of 1, 2 and 5 of a decade,
-   which have numbers. */
+/* Least ratio of the ends of an axis of times, so that two of the numbers 1, 2
+   and 5 of a decade are on it. */
 static const double least_ratio = 6.25;
 
-/* Styles of rows of the data. */
+/* Kinds of rows of the data, column "style". */
 enum { MEETS, MISSES, CHOSEN, RUNNER_UP, ON_FRONT, ON_LINE };
 
-/* What a panel shows, for its template. */
+/* The axes of a panel and its tolerance (0: none), for the template. */
 typedef struct panel {
     double x_low, x_high, y_low, y_high, tolerance;
 } panel;
 
-/* A chart in the making; arrays are the picture's. */
+/* A chart while it is composed; the picture owns the arrays. */
 typedef struct work {
     const form *form;
-    selection s;
+    record_set s;
     panel *panel;        /* of each measure */
     double *x, *y;       /* of each record, as drawn; NaN: not in this panel */
     double *at_x, *at_y; /* the same in pixels of the panel */
-    int64_t *group;      /* of points that may hide each other */
+    int64_t *group;      /* which series a point is of, for picture_thin */
     bool *front, *keep;
     int64_t *order;           /* records in the order of a line */
-    int64_t lifted, left_out; /* to be said below */
+    int64_t lifted, left_out; /* counted in the note */
     picture *picture;
 } work;
 
@@ -137,7 +138,7 @@ static void place_records(work *w, const measure *m, panel *p)
 
 /* --- front and lines ------------------------------------------------------ */
 
-/* What nothing beats: no other point is left of it and as low. */
+/* A point is on the front if no other is as fast and as good, or better. */
 static void find_front(work *w)
 {
     for (int64_t k = 0; k < w->s.all.count; k++) {
@@ -256,7 +257,7 @@ static void put_line(work *w, int64_t p, int64_t method)
     fputc('\n', w->picture->data.file);
 }
 
-/* Points, of those that hide each other the lowest of a method; lines. */
+/* Rows of a panel: points, thinned, then its lines. */
 static ritz_status put_panel(work *w, int64_t p)
 {
     find_front(w);
@@ -365,7 +366,7 @@ static void add_signs(work *w)
             picture_add_sign(w->picture, &others[k]);
 }
 
-/* What the picture cannot show, said below it. */
+/* The note: how many errors are drawn at the foot or not at all. */
 static void say_missing(work *w)
 {
     char *text = w->picture->note;
@@ -418,8 +419,8 @@ static ritz_status compose(work *w)
     return picture_draw(p, "errors.gp", w->form->title, w->form->xlabel);
 }
 
-/* Of measures the first @p kept are taken. */
-static ritz_status refuse_measure(const selection *s, const char *asked,
+/* No measure behind the first @p kept, which are taken, has that name. */
+static ritz_status refuse_measure(const record_set *s, const char *asked,
                                   int64_t kept)
 {
     char names[16 * RITZ_NAME_SIZE] = "";
@@ -438,7 +439,7 @@ static ritz_status refuse_measure(const selection *s, const char *asked,
 }
 
 /* Measures that are asked for, or all of which any error is not rounding. */
-static ritz_status choose_measures(selection *s, const cli_list *asked)
+static ritz_status choose_measures(record_set *s, const cli_list *asked)
 {
     int64_t kept = 0;
 
@@ -462,17 +463,17 @@ static ritz_status choose_measures(selection *s, const cli_list *asked)
     return RITZ_OK;
 }
 
-static ritz_status prepare(work *w, const chart_wish *wish)
+static ritz_status prepare(work *w, const chart_request *request)
 {
     const int64_t n = w->s.all.count;
     bool any = false;
 
-    RITZ_CHECK(choose_measures(&w->s, &wish->measure));
+    RITZ_CHECK(choose_measures(&w->s, &request->measure));
     for (int64_t k = 0; k < n; k++)
         any = any || isfinite(w->form->x(&w->s.all.item[k]));
     RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
                    "no record says what its model cost");
-    RITZ_CHECK(picture_new(wish->path, wish->keep, w->picture));
+    RITZ_CHECK(picture_new(request->path, request->keep, w->picture));
     PICTURE_NEW(w->picture, w->panel, w->s.num_measures);
     PICTURE_NEW(w->picture, w->x, n);
     PICTURE_NEW(w->picture, w->y, n);
@@ -486,17 +487,17 @@ static ritz_status prepare(work *w, const chart_wish *wish)
 }
 
 static ritz_status draw_errors(const chart_sources *sources,
-                               const chart_wish *wish, const form *how,
+                               const chart_request *request, const form *how,
                                picture *out)
 {
     ritz_status status = RITZ_OK;
     work w = {.form = how, .picture = out};
 
-    RITZ_TRY(selection_new(&sources->runs, wish->subject, &w.s));
-    RITZ_TRY(prepare(&w, wish));
+    RITZ_TRY(record_set_new(&sources->runs, request->subject, &w.s));
+    RITZ_TRY(prepare(&w, request));
     RITZ_TRY(compose(&w));
 done:
-    selection_free(&w.s);
+    record_set_free(&w.s);
     return status;
 }
 
@@ -515,11 +516,12 @@ static double order_of(const record *r)
     return (double)r->order;
 }
 
-ritz_status chart_pareto(const chart_sources *sources, const chart_wish *wish,
-                         picture *out)
+ritz_status chart_pareto(const chart_sources *sources,
+                         const chart_request *request, picture *out)
 {
-    const bool simulate = wish->against ? strcmp(wish->against, "simulate") == 0
-                                        : records_cost(&sources->runs);
+    const bool simulate = request->against
+                              ? strcmp(request->against, "simulate") == 0
+                              : records_cost(&sources->runs);
     const form how = {
         .title = simulate ? "Errors against the cost of simulation"
                           : "Errors against the time to reduce",
@@ -530,16 +532,16 @@ ritz_status chart_pareto(const chart_sources *sources, const chart_wish *wish,
         .front = true,
     };
 
-    return draw_errors(sources, wish, &how, out);
+    return draw_errors(sources, request, &how, out);
 }
 
 ritz_status chart_convergence(const chart_sources *sources,
-                              const chart_wish *wish, picture *out)
+                              const chart_request *request, picture *out)
 {
     const form how = {.title = "Errors against order",
                       .xlabel = "order of the reduced model",
                       .x = order_of,
                       .lines = true};
 
-    return draw_errors(sources, wish, &how, out);
+    return draw_errors(sources, request, &how, out);
 }

@@ -29,7 +29,7 @@ static int64_t number_of(const contest *all, int64_t c, int64_t mode)
     return all->track[c] ? all->track[c][mode] : mode;
 }
 
-/* Mode of that number in ranking c; -1: none. */
+/* Index in ranking c of the mode with a number; -1: it has none. */
 static int64_t find_mode(const contest *all, int64_t c, int64_t number)
 {
     for (int64_t k = 0; k < all->ranking[c]->count; k++)
@@ -38,7 +38,7 @@ static int64_t find_mode(const contest *all, int64_t c, int64_t number)
     return -1;
 }
 
-/* Magnitude of a number in ranking c, as drawn; NaN: nothing to see. */
+/* Height of the bar of a mode in ranking c; NaN: there is no bar. */
 static double height_of(const contest *all, int64_t c, int64_t number)
 {
     const ritz_ranking *r = all->ranking[c];
@@ -50,7 +50,7 @@ static double height_of(const contest *all, int64_t c, int64_t number)
     return fabs(r->value[mode]) / (is_mixed(all) ? top : 1.0);
 }
 
-/* Numbers that are among the first few of some ranking, ascending. */
+/* Numbers of the modes that are among the first few of any ranking, ascending. */
 static ritz_status pick_numbers(picture *p, const contest *all, int64_t most,
                                 int64_t *count, int64_t **out)
 {
@@ -86,7 +86,7 @@ static double hertz_of(const contest *all, int64_t number)
     return all->ranking[c]->hertz[find_mode(all, c, number)];
 }
 
-/* Mode and label, then of each ranking value and tip; a table of the values. */
+/* A row for each mode: number, label, then value and tip of each ranking. */
 static void put_data(picture *p, const contest *all, int64_t count,
                      const int64_t *number)
 {
@@ -165,7 +165,7 @@ done:
     return status;
 }
 
-/* Rankings as ritz-rank holds them; they stay the sources'. */
+/* Rankings of all files as ritz-rank holds them, borrowed from the sources. */
 static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
                                    rank_result *out)
 {
@@ -185,20 +185,20 @@ static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
     return RITZ_OK;
 }
 
-ritz_status chart_hankel(const chart_sources *sources, const chart_wish *wish,
-                         picture *out)
+ritz_status chart_hankel(const chart_sources *sources,
+                         const chart_request *request, picture *out)
 {
     ritz_status status = RITZ_OK;
     rank_result result = {0};
     contest all = {0};
     char title[256];
 
-    RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(picture_new(request->path, request->keep, out));
     RITZ_TRY(borrow_rankings(sources, out, &result));
     RITZ_TRY(rank_contest(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,
              rankings_damping(all.ranking[0]));
-    RITZ_TRY(draw_rankings(out, title, &all, wish->top));
+    RITZ_TRY(draw_rankings(out, title, &all, request->top));
 done:
     rank_contest_free(&all);
     return status;

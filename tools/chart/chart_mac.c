@@ -25,10 +25,10 @@ enum {
     LABEL = RITZ_NAME_SIZE + 16,
 };
 
-/* Of the largest of M: what assembly and files lose. */
+/* Masses agree if they differ by less than this part of the largest entry. */
 static const double rounding = 1e-6;
 
-/* What has modes: a container and, of a system, one configuration of it. */
+/* One of the two models: a file and, if it is a system, a configuration. */
 typedef struct mac_side {
     const chart_file *file;
     const ritz_configuration *at; /* NULL: it is no system */
@@ -62,7 +62,7 @@ static void name_side(const mac_side *side, mac_shapes *out)
              side->at ? side->at->at : "");
 }
 
-/* Flexible modes among so many, behind the rigid ones. */
+/* Number and frequencies of the flexible modes behind the rigid ones. */
 static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
                                mac_shapes *out)
 {
@@ -74,7 +74,7 @@ static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
     return RITZ_OK;
 }
 
-/* In the coordinates of the model; those of a configuration are its modes. */
+/* Modes in the coordinates of the model; a configuration is in modal ones. */
 static ritz_status find_modes(const mac_side *side, mac_shapes *out)
 {
     ritz_status status = RITZ_OK;
@@ -259,7 +259,7 @@ done:
     return status;
 }
 
-/* Whether U'MU is what M of the configuration says. */
+/* Whether U'MU, with the masses of the files, is M of the configuration. */
 static ritz_status check_mass(const mac_side *side, const mac_shapes *s)
 {
     ritz_status status = RITZ_OK;
@@ -335,7 +335,8 @@ static void divide_row(mac_shapes *s, int64_t row, double by)
         ritz_dense_col(&s->U, k)[row] /= by;
 }
 
-/* Each input and output counts as much as any other, whatever its unit. */
+/* Divide each input and output by its largest value in both models, so that
+   units do not matter. */
 static ritz_status scale_rows(mac_shapes *a, mac_shapes *b, const int64_t *row)
 {
     int64_t count = 0;
@@ -412,7 +413,7 @@ static double mac_of(const mac_shapes *a, const mac_shapes *b,
 
 /* --- which two ------------------------------------------------------------ */
 
-/* What is compared, and by which bodies. */
+/* The two models, and the bodies whose masses are used. */
 typedef struct choice {
     mac_side side[2];
     int64_t num_bodies;
@@ -432,7 +433,7 @@ static ritz_status find_at(const chart_file *file, const char *at,
     return ritz_context(status, file->path);
 }
 
-/* Two systems at what --at says once or of each. */
+/* Two systems, --at being given once for both, for each, or not at all. */
 static ritz_status choose_two(const chart_file *const *system,
                               const cli_list *at, choice *out)
 {
@@ -537,7 +538,7 @@ static ritz_status shapes_of(const choice *chosen, const char **how,
 
 /* --- the picture ---------------------------------------------------------- */
 
-/* Cells have numbers in them up to so many modes. */
+/* Up to this many modes there is a number in each cell. */
 enum { NUMBERED = 24 };
 
 static void say_mode(const mac_shapes *s, int64_t k, char out[32])
@@ -629,8 +630,8 @@ static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
                         "common");
 }
 
-ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
-                      picture *out)
+ritz_status chart_mac(const chart_sources *sources,
+                      const chart_request *request, picture *out)
 {
     ritz_status status = RITZ_OK;
     choice chosen = {.num_bodies = 0};
@@ -638,9 +639,9 @@ ritz_status chart_mac(const chart_sources *sources, const chart_wish *wish,
     const char *how = "";
     int64_t *row = NULL;
 
-    RITZ_TRY(choose(sources, &wish->at, &chosen));
+    RITZ_TRY(choose(sources, &request->at, &chosen));
     RITZ_TRY(shapes_of(&chosen, &how, set));
-    RITZ_TRY(picture_new(wish->path, wish->keep, out));
+    RITZ_TRY(picture_new(request->path, request->keep, out));
     RITZ_TRY(match_rows(&set[0], &set[1], out, &row));
     RITZ_TRY(draw_mac(&set[0], &set[1], row, how, out));
 done:

@@ -49,10 +49,10 @@ typedef struct extent {
     double most, least; /* of magnitudes above 0 */
     double top;         /* the same as most, or a true peak above it */
     double worst[STRIPS], best[STRIPS]; /* of errors above 0 */
-    int64_t shared;                     /* points that curves have in common */
+    int64_t shared; /* points in common with the first response */
 } extent;
 
-/* What a channel needs of its template. */
+/* What the template is given for a channel. */
 typedef struct channel {
     char title[2 * PICTURE_WORD];
     double singular, shared, y_low, y_high;
@@ -61,7 +61,7 @@ typedef struct channel {
 
 /* --- what is drawn -------------------------------------------------------- */
 
-/* Place of a name among some; -1: it is none of them. */
+/* Index of a name in a list; -1: it is not there. */
 static int64_t find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
                          const char *wanted)
 {
@@ -95,7 +95,7 @@ static ritz_status take_response(const chart_file *file, overlay *o)
     return RITZ_OK;
 }
 
-/* Singular values, of which all files hold as many. */
+/* The channel of singular values: all files must hold as many. */
 static ritz_status add_singular(overlay *o)
 {
     const ritz_response *first = o->curve[0];
@@ -196,13 +196,13 @@ static double size_of(const overlay *o, int64_t k, int64_t c)
     return cabs(value_of(o, 0, k, c, 0));
 }
 
-/* Below this a value of the first at point k is rounding. */
+/* Values at point k of the first response are rounding up to this. */
 static double nothing_at(const overlay *o, int64_t k, int64_t c)
 {
     return is_singular(o, c) ? rounding * size_of(o, k, c) : 0.0;
 }
 
-/* Point of a curve at a frequency of another; -1: it has none there. */
+/* Index of the point at a frequency; -1: the response has none there. */
 static int64_t find_point(const ritz_response *r, double hertz)
 {
     int64_t low = 0, high = r->count;
@@ -379,7 +379,7 @@ static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
     return RITZ_OK;
 }
 
-/* Peaks of the first curve, largest first: where a reader points at. */
+/* Peaks of the first response, largest first. */
 static int64_t find_peaks(const overlay *o, int64_t c, int64_t peak[MOST_PEAKS])
 {
     int64_t count = 0;
@@ -403,8 +403,7 @@ static int64_t find_peaks(const overlay *o, int64_t c, int64_t peak[MOST_PEAKS])
     return count;
 }
 
-/* Of a mark: its row of the data as far as its tip, and of the table as far as
-   errors. */
+/* The row of a mark: in the data up to its tip, in the table up to errors. */
 static void begin_rows(const overlay *o, int64_t c, int which, int64_t w,
                        double hertz, double drawn, double value)
 {
@@ -424,7 +423,7 @@ static void begin_rows(const overlay *o, int64_t c, int which, int64_t w,
     fprintf(table, "\t%.6g\t%.5g", hertz, value);
 }
 
-/* A peak of the first, and how far the others are from it. */
+/* A peak of the first response and the errors of the others there. */
 static void put_peak(const overlay *o, int64_t c, int64_t k, double most)
 {
     const double hertz = o->curve[0]->hertz[k];
@@ -592,14 +591,14 @@ static ritz_status take_channel(const overlay *o, int64_t c, channel *out)
     return put_channel(o, c, &e);
 }
 
-/* Pixels; one strip of errors is in every cell. */
+/* Height of a cell in pixels, which has room for one strip of errors or two. */
 static int cell_high(const overlay *o)
 {
     return CELL_HIGH +
            (o->strip[RELATIVE] && o->strip[DECIBELS] ? STRIP_HIGH : 0);
 }
 
-/* What all channels and each of them need of the template. */
+/* Variables of the template: those of all channels, then of each. */
 static void give_channels(const overlay *o, const channel *all)
 {
     static const int64_t stride = sizeof(channel) / sizeof(double);
@@ -652,18 +651,18 @@ static ritz_status compose(const overlay *o)
                         "below them how far they are from the first");
 }
 
-ritz_status chart_response(const chart_sources *sources, const chart_wish *wish,
-                           picture *out)
+ritz_status chart_response(const chart_sources *sources,
+                           const chart_request *request, picture *out)
 {
     overlay o = {.picture = out};
-    const char *error = wish->error ? wish->error : "relative";
+    const char *error = request->error ? request->error : "relative";
 
     o.strip[RELATIVE] = strcmp(error, "decibels") != 0;
     o.strip[DECIBELS] = strcmp(error, "relative") != 0;
     for (int64_t k = 0; k < sources->count; k++)
         if (sources->file[k].holds == CHART_RESPONSE)
             RITZ_CHECK(take_response(&sources->file[k], &o));
-    RITZ_CHECK(choose_channels(&wish->channel, &o));
-    RITZ_CHECK(picture_new(wish->path, wish->keep, out));
+    RITZ_CHECK(choose_channels(&request->channel, &o));
+    RITZ_CHECK(picture_new(request->path, request->keep, out));
     return compose(&o);
 }

@@ -8,7 +8,8 @@
 enum {
     MOST_RUNS = 8,
     MOST_OUTPUTS = 6,
-    MOST_POINTS = 2000, /* of a line: more than the pixels of a page */
+    MOST_POINTS =
+        2000, /* points of a line; a page is not so many pixels wide */
     WIDE = 560,
     HIGH = 210,
 };
@@ -138,11 +139,11 @@ static ritz_status compose(runs *all)
 }
 
 ritz_status chart_simulation(const chart_sources *sources,
-                             const chart_wish *wish, picture *out)
+                             const chart_request *request, picture *out)
 {
     runs all = {.picture = out};
 
     RITZ_CHECK(take_runs(sources, &all));
-    RITZ_CHECK(picture_new(wish->path, wish->keep, out));
+    RITZ_CHECK(picture_new(request->path, request->keep, out));
     return compose(&all);
 }

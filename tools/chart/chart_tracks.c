@@ -21,7 +21,7 @@ typedef struct track_row {
     const char *name; /* of the configuration */
 } track_row;
 
-/* All is the picture's. */
+/* The table; the picture owns its memory. */
 typedef struct track_table {
     int64_t count, num_tracks, num_at;
     track_row *row;
@@ -33,7 +33,7 @@ typedef struct track_table {
 
 /* --- reading -------------------------------------------------------------- */
 
-/* Five columns of a line, which is cut up for that. */
+/* Read the five columns of a line, in which tabs become ends of text. */
 static bool take_row(char *line, track_row *out)
 {
     char *field[5] = {line};
@@ -56,7 +56,7 @@ static bool take_row(char *line, track_row *out)
             ritz_text_real(field[4], &out->mac));
 }
 
-/* Rows up to a frequency; a configuration is met again in one run of rows. */
+/* Read the rows up to a frequency, and number the configurations. */
 static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
 {
     long long number = 1;
@@ -129,7 +129,7 @@ static bool take_setting(const char *at, int k, char name[RITZ_NAME_SIZE],
     return length < RITZ_NAME_SIZE && ritz_text_real(value, out);
 }
 
-/* Whether all have a k-th setting, and not the same; then it is x. */
+/* Take the k-th setting as x; false: one has none, or all have the same. */
 static bool take_sweep(track_table *t, int k, char name[RITZ_NAME_SIZE])
 {
     bool differs = false;
@@ -227,8 +227,8 @@ static ritz_status draw_tracks(const track_table *t, picture *p)
                         "frequency of each mode, followed by its shape");
 }
 
-ritz_status chart_tracks(const chart_sources *sources, const chart_wish *wish,
-                         picture *out)
+ritz_status chart_tracks(const chart_sources *sources,
+                         const chart_request *request, picture *out)
 {
     track_table t = {0};
     const chart_file *file = NULL;
@@ -242,8 +242,9 @@ ritz_status chart_tracks(const chart_sources *sources, const chart_wish *wish,
         file = &sources->file[k];
     }
     RITZ_REFUSE_IF(!file, RITZ_ERR_ARGUMENT, "there is no table of tracks");
-    RITZ_CHECK(picture_new(wish->path, wish->keep, out));
-    RITZ_CHECK_IN(file->path, read_table(file->text, wish->up_to_hz, out, &t));
+    RITZ_CHECK(picture_new(request->path, request->keep, out));
+    RITZ_CHECK_IN(file->path,
+                  read_table(file->text, request->up_to_hz, out, &t));
     place_configurations(&t);
     qsort(t.row, (size_t)t.count, sizeof *t.row, by_track);
     return draw_tracks(&t, out);

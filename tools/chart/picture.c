@@ -20,7 +20,8 @@ enum {
     TIP_SIZE = 1000, /* a label of gnuplot's has 1024 bytes at most */
 };
 
-/* Of a legend, pixels: a sign and the space around its name; a letter. */
+/* Widths in the legend, pixels: a sign with the space beside it; a letter, which
+   is what gnuplot allows for one. */
 static const double sign_wide = 60.0, letter_wide = 8.5;
 
 ritz_status picture_new(const char *path, bool keep, picture *out)
@@ -40,15 +41,15 @@ ritz_status picture_new(const char *path, bool keep, picture *out)
     return cli_table_new(&out->table);
 }
 
-/* Each room has the one before it in front. */
-typedef union room {
-    union room *before;
+/* Rooms are a list; in front of each is the pointer to the one before. */
+typedef union memory {
+    union memory *before;
     max_align_t align;
-} room;
+} memory;
 
 void *picture_room(picture *p, int64_t count, size_t size)
 {
-    room *made = calloc(1, sizeof *made + (size_t)count * size + 1);
+    memory *made = calloc(1, sizeof *made + (size_t)count * size + 1);
 
     if (!made) {
         (void)ritz_fail(RITZ_ERR_MEMORY, "no memory for a chart");
@@ -131,7 +132,7 @@ void picture_tip(picture *p, const char *format, ...)
     }
 }
 
-/* A point in its square of the picture. */
+/* A point and the square of pixels in which it is. */
 typedef struct placed {
     int64_t group, column, row, index;
     double y;
@@ -183,7 +184,7 @@ static const char *base_of(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* Of a name without a folder "./NAME": gnuplot runs "|NAME" and "<NAME". */
+/* Give a file name as "./NAME": gnuplot would run "|NAME" or "<NAME". */
 static void put_name(FILE *file, const char *variable, const char *path,
                      const char *ending)
 {
@@ -195,7 +196,7 @@ static void put_name(FILE *file, const char *variable, const char *path,
     fputc('\n', file);
 }
 
-/* Letters of a text; more than there may be are cut, which three dots say. */
+/* Number of letters of a text, which is cut behind @p most; "..." says so. */
 static size_t count_letters(char *text, size_t most)
 {
     size_t count = 0;
@@ -248,7 +249,7 @@ static void put_template(FILE *file, const char *name)
         fputs(*line, file);
 }
 
-/* The whole script: what is given, then the templates. */
+/* The whole script: variables, then the templates. */
 static ritz_status write_script(picture *p, const char *template,
                                 cli_table *out)
 {
@@ -273,7 +274,7 @@ static ritz_status write_script(picture *p, const char *template,
     return RITZ_OK;
 }
 
-/* -e NAME='FILE', where a name that is no path from the root has a "./". */
+/* The command NAME='FILE' for -e; a relative name gets a "./" in front. */
 static ritz_status assign(const char *name, const char *value, size_t size,
                           char *out)
 {
@@ -320,7 +321,7 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     return RITZ_OK;
 }
 
-/* Beside the picture, to stay or until the draft is freed. */
+/* Write a table beside the picture: as a file that stays, or as a draft. */
 static ritz_status put_beside(const picture *p, cli_table *table,
                               const char *ending, ritz_draft *draft,
                               char out[PICTURE_PATH])
@@ -379,7 +380,7 @@ done:
 
 void picture_free(picture *p)
 {
-    for (room *r = p->rooms, *before = NULL; r; r = before) {
+    for (memory *r = p->rooms, *before = NULL; r; r = before) {
         before = r->before;
         free(r);
     }

@@ -8,166 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- sections, figures and their legend ----------------------------------- */
-
-void report_begin(report_page *p, const char *title)
-{
-    const long long k = ++p->num_sections;
-
-    p->num_signs = 0;
-    html_print(p->links.file, "<li><a href=\"#s%lld\">%s</a></li>\n", k, title);
-    html_print(p->body.file,
-               "<section aria-labelledby=\"s%lld\">\n<h2 id=\"s%lld\">%s</h2>"
-               "\n",
-               k, k, title);
-}
-
-static bool look_alike(const picture_sign *a, const picture_sign *b)
-{
-    return a->mark == b->mark && a->dash == b->dash && a->wide == b->wide &&
-           strcmp(a->colour, b->colour) == 0 && !a->role == !b->role &&
-           (!a->role || strcmp(a->role, b->role) == 0);
-}
-
-/* Signs that look alike have one row with the names of all. */
-static void add_signs(report_page *p, const picture *from)
-{
-    for (int k = 0; k < from->num_signs; k++) {
-        const picture_sign *s = &from->sign[k];
-        picture_sign *own = p->sign;
-        const picture_sign *end = p->sign + p->num_signs;
-
-        while (own < end && !look_alike(own, s))
-            own++;
-        if (own == end && p->num_signs < PICTURE_SIGNS) {
-            p->sign[p->num_signs++] = *s;
-        } else if (own < end && !strstr(own->name, s->name)) {
-            size_t used = strlen(own->name);
-
-            snprintf(own->name + used, sizeof own->name - used, ", %s",
-                     s->name);
-        }
-    }
-}
-
-/* A mark as gnuplot numbers them, hollow before filled; or a line. */
-static void put_sign(FILE *file, const picture_sign *s)
-{
-    static const char *const shapes[] = {
-        "M10 3h8v8h-8z", "M9 7a5 5 0 1 0 10 0a5 5 0 1 0-10 0z",
-        "M14 2l5.5 9h-11z", "M14 12l5.5-9h-11z",
-        "M14 1.5l5.5 5.5l-5.5 5.5l-5.5-5.5z"};
-    static const char *const dashes[] = {"none", "none", "7 4", "2 3",
-                                         "7 3 2 3"};
-    const int shape = (s->mark - 4) / 2;
-
-    fprintf(file, "<li><svg class=\"sign\" viewBox=\"0 0 28 14\" "
-                  "aria-hidden=\"true\">");
-    if (s->mark >= 4 && shape < 5)
-        fprintf(file,
-                "<path d=\"%s\" fill=\"%s%s%s\" stroke=\"var(--%s)\" "
-                "stroke-width=\"1.6\"/>",
-                shapes[shape], s->mark % 2 ? "var(--" : "none",
-                s->mark % 2 ? s->colour : "", s->mark % 2 ? ")" : "",
-                s->colour);
-    else
-        fprintf(file,
-                "<path d=\"M1 7H27\" stroke=\"var(--%s)\" stroke-width=\"%g\" "
-                "stroke-dasharray=\"%s\"/>",
-                s->colour, s->wide, dashes[s->dash % 5]);
-    html_print(file, "</svg>%s%s%s</li>\n", s->name, s->role ? ": " : "",
-               s->role ? s->role : "");
-}
-
-ritz_status report_end(report_page *p)
-{
-    FILE *file = p->body.file;
-
-    RITZ_REFUSE_IF(fflush(p->figures.file) != 0, RITZ_ERR_MEMORY,
-                   "no memory for the page");
-    if (p->num_signs > 0)
-        fprintf(file, "<ul class=\"legend\">\n");
-    for (int k = 0; k < p->num_signs; k++)
-        put_sign(file, &p->sign[k]);
-    if (p->num_signs > 0)
-        fprintf(file, "</ul>\n");
-    if (p->figures.size > 0)
-        fprintf(file, "<div class=\"figures\">\n%s</div>\n", p->figures.text);
-    fprintf(file, "</section>\n");
-    cli_table_free(&p->figures);
-    return cli_table_new(&p->figures);
-}
-
-/* A table with tabs, names of columns first. */
-static void put_table(FILE *file, const char *text, const char *caption)
-{
-    const char *cell = "th";
-
-    html_print(file,
-               "<details><summary>The same as a table</summary>\n"
-               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-               "aria-label=\"%s\"><table><caption>%s</caption>\n<thead>",
-               caption, caption);
-    for (const char *c = text; *c; c += *c == '\n') {
-        fprintf(file, "<tr>");
-        for (bool more = true; more; c += more) {
-            const size_t length = strcspn(c, "\t\n");
-            char *word = strndup(c, length);
-
-            html_print(file,
-                       *cell == 't' && cell[1] == 'h'
-                           ? "<th scope=\"col\">%s</th>"
-                           : "<td>%s</td>",
-                       word ? word : "");
-            free(word);
-            c += length;
-            more = *c == '\t';
-        }
-        fprintf(file,
-                strcmp(cell, "th") == 0 ? "</tr></thead><tbody>\n" : "</tr>\n");
-        cell = "td";
-    }
-    fprintf(file, "</tbody></table></div>\n</details>\n");
-}
-
-static const chart_kind *find_kind(const char *name)
-{
-    const chart_kind *kind = chart_kinds;
-
-    while (strcmp(kind->name, name) != 0)
-        kind++;
-    return kind;
-}
-
-ritz_status report_figure(report_page *p, const char *kind,
-                          const chart_sources *sources, const chart_wish *wish,
-                          const char *caption)
-{
-    ritz_status status = RITZ_OK;
-    chart_wish own = *wish;
-    FILE *file = p->figures.file;
-    picture drawn = {0};
-    char prefix[32];
-
-    own.keep = false;
-    RITZ_TRY(find_kind(kind)->draw(sources, &own, &drawn));
-    RITZ_FAIL_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
-                 "no memory for a table");
-    add_signs(p, &drawn);
-    snprintf(prefix, sizeof prefix, "p%lld-", (long long)++p->num_pictures);
-    fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",
-            drawn.wide > PICTURE_WIDE ? " class=\"whole\"" : "");
-    svg_copy(file, drawn.drawn,
-             &(svg_names){drawn.title, drawn.summary, prefix});
-    html_print(file, "</div>\n<figcaption>%s%s%s</figcaption>\n", caption,
-               *drawn.note ? ". " : "", drawn.note);
-    put_table(file, drawn.table.text, caption);
-    fprintf(file, "</figure>\n");
-done:
-    picture_free(&drawn);
-    return status;
-}
-
 /* --- files other than records --------------------------------------------- */
 
 static bool same_points(const chart_file *first, const chart_file *other)
@@ -190,8 +30,8 @@ static bool same_outputs(const chart_file *first, const chart_file *other)
                   (size_t)a->num_outputs * sizeof *a->output) == 0;
 }
 
-/* Sections, and which files belong into one picture: those that are `same` as
-   the first, all without it, at least and at most so many. */
+/* Sections, and which files make one picture: at least and at most so many that
+   are `same` as the first; NULL: any. */
 static const struct part {
     int holds;
     const char *kind, *title;
@@ -207,7 +47,7 @@ static const struct part {
     {CHART_TRACKS, "tracks", "Modes over configurations", 1, 1, NULL},
 };
 
-/* The files that `first` begins, and are not taken; they then are. */
+/* Collect the files of one picture, from `first` on, and mark them as taken. */
 static int64_t gather_files(const report_page *p, const struct part *part,
                             int64_t first, bool *taken, chart_file *out)
 {
@@ -242,7 +82,7 @@ static bool have_singular(int64_t count, const chart_file *file)
 static ritz_status put_picture(report_page *p, const struct part *part,
                                const chart_sources *some)
 {
-    chart_wish wish = *p->wish;
+    chart_request request = *p->request;
     char names[400] = "", caption[500];
     size_t used = 0;
 
@@ -250,12 +90,12 @@ static ritz_status put_picture(report_page *p, const struct part *part,
         used +=
             (size_t)snprintf(names + used, sizeof names - used, "%s%.60s",
                              k > 0 ? ", " : "", chart_base(some->file[k].path));
-    RITZ_CHECK(report_figure(p, part->kind, some, &wish, names));
-    if (wish.channel.count > 0 || !have_singular(some->count, some->file))
+    RITZ_CHECK(report_figure(p, part->kind, some, &request, names));
+    if (request.channel.count > 0 || !have_singular(some->count, some->file))
         return RITZ_OK;
-    wish.channel = (cli_list){.count = 1, .text = {CHART_SINGULAR_WORD}};
+    request.channel = (cli_list){.count = 1, .text = {CHART_SINGULAR_WORD}};
     snprintf(caption, sizeof caption, "singular values: %s", names);
-    return report_figure(p, part->kind, some, &wish, caption);
+    return report_figure(p, part->kind, some, &request, caption);
 }
 
 /* A section of pictures of one kind, if there are files for it. */
@@ -299,7 +139,7 @@ done:
 
 /* --- the page ------------------------------------------------------------- */
 
-/* What was read, and by which commands it was made. */
+/* The last section: input files, their digests, and commands. */
 static ritz_status put_provenance(report_page *p)
 {
     const cli_run *run = p->sources->run;
@@ -330,7 +170,7 @@ static ritz_status put_provenance(report_page *p)
     return report_end(p);
 }
 
-/* What names the page: whose records it shows, and what it is. */
+/* The title of the page, with the subject of the records. */
 static void put_title(FILE *file, const chart_sources *sources)
 {
     const char *subject = NULL;
@@ -379,7 +219,7 @@ static void put_hash(FILE *file, const char *name)
     }
 }
 
-/* What stands for "@NAME@" in report.html. */
+/* Write what takes the place of "@NAME@" in report.html. */
 static void put_field(FILE *file, const char *name, size_t length,
                       const report_page *p)
 {
@@ -421,14 +261,15 @@ static ritz_status put_page(FILE *file, const report_page *p)
     return RITZ_OK;
 }
 
-ritz_status report_write(const chart_sources *sources, const chart_wish *wish)
+ritz_status report_write(const chart_sources *sources,
+                         const chart_request *request)
 {
     ritz_status status = RITZ_OK;
-    report_page p = {.sources = sources, .wish = wish};
+    report_page p = {.sources = sources, .request = request};
     cli_table whole = {0};
-    const size_t length = strlen(wish->path);
+    const size_t length = strlen(request->path);
 
-    RITZ_FAIL_IF(length >= 4 && strcmp(wish->path + length - 4, ".svg") == 0,
+    RITZ_FAIL_IF(length >= 4 && strcmp(request->path + length - 4, ".svg") == 0,
                  RITZ_ERR_ARGUMENT,
                  "a report is a page, no picture: -o NAME.html");
     RITZ_TRY(cli_table_new(&p.body));
@@ -441,7 +282,7 @@ ritz_status report_write(const chart_sources *sources, const chart_wish *wish)
                  "there is nothing to draw in these files");
     RITZ_TRY(put_provenance(&p));
     RITZ_TRY(put_page(whole.file, &p));
-    RITZ_TRY(cli_table_save(&whole, wish->path));
+    RITZ_TRY(cli_table_save(&whole, request->path));
 done:
     cli_table_free(&p.body);
     cli_table_free(&p.links);

@@ -7,7 +7,7 @@
 /* The page in the making. */
 typedef struct report_page {
     const chart_sources *sources;
-    const chart_wish *wish;
+    const chart_request *request;
     cli_table links, body; /* of the contents; sections */
     cli_table figures;     /* of the section in the making */
     int64_t num_pictures, num_sections;
@@ -18,9 +18,10 @@ typedef struct report_page {
 /**
  * Write the page. Charts are drawn for what the files hold.
  *
- * @param[in] wish  path of the page; choices of charts
+ * @param[in] request  path of the page; choices of charts
  */
-ritz_status report_write(const chart_sources *sources, const chart_wish *wish);
+ritz_status report_write(const chart_sources *sources,
+                         const chart_request *request);
 
 /** A section with its title, which the contents name. */
 void report_begin(report_page *p, const char *title);
@@ -30,8 +31,8 @@ ritz_status report_end(report_page *p);
 
 /** Draw a chart for the section: picture, caption, and the same as a table. */
 ritz_status report_figure(report_page *p, const char *kind,
-                          const chart_sources *sources, const chart_wish *wish,
-                          const char *caption);
+                          const chart_sources *sources,
+                          const chart_request *request, const char *caption);
 
 /** Verdicts, charts and tables of records, if there are any. */
 ritz_status report_records(report_page *p);

@@ -13,7 +13,7 @@
 
 /* --- the verdict ---------------------------------------------------------- */
 
-/* Why a record is the answer. */
+/* Why a record is shown as the answer. */
 typedef enum reason { CHOSEN, SMALLEST, NEAREST } reason;
 
 /* How many times its tolerance the worst error is; infinite: not known. */
@@ -219,7 +219,7 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                 (long long)count);
 }
 
-static void put_answer(FILE *file, const selection *s)
+static void put_answer(FILE *file, const record_set *s)
 {
     reason why = NEAREST;
     const record *r = find_answer(&s->all, &why);
@@ -270,7 +270,7 @@ static int64_t pick_orders(const records *all, double out[MOST_COLUMNS])
 }
 
 /* Least error of a method with at most so many coordinates; NaN: none. */
-static double least_error(const selection *s, int64_t method, int64_t order)
+static double least_error(const record_set *s, int64_t method, int64_t order)
 {
     double least = nan("");
 
@@ -286,7 +286,7 @@ static double least_error(const selection *s, int64_t method, int64_t order)
 }
 
 /* Smallest record of a method that is good enough; NULL: none. */
-static const record *find_smallest(const selection *s, int64_t method,
+static const record *find_smallest(const record_set *s, int64_t method,
                                    double level)
 {
     const record *best = NULL;
@@ -311,9 +311,9 @@ typedef struct cell {
 
 /* What stands in a column: of an order the least error, of an error the fewest
    coordinates. */
-typedef cell (*find_cell)(const selection *s, int64_t method, double column);
+typedef cell (*find_cell)(const record_set *s, int64_t method, double column);
 
-static cell error_at_order(const selection *s, int64_t method, double order)
+static cell error_at_order(const record_set *s, int64_t method, double order)
 {
     cell c = {.value = least_error(s, method, (int64_t)order)};
 
@@ -321,7 +321,7 @@ static cell error_at_order(const selection *s, int64_t method, double order)
     return c;
 }
 
-static cell order_at_error(const selection *s, int64_t method, double level)
+static cell order_at_error(const record_set *s, int64_t method, double level)
 {
     const record *r = find_smallest(s, method, level);
     const double time = !r ? nan("") : records_cost(&s->all) ? r->cost : r->cpu;
@@ -334,7 +334,7 @@ static cell order_at_error(const selection *s, int64_t method, double level)
 }
 
 /* A row for each method; the best of each column stands in bold. */
-static void put_methods(FILE *file, const selection *s, const char *caption,
+static void put_methods(FILE *file, const record_set *s, const char *caption,
                         int64_t count, const double *column, find_cell find)
 {
     double best[MOST_COLUMNS];
@@ -375,7 +375,7 @@ static void put_methods(FILE *file, const selection *s, const char *caption,
     fprintf(file, "</tbody></table></div>\n");
 }
 
-static void put_tables(FILE *file, const selection *s)
+static void put_tables(FILE *file, const record_set *s)
 {
     static const double levels[] = {(double)NAN, 0.1, 1e-2, 1e-3, 1e-4};
     double order[MOST_COLUMNS];
@@ -435,8 +435,8 @@ static ritz_status list_subjects(const records *all, int64_t *count,
  * what simulators pay, where it is known of some models but not of all: of
  * others it is not worth measuring.
  */
-static ritz_status put_errors(report_page *p, const selection *s,
-                              const char *kind, chart_wish wish)
+static ritz_status put_errors(report_page *p, const record_set *s,
+                              const char *kind, chart_request request)
 {
     const bool times = strcmp(kind, "pareto") == 0;
     bool some = false;
@@ -444,9 +444,9 @@ static ritz_status put_errors(report_page *p, const selection *s,
 
     for (int64_t k = 0; k < s->all.count; k++)
         some = some || isfinite(s->all.item[k].cost);
-    wish.measure = (cli_list){.count = 1, .text = {s->measure[0].name}};
+    request.measure = (cli_list){.count = 1, .text = {s->measure[0].name}};
     if (times && some && !records_cost(&p->sources->runs)) {
-        chart_wish costs = wish;
+        chart_request costs = request;
 
         costs.against = "simulate";
         RITZ_CHECK(report_figure(p, kind, p->sources, &costs,
@@ -456,10 +456,10 @@ static ritz_status put_errors(report_page *p, const selection *s,
     for (int64_t k = 0; k < s->num_measures && k < 4; k++) {
         if (k > 0 && !records_matter(&s->all, &s->measure[k]))
             continue;
-        wish.measure.text[0] = s->measure[k].name;
+        request.measure.text[0] = s->measure[k].name;
         snprintf(text, sizeof text, "%.60s against %s, every method",
                  s->measure[k].title, times ? "time" : "order");
-        RITZ_CHECK(report_figure(p, kind, p->sources, &wish, text));
+        RITZ_CHECK(report_figure(p, kind, p->sources, &request, text));
     }
     return RITZ_OK;
 }
@@ -482,12 +482,12 @@ static void begin_section(report_page *p, const char *title, const char *name)
 }
 
 /* Charts and tables of one subject; its name, if there are several. */
-static ritz_status put_charts(report_page *p, const selection *s,
+static ritz_status put_charts(report_page *p, const record_set *s,
                               const char *subject, const char *name)
 {
-    chart_wish wish = *p->wish;
+    chart_request request = *p->request;
 
-    wish.subject = subject;
+    request.subject = subject;
     if (knows_cost(&s->all)) {
         begin_section(p, "Speed against accuracy", name);
         fprintf(p->body.file,
@@ -497,19 +497,19 @@ static ritz_status put_charts(report_page *p, const selection *s,
                 "below the dashed one models are themselves less certain than "
                 "their reductions. Numbers beside the stairs are orders.</p>"
                 "\n");
-        RITZ_CHECK(put_errors(p, s, "pareto", wish));
+        RITZ_CHECK(put_errors(p, s, "pareto", request));
         RITZ_CHECK(report_end(p));
     }
     begin_section(p, "Convergence", name);
-    RITZ_CHECK(put_errors(p, s, "convergence", wish));
+    RITZ_CHECK(put_errors(p, s, "convergence", request));
     RITZ_CHECK(report_end(p));
     begin_section(p, "Methods side by side", name);
     put_tables(p->body.file, s);
     return report_end(p);
 }
 
-static void put_verdict(report_page *p, const selection *s, const char *subject,
-                        long long number)
+static void put_verdict(report_page *p, const record_set *s,
+                        const char *subject, long long number)
 {
     html_print(p->body.file,
                "<section aria-labelledby=\"v%lld\">\n<h2 id=\"v%lld\">%s</h2>"
@@ -523,7 +523,7 @@ ritz_status report_records(report_page *p)
 {
     ritz_status status = RITZ_OK;
     const char **subject = NULL;
-    selection s = {0};
+    record_set s = {0};
     int64_t count = 0;
 
     if (p->sources->runs.count == 0)
@@ -533,15 +533,15 @@ ritz_status report_records(report_page *p)
     for (int64_t k = 0; k < 2 * count; k++) {
         const char *of = subject[k % count];
 
-        RITZ_TRY(selection_new(&p->sources->runs, of, &s));
+        RITZ_TRY(record_set_new(&p->sources->runs, of, &s));
         if (k < count)
             put_verdict(p, &s, of, k);
         else
             RITZ_TRY(put_charts(p, &s, of, count > 1 ? of : ""));
-        selection_free(&s);
+        record_set_free(&s);
     }
 done:
-    selection_free(&s);
+    record_set_free(&s);
     free(subject);
     return status;
 }

@@ -62,26 +62,26 @@ double record_value(const json_t *values, const char *name);
 /** An error as it is drawn: of MAC, what it lacks of one. */
 double record_error(const record *r, const char *name);
 
-enum { SELECTION_MEASURES = 12 };
+enum { RECORD_SET_MEASURES = 12 };
 
 /* Those that a chart can show: with a method, an order and errors, of one
    subject, a line that is repeated once. They borrow from the records. */
-typedef struct selection {
+typedef struct record_set {
     records all;
     int64_t num_measures; /* with a tolerance first, then by importance */
-    measure measure[SELECTION_MEASURES];
+    measure measure[RECORD_SET_MEASURES];
     int64_t num_methods; /* in order of their names */
     const char **method;
     int64_t *which; /* method of each record */
-} selection;
+} record_set;
 
 /**
  * @param[in]  subject  the only one to be taken; NULL: there must be one alone
  * @param[out] out      to be freed, even on failure
  */
-ritz_status selection_new(const records *all, const char *subject,
-                          selection *out);
-void selection_free(selection *s);
+ritz_status record_set_new(const records *all, const char *subject,
+                           record_set *out);
+void record_set_free(record_set *s);
 
 /* Errors below are rounding of the solvers, and as good as none. */
 #define RECORDS_ROUNDING 1e-9

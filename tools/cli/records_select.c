@@ -106,14 +106,14 @@ static double tolerance_of(const records *all, const char *name)
     return nan("");
 }
 
-static void add_measure(const char *name, selection *s)
+static void add_measure(const char *name, record_set *s)
 {
     measure *m = &s->measure[s->num_measures];
 
     for (int64_t k = 0; k < s->num_measures; k++)
         if (strcmp(s->measure[k].name, name) == 0)
             return;
-    if (s->num_measures == SELECTION_MEASURES || !has(&s->all, name) ||
+    if (s->num_measures == RECORD_SET_MEASURES || !has(&s->all, name) ||
         strlen(name) >= RITZ_NAME_SIZE)
         return;
     snprintf(m->name, RITZ_NAME_SIZE, "%s", name);
@@ -123,7 +123,7 @@ static void add_measure(const char *name, selection *s)
 }
 
 /* Those known, in their order; then others, relative ones or all. */
-static void add_measures(json_t *values, bool others, selection *s)
+static void add_measures(json_t *values, bool others, record_set *s)
 {
     const char *name = NULL;
     json_t *value = NULL;
@@ -141,7 +141,7 @@ static void add_measures(json_t *values, bool others, selection *s)
 }
 
 /* Measures with a tolerance first, then relative errors by importance. */
-static ritz_status list_measures(selection *s)
+static ritz_status list_measures(record_set *s)
 {
     for (int64_t k = 0; k < s->all.count; k++)
         add_measures(s->all.item[k].tolerance, true, s);
@@ -184,7 +184,7 @@ static int by_name(const void *a, const void *b)
 }
 
 /* Methods in order of their names, and of each record which it is. */
-static ritz_status list_methods(selection *s)
+static ritz_status list_methods(record_set *s)
 {
     const records *all = &s->all;
     int64_t n = 0;
@@ -206,19 +206,19 @@ static ritz_status list_methods(selection *s)
     return RITZ_OK;
 }
 
-ritz_status selection_new(const records *all, const char *subject,
-                          selection *out)
+ritz_status record_set_new(const records *all, const char *subject,
+                           record_set *out)
 {
-    *out = (selection){0};
+    *out = (record_set){0};
     RITZ_CHECK(select_records(all, subject, &out->all));
     RITZ_CHECK(list_methods(out));
     return list_measures(out);
 }
 
-void selection_free(selection *s)
+void record_set_free(record_set *s)
 {
     free(s->all.item);
     free(s->method);
     free(s->which);
-    *s = (selection){0};
+    *s = (record_set){0};
 }

@@ -22,7 +22,7 @@ static ritz_status read_text(const char *text, records *out)
 static void records_hold_what_lines_say(void **state)
 {
     records all = {0};
-    selection some = {0};
+    record_set some = {0};
     const measure *m = some.measure;
 
     (void)state;
@@ -38,50 +38,50 @@ static void records_hold_what_lines_say(void **state)
     assert_int_equal(all.item[1].line, 3);
     assert_true(all.item[1].cost == 2e-3 && all.item[1].cpu == 0.5);
     assert_true(isnan(all.item[0].cost) && all.item[1].chosen);
-    assert_int_equal(selection_new(&all, NULL, &some), RITZ_OK);
+    assert_int_equal(record_set_new(&all, NULL, &some), RITZ_OK);
     assert_int_equal(some.num_measures, 2);
     assert_string_equal(m[0].name, "mac"); /* it has a tolerance */
     assert_true(fabs(m[0].tolerance - 0.1) < 1e-15);
     assert_true(fabs(record_error(&all.item[0], "mac") - 0.01) < 1e-15);
     assert_true(isnan(record_error(&all.item[0], "h2-relative")));
-    selection_free(&some);
+    record_set_free(&some);
     records_free(&all);
 }
 
 static void methods_are_sorted(void **state)
 {
     records all = {0};
-    selection some = {0};
+    record_set some = {0};
 
     (void)state;
     assert_int_equal(read_text(LINE("b", 8, 1, "") LINE("a", 8, 1, "")
                                    LINE("b", 9, 1, ""),
                                &all),
                      RITZ_OK);
-    assert_int_equal(selection_new(&all, NULL, &some), RITZ_OK);
+    assert_int_equal(record_set_new(&all, NULL, &some), RITZ_OK);
     assert_int_equal(some.num_methods, 2);
     assert_string_equal(some.method[0], "a");
     assert_int_equal(some.which[0], 1);
     assert_int_equal(some.which[1], 0);
     assert_int_equal(some.which[2], 1);
-    selection_free(&some);
+    record_set_free(&some);
     records_free(&all);
 }
 
 static void a_line_that_is_repeated_counts_once(void **state)
 {
     records all = {0};
-    selection some = {0};
+    record_set some = {0};
 
     (void)state;
     assert_int_equal(read_text(LINE("a", 8, 1e-3, "") LINE("a", 9, 1e-3, "")
                                    LINE("a", 8, 1e-3, ",\"chosen\":true"),
                                &all),
                      RITZ_OK);
-    assert_int_equal(selection_new(&all, NULL, &some), RITZ_OK);
+    assert_int_equal(record_set_new(&all, NULL, &some), RITZ_OK);
     assert_int_equal(some.all.count, 2);
     assert_true(some.all.item[0].chosen && some.all.item[0].order == 8);
-    selection_free(&some);
+    record_set_free(&some);
     records_free(&all);
 }
 
@@ -167,28 +167,28 @@ static void lines_that_are_no_records_are_named(void **state)
 static void records_that_do_not_compare_are_refused(void **state)
 {
     records all = {0};
-    selection some = {0};
+    record_set some = {0};
 
     (void)state;
     assert_int_equal(read_text(LINE("a", 8, 1, ",\"subject\":\"rotor\"")
                                    LINE("a", 8, 1, ",\"subject\":\"stator\""),
                                &all),
                      RITZ_OK);
-    assert_fails(selection_new(&all, NULL, &some), RITZ_ERR_ARGUMENT,
+    assert_fails(record_set_new(&all, NULL, &some), RITZ_ERR_ARGUMENT,
                  "records of 'rotor' and of 'stator' do not compare");
-    selection_free(&some);
-    assert_fails(selection_new(&all, "x", &some), RITZ_ERR_ARGUMENT,
+    record_set_free(&some);
+    assert_fails(record_set_new(&all, "x", &some), RITZ_ERR_ARGUMENT,
                  "no record of 'x'");
-    selection_free(&some);
-    assert_int_equal(selection_new(&all, "stator", &some), RITZ_OK);
+    record_set_free(&some);
+    assert_int_equal(record_set_new(&all, "stator", &some), RITZ_OK);
     assert_int_equal(some.all.count, 1);
-    selection_free(&some);
+    record_set_free(&some);
     records_free(&all);
     assert_int_equal(read_text("{\"method\":\"a\",\"order\":3}", &all),
                      RITZ_OK);
-    assert_fails(selection_new(&all, NULL, &some), RITZ_ERR_ARGUMENT,
+    assert_fails(record_set_new(&all, NULL, &some), RITZ_ERR_ARGUMENT,
                  "no record has a method, an order and errors");
-    selection_free(&some);
+    record_set_free(&some);
     records_free(&all);
 }
 

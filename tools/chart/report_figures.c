@@ -1,0 +1,165 @@
+/* Sections of the page with their figures, and one legend for each section. */
+#include "chart/html.h"
+#include "chart/report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void report_begin(report_page *p, const char *title)
+{
+    const long long k = ++p->num_sections;
+
+    p->num_signs = 0;
+    html_print(p->links.file, "<li><a href=\"#s%lld\">%s</a></li>\n", k, title);
+    html_print(p->body.file,
+               "<section aria-labelledby=\"s%lld\">\n<h2 id=\"s%lld\">%s</h2>"
+               "\n",
+               k, k, title);
+}
+
+static bool look_alike(const picture_sign *a, const picture_sign *b)
+{
+    return a->mark == b->mark && a->dash == b->dash && a->wide == b->wide &&
+           strcmp(a->colour, b->colour) == 0 && !a->role == !b->role &&
+           (!a->role || strcmp(a->role, b->role) == 0);
+}
+
+/* Signs that look alike have one row with the names of all. */
+static void add_signs(report_page *p, const picture *from)
+{
+    for (int k = 0; k < from->num_signs; k++) {
+        const picture_sign *s = &from->sign[k];
+        picture_sign *own = p->sign;
+        const picture_sign *end = p->sign + p->num_signs;
+
+        while (own < end && !look_alike(own, s))
+            own++;
+        if (own == end && p->num_signs < PICTURE_SIGNS) {
+            p->sign[p->num_signs++] = *s;
+        } else if (own < end && !strstr(own->name, s->name)) {
+            size_t used = strlen(own->name);
+
+            snprintf(own->name + used, sizeof own->name - used, ", %s",
+                     s->name);
+        }
+    }
+}
+
+/* Draw a sign of the legend: a line, or a mark by its number in gnuplot, where
+   hollow ones are even and filled ones odd. */
+static void put_sign(FILE *file, const picture_sign *s)
+{
+    static const char *const shapes[] = {
+        "M10 3h8v8h-8z", "M9 7a5 5 0 1 0 10 0a5 5 0 1 0-10 0z",
+        "M14 2l5.5 9h-11z", "M14 12l5.5-9h-11z",
+        "M14 1.5l5.5 5.5l-5.5 5.5l-5.5-5.5z"};
+    static const char *const dashes[] = {"none", "none", "7 4", "2 3",
+                                         "7 3 2 3"};
+    const int shape = (s->mark - 4) / 2;
+
+    fprintf(file, "<li><svg class=\"sign\" viewBox=\"0 0 28 14\" "
+                  "aria-hidden=\"true\">");
+    if (s->mark >= 4 && shape < 5)
+        fprintf(file,
+                "<path d=\"%s\" fill=\"%s%s%s\" stroke=\"var(--%s)\" "
+                "stroke-width=\"1.6\"/>",
+                shapes[shape], s->mark % 2 ? "var(--" : "none",
+                s->mark % 2 ? s->colour : "", s->mark % 2 ? ")" : "",
+                s->colour);
+    else
+        fprintf(file,
+                "<path d=\"M1 7H27\" stroke=\"var(--%s)\" stroke-width=\"%g\" "
+                "stroke-dasharray=\"%s\"/>",
+                s->colour, s->wide, dashes[s->dash % 5]);
+    html_print(file, "</svg>%s%s%s</li>\n", s->name, s->role ? ": " : "",
+               s->role ? s->role : "");
+}
+
+ritz_status report_end(report_page *p)
+{
+    FILE *file = p->body.file;
+
+    RITZ_REFUSE_IF(fflush(p->figures.file) != 0, RITZ_ERR_MEMORY,
+                   "no memory for the page");
+    if (p->num_signs > 0)
+        fprintf(file, "<ul class=\"legend\">\n");
+    for (int k = 0; k < p->num_signs; k++)
+        put_sign(file, &p->sign[k]);
+    if (p->num_signs > 0)
+        fprintf(file, "</ul>\n");
+    if (p->figures.size > 0)
+        fprintf(file, "<div class=\"figures\">\n%s</div>\n", p->figures.text);
+    fprintf(file, "</section>\n");
+    cli_table_free(&p->figures);
+    return cli_table_new(&p->figures);
+}
+
+/* Turn a table with tabs, names of columns first, into one of markup. */
+static void put_table(FILE *file, const char *text, const char *caption)
+{
+    const char *cell = "th";
+
+    html_print(file,
+               "<details><summary>The same as a table</summary>\n"
+               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+               "aria-label=\"%s\"><table><caption>%s</caption>\n<thead>",
+               caption, caption);
+    for (const char *c = text; *c; c += *c == '\n') {
+        fprintf(file, "<tr>");
+        for (bool more = true; more; c += more) {
+            const size_t length = strcspn(c, "\t\n");
+            char *word = strndup(c, length);
+
+            html_print(file,
+                       *cell == 't' && cell[1] == 'h'
+                           ? "<th scope=\"col\">%s</th>"
+                           : "<td>%s</td>",
+                       word ? word : "");
+            free(word);
+            c += length;
+            more = *c == '\t';
+        }
+        fprintf(file,
+                strcmp(cell, "th") == 0 ? "</tr></thead><tbody>\n" : "</tr>\n");
+        cell = "td";
+    }
+    fprintf(file, "</tbody></table></div>\n</details>\n");
+}
+
+static const chart_kind *find_kind(const char *name)
+{
+    const chart_kind *kind = chart_kinds;
+
+    while (strcmp(kind->name, name) != 0)
+        kind++;
+    return kind;
+}
+
+ritz_status report_figure(report_page *p, const char *kind,
+                          const chart_sources *sources,
+                          const chart_request *request, const char *caption)
+{
+    ritz_status status = RITZ_OK;
+    chart_request own = *request;
+    FILE *file = p->figures.file;
+    picture drawn = {0};
+    char prefix[32];
+
+    own.keep = false;
+    RITZ_TRY(find_kind(kind)->draw(sources, &own, &drawn));
+    RITZ_FAIL_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
+                 "no memory for a table");
+    add_signs(p, &drawn);
+    snprintf(prefix, sizeof prefix, "p%lld-", (long long)++p->num_pictures);
+    fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",
+            drawn.wide > PICTURE_WIDE ? " class=\"whole\"" : "");
+    svg_copy(file, drawn.drawn,
+             &(svg_names){drawn.title, drawn.summary, prefix});
+    html_print(file, "</div>\n<figcaption>%s%s%s</figcaption>\n", caption,
+               *drawn.note ? ". " : "", drawn.note);
+    put_table(file, drawn.table.text, caption);
+    fprintf(file, "</figure>\n");
+done:
+    picture_free(&drawn);
+    return status;
+}
