@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { ELEMENTS = 100 };
 
@@ -24,7 +23,7 @@ static ritz_status name_kind(void *state, const char *name,
 {
     (void)state;
     (void)name;
-    strcpy(kind, "component");
+    snprintf(kind, RITZ_NAME_SIZE, "component");
     return RITZ_OK;
 }
 

@@ -1,7 +1,7 @@
 #include "rod.h"
 
+#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* k = EA / l [1 -1; -1 1] or m = rho A l / 6 [2 1; 1 2] of every element. */
 static ritz_status assemble_rod(int64_t n, double on, double off,
@@ -18,8 +18,8 @@ static ritz_status assemble_rod(int64_t n, double on, double off,
         val[k] = row[k] == col[k] ? on : off;
     }
     if (row && col && val)
-        status = ritz_sparse_from_triplets(n + 1, n + 1, 4 * n, row, col, val,
-                                           out);
+        status =
+            ritz_sparse_from_triplets(n + 1, n + 1, 4 * n, row, col, val, out);
     free(row);
     free(col);
     free(val);
@@ -54,7 +54,7 @@ static ritz_status add_end(const char *name, int64_t dof, ritz_port *port)
 {
     *port = (ritz_port){.origin = {(double)dof, 0.0, 0.0},
                         .axes = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
-    strcpy(port->name, name);
+    snprintf(port->name, sizeof port->name, "%s", name);
     port->dofs.at = calloc(1, sizeof *port->dofs.at);
     if (!port->dofs.at)
         return RITZ_ERR_MEMORY;
@@ -83,8 +83,8 @@ ritz_status rod_component(int64_t n, ritz_component *out)
     if (status == RITZ_OK)
         status = ritz_io_new(n + 1, 1, 1, &rod.io);
     if (status == RITZ_OK) {
-        strcpy(rod.io.input[0], "force");
-        strcpy(rod.io.output[0], "tip");
+        snprintf(rod.io.input[0], sizeof rod.io.input[0], "force");
+        snprintf(rod.io.output[0], sizeof rod.io.output[0], "tip");
         rod.io.B.val[n] = 1.0;
         rod.io.C.val[n] = 1.0;
         status = ritz_component_settle(&rod, false);

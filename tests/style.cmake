@@ -46,8 +46,17 @@ ${binary}/CMakeFiles/${target}.dir/${name}.o"
     endforeach()
 endforeach()
 
+# examples are compiled by a test alone: flags are those of the nearest file
+file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/ritz/*.h
+    ${PROJECT_SOURCE_DIR}/examples/*.h)
+file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*.c)
+foreach(file ${files})
+    style_stamp(tidy ${file} "${PROJECT_SOURCE_DIR}/.clang-tidy;${headers}"
+        ${CLANG_TIDY} --quiet -p ${PROJECT_BINARY_DIR} ${file})
+endforeach()
+
 file(GLOB_RECURSE files CONFIGURE_DEPENDS
-    ${PROJECT_SOURCE_DIR}/include/*.h
+    ${PROJECT_SOURCE_DIR}/include/*.h ${PROJECT_SOURCE_DIR}/examples/*.[ch]
     ${PROJECT_SOURCE_DIR}/src/*.[ch] ${PROJECT_SOURCE_DIR}/formats/*.[ch]
     ${PROJECT_SOURCE_DIR}/tools/*.[ch] ${PROJECT_SOURCE_DIR}/tests/*.[ch])
 foreach(file ${files})

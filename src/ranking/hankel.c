@@ -41,8 +41,7 @@ static double exact(const double pair[static 2])
 
 const ritz_ranker ritz_ranker_hankel = {
     .name = "hankel",
-    .summary =
-        "largest exact Hankel value of each mode (or cluster) alone",
+    .summary = "largest exact Hankel value of each mode (or cluster) alone",
     .reference = "Moore1981",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .exact = exact,

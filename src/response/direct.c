@@ -20,8 +20,8 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "model/modal.h"
 #include "model/io.h"
+#include "model/modal.h"
 #include "response/responder.h"
 
 #include <complex.h>

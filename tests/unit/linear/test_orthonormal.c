@@ -1,7 +1,7 @@
 #include "testing.h"
 
-#include "linear/orthonormal.h"
 #include "frame.h"
+#include "linear/orthonormal.h"
 #include "project.h"
 
 #include <float.h>

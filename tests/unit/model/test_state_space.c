@@ -2,8 +2,8 @@
 
 #include "masses.h"
 
-#include <ritz/response.h>
 #include <ritz/method.h>
+#include <ritz/response.h>
 #include <ritz/state_space.h>
 
 #include <complex.h>

@@ -4,9 +4,9 @@
 
 #include "poles/poles.h"
 
-#include <ritz/response.h>
 #include <ritz/gramians.h>
 #include <ritz/norms.h>
+#include <ritz/response.h>
 
 #include <float.h>
 #include <stdio.h>
