@@ -70,9 +70,8 @@ done:
         nftw(state.folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
     json_decref(state.answer);
     json_object_set_new(run->report, "claims", state.list);
-    sink_set(run, "holds,fails,skipped", "%lld %lld %lld",
-             (long long)state.holds, (long long)state.fails,
-             (long long)state.skipped);
+    sink_set(run, "holds,fails,skipped", "%ld %ld %ld", state.holds,
+             state.fails, state.skipped);
     return status;
 }
 

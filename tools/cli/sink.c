@@ -32,7 +32,7 @@ static int read_count(const char **at, arguments *args)
 {
     int count = 0;
 
-    if (**at == '*' && args) {
+    if (**at == '*') {
         ++*at;
         return va_arg(args->list, int);
     }
@@ -41,8 +41,7 @@ static int read_count(const char **at, arguments *args)
     return count;
 }
 
-/* What begins behind a '%'; @p at is moved behind it. Without arguments no
-   width is an argument. */
+/* What begins behind a '%'; @p at is moved behind it. */
 static conversion read_conversion(const char **at, arguments *args)
 {
     conversion c = {.precision = -1};
@@ -352,84 +351,6 @@ void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
         json_array_append_new(sink_here(run), cli_string(name[k]));
         if (title)
             cli_say(run, "  %-14s %s", k > 0 ? "" : title, name[k]);
-    }
-    sink_end(run);
-}
-
-/* The head of a column, as wide as what stands below it. */
-static void tell_head(FILE *text, const sink_column *column)
-{
-    const char *at = column->format;
-
-    while (*at) {
-        size_t plain = strcspn(at, "%");
-
-        fwrite(at, 1, plain, text);
-        at += plain + (at[plain] == '%');
-        if (at[-1] == '%') {
-            conversion c = read_conversion(&at, NULL);
-
-            fprintf(text, "%*s", c.width, column->head);
-        }
-    }
-}
-
-/* A value under the format of its column, or for JSON alone. */
-static void tell_cell(telling *t, const char *format, ...)
-{
-    arguments args;
-
-    va_start(args.list, format);
-    tell(t, format, &args);
-    va_end(args.list);
-}
-
-static void tell_field(telling t, const sink_column *column, const void *row)
-{
-    static const char *const plain[] = {"%lld", "%g", "%s", "%s", "%d"};
-    const void *at = (const char *)row + column->offset;
-    const char *format = column->head ? column->format : plain[column->kind];
-
-    t.text = column->head ? t.text : NULL;
-    t.keys = column->key ? column->key : "";
-    switch (column->kind) {
-    case SINK_INT:
-        tell_cell(&t, format, (long long)*(const int64_t *)at);
-        break;
-    case SINK_REAL:
-        tell_cell(&t, format, *(const double *)at);
-        break;
-    case SINK_TEXT:
-        tell_cell(&t, format, *(const char *const *)at);
-        break;
-    case SINK_NAME:
-        tell_cell(&t, format, (const char *)at);
-        break;
-    case SINK_BOOL:
-        tell_cell(&t, format, (int)*(const bool *)at);
-        break;
-    }
-}
-
-void sink_table(cli_run *run, const char *key, const sink_column *columns,
-                int64_t count, const void *rows, size_t stride)
-{
-    long from = ftell(run->said);
-
-    for (const sink_column *c = columns; c->key || c->head; c++)
-        if (c->head)
-            tell_head(run->said, c);
-    end_line(run, from);
-    sink_list(run, key);
-    for (int64_t k = 0; k < count; k++) {
-        const void *row = (const char *)rows + (size_t)k * stride;
-
-        from = ftell(run->said);
-        sink_object(run, NULL);
-        for (const sink_column *c = columns; c->key || c->head; c++)
-            tell_field((telling){run->said, NULL, sink_here(run)}, c, row);
-        sink_end(run);
-        end_line(run, from);
     }
     sink_end(run);
 }

@@ -9,7 +9,7 @@
  * alone.
  *
  *     %s           text      NULL: null
- *     %lld         integer
+ *     %ld          integer   int64_t, which is long where Ritz builds
  *     %g %e %f     number    null, and '-' in the text, if it is none
  *     %d           boolean
  */
@@ -77,38 +77,6 @@ void sink_numbers(cli_run *run, const char *key, int64_t count,
  * as a list. */
 void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
                 char (*name)[RITZ_NAME_SIZE]);
-
-/* A column of a table whose rows are structs of one type. */
-typedef struct sink_column {
-    const char *key;  /* NULL: text alone */
-    const char *head; /* NULL: JSON alone */
-    const char *format;
-    enum { SINK_INT, SINK_REAL, SINK_TEXT, SINK_NAME, SINK_BOOL } kind;
-    size_t offset;
-} sink_column;
-
-/* The kind of a column is that of the field: an array of letters is a name. */
-#define SINK_COLUMN(type, field, key, head, format)                              \
-    {                                                                            \
-        key, head, format,                                                     \
-            _Generic(((type *)0)->field,                                       \
-                     int64_t: SINK_INT,                                        \
-                     double: SINK_REAL,                                        \
-                     const char *: SINK_TEXT,                                  \
-                     char *: SINK_NAME,                                        \
-                     bool: SINK_BOOL),                                         \
-            offsetof(type, field) \
-    }
-
-/**
- * A list of rows as a table: heads, as wide as the formats of their columns,
- * and a line and an item for each row.
- *
- * @param[in] columns  ended by {0}
- * @param[in] stride   bytes from a row to the next
- */
-void sink_table(cli_run *run, const char *key, const sink_column *columns,
-                int64_t count, const void *rows, size_t stride);
 
 /** Add to a text that is built piece by piece, as far as there is room. */
 [[gnu::format(printf, 3, 4)]] void sink_append(char *text, size_t size,

@@ -101,7 +101,7 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
     }
     if (basis->remark[0])
         sink_field(run, "note", "note", "%s", basis->remark);
-    sink_set(run, "vectors", "%lld", (long long)c->count);
+    sink_set(run, "vectors", "%ld", c->count);
     cli_record(run, basis->origin.method, c->count);
 }
 
@@ -171,7 +171,7 @@ static ritz_status say_reduced(cli_run *run, const ritz_reduced *reduced)
 
     cli_say(run, "%s:", run->output);
     RITZ_CHECK(describe_reduced(run, reduced));
-    sink_set(run, "vectors", "%lld", (long long)c->count);
+    sink_set(run, "vectors", "%ld", c->count);
     sink_list(run, "residuals");
     for (int64_t k = 0; k < c->count; k++)
         if (!isnan(c->residual[k]))
@@ -238,7 +238,7 @@ static ritz_status reduce_to_states(cli_run *run, const model *full,
     RITZ_TRY(ritz_container_write_state_space(run->output, &states, &stamp));
     cli_say(run, "%s:", run->output);
     RITZ_TRY(describe_states(run, &states));
-    sink_set(run, "vectors", "%lld", (long long)states.columns.count);
+    sink_set(run, "vectors", "%ld", states.columns.count);
     cli_record(run, states.origin.method, states.A.nrow);
     record_errors(run, &states.estimates);
     ritz_probe_print(&probe, text);
@@ -261,9 +261,8 @@ static ritz_status check_rows(const cli_run *run, const model *full,
                    "'%s' is a basis of displacements, '%s' is a state space",
                    run->operand[1], run->operand[0]);
     RITZ_REFUSE_IF(rows != due, RITZ_ERR_ARGUMENT,
-                   "'%s' is a basis for %lld %s, '%s' has %lld",
-                   run->operand[1], (long long)rows, space ? "states" : "dofs",
-                   run->operand[0], (long long)due);
+                   "'%s' is a basis for %ld %s, '%s' has %ld", run->operand[1],
+                   rows, space ? "states" : "dofs", run->operand[0], due);
     return RITZ_OK;
 }
 

@@ -28,10 +28,8 @@ void checks_say(cli_run *run, const char *key, const ritz_audit *audit)
         sink_end(run);
     }
     sink_end(run);
-    cli_say(run, "%lld pass, %lld warn, %lld fail",
-            (long long)count_checks(audit, RITZ_PASS),
-            (long long)count_checks(audit, RITZ_WARN),
-            (long long)count_checks(audit, RITZ_FAIL));
+    cli_say(run, "%ld pass, %ld warn, %ld fail", count_checks(audit, RITZ_PASS),
+            count_checks(audit, RITZ_WARN), count_checks(audit, RITZ_FAIL));
 }
 
 const ritz_check *checks_first(const ritz_audit *audit)
@@ -62,9 +60,8 @@ ritz_status checks_run(cli_run *run)
         RITZ_TRY(cli_save(run, run->output));
     first = checks_first(&audit);
     RITZ_FAIL_IF(first, RITZ_ERR_FORMAT,
-                 "'%s': %lld of %lld checks fail, first '%s'%s%s", path,
-                 (long long)count_checks(&audit, RITZ_FAIL),
-                 (long long)audit.count, first->name,
+                 "'%s': %ld of %ld checks fail, first '%s'%s%s", path,
+                 count_checks(&audit, RITZ_FAIL), audit.count, first->name,
                  *first->where ? " at " : "", first->where);
 done:
     ritz_audit_free(&audit);

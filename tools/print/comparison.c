@@ -29,13 +29,11 @@ static void say_orders(cli_run *run, const ritz_stage *first,
         for (int i = 0; i < 3; i++)
             sum[i] += order[i];
         sink_say(run, "name,dofs_full,stage1,dofs",
-                 "%-20s %10lld %10lld %10lld  %s",
-                 first->scene->component[k].name, (long long)order[0],
-                 (long long)order[1], (long long)order[2], body->origin.method);
+                 "%-20s %10ld %10ld %10ld  %s", first->scene->component[k].name,
+                 order[0], order[1], order[2], body->origin.method);
     }
     sink_end(run);
-    cli_say(run, "%-20s %10lld %10lld %10lld", "total", (long long)sum[0],
-            (long long)sum[1], (long long)sum[2]);
+    cli_say(run, "%-20s %10ld %10ld %10ld", "total", sum[0], sum[1], sum[2]);
     cli_record(run, "compare", sum[2]);
 }
 
@@ -47,12 +45,11 @@ static void describe_choice(const ritz_scene *scene, char out[160])
 
     switch (scene->select) {
     case RITZ_SELECT_LISTED:
-        snprintf(out, size, "modes by a list of %lld",
-                 (long long)scene->num_select_modes);
+        snprintf(out, size, "modes by a list of %ld", scene->num_select_modes);
         break;
     case RITZ_SELECT_KRYLOV:
-        snprintf(out, size, "up to %lld Krylov vectors from %s at each",
-                 (long long)scene->select_vectors,
+        snprintf(out, size, "up to %ld Krylov vectors from %s at each",
+                 scene->select_vectors,
                  scene->select_outputs ? "inputs and outputs" : "inputs");
         break;
     case RITZ_SELECT_RANKED:
@@ -81,18 +78,17 @@ static void say_composite(cli_run *run, const ritz_stage *first,
     describe_choice(scene, choice);
     for (int64_t k = 0; k < c->num_rows; k++)
         completed += c->row[k].listed ? c->row[k].num_completed : 0;
-    sink_set(run, "removed,completed", "%d %lld", c->removed,
-             (long long)completed);
+    sink_set(run, "removed,completed", "%d %ld", c->removed, completed);
     sink_say(run, "composite",
-             "Composite set: %lld vectors from %lld configurations, %s,",
-             (long long)c->composite, (long long)count, choice);
+             "Composite set: %ld vectors from %ld configurations, %s,",
+             c->composite, count, choice);
     cli_say(run, "vectors dependent within %g removed on each component.",
             scene->composite_tolerance);
     if (completed > 0)
         cli_say(run,
-                "%lld modes are kept beside those chosen, as a cluster is "
+                "%ld modes are kept beside those chosen, as a cluster is "
                 "never split.",
-                (long long)completed);
+                completed);
     if (c->removed)
         return;
     cli_warn(run, "stage two removed nothing: every component kept its "
@@ -108,7 +104,7 @@ static void print_orders(cli_run *run, int64_t count, const int64_t *order,
 {
     out[0] = '\0';
     for (int64_t k = 0; k < count && strlen(out) < 72; k++)
-        sink_append(out, 80, "%s%lld", k > 0 ? "+" : "", (long long)order[k]);
+        sink_append(out, 80, "%s%ld", k > 0 ? "+" : "", order[k]);
     sink_wholes(run, "orders", count, order);
 }
 
@@ -123,9 +119,9 @@ static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
         snprintf(where, sizeof where, "%.4g Hz%s%s", k->hertz,
                  *k->at ? ", " : "", k->at);
     sink_say(run, ",attached,,dofs,gain_listed,gain_between,singular_value",
-             "%c %-28s %-16s %6lld %9.1e %9.1e %9.1e  %s",
-             k->chosen ? '>' : ' ', k->name, orders, (long long)k->largest,
-             k->gain_listed, k->gain_between, k->deviation, where);
+             "%c %-28s %-16s %6ld %9.1e %9.1e %9.1e  %s", k->chosen ? '>' : ' ',
+             k->name, orders, k->largest, k->gain_listed, k->gain_between,
+             k->deviation, where);
     sink_set(run, "hertz,at,chosen", "%g %s %d", k->hertz, k->at, k->chosen);
     sink_end(run);
 }
@@ -190,21 +186,18 @@ static void say_errors(cli_run *run, const ritz_compare_row *row,
     int64_t kept = row->num_vectors > 0 ? row->num_vectors : row->num_kept;
 
     if (row->listed)
-        snprintf(first, sizeof first, "%lld", (long long)number);
-    snprintf(chosen, sizeof chosen, row->listed ? "%lld" : "(%lld)",
-             (long long)kept);
+        snprintf(first, sizeof first, "%ld", number);
+    snprintf(chosen, sizeof chosen, row->listed ? "%ld" : "(%ld)", kept);
     sink_set(run, "at,listed,rigid,flexible,dofs,vectors,moments",
-             "%s %d %lld %lld %lld %lld %lld", at, row->listed,
-             (long long)row->num_rigid, (long long)row->num_flexible,
-             (long long)row->order, (long long)row->num_vectors,
-             (long long)row->num_moments);
+             "%s %d %ld %ld %ld %ld %ld", at, row->listed, row->num_rigid,
+             row->num_flexible, row->order, row->num_vectors, row->num_moments);
     sink_object(run, "errors");
     sink_say(run, ",,,,,,frequency,frequency_allowed,rigid_hz,gain,response",
-             "%3s  %-28s %5lld %4lld %4s %5lld %9.1e %9.1e %9.1e %9.1e %9.1e "
+             "%3s  %-28s %5ld %4ld %4s %5ld %9.1e %9.1e %9.1e %9.1e %9.1e "
              "%9.1e",
-             first, at, (long long)row->num_rigid, (long long)row->num_flexible,
-             chosen, (long long)row->order, row->frequency_error, row->allowed,
-             row->rigid_error, row->gain_error, row->response_error,
+             first, at, row->num_rigid, row->num_flexible, chosen, row->order,
+             row->frequency_error, row->allowed, row->rigid_error,
+             row->gain_error, row->response_error,
              isnan(row->mac) ? row->mac : fmax(1.0 - row->mac, 0.0));
     sink_set(run, "mac,moments", "%g %g", row->mac, row->moment_error);
     sink_end(run);
@@ -221,9 +214,8 @@ static ritz_status set_modes(cli_run *run, const ritz_compare_row *row,
     for (int64_t i = 0; i < row->num_strays; i++) {
         const ritz_stray *s = &row->stray[i];
 
-        sink_set(run, "mode,hertz,like,mac,removed", "%lld %g %lld %g %d",
-                 (long long)s->mode + 1, s->hertz, (long long)s->like + 1,
-                 s->mac, s->removed);
+        sink_set(run, "mode,hertz,like,mac,removed", "%ld %g %ld %g %d",
+                 s->mode + 1, s->hertz, s->like + 1, s->mac, s->removed);
     }
     sink_end(run);
     if (!at)
@@ -257,9 +249,9 @@ static void say_legend(cli_run *run, const ritz_comparison *c)
                      "that would have been kept there");
     if (moments > 0)
         cli_say(run,
-                "  the first %lld moments C (K^-1 M)^i K^-1 B are kept, of the "
+                "  the first %ld moments C (K^-1 M)^i K^-1 B are kept, of the "
                 "flexible part: worst relative error %.1e",
-                (long long)moments, worst);
+                moments, worst);
 }
 
 static ritz_status say_rows(cli_run *run, const ritz_stage *stage,
@@ -336,10 +328,9 @@ static void say_stray_row(cli_run *run, const char *at,
                     stray->mac >= 0.9 ? "~" : "", stray->removed ? "x" : "");
     }
     if (shown < row->num_strays)
-        cli_say(run, "  %-28s %4lld %s ...", at, (long long)row->num_strays,
-                line);
+        cli_say(run, "  %-28s %4ld %s ...", at, row->num_strays, line);
     else
-        cli_say(run, "  %-28s %4lld %s", at, (long long)row->num_strays, line);
+        cli_say(run, "  %-28s %4ld %s", at, row->num_strays, line);
 }
 
 /* How many of the listed rows' extraneous modes were removed. */
@@ -361,7 +352,7 @@ static void say_strays(cli_run *run, const ritz_stage *first,
 
     for (int64_t k = 0; k < c->num_rows; k++)
         total += c->row[k].listed ? c->row[k].num_strays : 0;
-    sink_set(run, "extraneous_removed", "%lld", (long long)removed);
+    sink_set(run, "extraneous_removed", "%ld", removed);
     if (total == 0)
         return;
     cli_say(run, "\nExtraneous modes of the stage-2 system, Hz: those that "
@@ -378,9 +369,9 @@ static void say_strays(cli_run *run, const ritz_stage *first,
                  "x removed from the system that was written");
     if (removed > 0)
         cli_say(run,
-                "  %lld of %lld were removed; the components still contain "
+                "  %ld of %ld were removed; the components still contain "
                 "them%s",
-                (long long)removed, (long long)total,
+                removed, total,
                 first->scene->augment == RITZ_AUGMENT_NONE
                     ? ""
                     : ". What carries the static gain was among them: the "
@@ -474,7 +465,7 @@ static ritz_status find_system_column(int64_t number, const ritz_comparison *c,
     const ritz_configuration *second = &c->second_system.configuration[number];
     char title[32];
 
-    snprintf(title, sizeof title, "#%lld", (long long)number + 1);
+    snprintf(title, sizeof title, "#%ld", number + 1);
     RITZ_CHECK(new_column(title, second->K.nrow - second->num_rigid, out));
     for (int64_t k = 0; k < out->count; k++)
         out->hertz[k] = ritz_eigen_hertz(second->lambda[second->num_rigid + k]);
@@ -505,7 +496,7 @@ static void say_mode_line(cli_run *run, int64_t mode, int64_t count,
     if (mode < 0)
         cli_say(run, "%5s%s", "mode", line);
     else
-        cli_say(run, "%5lld%s", (long long)mode + 1, line);
+        cli_say(run, "%5ld%s", mode + 1, line);
 }
 
 static ritz_status say_modes(cli_run *run, const ritz_comparison *c)
@@ -535,8 +526,8 @@ static ritz_status say_modes(cli_run *run, const ritz_comparison *c)
     cli_say(run, "  \u2020 a mode of the stage-1 system that was kept, and is "
                  "there exactly");
     if (shown < systems)
-        cli_say(run, "  %lld more configurations are in the output",
-                (long long)(systems - shown));
+        cli_say(run, "  %ld more configurations are in the output",
+                (systems - shown));
 done:
     free_columns(count, columns);
     return status;
@@ -552,10 +543,10 @@ static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
         snprintf(band, sizeof band, "band %g to %g Hz", scene->band_hz[0],
                  scene->band_hz[1]);
     cli_say(run,
-            "Two-stage reduction of '%s', %lld configurations, %s "
+            "Two-stage reduction of '%s', %ld configurations, %s "
             "[LeeTsuha1992]\n",
             *scene->name ? scene->name : run->operand[0],
-            (long long)scene->num_configurations, band);
+            scene->num_configurations, band);
     say_orders(run, first, &c->second);
     cli_say(run, "%s", "");
     say_composite(run, first, c);
@@ -583,10 +574,9 @@ static void say_tolerances(cli_run *run, const ritz_stage *first, int64_t count,
         print_orders(run, first->count, row->order, orders);
         sink_set(run, "removed", "%d", row->removed);
         sink_say(run, "tolerance,,,dofs,frequency,gain,response",
-                 "%10.0e  %-16s %6lld %6lld %9.1e %9.1e %9.1e%s",
-                 row->tolerance, orders, (long long)row->total,
-                 (long long)row->largest, row->frequency_error, row->gain_error,
-                 row->response_error,
+                 "%10.0e  %-16s %6ld %6ld %9.1e %9.1e %9.1e%s", row->tolerance,
+                 orders, row->total, row->largest, row->frequency_error,
+                 row->gain_error, row->response_error,
                  row->removed ? "" : "  stage two removed nothing");
         sink_end(run);
     }
@@ -608,12 +598,12 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
     for (int64_t k = 0; k < count; k++) {
         const ritz_tolerance_row *row = &rows[k];
 
-        fprintf(table.file, "\n%g\t%lld\t%lld\t%s\t%.6e\t%.6e\t%.6e",
-                row->tolerance, (long long)row->total, (long long)row->largest,
+        fprintf(table.file, "\n%g\t%ld\t%ld\t%s\t%.6e\t%.6e\t%.6e",
+                row->tolerance, row->total, row->largest,
                 row->removed ? "yes" : "no", row->frequency_error,
                 row->gain_error, row->response_error);
         for (int64_t b = 0; b < first->count; b++)
-            fprintf(table.file, "\t%lld", (long long)row->order[b]);
+            fprintf(table.file, "\t%ld", row->order[b]);
     }
     fprintf(table.file, "\n");
     RITZ_TRY(cli_table_save(&table, path));

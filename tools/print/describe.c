@@ -30,9 +30,8 @@ static void describe_sparse(cli_run *run, const char *name,
         return;
     checksum_sparse(A, sum);
     checksum_set(run, name, sum);
-    cli_say(run, "  %-14s %lld x %lld, %lld entries, sha256 %.12s...", name,
-            (long long)A->nrow, (long long)A->ncol,
-            (long long)A->colptr[A->ncol], sum);
+    cli_say(run, "  %-14s %ld x %ld, %ld entries, sha256 %.12s...", name,
+            A->nrow, A->ncol, A->colptr[A->ncol], sum);
 }
 
 static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
@@ -43,8 +42,8 @@ static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
         return;
     checksum_dense(A, sum);
     checksum_set(run, name, sum);
-    cli_say(run, "  %-14s %lld x %lld, dense, sha256 %.12s...", name,
-            (long long)A->nrow, (long long)A->ncol, sum);
+    cli_say(run, "  %-14s %ld x %ld, dense, sha256 %.12s...", name, A->nrow,
+            A->ncol, sum);
 }
 
 /* Inputs and outputs by name, these with their limits. */
@@ -76,22 +75,22 @@ static void describe_port(cli_run *run, const char *name, int64_t count,
     sink_end(run);
     sink_list(run, "port_details");
     sink_object(run, NULL);
-    sink_set(run, "name,dofs", "%s %lld", name, (long long)count);
+    sink_set(run, "name,dofs", "%s %ld", name, count);
     sink_reals(run, "origin", 3, origin);
     sink_list(run, "grids");
     for (int64_t k = 0; k < count; k++) {
         if (k > 0 && dof[k].grid == dof[k - 1].grid)
             continue;
         if (grids++ < SHOWN)
-            sink_append(text, sizeof text, " %lld", (long long)dof[k].grid);
-        sink_add(run, "%lld", (long long)dof[k].grid);
+            sink_append(text, sizeof text, " %ld", dof[k].grid);
+        sink_add(run, "%ld", dof[k].grid);
     }
     sink_end(run);
     sink_end(run);
     sink_end(run);
-    cli_say(run, "  port %-9s %lld dofs at grids%s%s, origin (%g, %g, %g)",
-            name, (long long)count, text, grids > SHOWN ? " ..." : "",
-            origin[0], origin[1], origin[2]);
+    cli_say(run, "  port %-9s %ld dofs at grids%s%s, origin (%g, %g, %g)", name,
+            count, text, grids > SHOWN ? " ..." : "", origin[0], origin[1],
+            origin[2]);
 }
 
 /* Lists of ports are there even where there is none. */
@@ -183,13 +182,13 @@ static int64_t print_grid(const ritz_recovery *r, int64_t k, size_t size,
 {
     ritz_dof first = r->dof[k];
 
-    snprintf(text, size, "%s %lld", first.component == 0 ? "point" : "grid",
-             (long long)first.grid);
+    snprintf(text, size, "%s %ld", first.component == 0 ? "point" : "grid",
+             first.grid);
     if (first.component > 0)
         sink_append(text, size, " ");
     for (; k < r->count && r->dof[k].grid == first.grid; k++)
         if (r->dof[k].component > 0)
-            sink_append(text, size, "%lld", (long long)r->dof[k].component);
+            sink_append(text, size, "%ld", r->dof[k].component);
     return k;
 }
 
@@ -200,7 +199,7 @@ static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
     char text[SHOWN * 64] = "";
     int64_t grids = 0;
 
-    sink_set(run, "recovered", "%lld", (long long)recovery->count);
+    sink_set(run, "recovered", "%ld", recovery->count);
     sink_list(run, "recovered_dofs");
     for (int64_t k = 0; k < recovery->count; grids++) {
         char one[64];
@@ -212,8 +211,8 @@ static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
     }
     sink_end(run);
     if (recovery->count > 0)
-        cli_say(run, "  %-14s %lld dofs that follow from the others: %s%s",
-                "recovered", (long long)recovery->count, text,
+        cli_say(run, "  %-14s %ld dofs that follow from the others: %s%s",
+                "recovered", recovery->count, text,
                 grids > SHOWN ? ", ..." : "");
 }
 
@@ -227,14 +226,13 @@ void describe_component(cli_run *run, const ritz_component *c)
         grids += c->dof[k].component != 0 &&
                  (k == 0 || c->dof[k].grid != c->dof[k - 1].grid);
     }
-    sink_set(run, "kind,scalar_points,digits,asymmetry", "%s %lld %g %g",
-             "component", (long long)scalar, c->digits, c->asymmetry);
-    sink_field(run, "kind", "dofs,grids",
-               "component, %lld dofs at %lld grids%s", (long long)c->num_dofs,
-               (long long)grids,
+    sink_set(run, "kind,scalar_points,digits,asymmetry", "%s %ld %g %g",
+             "component", scalar, c->digits, c->asymmetry);
+    sink_field(run, "kind", "dofs,grids", "component, %ld dofs at %ld grids%s",
+               c->num_dofs, grids,
                c->grids.count > 0 ? "" : " without positions");
     if (scalar > 0)
-        cli_say(run, "  %-14s %lld", "scalar points", (long long)scalar);
+        cli_say(run, "  %-14s %ld", "scalar points", scalar);
     describe_units(run, c->units);
     describe_sparse(run, "K", &c->K);
     describe_sparse(run, "M", &c->M);
@@ -276,13 +274,13 @@ static void describe_columns(cli_run *run, const ritz_columns *c)
             count += (int)c->kind[k] == kind;
         if (count == 0)
             continue;
-        sink_set(run, name, "%lld", (long long)count);
-        sink_append(text, sizeof text, "%s%lld %s", *text ? ", " : "",
-                    (long long)count, name);
+        sink_set(run, name, "%ld", count);
+        sink_append(text, sizeof text, "%s%ld %s", *text ? ", " : "", count,
+                    name);
         modes += kind == RITZ_COLUMN_NORMAL ? count : 0;
     }
     sink_end(run);
-    sink_set(run, "modes", "%lld", (long long)modes);
+    sink_set(run, "modes", "%ld", modes);
     cli_say(run, "  %-14s %s", "columns", text);
     if (model_band(c, &low, &high))
         cli_say(run, "  %-14s %g to %g Hz", "normal modes", low, high);
@@ -315,9 +313,8 @@ static void describe_hankel(cli_run *run, const ritz_basis *b)
 void describe_basis(cli_run *run, const ritz_basis *b)
 {
     sink_set(run, "kind", "%s", "basis");
-    sink_field(run, "kind", "dofs,dofs_full",
-               "basis of %lld columns for %lld %s", (long long)b->T.ncol,
-               (long long)b->T.nrow, b->states ? "states" : "dofs");
+    sink_field(run, "kind", "dofs,dofs_full", "basis of %ld columns for %ld %s",
+               b->T.ncol, b->T.nrow, b->states ? "states" : "dofs");
     describe_origin(run, &b->origin);
     describe_columns(run, &b->columns);
     describe_dense(run, "T", &b->T);
@@ -355,9 +352,8 @@ static void describe_inertia(cli_run *run, const ritz_inertia *i)
 static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
                            int64_t count, const double *hertz)
 {
-    cli_say(run, "  %-14s %lld rigid, %lld flexible modes%s", title,
-            (long long)rigid, (long long)(count - rigid),
-            count > rigid ? ", Hz:" : "");
+    cli_say(run, "  %-14s %ld rigid, %ld flexible modes%s", title, rigid,
+            (count - rigid), count > rigid ? ", Hz:" : "");
     for (int64_t k = rigid; k < count; k += 5) {
         char line[5 * 14 + 1] = "";
 
@@ -435,8 +431,8 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     sink_set(run, "kind", "%s", "reduced");
     RITZ_TRY(model_hertz(&r->K, &r->M, &rigid, &count, &hertz));
     sink_field(run, "kind", "dofs,dofs_full",
-               "reduced component, %lld coordinates for %lld dofs",
-               (long long)r->K.nrow, (long long)r->num_dofs);
+               "reduced component, %ld coordinates for %ld dofs", r->K.nrow,
+               r->num_dofs);
     describe_units(run, r->units);
     describe_origin(run, &r->origin);
     describe_columns(run, &r->columns);
@@ -471,8 +467,7 @@ static ritz_status describe_configuration(cli_run *run,
 
     RITZ_CHECK(model_hertz_at(c, &hertz));
     sink_object(run, NULL);
-    sink_set(run, "at,dofs,rank", "%s %lld %lld", c->at, (long long)c->K.nrow,
-             (long long)c->rank);
+    sink_set(run, "at,dofs,rank", "%s %ld %ld", c->at, c->K.nrow, c->rank);
     describe_hertz(run, *c->at ? c->at : "as joined", c->num_rigid, c->K.nrow,
                    hertz);
     describe_measures(run, "errors", &c->errors, "measured");
@@ -494,8 +489,8 @@ static ritz_status describe_configurations(cli_run *run, const ritz_system *s)
         first = json_array_get(sink_here(run), 0);
         sink_end(run);
         if (k == 0) {
-            sink_set(run, "dofs,modes", "%lld %lld", (long long)c->K.nrow,
-                     (long long)(c->K.nrow - c->num_rigid));
+            sink_set(run, "dofs,modes", "%ld %ld", c->K.nrow,
+                     (c->K.nrow - c->num_rigid));
             json_object_set(sink_here(run), "frequencies_hz",
                             json_object_get(first, "frequencies_hz"));
             describe_io(run, &c->io);
@@ -514,14 +509,14 @@ ritz_status describe_system(cli_run *run, const ritz_system *s)
     sink_names(run, NULL, "sweeps", s->num_sweeps, s->sweep);
     sink_list(run, "ports");
     sink_end(run);
-    sink_field(run, "kind", "name", "system '%s' at %lld configurations",
-               s->name, (long long)s->num_configurations);
+    sink_field(run, "kind", "name", "system '%s' at %ld configurations",
+               s->name, s->num_configurations);
     describe_units(run, s->units);
     sink_list(run, "components");
     for (int64_t k = 0; k < s->num_components; k++)
         sink_field(run, k > 0 ? "" : "components", "name,dofs,dofs_full",
-                   "%-16s %lld coordinates for %lld dofs", s->component[k],
-                   (long long)s->order[k], (long long)s->order_full[k]);
+                   "%-16s %ld coordinates for %ld dofs", s->component[k],
+                   s->order[k], s->order_full[k]);
     sink_end(run);
     if (s->band_hz[1] > 0.0)
         cli_say(run, "  %-14s %g to %g Hz", "band", s->band_hz[0],
@@ -536,8 +531,8 @@ void describe_response(cli_run *run, const ritz_response *r)
 {
     sink_set(run, "kind", "%s", "response");
     sink_field(run, "kind", "points,from_hz,to_hz",
-               "frequency response, %lld points, %g to %g Hz",
-               (long long)r->count, r->count > 0 ? r->hertz[0] : (double)NAN,
+               "frequency response, %ld points, %g to %g Hz", r->count,
+               r->count > 0 ? r->hertz[0] : (double)NAN,
                r->count > 0 ? r->hertz[r->count - 1] : (double)NAN);
     sink_set(run, "damping", "%s", r->damping);
     sink_field(run, "method", "method", "%s, damping %s", r->method,
@@ -580,10 +575,10 @@ void describe_simulation(cli_run *run, const ritz_simulation *s)
 {
     double end = s->count > 0 ? s->seconds[s->count - 1] : 0.0;
 
-    sink_set(run, "kind,order,damping", "%s %lld %s", "simulation",
-             (long long)s->order, s->damping);
+    sink_set(run, "kind,order,damping", "%s %ld %s", "simulation", s->order,
+             s->damping);
     sink_field(run, "kind", "points,seconds",
-               "time response, %lld times to %g s", (long long)s->count, end);
+               "time response, %ld times to %g s", s->count, end);
     sink_field(run, "method", "method,step,hold",
                "%s, step %g s, inputs held to order %s, damping %s",
                s->integrator, s->step, s->hold,
@@ -629,8 +624,7 @@ static void describe_poles(cli_run *run, int64_t count,
     }
     sink_end(run);
     if (shown > SHOWN)
-        cli_say(run, "  %-14s and %lld faster ones", "",
-                (long long)(shown - SHOWN));
+        cli_say(run, "  %-14s and %ld faster ones", "", (shown - SHOWN));
 }
 
 ritz_status describe_states(cli_run *run, const ritz_state_space *states)
@@ -649,8 +643,8 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
     RITZ_TRY(ritz_probe_states(states, &probe));
     RITZ_TRY(ritz_state_space_poles(states, &count, &pole));
     sink_set(run, "kind", "%s", "state-space");
-    sink_field(run, "kind", "states", "state space, %lld states",
-               (long long)states->A.nrow);
+    sink_field(run, "kind", "states", "state space, %ld states",
+               states->A.nrow);
     describe_units(run, states->units);
     if (*states->origin.method)
         describe_origin(run, &states->origin);

@@ -22,18 +22,16 @@ static void describe_matrix(cli_run *run, const ritz_matrix *a, const char *sum)
              : square     ? "square"
                           : "rectangular",
              a->imaginary ? " complex" : "");
-    snprintf(size, sizeof size, "%lld x %lld", (long long)a->A.nrow,
-             (long long)a->A.ncol);
+    snprintf(size, sizeof size, "%ld x %ld", a->A.nrow, a->A.ncol);
     sink_object(run, NULL);
     sink_set(run, "name,rows,columns,symmetric,complex,dofs_named,checksum",
-             "%s %lld %lld %d %d %d %s", a->name, (long long)a->A.nrow,
-             (long long)a->A.ncol, a->symmetric, a->imaginary != NULL,
-             a->row != NULL, sum);
+             "%s %ld %ld %d %d %d %s", a->name, a->A.nrow, a->A.ncol,
+             a->symmetric, a->imaginary != NULL, a->row != NULL, sum);
     sink_say(run, ",,entries,,digits,asymmetry,spelling",
-             "  %-10s %17s %10lld %-17s %6lld %9.1e  %s",
-             *a->name ? a->name : "-", size, (long long)a->A.colptr[a->A.ncol],
-             form, (long long)a->digits,
-             square ? ritz_sparse_asymmetry(&a->A) : (double)NAN, a->spelling);
+             "  %-10s %17s %10ld %-17s %6ld %9.1e  %s",
+             *a->name ? a->name : "-", size, a->A.colptr[a->A.ncol], form,
+             a->digits, square ? ritz_sparse_asymmetry(&a->A) : (double)NAN,
+             a->spelling);
     sink_end(run);
 }
 
@@ -53,15 +51,13 @@ static void describe_listed(cli_run *run, const ritz_listed *one)
     char size[48] = "-";
 
     if (one->nrow >= 0)
-        snprintf(size, sizeof size, "%lld x %lld", (long long)one->nrow,
-                 (long long)one->ncol);
+        snprintf(size, sizeof size, "%ld x %ld", one->nrow, one->ncol);
     sink_list(run, "matrices");
     sink_object(run, NULL);
     sink_set(run, "name,symmetric,complex", "%s %d %d", one->name,
              one->symmetric, one->is_complex);
     if (one->nrow >= 0)
-        sink_set(run, "rows,columns", "%lld %lld", (long long)one->nrow,
-                 (long long)one->ncol);
+        sink_set(run, "rows,columns", "%ld %ld", one->nrow, one->ncol);
     cli_say(run, "  %-10s %17s %s%s", *one->name ? one->name : "-", size,
             one->symmetric ? "symmetric" : "",
             one->is_complex ? " complex" : "");
@@ -92,8 +88,8 @@ static ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
     const ritz_listing *all = &file->listing;
 
     sink_set(run, "kind", "%s", "matrices");
-    sink_field(run, "format", "format", "%s, %lld matrices", file->format->name,
-               (long long)all->count);
+    sink_field(run, "format", "format", "%s, %ld matrices", file->format->name,
+               all->count);
     if (directory)
         cli_say(run, "  %-10s %17s %s", "name", "size", "form");
     else
@@ -117,20 +113,17 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
     static const char *const name[] = {"a_set", "b_set", "q_set"};
     static const char *const title[] = {"a-set", "b-set", "q-set"};
 
-    sink_set(run, "kind,dependent", "%s %lld", deck->format->name,
-             (long long)deck->equations.count);
+    sink_set(run, "kind,dependent", "%s %ld", deck->format->name,
+             deck->equations.count);
     cli_say(run, "  %-14s %s", "kind", deck->format->title);
-    sink_field(run, "grids", "grids,frames",
-               "%lld, in %lld displacement frames",
-               (long long)deck->grids.count, (long long)deck->grids.num_frames);
-    sink_field(run, "scalar points", "scalar_points", "%lld",
-               (long long)deck->num_points);
-    sink_field(run, "fixed", "fixed", "%lld dofs", (long long)deck->num_fixed);
+    sink_field(run, "grids", "grids,frames", "%ld, in %ld displacement frames",
+               deck->grids.count, deck->grids.num_frames);
+    sink_field(run, "scalar points", "scalar_points", "%ld", deck->num_points);
+    sink_field(run, "fixed", "fixed", "%ld dofs", deck->num_fixed);
     for (int k = RITZ_SET_A; k <= RITZ_SET_Q; k++) {
-        sink_set(run, name[k], "%lld", (long long)deck->num_sets[k]);
+        sink_set(run, name[k], "%ld", deck->num_sets[k]);
         if (deck->num_sets[k] > 0)
-            cli_say(run, "  %-14s %lld dofs", title[k],
-                    (long long)deck->num_sets[k]);
+            cli_say(run, "  %-14s %ld dofs", title[k], deck->num_sets[k]);
     }
     sink_list(run, "constraints");
     for (int64_t k = 0; k < deck->num_constraints; k++) {
@@ -141,11 +134,10 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
     }
     sink_end(run);
     if (deck->num_constraints > 10)
-        cli_say(run, "  %-14s and %lld more", "",
-                (long long)(deck->num_constraints - 10));
+        cli_say(run, "  %-14s and %ld more", "", (deck->num_constraints - 10));
     if (deck->num_constraints > 0)
-        cli_say(run, "  %-14s %lld dofs, by these", "dependent",
-                (long long)deck->equations.count);
+        cli_say(run, "  %-14s %ld dofs, by these", "dependent",
+                deck->equations.count);
     if (deck->equations.refused)
         cli_say(run, "  %-14s %s", "", deck->equations.refused);
 }

@@ -74,7 +74,7 @@ static void set_modes(cli_run *run, const ritz_fit_candidate *c)
         if (c->modes[k] < 0)
             sink_add(run, "%g", (double)NAN);
         else
-            sink_add(run, "%lld", (long long)c->modes[k]);
+            sink_add(run, "%ld", c->modes[k]);
     sink_end(run);
 }
 
@@ -82,7 +82,7 @@ static void set_modes(cli_run *run, const ritz_fit_candidate *c)
 static void set_order(cli_run *run, int64_t order)
 {
     if (order > 0)
-        sink_set(run, "order", "%lld", (long long)order);
+        sink_set(run, "order", "%ld", order);
     else
         sink_set(run, "order", "%g", (double)NAN);
 }
@@ -90,9 +90,8 @@ static void set_order(cli_run *run, int64_t order)
 static void set_candidate(cli_run *run, const ritz_fit_candidate *c)
 {
     sink_set(run, "method,columns,left_out,screened,held,caught,feasible",
-             "%s %lld %lld %d %d %d %d", c->method->name, (long long)c->columns,
-             (long long)c->left_out, c->ruled_out, c->bounded, c->unconfirmed,
-             c->feasible);
+             "%s %ld %ld %d %d %d %d", c->method->name, c->columns, c->left_out,
+             c->ruled_out, c->bounded, c->unconfirmed, c->feasible);
     set_order(run, c->order);
     set_modes(run, c);
     sink_object(run, "seconds");
@@ -225,8 +224,8 @@ static void say_candidate(const cli_run *run, const ritz_fit_candidate *c,
     }
     for (int64_t k = 0; k < c->num_bodies && c->modes[0] >= 0; k++)
         if (strlen(modes) < sizeof modes - 8)
-            sink_append(modes, sizeof modes, "%s%lld", k > 0 ? "+" : "",
-                        (long long)c->modes[k]);
+            sink_append(modes, sizeof modes, "%s%ld", k > 0 ? "+" : "",
+                        c->modes[k]);
     if (c->refusal[0]) {
         const char *why = c->refusal;
         const size_t length = strlen(name);
@@ -240,8 +239,8 @@ static void say_candidate(const cli_run *run, const ritz_fit_candidate *c,
     if (c->cost.order > 0)
         snprintf(cost, sizeof cost, "%.2g", c->cost.seconds_per_second);
     snprintf(error, sizeof error, "%s%.2g", c->ruled_out ? ">" : "", c->ratio);
-    cli_say(run, "%-18s %6lld %8s  %8s %-10s %8.2g %9s  %s", c->method->name,
-            (long long)c->order, *modes ? modes : "-", error,
+    cli_say(run, "%-18s %6ld %8s  %8s %-10s %8.2g %9s  %s", c->method->name,
+            c->order, *modes ? modes : "-", error,
             c->ruled_out   ? "frequency"
             : c->worst < 0 ? ""
                            : ritz_tolerance_word(c->errors.item[c->worst].name),
@@ -325,18 +324,16 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     const ritz_fit_candidate *second =
         fit->runner_up >= 0 ? &fit->candidate[fit->runner_up] : NULL;
 
-    cli_say(run, "\nSmallest: %s, order %lld", c->method->name,
-            (long long)c->order);
+    cli_say(run, "\nSmallest: %s, order %ld", c->method->name, c->order);
     for (int64_t k = 0; k < c->num_bodies && *ritz_fitter_body(fitter, k); k++)
         if (c->modes[k] >= 0) /* there is a number to choose */
-            cli_say(run, "  %-20s %lld mode%s", ritz_fitter_body(fitter, k),
-                    (long long)c->modes[k], c->modes[k] == 1 ? "" : "s");
+            cli_say(run, "  %-20s %ld mode%s", ritz_fitter_body(fitter, k),
+                    c->modes[k], c->modes[k] == 1 ? "" : "s");
     model_say_measures(run, "measures", &c->errors, "measured");
     say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);
-    sink_set(run, "method,order,columns,error", "%s %lld %lld %g",
-             c->method->name, (long long)c->order, (long long)c->columns,
-             c->ratio);
+    sink_set(run, "method,order,columns,error", "%s %ld %ld %g",
+             c->method->name, c->order, c->columns, c->ratio);
     set_modes(run, c);
     model_set_measures(run, "estimates", &c->estimates, "estimated");
     if (!second) {
@@ -363,10 +360,9 @@ static void say_fit(cli_run *run, const ritz_fitter *fitter,
              "Fitted to %s from %g to %g Hz, against %s:", tolerance,
              limits->band_hz[0], limits->band_hz[1], what);
     sink_say(run, "candidates",
-             "%lld candidates of %lld method%s; errors in parts of their "
+             "%ld candidates of %ld method%s; errors in parts of their "
              "tolerance, > at least.\n",
-             (long long)fit->count, (long long)fit->num_methods,
-             fit->num_methods == 1 ? "" : "s");
+             fit->count, fit->num_methods, fit->num_methods == 1 ? "" : "s");
     say_head(run);
     sink_list(run, "methods");
     for (int64_t m = 0; m < fit->num_methods; m++)
@@ -381,8 +377,8 @@ static void say_fit(cli_run *run, const ritz_fitter *fitter,
 static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
                       const int64_t *equal)
 {
-    cli_say(run, "\nThe same at equal order, %lld or the nearest below:\n",
-            (long long)order);
+    cli_say(run, "\nThe same at equal order, %ld or the nearest below:\n",
+            order);
     say_head(run);
     sink_list(run, "equal_order");
     for (int64_t m = 0; m < fit->num_methods; m++) {
@@ -390,8 +386,8 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
             equal[m] >= 0 ? &fit->candidate[equal[m]] : find_first(fit, m);
 
         if (equal[m] < 0 && c && !c->refusal[0])
-            cli_say(run, "%-18s has no fewer than %lld", fit->method[m]->name,
-                    (long long)c->order);
+            cli_say(run, "%-18s has no fewer than %ld", fit->method[m]->name,
+                    c->order);
         else
             say_item(run, c, fit->method[m]->name);
     }
@@ -405,11 +401,10 @@ static void set_step(cli_run *run, const ritz_fitter *fitter,
     sink_object(run, NULL);
     sink_object(run, "orders");
     for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++)
-        sink_set(run, ritz_fitter_body(fitter, k), "%lld",
-                 (long long)row->first[k]);
+        sink_set(run, ritz_fitter_body(fitter, k), "%ld", row->first[k]);
     sink_end(run);
-    sink_set(run, "columns,error,feasible", "%lld %g %d",
-             (long long)row->columns, row->ratio, row->feasible);
+    sink_set(run, "columns,error,feasible", "%ld %g %d", row->columns,
+             row->ratio, row->feasible);
     set_order(run, row->order);
     set_values(run, "errors", &row->errors);
     if (row->refusal[0])
@@ -417,7 +412,7 @@ static void set_step(cli_run *run, const ritz_fitter *fitter,
     sink_end(run);
 }
 
-/* " %9lld" of each body, or its name in the head. */
+/* " %9ld" of each body, or its name in the head. */
 static void print_bodies(const ritz_fitter *fitter, const ritz_fit_row *row,
                          size_t size, char *out)
 {
@@ -426,7 +421,7 @@ static void print_bodies(const ritz_fitter *fitter, const ritz_fit_row *row,
         if (strlen(out) + 16 >= size)
             return;
         if (row)
-            sink_append(out, size, " %9lld", (long long)row->first[k]);
+            sink_append(out, size, " %9ld", row->first[k]);
         else
             sink_append(out, size, " %9.9s", ritz_fitter_body(fitter, k));
     }
@@ -443,12 +438,11 @@ static void say_step(const cli_run *run, const ritz_fitter *fitter,
 
     print_bodies(fitter, row, sizeof orders, orders);
     if (row->refusal[0])
-        cli_say(run, "%s  %8lld refused: %s", orders, (long long)row->columns,
+        cli_say(run, "%s  %8ld refused: %s", orders, row->columns,
                 row->refusal);
     else
-        cli_say(run, "%s  %8lld %6lld  %8.2g %s%s", orders,
-                (long long)row->columns, (long long)row->order, row->ratio,
-                word, row->feasible ? "" : ", not met");
+        cli_say(run, "%s  %8ld %6ld  %8.2g %s%s", orders, row->columns,
+                row->order, row->ratio, word, row->feasible ? "" : ", not met");
 }
 
 /* The fewest columns that do, if they are not all. */
@@ -464,11 +458,10 @@ static void say_enough(cli_run *run, const ritz_fitter *fitter,
         return;
     for (int64_t k = 0;
          k < path->num_bodies && strlen(orders) + 80 < sizeof orders; k++)
-        sink_append(orders, sizeof orders, "%s%s to %lld", k > 0 ? ", " : "",
-                    ritz_fitter_body(fitter, k),
-                    (long long)path->row[last].first[k]);
-    cli_say(run, "\nThe tolerance holds down to order %lld: cut %s.",
-            (long long)path->row[last].order, orders);
+        sink_append(orders, sizeof orders, "%s%s to %ld", k > 0 ? ", " : "",
+                    ritz_fitter_body(fitter, k), path->row[last].first[k]);
+    cli_say(run, "\nThe tolerance holds down to order %ld: cut %s.",
+            path->row[last].order, orders);
 }
 
 static void say_path(cli_run *run, const ritz_fitter *fitter,

@@ -78,8 +78,8 @@ static void say_removed(cli_run *run, const ritz_import_report *report)
     }
     sink_end(run);
     if (report->num_removed > 0)
-        cli_say(run, "%lld rows empty in stiffness and mass removed: %s%s",
-                (long long)report->num_removed, text,
+        cli_say(run, "%ld rows empty in stiffness and mass removed: %s%s",
+                report->num_removed, text,
                 report->num_removed > SHOWN ? ", ..." : "");
 }
 
@@ -108,24 +108,24 @@ static void say_constraints(cli_run *run, const ritz_import_report *report)
     char text[512];
 
     list_constraints(run, report, sizeof text, text);
-    sink_set(run, "eliminated,not_recovered", "%lld %lld",
-             (long long)report->num_eliminated, (long long)report->num_lost);
+    sink_set(run, "eliminated,not_recovered", "%ld %ld", report->num_eliminated,
+             report->num_lost);
     if (report->num_eliminated > 0)
-        cli_say(run, "%lld rows eliminated, of dofs that depend on others%s%s",
-                (long long)report->num_eliminated, *text ? ": " : "", text);
+        cli_say(run, "%ld rows eliminated, of dofs that depend on others%s%s",
+                report->num_eliminated, *text ? ": " : "", text);
     else if (report->num_recovered > 0 && *text)
         cli_say(run, "the matrices are without what depends by %s", text);
     if (report->num_lost > 0)
         cli_say(run,
-                "%lld dofs are not recovered: they depend on dofs that the "
+                "%ld dofs are not recovered: they depend on dofs that the "
                 "matrices have not",
-                (long long)report->num_lost);
+                report->num_lost);
     if (report->unknown)
         cli_warn(run, "nothing is recovered: %s", report->unknown);
     for (int64_t k = 0; k < report->num_grids; k++)
-        cli_say(run, "port '%s' is the new grid %lld, tied to %lld dofs",
-                report->grid[k].port, (long long)report->grid[k].id,
-                (long long)report->grid[k].num_tied);
+        cli_say(run, "port '%s' is the new grid %ld, tied to %ld dofs",
+                report->grid[k].port, report->grid[k].id,
+                report->grid[k].num_tied);
 }
 
 static void say_import(cli_run *run, const ritz_component *component,
@@ -137,23 +137,21 @@ static void say_import(cli_run *run, const ritz_component *component,
     say_removed(run, done);
     say_constraints(run, done);
     sink_set(run, "massless,floating,elements,elements_left_out",
-             "%lld %lld %lld %lld", (long long)done->num_massless,
-             (long long)done->num_floating,
-             (long long)component->elements.count, (long long)done->num_hidden);
+             "%ld %ld %ld %ld", done->num_massless, done->num_floating,
+             component->elements.count, done->num_hidden);
     if (done->num_massless > 0)
-        cli_say(run, "%lld rows have stiffness but no mass, kept",
-                (long long)done->num_massless);
+        cli_say(run, "%ld rows have stiffness but no mass, kept",
+                done->num_massless);
     if (done->num_floating > 0)
         cli_say(run,
-                "%lld rows have mass but no stiffness, kept: they move "
+                "%ld rows have mass but no stiffness, kept: they move "
                 "freely",
-                (long long)done->num_floating);
+                done->num_floating);
     if (component->elements.count + done->num_hidden > 0)
         cli_say(run,
-                "%lld elements for pictures; %lld left out, as not all of "
+                "%ld elements for pictures; %ld left out, as not all of "
                 "their grids are there",
-                (long long)component->elements.count,
-                (long long)done->num_hidden);
+                component->elements.count, done->num_hidden);
     if (component->asymmetry > MODEL_ROUNDING)
         cli_warn(run, "unsymmetric by %.1e of the largest entry, averaged away",
                  component->asymmetry);

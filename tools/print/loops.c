@@ -110,8 +110,8 @@ static ritz_status find_poles(cli_run *run, const loops_wish *asked,
         stamp = cli_stamp(run);
         RITZ_TRY(
             ritz_container_write_state_space(asked->states, &closed, &stamp));
-        cli_say(run, "%s: the closed loop, %lld states", asked->states,
-                (long long)closed.A.nrow);
+        cli_say(run, "%s: the closed loop, %ld states", asked->states,
+                closed.A.nrow);
     }
 done:
     ritz_state_space_free(&made);

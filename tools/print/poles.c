@@ -43,14 +43,14 @@ static void warn_poles(cli_run *run, const ritz_spectrum *spectrum)
         double _Complex s = spectrum->s[j];
 
         if (creal(s) > neutral * cabs(s))
-            cli_warn(run, "pole %lld, %.6g Hz, is unstable: it grows by %.3g/s",
-                     (long long)j + 1, hertz_of(s), creal(s));
+            cli_warn(run, "pole %ld, %.6g Hz, is unstable: it grows by %.3g/s",
+                     j + 1, hertz_of(s), creal(s));
         rough += spectrum->residual[j] > exact; /* NaN: it has none */
     }
     if (rough > 0)
         cli_warn(run,
-                 "%lld poles have a residual above %.0e: they are estimates",
-                 (long long)rough, exact);
+                 "%ld poles have a residual above %.0e: they are estimates",
+                 rough, exact);
 }
 
 /* A table, and a warning for each pole that is unstable or not exact. */
@@ -70,22 +70,22 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
         set_pole(run, s);
         sink_set(run, "residual", "%g", spectrum->residual[j]);
         if (tsv)
-            cli_say(run, "%lld\t%.12g\t%.12g\t%.12g\t%.12g\t%.12g\t%.3e",
-                    (long long)j + 1, hertz_of(s), cabs(s), zeta, creal(s),
-                    cimag(s), spectrum->residual[j]);
+            cli_say(run, "%ld\t%.12g\t%.12g\t%.12g\t%.12g\t%.12g\t%.3e", j + 1,
+                    hertz_of(s), cabs(s), zeta, creal(s), cimag(s),
+                    spectrum->residual[j]);
         else
-            cli_say(run, "%5lld %13.7g %13.7g %12.6g %13.6g %13.7g %9.1e%s%s",
-                    (long long)j + 1, hertz_of(s), cabs(s), 100.0 * zeta,
-                    creal(s), cimag(s), spectrum->residual[j],
-                    *note_of(s) ? "  " : "", note_of(s));
+            cli_say(run, "%5ld %13.7g %13.7g %12.6g %13.6g %13.7g %9.1e%s%s",
+                    j + 1, hertz_of(s), cabs(s), 100.0 * zeta, creal(s),
+                    cimag(s), spectrum->residual[j], *note_of(s) ? "  " : "",
+                    note_of(s));
         sink_end(run);
     }
     sink_end(run);
-    sink_set(run, "zero,engine", "%lld %s", (long long)spectrum->num_zero,
+    sink_set(run, "zero,engine", "%ld %s", spectrum->num_zero,
              spectrum->engine);
     if (spectrum->num_zero > 0 && !tsv)
-        cli_say(run, "%lld poles at 0 are not listed: rigid-body motion",
-                (long long)spectrum->num_zero);
+        cli_say(run, "%ld poles at 0 are not listed: rigid-body motion",
+                spectrum->num_zero);
     warn_poles(run, spectrum);
 }
 

@@ -40,9 +40,9 @@ void ranked_free(ranked *group)
     *group = (ranked){0};
 }
 
-static long long number(const int64_t *track, int64_t mode)
+static int64_t number_of(const int64_t *track, int64_t mode)
 {
-    return (long long)(track ? track[mode] : mode) + 1;
+    return (track ? track[mode] : mode) + 1;
 }
 
 /* "7-8" of a cluster, "-" of a mode by itself. */
@@ -56,8 +56,8 @@ static void name_cluster(const ritz_ranking *r, const int64_t *track,
         last++;
     snprintf(out, CELL, "-");
     if (last > first)
-        snprintf(out, CELL, "%lld-%lld", number(track, first),
-                 number(track, last));
+        snprintf(out, CELL, "%ld-%ld", number_of(track, first),
+                 number_of(track, last));
 }
 
 /* What shares are shares of. */
@@ -160,10 +160,10 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
     if (exact > invisible * exact_at(r, 0))
         snprintf(differs, sizeof differs, "          %+9.1e",
                  r->value[mode] / exact - 1.0);
-    cli_say(run, "%4lld %6lld %14.7g %9s %7s %13.5e %6.2f%%%s%s%s",
-            (long long)k + 1, number(track, mode), r->hertz[mode], zeta,
-            cluster, r->value[mode], percent(r->value[mode], total), parts,
-            beside, differs);
+    cli_say(run, "%4ld %6ld %14.7g %9s %7s %13.5e %6.2f%%%s%s%s", k + 1,
+            number_of(track, mode), r->hertz[mode], zeta, cluster,
+            r->value[mode], percent(r->value[mode], total), parts, beside,
+            differs);
 }
 
 /* What all modes of the model have of each part. */
@@ -190,7 +190,7 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
     for (int64_t k = 0; k < r->count && k < most; k++)
         say_line(run, r, track, k);
     if (r->count > most)
-        cli_say(run, "     and %lld more", (long long)(r->count - most));
+        cli_say(run, "     and %ld more", (r->count - most));
     if (shows_parts(r))
         say_sums(run, r);
     if (!isnan(r->total))
@@ -217,7 +217,7 @@ static void print_places(const ranked *group, int64_t number, size_t size,
             number);
 
         if (place > 0)
-            sink_append(out, size, " %3lld", (long long)place);
+            sink_append(out, size, " %3ld", place);
         else
             sink_append(out, size, "   -");
     }
@@ -231,10 +231,9 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
     char cluster[CELL];
 
     cli_say(run,
-            "\nLargest over %lld configurations by %s; modes are followed by "
+            "\nLargest over %ld configurations by %s; modes are followed by "
             "%s:",
-            (long long)group->all.count, r->by,
-            group->all.track ? "track" : "number");
+            group->all.count, r->by, group->all.track ? "track" : "number");
     cli_say(run, "%4s %6s %14s %7s %13.13s  %-24s %s", "rank",
             group->all.track ? "track" : "mode", "Hz", "cluster", r->by,
             "where", "place at each");
@@ -244,10 +243,9 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
         name_cluster(r, group->track, mode, cluster);
         if (group->all.count <= MOST_COLUMNS)
             print_places(group, group->track[mode], sizeof places, places);
-        cli_say(run, "%4lld %6lld %14.7g %7s %13.5e  %-24s %s",
-                (long long)k + 1, number(group->track, mode), r->hertz[mode],
-                cluster, r->value[mode], group->all.item[group->where[mode]].at,
-                places);
+        cli_say(run, "%4ld %6ld %14.7g %7s %13.5e  %-24s %s", k + 1,
+                number_of(group->track, mode), r->hertz[mode], cluster,
+                r->value[mode], group->all.item[group->where[mode]].at, places);
     }
 }
 
@@ -256,11 +254,10 @@ void rankings_say_values(const cli_run *run, const ritz_ranking *r,
 {
     cli_say(run, "%6s %15s %15s", "order", "Hankel value", "bound if cut");
     for (int64_t k = 0; k < r->num_system && k < most; k++)
-        cli_say(run, "%6lld %15.7e %15.7e", (long long)k + 1,
-                r->system_value[k],
+        cli_say(run, "%6ld %15.7e %15.7e", k + 1, r->system_value[k],
                 ritz_hankel_bound(r->num_system, r->system_value, k + 1));
     if (r->num_system > most)
-        cli_say(run, "       and %lld more", (long long)(r->num_system - most));
+        cli_say(run, "       and %ld more", (r->num_system - most));
 }
 
 void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
@@ -292,17 +289,16 @@ void rankings_describe(cli_run *run, const ritz_rankings *all)
     const json_t *first = NULL;
 
     sink_set(run, "kind", "%s", "ranking");
-    cli_say(run, "  %-14s %lld ranking%s", "kind", (long long)all->count,
+    cli_say(run, "  %-14s %ld ranking%s", "kind", all->count,
             all->count == 1 ? "" : "s");
     sink_list(run, "rankings");
     for (int64_t k = 0; k < all->count; k++) {
         const ritz_ranking *r = &all->item[k];
         const int64_t *track = all->track ? all->track[k] : NULL;
 
-        cli_say(run,
-                "  %-14s of %lld flexible modes by %s [%s]%s%s, damping %s",
-                "ranking", (long long)r->count, r->by, r->reference,
-                *r->at ? ", at " : "", r->at, rankings_damping(r));
+        cli_say(run, "  %-14s of %ld flexible modes by %s [%s]%s%s, damping %s",
+                "ranking", r->count, r->by, r->reference, *r->at ? ", at " : "",
+                r->at, rankings_damping(r));
         if (r->count > 0)
             rankings_say(run, r, track, INT64_MAX);
         else
@@ -315,7 +311,7 @@ void rankings_describe(cli_run *run, const ritz_rankings *all)
     sink_end(run);
     if (first) {
         sink_lift(run, first);
-        sink_set(run, "modes", "%lld", (long long)all->item[0].count);
+        sink_set(run, "modes", "%ld", all->item[0].count);
     }
 }
 
@@ -348,20 +344,20 @@ void rankings_warn(cli_run *run, const ranked *group)
     if (!worst)
         return;
     sink_say(run, json_object_get(run->report, "coupling") ? "" : ",,coupling",
-             "coupling: modes %lld and %lld share %.3g of the exact "
+             "coupling: modes %ld and %ld share %.3g of the exact "
              "Gramian%s%s",
-             (long long)worst->coupled[0] + 1, (long long)worst->coupled[1] + 1,
-             worst->coupling, *worst->at ? " at " : "", worst->at);
+             worst->coupled[0] + 1, worst->coupled[1] + 1, worst->coupling,
+             *worst->at ? " at " : "", worst->at);
     if (!isnan(differs))
         cli_say(run, "values by %s differ from the exact ones by %.2g at most",
                 worst->by, differs);
     if (!(worst->coupling > coupled_limit) || isnan(differs))
         return;
     snprintf(text, sizeof text,
-             "modes %lld and %lld couple by %.3g%s%s: values of single modes "
+             "modes %ld and %ld couple by %.3g%s%s: values of single modes "
              "are rough there, trust the exact ones",
-             (long long)worst->coupled[0] + 1, (long long)worst->coupled[1] + 1,
-             worst->coupling, *worst->at ? " at " : "", worst->at);
+             worst->coupled[0] + 1, worst->coupled[1] + 1, worst->coupling,
+             *worst->at ? " at " : "", worst->at);
     if (!was_warned(run, text))
         cli_warn(run, "%s", text);
 }
@@ -372,21 +368,19 @@ static void list_modes(int64_t count, const int64_t *mode, size_t size,
 {
     snprintf(out, size, "%s", count > 0 ? "" : "none");
     for (int64_t k = 0; k < count; k++)
-        sink_append(out, size, "%s%lld", k > 0 ? " " : "",
-                    (long long)mode[k] + 1);
+        sink_append(out, size, "%s%ld", k > 0 ? " " : "", mode[k] + 1);
 }
 
 static const char *outcome_of(const ritz_reweighing *found, char out[128])
 {
     if (found->period == 1)
-        snprintf(out, 128, "settles after %lld rounds",
-                 (long long)found->rounds);
+        snprintf(out, 128, "settles after %ld rounds", found->rounds);
     else if (found->period > 1)
-        snprintf(out, 128, "oscillates, with a period of %lld rounds",
-                 (long long)found->period);
+        snprintf(out, 128, "oscillates, with a period of %ld rounds",
+                 found->period);
     else
-        snprintf(out, 128, "neither settles nor repeats within %lld rounds",
-                 (long long)found->rounds);
+        snprintf(out, 128, "neither settles nor repeats within %ld rounds",
+                 found->rounds);
     return out;
 }
 
@@ -398,8 +392,8 @@ void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
     list_modes(found->num_kept, found->kept, sizeof kept, kept);
     list_modes(found->num_other, found->other, sizeof other, other);
     sink_object(run, "reweighting");
-    sink_say(run, "keep", "\nReweighting outputs for %lld modes %s: modes %s.",
-             (long long)keep, outcome_of(found, outcome), kept);
+    sink_say(run, "keep", "\nReweighting outputs for %ld modes %s: modes %s.",
+             keep, outcome_of(found, outcome), kept);
     cli_say(run, "%-24s %12s %13s %13s %8s", "output", "weight", "variance",
             "missed", "part");
     for (int64_t i = 0; i < found->num_outputs; i++)
@@ -409,15 +403,14 @@ void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
                                      : 0.0);
     if (found->period != 1)
         cli_warn(run,
-                 "reweighting %s: no weights are right for %lld modes; those "
+                 "reweighting %s: no weights are right for %ld modes; those "
                  "of the round that misses least are shown%s%s",
-                 outcome, (long long)keep,
+                 outcome, keep,
                  found->num_other > 0 ? ", others would keep modes " : "",
                  found->num_other > 0 ? other : "");
     sink_numbers(run, "kept", found->num_kept, found->kept);
     sink_numbers(run, "other", found->num_other, found->other);
-    sink_set(run, "rounds,period", "%lld %lld", (long long)found->rounds,
-             (long long)found->period);
+    sink_set(run, "rounds,period", "%ld %ld", found->rounds, found->period);
     sink_reals(run, "weights", found->num_outputs, found->weight);
     sink_reals(run, "costs", found->num_outputs, found->cost);
     sink_reals(run, "missed", found->num_outputs, found->missed);

@@ -169,15 +169,15 @@ static void say_places(cli_run *run, const contest *all, int64_t most)
                 rankings_place(all->ranking[c], all->track[c], number);
 
             if (place > 0)
-                sink_append(line, sizeof line, " %5lld", (long long)place);
+                sink_append(line, sizeof line, " %5ld", place);
             else
                 sink_append(line, sizeof line, " %5s", "-");
         }
-        cli_say(run, "%6lld %14.7g  %s", (long long)number + 1,
-                r->hertz[r->order[k]], line);
+        cli_say(run, "%6ld %14.7g  %s", number + 1, r->hertz[r->order[k]],
+                line);
     }
     if (r->count > most)
-        cli_say(run, "       and %lld more", (long long)(r->count - most));
+        cli_say(run, "       and %ld more", (r->count - most));
 }
 
 /* Numbers of modes as a list, and as "1 2 5". */
@@ -186,8 +186,7 @@ static void list_modes(cli_run *run, const char *key, int64_t count,
 {
     snprintf(out, LIST, "%s", count > 0 ? "" : "none");
     for (int64_t k = 0; k < count; k++)
-        sink_append(out, LIST, "%s%lld", k > 0 ? " " : "",
-                    (long long)number[k] + 1);
+        sink_append(out, LIST, "%s%ld", k > 0 ? " " : "", number[k] + 1);
     sink_numbers(run, key, count, number);
 }
 
@@ -199,28 +198,28 @@ static void say_pair(cli_run *run, const contest *all, int64_t a, int64_t b,
     sink_object(run, NULL);
     sink_list(run, "overlap");
     for (int64_t k = 0; k < g->num_overlaps; k++) {
-        sink_set(run, "k,share", "%lld %g", (long long)g->overlap[k].k,
+        sink_set(run, "k,share", "%ld %g", g->overlap[k].k,
                  g->overlap[k].share);
-        sink_append(text, sizeof text, "%s%lld: %.0f%%", k > 0 ? ", " : "",
-                    (long long)g->overlap[k].k, 100.0 * g->overlap[k].share);
+        sink_append(text, sizeof text, "%s%ld: %.0f%%", k > 0 ? ", " : "",
+                    g->overlap[k].k, 100.0 * g->overlap[k].share);
     }
     sink_end(run);
     sink_say(run, "from,to", "%s to %s:", all->name[a], all->name[b]);
     sink_say(run, "spearman,kendall,modes",
-             "  rank correlation: Spearman %.4f, Kendall %.4f, of %lld modes",
-             g->spearman, g->kendall, (long long)g->common);
+             "  rank correlation: Spearman %.4f, Kendall %.4f, of %ld modes",
+             g->spearman, g->kendall, g->common);
     if (g->alone[0] + g->alone[1] > 0)
         cli_say(run,
-                "  %lld modes of the first and %lld of the second are not "
+                "  %ld modes of the first and %ld of the second are not "
                 "in the other",
-                (long long)g->alone[0], (long long)g->alone[1]);
+                g->alone[0], g->alone[1]);
     cli_say(run, "  the first k in common, %s", text);
     list_modes(run, "left", g->num_left, g->left, left);
     list_modes(run, "entered", g->num_entered, g->entered, entered);
-    sink_set(run, "top,top_share", "%lld %g", (long long)g->top, g->top_share);
+    sink_set(run, "top,top_share", "%ld %g", g->top, g->top_share);
     if (g->num_left + g->num_entered > 0)
-        cli_say(run, "  among the first %lld: %s leave, %s enter",
-                (long long)g->top, left, entered);
+        cli_say(run, "  among the first %ld: %s leave, %s enter", g->top, left,
+                entered);
     sink_end(run);
 }
 
@@ -314,14 +313,11 @@ static void write_ranking(FILE *file, const contest *all, int64_t which,
     for (int64_t k = 0; k < rows; k++) {
         int64_t mode = r->count > 0 ? r->order[k] : -1;
 
-        fprintf(file, "%s\t%s\t%s\t%lld\t", r->by, r->at, r->damping,
-                (long long)k + 1);
+        fprintf(file, "%s\t%s\t%s\t%ld\t", r->by, r->at, r->damping, k + 1);
         if (mode >= 0)
-            fprintf(file, "%lld\t%lld\t%lld\t%.12g\t%.6g\t%.12g",
-                    (long long)mode + 1,
-                    (long long)number_of(all, which, mode) + 1,
-                    (long long)r->cluster[mode] + 1, r->hertz[mode],
-                    r->zeta[mode], r->value[mode]);
+            fprintf(file, "%ld\t%ld\t%ld\t%.12g\t%.6g\t%.12g", mode + 1,
+                    number_of(all, which, mode) + 1, r->cluster[mode] + 1,
+                    r->hertz[mode], r->zeta[mode], r->value[mode]);
         else
             fprintf(file, "nan\tnan\tnan\tnan\tnan\t%.12g", r->system_value[k]);
         for (int64_t i = 2 * k; i < 2 * k + 2; i++)

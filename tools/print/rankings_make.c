@@ -53,9 +53,9 @@ static ritz_status take_track(const char *line, int64_t most,
     if (at < 0)
         return RITZ_OK;
     RITZ_REFUSE_IF(mode > all->item[at].count, RITZ_ERR_FORMAT,
-                   "mode %lld at '%s' is not there: the tracks are those of "
+                   "mode %ld at '%s' is not there: the tracks are those of "
                    "another system",
-                   (long long)mode, field[1]);
+                   mode, field[1]);
     all->track[at][mode - 1] = track - 1;
     return RITZ_OK;
 }
@@ -65,7 +65,7 @@ static ritz_status check_tracks(const ritz_rankings *all)
     for (int64_t k = 0; k < all->count; k++)
         for (int64_t i = 0; i < all->item[k].count; i++)
             RITZ_REFUSE_IF(all->track[k][i] < 0, RITZ_ERR_FORMAT,
-                           "mode %lld at '%s' has no track", (long long)i + 1,
+                           "mode %ld at '%s' has no track", i + 1,
                            all->item[k].at);
     return RITZ_OK;
 }
@@ -216,8 +216,8 @@ static void say_group(const subject *s, const ranked *group)
         const ritz_ranking *r = &group->all.item[k];
 
         cli_say(s->run,
-                "%s%lld flexible modes of '%s'%s%s by %s [%s], damping %s",
-                k > 0 ? "\n" : "", (long long)r->count, s->run->operand[0],
+                "%s%ld flexible modes of '%s'%s%s by %s [%s], damping %s",
+                k > 0 ? "\n" : "", r->count, s->run->operand[0],
                 *r->at ? " at " : "", r->at, r->by, r->reference,
                 rankings_damping(r));
         rankings_say(s->run, r, group->all.track ? group->all.track[k] : NULL,
@@ -442,14 +442,13 @@ static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
     r->total = nan("");
     r->coupling = nan("");
     RITZ_TRY(ritz_gramians_hankel(&gramians, &r->num_system, &r->system_value));
-    cli_say(run, "%lld Hankel values of '%s', %s, damping %s",
-            (long long)r->num_system, run->operand[0], gramians.engine,
-            rankings_damping(r));
+    cli_say(run, "%ld Hankel values of '%s', %s, damping %s", r->num_system,
+            run->operand[0], gramians.engine, rankings_damping(r));
     if (gramians.T.ncol > 0)
         cli_say(run,
-                "%lld states that are not damped, or grow, have none and stand "
+                "%ld states that are not damped, or grow, have none and stand "
                 "apart",
-                (long long)gramians.T.ncol);
+                gramians.T.ncol);
     if (gramians.residual[0] > 0.0 || gramians.residual[1] > 0.0)
         cli_say(run, "residuals of both Gramians %.1e and %.1e",
                 gramians.residual[0], gramians.residual[1]);

@@ -322,9 +322,8 @@ static ritz_status find_all_zeros(cli_run *run, const model *m,
 /* The highest point of each channel, and where it is. */
 static void say_peaks(cli_run *run, const ritz_response *r)
 {
-    cli_say(run, "%s: %s response, %lld points from %g to %g Hz", run->output,
-            r->method, (long long)r->count, r->hertz[0],
-            r->hertz[r->count - 1]);
+    cli_say(run, "%s: %s response, %ld points from %g to %g Hz", run->output,
+            r->method, r->count, r->hertz[0], r->hertz[r->count - 1]);
     cli_say(run, "%-20s %-20s %14s %14s", "output", "input", "peak |H|",
             "at Hz");
     for (int64_t i = 0; i < r->num_outputs; i++) {
@@ -347,8 +346,8 @@ static void say_peaks(cli_run *run, const ritz_response *r)
             set_measure(run, name, peak, r->hertz[best]);
         }
     }
-    sink_set(run, "method,damping,points", "%s %s %lld", r->method, r->damping,
-             (long long)r->count);
+    sink_set(run, "method,damping,points", "%s %s %ld", r->method, r->damping,
+             r->count);
     cli_record(run, r->method, r->count);
 }
 

@@ -252,8 +252,8 @@ static ritz_status say_refactored(cli_run *run, const ritz_cost *cost)
 
 static void say_cost_head(const cli_run *run, const ritz_cost *cost)
 {
-    cli_say(run, "order %lld, highest frequency %.6g Hz",
-            (long long)cost->order, cost->highest_hz);
+    cli_say(run, "order %ld, highest frequency %.6g Hz", cost->order,
+            cost->highest_hz);
     cli_say(run,
             "explicit steps are stable up to %.4g s (damping half a step "
             "old)",
@@ -333,8 +333,8 @@ static void warn_of_rounding(cli_run *run, double accuracy,
     if (reached->num_left == 0)
         return;
     if (reached->num_left > 1)
-        (void)snprintf(more, sizeof more, ", and %lld more",
-                       (long long)reached->num_left - 1);
+        (void)snprintf(more, sizeof more, ", and %ld more",
+                       reached->num_left - 1);
     cli_warn(run,
              "output '%s' is rounding or next to it: accurate to %.1e of what "
              "the motion could show by it, not to %g of its own largest%s",

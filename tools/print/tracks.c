@@ -41,9 +41,9 @@ static void say_swap(cli_run *run, const ritz_tracking *t,
                      const ritz_track_event *e)
 {
     cli_say(run,
-            "    modes %lld and %lld (%.5g, %.5g Hz) change places (%.5g, %.5g "
+            "    modes %ld and %ld (%.5g, %.5g Hz) change places (%.5g, %.5g "
             "Hz), MAC %.2f and %.2f",
-            (long long)e->mode[0] + 1, (long long)e->mode[1] + 1, e->hertz,
+            e->mode[0] + 1, e->mode[1] + 1, e->hertz,
             hertz_of(t, e->from, e->mode[1]), hertz_of(t, e->to, e->other[0]),
             hertz_of(t, e->to, e->other[1]), e->mac[0], e->mac[1]);
 }
@@ -53,10 +53,10 @@ static void say_tie(cli_run *run, const ritz_tracking *t,
 {
     cli_say(
         run,
-        "    mode %lld (%.5g Hz) is nearly as like %.5g Hz (MAC %.2f) as %.5g "
+        "    mode %ld (%.5g Hz) is nearly as like %.5g Hz (MAC %.2f) as %.5g "
         "Hz (%.2f)",
-        (long long)e->mode[0] + 1, e->hertz, hertz_of(t, e->to, e->other[1]),
-        e->mac[1], hertz_of(t, e->to, e->other[0]), e->mac[0]);
+        e->mode[0] + 1, e->hertz, hertz_of(t, e->to, e->other[1]), e->mac[1],
+        hertz_of(t, e->to, e->other[0]), e->mac[0]);
 }
 
 static void say_avoided(cli_run *run, const ritz_tracking *t,
@@ -64,9 +64,9 @@ static void say_avoided(cli_run *run, const ritz_tracking *t,
 {
     cli_say(
         run,
-        "    modes %lld and %lld (%.5g, %.5g Hz) mix as they avoid each other, "
+        "    modes %ld and %ld (%.5g, %.5g Hz) mix as they avoid each other, "
         "MAC %.2f and %.2f, of their plane %.2f",
-        (long long)e->mode[0] + 1, (long long)e->mode[1] + 1, e->hertz,
+        e->mode[0] + 1, e->mode[1] + 1, e->hertz,
         hertz_of(t, e->from, e->mode[1]), e->mac[0], e->mac[1], e->shared);
 }
 
@@ -117,9 +117,9 @@ static void say_event(cli_run *run, const ritz_system *system,
         sink_set(run, "list", "%s", middle);
         if (said)
             cli_say(run,
-                    "    mode %lld (%.5g Hz) is like none there, best MAC "
+                    "    mode %ld (%.5g Hz) is like none there, best MAC "
                     "%.2f: too far apart, list %s",
-                    (long long)e->mode[0] + 1, e->hertz, e->mac[0], middle);
+                    e->mode[0] + 1, e->hertz, e->mac[0], middle);
     }
     sink_end(run);
 }
@@ -147,7 +147,7 @@ static void say_kind(cli_run *run, const ritz_system *system,
     }
     sink_end(run);
     if (count > MOST_SAID)
-        cli_say(run, "  and %lld more %s", (long long)(count - MOST_SAID),
+        cli_say(run, "  and %ld more %s", (count - MOST_SAID),
                 kinds[which].title);
 }
 
@@ -162,9 +162,9 @@ static ritz_status write_table(const char *path, const ritz_system *system,
     fprintf(table.file, "track\tconfiguration\tmode\thertz\tmac\n");
     for (int64_t k = 0; k < t->num_configurations; k++)
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
-            fprintf(table.file, "%lld\t%s\t%lld\t%.12g\t%.6g\n",
-                    (long long)t->track[i] + 1, at_of(system, k),
-                    (long long)(i - t->first[k]) + 1, t->hertz[i], t->mac[i]);
+            fprintf(table.file, "%ld\t%s\t%ld\t%.12g\t%.6g\n", t->track[i] + 1,
+                    at_of(system, k), (i - t->first[k]) + 1, t->hertz[i],
+                    t->mac[i]);
     RITZ_TRY(cli_table_save(&table, path));
 done:
     cli_table_free(&table);
@@ -179,14 +179,14 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
 
     sink_object(run, "tracking");
     RITZ_TRY_IN("tracks", ritz_track(stage, system, system->band_hz[1], &t));
-    sink_set(run, "tracks", "%lld", (long long)t.num_tracks);
+    sink_set(run, "tracks", "%ld", t.num_tracks);
     if (path)
         RITZ_TRY(write_table(path, system, &t));
     if (t.num_configurations > 1)
         cli_say(run,
-                "\nFlexible modes over %lld configurations: %lld tracks by "
+                "\nFlexible modes over %ld configurations: %ld tracks by "
                 "MAC%s%s",
-                (long long)t.num_configurations, (long long)t.num_tracks,
+                t.num_configurations, t.num_tracks,
                 t.num_events == 0 ? "; none changes places, ties or is lost"
                                   : "; events",
                 system->band_hz[1] > 0.0 ? " in the band" : "");

@@ -20,10 +20,10 @@ static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
         failed++;
     }
     RITZ_REFUSE_IF(first, RITZ_ERR_CONVERGENCE,
-                   "'%s': %lld of %lld limits not met, first '%s', %.3e where "
+                   "'%s': %ld of %ld limits not met, first '%s', %.3e where "
                    "%.3e is asked",
-                   run->operand[1], (long long)failed, (long long)asked,
-                   first->name, first->value, first->limit);
+                   run->operand[1], failed, asked, first->name, first->value,
+                   first->limit);
     return RITZ_OK;
 }
 
@@ -91,11 +91,11 @@ static ritz_status find_states(const cli_run *run, model *full,
                    path);
     if (full->kind == MODEL_STATES)
         return RITZ_OK;
-    RITZ_REFUSE_IF(
-        full->component.num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
-        "'%s' has %lld dofs, of more than %d no norms are taken: "
-        "compare the responses that ritz-frf gives of both",
-        path, (long long)full->component.num_dofs, (int)RITZ_STATE_DOFS);
+    RITZ_REFUSE_IF(full->component.num_dofs > RITZ_STATE_DOFS,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' has %ld dofs, of more than %d no norms are taken: "
+                   "compare the responses that ritz-frf gives of both",
+                   path, full->component.num_dofs, (int)RITZ_STATE_DOFS);
     RITZ_CHECK_IN(
         own ? "--damping" : run->operand[1],
         ritz_damping_parse(own ? own : reduced->states.damping, &damping));
