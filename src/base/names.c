@@ -17,7 +17,7 @@ int64_t ritz_names_index(const ritz_names *names, const char *word)
 }
 
 /* "model, basis, modes", as many as there is room for. */
-static const char *list(const ritz_names *names, char *out, size_t size)
+static const char *list_names(const ritz_names *names, char *out, size_t size)
 {
     size_t used = 0;
 
@@ -50,7 +50,7 @@ ritz_status ritz_words_find(const ritz_names *names, const char *word,
                    names->what, ritz_text_short(word, text), near);
     RITZ_REFUSE_IF(at < 0, RITZ_ERR_ARGUMENT, "unknown %s '%s', there is %s",
                    names->what, ritz_text_short(word, text),
-                   list(names, all, sizeof all));
+                   list_names(names, all, sizeof all));
     *out = at;
     return RITZ_OK;
 }

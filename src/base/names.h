@@ -21,7 +21,7 @@ typedef struct ritz_names {
 ritz_status ritz_words_find(const ritz_names *names, const char *word,
                             int64_t *out);
 
-/** The same without a sentence; -1 if it is not there. */
+/** Index of @p word, without a sentence; -1 if it is not there. */
 int64_t ritz_names_index(const ritz_names *names, const char *word);
 
 enum { RITZ_SHORT_SIZE = 48 };

@@ -1,7 +1,7 @@
 /* Containers of bases. */
 #include "container/schema.h"
 
-/* Damping is stored of states, and of vectors with a left side of their own. */
+/* Bases of states, and those with left vectors, store their damping. */
 static bool has_damping(const void *object)
 {
     const ritz_basis *basis = object;

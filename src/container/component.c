@@ -59,7 +59,7 @@ static const ritz_member load_members[] = {
 
 static const ritz_schema load_schema = {.members = load_members};
 
-/* Settling finds the asymmetry that is there now; the larger one counts. */
+/* The larger of the stored asymmetry and of that which the matrices have. */
 static ritz_status settle_component(const ritz_place *place)
 {
     ritz_component *component = place->target;

@@ -1,4 +1,4 @@
-/* What every kind of container begins with, and how it gets its name. */
+/* The attributes that every container begins with, and its temporary name. */
 #include "base/alloc.h"
 #include "base/draft.h"
 #include "container/schema.h"
@@ -67,7 +67,7 @@ done:
     return status;
 }
 
-/* What HDF5 still holds back may not fit on the disk: closing can fail. */
+/* HDF5 writes what it has buffered: on a full disk closing fails. */
 static ritz_status finish_writer(container_writer *writer)
 {
     herr_t closed = H5Fclose(writer->file);

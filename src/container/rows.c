@@ -1,4 +1,4 @@
-/* The rows of schemas, told: all that there are, and those of an object. */
+/* The rows of all schemas, and those of one object, told to a listener. */
 #include "container/schema.h"
 
 #include <inttypes.h>
@@ -62,7 +62,7 @@ static void print_shape(const ritz_place *place, const ritz_member *row,
         used += snprintf(out + used, 3, *c == ' ' ? ", " : "%c", *c);
 }
 
-/* A row of its own; a matrix that is an item of a list has no name. */
+/* A matrix that is an item of a list has no name but that of the item. */
 static void tell_row(const ritz_place *place, const char *prefix,
                      const ritz_member *row, const row_teller *to)
 {

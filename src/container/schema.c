@@ -204,7 +204,7 @@ bool ritz_schema_is_given(const ritz_place *place, const ritz_member *row)
     return !row->optional || !is_empty(place, row);
 }
 
-/* Whether the file has it, or must have it. */
+/* Whether the file has this member, or must have it. */
 static bool is_due(const ritz_place *place, const ritz_member *row)
 {
     const char *what = row->optional;
@@ -240,9 +240,9 @@ static hid_t type_of(const ritz_member *row)
     return ritz_h5_string(RITZ_NAME_SIZE);
 }
 
-/* Of text only what is before the NUL: the rest would differ between runs. */
-static void gather(const ritz_member *row, int64_t count, const char *from,
-                   char *to)
+/* Text is copied up to its NUL: bytes behind it would differ between runs. */
+static void gather_values(const ritz_member *row, int64_t count,
+                          const char *from, char *to)
 {
     size_t width = width_in_file(row), step = width_of_item(row);
 
@@ -260,8 +260,8 @@ static void gather(const ritz_member *row, int64_t count, const char *from,
     }
 }
 
-static ritz_status scatter(const ritz_member *row, int64_t count,
-                           const char *from, char *to)
+static ritz_status scatter_values(const ritz_member *row, int64_t count,
+                                  const char *from, char *to)
 {
     size_t width = width_in_file(row), step = width_of_item(row);
 
@@ -317,7 +317,7 @@ static ritz_status write_array(const ritz_place *place, hid_t at,
     char *values = NULL;
 
     RITZ_NEW(values, count * (int64_t)width_in_file(row));
-    gather(row, count, row->inside ? field : pointer_in(field), values);
+    gather_values(row, count, row->inside ? field : pointer_in(field), values);
     if (row->kind == SET_NAMES)
         RITZ_TRY_IN(name_of(row), check_names(count, (void *)values));
     RITZ_TRY(ritz_h5_write(at, name_of(row), type, shape, values));
@@ -372,7 +372,7 @@ static ritz_status read_array(const ritz_place *place, hid_t at,
     RITZ_TRY(find_room(row, count, target_of(place, row), &to));
     RITZ_TRY(ritz_h5_read(at, name_of(row), type, shape, values));
     RITZ_TRY(check_values(place, row, count, values));
-    RITZ_TRY(scatter(row, count, values, to));
+    RITZ_TRY(scatter_values(row, count, values, to));
 done:
     free(values);
     ritz_h5_close(type);
@@ -605,7 +605,7 @@ static ritz_status move_row(const ritz_place *place, hid_t at,
                           : write_array(place, at, row);
 }
 
-/* The group of rows that have one before their name, open while they follow. */
+/* The group of the rows at hand, open as long as they share it. */
 typedef struct row_group {
     ritz_name name;
     hid_t id;

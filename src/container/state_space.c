@@ -3,7 +3,7 @@
 
 #include "base/alloc.h"
 
-/* A full component is not known: no column names a row of one. */
+/* The full component is not known, so that no column names a row of it. */
 static int64_t count_no_dofs(const void *object)
 {
     (void)object;

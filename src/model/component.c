@@ -35,7 +35,7 @@ static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
     return RITZ_OK;
 }
 
-/* A matrix that may be absent: then it is left so, or made empty. */
+/* An absent matrix stays so, or becomes an empty one. */
 static ritz_status settle_optional(ritz_sparse *A, int64_t n, bool complete,
                                    bool symmetrise, double *worst)
 {
@@ -199,8 +199,8 @@ const ritz_port *ritz_component_port(const ritz_component *component,
     return NULL;
 }
 
-/* Ports may share a dof, which is attached once. */
-static void attach(const ritz_port *port, bool *taken, ritz_dofs *set)
+/* A dof that several ports share is attached once. */
+static void attach_port(const ritz_port *port, bool *taken, ritz_dofs *set)
 {
     for (int64_t i = 0; i < port->dofs.count; i++) {
         int64_t dof = port->dofs.at[i];
@@ -221,7 +221,7 @@ ritz_status ritz_component_attached(const ritz_component *component,
     RITZ_NEW(taken, component->num_dofs);
     RITZ_NEW(set.at, component->num_dofs);
     for (int64_t k = 0; !ports && k < component->num_ports; k++)
-        attach(&component->port[k], taken, &set);
+        attach_port(&component->port[k], taken, &set);
     while (ports && *ports) {
         char name[RITZ_NAME_SIZE];
         size_t length = strcspn(ports, ",");
@@ -236,7 +236,7 @@ ritz_status ritz_component_attached(const ritz_component *component,
             status = RITZ_ERR_ARGUMENT;
             goto done;
         }
-        attach(port, taken, &set);
+        attach_port(port, taken, &set);
         ports += length + (ports[length] != '\0');
     }
     *out = set;

@@ -27,7 +27,7 @@ done:
     return status;
 }
 
-/* Names and numbers of `from` in place first and behind. */
+/* Copy names and numbers of `from` to places first, first + 1, ... */
 static void put_damper(const ritz_dampers *from, int64_t first,
                        ritz_dampers *to)
 {
@@ -226,7 +226,7 @@ void ritz_dampers_free(ritz_dampers *dampers)
 /* Entries that b b' of one damper may have in a sparse matrix. */
 static const int64_t most_entries = 1000000;
 
-/* What installing damper j is to add to D, and to K. */
+/* Damping and stiffness of damper j that D and K do not contain yet. */
 static double more_c(const ritz_dampers *dampers, int64_t j)
 {
     return dampers->c[j] - dampers->held_c[j];
@@ -295,7 +295,7 @@ static int64_t count_entries(const ritz_dense *B, int64_t j)
     return count;
 }
 
-/* sum more_j b_j b_j' of few entries each. */
+/* sum more_j b_j b_j', sparse, from the few entries of each b. */
 static ritz_status outer_product(const ritz_dampers *dampers,
                                  double (*more)(const ritz_dampers *, int64_t),
                                  ritz_sparse *out)

@@ -27,7 +27,7 @@ static const struct shape {
     {RITZ_CELL_WEDGE15, RITZ_CELL_WEDGE, 15, 6},
 };
 
-static const struct shape *find(int64_t kind)
+static const struct shape *find_shape(int64_t kind)
 {
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
         if ((int64_t)shapes[k].kind == kind)
@@ -37,21 +37,21 @@ static const struct shape *find(int64_t kind)
 
 int64_t ritz_cell_size(int64_t kind)
 {
-    const struct shape *shape = find(kind);
+    const struct shape *shape = find_shape(kind);
 
     return shape ? shape->size : 0;
 }
 
 int64_t ritz_cell_corners(int64_t kind)
 {
-    const struct shape *shape = find(kind);
+    const struct shape *shape = find_shape(kind);
 
     return shape ? shape->corners : 0;
 }
 
 int64_t ritz_cell_linear(int64_t kind)
 {
-    const struct shape *shape = find(kind);
+    const struct shape *shape = find_shape(kind);
 
     return shape ? (int64_t)shape->linear : kind;
 }
@@ -100,7 +100,7 @@ int64_t ritz_elements_keep(ritz_elements *elements, int64_t count,
 
         if (!all_there(elements, k, count, id))
             continue;
-        /* earlier cells end before this one begins */
+        /* the kept cells end where this one begins, or before */
         memmove(elements->grid + end, elements->grid + from,
                 (size_t)size * sizeof *elements->grid);
         elements->kind[kept] = elements->kind[k];

@@ -35,10 +35,10 @@ typedef struct eliminator {
     int64_t *equation; /* of each dof among all, -1 if it is not dependent */
     elimination_row *found; /* of each equation */
     double *sum;            /* among all dofs, zero between uses */
-    bool *used;             /* the same of places in `sum` */
-    int64_t *list;          /* these places */
+    bool *used;             /* whether a place of `sum` is in use */
+    int64_t *list;          /* the places in use */
     int64_t num_used;
-    int64_t *member;  /* of each equation, place in the circle at hand or -1 */
+    int64_t *member;  /* of each equation, its place in the circle, or -1 */
     int64_t num_kept; /* entries of all rows found */
 } eliminator;
 
@@ -47,7 +47,7 @@ enum {
     MOST_ENTRIES = 200000000, /* of all rows: 3 GB */
 };
 
-static void add(eliminator *s, int64_t col, double value)
+static void add_to_sum(eliminator *s, int64_t col, double value)
 {
     if (!s->used[col]) {
         s->used[col] = true;
@@ -60,7 +60,7 @@ static void add(eliminator *s, int64_t col, double value)
  * Equation e with all that is known substituted, in `sum`; shares of members
  * of its own circle are taken from row i of I - R_mm instead.
  */
-static void substitute(eliminator *s, int64_t e, int64_t i, ritz_dense *A)
+static void substitute_known(eliminator *s, int64_t e, int64_t i, ritz_dense *A)
 {
     const ritz_equations *eq = s->equations;
 
@@ -69,16 +69,16 @@ static void substitute(eliminator *s, int64_t e, int64_t i, ritz_dense *A)
         const elimination_row *known = of < 0 ? NULL : &s->found[of];
 
         if (of < 0)
-            add(s, s->at[k], eq->share[k]);
+            add_to_sum(s, s->at[k], eq->share[k]);
         else if (s->member[of] >= 0)
             ritz_dense_col(A, s->member[of])[i] -= eq->share[k];
         else
             for (int64_t j = 0; j < known->count; j++)
-                add(s, known->col[j], eq->share[k] * known->val[j]);
+                add_to_sum(s, known->col[j], eq->share[k] * known->val[j]);
     }
 }
 
-static void clear(eliminator *s)
+static void clear_sum(eliminator *s)
 {
     for (int64_t k = 0; k < s->num_used; k++) {
         s->sum[s->list[k]] = 0.0;
@@ -97,7 +97,7 @@ static ritz_status count_entries(eliminator *s, int64_t count)
     return RITZ_OK;
 }
 
-/* What lies in `sum`, or in column i of X by the places in `sum`, as a row. */
+/* Store `sum` as a row; of a circle, row i of X at the places in use. */
 static ritz_status keep_row(eliminator *s, const ritz_dense *X, int64_t i,
                             elimination_row *out)
 {
@@ -123,9 +123,9 @@ done:
     return status;
 }
 
-/* X := A^-1 X. The rows of A are of entries about 1, its own scale. */
-static ritz_status solve(const eliminator *s, const int64_t *circle,
-                         ritz_dense *A, ritz_dense *X)
+/* X := A^-1 X. Rows of A have entries of about 1 and need no scaling. */
+static ritz_status solve_dense(const eliminator *s, const int64_t *circle,
+                               ritz_dense *A, ritz_dense *X)
 {
     ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
@@ -158,16 +158,17 @@ done:
     return status;
 }
 
-/* Right-hand sides of a circle: columns as they come to be used. */
-static ritz_status gather(eliminator *s, int64_t count, const int64_t *circle,
-                          ritz_dense *A, ritz_dense *X)
+/* Right-hand sides of a circle, a column for each place in use. */
+static ritz_status gather_circle(eliminator *s, int64_t count,
+                                 const int64_t *circle, ritz_dense *A,
+                                 ritz_dense *X)
 {
     ritz_status status = RITZ_OK;
     elimination_row *side = NULL;
 
     RITZ_NEW(side, count);
     for (int64_t i = 0; i < count; i++) {
-        substitute(s, circle[i], i, A);
+        substitute_known(s, circle[i], i, A);
         RITZ_TRY(keep_row(s, NULL, 0, &side[i]));
         for (int64_t k = 0; k < s->num_used; k++)
             s->sum[s->list[k]] = 0.0;
@@ -201,12 +202,12 @@ static ritz_status solve_circle(eliminator *s, int64_t count,
     RITZ_TRY(ritz_dense_new(count, count, &A));
     for (int64_t i = 0; i < count; i++)
         ritz_dense_col(&A, i)[i] = 1.0;
-    RITZ_TRY(gather(s, count, circle, &A, &X));
-    RITZ_TRY(solve(s, circle, &A, &X));
+    RITZ_TRY(gather_circle(s, count, circle, &A, &X));
+    RITZ_TRY(solve_dense(s, circle, &A, &X));
     for (int64_t i = 0; i < count; i++)
         RITZ_TRY(keep_row(s, &X, i, &s->found[circle[i]]));
 done:
-    clear(s);
+    clear_sum(s);
     ritz_dense_free(&A);
     ritz_dense_free(&X);
     return status;
@@ -222,16 +223,17 @@ static bool needs_itself(const eliminator *s, int64_t e)
     return false;
 }
 
-/* Members of a circle, or one equation that all it needs is known of. */
+/* Find the rows of a circle, or of one equation; all others that they need
+   are known. */
 static ritz_status settle_circle(eliminator *s, int64_t count,
                                  const int64_t *circle)
 {
     ritz_status status = RITZ_OK;
 
     if (count == 1 && !needs_itself(s, circle[0])) {
-        substitute(s, circle[0], 0, NULL);
+        substitute_known(s, circle[0], 0, NULL);
         status = keep_row(s, NULL, 0, &s->found[circle[0]]);
-        clear(s);
+        clear_sum(s);
         return status;
     }
     for (int64_t i = 0; i < count; i++)
@@ -292,7 +294,7 @@ static ritz_status refuse_second(const eliminator *s, int64_t first,
                      two);
 }
 
-/* Dependents: each once, and free to move. */
+/* Each dof is dependent once, and is not held. */
 static ritz_status name_dependents(eliminator *s, const place *sorted,
                                    const bool *fixed)
 {
@@ -342,16 +344,16 @@ done:
 
 /* Depth first through the equations, without recursion: chains may be long. */
 typedef struct walk {
-    int64_t *index; /* when an equation was met, 0 not yet */
-    int64_t *low;   /* the earliest on the stack that it leads to */
+    int64_t *index; /* number of the visit to an equation, 0 before it */
+    int64_t *low;   /* earliest equation on the stack that it leads to */
     int64_t *next;  /* term to look at next */
-    int64_t *path;  /* equations that are being looked at */
-    int64_t *stack; /* those whose circle is not complete */
+    int64_t *path;  /* path of equations that are being visited */
+    int64_t *stack; /* equations whose circle is not complete */
     bool *waiting;  /* whether it is on that stack */
     int64_t depth, height, met;
 } walk;
 
-static void enter(const ritz_equations *eq, int64_t e, walk *w)
+static void enter_equation(const ritz_equations *eq, int64_t e, walk *w)
 {
     w->index[e] = w->low[e] = ++w->met;
     w->next[e] = eq->first[e];
@@ -360,8 +362,8 @@ static void enter(const ritz_equations *eq, int64_t e, walk *w)
     w->waiting[e] = true;
 }
 
-/* The next equation that e needs and that was not met; -1 if there is none. */
-static int64_t advance(const eliminator *s, int64_t e, walk *w)
+/* Next equation that e needs and that was not visited, or -1. */
+static int64_t find_next(const eliminator *s, int64_t e, walk *w)
 {
     const ritz_equations *eq = s->equations;
 
@@ -378,7 +380,7 @@ static int64_t advance(const eliminator *s, int64_t e, walk *w)
     return -1;
 }
 
-static ritz_status leave(eliminator *s, int64_t e, walk *w)
+static ritz_status leave_equation(eliminator *s, int64_t e, walk *w)
 {
     int64_t from = w->height;
 
@@ -410,15 +412,15 @@ static ritz_status settle_all(eliminator *s)
     for (int64_t e = 0; e < eq->count; e++) {
         if (w.index[e] > 0)
             continue;
-        enter(eq, e, &w);
+        enter_equation(eq, e, &w);
         while (w.depth > 0) {
             int64_t here = w.path[w.depth - 1];
-            int64_t to = advance(s, here, &w);
+            int64_t to = find_next(s, here, &w);
 
             if (to >= 0)
-                enter(eq, to, &w);
+                enter_equation(eq, to, &w);
             else
-                RITZ_TRY(leave(s, here, &w));
+                RITZ_TRY(leave_equation(s, here, &w));
         }
     }
 done:
@@ -433,9 +435,9 @@ done:
 
 /* ---- all together ------------------------------------------------------ */
 
-/* Which dofs stay; column[k] is the column of G of each, -1 of the others. */
-static ritz_status split(const eliminator *s, int64_t *column,
-                         ritz_elimination *out)
+/* Divide the dofs; column[k] is the column of G of a kept one, else -1. */
+static ritz_status split_dofs(const eliminator *s, int64_t *column,
+                              ritz_elimination *out)
 {
     RITZ_CHECK_NEW(out->kept.at, s->num_all - s->equations->count);
     RITZ_CHECK_NEW(out->gone.at, s->equations->count);
@@ -451,7 +453,7 @@ static ritz_status split(const eliminator *s, int64_t *column,
     return RITZ_OK;
 }
 
-static ritz_status build(const eliminator *s, ritz_elimination *out)
+static ritz_status build_elimination(const eliminator *s, ritz_elimination *out)
 {
     ritz_status status = RITZ_OK;
     int64_t *column = NULL, *line = NULL, *col = NULL;
@@ -464,7 +466,7 @@ static ritz_status build(const eliminator *s, ritz_elimination *out)
     RITZ_NEW(line, count);
     RITZ_NEW(col, count);
     RITZ_NEW(val, count);
-    RITZ_TRY(split(s, column, out));
+    RITZ_TRY(split_dofs(s, column, out));
     count = 0;
     for (int64_t k = 0; k < s->num_all; k++) {
         const elimination_row *known =
@@ -507,7 +509,7 @@ ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
         s.member[e] = -1;
     RITZ_TRY(name_terms(&s, fixed));
     RITZ_TRY(settle_all(&s));
-    RITZ_TRY(build(&s, &new));
+    RITZ_TRY(build_elimination(&s, &new));
     *out = new;
     new = (ritz_elimination){0};
 done:

@@ -39,8 +39,8 @@ typedef struct member {
 } member;
 
 /* The port's grids in order of first appearance. */
-static int64_t gather(const ritz_component *component, const ritz_port *port,
-                      member *list)
+static int64_t list_port_grids(const ritz_component *component,
+                               const ritz_port *port, member *list)
 {
     int64_t count = 0;
 
@@ -104,7 +104,7 @@ ritz_status ritz_port_turn(const ritz_component *component,
     RITZ_NEW(list, p);
     RITZ_NEW(names, p);
     RITZ_TRY(ritz_dense_new(p, p, &U));
-    count = gather(component, port, list);
+    count = list_port_grids(component, port, list);
     for (int64_t k = 0; k < count; k++) {
         const double *axes = axes_of(&component->grids, list[k].grid);
 

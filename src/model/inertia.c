@@ -15,7 +15,8 @@
 #include <string.h>
 
 /* R'MR, 6 x 6. */
-static ritz_status condense(const ritz_component *component, ritz_dense *out)
+static ritz_status condense_mass(const ritz_component *component,
+                                 ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     const double origin[3] = {0.0, 0.0, 0.0};
@@ -28,7 +29,7 @@ done:
     return status;
 }
 
-/* The mean over the translations that there are: a plane model has two. */
+/* Mean over the translations of the model: a plane model has two. */
 static double mean_mass(const ritz_dense *A)
 {
     double sum = 0.0;
@@ -43,10 +44,10 @@ static double mean_mass(const ritz_dense *A)
 }
 
 /*
- * c_i is seen by two translations, j and k; where only one of them is in the
+ * Two translations, j and k, give c_i; where only one of them is in the
  * model, as in a plane one, that one alone tells.
  */
-static double centre(const ritz_dense *A, double m, int i)
+static double read_centre(const ritz_dense *A, double m, int i)
 {
     int j = (i + 1) % 3;
     int k = (i + 2) % 3;
@@ -58,7 +59,7 @@ static double centre(const ritz_dense *A, double m, int i)
     return see_j || see_k ? sum / (m * (see_j + see_k)) : 0.0;
 }
 
-/* Whether the model moves as an inertia about i and j needs it to. */
+/* Whether the model has the translations that inertia (i, j) is read from. */
 static bool is_seen(const ritz_dense *A, int i, int j)
 {
     for (int k = 0; k < 3; k++)
@@ -67,7 +68,7 @@ static bool is_seen(const ritz_dense *A, int i, int j)
     return true;
 }
 
-/* Inertias that the model's translations cannot show are left at zero. */
+/* Inertias that the model's translations do not determine stay zero. */
 static void read_off(const ritz_dense *A, ritz_inertia *inertia)
 {
     double m = mean_mass(A);
@@ -79,7 +80,7 @@ static void read_off(const ritz_dense *A, ritz_inertia *inertia)
     if (!inertia->known)
         return;
     for (int i = 0; i < 3; i++) {
-        c[i] = centre(A, m, i);
+        c[i] = read_centre(A, m, i);
         square += c[i] * c[i];
     }
     for (int i = 0; i < 3; i++)
@@ -97,7 +98,7 @@ ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
 
     *out = (ritz_inertia){0};
     if (component->grids.count > 0) {
-        RITZ_TRY(condense(component, &A));
+        RITZ_TRY(condense_mass(component, &A));
         read_off(&A, out);
     }
 done:
@@ -118,13 +119,13 @@ done:
  * denominator counts the directions that both have, three of whole grids.
  */
 
-static double dot(const double *a, const double *b)
+static double dot_product(const double *a, const double *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Directions that nodes i and j both have; 1 if they have less than one. */
-static double common(const ritz_nodes *nodes, int64_t i, int64_t j)
+/* Number of directions that nodes i and j share, at least 1. */
+static double count_common(const ritz_nodes *nodes, int64_t i, int64_t j)
 {
     const double *a = ritz_nodes_axes(nodes, i);
     const double *b = ritz_nodes_axes(nodes, j);
@@ -133,14 +134,14 @@ static double common(const ritz_nodes *nodes, int64_t i, int64_t j)
     for (int64_t p = 0; p < 3; p++)
         for (int64_t q = 0; q < 3; q++)
             if (nodes->row[3 * i + p] >= 0 && nodes->row[3 * j + q] >= 0) {
-                double cosine = dot(a + 3 * p, b + 3 * q);
+                double cosine = dot_product(a + 3 * p, b + 3 * q);
 
                 sum += cosine * cosine;
             }
     return fmax(sum, 1.0);
 }
 
-/* Contributions to m, element by element of M. */
+/* Contributions of entries of M to m. */
 typedef struct triplets {
     int64_t count;
     int64_t *row, *col;
@@ -148,8 +149,8 @@ typedef struct triplets {
 } triplets;
 
 /* place[i]: 3 node + direction of row i of the component, -1 if neither. */
-static void gather(const ritz_sparse *M, const ritz_nodes *nodes,
-                   const int64_t *place, triplets *t)
+static void gather_masses(const ritz_sparse *M, const ritz_nodes *nodes,
+                          const int64_t *place, triplets *t)
 {
     for (int64_t c = 0; c < M->ncol; c++)
         for (int64_t e = M->colptr[c]; e < M->colptr[c + 1]; e++) {
@@ -159,21 +160,21 @@ static void gather(const ritz_sparse *M, const ritz_nodes *nodes,
 
             if (at < 0 || to < 0)
                 continue;
-            cosine = dot(ritz_nodes_axes(nodes, at / 3) + 3 * (at % 3),
-                         ritz_nodes_axes(nodes, to / 3) + 3 * (to % 3));
+            cosine = dot_product(ritz_nodes_axes(nodes, at / 3) + 3 * (at % 3),
+                                 ritz_nodes_axes(nodes, to / 3) + 3 * (to % 3));
             if (cosine == 0.0)
                 continue;
             if (t->val) {
                 t->row[t->count] = at / 3;
                 t->col[t->count] = to / 3;
                 t->val[t->count] =
-                    M->val[e] * (cosine / common(nodes, at / 3, to / 3));
+                    M->val[e] * (cosine / count_common(nodes, at / 3, to / 3));
             }
             t->count++;
         }
 }
 
-/* m, one row a node. */
+/* m, with a row for each node. */
 static ritz_status nodal_mass(const ritz_component *component,
                               const ritz_nodes *nodes, ritz_sparse *out)
 {
@@ -188,12 +189,12 @@ static ritz_status nodal_mass(const ritz_component *component,
     for (int64_t k = 0; k < 3 * nodes->count; k++)
         if (nodes->row[k] >= 0)
             place[nodes->row[k]] = k;
-    gather(M, nodes, place, &t); /* how many */
+    gather_masses(M, nodes, place, &t); /* counts them */
     RITZ_NEW(t.row, t.count);
     RITZ_NEW(t.col, t.count);
     RITZ_NEW(t.val, t.count);
     t.count = 0;
-    gather(M, nodes, place, &t);
+    gather_masses(M, nodes, place, &t);
     RITZ_TRY(ritz_sparse_from_triplets(nodes->count, nodes->count, t.count,
                                        t.row, t.col, t.val, out));
 done:
@@ -225,7 +226,7 @@ done:
     return status;
 }
 
-static ritz_status positions(const ritz_nodes *nodes, ritz_dense *out)
+static ritz_status list_positions(const ritz_nodes *nodes, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(nodes->count, 3, out));
     for (int a = 0; a < 3; a++)
@@ -235,9 +236,9 @@ static ritz_status positions(const ritz_nodes *nodes, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Put A at (row, col) of `out`, and A' at (col, row) if that is asked. */
-static void put(const ritz_dense *A, int64_t row, int64_t col, bool mirror,
-                ritz_dense *out)
+/* Copy A to (row, col) of `out`, and A' to (col, row) if `mirror`. */
+static void put_block(const ritz_dense *A, int64_t row, int64_t col,
+                      bool mirror, ritz_dense *out)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++) {
@@ -260,19 +261,19 @@ static ritz_status find_products(const ritz_nodes *nodes, const ritz_sparse *m,
 
     RITZ_TRY(ritz_nodes_along(nodes, T, b, &T_b));
     RITZ_TRY(ritz_sparse_mul(m, &T_b, &mT));
-    RITZ_TRY(positions(nodes, &X));
+    RITZ_TRY(list_positions(nodes, &X));
     RITZ_TRY(ritz_dense_mul_tn(&X, &mT, &P));
-    put(&P, 0, b * r, false, &out->position);
+    put_block(&P, 0, b * r, false, &out->position);
     ritz_dense_free(&P);
     RITZ_TRY(ritz_dense_mul_tn(&T_b, &mT, &P));
     ritz_dense_symmetrise(&P);
-    put(&P, b * r, b * r, false, &out->product);
+    put_block(&P, b * r, b * r, false, &out->product);
     ritz_dense_free(&T_b);
     for (int a = 0; a < b; a++) {
         ritz_dense_free(&P);
         RITZ_TRY(ritz_nodes_along(nodes, T, a, &T_a));
         RITZ_TRY(ritz_dense_mul_tn(&T_a, &mT, &P));
-        put(&P, a * r, b * r, true, &out->product);
+        put_block(&P, a * r, b * r, true, &out->product);
         ritz_dense_free(&T_a);
     }
 done:
@@ -312,12 +313,12 @@ done:
     return status;
 }
 
-/* I3 (x) V, which T V does to the three blocks of columns. */
-static ritz_status thrice(const ritz_dense *V, ritz_dense *out)
+/* I3 (x) V: T V transforms each of the three blocks of columns by V. */
+static ritz_status repeat_blocks(const ritz_dense *V, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, out));
     for (int b = 0; b < 3; b++)
-        put(V, b * V->nrow, b * V->ncol, false, out);
+        put_block(V, b * V->nrow, b * V->ncol, false, out);
     return RITZ_OK;
 }
 
@@ -331,7 +332,7 @@ ritz_status ritz_invariants_project(const ritz_invariants *invariants,
     if (!invariants->momentum.val)
         return RITZ_OK;
     memcpy(second.rigid, invariants->rigid, sizeof second.rigid);
-    RITZ_TRY(thrice(V, &V3));
+    RITZ_TRY(repeat_blocks(V, &V3));
     RITZ_TRY(ritz_dense_mul(&invariants->momentum, V, &second.momentum));
     RITZ_TRY(ritz_dense_mul(&invariants->position, &V3, &second.position));
     RITZ_TRY(ritz_dense_congruence(&invariants->product, &V3, &second.product));

@@ -34,7 +34,7 @@ done:
 }
 
 /* Names and limits. */
-static void label(const ritz_io *from, ritz_io *to)
+static void copy_names(const ritz_io *from, ritz_io *to)
 {
     for (int64_t k = 0; k < from->num_inputs; k++)
         memcpy(to->input[k], from->input[k], RITZ_NAME_SIZE);
@@ -51,7 +51,7 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
     ritz_io part = {0};
 
     RITZ_TRY(ritz_io_new(0, io->num_inputs, io->num_outputs, &part));
-    label(io, &part);
+    copy_names(io, &part);
     ritz_dense_free(&part.B);
     ritz_dense_free(&part.C);
     ritz_dense_free(&part.Cv);

@@ -58,8 +58,8 @@ static ritz_status check_order(const ritz_reduced *in, int64_t order)
 }
 
 /* A copy with a new row for an order, or a new column for a name, or both. */
-static ritz_status widen(const ritz_nested *in, int64_t row, bool new_row,
-                         int64_t col, bool new_col, ritz_nested *out)
+static ritz_status widen_table(const ritz_nested *in, int64_t row, bool new_row,
+                               int64_t col, bool new_col, ritz_nested *out)
 {
     RITZ_CHECK(new_nested(in->smallest, in->count + new_row,
                           in->num_errors + new_col, out));
@@ -94,9 +94,9 @@ ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
         row++;
     while (col < n->num_errors && strcmp(n->error[col], copy) < 0)
         col++;
-    RITZ_TRY(widen(n, row, row == n->count || n->order[row] != order, col,
-                   col == n->num_errors || strcmp(n->error[col], copy) != 0,
-                   &wide));
+    RITZ_TRY(widen_table(
+        n, row, row == n->count || n->order[row] != order, col,
+        col == n->num_errors || strcmp(n->error[col], copy) != 0, &wide));
     wide.order[row] = order;
     memcpy(wide.error[col], copy, sizeof copy);
     ritz_dense_col(&wide.value, col)[row] = value;
@@ -154,10 +154,10 @@ static void pick_kinds(const ritz_columns *in, const int64_t *at,
     }
 }
 
-/* A projection on unit vectors; T and the invariants, which are large, are not
-   multiplied but picked from. */
-static ritz_status pick(const ritz_reduced *in, int64_t count,
-                        const int64_t *at, ritz_reduced *out)
+/* A projection on unit vectors, but columns of T and of the invariants, which
+   are large, are copied instead of multiplied. */
+static ritz_status select_columns(const ritz_reduced *in, int64_t count,
+                                  const int64_t *at, ritz_reduced *out)
 {
     ritz_status status = RITZ_OK;
     ritz_reduced bare = *in; /* borrowed */
@@ -216,7 +216,7 @@ ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
     ritz_reduced made = {0};
 
     RITZ_TRY(check_columns(in->K.ncol, count, order_of_columns, smallest));
-    RITZ_TRY(pick(in, count, order_of_columns, &made));
+    RITZ_TRY(select_columns(in, count, order_of_columns, &made));
     RITZ_TRY(new_nested(smallest, 0, 0, &made.nested));
     if (count == in->K.ncol) {
         RITZ_TRY(ritz_measures_copy(&in->estimates, &made.estimates));
@@ -229,9 +229,9 @@ done:
     return status;
 }
 
-/* The orders that a prefix has too. */
-static ritz_status shorten(const ritz_nested *in, int64_t order,
-                           ritz_nested *out)
+/* The rows of the table that a prefix keeps: orders up to its own. */
+static ritz_status shorten_table(const ritz_nested *in, int64_t order,
+                                 ritz_nested *out)
 {
     int64_t count = 0;
 
@@ -258,8 +258,8 @@ static bool is_bound(const char *name)
     return length > end && strcmp(name + length - end, ending) == 0;
 }
 
-/* What was noted of just this order. */
-static ritz_status vouch(int64_t order, ritz_reduced *reduced)
+/* Measures of a prefix: the errors noted of just its order. */
+static ritz_status note_measures(int64_t order, ritz_reduced *reduced)
 {
     const ritz_nested *n = &reduced->nested;
     int64_t row = n->count - 1;
@@ -293,9 +293,9 @@ ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
         first[j] = j;
     RITZ_TRY(ritz_reduced_nest(in, order, first, in->nested.smallest, &made));
     ritz_nested_free(&made.nested);
-    RITZ_TRY(shorten(&in->nested, order, &made.nested));
+    RITZ_TRY(shorten_table(&in->nested, order, &made.nested));
     if (order < in->K.ncol)
-        RITZ_TRY(vouch(order, &made));
+        RITZ_TRY(note_measures(order, &made));
     *out = made;
     made = (ritz_reduced){0};
 done:

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Names of rows and of recovered dofs, one after the other. */
+/* Dofs of rows, then recovered dofs. */
 static ritz_status join_names(const ritz_recovery *recovery, int64_t n,
                               const ritz_dof *dof, ritz_dof **out)
 {
@@ -83,8 +83,8 @@ done:
 }
 
 /* [T; G T] */
-static ritz_status stack(const ritz_recovery *recovery, const ritz_dense *T,
-                         ritz_dense *out)
+static ritz_status stack_rows(const ritz_recovery *recovery,
+                              const ritz_dense *T, ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = T->nrow;
@@ -119,7 +119,7 @@ ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
 
     RITZ_TRY(join_names(recovery, n, dof, &all));
     if (shape)
-        RITZ_TRY(stack(recovery, T, shape));
+        RITZ_TRY(stack_rows(recovery, T, shape));
     *names = all;
     all = NULL;
 done:

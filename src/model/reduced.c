@@ -97,7 +97,7 @@ static void settle_mass_again(const ritz_reduced *from, ritz_reduced *to)
     clear_rounding(fastest_coordinate(from), &to->K, &to->M);
 }
 
-/* Columns that may be rigid-body motion, or be so together. */
+/* Columns that are rigid-body motions, or combine to some. */
 static bool may_be_rigid(ritz_column_kind kind)
 {
     return kind == RITZ_COLUMN_RIGID || kind == RITZ_COLUMN_CONSTRAINT;
@@ -129,7 +129,7 @@ done:
     return status;
 }
 
-/* Whether columns of T combine to nothing, to six digits or more. */
+/* Whether columns of T depend on each other to six digits or more. */
 static ritz_status nearly_depend(const ritz_dense *T, bool *out)
 {
     ritz_status status = RITZ_OK;
@@ -217,7 +217,7 @@ static ritz_status copy_dofs(int64_t n, const ritz_dof *dof, ritz_dof **out)
     return RITZ_OK;
 }
 
-/* Rows `at` of T. */
+/* The rows `at` of T. */
 /* A port moves by its rows of T, turned into basic axes. */
 static ritz_status map_port(const ritz_component *component,
                             const ritz_port *port, const ritz_dense *T,

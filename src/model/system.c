@@ -22,7 +22,7 @@ void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
         snprintf(out, RITZ_NAME_SIZE, "fixed");
 }
 
-/* One part, "clock=60", of a configuration's name: what it asks for. */
+/* Read one part, "clock=60", of a configuration's name. */
 static ritz_status read_part(const ritz_system *system, const char *part,
                              double *wanted)
 {
@@ -45,7 +45,7 @@ static ritz_status read_part(const ritz_system *system, const char *part,
     return RITZ_OK;
 }
 
-static bool matches(const ritz_configuration *c, const double *wanted)
+static bool has_settings(const ritz_configuration *c, const double *wanted)
 {
     for (int64_t k = 0; k < c->num_settings; k++)
         if (!isnan(wanted[k]) &&
@@ -54,7 +54,7 @@ static bool matches(const ritz_configuration *c, const double *wanted)
     return true;
 }
 
-/* What is asked of each sweep, NaN where nothing is. */
+/* Setting that a name gives each sweep, NaN where it gives none. */
 static ritz_status read_wanted(const ritz_system *system, const char *at,
                                double *wanted)
 {
@@ -91,7 +91,7 @@ ritz_status ritz_system_find(const ritz_system *system, const char *at,
     for (int64_t k = 0; k < system->num_configurations; k++) {
         const ritz_configuration *c = &system->configuration[k];
 
-        if (!matches(c, wanted))
+        if (!has_settings(c, wanted))
             continue;
         RITZ_FAIL_IF(found, RITZ_ERR_ARGUMENT,
                      "there are %" PRId64 " configurations, from '%s' to "

@@ -97,7 +97,7 @@ static bool is_whole(const ritz_ties *from)
     return from->count == 1 && from->tie[0].mask == 0x7e;
 }
 
-/* Share of u(grid, i) in a dof that moves by `row` about the grid itself. */
+/* Factor of u(grid, i) in a dof that moves by `row` about the grid itself. */
 static double share_of(const ritz_grids *grids, int64_t grid, int64_t i,
                        const double row[static 6])
 {
@@ -250,7 +250,7 @@ static void weigh_rows(const ritz_ties *over, ritz_dense *S)
         }
 }
 
-/* Rows of V' without a singular value. */
+/* Rows of V' beyond the rank span the motions that dofs leave loose. */
 static void list_loose(int64_t rank, const double *Vt, ritz_average *out)
 {
     for (int64_t k = rank; k < SIX; k++)
@@ -259,7 +259,7 @@ static void list_loose(int64_t rank, const double *Vt, ritz_average *out)
     out->num_loose = SIX - rank;
 }
 
-/* A = V Sigma^-1 U' W^1/2, of dofs and motions as they are. */
+/* A = V Sigma^-1 U' W^1/2, with the scaling of dofs and motions undone. */
 static ritz_status multiply_average(const ritz_ties *over, const ritz_dense *U,
                                     int64_t rank, const double *sigma,
                                     const double *Vt, ritz_average *out)

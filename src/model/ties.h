@@ -1,6 +1,6 @@
 /*
  * How a dof follows a rigid motion [t; r] about a point, along basic axes, and
- * ties between dofs that are made of it. Not for users.
+ * the ties between dofs of rigid bodies and averages.
  */
 #ifndef RITZ_MODEL_TIES_H
 #define RITZ_MODEL_TIES_H
@@ -34,7 +34,7 @@ static inline bool ritz_tie_has(const ritz_tie *tie, int64_t c)
 void ritz_tie_row(const ritz_grids *grids, int64_t grid, int64_t c,
                   const double origin[static 3], double out[static 6]);
 
-/** Factor by which a dof is scaled there. */
+/** Factor by which a dof is scaled, so that lengths cancel. */
 static inline double ritz_tie_scale(ritz_dof dof, double length)
 {
     return dof.component > 3 ? length : 1.0;

@@ -1,4 +1,4 @@
-/* Components of a scene, and the places on them that joints and inputs name. */
+/* Components of a scene, and COMPONENT/PORT, as joints and inputs name it. */
 #include "scene/scene_parts.h"
 
 #include "base/alloc.h"
@@ -18,7 +18,7 @@ ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* The port of item k, which is none of those before it. */
+/* Item k of a list of ports, which must differ from those before it. */
 static ritz_status read_port(const ritz_yaml *yaml, const yaml_node_t *list,
                              int64_t k, const char *before,
                              char port[RITZ_NAME_SIZE])

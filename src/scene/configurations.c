@@ -17,7 +17,7 @@ static void clear_row(const ritz_scene *scene, double *row)
         row[k] = nan("");
 }
 
-/* Index of a sweep; a joint with nothing to set has a sentence of its own. */
+/* Index of a sweep by the name of its joint, which must have a setting. */
 static ritz_status find_sweep(const ritz_scene *scene, const char *name,
                               int64_t *out)
 {

@@ -144,7 +144,7 @@ static ritz_status take_axis(const ritz_yaml *yaml, const yaml_node_t *node,
 }
 
 /* |a x b| of unit vectors: the sine between them. */
-static double sine(const double *a, const double *b)
+static double sine_between(const double *a, const double *b)
 {
     double x = a[1] * b[2] - a[2] * b[1];
     double y = a[2] * b[0] - a[0] * b[2];
@@ -165,8 +165,8 @@ static ritz_status take_axes(const ritz_yaml *yaml, const yaml_node_t *node,
     for (int64_t k = 0; k < 2; k++)
         RITZ_CHECK(
             take_axis(yaml, ritz_yaml_item(yaml, node, k), axes + 3 * k));
-    RITZ_REFUSE_AT(sine(axes, axes + 3) <= RITZ_PARALLEL_AXES, yaml, node,
-                   "the two axes are parallel");
+    RITZ_REFUSE_AT(sine_between(axes, axes + 3) <= RITZ_PARALLEL_AXES, yaml,
+                   node, "the two axes are parallel");
     return RITZ_OK;
 }
 
@@ -269,7 +269,7 @@ static ritz_status read_numbers(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* Numbers that hold nothing, and cages without numbers, are a mistake. */
+/* Stiffness without a cage, and a cage without stiffness, are mistakes. */
 static ritz_status check_cage(const ritz_yaml *yaml, const yaml_node_t *node,
                               const yaml_node_t *const *value,
                               const ritz_joint *joint)
@@ -338,7 +338,7 @@ static ritz_status read_between(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* The settings under one key; without a list there is 0 alone. */
+/* The settings under one key; without a list the only one is 0. */
 static ritz_status read_settings(const ritz_yaml *yaml, const yaml_node_t *node,
                                  const char *called, ritz_sweep *sweep)
 {
@@ -361,7 +361,7 @@ static ritz_status read_settings(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* What a joint is set to is named after it: "wrist", "wrist.2". */
+/* Sweeps are named after their joint: "wrist", "wrist.2". */
 static ritz_status read_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
                                const yaml_node_t *const *value,
                                ritz_joint *joint, ritz_scene *scene)
@@ -393,7 +393,7 @@ static ritz_status read_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* Which keys a type of joint has; one that it ignored would mislead. */
+/* Refuse keys that the type of joint would ignore, and missing ones. */
 static ritz_status check_keys(const ritz_yaml *yaml, const yaml_node_t *node,
                               const ritz_joint *joint,
                               const yaml_node_t *const *value)
@@ -427,7 +427,7 @@ static ritz_status read_joint(const ritz_yaml *yaml, const yaml_node_t *node,
     return read_sweeps(yaml, node, value, joint, scene);
 }
 
-/* No joint is called what a second axis of another is; not too many sweeps. */
+/* No joint may have the name of another one's second sweep. */
 static ritz_status check_sweeps(const ritz_yaml *yaml, const yaml_node_t *node,
                                 const ritz_scene *scene)
 {

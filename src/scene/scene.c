@@ -203,7 +203,7 @@ done:
     return status;
 }
 
-/* A relative model is found from the folder, the first letters of a path. */
+/* A relative path of a model begins at the folder of the scene. */
 static ritz_status place_model(const char *path, size_t folder, char **model)
 {
     size_t length = strlen(*model);

@@ -56,7 +56,7 @@ static ritz_status take_by(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* Put mode `number` where it belongs among those before it. */
+/* Insert mode `number` into the ascending list of modes. */
 static ritz_status insert_mode(const ritz_yaml *yaml, const yaml_node_t *node,
                                int64_t number, ritz_scene *scene)
 {
@@ -98,7 +98,7 @@ static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* Each key says something of one way to select alone. */
+/* Most keys belong to one way of selecting modes. */
 static ritz_status check_selection(const ritz_yaml *yaml,
                                    const yaml_node_t *node,
                                    const yaml_node_t *const *value,
@@ -216,7 +216,7 @@ done:
     return status;
 }
 
-/* A word, 'auto', or a list. */
+/* The word 'auto', or a list of sets. */
 static ritz_status take_sets(const ritz_yaml *yaml, const yaml_node_t *node,
                              ritz_scene *scene)
 {

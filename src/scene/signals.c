@@ -21,7 +21,7 @@ static ritz_status take_component(const ritz_yaml *yaml,
     return RITZ_OK;
 }
 
-/* One direction, or a list of those in which a force acts at once. */
+/* One direction, or a list of directions in which a force acts at once. */
 static ritz_status take_directions(const ritz_yaml *yaml,
                                    const yaml_node_t *node, ritz_scene_io *io)
 {
@@ -93,7 +93,7 @@ static const ritz_yaml_key output_keys[NUM_OUTPUT_KEYS] = {
      .offset = offsetof(ritz_scene_io, limit)},
 };
 
-/* What tells inputs from outputs. */
+/* How inputs and outputs differ. */
 typedef struct io_side {
     const char *what;
     int64_t count;
@@ -101,7 +101,8 @@ typedef struct io_side {
     bool drives;
 } io_side;
 
-/* Directions and the place of a reaction, which outputs have not. */
+/* Directions, and the port that an input reacts on; outputs have one
+   direction. */
 static ritz_status read_force(const ritz_yaml *yaml, const io_side *side,
                               const yaml_node_t *const *value,
                               const ritz_scene *scene, ritz_scene_io *io)

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* libyaml's time grows with the square of both; no scene comes near. */
+/* libyaml's time grows with the square of both. */
 enum { MOST_NESTED = 100, MOST_ANCHORS = 1000 };
 
-/* Line and column, from 0, of a byte: all that is known of a bad character. */
+/* Line and column, from 0, of a byte: libyaml gives no more of a bad one. */
 static yaml_mark_t mark_of(const char *text, size_t offset)
 {
     yaml_mark_t mark = {0};
@@ -23,7 +23,7 @@ static yaml_mark_t mark_of(const char *text, size_t offset)
     return mark;
 }
 
-/* What libyaml says of a failure, in one sentence. */
+/* The reason that libyaml gives for a failure, as one sentence. */
 static ritz_status explain_failure(const char *path, const char *text,
                                    const yaml_parser_t *parser)
 {
@@ -52,7 +52,7 @@ static ritz_status start_parser(yaml_parser_t *parser, const char *path,
     return RITZ_OK;
 }
 
-/* What a token adds to the depth of [ and {. */
+/* Change of the depth of [ and { by a token. */
 static int step_of(yaml_token_type_t type)
 {
     switch (type) {
@@ -67,7 +67,7 @@ static int step_of(yaml_token_type_t type)
     }
 }
 
-/* Go through the tokens alone, to refuse what loading would take ages for. */
+/* Scan the tokens first, to refuse what libyaml would need hours to load. */
 static ritz_status guard_size(const char *path, const char *text)
 {
     ritz_status status = RITZ_OK;
@@ -98,7 +98,7 @@ done:
     return status;
 }
 
-/* One document more from the stream; without a root at its end. */
+/* Load the next document of the stream; at its end one without a root. */
 static ritz_status load_document(yaml_parser_t *parser, const char *text,
                                  ritz_yaml *yaml)
 {
@@ -265,7 +265,7 @@ static bool has_key(const ritz_yaml *yaml, const yaml_node_t *node,
     return false;
 }
 
-/* A mistyped key is rather one that the mapping has not got yet. */
+/* Suggest a key that the mapping does not have yet, if one is near. */
 static ritz_status suggest_key(const ritz_yaml *yaml, const yaml_node_t *node,
                                const ritz_names *names, const char *word)
 {
