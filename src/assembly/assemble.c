@@ -39,15 +39,12 @@ static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
 static ritz_status add_block(const ritz_dense *A, const ritz_dense *P,
                              ritz_dense *sum)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_TRY(ritz_dense_project(A, P, &part));
+    RITZ_CHECK(ritz_dense_project(A, P, &part));
     for (int64_t k = 0; k < part.nrow * part.ncol; k++)
         sum->val[k] += part.val[k];
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* M, K and D of the system, sums over bodies and springs; {0} without D. */
@@ -55,38 +52,33 @@ static ritz_status project_all(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *P,
                                ritz_dense *K, ritz_dense *M, ritz_dense *D)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense block = {0};
+    RITZ_OWN(ritz_dense) block = {0};
     bool damped = ritz_springs_damp(springs);
 
     for (int64_t k = 0; k < stage->count; k++)
         damped = damped || stage->body[k].D.val;
-    RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, K));
-    RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, M));
+    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, K));
+    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, M));
     if (damped)
-        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, D));
+        RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, D));
     for (int64_t k = 0; k < stage->count; k++) {
         const ritz_reduced *body = &stage->body[k];
 
-        RITZ_TRY(take_block(P, stage->first[k], body->K.ncol, &block));
-        RITZ_TRY(add_block(&body->K, &block, K));
-        RITZ_TRY(add_block(&body->M, &block, M));
+        RITZ_CHECK(take_block(P, stage->first[k], body->K.ncol, &block));
+        RITZ_CHECK(add_block(&body->K, &block, K));
+        RITZ_CHECK(add_block(&body->M, &block, M));
         if (body->D.val)
-            RITZ_TRY(add_block(&body->D, &block, D));
+            RITZ_CHECK(add_block(&body->D, &block, D));
         ritz_dense_free(&block);
     }
-    RITZ_TRY(ritz_springs_add(springs, P, K, D));
-done:
-    ritz_dense_free(&block);
-    return status;
+    return ritz_springs_add(springs, P, K, D);
 }
 
 /* K4 of the system; none if no body has any. */
 static ritz_status project_structural(const ritz_stage *stage,
                                       const ritz_dense *P, ritz_dense *K4)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense block = {0};
+    RITZ_OWN(ritz_dense) block = {0};
 
     for (int64_t k = 0; k < stage->count; k++) {
         const ritz_dense *own = &stage->body[k].K4;
@@ -94,14 +86,12 @@ static ritz_status project_structural(const ritz_stage *stage,
         if (!own->val)
             continue;
         if (!K4->val)
-            RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, K4));
-        RITZ_TRY(take_block(P, stage->first[k], own->ncol, &block));
-        RITZ_TRY(add_block(own, &block, K4));
+            RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, K4));
+        RITZ_CHECK(take_block(P, stage->first[k], own->ncol, &block));
+        RITZ_CHECK(add_block(own, &block, K4));
         ritz_dense_free(&block);
     }
-done:
-    ritz_dense_free(&block);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether modes i and j lie apart; rigid ones do not, nor do clusters. */
@@ -127,12 +117,11 @@ static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
 static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
                           int64_t rigid, double *lambda, ritz_dense *P)
 {
-    ritz_status status = RITZ_OK;
     int64_t e = P->ncol;
-    ritz_dense K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
 
-    RITZ_TRY(project_all(stage, springs, P, &K, &M, &D));
-    RITZ_TRY(ritz_dense_new(e, e, &E));
+    RITZ_CHECK(project_all(stage, springs, P, &K, &M, &D));
+    RITZ_CHECK(ritz_dense_new(e, e, &E));
     for (int64_t j = 0; j < e; j++)
         lambda[j] = ritz_dense_col(&K, j)[j] / ritz_dense_col(&M, j)[j];
     for (int64_t j = 0; j < e; j++)
@@ -146,16 +135,10 @@ static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
                     ? (k - lambda[j] * m) / (lambda[j] - lambda[i])
                     : -0.5 * m;
         }
-    RITZ_TRY(ritz_dense_mul(P, &E, &correction));
+    RITZ_CHECK(ritz_dense_mul(P, &E, &correction));
     for (int64_t k = 0; k < P->nrow * e; k++)
         P->val[k] += correction.val[k];
-done:
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&D);
-    ritz_dense_free(&E);
-    ritz_dense_free(&correction);
-    return status;
+    return RITZ_OK;
 }
 
 /* The system in coordinates P becomes that in its modes; P becomes P Phi. */
@@ -163,24 +146,23 @@ static ritz_status make_modal(const ritz_stage *stage,
                               const ritz_springs *springs, ritz_dense *P,
                               ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense K = {0}, M = {0}, D = {0}, Q = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, Q = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t e = 0;
 
-    RITZ_TRY(project_all(stage, springs, P, &K, &M, &D));
-    RITZ_TRY_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
+    RITZ_CHECK(project_all(stage, springs, P, &K, &M, &D));
+    RITZ_CHECK_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
     e = pairs.Phi.ncol;
-    RITZ_TRY(ritz_dense_mul(P, &pairs.Phi, &Q));
+    RITZ_CHECK(ritz_dense_mul(P, &pairs.Phi, &Q));
     for (int pass = 0; pass < 2; pass++)
-        RITZ_TRY(refine(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
+        RITZ_CHECK(refine(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
     ritz_dense_free(&K);
     ritz_dense_free(&M);
     ritz_dense_free(&D);
-    RITZ_TRY(project_all(stage, springs, &Q, &K, &M, &c->D));
-    RITZ_TRY(ritz_dense_new(e, e, &c->K));
-    RITZ_TRY(ritz_dense_new(e, e, &c->M));
-    RITZ_NEW(c->lambda, e);
+    RITZ_CHECK(project_all(stage, springs, &Q, &K, &M, &c->D));
+    RITZ_CHECK(ritz_dense_new(e, e, &c->K));
+    RITZ_CHECK(ritz_dense_new(e, e, &c->M));
+    RITZ_CHECK_NEW(c->lambda, e);
     for (int64_t j = 0; j < e; j++) {
         c->lambda[j] = ritz_dense_col(&c->K, j)[j] = pairs.lambda[j];
         ritz_dense_col(&c->M, j)[j] = 1.0;
@@ -189,13 +171,7 @@ static ritz_status make_modal(const ritz_stage *stage,
     ritz_dense_free(P);
     *P = Q;
     Q = (ritz_dense){0};
-done:
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&D);
-    ritz_dense_free(&Q);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 /* Name, settings, blocks and io of a configuration with modal P. */
@@ -232,35 +208,28 @@ done:
 ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
                                 ritz_configuration *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_configuration c = {0};
-    ritz_springs springs = {0};
-    ritz_dense C = {0}, P = {0};
-    double *scale = NULL;
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_springs) springs = {0};
+    RITZ_OWN(ritz_dense) C = {0}, P = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
 
-    RITZ_NEW(scale, stage->num_coordinates);
+    RITZ_CHECK_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
-    RITZ_TRY(ritz_stage_constraints(stage, setting, scale, &C));
-    RITZ_TRY(ritz_stage_springs(stage, setting, &springs));
+    RITZ_CHECK(ritz_stage_constraints(stage, setting, scale, &C));
+    RITZ_CHECK(ritz_stage_springs(stage, setting, &springs));
     if (ritz_dual_is_due(stage)) {
-        RITZ_TRY(ritz_dual_assemble(stage, &springs, &C, scale, &P, &c));
+        RITZ_CHECK(ritz_dual_assemble(stage, &springs, &C, scale, &P, &c));
     } else {
-        RITZ_TRY(ritz_null_space(&C, &c.rank, &P));
+        RITZ_CHECK(ritz_null_space(&C, &c.rank, &P));
         for (int64_t j = 0; j < P.ncol; j++)
             for (int64_t i = 0; i < P.nrow; i++)
                 ritz_dense_col(&P, j)[i] *= scale[i];
-        RITZ_TRY(make_modal(stage, &springs, &P, &c));
+        RITZ_CHECK(make_modal(stage, &springs, &P, &c));
     }
-    RITZ_TRY(finish(stage, setting, &P, &c));
+    RITZ_CHECK(finish(stage, setting, &P, &c));
     *out = c;
     c = (ritz_configuration){0};
-done:
-    free(scale);
-    ritz_springs_free(&springs);
-    ritz_dense_free(&C);
-    ritz_dense_free(&P);
-    ritz_configuration_free(&c);
-    return status;
+    return RITZ_OK;
 }
 
 /* A system over all configurations of a scene. */
@@ -298,30 +267,26 @@ static ritz_status label(const ritz_stage *stage, ritz_system *system)
 ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
                           ritz_system *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
     int64_t count = at ? 1 : scene->num_configurations;
-    ritz_system system = {0};
-    double *setting = NULL;
+    RITZ_OWN(ritz_system) system = {0};
+    RITZ_OWN_ARRAY double *setting = NULL;
 
-    RITZ_NEW(setting, scene->num_sweeps);
-    RITZ_TRY(label(stage, &system));
-    RITZ_NEW(system.configuration, count);
+    RITZ_CHECK_NEW(setting, scene->num_sweeps);
+    RITZ_CHECK(label(stage, &system));
+    RITZ_CHECK_NEW(system.configuration, count);
     for (int64_t k = 0; k < count; k++) {
         const double *row = setting;
 
         ritz_monitor_step("configuration", k, count);
         if (at)
-            RITZ_TRY(ritz_scene_settings(scene, at, setting));
+            RITZ_CHECK(ritz_scene_settings(scene, at, setting));
         else
             row = scene->setting + k * scene->num_sweeps;
-        RITZ_TRY(ritz_stage_assemble(stage, row, &system.configuration[k]));
+        RITZ_CHECK(ritz_stage_assemble(stage, row, &system.configuration[k]));
         system.num_configurations++;
     }
     *out = system;
     system = (ritz_system){0};
-done:
-    free(setting);
-    ritz_system_free(&system);
-    return status;
+    return RITZ_OK;
 }

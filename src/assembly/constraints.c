@@ -38,18 +38,15 @@ static void add_rows(const ritz_dense *R, const ritz_freedom *hold,
 ritz_status ritz_springs_add(const ritz_springs *springs, const ritz_dense *P,
                              ritz_dense *K, ritz_dense *D)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
     if (springs->S.nrow == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_mul(&springs->S, P, &R));
+    RITZ_CHECK(ritz_dense_mul(&springs->S, P, &R));
     add_rows(&R, springs->hold, false, K);
     if (D->val)
         add_rows(&R, springs->hold, true, D);
-done:
-    ritz_dense_free(&R);
-    return status;
+    return RITZ_OK;
 }
 
 /* The coordinates that a row has. */
@@ -67,21 +64,20 @@ static int64_t list_entries(const ritz_dense *S, int64_t row, int64_t *column)
 static ritz_status make_matrix(const ritz_springs *springs, bool damping,
                                int64_t n, const int64_t *at, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *S = &springs->S;
-    int64_t *column = NULL, *row = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *column = NULL, *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t count = 0, most = 0;
 
-    RITZ_NEW(column, S->ncol);
+    RITZ_CHECK_NEW(column, S->ncol);
     for (int64_t k = 0; k < S->nrow; k++) {
         int64_t entries = list_entries(S, k, column);
 
         most += entries * entries;
     }
-    RITZ_NEW(row, most);
-    RITZ_NEW(col, most);
-    RITZ_NEW(val, most);
+    RITZ_CHECK_NEW(row, most);
+    RITZ_CHECK_NEW(col, most);
+    RITZ_CHECK_NEW(val, most);
     for (int64_t k = 0; k < S->nrow; k++) {
         const ritz_freedom *hold = &springs->hold[k];
         int64_t entries = list_entries(S, k, column);
@@ -96,34 +92,26 @@ static ritz_status make_matrix(const ritz_springs *springs, bool damping,
                            (ritz_dense_col(S, i)[k] * ritz_dense_col(S, j)[k]);
         }
     }
-    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, val, out));
-done:
-    free(column);
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(n, n, count, row, col, val, out);
 }
 
 ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
                                     int64_t n, const int64_t *at,
                                     ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse own = {0}, sum = {0};
+    RITZ_OWN(ritz_sparse) own = {0};
+    ritz_sparse sum = {0};
 
     if (springs->S.nrow == 0 || (damping && !ritz_springs_damp(springs)))
         return RITZ_OK;
-    RITZ_TRY(make_matrix(springs, damping, n, at, &own));
+    RITZ_CHECK(make_matrix(springs, damping, n, at, &own));
     if (A->colptr)
-        RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &own, &sum));
+        RITZ_CHECK(ritz_sparse_add(1.0, A, 1.0, &own, &sum));
     else
-        RITZ_TRY(ritz_sparse_copy(&own, &sum));
+        RITZ_CHECK(ritz_sparse_copy(&own, &sum));
     ritz_sparse_free(A);
     *A = sum;
-done:
-    ritz_sparse_free(&own);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_springs_free(ritz_springs *springs)
@@ -220,25 +208,22 @@ static void level(const bool *rotation, int64_t first, int64_t count,
 static ritz_status relate_all(const ritz_stage *stage, const double *setting,
                               ritz_relations *list)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    ritz_joint_pose *pose = NULL;
+    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
 
-    RITZ_NEW(pose, scene->num_joints);
-    RITZ_TRY(ritz_place_joints(stage, setting, pose));
+    RITZ_CHECK_NEW(pose, scene->num_joints);
+    RITZ_CHECK(ritz_place_joints(stage, setting, pose));
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
         const ritz_port_map *port[2] = {NULL, NULL};
         ritz_joint_end end[2];
 
-        RITZ_TRY(find_ports(stage, joint, port));
+        RITZ_CHECK(find_ports(stage, joint, port));
         for (int k = 0; k < 2; k++)
             end[k] = describe_end(stage, &joint->between[k], port[k]);
-        RITZ_TRY(ritz_joint_relate(joint, end, &pose[j], &list[j]));
+        RITZ_CHECK(ritz_joint_relate(joint, end, &pose[j], &list[j]));
     }
-done:
-    free(pose);
-    return status;
+    return RITZ_OK;
 }
 
 static int64_t count_state(const ritz_relations *list, ritz_freedom_state state)
@@ -379,37 +364,36 @@ static int64_t count_rank(int64_t count, const double *sigma)
  */
 ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = C->ncol;
     int64_t c = C->nrow < n ? C->nrow : n;
-    ritz_dense F = {0}, R = {0}, U = {0}, N = {0};
-    double *tau = NULL, *sigma = NULL, *work = NULL;
+    RITZ_OWN(ritz_dense) F = {0}, R = {0}, U = {0}, N = {0};
+    RITZ_OWN_ARRAY double *tau = NULL, *sigma = NULL, *work = NULL;
 
-    RITZ_NEW(tau, c);
-    RITZ_NEW(sigma, c);
-    RITZ_NEW(work, c);
-    RITZ_TRY(ritz_dense_new(n, C->nrow, &F));
-    RITZ_TRY(ritz_dense_new(c, C->nrow, &R));
-    RITZ_TRY(ritz_dense_new(c, c, &U));
+    RITZ_CHECK_NEW(tau, c);
+    RITZ_CHECK_NEW(sigma, c);
+    RITZ_CHECK_NEW(work, c);
+    RITZ_CHECK(ritz_dense_new(n, C->nrow, &F));
+    RITZ_CHECK(ritz_dense_new(c, C->nrow, &R));
+    RITZ_CHECK(ritz_dense_new(c, c, &U));
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < C->nrow; i++)
             ritz_dense_col(&F, i)[j] = ritz_dense_col(C, j)[i];
     *rank = 0;
     if (c > 0) {
-        RITZ_FAIL_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)n, (int)C->nrow,
-                                    F.val, (int)n, tau) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
+        RITZ_REFUSE_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)n, (int)C->nrow,
+                                      F.val, (int)n, tau) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the constraints");
         for (int64_t j = 0; j < C->nrow; j++)
             for (int64_t i = 0; i <= j && i < c; i++)
                 ritz_dense_col(&R, j)[i] = ritz_dense_col(&F, j)[i];
-        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', (int)c,
-                                    (int)C->nrow, R.val, (int)c, sigma, U.val,
-                                    (int)c, NULL, 1, work) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "singular values of the constraints do not converge");
+        RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', (int)c,
+                                      (int)C->nrow, R.val, (int)c, sigma, U.val,
+                                      (int)c, NULL, 1, work) != 0,
+                       RITZ_ERR_CONVERGENCE,
+                       "singular values of the constraints do not converge");
         *rank = count_rank(c, sigma);
     }
-    RITZ_TRY(ritz_dense_new(n, n - *rank, &N));
+    RITZ_CHECK(ritz_dense_new(n, n - *rank, &N));
     for (int64_t j = *rank; j < n; j++)
         if (j < c)
             memcpy(ritz_dense_col(&N, j - *rank), ritz_dense_col(&U, j),
@@ -417,19 +401,11 @@ ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
         else
             ritz_dense_col(&N, j - *rank)[j] = 1.0;
     if (c > 0 && N.ncol > 0)
-        RITZ_FAIL_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', (int)n,
-                                    (int)N.ncol, (int)c, F.val, (int)n, tau,
-                                    N.val, (int)n) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
+        RITZ_REFUSE_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', (int)n,
+                                      (int)N.ncol, (int)c, F.val, (int)n, tau,
+                                      N.val, (int)n) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the constraints");
     *out = N;
     N = (ritz_dense){0};
-done:
-    free(tau);
-    free(sigma);
-    free(work);
-    ritz_dense_free(&F);
-    ritz_dense_free(&R);
-    ritz_dense_free(&U);
-    ritz_dense_free(&N);
-    return status;
+    return RITZ_OK;
 }

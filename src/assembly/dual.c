@@ -73,12 +73,11 @@ static ritz_status pick(const ritz_dense *A, const bool *flag, bool wanted,
 static ritz_status factor(const ritz_dense *K, const bool *is_force,
                           ritz_dense *L)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense columns = {0};
+    RITZ_OWN(ritz_dense) columns = {0};
     int64_t p = 0;
 
-    RITZ_TRY(pick(K, is_force, true, &columns));
-    RITZ_TRY(ritz_dense_new(columns.ncol, columns.ncol, L));
+    RITZ_CHECK(pick(K, is_force, true, &columns));
+    RITZ_CHECK(ritz_dense_new(columns.ncol, columns.ncol, L));
     for (int64_t j = 0; j < L->ncol; j++) {
         p = 0;
         for (int64_t i = 0; i < K->nrow; i++)
@@ -86,14 +85,12 @@ static ritz_status factor(const ritz_dense *K, const bool *is_force,
                 ritz_dense_col(L, j)[p++] = ritz_dense_col(&columns, j)[i];
     }
     p = L->ncol;
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', (int)p, L->val, (int)p) != 0,
         RITZ_ERR_SINGULAR,
         "the residual flexibility of force columns is not positive "
         "definite");
-done:
-    ritz_dense_free(&columns);
-    return status;
+    return RITZ_OK;
 }
 
 /* What the constraints make of p: W = C_p L'^-1 = U S V'. */
@@ -107,72 +104,64 @@ typedef struct split {
 static ritz_status decompose(const ritz_dense *C, const bool *is_force,
                              split *s)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense W = {0};
+    RITZ_OWN(ritz_dense) W = {0};
     int c = (int)C->nrow;
     int p = (int)s->L.ncol;
     int least = c < p ? c : p;
 
-    RITZ_TRY(pick(C, is_force, true, &W));
-    RITZ_TRY(ritz_dense_new(c, c, &s->U));
-    RITZ_TRY(ritz_dense_new(p, p, &s->Vt));
-    RITZ_NEW(s->sigma, least);
+    RITZ_CHECK(pick(C, is_force, true, &W));
+    RITZ_CHECK(ritz_dense_new(c, c, &s->U));
+    RITZ_CHECK(ritz_dense_new(p, p, &s->Vt));
+    RITZ_CHECK_NEW(s->sigma, least);
     if (least == 0)
-        goto done;
+        return RITZ_OK;
     cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
                 c, p, 1.0, s->L.val, p, W.val, c);
-    RITZ_FAIL_IF(LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', c, p, W.val, c, s->sigma,
-                                s->U.val, c, s->Vt.val, p) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "singular values of the interface do not converge");
+    RITZ_REFUSE_IF(LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', c, p, W.val, c,
+                                  s->sigma, s->U.val, c, s->Vt.val, p) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "singular values of the interface do not converge");
     while (s->rank < least && s->sigma[s->rank] > RITZ_RANK_LOSS * s->sigma[0])
         s->rank++;
-done:
-    ritz_dense_free(&W);
-    return status;
+    return RITZ_OK;
 }
 
 /* N: what the constraints that do not see p leave to q. */
 static ritz_status hold(const split *s, const ritz_dense *C_q, int64_t *rank,
                         ritz_dense *N)
 {
-    ritz_status status = RITZ_OK;
     double most = ritz_dense_max(C_q);
-    ritz_dense U_0 = {0}, C_0 = {0};
+    RITZ_OWN(ritz_dense) U_0 = {0}, C_0 = {0};
 
     if (s->sigma && s->L.ncol > 0)
-        RITZ_TRY(ritz_dense_columns(&s->U, s->rank, s->U.ncol - s->rank, &U_0));
+        RITZ_CHECK(
+            ritz_dense_columns(&s->U, s->rank, s->U.ncol - s->rank, &U_0));
     if (s->L.ncol > 0)
-        RITZ_TRY(ritz_dense_mul_tn(&U_0, C_q, &C_0));
+        RITZ_CHECK(ritz_dense_mul_tn(&U_0, C_q, &C_0));
     else
-        RITZ_TRY(ritz_dense_copy(C_q, &C_0));
+        RITZ_CHECK(ritz_dense_copy(C_q, &C_0));
     for (int64_t k = 0; k < C_0.nrow * C_0.ncol; k++)
         if (fabs(C_0.val[k]) <= RITZ_RANK_LOSS * most)
             C_0.val[k] = 0.0;
-    RITZ_TRY(ritz_null_space(&C_0, rank, N));
-done:
-    ritz_dense_free(&U_0);
-    ritz_dense_free(&C_0);
-    return status;
+    return ritz_null_space(&C_0, rank, N);
 }
 
 /* X = [N, 0; 0, -L'^-1 V_1], its rows where they belong. */
 static ritz_status build(split *s, const bool *is_force, const ritz_dense *N,
                          ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     int p = (int)s->L.ncol;
     int64_t rows[2] = {0, 0};
-    ritz_dense Y = {0};
+    RITZ_OWN(ritz_dense) Y = {0};
 
-    RITZ_TRY(ritz_dense_new(p, s->rank, &Y));
+    RITZ_CHECK(ritz_dense_new(p, s->rank, &Y));
     for (int64_t j = 0; j < s->rank; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(&Y, j)[i] = -ritz_dense_col(&s->Vt, i)[j];
     if (s->rank > 0)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, p, (int)s->rank, 1.0, s->L.val, p, Y.val, p);
-    RITZ_TRY(ritz_dense_new(N->nrow + p, N->ncol + s->rank, X));
+    RITZ_CHECK(ritz_dense_new(N->nrow + p, N->ncol + s->rank, X));
     for (int64_t i = 0; i < X->nrow; i++) {
         const ritz_dense *from = is_force[i] ? &Y : N;
         int64_t first = is_force[i] ? N->ncol : 0;
@@ -181,34 +170,27 @@ static ritz_status build(split *s, const bool *is_force, const ritz_dense *N,
         for (int64_t j = 0; j < from->ncol; j++)
             ritz_dense_col(X, first + j)[i] = ritz_dense_col(from, j)[row];
     }
-done:
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /* joint = [0, (C_1q N)'; C_1q N, -2 I]. */
 static ritz_status add_joint(const split *s, const ritz_dense *C_q,
                              const ritz_dense *N, ritz_dense *joint)
 {
-    ritz_status status = RITZ_OK;
     int64_t y = N->ncol;
-    ritz_dense U_1 = {0}, C_1 = {0}, G = {0};
+    RITZ_OWN(ritz_dense) U_1 = {0}, C_1 = {0}, G = {0};
 
-    RITZ_TRY(ritz_dense_new(y + s->rank, y + s->rank, joint));
-    RITZ_TRY(ritz_dense_columns(&s->U, 0, s->rank, &U_1));
-    RITZ_TRY(ritz_dense_mul_tn(&U_1, C_q, &C_1));
-    RITZ_TRY(ritz_dense_mul(&C_1, N, &G));
+    RITZ_CHECK(ritz_dense_new(y + s->rank, y + s->rank, joint));
+    RITZ_CHECK(ritz_dense_columns(&s->U, 0, s->rank, &U_1));
+    RITZ_CHECK(ritz_dense_mul_tn(&U_1, C_q, &C_1));
+    RITZ_CHECK(ritz_dense_mul(&C_1, N, &G));
     for (int64_t i = 0; i < s->rank; i++) {
         ritz_dense_col(joint, y + i)[y + i] = -2.0;
         for (int64_t j = 0; j < y; j++)
             ritz_dense_col(joint, y + i)[j] = ritz_dense_col(joint, j)[y + i] =
                 ritz_dense_col(&G, j)[i] / s->sigma[i];
     }
-done:
-    ritz_dense_free(&U_1);
-    ritz_dense_free(&C_1);
-    ritz_dense_free(&G);
-    return status;
+    return RITZ_OK;
 }
 
 static void split_free(split *s)
@@ -347,18 +329,15 @@ static void pencil_free(dual_pencil *of)
 /* All of it in new coordinates, z = Z w. */
 static ritz_status change(const ritz_dense *Z, dual_pencil *of)
 {
-    ritz_status status = RITZ_OK;
-    dual_pencil to = {0};
+    [[gnu::cleanup(pencil_free)]] dual_pencil to = {0};
 
-    RITZ_TRY(ritz_dense_congruence(&of->K, Z, &to.K));
-    RITZ_TRY(ritz_dense_congruence(&of->M, Z, &to.M));
-    RITZ_TRY(ritz_dense_mul(&of->P, Z, &to.P));
+    RITZ_CHECK(ritz_dense_congruence(&of->K, Z, &to.K));
+    RITZ_CHECK(ritz_dense_congruence(&of->M, Z, &to.M));
+    RITZ_CHECK(ritz_dense_mul(&of->P, Z, &to.P));
     pencil_free(of);
     *of = to;
     to = (dual_pencil){0};
-done:
-    pencil_free(&to);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_pencil(const ritz_stage *stage,
@@ -366,24 +345,20 @@ static ritz_status make_pencil(const ritz_stage *stage,
                                const ritz_dual *dual, const double *scale,
                                dual_pencil *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense K = {0}, M = {0}, none = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    ritz_dense none = {0};
 
-    RITZ_TRY(stack(stage, offsetof(ritz_reduced, K), scale, &K));
-    RITZ_TRY(stack(stage, offsetof(ritz_reduced, M), scale, &M));
-    RITZ_TRY(ritz_dense_congruence(&K, &dual->X, &out->K));
-    RITZ_TRY(ritz_dense_congruence(&M, &dual->X, &out->M));
-    RITZ_TRY(ritz_dense_copy(&dual->X, &out->P));
+    RITZ_CHECK(stack(stage, offsetof(ritz_reduced, K), scale, &K));
+    RITZ_CHECK(stack(stage, offsetof(ritz_reduced, M), scale, &M));
+    RITZ_CHECK(ritz_dense_congruence(&K, &dual->X, &out->K));
+    RITZ_CHECK(ritz_dense_congruence(&M, &dual->X, &out->M));
+    RITZ_CHECK(ritz_dense_copy(&dual->X, &out->P));
     for (int64_t j = 0; j < out->P.ncol; j++)
         for (int64_t i = 0; i < out->P.nrow; i++)
             ritz_dense_col(&out->P, j)[i] *= scale[i];
     for (int64_t k = 0; k < out->K.nrow * out->K.ncol; k++)
         out->K.val[k] += dual->joint.val[k];
-    RITZ_TRY(ritz_springs_add(springs, &out->P, &out->K, &none));
-done:
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    return status;
+    return ritz_springs_add(springs, &out->P, &out->K, &none);
 }
 
 /*
@@ -393,23 +368,22 @@ done:
 static ritz_status turn_forces(const ritz_dense *M, int64_t forces,
                                ritz_dense *Z, int64_t *massless)
 {
-    ritz_status status = RITZ_OK;
     int64_t y = M->ncol - forces;
-    ritz_dense Y = {0};
-    double *m = NULL;
+    RITZ_OWN(ritz_dense) Y = {0};
+    RITZ_OWN_ARRAY double *m = NULL;
 
     *massless = 0;
-    RITZ_NEW(m, forces);
-    RITZ_TRY(ritz_dense_new(forces, forces, &Y));
-    RITZ_TRY(ritz_dense_new(M->ncol, M->ncol, Z));
+    RITZ_CHECK_NEW(m, forces);
+    RITZ_CHECK(ritz_dense_new(forces, forces, &Y));
+    RITZ_CHECK(ritz_dense_new(M->ncol, M->ncol, Z));
     for (int64_t j = 0; j < forces; j++)
         for (int64_t i = 0; i < forces; i++)
             ritz_dense_col(&Y, j)[i] = ritz_dense_col(M, y + j)[y + i];
-    RITZ_FAIL_IF(forces > 0 &&
-                     LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)forces,
-                                    Y.val, (int)forces, m) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "the mass of interface forces has no eigenvalues");
+    RITZ_REFUSE_IF(forces > 0 &&
+                       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)forces,
+                                      Y.val, (int)forces, m) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "the mass of interface forces has no eigenvalues");
     for (int64_t j = 0; j < y; j++)
         ritz_dense_col(Z, j)[j] = 1.0;
     for (int64_t j = 0; j < forces; j++) /* dsyevd ascends */
@@ -419,25 +393,21 @@ static ritz_status turn_forces(const ritz_dense *M, int64_t forces,
                                                      DBL_EPSILON *
                                                      fmax(m[forces - 1], 0.0))
         (*massless)++;
-done:
-    free(m);
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /* Z = [I; -K_00^-1 K_0z]: the last coordinates, without mass, condensed. */
 static ritz_status condense(int64_t massless, dual_pencil *of)
 {
-    ritz_status status = RITZ_OK;
     int64_t rest = of->K.ncol - massless;
-    ritz_dense K_00 = {0}, K_0 = {0}, Z = {0};
-    lapack_int *pivot = NULL;
+    RITZ_OWN(ritz_dense) K_00 = {0}, K_0 = {0}, Z = {0};
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     int n = (int)massless;
 
-    RITZ_NEW(pivot, massless);
-    RITZ_TRY(ritz_dense_new(massless, massless, &K_00));
-    RITZ_TRY(ritz_dense_new(massless, rest, &K_0));
-    RITZ_TRY(ritz_dense_new(rest + massless, rest, &Z));
+    RITZ_CHECK_NEW(pivot, massless);
+    RITZ_CHECK(ritz_dense_new(massless, massless, &K_00));
+    RITZ_CHECK(ritz_dense_new(massless, rest, &K_0));
+    RITZ_CHECK(ritz_dense_new(rest + massless, rest, &Z));
     for (int64_t j = 0; j < rest + massless; j++) {
         double *to = j < rest ? ritz_dense_col(&K_0, j)
                               : ritz_dense_col(&K_00, j - rest);
@@ -445,22 +415,16 @@ static ritz_status condense(int64_t massless, dual_pencil *of)
         memcpy(to, ritz_dense_col(&of->K, j) + rest,
                (size_t)massless * sizeof *to);
     }
-    RITZ_FAIL_IF(rest > 0 && LAPACKE_dsysv(LAPACK_COL_MAJOR, 'L', n, (int)rest,
-                                           K_00.val, n, pivot, K_0.val, n) != 0,
-                 RITZ_ERR_SINGULAR,
-                 "interface forces without mass have no stiffness");
+    RITZ_REFUSE_IF(
+        rest > 0 && LAPACKE_dsysv(LAPACK_COL_MAJOR, 'L', n, (int)rest, K_00.val,
+                                  n, pivot, K_0.val, n) != 0,
+        RITZ_ERR_SINGULAR, "interface forces without mass have no stiffness");
     for (int64_t j = 0; j < rest; j++) {
         ritz_dense_col(&Z, j)[j] = 1.0;
         for (int64_t i = 0; i < massless; i++)
             ritz_dense_col(&Z, j)[rest + i] = -ritz_dense_col(&K_0, j)[i];
     }
-    RITZ_TRY(change(&Z, of));
-done:
-    free(pivot);
-    ritz_dense_free(&K_00);
-    ritz_dense_free(&K_0);
-    ritz_dense_free(&Z);
-    return status;
+    return change(&Z, of);
 }
 
 /* Modes that are found, and where they go: by |lambda|. */
@@ -482,18 +446,17 @@ static int by_size(const void *left, const void *right)
 static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
                          ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
     int64_t e = pairs->Phi.ncol;
-    ritz_dense Phi = {0}, Q = {0};
-    force_place *at = NULL;
-    double *size = NULL;
+    RITZ_OWN(ritz_dense) Phi = {0}, Q = {0};
+    RITZ_OWN_ARRAY force_place *at = NULL;
+    RITZ_OWN_ARRAY double *size = NULL;
 
-    RITZ_NEW(at, e);
-    RITZ_NEW(size, e);
-    RITZ_NEW(c->lambda, e);
-    RITZ_TRY(ritz_dense_new(pairs->Phi.nrow, e, &Phi));
-    RITZ_TRY(ritz_dense_new(e, e, &c->K));
-    RITZ_TRY(ritz_dense_new(e, e, &c->M));
+    RITZ_CHECK_NEW(at, e);
+    RITZ_CHECK_NEW(size, e);
+    RITZ_CHECK_NEW(c->lambda, e);
+    RITZ_CHECK(ritz_dense_new(pairs->Phi.nrow, e, &Phi));
+    RITZ_CHECK(ritz_dense_new(e, e, &c->K));
+    RITZ_CHECK(ritz_dense_new(e, e, &c->M));
     for (int64_t j = 0; j < e; j++)
         at[j] = (force_place){fabs(pairs->lambda[j]), j};
     if (e > 0)
@@ -507,16 +470,11 @@ static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
                (size_t)Phi.nrow * sizeof *Phi.val);
     }
     c->num_rigid = ritz_eigen_rigid(e, size, e > 0 ? size[e - 1] : 0.0);
-    RITZ_TRY(ritz_dense_mul(P, &Phi, &Q));
+    RITZ_CHECK(ritz_dense_mul(P, &Phi, &Q));
     ritz_dense_free(P);
     *P = Q;
     Q = (ritz_dense){0};
-done:
-    free(at);
-    free(size);
-    ritz_dense_free(&Phi);
-    ritz_dense_free(&Q);
-    return status;
+    return RITZ_OK;
 }
 
 /* How many eigenvalues are negative, and the one that is nearest to 0. */
@@ -542,27 +500,22 @@ static ritz_status report(ritz_configuration *c)
 static ritz_status damp(const ritz_stage *stage, const ritz_springs *springs,
                         const ritz_dense *P, ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense D = {0}, none = {0};
-    double *one = NULL;
+    RITZ_OWN(ritz_dense) D = {0}, none = {0};
+    RITZ_OWN_ARRAY double *one = NULL;
 
-    RITZ_NEW(one, stage->num_coordinates);
+    RITZ_CHECK_NEW(one, stage->num_coordinates);
     for (int64_t i = 0; i < stage->num_coordinates; i++)
         one[i] = 1.0;
-    RITZ_TRY(stack(stage, offsetof(ritz_reduced, D), one, &D));
+    RITZ_CHECK(stack(stage, offsetof(ritz_reduced, D), one, &D));
     if (D.val)
-        RITZ_TRY(ritz_dense_project(&D, P, &c->D));
+        RITZ_CHECK(ritz_dense_project(&D, P, &c->D));
     else if (ritz_springs_damp(springs))
-        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, &c->D));
+        RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, &c->D));
     if (c->D.val) {
-        RITZ_TRY(ritz_dense_new(P->ncol, P->ncol, &none));
-        RITZ_TRY(ritz_springs_add(springs, P, &none, &c->D));
+        RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, &none));
+        RITZ_CHECK(ritz_springs_add(springs, P, &none, &c->D));
     }
-done:
-    free(one);
-    ritz_dense_free(&D);
-    ritz_dense_free(&none);
-    return status;
+    return RITZ_OK;
 }
 
 /* The pencil with its forces turned, and those without mass condensed. */
@@ -599,19 +552,15 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const double *scale, ritz_dense *P,
                                ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
-    dual_pencil of = {0};
-    ritz_pairs pairs = {0};
+    [[gnu::cleanup(pencil_free)]] dual_pencil of = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(prepare(stage, springs, C, scale, &of, &c->rank));
-    RITZ_TRY_IN("system modes", ritz_eigen_dense(&of.K, &of.M, &pairs));
-    RITZ_TRY(order(&pairs, &of.P, c));
-    RITZ_TRY(damp(stage, springs, &of.P, c));
-    RITZ_TRY(report(c));
+    RITZ_CHECK(prepare(stage, springs, C, scale, &of, &c->rank));
+    RITZ_CHECK_IN("system modes", ritz_eigen_dense(&of.K, &of.M, &pairs));
+    RITZ_CHECK(order(&pairs, &of.P, c));
+    RITZ_CHECK(damp(stage, springs, &of.P, c));
+    RITZ_CHECK(report(c));
     *P = of.P;
     of.P = (ritz_dense){0};
-done:
-    pencil_free(&of);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }

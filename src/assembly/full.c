@@ -46,14 +46,13 @@ static ritz_status hold_port(const ritz_component *component,
                              const ritz_port *port, const ritz_dofs *held,
                              ritz_port_map *map)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense turn = {0};
+    RITZ_OWN(ritz_dense) turn = {0};
 
     memcpy(map->name, port->name, sizeof map->name);
     memcpy(map->origin, port->origin, sizeof map->origin);
     map->count = port->dofs.count;
-    RITZ_TRY(ritz_port_turn(component, port, &turn, &map->dof));
-    RITZ_NEW(map->position, 3 * map->count);
+    RITZ_CHECK(ritz_port_turn(component, port, &turn, &map->dof));
+    RITZ_CHECK_NEW(map->position, 3 * map->count);
     for (int64_t i = 0; i < map->count; i++) {
         int64_t k = ritz_grids_find(&component->grids, map->dof[i].grid);
 
@@ -61,35 +60,30 @@ static ritz_status hold_port(const ritz_component *component,
             memcpy(map->position + 3 * i, component->grids.position + 3 * k,
                    3 * sizeof *map->position);
     }
-    RITZ_TRY(ritz_dense_new(map->count, held->count, &map->map));
+    RITZ_CHECK(ritz_dense_new(map->count, held->count, &map->map));
     for (int64_t j = 0; j < map->count; j++)
         memcpy(ritz_dense_col(&map->map, find_held(held, port->dofs.at[j])),
                ritz_dense_col(&turn, j), (size_t)map->count * sizeof *turn.val);
-done:
-    ritz_dense_free(&turn);
-    return status;
+    return RITZ_OK;
 }
 
 /* A body of which only the held dofs are seen. */
 static ritz_status hold_body(const ritz_component *component,
                              const ritz_dofs *held, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced body = {.num_dofs = component->num_dofs};
+    RITZ_OWN(ritz_reduced) body = {.num_dofs = component->num_dofs};
 
-    RITZ_TRY(ritz_dense_new(held->count, held->count, &body.K));
-    RITZ_TRY(ritz_dense_new(held->count, held->count, &body.M));
-    RITZ_NEW(body.port, component->num_ports);
+    RITZ_CHECK(ritz_dense_new(held->count, held->count, &body.K));
+    RITZ_CHECK(ritz_dense_new(held->count, held->count, &body.M));
+    RITZ_CHECK_NEW(body.port, component->num_ports);
     for (int64_t k = 0; k < component->num_ports; k++) {
         body.num_ports++;
-        RITZ_TRY(
+        RITZ_CHECK(
             hold_port(component, &component->port[k], held, &body.port[k]));
     }
     *out = body;
     body = (ritz_reduced){0};
-done:
-    ritz_reduced_free(&body);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status load_body(const ritz_source *source, const char *model,
@@ -251,16 +245,15 @@ static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
                               const int64_t *pivot_of, ritz_master *master,
                               ritz_sparse *T)
 {
-    ritz_status status = RITZ_OK;
     int64_t most = p->num_dofs + C->nrow * C->ncol;
-    int64_t *column = NULL, *row = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *column = NULL, *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t count = 0, masters = 0;
 
-    RITZ_NEW(column, p->num_dofs); /* of each dof in T, -1 for slaves */
-    RITZ_NEW(row, most);
-    RITZ_NEW(col, most);
-    RITZ_NEW(val, most);
+    RITZ_CHECK_NEW(column, p->num_dofs); /* of each dof in T, -1 for slaves */
+    RITZ_CHECK_NEW(row, most);
+    RITZ_CHECK_NEW(col, most);
+    RITZ_CHECK_NEW(val, most);
     for (int64_t j = 0; j < C->ncol; j++)
         if (pivot_of[j] >= 0)
             column[p->row[j]] = -1;
@@ -285,14 +278,8 @@ static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
             col[count] = column[p->row[m]];
             val[count++] = -g;
         }
-    RITZ_TRY(ritz_sparse_from_triplets(p->num_dofs, masters, count, row, col,
-                                       val, T));
-done:
-    free(column);
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(p->num_dofs, masters, count, row, col, val,
+                                     T);
 }
 
 /* One matrix of every body, by where it lies in a component. */
@@ -305,8 +292,7 @@ static const ritz_sparse *matrix_of(const ritz_component *body, size_t offset)
 static ritz_status stack_matrices(const ritz_held *p, size_t offset,
                                   ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
     int64_t nnz = 0, at = 0;
     bool any = false;
 
@@ -318,7 +304,7 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
     }
     if (!any)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_new(p->num_dofs, p->num_dofs, nnz, &A));
+    RITZ_CHECK(ritz_sparse_new(p->num_dofs, p->num_dofs, nnz, &A));
     for (int64_t k = 0; k < p->count; k++) {
         const ritz_sparse *part = matrix_of(&p->body[k], offset);
 
@@ -333,9 +319,7 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
     }
     *out = A;
     A = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status project_matrices(const ritz_held *p, const double *setting,
@@ -349,81 +333,67 @@ static ritz_status project_matrices(const ritz_held *p, const double *setting,
         [D] = offsetof(ritz_component, D),
         [K4] = offsetof(ritz_component, K4),
     };
-    ritz_status status = RITZ_OK;
-    ritz_springs springs = {0};
-    ritz_sparse all = {0};
+    RITZ_OWN(ritz_springs) springs = {0};
+    RITZ_OWN(ritz_sparse) all = {0};
 
-    RITZ_TRY(ritz_stage_springs(&p->stage, setting, &springs));
+    RITZ_CHECK(ritz_stage_springs(&p->stage, setting, &springs));
     for (int k = 0; k < MATRICES; k++) {
         ritz_sparse *into =
             (ritz_sparse *)(void *)((char *)system + offsets[k]);
 
-        RITZ_TRY(stack_matrices(p, offsets[k], &all));
+        RITZ_CHECK(stack_matrices(p, offsets[k], &all));
         if (k == K || k == D)
-            RITZ_TRY(ritz_springs_add_sparse(&springs, k == D, p->num_dofs,
-                                             p->row, &all));
+            RITZ_CHECK(ritz_springs_add_sparse(&springs, k == D, p->num_dofs,
+                                               p->row, &all));
         if (all.colptr)
-            RITZ_TRY(ritz_sparse_congruence(&all, T, into));
+            RITZ_CHECK(ritz_sparse_congruence(&all, T, into));
         ritz_sparse_free(&all);
     }
-done:
-    ritz_springs_free(&springs);
-    ritz_sparse_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 /* Scatter held coordinates to all dofs, then to masters: B = T' B. */
 static ritz_status project_io(const ritz_held *p, const ritz_sparse *T,
                               ritz_io *out)
 {
-    ritz_status status = RITZ_OK;
     const int64_t Q = p->stage.num_coordinates;
-    ritz_sparse turned = {0};
-    ritz_dense S = {0};
+    RITZ_OWN(ritz_sparse) turned = {0};
+    RITZ_OWN(ritz_dense) S = {0};
 
     /* S = E T, E picking the held coordinates out of all dofs */
-    RITZ_TRY(ritz_sparse_transpose(T, &turned));
-    RITZ_TRY(ritz_dense_new(Q, T->ncol, &S));
+    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
+    RITZ_CHECK(ritz_dense_new(Q, T->ncol, &S));
     for (int64_t j = 0; j < Q; j++) {
         int64_t c = p->row[j];
 
         for (int64_t e = turned.colptr[c]; e < turned.colptr[c + 1]; e++)
             ritz_dense_col(&S, turned.rowind[e])[j] = turned.val[e];
     }
-    RITZ_TRY(ritz_io_project(&p->stage.io, &S, out));
-done:
-    ritz_sparse_free(&turned);
-    ritz_dense_free(&S);
-    return status;
+    return ritz_io_project(&p->stage.io, &S, out);
 }
 
 /* Influence vectors of all bodies' dampers, scattered and brought to masters. */
 static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
                                    ritz_dampers *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dampers all = {0};
-    ritz_sparse turned = {0};
-    ritz_dense B = {0};
+    RITZ_OWN(ritz_dampers) all = {0};
+    RITZ_OWN(ritz_sparse) turned = {0};
+    RITZ_OWN(ritz_dense) B = {0};
 
     for (int64_t k = 0; k < p->count; k++)
-        RITZ_TRY(ritz_dampers_append(&p->body[k].dampers,
-                                     p->scene->component[k].name, p->num_dofs,
-                                     p->first[k], &all));
+        RITZ_CHECK(ritz_dampers_append(&p->body[k].dampers,
+                                       p->scene->component[k].name, p->num_dofs,
+                                       p->first[k], &all));
     if (all.count == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_transpose(T, &turned));
-    RITZ_TRY(ritz_sparse_mul(&turned, &all.B, &B));
+    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
+    RITZ_CHECK(ritz_sparse_mul(&turned, &all.B, &B));
     ritz_dense_free(&all.B);
     all.B = B;
     B = (ritz_dense){0};
     *out = all;
     all = (ritz_dampers){0};
-done:
-    ritz_dampers_free(&all);
-    ritz_sparse_free(&turned);
-    ritz_dense_free(&B);
-    return status;
+    return RITZ_OK;
 }
 
 /* Dofs that constraints eliminated from the bodies of a full-order system. */
@@ -432,9 +402,8 @@ done:
 static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
                                   ritz_recovery *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *row = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t entries = 0, rows = 0, at = 0;
 
     for (int64_t k = 0; k < p->count; k++) {
@@ -443,10 +412,10 @@ static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
         rows += r->count;
         entries += r->count > 0 ? r->G.colptr[r->G.ncol] : 0;
     }
-    RITZ_NEW(row, entries);
-    RITZ_NEW(col, entries);
-    RITZ_NEW(val, entries);
-    RITZ_NEW(out->dof, rows);
+    RITZ_CHECK_NEW(row, entries);
+    RITZ_CHECK_NEW(col, entries);
+    RITZ_CHECK_NEW(val, entries);
+    RITZ_CHECK_NEW(out->dof, rows);
     for (int64_t k = 0; k < p->count; k++) {
         const ritz_recovery *r = &p->body[k].recovery;
 
@@ -460,13 +429,8 @@ static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
             out->dof[out->count++] =
                 (ritz_dof){r->dof[i].grid + add[k], r->dof[i].component};
     }
-    RITZ_TRY(ritz_sparse_from_triplets(rows, p->num_dofs, at, row, col, val,
-                                       &out->G));
-done:
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(rows, p->num_dofs, at, row, col, val,
+                                     &out->G);
 }
 
 /*
@@ -478,23 +442,19 @@ done:
 static ritz_status held_recovery(const ritz_held *p, const int64_t *add,
                                  const ritz_sparse *T, ritz_recovery *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_recovery all = {0};
-    ritz_sparse GT = {0};
+    RITZ_OWN(ritz_recovery) all = {0};
+    RITZ_OWN(ritz_sparse) GT = {0};
 
-    RITZ_TRY(stack_recovery(p, add, &all));
+    RITZ_CHECK(stack_recovery(p, add, &all));
     if (all.count == 0)
-        goto done;
-    RITZ_TRY(ritz_sparse_product(&all.G, T, &GT));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_product(&all.G, T, &GT));
     ritz_sparse_free(&all.G);
     all.G = GT;
     GT = (ritz_sparse){0};
     *out = all;
     all = (ritz_recovery){0};
-done:
-    ritz_recovery_free(&all);
-    ritz_sparse_free(&GT);
-    return status;
+    return RITZ_OK;
 }
 
 /* Names of the masters; grids of all bodies where the angles put them. */
@@ -502,21 +462,17 @@ static ritz_status name_dofs(const ritz_held *p, const double *setting,
                              const ritz_master *master, const ritz_sparse *T,
                              ritz_component *system)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *add = NULL;
+    RITZ_OWN_ARRAY int64_t *add = NULL;
 
-    RITZ_NEW(add, p->count);
-    RITZ_TRY(ritz_place_grids(&p->stage, setting, p->count, p->body, add,
-                              &system->grids));
-    RITZ_NEW(system->dof, system->num_dofs);
+    RITZ_CHECK_NEW(add, p->count);
+    RITZ_CHECK(ritz_place_grids(&p->stage, setting, p->count, p->body, add,
+                                &system->grids));
+    RITZ_CHECK_NEW(system->dof, system->num_dofs);
     for (int64_t j = 0; j < system->num_dofs; j++) {
         system->dof[j] = p->body[master[j].body].dof[master[j].dof];
         system->dof[j].grid += add[master[j].body];
     }
-    RITZ_TRY(held_recovery(p, add, T, &system->recovery));
-done:
-    free(add);
-    return status;
+    return held_recovery(p, add, T, &system->recovery);
 }
 
 static ritz_status check_units(const ritz_scene *scene, const ritz_held *p)

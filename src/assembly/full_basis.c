@@ -16,30 +16,25 @@ static ritz_status add_body(const ritz_reduced *body, const ritz_dense *P,
                             int64_t first, int64_t count, const int64_t *row,
                             ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, TP = {0};
+    RITZ_OWN(ritz_dense) part = {0}, TP = {0};
 
-    RITZ_TRY(ritz_dense_rows(&body->T, count, row, &part));
-    RITZ_TRY(ritz_dense_mul(&part, P, &TP));
+    RITZ_CHECK(ritz_dense_rows(&body->T, count, row, &part));
+    RITZ_CHECK(ritz_dense_mul(&part, P, &TP));
     for (int64_t j = 0; j < T->ncol; j++)
         memcpy(ritz_dense_col(T, j) + first, ritz_dense_col(&TP, j),
                (size_t)count * sizeof *T->val);
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&TP);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_basis(const ritz_stage *stage,
                              const ritz_configuration *at, int64_t n,
                              const ritz_master *master, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense T = {0};
-    int64_t *row = NULL;
+    RITZ_OWN(ritz_dense) T = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL;
 
-    RITZ_NEW(row, n);
-    RITZ_TRY(ritz_dense_new(n, at->K.ncol, &T));
+    RITZ_CHECK_NEW(row, n);
+    RITZ_CHECK(ritz_dense_new(n, at->K.ncol, &T));
     for (int64_t first = 0, last = 0; first < n; first = last) {
         const int64_t k = master[first].body;
         const ritz_reduced *body = &stage->body[k];
@@ -49,16 +44,13 @@ ritz_status ritz_stage_basis(const ritz_stage *stage,
             row[last] = master[last].dof;
             most = row[last] > most ? row[last] : most;
         }
-        RITZ_FAIL_IF(!body->T.val || body->T.nrow <= most, RITZ_ERR_ARGUMENT,
-                     "'%s' has no basis T for its %" PRId64 " dofs",
-                     stage->scene->component[k].name, most + 1);
-        RITZ_TRY(
+        RITZ_REFUSE_IF(!body->T.val || body->T.nrow <= most, RITZ_ERR_ARGUMENT,
+                       "'%s' has no basis T for its %" PRId64 " dofs",
+                       stage->scene->component[k].name, most + 1);
+        RITZ_CHECK(
             add_body(body, &at->P[k], first, last - first, row + first, &T));
     }
     *out = T;
     T = (ritz_dense){0};
-done:
-    free(row);
-    ritz_dense_free(&T);
-    return status;
+    return RITZ_OK;
 }

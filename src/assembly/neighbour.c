@@ -32,38 +32,28 @@ static ritz_status pick(const ritz_dense *A, const ritz_link *of,
 static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
                                ritz_dense *H)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(f, f, &part));
-    RITZ_TRY(ritz_dense_copy(K, H));
+    RITZ_CHECK(ritz_dense_mul_tn(f, f, &part));
+    RITZ_CHECK(ritz_dense_copy(K, H));
     for (int64_t k = 0; k < H->nrow * H->ncol; k++)
         H->val[k] += part.val[k];
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* K_n of the near port's dofs. */
 static ritz_status stiffness(const ritz_reduced *far, const ritz_link *of,
                              const ritz_dense *Y, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense f = {0}, g = {0}, K = {0}, gap = {0};
+    RITZ_OWN(ritz_dense) f = {0}, g = {0}, K = {0}, gap = {0};
 
-    RITZ_TRY(pick(&of->F, of, RITZ_CAGED, &f));
-    RITZ_TRY(pick(&of->G, of, RITZ_CAGED, &g));
-    RITZ_TRY(ritz_dense_congruence(&far->K, Y, &K));
-    RITZ_TRY(ritz_dense_mul(&f, Y, &gap));
+    RITZ_CHECK(pick(&of->F, of, RITZ_CAGED, &f));
+    RITZ_CHECK(pick(&of->G, of, RITZ_CAGED, &g));
+    RITZ_CHECK(ritz_dense_congruence(&far->K, Y, &K));
+    RITZ_CHECK(ritz_dense_mul(&f, Y, &gap));
     for (int64_t k = 0; k < gap.nrow * gap.ncol; k++)
         gap.val[k] -= g.val[k];
-    RITZ_TRY(add_springs(&K, &gap, out));
-done:
-    ritz_dense_free(&f);
-    ritz_dense_free(&g);
-    ritz_dense_free(&K);
-    ritz_dense_free(&gap);
-    return status;
+    return add_springs(&K, &gap, out);
 }
 
 /* Rows of one state, those of springs each times the root of its stiffness. */
@@ -92,29 +82,28 @@ static ritz_status pick(const ritz_dense *A, const ritz_link *of,
 /* S = L^+ G and Z: what the locked rows demand of q, and what they leave. */
 static ritz_status hold(const ritz_link *of, ritz_dense *S, ritz_dense *Z)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense L = {0}, G = {0}, U = {0}, Vt = {0}, UG = {0};
-    double *sigma = NULL;
+    RITZ_OWN(ritz_dense) L = {0}, G = {0}, U = {0}, Vt = {0}, UG = {0};
+    RITZ_OWN_ARRAY double *sigma = NULL;
     int c = 0;
     int r = (int)of->F.ncol;
     int64_t rank = 0;
 
-    RITZ_TRY(pick(&of->F, of, RITZ_LOCKED, &L));
-    RITZ_TRY(pick(&of->G, of, RITZ_LOCKED, &G));
+    RITZ_CHECK(pick(&of->F, of, RITZ_LOCKED, &L));
+    RITZ_CHECK(pick(&of->G, of, RITZ_LOCKED, &G));
     c = (int)L.nrow;
-    RITZ_TRY(ritz_dense_new(c, c, &U));
-    RITZ_TRY(ritz_dense_new(r, r, &Vt));
-    RITZ_NEW(sigma, c < r ? c : r);
+    RITZ_CHECK(ritz_dense_new(c, c, &U));
+    RITZ_CHECK(ritz_dense_new(r, r, &Vt));
+    RITZ_CHECK_NEW(sigma, c < r ? c : r);
     for (int64_t j = 0; j < r && c == 0; j++)
         ritz_dense_col(&Vt, j)[j] = 1.0;
-    RITZ_FAIL_IF(c > 0 && LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', c, r, L.val, c,
-                                         sigma, U.val, c, Vt.val, r) != 0,
-                 RITZ_ERR_CONVERGENCE, "the joint's relations have no rank");
+    RITZ_REFUSE_IF(c > 0 && LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', c, r, L.val,
+                                           c, sigma, U.val, c, Vt.val, r) != 0,
+                   RITZ_ERR_CONVERGENCE, "the joint's relations have no rank");
     while (rank < c && rank < r && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
-    RITZ_TRY(ritz_dense_mul_tn(&U, &G, &UG));
-    RITZ_TRY(ritz_dense_new(r, G.ncol, S));
-    RITZ_TRY(ritz_dense_new(r, r - rank, Z));
+    RITZ_CHECK(ritz_dense_mul_tn(&U, &G, &UG));
+    RITZ_CHECK(ritz_dense_new(r, G.ncol, S));
+    RITZ_CHECK(ritz_dense_new(r, r - rank, Z));
     for (int64_t i = 0; i < r; i++) {
         for (int64_t j = 0; j < G.ncol; j++)
             for (int64_t k = 0; k < rank; k++)
@@ -123,14 +112,7 @@ static ritz_status hold(const ritz_link *of, ritz_dense *S, ritz_dense *Z)
         for (int64_t k = rank; k < r; k++)
             ritz_dense_col(Z, k - rank)[i] = ritz_dense_col(&Vt, i)[k];
     }
-done:
-    free(sigma);
-    ritz_dense_free(&L);
-    ritz_dense_free(&G);
-    ritz_dense_free(&U);
-    ritz_dense_free(&Vt);
-    ritz_dense_free(&UG);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -140,14 +122,13 @@ done:
 static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
                          ritz_dense *X, ritz_dense *N)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = A->ncol;
     int64_t unseen = 0;
-    double *d = NULL, *lambda = NULL;
+    RITZ_OWN_ARRAY double *d = NULL, *lambda = NULL;
 
-    RITZ_NEW(d, n);
-    RITZ_NEW(lambda, n);
-    RITZ_TRY(ritz_dense_new(n, B->ncol, X));
+    RITZ_CHECK_NEW(d, n);
+    RITZ_CHECK_NEW(lambda, n);
+    RITZ_CHECK(ritz_dense_new(n, B->ncol, X));
     for (int64_t j = 0; j < n; j++) {
         double own = ritz_dense_col(A, j)[j];
 
@@ -158,10 +139,10 @@ static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
             ritz_dense_col(A, j)[i] *= d[i] * d[j];
     for (int64_t j = 0; j < n; j++)
         d[j] = d[j] > 0.0 ? d[j] : 1.0;
-    RITZ_FAIL_IF(n > 0 && LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)n,
-                                         A->val, (int)n, lambda) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "what the joint leaves free has no eigenvalues");
+    RITZ_REFUSE_IF(n > 0 && LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)n,
+                                           A->val, (int)n, lambda) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "what the joint leaves free has no eigenvalues");
     while (unseen < n && lambda[unseen] <= RITZ_RANK_LOSS)
         unseen++;
     for (int64_t k = unseen; k < n; k++)
@@ -175,68 +156,47 @@ static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
                 ritz_dense_col(X, j)[i] -= d[i] * w[i] * sum / lambda[k];
         }
     if (N)
-        RITZ_TRY(ritz_dense_columns(A, 0, unseen, N));
+        RITZ_CHECK(ritz_dense_columns(A, 0, unseen, N));
     for (int64_t j = 0; N && j < unseen; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(N, j)[i] *= d[i];
-done:
-    free(d);
-    free(lambda);
-    return status;
+    return RITZ_OK;
 }
 
 /* S += Z X with X = -(Z'HZ)^+ Z'R; N as above. */
 static ritz_status move(const ritz_dense *H, const ritz_dense *R,
                         const ritz_dense *Z, ritz_dense *S, ritz_dense *N)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0}, B = {0}, X = {0}, more = {0};
+    RITZ_OWN(ritz_dense) A = {0}, B = {0}, X = {0}, more = {0};
 
-    RITZ_TRY(ritz_dense_congruence(H, Z, &A));
-    RITZ_TRY(ritz_dense_mul_tn(Z, R, &B));
-    RITZ_TRY(relax(&A, &B, ritz_dense_max(H), &X, N));
-    RITZ_TRY(ritz_dense_mul(Z, &X, &more));
+    RITZ_CHECK(ritz_dense_congruence(H, Z, &A));
+    RITZ_CHECK(ritz_dense_mul_tn(Z, R, &B));
+    RITZ_CHECK(relax(&A, &B, ritz_dense_max(H), &X, N));
+    RITZ_CHECK(ritz_dense_mul(Z, &X, &more));
     for (int64_t k = 0; k < S->nrow * S->ncol; k++)
         S->val[k] += more.val[k];
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&B);
-    ritz_dense_free(&X);
-    ritz_dense_free(&more);
-    return status;
+    return RITZ_OK;
 }
 
 /* Y: how the far body follows the near port. */
 static ritz_status follow(const ritz_reduced *far, const ritz_link *of,
                           ritz_dense *Y)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Z = {0}, N = {0}, ZN = {0}, f = {0}, g = {0};
-    ritz_dense H = {0}, R = {0}, cross = {0}, MS = {0};
+    RITZ_OWN(ritz_dense) Z = {0}, N = {0}, ZN = {0}, f = {0}, g = {0};
+    RITZ_OWN(ritz_dense) H = {0}, R = {0}, cross = {0}, MS = {0};
 
-    RITZ_TRY(hold(of, Y, &Z));
-    RITZ_TRY(pick(&of->F, of, RITZ_CAGED, &f));
-    RITZ_TRY(pick(&of->G, of, RITZ_CAGED, &g));
-    RITZ_TRY(add_springs(&far->K, &f, &H));
-    RITZ_TRY(ritz_dense_mul(&H, Y, &R));
-    RITZ_TRY(ritz_dense_mul_tn(&f, &g, &cross));
+    RITZ_CHECK(hold(of, Y, &Z));
+    RITZ_CHECK(pick(&of->F, of, RITZ_CAGED, &f));
+    RITZ_CHECK(pick(&of->G, of, RITZ_CAGED, &g));
+    RITZ_CHECK(add_springs(&far->K, &f, &H));
+    RITZ_CHECK(ritz_dense_mul(&H, Y, &R));
+    RITZ_CHECK(ritz_dense_mul_tn(&f, &g, &cross));
     for (int64_t k = 0; k < R.nrow * R.ncol; k++)
         R.val[k] -= cross.val[k];
-    RITZ_TRY(move(&H, &R, &Z, Y, &N));
-    RITZ_TRY(ritz_dense_mul(&Z, &N, &ZN));
-    RITZ_TRY(ritz_dense_mul(&far->M, Y, &MS));
-    RITZ_TRY(move(&far->M, &MS, &ZN, Y, NULL));
-done:
-    ritz_dense_free(&Z);
-    ritz_dense_free(&N);
-    ritz_dense_free(&ZN);
-    ritz_dense_free(&f);
-    ritz_dense_free(&g);
-    ritz_dense_free(&H);
-    ritz_dense_free(&R);
-    ritz_dense_free(&cross);
-    ritz_dense_free(&MS);
-    return status;
+    RITZ_CHECK(move(&H, &R, &Z, Y, &N));
+    RITZ_CHECK(ritz_dense_mul(&Z, &N, &ZN));
+    RITZ_CHECK(ritz_dense_mul(&far->M, Y, &MS));
+    return move(&far->M, &MS, &ZN, Y, NULL);
 }
 
 /*
@@ -248,15 +208,11 @@ done:
 static ritz_status condense_link(const ritz_reduced *far, const ritz_link *link,
                                  ritz_dense *K, ritz_dense *M)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Y = {0};
+    RITZ_OWN(ritz_dense) Y = {0};
 
-    RITZ_TRY(follow(far, link, &Y));
-    RITZ_TRY(stiffness(far, link, &Y, K));
-    RITZ_TRY(ritz_dense_congruence(&far->M, &Y, M));
-done:
-    ritz_dense_free(&Y);
-    return status;
+    RITZ_CHECK(follow(far, link, &Y));
+    RITZ_CHECK(stiffness(far, link, &Y, K));
+    return ritz_dense_congruence(&far->M, &Y, M);
 }
 
 static void free_link(ritz_link *link)
@@ -277,21 +233,17 @@ static void free_link(ritz_link *link)
 static ritz_status condense(const ritz_component *far, const ritz_port *port,
                             ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     bool rigid =
         far->K.colptr[far->K.ncol] == 0 && port->dofs.count < far->num_dofs;
 
     request.component = far;
     if (!rigid)
         request.attached = port->dofs;
-    RITZ_TRY(ritz_basis_make(rigid ? &ritz_method_rigid : &ritz_method_guyan,
-                             &request, &basis));
-    RITZ_TRY(ritz_reduce(far, &basis, out));
-done:
-    ritz_basis_free(&basis);
-    return status;
+    RITZ_CHECK(ritz_basis_make(rigid ? &ritz_method_rigid : &ritz_method_guyan,
+                               &request, &basis));
+    return ritz_reduce(far, &basis, out);
 }
 
 /* The rows of a port: what they are and where; turn * dofs along basic axes. */
@@ -449,16 +401,13 @@ done:
 
 ritz_status ritz_neighbour_new(int64_t attached, ritz_neighbour *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_neighbour neighbour = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
 
-    RITZ_TRY(ritz_dense_new(attached, attached, &neighbour.K));
-    RITZ_TRY(ritz_dense_new(attached, attached, &neighbour.M));
+    RITZ_CHECK(ritz_dense_new(attached, attached, &neighbour.K));
+    RITZ_CHECK(ritz_dense_new(attached, attached, &neighbour.M));
     *out = neighbour;
     neighbour = (ritz_neighbour){0};
-done:
-    ritz_neighbour_free(&neighbour);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_neighbour_free(ritz_neighbour *neighbour)
@@ -498,8 +447,7 @@ static ritz_status add_body(const ritz_scene *scene, int64_t k, int64_t other,
                             const ritz_component *component,
                             const ritz_dofs *attached, ritz_neighbour *sum)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component far = {0};
+    RITZ_OWN(ritz_component) far = {0};
     ritz_joined side[2];
 
     for (int64_t j = 0; j < scene->num_joints; j++) {
@@ -508,31 +456,26 @@ static ritz_status add_body(const ritz_scene *scene, int64_t k, int64_t other,
         if (near < 0)
             continue;
         if (far.num_dofs == 0)
-            RITZ_TRY(
+            RITZ_CHECK(
                 load_far_body(scene->source, &scene->component[other], &far));
         side[near] = (ritz_joined){scene->component[k].name, component};
         side[1 - near] = (ritz_joined){scene->component[other].name, &far};
-        RITZ_TRY(ritz_joint_neighbour(&scene->joint[j], scene->setting, side,
-                                      near, attached, sum));
+        RITZ_CHECK(ritz_joint_neighbour(&scene->joint[j], scene->setting, side,
+                                        near, attached, sum));
     }
-done:
-    ritz_component_free(&far);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_neighbour(const ritz_scene *scene, int64_t k,
                                  const ritz_component *component,
                                  const ritz_dofs *attached, ritz_neighbour *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_neighbour sum = {0};
+    RITZ_OWN(ritz_neighbour) sum = {0};
 
-    RITZ_TRY(ritz_neighbour_new(attached->count, &sum));
+    RITZ_CHECK(ritz_neighbour_new(attached->count, &sum));
     for (int64_t other = 0; other < scene->num_components; other++)
-        RITZ_TRY(add_body(scene, k, other, component, attached, &sum));
+        RITZ_CHECK(add_body(scene, k, other, component, attached, &sum));
     *out = sum;
     sum = (ritz_neighbour){0};
-done:
-    ritz_neighbour_free(&sum);
-    return status;
+    return RITZ_OK;
 }

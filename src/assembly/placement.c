@@ -208,11 +208,10 @@ done:
 ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
                               ritz_joint_pose *pose)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    ritz_placement *place = NULL;
+    RITZ_OWN_ARRAY ritz_placement *place = NULL;
 
-    RITZ_NEW(place, stage->count);
+    RITZ_CHECK_NEW(place, stage->count);
     for (int64_t j = 0; j < scene->num_joints; j++)
         ritz_joint_pose_at(&scene->joint[j], setting, &pose[j]);
     place_bodies(stage, pose, place);
@@ -220,11 +219,9 @@ ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
         link at;
 
         if (find_link(stage, j, pose, &at))
-            RITZ_TRY(close_joint(stage, j, &at, place, &pose[j]));
+            RITZ_CHECK(close_joint(stage, j, &at, place, &pose[j]));
     }
-done:
-    free(place);
-    return status;
+    return RITZ_OK;
 }
 
 /* Grids of all bodies side by side, where a configuration puts them. */
@@ -293,15 +290,14 @@ static int compare(const void *left, const void *right)
 /* Put grids in ascending order of number. */
 static ritz_status sort(ritz_grids *grids)
 {
-    ritz_status status = RITZ_OK;
     size_t n = (size_t)grids->count;
-    entry *order = NULL;
-    double *position = NULL;
-    int64_t *frame = NULL;
+    RITZ_OWN_ARRAY entry *order = NULL;
+    RITZ_OWN_ARRAY double *position = NULL;
+    RITZ_OWN_ARRAY int64_t *frame = NULL;
 
-    RITZ_NEW(order, grids->count);
-    RITZ_NEW(position, 3 * grids->count);
-    RITZ_NEW(frame, grids->count);
+    RITZ_CHECK_NEW(order, grids->count);
+    RITZ_CHECK_NEW(position, 3 * grids->count);
+    RITZ_CHECK_NEW(frame, grids->count);
     for (int64_t k = 0; k < grids->count; k++)
         order[k] = (entry){grids->id[k], k};
     qsort(order, n, sizeof *order, compare);
@@ -317,21 +313,16 @@ static ritz_status sort(ritz_grids *grids)
     grids->frame = frame;
     position = NULL;
     frame = NULL;
-done:
-    free(order);
-    free(position);
-    free(frame);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t count, const ritz_component *body,
                              int64_t *add, ritz_grids *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_placement *place = NULL;
-    ritz_joint_pose *pose = NULL;
-    ritz_grids all = {0};
+    RITZ_OWN_ARRAY ritz_placement *place = NULL;
+    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
+    RITZ_OWN(ritz_grids) all = {0};
     int64_t grids = 0;
     int64_t frames = 1;
 
@@ -339,12 +330,12 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
         grids += body[k].grids.count;
         frames += body[k].grids.num_frames;
     }
-    RITZ_NEW(place, count);
-    RITZ_NEW(pose, stage->scene->num_joints);
-    RITZ_NEW(all.id, grids);
-    RITZ_NEW(all.position, 3 * grids);
-    RITZ_NEW(all.frame, grids);
-    RITZ_NEW(all.axes, 9 * frames);
+    RITZ_CHECK_NEW(place, count);
+    RITZ_CHECK_NEW(pose, stage->scene->num_joints);
+    RITZ_CHECK_NEW(all.id, grids);
+    RITZ_CHECK_NEW(all.position, 3 * grids);
+    RITZ_CHECK_NEW(all.frame, grids);
+    RITZ_CHECK_NEW(all.axes, 9 * frames);
     for (int64_t j = 0; j < stage->scene->num_joints; j++)
         ritz_joint_pose_at(&stage->scene->joint[j], setting, &pose[j]);
     place_bodies(stage, pose, place);
@@ -354,14 +345,10 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
         all.axes[4 * k] = 1.0;
     for (int64_t k = 0; k < count; k++)
         append(&body[k].grids, &place[k], add[k], &all);
-    RITZ_TRY(sort(&all));
+    RITZ_CHECK(sort(&all));
     *out = all;
     all = (ritz_grids){0};
-done:
-    free(place);
-    free(pose);
-    ritz_grids_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -404,53 +391,42 @@ static void carry(const ritz_placement *place, ritz_dense *X)
 static ritz_status add_body(const ritz_invariants *own, const ritz_dense *X,
                             const ritz_dense *P, ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
     double rigid[MASSES];
     const ritz_dense mass = {DIRECTIONS, DIRECTIONS, rigid};
-    ritz_dense XL = {0}, L = {0}, XM = {0}, all = {0};
+    RITZ_OWN(ritz_dense) XL = {0}, L = {0}, XM = {0}, all = {0};
 
     memcpy(rigid, own->rigid, sizeof rigid);
-    RITZ_TRY(ritz_dense_mul(X, &own->momentum, &XL));
-    RITZ_TRY(ritz_dense_mul(&XL, P, &L));
-    RITZ_TRY(ritz_dense_mul(X, &mass, &XM));
-    RITZ_TRY(ritz_dense_mul_nt(&XM, X, &all));
+    RITZ_CHECK(ritz_dense_mul(X, &own->momentum, &XL));
+    RITZ_CHECK(ritz_dense_mul(&XL, P, &L));
+    RITZ_CHECK(ritz_dense_mul(X, &mass, &XM));
+    RITZ_CHECK(ritz_dense_mul_nt(&XM, X, &all));
     for (int64_t k = 0; k < DIRECTIONS * L.ncol; k++)
         c->momentum.val[k] += L.val[k];
     for (int64_t k = 0; k < MASSES; k++)
         c->rigid[k] += all.val[k];
-done:
-    ritz_dense_free(&XL);
-    ritz_dense_free(&L);
-    ritz_dense_free(&XM);
-    ritz_dense_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
                             ritz_configuration *configuration)
 {
-    ritz_status status = RITZ_OK;
-    ritz_joint_pose *pose = NULL;
-    ritz_placement *place = NULL;
-    ritz_dense X = {0};
+    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
+    RITZ_OWN_ARRAY ritz_placement *place = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
 
     if (!is_known(stage))
         return RITZ_OK;
-    RITZ_NEW(pose, stage->scene->num_joints);
-    RITZ_NEW(place, stage->count);
-    RITZ_TRY(ritz_place_joints(stage, setting, pose));
+    RITZ_CHECK_NEW(pose, stage->scene->num_joints);
+    RITZ_CHECK_NEW(place, stage->count);
+    RITZ_CHECK(ritz_place_joints(stage, setting, pose));
     place_bodies(stage, pose, place);
-    RITZ_TRY(ritz_dense_new(DIRECTIONS, DIRECTIONS, &X));
-    RITZ_TRY(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
-                            &configuration->momentum));
+    RITZ_CHECK(ritz_dense_new(DIRECTIONS, DIRECTIONS, &X));
+    RITZ_CHECK(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
+                              &configuration->momentum));
     for (int64_t k = 0; k < stage->count; k++) {
         carry(&place[k], &X);
-        RITZ_TRY(add_body(&stage->body[k].invariants, &X, &configuration->P[k],
-                          configuration));
+        RITZ_CHECK(add_body(&stage->body[k].invariants, &X,
+                            &configuration->P[k], configuration));
     }
-done:
-    free(pose);
-    free(place);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }

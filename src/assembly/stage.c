@@ -38,27 +38,25 @@ static ritz_status append_port(char **list, const char *port)
 /* The ports of body k that a joint holds or an input drives. */
 static ritz_status used_ports(const ritz_scene *scene, int64_t k, char **out)
 {
-    ritz_status status = RITZ_OK;
-    char *list = NULL;
+    RITZ_OWN_ARRAY char *list = NULL;
 
-    RITZ_NEW(list, 1);
+    RITZ_CHECK_NEW(list, 1);
     for (int64_t j = 0; j < scene->num_joints; j++)
         for (int end = 0; end < 2; end++)
             if (scene->joint[j].between[end].component == k)
-                RITZ_TRY(append_port(&list, scene->joint[j].between[end].port));
+                RITZ_CHECK(
+                    append_port(&list, scene->joint[j].between[end].port));
     for (int64_t j = 0; j < scene->num_inputs; j++)
         for (int end = 0; end < 2; end++) {
             const ritz_scene_place *at =
                 end == 0 ? &scene->input[j].at : &scene->input[j].against;
 
             if (at->component == k && *at->port)
-                RITZ_TRY(append_port(&list, at->port));
+                RITZ_CHECK(append_port(&list, at->port));
         }
     *out = list;
     list = NULL;
-done:
-    free(list);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
@@ -140,19 +138,17 @@ static ritz_status load_columns(const ritz_source *source,
                                 const ritz_scene_component *item,
                                 ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced whole = {0};
+    RITZ_OWN(ritz_reduced) whole = {0};
 
-    RITZ_TRY(source->reduced(source->state, item->model, &whole));
+    RITZ_CHECK(source->reduced(source->state, item->model, &whole));
     if (item->order > 0) {
-        RITZ_TRY_IN(item->model, ritz_reduced_prefix(&whole, item->order, out));
+        RITZ_CHECK_IN(item->model,
+                      ritz_reduced_prefix(&whole, item->order, out));
     } else {
         *out = whole;
         whole = (ritz_reduced){0};
     }
-done:
-    ritz_reduced_free(&whole);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
@@ -332,21 +328,18 @@ static ritz_status complete(ritz_stage *stage)
 
 ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_stage stage = {.scene = scene};
+    RITZ_OWN(ritz_stage) stage = {.scene = scene};
 
-    RITZ_NEW(stage.body, scene->num_components);
+    RITZ_CHECK_NEW(stage.body, scene->num_components);
     for (int64_t k = 0; k < scene->num_components; k++) {
         ritz_monitor_step("component", k, scene->num_components);
-        RITZ_TRY(load_body(scene, k, &stage.body[k]));
+        RITZ_CHECK(load_body(scene, k, &stage.body[k]));
         stage.count++;
     }
-    RITZ_TRY(complete(&stage));
+    RITZ_CHECK(complete(&stage));
     *out = stage;
     stage = (ritz_stage){0};
-done:
-    ritz_stage_free(&stage);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,

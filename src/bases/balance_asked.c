@@ -88,23 +88,20 @@ ritz_status ritz_balance_asked(const ritz_request *request,
                                const ritz_gramians *gramians,
                                ritz_balanced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_balanced balanced = {0};
+    RITZ_OWN(ritz_balanced) balanced = {0};
 
-    RITZ_TRY(ritz_gramians_balance(gramians, request->modes, request->tolerance,
-                                   &balanced));
-    RITZ_FAIL_IF(balanced.count == 0, RITZ_ERR_ARGUMENT,
-                 "inputs reach nothing that outputs see: there is nothing to "
-                 "balance");
-    RITZ_FAIL_IF(balanced.kept == 0, RITZ_ERR_ARGUMENT,
-                 "the first values are equal, and are kept whole or not at "
-                 "all: ask for more than %" PRId64,
-                 request->modes);
+    RITZ_CHECK(ritz_gramians_balance(gramians, request->modes,
+                                     request->tolerance, &balanced));
+    RITZ_REFUSE_IF(balanced.count == 0, RITZ_ERR_ARGUMENT,
+                   "inputs reach nothing that outputs see: there is nothing to "
+                   "balance");
+    RITZ_REFUSE_IF(balanced.kept == 0, RITZ_ERR_ARGUMENT,
+                   "the first values are equal, and are kept whole or not at "
+                   "all: ask for more than %" PRId64,
+                   request->modes);
     *out = balanced;
     balanced = (ritz_balanced){0};
-done:
-    ritz_balanced_free(&balanced);
-    return status;
+    return RITZ_OK;
 }
 
 /* [A B], of which A may be {0}. */
@@ -210,27 +207,23 @@ ritz_status ritz_balanced_states(const ritz_request *request,
                                  const ritz_gramians *gramians, bool bounded,
                                  ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_balanced kept = {0}, all = {0};
+    RITZ_OWN(ritz_balanced) kept = {0}, all = {0};
     const ritz_balanced *used = &kept;
-    ritz_basis basis = {.states = true};
+    RITZ_OWN(ritz_basis) basis = {.states = true};
 
-    RITZ_TRY(ritz_balance_asked(request, gramians, &kept));
+    RITZ_CHECK(ritz_balance_asked(request, gramians, &kept));
     if (request->choice.perturb) {
-        RITZ_TRY(ritz_gramians_balance(gramians, -1, request->tolerance, &all));
+        RITZ_CHECK(
+            ritz_gramians_balance(gramians, -1, request->tolerance, &all));
         used = &all;
     }
-    RITZ_TRY(beside(&gramians->T, &used->T, &basis.T));
-    RITZ_TRY(beside(&gramians->W, &used->W, &basis.W));
-    RITZ_TRY(ritz_columns_new(basis.T.ncol, &basis.columns));
+    RITZ_CHECK(beside(&gramians->T, &used->T, &basis.T));
+    RITZ_CHECK(beside(&gramians->W, &used->W, &basis.W));
+    RITZ_CHECK(ritz_columns_new(basis.T.ncol, &basis.columns));
     name_columns(request, gramians, kept.kept, &basis.columns);
-    RITZ_TRY(ritz_balanced_note(request, gramians, &kept, bounded, "states",
-                                &basis));
+    RITZ_CHECK(ritz_balanced_note(request, gramians, &kept, bounded, "states",
+                                  &basis));
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_balanced_free(&kept);
-    ritz_balanced_free(&all);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }

@@ -16,14 +16,10 @@
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_TRY(ritz_gramians_asked(request, &gramians));
-    RITZ_TRY(ritz_balanced_states(request, &gramians, true, out));
-done:
-    ritz_gramians_free(&gramians);
-    return status;
+    RITZ_CHECK(ritz_gramians_asked(request, &gramians));
+    return ritz_balanced_states(request, &gramians, true, out);
 }
 
 const ritz_method ritz_method_balanced = {

@@ -14,16 +14,13 @@
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_FAIL_IF(!(request->choice.given & RITZ_USES_BAND), RITZ_ERR_ARGUMENT,
-                 "a band is needed, from and to which frequency: band-hz 0,10");
-    RITZ_TRY(ritz_gramians_asked(request, &gramians));
-    RITZ_TRY(ritz_balanced_states(request, &gramians, false, out));
-done:
-    ritz_gramians_free(&gramians);
-    return status;
+    RITZ_REFUSE_IF(
+        !(request->choice.given & RITZ_USES_BAND), RITZ_ERR_ARGUMENT,
+        "a band is needed, from and to which frequency: band-hz 0,10");
+    RITZ_CHECK(ritz_gramians_asked(request, &gramians));
+    return ritz_balanced_states(request, &gramians, false, out);
 }
 
 const ritz_method ritz_method_balanced_band = {

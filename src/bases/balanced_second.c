@@ -74,43 +74,36 @@ static ritz_status rows(const ritz_dense *Z, bool lower, ritz_dense *out)
 /* What stands apart must be rigid motion, and nothing else. */
 static ritz_status refuse_unstable(const second *s)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
     for (int lower = 0; lower < 2; lower++) {
         double size = 0.0;
 
-        RITZ_TRY(rows(&s->states.T, lower, &part));
+        RITZ_CHECK(rows(&s->states.T, lower, &part));
         size = ritz_dense_max(&part);
         if (s->Phi.ncol > 0)
-            RITZ_TRY(ritz_dense_take_out(&s->Phi, &s->MPhi, &part));
-        RITZ_FAIL_IF(ritz_dense_max(&part) > RITZ_RIGID_STATE * size,
-                     RITZ_ERR_ARGUMENT,
-                     "a pole that is no rigid motion is not left of the axis: "
-                     "balance the states of this component instead");
+            RITZ_CHECK(ritz_dense_take_out(&s->Phi, &s->MPhi, &part));
+        RITZ_REFUSE_IF(
+            ritz_dense_max(&part) > RITZ_RIGID_STATE * size, RITZ_ERR_ARGUMENT,
+            "a pole that is no rigid motion is not left of the axis: "
+            "balance the states of this component instead");
         ritz_dense_free(&part);
     }
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find_rigid(const ritz_component *component, second *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span rigid = {.modes = 0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     if (s->states.T.ncol == 0)
         return RITZ_OK;
-    RITZ_TRY_IN("rigid modes", ritz_eigen_sparse(&component->K, &component->M,
-                                                 &rigid, &pairs));
-    RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &s->Phi));
-    RITZ_TRY(ritz_sparse_mul(&component->M, &s->Phi, &s->MPhi));
-    RITZ_TRY(refuse_unstable(s));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    RITZ_CHECK_IN("rigid modes", ritz_eigen_sparse(&component->K, &component->M,
+                                                   &rigid, &pairs));
+    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &s->Phi));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &s->Phi, &s->MPhi));
+    return refuse_unstable(s);
 }
 
 /* Halves, M-orthogonal to rigid motion. */
@@ -131,16 +124,13 @@ static ritz_status cut(const ritz_component *component, ritz_half half,
 /* |X'Y|^2 of Frobenius. */
 static ritz_status square(const ritz_dense *X, const ritz_dense *Y, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense XY = {0};
+    RITZ_OWN(ritz_dense) XY = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(X, Y, &XY));
+    RITZ_CHECK(ritz_dense_mul_tn(X, Y, &XY));
     *out = 0.0;
     for (int64_t k = 0; k < XY.nrow * XY.ncol; k++)
         *out += XY.val[k] * XY.val[k];
-done:
-    ritz_dense_free(&XY);
-    return status;
+    return RITZ_OK;
 }
 
 /* C over limits, transposed. */
@@ -166,11 +156,10 @@ static ritz_status scaled(const ritz_io *io, const ritz_dense *C,
 static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
                                 bool *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
     bool velocity = half == RITZ_HALF_VELOCITY;
     const ritz_dense *seen = velocity ? &io->Cv : &io->C;
-    ritz_dense C = {0};
+    RITZ_OWN(ritz_dense) C = {0};
     double BB = 0.0, CB = 0.0, CC = 0.0;
 
     *out = false;
@@ -178,14 +167,12 @@ static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
         ritz_dense_max(&io->Ca) > 0.0 ||
         (component->D.colptr && ritz_sparse_asymmetry(&component->D) > 0.0))
         return RITZ_OK;
-    RITZ_TRY(scaled(io, seen, &C));
-    RITZ_TRY(square(&io->B, &io->B, &BB));
-    RITZ_TRY(square(&C, &io->B, &CB));
-    RITZ_TRY(square(&C, &C, &CC));
+    RITZ_CHECK(scaled(io, seen, &C));
+    RITZ_CHECK(square(&io->B, &io->B, &BB));
+    RITZ_CHECK(square(&C, &io->B, &CB));
+    RITZ_CHECK(square(&C, &C, &CC));
     *out = CB > 0.0 && BB * CC - CB * CB <= RITZ_SQUARE_ROUNDING * BB * CC;
-done:
-    ritz_dense_free(&C);
-    return status;
+    return RITZ_OK;
 }
 
 /* [Phi X] */
@@ -199,22 +186,17 @@ static ritz_status beside(const second *s, const ritz_dense *X, ritz_dense *out)
 static ritz_status orthonormalise(const ritz_component *component,
                                   double tolerance, ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
-    ritz_orthonormal set = {0};
-    ritz_dense column = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
+    RITZ_OWN(ritz_dense) column = {0};
 
-    RITZ_TRY(ritz_orthonormal_new(T->nrow, &component->M, tolerance, &set));
+    RITZ_CHECK(ritz_orthonormal_new(T->nrow, &component->M, tolerance, &set));
     for (int64_t j = 0; j < T->ncol; j++) {
-        RITZ_TRY(ritz_dense_columns(T, j, 1, &column));
-        RITZ_TRY(ritz_orthonormal_append(&set, &column, 1, NULL));
+        RITZ_CHECK(ritz_dense_columns(T, j, 1, &column));
+        RITZ_CHECK(ritz_orthonormal_append(&set, &column, 1, NULL));
         ritz_dense_free(&column);
     }
     ritz_dense_free(T);
-    RITZ_TRY(ritz_dense_columns(&set.V, 0, set.count, T));
-done:
-    ritz_orthonormal_free(&set);
-    ritz_dense_free(&column);
-    return status;
+    return ritz_dense_columns(&set.V, 0, set.count, T);
 }
 
 static ritz_status vectors(const ritz_request *request, const second *s,

@@ -100,15 +100,14 @@ done:
 /* [I; Psi]: a column for each boundary dof. */
 static ritz_status find_boundary(const ritz_partition *s, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *b = s->b;
-    ritz_factor *L = NULL;
-    ritz_dense Psi = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) Psi = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_partition_factor(s, &L));
-    RITZ_TRY(ritz_partition_constraint_modes(s, L, &Psi));
-    RITZ_TRY(ritz_basis_new(s->component->num_dofs, b->count, &basis));
+    RITZ_CHECK(ritz_partition_factor(s, &L));
+    RITZ_CHECK(ritz_partition_constraint_modes(s, L, &Psi));
+    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, &basis));
     ritz_partition_scatter(&Psi, &s->i, 0, &basis.T);
     for (int64_t j = 0; j < b->count; j++) {
         ritz_dense_col(&basis.T, j)[b->at[j]] = 1.0;
@@ -117,24 +116,19 @@ static ritz_status find_boundary(const ritz_partition *s, ritz_basis *out)
     }
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_factor_free(&L);
-    ritz_dense_free(&Psi);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 /* Instead of them [I; Psi] Phi_c, Phi_c the characteristic ones. */
 static ritz_status reduce_boundary(const ritz_request *request,
                                    ritz_basis *boundary)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs modes = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(condense_interface(request, &boundary->T, &modes));
-    RITZ_TRY(ritz_columns_new(modes.Phi.ncol, &basis.columns));
-    RITZ_TRY(ritz_dense_mul(&boundary->T, &modes.Phi, &basis.T));
+    RITZ_CHECK(condense_interface(request, &boundary->T, &modes));
+    RITZ_CHECK(ritz_columns_new(modes.Phi.ncol, &basis.columns));
+    RITZ_CHECK(ritz_dense_mul(&boundary->T, &modes.Phi, &basis.T));
     for (int64_t j = 0; j < modes.Phi.ncol; j++) {
         bool rigid = j < modes.num_rigid;
 
@@ -147,10 +141,7 @@ static ritz_status reduce_boundary(const ritz_request *request,
     ritz_basis_free(boundary);
     *boundary = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_pairs_free(&modes);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 /* The boundary's columns first, then [0; Phi]. */
@@ -184,23 +175,17 @@ static ritz_status join(const ritz_partition *s, const ritz_basis *boundary,
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_partition s = {0};
-    ritz_basis boundary = {0};
-    ritz_pairs modes = {0};
+    RITZ_OWN(ritz_partition) s = {0};
+    RITZ_OWN(ritz_basis) boundary = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
 
-    RITZ_TRY(ritz_partition_new(request, &s));
-    RITZ_TRY(find_boundary(&s, &boundary));
+    RITZ_CHECK(ritz_partition_new(request, &s));
+    RITZ_CHECK(find_boundary(&s, &boundary));
     if (request->choice.interface_modes > 0 && s.b->count > 0)
-        RITZ_TRY(reduce_boundary(request, &boundary));
+        RITZ_CHECK(reduce_boundary(request, &boundary));
     if (request->modes != 0)
-        RITZ_TRY(find_normal_modes(request, &s, &modes));
-    RITZ_TRY(join(&s, &boundary, &modes, out));
-done:
-    ritz_partition_free(&s);
-    ritz_basis_free(&boundary);
-    ritz_pairs_free(&modes);
-    return status;
+        RITZ_CHECK(find_normal_modes(request, &s, &modes));
+    return join(&s, &boundary, &modes, out);
 }
 
 const ritz_method ritz_method_craig_bampton = {

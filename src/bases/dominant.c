@@ -58,16 +58,12 @@ static void free_model(dominant_model *s)
 static ritz_status in_modes(const ritz_sparse *A, const ritz_dense *T,
                             const ritz_dense *Phi, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense small = {0};
+    RITZ_OWN(ritz_dense) small = {0};
 
     if (!A->colptr)
         return ritz_dense_new(Phi->ncol, Phi->ncol, out);
-    RITZ_TRY(ritz_sparse_condense(A, T, &small));
-    RITZ_TRY(ritz_dense_congruence(&small, Phi, out));
-done:
-    ritz_dense_free(&small);
-    return status;
+    RITZ_CHECK(ritz_sparse_condense(A, T, &small));
+    return ritz_dense_congruence(&small, Phi, out);
 }
 
 /* Largest sum_i |F_ij|, times the largest |X_ik|. */
@@ -108,28 +104,23 @@ static ritz_status make_model(const ritz_rational *R,
                               const ritz_damping *damping, const ritz_dense *T,
                               dominant_model *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = R->component;
-    ritz_dense K = {0}, M = {0}, TX = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, TX = {0};
 
     s->R = R;
-    RITZ_TRY(ritz_sparse_condense(&component->K, T, &K));
-    RITZ_TRY(ritz_sparse_condense(&component->M, T, &M));
-    RITZ_TRY(ritz_eigen_dense(&K, &M, &s->modes));
-    RITZ_TRY(in_modes(&component->D, T, &s->modes.Phi, &s->W));
-    RITZ_TRY(in_modes(&component->K4, T, &s->modes.Phi, &s->K4));
+    RITZ_CHECK(ritz_sparse_condense(&component->K, T, &K));
+    RITZ_CHECK(ritz_sparse_condense(&component->M, T, &M));
+    RITZ_CHECK(ritz_eigen_dense(&K, &M, &s->modes));
+    RITZ_CHECK(in_modes(&component->D, T, &s->modes.Phi, &s->W));
+    RITZ_CHECK(in_modes(&component->K4, T, &s->modes.Phi, &s->K4));
     for (int64_t k = 0; k < s->W.ncol; k++)
         ritz_dense_col(&s->W, k)[k] +=
             ritz_modal_rate(damping, BEYOND_LISTED, s->modes.lambda[k]);
-    RITZ_TRY(ritz_dense_mul(T, &s->modes.Phi, &TX));
-    RITZ_TRY(see_loads(&TX, s));
-    RITZ_NEW(s->pole, 2 * s->W.ncol);
-    RITZ_NEW(s->vectors, 2 * s->W.ncol * s->W.ncol);
-done:
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&TX);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(T, &s->modes.Phi, &TX));
+    RITZ_CHECK(see_loads(&TX, s));
+    RITZ_CHECK_NEW(s->pole, 2 * s->W.ncol);
+    RITZ_CHECK_NEW(s->vectors, 2 * s->W.ncol * s->W.ncol);
+    return RITZ_OK;
 }
 
 static candidate *append(dominant_model *s, double _Complex point, double decay)

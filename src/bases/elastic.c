@@ -69,13 +69,12 @@ static void deflate(int64_t n, int64_t r, int64_t pivot, double *W)
 /* As many dofs as there are rigid modes. */
 static ritz_status choose_support(ritz_elastic *E)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = E->Phi.nrow;
     int64_t r = E->Phi.ncol;
-    double *W = NULL;
+    RITZ_OWN_ARRAY double *W = NULL;
 
-    RITZ_NEW(W, n * r);
-    RITZ_NEW(E->held.at, r);
+    RITZ_CHECK_NEW(W, n * r);
+    RITZ_CHECK_NEW(E->held.at, r);
     for (int64_t i = 0; i < n; i++)
         for (int64_t k = 0; k < r; k++)
             W[i * r + k] = sqrt(fabs(ritz_sparse_diagonal(E->M, i))) *
@@ -86,28 +85,21 @@ static ritz_status choose_support(ritz_elastic *E)
         E->held.at[E->held.count] = pivot;
         deflate(n, r, pivot, W);
     }
-    RITZ_TRY(ritz_dofs_complement(&E->held, n, &E->rest));
-done:
-    free(W);
-    return status;
+    return ritz_dofs_complement(&E->held, n, &E->rest);
 }
 
 static ritz_status find_rigid(ritz_elastic *E)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span rigid_only = {.modes = 0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY_IN("rigid modes",
-                ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
+    RITZ_CHECK_IN("rigid modes",
+                  ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
     E->Phi = pairs.Phi;
     E->residual = pairs.residual;
     pairs.Phi = (ritz_dense){0};
     pairs.residual = NULL;
-    RITZ_TRY(ritz_sparse_mul(E->M, &E->Phi, &E->MPhi));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return ritz_sparse_mul(E->M, &E->Phi, &E->MPhi);
 }
 
 /* Why K gave no factor, rigid modes apart. */
@@ -149,17 +141,14 @@ done:
 ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
                              ritz_elastic *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_elastic E = {.K = K, .M = M};
+    RITZ_OWN(ritz_elastic) E = {.K = K, .M = M};
 
-    RITZ_TRY(find_rigid(&E));
-    RITZ_TRY(choose_support(&E));
-    RITZ_TRY(factor(&E));
+    RITZ_CHECK(find_rigid(&E));
+    RITZ_CHECK(choose_support(&E));
+    RITZ_CHECK(factor(&E));
     *out = E;
     E = (ritz_elastic){0};
-done:
-    ritz_elastic_free(&E);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
@@ -189,22 +178,19 @@ static ritz_status take_out_motion(const ritz_elastic *E, ritz_dense *X)
 /* X := S X. */
 static ritz_status solve_supported(const ritz_elastic *E, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *w = &E->rest;
-    ritz_dense X_w = {0};
+    RITZ_OWN(ritz_dense) X_w = {0};
 
     if (E->held.count == 0)
         return E->L ? ritz_factor_solve(E->L, X) : RITZ_OK;
-    RITZ_TRY(ritz_dense_rows(X, w->count, w->at, &X_w));
+    RITZ_CHECK(ritz_dense_rows(X, w->count, w->at, &X_w));
     if (E->L)
-        RITZ_TRY(ritz_factor_solve(E->L, &X_w));
+        RITZ_CHECK(ritz_factor_solve(E->L, &X_w));
     memset(X->val, 0, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < w->count; i++)
             ritz_dense_col(X, j)[w->at[i]] = ritz_dense_col(&X_w, j)[i];
-done:
-    ritz_dense_free(&X_w);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X)

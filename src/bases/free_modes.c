@@ -49,15 +49,14 @@ static ritz_status shift(const ritz_sparse *K, const ritz_sparse *M, double s,
 static ritz_status choose_shift(const ritz_component *component,
                                 const ritz_pairs *modes, double *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span one = {.modes = 1};
     double K = ritz_sparse_max(&component->K);
     double M = ritz_sparse_max(&component->M);
-    ritz_pairs first = {0};
+    RITZ_OWN(ritz_pairs) first = {0};
     const ritz_pairs *known = modes;
 
     if (modes->Phi.ncol == modes->num_rigid) {
-        RITZ_TRY_IN(
+        RITZ_CHECK_IN(
             "first flexible mode",
             ritz_eigen_sparse(&component->K, &component->M, &one, &first));
         known = &first;
@@ -66,9 +65,7 @@ static ritz_status choose_shift(const ritz_component *component,
         *out = RITZ_SHIFT_OF_FIRST * known->lambda[known->num_rigid];
     else
         *out = K > 0.0 && M > 0.0 ? RITZ_SHIFT_OF_SIZE * K / M : 1.0;
-done:
-    ritz_pairs_free(&first);
-    return status;
+    return RITZ_OK;
 }
 
 /* What the kept flexible modes answer to load j, at most. */
@@ -92,13 +89,12 @@ static ritz_status sweep(ritz_factor *A, const ritz_sparse *M, double s,
                          const ritz_dense *G, const double *least,
                          ritz_dense *Psi, double *change)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense next = {0};
+    RITZ_OWN(ritz_dense) next = {0};
 
-    RITZ_TRY(ritz_sparse_mul(M, Psi, &next));
+    RITZ_CHECK(ritz_sparse_mul(M, Psi, &next));
     for (int64_t k = 0; k < G->nrow * G->ncol; k++)
         next.val[k] = G->val[k] + s * next.val[k];
-    RITZ_TRY(ritz_factor_solve(A, &next));
+    RITZ_CHECK(ritz_factor_solve(A, &next));
     *change = 0.0;
     for (int64_t j = 0; j < G->ncol; j++) {
         const double *now = ritz_dense_col(&next, j);
@@ -116,9 +112,7 @@ static ritz_status sweep(ritz_factor *A, const ritz_sparse *M, double s,
     ritz_dense_free(Psi);
     *Psi = next;
     next = (ritz_dense){0};
-done:
-    ritz_dense_free(&next);
-    return status;
+    return RITZ_OK;
 }
 
 /* The loads, less what the kept modes take up. */
@@ -138,62 +132,52 @@ static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
 static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
                                double *own, double *least)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_dense_copy(p->F, &X));
-    RITZ_TRY(ritz_factor_solve(A, &X));
+    RITZ_CHECK(ritz_dense_copy(p->F, &X));
+    RITZ_CHECK(ritz_factor_solve(A, &X));
     for (int64_t j = 0; j < X.ncol; j++) {
         own[j] = ritz_dense_dot(p->F, j, &X, j);
         least[j] =
             fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
                  RITZ_RESIDUAL_ROUNDING * ritz_dense_col_max(&X, j));
     }
-done:
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /* Psi, and what A answers to each load where it acts. */
 static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
                                  double *answer)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = p->request->component;
     const ritz_pairs *modes = p->modes;
     const double settled =
         RITZ_SWEEPS_SETTLED * sqrt((double)component->num_dofs);
     double s = 0.0;
     double change = 1.0, best = HUGE_VAL;
-    ritz_sparse A = {0};
-    ritz_factor *L = NULL;
-    ritz_dense MPhi = {0}, G = {0};
-    double *least = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
+    RITZ_OWN_ARRAY double *least = NULL;
 
-    RITZ_NEW(least, p->F->ncol);
-    RITZ_TRY(choose_shift(component, modes, &s));
-    RITZ_TRY(shift(&component->K, &component->M, s, &A));
-    RITZ_TRY_IN("shifted stiffness", ritz_factor_spd(&A, &L));
-    RITZ_TRY(find_scales(p, L, answer, least));
-    RITZ_TRY(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
-    RITZ_TRY(find_load(p->F, &modes->Phi, &MPhi, &G));
-    RITZ_TRY(ritz_dense_new(G.nrow, G.ncol, Psi));
+    RITZ_CHECK_NEW(least, p->F->ncol);
+    RITZ_CHECK(choose_shift(component, modes, &s));
+    RITZ_CHECK(shift(&component->K, &component->M, s, &A));
+    RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
+    RITZ_CHECK(find_scales(p, L, answer, least));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
+    RITZ_CHECK(find_load(p->F, &modes->Phi, &MPhi, &G));
+    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
-        RITZ_TRY(sweep(L, &component->M, s, &G, least, Psi, &change));
-        RITZ_TRY(ritz_dense_take_out(&modes->Phi, &MPhi, Psi));
+        RITZ_CHECK(sweep(L, &component->M, s, &G, least, Psi, &change));
+        RITZ_CHECK(ritz_dense_take_out(&modes->Phi, &MPhi, Psi));
         if (k > 8 && change > 0.5 * best)
             break; /* rounding, not contraction, is what is left */
         best = fmin(best, change);
     }
-    RITZ_FAIL_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
-                 "residual attachment modes still change by %.1e", change);
-done:
-    free(least);
-    ritz_sparse_free(&A);
-    ritz_factor_free(&L);
-    ritz_dense_free(&MPhi);
-    ritz_dense_free(&G);
-    return status;
+    RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
+                   "residual attachment modes still change by %.1e", change);
+    return RITZ_OK;
 }
 
 /* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes to load j. */
@@ -249,13 +233,12 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 static ritz_status sift(const residual_problem *p, const ritz_dense *Psi,
                         const double *answer, bool *keep)
 {
-    ritz_status status = RITZ_OK;
     double tolerance = p->request->tolerance;
-    ritz_dense R = {0};
-    double *scale = NULL;
+    RITZ_OWN(ritz_dense) R = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
 
-    RITZ_NEW(scale, Psi->ncol);
-    RITZ_TRY(ritz_dense_mul_tn(p->F, Psi, &R));
+    RITZ_CHECK_NEW(scale, Psi->ncol);
+    RITZ_CHECK(ritz_dense_mul_tn(p->F, Psi, &R));
     for (int64_t j = 0; j < R.ncol; j++) {
         double own = ritz_dense_col(&R, j)[j];
         double all = own + kept_flexibility(p, j);
@@ -268,10 +251,7 @@ static ritz_status sift(const residual_problem *p, const ritz_dense *Psi,
             ritz_dense_col(&R, j)[i] *= scale[i] * scale[j];
     ritz_dense_symmetrise(&R);
     choose_columns(&R, tolerance, keep);
-done:
-    free(scale);
-    ritz_dense_free(&R);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -288,16 +268,12 @@ static ritz_status residual_modes(const ritz_request *request,
                                   const ritz_pairs *modes, const ritz_dense *F,
                                   ritz_dense *Psi, bool *keep)
 {
-    ritz_status status = RITZ_OK;
     const residual_problem p = {request, modes, F};
-    double *answer = NULL;
+    RITZ_OWN_ARRAY double *answer = NULL;
 
-    RITZ_NEW(answer, F->ncol);
-    RITZ_TRY(find_residual(&p, Psi, answer));
-    RITZ_TRY(sift(&p, Psi, answer, keep));
-done:
-    free(answer);
-    return status;
+    RITZ_CHECK_NEW(answer, F->ncol);
+    RITZ_CHECK(find_residual(&p, Psi, answer));
+    return sift(&p, Psi, answer, keep);
 }
 
 /*
@@ -329,26 +305,22 @@ static ritz_status find_modes(const ritz_request *request, ritz_pairs *out)
 ritz_status ritz_free_set_find(const ritz_request *request, int loads,
                                ritz_free_set *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_free_set set = {.loads = loads};
-    ritz_dofs rest = {0};
+    RITZ_OWN(ritz_free_set) set = {.loads = loads};
+    RITZ_OWN(ritz_dofs) rest = {0};
 
     /* refuses attached dofs that are out of range or repeated */
-    RITZ_TRY(ritz_dofs_complement(&request->attached,
-                                  request->component->num_dofs, &rest));
-    RITZ_TRY(find_modes(request, &set.modes));
+    RITZ_CHECK(ritz_dofs_complement(&request->attached,
+                                    request->component->num_dofs, &rest));
+    RITZ_CHECK(find_modes(request, &set.modes));
     if (ritz_loads_count(request, loads) > 0) {
-        RITZ_TRY(ritz_loads_collect(request, loads, &set.F, &set.dof));
-        RITZ_NEW(set.keep, set.F.ncol);
-        RITZ_TRY(
+        RITZ_CHECK(ritz_loads_collect(request, loads, &set.F, &set.dof));
+        RITZ_CHECK_NEW(set.keep, set.F.ncol);
+        RITZ_CHECK(
             residual_modes(request, &set.modes, &set.F, &set.Psi, set.keep));
     }
     *out = set;
     set = (ritz_free_set){0};
-done:
-    ritz_dofs_free(&rest);
-    ritz_free_set_free(&set);
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_free_set_kept(const ritz_free_set *set)
@@ -412,14 +384,10 @@ ritz_status ritz_free_set_join(const ritz_request *request,
 ritz_status ritz_free_basis(const ritz_request *request, int loads,
                             ritz_column_kind kind, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_free_set set = {0};
+    RITZ_OWN(ritz_free_set) set = {0};
 
-    RITZ_TRY(ritz_free_set_find(request, loads, &set));
-    RITZ_TRY(ritz_free_set_join(request, &set, kind, out));
-done:
-    ritz_free_set_free(&set);
-    return status;
+    RITZ_CHECK(ritz_free_set_find(request, loads, &set));
+    return ritz_free_set_join(request, &set, kind, out);
 }
 
 void ritz_free_set_free(ritz_free_set *set)

@@ -25,17 +25,14 @@
 static ritz_status find_guyan(const ritz_partition *s, ritz_factor *L,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Psi = {0};
+    RITZ_OWN(ritz_dense) Psi = {0};
 
-    RITZ_TRY(ritz_partition_constraint_modes(s, L, &Psi));
-    RITZ_TRY(ritz_dense_new(s->component->num_dofs, s->b->count, out));
+    RITZ_CHECK(ritz_partition_constraint_modes(s, L, &Psi));
+    RITZ_CHECK(ritz_dense_new(s->component->num_dofs, s->b->count, out));
     ritz_partition_scatter(&Psi, &s->i, 0, out);
     for (int64_t j = 0; j < s->b->count; j++)
         ritz_dense_col(out, j)[s->b->at[j]] = 1.0;
-done:
-    ritz_dense_free(&Psi);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status refuse_mass(const ritz_partition *s, int64_t j)
@@ -118,59 +115,48 @@ done:
 static ritz_status add_inertia(const ritz_partition *s, ritz_factor *L,
                                const ritz_dense *X, ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense MT = {0}, force = {0}, move = {0};
+    RITZ_OWN(ritz_dense) MT = {0}, force = {0}, move = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&s->component->M, T, &MT));
-    RITZ_TRY(ritz_dense_mul(&MT, X, &force));
-    RITZ_TRY(ritz_dense_new(s->i.count, T->ncol, &move));
+    RITZ_CHECK(ritz_sparse_mul(&s->component->M, T, &MT));
+    RITZ_CHECK(ritz_dense_mul(&MT, X, &force));
+    RITZ_CHECK(ritz_dense_new(s->i.count, T->ncol, &move));
     for (int64_t j = 0; j < T->ncol; j++)
         for (int64_t k = 0; k < s->i.count; k++)
             ritz_dense_col(&move, j)[k] = ritz_dense_col(&force, j)[s->i.at[k]];
-    RITZ_TRY(ritz_factor_solve(L, &move));
+    RITZ_CHECK(ritz_factor_solve(L, &move));
     for (int64_t j = 0; j < T->ncol; j++)
         for (int64_t k = 0; k < s->i.count; k++)
             ritz_dense_col(T, j)[s->i.at[k]] += ritz_dense_col(&move, j)[k];
-done:
-    ritz_dense_free(&MT);
-    ritz_dense_free(&force);
-    ritz_dense_free(&move);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status fill(const ritz_request *request, const ritz_partition *s,
                         ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
-    ritz_factor *L = NULL;
-    ritz_dense K_R = {0}, M_R = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0};
 
-    RITZ_TRY(ritz_partition_factor(s, &L));
-    RITZ_TRY(find_guyan(s, L, T));
+    RITZ_CHECK(ritz_partition_factor(s, &L));
+    RITZ_CHECK(find_guyan(s, L, T));
     if (s->i.count == 0)
-        goto done;
-    RITZ_TRY(ritz_condense(s->component, T, &K_R, &M_R));
-    RITZ_TRY(solve_mass(s, request->tolerance, &M_R, &K_R));
-    RITZ_TRY(add_inertia(s, L, &K_R, T));
-done:
-    ritz_factor_free(&L);
-    ritz_dense_free(&K_R);
-    ritz_dense_free(&M_R);
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK(ritz_condense(s->component, T, &K_R, &M_R));
+    RITZ_CHECK(solve_mass(s, request->tolerance, &M_R, &K_R));
+    return add_inertia(s, L, &K_R, T);
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *b = &request->attached;
-    ritz_partition s = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_partition) s = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_FAIL_IF(b->count == 0, RITZ_ERR_ARGUMENT,
-                 "nothing is attached, so nothing would be kept: name a port");
-    RITZ_TRY(ritz_partition_new(request, &s));
-    RITZ_TRY(ritz_columns_new(b->count, &basis.columns));
-    RITZ_TRY(fill(request, &s, &basis.T));
+    RITZ_REFUSE_IF(
+        b->count == 0, RITZ_ERR_ARGUMENT,
+        "nothing is attached, so nothing would be kept: name a port");
+    RITZ_CHECK(ritz_partition_new(request, &s));
+    RITZ_CHECK(ritz_columns_new(b->count, &basis.columns));
+    RITZ_CHECK(fill(request, &s, &basis.T));
     for (int64_t j = 0; j < b->count; j++) {
         basis.columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
         basis.columns.dof[j] = b->at[j];
@@ -178,10 +164,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "CHOLMOD");
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_partition_free(&s);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_irs = {

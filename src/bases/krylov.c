@@ -14,6 +14,7 @@
  */
 #include "bases/krylov_block.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/loads.h"
 
@@ -80,26 +81,24 @@ static ritz_status check_mass(const ritz_sparse *M)
 ritz_status ritz_krylov_new(const ritz_elastic *body,
                             const ritz_request *request, ritz_krylov *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_choice *choice = &request->choice;
-    ritz_krylov S = {.body = body, .inner = choice->inner};
+    RITZ_OWN(ritz_krylov) S = {.body = body, .inner = choice->inner};
 
-    RITZ_FAIL_IF(request->modes < 0, RITZ_ERR_ARGUMENT,
-                 "Krylov vectors have no frequency: ask for a number of them");
+    RITZ_REFUSE_IF(
+        request->modes < 0, RITZ_ERR_ARGUMENT,
+        "Krylov vectors have no frequency: ask for a number of them");
     S.vectors = request->modes < body->K->nrow ? request->modes : body->K->nrow;
     if (S.inner == RITZ_INNER_MASS && body->M->nrow > 0)
-        RITZ_TRY(check_mass(body->M));
+        RITZ_CHECK(check_mass(body->M));
     order_points(choice, &S);
     for (int64_t k = 0; k < S.num_points; k++)
-        RITZ_TRY(factor_point(body, &S.point[k]));
-    RITZ_TRY(ritz_orthonormal_new(
+        RITZ_CHECK(factor_point(body, &S.point[k]));
+    RITZ_CHECK(ritz_orthonormal_new(
         body->K->nrow, S.inner == RITZ_INNER_MASS ? body->M : body->K,
         request->tolerance, &S.set));
     *out = S;
     S = (ritz_krylov){0};
-done:
-    ritz_krylov_free(&S);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
@@ -119,21 +118,18 @@ void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
 static ritz_status add_rigid_size(const ritz_elastic *E, const ritz_dense *G,
                                   ritz_dense *size)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
     if (E->Phi.ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_dense_mul_tn(&E->Phi, G, &part));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_mul_tn(&E->Phi, G, &part));
     for (int64_t j = 0; j < G->ncol; j++)
         for (int64_t k = 0; k < part.nrow; k++)
             for (int64_t i = 0; i < G->nrow; i++)
                 ritz_dense_col(size, j)[i] +=
                     fabs(ritz_dense_col(&E->MPhi, k)[i] *
                          ritz_dense_col(&part, j)[k]);
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of R whose forces have cancelled are rounding: they become zero. */
@@ -160,26 +156,21 @@ ritz_status ritz_krylov_answer(const ritz_krylov *S,
                                const ritz_krylov_point *point,
                                const ritz_forces *forces, ritz_dense *R)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense PG = {0}, size = {0}, X = {0};
+    RITZ_OWN(ritz_dense) PG = {0}, size = {0}, X = {0};
 
-    RITZ_TRY(ritz_dense_copy(&forces->G, &PG));
-    RITZ_TRY(ritz_dense_copy(&forces->size, &size));
-    RITZ_TRY(add_rigid_size(S->body, &forces->G, &size));
-    RITZ_TRY(ritz_elastic_forces(S->body, &PG));
-    RITZ_TRY(ritz_dense_copy(&PG, &X));
+    RITZ_CHECK(ritz_dense_copy(&forces->G, &PG));
+    RITZ_CHECK(ritz_dense_copy(&forces->size, &size));
+    RITZ_CHECK(add_rigid_size(S->body, &forces->G, &size));
+    RITZ_CHECK(ritz_elastic_forces(S->body, &PG));
+    RITZ_CHECK(ritz_dense_copy(&PG, &X));
     if (point->A)
-        RITZ_TRY(ritz_elastic_answer_at(S->body, point->A, &X));
+        RITZ_CHECK(ritz_elastic_answer_at(S->body, point->A, &X));
     else
-        RITZ_TRY(ritz_elastic_answer(S->body, &X));
+        RITZ_CHECK(ritz_elastic_answer(S->body, &X));
     clear_rounding(&PG, &size, &X);
     *R = X;
     X = (ritz_dense){0};
-done:
-    ritz_dense_free(&PG);
-    ritz_dense_free(&size);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /* The forces F themselves, from column `first` on. */
@@ -210,62 +201,49 @@ static ritz_status take_inertia(const ritz_krylov *S,
 static ritz_status append(ritz_krylov *S, const ritz_krylov_point *point,
                           const ritz_forces *forces, int64_t most, bool *taken)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
-    RITZ_TRY(ritz_krylov_answer(S, point, forces, &R));
-    RITZ_TRY(ritz_orthonormal_append(&S->set, &R, most, taken));
-done:
-    ritz_dense_free(&R);
-    return status;
+    RITZ_CHECK(ritz_krylov_answer(S, point, forces, &R));
+    return ritz_orthonormal_append(&S->set, &R, most, taken);
 }
 
 ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken)
 {
-    ritz_status status = RITZ_OK;
     const ritz_krylov_point at_rest = {0};
-    ritz_forces forces = {0};
+    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_TRY(take_loads(F, 0, &forces));
-    RITZ_TRY(append(S, &at_rest, &forces, F->ncol, taken));
+    RITZ_CHECK(take_loads(F, 0, &forces));
+    RITZ_CHECK(append(S, &at_rest, &forces, F->ncol, taken));
     S->seeds = S->set.count;
-done:
-    ritz_forces_free(&forces);
-    return status;
+    return RITZ_OK;
 }
 
 /* The first block of a point; at 0 Hz the seeds are part of it. */
 static ritz_status start(ritz_krylov *S, const ritz_dense *F, int64_t seeded,
                          ritz_krylov_point *point)
 {
-    ritz_status status = RITZ_OK;
     int64_t before = S->set.count;
-    ritz_forces forces = {0};
+    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_TRY(take_loads(F, point->A ? 0 : seeded, &forces));
-    RITZ_TRY(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    RITZ_CHECK(take_loads(F, point->A ? 0 : seeded, &forces));
+    RITZ_CHECK(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
     point->first = before;
     if (!point->A && before == S->seeds)
         point->first = 0;
     point->count = S->set.count - point->first;
-done:
-    ritz_forces_free(&forces);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status advance(ritz_krylov *S, ritz_krylov_point *point)
 {
-    ritz_status status = RITZ_OK;
     int64_t before = S->set.count;
-    ritz_forces forces = {0};
+    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_TRY(take_inertia(S, point, &forces));
-    RITZ_TRY(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    RITZ_CHECK(take_inertia(S, point, &forces));
+    RITZ_CHECK(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
     point->first = before;
     point->count = S->set.count - before;
-done:
-    ritz_forces_free(&forces);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
@@ -350,25 +328,20 @@ static double largest_sum(const ritz_dense *V, const ritz_dense *size)
 
 static ritz_status measure(const ritz_krylov *S, double *worst, double *bound)
 {
-    ritz_status status = RITZ_OK;
     bool by_mass = S->inner == RITZ_INNER_MASS;
     const ritz_sparse *W = by_mass ? S->body->M : S->body->K;
     const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
-    ritz_dense WV = {0}, size = {0}, G = {0};
+    RITZ_OWN(ritz_dense) WV = {0}, size = {0}, G = {0};
 
-    RITZ_TRY(ritz_sparse_mul(W, &V, &WV));
-    RITZ_TRY(ritz_dense_mul_tn(&V, &WV, &G));
-    RITZ_TRY(ritz_dense_new(V.nrow, V.ncol, &size));
+    RITZ_CHECK(ritz_sparse_mul(W, &V, &WV));
+    RITZ_CHECK(ritz_dense_mul_tn(&V, &WV, &G));
+    RITZ_CHECK(ritz_dense_new(V.nrow, V.ncol, &size));
     ritz_krylov_size(W, &V, 1.0, &size);
     for (int64_t j = 0; j < G.ncol; j++)
         ritz_dense_col(&G, j)[j] -= 1.0;
     *worst = ritz_dense_max(&G);
     *bound = RITZ_SUMMED_ROUNDING * DBL_EPSILON * largest_sum(&V, &size);
-done:
-    ritz_dense_free(&WV);
-    ritz_dense_free(&size);
-    ritz_dense_free(&G);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S, ritz_basis *basis)
@@ -430,31 +403,24 @@ static const int all_loads =
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     int loads = request->choice.loads ? request->choice.loads : all_loads;
-    ritz_dense F = {0};
-    int64_t *dof = NULL;
-    ritz_elastic body = {0};
-    ritz_krylov S = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_dense) F = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
+    RITZ_OWN(ritz_elastic) body = {0};
+    RITZ_OWN(ritz_krylov) S = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_loads_collect(request, loads, &F, &dof));
-    RITZ_TRY(ritz_elastic_new(&component->K, &component->M, &body));
-    RITZ_TRY(ritz_krylov_new(&body, request, &S));
-    RITZ_TRY(ritz_krylov_run(&S, &F, 0));
-    RITZ_TRY(ritz_krylov_join(&S, &basis));
+    RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof));
+    RITZ_CHECK(ritz_elastic_new(&component->K, &component->M, &body));
+    RITZ_CHECK(ritz_krylov_new(&body, request, &S));
+    RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
+    RITZ_CHECK(ritz_krylov_join(&S, &basis));
     ritz_krylov_say_blocks(&S, request->modes, &basis);
-    RITZ_TRY(ritz_krylov_say_orthonormal(&S, &basis));
+    RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_dense_free(&F);
-    free(dof);
-    ritz_elastic_free(&body);
-    ritz_krylov_free(&S);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_krylov = {

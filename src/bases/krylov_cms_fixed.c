@@ -12,6 +12,7 @@
  * diagonal as it is with normal modes; forces on the boundary, and the other
  * loads, have their first moments kept, the static answer before all.
  */
+#include "base/alloc.h"
 #include "bases/krylov_block.h"
 #include "bases/loads.h"
 #include "bases/partition.h"
@@ -28,20 +29,17 @@ enum {
 static ritz_status find_coupling(const ritz_partition *s, const ritz_dense *Psi,
                                  ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *i = &s->i;
     const ritz_dofs *b = s->b;
-    ritz_sparse M_ib = {0};
+    RITZ_OWN(ritz_sparse) M_ib = {0};
 
-    RITZ_TRY(ritz_sparse_extract(&s->component->M, i->count, i->at, b->count,
-                                 b->at, &M_ib));
-    RITZ_TRY(ritz_sparse_mul(&s->M_ii, Psi, out));
+    RITZ_CHECK(ritz_sparse_extract(&s->component->M, i->count, i->at, b->count,
+                                   b->at, &M_ib));
+    RITZ_CHECK(ritz_sparse_mul(&s->M_ii, Psi, out));
     for (int64_t j = 0; j < M_ib.ncol; j++)
         for (int64_t p = M_ib.colptr[j]; p < M_ib.colptr[j + 1]; p++)
             ritz_dense_col(out, j)[M_ib.rowind[p]] += M_ib.val[p];
-done:
-    ritz_sparse_free(&M_ib);
-    return status;
+    return RITZ_OK;
 }
 
 /* F_i: coupling first, if the attached dofs are among the loads. */
@@ -49,31 +47,26 @@ static ritz_status find_loads(const ritz_request *request,
                               const ritz_partition *s, const ritz_dense *Psi,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int loads = request->choice.loads ? request->choice.loads : ALL_LOADS;
     int others = loads & ~RITZ_LOADS_ATTACHED;
     int64_t more = ritz_loads_count(request, others);
     int64_t b = loads & RITZ_LOADS_ATTACHED ? Psi->ncol : 0;
-    ritz_dense coupling = {0}, F = {0};
-    int64_t *dof = NULL;
+    RITZ_OWN(ritz_dense) coupling = {0}, F = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
 
     if (more > 0 || b == 0) /* refuses none */
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_loads_collect(request, more > 0 ? others : loads, &F, &dof));
-    RITZ_TRY(ritz_dense_new(s->i.count, b + more, out));
+    RITZ_CHECK(ritz_dense_new(s->i.count, b + more, out));
     if (b > 0) {
-        RITZ_TRY(find_coupling(s, Psi, &coupling));
+        RITZ_CHECK(find_coupling(s, Psi, &coupling));
         memcpy(out->val, coupling.val,
                (size_t)(s->i.count * b) * sizeof *out->val);
     }
     for (int64_t j = 0; j < more; j++)
         for (int64_t k = 0; k < s->i.count; k++)
             ritz_dense_col(out, b + j)[k] = ritz_dense_col(&F, j)[s->i.at[k]];
-done:
-    ritz_dense_free(&coupling);
-    ritz_dense_free(&F);
-    free(dof);
-    return status;
+    return RITZ_OK;
 }
 
 /* [I; Psi], a column for each boundary dof, then [0; V]. */
@@ -102,35 +95,26 @@ static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_partition s = {0};
-    ritz_factor *L = NULL;
-    ritz_dense Psi = {0}, F = {0};
-    ritz_elastic interior = {0};
-    ritz_krylov S = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_partition) s = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) Psi = {0}, F = {0};
+    RITZ_OWN(ritz_elastic) interior = {0};
+    RITZ_OWN(ritz_krylov) S = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_partition_new(request, &s));
-    RITZ_TRY(ritz_partition_factor(&s, &L));
-    RITZ_TRY(ritz_partition_constraint_modes(&s, L, &Psi));
-    RITZ_TRY(find_loads(request, &s, &Psi, &F));
+    RITZ_CHECK(ritz_partition_new(request, &s));
+    RITZ_CHECK(ritz_partition_factor(&s, &L));
+    RITZ_CHECK(ritz_partition_constraint_modes(&s, L, &Psi));
+    RITZ_CHECK(find_loads(request, &s, &Psi, &F));
     ritz_elastic_held(&s.K_ii, &s.M_ii, &L, &interior);
-    RITZ_TRY(ritz_krylov_new(&interior, request, &S));
-    RITZ_TRY(ritz_krylov_run(&S, &F, 0));
-    RITZ_TRY(join(&s, &Psi, &S, &basis));
+    RITZ_CHECK(ritz_krylov_new(&interior, request, &S));
+    RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
+    RITZ_CHECK(join(&s, &Psi, &S, &basis));
     ritz_krylov_say_blocks(&S, request->modes, &basis);
-    RITZ_TRY(ritz_krylov_say_orthonormal(&S, &basis));
+    RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_krylov_free(&S);
-    ritz_elastic_free(&interior);
-    ritz_factor_free(&L);
-    ritz_partition_free(&s);
-    ritz_dense_free(&Psi);
-    ritz_dense_free(&F);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_krylov_cms_fixed = {

@@ -28,14 +28,13 @@ static ritz_status put_attachment(const ritz_request *request,
                                   const ritz_krylov *S, const ritz_dense *F_a,
                                   const bool *taken, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *a = &request->attached;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
     int64_t at = S->body->Phi.ncol;
     size_t size = (size_t)F_a->nrow * sizeof *F_a->val;
 
-    RITZ_TRY(ritz_dense_copy(F_a, &X));
-    RITZ_TRY(ritz_elastic_answer(S->body, &X));
+    RITZ_CHECK(ritz_dense_copy(F_a, &X));
+    RITZ_CHECK(ritz_elastic_answer(S->body, &X));
     for (int64_t j = 0; j < a->count; j++) {
         if (!taken[j])
             continue;
@@ -43,27 +42,21 @@ static ritz_status put_attachment(const ritz_request *request,
         basis->columns.kind[at] = RITZ_COLUMN_ATTACHMENT;
         basis->columns.dof[at++] = a->at[j];
     }
-done:
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /* The attached dofs first; nothing else is needed beside them. */
 static ritz_status collect(const ritz_request *request, ritz_dense *F_a,
                            ritz_dense *F)
 {
-    ritz_status status = RITZ_OK;
     int others = request->choice.loads
                      ? request->choice.loads & ~RITZ_LOADS_ATTACHED
                      : OTHER_LOADS;
     int loads = RITZ_LOADS_ATTACHED | others;
-    int64_t *dof = NULL;
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
 
-    RITZ_TRY(ritz_loads_collect(request, loads, F, &dof));
-    RITZ_TRY(ritz_dense_columns(F, 0, request->attached.count, F_a));
-done:
-    free(dof);
-    return status;
+    RITZ_CHECK(ritz_loads_collect(request, loads, F, &dof));
+    return ritz_dense_columns(F, 0, request->attached.count, F_a);
 }
 
 static ritz_status join(const ritz_request *request, const ritz_krylov *S,
@@ -83,31 +76,23 @@ static ritz_status join(const ritz_request *request, const ritz_krylov *S,
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
-    ritz_dense F_a = {0}, F = {0};
-    bool *taken = NULL;
-    ritz_elastic body = {0};
-    ritz_krylov S = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_dense) F_a = {0}, F = {0};
+    RITZ_OWN_ARRAY bool *taken = NULL;
+    RITZ_OWN(ritz_elastic) body = {0};
+    RITZ_OWN(ritz_krylov) S = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(collect(request, &F_a, &F));
-    RITZ_NEW(taken, F_a.ncol);
-    RITZ_TRY(ritz_elastic_new(&component->K, &component->M, &body));
-    RITZ_TRY(ritz_krylov_new(&body, request, &S));
-    RITZ_TRY(ritz_krylov_seed(&S, &F_a, taken));
-    RITZ_TRY(ritz_krylov_run(&S, &F, F_a.ncol));
-    RITZ_TRY(join(request, &S, &F_a, taken, &basis));
+    RITZ_CHECK(collect(request, &F_a, &F));
+    RITZ_CHECK_NEW(taken, F_a.ncol);
+    RITZ_CHECK(ritz_elastic_new(&component->K, &component->M, &body));
+    RITZ_CHECK(ritz_krylov_new(&body, request, &S));
+    RITZ_CHECK(ritz_krylov_seed(&S, &F_a, taken));
+    RITZ_CHECK(ritz_krylov_run(&S, &F, F_a.ncol));
+    RITZ_CHECK(join(request, &S, &F_a, taken, &basis));
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_dense_free(&F_a);
-    ritz_dense_free(&F);
-    free(taken);
-    ritz_krylov_free(&S);
-    ritz_elastic_free(&body);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_krylov_cms_free = {

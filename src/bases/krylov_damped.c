@@ -7,6 +7,7 @@
  */
 #include "bases/krylov_block.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/loads.h"
 
@@ -53,29 +54,24 @@ static ritz_status pick_rows(const ritz_krylov_states *c, int64_t at,
 static ritz_status append(ritz_krylov *S, const ritz_forces *forces,
                           const ritz_dense *v, ritz_krylov_states *c)
 {
-    ritz_status status = RITZ_OK;
     ritz_orthonormal *set = &S->set;
-    ritz_dense R = {0}, raw = {0}, d = {0}, Z = {0}, WV = {0};
+    RITZ_OWN(ritz_dense) R = {0}, raw = {0}, d = {0}, Z = {0};
+    ritz_dense WV = {0};
 
-    RITZ_TRY(ritz_krylov_answer(S, &S->point[0], forces, &R));
-    RITZ_TRY(ritz_dense_copy(&R, &raw));
-    RITZ_TRY(ritz_orthonormal_append(set, &R, S->vectors - set->count, NULL));
+    RITZ_CHECK(ritz_krylov_answer(S, &S->point[0], forces, &R));
+    RITZ_CHECK(ritz_dense_copy(&R, &raw));
+    RITZ_CHECK(ritz_orthonormal_append(set, &R, S->vectors - set->count, NULL));
     WV = ritz_dense_part(&set->WV, 0, set->count);
-    RITZ_TRY(ritz_dense_mul_tn(&WV, &raw, &d));
-    RITZ_TRY(ritz_dense_new(2 * c->room, d.ncol, &Z));
+    RITZ_CHECK(ritz_dense_mul_tn(&WV, &raw, &d));
+    RITZ_CHECK(ritz_dense_new(2 * c->room, d.ncol, &Z));
     put_rows(&d, 0, &Z);
     put_rows(v, c->room, &Z);
     c->first = c->kept.count;
-    RITZ_TRY(ritz_orthonormal_append(&c->kept, &Z, Z.ncol, NULL));
+    RITZ_CHECK(ritz_orthonormal_append(&c->kept, &Z, Z.ncol, NULL));
     c->count = c->kept.count - c->first;
     c->ended = c->count == 0;
     c->whole += !c->ended && set->left == 0;
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&raw);
-    ritz_dense_free(&d);
-    ritz_dense_free(&Z);
-    return status;
+    return RITZ_OK;
 }
 
 /* -omega (D d + omega M v), with d and v from their coordinates. */
@@ -83,31 +79,25 @@ static ritz_status find_forces(const ritz_krylov *S, const ritz_sparse *D,
                                double omega, const ritz_dense *d_in_V,
                                const ritz_dense *v_in_V, ritz_forces *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *M = S->body->M;
     const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
-    ritz_dense d = {0}, v = {0}, Dd = {0}, Mv = {0};
+    RITZ_OWN(ritz_dense) d = {0}, v = {0}, Dd = {0}, Mv = {0};
 
-    RITZ_TRY(ritz_dense_mul(&V, d_in_V, &d));
-    RITZ_TRY(ritz_dense_mul(&V, v_in_V, &v));
-    RITZ_TRY(ritz_sparse_mul(M, &v, &Mv));
-    RITZ_TRY(ritz_dense_new(V.nrow, d.ncol, &out->G));
-    RITZ_TRY(ritz_dense_new(V.nrow, d.ncol, &out->size));
+    RITZ_CHECK(ritz_dense_mul(&V, d_in_V, &d));
+    RITZ_CHECK(ritz_dense_mul(&V, v_in_V, &v));
+    RITZ_CHECK(ritz_sparse_mul(M, &v, &Mv));
+    RITZ_CHECK(ritz_dense_new(V.nrow, d.ncol, &out->G));
+    RITZ_CHECK(ritz_dense_new(V.nrow, d.ncol, &out->size));
     for (int64_t k = 0; k < V.nrow * d.ncol; k++)
         out->G.val[k] = -omega * omega * Mv.val[k];
     ritz_krylov_size(M, &v, omega * omega, &out->size);
     if (!D)
-        goto done;
-    RITZ_TRY(ritz_sparse_mul(D, &d, &Dd));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_mul(D, &d, &Dd));
     for (int64_t k = 0; k < V.nrow * d.ncol; k++)
         out->G.val[k] -= omega * Dd.val[k];
     ritz_krylov_size(D, &d, omega, &out->size);
-done:
-    ritz_dense_free(&d);
-    ritz_dense_free(&v);
-    ritz_dense_free(&Dd);
-    ritz_dense_free(&Mv);
-    return status;
+    return RITZ_OK;
 }
 
 static void free_krylov_states(ritz_krylov_states *chain)
@@ -148,19 +138,13 @@ done:
 static ritz_status advance_krylov_states(ritz_krylov *S, double omega,
                                          ritz_krylov_states *chain)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense d = {0}, v = {0};
-    ritz_forces forces = {0};
+    RITZ_OWN(ritz_dense) d = {0}, v = {0};
+    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_TRY(pick_rows(chain, 0, S->set.count, &d));
-    RITZ_TRY(pick_rows(chain, chain->room, S->set.count, &v));
-    RITZ_TRY(find_forces(S, chain->D, omega, &d, &v, &forces));
-    RITZ_TRY(append(S, &forces, &d, chain));
-done:
-    ritz_dense_free(&d);
-    ritz_dense_free(&v);
-    ritz_forces_free(&forces);
-    return status;
+    RITZ_CHECK(pick_rows(chain, 0, S->set.count, &d));
+    RITZ_CHECK(pick_rows(chain, chain->room, S->set.count, &v));
+    RITZ_CHECK(find_forces(S, chain->D, omega, &d, &v, &forces));
+    return append(S, &forces, &d, chain);
 }
 
 /*
@@ -216,12 +200,11 @@ static void free_recurrence(recurrence *r)
 static ritz_status add_rayleigh(const ritz_sparse *K, const ritz_sparse *M,
                                 const ritz_damping *damping, ritz_sparse *D)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse C = {0}, sum = {0};
+    RITZ_OWN(ritz_sparse) C = {0}, sum = {0};
 
-    RITZ_TRY(ritz_sparse_add(damping->a, M, damping->b, K, &C));
+    RITZ_CHECK(ritz_sparse_add(damping->a, M, damping->b, K, &C));
     if (D->colptr)
-        RITZ_TRY(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
+        RITZ_CHECK(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
     else {
         sum = C;
         C = (ritz_sparse){0};
@@ -229,41 +212,35 @@ static ritz_status add_rayleigh(const ritz_sparse *K, const ritz_sparse *M,
     ritz_sparse_free(D);
     *D = sum;
     sum = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&C);
-    ritz_sparse_free(&sum);
-    return status;
+    return RITZ_OK;
 }
 
 /* D as the model has it, with what is stated beside it, and K with springs. */
 static ritz_status collect_matrices(recurrence *r)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = r->request->component;
     const ritz_choice *choice = &r->request->choice;
     ritz_damping damping = choice->damping;
-    ritz_dampers dampers = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
 
     if (!(choice->given & RITZ_USES_DAMPING))
-        RITZ_TRY_IN("damping",
-                    ritz_damping_parse(component->damping, &damping));
-    RITZ_FAIL_IF(damping.kind != RITZ_DAMPING_NONE &&
-                     !ritz_damping_is_rayleigh(&damping),
-                 RITZ_ERR_ARGUMENT,
-                 "ratios of modes make no matrix D, which moments need: give "
-                 "rayleigh damping");
-    RITZ_TRY(ritz_sparse_copy(&component->K, &r->K));
+        RITZ_CHECK_IN("damping",
+                      ritz_damping_parse(component->damping, &damping));
+    RITZ_REFUSE_IF(damping.kind != RITZ_DAMPING_NONE &&
+                       !ritz_damping_is_rayleigh(&damping),
+                   RITZ_ERR_ARGUMENT,
+                   "ratios of modes make no matrix D, which moments need: give "
+                   "rayleigh damping");
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &r->K));
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_copy(&component->D, &r->D[0]));
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &r->D[0]));
     if (component->dampers.count > 0) {
-        RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
-        RITZ_TRY(ritz_dampers_install_sparse(&dampers, &r->K, &r->D[0]));
+        RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
+        RITZ_CHECK(ritz_dampers_install_sparse(&dampers, &r->K, &r->D[0]));
     }
     if (damping.kind != RITZ_DAMPING_NONE)
-        RITZ_TRY(add_rayleigh(&r->K, &component->M, &damping, &r->D[0]));
-done:
-    ritz_dampers_free(&dampers);
-    return status;
+        RITZ_CHECK(add_rayleigh(&r->K, &component->M, &damping, &r->D[0]));
+    return RITZ_OK;
 }
 
 /* Columns of A from column `first` on of the forces, |A| of their sizes. */
@@ -282,43 +259,36 @@ static void put_columns(const ritz_dense *A, const ritz_dense *size,
 static ritz_status collect_loads(const recurrence *r, const ritz_sparse *D,
                                  int loads, ritz_forces *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *Phi = &r->body.Phi;
     int64_t n = r->K.nrow;
     int64_t count = ritz_loads_count(r->request, loads);
     int64_t more = D ? Phi->ncol : 0;
-    ritz_dense F = {0}, DPhi = {0}, size = {0};
-    int64_t *dof = NULL;
+    RITZ_OWN(ritz_dense) F = {0}, DPhi = {0}, size = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
 
     if (count > 0)
-        RITZ_TRY(ritz_loads_collect(r->request, loads, &F, &dof));
-    RITZ_TRY(ritz_dense_new(n, count + more, &out->G));
-    RITZ_TRY(ritz_dense_new(n, count + more, &out->size));
+        RITZ_CHECK(ritz_loads_collect(r->request, loads, &F, &dof));
+    RITZ_CHECK(ritz_dense_new(n, count + more, &out->G));
+    RITZ_CHECK(ritz_dense_new(n, count + more, &out->size));
     put_columns(&F, &F, 0, out);
     if (more == 0)
-        goto done;
-    RITZ_TRY(ritz_sparse_mul(D, Phi, &DPhi));
-    RITZ_TRY(ritz_dense_new(n, more, &size));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_mul(D, Phi, &DPhi));
+    RITZ_CHECK(ritz_dense_new(n, more, &size));
     ritz_krylov_size(D, Phi, 1.0, &size);
     put_columns(&DPhi, &size, count, out);
-done:
-    ritz_dense_free(&F);
-    ritz_dense_free(&DPhi);
-    ritz_dense_free(&size);
-    free(dof);
-    return status;
+    return RITZ_OK;
 }
 
 /* omega^2 = lowest q'Kq / q'Mq of the vectors of the start; 1 without mass. */
 static ritz_status choose_unit(const recurrence *r, double *omega)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense V = ritz_dense_part(&r->S.set.V, 0, r->S.set.count);
-    ritz_dense MV = {0}, KV = {0};
+    RITZ_OWN(ritz_dense) MV = {0}, KV = {0};
     double most = 0.0;
 
-    RITZ_TRY(ritz_sparse_mul(&r->request->component->M, &V, &MV));
-    RITZ_TRY(ritz_sparse_mul(&r->K, &V, &KV));
+    RITZ_CHECK(ritz_sparse_mul(&r->request->component->M, &V, &MV));
+    RITZ_CHECK(ritz_sparse_mul(&r->K, &V, &KV));
     for (int64_t j = 0; j < V.ncol; j++) {
         double m = 0.0;
         double k = 0.0;
@@ -331,24 +301,18 @@ static ritz_status choose_unit(const recurrence *r, double *omega)
             most = fmax(most, m / k);
     }
     *omega = most > 0.0 ? 1.0 / sqrt(most) : 1.0;
-done:
-    ritz_dense_free(&MV);
-    ritz_dense_free(&KV);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status start_chain(recurrence *r, int64_t k, const ritz_sparse *D,
                                int loads)
 {
-    ritz_status status = RITZ_OK;
-    ritz_forces forces = {0};
+    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_TRY(collect_loads(r, D, loads, &forces));
-    RITZ_TRY(start_krylov_states(&r->S, D, &forces, &r->chain[k]));
+    RITZ_CHECK(collect_loads(r, D, loads, &forces));
+    RITZ_CHECK(start_krylov_states(&r->S, D, &forces, &r->chain[k]));
     r->num_chains = k + 1;
-done:
-    ritz_forces_free(&forces);
-    return status;
+    return RITZ_OK;
 }
 
 /* Of inputs with D, of outputs with D'; one chain where they are the same. */
@@ -387,26 +351,21 @@ static ritz_status run(recurrence *r, int loads)
 
 static ritz_status find_basis(recurrence *r, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_request *request = r->request;
     int loads = request->choice.loads ? request->choice.loads : ALL_LOADS;
-    ritz_dense F = {0};
-    int64_t *dof = NULL;
+    RITZ_OWN(ritz_dense) F = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
 
-    RITZ_TRY(ritz_loads_collect(request, loads, &F, &dof)); /* refuses none */
-    RITZ_TRY(collect_matrices(r));
-    RITZ_TRY(ritz_elastic_new(&r->K, &request->component->M, &r->body));
-    RITZ_TRY(ritz_krylov_new(&r->body, request, &r->S));
-    RITZ_TRY(run(r, loads));
-    RITZ_TRY(ritz_krylov_join(&r->S, out));
+    RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof)); /* refuses none */
+    RITZ_CHECK(collect_matrices(r));
+    RITZ_CHECK(ritz_elastic_new(&r->K, &request->component->M, &r->body));
+    RITZ_CHECK(ritz_krylov_new(&r->body, request, &r->S));
+    RITZ_CHECK(run(r, loads));
+    RITZ_CHECK(ritz_krylov_join(&r->S, out));
     ritz_krylov_say_blocks(&r->S, request->modes, out);
     if (!r->D[0].colptr)
         ritz_krylov_say(out, "; there is no damping, krylov does the same");
-    RITZ_TRY(ritz_krylov_say_orthonormal(&r->S, out));
-done:
-    ritz_dense_free(&F);
-    free(dof);
-    return status;
+    return ritz_krylov_say_orthonormal(&r->S, out);
 }
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)

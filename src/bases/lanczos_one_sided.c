@@ -222,30 +222,27 @@ static ritz_status start(const ritz_request *request, const ritz_states *states,
 /* A Gramian is finite if every pole is stable, those of A less the shift. */
 static ritz_status check_poles(const ritz_states *states, one_sided *s)
 {
-    ritz_status status = RITZ_OK;
-    ritz_eigenvalues poles = {0};
+    RITZ_OWN(ritz_eigenvalues) poles = {0};
     int64_t k = 0;
     double growth = 0.0;
     double rounding = 0.0;
 
-    RITZ_TRY(ritz_eigenvalues_of(&s->A, &poles));
+    RITZ_CHECK(ritz_eigenvalues_of(&s->A, &poles));
     k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
     s->damping = -poles.re[k];
     growth = poles.re[k] + states->alpha;
     rounding = RITZ_POLE_BOUND_FACTOR * poles.error[k];
-    RITZ_FAIL_IF(s->damping <= rounding &&
-                     (s->damping < -rounding || states->alpha > 0.0),
-                 RITZ_ERR_ARGUMENT,
-                 "a pole grows at %.4g rad/s (%.4g Hz), the Gramian is "
-                 "infinite: shift by more than that",
-                 growth, growth / (2.0 * RITZ_PI));
-    RITZ_FAIL_IF(s->damping <= rounding, RITZ_ERR_ARGUMENT,
-                 "the Gramian is infinite: motion at %.4g Hz has no damping, "
-                 "give some or a shift above 0 Hz",
-                 hypot(poles.re[k], poles.im[k]) / (2.0 * RITZ_PI));
-done:
-    ritz_eigenvalues_free(&poles);
-    return status;
+    RITZ_REFUSE_IF(s->damping <= rounding &&
+                       (s->damping < -rounding || states->alpha > 0.0),
+                   RITZ_ERR_ARGUMENT,
+                   "a pole grows at %.4g rad/s (%.4g Hz), the Gramian is "
+                   "infinite: shift by more than that",
+                   growth, growth / (2.0 * RITZ_PI));
+    RITZ_REFUSE_IF(s->damping <= rounding, RITZ_ERR_ARGUMENT,
+                   "the Gramian is infinite: motion at %.4g Hz has no damping, "
+                   "give some or a shift above 0 Hz",
+                   hypot(poles.re[k], poles.im[k]) / (2.0 * RITZ_PI));
+    return RITZ_OK;
 }
 
 /* G and b, where the Gramian is more than rounding. */
@@ -267,48 +264,39 @@ static ritz_status choose_operator(const ritz_request *request, one_sided *s)
 /* P, as many columns as asked for or as there are. */
 static ritz_status find_vectors(const ritz_request *request, one_sided *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t first = 0;
-    ritz_orthonormal P = {0};
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_orthonormal) P = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_orthonormal_new(s->G.nrow, NULL, request->tolerance, &P));
-    RITZ_TRY(ritz_dense_copy(&s->b, &X));
+    RITZ_CHECK(ritz_orthonormal_new(s->G.nrow, NULL, request->tolerance, &P));
+    RITZ_CHECK(ritz_dense_copy(&s->b, &X));
     do {
         ritz_dense last = {0};
 
         first = P.count;
-        RITZ_TRY(ritz_orthonormal_append(&P, &X, request->modes - first, NULL));
+        RITZ_CHECK(
+            ritz_orthonormal_append(&P, &X, request->modes - first, NULL));
         ritz_dense_free(&X);
         last = ritz_dense_part(&P.V, first, P.count - first);
-        RITZ_TRY(ritz_dense_mul(&s->G, &last, &X));
+        RITZ_CHECK(ritz_dense_mul(&s->G, &last, &X));
     } while (P.count > first && P.count < request->modes);
-    RITZ_TRY(ritz_dense_columns(&P.V, 0, P.count, &s->P));
-done:
-    ritz_orthonormal_free(&P);
-    ritz_dense_free(&X);
-    return status;
+    return ritz_dense_columns(&P.V, 0, P.count, &s->P);
 }
 
 /* P'G P of the first columns. */
 static ritz_status reduce(const one_sided *s, int64_t columns, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense P = ritz_dense_part(&s->P, 0, columns);
-    ritz_dense GP = {0};
+    RITZ_OWN(ritz_dense) GP = {0};
 
-    RITZ_TRY(ritz_dense_mul(&s->G, &P, &GP));
-    RITZ_TRY(ritz_dense_mul_tn(&P, &GP, out));
-done:
-    ritz_dense_free(&GP);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(&s->G, &P, &GP));
+    return ritz_dense_mul_tn(&P, &GP, out);
 }
 
 /* Leave out last vectors until rounding decides on no pole. */
 static ritz_status settle(one_sided *s, ritz_dense *Gr)
 {
-    ritz_status status = RITZ_OK;
-    ritz_eigenvalues poles = {0};
+    RITZ_OWN(ritz_eigenvalues) poles = {0};
     bool certain = false;
 
     while (s->P.ncol > 0 && !certain) {
@@ -316,8 +304,8 @@ static ritz_status settle(one_sided *s, ritz_dense *Gr)
 
         ritz_dense_free(Gr);
         ritz_eigenvalues_free(&poles);
-        RITZ_TRY(reduce(s, s->P.ncol, Gr));
-        RITZ_TRY(ritz_eigenvalues_of(Gr, &poles));
+        RITZ_CHECK(reduce(s, s->P.ncol, Gr));
+        RITZ_CHECK(ritz_eigenvalues_of(Gr, &poles));
         k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
         certain = poles.re[k] < -RITZ_POLE_BOUND_FACTOR * poles.error[k] &&
                   poles.re[k] < -RITZ_LANCZOS_SAFE * s->rounding;
@@ -326,11 +314,9 @@ static ritz_status settle(one_sided *s, ritz_dense *Gr)
             s->uncertain++;
         }
     }
-    RITZ_FAIL_IF(s->P.ncol == 0, RITZ_ERR_CONVERGENCE,
-                 "no states are left whose stability rounding leaves alone");
-done:
-    ritz_eigenvalues_free(&poles);
-    return status;
+    RITZ_REFUSE_IF(s->P.ncol == 0, RITZ_ERR_CONVERGENCE,
+                   "no states are left whose stability rounding leaves alone");
+    return RITZ_OK;
 }
 
 /*
@@ -340,22 +326,17 @@ done:
 static ritz_status lift(const one_sided *s, bool inverse, const ritz_dense *Gr,
                         ritz_dense *own, ritz_dense *other)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense GP = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) GP = {0}, Y = {0};
 
-    RITZ_TRY(ritz_dense_mul(&s->range.Q, &s->P, own));
+    RITZ_CHECK(ritz_dense_mul(&s->range.Q, &s->P, own));
     if (!inverse) {
-        RITZ_TRY(ritz_dense_mul(&s->range.V, &s->P, other));
-        goto done;
+        RITZ_CHECK(ritz_dense_mul(&s->range.V, &s->P, other));
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_dense_mul_tn(&s->P, &s->G, &GP)); /* P'G */
-    RITZ_TRY(ritz_general_solve(Gr, false, &GP));
-    RITZ_TRY(ritz_general_transpose(&GP, &Y));
-    RITZ_TRY(ritz_dense_mul(&s->range.V, &Y, other));
-done:
-    ritz_dense_free(&GP);
-    ritz_dense_free(&Y);
-    return status;
+    RITZ_CHECK(ritz_dense_mul_tn(&s->P, &s->G, &GP)); /* P'G */
+    RITZ_CHECK(ritz_general_solve(Gr, false, &GP));
+    RITZ_CHECK(ritz_general_transpose(&GP, &Y));
+    return ritz_dense_mul(&s->range.V, &Y, other);
 }
 
 /* What was asked for and is not there, and why. */

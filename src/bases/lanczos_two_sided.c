@@ -85,25 +85,19 @@ static ritz_status gather(const lanczos_side *s, ritz_dense *out)
 static ritz_status prepare(const lanczos_side *own, const lanczos_side *other,
                            int64_t used, double tolerance, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense V = ritz_dense_part(&own->vectors, 0, used);
     const ritz_dense W = ritz_dense_part(&other->vectors, 0, used);
-    ritz_dense X = {0}, U = {0};
-    double *s = NULL;
+    RITZ_OWN(ritz_dense) X = {0}, U = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
     int64_t rank = 0;
 
-    RITZ_TRY(gather(own, &X));
-    RITZ_TRY(ritz_dense_take_out(&V, &W, &X));
-    RITZ_TRY(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
-    RITZ_TRY(ritz_general_svd(&X, &U, &s, NULL));
+    RITZ_CHECK(gather(own, &X));
+    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X));
+    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
+    RITZ_CHECK(ritz_general_svd(&X, &U, &s, NULL));
     while (rank < U.ncol && s[rank] > tolerance)
         rank++;
-    RITZ_TRY(ritz_dense_columns(&U, 0, rank, out));
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&U);
-    free(s);
-    return status;
+    return ritz_dense_columns(&U, 0, rank, out);
 }
 
 /* X R s^-1/2 of the first columns become vectors, the others wait. */
@@ -111,45 +105,34 @@ static ritz_status accept(const ritz_dense *X, const ritz_dense *R,
                           const double *s, int64_t joined, int64_t used,
                           lanczos_side *own)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense turned = {0};
+    RITZ_OWN(ritz_dense) turned = {0};
 
-    RITZ_TRY(ritz_dense_mul(X, R, &turned));
+    RITZ_CHECK(ritz_dense_mul(X, R, &turned));
     for (int64_t j = 0; j < joined; j++)
         for (int64_t i = 0; i < turned.nrow; i++)
             ritz_dense_col(&own->vectors, used + j)[i] =
                 ritz_dense_col(&turned, j)[i] / sqrt(s[j]);
     ritz_dense_free(&own->waiting);
-    RITZ_TRY(ritz_dense_columns(&turned, joined, turned.ncol - joined,
-                                &own->waiting));
-done:
-    ritz_dense_free(&turned);
-    return status;
+    return ritz_dense_columns(&turned, joined, turned.ncol - joined,
+                              &own->waiting);
 }
 
 /* Join candidates X of the right and Y of the left; none may be joined. */
 static ritz_status join(const ritz_dense *X, const ritz_dense *Y,
                         double tolerance, two_sided *t, int64_t *joined)
 {
-    ritz_status status = RITZ_OK;
     int64_t most = t->right.vectors.ncol - t->used;
-    ritz_dense YX = {0}, L = {0}, R = {0};
-    double *s = NULL;
+    RITZ_OWN(ritz_dense) YX = {0}, L = {0}, R = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
 
     *joined = 0;
-    RITZ_TRY(ritz_dense_mul_tn(Y, X, &YX));
-    RITZ_TRY(ritz_general_svd(&YX, &L, &s, &R));
+    RITZ_CHECK(ritz_dense_mul_tn(Y, X, &YX));
+    RITZ_CHECK(ritz_general_svd(&YX, &L, &s, &R));
     while (*joined < most && *joined < L.ncol && *joined < R.ncol &&
            s[*joined] > tolerance)
         ++*joined;
-    RITZ_TRY(accept(X, &R, s, *joined, t->used, &t->right));
-    RITZ_TRY(accept(Y, &L, s, *joined, t->used, &t->left));
-done:
-    ritz_dense_free(&YX);
-    ritz_dense_free(&L);
-    ritz_dense_free(&R);
-    free(s);
-    return status;
+    RITZ_CHECK(accept(X, &R, s, *joined, t->used, &t->right));
+    return accept(Y, &L, s, *joined, t->used, &t->left);
 }
 
 /* G times the last block, on either side. */
@@ -171,24 +154,20 @@ static ritz_status advance(two_sided *t, int64_t joined)
 
 static ritz_status step(double tolerance, two_sided *t, bool *going)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
     int64_t joined = 0;
 
-    RITZ_TRY(prepare(&t->right, &t->left, t->used, tolerance, &X));
-    RITZ_TRY(prepare(&t->left, &t->right, t->used, tolerance, &Y));
+    RITZ_CHECK(prepare(&t->right, &t->left, t->used, tolerance, &X));
+    RITZ_CHECK(prepare(&t->left, &t->right, t->used, tolerance, &Y));
     *going = X.ncol > 0 && Y.ncol > 0;
     t->end = EXHAUSTED;
     if (!*going)
-        goto done;
-    RITZ_TRY(join(&X, &Y, tolerance, t, &joined));
-    RITZ_TRY(advance(t, joined));
+        return RITZ_OK;
+    RITZ_CHECK(join(&X, &Y, tolerance, t, &joined));
+    RITZ_CHECK(advance(t, joined));
     t->end = joined > 0 ? COMPLETE : BREAKDOWN;
     *going = joined > 0 && t->used < t->right.vectors.ncol;
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /* Right start B, or A^-1 B; left start C'. */

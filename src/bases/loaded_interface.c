@@ -22,15 +22,14 @@
 static ritz_status load(const ritz_sparse *A, const ritz_dense *A_n,
                         const ritz_dofs *a, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse added = {0};
-    int64_t *row = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN(ritz_sparse) added = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t count = 0;
 
-    RITZ_NEW(row, a->count * a->count);
-    RITZ_NEW(col, a->count * a->count);
-    RITZ_NEW(val, a->count * a->count);
+    RITZ_CHECK_NEW(row, a->count * a->count);
+    RITZ_CHECK_NEW(col, a->count * a->count);
+    RITZ_CHECK_NEW(val, a->count * a->count);
     for (int64_t j = 0; j < a->count; j++)
         for (int64_t i = 0; i < a->count; i++) {
             double mean =
@@ -42,15 +41,9 @@ static ritz_status load(const ritz_sparse *A, const ritz_dense *A_n,
             col[count] = a->at[j];
             val[count++] = mean;
         }
-    RITZ_TRY(ritz_sparse_from_triplets(A->nrow, A->ncol, count, row, col, val,
-                                       &added));
-    RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &added, out));
-done:
-    free(row);
-    free(col);
-    free(val);
-    ritz_sparse_free(&added);
-    return status;
+    RITZ_CHECK(ritz_sparse_from_triplets(A->nrow, A->ncol, count, row, col, val,
+                                         &added));
+    return ritz_sparse_add(1.0, A, 1.0, &added, out);
 }
 
 static ritz_status check(const ritz_request *request)
@@ -97,34 +90,27 @@ static ritz_status copy_modes(const ritz_pairs *pairs, ritz_basis *out)
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     const ritz_span span = {request->modes, request->up_to_hz};
-    ritz_sparse K = {0}, M = {0};
-    ritz_pairs pairs = {0};
-    ritz_dofs rest = {0};
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_dofs) rest = {0};
 
-    RITZ_TRY(check(request));
-    RITZ_TRY(
+    RITZ_CHECK(check(request));
+    RITZ_CHECK(
         ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
-    RITZ_TRY(
+    RITZ_CHECK(
         load(&component->K, &request->neighbour->K, &request->attached, &K));
-    RITZ_TRY(
+    RITZ_CHECK(
         load(&component->M, &request->neighbour->M, &request->attached, &M));
-    RITZ_TRY_IN("loaded modes", ritz_eigen_sparse(&K, &M, &span, &pairs));
-    RITZ_FAIL_IF(pairs.Phi.ncol > 0 && pairs.num_rigid == 0 &&
-                     pairs.lambda[0] <= 0.0,
-                 RITZ_ERR_SINGULAR,
-                 "K with its neighbour is not positive semidefinite: an "
-                 "eigenvalue is %.3g",
-                 pairs.lambda[0]);
-    RITZ_TRY(copy_modes(&pairs, out));
-done:
-    ritz_sparse_free(&K);
-    ritz_sparse_free(&M);
-    ritz_pairs_free(&pairs);
-    ritz_dofs_free(&rest);
-    return status;
+    RITZ_CHECK_IN("loaded modes", ritz_eigen_sparse(&K, &M, &span, &pairs));
+    RITZ_REFUSE_IF(pairs.Phi.ncol > 0 && pairs.num_rigid == 0 &&
+                       pairs.lambda[0] <= 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "K with its neighbour is not positive semidefinite: an "
+                   "eigenvalue is %.3g",
+                   pairs.lambda[0]);
+    return copy_modes(&pairs, out);
 }
 
 const ritz_method ritz_method_loaded_interface = {

@@ -147,24 +147,23 @@ static const char *list(int loads, char text[64])
 ritz_status ritz_loads_collect(const ritz_request *request, int loads,
                                ritz_dense *F, int64_t **dof)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = request->component->num_dofs;
     load_walk w = {request, loads, 0, 0};
     const source *from = NULL;
-    ritz_dofs rest = {0};
-    ritz_dense columns = {0};
-    int64_t *row = NULL;
+    RITZ_OWN(ritz_dofs) rest = {0};
+    RITZ_OWN(ritz_dense) columns = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL;
     int64_t count = 0;
     int64_t j = 0;
     char text[64];
 
     if (loads & RITZ_LOADS_ATTACHED) /* refuses repeated or impossible ones */
-        RITZ_TRY(ritz_dofs_complement(&request->attached, n, &rest));
+        RITZ_CHECK(ritz_dofs_complement(&request->attached, n, &rest));
     count = ritz_loads_count(request, loads);
-    RITZ_FAIL_IF(count == 0, RITZ_ERR_ARGUMENT,
-                 "there is no load to answer, no %s", list(loads, text));
-    RITZ_TRY(ritz_dense_new(n, count, &columns));
-    RITZ_NEW(row, count);
+    RITZ_REFUSE_IF(count == 0, RITZ_ERR_ARGUMENT,
+                   "there is no load to answer, no %s", list(loads, text));
+    RITZ_CHECK(ritz_dense_new(n, count, &columns));
+    RITZ_CHECK_NEW(row, count);
     for (int64_t k = 0; k < count && step(&w, &from, &j); k++) {
         row[k] =
             from->bit == RITZ_LOADS_ATTACHED ? request->attached.at[j] : -1;
@@ -175,11 +174,7 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
     *dof = row;
     columns = (ritz_dense){0};
     row = NULL;
-done:
-    ritz_dofs_free(&rest);
-    ritz_dense_free(&columns);
-    free(row);
-    return status;
+    return RITZ_OK;
 }
 
 const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,

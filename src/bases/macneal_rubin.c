@@ -82,37 +82,29 @@ const ritz_method ritz_method_macneal = {
 /* Psi := X; columns of T come to be as large as what is exchanged for them. */
 static ritz_status add_modes(ritz_free_set *set)
 {
-    ritz_status status = RITZ_OK;
     const ritz_pairs *modes = &set->modes;
-    ritz_dense share = {0}, part = {0};
+    RITZ_OWN(ritz_dense) share = {0}, part = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(&modes->Phi, &set->F, &share));
+    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, &set->F, &share));
     for (int64_t j = 0; j < share.ncol; j++)
         for (int64_t k = 0; k < share.nrow; k++)
             ritz_dense_col(&share, j)[k] *=
                 k < modes->num_rigid ? 0.0 : 1.0 / modes->lambda[k];
-    RITZ_TRY(ritz_dense_mul(&modes->Phi, &share, &part));
+    RITZ_CHECK(ritz_dense_mul(&modes->Phi, &share, &part));
     for (int64_t k = 0; k < part.nrow * part.ncol; k++)
         set->Psi.val[k] += part.val[k];
-done:
-    ritz_dense_free(&share);
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make_inertia_relief(const ritz_request *request,
                                        ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_free_set set = {0};
+    RITZ_OWN(ritz_free_set) set = {0};
 
-    RITZ_TRY(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
+    RITZ_CHECK(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
     if (set.Psi.ncol > 0)
-        RITZ_TRY(add_modes(&set));
-    RITZ_TRY(ritz_free_set_join(request, &set, RITZ_COLUMN_ATTACHMENT, out));
-done:
-    ritz_free_set_free(&set);
-    return status;
+        RITZ_CHECK(add_modes(&set));
+    return ritz_free_set_join(request, &set, RITZ_COLUMN_ATTACHMENT, out);
 }
 
 const ritz_method ritz_method_inertia_relief = {

@@ -89,41 +89,35 @@ static ritz_status find_modes(const ritz_request *request, subset_search *s)
 static ritz_status weigh(const subset_search *s, const double *band,
                          double *sigma, mode_group *at)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal part = {0};
+    RITZ_OWN(ritz_modal) part = {0};
 
-    RITZ_TRY(ritz_modal_part(&s->modal, at->first, at->last, &part));
-    RITZ_TRY(ritz_modal_hankel(&part, sigma));
+    RITZ_CHECK(ritz_modal_part(&s->modal, at->first, at->last, &part));
+    RITZ_CHECK(ritz_modal_hankel(&part, sigma));
     for (int64_t k = 0; k < 2 * part.count; k++)
         at->bound += 2.0 * sigma[k];
     if (band)
-        RITZ_TRY(ritz_modal_hankel_band(&part, band, sigma));
+        RITZ_CHECK(ritz_modal_hankel_band(&part, band, sigma));
     at->value = sigma[0];
-done:
-    ritz_modal_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank(const ritz_request *request, subset_search *s)
 {
-    ritz_status status = RITZ_OK;
     bool banded = request->choice.given & RITZ_USES_BAND;
     const double *band = banded ? request->choice.band_hz : NULL;
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
     int64_t last = 0;
 
-    RITZ_NEW(sigma, 2 * s->modal.count);
-    RITZ_NEW(s->groups, s->modal.count);
+    RITZ_CHECK_NEW(sigma, 2 * s->modal.count);
+    RITZ_CHECK_NEW(s->groups, s->modal.count);
     for (int64_t first = 0; first < s->modal.count; first = last) {
         mode_group *at = &s->groups[s->count++];
 
         last = ritz_modal_cluster(&s->modal, first);
         *at = (mode_group){.first = first, .last = last};
-        RITZ_TRY(weigh(s, band, sigma, at));
+        RITZ_CHECK(weigh(s, band, sigma, at));
     }
-done:
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 /* Of those that are not kept yet; of equal ones the lowest in frequency. */

@@ -91,43 +91,38 @@ ritz_status ritz_condense(const ritz_component *component,
 {
     /* sums of a few dozen terms in each of two products */
     const double rounding = 64.0 * DBL_EPSILON;
-    ritz_status status = RITZ_OK;
-    ritz_dense stiffness = {0}, mass = {0}, most = {0};
+    RITZ_OWN(ritz_dense) stiffness = {0}, mass = {0}, most = {0};
 
-    RITZ_TRY(ritz_sparse_condense(&component->K, T_b, &stiffness));
-    RITZ_TRY(ritz_sparse_condense(&component->M, T_b, &mass));
-    RITZ_TRY(ritz_sparse_terms(&component->K, T_b, &most));
+    RITZ_CHECK(ritz_sparse_condense(&component->K, T_b, &stiffness));
+    RITZ_CHECK(ritz_sparse_condense(&component->M, T_b, &mass));
+    RITZ_CHECK(ritz_sparse_terms(&component->K, T_b, &most));
     for (int64_t k = 0; k < most.nrow * most.ncol; k++)
         if (fabs(stiffness.val[k]) <= rounding * most.val[k])
             stiffness.val[k] = 0.0;
     *K = stiffness;
     *M = mass;
     stiffness = mass = (ritz_dense){0};
-done:
-    ritz_dense_free(&stiffness);
-    ritz_dense_free(&mass);
-    ritz_dense_free(&most);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_partition_new(const ritz_request *request, ritz_partition *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *K = &request->component->K;
     const ritz_sparse *M = &request->component->M;
     const ritz_dofs *b = &request->attached;
-    ritz_partition s = {.component = request->component, .b = b};
+    RITZ_OWN(ritz_partition) s = {.component = request->component, .b = b};
     const ritz_dofs *i = &s.i;
 
-    RITZ_TRY(ritz_dofs_complement(b, s.component->num_dofs, &s.i));
-    RITZ_TRY(ritz_sparse_extract(K, i->count, i->at, i->count, i->at, &s.K_ii));
-    RITZ_TRY(ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
-    RITZ_TRY(ritz_sparse_extract(M, i->count, i->at, i->count, i->at, &s.M_ii));
+    RITZ_CHECK(ritz_dofs_complement(b, s.component->num_dofs, &s.i));
+    RITZ_CHECK(
+        ritz_sparse_extract(K, i->count, i->at, i->count, i->at, &s.K_ii));
+    RITZ_CHECK(
+        ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
+    RITZ_CHECK(
+        ritz_sparse_extract(M, i->count, i->at, i->count, i->at, &s.M_ii));
     *out = s;
     s = (ritz_partition){0};
-done:
-    ritz_partition_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_partition_factor(const ritz_partition *s, ritz_factor **out)
@@ -159,17 +154,14 @@ static ritz_status negate(const ritz_sparse *A, ritz_dense *out)
 ritz_status ritz_partition_constraint_modes(const ritz_partition *s,
                                             ritz_factor *L, ritz_dense *Psi)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(negate(&s->K_ib, &X));
+    RITZ_CHECK(negate(&s->K_ib, &X));
     if (s->i.count > 0)
-        RITZ_TRY(ritz_factor_solve(L, &X));
+        RITZ_CHECK(ritz_factor_solve(L, &X));
     *Psi = X;
     X = (ritz_dense){0};
-done:
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_partition_scatter(const ritz_dense *part, const ritz_dofs *to,

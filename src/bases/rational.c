@@ -42,17 +42,14 @@ static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
 static ritz_status read_loads(const ritz_request *request, int kind,
                               ritz_rational_loads *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *dof = NULL;
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
 
     out->kind = kind;
     if (kind == RITZ_LOADS_OUTPUTS)
         return read_outputs(&request->component->io, out);
-    RITZ_TRY(ritz_loads_collect(request, kind, &out->F[0], &dof));
+    RITZ_CHECK(ritz_loads_collect(request, kind, &out->F[0], &dof));
     out->count = out->F[0].ncol;
-done:
-    free(dof);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_groups(const ritz_request *request, int loads,
@@ -98,24 +95,22 @@ static ritz_status start(ritz_rational *R)
 ritz_status ritz_rational_new(const ritz_request *request, int loads,
                               double scale, ritz_rational *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
-    ritz_rational R = {.component = component, .tolerance = request->tolerance};
+    RITZ_OWN(ritz_rational)
+    R = {.component = component, .tolerance = request->tolerance};
 
-    RITZ_FAIL_IF(component->D.colptr &&
-                     ritz_sparse_asymmetry(&component->D) > 0.0,
-                 RITZ_ERR_ARGUMENT,
-                 "D is not symmetric (gyroscopic?), which one-sided "
-                 "interpolation cannot answer for");
-    RITZ_TRY(read_groups(request, loads, &R));
-    RITZ_TRY(
+    RITZ_REFUSE_IF(component->D.colptr &&
+                       ritz_sparse_asymmetry(&component->D) > 0.0,
+                   RITZ_ERR_ARGUMENT,
+                   "D is not symmetric (gyroscopic?), which one-sided "
+                   "interpolation cannot answer for");
+    RITZ_CHECK(read_groups(request, loads, &R));
+    RITZ_CHECK(
         ritz_sparse_add(1.0, &component->M, 1.0 / scale, &component->K, &R.P));
-    RITZ_TRY(start(&R));
+    RITZ_CHECK(start(&R));
     *out = R;
     R = (ritz_rational){0};
-done:
-    ritz_rational_free(&R);
-    return status;
+    return RITZ_OK;
 }
 
 bool ritz_rational_damped(const ritz_rational *R)
@@ -179,35 +174,27 @@ static ritz_status answer(ritz_rational *R,
 static ritz_status normalise(const ritz_rational *R, ritz_dense *w,
                              double *size)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Pw = {0};
+    RITZ_OWN(ritz_dense) Pw = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&R->P, w, &Pw));
+    RITZ_CHECK(ritz_sparse_mul(&R->P, w, &Pw));
     *size = sqrt(fmax(ritz_dense_dot(w, 0, &Pw, 0), 0.0));
     for (int64_t i = 0; i<w->nrow && * size> 0.0; i++)
         w->val[i] /= *size;
-done:
-    ritz_dense_free(&Pw);
-    return status;
+    return RITZ_OK;
 }
 
 /* w := w - Q Q' P w. */
 static ritz_status take_out(const ritz_rational *R, const ritz_dense *Q,
                             ritz_dense *w)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Pw = {0}, share = {0}, gone = {0};
+    RITZ_OWN(ritz_dense) Pw = {0}, share = {0}, gone = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&R->P, w, &Pw));
-    RITZ_TRY(ritz_dense_mul_tn(Q, &Pw, &share));
-    RITZ_TRY(ritz_dense_mul(Q, &share, &gone));
+    RITZ_CHECK(ritz_sparse_mul(&R->P, w, &Pw));
+    RITZ_CHECK(ritz_dense_mul_tn(Q, &Pw, &share));
+    RITZ_CHECK(ritz_dense_mul(Q, &share, &gone));
     for (int64_t i = 0; i < w->nrow; i++)
         w->val[i] -= gone.val[i];
-done:
-    ritz_dense_free(&Pw);
-    ritz_dense_free(&share);
-    ritz_dense_free(&gone);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -291,41 +278,36 @@ ritz_status ritz_rational_span(ritz_rational *R, const ritz_probes *probes,
                                const ritz_dense *first, int64_t most,
                                ritz_dense *out, int64_t *gave)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = R->component->num_dofs;
     int64_t r = first->ncol;
-    ritz_dense Q = {0}, kept = {0};
+    RITZ_OWN(ritz_dense) Q = {0};
+    ritz_dense kept = {0};
 
-    RITZ_TRY(ritz_dense_new(n, r + most, &Q));
+    RITZ_CHECK(ritz_dense_new(n, r + most, &Q));
     if (r > 0)
         memcpy(Q.val, first->val, (size_t)(n * r) * sizeof *Q.val);
     Q.ncol = r;
     for (int64_t k = 0; k < probes->count; k++) {
         int64_t before = Q.ncol;
 
-        RITZ_TRY(add(R, &probes->item[k], r + most - before, &Q));
+        RITZ_CHECK(add(R, &probes->item[k], r + most - before, &Q));
         gave[k] = Q.ncol - before;
     }
-    RITZ_TRY(ritz_dense_columns(&Q, 0, Q.ncol, &kept));
+    RITZ_CHECK(ritz_dense_columns(&Q, 0, Q.ncol, &kept));
     *out = kept;
-done:
-    ritz_dense_free(&Q);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_probes probes = {.count = count};
+    RITZ_OWN(ritz_probes) probes = {.count = count};
 
-    RITZ_NEW(probes.item, count);
+    RITZ_CHECK_NEW(probes.item, count);
     for (int64_t k = 0; k < count; k++)
-        RITZ_NEW(probes.item[k].b, width);
+        RITZ_CHECK_NEW(probes.item[k].b, width);
     *out = probes;
     probes = (ritz_probes){0};
-done:
-    ritz_probes_free(&probes);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_probes_free(ritz_probes *probes)

@@ -20,37 +20,33 @@ static bool is_nothing(const ritz_dense *R, int64_t j, double largest)
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     int64_t n = component->num_dofs;
     ritz_inertia inertia = {0};
-    ritz_dense R = {0};
-    ritz_dense kept = {0};
+    RITZ_OWN(ritz_dense) R = {0};
+    RITZ_OWN(ritz_dense) kept = {0};
     double largest = 0.0;
     int64_t r = 0;
 
-    RITZ_TRY(ritz_inertia_of(component, &inertia));
-    RITZ_FAIL_IF(!inertia.known, RITZ_ERR_ARGUMENT,
-                 "no grid has a position and a mass, so rigid motion cannot "
-                 "be told: import with --bulk");
-    RITZ_TRY(ritz_rigid_geometry(component, inertia.centre, &R));
-    RITZ_TRY(ritz_dense_new(n, 6, &kept));
+    RITZ_CHECK(ritz_inertia_of(component, &inertia));
+    RITZ_REFUSE_IF(!inertia.known, RITZ_ERR_ARGUMENT,
+                   "no grid has a position and a mass, so rigid motion cannot "
+                   "be told: import with --bulk");
+    RITZ_CHECK(ritz_rigid_geometry(component, inertia.centre, &R));
+    RITZ_CHECK(ritz_dense_new(n, 6, &kept));
     largest = ritz_dense_max(&R);
     for (int64_t j = 0; j < 6; j++)
         if (!is_nothing(&R, j, largest))
             memcpy(ritz_dense_col(&kept, r++), ritz_dense_col(&R, j),
                    (size_t)n * sizeof *R.val);
-    RITZ_TRY(ritz_basis_new(n, r, out));
+    RITZ_CHECK(ritz_basis_new(n, r, out));
     memcpy(out->T.val, kept.val, (size_t)(n * r) * sizeof *kept.val);
     for (int64_t j = 0; j < r; j++) {
         out->columns.kind[j] = RITZ_COLUMN_RIGID;
         out->columns.hertz[j] = 0.0;
     }
     snprintf(out->origin.engine, sizeof out->origin.engine, "geometry");
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&kept);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_rigid = {

@@ -47,24 +47,23 @@ static ritz_status pick(const ritz_free_set *set, ritz_dense *Psi, int64_t *b)
 /* G = Psi Psi_bb^-1, Psi_bb = S L L' S with a unit diagonal within. */
 static ritz_status divide(const int64_t *b, ritz_dense *Psi)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense F = {0};
-    double *scale = NULL;
+    RITZ_OWN(ritz_dense) F = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
     int n = (int)Psi->nrow;
     int p = (int)Psi->ncol;
 
-    RITZ_NEW(scale, p);
-    RITZ_TRY(ritz_dense_rows(Psi, p, b, &F));
+    RITZ_CHECK_NEW(scale, p);
+    RITZ_CHECK(ritz_dense_rows(Psi, p, b, &F));
     ritz_dense_symmetrise(&F);
     for (int64_t j = 0; j < p; j++)
         scale[j] = 1.0 / sqrt(ritz_dense_col(&F, j)[j]);
     for (int64_t j = 0; j < p; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(&F, j)[i] *= scale[i] * scale[j];
-    RITZ_FAIL_IF(LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', p, F.val, p) != 0,
-                 RITZ_ERR_SINGULAR,
-                 "residual flexibility of the attached dofs is singular: "
-                 "keep fewer modes, or a larger --tolerance");
+    RITZ_REFUSE_IF(LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', p, F.val, p) != 0,
+                   RITZ_ERR_SINGULAR,
+                   "residual flexibility of the attached dofs is singular: "
+                   "keep fewer modes, or a larger --tolerance");
     for (int64_t j = 0; j < p; j++)
         cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
     cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
@@ -73,23 +72,19 @@ static ritz_status divide(const int64_t *b, ritz_dense *Psi)
                 CblasNonUnit, n, p, 1.0, F.val, p, Psi->val, n);
     for (int64_t j = 0; j < p; j++)
         cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
-done:
-    free(scale);
-    ritz_dense_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 /* G with ones, and Phi - G Phi_b with zeros, where they are so exactly. */
 static ritz_status shape(const ritz_dense *Phi, const int64_t *b, ritz_dense *G,
                          ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Phi_b = {0};
+    RITZ_OWN(ritz_dense) Phi_b = {0};
     int64_t n = G->nrow;
     int64_t p = G->ncol;
     double *rest = ritz_dense_col(T, p);
 
-    RITZ_TRY(ritz_dense_rows(Phi, p, b, &Phi_b));
+    RITZ_CHECK(ritz_dense_rows(Phi, p, b, &Phi_b));
     for (int64_t j = 0; j < p; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(G, j)[b[i]] = i == j ? 1.0 : 0.0;
@@ -103,9 +98,7 @@ static ritz_status shape(const ritz_dense *Phi, const int64_t *b, ritz_dense *G,
     for (int64_t j = p; j < T->ncol; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(T, j)[b[i]] = 0.0;
-done:
-    ritz_dense_free(&Phi_b);
-    return status;
+    return RITZ_OK;
 }
 
 /* "grid 3 T1, grid 7 T1": dofs that are no coordinates. */
@@ -155,33 +148,28 @@ static void label(const ritz_free_set *set, const int64_t *b, int64_t p,
 
 static ritz_status make(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_free_set set = {0};
-    ritz_basis basis = {0};
-    ritz_dense G = {0};
-    int64_t *b = NULL;
+    RITZ_OWN(ritz_free_set) set = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_dense) G = {0};
+    RITZ_OWN_ARRAY int64_t *b = NULL;
 
-    RITZ_TRY(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
+    RITZ_CHECK(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
     if (ritz_free_set_kept(&set) == 0) { /* then the modes are all there is */
-        RITZ_TRY(ritz_free_set_join(request, &set, RITZ_COLUMN_RESIDUAL, out));
+        RITZ_CHECK(
+            ritz_free_set_join(request, &set, RITZ_COLUMN_RESIDUAL, out));
         remark(request, &set, out);
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_NEW(b, set.Psi.ncol);
-    RITZ_TRY(pick(&set, &G, b));
-    RITZ_TRY(divide(b, &G));
-    RITZ_TRY(ritz_basis_new(G.nrow, G.ncol + set.modes.Phi.ncol, &basis));
-    RITZ_TRY(shape(&set.modes.Phi, b, &G, &basis.T));
+    RITZ_CHECK_NEW(b, set.Psi.ncol);
+    RITZ_CHECK(pick(&set, &G, b));
+    RITZ_CHECK(divide(b, &G));
+    RITZ_CHECK(ritz_basis_new(G.nrow, G.ncol + set.modes.Phi.ncol, &basis));
+    RITZ_CHECK(shape(&set.modes.Phi, b, &G, &basis.T));
     label(&set, b, G.ncol, &basis);
     remark(request, &set, &basis);
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    free(b);
-    ritz_dense_free(&G);
-    ritz_basis_free(&basis);
-    ritz_free_set_free(&set);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_rubin = {

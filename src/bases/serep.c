@@ -79,61 +79,52 @@ static int compare(const void *left, const void *right)
 /* The first m pivots of the weighted Phi_a', in the order of attachment. */
 static ritz_status choose(selection *c)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *a = &c->request->attached;
     int64_t m = c->modes->Phi.ncol;
-    ritz_dense R = {0};
-    double *tau = NULL;
-    int *pivot = NULL;
+    RITZ_OWN(ritz_dense) R = {0};
+    RITZ_OWN_ARRAY double *tau = NULL;
+    RITZ_OWN_ARRAY int *pivot = NULL;
 
-    RITZ_NEW(tau, m);
-    RITZ_NEW(pivot, a->count);
-    RITZ_NEW(c->at, m);
-    RITZ_TRY(ritz_dense_new(m, a->count, &R));
+    RITZ_CHECK_NEW(tau, m);
+    RITZ_CHECK_NEW(pivot, a->count);
+    RITZ_CHECK_NEW(c->at, m);
+    RITZ_CHECK(ritz_dense_new(m, a->count, &R));
     for (int64_t k = 0; k < a->count; k++)
         for (int64_t j = 0; j < m; j++)
             ritz_dense_col(&R, k)[j] =
                 weight(c, k) * ritz_dense_col(&c->modes->Phi, j)[a->at[k]];
-    RITZ_FAIL_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)m, (int)a->count, R.val,
-                                (int)m, pivot, tau) != 0,
-                 RITZ_ERR_MEMORY, "no memory to choose among attached dofs");
+    RITZ_REFUSE_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)m, (int)a->count,
+                                  R.val, (int)m, pivot, tau) != 0,
+                   RITZ_ERR_MEMORY, "no memory to choose among attached dofs");
     for (int64_t k = 0; k < m; k++)
         c->at[k] = pivot[k] - 1;
     qsort(c->at, (size_t)m, sizeof *c->at, compare);
-done:
-    free(tau);
-    free(pivot);
-    ritz_dense_free(&R);
-    return status;
+    return RITZ_OK;
 }
 
 /* U, sigma, V' of the weighted Phi_s, m x m. */
 static ritz_status decompose(const selection *c, ritz_dense *U, double *sigma,
                              ritz_dense *Vt)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *Phi = &c->modes->Phi;
     int m = (int)Phi->ncol;
-    ritz_dense A = {0};
-    double *work = NULL;
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN_ARRAY double *work = NULL;
 
-    RITZ_NEW(work, m);
-    RITZ_TRY(ritz_dense_new(m, m, &A));
-    RITZ_TRY(ritz_dense_new(m, m, U));
-    RITZ_TRY(ritz_dense_new(m, m, Vt));
+    RITZ_CHECK_NEW(work, m);
+    RITZ_CHECK(ritz_dense_new(m, m, &A));
+    RITZ_CHECK(ritz_dense_new(m, m, U));
+    RITZ_CHECK(ritz_dense_new(m, m, Vt));
     for (int64_t j = 0; j < m; j++)
         for (int64_t k = 0; k < m; k++)
             ritz_dense_col(&A, j)[k] =
                 weight(c, c->at[k]) *
                 ritz_dense_col(Phi, j)[c->request->attached.at[c->at[k]]];
-    RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', m, m, A.val, m,
-                                sigma, U->val, m, Vt->val, m, work) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "singular values of the measured shapes do not converge");
-done:
-    free(work);
-    ritz_dense_free(&A);
-    return status;
+    RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', m, m, A.val, m,
+                                  sigma, U->val, m, Vt->val, m, work) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "singular values of the measured shapes do not converge");
+    return RITZ_OK;
 }
 
 /*
@@ -170,52 +161,42 @@ static ritz_status expand(const selection *c, const ritz_dense *U,
                           const double *sigma, const ritz_dense *Vt,
                           ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = U->ncol;
-    ritz_dense scaled = {0}, inverse = {0};
+    RITZ_OWN(ritz_dense) scaled = {0}, inverse = {0};
 
-    RITZ_TRY(ritz_dense_new(m, m, &scaled)); /* Sigma^-1 U' W */
+    RITZ_CHECK(ritz_dense_new(m, m, &scaled)); /* Sigma^-1 U' W */
     for (int64_t j = 0; j < m; j++)
         for (int64_t k = 0; k < m; k++)
             ritz_dense_col(&scaled, k)[j] =
                 ritz_dense_col(U, j)[k] * weight(c, c->at[k]) / sigma[j];
-    RITZ_TRY(ritz_dense_mul_tn(Vt, &scaled, &inverse));
-    RITZ_TRY(ritz_dense_mul(&c->modes->Phi, &inverse, T));
+    RITZ_CHECK(ritz_dense_mul_tn(Vt, &scaled, &inverse));
+    RITZ_CHECK(ritz_dense_mul(&c->modes->Phi, &inverse, T));
     for (int64_t j = 0; j < m; j++)
         for (int64_t k = 0; k < m; k++)
             ritz_dense_col(T, j)[c->request->attached.at[c->at[k]]] =
                 j == k ? 1.0 : 0.0;
-done:
-    ritz_dense_free(&scaled);
-    ritz_dense_free(&inverse);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find(selection *c, ritz_dense *T)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense U = {0}, Vt = {0};
-    double *sigma = NULL;
+    RITZ_OWN(ritz_dense) U = {0}, Vt = {0};
+    RITZ_OWN_ARRAY double *sigma = NULL;
     char text[RITZ_NAME_SIZE];
 
     find_sizes(c);
-    RITZ_TRY(choose(c));
-    RITZ_NEW(sigma, c->modes->Phi.ncol);
-    RITZ_TRY(decompose(c, &U, sigma, &Vt));
+    RITZ_CHECK(choose(c));
+    RITZ_CHECK_NEW(sigma, c->modes->Phi.ncol);
+    RITZ_CHECK(decompose(c, &U, sigma, &Vt));
     judge(c, sigma, &Vt);
     name_worst(c, text);
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         !(c->condition * c->request->tolerance < 1.0), RITZ_ERR_SINGULAR,
         "the attached dofs cannot tell the kept modes apart (condition "
         "%.1e), they see least of %s: attach dofs where it moves, or "
         "keep fewer modes",
         c->condition, text);
-    RITZ_TRY(expand(c, &U, sigma, &Vt, T));
-done:
-    free(sigma);
-    ritz_dense_free(&U);
-    ritz_dense_free(&Vt);
-    return status;
+    return expand(c, &U, sigma, &Vt, T);
 }
 
 /* Which dofs are no coordinates, as far as there is room; what is seen badly.

@@ -162,13 +162,12 @@ static ritz_status list_given(const irka_search *s, ritz_probes *out)
 /* T from probes, of which those that gave nothing are dropped. */
 static ritz_status answer(irka_search *s, ritz_probes *probes)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense T = {0};
-    int64_t *gave = NULL;
+    RITZ_OWN_ARRAY int64_t *gave = NULL;
     int64_t kept = 0;
 
-    RITZ_NEW(gave, probes->count);
-    RITZ_TRY(ritz_rational_span(&s->R, probes, &s->rigid, s->most, &T, gave));
+    RITZ_CHECK_NEW(gave, probes->count);
+    RITZ_CHECK(ritz_rational_span(&s->R, probes, &s->rigid, s->most, &T, gave));
     for (int64_t k = 0; k < probes->count; k++)
         if (gave[k] > 0)
             probes->item[kept++] = probes->item[k];
@@ -181,9 +180,7 @@ static ritz_status answer(irka_search *s, ritz_probes *probes)
     *probes = (ritz_probes){0};
     ritz_dense_free(&s->T);
     s->T = T;
-done:
-    free(gave);
-    return status;
+    return RITZ_OK;
 }
 
 /* Distance of two points, none between groups. */
@@ -227,44 +224,37 @@ static double follow(const ritz_probes *before, bool is_free,
 /* Points to where the poles that they gave say, until they stay. */
 static ritz_status iterate(irka_search *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = s->rigid.ncol;
-    ritz_probes probes = {0};
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_probes) probes = {0};
+    RITZ_OWN(ritz_dense) V = {0};
 
     s->change = HUGE_VAL;
-    RITZ_TRY(ritz_dense_columns(&s->modes.Phi, r, s->modes.Phi.ncol - r, &V));
+    RITZ_CHECK(ritz_dense_columns(&s->modes.Phi, r, s->modes.Phi.ncol - r, &V));
     for (s->rounds = 0;; s->rounds++) {
-        RITZ_TRY(ritz_dominant_probes(&s->R, &s->damping, &V, &probes));
+        RITZ_CHECK(ritz_dominant_probes(&s->R, &s->damping, &V, &probes));
         if (s->rounds > 0)
             s->change = follow(&s->probes, s->rounds <= FREE_ROUNDS, &probes);
         if (s->change <= RITZ_POINTS_SETTLED || s->rounds == MOST_ROUNDS)
             break;
-        RITZ_TRY(answer(s, &probes));
+        RITZ_CHECK(answer(s, &probes));
         ritz_dense_free(&V);
-        RITZ_TRY(ritz_dense_columns(&s->T, r, s->T.ncol - r, &V));
+        RITZ_CHECK(ritz_dense_columns(&s->T, r, s->T.ncol - r, &V));
     }
-done:
-    ritz_probes_free(&probes);
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_given(irka_search *s)
 {
-    ritz_status status = RITZ_OK;
-    ritz_probes probes = {0};
+    RITZ_OWN(ritz_probes) probes = {0};
 
     for (int64_t k = 0; k < s->request->choice.num_shifts; k++)
-        RITZ_FAIL_IF(s->rigid.ncol > 0 && s->request->choice.shift_hz[k] == 0.0,
-                     RITZ_ERR_ARGUMENT,
-                     "the component can move freely, so that 0 Hz is a pole "
-                     "of it: give an expansion point above 0");
-    RITZ_TRY(list_given(s, &probes));
-    RITZ_TRY(answer(s, &probes));
-done:
-    ritz_probes_free(&probes);
-    return status;
+        RITZ_REFUSE_IF(s->rigid.ncol > 0 &&
+                           s->request->choice.shift_hz[k] == 0.0,
+                       RITZ_ERR_ARGUMENT,
+                       "the component can move freely, so that 0 Hz is a pole "
+                       "of it: give an expansion point above 0");
+    RITZ_CHECK(list_given(s, &probes));
+    return answer(s, &probes);
 }
 
 /* Inputs, or outputs, or attached dofs: the first that is there. */
@@ -334,12 +324,11 @@ static void remark(const irka_search *s, ritz_basis *basis)
 /* Rigid, krylov. */
 static ritz_status describe(const irka_search *s, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_columns *columns = &basis.columns;
 
-    RITZ_TRY(ritz_dense_copy(&s->T, &basis.T));
-    RITZ_TRY(ritz_columns_new(s->T.ncol, columns));
+    RITZ_CHECK(ritz_dense_copy(&s->T, &basis.T));
+    RITZ_CHECK(ritz_columns_new(s->T.ncol, columns));
     for (int64_t j = 0; j < s->T.ncol; j++) {
         bool rigid = j < s->rigid.ncol;
 
@@ -353,9 +342,7 @@ static ritz_status describe(const irka_search *s, ritz_basis *out)
     remark(s, &basis);
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,

@@ -75,23 +75,19 @@ done:
 ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
                              ritz_trial *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_trial trial = {.count = rows->stage->count};
-    ritz_range *massless = NULL;
+    RITZ_OWN(ritz_trial) trial = {.count = rows->stage->count};
+    RITZ_OWN_ARRAY ritz_range *massless = NULL;
 
-    RITZ_NEW(massless, trial.count);
-    RITZ_NEW(trial.V, trial.count);
-    RITZ_TRY_IN(
+    RITZ_CHECK_NEW(massless, trial.count);
+    RITZ_CHECK_NEW(trial.V, trial.count);
+    RITZ_CHECK_IN(
         "composite modes",
         ritz_compare_composite(rows, plan, trial.V, massless, &trial.vectors));
-    RITZ_TRY_IN("stage 2", project(rows->stage, massless, &trial));
-    RITZ_TRY_IN("stage 2", ritz_assemble(&trial.second, NULL, &trial.system));
+    RITZ_CHECK_IN("stage 2", project(rows->stage, massless, &trial));
+    RITZ_CHECK_IN("stage 2", ritz_assemble(&trial.second, NULL, &trial.system));
     *out = trial;
     trial = (ritz_trial){0};
-done:
-    free(massless);
-    ritz_trial_free(&trial);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_trial_free(ritz_trial *trial)
@@ -241,10 +237,9 @@ static void name_set(const ritz_scene *scene, ritz_candidate *candidate)
 static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
                                   ritz_candidate *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = rows->stage->scene;
     bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
-    ritz_two_responses r = {0};
+    RITZ_OWN(ritz_two_responses) r = {0};
 
     for (int64_t k = 0; k < trial->system.num_configurations; k++) {
         const ritz_configuration *first = ritz_rows_first(rows, k);
@@ -252,14 +247,14 @@ static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
         double gain = nan(""), apart = 0.0, hertz = 0.0;
 
         if (driven)
-            RITZ_TRY(ritz_compare_gain(first, second, &gain));
+            RITZ_CHECK(ritz_compare_gain(first, second, &gain));
         out->gain_listed = fmax(out->gain_listed, gain);
         out->largest =
             second->K.ncol > out->largest ? second->K.ncol : out->largest;
         if (!ritz_compare_responds(scene))
             continue;
-        RITZ_TRY(ritz_compare_respond(scene, first, second, &r));
-        RITZ_TRY(ritz_compare_bode(&r, &apart, &hertz));
+        RITZ_CHECK(ritz_compare_respond(scene, first, second, &r));
+        RITZ_CHECK(ritz_compare_bode(&r, &apart, &hertz));
         ritz_two_responses_free(&r);
         if (isnan(out->deviation) || apart > out->deviation) {
             out->deviation = apart;
@@ -267,33 +262,28 @@ static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
             memcpy(out->at, first->at, sizeof out->at);
         }
     }
-done:
-    ritz_two_responses_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 /* Static gain between them. */
 static ritz_status measure_between(const ritz_rows *rows, ritz_trial *trial,
                                    ritz_candidate *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = rows->stage->scene;
     bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
-    ritz_configuration second = {0};
+    RITZ_OWN(ritz_configuration) second = {0};
 
     for (int64_t k = trial->system.num_configurations;
          k < rows->num_rows && driven; k++) {
         double gain = 0.0;
 
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_stage_assemble(&trial->second, rows->row[k].setting, &second));
-        RITZ_TRY(ritz_compare_gain(ritz_rows_first(rows, k), &second, &gain));
+        RITZ_CHECK(ritz_compare_gain(ritz_rows_first(rows, k), &second, &gain));
         out->gain_between = fmax(out->gain_between, gain);
         ritz_configuration_free(&second);
     }
-done:
-    ritz_configuration_free(&second);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status try_set(const ritz_rows *rows, const ritz_plan *plan,

@@ -211,36 +211,32 @@ static ritz_status choose(const ritz_rows *rows)
 /* Errors at every row; between angles the second system is made for it. */
 static ritz_status measure(const ritz_rows *rows, ritz_comparison *c)
 {
-    ritz_status status = RITZ_OK;
-    ritz_configuration second = {0};
+    RITZ_OWN(ritz_configuration) second = {0};
 
     for (int64_t k = 0; k < rows->num_rows; k++) {
         ritz_compare_row *row = &rows->row[k];
 
         ritz_monitor_step("errors", k, rows->num_rows);
         if (!row->listed)
-            RITZ_TRY(ritz_stage_assemble(&c->second, row->setting, &second));
-        RITZ_TRY(ritz_compare_measure(
+            RITZ_CHECK(ritz_stage_assemble(&c->second, row->setting, &second));
+        RITZ_CHECK(ritz_compare_measure(
             rows->stage, c->V, ritz_rows_first(rows, k),
             row->listed ? &c->second_system.configuration[k] : &second, row));
         ritz_configuration_free(&second);
     }
-done:
-    ritz_configuration_free(&second);
-    return status;
+    return RITZ_OK;
 }
 
 /* Stage two as planned, and its place in the result. */
 static ritz_status reduce(const ritz_rows *rows, ritz_comparison *c)
 {
-    ritz_status status = RITZ_OK;
     ritz_plan plan = ritz_compare_plan(rows->stage->scene);
-    ritz_trial trial = {0};
+    RITZ_OWN(ritz_trial) trial = {0};
 
-    RITZ_TRY_IN("attached dofs",
-                ritz_compare_candidates(rows, &plan, &c->num_candidates,
-                                        &c->candidate));
-    RITZ_TRY(ritz_compare_try(rows, &plan, &trial));
+    RITZ_CHECK_IN("attached dofs",
+                  ritz_compare_candidates(rows, &plan, &c->num_candidates,
+                                          &c->candidate));
+    RITZ_CHECK(ritz_compare_try(rows, &plan, &trial));
     c->num_bodies = trial.count;
     c->V = trial.V;
     c->composite = trial.vectors;
@@ -248,9 +244,7 @@ static ritz_status reduce(const ritz_rows *rows, ritz_comparison *c)
     c->second = trial.second;
     c->second_system = trial.system;
     trial = (ritz_trial){0};
-done:
-    ritz_trial_free(&trial);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)

@@ -97,34 +97,28 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
 ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
                              double *value, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int r = (int)Y->nrow;
     int m = (int)Y->ncol;
     int least = r < m ? r : m;
     int rank = 0;
-    ritz_dense U = {0};
-    double *sigma = NULL, *work = NULL;
+    RITZ_OWN(ritz_dense) U = {0};
+    RITZ_OWN_ARRAY double *sigma = NULL, *work = NULL;
 
-    RITZ_NEW(sigma, least);
-    RITZ_NEW(work, least);
-    RITZ_TRY(ritz_dense_new(r, least, &U));
+    RITZ_CHECK_NEW(sigma, least);
+    RITZ_CHECK_NEW(work, least);
+    RITZ_CHECK(ritz_dense_new(r, least, &U));
     if (least > 0) {
-        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'N', r, m, Y->val, r,
-                                    sigma, U.val, r, NULL, 1, work) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "singular values of the composite set do not converge");
+        RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'N', r, m, Y->val,
+                                      r, sigma, U.val, r, NULL, 1, work) != 0,
+                       RITZ_ERR_CONVERGENCE,
+                       "singular values of the composite set do not converge");
         *largest = fmax(*largest, sigma[0]);
     }
     while (rank < least && sigma[rank] > tolerance * *largest)
         rank++;
     for (int k = 0; value && k < rank; k++)
         value[k] = sigma[k];
-    RITZ_TRY(ritz_dense_columns(&U, 0, rank, out));
-done:
-    free(sigma);
-    free(work);
-    ritz_dense_free(&U);
-    return status;
+    return ritz_dense_columns(&U, 0, rank, out);
 }
 
 ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
@@ -173,13 +167,12 @@ static ritz_status choose_answers(const ritz_scene *scene,
                                   const ritz_configuration *c,
                                   const ritz_plan *plan, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *const C[] = {&c->io.C, &c->io.Cv, &c->io.Ca};
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
     int64_t m = 0;
 
-    RITZ_TRY(ritz_dense_new(c->K.ncol, c->io.num_inputs + 3 * c->io.num_outputs,
-                            &X));
+    RITZ_CHECK(ritz_dense_new(c->K.ncol,
+                              c->io.num_inputs + 3 * c->io.num_outputs, &X));
     for (int64_t j = 0; j < c->io.num_inputs; j++)
         if (ritz_plan_attaches(scene, plan, j))
             m += answer_input(c, j, ritz_dense_col(&X, m));
@@ -187,10 +180,7 @@ static ritz_status choose_answers(const ritz_scene *scene,
         for (int64_t i = 0; i < c->io.num_outputs; i++)
             if (plan->attached & RITZ_ATTACHED_OUTPUTS)
                 m += answer_output(c, C[kind], i, ritz_dense_col(&X, m));
-    RITZ_TRY(ritz_dense_columns(&X, 0, m, out));
-done:
-    ritz_dense_free(&X);
-    return status;
+    return ritz_dense_columns(&X, 0, m, out);
 }
 
 /* Unit columns of some modes. */
@@ -348,12 +338,11 @@ static ritz_status choose_directions(const ritz_dense *L, const double *scale,
                                      columns *of, const ritz_plan *plan,
                                      ritz_dense *U)
 {
-    ritz_status status = RITZ_OK;
     bool own = plan->augment == RITZ_AUGMENT_COMPONENT;
-    ritz_dense Y = {0}, more = {0};
+    RITZ_OWN(ritz_dense) Y = {0}, more = {0};
     double largest = 0.0;
 
-    RITZ_TRY(ritz_dense_new(L->nrow, 0, U));
+    RITZ_CHECK(ritz_dense_new(L->nrow, 0, U));
     for (int g = 0; g < GROUPS; g++) {
         double least = tightest[g];
 
@@ -361,22 +350,19 @@ static ritz_status choose_directions(const ritz_dense *L, const double *scale,
             least = fmax(plan->tolerance, least);
         if (g == STATIC && own)
             least = RITZ_TIGHTEST_BODY;
-        RITZ_TRY(ritz_mass_transform(L, scale, &of->group[g], &Y));
+        RITZ_CHECK(ritz_mass_transform(L, scale, &of->group[g], &Y));
         if (g == MASSLESS || (g == STATIC && own))
             make_unit(&Y);
-        RITZ_TRY(ritz_dense_take_out(U, U, &Y));
-        RITZ_TRY(ritz_dense_take_out(U, U, &Y)); /* twice is enough */
-        RITZ_TRY(ritz_span_of(&Y, least, &largest, &more));
+        RITZ_CHECK(ritz_dense_take_out(U, U, &Y));
+        RITZ_CHECK(ritz_dense_take_out(U, U, &Y)); /* twice is enough */
+        RITZ_CHECK(ritz_span_of(&Y, least, &largest, &more));
         if (g == MASSLESS) {
             of->massless = (ritz_range){U->ncol, U->ncol + more.ncol};
         }
-        RITZ_TRY(append(&more, U));
+        RITZ_CHECK(append(&more, U));
         ritz_dense_free(&Y);
     }
-done:
-    ritz_dense_free(&Y);
-    ritz_dense_free(&more);
-    return status;
+    return RITZ_OK;
 }
 
 /* V of one body from the columns that all configurations gave it. */
@@ -384,17 +370,16 @@ static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
                                   columns *of, const ritz_plan *plan,
                                   ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = body->M.ncol;
-    ritz_dense L = {0}, U = {0};
+    RITZ_OWN(ritz_dense) L = {0}, U = {0};
     bool mixed = false;
 
-    RITZ_TRY(ritz_mass_factor(body, scale, &L, &mixed));
-    RITZ_TRY(choose_directions(&L, scale, of, plan, &U));
+    RITZ_CHECK(ritz_mass_factor(body, scale, &L, &mixed));
+    RITZ_CHECK(choose_directions(&L, scale, of, plan, &U));
     if (U.ncol == r) { /* nothing to remove: leave the body as it is */
         of->massless = (ritz_range){0, 0};
-        RITZ_TRY(identity(r, V));
-        goto done;
+        RITZ_CHECK(identity(r, V));
+        return RITZ_OK;
     }
     if (U.ncol > 0)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
@@ -407,10 +392,7 @@ static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
             ritz_dense_col(&U, j)[i] *= scale[i];
     *V = U;
     U = (ritz_dense){0};
-done:
-    ritz_dense_free(&L);
-    ritz_dense_free(&U);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether configuration k of the scene adds to the composite set. */
@@ -426,25 +408,21 @@ static bool counts(const ritz_scene *scene, int64_t k)
 static ritz_status collect(const ritz_rows *rows, int64_t k,
                            const ritz_plan *plan, columns *of, int64_t *count)
 {
-    ritz_status status = RITZ_OK;
     const ritz_stage *stage = rows->stage;
     const ritz_configuration *c = ritz_rows_first(rows, k);
-    ritz_dense X = {0}, more = {0};
+    RITZ_OWN(ritz_dense) X = {0}, more = {0};
 
     for (int g = 0; g < GROUPS; g++) {
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_composite_choose(stage->scene, c, &rows->row[k], g, plan, &X));
         *count += X.ncol;
         for (int64_t b = 0; b < stage->count; b++) {
-            RITZ_TRY(ritz_dense_mul(&c->P[b], &X, &more));
-            RITZ_TRY(append(&more, &of[b].group[g]));
+            RITZ_CHECK(ritz_dense_mul(&c->P[b], &X, &more));
+            RITZ_CHECK(append(&more, &of[b].group[g]));
         }
         ritz_dense_free(&X);
     }
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&more);
-    return status;
+    return RITZ_OK;
 }
 
 /* Append what each body has of its own, once for all configurations. */
@@ -452,27 +430,24 @@ static ritz_status collect_own(const ritz_stage *stage, const double *scale,
                                const ritz_plan *plan, columns *of,
                                int64_t *count)
 {
-    ritz_status status = RITZ_OK;
-    ritz_statics own = {0};
+    RITZ_OWN(ritz_statics) own = {0};
 
     for (int64_t b = 0; b < stage->count && plan->augment != RITZ_AUGMENT_NONE;
          b++) {
         const ritz_scene_component *item = &stage->scene->component[b];
 
-        RITZ_TRY_IN(item->name,
-                    ritz_body_massless(&stage->body[b], scale + stage->first[b],
-                                       &own.massless));
-        RITZ_TRY(append(&own.massless, &of[b].group[MASSLESS]));
+        RITZ_CHECK_IN(item->name, ritz_body_massless(&stage->body[b],
+                                                     scale + stage->first[b],
+                                                     &own.massless));
+        RITZ_CHECK(append(&own.massless, &of[b].group[MASSLESS]));
         if (plan->augment != RITZ_AUGMENT_COMPONENT)
             continue;
-        RITZ_TRY_IN(item->name, ritz_body_statics(stage, b, plan, &own));
+        RITZ_CHECK_IN(item->name, ritz_body_statics(stage, b, plan, &own));
         *count += own.answers.ncol;
-        RITZ_TRY(append(&own.rigid, &of[b].group[RIGID]));
-        RITZ_TRY(append(&own.answers, &of[b].group[STATIC]));
+        RITZ_CHECK(append(&own.rigid, &of[b].group[RIGID]));
+        RITZ_CHECK(append(&own.answers, &of[b].group[STATIC]));
     }
-done:
-    ritz_statics_free(&own);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,

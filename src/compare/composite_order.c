@@ -82,58 +82,51 @@ static ritz_status choose_modes(const ritz_configuration *at, double highest,
 
 static ritz_status give(const ritz_givens *g, ritz_given *to)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = g->stage->scene;
     const ritz_plan plan = {.augment = RITZ_AUGMENT_SYSTEM,
                             .attached =
                                 RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_OUTPUTS};
-    ritz_dense band = {0}, answers = {0};
+    RITZ_OWN(ritz_dense) band = {0}, answers = {0};
 
-    RITZ_TRY(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_RIGID, &plan,
-                                   &to->X[RITZ_GROUP_RIGID]));
-    RITZ_TRY(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_STATIC,
-                                   &plan, &answers));
-    RITZ_TRY(choose_modes(to->at, g->lambda, to->value, &band));
-    RITZ_TRY(choose_modes(to->at, HUGE_VAL, NULL, &to->X[RITZ_GROUP_REST]));
+    RITZ_CHECK(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_RIGID,
+                                     &plan, &to->X[RITZ_GROUP_RIGID]));
+    RITZ_CHECK(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_STATIC,
+                                     &plan, &answers));
+    RITZ_CHECK(choose_modes(to->at, g->lambda, to->value, &band));
+    RITZ_CHECK(choose_modes(to->at, HUGE_VAL, NULL, &to->X[RITZ_GROUP_REST]));
     if (scene->augment == RITZ_AUGMENT_NONE) {
         to->X[RITZ_GROUP_BAND] = band;
         to->X[RITZ_GROUP_STATIC] = answers;
         band = answers = (ritz_dense){0};
     } else {
-        RITZ_TRY(ritz_dense_beside(&band, &answers, &to->X[RITZ_GROUP_BAND]));
-        RITZ_TRY(ritz_dense_new(band.nrow, 0, &to->X[RITZ_GROUP_STATIC]));
+        RITZ_CHECK(ritz_dense_beside(&band, &answers, &to->X[RITZ_GROUP_BAND]));
+        RITZ_CHECK(ritz_dense_new(band.nrow, 0, &to->X[RITZ_GROUP_STATIC]));
     }
-done:
-    ritz_dense_free(&band);
-    ritz_dense_free(&answers);
-    return status;
+    return RITZ_OK;
 }
 
 /* P_c X of one body and group, all configurations side by side. */
 static ritz_status givens_gather(const ritz_givens *g, int64_t body, int group,
                                  ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = g->stage->body[body].K.ncol;
     int64_t used = 0;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
     for (int64_t k = 0; k < g->system.num_configurations; k++)
         used += g->each[k].X[group].ncol;
-    RITZ_TRY(ritz_dense_new(r, used, out));
+    RITZ_CHECK(ritz_dense_new(r, used, out));
     used = 0;
     for (int64_t k = 0; k < g->system.num_configurations; k++) {
-        RITZ_TRY(ritz_dense_mul(&g->each[k].at->P[body], &g->each[k].X[group],
-                                &part));
+        RITZ_CHECK(ritz_dense_mul(&g->each[k].at->P[body], &g->each[k].X[group],
+                                  &part));
         if (r * part.ncol > 0)
             memcpy(ritz_dense_col(out, used), part.val,
                    (size_t)(r * part.ncol) * sizeof *part.val);
         used += part.ncol;
         ritz_dense_free(&part);
     }
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* P_c X of one body and group, all configurations side by side. */
@@ -213,22 +206,17 @@ typedef struct direction {
 static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
                                  ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const double *scale = g->scale + g->stage->first[body];
-    ritz_dense W = {0}, L = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) W = {0}, L = {0}, Y = {0};
     double largest = 0.0;
     bool mixed = false;
 
-    RITZ_TRY(givens_gather(g, body, RITZ_GROUP_RIGID, &W));
-    RITZ_TRY(ritz_mass_factor(&g->stage->body[body], scale, &L, &mixed));
-    RITZ_TRY(ritz_mass_transform(&L, scale, &W, &Y));
-    RITZ_TRY(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, out));
+    RITZ_CHECK(givens_gather(g, body, RITZ_GROUP_RIGID, &W));
+    RITZ_CHECK(ritz_mass_factor(&g->stage->body[body], scale, &L, &mixed));
+    RITZ_CHECK(ritz_mass_transform(&L, scale, &W, &Y));
+    RITZ_CHECK(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, out));
     ritz_mass_return(&L, scale, out);
-done:
-    ritz_dense_free(&W);
-    ritz_dense_free(&L);
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /* A body while its directions are found, in coordinates in which E = L L' has a
@@ -244,53 +232,42 @@ typedef struct frame {
 
 static ritz_status start(const ritz_givens *g, frame *f)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reduced *body = &g->stage->body[f->body];
-    ritz_dense R = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) R = {0}, Y = {0};
     double largest = 0.0;
 
-    RITZ_NEW(f->scale, body->K.ncol);
-    RITZ_NEW(f->value, body->K.ncol);
+    RITZ_CHECK_NEW(f->scale, body->K.ncol);
+    RITZ_CHECK_NEW(f->value, body->K.ncol);
     for (int64_t j = 0; j < body->K.ncol; j++) {
         double e = ritz_dense_col(&body->M, j)[j] +
                    ritz_dense_col(&body->K, j)[j] / g->lambda;
 
         f->scale[j] = e > 0.0 ? 1.0 / sqrt(e) : 1.0;
     }
-    RITZ_TRY(ritz_mixed_factor(body, f->scale, g->lambda, &f->L));
-    RITZ_TRY(rigid_motions(g, f->body, &R));
-    RITZ_TRY(ritz_mass_transform(&f->L, f->scale, &R, &Y));
-    RITZ_TRY(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, &f->U));
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&Y);
-    return status;
+    RITZ_CHECK(ritz_mixed_factor(body, f->scale, g->lambda, &f->L));
+    RITZ_CHECK(rigid_motions(g, f->body, &R));
+    RITZ_CHECK(ritz_mass_transform(&f->L, f->scale, &R, &Y));
+    return ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, &f->U);
 }
 
 /* What a group adds to U, no more than there are directions at all. */
 static ritz_status add_group(const ritz_givens *g, int group, frame *f)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense W = {0}, Y = {0}, more = {0}, both = {0};
+    RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0}, both = {0};
 
-    RITZ_TRY(givens_gather(g, f->body, group, &W));
-    RITZ_TRY(ritz_mass_transform(&f->L, f->scale, &W, &Y));
-    RITZ_TRY(ritz_dense_take_out(&f->U, &f->U, &Y));
-    RITZ_TRY(ritz_dense_take_out(&f->U, &f->U, &Y)); /* twice is enough */
-    RITZ_TRY(
+    RITZ_CHECK(givens_gather(g, f->body, group, &W));
+    RITZ_CHECK(ritz_mass_transform(&f->L, f->scale, &W, &Y));
+    RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y));
+    RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y)); /* twice is enough */
+    RITZ_CHECK(
         ritz_span_values(&Y, RITZ_RANK_LOSS, &f->largest, f->value, &more));
     if (more.ncol > f->U.nrow - f->U.ncol)
         more.ncol = f->U.nrow - f->U.ncol;
-    RITZ_TRY(ritz_dense_beside(&f->U, &more, &both));
+    RITZ_CHECK(ritz_dense_beside(&f->U, &more, &both));
     ritz_dense_free(&f->U);
     f->U = both;
     both = (ritz_dense){0};
-done:
-    ritz_dense_free(&W);
-    ritz_dense_free(&Y);
-    ritz_dense_free(&more);
-    ritz_dense_free(&both);
-    return status;
+    return RITZ_OK;
 }
 
 /* V of one body; its directions join those of all others. */
@@ -338,23 +315,20 @@ static int by_right(const void *left, const void *right)
 
 static ritz_status order_bodies(const ritz_givens *g, ritz_composite *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_stage *stage = g->stage;
-    direction *all = NULL;
+    RITZ_OWN_ARRAY direction *all = NULL;
 
     out->num_bodies = stage->count;
-    RITZ_NEW(out->V, stage->count);
-    RITZ_NEW(out->rigid, stage->count);
-    RITZ_NEW(out->step, stage->num_coordinates);
-    RITZ_NEW(all, stage->num_coordinates);
+    RITZ_CHECK_NEW(out->V, stage->count);
+    RITZ_CHECK_NEW(out->rigid, stage->count);
+    RITZ_CHECK_NEW(out->step, stage->num_coordinates);
+    RITZ_CHECK_NEW(all, stage->num_coordinates);
     for (int64_t c = 0; c < stage->count; c++)
-        RITZ_TRY(order_body(g, c, out, all));
+        RITZ_CHECK(order_body(g, c, out, all));
     qsort(all, (size_t)out->num_steps, sizeof *all, by_right);
     for (int64_t k = 0; k < out->num_steps; k++)
         out->step[k] = all[k].body;
-done:
-    free(all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out)

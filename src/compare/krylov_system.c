@@ -75,36 +75,30 @@ ritz_status ritz_system_krylov(const ritz_configuration *configuration,
                                int64_t vectors, bool both, ritz_dense *out,
                                int64_t *moments)
 {
-    ritz_status status = RITZ_OK;
     const ritz_configuration *c = configuration;
     int64_t flexible = c->K.ncol - c->num_rigid;
     int64_t most = vectors < flexible ? vectors : flexible;
     int64_t first = 0, blocks = 0;
-    ritz_sparse weights = {0};
-    ritz_orthonormal set = {0};
-    ritz_dense W = {0};
+    RITZ_OWN(ritz_sparse) weights = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
+    RITZ_OWN(ritz_dense) W = {0};
     bool fits = false;
 
-    RITZ_TRY(take_weights(c, &weights));
-    RITZ_TRY(ritz_orthonormal_new(c->K.ncol, &weights, RITZ_DEPENDENT, &set));
-    RITZ_TRY(start(c, both, &W));
-    RITZ_TRY(append_block(&W, most, &set, &fits));
+    RITZ_CHECK(take_weights(c, &weights));
+    RITZ_CHECK(ritz_orthonormal_new(c->K.ncol, &weights, RITZ_DEPENDENT, &set));
+    RITZ_CHECK(start(c, both, &W));
+    RITZ_CHECK(append_block(&W, most, &set, &fits));
     while (fits) {
         blocks++;
         if (set.count == first) /* every further moment is kept as well */
             break;
         ritz_dense_free(&W);
-        RITZ_TRY(ritz_dense_columns(&set.V, first, set.count - first, &W));
+        RITZ_CHECK(ritz_dense_columns(&set.V, first, set.count - first, &W));
         for (int64_t j = 0; j < W.ncol; j++)
             solve(c, ritz_dense_col(&W, j), 1, ritz_dense_col(&W, j));
         first = set.count;
-        RITZ_TRY(append_block(&W, most, &set, &fits));
+        RITZ_CHECK(append_block(&W, most, &set, &fits));
     }
     *moments = both ? 2 * blocks : blocks;
-    RITZ_TRY(ritz_dense_columns(&set.V, 0, set.count, out));
-done:
-    ritz_sparse_free(&weights);
-    ritz_orthonormal_free(&set);
-    ritz_dense_free(&W);
-    return status;
+    return ritz_dense_columns(&set.V, 0, set.count, out);
 }

@@ -39,24 +39,23 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
                                  const ritz_configuration *second,
                                  ritz_two_responses *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grid grid = {
         .from_hz = fmax(scene->band_hz[0], RITZ_BAND_START * scene->band_hz[1]),
         .to_hz = scene->band_hz[1],
         .count = 200,
         .refine = true,
     };
-    ritz_poles one = {0}, two = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_poles) one = {0}, two = {0};
+    RITZ_OWN(ritz_response) r = {0};
     int64_t size = first->io.num_inputs * first->io.num_outputs;
 
-    RITZ_TRY(find_poles(scene, first, &one));
-    RITZ_TRY(find_poles(scene, second, &two));
-    RITZ_TRY(ritz_response_new(&grid, &one, "modal", &scene->damping, &r));
-    RITZ_NEW(out->two, r.count * size);
+    RITZ_CHECK(find_poles(scene, first, &one));
+    RITZ_CHECK(find_poles(scene, second, &two));
+    RITZ_CHECK(ritz_response_new(&grid, &one, "modal", &scene->damping, &r));
+    RITZ_CHECK_NEW(out->two, r.count * size);
     for (int64_t k = 0; k < r.count; k++) {
-        RITZ_TRY(ritz_poles_add(&one, r.hertz[k], r.H + k * size));
-        RITZ_TRY(ritz_poles_add(&two, r.hertz[k], out->two + k * size));
+        RITZ_CHECK(ritz_poles_add(&one, r.hertz[k], r.H + k * size));
+        RITZ_CHECK(ritz_poles_add(&two, r.hertz[k], out->two + k * size));
     }
     out->count = r.count;
     out->num_inputs = first->io.num_inputs;
@@ -65,11 +64,7 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
     out->one = r.H;
     r.hertz = NULL;
     r.H = NULL;
-done:
-    ritz_poles_free(&one);
-    ritz_poles_free(&two);
-    ritz_response_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_two_responses_free(ritz_two_responses *responses)
@@ -111,17 +106,16 @@ done:
 ritz_status ritz_compare_bode(const ritz_two_responses *responses,
                               double *deviation, double *hertz)
 {
-    ritz_status status = RITZ_OK;
     const ritz_two_responses *r = responses;
-    double *one = NULL, *two = NULL;
+    RITZ_OWN_ARRAY double *one = NULL, *two = NULL;
     double mean = 0.0;
     int64_t seen = 0;
 
-    RITZ_NEW(one, r->count);
-    RITZ_NEW(two, r->count);
-    RITZ_TRY(
+    RITZ_CHECK_NEW(one, r->count);
+    RITZ_CHECK_NEW(two, r->count);
+    RITZ_CHECK(
         largest_singular(r->count, r->num_outputs, r->num_inputs, r->one, one));
-    RITZ_TRY(
+    RITZ_CHECK(
         largest_singular(r->count, r->num_outputs, r->num_inputs, r->two, two));
     for (int64_t k = 0; k < r->count; k++)
         if (one[k] > 0.0) {
@@ -140,10 +134,7 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
             *hertz = r->hertz[k];
         }
     }
-done:
-    free(one);
-    free(two);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -219,37 +210,31 @@ static ritz_status compare_strays(const ritz_scene *scene,
 static ritz_status take_columns(int64_t count, const int64_t *keep,
                                 ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense less = {0};
+    RITZ_OWN(ritz_dense) less = {0};
 
-    RITZ_TRY(ritz_dense_new(A->nrow, count, &less));
+    RITZ_CHECK(ritz_dense_new(A->nrow, count, &less));
     for (int64_t j = 0; j < count && A->nrow > 0; j++)
         memcpy(ritz_dense_col(&less, j), ritz_dense_col(A, keep[j]),
                (size_t)A->nrow * sizeof *A->val);
     ritz_dense_free(A);
     *A = less;
     less = (ritz_dense){0};
-done:
-    ritz_dense_free(&less);
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows and columns `keep` of a square A, or rows alone. */
 static ritz_status take_rows(int64_t count, const int64_t *keep, bool square,
                              ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense less = {0};
+    RITZ_OWN(ritz_dense) less = {0};
 
     if (square)
-        RITZ_TRY(take_columns(count, keep, A));
-    RITZ_TRY(ritz_dense_rows(A, count, keep, &less));
+        RITZ_CHECK(take_columns(count, keep, A));
+    RITZ_CHECK(ritz_dense_rows(A, count, keep, &less));
     ritz_dense_free(A);
     *A = less;
     less = (ritz_dense){0};
-done:
-    ritz_dense_free(&less);
-    return status;
+    return RITZ_OK;
 }
 
 /* The modes `keep` of a configuration, and no other. */
@@ -281,12 +266,11 @@ static ritz_status truncate(int64_t count, const int64_t *keep,
 static ritz_status compare_remove(const ritz_compare_row *row,
                                   ritz_configuration *second)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *keep = NULL;
+    RITZ_OWN_ARRAY int64_t *keep = NULL;
     int64_t count = 0;
     int64_t next = 0;
 
-    RITZ_NEW(keep, second->K.ncol);
+    RITZ_CHECK_NEW(keep, second->K.ncol);
     for (int64_t j = 0; j < second->K.ncol; j++) {
         while (next < row->num_strays &&
                (row->stray[next].mode + second->num_rigid < j))
@@ -298,10 +282,8 @@ static ritz_status compare_remove(const ritz_compare_row *row,
         keep[count++] = j;
     }
     if (count < second->K.ncol)
-        RITZ_TRY(truncate(count, keep, second));
-done:
-    free(keep);
-    return status;
+        RITZ_CHECK(truncate(count, keep, second));
+    return RITZ_OK;
 }
 
 /*
@@ -318,25 +300,20 @@ static ritz_status compare_correlate(const ritz_stage *stage,
                                      const ritz_configuration *second,
                                      ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense VP = {0}, MVP = {0}, part = {0};
+    RITZ_OWN(ritz_dense) VP = {0}, MVP = {0}, part = {0};
 
-    RITZ_TRY(ritz_dense_new(first->K.ncol, second->K.ncol, X));
+    RITZ_CHECK(ritz_dense_new(first->K.ncol, second->K.ncol, X));
     for (int64_t c = 0; c < stage->count; c++) {
-        RITZ_TRY(ritz_dense_mul(&V[c], &second->P[c], &VP));
-        RITZ_TRY(ritz_dense_mul(&stage->body[c].M, &VP, &MVP));
-        RITZ_TRY(ritz_dense_mul_tn(&first->P[c], &MVP, &part));
+        RITZ_CHECK(ritz_dense_mul(&V[c], &second->P[c], &VP));
+        RITZ_CHECK(ritz_dense_mul(&stage->body[c].M, &VP, &MVP));
+        RITZ_CHECK(ritz_dense_mul_tn(&first->P[c], &MVP, &part));
         for (int64_t k = 0; k < part.nrow * part.ncol; k++)
             X->val[k] += part.val[k];
         ritz_dense_free(&VP);
         ritz_dense_free(&MVP);
         ritz_dense_free(&part);
     }
-done:
-    ritz_dense_free(&VP);
-    ritz_dense_free(&MVP);
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* The mode of the second system that is most like mode k, and how like. */
@@ -417,36 +394,27 @@ static double relative(const ritz_dense *one, const ritz_dense *two)
 ritz_status ritz_compare_gain(const ritz_configuration *first,
                               const ritz_configuration *second, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense one = {0}, two = {0};
+    RITZ_OWN(ritz_dense) one = {0}, two = {0};
 
-    RITZ_TRY(ritz_static_gain(&first->K, &first->M, &first->io,
-                              first->num_rigid, &one));
-    RITZ_TRY(ritz_static_gain(&second->K, &second->M, &second->io,
-                              first->num_rigid, &two));
-    RITZ_TRY(ritz_gain_error(&one, &two, out));
-done:
-    ritz_dense_free(&one);
-    ritz_dense_free(&two);
-    return status;
+    RITZ_CHECK(ritz_static_gain(&first->K, &first->M, &first->io,
+                                first->num_rigid, &one));
+    RITZ_CHECK(ritz_static_gain(&second->K, &second->M, &second->io,
+                                first->num_rigid, &two));
+    return ritz_gain_error(&one, &two, out);
 }
 
 /* C Lambda^-i-1 B of the flexible part. */
 static ritz_status moment(const ritz_configuration *c, int64_t i,
                           ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_dense_copy(&c->io.B, &X));
+    RITZ_CHECK(ritz_dense_copy(&c->io.B, &X));
     for (int64_t j = 0; j < X.ncol; j++)
         for (int64_t k = 0; k < X.nrow; k++)
             ritz_dense_col(&X, j)[k] *=
                 k < c->num_rigid ? 0.0 : pow(c->lambda[k], -1.0 - (double)i);
-    RITZ_TRY(ritz_dense_mul(&c->io.C, &X, out));
-done:
-    ritz_dense_free(&X);
-    return status;
+    return ritz_dense_mul(&c->io.C, &X, out);
 }
 
 /* Worst error of the kept moments, relative to the largest entry of each; NaN
@@ -455,21 +423,17 @@ static ritz_status compare_moments(const ritz_configuration *first,
                                    const ritz_configuration *second,
                                    int64_t count, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense one = {0}, two = {0};
+    RITZ_OWN(ritz_dense) one = {0}, two = {0};
 
     *out = nan("");
     for (int64_t i = 0; i < count && first->io.num_outputs > 0; i++) {
-        RITZ_TRY(moment(first, i, &one));
-        RITZ_TRY(moment(second, i, &two));
+        RITZ_CHECK(moment(first, i, &one));
+        RITZ_CHECK(moment(second, i, &two));
         *out = fmax(*out, relative(&one, &two));
         ritz_dense_free(&one);
         ritz_dense_free(&two);
     }
-done:
-    ritz_dense_free(&one);
-    ritz_dense_free(&two);
-    return status;
+    return RITZ_OK;
 }
 
 /* Largest difference over largest magnitude, on the first system's points. */
@@ -478,19 +442,16 @@ static ritz_status measure_response(const ritz_scene *scene,
                                     const ritz_configuration *second,
                                     ritz_compare_row *row)
 {
-    ritz_status status = RITZ_OK;
-    ritz_two_responses r = {0};
+    RITZ_OWN(ritz_two_responses) r = {0};
     double largest = 0.0, gap = 0.0;
 
-    RITZ_TRY(ritz_compare_respond(scene, first, second, &r));
+    RITZ_CHECK(ritz_compare_respond(scene, first, second, &r));
     for (int64_t k = 0; k < r.count * r.num_inputs * r.num_outputs; k++) {
         largest = fmax(largest, cabs(r.one[k]));
         gap = fmax(gap, cabs(r.one[k] - r.two[k]));
     }
     row->response_error = largest > 0.0 ? gap / largest : 0.0;
-done:
-    ritz_two_responses_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
@@ -498,26 +459,23 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  ritz_configuration *second,
                                  ritz_compare_row *row)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
     row->num_rigid = first->num_rigid;
     row->num_flexible = first->K.ncol - first->num_rigid;
     row->gain_error = row->response_error = nan("");
-    RITZ_TRY(compare_correlate(stage, V, first, second, &X));
+    RITZ_CHECK(compare_correlate(stage, V, first, second, &X));
     measure_modes(first, second, &X, row);
     measure_rigid(second, row);
-    RITZ_TRY(compare_strays(scene, first, second, &X, row));
-    RITZ_TRY(compare_remove(row, second));
+    RITZ_CHECK(compare_strays(scene, first, second, &X, row));
+    RITZ_CHECK(compare_remove(row, second));
     row->order = second->K.ncol;
     if (scene->num_inputs > 0 && scene->num_outputs > 0)
-        RITZ_TRY(ritz_compare_gain(first, second, &row->gain_error));
-    RITZ_TRY(
+        RITZ_CHECK(ritz_compare_gain(first, second, &row->gain_error));
+    RITZ_CHECK(
         compare_moments(first, second, row->num_moments, &row->moment_error));
     if (ritz_compare_responds(scene))
-        RITZ_TRY(measure_response(scene, first, second, row));
-done:
-    ritz_dense_free(&X);
-    return status;
+        RITZ_CHECK(measure_response(scene, first, second, row));
+    return RITZ_OK;
 }

@@ -58,51 +58,45 @@ ritz_status ritz_compare_values(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double *value)
 {
-    ritz_status status = RITZ_OK;
     const ritz_configuration *c = configuration;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
         value[k] = 1.0;
     if (!is_ranked(scene))
         return RITZ_OK;
-    RITZ_TRY(rank_one(scene, c, &ranking));
+    RITZ_CHECK(rank_one(scene, c, &ranking));
     for (int64_t k = 0; k < ranking.count; k++)
         value[k] = fabs(ranking.value[k]);
-done:
-    ritz_ranking_free(&ranking);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
                                    const ritz_system *system, double *least)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
     double largest = 0.0;
 
     *least = 0.0;
     if (!is_ranked(scene)) {
-        RITZ_FAIL_IF(scene->select == RITZ_SELECT_RANKED &&
-                         scene->band_hz[1] <= 0.0,
-                     RITZ_ERR_ARGUMENT,
-                     "the scene has neither inputs and outputs to rank modes "
-                     "by nor a band to keep");
+        RITZ_REFUSE_IF(scene->select == RITZ_SELECT_RANKED &&
+                           scene->band_hz[1] <= 0.0,
+                       RITZ_ERR_ARGUMENT,
+                       "the scene has neither inputs and outputs to rank modes "
+                       "by nor a band to keep");
         return RITZ_OK;
     }
     for (int64_t k = 0; k < system->num_configurations; k++) {
-        RITZ_TRY(rank_one(scene, &system->configuration[k], &ranking));
+        RITZ_CHECK(rank_one(scene, &system->configuration[k], &ranking));
         for (int64_t j = 0; j < ranking.count; j++)
             largest = fmax(largest, fabs(ranking.value[j]));
         ritz_ranking_free(&ranking);
     }
-    RITZ_FAIL_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
-                 "no flexible mode answers any input at any output, so none "
-                 "can be chosen");
+    RITZ_REFUSE_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
+                   "no flexible mode answers any input at any output, so none "
+                   "can be chosen");
     *least = scene->select_tolerance * largest;
-done:
-    ritz_ranking_free(&ranking);
-    return status;
+    return RITZ_OK;
 }
 
 /* Modes whose value is not below the least. */
@@ -110,15 +104,12 @@ static ritz_status mark_ranked(const ritz_scene *scene,
                                const ritz_configuration *c, double least,
                                bool *taken)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
-    RITZ_TRY(rank_one(scene, c, &ranking));
+    RITZ_CHECK(rank_one(scene, c, &ranking));
     for (int64_t k = 0; k < ranking.count; k++)
         taken[k] = fabs(ranking.value[k]) >= least;
-done:
-    ritz_ranking_free(&ranking);
-    return status;
+    return RITZ_OK;
 }
 
 /* Modes in the band; without inputs or outputs, those below its lower end. */
@@ -183,47 +174,42 @@ static ritz_status count_vectors(const ritz_scene *scene,
                                  const ritz_configuration *c,
                                  ritz_compare_row *row)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_system_krylov(c, scene->select_vectors, scene->select_outputs,
-                                &X, &row->num_moments));
+    RITZ_CHECK(ritz_system_krylov(c, scene->select_vectors,
+                                  scene->select_outputs, &X,
+                                  &row->num_moments));
     row->num_vectors = X.ncol;
-    RITZ_FAIL_IF(X.ncol == 0, RITZ_ERR_ARGUMENT,
-                 "no flexible mode answers any input, so there is no Krylov "
-                 "vector%s%s",
-                 *c->at ? " at " : "", c->at);
-done:
-    ritz_dense_free(&X);
-    return status;
+    RITZ_REFUSE_IF(X.ncol == 0, RITZ_ERR_ARGUMENT,
+                   "no flexible mode answers any input, so there is no Krylov "
+                   "vector%s%s",
+                   *c->at ? " at " : "", c->at);
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_select(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double least, ritz_compare_row *row)
 {
-    ritz_status status = RITZ_OK;
     const ritz_configuration *c = configuration;
     int64_t flexible = c->K.ncol - c->num_rigid;
-    bool *taken = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_NEW(row->kept, flexible);
+    RITZ_CHECK_NEW(row->kept, flexible);
     if (scene->select == RITZ_SELECT_KRYLOV)
         return count_vectors(scene, c, row);
-    RITZ_NEW(taken, flexible);
+    RITZ_CHECK_NEW(taken, flexible);
     if (is_ranked(scene))
-        RITZ_TRY(mark_ranked(scene, c, least, taken));
+        RITZ_CHECK(mark_ranked(scene, c, least, taken));
     else if (scene->select == RITZ_SELECT_LISTED)
-        RITZ_TRY(mark_listed(scene, c, taken));
+        RITZ_CHECK(mark_listed(scene, c, taken));
     else
         mark_band(scene, c, taken);
     row->num_completed = complete(c, taken);
     for (int64_t k = 0; k < flexible; k++)
         if (taken[k])
             row->kept[row->num_kept++] = k;
-done:
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k)

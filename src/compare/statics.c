@@ -67,18 +67,17 @@ static int64_t take_rows(const ritz_dense *A, int64_t first, ritz_dense *F,
 static ritz_status list_forces(const ritz_stage *stage, int64_t k,
                                const ritz_plan *plan, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reduced *body = &stage->body[k];
     const ritz_io *io = &stage->io;
     const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
     int64_t most = io->num_inputs + 3 * io->num_outputs;
     int64_t first = stage->first[k];
     int64_t m = 0;
-    ritz_dense F = {0};
+    RITZ_OWN(ritz_dense) F = {0};
 
     for (int64_t p = 0; p < body->num_ports; p++)
         most += body->port[p].count;
-    RITZ_TRY(ritz_dense_new(body->K.ncol, most, &F));
+    RITZ_CHECK(ritz_dense_new(body->K.ncol, most, &F));
     for (int64_t j = 0; j < io->num_inputs && F.nrow > 0; j++)
         if (ritz_plan_attaches(stage->scene, plan, j))
             memcpy(ritz_dense_col(&F, m++), ritz_dense_col(&io->B, j) + first,
@@ -89,10 +88,7 @@ static ritz_status list_forces(const ritz_stage *stage, int64_t k,
             m = take_rows(&body->port[p].map, 0, &F, m);
     for (int c = 0; c < 3 && (plan->attached & RITZ_ATTACHED_OUTPUTS); c++)
         m = take_rows(C[c], first, &F, m);
-    RITZ_TRY(ritz_dense_columns(&F, 0, m, out));
-done:
-    ritz_dense_free(&F);
-    return status;
+    return ritz_dense_columns(&F, 0, m, out);
 }
 
 /* K + s M R R' M, scaled to a unit diagonal by *scale, factored in place. */
@@ -128,12 +124,11 @@ static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
 static ritz_status relieve(const ritz_dense *R, const ritz_dense *MR,
                            const double *scale, ritz_dense *F)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense share = {0}, gone = {0}, kept = {0};
+    RITZ_OWN(ritz_dense) share = {0}, gone = {0}, kept = {0};
     int64_t m = 0;
 
-    RITZ_TRY(ritz_dense_mul_tn(R, F, &share));
-    RITZ_TRY(ritz_dense_mul(MR, &share, &gone));
+    RITZ_CHECK(ritz_dense_mul_tn(R, F, &share));
+    RITZ_CHECK(ritz_dense_mul(MR, &share, &gone));
     for (int64_t j = 0; j < F->ncol; j++) {
         double before = 0.0, after = 0.0;
 
@@ -147,34 +142,29 @@ static ritz_status relieve(const ritz_dense *R, const ritz_dense *MR,
         }
         m += after > RITZ_FORCE_RELIEVED * before;
     }
-    RITZ_TRY(ritz_dense_columns(F, 0, m, &kept));
+    RITZ_CHECK(ritz_dense_columns(F, 0, m, &kept));
     ritz_dense_free(F);
     *F = kept;
     kept = (ritz_dense){0};
-done:
-    ritz_dense_free(&share);
-    ritz_dense_free(&gone);
-    ritz_dense_free(&kept);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
                               const ritz_plan *plan, ritz_statics *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reduced *body = &stage->body[k];
     int r = (int)body->K.ncol;
-    ritz_pairs pairs = {0};
-    ritz_dense R = {0}, MR = {0}, F = {0}, L = {0};
-    double *scale = NULL;
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_dense) R = {0}, MR = {0}, F = {0}, L = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
 
-    RITZ_NEW(scale, r);
-    RITZ_TRY(ritz_eigen_dense(&body->K, &body->M, &pairs));
-    RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &R));
-    RITZ_TRY(ritz_dense_mul(&body->M, &R, &MR));
-    RITZ_TRY(factor(body, &MR, scale, &L));
-    RITZ_TRY(list_forces(stage, k, plan, &F));
-    RITZ_TRY(relieve(&R, &MR, scale, &F));
+    RITZ_CHECK_NEW(scale, r);
+    RITZ_CHECK(ritz_eigen_dense(&body->K, &body->M, &pairs));
+    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &R));
+    RITZ_CHECK(ritz_dense_mul(&body->M, &R, &MR));
+    RITZ_CHECK(factor(body, &MR, scale, &L));
+    RITZ_CHECK(list_forces(stage, k, plan, &F));
+    RITZ_CHECK(relieve(&R, &MR, scale, &F));
     if (F.ncol > 0 && r > 0)
         (void)LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', r, (int)F.ncol, L.val, r,
                              F.val, r);
@@ -184,45 +174,33 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
     out->rigid = R;
     out->answers = F;
     R = F = (ritz_dense){0};
-done:
-    free(scale);
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&R);
-    ritz_dense_free(&MR);
-    ritz_dense_free(&F);
-    ritz_dense_free(&L);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_body_massless(const ritz_reduced *body, const double *scale,
                                ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int r = (int)body->M.ncol;
     int null = 0;
-    ritz_dense Q = {0};
-    double *m = NULL;
+    RITZ_OWN(ritz_dense) Q = {0};
+    RITZ_OWN_ARRAY double *m = NULL;
 
-    RITZ_NEW(m, r);
-    RITZ_TRY(ritz_dense_copy(&body->M, &Q));
+    RITZ_CHECK_NEW(m, r);
+    RITZ_CHECK(ritz_dense_copy(&body->M, &Q));
     for (int j = 0; j < r; j++)
         for (int i = 0; i < r; i++)
             ritz_dense_col(&Q, j)[i] *= scale[i] * scale[j];
-    RITZ_FAIL_IF(r > 0 && LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', r, Q.val,
-                                         r, m) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "eigenvalues of the mass do not converge");
+    RITZ_REFUSE_IF(r > 0 && LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', r, Q.val,
+                                           r, m) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "eigenvalues of the mass do not converge");
     /* as in linear/eigen_dense.c */
     while (null < r && m[null] <= 4.0 * r * DBL_EPSILON * m[r - 1])
         null++;
     for (int j = 0; j < null; j++)
         for (int i = 0; i < r; i++)
             ritz_dense_col(&Q, j)[i] *= scale[i];
-    RITZ_TRY(ritz_dense_columns(&Q, 0, null, out));
-done:
-    free(m);
-    ritz_dense_free(&Q);
-    return status;
+    return ritz_dense_columns(&Q, 0, null, out);
 }
 
 void ritz_statics_free(ritz_statics *statics)

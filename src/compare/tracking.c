@@ -70,17 +70,16 @@ static ritz_status correlate(const ritz_stage *stage,
                              const ritz_configuration *from,
                              const ritz_configuration *to, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0}, B = {0}, MB = {0}, part = {0};
+    RITZ_OWN(ritz_dense) A = {0}, B = {0}, MB = {0}, part = {0};
     int64_t m = from->K.ncol - from->num_rigid;
     int64_t n = to->K.ncol - to->num_rigid;
 
-    RITZ_TRY(ritz_dense_new(m, n, X));
+    RITZ_CHECK(ritz_dense_new(m, n, X));
     for (int64_t c = 0; c < stage->count; c++) {
-        RITZ_TRY(ritz_dense_columns(&from->P[c], from->num_rigid, m, &A));
-        RITZ_TRY(ritz_dense_columns(&to->P[c], to->num_rigid, n, &B));
-        RITZ_TRY(ritz_dense_mul(&stage->body[c].M, &B, &MB));
-        RITZ_TRY(ritz_dense_mul_tn(&A, &MB, &part));
+        RITZ_CHECK(ritz_dense_columns(&from->P[c], from->num_rigid, m, &A));
+        RITZ_CHECK(ritz_dense_columns(&to->P[c], to->num_rigid, n, &B));
+        RITZ_CHECK(ritz_dense_mul(&stage->body[c].M, &B, &MB));
+        RITZ_CHECK(ritz_dense_mul_tn(&A, &MB, &part));
         for (int64_t k = 0; k < m * n; k++)
             X->val[k] += part.val[k];
         ritz_dense_free(&A);
@@ -88,12 +87,7 @@ static ritz_status correlate(const ritz_stage *stage,
         ritz_dense_free(&MB);
         ritz_dense_free(&part);
     }
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&B);
-    ritz_dense_free(&MB);
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* The free mode of `to` that is most like mode i; -1 if none is like it. */
@@ -118,21 +112,18 @@ static ritz_status match_track(const ritz_stage *stage,
                                const ritz_configuration *to,
                                ritz_track_step *step)
 {
-    ritz_status status = RITZ_OK;
-    bool *taken = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_NEW(taken, step->num_to);
-    RITZ_NEW(step->partner, step->num_from);
-    RITZ_TRY(correlate(stage, from, to, &step->mac));
+    RITZ_CHECK_NEW(taken, step->num_to);
+    RITZ_CHECK_NEW(step->partner, step->num_from);
+    RITZ_CHECK(correlate(stage, from, to, &step->mac));
     level(step);
     for (int64_t i = 0; i < step->num_from; i++) {
         step->partner[i] = find_partner(step, taken, i);
         if (step->partner[i] >= 0)
             taken[step->partner[i]] = true;
     }
-done:
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 /* Likeness of mode i with j; 0 for none. */
@@ -386,13 +377,12 @@ static void carry_on(const ritz_track_step *step, ritz_tracking *t)
 /* Join what shares a cluster, and number what is left in order. */
 static ritz_status settle(ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *joined = NULL;
-    int64_t *number = NULL;
+    RITZ_OWN_ARRAY int64_t *joined = NULL;
+    RITZ_OWN_ARRAY int64_t *number = NULL;
     int64_t count = 0;
 
-    RITZ_NEW(joined, t->num_tracks);
-    RITZ_NEW(number, t->num_tracks);
+    RITZ_CHECK_NEW(joined, t->num_tracks);
+    RITZ_CHECK_NEW(number, t->num_tracks);
     for (int64_t k = 0; k < t->num_tracks; k++) {
         joined[k] = k;
         number[k] = -1;
@@ -408,10 +398,7 @@ static ritz_status settle(ritz_tracking *t)
         t->track[i] = number[root];
     }
     t->num_tracks = count;
-done:
-    free(joined);
-    free(number);
-    return status;
+    return RITZ_OK;
 }
 
 /* Leave out what happened between two modes that share a track after all. */
@@ -459,21 +446,18 @@ done:
 ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
                        double up_to_hz, ritz_tracking *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_tracking t = {0};
+    RITZ_OWN(ritz_tracking) t = {0};
 
-    RITZ_TRY(lay_out(system, &t));
+    RITZ_CHECK(lay_out(system, &t));
     for (int64_t k = 0; k < t.num_configurations; k++) {
         ritz_monitor_step("tracks", k, t.num_configurations);
-        RITZ_TRY(follow(stage, system, k, up_to_hz, &t));
+        RITZ_CHECK(follow(stage, system, k, up_to_hz, &t));
     }
-    RITZ_TRY(settle(&t));
+    RITZ_CHECK(settle(&t));
     sift(&t);
     *out = t;
     t = (ritz_tracking){0};
-done:
-    ritz_tracking_free(&t);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_tracking_free(ritz_tracking *tracking)

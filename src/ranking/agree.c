@@ -119,12 +119,11 @@ static double kendall(int64_t count, const shared *all)
 static ritz_status correlate(const ranked_values s[static 2],
                              ritz_agreement *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_ranking *a = s[0].ranking;
-    shared *all = NULL;
+    RITZ_OWN_ARRAY shared *all = NULL;
     int64_t n = 0;
 
-    RITZ_NEW(all, a->count);
+    RITZ_CHECK_NEW(all, a->count);
     for (int64_t k = 0; k < a->count; k++) {
         int64_t number = number_of(&s[0], k);
         int64_t other = find(&s[1], number);
@@ -141,9 +140,7 @@ static ritz_status correlate(const ranked_values s[static 2],
     out->alone[1] = s[1].ranking->count - n;
     out->spearman = spearman(n, all);
     out->kendall = kendall(n, all);
-done:
-    free(all);
-    return status;
+    return RITZ_OK;
 }
 
 /* How many the first k are, with the rest of the last one's cluster. */
@@ -220,26 +217,23 @@ ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
                                 const ritz_ranking *b, const int64_t *track_b,
                                 int64_t top, ritz_agreement *out)
 {
-    ritz_status status = RITZ_OK;
     const ranked_values s[2] = {side_of(a, track_a), side_of(b, track_b)};
-    ritz_agreement agreement = {.top = top};
+    RITZ_OWN(ritz_agreement) agreement = {.top = top};
 
-    RITZ_FAIL_IF(top < 1, RITZ_ERR_ARGUMENT,
-                 "at least the first mode is compared");
-    RITZ_TRY(correlate(s, &agreement));
-    RITZ_FAIL_IF(agreement.common == 0, RITZ_ERR_ARGUMENT,
-                 "the rankings have no mode in common");
-    RITZ_TRY(set_overlaps(s, &agreement));
-    RITZ_NEW(agreement.left, a->count);
-    RITZ_NEW(agreement.entered, b->count);
+    RITZ_REFUSE_IF(top < 1, RITZ_ERR_ARGUMENT,
+                   "at least the first mode is compared");
+    RITZ_CHECK(correlate(s, &agreement));
+    RITZ_REFUSE_IF(agreement.common == 0, RITZ_ERR_ARGUMENT,
+                   "the rankings have no mode in common");
+    RITZ_CHECK(set_overlaps(s, &agreement));
+    RITZ_CHECK_NEW(agreement.left, a->count);
+    RITZ_CHECK_NEW(agreement.entered, b->count);
     agreement.num_left = difference(&s[0], &s[1], top, agreement.left);
     agreement.num_entered = difference(&s[1], &s[0], top, agreement.entered);
     agreement.top_share = share(s, top);
     *out = agreement;
     agreement = (ritz_agreement){0};
-done:
-    ritz_agreement_free(&agreement);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_agreement_free(ritz_agreement *agreement)

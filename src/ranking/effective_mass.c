@@ -118,15 +118,14 @@ const ritz_ranker ritz_ranker_effective_mass = {
  */
 static ritz_status invert(const ritz_dense *M_s, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     int64_t p = M_s->nrow, r = 0;
-    ritz_dense V = {0};
-    double *scale = NULL, *lambda = NULL;
+    RITZ_OWN(ritz_dense) V = {0};
+    RITZ_OWN_ARRAY double *scale = NULL, *lambda = NULL;
     int info = 0;
 
-    RITZ_NEW(scale, p);
-    RITZ_NEW(lambda, p);
-    RITZ_TRY(ritz_dense_copy(M_s, &V));
+    RITZ_CHECK_NEW(scale, p);
+    RITZ_CHECK_NEW(lambda, p);
+    RITZ_CHECK(ritz_dense_copy(M_s, &V));
     for (int64_t i = 0; i < p; i++) {
         double m = ritz_dense_col(M_s, i)[i];
 
@@ -136,43 +135,35 @@ static ritz_status invert(const ritz_dense *M_s, ritz_dense *X)
         V.val[k] *= scale[k % p] * scale[k / p];
     info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (int)p, V.val, (int)p,
                          lambda);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the mass of the interface has no eigenvalues");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "the mass of the interface has no eigenvalues");
     while (r < p && !(lambda[r] > RITZ_MASSLESS_INTERFACE * lambda[p - 1]))
         r++;
-    RITZ_TRY(ritz_dense_new(p - r, p, X));
+    RITZ_CHECK(ritz_dense_new(p - r, p, X));
     for (int64_t i = 0; i < p; i++)
         for (int64_t k = r; k < p; k++)
             ritz_dense_col(X, i)[k - r] =
                 ritz_dense_col(&V, k)[i] * scale[i] / sqrt(lambda[k]);
-done:
-    free(scale);
-    free(lambda);
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank_interface_masses(const ritz_rank_request *request,
                                          ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
 
-    RITZ_TRY(invert(&request->interface, &X));
-    RITZ_TRY(ritz_dense_mul(&X, &request->coupling, &Y));
+    RITZ_CHECK(invert(&request->interface, &X));
+    RITZ_CHECK(ritz_dense_mul(&X, &request->coupling, &Y));
     for (int64_t k = 0; k < Y.ncol; k++)
         for (int64_t i = 0; i < Y.nrow; i++)
             ranking->value[k] += ritz_dense_col(&Y, k)[i] *
                                  ritz_dense_col(&Y, k)[i] / (double)Y.nrow;
     if (request->momentum.val)
-        RITZ_TRY(mass_parts(request, ranking));
+        RITZ_CHECK(mass_parts(request, ranking));
     ranking->total = 0.0;
     for (int64_t k = 0; k < Y.ncol; k++)
         ranking->total += ranking->value[k];
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_ranker ritz_ranker_effective_interface_mass = {

@@ -41,22 +41,16 @@ static void scale(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
 static ritz_status value(const ritz_rank_request *request,
                          const ritz_modal *cluster, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense B = {0};
-    ritz_dense C = {0};
-    ritz_dense CB = {0};
+    RITZ_OWN(ritz_dense) B = {0};
+    RITZ_OWN(ritz_dense) C = {0};
+    RITZ_OWN(ritz_dense) CB = {0};
 
     (void)request;
-    RITZ_TRY(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
-    RITZ_TRY(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
+    RITZ_CHECK(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
+    RITZ_CHECK(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
     scale(cluster, &B, &C);
-    RITZ_TRY(ritz_dense_mul(&C, &B, &CB));
-    RITZ_TRY(ritz_general_norm(&CB, out));
-done:
-    ritz_dense_free(&B);
-    ritz_dense_free(&C);
-    ritz_dense_free(&CB);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(&C, &B, &CB));
+    return ritz_general_norm(&CB, out);
 }
 
 static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)

@@ -16,16 +16,13 @@
 static ritz_status hankel_value(const ritz_rank_request *request,
                                 const ritz_modal *cluster, double *out)
 {
-    ritz_status status = RITZ_OK;
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
     (void)request;
-    RITZ_NEW(sigma, 2 * cluster->count);
-    RITZ_TRY(ritz_modal_hankel(cluster, sigma));
+    RITZ_CHECK_NEW(sigma, 2 * cluster->count);
+    RITZ_CHECK(ritz_modal_hankel(cluster, sigma));
     *out = sigma[0];
-done:
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank_hankel(const ritz_rank_request *request,
@@ -63,15 +60,12 @@ const ritz_ranker ritz_ranker_hankel = {
 static ritz_status band_value(const ritz_rank_request *request,
                               const ritz_modal *cluster, double *out)
 {
-    ritz_status status = RITZ_OK;
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
-    RITZ_NEW(sigma, 2 * cluster->count);
-    RITZ_TRY(ritz_modal_hankel_band(cluster, request->band_hz, sigma));
+    RITZ_CHECK_NEW(sigma, 2 * cluster->count);
+    RITZ_CHECK(ritz_modal_hankel_band(cluster, request->band_hz, sigma));
     *out = sigma[0];
-done:
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank_band(const ritz_rank_request *request,
@@ -104,18 +98,15 @@ const ritz_ranker ritz_ranker_hankel_band = {
 static ritz_status h2_value(const ritz_rank_request *request,
                             const ritz_modal *cluster, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_dense) V = {0};
     double sum = 0.0;
 
     (void)request;
-    RITZ_TRY(ritz_modal_costs(cluster, &V));
+    RITZ_CHECK(ritz_modal_costs(cluster, &V));
     for (int64_t k = 0; k < V.nrow * V.ncol; k++)
         sum += V.val[k];
     *out = sqrt(fmax(sum, 0.0));
-done:
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank_h2(const ritz_rank_request *request,

@@ -108,18 +108,17 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
                                   ritz_ranking *out, int64_t **where,
                                   int64_t **track)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ranking largest = {0};
-    int64_t *item = NULL, *mode = NULL, *number = NULL;
+    RITZ_OWN(ritz_ranking) largest = {0};
+    RITZ_OWN_ARRAY int64_t *item = NULL, *mode = NULL, *number = NULL;
     int64_t numbers = 0, count = 0;
 
-    RITZ_TRY(check(rankings, &numbers));
-    RITZ_NEW(item, numbers);
-    RITZ_NEW(mode, numbers);
-    RITZ_NEW(number, numbers);
+    RITZ_CHECK(check(rankings, &numbers));
+    RITZ_CHECK_NEW(item, numbers);
+    RITZ_CHECK_NEW(mode, numbers);
+    RITZ_CHECK_NEW(number, numbers);
     search(rankings, numbers, item, mode);
     count = close_ranks(numbers, item, mode, number);
-    RITZ_TRY(empty(rankings->item, count, &largest));
+    RITZ_CHECK(empty(rankings->item, count, &largest));
     for (int64_t k = 0; k < count; k++) {
         const ritz_ranking *r = &rankings->item[item[k]];
 
@@ -128,17 +127,12 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
         largest.value[k] = r->value[mode[k]];
     }
     take_clusters(rankings, item, mode, &largest);
-    RITZ_TRY(ritz_ranking_sort(count, largest.value, largest.order));
+    RITZ_CHECK(ritz_ranking_sort(count, largest.value, largest.order));
     *out = largest;
     largest = (ritz_ranking){0};
     *where = item;
     item = NULL;
     *track = number;
     number = NULL;
-done:
-    free(item);
-    free(mode);
-    free(number);
-    ritz_ranking_free(&largest);
-    return status;
+    return RITZ_OK;
 }

@@ -44,37 +44,29 @@ static ritz_status transposed(const ritz_modal *modal, ritz_dense *out)
 
 ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Wc = {0}, Wo = {0}, C = {0}, X = {0};
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0}, C = {0}, X = {0};
+    RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
-    RITZ_TRY(transposed(modal, &C));
-    RITZ_TRY(ritz_dense_mul(&Wc, &C, &X));
-    RITZ_TRY(ritz_dense_new(modal->count, modal->C.nrow, &V));
+    RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
+    RITZ_CHECK(transposed(modal, &C));
+    RITZ_CHECK(ritz_dense_mul(&Wc, &C, &X));
+    RITZ_CHECK(ritz_dense_new(modal->count, modal->C.nrow, &V));
     for (int64_t i = 0; i < V.ncol; i++)
         for (int64_t a = 0; a < X.nrow; a++)
             ritz_dense_col(&V, i)[a / 2] +=
                 ritz_dense_col(&C, i)[a] * ritz_dense_col(&X, i)[a];
     *out = V;
     V = (ritz_dense){0};
-done:
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    ritz_dense_free(&C);
-    ritz_dense_free(&X);
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal *modal = &request->modal;
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_TRY(ritz_modal_costs(modal, &V));
-    RITZ_TRY(ritz_ranking_parts(V.ncol, ranking));
+    RITZ_CHECK(ritz_modal_costs(modal, &V));
+    RITZ_CHECK(ritz_ranking_parts(V.ncol, ranking));
     ranking->total = 0.0;
     for (int64_t i = 0; i < V.ncol; i++) {
         ritz_ranking_name_part(request->output, "y", i, ranking->part[i]);
@@ -88,9 +80,7 @@ static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
         }
         ranking->total += ranking->whole[i];
     }
-done:
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_ranker ritz_ranker_modal_cost = {
@@ -195,21 +185,20 @@ static ritz_status choose(loop *l, weighting_trial *t)
 static ritz_status part_of(const ritz_modal *modal, const bool *taken,
                            ritz_modal *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal part = {0};
-    int64_t *mode = NULL;
+    RITZ_OWN(ritz_modal) part = {0};
+    RITZ_OWN_ARRAY int64_t *mode = NULL;
     int64_t n = 0;
 
-    RITZ_NEW(mode, modal->count);
+    RITZ_CHECK_NEW(mode, modal->count);
     for (int64_t k = 0; k < modal->count; k++)
         if (taken[k])
             mode[n++] = k;
     part.count = n;
-    RITZ_NEW(part.omega, n);
-    RITZ_NEW(part.zeta, n);
-    RITZ_TRY(ritz_dense_rows(&modal->B, n, mode, &part.B));
-    RITZ_TRY(ritz_dense_new(modal->C.nrow, n, &part.C));
-    RITZ_TRY(ritz_dense_new(modal->C.nrow, n, &part.Cv));
+    RITZ_CHECK_NEW(part.omega, n);
+    RITZ_CHECK_NEW(part.zeta, n);
+    RITZ_CHECK(ritz_dense_rows(&modal->B, n, mode, &part.B));
+    RITZ_CHECK(ritz_dense_new(modal->C.nrow, n, &part.C));
+    RITZ_CHECK(ritz_dense_new(modal->C.nrow, n, &part.Cv));
     for (int64_t k = 0; k < n; k++) {
         size_t size = (size_t)modal->C.nrow * sizeof(double);
 
@@ -222,21 +211,17 @@ static ritz_status part_of(const ritz_modal *modal, const bool *taken,
     }
     *out = part;
     part = (ritz_modal){0};
-done:
-    free(mode);
-    ritz_modal_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* d_i = |Y_i - Y_i(kept alone)|. */
 static ritz_status miss(const loop *l, weighting_trial *t)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal kept = {0};
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_modal) kept = {0};
+    RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_TRY(part_of(l->modal, t->taken, &kept));
-    RITZ_TRY(ritz_modal_costs(&kept, &V));
+    RITZ_CHECK(part_of(l->modal, t->taken, &kept));
+    RITZ_CHECK(ritz_modal_costs(&kept, &V));
     for (int64_t i = 0; i < l->p; i++) {
         double alone = 0.0;
 
@@ -244,10 +229,7 @@ static ritz_status miss(const loop *l, weighting_trial *t)
             alone += ritz_dense_col(&V, i)[k];
         t->d[i] = fabs(l->Y[i] - alone);
     }
-done:
-    ritz_modal_free(&kept);
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 /* q := (1 - a) p d / sum d + a q; where nothing is missed they stay. */
@@ -345,38 +327,34 @@ static ritz_status report(loop *l, int64_t round, int64_t period,
 ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
                          ritz_reweighing *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reweighing found = {0};
+    RITZ_OWN(ritz_reweighing) found = {0};
     int64_t round = 0, period = 0;
-    loop l = {0};
+    RITZ_OWN(loop) l = {0};
 
-    RITZ_FAIL_IF(request->modal.B.ncol == 0 || request->modal.C.nrow == 0,
-                 RITZ_ERR_ARGUMENT,
-                 "there are no inputs and outputs to weigh modes by");
-    RITZ_FAIL_IF(keep < 1 || keep >= request->modal.count, RITZ_ERR_ARGUMENT,
-                 "weights choose at least one mode and leave one out, of %d",
-                 (int)request->modal.count);
-    RITZ_TRY(loop_new(request, keep, &l));
+    RITZ_REFUSE_IF(request->modal.B.ncol == 0 || request->modal.C.nrow == 0,
+                   RITZ_ERR_ARGUMENT,
+                   "there are no inputs and outputs to weigh modes by");
+    RITZ_REFUSE_IF(keep < 1 || keep >= request->modal.count, RITZ_ERR_ARGUMENT,
+                   "weights choose at least one mode and leave one out, of %d",
+                   (int)request->modal.count);
+    RITZ_CHECK(loop_new(request, keep, &l));
     for (int64_t i = 0; i < l.p; i++)
         at_round(&l, 0)->q[i] = 1.0;
     while (true) {
         weighting_trial *t = at_round(&l, round);
 
-        RITZ_TRY(choose(&l, t));
-        RITZ_TRY(miss(&l, t));
+        RITZ_CHECK(choose(&l, t));
+        RITZ_CHECK(miss(&l, t));
         period = find_period(&l, round);
         if (period > 0 || round + 1 == MOST_ROUNDS)
             break;
         round++;
         weigh(&l, t, at_round(&l, round)->q);
     }
-    RITZ_TRY(report(&l, round, period, &found));
+    RITZ_CHECK(report(&l, round, period, &found));
     *out = found;
     found = (ritz_reweighing){0};
-done:
-    loop_free(&l);
-    ritz_reweighing_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_reweighing_free(ritz_reweighing *reweighing)

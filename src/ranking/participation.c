@@ -18,18 +18,14 @@
 static ritz_status largest(const ritz_dense *B, int64_t first, int64_t last,
                            double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = last - first;
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
-    RITZ_TRY(ritz_dense_new(n, B->ncol, &A));
+    RITZ_CHECK(ritz_dense_new(n, B->ncol, &A));
     for (int64_t j = 0; j < B->ncol; j++)
         for (int64_t k = 0; k < n; k++)
             ritz_dense_col(&A, j)[k] = ritz_dense_col(B, j)[first + k];
-    RITZ_TRY(ritz_general_norm(&A, out));
-done:
-    ritz_dense_free(&A);
-    return status;
+    return ritz_general_norm(&A, out);
 }
 
 static void fill_parts(const ritz_dense *B, int64_t first, int64_t last,

@@ -50,18 +50,14 @@ static void couple(const ritz_dense *W, ritz_ranking *ranking)
 static ritz_status ranking_coupling(const ritz_modal *modal,
                                     ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Wc = {0};
-    ritz_dense Wo = {0};
+    RITZ_OWN(ritz_dense) Wc = {0};
+    RITZ_OWN(ritz_dense) Wo = {0};
 
-    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
+    RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
     ranking->coupling = 0.0;
     couple(&Wc, ranking);
     couple(&Wo, ranking);
-done:
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status ranking_new(const ritz_ranker *ranker,
@@ -149,18 +145,15 @@ static void join(const ritz_ranker *ranker, const ritz_modal *modal,
 ritz_status ritz_rank(const ritz_ranker *ranker,
                       const ritz_rank_request *request, ritz_ranking *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
-    RITZ_TRY_IN(ranker->name, check_needs(ranker, request));
-    RITZ_TRY(ranking_new(ranker, request, &ranking));
-    RITZ_TRY_IN(ranker->name, ranker->rank(request, &ranking));
+    RITZ_CHECK_IN(ranker->name, check_needs(ranker, request));
+    RITZ_CHECK(ranking_new(ranker, request, &ranking));
+    RITZ_CHECK_IN(ranker->name, ranker->rank(request, &ranking));
     join(ranker, &request->modal, &ranking);
-    RITZ_TRY(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
-    RITZ_TRY(stand_beside(request, &ranking));
+    RITZ_CHECK(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
+    RITZ_CHECK(stand_beside(request, &ranking));
     *out = ranking;
     ranking = (ritz_ranking){0};
-done:
-    ritz_ranking_free(&ranking);
-    return status;
+    return RITZ_OK;
 }

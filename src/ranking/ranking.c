@@ -33,18 +33,15 @@ static int compare(const void *left, const void *right)
 ritz_status ritz_ranking_sort(int64_t count, const double *value,
                               int64_t *order)
 {
-    ritz_status status = RITZ_OK;
-    ranked_place *all = NULL;
+    RITZ_OWN_ARRAY ranked_place *all = NULL;
 
-    RITZ_NEW(all, count);
+    RITZ_CHECK_NEW(all, count);
     for (int64_t k = 0; k < count; k++)
         all[k] = (ranked_place){fabs(value[k]), k};
     qsort(all, (size_t)count, sizeof *all, compare);
     for (int64_t k = 0; k < count; k++)
         order[k] = all[k].mode;
-done:
-    free(all);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster)
@@ -87,22 +84,19 @@ ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
                                     ritz_cluster_value *value,
                                     ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal *modal = &request->modal;
-    ritz_modal cluster = {0};
+    RITZ_OWN(ritz_modal) cluster = {0};
     int64_t last = 0;
 
     for (int64_t first = 0; first < modal->count; first = last) {
         last = ritz_modal_cluster(modal, first);
-        RITZ_TRY(ritz_modal_part(modal, first, last, &cluster));
-        RITZ_TRY(value(request, &cluster, &ranking->value[first]));
+        RITZ_CHECK(ritz_modal_part(modal, first, last, &cluster));
+        RITZ_CHECK(value(request, &cluster, &ranking->value[first]));
         for (int64_t k = first + 1; k < last; k++)
             ranking->value[k] = ranking->value[first];
         ritz_modal_free(&cluster);
     }
-done:
-    ritz_modal_free(&cluster);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_ranking_parts(int64_t count, ritz_ranking *ranking)

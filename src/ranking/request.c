@@ -35,48 +35,42 @@ static ritz_status take_one(const char *text, const char *end, ritz_weight *out)
 
 static ritz_status take_all(const char *text, int64_t *count, ritz_weight **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_weight *list = NULL;
+    RITZ_OWN_ARRAY ritz_weight *list = NULL;
     int64_t most = 1, n = 0;
 
     for (const char *c = text; *c; c++)
         most += *c == ',';
-    RITZ_NEW(list, most);
+    RITZ_CHECK_NEW(list, most);
     for (const char *c = text; n < most; n++) {
         const char *end = c + strcspn(c, ",");
 
-        RITZ_TRY(take_one(c, end, &list[n]));
+        RITZ_CHECK(take_one(c, end, &list[n]));
         for (int64_t k = 0; k < n; k++)
-            RITZ_FAIL_IF(strcmp(list[k].name, list[n].name) == 0,
-                         RITZ_ERR_ARGUMENT, "'%s' has two weights",
-                         list[n].name);
+            RITZ_REFUSE_IF(strcmp(list[k].name, list[n].name) == 0,
+                           RITZ_ERR_ARGUMENT, "'%s' has two weights",
+                           list[n].name);
         c = end + 1;
     }
     *count = n;
     *out = list;
     list = NULL;
-done:
-    free(list);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_weights_parse(const char *inputs, const char *outputs,
                                ritz_weights *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_weights weights = {0};
+    RITZ_OWN(ritz_weights) weights = {0};
 
     if (inputs)
-        RITZ_TRY_IN("weights of inputs",
-                    take_all(inputs, &weights.num_inputs, &weights.input));
+        RITZ_CHECK_IN("weights of inputs",
+                      take_all(inputs, &weights.num_inputs, &weights.input));
     if (outputs)
-        RITZ_TRY_IN("weights of outputs",
-                    take_all(outputs, &weights.num_outputs, &weights.output));
+        RITZ_CHECK_IN("weights of outputs",
+                      take_all(outputs, &weights.num_outputs, &weights.output));
     *out = weights;
     weights = (ritz_weights){0};
-done:
-    ritz_weights_free(&weights);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_weights_free(ritz_weights *weights)
@@ -153,13 +147,12 @@ typedef struct ranked_model {
 static ritz_status extend(const ranked_model *s, const ritz_weights *weights,
                           ritz_io *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = s->io;
     int64_t n = s->K->nrow;
     int64_t more = s->momentum->val ? DIRECTIONS : 0;
-    ritz_io all = {0};
+    RITZ_OWN(ritz_io) all = {0};
 
-    RITZ_TRY(ritz_io_new(n, io->num_inputs, io->num_outputs + more, &all));
+    RITZ_CHECK(ritz_io_new(n, io->num_inputs, io->num_outputs + more, &all));
     for (int64_t j = 0; j < io->num_inputs; j++) {
         memcpy(all.input[j], io->input[j], RITZ_NAME_SIZE);
         memcpy(ritz_dense_col(&all.B, j), ritz_dense_col(&io->B, j),
@@ -180,22 +173,19 @@ static ritz_status extend(const ranked_model *s, const ritz_weights *weights,
                 ritz_dense_col(s->momentum, j)[d];
     }
     if (weights)
-        RITZ_TRY(apply_weights(weights, &all));
+        RITZ_CHECK(apply_weights(weights, &all));
     *out = all;
     all = (ritz_io){0};
-done:
-    ritz_io_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows first .. of C as a matrix of their own, and C without them. */
 static ritz_status split(ritz_dense *C, int64_t first, ritz_dense *rest)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense head = {0};
+    RITZ_OWN(ritz_dense) head = {0};
 
-    RITZ_TRY(ritz_dense_new(first, C->ncol, &head));
-    RITZ_TRY(ritz_dense_new(C->nrow - first, C->ncol, rest));
+    RITZ_CHECK(ritz_dense_new(first, C->ncol, &head));
+    RITZ_CHECK(ritz_dense_new(C->nrow - first, C->ncol, rest));
     for (int64_t j = 0; j < C->ncol; j++) {
         for (int64_t i = 0; i < first; i++)
             ritz_dense_col(&head, j)[i] = ritz_dense_col(C, j)[i];
@@ -205,24 +195,19 @@ static ritz_status split(ritz_dense *C, int64_t first, ritz_dense *rest)
     ritz_dense_free(C);
     *C = head;
     head = (ritz_dense){0};
-done:
-    ritz_dense_free(&head);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense none = {0};
+    RITZ_OWN(ritz_dense) none = {0};
 
     if (!s->momentum->val)
         return RITZ_OK;
-    RITZ_TRY(split(&out->modal.C, s->io->num_outputs, &out->momentum));
-    RITZ_TRY(split(&out->modal.Cv, s->io->num_outputs, &none));
+    RITZ_CHECK(split(&out->modal.C, s->io->num_outputs, &out->momentum));
+    RITZ_CHECK(split(&out->modal.Cv, s->io->num_outputs, &none));
     memcpy(out->rigid, s->rigid, sizeof out->rigid);
-done:
-    ritz_dense_free(&none);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
@@ -254,22 +239,18 @@ static ritz_status make_modal(const ranked_model *s,
 static ritz_status make(const ranked_model *s, const ritz_rank_choice *choice,
                         int needs, ritz_rank_request *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_rank_request request = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_io) io = {0};
 
-    RITZ_TRY(extend(s, choice->weights, &io));
-    RITZ_TRY(make_modal(s, choice, needs, &io, &request));
-    RITZ_TRY(take_momentum(s, &request));
-    RITZ_TRY(copy_names(s->io->num_inputs, s->io->input, &request.input));
-    RITZ_TRY(copy_names(s->io->num_outputs, s->io->output, &request.output));
+    RITZ_CHECK(extend(s, choice->weights, &io));
+    RITZ_CHECK(make_modal(s, choice, needs, &io, &request));
+    RITZ_CHECK(take_momentum(s, &request));
+    RITZ_CHECK(copy_names(s->io->num_inputs, s->io->input, &request.input));
+    RITZ_CHECK(copy_names(s->io->num_outputs, s->io->output, &request.output));
     memcpy(request.band_hz, choice->band_hz, sizeof request.band_hz);
     *out = request;
     request = (ritz_rank_request){0};
-done:
-    ritz_io_free(&io);
-    ritz_rank_request_free(&request);
-    return status;
+    return RITZ_OK;
 }
 
 /* Coordinates that are interface displacements, or fixed-interface modes. */
@@ -333,41 +314,32 @@ static ritz_status make_held(const ritz_reduced *r,
                              ritz_rank_request *out)
 {
     static const int64_t six[DIRECTIONS] = {0, 1, 2, 3, 4, 5};
-    ritz_status status = RITZ_OK;
-    ritz_dense K = {0}, M = {0}, D = {0}, momentum = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, momentum = {0};
+    RITZ_OWN(ritz_io) io = {0};
     const ranked_model s = {&K, &M, &D, &io, &momentum, r->invariants.rigid};
     const ritz_rank_choice bare = {.damping = choice->damping};
-    int64_t *b = NULL, *n = NULL;
+    RITZ_OWN_ARRAY int64_t *b = NULL, *n = NULL;
     int64_t p = 0, m = 0;
 
-    RITZ_TRY(find_columns(&r->columns, true, &p, &b));
-    RITZ_TRY(find_columns(&r->columns, false, &m, &n));
-    RITZ_TRY(check_clamped(&r->K, p, b, m, n));
-    RITZ_TRY(block(&r->K, m, n, m, n, &K));
-    RITZ_TRY(block(&r->M, m, n, m, n, &M));
+    RITZ_CHECK(find_columns(&r->columns, true, &p, &b));
+    RITZ_CHECK(find_columns(&r->columns, false, &m, &n));
+    RITZ_CHECK(check_clamped(&r->K, p, b, m, n));
+    RITZ_CHECK(block(&r->K, m, n, m, n, &K));
+    RITZ_CHECK(block(&r->M, m, n, m, n, &M));
     if (r->D.val)
-        RITZ_TRY(block(&r->D, m, n, m, n, &D));
+        RITZ_CHECK(block(&r->D, m, n, m, n, &D));
     if (r->invariants.momentum.val)
-        RITZ_TRY(
+        RITZ_CHECK(
             block(&r->invariants.momentum, DIRECTIONS, six, m, n, &momentum));
-    RITZ_TRY(ritz_io_new(m, p, 0, &io));
+    RITZ_CHECK(ritz_io_new(m, p, 0, &io));
     ritz_dense_free(&io.B);
-    RITZ_TRY(block(&r->M, m, n, p, b, &io.B));
-    RITZ_TRY(make(&s, &bare, needs, out));
-    RITZ_TRY(block(&r->M, p, b, p, b, &out->interface));
-    RITZ_TRY(ritz_dense_new(p, out->modal.count, &out->coupling));
+    RITZ_CHECK(block(&r->M, m, n, p, b, &io.B));
+    RITZ_CHECK(make(&s, &bare, needs, out));
+    RITZ_CHECK(block(&r->M, p, b, p, b, &out->interface));
+    RITZ_CHECK(ritz_dense_new(p, out->modal.count, &out->coupling));
     for (int64_t k = 0; k < p * out->modal.count; k++)
         out->coupling.val[k] = ritz_dense_col(&out->modal.B, k % p)[k / p];
-done:
-    free(b);
-    free(n);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&D);
-    ritz_dense_free(&momentum);
-    ritz_io_free(&io);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
@@ -380,18 +352,15 @@ ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
                             &reduced->io,
                             &reduced->invariants.momentum,
                             reduced->invariants.rigid};
-    ritz_rank_request request = {0};
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(ritz_rank_request) request = {0};
 
     if (needs & RITZ_RANK_INTERFACE)
-        RITZ_TRY(make_held(reduced, choice, needs, &request));
+        RITZ_CHECK(make_held(reduced, choice, needs, &request));
     else
-        RITZ_TRY(make(&s, choice, needs, &request));
+        RITZ_CHECK(make(&s, choice, needs, &request));
     *out = request;
     request = (ritz_rank_request){0};
-done:
-    ritz_rank_request_free(&request);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status

@@ -48,14 +48,11 @@ static void add_block(double factor, const ritz_dense *A, int64_t row,
 static ritz_status add_product(double factor, const ritz_dense *A,
                                const ritz_dense *X, int64_t row, ritz_dense *to)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AX = {0};
+    RITZ_OWN(ritz_dense) AX = {0};
 
-    RITZ_TRY(ritz_dense_mul(A, X, &AX));
+    RITZ_CHECK(ritz_dense_mul(A, X, &AX));
     add_block(factor, &AX, row, 0, to);
-done:
-    ritz_dense_free(&AX);
-    return status;
+    return RITZ_OK;
 }
 
 /* e := Q e, and the status says if Q is there. */
@@ -85,28 +82,24 @@ static ritz_status find_signals(const ritz_state_space *p,
                                 const ritz_state_space *c,
                                 const ritz_loop *loop, signals *out)
 {
-    ritz_status status = RITZ_OK;
     double sign = loop->positive ? 1.0 : -1.0;
     int64_t n = p->A.nrow, width = n + c->A.nrow + p->num_inputs;
-    ritz_dense C_y = {0}, D_y = {0}, D_yu = {0}, DC = {0};
+    RITZ_OWN(ritz_dense) C_y = {0}, D_y = {0}, D_yu = {0}, DC = {0};
 
-    RITZ_TRY(ritz_dense_rows(&p->C, loop->num_measured, loop->measured, &C_y));
-    RITZ_TRY(ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
-    RITZ_TRY(pick(&D_y, loop->num_driven, loop->driven, &D_yu));
-    RITZ_TRY(ritz_dense_mul(&D_yu, &c->C, &DC));
-    RITZ_TRY(ritz_dense_new(loop->num_measured, width, &out->e));
+    RITZ_CHECK(
+        ritz_dense_rows(&p->C, loop->num_measured, loop->measured, &C_y));
+    RITZ_CHECK(
+        ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
+    RITZ_CHECK(pick(&D_y, loop->num_driven, loop->driven, &D_yu));
+    RITZ_CHECK(ritz_dense_mul(&D_yu, &c->C, &DC));
+    RITZ_CHECK(ritz_dense_new(loop->num_measured, width, &out->e));
     add_block(1.0, &C_y, 0, 0, &out->e);
     add_block(sign, &DC, 0, n, &out->e);
     add_block(1.0, &D_y, 0, n + c->A.nrow, &out->e);
-    RITZ_TRY(solve_circle(sign, &D_yu, &c->D, &out->e));
-    RITZ_TRY(ritz_dense_mul(&c->D, &out->e, &out->v));
+    RITZ_CHECK(solve_circle(sign, &D_yu, &c->D, &out->e));
+    RITZ_CHECK(ritz_dense_mul(&c->D, &out->e, &out->v));
     add_block(1.0, &c->C, 0, n, &out->v);
-done:
-    ritz_dense_free(&C_y);
-    ritz_dense_free(&D_y);
-    ritz_dense_free(&D_yu);
-    ritz_dense_free(&DC);
-    return status;
+    return RITZ_OK;
 }
 
 /* [A B] of both, their own and what they make each other do. */
@@ -114,27 +107,22 @@ static ritz_status fill(const ritz_state_space *p, const ritz_state_space *c,
                         const ritz_loop *loop, const signals *s,
                         ritz_dense *rates, ritz_dense *seen)
 {
-    ritz_status status = RITZ_OK;
     double sign = loop->positive ? 1.0 : -1.0;
     int64_t n = p->A.nrow, m = c->A.nrow;
-    ritz_dense B_u = {0}, D_u = {0};
+    RITZ_OWN(ritz_dense) B_u = {0}, D_u = {0};
 
-    RITZ_TRY(pick(&p->B, loop->num_driven, loop->driven, &B_u));
-    RITZ_TRY(pick(&p->D, loop->num_driven, loop->driven, &D_u));
-    RITZ_TRY(ritz_dense_new(n + m, n + m + p->num_inputs, rates));
-    RITZ_TRY(ritz_dense_new(p->num_outputs, n + m + p->num_inputs, seen));
+    RITZ_CHECK(pick(&p->B, loop->num_driven, loop->driven, &B_u));
+    RITZ_CHECK(pick(&p->D, loop->num_driven, loop->driven, &D_u));
+    RITZ_CHECK(ritz_dense_new(n + m, n + m + p->num_inputs, rates));
+    RITZ_CHECK(ritz_dense_new(p->num_outputs, n + m + p->num_inputs, seen));
     add_block(1.0, &p->A, 0, 0, rates);
     add_block(1.0, &c->A, n, n, rates);
     add_block(1.0, &p->B, 0, n + m, rates);
-    RITZ_TRY(add_product(sign, &B_u, &s->v, 0, rates));
-    RITZ_TRY(add_product(1.0, &c->B, &s->e, n, rates));
+    RITZ_CHECK(add_product(sign, &B_u, &s->v, 0, rates));
+    RITZ_CHECK(add_product(1.0, &c->B, &s->e, n, rates));
     add_block(1.0, &p->C, 0, 0, seen);
     add_block(1.0, &p->D, 0, n + m, seen);
-    RITZ_TRY(add_product(sign, &D_u, &s->v, 0, seen));
-done:
-    ritz_dense_free(&B_u);
-    ritz_dense_free(&D_u);
-    return status;
+    return add_product(sign, &D_u, &s->v, 0, seen);
 }
 
 /* [E 0; 0 E_c]; {0} if both are the identity. */

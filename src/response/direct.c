@@ -50,10 +50,10 @@ ritz_status ritz_direct_new(const ritz_component *component,
                             const ritz_damping *damping, double up_to_hz,
                             ritz_direct *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_direct s = {.component = component,
-                     .n = component->num_dofs,
-                     .inputs = component->io.num_inputs};
+    RITZ_OWN(ritz_direct)
+    s = {.component = component,
+         .n = component->num_dofs,
+         .inputs = component->io.num_inputs};
     bool rayleigh = false;
 
     if (damping)
@@ -61,16 +61,14 @@ ritz_status ritz_direct_new(const ritz_component *component,
     rayleigh = ritz_damping_is_rayleigh(&s.damping);
     s.ratios = !rayleigh && s.damping.kind != RITZ_DAMPING_NONE;
     s.apart = !component->D.colptr && !component->K4.colptr && !rayleigh;
-    RITZ_TRY(ritz_poles_of_component(component, damping, up_to_hz, &s.pairs,
-                                     &s.poles));
+    RITZ_CHECK(ritz_poles_of_component(component, damping, up_to_hz, &s.pairs,
+                                       &s.poles));
     s.m = s.pairs.Phi.ncol;
-    RITZ_TRY(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
-    RITZ_TRY(start(&s));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
+    RITZ_CHECK(start(&s));
     *out = s;
     s = (ritz_direct){0};
-done:
-    ritz_direct_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_direct_free(ritz_direct *direct)
@@ -303,16 +301,15 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
                               const double _Complex *X, int64_t outputs,
                               const double _Complex *Y, double *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = direct->component;
     bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
     double w = 2.0 * RITZ_PI * hertz;
     double a = rayleigh ? fabs(direct->damping.a) : 0.0;
     double b = rayleigh ? fabs(direct->damping.b) : 0.0;
     int64_t n = direct->n;
-    double *t = NULL;
+    RITZ_OWN_ARRAY double *t = NULL;
 
-    RITZ_NEW(t, n);
+    RITZ_CHECK_NEW(t, n);
     for (int64_t j = 0; j < direct->inputs; j++) {
         const double _Complex *x = X + j * n;
 
@@ -331,9 +328,7 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
                 RITZ_SUMMED_ROUNDING * DBL_EPSILON * sum;
         }
     }
-done:
-    free(t);
-    return status;
+    return RITZ_OK;
 }
 
 /* The direct engine: a factor of the full matrices at each point. */
@@ -352,21 +347,18 @@ static void finish(void *state)
 static ritz_status make(const ritz_response_request *request,
                         ritz_responder *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_direct *s = NULL;
+    RITZ_OWN_ARRAY ritz_direct *s = NULL;
 
-    RITZ_NEW(s, 1);
-    RITZ_TRY(ritz_direct_new(request->component, request->damping,
-                             ritz_response_highest(request), s));
+    RITZ_CHECK_NEW(s, 1);
+    RITZ_CHECK(ritz_direct_new(request->component, request->damping,
+                               ritz_response_highest(request), s));
     out->poles = &s->poles;
     out->pairs = &s->pairs;
     out->at = at;
     out->free = finish;
     out->state = s;
     s = NULL;
-done:
-    free(s);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_response_engine ritz_response_engine_direct = {

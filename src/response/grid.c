@@ -93,13 +93,12 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = 0;
-    double *f = NULL;
+    RITZ_OWN_ARRAY double *f = NULL;
     double extra[AROUND];
 
-    RITZ_TRY(ritz_grid_check(grid));
-    RITZ_NEW(f, grid->count + (grid->refine ? num_modes * AROUND : 0));
+    RITZ_CHECK(ritz_grid_check(grid));
+    RITZ_CHECK_NEW(f, grid->count + (grid->refine ? num_modes * AROUND : 0));
     for (n = 0; n < grid->count; n++)
         f[n] = even_point(grid, n);
     for (int64_t k = 0; grid->refine && !grid->hertz && k < num_modes; k++) {
@@ -113,7 +112,5 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
     *count = grid->hertz ? n : distinct(n, f);
     *out = f;
     f = NULL;
-done:
-    free(f);
-    return status;
+    return RITZ_OK;
 }

@@ -241,43 +241,36 @@ static void correction(const krylov_responder *k, ritz_dense *X)
 /* The first: A^-1 of all loads. */
 static ritz_status begin_krylov(krylov_responder *k)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
     int64_t added = 0;
 
     if (k->full.m < k->full.n)
-        RITZ_TRY(ritz_dense_copy(&k->space.S, &X));
+        RITZ_CHECK(ritz_dense_copy(&k->space.S, &X));
     X.nrow = k->full.n;
     for (int64_t c = 0; c < k->space.W.ncol; c++)
         if (k->space.column[c].kind > RITZ_KRYLOV_CA && X.ncol > c)
             X.ncol = c; /* loads are in front */
-    RITZ_TRY(renew(k, &X, &added));
-done:
-    ritz_dense_free(&X);
-    return status;
+    return renew(k, &X, &added);
 }
 
 /* A^-1 of the residuals at the worst point. */
 static ritz_status krylov_correct(krylov_responder *k, int64_t *added)
 {
-    ritz_status status = RITZ_OK;
     int64_t loads = k->inputs + k->outputs;
     double hertz = k->hertz[k->at];
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_dense_new(k->full.n, 2 * loads, &X));
+    RITZ_CHECK(ritz_dense_new(k->full.n, 2 * loads, &X));
     X.ncol = 0;
-    RITZ_TRY(ritz_krylov_small_solve(&k->small, hertz));
+    RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
     for (int64_t j = 0; j < loads; j++)
         if (takes_part(k, j)) {
             take_krylov(k, hertz, j);
             correction(k, &X);
         }
-    RITZ_TRY(renew(k, &X, added));
+    RITZ_CHECK(renew(k, &X, added));
     k->corrections++;
-done:
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /* b of the inputs, then c of the outputs, n each. */
@@ -476,12 +469,11 @@ static ritz_status find_quietest(const krylov_responder *k,
                                  double *out)
 {
     const double band_hz[2] = {request->from_hz, request->to_hz};
-    ritz_status status = RITZ_OK;
-    ritz_damped damped = {0};
+    RITZ_OWN(ritz_damped) damped = {0};
     double least = HUGE_VAL;
 
     *out = 0.0;
-    RITZ_TRY(ritz_damped_new(&k->small.poles, NULL, NULL, band_hz, &damped));
+    RITZ_CHECK(ritz_damped_new(&k->small.poles, NULL, NULL, band_hz, &damped));
     for (int64_t j = 0; j < damped.listing.count; j++) {
         double _Complex s = damped.listing.s[j];
         double hertz = cimag(s) / (2.0 * RITZ_PI);
@@ -494,9 +486,7 @@ static ritz_status find_quietest(const krylov_responder *k,
     }
     if (least < RITZ_BESIDE_MODE)
         *out *= 1.0 + RITZ_BESIDE_MODE;
-done:
-    ritz_damped_free(&damped);
-    return status;
+    return RITZ_OK;
 }
 
 /* Full answers at the worst point, and at the pole that is damped least. */

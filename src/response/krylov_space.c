@@ -36,20 +36,19 @@ static ritz_status append(ritz_dense *A, int64_t *room, const ritz_dense *more)
 static ritz_status add_columns(ritz_krylov_space *s, ritz_krylov_kind kind,
                                int64_t first, ritz_dense *W)
 {
-    ritz_status status = RITZ_OK;
     int64_t before = s->W.ncol, S_room = s->W_room, old = s->W_room;
     ritz_krylov_column *column = NULL;
-    ritz_dense S = {0};
+    RITZ_OWN(ritz_dense) S = {0};
 
     if (W->ncol == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_take_out(s->MPhi, s->Phi, W));
-    RITZ_TRY(ritz_dense_copy(W, &S));
-    RITZ_TRY(ritz_factor_solve(s->F, &S));
-    RITZ_TRY(append(&s->S, &S_room, &S));
-    RITZ_TRY(append(&s->W, &s->W_room, W));
+    RITZ_CHECK(ritz_dense_take_out(s->MPhi, s->Phi, W));
+    RITZ_CHECK(ritz_dense_copy(W, &S));
+    RITZ_CHECK(ritz_factor_solve(s->F, &S));
+    RITZ_CHECK(append(&s->S, &S_room, &S));
+    RITZ_CHECK(append(&s->W, &s->W_room, W));
     if (s->W_room > old) {
-        RITZ_NEW(column, s->W_room);
+        RITZ_CHECK_NEW(column, s->W_room);
         if (before > 0)
             memcpy(column, s->column, (size_t)before * sizeof *column);
         free(s->column);
@@ -57,14 +56,11 @@ static ritz_status add_columns(ritz_krylov_space *s, ritz_krylov_kind kind,
     }
     for (int64_t k = 0; k < W->ncol; k++)
         s->column[before + k] = (ritz_krylov_column){kind, first + k};
-done:
-    ritz_dense_free(&S);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_loads(ritz_krylov_space *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &s->component->io;
     const struct {
         const ritz_dense *rows;
@@ -72,23 +68,21 @@ static ritz_status add_loads(ritz_krylov_space *s)
     } seen[] = {{&io->C, RITZ_KRYLOV_C},
                 {&io->Cv, RITZ_KRYLOV_CV},
                 {&io->Ca, RITZ_KRYLOV_CA}};
-    ritz_dense W = {0};
+    RITZ_OWN(ritz_dense) W = {0};
 
-    RITZ_TRY(ritz_dense_copy(&io->B, &W));
-    RITZ_TRY(add_columns(s, RITZ_KRYLOV_B, 0, &W));
+    RITZ_CHECK(ritz_dense_copy(&io->B, &W));
+    RITZ_CHECK(add_columns(s, RITZ_KRYLOV_B, 0, &W));
     for (size_t k = 0; k < sizeof seen / sizeof *seen; k++) {
         if (ritz_dense_max(seen[k].rows) == 0.0)
             continue;
         ritz_dense_free(&W);
-        RITZ_TRY(ritz_dense_new(seen[k].rows->ncol, seen[k].rows->nrow, &W));
+        RITZ_CHECK(ritz_dense_new(seen[k].rows->ncol, seen[k].rows->nrow, &W));
         for (int64_t j = 0; j < W.ncol; j++)
             for (int64_t i = 0; i < W.nrow; i++)
                 ritz_dense_col(&W, j)[i] = ritz_dense_col(seen[k].rows, i)[j];
-        RITZ_TRY(add_columns(s, seen[k].kind, 0, &W));
+        RITZ_CHECK(add_columns(s, seen[k].kind, 0, &W));
     }
-done:
-    ritz_dense_free(&W);
-    return status;
+    return RITZ_OK;
 }
 
 /* One kind's matrix times columns of V, from `first` on. */
@@ -96,16 +90,12 @@ static ritz_status add_product(ritz_krylov_space *s, ritz_krylov_kind kind,
                                const ritz_sparse *A, int64_t first,
                                const ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense W = {0};
+    RITZ_OWN(ritz_dense) W = {0};
 
     if (!A->colptr || X->ncol == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(A, X, &W));
-    RITZ_TRY(add_columns(s, kind, first, &W));
-done:
-    ritz_dense_free(&W);
-    return status;
+    RITZ_CHECK(ritz_sparse_mul(A, X, &W));
+    return add_columns(s, kind, first, &W);
 }
 
 /* What damping matrices do with columns of V. */
@@ -128,49 +118,42 @@ static ritz_status weigh(ritz_krylov_space *s)
 ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
                                   ritz_krylov_space *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = direct->component;
-    ritz_krylov_space s = {.component = c,
-                           .tau = tau,
-                           .Phi = &direct->pairs.Phi,
-                           .MPhi = &direct->MPhi};
+    RITZ_OWN(ritz_krylov_space)
+    s = {.component = c,
+         .tau = tau,
+         .Phi = &direct->pairs.Phi,
+         .MPhi = &direct->MPhi};
 
-    RITZ_TRY(ritz_sparse_add(1.0, &c->K, tau, &c->M, &s.A));
-    RITZ_TRY_IN("static answer", ritz_factor_spd(&s.A, &s.F));
+    RITZ_CHECK(ritz_sparse_add(1.0, &c->K, tau, &c->M, &s.A));
+    RITZ_CHECK_IN("static answer", ritz_factor_spd(&s.A, &s.F));
     if (c->D.colptr && ritz_sparse_asymmetry(&c->D) > 0.0)
-        RITZ_TRY(ritz_sparse_transpose(&c->D, &s.DT));
-    RITZ_TRY(append(&s.V, &s.V_room, s.Phi));
-    RITZ_TRY(add_loads(&s));
-    RITZ_TRY(add_damping(&s, 0, s.Phi));
-    RITZ_TRY(weigh(&s));
+        RITZ_CHECK(ritz_sparse_transpose(&c->D, &s.DT));
+    RITZ_CHECK(append(&s.V, &s.V_room, s.Phi));
+    RITZ_CHECK(add_loads(&s));
+    RITZ_CHECK(add_damping(&s, 0, s.Phi));
+    RITZ_CHECK(weigh(&s));
     *out = s;
     s = (ritz_krylov_space){0};
-done:
-    ritz_krylov_space_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 /* x := x - X X'A x for the columns of X, and its length in A. */
 static ritz_status turn(const ritz_krylov_space *s, const ritz_dense *X,
                         ritz_dense *x, double *length)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Ax = {0}, share = {0}, part = {0};
+    RITZ_OWN(ritz_dense) Ax = {0}, share = {0}, part = {0};
 
-    RITZ_TRY(ritz_dense_take_out(s->Phi, s->MPhi, x));
-    RITZ_TRY(ritz_sparse_mul(&s->A, x, &Ax));
-    RITZ_TRY(ritz_dense_mul_tn(X, &Ax, &share));
-    RITZ_TRY(ritz_dense_mul(X, &share, &part));
+    RITZ_CHECK(ritz_dense_take_out(s->Phi, s->MPhi, x));
+    RITZ_CHECK(ritz_sparse_mul(&s->A, x, &Ax));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &Ax, &share));
+    RITZ_CHECK(ritz_dense_mul(X, &share, &part));
     for (int64_t i = 0; i < x->nrow; i++)
         x->val[i] -= part.val[i];
     ritz_dense_free(&Ax);
-    RITZ_TRY(ritz_sparse_mul(&s->A, x, &Ax));
+    RITZ_CHECK(ritz_sparse_mul(&s->A, x, &Ax));
     *length = sqrt(fmax(ritz_dense_dot(x, 0, &Ax, 0), 0.0));
-done:
-    ritz_dense_free(&Ax);
-    ritz_dense_free(&share);
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* One vector; twice is enough for orthogonality. */
@@ -284,21 +267,17 @@ static ritz_status project(const ritz_direct *direct,
 static ritz_status pair(const ritz_direct *direct, const ritz_dense *K_x,
                         const ritz_dense *M_x, ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs rest = {0};
+    RITZ_OWN(ritz_pairs) rest = {0};
     int64_t m = direct->m;
 
     if (K_x->ncol > 0)
-        RITZ_TRY(ritz_eigen_dense(K_x, M_x, &rest));
+        RITZ_CHECK(ritz_eigen_dense(K_x, M_x, &rest));
     out->num_rigid = direct->poles.num_rigid;
-    RITZ_NEW(out->lambda, m + K_x->ncol);
+    RITZ_CHECK_NEW(out->lambda, m + K_x->ncol);
     memcpy(out->lambda, direct->poles.lambda, (size_t)m * sizeof *out->lambda);
     for (int64_t k = 0; k < rest.Phi.ncol; k++)
         out->lambda[m + k] = rest.lambda[k];
-    RITZ_TRY(beneath(m, NULL, &rest.Phi, &out->Phi));
-done:
-    ritz_pairs_free(&rest);
-    return status;
+    return beneath(m, NULL, &rest.Phi, &out->Phi);
 }
 
 /* Ratios belong to modes: what was given to other coordinates goes. */
@@ -328,24 +307,24 @@ static ritz_status transpose(const ritz_dense *A, ritz_dense *out)
 /* The transposed system, loaded by what the outputs see. */
 static ritz_status turn_over(const ritz_poles *poles, ritz_poles *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &poles->io;
     const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
     int64_t r = poles->count + poles->massless;
     int64_t p = io->num_outputs;
-    ritz_poles dual = {.count = poles->count,
-                       .num_rigid = poles->num_rigid,
-                       .massless = poles->massless,
-                       .coupled = poles->coupled,
-                       .skew = poles->skew};
+    RITZ_OWN(ritz_poles)
+    dual = {.count = poles->count,
+            .num_rigid = poles->num_rigid,
+            .massless = poles->massless,
+            .coupled = poles->coupled,
+            .skew = poles->skew};
 
-    RITZ_NEW(dual.lambda, r);
-    RITZ_NEW(dual.rate, r);
+    RITZ_CHECK_NEW(dual.lambda, r);
+    RITZ_CHECK_NEW(dual.rate, r);
     memcpy(dual.lambda, poles->lambda, (size_t)r * sizeof *dual.lambda);
     memcpy(dual.rate, poles->rate, (size_t)r * sizeof *dual.rate);
-    RITZ_TRY(transpose(&poles->D, &dual.D));
-    RITZ_TRY(transpose(&poles->K4, &dual.K4));
-    RITZ_TRY(ritz_io_new(r, 3 * p, 0, &dual.io));
+    RITZ_CHECK(transpose(&poles->D, &dual.D));
+    RITZ_CHECK(transpose(&poles->K4, &dual.K4));
+    RITZ_CHECK(ritz_io_new(r, 3 * p, 0, &dual.io));
     for (int k = 0; k < 3; k++)
         for (int64_t j = 0; j < r; j++)
             for (int64_t i = 0; i < p; i++)
@@ -353,45 +332,37 @@ static ritz_status turn_over(const ritz_poles *poles, ritz_poles *out)
                     ritz_dense_col(rows[k], j)[i];
     *out = dual;
     dual = (ritz_poles){0};
-done:
-    ritz_poles_free(&dual);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_krylov_small_new(const ritz_direct *direct,
                                   const ritz_krylov_space *space,
                                   ritz_krylov_small *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &space->component->io;
-    ritz_krylov_small small = {.outputs = io->num_outputs,
-                               .inputs = io->num_inputs,
-                               .r = space->V.ncol};
-    ritz_dense K_x = {0}, M_x = {0};
-    ritz_pairs pairs = {0};
-    matrices a = {0};
+    RITZ_OWN(ritz_krylov_small)
+    small = {.outputs = io->num_outputs,
+             .inputs = io->num_inputs,
+             .r = space->V.ncol};
+    RITZ_OWN(ritz_dense) K_x = {0}, M_x = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(matrices) a = {0};
     const ritz_second_order model = {&a.K, &a.M, &a.D, &a.K4, &a.io};
 
-    RITZ_TRY(project(direct, space, &a, &K_x, &M_x));
-    RITZ_TRY(pair(direct, &K_x, &M_x, &pairs));
-    RITZ_TRY(ritz_poles_of_pairs(&model, &direct->damping, true, &pairs,
-                                 &small.poles));
+    RITZ_CHECK(project(direct, space, &a, &K_x, &M_x));
+    RITZ_CHECK(pair(direct, &K_x, &M_x, &pairs));
+    RITZ_CHECK(ritz_poles_of_pairs(&model, &direct->damping, true, &pairs,
+                                   &small.poles));
     take_ratios(direct, &small.poles);
-    RITZ_TRY(turn_over(&small.poles, &small.dual));
+    RITZ_CHECK(turn_over(&small.poles, &small.dual));
     small.T = pairs.Phi;
     pairs.Phi = (ritz_dense){0};
-    RITZ_NEW(small.q, small.r * small.inputs);
-    RITZ_NEW(small.p, small.r * small.outputs);
-    RITZ_NEW(small.z, small.r * (3 * small.outputs + small.inputs));
+    RITZ_CHECK_NEW(small.q, small.r * small.inputs);
+    RITZ_CHECK_NEW(small.p, small.r * small.outputs);
+    RITZ_CHECK_NEW(small.z, small.r * (3 * small.outputs + small.inputs));
     *out = small;
     small = (ritz_krylov_small){0};
-done:
-    matrices_free(&a);
-    ritz_dense_free(&K_x);
-    ritz_dense_free(&M_x);
-    ritz_pairs_free(&pairs);
-    ritz_krylov_small_free(&small);
-    return status;
+    return RITZ_OK;
 }
 
 /* out = T z, columns of complex numbers. */

@@ -124,30 +124,28 @@ ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
                             int64_t num_pairs, const char *const *pair,
                             ritz_loop *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_loop loop = {.num_measured = controller->num_inputs,
-                      .num_driven = controller->num_outputs};
+    RITZ_OWN(ritz_loop)
+    loop = {.num_measured = controller->num_inputs,
+            .num_driven = controller->num_outputs};
 
-    RITZ_FAIL_IF(loop.num_measured == 0 || loop.num_driven == 0,
-                 RITZ_ERR_ARGUMENT, "the controller has no %s: it is none",
-                 loop.num_measured == 0 ? "inputs" : "outputs");
-    RITZ_NEW(loop.measured, loop.num_measured);
-    RITZ_NEW(loop.driven, loop.num_driven);
+    RITZ_REFUSE_IF(loop.num_measured == 0 || loop.num_driven == 0,
+                   RITZ_ERR_ARGUMENT, "the controller has no %s: it is none",
+                   loop.num_measured == 0 ? "inputs" : "outputs");
+    RITZ_CHECK_NEW(loop.measured, loop.num_measured);
+    RITZ_CHECK_NEW(loop.driven, loop.num_driven);
     for (int64_t k = 0; k < loop.num_measured; k++)
         loop.measured[k] = -1;
     for (int64_t k = 0; k < loop.num_driven; k++)
         loop.driven[k] = -1;
     for (int64_t k = 0; k < num_pairs; k++)
-        RITZ_TRY(take_pair(plant, controller, pair[k], &loop));
-    RITZ_TRY(fill(loop.num_measured, controller->input, plant->num_outputs,
-                  plant->output, "output", loop.measured));
-    RITZ_TRY(fill(loop.num_driven, controller->output, plant->num_inputs,
-                  plant->input, "input", loop.driven));
+        RITZ_CHECK(take_pair(plant, controller, pair[k], &loop));
+    RITZ_CHECK(fill(loop.num_measured, controller->input, plant->num_outputs,
+                    plant->output, "output", loop.measured));
+    RITZ_CHECK(fill(loop.num_driven, controller->output, plant->num_inputs,
+                    plant->input, "input", loop.driven));
     *out = loop;
     loop = (ritz_loop){0};
-done:
-    ritz_loop_free(&loop);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_loop_free(ritz_loop *loop)

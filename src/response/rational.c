@@ -298,12 +298,12 @@ static void add_candidate(rational_nodes *s, double hertz, double low,
  * them are Leja points, which gather there. */
 static ritz_status place_nodes(rational_nodes *s, double low, double high)
 {
-    ritz_status status = RITZ_OK;
-    double *at = NULL;
+    RITZ_OWN_ARRAY double *at = NULL;
     int64_t n = 0;
 
-    RITZ_NEW(at, s->num_poles + 2);
-    RITZ_NEW(s->hertz, EVEN + (s->num_poles + 2) * (BETWEEN + 1 + 2 * OFFSETS));
+    RITZ_CHECK_NEW(at, s->num_poles + 2);
+    RITZ_CHECK_NEW(s->hertz,
+                   EVEN + (s->num_poles + 2) * (BETWEEN + 1 + 2 * OFFSETS));
     for (int k = 1; k < EVEN; k++)
         add_candidate(
             s, 0.5 * (low + high - (high - low) * cos(RITZ_PI * k / EVEN)), low,
@@ -329,10 +329,8 @@ static ritz_status place_nodes(rational_nodes *s, double low, double high)
             if (part < BETWEEN || k + 2 == n)
                 add_candidate(s, at[k] + (at[k + 1] - at[k]) * part / BETWEEN,
                               low, high);
-    RITZ_NEW(s->used, s->count);
-done:
-    free(at);
-    return status;
+    RITZ_CHECK_NEW(s->used, s->count);
+    return RITZ_OK;
 }
 
 /* The candidate that helps most, -1 if none is left. */
@@ -441,17 +439,16 @@ static void add_pole(rational_nodes *s, double _Complex pole)
 /* A small component as a dense model, ratios in D as the modes have them. */
 static ritz_status take_whole(rational_nodes *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_direct *full = &s->full;
     ritz_dense *D = &s->whole.D;
-    ritz_dense scaled = {0}, given = {0};
+    RITZ_OWN(ritz_dense) scaled = {0}, given = {0};
 
-    RITZ_TRY(ritz_whole_new(full->component, &s->whole));
+    RITZ_CHECK(ritz_whole_new(full->component, &s->whole));
     s->whole.model.io = &full->component->io;
     s->small = true;
     if (!full->ratios)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_copy(&full->MPhi, &scaled));
+    RITZ_CHECK(ritz_dense_copy(&full->MPhi, &scaled));
     for (int64_t k = 0; k < full->m; k++) {
         double rate = ritz_modal_rate(&full->damping, k - full->poles.num_rigid,
                                       full->poles.lambda[k]);
@@ -459,15 +456,12 @@ static ritz_status take_whole(rational_nodes *s)
         for (int64_t i = 0; i < full->n; i++)
             ritz_dense_col(&scaled, k)[i] *= rate;
     }
-    RITZ_TRY(ritz_dense_mul_nt(&scaled, &full->MPhi, &given));
+    RITZ_CHECK(ritz_dense_mul_nt(&scaled, &full->MPhi, &given));
     if (!D->val)
-        RITZ_TRY(ritz_dense_new(full->n, full->n, D));
+        RITZ_CHECK(ritz_dense_new(full->n, full->n, D));
     for (int64_t i = 0; i < full->n * full->n; i++)
         D->val[i] += given.val[i];
-done:
-    ritz_dense_free(&scaled);
-    ritz_dense_free(&given);
-    return status;
+    return RITZ_OK;
 }
 
 /* What acts beside that model's D. */
@@ -481,21 +475,18 @@ static ritz_status list_poles(const rational_nodes *s,
                               const ritz_responder *responder, int64_t *count,
                               double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_spectrum all = {0};
+    RITZ_OWN(ritz_spectrum) all = {0};
     double _Complex *found = NULL;
 
     if (!s->small || !s->full.poles.coupled)
         return ritz_responder_poles(responder, count, out);
-    RITZ_TRY(ritz_spectrum_dense(&s->whole.model, rest_of(s), &all));
-    RITZ_NEW(found, all.count + all.num_zero);
+    RITZ_CHECK(ritz_spectrum_dense(&s->whole.model, rest_of(s), &all));
+    RITZ_CHECK_NEW(found, all.count + all.num_zero);
     for (int64_t k = 0; k < all.count; k++)
         found[k] = all.s[k];
     *count = all.count + all.num_zero;
     *out = found;
-done:
-    ritz_spectrum_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 /*

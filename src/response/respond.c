@@ -70,26 +70,23 @@ ritz_status ritz_response_component(const ritz_component *component,
                                     double up_to_hz, double tolerance,
                                     const ritz_grid *grid, ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_responder *responder = NULL;
+    RITZ_OWN(ritz_responder) *responder = NULL;
     const char *why = NULL;
     ritz_response_request request = {.component = component,
                                      .damping = damping,
                                      .up_to_hz = up_to_hz,
                                      .tolerance = 0.1 * tolerance};
 
-    RITZ_TRY(ritz_grid_check(grid));
+    RITZ_CHECK(ritz_grid_check(grid));
     request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
     request.to_hz = ritz_grid_end(grid);
     if (engine)
-        RITZ_TRY(ritz_responder_new(engine, &request, &responder));
+        RITZ_CHECK(ritz_responder_new(engine, &request, &responder));
     else
-        RITZ_TRY(ritz_responder_auto(&request, &why, &responder));
+        RITZ_CHECK(ritz_responder_auto(&request, &why, &responder));
     if (tolerance > 0.0)
-        RITZ_TRY(ritz_responder_follow(responder, grid, tolerance, out));
+        RITZ_CHECK(ritz_responder_follow(responder, grid, tolerance, out));
     else
-        RITZ_TRY(ritz_responder_sample(responder, grid, out));
-done:
-    ritz_responder_free(&responder);
-    return status;
+        RITZ_CHECK(ritz_responder_sample(responder, grid, out));
+    return RITZ_OK;
 }

@@ -163,11 +163,10 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
                                const ritz_response_request *request,
                                ritz_responder **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_responder *r = NULL;
+    RITZ_OWN(ritz_responder) *r = NULL;
 
-    RITZ_TRY(check(engine, request));
-    RITZ_NEW(r, 1);
+    RITZ_CHECK(check(engine, request));
+    RITZ_CHECK_NEW(r, 1);
     r->engine = engine;
     r->component = request->component;
     r->from_hz = request->from_hz;
@@ -175,13 +174,11 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
     if (request->damping)
         r->given = *request->damping;
     ritz_damping_print(&r->given, r->damping);
-    RITZ_TRY(new_noise(request, &r->noise));
-    RITZ_TRY(engine->make(request, r));
+    RITZ_CHECK(new_noise(request, &r->noise));
+    RITZ_CHECK(engine->make(request, r));
     *out = r;
     r = NULL;
-done:
-    ritz_responder_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_responder_free(ritz_responder **responder)
@@ -219,39 +216,32 @@ ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
 ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
-    RITZ_TRY(ritz_response_new(grid, responder->poles, responder->engine->name,
-                               NULL, &r));
+    RITZ_CHECK(ritz_response_new(grid, responder->poles,
+                                 responder->engine->name, NULL, &r));
     memcpy(r.damping, responder->damping, sizeof r.damping);
     for (int64_t k = 0; k < r.count; k++) {
-        RITZ_TRY(ritz_responder_at(responder, r.hertz[k],
-                                   r.H + k * r.num_outputs * r.num_inputs));
+        RITZ_CHECK(ritz_responder_at(responder, r.hertz[k],
+                                     r.H + k * r.num_outputs * r.num_inputs));
         ritz_monitor_step("response", k + 1, r.count);
     }
     *out = r;
     r = (ritz_response){0};
-done:
-    ritz_response_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_response_once(const ritz_response_engine *engine,
                                ritz_response_request *request,
                                const ritz_grid *grid, ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_responder *responder = NULL;
+    RITZ_OWN(ritz_responder) *responder = NULL;
 
-    RITZ_TRY(ritz_grid_check(grid));
+    RITZ_CHECK(ritz_grid_check(grid));
     request->from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
     request->to_hz = ritz_grid_end(grid);
-    RITZ_TRY(ritz_responder_new(engine, request, &responder));
-    RITZ_TRY(ritz_responder_sample(responder, grid, out));
-done:
-    ritz_responder_free(&responder);
-    return status;
+    RITZ_CHECK(ritz_responder_new(engine, request, &responder));
+    return ritz_responder_sample(responder, grid, out);
 }
 
 /* Both roots of s^2 + rate s + lambda, the conjugate of a pair left out. */

@@ -25,31 +25,26 @@ ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
                               ritz_response *out)
 {
     static const ritz_damping none = {0};
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &poles->io;
-    ritz_response r = {.num_inputs = io->num_inputs,
-                       .num_outputs = io->num_outputs};
-    double *omega = NULL;
-    double *zeta = NULL;
+    RITZ_OWN(ritz_response)
+    r = {.num_inputs = io->num_inputs, .num_outputs = io->num_outputs};
+    RITZ_OWN_ARRAY double *omega = NULL;
+    RITZ_OWN_ARRAY double *zeta = NULL;
 
-    RITZ_TRY(ritz_poles_ratios(poles, &omega, &zeta));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_poles_ratios(poles, &omega, &zeta));
+    RITZ_CHECK(
         ritz_grid_points(grid, poles->count, omega, zeta, &r.count, &r.hertz));
-    RITZ_FAIL_IF(r.num_inputs * r.num_outputs > most_values / r.count,
-                 RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " frequencies of %" PRId64 " x %" PRId64
-                 " responses are too many",
-                 r.count, r.num_outputs, r.num_inputs);
-    RITZ_TRY(copy_names(r.num_inputs, io->input, &r.input));
-    RITZ_TRY(copy_names(r.num_outputs, io->output, &r.output));
-    RITZ_NEW(r.H, r.count * r.num_inputs * r.num_outputs);
+    RITZ_REFUSE_IF(r.num_inputs * r.num_outputs > most_values / r.count,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " frequencies of %" PRId64 " x %" PRId64
+                   " responses are too many",
+                   r.count, r.num_outputs, r.num_inputs);
+    RITZ_CHECK(copy_names(r.num_inputs, io->input, &r.input));
+    RITZ_CHECK(copy_names(r.num_outputs, io->output, &r.output));
+    RITZ_CHECK_NEW(r.H, r.count * r.num_inputs * r.num_outputs);
     (void)snprintf(r.method, RITZ_NAME_SIZE, "%s", method);
     ritz_damping_print(damping ? damping : &none, r.damping);
     *out = r;
     r = (ritz_response){0};
-done:
-    free(omega);
-    free(zeta);
-    ritz_response_free(&r);
-    return status;
+    return RITZ_OK;
 }

@@ -50,23 +50,20 @@ done:
 
 ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)
 {
-    ritz_status status = RITZ_OK;
     int64_t size = r->num_outputs * r->num_inputs;
     int64_t width = smaller(r->num_outputs, r->num_inputs);
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
-    RITZ_NEW(sigma, r->count * width);
+    RITZ_CHECK_NEW(sigma, r->count * width);
     for (int64_t k = 0; k < r->count; k++)
-        RITZ_TRY(ritz_singular_values(r->num_outputs, r->num_inputs,
-                                      r->H + k * size, scales,
-                                      sigma + k * width));
+        RITZ_CHECK(ritz_singular_values(r->num_outputs, r->num_inputs,
+                                        r->H + k * size, scales,
+                                        sigma + k * width));
     free(r->singular);
     r->singular = sigma;
     r->num_singular = width;
     sigma = NULL;
-done:
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 /* What the search asks. */

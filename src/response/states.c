@@ -109,24 +109,20 @@ static ritz_status solve(hessenberg *h, double hertz)
 ritz_status ritz_state_space_poles(const ritz_state_space *model,
                                    int64_t *count, double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0};
-    ritz_eigenvalues found = {0};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_eigenvalues) found = {0};
     double _Complex *poles = NULL;
 
-    RITZ_TRY(ritz_dense_copy(&model->A, &A));
+    RITZ_CHECK(ritz_dense_copy(&model->A, &A));
     if (model->E.val)
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &A));
-    RITZ_TRY(ritz_eigenvalues_of(&A, &found));
-    RITZ_NEW(poles, found.count);
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &A));
+    RITZ_CHECK(ritz_eigenvalues_of(&A, &found));
+    RITZ_CHECK_NEW(poles, found.count);
     for (int64_t k = 0; k < found.count; k++)
         poles[k] = ritz_complex(found.re[k], found.im[k]);
     *count = found.count;
     *out = poles;
-done:
-    ritz_dense_free(&A);
-    ritz_eigenvalues_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 /* Poles with Im s >= 0 as modes, for a grid that is refined around them. */
