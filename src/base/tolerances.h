@@ -586,4 +586,150 @@
 /* Inputs that do nothing are scaled by this, which is not 0. */
 #define RITZ_LEAST_SCALE 1e-300
 
+/* Full against reduced, estimates and fit */
+
+/* A full model's modes are computed to this multiple of the band's end. */
+#define RITZ_REFERENCE_REACH 3.0
+/* Hz: no model has a mode above. */
+#define RITZ_ALL_MODES 1e100
+/* Singular values of a response are zero below this part of the largest. */
+#define RITZ_ZERO_SINGULAR 1e-10
+/* Relative tolerance of H-infinity norms. */
+#define RITZ_NORM_TOLERANCE 1e-8
+/*
+ * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
+ * moves the response by some n eps |G|. The factor is a choice: no error of
+ * tests/claims/states.claims comes near its bound by less.
+ */
+#define RITZ_BOUND_ROUNDING 1e3
+/* Damping ratios below this part of the largest are rounding of the some
+   thousand terms of a modal damping. */
+#define RITZ_UNDAMPED_WITHIN 1e-12
+/* Participation below this part of |c_i| |phi|, or of the largest product of
+   a channel, is rounding of products and eigenvectors. */
+#define RITZ_PARTICIPATION_ROUNDING 1e-10
+/* Rounding of the edge of a band belongs to it. */
+#define RITZ_BAND_EDGE 1e-9
+/* A reduced mode with less than half of a full mode is not that mode. */
+#define RITZ_PARTNER_ABOVE 0.5
+/* Leaving out a mode costs as much as frequencies 15 % apart do: with two
+   left out, modes pair up to 30 %. */
+#define RITZ_SKIP_COST 0.15
+/* Modes that inputs and outputs see wholly differently cost as much as
+   frequencies 10 % apart. */
+#define RITZ_UNLIKE_COST 0.1
+/* An exchange of partners that gains less is rounding. */
+#define RITZ_EXCHANGE_GAIN 1e-9
+/* Largest tolerance of a relative measure. */
+#define RITZ_MOST_RELATIVE 1.0
+/* Largest tolerance of a count. */
+#define RITZ_MOST_COUNT 1e9
+/* Roundings, in eps, of a sum of terms that cancel: one is due, the rest is
+   room. */
+#define RITZ_CANCELLED_ROUNDINGS 4.0
+/* A count may be off by this multiple of the rounding of eigenvalues near it. */
+#define RITZ_COUNT_MARGIN 2.0
+/* A ratio of bound to error that is good enough. */
+#define RITZ_GOOD_RATIO 3.0
+/* Relative error above which a mode is in no known gap. */
+#define RITZ_COARSE_ERROR 0.1
+/* The first count lies between these multiples of the band's end, in lambda. */
+#define RITZ_COUNT_NEAR 2.0
+/* The same, the upper one. */
+#define RITZ_COUNT_FAR 8.0
+/* A count for responses lies below this multiple of it. */
+#define RITZ_COUNT_FARTHEST 40.0
+/* Ratio (rho - sigma) / (theta - sigma) beyond which a count gains nothing. */
+#define RITZ_COUNT_ENOUGH 3.0
+/* A gap narrower than this part of its distance to the mode gains nothing. */
+#define RITZ_GAP_CLOSE 0.3
+/* Part of the band's end, in lambda, below which a reduced mode may be a rigid
+   motion that the basis holds badly. */
+#define RITZ_MAY_BE_RIGID 1e-6
+/* Gaps of eigenvalues narrower than this, relative, hold no count. */
+#define RITZ_GAP_NARROW 1e-6
+/* The full mode of the same number is named unless another one's bound is
+   smaller by this factor. */
+#define RITZ_CLAIM_FAVOUR 4.0
+/* Largest sin^2 of the angle between a group and a vector that stands for it. */
+#define RITZ_VECTOR_NEAR 0.1
+/* Rounding of |c|^2, here and in ritz-verify. */
+#define RITZ_SHARE_ROUNDING 1e-6
+/* The band is taken so much wider, in lambda: ritz-verify allows 2e-9. */
+#define RITZ_BAND_EDGE_COUNTED 4e-9
+/* A frequency error below this needs no tighter bound. */
+#define RITZ_NO_ERROR 1e-9
+/* Least relative distance of a count from the mode it is for. */
+#define RITZ_COUNT_BESIDE 1e-7
+/* Largest relative distance of a count from the mode it is for. */
+#define RITZ_COUNT_TOO_FAR 0.03
+/* A count at the band's end lies so far behind it, in lambda: further than what
+   ritz-verify takes to be in the band. */
+#define RITZ_COUNT_BEHIND 8e-9
+/* Part of the band's end, in lambda, below which a mode is rigid. */
+#define RITZ_SURELY_RIGID 0.5e-6
+/* -sigma as a part of the band's end in lambda: a smaller one makes bounds at the
+   end tighter, a larger one rounds less. */
+#define RITZ_ESTIMATE_SHIFT 0.1
+/* The trial holds modes to this multiple of the band's end, in lambda, and as
+   many beyond the band's last. */
+#define RITZ_TRIAL_REACH 30.0
+/* D is a M + b K if entries differ by less than this part of
+   sqrt(d_ii d_jj): rounding of matrices printed with 15 digits. */
+#define RITZ_RAYLEIGH_WITHIN 1e-13
+/* Eigenvalues closer than this, relative, are a pair. */
+#define RITZ_EQUAL_PAIR 1e-3
+/* A participation below this part of the largest is rounding. */
+#define RITZ_NO_PART 1e-9
+/* Largest relative residual of a rigid mode: its square is far below rounding. */
+#define RITZ_RIGID_RESIDUAL 1e-7
+/* Intervals are not split for a bound below this part of the largest |H_r|. */
+#define RITZ_RESPONSE_NOTHING 1e-12
+/* An interval is split until its bound is within this factor of the points'. */
+#define RITZ_INTERVAL_SLACK 1.05
+/* Relative asymmetry of D above which it has a gyroscopic part. */
+#define RITZ_GYROSCOPIC 1e-9
+/*
+ * A first stage that stands for the full system: modes of bodies up to this
+ * part of the band, and further where a tolerance is finer than ten times what
+ * that leaves. Measured on beams by Craig-Bampton: frequencies in the band err
+ * by 6.4e-5 at 8 times the band, and from 4 times fell faster than its square.
+ */
+#define RITZ_RICH_TO 8.0
+/* What that leaves: the relative error of frequencies in the band. */
+#define RITZ_RICH_LEAVES 6.4e-5
+/* Largest multiple of the band's end that a first stage has modes to: bodies
+   of a solid have modes as its third power. */
+#define RITZ_RICH_MOST 32.0
+/* Modes of bodies count so far, of what a reference would hold, as steps of the
+   ladder: to six times the band, and further for the finest tolerances. */
+#define RITZ_LADDER_TO 0.75
+/* Logarithm of the ratio of two steps that is worth saying: five per cent. */
+#define RITZ_STEP_WORTH_SAYING 0.05
+/* Above this a MAC is told by how much it is less than 1. */
+#define RITZ_MAC_NEARLY_ONE 0.9989
+/* Of a rigid motion: less of it in a column is rounding. */
+#define RITZ_RIGID_PART 1e-6
+/* Part of a tolerance that may be the first stage's own error. */
+#define RITZ_STAGE_MAY_LEAVE 0.1
+/* A richer first stage has modes to this multiple of the frequency. */
+#define RITZ_STAGE_FARTHER 1.5
+/* A longer ladder, or a richer stage, is of use if it leaves less than this
+   part of the error. */
+#define RITZ_NO_NEARER 0.9
+/* Modes closer than this, relative, are one cluster to ritz-verify: reduction
+   turns vectors within modes that lie closer than its own error. */
+#define RITZ_CLOSE 1e-3
+/* What is below this part of the largest |H| is not looked at. */
+#define RITZ_AUDIBLE 1e-6
+/* A rigid motion is counted at this part of the limit of rigid ones at least. */
+#define RITZ_COUNT_LEAST 1e-3
+/* A thousand eps: rounding of a sum over some thousand modes. */
+#define RITZ_HEARD_ROUNDING 2.3e-13
+/* A response of 0 has a level too. */
+#define RITZ_LEAST_LEVEL 1e-300
+/* Of two ratios of error to tolerance the smaller one is nearer, but for
+   rounding. */
+#define RITZ_SAME_RATIO 1e-6
+
 #endif

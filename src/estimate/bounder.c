@@ -1,16 +1,13 @@
 /* The bound of a response at a frequency; its equations are in response.c. */
 #include "estimate/bounder.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Roundings, in eps, of a sum of terms that cancel: one is due, the rest is
-   room. */
-static const double roundings = 4.0;
 
 static double square(double x)
 {
@@ -199,7 +196,7 @@ static double rounding_at(const ritz_bounder *r, double w, const ritz_side *in,
         }
     }
     return all[0] * all[1] - rigid[0] * rigid[1] +
-           roundings * DBL_EPSILON * mass[0] * mass[1];
+           RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON * mass[0] * mass[1];
 }
 
 /*

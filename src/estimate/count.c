@@ -10,28 +10,12 @@
  * modes are missing there, and where is found by halving. Then counts move away
  * from the mode as far as its neighbours let them.
  */
+#include "base/tolerances.h"
 #include "estimate/estimator.h"
 
 #include <inttypes.h>
 #include <math.h>
 
-/* Ratio of bound to error that is good enough. */
-static const double wanted = 3.0;
-/* Relative error above which a mode is in no known gap. */
-static const double coarse = 0.1;
-/* The first count lies between these multiples of the band's end, in lambda. */
-static const double near = 2.0, far = 8.0;
-/* A count for responses lies below this multiple of it. */
-static const double farthest = 40.0;
-/* Ratio (rho - sigma) / (theta - sigma) beyond which a count gains nothing. */
-static const double enough = 3.0;
-/* A gap narrower than this part of its distance to the mode gains nothing. */
-static const double close = 0.3;
-/* Part of the band's end, in lambda, below which a reduced mode may be a rigid
-   motion that the basis holds badly. */
-static const double slow = 1e-6;
-/* Gaps narrower than this, relative, hold no count. */
-static const double narrow = 1e-6;
 enum { MOST_TRIES = 4, GAPS_AROUND = 8, MOST_FOR_ONE = 16 };
 
 ritz_status ritz_estimator_count(ritz_estimator *estimator, double rho)
@@ -44,7 +28,7 @@ ritz_status ritz_estimator_count(ritz_estimator *estimator, double rho)
     RITZ_FAIL_IF(at == RITZ_MOST_COUNTS, RITZ_ERR_ARGUMENT,
                  "more than %d counts of modes", RITZ_MOST_COUNTS);
     for (int t = 0; t < MOST_TRIES && status == RITZ_ERR_SINGULAR; t++) {
-        rho *= t > 0 ? 1.0 - narrow : 1.0;
+        rho *= t > 0 ? 1.0 - RITZ_GAP_NARROW : 1.0;
         status = ritz_eigen_count(&full->K, &full->M, rho, &below);
     }
     RITZ_TRY(status);
@@ -79,7 +63,7 @@ static double within(double low, double high)
 static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
                      int64_t first, int64_t last)
 {
-    double best = narrow;
+    double best = RITZ_GAP_NARROW;
     double rho = nan("");
 
     for (int64_t i = first < 0 ? 0 : first; i < last && i + 1 < trial->count;
@@ -118,7 +102,9 @@ static double above_band(const ritz_estimator *estimator,
 static bool satisfied(const ritz_claim *claim, double rounding)
 {
     return claim->full_mode >= 0 &&
-           claim->bound <= 2.0 * rounding + wanted * fmin(claim->least, coarse);
+           claim->bound <=
+               2.0 * rounding +
+                   RITZ_GOOD_RATIO * fmin(claim->least, RITZ_COARSE_ERROR);
 }
 
 /* Reduced modes below rho. */
@@ -168,7 +154,8 @@ static double between(double low, double high, double theta)
 {
     double off = fmin(fabs(low - theta), fabs(high - theta));
 
-    if (!(high > low * (1.0 + narrow)) || high - low <= close * off)
+    if (!(high > low * (1.0 + RITZ_GAP_NARROW)) ||
+        high - low <= RITZ_GAP_CLOSE * off)
         return nan("");
     return low > 0.0 ? sqrt(low * high) : 0.1 * high;
 }
@@ -179,7 +166,7 @@ static double locate(const ritz_estimator *estimator, const ritz_lehmann *trial,
                      const sides *s, int64_t k, double least)
 {
     double theta = trial->theta[k];
-    double about = fmax(4.0 * least * theta, narrow * theta);
+    double about = fmax(4.0 * least * theta, RITZ_GAP_NARROW * theta);
     int64_t middle = (s->first + s->last) / 2;
 
     if (s->last > s->first)
@@ -202,7 +189,7 @@ static double spread(const ritz_lehmann *trial, const ritz_enclosure *e,
     double high = fmin(e->high[p + 1], 4.0 * theta);
     double rho = nan("");
 
-    if (low - trial->sigma < enough * reach)
+    if (low - trial->sigma < RITZ_COUNT_ENOUGH * reach)
         rho = between(low, high, theta);
     if (isnan(rho) && p != k)
         rho = between(e->low[p - 1], fmin(e->high[p - 1], theta), theta);
@@ -230,7 +217,8 @@ static double around(const ritz_estimator *estimator, const ritz_lehmann *trial,
 double ritz_propose_above(const ritz_estimator *estimator,
                           const ritz_lehmann *trial, double band)
 {
-    return above_band(estimator, trial, far * band, farthest * band);
+    return above_band(estimator, trial, RITZ_COUNT_FAR * band,
+                      RITZ_COUNT_FARTHEST * band);
 }
 
 bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho)
@@ -246,7 +234,8 @@ bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho)
 bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
                         double theta, double band)
 {
-    return theta <= slow * band && ritz_counted_more(estimator, k, 0.5 * theta);
+    return theta <= RITZ_MAY_BE_RIGID * band &&
+           ritz_counted_more(estimator, k, 0.5 * theta);
 }
 
 /* Where to count for one mode; NaN if its claim is good enough. */
@@ -260,7 +249,7 @@ static double next_for(const ritz_estimator *estimator,
     if (ritz_counted_rigid(estimator, k, theta, band) ||
         satisfied(&claim, trial->reduced_rounding[k] / theta))
         return nan("");
-    if (theta <= slow * band)
+    if (theta <= RITZ_MAY_BE_RIGID * band)
         return 0.1 * theta;
     return around(estimator, trial, enclosure, k, claim.least);
 }
@@ -274,7 +263,8 @@ double ritz_propose_count(const ritz_estimator *estimator,
     int64_t last = pursuit->last;
     double band = last > first ? trial->theta[last - 1] : 0.0;
     double rho = band > 0.0
-                     ? above_band(estimator, trial, near * band, far * band)
+                     ? above_band(estimator, trial, RITZ_COUNT_NEAR * band,
+                                  RITZ_COUNT_FAR * band)
                      : nan("");
     int64_t fewest = MOST_FOR_ONE;
 

@@ -27,6 +27,7 @@
  * [Lehmann1963], [BeattieGoerisch1995]
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "estimate/estimator.h"
 
 #include <float.h>
@@ -36,10 +37,6 @@
 #include <string.h>
 
 enum { MOST_SHIFTS = 16 };
-/* Roundings of a sum of terms that cancel: one is due, the rest is room. */
-static const double roundings = 4.0;
-/* Of the rounding of eigenvalues beside: how far a count may be off. */
-static const double margin = 2.0;
 
 /*
  * Ritz pairs of the full matrices in the range of T, anew: a reduced model's
@@ -131,7 +128,7 @@ static ritz_status take_residuals(const ritz_component *full,
             r[i] -= trial->theta[j] * ritz_dense_col(&MX, j)[i];
         trial->mass_terms[j] = magnitude(&full->M, x);
         trial->rounding[j] =
-            roundings * DBL_EPSILON *
+            RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
             (magnitude(&full->K, x) +
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
@@ -177,7 +174,7 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
     for (int64_t j = 0; j < trial->count; j++) {
         trial->mass_terms[j] += ritz_dense_col(&M, j)[j];
         trial->reduced_rounding[j] =
-            roundings * DBL_EPSILON *
+            RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
             (ritz_dense_col(&K, j)[j] +
              fabs(pairs->lambda[j]) * ritz_dense_col(&M, j)[j] +
              pairs->lambda[pairs->Phi.ncol - 1]);
@@ -399,7 +396,7 @@ static double rounding_of(const ritz_pairs *nu)
 {
     int64_t count = nu->Phi.ncol;
 
-    return count > 0 ? roundings * DBL_EPSILON *
+    return count > 0 ? RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
                            fmax(fabs(nu->lambda[0]), nu->lambda[count - 1])
                      : 0.0;
 }
@@ -457,7 +454,7 @@ static ritz_status enclose(const ritz_lehmann *trial,
                            ritz_enclosure *e)
 {
     ritz_status status = RITZ_OK;
-    double off = margin * rounding_at(trial, counted->rho);
+    double off = RITZ_COUNT_MARGIN * rounding_at(trial, counted->rho);
     double rho = counted->rho + (above ? off : -off);
     double kappa_rho = 1.0 / (rho - trial->sigma);
     ritz_pairs nu = {0};
@@ -519,7 +516,7 @@ static void settle_ends(const ritz_estimator *estimator,
 {
     for (int64_t s = 0; s < estimator->num_counts; s++) {
         double rho = estimator->count[s].rho;
-        double off = margin * rounding_at(trial, rho);
+        double off = RITZ_COUNT_MARGIN * rounding_at(trial, rho);
 
         for (int64_t p = 0; p < e->count; p++) {
             if (p >= estimator->count[s].below)

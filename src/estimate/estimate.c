@@ -7,6 +7,7 @@
  * the choice of counts in count.c, partners in judge.c, responses in response.c.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "estimate/estimator.h"
 
 #include <float.h>
@@ -22,23 +23,9 @@ enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
 /* Most inverse iterations, and most counts beside modes, while partners are
    unclear. */
 enum { ITERATIONS = 4, MOST_BESIDE = 16 };
-/* A count at the band's end lies so far behind it, in lambda: further than what
-   ritz-verify takes to be in the band. */
-static const double behind = 8e-9;
-/* Part of the band's end, in lambda, below which a mode is rigid. */
-static const double slow = 0.5e-6;
 /* Most modes that are reported one by one. */
 enum { MOST_LISTED = 100 };
-/* -sigma as a part of the band's end in lambda: a smaller one makes bounds at the
-   end tighter, a larger one rounds less. */
-static const double shift = 0.1;
-/* The trial holds modes to this multiple of the band's end, in lambda, and as
-   many beyond the band's last. */
-static const double beyond = 30.0;
 enum { MORE = 10 };
-/* Part of the band's end, in lambda: a mode below that is not above its own
-   rounding may be a rigid motion. */
-static const double as_rigid = 1e-6;
 
 /* Take a count; `end` if K - rho M cannot be factored there. */
 static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
@@ -144,9 +131,9 @@ static ritz_status count_ends(ritz_estimator *estimator, ritz_measuring *m)
 
     if ((!m->prediction.counted || m->prediction.edge_unclear) &&
         estimator->num_counts < RITZ_MOST_COUNTS)
-        RITZ_CHECK(count_at(estimator, end * (1.0 + behind), &none));
+        RITZ_CHECK(count_at(estimator, end * (1.0 + RITZ_COUNT_BEHIND), &none));
     if (m->prediction.rigid_unclear && estimator->num_counts < RITZ_MOST_COUNTS)
-        RITZ_CHECK(count_at(estimator, slow * end, &none));
+        RITZ_CHECK(count_at(estimator, RITZ_SURELY_RIGID * end, &none));
     RITZ_CHECK(enclose_modes(estimator, m));
     RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
     if (m->prediction.num_full > m->reach)
@@ -423,7 +410,7 @@ static void choose_modes(const ritz_estimator *estimator,
 /* Size of the trial space. */
 static int64_t count_trial(const ritz_measuring *m, bool response)
 {
-    double reach = beyond * ritz_eigen_lambda(m->band_hz[1]);
+    double reach = RITZ_TRIAL_REACH * ritz_eigen_lambda(m->band_hz[1]);
     int64_t most = m->pairs.Phi.ncol;
     int64_t count = m->last + MORE < most ? m->last + MORE : most;
 
@@ -449,7 +436,7 @@ static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
                                       ritz_measuring *m)
 {
     ritz_status status = RITZ_OK;
-    double slowest = as_rigid * ritz_eigen_lambda(m->band_hz[1]);
+    double slowest = RITZ_MAY_BE_RIGID * ritz_eigen_lambda(m->band_hz[1]);
 
     while (m->first < m->last) {
         double rounding = m->trial.reduced_rounding[m->first];
@@ -458,7 +445,8 @@ static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
         if (m->pairs.lambda[m->first] > rounding || rho > slowest)
             break;
         if (!ritz_counted_more(estimator, m->first, slowest)) {
-            status = ritz_estimator_count(estimator, fmax(rho, 1e-3 * slowest));
+            status = ritz_estimator_count(estimator,
+                                          fmax(rho, RITZ_COUNT_LEAST * slowest));
             if (status == RITZ_ERR_SINGULAR)
                 return RITZ_OK; /* it cannot be counted: the mode stays */
             RITZ_TRY(status);
@@ -487,8 +475,8 @@ static ritz_status open_measuring(ritz_estimator *estimator,
                 ritz_response_boundable(estimator, reduced, m->pairs.Phi.ncol);
     if (!(m->band_hz[1] > 0.0))
         return RITZ_OK;
-    RITZ_CHECK(ritz_estimator_open(estimator,
-                                   -shift * ritz_eigen_lambda(m->band_hz[1])));
+    RITZ_CHECK(ritz_estimator_open(
+        estimator, -RITZ_ESTIMATE_SHIFT * ritz_eigen_lambda(m->band_hz[1])));
     RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
                                 count_trial(m, *response), &m->trial));
     return skip_rounded_rigid(estimator, m);

@@ -10,30 +10,12 @@
  * inverse iteration, where eps is far smaller. Partners follow below.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "estimate/estimator.h"
 #include "verify/match.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* The full mode of the same number is named unless another one's bound is
-   smaller by this factor. */
-static const double favour = 4.0;
-/* ritz-verify takes a reduced mode for a partner if it has this |c|^2. */
-static const double half = 0.5;
-/* Largest sin^2 of the angle between a group and a vector that stands for it. */
-static const double near = 0.1;
-/* Rounding of |c|^2, here and in ritz-verify. */
-static const double rounded = 1e-6;
-/* The band is taken so much wider, in lambda: ritz-verify allows 2e-9. */
-static const double edge = 4e-9;
-/* Part of the band's end, in lambda, below which a mode may be rigid. */
-static const double slow = 1e-6;
-/* A bound is good enough if it is at most `wanted` times the least error, or
-   `nothing`. */
-static const double wanted = 3.0, nothing = 1e-9;
-/* Least and largest relative distance of a count from the mode it is for. */
-static const double beside = 1e-7, too_far = 0.03;
 
 /* Largest |f' - f| / f of f'^2 in [least, most] and f^2 in [low, high]. */
 static double relative_most(double least, double most, double low, double high)
@@ -100,14 +82,14 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
             claim.full_mode = p;
         }
     }
-    if (same <= favour * claim.bound) {
+    if (same <= RITZ_CLAIM_FAVOUR * claim.bound) {
         claim.bound = same;
         claim.full_mode = k;
     }
     for (int64_t j = 0; j < e->num_near; j++)
         some = fmin(some, claim_error(trial, k, theta, e->near_low[j],
                                       e->near_high[j]));
-    if (favour * some < claim.bound) {
+    if (RITZ_CLAIM_FAVOUR * some < claim.bound) {
         claim.bound = some;
         claim.full_mode = -1;
     }
@@ -141,7 +123,7 @@ double ritz_claim_same(const ritz_lehmann *trial, const ritz_enclosure *e,
 typedef struct ritz_mode_group {
     int64_t first, last;
     bool is_cluster; /* they are known to be one cluster */
-    int vectors;     /* near it are vectors of the trial (0), or polished (1) */
+    int vectors; /* near it are vectors of the trial (0), or polished (1) */
     int64_t first_vector, end_vector; /* as many as modes or fewer */
     double sin2; /* of the angle between vectors and group, at most */
 } ritz_mode_group;
@@ -203,12 +185,12 @@ static void choose_vectors(const ritz_lehmann *trial, const ritz_enclosure *e,
     int64_t from = 0, to = 0;
     double sum = 0.0;
 
-    while (from < trial->count && outside(trial, e, g, from) > near)
+    while (from < trial->count && outside(trial, e, g, from) > RITZ_VECTOR_NEAR)
         from++;
     for (to = from; to < trial->count && to < from + size; to++) {
         double sin2 = outside(trial, e, g, to);
 
-        if (sin2 > near)
+        if (sin2 > RITZ_VECTOR_NEAR)
             break;
         sum += sin2;
     }
@@ -323,18 +305,19 @@ static bool can_be_partner(const ritz_measuring *m, const ritz_partners *p,
     ritz_share share = share_of(p, g, r);
     double elsewhere = 0.0;
 
-    if (share.most < half - rounded || most_by_residual(m, g, r) < half)
+    if (share.most < RITZ_PARTNER_ABOVE - RITZ_SHARE_ROUNDING ||
+        most_by_residual(m, g, r) < RITZ_PARTNER_ABOVE)
         return false;
     for (int64_t k = 0; k < p->count; k++)
         if (&p->group[k] != g)
             elsewhere += share_of(p, &p->group[k], r).least;
-    return 1.0 - elsewhere >= half - rounded;
+    return 1.0 - elsewhere >= RITZ_PARTNER_ABOVE - RITZ_SHARE_ROUNDING;
 }
 
 static bool must_be_partner(const ritz_partners *p, const ritz_mode_group *g,
                             int64_t r)
 {
-    return share_of(p, g, r).least > half + rounded;
+    return share_of(p, g, r).least > RITZ_PARTNER_ABOVE + RITZ_SHARE_ROUNDING;
 }
 
 static void free_partners(ritz_partners *partners)
@@ -386,8 +369,8 @@ static bool may_be_in(const ritz_judge *j, int64_t p)
 {
     const ritz_enclosure *e = &j->m->enclosure;
 
-    return e->low[p] <= j->high * (1.0 + edge) &&
-           e->high[p] >= j->low * (1.0 - edge);
+    return e->low[p] <= j->high * (1.0 + RITZ_BAND_EDGE_COUNTED) &&
+           e->high[p] >= j->low * (1.0 - RITZ_BAND_EDGE_COUNTED);
 }
 
 static bool surely_in(const ritz_judge *j, int64_t p)
@@ -402,8 +385,8 @@ static bool surely_in(const ritz_judge *j, int64_t p)
 static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
 {
     const ritz_enclosure *e = &j->m->enclosure;
-    double low = fmax(e->low[p], j->low * (1.0 - edge));
-    double high = fmin(e->high[p], j->high * (1.0 + edge));
+    double low = fmax(e->low[p], j->low * (1.0 - RITZ_BAND_EDGE_COUNTED));
+    double high = fmin(e->high[p], j->high * (1.0 + RITZ_BAND_EDGE_COUNTED));
     double most = error_at_most(j->m, r, low, high);
     double least =
         sure && surely_in(j, p) ? error_at_least(j->m, r, low, high) : 0.0;
@@ -412,7 +395,7 @@ static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
         j->v.bound = most;
         j->v.bound_mode = r;
         j->v.bound_full = p;
-        j->v.loose = !(most <= wanted * least + nothing);
+        j->v.loose = !(most <= RITZ_GOOD_RATIO * least + RITZ_NO_ERROR);
     }
     if (least > j->v.least) {
         j->v.least = least;
@@ -476,10 +459,11 @@ static void propose_count(ritz_judge *j, const ritz_mode_group *g)
         double theta = trial->theta[s];
         double t = theta - trial->sigma;
         double eps = sqrt(fmax(ritz_dense_col(&trial->G, s)[s], 0.0) / t);
-        double off = beside + 4.0 * (eps * t + trial->rounding[s]) / theta;
+        double off =
+            RITZ_COUNT_BESIDE + 4.0 * (eps * t + trial->rounding[s]) / theta;
 
         if (theta * (1.0 + off) < low || theta * (1.0 - off) > high ||
-            !(off < too_far))
+            !(off < RITZ_COUNT_TOO_FAR))
             continue;
         if (!counted_within(j->estimator, theta, theta * (1.0 + 2.0 * off)))
             j->v.count_at = theta * (1.0 + off);
@@ -525,7 +509,7 @@ static int64_t first_flexible(const ritz_measuring *m, double band)
     int64_t first = m->pairs.num_rigid;
 
     while (first < m->enclosure.count &&
-           m->enclosure.high[first] <= slow * band)
+           m->enclosure.high[first] <= RITZ_MAY_BE_RIGID * band)
         first++;
     return first;
 }
@@ -546,7 +530,7 @@ ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
     int64_t first = first_flexible(m, j.high);
 
     while (j.v.num_full < e->count &&
-           e->low[j.v.num_full] <= j.high * (1.0 + edge))
+           e->low[j.v.num_full] <= j.high * (1.0 + RITZ_BAND_EDGE_COUNTED))
         j.v.num_full++;
     j.v.counted = j.v.num_full < e->count;
     for (int64_t p = first; p < j.v.num_full; p++)

@@ -30,6 +30,7 @@
  * difference of sqrt lambda, of order |R_i||R_j|.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "estimate/bounder.h"
 #include "estimate/estimator.h"
 
@@ -38,25 +39,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Of sqrt(d_ii d_jj): rounding of matrices printed with 15 digits. */
-static const double within = 1e-13;
 enum { PASSES = 3 };
-/* Eigenvalues closer than this, relative, are a pair. */
-static const double pair = 1e-3;
-/* A participation below this part of the largest is rounding. */
-static const double no_part = 1e-9;
-static const double two_pi = 6.28318530717958647693;
-/* A free body has no response at rest: as ritz-verify begins. */
-static const double above_rest = 1e-3;
-/* Largest relative residual of a rigid mode: its square is far below rounding. */
-static const double as_rigid = 1e-7;
-/* Intervals are not split for a bound below this part of the largest |H_r|. */
-static const double nothing = 1e-12;
-/* An interval is split until its bound is within this factor of the points'. */
-static const double slack = 1.05;
 enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };
-/* Relative asymmetry of D above which it has a gyroscopic part. */
-static const double symmetric = 1e-9;
 
 /*
  * D as a M + b K, if it is that to rounding: least squares over the diagonals
@@ -115,10 +99,10 @@ static ritz_status vanishes(const ritz_component *full, const double ab[2],
 
     RITZ_NEW(size, full->num_dofs);
     for (int64_t j = 0; j < full->num_dofs; j++)
-        size[j] =
-            sqrt(within * (fabs(ritz_sparse_diagonal(&full->D, j)) +
-                           fabs(ab[0] * ritz_sparse_diagonal(&full->M, j)) +
-                           fabs(ab[1] * ritz_sparse_diagonal(&full->K, j))));
+        size[j] = sqrt(RITZ_RAYLEIGH_WITHIN *
+                       (fabs(ritz_sparse_diagonal(&full->D, j)) +
+                        fabs(ab[0] * ritz_sparse_diagonal(&full->M, j)) +
+                        fabs(ab[1] * ritz_sparse_diagonal(&full->K, j))));
     for (int64_t j = 0; j < rest->ncol; j++)
         for (int64_t p = rest->colptr[j]; p < rest->colptr[j + 1]; p++)
             all = all && fabs(rest->val[p]) <= size[rest->rowind[p]] * size[j];
@@ -143,7 +127,7 @@ static ritz_status fit_rayleigh(const ritz_component *full, double *a,
     *found = false;
     if (!full->D.colptr || full->K4.colptr)
         return RITZ_OK;
-    most = within * ritz_sparse_max(&full->D);
+    most = RITZ_RAYLEIGH_WITHIN * ritz_sparse_max(&full->D);
     for (int pass = 0; pass < PASSES; pass++)
         improve(full, ab);
     RITZ_TRY(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
@@ -236,8 +220,8 @@ static bool is_at_odds(const ritz_bounder *r)
         double zeta = r->rates[j] / sqrt(fmax(low, DBL_MIN));
         double next = r->rates[j + 1] / sqrt(fmax(high, DBL_MIN));
 
-        if (!r->coupled && high - low <= pair * high &&
-            fabs(zeta - next) > pair * next)
+        if (!r->coupled && high - low <= RITZ_EQUAL_PAIR * high &&
+            fabs(zeta - next) > RITZ_EQUAL_PAIR * next)
             return true;
     }
     return false;
@@ -266,7 +250,7 @@ static bool takes_part(const ritz_bounder *r, const ritz_dense *V, bool rows,
 
     for (int64_t k = 0; k < r->trial->count; k++)
         most = fmax(most, share(r, V, rows, k));
-    return share(r, V, rows, j) > no_part * most;
+    return share(r, V, rows, j) > RITZ_NO_PART * most;
 }
 
 /* Whether a mode of the band that is driven and seen has no damping. */
@@ -303,7 +287,8 @@ static double bound_interval(ritz_bounder *r, double a, double b, double *best,
         double U = ritz_bound_at(r, w, 0.5 * (to - from));
 
         depth--;
-        if (U <= slack * *best || --*left < 0 || depth + 2 > DEEPEST) {
+        if (U <= RITZ_INTERVAL_SLACK * *best || --*left < 0 ||
+            depth + 2 > DEEPEST) {
             top = fmax(top, U);
             continue;
         }
@@ -330,7 +315,7 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
     double *zeta = NULL;
 
     if (r->num_rigid > 0)
-        grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
+        grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
     RITZ_NEW(omega, m);
     RITZ_NEW(zeta, m);
     for (int64_t k = 0; k < m; k++) {
@@ -361,18 +346,19 @@ static ritz_status bound_band(ritz_bounder *r, const double band_hz[2],
 
     RITZ_TRY(take_points(r, band_hz, &count, &hertz));
     for (int64_t k = 0; k < count; k++) {
-        double one = ritz_bound_at(r, two_pi * hertz[k], 0.0);
+        double one = ritz_bound_at(r, 2.0 * RITZ_PI * hertz[k], 0.0);
 
         if (one > best) {
             best = one;
             *at = hertz[k];
         }
     }
-    best = fmax(best, nothing * r->largest);
+    best = fmax(best, RITZ_RESPONSE_NOTHING * r->largest);
     top = best;
     for (int64_t k = 0; k + 1 < count && !r->coupled; k++)
-        top = fmax(top, bound_interval(r, two_pi * hertz[k],
-                                       two_pi * hertz[k + 1], &best, &left));
+        top = fmax(top,
+                   bound_interval(r, 2.0 * RITZ_PI * hertz[k],
+                                  2.0 * RITZ_PI * hertz[k + 1], &best, &left));
     *out = top;
 done:
     free(hertz);
@@ -391,7 +377,7 @@ static promise promise_of(const ritz_estimator *estimator,
     if (modes != reduced->K.nrow || full->io.num_inputs == 0 ||
         full->io.num_outputs == 0 ||
         (full->dampers.count > 0 && !full->D.colptr) || /* not installed */
-        (full->D.colptr && ritz_sparse_asymmetry(&full->D) > symmetric))
+        (full->D.colptr && ritz_sparse_asymmetry(&full->D) > RITZ_GYROSCOPIC))
         return NOTHING;
     if (full->D.colptr || full->K4.colptr || kind == RITZ_DAMPING_BANDS ||
         kind == RITZ_DAMPING_MODES)
@@ -417,7 +403,7 @@ static bool rigid_in_full(const ritz_lehmann *trial, int64_t num_rigid)
         double t = trial->theta[j] - trial->sigma;
         double eps = sqrt(fmax(ritz_dense_col(&trial->G, j)[j], 0.0) / t);
 
-        all = all && eps <= as_rigid;
+        all = all && eps <= RITZ_RIGID_RESIDUAL;
     }
     return all;
 }

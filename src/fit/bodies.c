@@ -5,6 +5,7 @@
 #include "fit/fitter.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 #include <ritz/monitor.h>
@@ -12,14 +13,38 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-/* Modes of bodies count so far, of what a reference would hold, as steps of the
-   ladder: to six times the band, and further for the finest tolerances. */
-static const double ladder_to = 0.75;
 /* Where that is not enough it goes on, by twice the modes of a body and some,
    to so many of all bodies, or as many as columns are allowed. */
 enum { AT_FIRST = 4 };
 static const int64_t furthest = 1000;
+
+static double seconds(clockid_t clock)
+{
+    struct timespec now = {0};
+
+    (void)clock_gettime(clock, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec / 1e9;
+}
+
+ritz_fit_watch ritz_fit_start(void)
+{
+    return (ritz_fit_watch){seconds(CLOCK_MONOTONIC),
+                            seconds(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+ritz_fit_watch ritz_fit_since(ritz_fit_watch start)
+{
+    ritz_fit_watch now = ritz_fit_start();
+
+    return (ritz_fit_watch){now.wall - start.wall, now.cpu - start.cpu};
+}
+
+const char *ritz_fitter_body(const ritz_fitter *fitter, int64_t k)
+{
+    return fitter->scene ? fitter->scene->component[fitter->body[k]].name : "";
+}
 
 /* Flexible is what the scene reduces by a number of modes. */
 static ritz_status load_bodies(ritz_fitter *f)
@@ -148,7 +173,8 @@ done:
 static ritz_status make_ladder(ritz_fitter *f)
 {
     ritz_status status = RITZ_OK;
-    const ritz_span span = {.modes = -1, .up_to_hz = ladder_to * f->rich_hz};
+    const ritz_span span = {.modes = -1,
+                            .up_to_hz = RITZ_LADDER_TO * f->rich_hz};
     body_modes r = {.limit = HUGE_VAL};
 
     for (int64_t k = 0; k < f->num_bodies; k++)
@@ -207,29 +233,6 @@ ritz_status ritz_fit_bodies(ritz_fitter *f)
 {
     RITZ_CHECK(load_bodies(f));
     return make_ladder(f);
-}
-
-int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method)
-{
-    return method == &ritz_fit_compare ? fitter->second.num_steps
-                                       : fitter->num_steps;
-}
-
-void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
-                   int64_t rung, int64_t *modes)
-{
-    const ritz_fit_second *second = &fitter->second;
-    const bool composite = method == &ritz_fit_compare;
-    const int64_t *step = composite ? second->step : fitter->step;
-
-    if (!fitter->scene) {
-        modes[0] = rung;
-        return;
-    }
-    for (int64_t k = 0; k < fitter->num_bodies; k++)
-        modes[k] = composite && second->rigid && second->rigid[k] == 0;
-    for (int64_t k = 0; k < rung && k < ritz_fit_rungs(fitter, method); k++)
-        modes[step[k]]++;
 }
 
 /* Bodies that stay as they are, lent to a stage, come home. */

@@ -14,31 +14,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* Entries of T of all bodies that were made: half a gigabyte. */
 static const int64_t most_entries = INT64_C(1) << 26;
-
-static double seconds(clockid_t clock)
-{
-    struct timespec now = {0};
-
-    (void)clock_gettime(clock, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-ritz_fit_watch ritz_fit_start(void)
-{
-    return (ritz_fit_watch){seconds(CLOCK_MONOTONIC),
-                            seconds(CLOCK_PROCESS_CPUTIME_ID)};
-}
-
-ritz_fit_watch ritz_fit_since(ritz_fit_watch start)
-{
-    ritz_fit_watch now = ritz_fit_start();
-
-    return (ritz_fit_watch){now.wall - start.wall, now.cpu - start.cpu};
-}
 
 /* --- judged -------------------------------------------------------------------- */
 

@@ -1,4 +1,5 @@
 /* The answer in words: what decides it, and what else there was. */
+#include "base/tolerances.h"
 #include "fit/fitter.h"
 
 #include <inttypes.h>
@@ -6,11 +7,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-/* Of the logarithm of two steps: five per cent. */
-static const double worth_saying = 0.05;
-/* A MAC above it is told by how much it is less than 1. */
-static const double nearly_one = 0.9989;
 
 [[gnu::format(printf, 2, 3)]] static void add(ritz_fit *fit, const char *format,
                                               ...)
@@ -55,7 +51,7 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c)
     if (strcmp(m->name, "missing-modes") == 0)
         add(fit, "%.0f mode%s of the band %s missing (%s)", m->value,
             m->value > 1.0 ? "s" : "", m->value > 1.0 ? "are" : "is", m->where);
-    else if (kind && kind->large_is_good && m->limit > nearly_one)
+    else if (kind && kind->large_is_good && m->limit > RITZ_MAC_NEARLY_ONE)
         add(fit, "the least MAC is 1 - %.1e (%s) where 1 - %.1e is asked",
             1.0 - m->value, m->where, 1.0 - m->limit);
     else if (kind && kind->large_is_good)
@@ -157,7 +153,7 @@ static void explain_runner_up(ritz_fit *fit, const ritz_fit_candidate *c)
     if (c->cost.order > 0 && second->cost.order > 0 &&
         isfinite(second->cost.step_explicit) &&
         fabs(log(second->cost.step_explicit / c->cost.step_explicit)) >
-            worth_saying)
+            RITZ_STEP_WORTH_SAYING)
         add(fit,
             ", and an explicit integrator could take steps of %.2g s, not of "
             "%.2g s",

@@ -5,6 +5,7 @@
 #include "fit/fitter.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 #include <ritz/monitor.h>
@@ -15,16 +16,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/*
- * A first stage that stands for the full system: modes of bodies up to this
- * part of the band, and further where a tolerance is finer than ten times what
- * that leaves. Measured on beams by Craig-Bampton: frequencies in the band err
- * by 6.4e-5 at 8 times the band, and from 4 times fell faster than its square.
- */
-static const double rich_to = 8.0, rich_leaves = 6.4e-5;
-/* Bodies of a solid have modes as the third power of it. */
-static const double rich_most = 32.0;
 
 /* Beyond what the band holds: how far orders are tried. */
 enum { PER_MODE = 4, BESIDE = 40 };
@@ -215,8 +206,9 @@ double ritz_fit_rich_to(const ritz_verify_request *limits)
         if (kind->unit[0] == '\0' && allowed > 0.0) /* NaN: not given */
             finest = fmin(finest, allowed);
     }
-    return fmin(rich_most,
-                rich_to * fmax(1.0, sqrt(10.0 * rich_leaves / finest)));
+    return fmin(RITZ_RICH_MOST,
+                RITZ_RICH_TO *
+                    fmax(1.0, sqrt(10.0 * RITZ_RICH_LEAVES / finest)));
 }
 
 /* Mass normalised modes of a rich first stage as a model to compare with. */
@@ -403,11 +395,6 @@ const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter)
 int64_t ritz_fitter_bodies(const ritz_fitter *fitter)
 {
     return fitter->num_bodies;
-}
-
-const char *ritz_fitter_body(const ritz_fitter *fitter, int64_t k)
-{
-    return fitter->scene ? fitter->scene->component[fitter->body[k]].name : "";
 }
 
 void ritz_fitter_describe(const ritz_fitter *fitter, int64_t size, char *out)

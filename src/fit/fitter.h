@@ -73,6 +73,10 @@ struct ritz_fitter {
 
 /* --- bodies.c ---------------------------------------------------------------- */
 
+/** A stop watch, and what it shows. */
+ritz_fit_watch ritz_fit_start(void);
+ritz_fit_watch ritz_fit_since(ritz_fit_watch start);
+
 /** Load the bodies of a scene and make the ladder of those that are flexible. */
 ritz_status ritz_fit_bodies(ritz_fitter *fitter);
 
@@ -82,11 +86,6 @@ ritz_status ritz_fit_bodies(ritz_fitter *fitter);
  * @param[out] end  why it could not be; RITZ_FIT_END_NONE: it is longer
  */
 ritz_status ritz_fit_extend(ritz_fitter *fitter, ritz_fit_end *end);
-
-/** Modes of each body after @p rung steps of a method's ladder; its length. */
-void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
-                   int64_t rung, int64_t *modes);
-int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method);
 
 /**
  * Join flexible bodies, dampers installed by that, to those that stay. Both are
@@ -106,6 +105,11 @@ ritz_status ritz_fit_rich(ritz_fitter *fitter, double up_to_hz,
                           ritz_stage *out);
 
 /* --- second.c ---------------------------------------------------------------- */
+
+/** Modes of each body after @p rung steps of a method's ladder; its length. */
+void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
+                   int64_t rung, int64_t *modes);
+int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method);
 
 /** Make COMPARE's bodies, once; if they are refused, each candidate says why. */
 ritz_status ritz_fit_second_make(ritz_fitter *fitter);
@@ -131,10 +135,6 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                ritz_fit_place *place);
 
 /* --- candidate.c ------------------------------------------------------------- */
-
-/** A stop watch, and what it shows. */
-ritz_fit_watch ritz_fit_start(void);
-ritz_fit_watch ritz_fit_since(ritz_fit_watch start);
 
 /** Record the sentence of a failure that is the candidate's own; pass on what
  * is not: memory. */

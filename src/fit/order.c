@@ -6,6 +6,7 @@
 #include "fit/order.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/eigen.h>
 #include <ritz/monitor.h>
@@ -16,9 +17,6 @@
 
 /* Columns that are tried at each step: those that matter least alone. */
 enum { TRIED = 6 };
-
-/* Of a rigid motion: less of it in a column is rounding. */
-static const double least_part = 1e-6;
 
 bool ritz_fit_stays(ritz_column_kind kind)
 {
@@ -52,7 +50,7 @@ ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
             const double mass = ritz_dense_col(&whole->M, j)[j];
             const double part = ritz_dense_col(&pairs.Phi, r)[j];
 
-            if (part * part * mass > least_part * least_part &&
+            if (part * part * mass > RITZ_RIGID_PART * RITZ_RIGID_PART &&
                 !ritz_fit_stays(kind[j]))
                 kind[j] = RITZ_COLUMN_RIGID;
         }

@@ -6,6 +6,7 @@
 #include "fit/search.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/monitor.h>
 
@@ -15,14 +16,9 @@
 
 /* --- candidates that were tried ---------------------------------------------------- */
 
-/* Of a tolerance so much may be the first stage's own error. */
-static const double may_leave = 0.1;
-/* A richer stage has modes so much farther, and a quarter more of them. */
-static const double farther = 1.5;
 enum { PART = 4 };
 /* Richer stages that are no better by a tenth, before it is given up. */
 enum { MOST_FLAT_STAGES = 3 };
-static const double better = 0.9;
 enum { MOST_GIVEN = 4 };
 /* Rungs below the best that are tried although the one just below failed. */
 enum { COMPONENT_BELOW = 8, SCENE_BELOW = 3 };
@@ -30,10 +26,9 @@ enum { COMPONENT_BELOW = 8, SCENE_BELOW = 3 };
 enum { FAR = 2, BESIDE = 8 };
 /* A method that was refused so often is. */
 enum { MOST_REFUSED = 4 };
-/* Ladders that are longer and come no nearer, before a method is given up; what
-   is nearer has so much of the error, or less. */
+/* Ladders that are longer and come no better, before a method is given up; what
+   is better has so much of the error, or less. */
 enum { MOST_FLAT = 2 };
-static const double nearer = 0.9;
 
 bool ritz_fit_was_made(const ritz_fit_candidate *c)
 {
@@ -91,7 +86,7 @@ bool ritz_fit_is_better(const ritz_fit_candidate *a,
 {
     if (a->order != b->order)
         return a->order < b->order;
-    return a->ratio < b->ratio * (1.0 - 1e-6);
+    return a->ratio < b->ratio * (1.0 - RITZ_SAME_RATIO);
 }
 
 int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order)
@@ -179,7 +174,7 @@ static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
     for (;;) {
         count = count_to(f, from);
         more = count + count / PART + 1;
-        if ((count_to(f, farther * from) < f->num_steps &&
+        if ((count_to(f, RITZ_STAGE_FARTHER * from) < f->num_steps &&
              more <= f->num_steps) ||
             *end != RITZ_FIT_END_NONE)
             break;
@@ -189,7 +184,7 @@ static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
         return RITZ_OK;
     *end = RITZ_FIT_END_NONE;
     more = more < f->num_steps ? more : f->num_steps;
-    *hertz = fmax(farther * from, f->step_hz[more - 1] * (1.0 + 1e-9));
+    *hertz = fmax(RITZ_STAGE_FARTHER * from, f->step_hz[more - 1] * RITZ_TIE);
     return RITZ_OK;
 }
 
@@ -208,7 +203,7 @@ ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
     if (f->second.status != RITZ_OK)
         return RITZ_OK;
     RITZ_TRY(excess_of_all(f, &excess));
-    for (int flat = 0; excess > may_leave;) {
+    for (int flat = 0; excess > RITZ_STAGE_MAY_LEAVE;) {
         RITZ_TRY(next_hz(f, &hertz, end));
         if (*end != RITZ_FIT_END_NONE)
             break;
@@ -219,7 +214,7 @@ ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
         ritz_fit_forget(f, &ritz_fit_compare);
         before = excess;
         RITZ_TRY(excess_of_all(f, &excess));
-        flat = excess > better * before ? flat + 1 : 0;
+        flat = excess > RITZ_NO_NEARER * before ? flat + 1 : 0;
         *end = flat == MOST_FLAT_STAGES ? RITZ_FIT_END_FLAT : RITZ_FIT_END_NONE;
         if (*end != RITZ_FIT_END_NONE)
             break;
@@ -413,7 +408,7 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
     return RITZ_OK;
 }
 
-/* Whether one comes nearer than another of fewer modes; what bounds no longer
+/* Whether one comes better than another of fewer modes; what bounds no longer
    rule out does. */
 static bool falls(const ritz_fit_candidate *now, const ritz_fit_candidate *then)
 {
@@ -421,7 +416,7 @@ static bool falls(const ritz_fit_candidate *now, const ritz_fit_candidate *then)
         return then->ruled_out;
     return ritz_fit_is_nearer(now, then) &&
            (ritz_fit_misses(now) < ritz_fit_misses(then) ||
-            now->ratio < nearer * then->ratio);
+            now->ratio < RITZ_NO_NEARER * then->ratio);
 }
 
 /*

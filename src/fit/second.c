@@ -262,3 +262,26 @@ void ritz_fit_second_free(int64_t num_bodies, ritz_fit_second *second)
     free(second->step);
     *second = (ritz_fit_second){0};
 }
+
+int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method)
+{
+    return method == &ritz_fit_compare ? fitter->second.num_steps
+                                       : fitter->num_steps;
+}
+
+void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
+                   int64_t rung, int64_t *modes)
+{
+    const ritz_fit_second *second = &fitter->second;
+    const bool composite = method == &ritz_fit_compare;
+    const int64_t *step = composite ? second->step : fitter->step;
+
+    if (!fitter->scene) {
+        modes[0] = rung;
+        return;
+    }
+    for (int64_t k = 0; k < fitter->num_bodies; k++)
+        modes[k] = composite && second->rigid && second->rigid[k] == 0;
+    for (int64_t k = 0; k < rung && k < ritz_fit_rungs(fitter, method); k++)
+        modes[step[k]]++;
+}

@@ -2,15 +2,13 @@
  * Limits of error measures: rows of the table by their names, the words of a
  * tolerance, and how an error compares with what is allowed.
  */
+#include "base/tolerances.h"
+
 #include <ritz/text.h>
 #include <ritz/verify.h>
 
 #include <stdio.h>
 #include <string.h>
-
-/* Largest tolerance of a relative measure, and of a count. */
-static const double most_relative = 1.0;
-static const double most_count = 1e9;
 
 static bool is_relative(const ritz_measure_kind *kind)
 {
@@ -131,12 +129,13 @@ static ritz_status take_item(const char *item, ritz_verify_request *limits)
     limit = &limits->limit[kind - ritz_measure_table];
     RITZ_REFUSE_IF(!isnan(*limit), RITZ_ERR_ARGUMENT, "'%s' is given twice",
                    name);
-    RITZ_REFUSE_IF(
-        !ritz_text_real(equals ? equals + 1 : item, &value) || value < 0.0 ||
-            value > (is_relative(kind) ? most_relative : most_count) ||
-            (value == 0.0 && is_relative(kind)),
-        RITZ_ERR_ARGUMENT, "'%s' is no tolerance of '%s'",
-        equals ? equals + 1 : item, name);
+    RITZ_REFUSE_IF(!ritz_text_real(equals ? equals + 1 : item, &value) ||
+                       value < 0.0 ||
+                       value > (is_relative(kind) ? RITZ_MOST_RELATIVE
+                                                  : RITZ_MOST_COUNT) ||
+                       (value == 0.0 && is_relative(kind)),
+                   RITZ_ERR_ARGUMENT, "'%s' is no tolerance of '%s'",
+                   equals ? equals + 1 : item, name);
     *limit = value;
     return RITZ_OK;
 }

@@ -1,18 +1,11 @@
 /* Less than half of a mode is not that mode. */
 #include "verify/match.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static const double partner_above = 0.5;
-/* Leaving out a mode costs as much as frequencies 15 % apart do: with two left
-   out, modes pair up to 30 %. Unlike outputs cost a third of that. */
-static const double skip_cost = 0.15;
-static const double unlike_cost = 0.1;
-/* An exchange that gains less is rounding. */
-static const double rounding = 1e-9;
 
 /* No partner for any mode, and no MAC. */
 static ritz_status ritz_match_new(const ritz_poles *full,
@@ -79,7 +72,7 @@ static int64_t choose(const ritz_dense *Q, const ritz_poles *reduced,
             chosen = r;
         }
     }
-    return *best >= partner_above ? chosen : -1;
+    return *best >= RITZ_PARTNER_ABOVE ? chosen : -1;
 }
 
 static int ascending(const void *left, const void *right)
@@ -177,7 +170,7 @@ static double pair_cost(const ritz_seen *seen, const ritz_poles *full,
     if (!seen->mode[k])
         return apart;
     return apart +
-           unlike_cost * (1.0 - ritz_seen_mac(seen, full, k, reduced, r));
+           RITZ_UNLIKE_COST * (1.0 - ritz_seen_mac(seen, full, k, reduced, r));
 }
 
 static ritz_status pairing_new(const ritz_seen *seen, const ritz_poles *full,
@@ -214,18 +207,18 @@ static void align(pairing *p)
 
             *c = k == 0 && r == 0 ? 0.0 : HUGE_VAL;
             if (k > 0)
-                *c = fmin(*c, c[-(n + 1)] + skip_cost);
+                *c = fmin(*c, c[-(n + 1)] + RITZ_SKIP_COST);
             if (r > 0)
-                *c = fmin(*c, c[-1] + skip_cost);
+                *c = fmin(*c, c[-1] + RITZ_SKIP_COST);
             if (k > 0 && r > 0)
                 *c = fmin(*c, c[-(n + 2)] + p->cost[(k - 1) * n + r - 1]);
         }
     for (int64_t k = p->m, r = n; k > 0 && r > 0;) {
         const double *c = &p->total[k * (n + 1) + r];
 
-        if (*c == c[-(n + 1)] + skip_cost) {
+        if (*c == c[-(n + 1)] + RITZ_SKIP_COST) {
             k--;
-        } else if (*c == c[-1] + skip_cost) {
+        } else if (*c == c[-1] + RITZ_SKIP_COST) {
             r--;
         } else {
             k--;
@@ -239,13 +232,13 @@ static void align(pairing *p)
 /* Of mode k with that partner, which may be none; so far and no further. */
 static double cost_of(const pairing *p, int64_t k, int64_t r)
 {
-    double cost = skip_cost;
+    double cost = RITZ_SKIP_COST;
 
     if (k >= 0 && r >= 0)
         cost = p->cost[k * p->n + r];
     else if (k < 0 && r < 0)
         cost = 0.0;
-    return cost <= 2.0 * skip_cost ? cost : HUGE_VAL;
+    return cost <= 2.0 * RITZ_SKIP_COST ? cost : HUGE_VAL;
 }
 
 /* Give mode k partner r, and who had r what k had, if that costs less. */
@@ -256,7 +249,7 @@ static bool exchange(pairing *p, int64_t k, int64_t r)
     double before = cost_of(p, k, old) + cost_of(p, other, r);
     double after = cost_of(p, k, r) + cost_of(p, other, old);
 
-    if (old == r || !(after < before - rounding))
+    if (old == r || !(after < before - RITZ_EXCHANGE_GAIN))
         return false;
     p->of[k] = r;
     p->by[r] = k;

@@ -4,9 +4,6 @@
 
 #include "verify/seen.h"
 
-/* Reduction turns vectors within modes that lie closer than its own error. */
-#define RITZ_CLOSE 1e-3
-
 typedef struct ritz_match {
     int64_t count;    /* modes of the full model */
     int64_t *partner; /* count, mode of the reduced one; -1: it has none */

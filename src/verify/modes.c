@@ -1,4 +1,5 @@
 /* Measures between the modes of two models. */
+#include "base/tolerances.h"
 #include "verify/sides.h"
 
 #include <inttypes.h>
@@ -11,10 +12,6 @@ typedef struct extreme {
     double value;
     int64_t mode; /* -1: there was none */
 } extreme;
-
-/* Of the largest ratio of both models: smaller ones are what some thousand
-   terms of a modal damping leave by rounding. */
-static const double undamped_within = 1e-12;
 
 static bool in_band(const ritz_sides *sides, double lambda)
 {
@@ -47,7 +44,7 @@ static double undamped(const ritz_sides *sides)
         for (int64_t k = 0; k < count[t]; k++)
             if (isfinite(both[t]->zeta[k]))
                 largest = fmax(largest, fabs(both[t]->zeta[k]));
-    return undamped_within * largest;
+    return RITZ_UNDAMPED_WITHIN * largest;
 }
 
 /*

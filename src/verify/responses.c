@@ -13,10 +13,6 @@
 
 /* A mode's largest entry of B, and of C, Cv and Ca, each by any channel. */
 enum { SHARES = 4 };
-/* A free body has no response at 0 Hz: begin at this part of the band. */
-static const double above_rest = 1e-3;
-/* Singular values are zero below this part of the largest of all points. */
-static const double zero_singular = 1e-10;
 enum { SWEEPS = 3 };
 
 static void shares_of(const ritz_io *io, int64_t k, double share[SHARES])
@@ -40,9 +36,9 @@ static void shares_of(const ritz_io *io, int64_t k, double share[SHARES])
  *
  *     1e3 eps sum_k (|c_k| b + c |b_k|) / |w_k^2 - w^2 + i w d_k|
  */
-static ritz_status ritz_sweep_hear(const ritz_poles *poles, ritz_sweep *s)
+static ritz_status ritz_sweep_hear(const ritz_poles *poles,
+                                   ritz_reference_sweep *s)
 {
-    const double thousand_eps = 2.3e-13;
     ritz_status status = RITZ_OK;
     double most[SHARES] = {0.0};
     double *share = NULL;
@@ -68,7 +64,7 @@ static ritz_status ritz_sweep_hear(const ritz_poles *poles, ritz_sweep *s)
                 sum += (c * most[0] + c_most * of[0]) / below;
         }
         for (int64_t e = p * s->values; e < (p + 1) * s->values; e++)
-            s->heard = s->heard || cabs(s->full[e]) > thousand_eps * sum;
+            s->heard = s->heard || cabs(s->full[e]) > RITZ_HEARD_ROUNDING * sum;
     }
 done:
     free(share);
@@ -77,17 +73,17 @@ done:
 
 /* Measures between the responses and static gains of two models. */
 
-void ritz_sweep_free(ritz_sweep *sweep)
+void ritz_sweep_free(ritz_reference_sweep *sweep)
 {
     free(sweep->hertz);
     free(sweep->full);
-    *sweep = (ritz_sweep){0};
+    *sweep = (ritz_reference_sweep){0};
 }
 
 ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_poles *poles,
                               const ritz_damped *damped, int64_t even,
-                              ritz_sweep *out)
+                              ritz_reference_sweep *out)
 {
     ritz_status status = RITZ_OK;
     double *omega = NULL;
@@ -97,7 +93,7 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                       .refine = true};
 
     if (poles->num_rigid + reference->poles.num_rigid > 0)
-        grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
+        grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
     RITZ_NEW(omega, poles->count);
     for (int64_t k = 0; k < poles->count; k++)
         omega[k] = sqrt(poles->lambda[k]);
@@ -110,7 +106,8 @@ done:
 
 /* The largest of what is no rigid motion: y = (C + i w Cv - w^2 Ca) q less the
  * rigid q = phi'b / (-w^2 + i w d). */
-static double flexible_part(const ritz_poles *poles, const ritz_sweep *s)
+static double flexible_part(const ritz_poles *poles,
+                            const ritz_reference_sweep *s)
 {
     const ritz_io *io = &poles->io;
     double largest = 0.0;
@@ -143,7 +140,7 @@ bool ritz_reference_factors(const ritz_reference *reference)
  * through which the rest moves too: then each point takes a factor.
  */
 ritz_status ritz_reference_respond(const ritz_reference *reference,
-                                   ritz_sweep *s)
+                                   ritz_reference_sweep *s)
 {
     ritz_status status = RITZ_OK;
     const ritz_poles *poles = &reference->poles;
@@ -176,7 +173,7 @@ done:
 
 /* Both models at some frequencies. */
 typedef struct sweep_pair {
-    const ritz_sweep *full; /* NULL: none */
+    const ritz_reference_sweep *full; /* NULL: none */
     double _Complex *reduced;
 } sweep_pair;
 
@@ -204,9 +201,10 @@ static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
                                  ritz_gap *gap)
 {
     const int64_t values = s->full->values;
-    double least = sides->reduced.num_rigid > 0
-                       ? above_rest * sides->full->band_hz[1] * (1.0 - 1e-9)
-                       : 0.0;
+    double least =
+        sides->reduced.num_rigid > 0
+            ? RITZ_BAND_START * sides->full->band_hz[1] * (1.0 - RITZ_BAND_EDGE)
+            : 0.0;
 
     gap->flexible = fmax(gap->flexible, s->full->flexible);
     gap->heard = gap->heard || s->full->heard;
@@ -235,7 +233,7 @@ static void compare_levels(const sweep_pair *s, ritz_gap *gap)
 
     for (int64_t k = 0; k < s->full->count * values; k++) {
         double a = cabs(s->full->full[k]);
-        double b = fmax(cabs(s->reduced[k]), 1e-300);
+        double b = fmax(cabs(s->reduced[k]), RITZ_LEAST_LEVEL);
 
         if (a > RITZ_AUDIBLE * gap->largest &&
             fabs(20.0 * log10(b / a)) > gap->db) {
@@ -258,7 +256,8 @@ static void say_where(const ritz_reference *full, double hertz,
 }
 
 /* Singular values of a model at every point of a sweep, descending at each. */
-static ritz_status take_singular(const ritz_io *io, const ritz_sweep *sweep,
+static ritz_status take_singular(const ritz_io *io,
+                                 const ritz_reference_sweep *sweep,
                                  const double _Complex *H, int64_t most,
                                  double *sigma)
 {
@@ -280,7 +279,8 @@ static int64_t count_nonzero(int64_t points, int64_t most, const double *sigma)
     for (int64_t k = 0; k < points; k++)
         largest = fmax(largest, sigma[k * most]);
     for (int64_t k = 0; k < points; k++)
-        while (rank < most && sigma[k * most + rank] > zero_singular * largest)
+        while (rank < most &&
+               sigma[k * most + rank] > RITZ_ZERO_SINGULAR * largest)
             rank++;
     return rank;
 }
@@ -342,7 +342,7 @@ ritz_status ritz_sides_respond(ritz_sides *sides)
 {
     ritz_status status = RITZ_OK;
     const ritz_reference *full = sides->full;
-    ritz_sweep other = {0};
+    ritz_reference_sweep other = {0};
     sweep_pair sweep[SWEEPS] = {{&full->own, NULL}};
 
     if (full->own.count == 0)

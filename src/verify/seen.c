@@ -1,17 +1,12 @@
 #include "verify/seen.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Of |c_i| |phi|, and of the largest product of a channel: what products and
-   eigenvectors leave of 0. */
-static const double rounding = 1e-10;
-
 enum { KINDS = 3 };
-/* Rounding of the edge of a band belongs to it. */
-static const double edge = 1e-9;
 
 /* A row of outputs sees mode k: rows of C, then Cv, then Ca. */
 static double output_of(const ritz_io *io, int64_t row, int64_t k)
@@ -30,8 +25,8 @@ bool ritz_in_band(const double band_hz[2], double lambda)
 {
     double hertz = ritz_eigen_hertz(lambda);
 
-    return hertz >= band_hz[0] * (1.0 - edge) &&
-           hertz <= band_hz[1] * (1.0 + edge);
+    return hertz >= band_hz[0] * (1.0 - RITZ_BAND_EDGE) &&
+           hertz <= band_hz[1] * (1.0 + RITZ_BAND_EDGE);
 }
 
 static double norm(int64_t n, const double *x, int64_t stride)
@@ -51,7 +46,7 @@ static bool counts(const ritz_poles *poles, const double band_hz[2], int64_t k)
 /* One over the largest of what is more than rounding of a row c of @p size. */
 static double scale(double largest, double size)
 {
-    return largest > rounding * size ? 1.0 / largest : 0.0;
+    return largest > RITZ_PARTICIPATION_ROUNDING * size ? 1.0 / largest : 0.0;
 }
 
 static void take_scales(const ritz_component *component,
@@ -117,7 +112,7 @@ static bool is_seen_in(const ritz_seen *seen, const ritz_poles *poles,
 {
     double p_k = share(seen, poles, j, i, k);
 
-    if (p_k <= rounding)
+    if (p_k <= RITZ_PARTICIPATION_ROUNDING)
         return false;
     for (int64_t m = 0; m < seen->num_modes; m++)
         if (counts(poles, band_hz, m) &&

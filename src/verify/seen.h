@@ -9,9 +9,6 @@
 
 #include <ritz/component.h>
 
-/* Of the largest |H|: what is below is not looked at. */
-#define RITZ_AUDIBLE 1e-6
-
 /** The edge of a band belongs to it, and rounding of the edge too. */
 bool ritz_in_band(const double band_hz[2], double lambda);
 

@@ -8,13 +8,13 @@
 #include <ritz/reference.h>
 
 /* The full model's responses at some frequencies. */
-typedef struct ritz_sweep {
+typedef struct ritz_reference_sweep {
     int64_t count, values; /* points; responses at each */
     double *hertz;
     double _Complex *full;
     double flexible; /* largest |H| less what rigid motion answers */
     bool heard;      /* any |H| is more than rounding */
-} ritz_sweep;
+} ritz_reference_sweep;
 
 /* What of the full model serves every comparison. */
 struct ritz_reference {
@@ -29,7 +29,7 @@ struct ritz_reference {
     ritz_damped damped;
     ritz_seen seen;
     ritz_dense gain;
-    ritz_sweep own, random;
+    ritz_reference_sweep own, random;
 };
 
 /* How far the responses of two models are apart, over all points. */
@@ -61,7 +61,7 @@ typedef struct ritz_sides {
 
 /** The full model at the points of a sweep, which has its hertz. */
 ritz_status ritz_reference_respond(const ritz_reference *reference,
-                                   ritz_sweep *sweep);
+                                   ritz_reference_sweep *sweep);
 
 /**
  * The points of the band refined at some poles, @p even evenly spaced among
@@ -70,7 +70,7 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
 ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_poles *poles,
                               const ritz_damped *damped, int64_t even,
-                              ritz_sweep *out);
+                              ritz_reference_sweep *out);
 
 /** Fill `gap`: responses of both models, at all points that were asked for. */
 ritz_status ritz_sides_respond(ritz_sides *sides);
@@ -91,6 +91,6 @@ ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out);
 ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out);
 ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out);
 
-void ritz_sweep_free(ritz_sweep *sweep);
+void ritz_sweep_free(ritz_reference_sweep *sweep);
 
 #endif

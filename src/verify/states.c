@@ -8,6 +8,7 @@
  */
 #include "verify/states.h"
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "linear/general.h"
 #include "linear/split.h"
 #include "verify/sides.h"
@@ -23,18 +24,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Relative, of H-infinity norms. */
-static const double norm_tolerance = 1e-8;
-/*
- * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
- * moves the response by some n eps |G|. The factor is a choice: no error of
- * tests/claims/states.claims comes near its bound by less.
- */
-static const double rounding = 1e3;
 /* Points before those at the poles are added. */
 enum { EVEN_POINTS = 200 };
-/* With a pole at 0 there is no response: begin at this part of the band. */
-static const double above_rest = 1e-3;
 
 void ritz_state_pair_free(ritz_state_pair *p)
 {
@@ -260,10 +251,12 @@ static ritz_status take_norms(ritz_state_pair *p)
         RITZ_CHECK(check_norms(p));
     if (!p->has_norms)
         return RITZ_OK;
-    RITZ_CHECK_IN("full model",
-                  ritz_norm_infinity(&p->stable[0], norm_tolerance, &p->full));
-    RITZ_CHECK_IN("difference", ritz_norm_infinity(&p->difference,
-                                                   norm_tolerance, &p->error));
+    RITZ_CHECK_IN(
+        "full model",
+        ritz_norm_infinity(&p->stable[0], RITZ_NORM_TOLERANCE, &p->full));
+    RITZ_CHECK_IN(
+        "difference",
+        ritz_norm_infinity(&p->difference, RITZ_NORM_TOLERANCE, &p->error));
     return RITZ_OK;
 }
 
@@ -331,9 +324,9 @@ ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
     if (!p->has_norms || isnan(bound))
         return RITZ_OK;
     out->value = p->error.value;
-    out->limit = bound + (norm_tolerance * bound +
-                          rounding * (double)p->model[0].A.nrow * DBL_EPSILON *
-                              p->full.value);
+    out->limit = bound + (RITZ_NORM_TOLERANCE * bound +
+                          RITZ_BOUND_ROUNDING * (double)p->model[0].A.nrow *
+                              DBL_EPSILON * p->full.value);
     say_where(p, out->where);
     return RITZ_OK;
 }
@@ -430,7 +423,7 @@ ritz_status ritz_states_response(const ritz_state_pair *p, ritz_measure *out)
     if (grid.to_hz == 0.0)
         return RITZ_OK;
     if (!p->has_gain)
-        grid.from_hz = fmax(grid.from_hz, above_rest * grid.to_hz);
+        grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
     for (int k = 0; k < 2; k++)
         RITZ_CHECK(compare_at(p, k, &grid, &found));
     if (!(found.full > 0.0))

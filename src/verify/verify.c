@@ -6,6 +6,7 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/tolerances.h"
 #include "poles/poles.h"
 #include "verify/sides.h"
 #include "verify/states.h"
@@ -17,17 +18,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A full model's modes are computed so far beyond the band. */
-static const double beyond = 3.0;
-/* Hz: no model has a mode above. */
-static const double all_modes = 1e100;
 /* Dofs up to which all modes are taken where D couples them, or does what is
    not known to those above. */
 enum { SMALL = 300 };
 /* Points before those at the poles are added. */
 enum { EVEN_POINTS = 200 };
-/* Rigid motion has no response at 0 Hz: begin at this part of the band. */
-static const double above_rest = 1e-3;
 /* Where nothing says how a response is damped. */
 static const ritz_damping unstated = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
 
@@ -38,7 +33,7 @@ double ritz_random_next(uint64_t *state)
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
     z ^= z >> 31;
-    return (double)(z >> 11) * 0x1p-53;
+    return (double)(z >> 11) * 0x1p-53; /* [Steele2014] */
 }
 
 void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
@@ -87,13 +82,13 @@ done:
 
 static ritz_status open_modes(ritz_reference *r)
 {
-    r->modes_hz = beyond * r->band_hz[1];
+    r->modes_hz = RITZ_REFERENCE_REACH * r->band_hz[1];
     RITZ_CHECK(take_modes(r->modes_hz, r));
     if (ritz_reference_factors(r) && r->component->num_dofs <= SMALL) {
         ritz_pairs_free(&r->pairs);
         ritz_poles_free(&r->poles);
         ritz_residual_free(&r->residual);
-        RITZ_CHECK(take_modes(all_modes, r));
+        RITZ_CHECK(take_modes(RITZ_ALL_MODES, r));
     }
     RITZ_CHECK_IN("full model",
                   ritz_damped_new(&r->poles, r->component, &r->pairs,
@@ -119,7 +114,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
     if (request->num_random < 1)
         return RITZ_OK;
     if (r->poles.num_rigid > 0)
-        band[0] = fmax(band[0], above_rest * band[1]);
+        band[0] = fmax(band[0], RITZ_BAND_START * band[1]);
     r->random.count = request->num_random;
     RITZ_CHECK_NEW(r->random.hertz, r->random.count);
     ritz_random_hertz(request->seed, band, r->random.count, r->random.hertz);

@@ -99,7 +99,7 @@ static double reference_apart(const ritz_component *bar,
                                             .damping = *damping};
     ritz_reference *reference = NULL;
     ritz_response direct = {0};
-    ritz_sweep sweep = {.count = POINTS};
+    ritz_reference_sweep sweep = {.count = POINTS};
     double found = 0.0;
 
     respond_directly(bar, damping, &direct);

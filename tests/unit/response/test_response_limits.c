@@ -138,7 +138,7 @@ static void a_reference_may_have_no_mass_left(void **state)
             .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01}};
         ritz_reference *reference = NULL;
         double at = hertz[k];
-        ritz_sweep sweep = {.count = 1, .hertz = &at};
+        ritz_reference_sweep sweep = {.count = 1, .hertz = &at};
 
         assert_ok(ritz_reference_new(&row, &request, &reference));
         assert_ok(ritz_reference_respond(reference, &sweep));
