@@ -1,7 +1,7 @@
 /*
- * Shapes as XDMF [Clarke2007]: a small XML file, and beside it an HDF5 file that
- * holds the numbers and is named after it. Cells are drawn by their corners, as
- * few readers know others in a mixed mesh.
+ * Shapes as XDMF [Clarke2007]: a small XML file, and beside it an HDF5 file of
+ * that name with the numbers. Cells are drawn by their corners, as few readers
+ * know others in a mixed mesh.
  */
 #include "base/alloc.h"
 #include "base/draft.h"

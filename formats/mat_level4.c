@@ -4,7 +4,8 @@
  *     1000 M + 10 P + T, rows, columns, imaginary part or not, length of name
  *
  * M byte order, P type of value, T full, text or sparse; then the name, and the
- * values by columns. A sparse one is stored as rows (i, j, value), the last one its size.
+ * values by columns. A sparse one is stored as rows (i, j, value), the last one
+ * its size.
  */
 #include "formats/mat.h"
 

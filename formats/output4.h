@@ -103,13 +103,15 @@ ritz_status ritz_output4_list(ritz_listing *listing,
 void ritz_output4_name(const char *bytes, int64_t size,
                        char out[RITZ_NAME_SIZE]);
 
-/* Each spelling: whether bytes look like it, its directory, one matrix. */
+/* Each spelling: recognition, directory (and a check of all values), one
+ * matrix. */
 bool ritz_output4_is_text(const char *bytes, int64_t size);
-ritz_status ritz_output4_list_text(const ritz_foreign *file, ritz_listing *out);
+ritz_status ritz_output4_list_text(const ritz_foreign *file, bool check,
+                                   ritz_listing *out);
 ritz_status ritz_output4_read_text(const ritz_foreign *file,
                                    const ritz_listed *which, ritz_matrix *out);
 bool ritz_output4_is_binary(const char *bytes, int64_t size);
-ritz_status ritz_output4_list_binary(const ritz_foreign *file,
+ritz_status ritz_output4_list_binary(const ritz_foreign *file, bool check,
                                      ritz_listing *out);
 ritz_status ritz_output4_read_binary(const ritz_foreign *file,
                                      const ritz_listed *which,

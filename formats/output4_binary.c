@@ -371,16 +371,16 @@ static bool skip_columns(ritz_binary *b, const ritz_output4_header *header)
     return true;
 }
 
-/* Where records do not lead behind a matrix, it is read: that, or the sentence
- * that says what is wrong. */
+/* Where records do not lead behind a matrix, or values are to be checked, it is
+ * read. */
 static ritz_status pass_matrix(ritz_binary *b,
-                               const ritz_output4_header *header)
+                               const ritz_output4_header *header, bool check)
 {
     ritz_status status = RITZ_OK;
     ritz_binary ahead = *b;
     ritz_matrix unused = {0};
 
-    if (skip_columns(&ahead, header))
+    if (!check && skip_columns(&ahead, header))
         *b = ahead;
     else
         status = read_columns(b, header, &unused);
@@ -388,7 +388,7 @@ static ritz_status pass_matrix(ritz_binary *b,
     return status;
 }
 
-ritz_status ritz_output4_list_binary(const ritz_foreign *file,
+ritz_status ritz_output4_list_binary(const ritz_foreign *file, bool check,
                                      ritz_listing *out)
 {
     ritz_binary b = {0};
@@ -404,7 +404,7 @@ ritz_status ritz_output4_list_binary(const ritz_foreign *file,
             return RITZ_OK;
         RITZ_CHECK(take_header(&b, &first, &header));
         RITZ_CHECK(ritz_output4_list(out, &header, at, 0));
-        RITZ_CHECK(pass_matrix(&b, &header));
+        RITZ_CHECK(pass_matrix(&b, &header, check));
     }
 }
 

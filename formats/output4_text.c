@@ -456,16 +456,17 @@ static bool skip_columns(ritz_output4_text *t,
     }
 }
 
-/* Where counts do not lead behind a matrix, it is read: that, or the sentence
- * that says what is wrong. */
+/* Where counts do not lead behind a matrix, or values are to be checked, it is
+ * read. */
 static ritz_status pass_matrix(ritz_output4_text *t,
-                               const ritz_output4_header *header, int64_t size)
+                               const ritz_output4_header *header, int64_t size,
+                               bool check)
 {
     ritz_status status = RITZ_OK;
     ritz_output4_text ahead = *t;
     ritz_matrix unused = {0};
 
-    if (skip_columns(&ahead, header))
+    if (!check && skip_columns(&ahead, header))
         *t = ahead;
     else
         status = read_columns(t, header, size, &unused);
@@ -473,7 +474,8 @@ static ritz_status pass_matrix(ritz_output4_text *t,
     return status;
 }
 
-ritz_status ritz_output4_list_text(const ritz_foreign *file, ritz_listing *out)
+ritz_status ritz_output4_list_text(const ritz_foreign *file, bool check,
+                                   ritz_listing *out)
 {
     ritz_output4_text t = {
         .lines = {.at = file->bytes, .end = file->bytes + file->size}};
@@ -486,7 +488,7 @@ ritz_status ritz_output4_list_text(const ritz_foreign *file, ritz_listing *out)
             return RITZ_OK;
         RITZ_CHECK(ritz_output4_list(out, &header, t.lines.line - file->bytes,
                                      t.lines.number));
-        RITZ_CHECK(pass_matrix(&t, &header, file->size));
+        RITZ_CHECK(pass_matrix(&t, &header, file->size, check));
     }
 }
 
