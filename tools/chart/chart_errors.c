@@ -24,7 +24,7 @@ typedef struct form {
 enum { CELL_WIDE = 490, CELL_HIGH = 380, PANEL_WIDE = 376, PANEL_HIGH = 280 };
 
 /* Two marks nearer than this are one to the eye; pixels. */
-static const double mark_apart = 4.0;
+static const double mark_apart = 5.0;
 
 /* The order of a point of the front is written if the point is this far from
    the last one with its order, in one direction or the other; pixels. */
@@ -403,9 +403,10 @@ static ritz_status compose(work *w)
 
     p->body = (double)(down * CELL_HIGH);
     fprintf(p->given.file,
-            "panels = %lld\nacross = %lld\nmethods = %lld\nseconds = %d\n",
+            "panels = %lld\nacross = %lld\nmethods = %lld\nseconds = %d\n"
+            "lines = %d\n",
             (long long)n, (long long)across, (long long)w->s.num_methods,
-            w->form->seconds);
+            w->form->seconds, w->form->lines);
     picture_give_text(p, "xlabel", w->form->xlabel);
     picture_give_texts(p, "title", n, w->s.measure->title, sizeof(measure));
     picture_give_reals(p, "x_low", n, &first->x_low, stride);

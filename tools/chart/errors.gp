@@ -1,7 +1,7 @@
 # --- pareto and convergence: errors against time or order ---
 # panels, title[], low and high of both axes, tolerance[] (0: none), xlabel,
-# seconds, front, lines, methods. Data: area series style x y tip order method
-# word, with styles 0 meets, 1 misses, 2 chosen, 3 runner-up, 4 front, 5 line.
+# seconds, lines (of each method), methods. Data: area series style x y tip order
+# method word, with styles 0 meets, 1 misses, 2 chosen, 3 runner-up, 4 front, 5 line.
 percent(e) = e >= -5 && e <= 1 ? sprintf('%g %%%%', 10.0**(e + 2)) \
     : sprintf('1e%d', e)
 level(v) = v >= 0.0995 ? sprintf('%.0f %%', 100 * v) \
@@ -73,8 +73,9 @@ do for [p=1:panels] {
     at(k) = $1 == p - 1 && $3 == k ? $4 : NaN
     plot NaN notitle, \
         data skip 1 using (at(4)):5 with steps lw 2 lc rgb muted, \
-        for [s=0:methods - 1] data skip 1 using ($2 == s ? at(5) : NaN):5 \
-            with lines lw 1.8 lc rgb colour(s), \
+        for [s=0:lines * methods - 1] data skip 1 \
+            using ($2 == s ? at(5) : NaN):5 with lines lw 1.8 \
+            lc rgb colour(s), \
         data skip 1 using (at(2)):5 with points pt 6 ps 2.4 lw 2.4 \
             lc rgb alarm, \
         data skip 1 using (at(3)):5 with points pt 6 ps 2.2 lw 1.6 \
