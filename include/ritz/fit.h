@@ -23,25 +23,28 @@ typedef struct ritz_fit_watch {
     double wall, cpu;
 } ritz_fit_watch;
 
-/* One model that was tried. */
+/* One model that was tried: a method, and a number of modes for each body. */
 typedef struct ritz_fit_candidate {
     const ritz_method *method;
-    int64_t num_bodies;   /* flexible components; 1 of a component */
-    int64_t *modes;       /* num_bodies, what each was asked for; -1: the method
-                           has nothing to ask */
-    int64_t order;        /* columns; of a scene: of the largest system */
-    int64_t left_out;     /* columns of its bases that the tolerance can do
-                           without: not in `order` and `columns` */
-    int64_t columns;      /* of all flexible bodies together */
-    ritz_measures errors; /* worst of all configurations; {0} if refused */
-    ritz_measures estimates; /* of a scene: worst of the places looked at */
-    double ratio;  /* largest error over its tolerance; 1 or less: feasible */
-    int64_t worst; /* measure that decides it; -1: none */
-    bool feasible; /* and stable, and confirmed at random places */
-    bool unconfirmed; /* it met the grid, and not what confirms */
-    bool ruled_out;   /* bounds alone ruled it out: it has no errors */
-    bool bounded;     /* bounds alone said that a component's grid holds: it was
-                        measured where it is confirmed, and there alone */
+    int64_t num_bodies; /* flexible components; 1 of a component */
+    int64_t *modes;     /* num_bodies, modes asked for; -1: the method takes no
+                             number of modes */
+    int64_t order;      /* columns; of a scene: of the largest system */
+    int64_t left_out;   /* columns of its bases that are left out because the
+                             tolerance holds without them: not in `order` and
+                             `columns` */
+    int64_t columns;    /* of all flexible bodies together */
+    ritz_measures errors;    /* worst of all configurations; {0} if refused */
+    ritz_measures estimates; /* bounds; of a scene: worst of the configurations
+                                that were bounded */
+    double ratio;  /* largest error over its tolerance; 1 or less: it holds */
+    int64_t worst; /* the measure of that ratio in `errors`; -1: none */
+    bool feasible; /* it meets the tolerance everywhere, and is stable */
+    bool unconfirmed; /* it met the tolerance on the grid, and not at the random
+                         frequencies and configurations */
+    bool ruled_out;   /* its bounds exclude it, so it was not measured */
+    bool bounded;     /* its bounds meet the tolerance, so it was measured only
+                         where it is confirmed */
     ritz_fit_watch making; /* to make basis and reduction */
     double highest_hz;     /* of the model; 0: not known */
     ritz_cost cost;        /* if it is feasible; order 0: not measured */
@@ -114,14 +117,13 @@ typedef struct ritz_fit {
     int64_t *best;     /* num_methods, of each the smallest that is feasible;
                           -1: none is */
     int64_t *reached;  /* num_methods, of each the one that misses the fewest
-                         modes, with the least excess; -1: all were refused */
+                         modes, with the least ratio; -1: all were refused */
     ritz_fit_end *end; /* num_methods, of each that met nothing what ended it */
     const ritz_method **method; /* num_methods */
     char why[1024];
 } ritz_fit;
 
-/* A scene's answer with fewer columns: what it comes to if each flexible body
-   is cut to its first ones. */
+/* The answer with each flexible body cut to its first columns. */
 typedef struct ritz_fit_row {
     int64_t *first;  /* num_bodies: the `order` of each in a scene's file */
     int64_t columns; /* of all flexible bodies together */
