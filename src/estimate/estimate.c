@@ -445,8 +445,8 @@ static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
         if (m->pairs.lambda[m->first] > rounding || rho > slowest)
             break;
         if (!ritz_counted_more(estimator, m->first, slowest)) {
-            status = ritz_estimator_count(estimator,
-                                          fmax(rho, RITZ_COUNT_LEAST * slowest));
+            status = ritz_estimator_count(
+                estimator, fmax(rho, RITZ_COUNT_LEAST * slowest));
             if (status == RITZ_ERR_SINGULAR)
                 return RITZ_OK; /* it cannot be counted: the mode stays */
             RITZ_TRY(status);

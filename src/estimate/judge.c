@@ -123,7 +123,7 @@ double ritz_claim_same(const ritz_lehmann *trial, const ritz_enclosure *e,
 typedef struct ritz_mode_group {
     int64_t first, last;
     bool is_cluster; /* they are known to be one cluster */
-    int vectors; /* near it are vectors of the trial (0), or polished (1) */
+    int vectors;     /* near it are vectors of the trial (0), or polished (1) */
     int64_t first_vector, end_vector; /* as many as modes or fewer */
     double sin2; /* of the angle between vectors and group, at most */
 } ritz_mode_group;
