@@ -146,7 +146,7 @@ best = [(r[3], r[4]) for r in rows if r[:3] == ["0", "0", "5"]]
 assert best == [("3", "0.2"), ("4", "0.01")], best
 END
 
-# --- words that do not cover each other, and marks that are told apart ---------
+# --- words that do not cover each other, and marks that are told apart 
 
 i=0
 while [ $i -lt 240 ]; do

@@ -50,7 +50,8 @@ static double height_of(const contest *all, int64_t c, int64_t number)
     return fabs(r->value[mode]) / (is_mixed(all) ? top : 1.0);
 }
 
-/* Numbers of the modes that are among the first few of any ranking, ascending. */
+/* Numbers of the modes that are among the first few of any ranking; ascending
+   order. */
 static ritz_status pick_numbers(picture *p, const contest *all, int64_t most,
                                 int64_t *count, int64_t **out)
 {

@@ -1,7 +1,8 @@
 # --- pareto and convergence: errors against time or order ---
 # panels, title[], low and high of both axes, tolerance[] (0: none), xlabel,
-# seconds, lines (of each method), methods. Data: area series style x y tip order
-# method word, with styles 0 meets, 1 misses, 2 chosen, 3 runner-up, 4 front, 5 line.
+# seconds, lines (of each method), methods. Data: area series style x y tip
+# order method word, with styles 0 meets, 1 misses, 2 chosen, 3 runner-up, 4
+# front, 5 line.
 percent(e) = e >= -5 && e <= 1 ? sprintf('%g %%%%', 10.0**(e + 2)) \
     : sprintf('1e%d', e)
 level(v) = v >= 0.0995 ? sprintf('%.0f %%', 100 * v) \

@@ -26,7 +26,8 @@ do for [k=0:10] {
     set object k + 1 rectangle \
         from screen (left + cell * across + 18.0) / wide, \
         screen real(top - 10) / high \
-        to screen (left + cell * across + 30.0) / wide, screen real(top) / high \
+        to screen (left + cell * across + 30.0) / wide, \
+        screen real(top) / high \
         fc rgb sprintf('#%02x%s', int(239.5 * k / 10), c1[2:*]) \
         fs solid noborder
     if (k % 5 == 0) {

@@ -20,8 +20,8 @@ enum {
     TIP_SIZE = 1000, /* a label of gnuplot's has 1024 bytes at most */
 };
 
-/* Widths in the legend, pixels: a sign with the space beside it; a letter, which
-   is what gnuplot allows for one. */
+/* Widths in the legend, pixels: a sign with the space beside it; a letter, as
+   gnuplot counts it. */
 static const double sign_wide = 60.0, letter_wide = 8.5;
 
 ritz_status picture_new(const char *path, bool keep, picture *out)
