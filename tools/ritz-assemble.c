@@ -50,8 +50,8 @@ done:
     return status;
 }
 
-static ritz_status assemble(cli_run *run, const char *at, bool full,
-                            const char *tracks)
+static ritz_status assemble_scene(cli_run *run, const char *at, bool full,
+                                  const char *tracks)
 {
     ritz_status status = RITZ_OK;
     ritz_scene scene = {0};
@@ -95,5 +95,5 @@ int main(int argc, char **argv)
     if (full && tracks)
         cli_refuse(&program, "--full makes one component, whose modes are not "
                              "followed by --tracks");
-    return cli_finish(&run, assemble(&run, at, full, tracks));
+    return cli_finish(&run, assemble_scene(&run, at, full, tracks));
 }

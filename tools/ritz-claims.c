@@ -31,7 +31,7 @@ static ritz_status find_tools(claims_state *state)
 }
 
 /* An empty folder in which commands run; a data folder that moves with them. */
-static ritz_status prepare(claims_state *state, const char *data)
+static ritz_status make_folder(claims_state *state, const char *data)
 {
     ritz_status status = RITZ_OK;
     const char *parent = getenv("TMPDIR");
@@ -56,7 +56,7 @@ static ritz_status run_files(cli_run *run, const char *data)
     ritz_status status = RITZ_OK;
     claims_state state = {.run = run, .list = json_array()};
 
-    RITZ_TRY(prepare(&state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
+    RITZ_TRY(make_folder(&state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
     for (int k = 0; k < run->num_operands; k++) {
         RITZ_TRY(cli_input(run, run->operand[k]));
         RITZ_TRY(claims_file(&state, run->operand[k]));

@@ -22,8 +22,8 @@ static void refuse_others(const cli_program *program)
 }
 
 /* The options stand in main, which has room for nothing else. */
-static int serve(const cli_option *options, int argc, char **argv,
-                 import_wish *asked)
+static int import_files(const cli_option *options, int argc, char **argv,
+                        import_wish *asked)
 {
     const cli_program program = {
         .name = "ritz-import",
@@ -95,5 +95,5 @@ int main(int argc, char **argv)
         {0},
     };
 
-    return serve(options, argc, argv, &asked);
+    return import_files(options, argc, argv, &asked);
 }

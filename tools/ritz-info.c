@@ -34,7 +34,7 @@ static void list_members(void)
 }
 
 /* Keys of a single file stand in the report itself too. */
-static ritz_status inform(cli_run *run, bool members, bool directory)
+static ritz_status describe_files(cli_run *run, bool members, bool directory)
 {
     sink_list(run, "files");
     for (int k = 0; k < run->num_operands; k++) {
@@ -84,5 +84,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    return cli_finish(&run, inform(&run, members, directory));
+    return cli_finish(&run, describe_files(&run, members, directory));
 }

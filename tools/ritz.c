@@ -34,7 +34,7 @@ static const struct verb {
 
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
 
-static int list(void)
+static int list_verbs(void)
 {
     printf("Usage: ritz VERB [OPTION]... INPUT... -o OUTPUT\n\n"
            "Large finite-element components into small ones for "
@@ -51,7 +51,7 @@ static int list(void)
     return EXIT_SUCCESS;
 }
 
-static int refuse(const char *word)
+static int refuse_verb(const char *word)
 {
     const char *nearest =
         ritz_text_nearest(word, NUM_VERBS, verbs[0].name, sizeof *verbs);
@@ -64,7 +64,7 @@ static int refuse(const char *word)
 }
 
 /* The tool beside this program, or else where the shell would find it. */
-static int start(const char *verb, char **argv)
+static int start_tool(const char *verb, char **argv)
 {
     char self[4096] = "";
     char tool[sizeof self + VERB_SIZE + sizeof "ritz-"];
@@ -98,13 +98,13 @@ int main(int argc, char **argv)
         word = argv[2];
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 ||
              strcmp(word, "help") == 0)
-        return list();
+        return list_verbs();
     if (strcmp(word, "--version") == 0) {
         printf("ritz (Ritz) %s\n", ritz_version());
         return fclose(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
     }
     for (int k = 0; k < NUM_VERBS; k++)
         if (strcmp(word, verbs[k].name) == 0)
-            return start(word, helping ? asked : argv + 1);
-    return refuse(word);
+            return start_tool(word, helping ? asked : argv + 1);
+    return refuse_verb(word);
 }

@@ -28,7 +28,7 @@ static ritz_status set_source(claims_state *state, const claims_line *line)
 }
 
 /* "need FILE...": what follows is skipped while one of them is absent. */
-static ritz_status need(claims_state *state, const claims_line *line)
+static ritz_status need_file(claims_state *state, const claims_line *line)
 {
     state->skipping = false;
     for (int k = 1; k < line->count; k++)
@@ -53,7 +53,7 @@ static _Noreturn void become(const claims_state *state, const char *tool,
     _exit(127);
 }
 
-/* What the tool printed: its one object, after any warnings. */
+/* The JSON object that the tool printed, after any warnings. */
 static ritz_status read_answer(claims_state *state)
 {
     ritz_status status = RITZ_OK;
@@ -75,14 +75,12 @@ done:
     return status;
 }
 
-static void remember(claims_state *state, const claims_line *line)
+static void remember_command(claims_state *state, const claims_line *line)
 {
-    size_t used = 0;
-
-    for (int k = 1; k < line->count && used < sizeof state->command; k++)
-        used += (size_t)snprintf(state->command + used,
-                                 sizeof state->command - used, "%s%s",
-                                 k > 1 ? " " : "", line->word[k]);
+    state->command[0] = '\0';
+    for (int k = 1; k < line->count; k++)
+        sink_append(state->command, sizeof state->command, "%s%s",
+                    k > 1 ? " " : "", line->word[k]);
 }
 
 /* "try TOOL ARGUMENT...", whatever becomes of it. */
@@ -103,7 +101,7 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
                    "there is no tool '%.40s'", line->word[1]);
     memcpy(argv, line->word + 1, (size_t)(line->count - 1) * sizeof *argv);
     argv[line->count - 1] = json;
-    remember(state, line);
+    remember_command(state, line);
     json_decref(state->answer);
     state->answer = NULL;
     fflush(stdout);
@@ -162,7 +160,7 @@ static const struct statement {
     ritz_status (*run)(claims_state *state, const claims_line *line);
     bool always; /* even while claims are skipped */
 } statements[] = {
-    {"source", set_source, true},    {"need", need, true},
+    {"source", set_source, true},    {"need", need_file, true},
     {"beam", claims_beam, false},    {"rows", write_rows, false},
     {"run", run_tool, false},        {"try", try_tool, false},
     {"expect", claims_expect, true},

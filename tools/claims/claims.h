@@ -20,7 +20,7 @@ typedef struct claims_line {
     char *room;
 } claims_line;
 
-/* What goes on while a file is run. */
+/* State of a run through a claims file. */
 typedef struct claims_state {
     cli_run *run;
     char bin[PATH_MAX];    /* the tools are here */

@@ -20,7 +20,7 @@ typedef struct beam {
     const char *clamp, *directions;
 } beam;
 
-/* What an option sets: one of three, by its place in a beam. */
+/* An option of a beam, and the member that it sets: one of three. */
 static const struct option {
     const char *name;
     enum { WHOLE, REAL, TEXT } kind;
@@ -94,7 +94,8 @@ static ritz_status read_beam(const claims_line *line, beam *b)
 }
 
 /* K and M of one element, rows u v theta of its ends. */
-static void fill(const beam *b, double K[SIDE][SIDE], double M[SIDE][SIDE])
+static void fill_matrices(const beam *b, double K[SIDE][SIDE],
+                          double M[SIDE][SIDE])
 {
     static const int bend[4] = {1, 2, 4, 5};
     double l = b->length / (double)b->elements;
@@ -144,7 +145,7 @@ static int64_t row_of(const beam *b, int64_t dof)
  * A(i, j) of dofs i >= j, where j belongs to the node of i or the one before:
  * val[6 i + j - 3 (node of i) + 3].
  */
-static double *at(double *val, int64_t i, int64_t j)
+static double *entry_at(double *val, int64_t i, int64_t j)
 {
     return &val[SIDE * i + j - i / NODE * NODE + NODE];
 }
@@ -154,7 +155,7 @@ static void add_elements(const beam *b, double A[SIDE][SIDE], double *val)
     for (int64_t e = 0; e < b->elements; e++)
         for (int i = 0; i < SIDE; i++)
             for (int j = 0; j <= i; j++)
-                *at(val, NODE * e + i, NODE * e + j) += A[i][j];
+                *entry_at(val, NODE * e + i, NODE * e + j) += A[i][j];
 }
 
 /* The rigid body at the right end, its centre tip_centre beyond it. */
@@ -162,10 +163,10 @@ static void add_tip(const beam *b, double *val)
 {
     int64_t i = NODE * b->elements;
 
-    *at(val, i, i) += b->tip_mass;
-    *at(val, i + 1, i + 1) += b->tip_mass;
-    *at(val, i + 2, i + 2) += b->tip_inertia;
-    *at(val, i + 2, i + 1) += b->tip_mass * b->tip_centre;
+    *entry_at(val, i, i) += b->tip_mass;
+    *entry_at(val, i + 1, i + 1) += b->tip_mass;
+    *entry_at(val, i + 2, i + 2) += b->tip_inertia;
+    *entry_at(val, i + 2, i + 1) += b->tip_mass * b->tip_centre;
 }
 
 /* The entries of dofs that stay; with no file they are only counted. */
@@ -178,13 +179,13 @@ static int64_t put_entries(const beam *b, double *val, FILE *file)
             int64_t row = row_of(b, i);
             int64_t col = row_of(b, j);
 
-            if (row < 0 || col < 0 || *at(val, i, j) == 0.0)
+            if (row < 0 || col < 0 || *entry_at(val, i, j) == 0.0)
                 continue;
             count++;
             if (file)
                 fprintf(file, "%" PRId64 " %" PRId64 " %.17g\n",
                         row > col ? row + 1 : col + 1,
-                        row > col ? col + 1 : row + 1, *at(val, i, j));
+                        row > col ? col + 1 : row + 1, *entry_at(val, i, j));
         }
     return count;
 }
@@ -269,7 +270,7 @@ ritz_status claims_beam(claims_state *state, const claims_line *line)
     double K[SIDE][SIDE], M[SIDE][SIDE];
 
     RITZ_CHECK(read_beam(line, &b));
-    fill(&b, K, M);
+    fill_matrices(&b, K, M);
     RITZ_CHECK(put_matrix(state, line->word[1], false, &b, K));
     RITZ_CHECK(put_matrix(state, line->word[1], true, &b, M));
     return put_names(state, line->word[1], &b);

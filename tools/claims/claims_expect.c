@@ -1,4 +1,4 @@
-/* What an answer says, held against what was claimed. */
+/* Answers of tools, held against what was claimed. */
 #include "claims/claims.h"
 
 #include "base/tolerances.h"
@@ -29,9 +29,9 @@ static const json_t *find_item(const json_t *list, const char *name,
     return NULL;
 }
 
-/* What "[3]" or "[static-gain]" leads to. */
-static const json_t *enter(const json_t *list, const char *inside,
-                           size_t length, int64_t more)
+/* The item of a list that "[3]" or "[static-gain]" names. */
+static const json_t *enter_list(const json_t *list, const char *inside,
+                                size_t length, int64_t more)
 {
     char text[64] = "";
     int64_t index = 0;
@@ -55,8 +55,8 @@ const json_t *claims_find(const json_t *answer, const char *path, int64_t more)
 
         if (*path == '[') {
             length = strcspn(path, "]");
-            at = enter(at, path + 1, length - 1,
-                       path[length] && !path[length + 1] ? more : 0);
+            at = enter_list(at, path + 1, length - 1,
+                            path[length] && !path[length + 1] ? more : 0);
             path += length + (path[length] != '\0');
         } else {
             if (length >= sizeof key)
@@ -121,7 +121,7 @@ typedef struct bound {
     double size;
 } bound;
 
-static bool within(double value, double expected, const bound *b)
+static bool is_within(double value, double expected, const bound *b)
 {
     switch (b->kind) {
     case RELATIVE:
@@ -137,8 +137,8 @@ static bool within(double value, double expected, const bound *b)
 }
 
 /* Count a verdict and tell it: one line of TAP, one object of JSON. */
-static void tell(claims_state *state, const claims_line *line, bool holds,
-                 const char *what, const char *found)
+static void tell_claim(claims_state *state, const claims_line *line, bool holds,
+                       const char *what, const char *found)
 {
     int64_t number = state->holds + state->fails + state->skipped + 1;
     const char *slash = strrchr(line->file, '/');
@@ -171,9 +171,10 @@ static ritz_status expect_failure(claims_state *state, const claims_line *line)
     RITZ_REFUSE_IF(
         line->count != 3, RITZ_ERR_FORMAT,
         "'expect failure' takes the words of its sentence, in quotes");
-    tell(state, line,
-         state->exit_code == 1 && sentence && strstr(sentence, line->word[2]),
-         "failure", sentence ? sentence : "it did not fail with a sentence");
+    tell_claim(
+        state, line,
+        state->exit_code == 1 && sentence && strstr(sentence, line->word[2]),
+        "failure", sentence ? sentence : "it did not fail with a sentence");
     return RITZ_OK;
 }
 
@@ -190,7 +191,8 @@ static void expect_text(claims_state *state, const claims_line *line)
                  json_integer_value(at));
     else if (json_is_boolean(at))
         snprintf(text, sizeof text, "%s", json_is_true(at) ? "true" : "false");
-    tell(state, line, strcmp(text, line->word[3]) == 0, line->word[1], text);
+    tell_claim(state, line, strcmp(text, line->word[3]) == 0, line->word[1],
+               text);
 }
 
 /* "frequencies_hz[6]" and 2 more: "frequencies_hz[8]". */
@@ -232,8 +234,9 @@ static ritz_status expect_number(claims_state *state, const claims_line *line,
     else
         snprintf(found, sizeof found, "%.3e, to be %s %.1e", value,
                  allowed->kind == BELOW ? "below" : "above", allowed->size);
-    tell(state, line, json_is_number(at) && within(value, expected, allowed),
-         what, found);
+    tell_claim(state, line,
+               json_is_number(at) && is_within(value, expected, allowed), what,
+               found);
     return RITZ_OK;
 }
 
@@ -278,7 +281,7 @@ ritz_status claims_expect(claims_state *state, const claims_line *line)
                    "a claim needs a 'source' before it");
     RITZ_REFUSE_IF(line->count < 3, RITZ_ERR_FORMAT, "nothing is expected");
     if (state->skipping) {
-        tell(state, line, false, "expect", "");
+        tell_claim(state, line, false, "expect", "");
         return RITZ_OK;
     }
     if (strcmp(line->word[1], "failure") == 0)

@@ -5,8 +5,8 @@
 #include <string.h>
 
 /* A folder that a word begins with: "$DATA/lund" */
-static const char *replace(const claims_state *state, const char *text,
-                           size_t *length)
+static const char *replace_folder(const claims_state *state, const char *text,
+                                  size_t *length)
 {
     const struct {
         const char *name, *value;
@@ -24,7 +24,8 @@ static const char *replace(const claims_state *state, const char *text,
  * One word from `text` to `out`; what follows it, or NULL: never closed. A
  * quote within a word is a letter.
  */
-static const char *take(const claims_state *state, const char *text, char *out)
+static const char *take_word(const claims_state *state, const char *text,
+                             char *out)
 {
     char quote = '\0';
 
@@ -32,7 +33,8 @@ static const char *take(const claims_state *state, const char *text, char *out)
         quote = *text++;
     for (; *text && (quote || !strchr(" \t", *text)); text++) {
         size_t length = 0;
-        const char *value = *text == '$' ? replace(state, text, &length) : NULL;
+        const char *value =
+            *text == '$' ? replace_folder(state, text, &length) : NULL;
 
         if (value) {
             memcpy(out, value, strlen(value));
@@ -50,7 +52,7 @@ static const char *take(const claims_state *state, const char *text, char *out)
 }
 
 /* Room that every word fits, folders put in. */
-static size_t need(const char *text)
+static size_t count_room(const char *text)
 {
     size_t size = 2 * strlen(text) + 1;
 
@@ -62,7 +64,7 @@ static size_t need(const char *text)
 ritz_status claims_cut(const claims_state *state, const char *text,
                        claims_line *line)
 {
-    char *out = malloc(need(text));
+    char *out = malloc(count_room(text));
 
     line->room = out;
     line->count = 0;
@@ -72,7 +74,7 @@ ritz_status claims_cut(const claims_state *state, const char *text,
         RITZ_REFUSE_IF(line->count == CLAIMS_MOST_WORDS, RITZ_ERR_FORMAT,
                        "more than %d words", CLAIMS_MOST_WORDS);
         line->word[line->count] = out;
-        text = take(state, text, out);
+        text = take_word(state, text, out);
         RITZ_REFUSE_IF(!text, RITZ_ERR_FORMAT, "a quote is not closed");
         out += strlen(line->word[line->count++]) + 1;
     }

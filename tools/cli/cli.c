@@ -17,7 +17,8 @@
 enum { MAX_OPTIONS = 32, EXIT_USAGE = 2, WORD = 32 };
 
 /* The tool's own options, then those that every tool has; ended by {0}. */
-static void gather(const cli_program *program, cli_run *run, cli_option *all)
+static void gather_options(const cli_program *program, cli_run *run,
+                           cli_option *all)
 {
     const cli_option common[] = {
         {.kind = CLI_KIND_TEXT,
@@ -226,8 +227,8 @@ static double read_number(const cli_program *program, const cli_option *o,
     return number;
 }
 
-static void take(cli_run *run, const cli_option *all, const cli_option *o,
-                 const char *text)
+static void take_option(cli_run *run, const cli_option *all,
+                        const cli_option *o, const char *text)
 {
     switch (o->kind) {
     case CLI_KIND_FLAG:
@@ -286,7 +287,7 @@ static int take_long(cli_run *run, const cli_option *all, char **words)
         cli_refuse(run->program, "no argument goes with '--%s'", all[k].name);
     if (all[k].argument && !value && !words[1])
         cli_refuse(run->program, "no argument to '--%s'", all[k].name);
-    take(run, all, &all[k], value ? value : words[1]);
+    take_option(run, all, &all[k], value ? value : words[1]);
     return all[k].argument && !value ? 2 : 1;
 }
 
@@ -301,12 +302,12 @@ static int take_short(cli_run *run, const cli_option *all, char **words)
         if (o->kind == CLI_KIND_END)
             cli_refuse(run->program, "unknown option '-%c'", *c);
         if (!o->argument) {
-            take(run, all, o, NULL);
+            take_option(run, all, o, NULL);
             continue;
         }
         if (!c[1] && !words[1])
             cli_refuse(run->program, "no argument to '-%c'", *c);
-        take(run, all, o, c[1] ? c + 1 : words[1]);
+        take_option(run, all, o, c[1] ? c + 1 : words[1]);
         return c[1] ? 1 : 2;
     }
     return 1;
@@ -357,7 +358,7 @@ static void check_operands(const cli_run *run)
 }
 
 /* One word so that a shell reads it back, as far as there is room. */
-static size_t quote(char *out, size_t room, const char *word)
+static size_t quote_word(char *out, size_t room, const char *word)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyz"
                                 "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -383,14 +384,14 @@ static void keep_command(cli_run *run, int argc, char **argv)
     for (int k = 0; k < argc && used + 1 < CLI_MAX_COMMAND; k++) {
         if (k > 0)
             run->command[used++] = ' ';
-        used += quote(run->command + used, CLI_MAX_COMMAND - used,
-                      k > 0 ? argv[k] : run->program->name);
+        used += quote_word(run->command + used, CLI_MAX_COMMAND - used,
+                           k > 0 ? argv[k] : run->program->name);
     }
     if (used + 1 >= CLI_MAX_COMMAND)
         memcpy(run->command + CLI_MAX_COMMAND - 4, "...", 4);
 }
 
-static double seconds(void)
+static double read_clock(void)
 {
     struct timespec now = {0};
 
@@ -431,12 +432,12 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
     if (!run->operand || !run->report || !run->line || !run->said)
         cli_refuse(program, "no memory");
     keep_command(run, argc, argv);
-    gather(program, run, all);
+    gather_options(program, run, all);
     take_all(run, all, argc, argv);
     check_operands(run);
     if (run->output ? !*run->output : !program->output_optional)
         cli_refuse(program, "no output, name it with -o");
     cli_watch_signals();
     cli_watch_progress(run->quiet);
-    run->began = seconds();
+    run->began = read_clock();
 }

@@ -36,7 +36,7 @@ typedef enum cli_kind {
     CLI_KIND_VERSION,
 } cli_kind;
 
-/* What an option that may be repeated was given, in order. */
+/* The arguments of an option that may be repeated, in order. */
 typedef struct cli_list {
     int count;
     const char *text[CLI_MAX_LIST];
@@ -165,7 +165,7 @@ const void *cli_choose(const cli_program *program, const char *what,
 /** The next word of "A,B,C", which is cut off; false if none is left. */
 bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
 
-/** Whether the command line gave an option that is a flag, a text or a list. */
+/** True if the command line gave this flag, text or list. */
 bool cli_given(const cli_option *option);
 
 /** "LOW,HIGH" of an option, or the end of the program. */
@@ -183,12 +183,13 @@ void cli_pair(const cli_program *program, const char *option, const char *text,
  */
 ritz_status cli_input(cli_run *run, const char *path);
 
-/** The same of a file that its reader sums up, by cli_input_sum. */
+/** Remember a file whose reader knows its SHA-256 and gives it to
+ * cli_input_sum. */
 ritz_status cli_input_unread(cli_run *run, const char *path);
 ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest);
 
 /**
- * Whether a file can be made at @p path, before the work that it is to hold:
+ * Check that a file can be made at @p path, before the work that it is to hold:
  * one is, beside it, and removed. cli_input asks it of -o by itself.
  */
 ritz_status cli_can_write(const char *path);

@@ -118,7 +118,7 @@ static void set_missing(json_t *object, const char *key, json_t *value)
         json_decref(value);
 }
 
-/* What every line says of the run that it is of. */
+/* Tool, version, command and inputs, which every recorded line has. */
 static void sign_line(const cli_run *run, json_t *line)
 {
     json_t *inputs = json_array();
@@ -131,7 +131,7 @@ static void sign_line(const cli_run *run, json_t *line)
     json_object_set_new(line, "inputs", inputs);
 }
 
-/* What there is to say of this run, complete but for what it cost. */
+/* The line of this run, complete but for its time and memory. */
 static void fill_line(cli_run *run, ritz_status status)
 {
     json_t *line = run->line;
@@ -207,7 +207,7 @@ ritz_status cli_record_line(cli_run *run, json_t *line)
     return status;
 }
 
-/* Of two failures the first is told, and the second only if there is none. */
+/* A failure to record is told only if the work itself did not fail. */
 static ritz_status keep_record(cli_run *run, ritz_status outcome)
 {
     char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());

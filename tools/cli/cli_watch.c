@@ -19,7 +19,7 @@ static const char erase[] = "\r\033[K";
 
 /* The signal is raised again with its own effect, so that whoever started the
  * program sees what ended it; held back here, it comes on return. */
-static void end(int number)
+static void end_program(int number)
 {
     ritz_draft_discard_all();
     if (shown && write(STDERR_FILENO, erase, sizeof erase - 1) < 0)
@@ -32,7 +32,7 @@ void cli_watch_signals(void)
 {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     struct sigaction before;
-    struct sigaction action = {.sa_handler = end};
+    struct sigaction action = {.sa_handler = end_program};
 
     sigemptyset(&action.sa_mask);
     signal(SIGXFSZ, SIG_IGN); /* a write past a limit fails, and is reported */
@@ -43,7 +43,7 @@ void cli_watch_signals(void)
 }
 
 /* At most ten times a second, and not before a tenth has passed. */
-static void show(const char *what, int64_t done, int64_t total)
+static void show_progress(const char *what, int64_t done, int64_t total)
 {
     char line[80];
     struct timespec now = {0};
@@ -72,7 +72,7 @@ void cli_watch_progress(bool quiet)
     if (quiet || !isatty(STDERR_FILENO))
         return;
     clock_gettime(CLOCK_MONOTONIC, &last);
-    ritz_monitor_observe(show);
+    ritz_monitor_observe(show_progress);
 }
 
 void cli_watch_clear(void)

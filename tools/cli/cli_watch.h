@@ -1,4 +1,4 @@
-/* What may happen meanwhile: signals, and progress of long work. */
+/* Signals and progress while a tool works. */
 #ifndef RITZ_TOOLS_CLI_CLI_WATCH_H
 #define RITZ_TOOLS_CLI_CLI_WATCH_H
 

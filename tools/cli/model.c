@@ -233,7 +233,7 @@ static ritz_status audit_states(const model *m, ritz_audit *out)
     return ritz_probe_audit_states(&m->states, out);
 }
 
-/* What can be asked of every kind; empty where nothing can. */
+/* Kinds of container, and their answers to what tools ask; NULL: none. */
 static const struct kind {
     const char *name; /* in files */
     const char *noun; /* in sentences */
@@ -554,7 +554,7 @@ ritz_status model_hertz_at(const ritz_configuration *at, double **out)
     return RITZ_OK;
 }
 
-static const char *verdict(const ritz_measure *m, const char *known)
+static const char *name_verdict(const ritz_measure *m, const char *known)
 {
     if (isnan(m->limit))
         return known;
@@ -569,7 +569,7 @@ void model_set_measures(cli_run *run, const char *key,
         const ritz_measure *m = &measures->item[k];
 
         sink_set(run, "name,value,limit,verdict,where", "%s %g %g %s %s",
-                 m->name, m->value, m->limit, verdict(m, known), m->where);
+                 m->name, m->value, m->limit, name_verdict(m, known), m->where);
     }
     sink_end(run);
 }
@@ -590,7 +590,7 @@ void model_say_measures(cli_run *run, const char *key,
 
         sink_say(run, "name,value,limit,verdict,where",
                  "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
-                 m->limit, verdict(m, known), m->where);
+                 m->limit, name_verdict(m, known), m->where);
     }
     sink_end(run);
 }

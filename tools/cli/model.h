@@ -1,4 +1,4 @@
-/* What tools share: containers of any kind, and how they are reported. */
+/* Containers of any kind: reading, questions that tools ask of any, reports. */
 #ifndef RITZ_TOOLS_CLI_MODEL_H
 #define RITZ_TOOLS_CLI_MODEL_H
 
@@ -46,7 +46,7 @@ typedef struct model {
     ritz_configuration *at; /* of a system, once model_at has chosen */
 } model;
 
-/* What is asked of a model before anything is made of it. */
+/* Options that choose or change a model before it is used. */
 typedef struct model_wish {
     const char *at;      /* configuration of a system; NULL: the only one */
     const char *damping; /* NULL: the model's own */
@@ -89,7 +89,7 @@ ritz_status model_settle(model *model, const char *path,
                          const model_wish *asked, ritz_damping *damping);
 
 /*
- * What tools ask of a component, reduced component, system with its
+ * Questions that tools ask of a component, reduced component, system with its
  * configuration chosen, or state space, whichever it is.
  */
 
@@ -125,8 +125,8 @@ ritz_status model_zeros(const model *model, const ritz_damping *damping,
                         const int64_t at[2], int64_t *count,
                         double _Complex **out);
 
-/* Of a component with more dofs no first-order model is made just to be asked
-   for its poles or zeros. */
+/* A component with more dofs is not made a first-order model just for its poles
+   or zeros. */
 enum { MODEL_MOST_DOFS = 400 };
 
 /**
@@ -170,7 +170,7 @@ void model_say_measures(cli_run *run, const char *key,
 void model_set_measures(cli_run *run, const char *key,
                         const ritz_measures *measures, const char *known);
 
-/** What a simulator pays, as the object `cost`. */
+/** Steps and time of a simulator, as the object `cost`. */
 void model_set_cost(cli_run *run, const ritz_cost *cost);
 
 enum { MODEL_PATH = 4096 };

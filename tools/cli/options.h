@@ -45,7 +45,7 @@ typedef struct choice_words {
  */
 void words_add(choice_words *all, int except, cli_option *options);
 
-/** What was given, or the end of the program. */
+/** Take the words that were given into a choice, or end the program. */
 void words_take(const cli_program *program, const choice_words *all,
                 ritz_choice *choice);
 

@@ -41,7 +41,7 @@ static int read_count(const char **at, arguments *args)
     return count;
 }
 
-/* What begins behind a '%'; @p at is moved behind it. */
+/* The conversion that begins behind a '%'; @p at is moved behind it. */
 static conversion read_conversion(const char **at, arguments *args)
 {
     conversion c = {.precision = -1};
@@ -147,7 +147,7 @@ static void tell_one(telling *t, conversion c, arguments *args)
     }
 }
 
-static void tell(telling *t, const char *format, arguments *args)
+static void tell_values(telling *t, const char *format, arguments *args)
 {
     while (*format) {
         size_t plain = strcspn(format, "%");
@@ -203,7 +203,7 @@ static void tell_line(const cli_run *run, const char *title, const char *keys,
 
     if (title)
         fprintf(run->said, "  %-14s ", title);
-    tell(&t, format, args);
+    tell_values(&t, format, args);
     end_line(run, from);
 }
 
@@ -241,7 +241,7 @@ void sink_set(cli_run *run, const char *keys, const char *format, ...)
     telling t = {NULL, keys, find_target(run, keys)};
 
     va_start(args.list, format);
-    tell(&t, format, &args);
+    tell_values(&t, format, &args);
     va_end(args.list);
 }
 
@@ -251,7 +251,7 @@ void sink_add(cli_run *run, const char *format, ...)
     telling t = {NULL, NULL, sink_here(run)};
 
     va_start(args.list, format);
-    tell(&t, format, &args);
+    tell_values(&t, format, &args);
     va_end(args.list);
 }
 

@@ -1,6 +1,6 @@
 /*
- * What a tool says, told once: each call gives a line of text for people and
- * the values in it for --json. Values become keys of the object that is open,
+ * Reports of tools: each call gives a line of text for people and the values in
+ * it for --json. Values become keys of the object that is open,
  * which at first is the report of the run itself; while a list is open, the
  * values of one call are its next item.
  *
@@ -25,7 +25,7 @@
 [[gnu::format(printf, 3, 4)]] void sink_say(cli_run *run, const char *keys,
                                             const char *format, ...);
 
-/** The same behind a title, in the column that all titles share. */
+/** A line behind a title, in the column that all titles share. */
 [[gnu::format(printf, 4, 5)]] void sink_field(cli_run *run, const char *title,
                                               const char *keys,
                                               const char *format, ...);

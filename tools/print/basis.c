@@ -220,7 +220,8 @@ static ritz_status project_model(const model *full, const ritz_basis *basis,
     return RITZ_OK;
 }
 
-/* Of states it is known whether they are stable and, of some, a bound. */
+/* A reduced state space has its stability and, of some methods, an error bound
+   among its estimates. */
 static ritz_status reduce_to_states(cli_run *run, const model *full,
                                     const ritz_basis *basis)
 {
@@ -249,7 +250,7 @@ done:
     return status;
 }
 
-/* Whether a basis was made for as many dofs, or states, as there are. */
+/* Refuse a basis that was made for another number of dofs or states. */
 static ritz_status check_rows(const cli_run *run, const model *full,
                               const ritz_basis *basis)
 {

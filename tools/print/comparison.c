@@ -37,7 +37,7 @@ static void say_orders(cli_run *run, const ritz_stage *first,
     cli_record(run, "compare", sum[2]);
 }
 
-/* What the composite set is made from. */
+/* How vectors of the composite set were chosen. */
 static void describe_choice(const ritz_scene *scene, char out[160])
 {
     const size_t size = 160;

@@ -8,7 +8,7 @@
 
 enum { COMPARISON_MOST_TOLERANCES = 64 };
 
-/* What is asked beside the scene; NULL: not said. */
+/* Options; NULL: not given. */
 typedef struct comparison_wish {
     const char *prefix, *report, *tracks, *extraneous, *tolerance_table;
     int64_t num_tolerances;

@@ -1,4 +1,4 @@
-/* What is in an object: ritz-info, and the tools that write one. */
+/* Contents of objects and files: ritz-info, and the tools that write them. */
 #ifndef RITZ_TOOLS_PRINT_DESCRIBE_H
 #define RITZ_TOOLS_PRINT_DESCRIBE_H
 

@@ -45,7 +45,7 @@ static void describe_other(cli_run *run, const ritz_listed *one)
             one->other);
 }
 
-/* What the directory says of a matrix; sizes are not in every format's. */
+/* A matrix by its entry in the file's directory; some formats give no sizes. */
 static void describe_listed(cli_run *run, const ritz_listed *one)
 {
     char size[48] = "-";

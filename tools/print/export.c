@@ -12,7 +12,7 @@
 enum { NUM_MATRICES = 4 };
 enum { SUM_SIZE = 2 * RITZ_WHERE_SIZE + RITZ_NAME_SIZE + 8 };
 
-/* What a file of few digits holds is what its reader integrates. */
+/* A reader of the file integrates the rounded matrices, so these are checked. */
 static void round_matrix(int64_t digits, ritz_dense *A)
 {
     char text[40];
@@ -206,8 +206,8 @@ done:
     return status;
 }
 
-/* What was imported is no reduction and has no errors; of some reductions
-   nothing but their stability is known. */
+/* An imported state space is no reduction and has no errors; some reductions
+   have no estimate but that of stability. */
 static ritz_status say_state_errors(cli_run *run,
                                     const ritz_state_space *states, bool force)
 {
@@ -294,7 +294,7 @@ done:
     return status;
 }
 
-/* What an exporter takes: kinds of model, summed. */
+/* Kinds of model that an exporter takes, summed. */
 static int kinds_of(const ritz_exporter *exporter)
 {
     if (strcmp(exporter->kind, "response") == 0)

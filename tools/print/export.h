@@ -1,4 +1,4 @@
-/* What ritz-export asks of a model before it hands it on, and writes of it. */
+/* Checks of a model before ritz-export writes it for others, and the writing. */
 #ifndef RITZ_TOOLS_PRINT_EXPORT_H
 #define RITZ_TOOLS_PRINT_EXPORT_H
 

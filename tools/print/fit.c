@@ -125,7 +125,7 @@ typedef struct fit_run {
     fit_files files;                   /* that an answer makes */
 } fit_run;
 
-/* What a candidate was found to be. */
+/* Verdict on a candidate at the end of the search. */
 typedef struct fit_mark {
     bool chosen, runner_up;
     const char *why; /* NULL: none */
@@ -271,7 +271,7 @@ static const ritz_fit_candidate *find_best(const ritz_fit *fit, int64_t m)
     return find_first(fit, m);
 }
 
-/* The same as an item, if there is a candidate. */
+/* The line, and an item of the list if there is a candidate. */
 static void say_item(cli_run *run, const ritz_fit_candidate *c,
                      const char *name)
 {
@@ -345,7 +345,7 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     sink_end(run);
 }
 
-/* What was searched, and the answer. */
+/* The search: tolerance, table of methods, answer, reason. */
 static void say_fit(cli_run *run, const ritz_fitter *fitter,
                     const ritz_fit *fit)
 {
@@ -394,7 +394,7 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
     sink_end(run);
 }
 
-/* What an answer comes to if its bodies are cut to their first columns. */
+/* Orders and errors of the answer with its bodies cut to first columns. */
 static void set_step(cli_run *run, const ritz_fitter *fitter,
                      const ritz_fit_row *row)
 {
@@ -549,8 +549,8 @@ done:
     return status;
 }
 
-/* What inputs and outputs see was held to the tolerance, what other bodies feel
-   at a port was not, unless the method keeps ports. */
+/* The tolerance was held from inputs to outputs. Forces and motions at ports were
+   not compared; only methods that keep ports are right there. */
 static void warn_of_ports(cli_run *run, const ritz_component *component,
                           const ritz_fit_candidate *chosen)
 {

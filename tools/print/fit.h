@@ -8,7 +8,7 @@
 
 enum { FIT_MOST_METHODS = 64 };
 
-/* What the command line asks; NULL: it does not say. */
+/* Options; NULL: not given. */
 typedef struct fit_wish {
     ritz_fit_request request;
     const char *tolerance, *band, *methods, *damping, *prefix, *report;

@@ -22,7 +22,7 @@ done:
     return status;
 }
 
-/* The same of "FILE@LOAD". */
+/* Remember the file of "FILE@LOAD". */
 static ritz_status take_load(cli_run *run, const char *spec)
 {
     ritz_status status = RITZ_OK;
@@ -102,7 +102,7 @@ static void list_constraints(cli_run *run, const ritz_import_report *report,
         sink_append(text, size, ", ...");
 }
 
-/* What depends on what, by elements of the deck and by grids of ports. */
+/* Dependent dofs: of elements of the deck, and of grids of ports. */
 static void say_constraints(cli_run *run, const ritz_import_report *report)
 {
     char text[512];

@@ -1,4 +1,4 @@
-/* What ritz-import makes of files, and says of them. */
+/* Components and state spaces from files, and their report: ritz-import. */
 #ifndef RITZ_TOOLS_PRINT_IMPORT_H
 #define RITZ_TOOLS_PRINT_IMPORT_H
 

@@ -12,9 +12,11 @@
  * modes that do not couple costs several percent. */
 static const double coupled_limit = 0.1;
 
-/* Of the largest: a value that is rounding differs from another by anything. */
+/* Values below this part of the largest are rounding: their relative difference
+   means nothing. */
 static const double invisible = 1e-12;
-/* The same of those whose difference is worth a sentence. */
+/* Only values above this part of the largest count in the sentence about the
+   largest difference. */
 static const double significant = 1e-6;
 
 enum { MOST_PARTS = 6, CELL = 48 };
@@ -60,7 +62,7 @@ static void name_cluster(const ritz_ranking *r, const int64_t *track,
                  number_of(track, last));
 }
 
-/* What shares are shares of. */
+/* The total of which shares are given. */
 static double sum_of(const ritz_ranking *r)
 {
     double sum = 0.0;
@@ -166,7 +168,7 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
             differs);
 }
 
-/* What all modes of the model have of each part. */
+/* The sum over all modes of each part, in percent of the whole. */
 static void say_sums(const cli_run *run, const ritz_ranking *r)
 {
     char parts[MOST_PARTS * CELL] = "";
@@ -315,7 +317,7 @@ void rankings_describe(cli_run *run, const ritz_rankings *all)
     }
 }
 
-/* Of one model every ranking has the same to say. */
+/* Every ranking of one model would give the same warning: it is given once. */
 static bool was_warned(const cli_run *run, const char *text)
 {
     for (size_t k = 0; k < json_array_size(run->warnings); k++) {

@@ -43,13 +43,13 @@ void rankings_say_values(const cli_run *run, const ritz_ranking *ranking,
 void rankings_set(cli_run *run, const ritz_ranking *ranking,
                   const int64_t *track);
 
-/** What is in a file of rankings. */
+/** Contents of a file of rankings. */
 void rankings_describe(cli_run *run, const ritz_rankings *all);
 
 /** Say and report that modes couple, of all of a group the worst. */
 void rankings_warn(cli_run *run, const ranked *group);
 
-/** What it was ranked with: "modal 0.002", "of the matrices" or "none". */
+/** Damping of a ranking: "modal 0.002", "of the matrices" or "none". */
 const char *rankings_damping(const ritz_ranking *ranking);
 
 /**

@@ -37,7 +37,7 @@ static void append_word(const char *word, char *name, size_t size)
         sink_append(name, size, "%s%.60s", *name ? " " : "", word);
 }
 
-/* Whether what lies `offset` bytes into a ranking differs among them. */
+/* True if the text `offset` bytes into a ranking differs among them. */
 static bool varies(const contest *c, size_t offset)
 {
     for (int64_t k = 1; k < c->count; k++)
@@ -287,7 +287,7 @@ ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top)
     return RITZ_OK;
 }
 
-/* Whether all rankings are made of the same parts, which then are columns. */
+/* True if all rankings are made of the same parts, which then are columns. */
 static bool share_parts(const contest *all)
 {
     const ritz_ranking *first = all->ranking[0];

@@ -147,7 +147,7 @@ void rank_take(const cli_run *run, rank_wish *asked)
     take_choice(program, "among_hz", asked->among, &asked->choice);
 }
 
-/* What one model is ranked with. */
+/* A model, and the settings of the rankings at work. */
 typedef struct subject {
     cli_run *run;
     const rank_wish *asked;
@@ -184,7 +184,7 @@ done:
 }
 
 /* At one configuration: at several, each would want weights of its own. */
-static ritz_status reweigh(const subject *s)
+static ritz_status reweigh_outputs(const subject *s)
 {
     ritz_status status = RITZ_OK;
     const ritz_system *system = &s->m->system;
@@ -314,7 +314,7 @@ static ritz_status make_groups(subject *s, rank_result *out)
         }
     }
     if (asked->keep > 0)
-        RITZ_CHECK_IN(s->run->operand[0], reweigh(s));
+        RITZ_CHECK_IN(s->run->operand[0], reweigh_outputs(s));
     return RITZ_OK;
 }
 
@@ -516,7 +516,7 @@ void rank_result_free(rank_result *result)
     *result = (rank_result){0};
 }
 
-/* What was ranked, as files, a comparison and a chart. */
+/* Write rankings and their table, compare them, draw their chart. */
 static ritz_status report_rankings(cli_run *run, const rank_wish *asked,
                                    const rank_result *result)
 {

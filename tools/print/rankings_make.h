@@ -1,4 +1,4 @@
-/* What ritz-rank is asked, and what it makes of it. */
+/* Rankings of a model, or of files: ritz-rank. */
 #ifndef RITZ_TOOLS_PRINT_RANKINGS_MAKE_H
 #define RITZ_TOOLS_PRINT_RANKINGS_MAKE_H
 
@@ -38,8 +38,8 @@ void rank_take(const cli_run *run, rank_wish *asked);
 ritz_status rank_run(cli_run *run, const rank_wish *asked);
 
 /**
- * What can be compared: of several groups the whole of each, of one its
- * configurations in a row; with @p all every ranking there is.
+ * Rankings to be compared: of several groups the whole of each, of a single one
+ * its configurations in a row; with @p all every ranking there is.
  */
 ritz_status rank_contest(const rank_result *result, bool all, contest *out);
 void rank_contest_free(contest *all);

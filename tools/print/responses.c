@@ -352,10 +352,11 @@ static void say_peaks(cli_run *run, const ritz_response *r)
 }
 
 /* The model, or the loop that is closed around it, at the points. */
-static ritz_status respond(cli_run *run, const model *m,
-                           const responses_wish *asked,
-                           const ritz_damping *damping, const ritz_grid *grid,
-                           loop_run *loop, ritz_response *out)
+static ritz_status find_response(cli_run *run, const model *m,
+                                 const responses_wish *asked,
+                                 const ritz_damping *damping,
+                                 const ritz_grid *grid, loop_run *loop,
+                                 ritz_response *out)
 {
     ritz_status status = RITZ_OK;
     const double range[2] = {grid->from_hz, grid->to_hz};
@@ -404,8 +405,8 @@ ritz_status responses_run(cli_run *run, const responses_wish *asked)
     RITZ_FAIL_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
                  RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
                  path, ends.num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_TRY_IN(path,
-                respond(run, &m, asked, &damping, &grid, &loop, &response));
+    RITZ_TRY_IN(
+        path, find_response(run, &m, asked, &damping, &grid, &loop, &response));
     stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_response(run->output, &response, &stamp));
 done:

@@ -35,7 +35,7 @@ void simulation_take(const cli_run *run, simulation_wish *asked)
         asked->accuracy = 1e-3;
 }
 
-/* What is simulated, and what drives it. */
+/* The model that is simulated, with its inputs and initial values. */
 typedef struct drive {
     ritz_io io; /* borrowed */
     ritz_simulated subject;

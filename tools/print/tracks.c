@@ -85,7 +85,7 @@ static const struct kind {
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
 
-/* Of two at most; one that is not there is below 0. */
+/* An event has one or two modes; a mode that is absent is below 0. */
 static int64_t count_modes(const int64_t mode[2])
 {
     return (mode[0] >= 0) + (mode[1] >= 0);
