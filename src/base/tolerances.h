@@ -8,6 +8,8 @@
 #define RITZ_BASE_TOLERANCES_H
 
 #define RITZ_PI 3.14159265358979323846
+/* (sqrt(5) - 1) / 2: a bracket that is divided so keeps one of its points. */
+#define RITZ_GOLDEN 0.61803398874989485
 
 /* Subspaces and ranks */
 
@@ -293,6 +295,17 @@
 /* Place within a gap of eigenvalues where the modes below are counted,
    if its middle is hit. */
 #define RITZ_COUNT_PLACE 0.3
+/* Modes up to a frequency are counted this far above its lambda, relative:
+   the next is tried where a mode lies there. */
+#define RITZ_COUNT_ABOVE                                                       \
+    {                                                                          \
+        1e-8, 1e-7, 3e-7                                                       \
+    }
+/* A mode this close above the end of a range, relative in lambda, is in it. */
+#define RITZ_SPAN_ROUNDING 1e-8
+/* Part of the first shift that is taken at least where a low frequency asks
+   for less. */
+#define RITZ_LEAST_SHIFT 1e-6
 /* First shift below 0, of the median of K_jj / M_jj. */
 #define RITZ_FIRST_SHIFT 1e-5
 /* A shift this many times the first flexible eigenvalue blurs it: another is
@@ -458,6 +471,13 @@
 /* A zero that rounding may move by this part of its distance from 0 and from
    all poles is one at infinity. */
 #define RITZ_ZERO_DOUBT 0.1
+/* The same against the largest entry of all: rounding of its projection. */
+#define RITZ_DIAGONAL_ROUNDING 1e-15
+/* K that differs from a multiple of M by less than this, squared and relative,
+   is one: b of a M + b K is then 0. */
+#define RITZ_PROPORTIONAL_RANK 1e-12
+/* Steps of a scan by which its end may lie beyond the last one. */
+#define RITZ_RANGE_STEPS 1e-9
 /* A coupled modal system with a worse reciprocal condition is on a pole. */
 #define RITZ_COUPLED_RCOND 1e-16
 
@@ -524,6 +544,12 @@
 /* Error of a state per step that integrators let pass unless they are told
    otherwise: what grows by more than its inverse is lost in it. */
 #define RITZ_INTEGRATOR_ERROR 1e-3
+/* Springs, masses and dampers that are attached to an interface, times its
+   own: three decades to either side. */
+#define RITZ_ATTACHMENTS                                                       \
+    {                                                                          \
+        1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3                                   \
+    }
 /* A zero beyond this times the largest pole is met by stiffer attachments
    alone. */
 #define RITZ_ZEROS_REACH 1e3
@@ -583,6 +609,8 @@
 #define RITZ_MOST_STEPS 1e10
 /* A step that ends within this part of itself of the end, ends there. */
 #define RITZ_STEP_ROUNDING 1e-6
+/* Times of two simulations closer than this, of the end, are one. */
+#define RITZ_SAME_TIME 1e-9
 /* Inputs that do nothing are scaled by this, which is not 0. */
 #define RITZ_LEAST_SCALE 1e-300
 

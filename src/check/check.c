@@ -1,19 +1,15 @@
-/* All checks of a model, one after the other. */
+/* Shared by all checks: saying what was found, and naming where. */
 #include "check/check.h"
 
 #include "base/alloc.h"
-#include "base/tolerances.h"
-#include "linear/general.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    MOST_CHECKS = 32, /* the tables in audit.h and probe.h have fewer */
-    SHOWN = 4,        /* dofs that a line names before it says "..." */
+    SHOWN = 4, /* dofs that a line names before it says "..." */
 };
 
 void ritz_checker_say(ritz_checker *it, const char *name, double value,
@@ -23,7 +19,7 @@ void ritz_checker_say(ritz_checker *it, const char *name, double value,
     ritz_check *check = NULL;
     va_list values;
 
-    if (it->audit.count >= MOST_CHECKS)
+    if (it->audit.count >= RITZ_MOST_CHECKS)
         return;
     check = &it->audit.check[it->audit.count++];
     *check = (ritz_check){.value = value, .limit = limit, .verdict = verdict};
@@ -80,178 +76,6 @@ ritz_status ritz_check_eigen(const ritz_dense *A, ritz_pairs *out)
     RITZ_TRY(ritz_eigen_dense(A, &unit, out));
 done:
     ritz_dense_free(&unit);
-    return status;
-}
-
-/* Features of the model that checks may need. */
-static unsigned find_features(const ritz_checker *it)
-{
-    const ritz_component *c = it->component;
-    unsigned has = 0;
-
-    if (c) {
-        if (!it->rigid)
-            has |= RITZ_NEEDS_STIFFNESS;
-        if (c->D.colptr)
-            has |= RITZ_NEEDS_DAMPING;
-        if (c->num_ports > 0)
-            has |= RITZ_NEEDS_PORTS;
-    } else if (it->reduced) {
-        if (it->model.D.val)
-            has |= RITZ_NEEDS_DAMPING;
-        if (it->reduced->K4.val)
-            has |= RITZ_NEEDS_STRUCTURAL;
-    }
-    return has;
-}
-
-static ritz_status run_checks(ritz_checker *it, unsigned of, ritz_audit *out)
-{
-    unsigned has = find_features(it);
-
-    it->usable = true;
-    RITZ_CHECK_NEW(it->audit.check, MOST_CHECKS);
-    for (const ritz_check_row *row = ritz_checks; row->run; row++)
-        if (it->usable && (row->of & of) && (row->needs & has) == row->needs)
-            RITZ_CHECK(row->run(it));
-    *out = it->audit;
-    it->audit = (ritz_audit){0};
-    return RITZ_OK;
-}
-
-static void free_checker(ritz_checker *it)
-{
-    ritz_audit_free(&it->audit);
-    free(it->part);
-    free(it->mu);
-    ritz_dense_free(&it->R);
-    ritz_dense_free(&it->Phi);
-    ritz_structure_free(&it->model);
-    ritz_modal_model_free(&it->modes);
-    ritz_dense_free(&it->L);
-    free(it->row);
-    ritz_collocated_free(&it->pairs);
-}
-
-ritz_status ritz_audit_component(const ritz_component *component,
-                                 ritz_audit *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_checker it = {.component = component, .softest = nan("")};
-
-    RITZ_FAIL_IF(component->num_dofs == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no dofs");
-    it.rigid =
-        !component->K.colptr || component->K.colptr[component->K.ncol] == 0;
-    RITZ_TRY(run_checks(&it, RITZ_OF_COMPONENT, out));
-done:
-    free_checker(&it);
-    return status;
-}
-
-/* Column j of @p Lt is a row of the interface, if it moves. */
-static bool keep_column(ritz_dense *Lt, int64_t j, double largest)
-{
-    double most = 0.0;
-
-    for (int64_t i = 0; i < Lt->nrow; i++)
-        most = fmax(most, fabs(ritz_dense_col(Lt, j)[i]));
-    return most > RITZ_ROW_UNMOVED * largest;
-}
-
-/* Rows of all ports as columns of Lt, and what they are called. */
-static int64_t take_ports(const ritz_reduced *reduced, ritz_dense *Lt,
-                          char (*row)[RITZ_NAME_SIZE])
-{
-    char dof[RITZ_DOF_NAME_SIZE];
-    int64_t at = 0;
-
-    for (int64_t k = 0; k < reduced->num_ports; k++) {
-        const ritz_port_map *port = &reduced->port[k];
-        double largest = ritz_dense_max(&port->map);
-
-        for (int64_t i = 0; i < port->count; i++) {
-            for (int64_t j = 0; j < Lt->nrow; j++)
-                ritz_dense_col(Lt, at)[j] = ritz_dense_col(&port->map, j)[i];
-            snprintf(row[at], RITZ_NAME_SIZE, "%.20s, %s", port->name,
-                     ritz_dof_name(port->dof[i], dof));
-            at += keep_column(Lt, at, largest);
-        }
-    }
-    return at;
-}
-
-static int64_t take_inputs(const ritz_io *io, ritz_dense *Lt,
-                           char (*row)[RITZ_NAME_SIZE])
-{
-    double largest = ritz_dense_max(&io->B);
-    int64_t at = 0;
-
-    for (int64_t j = 0; j < io->num_inputs; j++) {
-        memcpy(ritz_dense_col(Lt, at), ritz_dense_col(&io->B, j),
-               (size_t)Lt->nrow * sizeof *Lt->val);
-        snprintf(row[at], RITZ_NAME_SIZE, "%s", io->input[j]);
-        at += keep_column(Lt, at, largest);
-    }
-    return at;
-}
-
-/*
- * Rows of the interface: those of all ports or, without ports, what inputs act
- * on; rows that move nothing are left out.
- */
-static ritz_status take_interface(ritz_checker *it)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_reduced *reduced = it->reduced;
-    int64_t most = reduced->io.num_inputs + 1;
-    ritz_dense Lt = {0};
-
-    for (int64_t k = 0; k < reduced->num_ports; k++)
-        most += reduced->port[k].count;
-    RITZ_TRY(ritz_dense_new(reduced->K.nrow, most, &Lt));
-    RITZ_NEW(it->row, most);
-    if (reduced->num_ports > 0)
-        Lt.ncol = take_ports(reduced, &Lt, it->row);
-    else
-        Lt.ncol = take_inputs(&reduced->io, &Lt, it->row);
-    RITZ_TRY(ritz_general_transpose(&Lt, &it->L));
-done:
-    ritz_dense_free(&Lt);
-    return status;
-}
-
-/* Structural damping, of harmonic motion alone, has a check of its own. */
-static ritz_status take_reduced(ritz_checker *it)
-{
-    RITZ_CHECK(ritz_damping_parse(it->reduced->damping, &it->damping));
-    RITZ_CHECK(ritz_structure_of_reduced(it->reduced, &it->model));
-    return take_interface(it);
-}
-
-ritz_status ritz_probe_audit_reduced(const ritz_reduced *reduced,
-                                     ritz_audit *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_checker it = {.reduced = reduced, .definite = true};
-
-    RITZ_TRY(take_reduced(&it));
-    RITZ_TRY(run_checks(&it, RITZ_OF_REDUCED, out));
-done:
-    free_checker(&it);
-    return status;
-}
-
-ritz_status ritz_probe_audit_states(const ritz_state_space *model,
-                                    ritz_audit *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_checker it = {.space = model};
-
-    RITZ_TRY(ritz_collocated_of_space(model, &it.pairs));
-    RITZ_TRY(run_checks(&it, RITZ_OF_STATES, out));
-done:
-    free_checker(&it);
     return status;
 }
 

@@ -27,12 +27,12 @@ enum {
 };
 
 /* Forces K r of rigid motions, and what an error of size 1 leaves of them. */
-typedef struct ritz_forces {
+typedef struct ritz_rigid_forces {
     double largest;
     int64_t row; /* where; -1: there is none */
     double bound;
     double fine; /* relative error that is no fault */
-} ritz_forces;
+} ritz_rigid_forces;
 
 /*
  * A square model from forces to the velocities of what they act on,
@@ -64,10 +64,10 @@ typedef struct ritz_checker {
     const ritz_state_space *space;
 
     /* Filled by checks of a component. */
-    double digits;           /* of K, at most 17 */
-    int64_t *part;           /* n, connected part of each dof, from 0 */
-    int64_t largest;         /* the part with most dofs */
-    ritz_forces shift, turn; /* of translations; of rotations */
+    double digits;                 /* of K, at most 17 */
+    int64_t *part;                 /* n, connected part of each dof, from 0 */
+    int64_t largest;               /* the part with most dofs */
+    ritz_rigid_forces shift, turn; /* of translations; of rotations */
     double centre[3];
     double size;      /* largest distance of a grid from the centre, or 1 */
     ritz_dense R;     /* n x 3 or 6, rotations per unit of size */
@@ -94,6 +94,9 @@ typedef struct ritz_checker {
     bool definite; /* of a reduced one, M, K and D are: nothing can grow */
     bool stable;   /* no pole is right of the axis */
 } ritz_checker;
+
+/* Room for what all checks say: the tables in audit.h and probe.h have fewer. */
+enum { RITZ_MOST_CHECKS = 32 };
 
 /* A row of the list: of which models, with what, the function. */
 typedef struct ritz_check_row {

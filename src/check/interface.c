@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double times_own[] = {1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3};
+static const double times_own[] = RITZ_ATTACHMENTS;
 enum { TIMES = sizeof times_own / sizeof *times_own };
 
 /* Middle of what |y_i / u_i| is over the grid; k_i is one over it. */
@@ -249,14 +249,14 @@ done:
  */
 
 /* A model as an assembly makes it of this one, and the worst of several. */
-typedef struct trial {
+typedef struct attachment_trial {
     ritz_dense K, M, D;
     double growth, tolerance; /* the largest so far */
     bool fails;
     char where[RITZ_WHERE_SIZE], why[2 * RITZ_NAME_SIZE];
-} trial;
+} attachment_trial;
 
-static void trial_free(trial *t)
+static void trial_free(attachment_trial *t)
 {
     ritz_dense_free(&t->K);
     ritz_dense_free(&t->M);
@@ -290,7 +290,7 @@ done:
 }
 
 static ritz_status copy_model(const ritz_checker *it, const ritz_dense *D,
-                              trial *t)
+                              attachment_trial *t)
 {
     trial_free(t);
     RITZ_CHECK(ritz_dense_copy(&it->model.K, &t->K));
@@ -299,7 +299,7 @@ static ritz_status copy_model(const ritz_checker *it, const ritz_dense *D,
 }
 
 /* Its poles; the largest growth of all trials is remembered with its case. */
-static ritz_status probe_trial(trial *t, const char *where)
+static ritz_status probe_trial(attachment_trial *t, const char *where)
 {
     ritz_probe probe = {0};
     double growth = 0.0;
@@ -364,7 +364,7 @@ done:
 /* Springs and masses, at one row (or at all: -1). */
 static ritz_status try_attached(const ritz_checker *it, const ritz_dense *D,
                                 int64_t only, const double *own[static 2],
-                                trial *t)
+                                attachment_trial *t)
 {
     static const char *const what[] = {"springs", "masses"};
     char where[RITZ_WHERE_SIZE];
@@ -395,8 +395,8 @@ static bool is_proven(ritz_checker *it, const char *name)
     return true;
 }
 
-static void say_trial(ritz_checker *it, const char *name, const trial *t,
-                      const char *what)
+static void say_trial(ritz_checker *it, const char *name,
+                      const attachment_trial *t, const char *what)
 {
     ritz_checker_say(it, name, t->growth, t->tolerance,
                      t->fails ? RITZ_FAIL : RITZ_PASS, t->where, "%s: %s", what,
@@ -409,7 +409,7 @@ static ritz_status locked_reduced(ritz_checker *it)
     ritz_dense D = {0}, scaled = {0}, U = {0}, V = {0}, N = {0};
     double *sigma = NULL;
     int64_t rank = 0;
-    trial t = {.growth = -HUGE_VAL};
+    attachment_trial t = {.growth = -HUGE_VAL};
 
     RITZ_TRY(all_damping(it, &D));
     RITZ_TRY(ritz_dense_copy(&it->L, &scaled));
@@ -450,7 +450,7 @@ static ritz_status sprung_reduced(ritz_checker *it)
     double *k = NULL, *m = NULL;
     int64_t p = it->L.nrow;
     int64_t apart = p > 1 && it->model.K.nrow <= SMALL ? p : 0;
-    trial t = {.growth = -HUGE_VAL};
+    attachment_trial t = {.growth = -HUGE_VAL};
     const double *own[2];
 
     RITZ_NEW(k, p);

@@ -172,7 +172,7 @@ done:
  */
 
 static ritz_status find_forces(const ritz_checker *it, int64_t first,
-                               double fine, ritz_forces *out)
+                               double fine, ritz_rigid_forces *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_sparse *K = &it->component->K;
@@ -180,7 +180,7 @@ static ritz_status find_forces(const ritz_checker *it, int64_t first,
 
     RITZ_TRY(ritz_dense_columns(&it->R, first, 3, &R));
     RITZ_TRY(ritz_sparse_mul(K, &R, &F));
-    *out = (ritz_forces){.row = -1, .fine = fine};
+    *out = (ritz_rigid_forces){.row = -1, .fine = fine};
     for (int64_t j = 0; j < 3; j++)
         for (int64_t i = 0; i < K->ncol; i++) {
             double force = fabs(ritz_dense_col(&F, j)[i]);
@@ -211,14 +211,14 @@ static double worst_hold(const ritz_checker *it)
 }
 
 /* Whether forces are more than rounding, and no more than few digits leave. */
-static bool is_rounded(const ritz_checker *it, const ritz_forces *f)
+static bool is_rounded(const ritz_checker *it, const ritz_rigid_forces *f)
 {
     return it->digits < 15.0 && f->largest > f->fine * f->bound &&
            f->largest <= 0.5 * pow(10.0, 1.0 - it->digits) * f->bound;
 }
 
 static void say_grounding(ritz_checker *it, const char *name,
-                          const ritz_forces *f)
+                          const ritz_rigid_forces *f)
 {
     double held = worst_hold(it);
     double limit = f->fine * f->bound;

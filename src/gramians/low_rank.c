@@ -49,11 +49,11 @@
  */
 
 /* v of one side. */
-typedef struct block {
+typedef struct half_block {
     ritz_dense re[RITZ_HALVES], im[RITZ_HALVES];
-} block;
+} half_block;
 
-static void free_block(block *v)
+static void free_block(half_block *v)
 {
     for (int half = 0; half < RITZ_HALVES; half++) {
         ritz_dense_free(&v->re[half]);
@@ -108,7 +108,7 @@ static void load_seen(const ritz_low_rank_model *model, double _Complex p,
 /* Real and imaginary parts of what was solved for, without rigid motion. */
 static ritz_status split_parts(const ritz_low_rank_model *model,
                                int64_t columns, const double _Complex *x,
-                               int half, block *v)
+                               int half, half_block *v)
 {
     ritz_dense *re = &v->re[half];
     ritz_dense *im = &v->im[half];
@@ -128,7 +128,7 @@ static ritz_status split_parts(const ritz_low_rank_model *model,
 
 /* v_2 = W_1 - p v_1 */
 static ritz_status finish_reached(const ritz_low_rank_model *model,
-                                  double _Complex p, block *v)
+                                  double _Complex p, half_block *v)
 {
     const ritz_dense *W = &model->W[RITZ_REACHED][RITZ_ABOVE];
     const ritz_dense *re = &v->re[RITZ_ABOVE];
@@ -145,7 +145,7 @@ static ritz_status finish_reached(const ritz_low_rank_model *model,
 
 /* v_1 = W_2 - p M v_2 + D'v_2 */
 static ritz_status finish_seen(const ritz_low_rank_model *model,
-                               double _Complex p, block *v)
+                               double _Complex p, half_block *v)
 {
     ritz_status status = RITZ_OK;
     const ritz_sparse *Dt = model->Dt.colptr ? &model->Dt : &model->D;
@@ -174,7 +174,7 @@ done:
 
 /* Factor, and v of both sides that are open. */
 static ritz_status solve_shifted(ritz_low_rank_sweep *sweep, double _Complex p,
-                                 block v[static RITZ_SIDES])
+                                 half_block v[static RITZ_SIDES])
 {
     ritz_status status = RITZ_OK;
     ritz_low_rank_model *model = &sweep->model;
@@ -239,7 +239,7 @@ done:
 }
 
 static ritz_status append_columns(ritz_low_rank_sweep *sweep, int side,
-                                  double _Complex p, const block *v)
+                                  double _Complex p, const half_block *v)
 {
     ritz_status status = RITZ_OK;
     ritz_low_rank_model *model = &sweep->model;
@@ -276,7 +276,7 @@ done:
 static ritz_status take_shift(ritz_low_rank_sweep *sweep, double _Complex p)
 {
     ritz_status status = RITZ_OK;
-    block v[RITZ_SIDES] = {0};
+    half_block v[RITZ_SIDES] = {0};
 
     RITZ_TRY(solve_shifted(sweep, p, v));
     for (int side = 0; side < RITZ_SIDES; side++)

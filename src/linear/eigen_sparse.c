@@ -320,7 +320,7 @@ static ritz_status search_proven(search *s, int64_t *end)
 /* Modes up to the frequency, counted a little above it lest one lie there. */
 static ritz_status count_target(search *s)
 {
-    const double above[] = {1e-8, 1e-7, 3e-7};
+    const double above[] = RITZ_COUNT_ABOVE;
     ritz_status status = RITZ_ERR_SINGULAR;
     double lambda = ritz_eigen_lambda(s->span->up_to_hz);
 
@@ -341,7 +341,7 @@ static ritz_status begin_search(search *s)
     if (s->span->modes < 0) {
         RITZ_CHECK(count_target(s));
         s->ask = s->target + SPARE;
-        sigma = fmax(fmin(sigma, 0.1 * s->limit), 1e-6 * sigma);
+        sigma = fmax(fmin(sigma, 0.1 * s->limit), RITZ_LEAST_SHIFT * sigma);
     }
     return shift_near(s, -sigma);
 }
@@ -383,7 +383,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_TRY(ritz_sparse_dense(M, &M_d));
     RITZ_TRY(ritz_eigen_dense(&K_d, &M_d, &P));
     if (span->modes < 0)
-        limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + 1e-8);
+        limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
     end = wanted(&P, span, limit);
     if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
         P.proven_to = fmax(limit, place_between(&P, end, RITZ_COUNT_PLACE));

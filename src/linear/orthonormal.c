@@ -123,12 +123,12 @@ done:
 enum { MOST_PASSES = 8 };
 
 /* A block on its way; column j of R was column source[j] of what came in. */
-typedef struct block {
+typedef struct column_block {
     ritz_dense R, WR; /* the first R.ncol columns are left */
     int64_t *source;
     double *energy; /* of what is left, of the column that came in */
     double *least;  /* energy that is rounding of the column that came in */
-} block;
+} column_block;
 
 static void scale_column(ritz_dense *A, int64_t j, double factor)
 {
@@ -156,7 +156,7 @@ static void subtract_product(const ritz_dense *B, const ritz_dense *H,
 }
 
 /* R := R - V (WV)' R */
-static ritz_status project_out(const ritz_orthonormal *set, block *b)
+static ritz_status project_out(const ritz_orthonormal *set, column_block *b)
 {
     ritz_status status = RITZ_OK;
     const ritz_dense V = ritz_dense_part(&set->V, 0, set->count);
@@ -172,7 +172,8 @@ done:
 }
 
 /* Whether a column that is not nothing yet has lost half its energy. */
-static bool still_falls(const block *b, const double *before, double tolerance)
+static bool still_falls(const column_block *b, const double *before,
+                        double tolerance)
 {
     for (int64_t j = 0; j < b->R.ncol; j++) {
         double size = ritz_dense_dot(&b->R, j, &b->WR, j);
@@ -186,7 +187,8 @@ static bool still_falls(const block *b, const double *before, double tolerance)
 }
 
 /* Until no column shrinks any more: twice, or oftener where W blurs sums. */
-static ritz_status orthogonalise_block(const ritz_orthonormal *set, block *b)
+static ritz_status orthogonalise_block(const ritz_orthonormal *set,
+                                       column_block *b)
 {
     ritz_status status = RITZ_OK;
     double *before = NULL;
@@ -205,7 +207,7 @@ done:
 }
 
 /* Scale what is left to one; columns of which nothing is left are dropped. */
-static void drop_columns(block *b, double tolerance)
+static void drop_columns(column_block *b, double tolerance)
 {
     int64_t kept = 0;
 
@@ -246,7 +248,7 @@ static double largest_energy(const ritz_sparse *W, const double *r, int64_t n)
  * Entries of r are known to eps, so that e' W e <= eps^2 |r|' |W| |r| is
  * rounding.
  */
-static void scale_block(const ritz_sparse *W, block *b)
+static void scale_block(const ritz_sparse *W, column_block *b)
 {
     const double eps = RITZ_ENTRY_ROUNDING * DBL_EPSILON;
 
@@ -284,8 +286,9 @@ static ritz_status reserve_columns(ritz_orthonormal *set, int64_t more)
 }
 
 /* Move the strong columns of the block into the set; the others move up. */
-static ritz_status take_columns(ritz_orthonormal *set, block *b, int64_t count,
-                                const int64_t *order, bool *taken)
+static ritz_status take_columns(ritz_orthonormal *set, column_block *b,
+                                int64_t count, const int64_t *order,
+                                bool *taken)
 {
     ritz_dense Q = {0}, WQ = {0};
     int64_t kept = 0;
@@ -320,8 +323,8 @@ static ritz_status take_columns(ritz_orthonormal *set, block *b, int64_t count,
 }
 
 /* One round: what is left of the block against V, and its strong columns. */
-static ritz_status go_round(ritz_orthonormal *set, block *b, int64_t most,
-                            int64_t *order, bool *taken)
+static ritz_status go_round(ritz_orthonormal *set, column_block *b,
+                            int64_t most, int64_t *order, bool *taken)
 {
     ritz_status status = RITZ_OK;
     ritz_dense G = {0};
@@ -343,7 +346,7 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
 {
     ritz_status status = RITZ_OK;
     ritz_dense WR = {0};
-    block b = {.R = *R};
+    column_block b = {.R = *R};
     int64_t *order = NULL;
     int64_t before = set->count;
 

@@ -7,7 +7,6 @@
 
 /* Peaks that are followed between points, at most. */
 enum { MOST_PEAKS = 12 };
-static const double golden = 0.61803398874989485;
 
 typedef struct climb {
     const ritz_curve *curve;
@@ -33,8 +32,8 @@ static ritz_status look_at(void *state, double hertz, double *value)
 ritz_status ritz_curve_between(const ritz_curve *curve, double within,
                                double *low, double *high, double *most)
 {
-    double a = *high - golden * (*high - *low);
-    double b = *low + golden * (*high - *low);
+    double a = *high - RITZ_GOLDEN * (*high - *low);
+    double b = *low + RITZ_GOLDEN * (*high - *low);
     double at_a = 0.0, at_b = 0.0;
 
     RITZ_CHECK(curve->at(curve->state, a, &at_a));
@@ -44,13 +43,13 @@ ritz_status ritz_curve_between(const ritz_curve *curve, double within,
             *high = b;
             b = a;
             at_b = at_a;
-            a = *high - golden * (*high - *low);
+            a = *high - RITZ_GOLDEN * (*high - *low);
             RITZ_CHECK(curve->at(curve->state, a, &at_a));
         } else {
             *low = a;
             a = b;
             at_a = at_b;
-            b = *low + golden * (*high - *low);
+            b = *low + RITZ_GOLDEN * (*high - *low);
             RITZ_CHECK(curve->at(curve->state, b, &at_b));
         }
     }

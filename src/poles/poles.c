@@ -117,7 +117,8 @@ static bool couples_modes(const ritz_dense *A)
                               fabs(ritz_dense_col(A, j)[j]));
 
             if (i != j && !(fabs(ritz_dense_col(A, j)[i]) <=
-                            RITZ_DIAGONAL_WITHIN * own + 1e-15 * largest))
+                            RITZ_DIAGONAL_WITHIN * own +
+                                RITZ_DIAGONAL_ROUNDING * largest))
                 return true;
         }
     return false;

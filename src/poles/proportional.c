@@ -6,6 +6,8 @@
  */
 #include "poles/proportional.h"
 
+#include "base/tolerances.h"
+
 #include <math.h>
 
 /* Sum of the products of entries of A and B at the same places. */
@@ -63,7 +65,9 @@ static ritz_status fit_coefficients(const ritz_component *c, double *a,
     RITZ_CHECK(inner_product(&c->M, &c->D, &md));
     RITZ_CHECK(inner_product(&c->K, &c->D, &kd));
     ee = mm > 0.0 ? kk - mk * (mk / mm) : kk;
-    *b = ee > 1e-12 * kk ? (kd - (mm > 0.0 ? md * (mk / mm) : 0.0)) / ee : 0.0;
+    *b = ee > RITZ_PROPORTIONAL_RANK * kk
+             ? (kd - (mm > 0.0 ? md * (mk / mm) : 0.0)) / ee
+             : 0.0;
     *a = mm > 0.0 ? (md - *b * mk) / mm : 0.0;
     return RITZ_OK;
 }

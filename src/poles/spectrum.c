@@ -139,15 +139,15 @@ done:
     return status;
 }
 
-typedef struct place {
+typedef struct listed_pole {
     double size, imaginary;
     int64_t index;
-} place;
+} listed_pole;
 
 static int ascending(const void *left, const void *right)
 {
-    const place *a = left;
-    const place *b = right;
+    const listed_pole *a = left;
+    const listed_pole *b = right;
 
     if (a->size != b->size)
         return a->size > b->size ? 1 : -1;
@@ -183,7 +183,7 @@ done:
 
 /* Which are listed, in order; those up to `zero` are counted. */
 static int64_t choose_listed(const found *f, bool structural, double zero,
-                             place *order, int64_t *zeros)
+                             listed_pole *order, int64_t *zeros)
 {
     int64_t count = 0;
 
@@ -193,7 +193,7 @@ static int64_t choose_listed(const found *f, bool structural, double zero,
         if (cabs(f->s[j]) <= zero)
             (*zeros)++;
         else if (im > 0.0 || (im == 0.0 && !structural))
-            order[count++] = (place){cabs(f->s[j]), im, j};
+            order[count++] = (listed_pole){cabs(f->s[j]), im, j};
     }
     qsort(order, (size_t)count, sizeof *order, ascending);
     return count;
@@ -226,7 +226,7 @@ static void put_shape(const ritz_state *state, const double _Complex *y,
 
 /* Columns y of the poles that are listed, real or imaginary parts. */
 static ritz_status pick_columns(const found *f, int64_t count,
-                                const place *order,
+                                const listed_pole *order,
                                 double (*part)(double _Complex),
                                 ritz_dense *out)
 {
@@ -254,7 +254,7 @@ static void add_structural(const ritz_state *state, const ritz_dense *y,
 
 /* |A y - s y| / ((|A| + |s|) |y|) of each, |A| in the Frobenius norm. */
 static ritz_status find_residuals(const ritz_state *state, const found *f,
-                                  const place *order, ritz_spectrum *out)
+                                  const listed_pole *order, ritz_spectrum *out)
 {
     ritz_status status = RITZ_OK;
     ritz_dense A = {0}, re = {0}, im = {0}, Are = {0}, Aim = {0};
@@ -297,7 +297,7 @@ static ritz_status list_poles(const ritz_state *state, const found *f,
 {
     ritz_status status = RITZ_OK;
     int64_t n = state->X.nrow;
-    place *order = NULL;
+    listed_pole *order = NULL;
     double zero = 0.0;
 
     RITZ_NEW(order, f->count);

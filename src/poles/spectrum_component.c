@@ -30,7 +30,9 @@ static ritz_status check_range(const ritz_scan_request *request, int64_t *count)
     RITZ_REFUSE_IF(!(steps < (double)most_points), RITZ_ERR_ARGUMENT,
                    "%.0f steps of a scan are too many", steps);
     /* an end that rounding puts a hair beyond the last step belongs to it */
-    *count = (int64_t)floor(steps * (1.0 + 1e-12) + 1e-9) + 1;
+    *count =
+        (int64_t)floor(steps * (1.0 + RITZ_RANGE_ROUNDING) + RITZ_RANGE_STEPS) +
+        1;
     return RITZ_OK;
 }
 

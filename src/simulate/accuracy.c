@@ -24,35 +24,35 @@ static const int64_t most_values = INT64_C(1) << 28;
 
 enum { STEPS = 50, PER_PERIOD = 10, IN_VAIN = 3 };
 
-typedef struct trial {
+typedef struct halving_trial {
     int64_t num_outputs;
     double *before; /* difference at twice the step */
     int *in_vain;   /* halvings in a row that did not halve it */
     ritz_accuracy found;
-} trial;
+} halving_trial;
 
-static ritz_status trial_new(int64_t num_outputs, trial *out)
+static ritz_status trial_new(int64_t num_outputs, halving_trial *out)
 {
     ritz_status status = RITZ_OK;
-    trial t = {.num_outputs = num_outputs, .found.error = HUGE_VAL};
+    halving_trial t = {.num_outputs = num_outputs, .found.error = HUGE_VAL};
 
     RITZ_NEW(t.before, num_outputs);
     RITZ_NEW(t.in_vain, num_outputs);
     for (int64_t i = 0; i < num_outputs; i++)
         t.before[i] = HUGE_VAL;
     *out = t;
-    t = (trial){0};
+    t = (halving_trial){0};
 done:
     free(t.before);
     free(t.in_vain);
     return status;
 }
 
-static void trial_free(trial *t)
+static void trial_free(halving_trial *t)
 {
     free(t->before);
     free(t->in_vain);
-    *t = (trial){0};
+    *t = (halving_trial){0};
 }
 
 /* Whether the difference of two runs is rounding of what the output could
@@ -65,7 +65,7 @@ static bool is_rounding(double size, double off, double shown, int in_vain)
 
 static void judge_outputs(const ritz_simulation *exact,
                           const ritz_simulation *made, const ritz_reach *reach,
-                          double tolerance, trial *t)
+                          double tolerance, halving_trial *t)
 {
     t->found = (ritz_accuracy){.left = -1};
     for (int64_t i = 0; i < t->num_outputs; i++) {
@@ -97,7 +97,7 @@ static void judge_outputs(const ritz_simulation *exact,
 /* Differences at a step, from `modal` (or itself) at half of it. */
 static ritz_status measure_errors(const ritz_simulated *subject,
                                   const ritz_simulation_request *request,
-                                  double tolerance, trial *t)
+                                  double tolerance, halving_trial *t)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request coarse = *request, fine = *request;
@@ -183,7 +183,7 @@ ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
     ritz_status status = RITZ_OK;
     ritz_simulation_request asked = *request;
     int64_t inputs = 0, outputs = 0, most = 0, steps = 0;
-    trial t = {0};
+    halving_trial t = {0};
 
     RITZ_FAIL_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
                  tolerance);

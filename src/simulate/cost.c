@@ -32,7 +32,7 @@ static double processor_seconds(void)
     struct timespec now = {0};
 
     (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return (double)now.tv_sec + (double)now.tv_nsec / 1e9;
 }
 
 /* s, of modes. */

@@ -60,14 +60,14 @@ static ritz_status from_modes(const ritz_motion *modes,
     return ritz_effective_solve(mass, 1, x);
 }
 
-typedef struct trial {
+typedef struct growth_trial {
     const ritz_motion *modes, *motion;
     ritz_effective mass;
     double *q, *v, *u;
-} trial;
+} growth_trial;
 
-static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
-                               uint64_t *seed, double *worst)
+static ritz_status free_motion(growth_trial *t, ritz_march *march,
+                               int64_t steps, uint64_t *seed, double *worst)
 {
     double start = 0.0;
 
@@ -94,7 +94,7 @@ static ritz_status free_motion(trial *t, ritz_march *march, int64_t steps,
     return RITZ_OK;
 }
 
-static ritz_status run_all(trial *t, const ritz_integrator *integrator,
+static ritz_status run_all(growth_trial *t, const ritz_integrator *integrator,
                            double step, const int64_t count[2], double *out)
 {
     ritz_status status = RITZ_OK;
@@ -126,7 +126,7 @@ ritz_status ritz_simulate_growth(const ritz_second_order *model,
     ritz_status status = RITZ_OK;
     const int64_t count[2] = {steps, starts};
     ritz_motion modes = {0}, motion = {0};
-    trial t = {.modes = &modes, .motion = &motion};
+    growth_trial t = {.modes = &modes, .motion = &motion};
 
     RITZ_FAIL_IF(!(step > 0.0) || !isfinite(step) || steps < 1 || starts < 1,
                  RITZ_ERR_ARGUMENT,

@@ -82,18 +82,18 @@ done:
 }
 
 /* Modes that D couples; one alone if `o` is to be used. */
-typedef struct group {
+typedef struct coupled_modes {
     int64_t count; /* g */
     const int64_t *mode;
     ritz_oscillator o;
     double scale;
     ritz_dense E;    /* N x N, N = 2 g + 2 p, or {0} */
     ritz_dense W[2]; /* N x N, of damping and of inputs; or {0} */
-} group;
+} coupled_modes;
 
 typedef struct modal {
     int64_t num_groups;
-    group *group;
+    coupled_modes *group;
     groups parts;
     double *f, *g; /* n, modal forces and their rates */
     double *z, *z1;
@@ -118,7 +118,7 @@ static void release_modal(void *own)
 }
 
 /* The matrix of z'; `forces` of a lone mode, whose input is its own force. */
-static ritz_status group_matrix(const ritz_motion *m, const group *part,
+static ritz_status group_matrix(const ritz_motion *m, const coupled_modes *part,
                                 ritz_dense *out)
 {
     ritz_status status = RITZ_OK;
@@ -152,7 +152,7 @@ done:
 }
 
 /* q'D q' and q'B u as forms of z. */
-static ritz_status group_forms(const ritz_motion *m, const group *part,
+static ritz_status group_forms(const ritz_motion *m, const coupled_modes *part,
                                const ritz_dense *A, ritz_dense Q[2])
 {
     int64_t g = part->count;
@@ -172,7 +172,8 @@ static ritz_status group_forms(const ritz_motion *m, const group *part,
     return RITZ_OK;
 }
 
-static ritz_status prepare_group(const ritz_motion *m, double h, group *part)
+static ritz_status prepare_group(const ritz_motion *m, double h,
+                                 coupled_modes *part)
 {
     ritz_status status = RITZ_OK;
     ritz_dense A = {0}, Q[2] = {{0}, {0}};
@@ -206,7 +207,7 @@ static double value_of_form(const ritz_dense *W, const double *z)
     return sum;
 }
 
-static void account_energy(const group *part, const double *z,
+static void account_energy(const coupled_modes *part, const double *z,
                            ritz_march *march)
 {
     march->dissipated += value_of_form(&part->W[0], z);
@@ -214,7 +215,7 @@ static void account_energy(const group *part, const double *z,
 }
 
 /* A mode alone. */
-static void advance_one(const group *part, double f, double g,
+static void advance_one(const coupled_modes *part, double f, double g,
                         ritz_march *march)
 {
     int64_t j = part->mode[0];
@@ -230,8 +231,8 @@ static void advance_one(const group *part, double f, double g,
                   o->S * f + o->P * g;
 }
 
-static void advance_group(const group *part, const double *u0, const double *u1,
-                          modal *s, ritz_march *march)
+static void advance_group(const coupled_modes *part, const double *u0,
+                          const double *u1, modal *s, ritz_march *march)
 {
     const ritz_motion *m = march->motion;
     int64_t g = part->count;
@@ -273,7 +274,7 @@ static ritz_status advance_modal(ritz_march *march, const double *u0,
         }
     }
     for (int64_t k = 0; k < s->num_groups; k++) {
-        const group *part = &s->group[k];
+        const coupled_modes *part = &s->group[k];
 
         if (part->count == 1)
             advance_one(part, s->f[part->mode[0]], s->g[part->mode[0]], march);
