@@ -46,7 +46,6 @@ typedef struct ritz_fit_candidate {
     bool bounded;     /* its bounds meet the tolerance, so it was measured only
                          where it is confirmed */
     ritz_fit_watch making; /* to make basis and reduction */
-    double highest_hz;     /* of the model; 0: not known */
     ritz_cost cost;        /* if it is feasible; order 0: not measured */
     char refusal[256];     /* why it could not be made, or is unstable; "" */
 } ritz_fit_candidate;

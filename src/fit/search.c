@@ -17,14 +17,16 @@
 /* --- candidates that were tried ---------------------------------------------------- */
 
 enum { PART = 4 };
-/* Richer stages that are no better by a tenth, before it is given up. */
+/* Richer first stages in a row that are no better, before they are given up. */
 enum { MOST_FLAT_STAGES = 3 };
+/* Most modes that one body is given in exchange for one more of another. */
 enum { MOST_GIVEN = 4 };
-/* Rungs below the best that are tried although the one just below failed. */
+/* Rungs below a feasible one that are tried even if the next below fails. */
 enum { COMPONENT_BELOW = 8, SCENE_BELOW = 3 };
-/* Twice the best of the others and some: beyond it a method is given up. */
+/* A method is pursued up to this multiple of the order of the best of the
+   others, and some columns more. */
 enum { FAR = 2, BESIDE = 8 };
-/* A method that was refused so often is. */
+/* A method is given up when its first rungs were refused so often. */
 enum { MOST_REFUSED = 4 };
 /* Ladders that are longer and come no better, before a method is given up; what
    is better has so much of the error, or less. */
@@ -324,7 +326,7 @@ static const ritz_fit_candidate *get(const ladder *l, int64_t at)
     return &l->fit->candidate[at];
 }
 
-/* What a refused candidate tells of those above it. */
+/* Why rungs above a refused candidate are not tried. */
 static ritz_fit_end wall_of(const ladder *l, int64_t at)
 {
     return get(l, at)->order > l->fitter->largest ? RITZ_FIT_END_LARGEST
@@ -343,7 +345,7 @@ static int64_t least_order(const ritz_fit *fit, int64_t but)
     return least;
 }
 
-/* Whether others do not do with far less than a candidate. */
+/* Whether a candidate may still become the smallest of all methods. */
 static bool in_reach(const ladder *l, int64_t at)
 {
     int64_t least = least_order(l->fit, l->method);
