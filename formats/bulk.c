@@ -242,8 +242,7 @@ static int compare_name(const void *name, const void *kind)
 /* Take every card of the deck that says something of grids or sets. */
 static ritz_status take_cards(ritz_bulk_cards *all)
 {
-    ritz_status status = RITZ_OK;
-    ritz_card card = {0};
+    RITZ_OWN(ritz_card) card = {0};
 
     for (int64_t k = 0; k < all->cards.num_entries; k++) {
         const struct kind *kind =
@@ -252,12 +251,10 @@ static ritz_status take_cards(ritz_bulk_cards *all)
 
         if (!kind)
             continue;
-        RITZ_TRY(ritz_card_take(&all->cards, k, &card));
-        RITZ_TRY(kind->take(all, &card, kind->how));
+        RITZ_CHECK(ritz_card_take(&all->cards, k, &card));
+        RITZ_CHECK(kind->take(all, &card, kind->how));
     }
-done:
-    ritz_card_free(&card);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- what they say together --------------------------------------------- */

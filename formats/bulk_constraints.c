@@ -228,60 +228,51 @@ done:
 
 static ritz_status tie_rbe2(const ritz_bulk_tying *it)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ties from = {0}, to = {0};
+    RITZ_OWN(ritz_ties) from = {0}, to = {0};
     ritz_tie tie = {.mask = ALL_SIX, .weight = 1.0};
 
-    RITZ_TRY(tying_grid(it, 1, &tie.grid));
-    RITZ_TRY(ritz_ties_add(&from, tie));
-    RITZ_TRY(tying_mask(it, 2, &tie.mask));
+    RITZ_CHECK(tying_grid(it, 1, &tie.grid));
+    RITZ_CHECK(ritz_ties_add(&from, tie));
+    RITZ_CHECK(tying_mask(it, 2, &tie.mask));
     if (tie.mask == 0)
-        RITZ_TRY(ritz_card_refuse(it->card, 2, "a list of directions 1 to 6"));
+        RITZ_CHECK(
+            ritz_card_refuse(it->card, 2, "a list of directions 1 to 6"));
     for (int64_t k = 3; k < it->card->count; k++) {
         if (!*ritz_card_text(it->card, k))
             continue;
         if (tying_is_real(it, k)) /* thermal expansion */
             break;
-        RITZ_TRY(tying_grid(it, k, &tie.grid));
-        RITZ_TRY(ritz_ties_add(&to, tie));
+        RITZ_CHECK(tying_grid(it, k, &tie.grid));
+        RITZ_CHECK(ritz_ties_add(&to, tie));
     }
-    RITZ_TRY(tie_all(it, &from, &to));
-done:
-    ritz_ties_free(&from);
-    ritz_ties_free(&to);
-    return status;
+    return tie_all(it, &from, &to);
 }
 
 /* A bar or a plate: grids, then CN of each, then CM of each at field `at`. */
 static ritz_status tie_corners(const ritz_bulk_tying *it, int64_t corners,
                                int64_t at)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ties from = {0}, to = {0};
+    RITZ_OWN(ritz_ties) from = {0}, to = {0};
     ritz_tie free[3] = {0};
     ritz_tie held[3] = {0};
     bool given = false;
 
     for (int64_t k = 0; k < corners; k++) {
-        RITZ_TRY(tying_grid(it, 1 + k, &free[k].grid));
+        RITZ_CHECK(tying_grid(it, 1 + k, &free[k].grid));
         held[k] = free[k];
-        RITZ_TRY(tying_mask(it, 1 + corners + k, &free[k].mask));
-        RITZ_TRY(tying_mask(it, at + k, &held[k].mask));
+        RITZ_CHECK(tying_mask(it, 1 + corners + k, &free[k].mask));
+        RITZ_CHECK(tying_mask(it, at + k, &held[k].mask));
         given = given || held[k].mask != 0;
     }
     for (int64_t k = 0; k < corners; k++) {
         if (!given)
             held[k].mask = (uint8_t)(ALL_SIX & ~(unsigned)free[k].mask);
         if (free[k].mask)
-            RITZ_TRY(ritz_ties_add(&from, free[k]));
+            RITZ_CHECK(ritz_ties_add(&from, free[k]));
         if (held[k].mask)
-            RITZ_TRY(ritz_ties_add(&to, held[k]));
+            RITZ_CHECK(ritz_ties_add(&to, held[k]));
     }
-    RITZ_TRY(tie_all(it, &from, &to));
-done:
-    ritz_ties_free(&from);
-    ritz_ties_free(&to);
-    return status;
+    return tie_all(it, &from, &to);
 }
 
 static ritz_status tie_rbar(const ritz_bulk_tying *it)
@@ -296,8 +287,7 @@ static ritz_status tie_rtrplt(const ritz_bulk_tying *it)
 
 static ritz_status tie_rbe1(const ritz_bulk_tying *it)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ties from = {0}, to = {0};
+    RITZ_OWN(ritz_ties) from = {0}, to = {0};
     ritz_tie tie = {.weight = 1.0};
     int64_t k = 1;
 
@@ -307,19 +297,15 @@ static ritz_status tie_rbe1(const ritz_bulk_tying *it)
             k++;
             continue;
         }
-        RITZ_TRY(tying_grid(it, k, &tie.grid));
-        RITZ_TRY(tying_mask(it, k + 1, &tie.mask));
-        RITZ_TRY(ritz_ties_add(&from, tie));
+        RITZ_CHECK(tying_grid(it, k, &tie.grid));
+        RITZ_CHECK(tying_mask(it, k + 1, &tie.mask));
+        RITZ_CHECK(ritz_ties_add(&from, tie));
         k += 2;
     }
     if (k == it->card->count)
-        RITZ_TRY(tying_refuse(it, "names no dependent dofs by UM"));
-    RITZ_TRY(tying_pairs(it, k + 1, &to));
-    RITZ_TRY(tie_all(it, &from, &to));
-done:
-    ritz_ties_free(&from);
-    ritz_ties_free(&to);
-    return status;
+        RITZ_CHECK(tying_refuse(it, "names no dependent dofs by UM"));
+    RITZ_CHECK(tying_pairs(it, k + 1, &to));
+    return tie_all(it, &from, &to);
 }
 
 /* ---- RBE3 --------------------------------------------------------------- */
@@ -534,31 +520,26 @@ static ritz_status put_moved(const ritz_bulk_tying *it,
                              const average_card *card, const ritz_dense *TA,
                              const ritz_dof *ref, const ritz_average *average)
 {
-    ritz_status status = RITZ_OK;
     double length = average->length;
     int64_t m = TA->nrow;
-    ritz_dense E = {0}, rest = {0};
-    ritz_dof *dof = NULL;
+    RITZ_OWN(ritz_dense) E = {0}, rest = {0};
+    RITZ_OWN_ARRAY ritz_dof *dof = NULL;
 
     if (ritz_ties_dofs(&card->moved) != m)
-        RITZ_TRY(
+        RITZ_CHECK(
             tying_refuse(it, "names %" PRId64 " dofs by UM, %" PRId64 " depend",
                          ritz_ties_dofs(&card->moved), m));
-    RITZ_TRY(join_columns(TA, ref, average, length, &dof, &E));
-    RITZ_TRY(move_front(it, card, dof, &E));
-    RITZ_TRY(solve_moved(it, &E));
-    RITZ_TRY(ritz_dense_columns(&E, m, E.ncol - m, &rest));
+    RITZ_CHECK(join_columns(TA, ref, average, length, &dof, &E));
+    RITZ_CHECK(move_front(it, card, dof, &E));
+    RITZ_CHECK(solve_moved(it, &E));
+    RITZ_CHECK(ritz_dense_columns(&E, m, E.ncol - m, &rest));
     for (int64_t j = 0; j < rest.ncol; j++)
         for (int64_t i = 0; i < m; i++)
             ritz_dense_col(&rest, j)[i] *= -ritz_tie_scale(dof[m + j], length) /
                                            ritz_tie_scale(dof[i], length);
     for (int64_t i = 0; i < m; i++)
-        RITZ_TRY(put_row(&rest, i, dof[i], dof + m, length, it->out));
-done:
-    free(dof);
-    ritz_dense_free(&E);
-    ritz_dense_free(&rest);
-    return status;
+        RITZ_CHECK(put_row(&rest, i, dof[i], dof + m, length, it->out));
+    return RITZ_OK;
 }
 
 static ritz_status tie_rbe3(const ritz_bulk_tying *it)

@@ -515,15 +515,12 @@ static ritz_status resolve_from(const ritz_bulk_cards *all, int64_t first,
 
 static ritz_status resolve_frames(ritz_bulk_cards *all)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *stack = NULL;
+    RITZ_OWN_ARRAY int64_t *stack = NULL;
 
-    RITZ_NEW(stack, all->num_frames);
+    RITZ_CHECK_NEW(stack, all->num_frames);
     for (int64_t k = 0; k < all->num_frames; k++)
-        RITZ_TRY(resolve_from(all, k, stack));
-done:
-    free(stack);
-    return status;
+        RITZ_CHECK(resolve_from(all, k, stack));
+    return RITZ_OK;
 }
 
 /* ---- putting them in place ---------------------------------------------- */

@@ -64,36 +64,32 @@ static ritz_status count_ids(const ritz_cards *cards, int64_t count,
 
 ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_bulk_range *range = NULL;
-    int64_t *point = NULL;
+    RITZ_OWN_ARRAY ritz_bulk_range *range = NULL;
+    RITZ_OWN_ARRAY int64_t *point = NULL;
     int64_t count = 0;
     int64_t num = 0;
 
-    RITZ_NEW(range, all->points.count);
+    RITZ_CHECK_NEW(range, all->points.count);
     if (all->points.count > 0)
         memcpy(range, all->points.range,
                (size_t)all->points.count * sizeof *range);
     count = merge_ranges(all->points.count, range);
-    RITZ_TRY(count_ids(&all->cards, count, range, &num));
-    RITZ_NEW(point, num);
+    RITZ_CHECK(count_ids(&all->cards, count, range, &num));
+    RITZ_CHECK_NEW(point, num);
     num = 0;
     for (int64_t k = 0; k < count; k++)
         for (int64_t id = range[k].from; id <= range[k].to; id++) {
             if (ritz_bulk_find_grid(all, id))
-                RITZ_TRY(ritz_cards_refuse(&all->cards, range[k].line,
-                                           "%" PRId64 " is a GRID and an "
-                                           "SPOINT",
-                                           id));
+                RITZ_CHECK(ritz_cards_refuse(&all->cards, range[k].line,
+                                             "%" PRId64 " is a GRID and an "
+                                             "SPOINT",
+                                             id));
             point[num++] = id;
         }
     out->point = point;
     out->num_points = num;
     point = NULL;
-done:
-    free(range);
-    free(point);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- sets --------------------------------------------------------------- */
@@ -167,26 +163,23 @@ static ritz_status add_direction(const ritz_bulk_cards *all,
                                  const ritz_bulk_ranges *given,
                                  const ritz_deck *built, int64_t c, dofs *list)
 {
-    ritz_status status = RITZ_OK;
-    ritz_bulk_range *range = NULL;
+    RITZ_OWN_ARRAY ritz_bulk_range *range = NULL;
     int64_t count = 0;
 
-    RITZ_NEW(range, given->count);
+    RITZ_CHECK_NEW(range, given->count);
     for (int64_t k = 0; k < given->count; k++)
         if (!given->range[k].each && has_direction(&given->range[k], c))
             range[count++] = given->range[k];
     count = merge_ranges(count, range);
     if (built->grids.count + built->num_points == 0)
-        RITZ_TRY(add_all(all, c, count, range, list));
+        RITZ_CHECK(add_all(all, c, count, range, list));
     else if (c == 0)
-        RITZ_TRY(add_existing(built->num_points, built->point, c, count, range,
-                              list));
+        RITZ_CHECK(add_existing(built->num_points, built->point, c, count,
+                                range, list));
     else
-        RITZ_TRY(add_existing(built->grids.count, built->grids.id, c, count,
-                              range, list));
-done:
-    free(range);
-    return status;
+        RITZ_CHECK(add_existing(built->grids.count, built->grids.id, c, count,
+                                range, list));
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,

@@ -218,28 +218,25 @@ static ritz_status include_file(ritz_scanner *scan, const char *path)
 static ritz_status follow_include(ritz_scanner *scan, const char *rest)
 {
     enum { LONGEST = 4096 };
-    ritz_status status = RITZ_OK;
     ritz_source *top = &scan->open[scan->depth - 1];
     const char *including = path_of(scan, scan->depth - 1);
     int64_t number = top->text.number;
     char name[LONGEST] = "";
     char where[LONGEST + 40] = "";
-    char *path = NULL;
+    RITZ_OWN_ARRAY char *path = NULL;
 
     if (including)
         snprintf(where, sizeof where, "'%s', line %" PRId64, including, number);
     else
         snprintf(where, sizeof where, "line %" PRId64, number);
-    RITZ_TRY_IN(where, include_name(&top->text, rest, name, sizeof name));
+    RITZ_CHECK_IN(where, include_name(&top->text, rest, name, sizeof name));
     if (!top->folder) {
         scan->cards->num_skipped++;
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(join_path(top->folder, name, &path));
-    RITZ_TRY_IN(where, include_file(scan, path));
-done:
-    free(path);
-    return status;
+    RITZ_CHECK(join_path(top->folder, name, &path));
+    RITZ_CHECK_IN(where, include_file(scan, path));
+    return RITZ_OK;
 }
 
 /* ---- lines of a file and of those that it includes ---------------------- */
@@ -480,26 +477,24 @@ static ritz_status join_strays(ritz_cards *cards, strays *list)
 /* Every line must be reached from a card: no stray is left, no circle. */
 static ritz_status check_reach(const ritz_cards *cards)
 {
-    ritz_status status = RITZ_OK;
-    bool *reached = NULL;
+    RITZ_OWN_ARRAY bool *reached = NULL;
 
-    RITZ_NEW(reached, cards->num_lines);
+    RITZ_CHECK_NEW(reached, cards->num_lines);
     for (int64_t k = 0; k < cards->num_entries; k++)
         for (int64_t at = cards->entry[k].line; at >= 0;
              at = cards->line[at].next)
             reached[at] = true;
     for (int64_t k = 0; k < cards->num_lines; k++)
         if (!reached[k])
-            RITZ_TRY(ritz_cards_refuse(cards, k,
-                                       "the continuation '%.*s' belongs to no "
-                                       "card",
-                                       cards->line[k].length < RITZ_CARD_NAME
-                                           ? (int)cards->line[k].length
-                                           : RITZ_CARD_NAME,
-                                       cards->line[k].text));
-done:
-    free(reached);
-    return status;
+            RITZ_CHECK(
+                ritz_cards_refuse(cards, k,
+                                  "the continuation '%.*s' belongs to no "
+                                  "card",
+                                  cards->line[k].length < RITZ_CARD_NAME
+                                      ? (int)cards->line[k].length
+                                      : RITZ_CARD_NAME,
+                                  cards->line[k].text));
+    return RITZ_OK;
 }
 
 /* Find the cards; give every continuation to the line that it continues. */
@@ -539,17 +534,14 @@ ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
 ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
                              const char *folder, ritz_cards *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_cards cards = {0};
+    RITZ_OWN(ritz_cards) cards = {0};
     ritz_lines whole = {.at = text, .end = text + size};
 
-    RITZ_TRY(scan_text(path, folder, whole, &cards));
-    RITZ_TRY(join_lines(&cards));
+    RITZ_CHECK(scan_text(path, folder, whole, &cards));
+    RITZ_CHECK(join_lines(&cards));
     *out = cards;
     cards = (ritz_cards){0};
-done:
-    ritz_cards_free(&cards);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_cards_free(ritz_cards *cards)

@@ -1,6 +1,8 @@
 /* Decks of any format: recognised by content, then read by their format. */
 #include "base/path.h"
 
+#include "base/alloc.h"
+
 #include <ritz/deck.h>
 
 #include <stdlib.h>
@@ -17,36 +19,28 @@ const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size)
 ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
                             const char *folder, ritz_deck *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_deck_format *format = ritz_deck_recognise(bytes, size);
-    ritz_deck deck = {0};
+    RITZ_OWN(ritz_deck) deck = {0};
 
-    RITZ_FAIL_IF(!format, RITZ_ERR_FORMAT,
-                 "'%s' is not a text file, as all decks are that Ritz knows",
-                 path ? path : "the deck");
-    RITZ_TRY(format->parse(path, bytes, size, folder, &deck));
+    RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
+                   "'%s' is not a text file, as all decks are that Ritz knows",
+                   path ? path : "the deck");
+    RITZ_CHECK(format->parse(path, bytes, size, folder, &deck));
     deck.format = format;
     *out = deck;
     deck = (ritz_deck){0};
-done:
-    ritz_deck_free(&deck);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_deck_read(const char *path, ritz_deck *out)
 {
-    ritz_status status = RITZ_OK;
-    char *bytes = NULL;
-    char *folder = NULL;
+    RITZ_OWN_ARRAY char *bytes = NULL;
+    RITZ_OWN_ARRAY char *folder = NULL;
     int64_t size = 0;
 
-    RITZ_TRY(ritz_path_folder(path, &folder));
-    RITZ_TRY(ritz_bytes_read(path, &size, &bytes));
-    RITZ_TRY(ritz_deck_parse(path, bytes, size, folder, out));
-done:
-    free(bytes);
-    free(folder);
-    return status;
+    RITZ_CHECK(ritz_path_folder(path, &folder));
+    RITZ_CHECK(ritz_bytes_read(path, &size, &bytes));
+    return ritz_deck_parse(path, bytes, size, folder, out);
 }
 
 void ritz_deck_free(ritz_deck *deck)

@@ -211,23 +211,20 @@ done:
 /* Go through the DMIG cards: headers first, as they may follow columns. */
 static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
 {
-    ritz_status status = RITZ_OK;
-    ritz_card card = {0};
+    RITZ_OWN(ritz_card) card = {0};
 
     for (int64_t k = 0; k < all->cards.num_entries; k++) {
         if (strcmp(all->cards.entry[k].name, "DMIG") != 0)
             continue;
-        RITZ_TRY(ritz_card_take(&all->cards, k, &card));
+        RITZ_CHECK(ritz_card_take(&all->cards, k, &card));
         if (is_header(&card) != headers)
             continue;
         if (headers)
-            RITZ_TRY(add_header(all, &card));
+            RITZ_CHECK(add_header(all, &card));
         else
-            RITZ_TRY(add_column(all, &card));
+            RITZ_CHECK(add_column(all, &card));
     }
-done:
-    ritz_card_free(&card);
-    return status;
+    return RITZ_OK;
 }
 
 /* The dofs that occur as rows, as columns or as either, ascending. */
@@ -282,12 +279,12 @@ static ritz_status list_terms(const ritz_dmig_header *owner,
 static ritz_status make_matrix(const ritz_dmig_header *owner,
                                const ritz_dmig_term *terms, ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
     bool square =
         owner->form == RITZ_DMIG_SQUARE || owner->form == RITZ_DMIG_SYMMETRIC;
-    ritz_matrix new = {.symmetric = owner->form == RITZ_DMIG_SYMMETRIC,
-                       .digits = owner->digits};
-    ritz_triplets list = {0};
+    RITZ_OWN(ritz_matrix)
+    new = {.symmetric = owner->form == RITZ_DMIG_SYMMETRIC,
+           .digits = owner->digits};
+    RITZ_OWN(ritz_triplets) list = {0};
     int64_t nrow = 0;
     int64_t ncol = 0;
 
@@ -295,20 +292,18 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     snprintf(new.spelling, sizeof new.spelling, "DMIG, form %d%s%s",
              (int)owner->form, owner->complex ? ", complex" : "",
              owner->polar ? ", polar" : "");
-    RITZ_TRY(collect_dofs(terms, owner->count, true, square, &nrow, &new.row));
+    RITZ_CHECK(
+        collect_dofs(terms, owner->count, true, square, &nrow, &new.row));
     ncol = nrow;
     if (!square)
-        RITZ_TRY(
+        RITZ_CHECK(
             collect_dofs(terms, owner->count, false, true, &ncol, &new.col));
-    RITZ_TRY(list_terms(owner, terms, nrow, new.row, ncol,
-                        square ? new.row : new.col, &list));
-    RITZ_TRY(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
+    RITZ_CHECK(list_terms(owner, terms, nrow, new.row, ncol,
+                          square ? new.row : new.col, &list));
+    RITZ_CHECK(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
     *out = new;
     new = (ritz_matrix){0};
-done:
-    ritz_triplets_free(&list);
-    ritz_matrix_free(&new);
-    return status;
+    return RITZ_OK;
 }
 
 static int compare_whole(int64_t a, int64_t b)

@@ -106,10 +106,9 @@ static void leave_partial(int64_t num_rows, ritz_nodes *nodes)
 
 static ritz_status count_rotating(const ritz_grids *grids, exudyn_body *b)
 {
-    ritz_status status = RITZ_OK;
-    bool *turns = NULL;
+    RITZ_OWN_ARRAY bool *turns = NULL;
 
-    RITZ_NEW(turns, grids->count);
+    RITZ_CHECK_NEW(turns, grids->count);
     for (int64_t i = 0; i < b->num_dofs; i++) {
         int64_t k = b->dof[i].component > 3
                         ? ritz_grids_find(grids, b->dof[i].grid)
@@ -120,9 +119,7 @@ static ritz_status count_rotating(const ritz_grids *grids, exudyn_body *b)
         turns[k] = true;
         b->num_rotating++;
     }
-done:
-    free(turns);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status place_nodes(exudyn_body *b)
@@ -137,51 +134,44 @@ static ritz_status place_nodes(exudyn_body *b)
 /* Psi: rows x, y, z of each node. */
 static ritz_status shape_modes(exudyn_body *b)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = b->nodes.count;
-    ritz_dense Psi = {0}, along = {0};
+    RITZ_OWN(ritz_dense) Psi = {0}, along = {0};
 
-    RITZ_TRY(ritz_dense_mul(&b->T, &b->modes.V, &Psi));
-    RITZ_TRY(ritz_dense_new(3 * n, Psi.ncol, &b->modeBasis));
+    RITZ_CHECK(ritz_dense_mul(&b->T, &b->modes.V, &Psi));
+    RITZ_CHECK(ritz_dense_new(3 * n, Psi.ncol, &b->modeBasis));
     for (int a = 0; a < 3; a++) {
         ritz_dense_free(&along);
-        RITZ_TRY(ritz_nodes_along(&b->nodes, &Psi, a, &along));
+        RITZ_CHECK(ritz_nodes_along(&b->nodes, &Psi, a, &along));
         for (int64_t j = 0; j < Psi.ncol; j++)
             for (int64_t k = 0; k < n; k++)
                 ritz_dense_col(&b->modeBasis, j)[3 * k + a] =
                     ritz_dense_col(&along, j)[k];
     }
-done:
-    ritz_dense_free(&Psi);
-    ritz_dense_free(&along);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status exudyn_body_of(const ritz_reduced *reduced, exudyn_body *out)
 {
-    ritz_status status = RITZ_OK;
-    exudyn_body b = {0};
+    RITZ_OWN(exudyn_body) b = {0};
 
-    RITZ_TRY(check_parts(reduced));
+    RITZ_CHECK(check_parts(reduced));
     b.num_dofs = reduced->num_dofs + reduced->recovery.count;
-    RITZ_TRY(ritz_recovery_extend(&reduced->recovery, reduced->num_dofs,
-                                  reduced->dof, &reduced->T, &b.dof, &b.T));
-    RITZ_TRY(check_rows(reduced));
-    RITZ_TRY(count_rotating(&reduced->grids, &b));
-    RITZ_TRY(ritz_nodes_of(b.num_dofs, b.dof, &reduced->grids, &b.nodes));
+    RITZ_CHECK(ritz_recovery_extend(&reduced->recovery, reduced->num_dofs,
+                                    reduced->dof, &reduced->T, &b.dof, &b.T));
+    RITZ_CHECK(check_rows(reduced));
+    RITZ_CHECK(count_rotating(&reduced->grids, &b));
+    RITZ_CHECK(ritz_nodes_of(b.num_dofs, b.dof, &reduced->grids, &b.nodes));
     leave_partial(reduced->num_dofs, &b.nodes);
-    RITZ_TRY(check_nodes(&b.nodes));
-    RITZ_TRY(exudyn_modes_of(reduced, &b.modes));
-    RITZ_TRY(place_nodes(&b));
-    RITZ_TRY(shape_modes(&b));
-    RITZ_TRY(ritz_invariants_project(&reduced->invariants, &b.modes.V,
-                                     &b.invariants));
-    RITZ_TRY(exudyn_terms_of(&b.invariants, &reduced->inertia, &b.terms));
+    RITZ_CHECK(check_nodes(&b.nodes));
+    RITZ_CHECK(exudyn_modes_of(reduced, &b.modes));
+    RITZ_CHECK(place_nodes(&b));
+    RITZ_CHECK(shape_modes(&b));
+    RITZ_CHECK(ritz_invariants_project(&reduced->invariants, &b.modes.V,
+                                       &b.invariants));
+    RITZ_CHECK(exudyn_terms_of(&b.invariants, &reduced->inertia, &b.terms));
     *out = b;
     b = (exudyn_body){0};
-done:
-    exudyn_body_free(&b);
-    return status;
+    return RITZ_OK;
 }
 
 /* Share of kinetic energy that translations do not carry, at its worst. */
@@ -400,15 +390,11 @@ static ritz_status write_body(const ritz_reduced *reduced,
                               const ritz_export_request *request,
                               ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    exudyn_body b = {0};
+    RITZ_OWN(exudyn_body) b = {0};
 
-    RITZ_TRY(exudyn_body_of(reduced, &b));
-    RITZ_TRY(exudyn_body_say(reduced, &b, report));
-    RITZ_TRY(publish_file(request->output, reduced, &b));
-done:
-    exudyn_body_free(&b);
-    return status;
+    RITZ_CHECK(exudyn_body_of(reduced, &b));
+    RITZ_CHECK(exudyn_body_say(reduced, &b, report));
+    return publish_file(request->output, reduced, &b);
 }
 
 const ritz_exporter ritz_exporter_exudyn = {

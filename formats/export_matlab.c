@@ -119,21 +119,18 @@ static ritz_status put_text(sheet *s, const char *name, const char *text)
 static ritz_status put_matrices(sheet *s, const ritz_matrices *list,
                                 ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
     for (int64_t k = 0; k < list->count; k++) {
         const ritz_matrix *m = &list->matrix[k];
 
-        RITZ_TRY(ritz_sparse_dense(&m->A, &A));
-        RITZ_TRY(put_real(s, m->name, A.nrow, A.ncol, A.val));
+        RITZ_CHECK(ritz_sparse_dense(&m->A, &A));
+        RITZ_CHECK(put_real(s, m->name, A.nrow, A.ncol, A.val));
         ritz_dense_free(&A);
-        RITZ_TRY(ritz_export_say(report, "%s  %lld x %lld", m->name,
-                                 (long long)m->A.nrow, (long long)m->A.ncol));
+        RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld", m->name,
+                                   (long long)m->A.nrow, (long long)m->A.ncol));
     }
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status put_limits(sheet *s, int64_t count, const double *limit)
@@ -160,29 +157,25 @@ static ritz_status sheet_open(const char *path, sheet *out)
 /* True if the file holds the matrices that were to be written, to the bit. */
 static ritz_status check(const char *path, const ritz_matrices *list)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices back = {0};
-    ritz_dense A = {0}, B = {0};
+    RITZ_OWN(ritz_matrices) back = {0};
+    RITZ_OWN(ritz_dense) A = {0}, B = {0};
 
-    RITZ_TRY_IN("reading back", ritz_foreign_read(path, &back));
-    RITZ_FAIL_IF(back.count < list->count, RITZ_ERR_FILE,
-                 "only part of '%s' could be written", path);
+    RITZ_CHECK_IN("reading back", ritz_foreign_read(path, &back));
+    RITZ_REFUSE_IF(back.count < list->count, RITZ_ERR_FILE,
+                   "only part of '%s' could be written", path);
     for (int64_t k = 0; k < list->count; k++) {
-        RITZ_TRY(ritz_sparse_dense(&list->matrix[k].A, &A));
-        RITZ_TRY(ritz_sparse_dense(&back.matrix[k].A, &B));
-        RITZ_FAIL_IF(A.nrow != B.nrow || A.ncol != B.ncol, RITZ_ERR_FILE,
-                     "'%s' was not written as it is", list->matrix[k].name);
+        RITZ_CHECK(ritz_sparse_dense(&list->matrix[k].A, &A));
+        RITZ_CHECK(ritz_sparse_dense(&back.matrix[k].A, &B));
+        RITZ_REFUSE_IF(A.nrow != B.nrow || A.ncol != B.ncol, RITZ_ERR_FILE,
+                       "'%s' was not written as it is", list->matrix[k].name);
         for (int64_t i = 0; i < A.nrow * A.ncol; i++)
-            RITZ_FAIL_IF(A.val[i] != B.val[i], RITZ_ERR_FILE,
-                         "'%s' was not written as it is", list->matrix[k].name);
+            RITZ_REFUSE_IF(A.val[i] != B.val[i], RITZ_ERR_FILE,
+                           "'%s' was not written as it is",
+                           list->matrix[k].name);
         ritz_dense_free(&A);
         ritz_dense_free(&B);
     }
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&B);
-    ritz_matrices_free(&back);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status sheet_publish(sheet *s, const ritz_matrices *list)

@@ -191,28 +191,22 @@ static ritz_status write(const ritz_shapes *shapes,
                          const ritz_export_request *request,
                          ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_draft heavy = {0}, light = {0};
-    char *beside = NULL;
+    RITZ_OWN(ritz_draft) heavy = {0}, light = {0};
+    RITZ_OWN_ARRAY char *beside = NULL;
     int64_t length = 0;
 
-    RITZ_TRY(name_heavy(request->output, &beside));
-    RITZ_TRY(ritz_draft_new(beside, &heavy));
-    RITZ_TRY(ritz_draft_new(request->output, &light));
-    RITZ_TRY(write_heavy(heavy.name, shapes, &length));
-    RITZ_TRY(write_light(light.name, beside, shapes, length));
-    RITZ_TRY(ritz_draft_publish(&heavy));
-    RITZ_TRY(ritz_draft_publish(&light));
-    RITZ_TRY(ritz_shapes_say(shapes, report));
-    RITZ_TRY(ritz_export_say(report,
-                             "the numbers are in %.200s, which must "
-                             "stay beside it",
-                             beside));
-done:
-    free(beside);
-    ritz_draft_free(&heavy);
-    ritz_draft_free(&light);
-    return status;
+    RITZ_CHECK(name_heavy(request->output, &beside));
+    RITZ_CHECK(ritz_draft_new(beside, &heavy));
+    RITZ_CHECK(ritz_draft_new(request->output, &light));
+    RITZ_CHECK(write_heavy(heavy.name, shapes, &length));
+    RITZ_CHECK(write_light(light.name, beside, shapes, length));
+    RITZ_CHECK(ritz_draft_publish(&heavy));
+    RITZ_CHECK(ritz_draft_publish(&light));
+    RITZ_CHECK(ritz_shapes_say(shapes, report));
+    return ritz_export_say(report,
+                           "the numbers are in %.200s, which must "
+                           "stay beside it",
+                           beside);
 }
 
 const ritz_exporter ritz_exporter_xdmf = {

@@ -67,31 +67,26 @@ static double remove_part(const ritz_orthonormal *set, double *x)
 static ritz_status demand_rigid(const ritz_reduced *reduced,
                                 const ritz_dense *Z)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component body = {.num_dofs = reduced->num_dofs,
                                  .dof = reduced->dof,
                                  .grids = reduced->grids};
-    ritz_dense R = {0}, U = {0};
-    ritz_orthonormal rigid = {0};
+    RITZ_OWN(ritz_dense) R = {0}, U = {0};
+    RITZ_OWN(ritz_orthonormal) rigid = {0};
 
-    RITZ_TRY(ritz_rigid_geometry(&body, reduced->inertia.centre, &R));
-    RITZ_TRY(ritz_dense_mul(&reduced->T, Z, &U));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_rigid_geometry(&body, reduced->inertia.centre, &R));
+    RITZ_CHECK(ritz_dense_mul(&reduced->T, Z, &U));
+    RITZ_CHECK(
         ritz_orthonormal_new(R.nrow, NULL, RITZ_ROTATION_ON_A_LINE, &rigid));
-    RITZ_TRY(ritz_orthonormal_append(&rigid, &R, R.ncol, NULL));
+    RITZ_CHECK(ritz_orthonormal_append(&rigid, &R, R.ncol, NULL));
     for (int64_t j = 0; j < U.ncol; j++)
-        RITZ_FAIL_IF(remove_part(&rigid, ritz_dense_col(&U, j)) >
-                         RITZ_LOOSE_IN_FRAME,
-                     RITZ_ERR_ARGUMENT,
-                     "of %lld motions without stiffness number %lld is not "
-                     "that of a rigid body: a part is loose, and a moving "
-                     "frame cannot follow it",
-                     (long long)U.ncol, (long long)j + 1);
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&U);
-    ritz_orthonormal_free(&rigid);
-    return status;
+        RITZ_REFUSE_IF(remove_part(&rigid, ritz_dense_col(&U, j)) >
+                           RITZ_LOOSE_IN_FRAME,
+                       RITZ_ERR_ARGUMENT,
+                       "of %lld motions without stiffness number %lld is not "
+                       "that of a rigid body: a part is loose, and a moving "
+                       "frame cannot follow it",
+                       (long long)U.ncol, (long long)j + 1);
+    return RITZ_OK;
 }
 
 static ritz_status project_matrices(const ritz_reduced *reduced,
@@ -112,68 +107,56 @@ static void note_band(const ritz_pairs *pairs, exudyn_modes *modes)
 static ritz_status keep_columns(const ritz_reduced *reduced,
                                 exudyn_modes *modes)
 {
-    ritz_status status = RITZ_OK;
-    exudyn_modes kept = {.kept = true};
-    ritz_dense Z = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(exudyn_modes) kept = {.kept = true};
+    RITZ_OWN(ritz_dense) Z = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(select_columns(&reduced->columns, true, &Z));
-    RITZ_TRY(select_columns(&reduced->columns, false, &kept.V));
+    RITZ_CHECK(select_columns(&reduced->columns, true, &Z));
+    RITZ_CHECK(select_columns(&reduced->columns, false, &kept.V));
     if (Z.ncol == 0 || kept.V.ncol == 0)
-        goto done;
-    RITZ_TRY(project_matrices(reduced, &kept));
-    RITZ_TRY(ritz_eigen_dense(&kept.K, &kept.M, &pairs));
+        return RITZ_OK;
+    RITZ_CHECK(project_matrices(reduced, &kept));
+    RITZ_CHECK(ritz_eigen_dense(&kept.K, &kept.M, &pairs));
     if (pairs.num_rigid > 0 || pairs.Phi.ncol < kept.V.ncol)
-        goto done;
-    RITZ_TRY(demand_rigid(reduced, &Z));
+        return RITZ_OK;
+    RITZ_CHECK(demand_rigid(reduced, &Z));
     kept.num_rigid = Z.ncol;
     note_band(&pairs, &kept);
     *modes = kept;
     kept = (exudyn_modes){0};
-done:
-    exudyn_modes_free(&kept);
-    ritz_dense_free(&Z);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status diagonalise_body(const ritz_reduced *reduced,
                                     exudyn_modes *modes)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Z = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) Z = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_eigen_dense(&reduced->K, &reduced->M, &pairs));
-    RITZ_FAIL_IF(pairs.num_rigid == pairs.Phi.ncol, RITZ_ERR_ARGUMENT,
-                 "no mode is flexible: a rigid body needs no file, but mass "
-                 "and inertia");
-    RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &Z));
-    RITZ_TRY(demand_rigid(reduced, &Z));
-    RITZ_TRY(ritz_dense_columns(&pairs.Phi, pairs.num_rigid,
-                                pairs.Phi.ncol - pairs.num_rigid, &modes->V));
-    RITZ_TRY(project_matrices(reduced, modes));
+    RITZ_CHECK(ritz_eigen_dense(&reduced->K, &reduced->M, &pairs));
+    RITZ_REFUSE_IF(pairs.num_rigid == pairs.Phi.ncol, RITZ_ERR_ARGUMENT,
+                   "no mode is flexible: a rigid body needs no file, but mass "
+                   "and inertia");
+    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &Z));
+    RITZ_CHECK(demand_rigid(reduced, &Z));
+    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, pairs.num_rigid,
+                                  pairs.Phi.ncol - pairs.num_rigid, &modes->V));
+    RITZ_CHECK(project_matrices(reduced, modes));
     modes->num_rigid = pairs.num_rigid;
     note_band(&pairs, modes);
-done:
-    ritz_dense_free(&Z);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status exudyn_modes_of(const ritz_reduced *reduced, exudyn_modes *out)
 {
-    ritz_status status = RITZ_OK;
-    exudyn_modes modes = {0};
+    RITZ_OWN(exudyn_modes) modes = {0};
 
-    RITZ_TRY(keep_columns(reduced, &modes));
+    RITZ_CHECK(keep_columns(reduced, &modes));
     if (!modes.V.val)
-        RITZ_TRY(diagonalise_body(reduced, &modes));
+        RITZ_CHECK(diagonalise_body(reduced, &modes));
     *out = modes;
     modes = (exudyn_modes){0};
-done:
-    exudyn_modes_free(&modes);
-    return status;
+    return RITZ_OK;
 }
 
 void exudyn_modes_free(exudyn_modes *modes)
@@ -298,19 +281,18 @@ static void put_pair(const ritz_dense *product, int64_t m, int64_t k, int64_t l,
 ritz_status exudyn_terms_of(const ritz_invariants *invariants,
                             const ritz_inertia *inertia, exudyn_terms *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = invariants->momentum.ncol;
-    exudyn_terms t = {0};
+    RITZ_OWN(exudyn_terms) t = {0};
 
-    RITZ_TRY(ritz_dense_new(3, 3, &t.inertiaLocal));
-    RITZ_TRY(ritz_dense_new(3, 3, &t.Mtt));
-    RITZ_TRY(ritz_dense_new(3, 3, &t.chiUtilde));
-    RITZ_TRY(ritz_dense_new(3 * m, m, &t.mPsiTildePsi));
-    RITZ_TRY(ritz_dense_new(3 * m, 3 * m, &t.mPsiTildePsiTilde));
-    RITZ_TRY(ritz_dense_new(3, m, &t.mPhitTPsi));
-    RITZ_TRY(ritz_dense_new(3, 3 * m, &t.mPhitTPsiTilde));
-    RITZ_TRY(ritz_dense_new(3, m, &t.mXRefTildePsi));
-    RITZ_TRY(ritz_dense_new(3, 3 * m, &t.mXRefTildePsiTilde));
+    RITZ_CHECK(ritz_dense_new(3, 3, &t.inertiaLocal));
+    RITZ_CHECK(ritz_dense_new(3, 3, &t.Mtt));
+    RITZ_CHECK(ritz_dense_new(3, 3, &t.chiUtilde));
+    RITZ_CHECK(ritz_dense_new(3 * m, m, &t.mPsiTildePsi));
+    RITZ_CHECK(ritz_dense_new(3 * m, 3 * m, &t.mPsiTildePsiTilde));
+    RITZ_CHECK(ritz_dense_new(3, m, &t.mPhitTPsi));
+    RITZ_CHECK(ritz_dense_new(3, 3 * m, &t.mPhitTPsiTilde));
+    RITZ_CHECK(ritz_dense_new(3, m, &t.mXRefTildePsi));
+    RITZ_CHECK(ritz_dense_new(3, 3 * m, &t.mXRefTildePsiTilde));
     put_rigid(invariants, inertia, &t);
     put_momenta(invariants, &t);
     put_first_order(invariants, &t);
@@ -319,9 +301,7 @@ ritz_status exudyn_terms_of(const ritz_invariants *invariants,
             put_pair(&invariants->product, m, k, l, &t);
     *out = t;
     t = (exudyn_terms){0};
-done:
-    exudyn_terms_free(&t);
-    return status;
+    return RITZ_OK;
 }
 
 void exudyn_terms_free(exudyn_terms *terms)

@@ -93,19 +93,16 @@ void ritz_foreign_close(ritz_foreign *file)
 
 static ritz_status take_all(ritz_foreign *file, ritz_matrices *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
 
-    RITZ_TRY(ritz_foreign_list(file));
-    RITZ_NEW(all.matrix, file->listing.count);
+    RITZ_CHECK(ritz_foreign_list(file));
+    RITZ_CHECK_NEW(all.matrix, file->listing.count);
     for (; all.count < file->listing.count; all.count++)
-        RITZ_TRY(ritz_foreign_take(file, all.count, &all.matrix[all.count]));
+        RITZ_CHECK(ritz_foreign_take(file, all.count, &all.matrix[all.count]));
     snprintf(all.format, sizeof all.format, "%s", file->format->name);
     *out = all;
     all = (ritz_matrices){0};
-done:
-    ritz_matrices_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
@@ -371,16 +368,13 @@ done:
 ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,
                                  ritz_file_sums *sums)
 {
-    ritz_status status = RITZ_OK;
-    bool *taken = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_NEW(taken, count);
+    RITZ_CHECK_NEW(taken, count);
     for (int64_t k = 0; k < count; k++)
         if (!taken[k])
-            RITZ_TRY(take_of_file(k, count, wanted, taken, sums));
-done:
-    free(taken);
-    return status;
+            RITZ_CHECK(take_of_file(k, count, wanted, taken, sums));
+    return RITZ_OK;
 }
 
 ritz_status ritz_foreign_select(const char *spec_text, ritz_matrix *out)

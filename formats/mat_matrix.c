@@ -97,17 +97,13 @@ static ritz_status add_matrix(ritz_mat_list *list, const char *name,
 ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
                                const char *why)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrix none = {0};
+    RITZ_OWN(ritz_matrix) none = {0};
 
     if (ritz_mat_pass(list))
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_new(0, 0, 0, &none.A));
+    RITZ_CHECK(ritz_sparse_new(0, 0, 0, &none.A));
     snprintf(none.other, sizeof none.other, "%s", why);
-    RITZ_TRY(add_matrix(list, name, &none));
-done:
-    ritz_matrix_free(&none);
-    return status;
+    return add_matrix(list, name, &none);
 }
 
 /* True if all values are finite; if not, `why` says where. */
@@ -128,25 +124,22 @@ static ritz_status compress_triplets(ritz_mat_list *list, const char *name,
                                      const ritz_mat_entries *e,
                                      const char *form, const ritz_triplets *t)
 {
-    ritz_status status = RITZ_OK;
     char why[RITZ_NAME_SIZE];
-    ritz_matrix matrix = {.digits = e->re.type == RITZ_MAT_SINGLE ? 7 : 17};
+    RITZ_OWN(ritz_matrix)
+    matrix = {.digits = e->re.type == RITZ_MAT_SINGLE ? 7 : 17};
 
     if (!is_finite(t, why)) {
-        RITZ_TRY(ritz_mat_add_other(list, name, why));
-        goto done;
+        RITZ_CHECK(ritz_mat_add_other(list, name, why));
+        return RITZ_OK;
     }
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_triplets_compress(t, e->nrow, e->ncol, e->im.at != NULL, &matrix));
-    RITZ_FAIL_IF(matrix.A.colptr[e->ncol] < t->count, RITZ_ERR_FORMAT,
-                 "'%s' has an entry twice", name);
+    RITZ_REFUSE_IF(matrix.A.colptr[e->ncol] < t->count, RITZ_ERR_FORMAT,
+                   "'%s' has an entry twice", name);
     snprintf(matrix.spelling, sizeof matrix.spelling, "%s, %s%s",
              list->spelling, form,
              e->re.type == RITZ_MAT_SINGLE ? ", single" : "");
-    RITZ_TRY(add_matrix(list, name, &matrix));
-done:
-    ritz_matrix_free(&matrix);
-    return status;
+    return add_matrix(list, name, &matrix);
 }
 
 static void put_entry(ritz_triplets *t, int64_t row, int64_t col, double re,
@@ -165,21 +158,17 @@ ritz_status ritz_mat_add_full(ritz_mat_list *list, const char *name,
                               const ritz_mat_values *re,
                               const ritz_mat_values *im)
 {
-    ritz_status status = RITZ_OK;
     const ritz_mat_entries entries = {
         .nrow = nrow, .ncol = ncol, .count = nrow * ncol, .re = *re, .im = *im};
-    ritz_triplets t = {0};
+    RITZ_OWN(ritz_triplets) t = {0};
 
     if (ritz_mat_pass(list))
         return RITZ_OK;
-    RITZ_TRY(ritz_triplets_new(entries.count, &t));
+    RITZ_CHECK(ritz_triplets_new(entries.count, &t));
     for (int64_t k = 0; k < entries.count; k++)
         put_entry(&t, k % nrow, k / nrow, ritz_mat_value(re, k),
                   im->at ? ritz_mat_value(im, k) : 0.0);
-    RITZ_TRY(compress_triplets(list, name, &entries, "full", &t));
-done:
-    ritz_triplets_free(&t);
-    return status;
+    return compress_triplets(list, name, &entries, "full", &t);
 }
 
 /* Value k as an index from 0, or -1 if it is not one below `most`. */
@@ -215,36 +204,31 @@ static ritz_status spread_starts(const char *name, const ritz_mat_entries *e,
 ritz_status ritz_mat_add_sparse(ritz_mat_list *list, const char *name,
                                 const ritz_mat_entries *e)
 {
-    ritz_status status = RITZ_OK;
-    ritz_triplets t = {0};
-    int64_t *col = NULL;
+    RITZ_OWN(ritz_triplets) t = {0};
+    RITZ_OWN_ARRAY int64_t *col = NULL;
 
     if (ritz_mat_pass(list))
         return RITZ_OK;
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         e->nrow - NULL_ROWS > list->bytes || e->ncol - NULL_ROWS > list->bytes,
         RITZ_ERR_FORMAT,
         "'%s', %" PRId64 " x %" PRId64 ", is far more than the file can fill",
         name, e->nrow, e->ncol);
-    RITZ_TRY(ritz_triplets_new(e->count, &t));
-    RITZ_NEW(col, e->count);
+    RITZ_CHECK(ritz_triplets_new(e->count, &t));
+    RITZ_CHECK_NEW(col, e->count);
     if (e->starts)
-        RITZ_TRY(spread_starts(name, e, col));
+        RITZ_CHECK(spread_starts(name, e, col));
     for (int64_t k = 0; k < e->count; k++) {
         int64_t i = find_place(&e->row, k, e->base, e->nrow);
 
         if (!e->starts)
             col[k] = find_place(&e->col, k, e->base, e->ncol);
-        RITZ_FAIL_IF(i < 0 || col[k] < 0, RITZ_ERR_FORMAT,
-                     "'%s': entry %" PRId64 " lies outside %" PRId64
-                     " x %" PRId64,
-                     name, k + 1, e->nrow, e->ncol);
+        RITZ_REFUSE_IF(i < 0 || col[k] < 0, RITZ_ERR_FORMAT,
+                       "'%s': entry %" PRId64 " lies outside %" PRId64
+                       " x %" PRId64,
+                       name, k + 1, e->nrow, e->ncol);
         put_entry(&t, i, col[k], ritz_mat_value(&e->re, k),
                   e->im.at ? ritz_mat_value(&e->im, k) : 0.0);
     }
-    RITZ_TRY(compress_triplets(list, name, e, "sparse", &t));
-done:
-    free(col);
-    ritz_triplets_free(&t);
-    return status;
+    return compress_triplets(list, name, e, "sparse", &t);
 }

@@ -8,32 +8,28 @@
 
 ritz_status ritz_triplets_new(int64_t most, ritz_triplets *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_triplets list = {0};
+    RITZ_OWN(ritz_triplets) list = {0};
 
-    RITZ_NEW(list.row, most);
-    RITZ_NEW(list.col, most);
-    RITZ_NEW(list.re, most);
-    RITZ_NEW(list.im, most);
+    RITZ_CHECK_NEW(list.row, most);
+    RITZ_CHECK_NEW(list.col, most);
+    RITZ_CHECK_NEW(list.re, most);
+    RITZ_CHECK_NEW(list.im, most);
     *out = list;
     list = (ritz_triplets){0};
-done:
-    ritz_triplets_free(&list);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_triplets_compress(const ritz_triplets *list, int64_t nrow,
                                    int64_t ncol, bool complex, ritz_matrix *m)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse real = {0};
-    ritz_sparse imaginary = {0};
+    RITZ_OWN(ritz_sparse) real = {0};
+    RITZ_OWN(ritz_sparse) imaginary = {0};
 
-    RITZ_TRY(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
-                                       list->col, list->re, &real));
+    RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
+                                         list->col, list->re, &real));
     if (complex) {
-        RITZ_TRY(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
-                                           list->col, list->im, &imaginary));
+        RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
+                                             list->col, list->im, &imaginary));
         free(m->imaginary);
         m->imaginary = imaginary.val; /* the pattern is the same */
         imaginary.val = NULL;
@@ -41,10 +37,7 @@ ritz_status ritz_triplets_compress(const ritz_triplets *list, int64_t nrow,
     ritz_sparse_free(&m->A);
     m->A = real;
     real = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&real);
-    ritz_sparse_free(&imaginary);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_triplets_free(ritz_triplets *list)

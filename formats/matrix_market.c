@@ -84,13 +84,12 @@ static bool is_sorted(const ritz_market *m)
 /* Stable counting sort of the entries, by row or by column. */
 static ritz_status sort_by(ritz_market *m, bool by_row)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = by_row ? m->nrow : m->ncol;
-    int64_t *start = NULL;
-    ritz_market_entry *sorted = NULL;
+    RITZ_OWN_ARRAY int64_t *start = NULL;
+    RITZ_OWN_ARRAY ritz_market_entry *sorted = NULL;
 
-    RITZ_NEW(start, n + 1);
-    RITZ_NEW(sorted, m->count);
+    RITZ_CHECK_NEW(start, n + 1);
+    RITZ_CHECK_NEW(sorted, m->count);
     for (int64_t k = 0; k < m->count; k++)
         start[(by_row ? m->entry[k].row : m->entry[k].col) + 1]++;
     for (int64_t j = 0; j < n; j++)
@@ -101,10 +100,7 @@ static ritz_status sort_by(ritz_market *m, bool by_row)
     free(m->entry);
     m->entry = sorted;
     sorted = NULL;
-done:
-    free(start);
-    free(sorted);
-    return status;
+    return RITZ_OK;
 }
 
 /* Sort; of a mirrored pair that agrees keep one, refuse other repetitions. */
@@ -150,12 +146,11 @@ static bool is_zero(const ritz_market_entry *e)
  */
 static ritz_status compress_columns(const ritz_market *m, ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
-    int64_t *next = NULL;
-    double *imaginary = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN_ARRAY int64_t *next = NULL;
+    RITZ_OWN_ARRAY double *imaginary = NULL;
 
-    RITZ_NEW(next, m->ncol + 1);
+    RITZ_CHECK_NEW(next, m->ncol + 1);
     for (int64_t k = 0; k < m->count; k++) {
         const ritz_market_entry *e = &m->entry[k];
 
@@ -167,10 +162,10 @@ static ritz_status compress_columns(const ritz_market *m, ritz_matrix *out)
     }
     for (int64_t j = 0; j < m->ncol; j++)
         next[j + 1] += next[j];
-    RITZ_TRY(ritz_sparse_new(m->nrow, m->ncol, next[m->ncol], &A));
+    RITZ_CHECK(ritz_sparse_new(m->nrow, m->ncol, next[m->ncol], &A));
     memcpy(A.colptr, next, (size_t)(m->ncol + 1) * sizeof *next);
     if (m->field == RITZ_MARKET_COMPLEX)
-        RITZ_NEW(imaginary, next[m->ncol]);
+        RITZ_CHECK_NEW(imaginary, next[m->ncol]);
     for (int64_t k = 0; k < m->count; k++) {
         ritz_market_entry e = m->entry[k];
         bool twice = m->symmetry != RITZ_MARKET_GENERAL && e.row != e.col;
@@ -190,11 +185,7 @@ static ritz_status compress_columns(const ritz_market *m, ritz_matrix *out)
     out->imaginary = imaginary;
     A = (ritz_sparse){0};
     imaginary = NULL;
-done:
-    free(next);
-    free(imaginary);
-    ritz_sparse_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- lines of entries --------------------------------------------------- */

@@ -132,19 +132,15 @@ static ritz_status write_one(const ritz_matrix *one, const char *method,
                              const ritz_export_request *request,
                              ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
     char comment[4 * RITZ_NAME_SIZE];
-    char *path = NULL;
+    RITZ_OWN_ARRAY char *path = NULL;
 
     snprintf(comment, sizeof comment, *method ? "%s, reduced by %s" : "%s",
              one->name, method);
-    RITZ_TRY(name_file(request->output, one->name, &path));
-    RITZ_TRY(ritz_matrix_market_write(path, one, comment));
-    RITZ_TRY(ritz_export_say(report, "%s  %lld x %lld", one->name,
-                             (long long)one->A.nrow, (long long)one->A.ncol));
-done:
-    free(path);
-    return status;
+    RITZ_CHECK(name_file(request->output, one->name, &path));
+    RITZ_CHECK(ritz_matrix_market_write(path, one, comment));
+    return ritz_export_say(report, "%s  %lld x %lld", one->name,
+                           (long long)one->A.nrow, (long long)one->A.ncol);
 }
 
 static ritz_status write_list(const ritz_matrices *list, const char *method,
@@ -173,29 +169,22 @@ static ritz_status write_reduced(const ritz_reduced *reduced,
                                  const ritz_export_request *request,
                                  ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices list = {0};
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_reduced_matrices(reduced, choose_matrices(request, "K"), &list));
-    RITZ_TRY(write_list(&list, reduced->origin.method, request, report));
-done:
-    ritz_matrices_free(&list);
-    return status;
+    return write_list(&list, reduced->origin.method, request, report);
 }
 
 static ritz_status write_states(const ritz_state_space *model,
                                 const ritz_export_request *request,
                                 ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices list = {0};
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_TRY(ritz_state_matrices(model, choose_matrices(request, "A"), &list));
-    RITZ_TRY(write_list(&list, model->origin.method, request, report));
-done:
-    ritz_matrices_free(&list);
-    return status;
+    RITZ_CHECK(
+        ritz_state_matrices(model, choose_matrices(request, "A"), &list));
+    return write_list(&list, model->origin.method, request, report);
 }
 
 const ritz_exporter ritz_exporter_matrix_market = {

@@ -75,14 +75,10 @@ static ritz_status list_entries(const ritz_matrix *m, shape as, int64_t n,
 /* m := the n x n matrix that its entries are a shorthand of. */
 static ritz_status expand_form(ritz_matrix *m, shape as, int64_t n)
 {
-    ritz_status status = RITZ_OK;
-    ritz_triplets list = {0};
+    RITZ_OWN(ritz_triplets) list = {0};
 
-    RITZ_TRY(list_entries(m, as, n, &list));
-    RITZ_TRY(ritz_triplets_compress(&list, n, n, m->imaginary != NULL, m));
-done:
-    ritz_triplets_free(&list);
-    return status;
+    RITZ_CHECK(list_entries(m, as, n, &list));
+    return ritz_triplets_compress(&list, n, n, m->imaginary != NULL, m);
 }
 
 /* Give the matrix the meaning that FORM says. */
@@ -150,18 +146,17 @@ bool ritz_output4_decode(const ritz_output4_build *build, int64_t rule,
 /* Room for `need` entries, doubled so that growing costs O(1) an entry. */
 static ritz_status grow_entries(ritz_output4_build *build, int64_t need)
 {
-    ritz_status status = RITZ_OK;
     ritz_matrix *m = &build->matrix;
     int64_t room = need > 2 * build->room ? need : 2 * build->room;
     size_t used = (size_t)build->nnz;
-    int64_t *rowind = NULL;
-    double *val = NULL;
-    double *imaginary = NULL;
+    RITZ_OWN_ARRAY int64_t *rowind = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
+    RITZ_OWN_ARRAY double *imaginary = NULL;
 
-    RITZ_NEW(rowind, room);
-    RITZ_NEW(val, room);
+    RITZ_CHECK_NEW(rowind, room);
+    RITZ_CHECK_NEW(val, room);
     if (build->numbers == 2)
-        RITZ_NEW(imaginary, room);
+        RITZ_CHECK_NEW(imaginary, room);
     if (used > 0) {
         memcpy(rowind, m->A.rowind, used * sizeof *rowind);
         memcpy(val, m->A.val, used * sizeof *val);
@@ -177,11 +172,7 @@ static ritz_status grow_entries(ritz_output4_build *build, int64_t need)
     build->room = room;
     rowind = NULL;
     val = imaginary = NULL;
-done:
-    free(rowind);
-    free(val);
-    free(imaginary);
-    return status;
+    return RITZ_OK;
 }
 
 /* Room for pointers 0..column + 1, at most of all columns. */

@@ -344,28 +344,20 @@ static ritz_status write_reduced(const ritz_reduced *reduced,
                                  const ritz_export_request *request,
                                  ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices list = {0};
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_TRY(ritz_reduced_matrices(reduced, request->matrices, &list));
-    RITZ_TRY(write_list(&list, request, report));
-done:
-    ritz_matrices_free(&list);
-    return status;
+    RITZ_CHECK(ritz_reduced_matrices(reduced, request->matrices, &list));
+    return write_list(&list, request, report);
 }
 
 static ritz_status write_states(const ritz_state_space *model,
                                 const ritz_export_request *request,
                                 ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices list = {0};
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_TRY(ritz_state_matrices(model, request->matrices, &list));
-    RITZ_TRY(write_list(&list, request, report));
-done:
-    ritz_matrices_free(&list);
-    return status;
+    RITZ_CHECK(ritz_state_matrices(model, request->matrices, &list));
+    return write_list(&list, request, report);
 }
 
 const ritz_exporter ritz_exporter_output4 = {

@@ -81,31 +81,29 @@ static const entry *find_entry(const entry *among, const char *name,
 static ritz_status list_matrices(const matrix_kind *kind, const void *object,
                                  const char *at, ritz_matrices *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices list = {0};
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_NEW(list.matrix, (int64_t)strlen(at) + 1);
+    RITZ_CHECK_NEW(list.matrix, (int64_t)strlen(at) + 1);
     while (*at) {
         size_t length = strcspn(at, ",");
         const entry *e = find_entry(kind->entry, at, length);
 
-        RITZ_FAIL_IF(!e, RITZ_ERR_ARGUMENT,
-                     "there is no matrix '%.*s', there are %s", (int)length, at,
-                     kind->all);
+        RITZ_REFUSE_IF(!e, RITZ_ERR_ARGUMENT,
+                       "there is no matrix '%.*s', there are %s", (int)length,
+                       at, kind->all);
         for (int64_t k = 0; k < list.count; k++)
-            RITZ_FAIL_IF(strcmp(list.matrix[k].name, e->name) == 0,
-                         RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
-        RITZ_FAIL_IF(!dense_of(object, e)->val, RITZ_ERR_ARGUMENT,
-                     "this %s has no '%s'", kind->noun, e->name);
-        RITZ_TRY(fill_matrix(e, dense_of(object, e), &list.matrix[list.count]));
+            RITZ_REFUSE_IF(strcmp(list.matrix[k].name, e->name) == 0,
+                           RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
+        RITZ_REFUSE_IF(!dense_of(object, e)->val, RITZ_ERR_ARGUMENT,
+                       "this %s has no '%s'", kind->noun, e->name);
+        RITZ_CHECK(
+            fill_matrix(e, dense_of(object, e), &list.matrix[list.count]));
         list.count++;
         at += length + (at[length] != '\0');
     }
     *out = list;
     list = (ritz_matrices){0};
-done:
-    ritz_matrices_free(&list);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_reduced_matrices(const ritz_reduced *reduced,

@@ -182,19 +182,18 @@ static bool has_rotations(const shapes_motion *m)
 /* Elements by points; a cell for each point if there are none. */
 static ritz_status list_cells(const shapes_motion *m, ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_elements cells = {0};
+    RITZ_OWN(ritz_elements) cells = {0};
 
-    RITZ_TRY(ritz_elements_copy(m->elements, &cells));
+    RITZ_CHECK(ritz_elements_copy(m->elements, &cells));
     (void)ritz_elements_keep(&cells, out->num_points, out->id);
     for (int64_t i = 0; cells.count > 0 && i < cells.first[cells.count]; i++)
         cells.grid[i] = ritz_search(out->num_points, out->id, cells.grid[i]);
     out->meshed = cells.count > 0;
     if (!out->meshed) {
         cells.count = out->num_points;
-        RITZ_NEW(cells.kind, cells.count);
-        RITZ_NEW(cells.first, cells.count + 1);
-        RITZ_NEW(cells.grid, cells.count);
+        RITZ_CHECK_NEW(cells.kind, cells.count);
+        RITZ_CHECK_NEW(cells.first, cells.count + 1);
+        RITZ_CHECK_NEW(cells.grid, cells.count);
         for (int64_t k = 0; k < cells.count; k++) {
             cells.kind[k] = RITZ_CELL_POINT;
             cells.grid[k] = k;
@@ -203,27 +202,21 @@ static ritz_status list_cells(const shapes_motion *m, ritz_shapes *out)
     }
     out->cells = cells;
     cells = (ritz_elements){0};
-done:
-    ritz_elements_free(&cells);
-    return status;
+    return RITZ_OK;
 }
 
 /* All of the shapes but their names. */
 static ritz_status place_shapes(const shapes_motion *m, ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *index = NULL;
+    RITZ_OWN_ARRAY int64_t *index = NULL;
 
-    RITZ_NEW(index, m->grids->count);
-    RITZ_TRY(list_points(m, index, out));
-    RITZ_TRY(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->u));
+    RITZ_CHECK_NEW(index, m->grids->count);
+    RITZ_CHECK(list_points(m, index, out));
+    RITZ_CHECK(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->u));
     if (has_rotations(m))
-        RITZ_TRY(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->turn));
+        RITZ_CHECK(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->turn));
     place_motion(m, index, out);
-    RITZ_TRY(list_cells(m, out));
-done:
-    free(index);
-    return status;
+    return list_cells(m, out);
 }
 
 /* ---- which shapes ------------------------------------------------------- */
@@ -271,21 +264,16 @@ typedef struct body {
 static ritz_status finish_shapes(const body *of, const ritz_dense *T,
                                  ritz_shapes *shapes)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dof *all = NULL;
-    ritz_dense shape = {0};
+    RITZ_OWN_ARRAY ritz_dof *all = NULL;
+    RITZ_OWN(ritz_dense) shape = {0};
     shapes_motion m = {.grids = of->grids, .elements = of->elements};
 
-    RITZ_TRY(ritz_recovery_extend(of->recovery, of->num_dofs, of->dof, T, &all,
-                                  &shape));
+    RITZ_CHECK(ritz_recovery_extend(of->recovery, of->num_dofs, of->dof, T,
+                                    &all, &shape));
     m.num_dofs = of->num_dofs + of->recovery->count;
     m.dof = all;
     m.T = &shape;
-    RITZ_TRY(place_shapes(&m, shapes));
-done:
-    free(all);
-    ritz_dense_free(&shape);
-    return status;
+    return place_shapes(&m, shapes);
 }
 
 static body of_component(const ritz_component *component)

@@ -1,4 +1,5 @@
 /* ritz-assemble - the components of a scene joined at its configurations. */
+#include "base/alloc.h"
 #include "print/describe.h"
 #include "print/tracks.h"
 
@@ -9,59 +10,47 @@
 static ritz_status system_of(cli_run *run, const ritz_scene *scene,
                              const char *at, const char *tracks)
 {
-    ritz_status status = RITZ_OK;
-    ritz_stage stage = {0};
-    ritz_system system = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_system) system = {0};
     ritz_stamp stamp = {0};
 
-    RITZ_TRY(ritz_stage_new(scene, &stage));
-    RITZ_TRY(ritz_assemble(&stage, at, &system));
+    RITZ_CHECK(ritz_stage_new(scene, &stage));
+    RITZ_CHECK(ritz_assemble(&stage, at, &system));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
+    RITZ_CHECK(ritz_container_write_system(run->output, &system, &stamp));
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_system(run, &system));
-    RITZ_TRY(tracks_report(run, &stage, &system, tracks));
+    RITZ_CHECK(describe_system(run, &system));
+    RITZ_CHECK(tracks_report(run, &stage, &system, tracks));
     cli_record(run, "assemble", system.configuration[0].K.nrow);
-done:
-    ritz_system_free(&system);
-    ritz_stage_free(&stage);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status full_of(cli_run *run, const ritz_scene *scene,
                            const char *at)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component full = {0};
+    RITZ_OWN(ritz_component) full = {0};
     ritz_stamp stamp = {0};
-    double *setting = calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
+    RITZ_OWN_ARRAY double *setting =
+        calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
 
-    RITZ_FAIL_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
-    RITZ_TRY(ritz_scene_settings(scene, at ? at : "", setting));
-    RITZ_TRY(ritz_assemble_full(scene, setting, &full));
+    RITZ_REFUSE_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
+    RITZ_CHECK(ritz_scene_settings(scene, at ? at : "", setting));
+    RITZ_CHECK(ritz_assemble_full(scene, setting, &full));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_component(run->output, &full, &stamp));
+    RITZ_CHECK(ritz_container_write_component(run->output, &full, &stamp));
     cli_say(run, "%s:", run->output);
     describe_component(run, &full);
     cli_record(run, "full", full.num_dofs);
-done:
-    free(setting);
-    ritz_component_free(&full);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status assemble_scene(cli_run *run, const char *at, bool full,
                                   const char *tracks)
 {
-    ritz_status status = RITZ_OK;
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
-    RITZ_TRY(model_scene(run, run->operand[0], &scene));
-    RITZ_TRY(full ? full_of(run, &scene, at)
-                  : system_of(run, &scene, at, tracks));
-done:
-    ritz_scene_free(&scene);
-    return status;
+    RITZ_CHECK(model_scene(run, run->operand[0], &scene));
+    return full ? full_of(run, &scene, at) : system_of(run, &scene, at, tracks);
 }
 
 int main(int argc, char **argv)

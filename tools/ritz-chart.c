@@ -33,21 +33,17 @@ static const chart_kind *find(const cli_program *program, const char *word)
 static ritz_status draw(cli_run *run, const chart_kind *kind,
                         const chart_request *request)
 {
-    ritz_status status = RITZ_OK;
-    chart_sources sources = {0};
-    picture drawn = {0};
+    RITZ_OWN(chart_sources) sources = {0};
+    RITZ_OWN(picture) drawn = {0};
 
-    RITZ_TRY(chart_read(run, run->num_operands - 1, run->operand + 1,
-                        kind ? kind->holds : ~CHART_SYSTEM, &sources));
+    RITZ_CHECK(chart_read(run, run->num_operands - 1, run->operand + 1,
+                          kind ? kind->holds : ~CHART_SYSTEM, &sources));
     if (kind)
-        RITZ_TRY(kind->draw(&sources, request, &drawn));
+        RITZ_CHECK(kind->draw(&sources, request, &drawn));
     else
-        RITZ_TRY(report_write(&sources, request));
+        RITZ_CHECK(report_write(&sources, request));
     cli_say(run, "%s", run->output);
-done:
-    picture_free(&drawn);
-    chart_sources_free(&sources);
-    return status;
+    return RITZ_OK;
 }
 
 /* Options that take one of a few words. */

@@ -68,17 +68,14 @@ static int create(const char *name, bool *enlisted)
 /* Where a link leads, so that it stays one; else the path itself. */
 static ritz_status follow(const char *path, char **out)
 {
-    ritz_status status = RITZ_OK;
-    char *real = realpath(path, NULL);
+    RITZ_OWN_ARRAY char *real = realpath(path, NULL);
     const char *target = real ? real : path;
     char *copy = NULL;
 
-    RITZ_NEW(copy, (int64_t)strlen(target) + 1);
+    RITZ_CHECK_NEW(copy, (int64_t)strlen(target) + 1);
     memcpy(copy, target, strlen(target) + 1);
     *out = copy;
-done:
-    free(real);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_draft_new(const char *path, ritz_draft *out)

@@ -68,18 +68,15 @@ done:
 
 ritz_status ritz_text_read(const char *path, char **out)
 {
-    ritz_status status = RITZ_OK;
-    char *text = NULL;
+    RITZ_OWN_ARRAY char *text = NULL;
     int64_t size = 0;
 
-    RITZ_TRY(ritz_bytes_read(path, &size, &text));
-    RITZ_FAIL_IF(strlen(text) != (size_t)size, RITZ_ERR_FORMAT,
-                 "'%s' is not a text file", path);
+    RITZ_CHECK(ritz_bytes_read(path, &size, &text));
+    RITZ_REFUSE_IF(strlen(text) != (size_t)size, RITZ_ERR_FORMAT,
+                   "'%s' is not a text file", path);
     *out = text;
     text = NULL;
-done:
-    free(text);
-    return status;
+    return RITZ_OK;
 }
 
 bool ritz_text_real(const char *text, double *out)

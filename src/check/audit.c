@@ -128,23 +128,19 @@ static int64_t take_inputs(const ritz_io *io, ritz_dense *Lt,
  */
 static ritz_status take_interface(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reduced *reduced = it->reduced;
     int64_t most = reduced->io.num_inputs + 1;
-    ritz_dense Lt = {0};
+    RITZ_OWN(ritz_dense) Lt = {0};
 
     for (int64_t k = 0; k < reduced->num_ports; k++)
         most += reduced->port[k].count;
-    RITZ_TRY(ritz_dense_new(reduced->K.nrow, most, &Lt));
-    RITZ_NEW(it->row, most);
+    RITZ_CHECK(ritz_dense_new(reduced->K.nrow, most, &Lt));
+    RITZ_CHECK_NEW(it->row, most);
     if (reduced->num_ports > 0)
         Lt.ncol = take_ports(reduced, &Lt, it->row);
     else
         Lt.ncol = take_inputs(&reduced->io, &Lt, it->row);
-    RITZ_TRY(ritz_general_transpose(&Lt, &it->L));
-done:
-    ritz_dense_free(&Lt);
-    return status;
+    return ritz_general_transpose(&Lt, &it->L);
 }
 
 /* Structural damping, of harmonic motion alone, has a check of its own. */

@@ -67,16 +67,12 @@ int64_t ritz_checker_dofs(const ritz_checker *it, const bool *flag,
 
 ritz_status ritz_check_eigen(const ritz_dense *A, ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense unit = {0};
+    RITZ_OWN(ritz_dense) unit = {0};
 
-    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &unit));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, &unit));
     for (int64_t k = 0; k < A->nrow; k++)
         ritz_dense_col(&unit, k)[k] = 1.0;
-    RITZ_TRY(ritz_eigen_dense(A, &unit, out));
-done:
-    ritz_dense_free(&unit);
-    return status;
+    return ritz_eigen_dense(A, &unit, out);
 }
 
 const char *ritz_verdict_name(ritz_verdict verdict)

@@ -98,21 +98,20 @@ static double scale_of(const ritz_dense *by, int64_t j)
 static ritz_status find_least(const ritz_dense *A, const ritz_dense *by,
                               least_value *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
-    ritz_dense V = {0};
-    double *lambda = NULL;
+    RITZ_OWN(ritz_dense) V = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
     double most = 0.0;
 
-    RITZ_NEW(out->motion, n);
-    RITZ_NEW(lambda, n + 1);
-    RITZ_TRY(ritz_dense_copy(A, &V));
+    RITZ_CHECK_NEW(out->motion, n);
+    RITZ_CHECK_NEW(lambda, n + 1);
+    RITZ_CHECK(ritz_dense_copy(A, &V));
     ritz_dense_symmetrise(&V);
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(&V, j)[i] *= scale_of(by, i) * scale_of(by, j);
     if (n > 0)
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, V.val, n, lambda) != 0,
             RITZ_ERR_CONVERGENCE,
             "eigenvalues of a reduced matrix were not found");
@@ -121,10 +120,7 @@ static ritz_status find_least(const ritz_dense *A, const ritz_dense *by,
     out->value = most > 0.0 ? lambda[0] / most : 0.0;
     for (int64_t i = 0; i < n; i++)
         out->motion[i] = ritz_dense_col(&V, 0)[i] * scale_of(by, i);
-done:
-    free(lambda);
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_check_reduced_mass(ritz_checker *it)
@@ -156,20 +152,17 @@ done:
 static ritz_status damping_of_massless(const ritz_dense *D, const ritz_dense *N,
                                        ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     /* what an entry of N may err by, of its largest, squared */
     double floor =
         RITZ_MASSLESS_DAMPING * ritz_dense_max(D) * pow(ritz_dense_max(N), 2.0);
-    ritz_dense most = {0};
+    RITZ_OWN(ritz_dense) most = {0};
 
-    RITZ_TRY(ritz_dense_project(D, N, out));
-    RITZ_TRY(ritz_dense_terms(D, N, &most));
+    RITZ_CHECK(ritz_dense_project(D, N, out));
+    RITZ_CHECK(ritz_dense_terms(D, N, &most));
     for (int64_t k = 0; k < out->nrow * out->ncol; k++)
         if (fabs(out->val[k]) <= RITZ_SUM_ROUNDING * most.val[k] + floor)
             out->val[k] = 0.0;
-done:
-    ritz_dense_free(&most);
-    return status;
+    return RITZ_OK;
 }
 
 /* Least n'D n of motions without mass, N: k + c s = 0 grows if c < 0. */
@@ -321,15 +314,14 @@ done:
 static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
                                    int64_t *at)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *K = &it->model.K;
     ritz_dense Phi = ritz_dense_part(&it->modes.Phi, 0, it->modes.num_rigid);
-    ritz_dense own = {0}, most = {0};
+    RITZ_OWN(ritz_dense) own = {0}, most = {0};
 
     *out = 0.0;
     *at = 0;
-    RITZ_TRY(ritz_dense_congruence(K, &Phi, &own));
-    RITZ_TRY(ritz_dense_terms(K, &Phi, &most));
+    RITZ_CHECK(ritz_dense_congruence(K, &Phi, &own));
+    RITZ_CHECK(ritz_dense_terms(K, &Phi, &most));
     for (int64_t k = 0; k < Phi.ncol; k++) {
         double value = ritz_dense_col(&own, k)[k];
 
@@ -339,10 +331,7 @@ static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
             *at = k;
         }
     }
-done:
-    ritz_dense_free(&own);
-    ritz_dense_free(&most);
-    return status;
+    return RITZ_OK;
 }
 
 /* Matrices of few digits: a rigid motion is held, or driven. */

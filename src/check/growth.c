@@ -57,14 +57,13 @@ static double norm_one(const ritz_dense *A)
 static ritz_status follow_powers(const ritz_dense *A, double h, double most,
                                  growth *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense E = {0}, next = {0};
+    RITZ_OWN(ritz_dense) E = {0}, next = {0};
     double size = 1.0;
 
-    RITZ_TRY(ritz_exponential(A, h, 0, NULL, &E, NULL));
+    RITZ_CHECK(ritz_exponential(A, h, 0, NULL, &E, NULL));
     for (int k = 0; size > RITZ_DIED_OUT && h * ldexp(1.0, k) <= most; k++) {
-        RITZ_TRY(ritz_dense_copy(&E, &next));
-        RITZ_TRY(ritz_general_norm(&next, &size));
+        RITZ_CHECK(ritz_dense_copy(&E, &next));
+        RITZ_CHECK(ritz_general_norm(&next, &size));
         ritz_dense_free(&next);
         if (!(size < 1e100)) /* what is unstable is told by its poles */
             break;
@@ -72,43 +71,33 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
             out->met = size * size;
             out->seconds = h * ldexp(1.0, k);
         }
-        RITZ_TRY(ritz_dense_mul(&E, &E, &next));
+        RITZ_CHECK(ritz_dense_mul(&E, &E, &next));
         ritz_dense_free(&E);
         E = next;
         next = (ritz_dense){0};
     }
-done:
-    ritz_dense_free(&E);
-    ritz_dense_free(&next);
-    return status;
+    return RITZ_OK;
 }
 
 /* (|V| |V^-1|)^2, eigenvectors of A as columns of length 1. */
 static ritz_status bound_growth(const ritz_dense *A, double *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
-    ritz_dense H = {0}, V = {0};
-    double *re = NULL, *im = NULL, *sigma = NULL;
+    RITZ_OWN(ritz_dense) H = {0}, V = {0};
+    RITZ_OWN_ARRAY double *re = NULL, *im = NULL, *sigma = NULL;
     int info = 0;
 
-    RITZ_TRY(ritz_dense_copy(A, &H));
-    RITZ_TRY(ritz_dense_new(n, n, &V));
-    RITZ_NEW(re, n);
-    RITZ_NEW(im, n);
-    RITZ_NEW(sigma, n);
+    RITZ_CHECK(ritz_dense_copy(A, &H));
+    RITZ_CHECK(ritz_dense_new(n, n, &V));
+    RITZ_CHECK_NEW(re, n);
+    RITZ_CHECK_NEW(im, n);
+    RITZ_CHECK_NEW(sigma, n);
     info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, H.val, n, re, im, NULL,
                          1, V.val, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
-    RITZ_TRY(ritz_general_singular(&V, sigma));
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_CHECK(ritz_general_singular(&V, sigma));
     *out = sigma[n - 1] > 0.0 ? pow(sigma[0] / sigma[n - 1], 2.0) : HUGE_VAL;
-done:
-    ritz_dense_free(&H);
-    ritz_dense_free(&V);
-    free(re);
-    free(im);
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 /* Growth of a stable A. @cost O(n^3), some hundred products up to 400 states */
@@ -164,15 +153,14 @@ static void say_growth(ritz_checker *it, const growth *found, double limit,
  */
 static ritz_status forget_units(ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
     double least = DBL_EPSILON * ritz_dense_max(A);
-    ritz_dense sizes = {0};
-    double *scale = NULL;
+    RITZ_OWN(ritz_dense) sizes = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
     lapack_int low = 0, high = 0;
 
-    RITZ_NEW(scale, n);
-    RITZ_TRY(ritz_dense_new(n, n, &sizes));
+    RITZ_CHECK_NEW(scale, n);
+    RITZ_CHECK(ritz_dense_new(n, n, &sizes));
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
             if (i != j)
@@ -184,10 +172,7 @@ static ritz_status forget_units(ritz_dense *A)
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(A, j)[i] *= scale[j] / scale[i];
-done:
-    free(scale);
-    ritz_dense_free(&sizes);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -197,11 +182,10 @@ done:
  */
 static ritz_status pole_spread(const ritz_dense *A, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_eigenvalues poles = {0};
+    RITZ_OWN(ritz_eigenvalues) poles = {0};
     double fast = 0.0, slow = HUGE_VAL;
 
-    RITZ_TRY(ritz_eigenvalues_of(A, &poles));
+    RITZ_CHECK(ritz_eigenvalues_of(A, &poles));
     for (int64_t k = 0; k < poles.count; k++) {
         double size = hypot(poles.re[k], poles.im[k]);
 
@@ -209,50 +193,41 @@ static ritz_status pole_spread(const ritz_dense *A, double *out)
         slow = fmin(slow, size);
     }
     *out = poles.count > 0 && slow > 0.0 ? pow(fast / slow, 2.0) : 1.0;
-done:
-    ritz_eigenvalues_free(&poles);
-    return status;
+    return RITZ_OK;
 }
 
 /* States have no energy: of their squares that is told which poles explain. */
 static ritz_status grow_states(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     growth found = {0};
-    ritz_dense A = {0};
-    ritz_split split = {0};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_split) split = {0};
     const ritz_dense none = {0};
     double explained = 1.0;
 
-    RITZ_TRY(ritz_dense_copy(&it->space->A, &A));
+    RITZ_CHECK(ritz_dense_copy(&it->space->A, &A));
     if (it->space->E.val)
-        RITZ_TRY_IN("E", ritz_general_solve(&it->space->E, false, &A));
-    RITZ_TRY(forget_units(&A));
-    RITZ_TRY(ritz_split_new(&A, &none, &split));
-    RITZ_TRY(measure_growth(&split.S, &found));
-    RITZ_TRY(pole_spread(&split.S, &explained));
+        RITZ_CHECK_IN("E", ritz_general_solve(&it->space->E, false, &A));
+    RITZ_CHECK(forget_units(&A));
+    RITZ_CHECK(ritz_split_new(&A, &none, &split));
+    RITZ_CHECK(measure_growth(&split.S, &found));
+    RITZ_CHECK(pole_spread(&split.S, &explained));
     say_growth(it, &found,
                explained / (RITZ_INTEGRATOR_ERROR * RITZ_INTEGRATOR_ERROR),
                "square of scaled states");
-done:
-    ritz_split_free(&split);
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status grow_modes(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     growth found = {0};
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
-    RITZ_TRY(ritz_probe_energy_matrix(&it->modes, &A));
-    RITZ_TRY(measure_growth(&A, &found));
+    RITZ_CHECK(ritz_probe_energy_matrix(&it->modes, &A));
+    RITZ_CHECK(measure_growth(&A, &found));
     /* squaring doubles rounding each time */
     say_growth(it, &found, 1.0 + RITZ_GROWTH_ROUNDING, "energy");
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_check_growth(ritz_checker *it)

@@ -61,38 +61,34 @@ static int compare_seats(const void *left, const void *right)
 
 static ritz_status join_grids(const ritz_component *c, int64_t *parent)
 {
-    ritz_status status = RITZ_OK;
-    seat *list = NULL;
+    RITZ_OWN_ARRAY seat *list = NULL;
 
-    RITZ_NEW(list, c->num_dofs);
+    RITZ_CHECK_NEW(list, c->num_dofs);
     for (int64_t k = 0; k < c->num_dofs; k++)
         list[k] = (seat){c->dof[k].grid, k};
     qsort(list, (size_t)c->num_dofs, sizeof *list, compare_seats);
     for (int64_t k = 1; k < c->num_dofs; k++)
         if (list[k].grid == list[k - 1].grid)
             join_parts(parent, list[k].row, list[k - 1].row);
-done:
-    free(list);
-    return status;
+    return RITZ_OK;
 }
 
 /* Number the parts in it->part; their count, and the largest of them. */
 static ritz_status find_parts(ritz_checker *it, int64_t *count)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
     int64_t n = c->num_dofs;
-    int64_t *parent = NULL;
-    int64_t *size = NULL;
+    RITZ_OWN_ARRAY int64_t *parent = NULL;
+    RITZ_OWN_ARRAY int64_t *size = NULL;
 
-    RITZ_NEW(parent, n);
-    RITZ_NEW(size, n);
-    RITZ_NEW(it->part, n);
+    RITZ_CHECK_NEW(parent, n);
+    RITZ_CHECK_NEW(size, n);
+    RITZ_CHECK_NEW(it->part, n);
     for (int64_t k = 0; k < n; k++)
         parent[k] = k;
     join_entries(&c->K, parent);
     join_entries(&c->M, parent);
-    RITZ_TRY(join_grids(c, parent));
+    RITZ_CHECK(join_grids(c, parent));
     *count = 0;
     for (int64_t k = 0; k < n; k++) { /* a root is the least of its part */
         int64_t root = root_of(parent, k);
@@ -103,10 +99,7 @@ static ritz_status find_parts(ritz_checker *it, int64_t *count)
     for (int64_t k = 0; k < *count; k++)
         if (size[k] > size[it->largest])
             it->largest = k;
-done:
-    free(parent);
-    free(size);
-    return status;
+    return RITZ_OK;
 }
 
 /* Grids outside the largest part, each once. */
@@ -177,20 +170,16 @@ static void check_rows(ritz_checker *it, const ritz_sparse *A, const char *name,
 
 ritz_status ritz_check_dofs(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    bool *flag = NULL;
+    RITZ_OWN_ARRAY bool *flag = NULL;
 
-    RITZ_NEW(flag, c->num_dofs);
+    RITZ_CHECK_NEW(flag, c->num_dofs);
     check_rows(it, &c->M, "massless-dofs",
                "have no mass: they follow the others without inertia", flag);
     if (!it->rigid)
         check_rows(it, &c->K, "unconnected-dofs",
                    "have mass but no stiffness: they move freely", flag);
-    RITZ_TRY(check_parts(it));
-done:
-    free(flag);
-    return status;
+    return check_parts(it);
 }
 
 /*
@@ -215,17 +204,13 @@ static ritz_verdict verdict_of(double value)
 static ritz_status condense_mass(const ritz_checker *it, const double *centre,
                                  ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
     if (it->placed)
-        RITZ_TRY(ritz_rigid_geometry(it->component, centre, &R));
+        RITZ_CHECK(ritz_rigid_geometry(it->component, centre, &R));
     else
-        RITZ_TRY(ritz_dense_copy(&it->R, &R));
-    RITZ_TRY(ritz_sparse_condense(&it->component->M, &R, out));
-done:
-    ritz_dense_free(&R);
-    return status;
+        RITZ_CHECK(ritz_dense_copy(&it->R, &R));
+    return ritz_sparse_condense(&it->component->M, &R, out);
 }
 
 /* Whether any dof lies along a basic axis. */
@@ -298,22 +283,18 @@ static void check_coupling(ritz_checker *it, const ritz_dense *A, double mass,
 /* Principal moments of inertia, ascending. */
 static ritz_status find_moments(const ritz_dense *A, double J[3])
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense tensor = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) tensor = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_dense_new(3, 3, &tensor));
+    RITZ_CHECK(ritz_dense_new(3, 3, &tensor));
     for (int64_t j = 0; j < 3; j++)
         for (int64_t i = 0; i < 3; i++)
             ritz_dense_col(&tensor, j)[i] = ritz_dense_col(A, 3 + j)[3 + i];
     ritz_dense_symmetrise(&tensor);
-    RITZ_TRY(ritz_check_eigen(&tensor, &pairs));
+    RITZ_CHECK(ritz_check_eigen(&tensor, &pairs));
     for (int64_t k = 0; k < 3; k++)
         J[k] = pairs.lambda[k];
-done:
-    ritz_dense_free(&tensor);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
@@ -340,21 +321,18 @@ static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
 
 ritz_status ritz_check_mass(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     ritz_inertia inertia = {0};
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
     double mass = 0.0;
 
     if (it->placed)
-        RITZ_TRY(ritz_inertia_of(it->component, &inertia));
-    RITZ_TRY(condense_mass(it, inertia.centre, &A));
+        RITZ_CHECK(ritz_inertia_of(it->component, &inertia));
+    RITZ_CHECK(condense_mass(it, inertia.centre, &A));
     mass = check_masses(it, &A);
     if (mass > 0.0) {
         check_coupling(it, &A, mass, inertia.centre);
         if (A.ncol == 6)
-            RITZ_TRY(check_moments(it, &A));
+            RITZ_CHECK(check_moments(it, &A));
     }
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }

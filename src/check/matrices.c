@@ -85,11 +85,10 @@ static int64_t sample_entries(const ritz_sparse *K, double *value)
 
 static ritz_status count_digits(const ritz_sparse *K, decimals *out)
 {
-    ritz_status status = RITZ_OK;
     decimals d = {.digits = 1};
-    double *value = NULL;
+    RITZ_OWN_ARRAY double *value = NULL;
 
-    RITZ_NEW(value, LOOKED_AT + 1);
+    RITZ_CHECK_NEW(value, LOOKED_AT + 1);
     d.count = sample_entries(K, value);
     for (int64_t k = 0; k < d.count && d.digits < FULL; k++) {
         int place = 0, digits = digits_of(value[k], &place);
@@ -106,9 +105,7 @@ static ritz_status count_digits(const ritz_sparse *K, decimals *out)
         d.largest = value[k];
     }
     *out = d;
-done:
-    free(value);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether its numbers are short without having been made so. */
@@ -156,14 +153,13 @@ static int64_t count_infinite(const ritz_sparse *A, bool *flag)
 
 static ritz_status check_finite(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
     const ritz_sparse *const all[4] = {&c->K, &c->M, &c->D, &c->K4};
-    bool *flag = NULL;
+    RITZ_OWN_ARRAY bool *flag = NULL;
     char where[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
-    RITZ_NEW(flag, c->num_dofs);
+    RITZ_CHECK_NEW(flag, c->num_dofs);
     for (int k = 0; k < 4; k++)
         count += count_infinite(all[k], flag);
     ritz_checker_dofs(it, flag, where);
@@ -173,9 +169,7 @@ static ritz_status check_finite(ritz_checker *it)
                      count == 0 ? "all values are finite"
                                 : "values that are not finite: no other check "
                                   "can be made");
-done:
-    free(flag);
-    return status;
+    return RITZ_OK;
 }
 
 static void check_symmetry(ritz_checker *it)
@@ -251,12 +245,11 @@ static int64_t bad_diagonal(const ritz_sparse *A, const double *diagonal)
 static ritz_status scale_matrix(const ritz_sparse *A, const double *diagonal,
                                 double tol, ritz_sparse *out, double *sum)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse scaled = {0};
-    ritz_sparse shift = {0};
+    RITZ_OWN(ritz_sparse) scaled = {0};
+    RITZ_OWN(ritz_sparse) shift = {0};
 
-    RITZ_TRY(ritz_sparse_copy(A, &scaled));
-    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol, A->ncol, &shift));
+    RITZ_CHECK(ritz_sparse_copy(A, &scaled));
+    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, A->ncol, &shift));
     *sum = 0.0;
     for (int64_t j = 0; j < A->ncol; j++) {
         double column = 0.0;
@@ -272,11 +265,7 @@ static ritz_status scale_matrix(const ritz_sparse *A, const double *diagonal,
         shift.rowind[j] = j;
         shift.val[j] = diagonal[j] > 0.0 ? tol : 1.0;
     }
-    RITZ_TRY(ritz_sparse_add(1.0, &scaled, 1.0, &shift, out));
-done:
-    ritz_sparse_free(&scaled);
-    ritz_sparse_free(&shift);
-    return status;
+    return ritz_sparse_add(1.0, &scaled, 1.0, &shift, out);
 }
 
 /* Eigenvalues of S A S below -tol; weak: where the factor gave way, or -1. */
@@ -331,17 +320,16 @@ static void say_negative(ritz_checker *it, const char *name, int64_t count,
 static ritz_status check_definite(ritz_checker *it, const ritz_sparse *A,
                                   const char *name)
 {
-    ritz_status status = RITZ_OK;
     double n = (double)A->nrow;
     double tol = fmax(n, 64.0) * DBL_EPSILON;
-    double *diagonal = NULL;
+    RITZ_OWN_ARRAY double *diagonal = NULL;
     double sum = 0.0;
     int64_t weak = -1;
     int64_t other = -1;
     int64_t count = 0;
     int64_t left = 1;
 
-    RITZ_NEW(diagonal, A->nrow);
+    RITZ_CHECK_NEW(diagonal, A->nrow);
     read_diagonal(A, diagonal);
     weak = bad_diagonal(A, diagonal);
     if (weak >= 0) {
@@ -351,20 +339,18 @@ static ritz_status check_definite(ritz_checker *it, const ritz_sparse *A,
                          ritz_dof_name(it->component->dof[weak], dof),
                          "its diagonal entry is %g, which cannot be",
                          diagonal[weak]);
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(count_negative(A, diagonal, tol, &sum, &weak, &count));
+    RITZ_CHECK(count_negative(A, diagonal, tol, &sum, &weak, &count));
     if (count > 0) {
         double rounding = 0.5 * pow(10.0, 1.0 - it->digits) * sum;
 
-        RITZ_TRY(count_negative(A, diagonal,
-                                tol + fmax(rounding, RITZ_CONDENSATION_LOSS),
-                                &sum, &other, &left));
+        RITZ_CHECK(count_negative(A, diagonal,
+                                  tol + fmax(rounding, RITZ_CONDENSATION_LOSS),
+                                  &sum, &other, &left));
     }
     say_negative(it, name, count, weak, left == 0);
-done:
-    free(diagonal);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_check_mass_definite(ritz_checker *it)

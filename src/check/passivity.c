@@ -28,20 +28,17 @@ struct ritz_sampler {
 
 ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense none = {0};
-    ritz_sampler *s = NULL;
+    RITZ_OWN(ritz_sampler) *s = NULL;
 
-    RITZ_NEW(s, 1);
+    RITZ_CHECK_NEW(s, 1);
     s->model = model;
-    RITZ_TRY(ritz_resolvent_new(&model->A, &none, &model->B, &model->C,
-                                &s->resolvent));
-    RITZ_NEW(s->H, model->B.ncol * model->B.ncol);
+    RITZ_CHECK(ritz_resolvent_new(&model->A, &none, &model->B, &model->C,
+                                  &s->resolvent));
+    RITZ_CHECK_NEW(s->H, model->B.ncol * model->B.ncol);
     *out = s;
     s = NULL;
-done:
-    ritz_sampler_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 const double _Complex *ritz_sampler_at(ritz_sampler *s, double w)
@@ -119,14 +116,13 @@ static int64_t sort_frequencies(int64_t count, double *w)
 
 ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_eigenvalues poles = {0};
-    double *w = NULL;
+    RITZ_OWN(ritz_eigenvalues) poles = {0};
+    RITZ_OWN_ARRAY double *w = NULL;
     int64_t n = 0;
     int64_t alone = 0;
 
-    RITZ_TRY(ritz_eigenvalues_of(A, &poles));
-    RITZ_NEW(w, 2 * (PER_POLE * poles.count + 2));
+    RITZ_CHECK(ritz_eigenvalues_of(A, &poles));
+    RITZ_CHECK_NEW(w, 2 * (PER_POLE * poles.count + 2));
     for (int64_t k = 0; k < poles.count; k++) {
         double size = hypot(poles.re[k], poles.im[k]);
         double width = fmax(fabs(poles.re[k]), RITZ_LEAST_WIDTH * size);
@@ -150,10 +146,7 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
     *count = sort_frequencies(n, w);
     *out = w;
     w = NULL;
-done:
-    free(w);
-    ritz_eigenvalues_free(&poles);
-    return status;
+    return RITZ_OK;
 }
 
 /* Least eigenvalue over |G| at w; positive where there is no response. */
@@ -224,13 +217,12 @@ static ritz_status descend_all(descent *s, int64_t count, const double *w,
 /* Where two of these follow each other, and between. */
 static ritz_status meet_crossings(descent *s, const ritz_collocated *model)
 {
-    ritz_status status = RITZ_OK;
-    double *w = NULL;
+    RITZ_OWN_ARRAY double *w = NULL;
     int64_t count = 0;
 
     if (model->A.nrow > MOST_STATES || s->scale == 0.0)
         return RITZ_OK;
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_passivity_crossings(model, RITZ_PASSIVE * s->scale, &count, &w));
     for (int64_t k = 0; k < count; k++) {
         meet_at(s, w[k]);
@@ -238,9 +230,7 @@ static ritz_status meet_crossings(descent *s, const ritz_collocated *model)
         if (k + 1 == count)
             meet_at(s, 2.0 * w[k]);
     }
-done:
-    free(w);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_passivity_of(const ritz_collocated *model, ritz_passivity *out)
@@ -281,13 +271,12 @@ done:
 static ritz_status take_velocities(const ritz_collocated *model, ritz_dense *C,
                                    ritz_dense *D)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense CA = {0}, CB = {0};
+    RITZ_OWN(ritz_dense) CA = {0}, CB = {0};
 
-    RITZ_TRY(ritz_dense_copy(&model->C, C));
-    RITZ_TRY(ritz_dense_copy(&model->D, D));
-    RITZ_TRY(ritz_dense_mul(&model->C, &model->A, &CA));
-    RITZ_TRY(ritz_dense_mul(&model->C, &model->B, &CB));
+    RITZ_CHECK(ritz_dense_copy(&model->C, C));
+    RITZ_CHECK(ritz_dense_copy(&model->D, D));
+    RITZ_CHECK(ritz_dense_mul(&model->C, &model->A, &CA));
+    RITZ_CHECK(ritz_dense_mul(&model->C, &model->B, &CB));
     for (int64_t i = 0; i < C->nrow; i++) {
         if (model->power[i] != 1)
             continue;
@@ -296,22 +285,18 @@ static ritz_status take_velocities(const ritz_collocated *model, ritz_dense *C,
         for (int64_t j = 0; j < D->ncol; j++)
             ritz_dense_col(D, j)[i] = ritz_dense_col(&CB, j)[i];
     }
-done:
-    ritz_dense_free(&CA);
-    ritz_dense_free(&CB);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status build_pencil(const ritz_collocated *model, double slack,
                                 ritz_dense *P, ritz_dense *Q)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = model->A.nrow, p = model->B.ncol, all = 2 * n + p;
-    ritz_dense C = {0}, D = {0};
+    RITZ_OWN(ritz_dense) C = {0}, D = {0};
 
-    RITZ_TRY(take_velocities(model, &C, &D));
-    RITZ_TRY(ritz_dense_new(all, all, P));
-    RITZ_TRY(ritz_dense_new(all, all, Q));
+    RITZ_CHECK(take_velocities(model, &C, &D));
+    RITZ_CHECK(ritz_dense_new(all, all, P));
+    RITZ_CHECK(ritz_dense_new(all, all, Q));
     for (int64_t j = 0; j < n; j++) {
         ritz_dense_col(Q, j)[j] = ritz_dense_col(Q, n + j)[n + j] = 1.0;
         for (int64_t i = 0; i < n; i++) {
@@ -331,18 +316,14 @@ static ritz_status build_pencil(const ritz_collocated *model, double slack,
             ritz_dense_col(P, 2 * n + j)[2 * n + i] =
                 ritz_dense_col(&D, j)[i] + ritz_dense_col(&D, i)[j] +
                 (i == j ? 2.0 * slack : 0.0);
-done:
-    ritz_dense_free(&C);
-    ritz_dense_free(&D);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
                                      int64_t *count, double **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense P = {0}, Q = {0};
-    double *re = NULL, *im = NULL, *beta = NULL, *w = NULL;
+    RITZ_OWN(ritz_dense) P = {0}, Q = {0};
+    RITZ_OWN_ARRAY double *re = NULL, *im = NULL, *beta = NULL, *w = NULL;
     int all = 0;
     int64_t found = 0;
 
@@ -350,16 +331,17 @@ ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
     for (int64_t i = 0; i < model->B.ncol; i++)
         if (model->power[i] < 0) /* an integrator is on the axis itself */
             return RITZ_OK;
-    RITZ_TRY(build_pencil(model, slack, &P, &Q));
+    RITZ_CHECK(build_pencil(model, slack, &P, &Q));
     all = (int)P.nrow;
-    RITZ_NEW(re, all);
-    RITZ_NEW(im, all);
-    RITZ_NEW(beta, all);
-    RITZ_NEW(w, all);
-    RITZ_FAIL_IF(LAPACKE_dggev(LAPACK_COL_MAJOR, 'N', 'N', all, P.val, all,
-                               Q.val, all, re, im, beta, NULL, 1, NULL, 1) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "eigenvalues of a Hamiltonian pencil were not found");
+    RITZ_CHECK_NEW(re, all);
+    RITZ_CHECK_NEW(im, all);
+    RITZ_CHECK_NEW(beta, all);
+    RITZ_CHECK_NEW(w, all);
+    RITZ_REFUSE_IF(LAPACKE_dggev(LAPACK_COL_MAJOR, 'N', 'N', all, P.val, all,
+                                 Q.val, all, re, im, beta, NULL, 1, NULL,
+                                 1) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "eigenvalues of a Hamiltonian pencil were not found");
     for (int64_t k = 0; k < all; k++)
         if (beta[k] > 0.0 && im[k] > 0.0 &&
             fabs(re[k]) <= RITZ_PENCIL_ON_AXIS * im[k] &&
@@ -368,14 +350,7 @@ ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
     *count = sort_frequencies(found, w);
     *out = w;
     w = NULL;
-done:
-    ritz_dense_free(&P);
-    ritz_dense_free(&Q);
-    free(re);
-    free(im);
-    free(beta);
-    free(w);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -394,24 +369,23 @@ static int64_t output_of(const ritz_state_space *model, int64_t input)
 static ritz_status take_pairs(const ritz_state_space *model,
                               ritz_collocated *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = model->A.nrow;
-    int64_t *in = NULL, *seen = NULL;
+    RITZ_OWN_ARRAY int64_t *in = NULL, *seen = NULL;
     int64_t p = 0;
 
-    RITZ_NEW(in, model->num_inputs);
-    RITZ_NEW(seen, model->num_inputs);
+    RITZ_CHECK_NEW(in, model->num_inputs);
+    RITZ_CHECK_NEW(seen, model->num_inputs);
     for (int64_t j = 0; j < model->num_inputs; j++) {
         seen[p] = output_of(model, j);
         in[p] = j;
         p += seen[p] >= 0;
     }
-    RITZ_TRY(ritz_dense_copy(&model->A, &out->A));
-    RITZ_TRY(ritz_dense_new(n, p, &out->B));
-    RITZ_TRY(ritz_dense_new(p, n, &out->C));
-    RITZ_TRY(ritz_dense_new(p, p, &out->D));
-    RITZ_NEW(out->power, p);
-    RITZ_NEW(out->name, p);
+    RITZ_CHECK(ritz_dense_copy(&model->A, &out->A));
+    RITZ_CHECK(ritz_dense_new(n, p, &out->B));
+    RITZ_CHECK(ritz_dense_new(p, n, &out->C));
+    RITZ_CHECK(ritz_dense_new(p, p, &out->D));
+    RITZ_CHECK_NEW(out->power, p);
+    RITZ_CHECK_NEW(out->name, p);
     for (int64_t j = 0; j < p; j++) {
         memcpy(ritz_dense_col(&out->B, j), ritz_dense_col(&model->B, in[j]),
                (size_t)n * sizeof *out->B.val);
@@ -424,31 +398,24 @@ static ritz_status take_pairs(const ritz_state_space *model,
         memcpy(out->name[j], model->input[in[j]], sizeof *out->name);
     }
     if (model->E.val) {
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &out->A));
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &out->B));
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &out->A));
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &out->B));
     }
-done:
-    free(in);
-    free(seen);
-    return status;
+    return RITZ_OK;
 }
 
 /* One pair as a model of its own. */
 static ritz_status take_pair(const ritz_collocated *all, int64_t i, int *power,
                              ritz_collocated *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense row = {0};
+    RITZ_OWN(ritz_dense) row = {0};
 
     out->A = all->A; /* borrowed, as power is */
     out->power = power;
-    RITZ_TRY(ritz_dense_columns(&all->B, i, 1, &out->B));
-    RITZ_TRY(ritz_dense_rows(&all->C, 1, &i, &out->C));
-    RITZ_TRY(ritz_dense_rows(&all->D, 1, &i, &row));
-    RITZ_TRY(ritz_dense_columns(&row, i, 1, &out->D));
-done:
-    ritz_dense_free(&row);
-    return status;
+    RITZ_CHECK(ritz_dense_columns(&all->B, i, 1, &out->B));
+    RITZ_CHECK(ritz_dense_rows(&all->C, 1, &i, &out->C));
+    RITZ_CHECK(ritz_dense_rows(&all->D, 1, &i, &row));
+    return ritz_dense_columns(&row, i, 1, &out->D);
 }
 
 /* Take output i for the quantity that violates passivity least, a
@@ -483,17 +450,14 @@ done:
 ritz_status ritz_collocated_of_space(const ritz_state_space *model,
                                      ritz_collocated *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_collocated pairs = {0};
+    RITZ_OWN(ritz_collocated) pairs = {0};
 
-    RITZ_TRY(take_pairs(model, &pairs));
+    RITZ_CHECK(take_pairs(model, &pairs));
     for (int64_t i = 0; i < pairs.B.ncol; i++)
-        RITZ_TRY(guess_quantity(&pairs, i));
+        RITZ_CHECK(guess_quantity(&pairs, i));
     *out = pairs;
     pairs = (ritz_collocated){0};
-done:
-    ritz_collocated_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether energy can come out of the interface, and where it does. */
@@ -502,17 +466,16 @@ done:
 static ritz_status collocated_of_modes(const ritz_checker *it,
                                        ritz_collocated *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal_model *modes = &it->modes;
     int64_t m = modes->count, first = m - modes->num_rigid;
-    ritz_collocated model = {0};
-    ritz_dense LPhi = {0};
+    RITZ_OWN(ritz_collocated) model = {0};
+    RITZ_OWN(ritz_dense) LPhi = {0};
     int64_t p = 0;
 
-    RITZ_TRY(ritz_dense_mul(&it->L, &modes->Phi, &LPhi));
-    RITZ_TRY(ritz_probe_energy_matrix(modes, &model.A));
-    RITZ_TRY(ritz_dense_new(first + m, LPhi.nrow, &model.B));
-    RITZ_NEW(model.name, LPhi.nrow);
+    RITZ_CHECK(ritz_dense_mul(&it->L, &modes->Phi, &LPhi));
+    RITZ_CHECK(ritz_probe_energy_matrix(modes, &model.A));
+    RITZ_CHECK(ritz_dense_new(first + m, LPhi.nrow, &model.B));
+    RITZ_CHECK_NEW(model.name, LPhi.nrow);
     for (int64_t i = 0; i < LPhi.nrow; i++) {
         double size = 0.0;
 
@@ -526,15 +489,12 @@ static ritz_status collocated_of_modes(const ritz_checker *it,
         memcpy(model.name[p++], it->row[i], sizeof *model.name);
     }
     model.B.ncol = p;
-    RITZ_NEW(model.power, p);
-    RITZ_TRY(ritz_general_transpose(&model.B, &model.C));
-    RITZ_TRY(ritz_dense_new(p, p, &model.D));
+    RITZ_CHECK_NEW(model.power, p);
+    RITZ_CHECK(ritz_general_transpose(&model.B, &model.C));
+    RITZ_CHECK(ritz_dense_new(p, p, &model.D));
     *out = model;
     model = (ritz_collocated){0};
-done:
-    ritz_dense_free(&LPhi);
-    ritz_collocated_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_collocated_free(ritz_collocated *model)
@@ -590,14 +550,13 @@ static ritz_status say_passivity(ritz_checker *it, const ritz_collocated *model)
 ritz_status ritz_check_passivity(ritz_checker *it)
 {
     static const char name[] = "passivity";
-    ritz_status status = RITZ_OK;
-    ritz_collocated model = {0};
+    RITZ_OWN(ritz_collocated) model = {0};
 
     if (it->space && it->pairs.B.ncol == 0) {
         ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
                          "not applicable: no input and output of one name");
     } else if (it->space) {
-        RITZ_TRY(say_passivity(it, &it->pairs));
+        RITZ_CHECK(say_passivity(it, &it->pairs));
     } else if (it->L.nrow == 0) {
         ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
                          "not applicable: no port and no input");
@@ -606,10 +565,8 @@ ritz_status ritz_check_passivity(ritz_checker *it)
                          "proven: M, K and D are semidefinite, and forces act "
                          "where velocities are met");
     } else {
-        RITZ_TRY(collocated_of_modes(it, &model));
-        RITZ_TRY(say_passivity(it, &model));
+        RITZ_CHECK(collocated_of_modes(it, &model));
+        RITZ_CHECK(say_passivity(it, &model));
     }
-done:
-    ritz_collocated_free(&model);
-    return status;
+    return RITZ_OK;
 }

@@ -29,9 +29,8 @@ static ritz_dof dof_of(const ritz_checker *it, const ritz_port *port, int64_t k)
 static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
                                 ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    ritz_dense R = {0}, S = {0};
+    RITZ_OWN(ritz_dense) R = {0}, S = {0};
     double size = 0.0;
     int64_t p = port->dofs.count;
 
@@ -44,8 +43,8 @@ static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
         size = fmax(size, sqrt(square));
     }
     size = size > RITZ_SAME_PLACE * it->size ? size : 1.0;
-    RITZ_TRY(ritz_rigid_geometry(c, port->origin, &R));
-    RITZ_TRY(ritz_dense_new(p, 6, &S));
+    RITZ_CHECK(ritz_rigid_geometry(c, port->origin, &R));
+    RITZ_CHECK(ritz_dense_new(p, 6, &S));
     for (int64_t j = 0; j < 6; j++)
         for (int64_t k = 0; k < p; k++) {
             bool turns = dof_of(it, port, k).component > 3;
@@ -56,10 +55,7 @@ static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
         }
     *out = S;
     S = (ritz_dense){0};
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&S);
-    return status;
+    return RITZ_OK;
 }
 
 /* Keep the columns of motions that the component has at all. */
@@ -88,19 +84,18 @@ static int64_t drop_absent(const ritz_checker *it, ritz_dense *S)
 static ritz_status measure_hold(const ritz_checker *it, const ritz_port *port,
                                 double *worst, int64_t *loose)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense S = {0}, A = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) S = {0}, A = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t k = 0;
 
     *loose = 0;
     *worst = 1.0;
-    RITZ_TRY(find_motions(it, port, &S));
+    RITZ_CHECK(find_motions(it, port, &S));
     k = drop_absent(it, &S);
     if (k == 0)
-        goto done;
-    RITZ_TRY(ritz_dense_mul_tn(&S, &S, &A));
-    RITZ_TRY(ritz_check_eigen(&A, &pairs));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_mul_tn(&S, &S, &A));
+    RITZ_CHECK(ritz_check_eigen(&A, &pairs));
     for (int64_t j = 0; j < k; j++) {
         double ratio = pairs.lambda[j] / pairs.lambda[k - 1];
 
@@ -108,11 +103,7 @@ static ritz_status measure_hold(const ritz_checker *it, const ritz_port *port,
         *worst = fmin(*worst, ratio);
         *loose += !(ratio > RITZ_PORT_HELD);
     }
-done:
-    ritz_dense_free(&S);
-    ritz_dense_free(&A);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 static bool has_rotation(const ritz_checker *it, const ritz_port *port)
@@ -189,15 +180,14 @@ static void check_count(ritz_checker *it)
 /* Dofs that two ports have. */
 static ritz_status check_dependent(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    int64_t *owners = NULL;
-    bool *flag = NULL;
+    RITZ_OWN_ARRAY int64_t *owners = NULL;
+    RITZ_OWN_ARRAY bool *flag = NULL;
     char where[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
-    RITZ_NEW(owners, c->num_dofs);
-    RITZ_NEW(flag, c->num_dofs);
+    RITZ_CHECK_NEW(owners, c->num_dofs);
+    RITZ_CHECK_NEW(flag, c->num_dofs);
     for (int64_t p = 0; p < c->num_ports; p++)
         for (int64_t k = 0; k < c->port[p].dofs.count; k++) {
             int64_t row = c->port[p].dofs.at[k];
@@ -210,10 +200,7 @@ static ritz_status check_dependent(ritz_checker *it)
                      count == 0 ? "no dof belongs to two ports"
                                 : "dofs of two ports: joints at both would "
                                   "hold them twice");
-done:
-    free(owners);
-    free(flag);
-    return status;
+    return RITZ_OK;
 }
 
 /* Two grids of one port in one place: a joint cannot tell them apart. */
@@ -267,13 +254,12 @@ static void check_places(ritz_checker *it)
 /* Port dofs that meet no stiffness, or lie in a part that is not the body. */
 static ritz_status check_disconnected(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    bool *flag = NULL;
+    RITZ_OWN_ARRAY bool *flag = NULL;
     char where[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
-    RITZ_NEW(flag, c->num_dofs);
+    RITZ_CHECK_NEW(flag, c->num_dofs);
     for (int64_t p = 0; p < c->num_ports; p++)
         for (int64_t k = 0; k < c->port[p].dofs.count; k++) {
             int64_t row = c->port[p].dofs.at[k];
@@ -290,9 +276,7 @@ static ritz_status check_disconnected(ritz_checker *it)
                      count == 0 ? "every port dof is connected to the body"
                                 : "port dofs that nothing connects to the "
                                   "body: it is not held there");
-done:
-    free(flag);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_check_ports(ritz_checker *it)

@@ -20,13 +20,12 @@
 /* Dofs of grids without a position; scalar points need none. */
 static ritz_status check_positions(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
-    bool *flag = NULL;
+    RITZ_OWN_ARRAY bool *flag = NULL;
     char where[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
-    RITZ_NEW(flag, c->num_dofs);
+    RITZ_CHECK_NEW(flag, c->num_dofs);
     for (int64_t k = 0; k < c->num_dofs; k++)
         flag[k] = c->dof[k].component > 0 &&
                   ritz_grids_find(&c->grids, c->dof[k].grid) < 0;
@@ -38,9 +37,7 @@ static ritz_status check_positions(ritz_checker *it)
                                 : "dofs of grids without a position: rotations "
                                   "cannot be checked, and axes are taken as "
                                   "basic");
-done:
-    free(flag);
-    return status;
+    return RITZ_OK;
 }
 
 /* Mean position of the dofs' grids, and how far they reach. */
@@ -121,43 +118,32 @@ static void keep_massive(const ritz_pairs *pairs, ritz_dense *V)
 static ritz_status orthonormalise_motions(const ritz_checker *it,
                                           ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense B = {0}, V = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) B = {0}, V = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_sparse_condense(&it->component->M, &it->R, &B));
-    RITZ_TRY(ritz_check_eigen(&B, &pairs));
-    RITZ_TRY(ritz_dense_new(B.nrow, B.nrow, &V));
+    RITZ_CHECK(ritz_sparse_condense(&it->component->M, &it->R, &B));
+    RITZ_CHECK(ritz_check_eigen(&B, &pairs));
+    RITZ_CHECK(ritz_dense_new(B.nrow, B.nrow, &V));
     keep_massive(&pairs, &V);
-    RITZ_TRY(ritz_dense_mul(&it->R, &V, out));
-done:
-    ritz_dense_free(&B);
-    ritz_dense_free(&V);
-    ritz_pairs_free(&pairs);
-    return status;
+    return ritz_dense_mul(&it->R, &V, out);
 }
 
 ritz_status ritz_check_geometry(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Q = {0}, A = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) Q = {0}, A = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(check_positions(it));
-    RITZ_TRY(find_motions(it));
-    RITZ_TRY(orthonormalise_motions(it, &Q));
-    RITZ_NEW(it->mu, Q.ncol);
+    RITZ_CHECK(check_positions(it));
+    RITZ_CHECK(find_motions(it));
+    RITZ_CHECK(orthonormalise_motions(it, &Q));
+    RITZ_CHECK_NEW(it->mu, Q.ncol);
     if (Q.ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_sparse_condense(&it->component->K, &Q, &A));
-    RITZ_TRY(ritz_check_eigen(&A, &pairs));
-    RITZ_TRY(ritz_dense_mul(&Q, &pairs.Phi, &it->Phi));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_condense(&it->component->K, &Q, &A));
+    RITZ_CHECK(ritz_check_eigen(&A, &pairs));
+    RITZ_CHECK(ritz_dense_mul(&Q, &pairs.Phi, &it->Phi));
     memcpy(it->mu, pairs.lambda, (size_t)Q.ncol * sizeof *it->mu);
-done:
-    ritz_dense_free(&Q);
-    ritz_dense_free(&A);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -174,12 +160,11 @@ done:
 static ritz_status find_forces(const ritz_checker *it, int64_t first,
                                double fine, ritz_rigid_forces *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *K = &it->component->K;
-    ritz_dense R = {0}, F = {0};
+    RITZ_OWN(ritz_dense) R = {0}, F = {0};
 
-    RITZ_TRY(ritz_dense_columns(&it->R, first, 3, &R));
-    RITZ_TRY(ritz_sparse_mul(K, &R, &F));
+    RITZ_CHECK(ritz_dense_columns(&it->R, first, 3, &R));
+    RITZ_CHECK(ritz_sparse_mul(K, &R, &F));
     *out = (ritz_rigid_forces){.row = -1, .fine = fine};
     for (int64_t j = 0; j < 3; j++)
         for (int64_t i = 0; i < K->ncol; i++) {
@@ -194,10 +179,7 @@ static ritz_status find_forces(const ritz_checker *it, int64_t first,
                 out->row = i;
             }
         }
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 /* How much the rigid motions are held, of the first flexible eigenvalue. */
@@ -366,36 +348,30 @@ static void check_geometry(ritz_checker *it)
 static ritz_status measure_angle(const ritz_checker *it, const ritz_dense *X,
                                  double *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *M = &it->component->M;
-    ritz_dense Phi = {0}, MPhi = {0}, C = {0}, E = {0}, ME = {0}, EME = {0};
+    RITZ_OWN(ritz_dense)
+    Phi = {0},
+    MPhi = {0}, C = {0}, E = {0}, ME = {0}, EME = {0};
     double trace = 0.0;
 
-    RITZ_TRY(ritz_dense_new(it->Phi.nrow, it->num_free, &Phi));
+    RITZ_CHECK(ritz_dense_new(it->Phi.nrow, it->num_free, &Phi));
     for (int64_t k = 0, kept = 0; kept < it->num_free; k++)
         if (fabs(it->mu[k]) <= RITZ_NEARLY_FREE * it->softest) {
             for (int64_t i = 0; i < Phi.nrow; i++)
                 ritz_dense_col(&Phi, kept)[i] = ritz_dense_col(&it->Phi, k)[i];
             kept++;
         }
-    RITZ_TRY(ritz_sparse_mul(M, &Phi, &MPhi));
-    RITZ_TRY(ritz_dense_mul_tn(X, &MPhi, &C));
-    RITZ_TRY(ritz_dense_mul(X, &C, &E));
+    RITZ_CHECK(ritz_sparse_mul(M, &Phi, &MPhi));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &MPhi, &C));
+    RITZ_CHECK(ritz_dense_mul(X, &C, &E));
     for (int64_t k = 0; k < E.nrow * E.ncol; k++)
         E.val[k] = Phi.val[k] - E.val[k];
-    RITZ_TRY(ritz_sparse_mul(M, &E, &ME));
-    RITZ_TRY(ritz_dense_mul_tn(&E, &ME, &EME));
+    RITZ_CHECK(ritz_sparse_mul(M, &E, &ME));
+    RITZ_CHECK(ritz_dense_mul_tn(&E, &ME, &EME));
     for (int64_t k = 0; k < EME.nrow; k++) /* bounds the largest eigenvalue */
         trace += ritz_dense_col(&EME, k)[k];
     *out = sqrt(fmax(trace, 0.0));
-done:
-    ritz_dense_free(&Phi);
-    ritz_dense_free(&MPhi);
-    ritz_dense_free(&C);
-    ritz_dense_free(&E);
-    ritz_dense_free(&ME);
-    ritz_dense_free(&EME);
-    return status;
+    return RITZ_OK;
 }
 
 static void say_agreement(ritz_checker *it, int64_t eigen, double sine)

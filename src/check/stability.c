@@ -22,18 +22,17 @@
 
 ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_eigenvalues poles = {0};
+    RITZ_OWN(ritz_eigenvalues) poles = {0};
     int64_t k = -1;
     double error = 0.0;
 
-    RITZ_TRY(ritz_eigenvalues_of(A, &poles));
+    RITZ_CHECK(ritz_eigenvalues_of(A, &poles));
     out->count = poles.count;
     out->radius = poles.radius;
     out->verdict = RITZ_STABLE;
     k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
     if (k < 0)
-        goto done;
+        return RITZ_OK;
     error = RITZ_POLE_BOUND_FACTOR * poles.error[k];
     out->pole[0] = poles.re[k] + 0.0; /* -0 reads as if it decayed */
     out->pole[1] = fabs(poles.im[k]);
@@ -42,60 +41,50 @@ ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out)
         out->verdict = RITZ_MARGINAL;
     if (poles.re[k] > error)
         out->verdict = RITZ_UNSTABLE;
-done:
-    ritz_eigenvalues_free(&poles);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe probe = {0};
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
-    RITZ_TRY(ritz_dense_copy(&model->A, &A));
+    RITZ_CHECK(ritz_dense_copy(&model->A, &A));
     if (model->E.val)
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &A));
-    RITZ_TRY(ritz_probe_judge(&A, &probe));
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &A));
+    RITZ_CHECK(ritz_probe_judge(&A, &probe));
     *out = probe;
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 /* Least and largest eigenvalue of a symmetric A. */
 static ritz_status find_extremes(const ritz_dense *A, double *least,
                                  double *most)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
-    ritz_dense copy = {0};
-    double *lambda = NULL;
+    RITZ_OWN(ritz_dense) copy = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
 
-    RITZ_NEW(lambda, n + 1);
-    RITZ_TRY(ritz_dense_copy(A, &copy));
+    RITZ_CHECK_NEW(lambda, n + 1);
+    RITZ_CHECK(ritz_dense_copy(A, &copy));
     if (n > 0)
-        RITZ_FAIL_IF(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, copy.val, n,
-                                   lambda) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "eigenvalues of the mass matrix were not found");
+        RITZ_REFUSE_IF(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, copy.val, n,
+                                     lambda) != 0,
+                       RITZ_ERR_CONVERGENCE,
+                       "eigenvalues of the mass matrix were not found");
     *least = lambda[0];
     *most = n > 0 ? lambda[n - 1] : 0.0;
-done:
-    ritz_dense_free(&copy);
-    free(lambda);
-    return status;
+    return RITZ_OK;
 }
 
 /* M scaled to a unit diagonal, as it mixes kg with kg m^2. */
 static ritz_status probe_mass(const ritz_dense *M, ritz_probe *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense scaled = {0};
+    RITZ_OWN(ritz_dense) scaled = {0};
     double least = 0.0, most = 0.0;
     int64_t n = M->nrow;
 
-    RITZ_TRY(ritz_dense_copy(M, &scaled));
+    RITZ_CHECK(ritz_dense_copy(M, &scaled));
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++) {
             double size = sqrt(fabs(ritz_dense_col(M, i)[i]) *
@@ -104,7 +93,7 @@ static ritz_status probe_mass(const ritz_dense *M, ritz_probe *out)
             if (size > 0.0)
                 ritz_dense_col(&scaled, j)[i] /= size;
         }
-    RITZ_TRY(find_extremes(&scaled, &least, &most));
+    RITZ_CHECK(find_extremes(&scaled, &least, &most));
     if (least <
         -RITZ_POLE_BOUND_FACTOR * (double)n * DBL_EPSILON * fabs(most)) {
         out->verdict = RITZ_UNSTABLE;
@@ -112,9 +101,7 @@ static ritz_status probe_mass(const ritz_dense *M, ritz_probe *out)
                  "mass with a negative eigenvalue, %.2g of the largest",
                  least / fabs(most));
     }
-done:
-    ritz_dense_free(&scaled);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status probe_modes(const ritz_structure *model,
@@ -172,18 +159,17 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
 
 ritz_status ritz_check_poles(ritz_checker *it)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe probe = {0};
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
     char text[2 * RITZ_NAME_SIZE];
     double growth = 0.0;
 
     if (it->reduced) {
         /* rigid positions are left out: their double pole is defective */
-        RITZ_TRY(ritz_probe_energy_matrix(&it->modes, &A));
-        RITZ_TRY(ritz_probe_judge(&A, &probe));
+        RITZ_CHECK(ritz_probe_energy_matrix(&it->modes, &A));
+        RITZ_CHECK(ritz_probe_judge(&A, &probe));
     } else {
-        RITZ_TRY(ritz_probe_states(it->space, &probe));
+        RITZ_CHECK(ritz_probe_states(it->space, &probe));
     }
     growth = probe.radius > 0.0 ? probe.pole[0] / probe.radius : 0.0;
     it->stable = probe.verdict != RITZ_UNSTABLE;
@@ -197,9 +183,7 @@ ritz_status ritz_check_poles(ritz_checker *it)
                          probe.verdict == RITZ_STABLE
                              ? "all are left of the axis"
                              : "on the axis: rigid motion, or no damping");
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 const char *ritz_stability_name(ritz_stability verdict)

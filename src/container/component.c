@@ -16,17 +16,14 @@ static int compare_rows(const void *a, const void *b)
 static ritz_status settle_port(const ritz_place *place)
 {
     const ritz_port *port = place->target;
-    ritz_status status = RITZ_OK;
-    ritz_dofs sorted = {0};
+    RITZ_OWN(ritz_dofs) sorted = {0};
 
-    RITZ_TRY(ritz_dofs_copy(&port->dofs, &sorted));
+    RITZ_CHECK(ritz_dofs_copy(&port->dofs, &sorted));
     qsort(sorted.at, (size_t)sorted.count, sizeof *sorted.at, compare_rows);
     for (int64_t k = 1; k < sorted.count; k++)
-        RITZ_FAIL_IF(sorted.at[k - 1] == sorted.at[k], RITZ_ERR_FORMAT,
-                     "row %" PRId64 " is in 'dofs' twice", sorted.at[k]);
-done:
-    ritz_dofs_free(&sorted);
-    return status;
+        RITZ_REFUSE_IF(sorted.at[k - 1] == sorted.at[k], RITZ_ERR_FORMAT,
+                       "row %" PRId64 " is in 'dofs' twice", sorted.at[k]);
+    return RITZ_OK;
 }
 
 static const ritz_size port_sizes[] = {

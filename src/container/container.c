@@ -21,18 +21,14 @@ typedef struct container_writer {
 /* A short command is a plain attribute. */
 static ritz_status set_command(hid_t file, const char *command)
 {
-    ritz_status status = RITZ_OK;
-    char *copy = NULL;
+    RITZ_OWN_ARRAY char *copy = NULL;
     size_t size = strlen(command) + 1;
 
     if (size < RITZ_H5_LONG)
         return ritz_h5_set_text(file, "command", command);
-    RITZ_NEW(copy, (int64_t)size);
+    RITZ_CHECK_NEW(copy, (int64_t)size);
     memcpy(copy, command, size);
-    RITZ_TRY(ritz_h5_set_texts(file, "command", 1, &copy));
-done:
-    free(copy);
-    return status;
+    return ritz_h5_set_texts(file, "command", 1, &copy);
 }
 
 static void free_writer(container_writer *writer)

@@ -14,20 +14,17 @@
 /* Each mode has one place in the order. */
 static ritz_status check_order(const ritz_ranking *ranking)
 {
-    ritz_status status = RITZ_OK;
-    bool *placed = NULL;
+    RITZ_OWN_ARRAY bool *placed = NULL;
 
-    RITZ_NEW(placed, ranking->count);
+    RITZ_CHECK_NEW(placed, ranking->count);
     for (int64_t k = 0; k < ranking->count; k++) {
         int64_t mode = ranking->order[k];
 
-        RITZ_FAIL_IF(placed[mode], RITZ_ERR_FORMAT,
-                     "mode %" PRId64 " is in 'order' twice", mode);
+        RITZ_REFUSE_IF(placed[mode], RITZ_ERR_FORMAT,
+                       "mode %" PRId64 " is in 'order' twice", mode);
         placed[mode] = true;
     }
-done:
-    free(placed);
-    return status;
+    return RITZ_OK;
 }
 
 /* Without clusters each mode is its own. Modes of a cluster are neighbours. */
@@ -235,17 +232,14 @@ ritz_status ritz_container_write_rankings(const char *path,
 
 ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_rankings all = {0};
+    RITZ_OWN(ritz_rankings) all = {0};
 
-    RITZ_TRY(ritz_container_read_rankings(path, &all));
-    RITZ_FAIL_IF(all.count != 1, RITZ_ERR_FORMAT,
-                 "'%s' holds %" PRId64 " rankings, not one", path, all.count);
+    RITZ_CHECK(ritz_container_read_rankings(path, &all));
+    RITZ_REFUSE_IF(all.count != 1, RITZ_ERR_FORMAT,
+                   "'%s' holds %" PRId64 " rankings, not one", path, all.count);
     *out = all.item[0];
     all.item[0] = (ritz_ranking){0};
-done:
-    ritz_rankings_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_container_write_ranking(const char *path,

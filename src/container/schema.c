@@ -511,22 +511,19 @@ done:
 ritz_status ritz_schema_items(const ritz_place *place, const ritz_member *row,
                               int64_t *count, ritz_name **out)
 {
-    ritz_status status = RITZ_OK;
     const char *item = pointer_in(field_of(place, row));
-    ritz_name *name = NULL;
+    RITZ_OWN_ARRAY ritz_name *name = NULL;
 
     *count = ritz_schema_size(place, *row->shape);
-    RITZ_NEW(name, *count);
+    RITZ_CHECK_NEW(name, *count);
     for (int64_t k = 0; k < *count; k++, item += row->size)
         if (row->numbered)
             snprintf(name[k], sizeof *name, "%" PRId64, k);
         else
-            RITZ_TRY(ritz_name_copy(item, name[k]));
+            RITZ_CHECK(ritz_name_copy(item, name[k]));
     *out = name;
     name = NULL;
-done:
-    free(name);
-    return status;
+    return RITZ_OK;
 }
 
 /* The names that a group lists, and room for as many items. */

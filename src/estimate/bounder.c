@@ -39,32 +39,28 @@ double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j)
 static ritz_status multiply_damping(const ritz_sparse *A, const ritz_bounder *r,
                                     int64_t at, ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AX = {0};
+    RITZ_OWN(ritz_dense) AX = {0};
 
     if (!A->colptr)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(A, &r->trial->X, &AX));
+    RITZ_CHECK(ritz_sparse_mul(A, &r->trial->X, &AX));
     memcpy(ritz_dense_col(V, at), AX.val,
            (size_t)(AX.nrow * AX.ncol) * sizeof *AX.val);
-done:
-    ritz_dense_free(&AX);
-    return status;
+    return RITZ_OK;
 }
 
 /* V = [R b_o c_o D_o K4_o]: all but R less their part M X X' in the trial. */
 static ritz_status stack_vectors(const ritz_estimator *estimator,
                                  ritz_bounder *r, ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &estimator->component->io;
     const ritz_dense *const C[KINDS] = {&io->C, &io->Cv, &io->Ca};
     int64_t n = estimator->component->num_dofs;
     int64_t m = r->trial->count;
-    ritz_dense MX = {0};
+    RITZ_OWN(ritz_dense) MX = {0};
     ritz_dense part = {0};
 
-    RITZ_TRY(ritz_dense_new(n, r->size, V));
+    RITZ_CHECK(ritz_dense_new(n, r->size, V));
     memcpy(V->val, r->trial->R.val, (size_t)(n * m) * sizeof *V->val);
     for (int64_t j = 0; j < io->num_inputs; j++)
         memcpy(ritz_dense_col(V, m + j), ritz_dense_col(&io->B, j),
@@ -75,40 +71,34 @@ static ritz_status stack_vectors(const ritz_estimator *estimator,
                 ritz_dense_col(V, m + io->num_inputs + k * io->num_outputs +
                                       i)[d] = ritz_dense_col(C[k], d)[i];
     if (r->coupled) {
-        RITZ_TRY(
+        RITZ_CHECK(
             multiply_damping(&estimator->component->D, r, r->size - 2 * m, V));
-        RITZ_TRY(
+        RITZ_CHECK(
             multiply_damping(&estimator->component->K4, r, r->size - m, V));
     }
-    RITZ_TRY(ritz_sparse_mul(&estimator->component->M, &r->trial->X, &MX));
+    RITZ_CHECK(ritz_sparse_mul(&estimator->component->M, &r->trial->X, &MX));
     part = ritz_dense_part(V, m, r->size - m);
     for (int twice = 0; twice < 2; twice++)
-        RITZ_TRY(ritz_dense_take_out(&MX, &r->trial->X, &part));
-done:
-    ritz_dense_free(&MX);
-    return status;
+        RITZ_CHECK(ritz_dense_take_out(&MX, &r->trial->X, &part));
+    return RITZ_OK;
 }
 
 /* G = V'A^-1 V, Q = V'A^-1 M A^-1 V and the norms of V's columns. */
 static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense V = {0};
-    ritz_dense E = {0};
+    RITZ_OWN(ritz_dense) V = {0};
+    RITZ_OWN(ritz_dense) E = {0};
 
-    RITZ_TRY(stack_vectors(estimator, r, &V));
-    RITZ_TRY(ritz_dense_copy(&V, &E));
-    RITZ_TRY(ritz_factor_solve(estimator->A, &E));
-    RITZ_TRY(ritz_dense_mul_tn(&V, &E, &r->G));
+    RITZ_CHECK(stack_vectors(estimator, r, &V));
+    RITZ_CHECK(ritz_dense_copy(&V, &E));
+    RITZ_CHECK(ritz_factor_solve(estimator->A, &E));
+    RITZ_CHECK(ritz_dense_mul_tn(&V, &E, &r->G));
     ritz_dense_symmetrise(&r->G);
-    RITZ_TRY(ritz_sparse_condense(&estimator->component->M, &E, &r->Q));
-    RITZ_NEW(r->vector_norm, r->size);
+    RITZ_CHECK(ritz_sparse_condense(&estimator->component->M, &E, &r->Q));
+    RITZ_CHECK_NEW(r->vector_norm, r->size);
     for (int64_t j = 0; j < r->size; j++)
         r->vector_norm[j] = sqrt(fmax(ritz_dense_col(&r->G, j)[j], 0.0));
-done:
-    ritz_dense_free(&V);
-    ritz_dense_free(&E);
-    return status;
+    return RITZ_OK;
 }
 
 /*

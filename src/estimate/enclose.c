@@ -72,23 +72,18 @@ done:
 static ritz_status take_ritz_pairs(const ritz_component *full,
                                    const ritz_dense *Y, ritz_lehmann *trial)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense K = {0};
-    ritz_dense M = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) K = {0};
+    RITZ_OWN(ritz_dense) M = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_sparse_condense(&full->K, Y, &K));
-    RITZ_TRY(ritz_sparse_condense(&full->M, Y, &M));
-    RITZ_TRY(ritz_eigen_dense(&K, &M, &pairs));
-    RITZ_TRY(ritz_dense_mul(Y, &pairs.Phi, &trial->X));
+    RITZ_CHECK(ritz_sparse_condense(&full->K, Y, &K));
+    RITZ_CHECK(ritz_sparse_condense(&full->M, Y, &M));
+    RITZ_CHECK(ritz_eigen_dense(&K, &M, &pairs));
+    RITZ_CHECK(ritz_dense_mul(Y, &pairs.Phi, &trial->X));
     trial->count = pairs.Phi.ncol;
     trial->theta = pairs.lambda;
     pairs.lambda = NULL;
-done:
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 /* |x|'|K||x| of each column. */
@@ -110,16 +105,15 @@ static double magnitude(const ritz_sparse *K, const double *x)
 static ritz_status take_residuals(const ritz_component *full,
                                   ritz_lehmann *trial)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense MX = {0};
+    RITZ_OWN(ritz_dense) MX = {0};
     double largest = 0.0;
 
     if (trial->count > 0)
         largest = trial->theta[trial->count - 1];
-    RITZ_NEW(trial->rounding, trial->count);
-    RITZ_NEW(trial->mass_terms, trial->count);
-    RITZ_TRY(ritz_sparse_mul(&full->K, &trial->X, &trial->R));
-    RITZ_TRY(ritz_sparse_mul(&full->M, &trial->X, &MX));
+    RITZ_CHECK_NEW(trial->rounding, trial->count);
+    RITZ_CHECK_NEW(trial->mass_terms, trial->count);
+    RITZ_CHECK(ritz_sparse_mul(&full->K, &trial->X, &trial->R));
+    RITZ_CHECK(ritz_sparse_mul(&full->M, &trial->X, &MX));
     for (int64_t j = 0; j < trial->count; j++) {
         double *r = ritz_dense_col(&trial->R, j);
         double *x = ritz_dense_col(&trial->X, j);
@@ -133,9 +127,7 @@ static ritz_status take_residuals(const ritz_component *full,
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
     }
-done:
-    ritz_dense_free(&MX);
-    return status;
+    return RITZ_OK;
 }
 
 /* Between what each eigenvalue of the reduced pencil can be. */
@@ -161,16 +153,15 @@ static void bound_reduced(const ritz_pairs *pairs, ritz_lehmann *trial)
 static ritz_status round_reduced(const ritz_reduced *reduced,
                                  const ritz_pairs *pairs, ritz_lehmann *trial)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense Q = ritz_dense_part(&pairs->Phi, 0, trial->count);
-    ritz_dense K = {0};
-    ritz_dense M = {0};
+    RITZ_OWN(ritz_dense) K = {0};
+    RITZ_OWN(ritz_dense) M = {0};
 
-    RITZ_NEW(trial->reduced_rounding, trial->count);
-    RITZ_NEW(trial->reduced_low, trial->count);
-    RITZ_NEW(trial->reduced_high, trial->count);
-    RITZ_TRY(ritz_dense_terms(&reduced->K, &Q, &K));
-    RITZ_TRY(ritz_dense_terms(&reduced->M, &Q, &M));
+    RITZ_CHECK_NEW(trial->reduced_rounding, trial->count);
+    RITZ_CHECK_NEW(trial->reduced_low, trial->count);
+    RITZ_CHECK_NEW(trial->reduced_high, trial->count);
+    RITZ_CHECK(ritz_dense_terms(&reduced->K, &Q, &K));
+    RITZ_CHECK(ritz_dense_terms(&reduced->M, &Q, &M));
     for (int64_t j = 0; j < trial->count; j++) {
         trial->mass_terms[j] += ritz_dense_col(&M, j)[j];
         trial->reduced_rounding[j] =
@@ -180,10 +171,7 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
              pairs->lambda[pairs->Phi.ncol - 1]);
     }
     bound_reduced(pairs, trial);
-done:
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    return status;
+    return RITZ_OK;
 }
 
 /* E = A^-1 R and G = R'E. */
@@ -203,24 +191,20 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
                              const ritz_pairs *pairs, int64_t count,
                              ritz_lehmann *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense part = ritz_dense_part(&pairs->Phi, 0, count);
-    ritz_lehmann trial = {.sigma = estimator->sigma};
-    ritz_dense Y = {0};
+    RITZ_OWN(ritz_lehmann) trial = {.sigma = estimator->sigma};
+    RITZ_OWN(ritz_dense) Y = {0};
 
-    RITZ_TRY(ritz_dense_mul(T, &part, &Y));
-    RITZ_TRY(take_ritz_pairs(estimator->component, &Y, &trial));
-    RITZ_FAIL_IF(trial.count != count, RITZ_ERR_SINGULAR,
-                 "estimate: columns of the basis depend on each other");
-    RITZ_TRY(take_residuals(estimator->component, &trial));
-    RITZ_TRY(round_reduced(reduced, pairs, &trial));
-    RITZ_TRY(solve_residuals(estimator, &trial));
+    RITZ_CHECK(ritz_dense_mul(T, &part, &Y));
+    RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &trial));
+    RITZ_REFUSE_IF(trial.count != count, RITZ_ERR_SINGULAR,
+                   "estimate: columns of the basis depend on each other");
+    RITZ_CHECK(take_residuals(estimator->component, &trial));
+    RITZ_CHECK(round_reduced(reduced, pairs, &trial));
+    RITZ_CHECK(solve_residuals(estimator, &trial));
     *out = trial;
     trial = (ritz_lehmann){0};
-done:
-    ritz_dense_free(&Y);
-    ritz_lehmann_free(&trial);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -230,22 +214,18 @@ done:
 ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_lehmann polished = {.sigma = estimator->sigma};
-    ritz_dense Y = {0};
+    RITZ_OWN(ritz_lehmann) polished = {.sigma = estimator->sigma};
+    RITZ_OWN(ritz_dense) Y = {0};
 
-    RITZ_TRY(ritz_dense_copy(&trial->X, &Y));
+    RITZ_CHECK(ritz_dense_copy(&trial->X, &Y));
     for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
         Y.val[k] -= trial->E.val[k];
-    RITZ_TRY(take_ritz_pairs(estimator->component, &Y, &polished));
-    RITZ_TRY(take_residuals(estimator->component, &polished));
-    RITZ_TRY(solve_residuals(estimator, &polished));
+    RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &polished));
+    RITZ_CHECK(take_residuals(estimator->component, &polished));
+    RITZ_CHECK(solve_residuals(estimator, &polished));
     *out = polished;
     polished = (ritz_lehmann){0};
-done:
-    ritz_dense_free(&Y);
-    ritz_lehmann_free(&polished);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_lehmann_free(ritz_lehmann *trial)
@@ -321,18 +301,15 @@ static bool factor_form(ritz_dense *H)
 static ritz_status join_signs(const ritz_dense *L, const double *d,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense JL = {0};
+    RITZ_OWN(ritz_dense) JL = {0};
 
-    RITZ_TRY(ritz_dense_copy(L, &JL));
+    RITZ_CHECK(ritz_dense_copy(L, &JL));
     for (int64_t j = 0; j < L->ncol; j++)
         for (int64_t i = j; i < L->nrow; i++)
             ritz_dense_col(&JL, j)[i] *= d[i] > 0.0 ? 1.0 : -1.0;
-    RITZ_TRY(ritz_dense_mul_tn(L, &JL, out));
+    RITZ_CHECK(ritz_dense_mul_tn(L, &JL, out));
     ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&JL);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -342,31 +319,24 @@ done:
 static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
                                  ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = trial->count;
-    double *d = NULL;
-    ritz_dense L = {0};
-    ritz_dense LJL = {0};
-    ritz_dense one = {0};
+    RITZ_OWN_ARRAY double *d = NULL;
+    RITZ_OWN(ritz_dense) L = {0};
+    RITZ_OWN(ritz_dense) LJL = {0};
+    RITZ_OWN(ritz_dense) one = {0};
 
-    RITZ_NEW(d, m);
+    RITZ_CHECK_NEW(d, m);
     if (!take_offsets(trial, rho, d))
-        goto done;
-    RITZ_TRY(ritz_dense_new(m, m, &L));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_new(m, m, &L));
     fill_form(trial, d, &L);
     if (!factor_form(&L))
-        goto done;
-    RITZ_TRY(join_signs(&L, d, &LJL));
-    RITZ_TRY(ritz_dense_new(m, m, &one));
+        return RITZ_OK;
+    RITZ_CHECK(join_signs(&L, d, &LJL));
+    RITZ_CHECK(ritz_dense_new(m, m, &one));
     for (int64_t j = 0; j < m; j++)
         ritz_dense_col(&one, j)[j] = 1.0;
-    RITZ_TRY(ritz_eigen_dense(&LJL, &one, out));
-done:
-    free(d);
-    ritz_dense_free(&L);
-    ritz_dense_free(&LJL);
-    ritz_dense_free(&one);
-    return status;
+    return ritz_eigen_dense(&LJL, &one, out);
 }
 
 static double shifted(const ritz_lehmann *trial, int64_t j)
@@ -453,38 +423,34 @@ static ritz_status enclose(const ritz_lehmann *trial,
                            const ritz_counted *counted, bool above,
                            ritz_enclosure *e)
 {
-    ritz_status status = RITZ_OK;
     double off = RITZ_COUNT_MARGIN * rounding_at(trial, counted->rho);
     double rho = counted->rho + (above ? off : -off);
     double kappa_rho = 1.0 / (rho - trial->sigma);
-    ritz_pairs nu = {0};
+    RITZ_OWN(ritz_pairs) nu = {0};
 
     if (!(kappa_rho > 0.0))
         return RITZ_OK;
-    RITZ_TRY(solve_lehmann(trial, rho, &nu));
+    RITZ_CHECK(solve_lehmann(trial, rho, &nu));
     if (above)
         enclose_above(trial, &nu, kappa_rho, counted->below, e);
     else
         enclose_below(trial, &nu, kappa_rho, counted->below, e);
-done:
-    ritz_pairs_free(&nu);
-    return status;
+    return RITZ_OK;
 }
 
 /* Upper bounds: of Ritz, and of one inverse iteration. */
 static ritz_status improve_from_above(const ritz_lehmann *trial,
                                       ritz_enclosure *e)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = trial->count;
     double off = 0.0;
     double most = 0.0;
-    ritz_dense S = {0};
-    ritz_dense one = {0};
-    ritz_pairs kappa = {0};
+    RITZ_OWN(ritz_dense) S = {0};
+    RITZ_OWN(ritz_dense) one = {0};
+    RITZ_OWN(ritz_pairs) kappa = {0};
 
-    RITZ_TRY(ritz_dense_new(m, m, &S));
-    RITZ_TRY(ritz_dense_new(m, m, &one));
+    RITZ_CHECK(ritz_dense_new(m, m, &S));
+    RITZ_CHECK(ritz_dense_new(m, m, &one));
     for (int64_t j = 0; j < m; j++) {
         for (int64_t i = 0; i < m; i++)
             ritz_dense_col(&S, j)[i] = ritz_dense_col(&trial->G, j)[i] /
@@ -492,7 +458,7 @@ static ritz_status improve_from_above(const ritz_lehmann *trial,
         ritz_dense_col(&S, j)[j] += 1.0 / shifted(trial, j);
         ritz_dense_col(&one, j)[j] = 1.0;
     }
-    RITZ_TRY(ritz_eigen_dense(&S, &one, &kappa));
+    RITZ_CHECK(ritz_eigen_dense(&S, &one, &kappa));
     off = rounding_of(&kappa);
     for (int64_t k = 0; k < kappa.Phi.ncol; k++) {
         double better =
@@ -503,11 +469,7 @@ static ritz_status improve_from_above(const ritz_lehmann *trial,
         most = fmax(most, better + trial->rounding[k]);
         e->high[k] = fmin(e->high[k], most);
     }
-done:
-    ritz_dense_free(&S);
-    ritz_dense_free(&one);
-    ritz_pairs_free(&kappa);
-    return status;
+    return RITZ_OK;
 }
 
 /* What counts alone say, and that both ends ascend. */
@@ -572,30 +534,27 @@ ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
                                const ritz_lehmann *polished,
                                ritz_enclosure *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_enclosure e = {.count = trial->count};
+    RITZ_OWN(ritz_enclosure) e = {.count = trial->count};
     const ritz_counted *counted = estimator->count;
 
     for (int64_t s = 0; s < estimator->num_counts; s++)
         if (counted[s].below > e.count)
             e.count = counted[s].below;
     e.count++; /* the next one, of which counts may say something */
-    RITZ_NEW(e.low, e.count);
-    RITZ_NEW(e.high, e.count);
-    RITZ_NEW(e.near_low, trial->count + polished->count);
-    RITZ_NEW(e.near_high, trial->count + polished->count);
+    RITZ_CHECK_NEW(e.low, e.count);
+    RITZ_CHECK_NEW(e.high, e.count);
+    RITZ_CHECK_NEW(e.near_low, trial->count + polished->count);
+    RITZ_CHECK_NEW(e.near_high, trial->count + polished->count);
     for (int64_t p = 0; p < e.count; p++)
         e.high[p] = HUGE_VAL;
     add_near(trial, &e);
     add_near(polished, &e);
-    RITZ_TRY(add_trial(estimator, trial, &e));
-    RITZ_TRY(add_trial(estimator, polished, &e));
+    RITZ_CHECK(add_trial(estimator, trial, &e));
+    RITZ_CHECK(add_trial(estimator, polished, &e));
     settle_ends(estimator, trial, &e);
     *out = e;
     e = (ritz_enclosure){0};
-done:
-    ritz_enclosure_free(&e);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_enclosure_free(ritz_enclosure *enclosure)

@@ -306,26 +306,23 @@ static ritz_status add_pair(const ritz_measuring *m, const char *name,
 static ritz_status report_modes(const ritz_estimator *estimator,
                                 const ritz_measuring *m, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_prediction *v = &m->prediction;
-    ritz_measures each = {0};
+    RITZ_OWN(ritz_measures) each = {0};
 
-    RITZ_TRY(list_modes(estimator, m, &each));
+    RITZ_CHECK(list_modes(estimator, m, &each));
     if (!v->counted && (v->any_in_band || each.count > 0))
-        RITZ_TRY(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
-                                   nan(""), "modes are not counted"));
+        RITZ_CHECK(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
+                                     nan(""), "modes are not counted"));
     else if (v->bound >= 0.0)
-        RITZ_TRY(add_pair(m, "frequency-relative-bound", v->bound,
-                          v->bound_mode, v->bound_full, out));
+        RITZ_CHECK(add_pair(m, "frequency-relative-bound", v->bound,
+                            v->bound_mode, v->bound_full, out));
     if (v->least > 0.0)
-        RITZ_TRY(add_pair(m, "frequency-relative-least", v->least,
-                          v->least_mode, v->least_full, out));
+        RITZ_CHECK(add_pair(m, "frequency-relative-least", v->least,
+                            v->least_mode, v->least_full, out));
     for (int64_t k = 0; k < each.count; k++)
-        RITZ_TRY(ritz_measures_add(out, each.item[k].name, each.item[k].value,
-                                   nan(""), each.item[k].where));
-done:
-    ritz_measures_free(&each);
-    return status;
+        RITZ_CHECK(ritz_measures_add(out, each.item[k].name, each.item[k].value,
+                                     nan(""), each.item[k].where));
+    return RITZ_OK;
 }
 
 static ritz_status report_missing(const ritz_measuring *m, ritz_measures *out)
@@ -487,25 +484,21 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
                                    const ritz_reduced *reduced,
                                    ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_measuring m = {0};
-    ritz_measures found = {0};
+    [[gnu::cleanup(measuring_free)]] ritz_measuring m = {0};
+    RITZ_OWN(ritz_measures) found = {0};
     bool response = true;
 
-    RITZ_TRY(open_measuring(estimator, basis, reduced, &response, &m));
+    RITZ_CHECK(open_measuring(estimator, basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0) {
-        RITZ_TRY(refine_all(estimator, response, &m));
-        RITZ_TRY(report_modes(estimator, &m, &found));
-        RITZ_TRY(report_missing(&m, &found));
+        RITZ_CHECK(refine_all(estimator, response, &m));
+        RITZ_CHECK(report_modes(estimator, &m, &found));
+        RITZ_CHECK(report_missing(&m, &found));
         if (response)
-            RITZ_TRY(ritz_bound_response(estimator, &m, reduced, &found));
+            RITZ_CHECK(ritz_bound_response(estimator, &m, reduced, &found));
     }
     *out = found;
     found = (ritz_measures){0};
-done:
-    measuring_free(&m);
-    ritz_measures_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_estimator_least(ritz_estimator *estimator,
@@ -513,39 +506,32 @@ ritz_status ritz_estimator_least(ritz_estimator *estimator,
                                  const ritz_reduced *reduced,
                                  ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_measuring m = {0};
+    [[gnu::cleanup(measuring_free)]] ritz_measuring m = {0};
     ritz_estimator bare = {0}; /* the same, nothing being counted */
     bool response = false;
 
-    RITZ_TRY(open_measuring(estimator, basis, reduced, &response, &m));
+    RITZ_CHECK(open_measuring(estimator, basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0) {
         bare = *estimator;
         bare.num_counts = 0;
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_enclosure_new(&bare, &m.trial, &m.polished, &m.enclosure));
-        RITZ_TRY(report_least(&bare, &m, out));
+        RITZ_CHECK(report_least(&bare, &m, out));
     }
-done:
-    measuring_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
                           const ritz_estimate_request *request,
                           ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
-    ritz_estimator *estimator = NULL;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_estimator) *estimator = NULL;
+    RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_TRY(ritz_estimator_new(full, request, &estimator));
-    RITZ_TRY(ritz_estimator_measure(estimator, basis, reduced, &found));
+    RITZ_CHECK(ritz_estimator_new(full, request, &estimator));
+    RITZ_CHECK(ritz_estimator_measure(estimator, basis, reduced, &found));
     ritz_measures_free(&reduced->estimates);
     reduced->estimates = found;
     found = (ritz_measures){0};
-done:
-    ritz_estimator_free(&estimator);
-    ritz_measures_free(&found);
-    return status;
+    return RITZ_OK;
 }

@@ -237,18 +237,13 @@ static ritz_status take_overlap(const ritz_estimator *estimator,
                                 const ritz_measuring *m,
                                 const ritz_lehmann *trial, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense MX = {0}, TMX = {0};
+    RITZ_OWN(ritz_dense) MX = {0}, TMX = {0};
 
     if (!trial->X.val)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(&estimator->component->M, &trial->X, &MX));
-    RITZ_TRY(ritz_dense_mul_tn(m->T, &MX, &TMX));
-    RITZ_TRY(ritz_dense_mul_tn(&m->pairs.Phi, &TMX, out));
-done:
-    ritz_dense_free(&MX);
-    ritz_dense_free(&TMX);
-    return status;
+    RITZ_CHECK(ritz_sparse_mul(&estimator->component->M, &trial->X, &MX));
+    RITZ_CHECK(ritz_dense_mul_tn(m->T, &MX, &TMX));
+    return ritz_dense_mul_tn(&m->pairs.Phi, &TMX, out);
 }
 
 /* Whether rounding of the reduced matrices may mix mode r with a neighbour. */

@@ -93,11 +93,10 @@ static void improve(const ritz_component *full, double ab[2])
 static ritz_status vanishes(const ritz_component *full, const double ab[2],
                             const ritz_sparse *rest, bool *out)
 {
-    ritz_status status = RITZ_OK;
-    double *size = NULL;
+    RITZ_OWN_ARRAY double *size = NULL;
     bool all = true;
 
-    RITZ_NEW(size, full->num_dofs);
+    RITZ_CHECK_NEW(size, full->num_dofs);
     for (int64_t j = 0; j < full->num_dofs; j++)
         size[j] = sqrt(RITZ_RAYLEIGH_WITHIN *
                        (fabs(ritz_sparse_diagonal(&full->D, j)) +
@@ -107,18 +106,15 @@ static ritz_status vanishes(const ritz_component *full, const double ab[2],
         for (int64_t p = rest->colptr[j]; p < rest->colptr[j + 1]; p++)
             all = all && fabs(rest->val[p]) <= size[rest->rowind[p]] * size[j];
     *out = all;
-done:
-    free(size);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether D is a M + b K with a, b >= 0, and which; there is no K4. */
 static ritz_status fit_rayleigh(const ritz_component *full, double *a,
                                 double *b, bool *found)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse part = {0};
-    ritz_sparse rest = {0};
+    RITZ_OWN(ritz_sparse) part = {0};
+    RITZ_OWN(ritz_sparse) rest = {0};
     double ab[2] = {0.0, 0.0};
     double k_size = ritz_sparse_max(&full->K);
     double m_size = ritz_sparse_max(&full->M);
@@ -130,16 +126,13 @@ static ritz_status fit_rayleigh(const ritz_component *full, double *a,
     most = RITZ_RAYLEIGH_WITHIN * ritz_sparse_max(&full->D);
     for (int pass = 0; pass < PASSES; pass++)
         improve(full, ab);
-    RITZ_TRY(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
-    RITZ_TRY(ritz_sparse_add(1.0, &part, -ab[1], &full->K, &rest));
-    RITZ_TRY(vanishes(full, ab, &rest, found));
+    RITZ_CHECK(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
+    RITZ_CHECK(ritz_sparse_add(1.0, &part, -ab[1], &full->K, &rest));
+    RITZ_CHECK(vanishes(full, ab, &rest, found));
     *found = *found && ab[0] * m_size >= -most && ab[1] * k_size >= -most;
     *a = fmax(ab[0], 0.0);
     *b = fmax(ab[1], 0.0);
-done:
-    ritz_sparse_free(&part);
-    ritz_sparse_free(&rest);
-    return status;
+    return RITZ_OK;
 }
 
 /* Modal damping where no ratio is common to all modes. */
@@ -148,17 +141,14 @@ done:
 static ritz_status diagonal(const ritz_sparse *D, const ritz_dense *X,
                             double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense DX = {0};
+    RITZ_OWN(ritz_dense) DX = {0};
 
     if (!D->colptr)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(D, X, &DX));
+    RITZ_CHECK(ritz_sparse_mul(D, X, &DX));
     for (int64_t j = 0; j < X->ncol; j++)
         out[j] = ritz_dense_dot(X, j, &DX, j);
-done:
-    ritz_dense_free(&DX);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -179,13 +169,12 @@ static bool is_lost(const ritz_lehmann *trial, int64_t j, double damping)
 static ritz_status take_rates(const ritz_estimator *estimator, ritz_bounder *r,
                               double *rates, double *matrices)
 {
-    ritz_status status = RITZ_OK;
     const ritz_damping *damping = &estimator->request.damping;
-    double *hysteretic = NULL;
+    RITZ_OWN_ARRAY double *hysteretic = NULL;
 
-    RITZ_NEW(hysteretic, r->trial->count);
-    RITZ_TRY(diagonal(&estimator->component->D, &r->trial->X, rates));
-    RITZ_TRY(diagonal(&estimator->component->K4, &r->trial->X, hysteretic));
+    RITZ_CHECK_NEW(hysteretic, r->trial->count);
+    RITZ_CHECK(diagonal(&estimator->component->D, &r->trial->X, rates));
+    RITZ_CHECK(diagonal(&estimator->component->K4, &r->trial->X, hysteretic));
     r->zeta = 1.0;
     for (int64_t j = r->num_rigid; j < r->trial->count; j++) {
         double w = sqrt(fmax(r->trial->theta[j], DBL_MIN));
@@ -203,9 +192,7 @@ static ritz_status take_rates(const ritz_estimator *estimator, ritz_bounder *r,
     r->coupled =
         estimator->component->D.colptr || estimator->component->K4.colptr;
     r->rayleigh = false;
-done:
-    free(hysteretic);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -305,19 +292,18 @@ static double bound_interval(ritz_bounder *r, double a, double b, double *best,
 static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
                                int64_t *count, double **hertz)
 {
-    ritz_status status = RITZ_OK;
     ritz_grid grid = {.from_hz = band_hz[0],
                       .to_hz = band_hz[1],
                       .count = EVEN_POINTS,
                       .refine = true};
     int64_t m = r->trial->count - r->num_rigid;
-    double *omega = NULL;
-    double *zeta = NULL;
+    RITZ_OWN_ARRAY double *omega = NULL;
+    RITZ_OWN_ARRAY double *zeta = NULL;
 
     if (r->num_rigid > 0)
         grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
-    RITZ_NEW(omega, m);
-    RITZ_NEW(zeta, m);
+    RITZ_CHECK_NEW(omega, m);
+    RITZ_CHECK_NEW(zeta, m);
     for (int64_t k = 0; k < m; k++) {
         double theta = r->trial->theta[r->num_rigid + k];
 
@@ -327,24 +313,19 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
                 ? 0.5 * ritz_bounder_rate_of(r, r->num_rigid + k) / omega[k]
                 : 1.0;
     }
-    RITZ_TRY(ritz_grid_points(&grid, m, omega, zeta, count, hertz));
-done:
-    free(omega);
-    free(zeta);
-    return status;
+    return ritz_grid_points(&grid, m, omega, zeta, count, hertz);
 }
 
 static ritz_status bound_band(ritz_bounder *r, const double band_hz[2],
                               double *out, double *at)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
     int64_t left = MOST_INTERVALS;
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
     double best = 0.0;
     double top = 0.0;
 
-    RITZ_TRY(take_points(r, band_hz, &count, &hertz));
+    RITZ_CHECK(take_points(r, band_hz, &count, &hertz));
     for (int64_t k = 0; k < count; k++) {
         double one = ritz_bound_at(r, 2.0 * RITZ_PI * hertz[k], 0.0);
 
@@ -360,9 +341,7 @@ static ritz_status bound_band(ritz_bounder *r, const double band_hz[2],
                    bound_interval(r, 2.0 * RITZ_PI * hertz[k],
                                   2.0 * RITZ_PI * hertz[k + 1], &best, &left));
     *out = top;
-done:
-    free(hertz);
-    return status;
+    return RITZ_OK;
 }
 
 /* What can be said of a response. */
@@ -412,47 +391,43 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
                                 const ritz_measuring *m,
                                 const ritz_reduced *reduced, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_damping *damping = &estimator->request.damping;
     bool known = promise_of(estimator, reduced, m->pairs.Phi.ncol) == BOUND;
     bool sure = false;
-    ritz_bounder r = {.trial = &m->trial,
-                      .e = &m->enclosure,
-                      .io = &estimator->component->io,
-                      .num_rigid = m->pairs.num_rigid,
-                      .rayleigh = ritz_damping_is_rayleigh(damping),
-                      .zeta = damping->zeta,
-                      .a = damping->a,
-                      .b = damping->b};
-    double *rates = NULL;
-    double *matrices = NULL;
+    RITZ_OWN(ritz_bounder)
+    r = {.trial = &m->trial,
+         .e = &m->enclosure,
+         .io = &estimator->component->io,
+         .num_rigid = m->pairs.num_rigid,
+         .rayleigh = ritz_damping_is_rayleigh(damping),
+         .zeta = damping->zeta,
+         .a = damping->a,
+         .b = damping->b};
+    RITZ_OWN_ARRAY double *rates = NULL;
+    RITZ_OWN_ARRAY double *matrices = NULL;
     double bound = 0.0;
     double at = 0.0;
     double counted = 0.0;
     char where[RITZ_NAME_SIZE];
 
-    RITZ_NEW(rates, m->trial.count);
-    RITZ_NEW(matrices, m->trial.count);
+    RITZ_CHECK_NEW(rates, m->trial.count);
+    RITZ_CHECK_NEW(matrices, m->trial.count);
     if (!known && damping->kind == RITZ_DAMPING_NONE)
-        RITZ_TRY(fit_rayleigh(estimator->component, &r.a, &r.b, &r.rayleigh));
+        RITZ_CHECK(fit_rayleigh(estimator->component, &r.a, &r.b, &r.rayleigh));
     sure =
         (known || r.rayleigh) && rigid_in_full(&m->trial, m->pairs.num_rigid);
     if (!known && !r.rayleigh)
-        RITZ_TRY(take_rates(estimator, &r, rates, matrices));
-    RITZ_TRY(ritz_bounder_open(estimator, &r));
-    RITZ_TRY(bound_band(&r, m->band_hz, &bound, &at));
+        RITZ_CHECK(take_rates(estimator, &r, rates, matrices));
+    RITZ_CHECK(ritz_bounder_open(estimator, &r));
+    RITZ_CHECK(bound_band(&r, m->band_hz, &bound, &at));
     if ((r.coupled && ritz_missing_modes(estimator, m, &counted) != 0) ||
         is_at_odds(&r) || has_undamped(&r, m->band_hz))
         bound = HUGE_VAL; /* of their damping nothing is known */
     (void)snprintf(where, sizeof where, "%.6g Hz", at);
     if (bound > 0.0)
-        RITZ_TRY(ritz_measures_add(
+        RITZ_CHECK(ritz_measures_add(
             out,
             sure ? "response-relative-bound" : "response-relative-estimate",
             r.least > 0.0 ? bound / r.least : HUGE_VAL, nan(""), where));
-done:
-    ritz_bounder_free(&r);
-    free(rates);
-    free(matrices);
-    return status;
+    return RITZ_OK;
 }

@@ -49,27 +49,26 @@ const char *ritz_fitter_body(const ritz_fitter *fitter, int64_t k)
 /* Flexible is what the scene reduces by a number of modes. */
 static ritz_status load_bodies(ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = f->scene;
-    ritz_component full = {0};
+    RITZ_OWN(ritz_component) full = {0};
 
     f->num_components = scene->num_components;
-    RITZ_NEW(f->still, scene->num_components);
-    RITZ_NEW(f->model, scene->num_components);
-    RITZ_NEW(f->body, scene->num_components);
+    RITZ_CHECK_NEW(f->still, scene->num_components);
+    RITZ_CHECK_NEW(f->model, scene->num_components);
+    RITZ_CHECK_NEW(f->body, scene->num_components);
     for (int64_t k = 0; k < scene->num_components; k++) {
         const ritz_scene_component *item = &scene->component[k];
         const ritz_method *method = NULL;
 
         ritz_monitor_step("component", k, scene->num_components);
-        RITZ_TRY(ritz_stage_load(scene, k, &full, &f->still[k]));
+        RITZ_CHECK(ritz_stage_load(scene, k, &full, &f->still[k]));
         if (full.num_dofs == 0) {
             f->rich = true; /* there is no full system */
             continue;
         }
         method = ritz_method_find(item->basis);
         if (!method || !(method->uses & RITZ_USES_MODES)) {
-            RITZ_TRY(ritz_scene_context(
+            RITZ_CHECK(ritz_scene_context(
                 scene,
                 method ? ritz_stage_reduce(scene, k, item, &full, &f->still[k])
                        : RITZ_ERR_ARGUMENT,
@@ -81,12 +80,10 @@ static ritz_status load_bodies(ritz_fitter *f)
         f->model[f->num_bodies++] = full;
         full = (ritz_component){0};
     }
-    RITZ_FAIL_IF(f->num_bodies == 0, RITZ_ERR_ARGUMENT,
-                 "no component of the scene is reduced by a number of modes: "
-                 "there is nothing to fit");
-done:
-    ritz_component_free(&full);
-    return status;
+    RITZ_REFUSE_IF(f->num_bodies == 0, RITZ_ERR_ARGUMENT,
+                   "no component of the scene is reduced by a number of modes: "
+                   "there is nothing to fit");
+    return RITZ_OK;
 }
 
 /* A flexible mode of a body. */
@@ -116,16 +113,15 @@ typedef struct body_modes {
 static ritz_status gather_modes(const ritz_fitter *f, int64_t k,
                                 const ritz_span *span, body_modes *r)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     body_mode *more = NULL;
     int64_t found = 0;
 
-    RITZ_TRY_IN(
+    RITZ_CHECK_IN(
         ritz_fitter_body(f, k),
         ritz_eigen_sparse(&f->model[k].K, &f->model[k].M, span, &pairs));
     found = pairs.Phi.ncol - pairs.num_rigid;
-    RITZ_NEW(more, r->count + found);
+    RITZ_CHECK_NEW(more, r->count + found);
     if (r->count > 0)
         memcpy(more, r->all, (size_t)r->count * sizeof *more);
     free(r->all);
@@ -134,24 +130,21 @@ static ritz_status gather_modes(const ritz_fitter *f, int64_t k,
         r->all[r->count++] = (body_mode){ritz_eigen_hertz(pairs.lambda[j]), k};
     if (span->modes >= 0 && found >= span->modes && found > 0)
         r->limit = fmin(r->limit, r->all[r->count - 1].hertz);
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 /* They become the ladder, as far as no body lacks any. */
 static ritz_status set_ladder(body_modes *r, ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *step = NULL;
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY int64_t *step = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
     const int64_t all = r->all ? r->count : 0;
     int64_t count = 0;
 
     if (all > 0)
         qsort(r->all, (size_t)all, sizeof *r->all, by_hertz);
-    RITZ_NEW(step, all);
-    RITZ_NEW(hertz, all);
+    RITZ_CHECK_NEW(step, all);
+    RITZ_CHECK_NEW(hertz, all);
     for (; count < all && r->all[count].hertz <= r->limit; count++) {
         step[count] = r->all[count].body;
         hertz[count] = r->all[count].hertz;
@@ -163,10 +156,7 @@ static ritz_status set_ladder(body_modes *r, ritz_fitter *f)
     f->num_steps = count;
     step = NULL;
     hertz = NULL;
-done:
-    free(step);
-    free(hertz);
-    return status;
+    return RITZ_OK;
 }
 
 /* The free modes of all bodies by frequency: who gets the next mode. */

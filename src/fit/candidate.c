@@ -132,19 +132,15 @@ static ritz_status reduce_component(const ritz_fitter *f,
                                     const ritz_method *method, int64_t modes,
                                     ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.component = f->component;
     request.modes = modes;
     request.choice = choose_options(f, method);
     request.attached = f->attached; /* borrowed */
-    RITZ_TRY(ritz_basis_make(method, &request, &basis));
-    RITZ_TRY(ritz_reduce(f->component, &basis, out));
-done:
-    ritz_basis_free(&basis);
-    return status;
+    RITZ_CHECK(ritz_basis_make(method, &request, &basis));
+    return ritz_reduce(f->component, &basis, out);
 }
 
 ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
@@ -367,22 +363,19 @@ static ritz_status take_cost(const ritz_fitter *f, const ritz_fit_model *m,
 static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
                                  int points, ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
     const ritz_verify_request *limits = &f->request.tolerance;
     const ritz_reference *reference = m->place->reference;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_TRY(f->scene ? ritz_reference_measure_at(reference, &m->at, limits,
-                                                  points, &found)
-                      : ritz_reference_measure(reference, &m->lent, limits,
-                                               points, &found));
-    RITZ_TRY(ritz_fit_worst(&found, m->place->at, &candidate->errors));
+    RITZ_CHECK(f->scene ? ritz_reference_measure_at(reference, &m->at, limits,
+                                                    points, &found)
+                        : ritz_reference_measure(reference, &m->lent, limits,
+                                                 points, &found));
+    RITZ_CHECK(ritz_fit_worst(&found, m->place->at, &candidate->errors));
     ritz_fit_judge(limits, candidate);
     if (candidate->feasible && points)
-        RITZ_TRY(check_stability(f, m, candidate));
-done:
-    ritz_measures_free(&found);
-    return status;
+        RITZ_CHECK(check_stability(f, m, candidate));
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
@@ -499,14 +492,13 @@ static ritz_status foresee(const ritz_fitter *f, const ritz_fit_model *m,
                            ritz_fit_candidate *candidate,
                            ritz_fit_verdict *verdict)
 {
-    ritz_status status = RITZ_OK;
     const ritz_verify_request *limits = &f->request.tolerance;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
     double ratio = 0.0;
 
     if (f->scene && isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
         return RITZ_OK;
-    RITZ_TRY(bound_model(f, m, f->scene != NULL, &found));
+    RITZ_CHECK(bound_model(f, m, f->scene != NULL, &found));
     if (!f->request.thorough && surely_holds(limits, &found)) {
         *verdict = RITZ_FIT_HOLDS;
     } else if (!f->request.thorough && surely_fails(limits, &found, &ratio)) {
@@ -516,10 +508,7 @@ static ritz_status foresee(const ritz_fitter *f, const ritz_fit_model *m,
     }
     if (!candidate->ruled_out) /* otherwise it is the reason */
         forget_least(&found);
-    RITZ_TRY(ritz_fit_worst(&found, m->place->at, &candidate->estimates));
-done:
-    ritz_measures_free(&found);
-    return status;
+    return ritz_fit_worst(&found, m->place->at, &candidate->estimates);
 }
 
 /* What was said of a candidate while it was sought was of one place. Its errors
@@ -654,21 +643,19 @@ ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
 ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
                             const int64_t *modes, ritz_fit_candidate *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_candidate candidate = {
+    RITZ_OWN(ritz_fit_candidate)
+    candidate = {
         .method = method, .num_bodies = fitter->num_bodies, .worst = -1};
 
-    RITZ_NEW(candidate.modes, fitter->num_bodies);
+    RITZ_CHECK_NEW(candidate.modes, fitter->num_bodies);
     for (int64_t k = 0; k < fitter->num_bodies; k++)
         candidate.modes[k] = method->uses & RITZ_USES_MODES ? modes[k] : -1;
-    RITZ_TRY(ritz_fit_try(fitter, &candidate));
+    RITZ_CHECK(ritz_fit_try(fitter, &candidate));
     if (fitter->request.observe)
         fitter->request.observe(&candidate, fitter->request.context);
     *out = candidate;
     candidate = (ritz_fit_candidate){0};
-done:
-    ritz_fit_candidate_free(&candidate);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_fit_candidate_free(ritz_fit_candidate *candidate)

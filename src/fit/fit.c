@@ -86,19 +86,16 @@ static ritz_status bound(ritz_fitter *fitter, ritz_fit *fit)
 /* Columns that matter to nothing are left out of one method's best. */
 static ritz_status trim_one(ritz_fitter *fitter, int64_t at, ritz_fit *fit)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_candidate less = {0};
+    RITZ_OWN(ritz_fit_candidate) less = {0};
 
     ritz_monitor_step("columns to be left out", at, fit->count);
-    RITZ_TRY(ritz_fit_trim(fitter, &fit->candidate[at], &less));
+    RITZ_CHECK(ritz_fit_trim(fitter, &fit->candidate[at], &less));
     if (less.order > 0) {
         if (fitter->request.observe)
             fitter->request.observe(&less, fitter->request.context);
-        RITZ_TRY(ritz_fit_append(fit, &less));
+        RITZ_CHECK(ritz_fit_append(fit, &less));
     }
-done:
-    ritz_fit_candidate_free(&less);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
@@ -122,25 +119,22 @@ static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
 
 ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit fit = {.chosen = -1, .runner_up = -1};
+    RITZ_OWN(ritz_fit) fit = {.chosen = -1, .runner_up = -1};
 
-    RITZ_TRY(list_methods(fitter, &fit));
+    RITZ_CHECK(list_methods(fitter, &fit));
     for (int64_t m = 0; m < fit.num_methods; m++)
-        RITZ_TRY(ritz_fit_search(fitter, &fit, m, false));
+        RITZ_CHECK(ritz_fit_search(fitter, &fit, m, false));
     for (int64_t m = 0; m < fit.num_methods; m++)
         if (fitter->scene && fit.best[m] < 0 &&
             fit.method[m] != &ritz_fit_compare)
-            RITZ_TRY(ritz_fit_search(fitter, &fit, m, true));
+            RITZ_CHECK(ritz_fit_search(fitter, &fit, m, true));
     choose(&fit);
-    RITZ_TRY(trim(fitter, &fit));
-    RITZ_TRY(bound(fitter, &fit));
-    RITZ_TRY(ritz_fit_explain(fitter, &fit));
+    RITZ_CHECK(trim(fitter, &fit));
+    RITZ_CHECK(bound(fitter, &fit));
+    RITZ_CHECK(ritz_fit_explain(fitter, &fit));
     *out = fit;
     fit = (ritz_fit){0};
-done:
-    ritz_fit_free(&fit);
-    return status;
+    return RITZ_OK;
 }
 
 /* Of one method the largest that is no larger than that, by bisection. */
@@ -176,18 +170,15 @@ static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
 ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
                               int64_t *at)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *modes = NULL;
+    RITZ_OWN_ARRAY int64_t *modes = NULL;
 
-    RITZ_NEW(modes, fitter->num_bodies);
+    RITZ_CHECK_NEW(modes, fitter->num_bodies);
     for (int64_t m = 0; m < fit->num_methods; m++) {
-        RITZ_TRY(approach(fitter, order, m, modes, fit));
+        RITZ_CHECK(approach(fitter, order, m, modes, fit));
         ritz_fit_conclude(fit, m);
         at[m] = ritz_fit_largest_of(fit, m, order);
     }
-done:
-    free(modes);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_fit_free(ritz_fit *fit)

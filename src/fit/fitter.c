@@ -215,32 +215,28 @@ double ritz_fit_rich_to(const ritz_verify_request *limits)
 static ritz_status as_component(const ritz_configuration *from,
                                 const ritz_scene *scene, ritz_component *out)
 {
-    ritz_status status = RITZ_OK;
     enum { MATRICES = 4 };
     const ritz_dense *const matrix[MATRICES] = {&from->K, &from->M, &from->D,
                                                 &from->K4};
-    ritz_component made = {.num_dofs = from->K.ncol};
+    RITZ_OWN(ritz_component) made = {.num_dofs = from->K.ncol};
     ritz_sparse *const into[MATRICES] = {&made.K, &made.M, &made.D, &made.K4};
-    ritz_dense eye = {0};
+    RITZ_OWN(ritz_dense) eye = {0};
 
-    RITZ_TRY(ritz_dense_new(made.num_dofs, made.num_dofs, &eye));
+    RITZ_CHECK(ritz_dense_new(made.num_dofs, made.num_dofs, &eye));
     for (int64_t j = 0; j < made.num_dofs; j++)
         ritz_dense_col(&eye, j)[j] = 1.0;
     for (int k = 0; k < MATRICES; k++)
         if (matrix[k]->val)
-            RITZ_TRY(ritz_sparse_from_dense(matrix[k], into[k]));
-    RITZ_TRY(ritz_io_project(&from->io, &eye, &made.io));
-    RITZ_NEW(made.dof, made.num_dofs);
+            RITZ_CHECK(ritz_sparse_from_dense(matrix[k], into[k]));
+    RITZ_CHECK(ritz_io_project(&from->io, &eye, &made.io));
+    RITZ_CHECK_NEW(made.dof, made.num_dofs);
     for (int64_t j = 0; j < made.num_dofs; j++)
         made.dof[j] = (ritz_dof){.grid = j + 1};
     ritz_damping_print(&scene->damping, made.damping);
-    RITZ_TRY(ritz_component_settle(&made, false));
+    RITZ_CHECK(ritz_component_settle(&made, false));
     *out = made;
     made = (ritz_component){0};
-done:
-    ritz_dense_free(&eye);
-    ritz_component_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /* The same in the place of full systems. */
@@ -353,38 +349,32 @@ static ritz_status open_component(const ritz_component *component,
 ritz_status ritz_fitter_new(const ritz_component *component,
                             const ritz_fit_request *request, ritz_fitter **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fitter *f = NULL;
+    RITZ_OWN(ritz_fitter) *f = NULL;
 
-    RITZ_NEW(f, 1);
+    RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->component = component;
-    RITZ_TRY(open_component(component, f));
+    RITZ_CHECK(open_component(component, f));
     settle_limits(f->place[0].reference, &f->request.tolerance);
     *out = f;
     f = NULL;
-done:
-    ritz_fitter_free(&f);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fitter_scene(const ritz_scene *scene,
                               const ritz_fit_request *request,
                               ritz_fitter **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fitter *f = NULL;
+    RITZ_OWN(ritz_fitter) *f = NULL;
 
-    RITZ_NEW(f, 1);
+    RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->scene = scene;
-    RITZ_TRY(open_scene(scene, f));
+    RITZ_CHECK(open_scene(scene, f));
     settle_limits(f->place[0].reference, &f->request.tolerance);
     *out = f;
     f = NULL;
-done:
-    ritz_fitter_free(&f);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter)

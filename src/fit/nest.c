@@ -136,27 +136,24 @@ static void limit_work(nesting *n)
 static ritz_status begin_nesting(ritz_fitter *f, const ritz_reduced *whole,
                                  nesting *n)
 {
-    ritz_status status = RITZ_OK;
-    ritz_column_kind *kind = NULL;
+    RITZ_OWN_ARRAY ritz_column_kind *kind = NULL;
     int64_t all = 0;
 
     *n = (nesting){.f = f, .whole = whole, .every = 1, .step = 1};
-    RITZ_NEW(n->first, f->num_bodies + 1);
+    RITZ_CHECK_NEW(n->first, f->num_bodies + 1);
     for (int64_t k = 0; k < f->num_bodies; k++) {
         n->first[k] = all;
         all += whole[k].K.ncol;
     }
     n->first[f->num_bodies] = all;
-    RITZ_NEW(n->own, all);
-    RITZ_NEW(n->some, all);
-    RITZ_NEW(kind, all);
+    RITZ_CHECK_NEW(n->own, all);
+    RITZ_CHECK_NEW(n->some, all);
+    RITZ_CHECK_NEW(kind, all);
     for (int64_t k = 0; k < f->num_bodies; k++)
-        RITZ_TRY(ritz_fit_kinds(&whole[k], kind + n->first[k]));
-    RITZ_TRY(ritz_fit_order_new(all, kind, take_ratio, n, &n->order));
+        RITZ_CHECK(ritz_fit_kinds(&whole[k], kind + n->first[k]));
+    RITZ_CHECK(ritz_fit_order_new(all, kind, take_ratio, n, &n->order));
     limit_work(n);
-done:
-    free(kind);
-    return status;
+    return RITZ_OK;
 }
 
 static void free_nesting(nesting *n)
@@ -243,17 +240,16 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
 /* A row of the path: the first columns of the order. */
 static ritz_status add_row(const nesting *n, int64_t count, ritz_fit_path *path)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_candidate judged = {.worst = -1};
+    RITZ_OWN(ritz_fit_candidate) judged = {.worst = -1};
     ritz_fit_row *row = &path->row[path->count];
 
     ritz_monitor_step("errors of the path", path->count,
                       n->order.count - n->order.fixed);
-    RITZ_NEW(row->first, n->f->num_bodies);
+    RITZ_CHECK_NEW(row->first, n->f->num_bodies);
     path->count++;
     for (int64_t k = 0; k < n->f->num_bodies; k++)
         row->first[k] = take_own(n, k, count, n->order.column);
-    RITZ_TRY(judge_columns(n, count, n->order.column, &judged));
+    RITZ_CHECK(judge_columns(n, count, n->order.column, &judged));
     row->columns = count;
     row->order = judged.order;
     row->errors = judged.errors;
@@ -262,9 +258,7 @@ static ritz_status add_row(const nesting *n, int64_t count, ritz_fit_path *path)
     row->worst = judged.refusal[0] ? -1 : judged.worst;
     row->feasible = judged.feasible;
     memcpy(row->refusal, judged.refusal, sizeof row->refusal);
-done:
-    ritz_fit_candidate_free(&judged);
-    return status;
+    return RITZ_OK;
 }
 
 /* The next cut below, and at last the smallest. */
@@ -279,22 +273,19 @@ static int64_t next_cut(const nesting *n, int64_t columns, int64_t least)
 static ritz_status walk_path(const nesting *n, int64_t patience,
                              ritz_fit_path *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_path path = {.num_bodies = n->f->num_bodies};
+    RITZ_OWN(ritz_fit_path) path = {.num_bodies = n->f->num_bodies};
     const int64_t least = n->order.fixed > 0 ? n->order.fixed : 1;
     int64_t failed = 0;
 
-    RITZ_NEW(path.row, n->order.count + 1);
+    RITZ_CHECK_NEW(path.row, n->order.count + 1);
     for (int64_t count = n->order.count; count >= least && failed < patience;
          count = next_cut(n, count, least)) {
-        RITZ_TRY(add_row(n, count, &path));
+        RITZ_CHECK(add_row(n, count, &path));
         failed = path.row[path.count - 1].feasible ? 0 : failed + 1;
     }
     *out = path;
     path = (ritz_fit_path){0};
-done:
-    ritz_fit_path_free(&path);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_fit_path_free(ritz_fit_path *path)
@@ -365,8 +356,7 @@ static int64_t cut_alone(const nesting *n, int64_t k, int64_t columns)
 static ritz_status note_prefixes(const nesting *n, int64_t k,
                                  const ritz_fit_path *path, ritz_reduced *body)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_candidate judged = {0};
+    RITZ_OWN(ritz_fit_candidate) judged = {0};
     const int64_t least = body->nested.smallest;
 
     for (int64_t r = body->K.ncol; r >= least; r = next_cut(n, r, least)) {
@@ -375,13 +365,12 @@ static ritz_status note_prefixes(const nesting *n, int64_t k,
         ritz_monitor_step("errors of prefixes", n->first[k + 1] - r,
                           n->order.count);
         if (!row)
-            RITZ_TRY(judge_columns(n, cut_alone(n, k, r), n->some, &judged));
-        RITZ_TRY(note_errors(n, row ? &row->errors : &judged.errors, r, body));
+            RITZ_CHECK(judge_columns(n, cut_alone(n, k, r), n->some, &judged));
+        RITZ_CHECK(
+            note_errors(n, row ? &row->errors : &judged.errors, r, body));
         ritz_fit_candidate_free(&judged);
     }
-done:
-    ritz_fit_candidate_free(&judged);
-    return status;
+    return RITZ_OK;
 }
 
 /* A body with its T and its own order of columns. */
@@ -566,19 +555,16 @@ done:
 /* A copy of a body, what is noted of its prefixes included. */
 static ritz_status copy_body(const ritz_reduced *from, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *order = NULL;
+    RITZ_OWN_ARRAY int64_t *order = NULL;
 
     if (from->nested.smallest > 0)
         return ritz_reduced_prefix(from, from->K.ncol, out);
-    RITZ_NEW(order, from->K.ncol);
+    RITZ_CHECK_NEW(order, from->K.ncol);
     for (int64_t k = 0; k < from->K.ncol; k++)
         order[k] = k;
-    RITZ_TRY(ritz_reduced_nest(from, from->K.ncol, order, from->K.ncol, out));
+    RITZ_CHECK(ritz_reduced_nest(from, from->K.ncol, order, from->K.ncol, out));
     ritz_nested_free(&out->nested);
-done:
-    free(order);
-    return status;
+    return RITZ_OK;
 }
 
 /* All components of a scene: those that stay copied, flexible ones nested. */

@@ -63,12 +63,12 @@ ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
                                ritz_fit_ratio *ratio, void *context,
                                ritz_fit_order *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_order made = {.count = count, .ratio = ratio, .context = context};
+    RITZ_OWN(ritz_fit_order)
+    made = {.count = count, .ratio = ratio, .context = context};
 
-    RITZ_NEW(made.column, count);
-    RITZ_NEW(made.trial, count);
-    RITZ_NEW(made.alone, count);
+    RITZ_CHECK_NEW(made.column, count);
+    RITZ_CHECK_NEW(made.trial, count);
+    RITZ_CHECK_NEW(made.alone, count);
     for (int pass = 0; pass < 2; pass++)
         for (int64_t k = 0, at = made.fixed; k < count; k++)
             if (ritz_fit_stays(kind[k]) == (pass == 0)) {
@@ -77,9 +77,7 @@ ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
             }
     *out = made;
     made = (ritz_fit_order){0};
-done:
-    ritz_fit_order_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /* Without one of the first `left` columns of the order. */

@@ -65,8 +65,7 @@ static bool is_same(const ritz_fit_candidate *c, const ritz_method *method,
 ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                            const int64_t *modes, int64_t *at)
 {
-    ritz_status status = RITZ_OK;
-    ritz_fit_candidate candidate = {0};
+    RITZ_OWN(ritz_fit_candidate) candidate = {0};
 
     for (int64_t k = 0; k < fit->count; k++)
         if (is_same(&fit->candidate[k], fit->method[method], modes)) {
@@ -74,12 +73,10 @@ ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
             return RITZ_OK;
         }
     ritz_monitor_step(fit->method[method]->name, fit->count, 0);
-    RITZ_TRY(ritz_fitter_try(fitter, fit->method[method], modes, &candidate));
-    RITZ_TRY(ritz_fit_append(fit, &candidate));
+    RITZ_CHECK(ritz_fitter_try(fitter, fit->method[method], modes, &candidate));
+    RITZ_CHECK(ritz_fit_append(fit, &candidate));
     *at = fit->count - 1;
-done:
-    ritz_fit_candidate_free(&candidate);
-    return status;
+    return RITZ_OK;
 }
 
 /* Of two that are as small and as near the one that came first. */

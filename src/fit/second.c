@@ -112,13 +112,12 @@ static void settle(int64_t rigid, ritz_reduced *body)
 static ritz_status nest(ritz_reduced *first, const ritz_dense *V, int64_t rigid,
                         ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced whole = {0};
-    int64_t *order = NULL;
+    RITZ_OWN(ritz_reduced) whole = {0};
+    RITZ_OWN_ARRAY int64_t *order = NULL;
 
-    RITZ_TRY(make_bare(first));
-    RITZ_TRY(ritz_reduced_project(first, V, &whole));
-    RITZ_NEW(order, V->ncol);
+    RITZ_CHECK(make_bare(first));
+    RITZ_CHECK(ritz_reduced_project(first, V, &whole));
+    RITZ_CHECK_NEW(order, V->ncol);
     for (int64_t j = 0; j < V->ncol; j++)
         order[j] = j;
     settle(rigid, &whole);
@@ -126,12 +125,8 @@ static ritz_status nest(ritz_reduced *first, const ritz_dense *V, int64_t rigid,
                    ritz_fit_compare.name);
     (void)snprintf(whole.origin.reference, sizeof whole.origin.reference, "%s",
                    ritz_fit_compare.reference);
-    RITZ_TRY(
-        ritz_reduced_nest(&whole, V->ncol, order, rigid > 0 ? rigid : 1, out));
-done:
-    ritz_reduced_free(&whole);
-    free(order);
-    return status;
+    return ritz_reduced_nest(&whole, V->ncol, order, rigid > 0 ? rigid : 1,
+                             out);
 }
 
 /* Steps of those bodies that are flexible, without the first of one that would
@@ -140,11 +135,10 @@ static ritz_status keep_steps(const ritz_fitter *f,
                               const ritz_composite *composite,
                               ritz_fit_second *second)
 {
-    ritz_status status = RITZ_OK;
-    bool *moves = NULL;
+    RITZ_OWN_ARRAY bool *moves = NULL;
 
-    RITZ_NEW(moves, f->num_bodies);
-    RITZ_NEW(second->step, composite->num_steps);
+    RITZ_CHECK_NEW(moves, f->num_bodies);
+    RITZ_CHECK_NEW(second->step, composite->num_steps);
     for (int64_t k = 0; k < f->num_bodies; k++)
         moves[k] = second->rigid[k] > 0;
     for (int64_t t = 0; t < composite->num_steps; t++)
@@ -155,9 +149,7 @@ static ritz_status keep_steps(const ritz_fitter *f,
                 second->step[second->num_steps++] = k;
             moves[k] = true;
         }
-done:
-    free(moves);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status make(ritz_fitter *f, double up_to_hz,

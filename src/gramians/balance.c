@@ -29,18 +29,15 @@ static const ritz_dense *descriptor_times(const ritz_gramians *gramians)
 ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
                                  double **sigma)
 {
-    ritz_status status = RITZ_OK;
-    ritz_product_svd svd = {0};
+    RITZ_OWN(ritz_product_svd) svd = {0};
 
-    RITZ_TRY_IN("Hankel values",
-                ritz_product_svd_new(&gramians->Zo, descriptor_times(gramians),
-                                     false, &svd));
+    RITZ_CHECK_IN("Hankel values",
+                  ritz_product_svd_new(
+                      &gramians->Zo, descriptor_times(gramians), false, &svd));
     *count = svd.count;
     *sigma = svd.s;
     svd.s = NULL;
-done:
-    ritz_product_svd_free(&svd);
-    return status;
+    return RITZ_OK;
 }
 
 double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept)
@@ -111,38 +108,29 @@ static ritz_status project_side(const ritz_dense *Z, const ritz_dense *vectors,
                                 const double *sigma, int64_t count,
                                 ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_TRY(ritz_dense_columns(vectors, 0, count, &V));
+    RITZ_CHECK(ritz_dense_columns(vectors, 0, count, &V));
     for (int64_t j = 0; j < count; j++)
         for (int64_t i = 0; i < V.nrow; i++)
             ritz_dense_col(&V, j)[i] /= sqrt(sigma[j]);
-    RITZ_TRY(ritz_dense_mul(Z, &V, out));
-done:
-    ritz_dense_free(&V);
-    return status;
+    return ritz_dense_mul(Z, &V, out);
 }
 
 /* The leading columns of W times G^-1 of the leading rows and columns. */
 static ritz_status correct_sides(const ritz_dense *W, const ritz_dense *G,
                                  int64_t count, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense leading = {0}, X = {0};
+    RITZ_OWN(ritz_dense) leading = {0}, X = {0};
     ritz_dense part = ritz_dense_part(W, 0, count);
 
-    RITZ_TRY(ritz_dense_new(count, count, &leading));
+    RITZ_CHECK(ritz_dense_new(count, count, &leading));
     for (int64_t j = 0; j < count; j++)
         for (int64_t i = 0; i < count; i++)
             ritz_dense_col(&leading, j)[i] = ritz_dense_col(G, j)[i];
-    RITZ_TRY(ritz_general_transpose(&part, &X));
-    RITZ_TRY_IN("balancing", ritz_general_solve(&leading, true, &X));
-    RITZ_TRY(ritz_general_transpose(&X, out));
-done:
-    ritz_dense_free(&leading);
-    ritz_dense_free(&X);
-    return status;
+    RITZ_CHECK(ritz_general_transpose(&part, &X));
+    RITZ_CHECK_IN("balancing", ritz_general_solve(&leading, true, &X));
+    return ritz_general_transpose(&X, out);
 }
 
 /*
@@ -153,51 +141,40 @@ static ritz_status project_balanced(const ritz_gramians *gramians,
                                     const ritz_product_svd *svd, int64_t order,
                                     double tolerance, ritz_balanced *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = count_true(gramians, svd);
-    ritz_dense T = {0}, ET = {0}, W = {0}, G = {0};
+    RITZ_OWN(ritz_dense) T = {0}, ET = {0}, W = {0}, G = {0};
 
-    RITZ_TRY(project_side(&gramians->Zc, &svd->V, svd->s, count, &T));
-    RITZ_TRY(project_side(&gramians->Zo, &svd->U, svd->s, count, &W));
-    RITZ_TRY(
+    RITZ_CHECK(project_side(&gramians->Zc, &svd->V, svd->s, count, &T));
+    RITZ_CHECK(project_side(&gramians->Zo, &svd->U, svd->s, count, &W));
+    RITZ_CHECK(
         project_side(descriptor_times(gramians), &svd->V, svd->s, count, &ET));
-    RITZ_TRY(ritz_dense_mul_tn(&ET, &W, &G));
+    RITZ_CHECK(ritz_dense_mul_tn(&ET, &W, &G));
     out->count = count_close(&G);
     out->kept = cut(out->count, svd->s, order, tolerance);
     out->bound = ritz_hankel_bound(out->count, svd->s, out->kept);
-    RITZ_TRY(ritz_dense_columns(&T, 0, out->kept, &out->T));
-    RITZ_TRY(correct_sides(&W, &G, out->kept, &out->W));
-done:
-    ritz_dense_free(&T);
-    ritz_dense_free(&ET);
-    ritz_dense_free(&W);
-    ritz_dense_free(&G);
-    return status;
+    RITZ_CHECK(ritz_dense_columns(&T, 0, out->kept, &out->T));
+    return correct_sides(&W, &G, out->kept, &out->W);
 }
 
 ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
                                   double tolerance, ritz_balanced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_product_svd svd = {0};
-    ritz_balanced balanced = {0};
+    RITZ_OWN(ritz_product_svd) svd = {0};
+    RITZ_OWN(ritz_balanced) balanced = {0};
 
-    RITZ_FAIL_IF(!(tolerance >= 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
-                 "a tolerance of Hankel values is %g, it must be at least 0 "
-                 "and below 1",
-                 tolerance);
-    RITZ_TRY_IN("balancing",
-                ritz_product_svd_new(&gramians->Zo, descriptor_times(gramians),
-                                     true, &svd));
-    RITZ_TRY(project_balanced(gramians, &svd, order, tolerance, &balanced));
+    RITZ_REFUSE_IF(!(tolerance >= 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                   "a tolerance of Hankel values is %g, it must be at least 0 "
+                   "and below 1",
+                   tolerance);
+    RITZ_CHECK_IN("balancing",
+                  ritz_product_svd_new(&gramians->Zo,
+                                       descriptor_times(gramians), true, &svd));
+    RITZ_CHECK(project_balanced(gramians, &svd, order, tolerance, &balanced));
     balanced.sigma = svd.s;
     svd.s = NULL;
     *out = balanced;
     balanced = (ritz_balanced){0};
-done:
-    ritz_product_svd_free(&svd);
-    ritz_balanced_free(&balanced);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_gramians_free(ritz_gramians *gramians)

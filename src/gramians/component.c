@@ -38,17 +38,16 @@ static ritz_status stack_halves(const ritz_mode_states *states,
                                 const ritz_dense *top, const ritz_dense *bottom,
                                 bool over, const ritz_dense *Z, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = states->modes->num_dofs;
     int64_t m = Z->nrow / 2;
     int64_t velocities = states->step == 1 ? m : 1;
-    ritz_dense part = {0}, x = {0}, made = {0};
+    RITZ_OWN(ritz_dense) part = {0}, x = {0}, made = {0};
 
-    RITZ_TRY(ritz_dense_new(2 * n, Z->ncol, &made));
+    RITZ_CHECK(ritz_dense_new(2 * n, Z->ncol, &made));
     for (int half = 0; half < 2 && Z->ncol > 0; half++) {
-        RITZ_TRY(pick_rows(Z, half * velocities, states->step,
-                           half == 0 ? states->scale : NULL, over, &part));
-        RITZ_TRY(ritz_dense_mul(half == 0 ? top : bottom, &part, &x));
+        RITZ_CHECK(pick_rows(Z, half * velocities, states->step,
+                             half == 0 ? states->scale : NULL, over, &part));
+        RITZ_CHECK(ritz_dense_mul(half == 0 ? top : bottom, &part, &x));
         for (int64_t j = 0; j < x.ncol; j++)
             memcpy(ritz_dense_col(&made, j) + half * n, ritz_dense_col(&x, j),
                    (size_t)n * sizeof *x.val);
@@ -57,11 +56,7 @@ static ritz_status stack_halves(const ritz_mode_states *states,
     }
     *out = made;
     made = (ritz_dense){0};
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&x);
-    ritz_dense_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /* [top 0 own; 0 bottom own]: rigid modes, and then what is there. */
@@ -69,13 +64,12 @@ static ritz_status put_behind_rigid(const ritz_mode_states *states,
                                     const ritz_dense *top,
                                     const ritz_dense *bottom, ritz_dense *own)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = states->modes->num_dofs;
     int64_t r = states->apart;
     size_t column = (size_t)n * sizeof *own->val;
-    ritz_dense all = {0};
+    RITZ_OWN(ritz_dense) all = {0};
 
-    RITZ_TRY(ritz_dense_new(2 * n, 2 * r + own->ncol, &all));
+    RITZ_CHECK(ritz_dense_new(2 * n, 2 * r + own->ncol, &all));
     for (int64_t j = 0; j < r; j++) {
         memcpy(ritz_dense_col(&all, j), ritz_dense_col(top, j), column);
         memcpy(ritz_dense_col(&all, r + j) + n, ritz_dense_col(bottom, j),
@@ -87,9 +81,7 @@ static ritz_status put_behind_rigid(const ritz_mode_states *states,
     ritz_dense_free(own);
     *own = all;
     all = (ritz_dense){0};
-done:
-    ritz_dense_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 /* * Gramians of modes as those of x = [u; u'] of the component:
@@ -102,29 +94,26 @@ done:
 static ritz_status lift_gramians(const ritz_mode_states *states,
                                  ritz_gramians *gramians)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal_model *modes = states->modes;
     int64_t m = modes->count - states->apart;
     const ritz_dense Phi = ritz_dense_part(&modes->Phi, states->apart, m);
     const ritz_dense MPhi = ritz_dense_part(&modes->MPhi, states->apart, m);
     const ritz_dense *Zc = &gramians->Zc, *Zo = &gramians->Zo;
     const ritz_dense *T = &gramians->T, *W = &gramians->W;
-    ritz_gramians made = *gramians;
+    RITZ_OWN(ritz_gramians) made = *gramians;
 
     made.Zc = made.Zo = made.T = made.W = (ritz_dense){0};
-    RITZ_TRY(stack_halves(states, &Phi, &Phi, true, Zc, &made.Zc));
-    RITZ_TRY(stack_halves(states, &Phi, &MPhi, true, Zc, &made.EZc));
-    RITZ_TRY(stack_halves(states, &MPhi, &Phi, false, Zo, &made.Zo));
-    RITZ_TRY(stack_halves(states, &Phi, &Phi, true, T, &made.T));
-    RITZ_TRY(stack_halves(states, &MPhi, &Phi, false, W, &made.W));
-    RITZ_TRY(put_behind_rigid(states, &modes->Phi, &modes->Phi, &made.T));
-    RITZ_TRY(put_behind_rigid(states, &modes->MPhi, &modes->Phi, &made.W));
+    RITZ_CHECK(stack_halves(states, &Phi, &Phi, true, Zc, &made.Zc));
+    RITZ_CHECK(stack_halves(states, &Phi, &MPhi, true, Zc, &made.EZc));
+    RITZ_CHECK(stack_halves(states, &MPhi, &Phi, false, Zo, &made.Zo));
+    RITZ_CHECK(stack_halves(states, &Phi, &Phi, true, T, &made.T));
+    RITZ_CHECK(stack_halves(states, &MPhi, &Phi, false, W, &made.W));
+    RITZ_CHECK(put_behind_rigid(states, &modes->Phi, &modes->Phi, &made.T));
+    RITZ_CHECK(put_behind_rigid(states, &modes->MPhi, &modes->Phi, &made.W));
     ritz_gramians_free(gramians);
     *gramians = made;
     made = (ritz_gramians){0};
-done:
-    ritz_gramians_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -137,10 +126,9 @@ done:
 static ritz_status space_of(const ritz_io *io, ritz_states *states,
                             ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space space = {0};
+    RITZ_OWN(ritz_state_space) space = {0};
 
-    RITZ_TRY(ritz_state_space_new(states->count, io, &space));
+    RITZ_CHECK(ritz_state_space_new(states->count, io, &space));
     ritz_dense_free(&space.A);
     ritz_dense_free(&space.B);
     ritz_dense_free(&space.C);
@@ -150,40 +138,33 @@ static ritz_status space_of(const ritz_io *io, ritz_states *states,
     states->A = states->B = states->C = (ritz_dense){0};
     *out = space;
     space = (ritz_state_space){0};
-done:
-    ritz_state_space_free(&space);
-    return status;
+    return RITZ_OK;
 }
 
 /* By SLICOT, in modal coordinates; what does not decay is split off. */
 static ritz_status find_dense(const ritz_gramians_request *request,
                               ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_states states = {0};
-    ritz_state_space space = {0};
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_states) states = {0};
+    RITZ_OWN(ritz_state_space) space = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
     ritz_mode_states layout = {.step = 1};
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_states_new(request->component, &request->damping, 0.0, &states));
-    RITZ_TRY(space_of(&request->component->io, &states, &space));
-    RITZ_TRY(ritz_gramians_of_space(&space, &gramians));
-    RITZ_FAIL_IF(gramians.T.ncol == states.count, RITZ_ERR_ARGUMENT,
-                 "no motion of the component decays, and none has a Gramian: "
-                 "give it damping");
+    RITZ_CHECK(space_of(&request->component->io, &states, &space));
+    RITZ_CHECK(ritz_gramians_of_space(&space, &gramians));
+    RITZ_REFUSE_IF(gramians.T.ncol == states.count, RITZ_ERR_ARGUMENT,
+                   "no motion of the component decays, and none has a Gramian: "
+                   "give it damping");
     layout.modes = &states.modes;
     layout.apart = states.num_apart;
     layout.scale = states.scale;
-    RITZ_TRY(lift_gramians(&layout, &gramians));
+    RITZ_CHECK(lift_gramians(&layout, &gramians));
     snprintf(gramians.damping, sizeof gramians.damping, "%s", states.damping);
     *out = gramians;
     gramians = (ritz_gramians){0};
-done:
-    ritz_states_free(&states);
-    ritz_state_space_free(&space);
-    ritz_gramians_free(&gramians);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -194,20 +175,16 @@ done:
 static ritz_status all_modes(const ritz_gramians_request *request,
                              ritz_modal_model *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
-    ritz_structure structure = {0};
+    RITZ_OWN(ritz_structure) structure = {0};
 
-    RITZ_FAIL_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " dofs have too many modes to take all of them: "
-                 "say up to which frequency, or ask engine 'low-rank'",
-                 component->num_dofs);
-    RITZ_TRY(ritz_structure_of_component(component, &structure));
-    RITZ_TRY(ritz_modal_model_new(&structure, &component->io, &request->damping,
-                                  out));
-done:
-    ritz_structure_free(&structure);
-    return status;
+    RITZ_REFUSE_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " dofs have too many modes to take all of them: "
+                   "say up to which frequency, or ask engine 'low-rank'",
+                   component->num_dofs);
+    RITZ_CHECK(ritz_structure_of_component(component, &structure));
+    return ritz_modal_model_new(&structure, &component->io, &request->damping,
+                                out);
 }
 
 /* Matrices with dampers installed. */
@@ -236,28 +213,24 @@ static ritz_status install_dampers(const ritz_component *component,
 static ritz_status modes_up_to(const ritz_gramians_request *request,
                                ritz_modal_model *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     const ritz_span span = {.modes = -1, .up_to_hz = request->among_hz};
-    sparse_structure s = {0};
-    ritz_pairs pairs = {0};
-    ritz_modal_model modes = {0};
+    [[gnu::cleanup(structure_free)]] sparse_structure s = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
 
-    RITZ_TRY(ritz_structure_refuse(component->K4.colptr != NULL));
-    RITZ_TRY(install_dampers(component, &s));
-    RITZ_TRY(ritz_eigen_sparse(&s.K, &component->M, &span, &pairs));
+    RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
+    RITZ_CHECK(install_dampers(component, &s));
+    RITZ_CHECK(ritz_eigen_sparse(&s.K, &component->M, &span, &pairs));
     ritz_modal_model_take(&pairs, component->num_dofs, &modes);
-    RITZ_TRY(ritz_sparse_mul(&component->M, &modes.Phi, &modes.MPhi));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &modes.Phi, &modes.MPhi));
     if (s.D.colptr)
-        RITZ_TRY(ritz_sparse_project(&s.D, &modes.Phi, &modes.Delta));
-    RITZ_TRY(ritz_modal_model_drive(&component->io, &request->damping, &modes));
+        RITZ_CHECK(ritz_sparse_project(&s.D, &modes.Phi, &modes.Delta));
+    RITZ_CHECK(
+        ritz_modal_model_drive(&component->io, &request->damping, &modes));
     *out = modes;
     modes = (ritz_modal_model){0};
-done:
-    structure_free(&s);
-    ritz_pairs_free(&pairs);
-    ritz_modal_model_free(&modes);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
@@ -277,45 +250,37 @@ static ritz_status closed_form(const ritz_gramians_request *request,
                                const ritz_modal_model *modes,
                                ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_mode_states layout = {
         .modes = modes, .apart = modes->num_rigid, .step = 2};
-    ritz_modal modal = {0};
-    ritz_gramians gramians = {.engine = "closed form"};
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_gramians) gramians = {.engine = "closed form"};
 
-    RITZ_TRY(ritz_modal_of_modes(modes, &request->component->io, &modal));
-    RITZ_TRY(request->band_hz[1] > 0.0
-                 ? ritz_modal_factors_band(&modal, request->band_hz,
-                                           &gramians.Zc, &gramians.Zo)
-                 : ritz_modal_factors(&modal, &gramians.Zc, &gramians.Zo));
-    RITZ_TRY(lift_gramians(&layout, &gramians));
+    RITZ_CHECK(ritz_modal_of_modes(modes, &request->component->io, &modal));
+    RITZ_CHECK(request->band_hz[1] > 0.0
+                   ? ritz_modal_factors_band(&modal, request->band_hz,
+                                             &gramians.Zc, &gramians.Zo)
+                   : ritz_modal_factors(&modal, &gramians.Zc, &gramians.Zo));
+    RITZ_CHECK(lift_gramians(&layout, &gramians));
     ritz_damping_print(&request->damping, gramians.damping);
     *out = gramians;
     gramians = (ritz_gramians){0};
-done:
-    ritz_modal_free(&modal);
-    ritz_gramians_free(&gramians);
-    return status;
+    return RITZ_OK;
 }
 
 /* Closed form; @return RITZ_ERR_ARGUMENT also if damping couples modes */
 static ritz_status find_modal(const ritz_gramians_request *request,
                               ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal_model modes = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
     ritz_coupling coupling = {0};
 
-    RITZ_TRY(ritz_gramians_modes(request, &modes));
+    RITZ_CHECK(ritz_gramians_modes(request, &modes));
     if (ritz_modes_coupled(&modes, &coupling))
-        RITZ_TRY(ritz_coupling_refuse(
+        RITZ_CHECK(ritz_coupling_refuse(
             &coupling, request->band_hz[1] > 0.0
                            ? "over a band it must be mode by mode"
                            : "engine 'dense' takes any"));
-    RITZ_TRY(closed_form(request, &modes, out));
-done:
-    ritz_modal_model_free(&modes);
-    return status;
+    return closed_form(request, &modes, out);
 }
 
 /* Closed form unless damping couples modes: then *fits is false, and nothing
@@ -323,17 +288,14 @@ done:
 static ritz_status find_modal_if(const ritz_gramians_request *request,
                                  bool *fits, ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal_model modes = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
     ritz_coupling coupling = {0};
 
-    RITZ_TRY(ritz_gramians_modes(request, &modes));
+    RITZ_CHECK(ritz_gramians_modes(request, &modes));
     *fits = !ritz_modes_coupled(&modes, &coupling);
     if (*fits)
-        RITZ_TRY(closed_form(request, &modes, out));
-done:
-    ritz_modal_model_free(&modes);
-    return status;
+        RITZ_CHECK(closed_form(request, &modes, out));
+    return RITZ_OK;
 }
 
 /* Name of an engine, and the options it takes. */

@@ -82,18 +82,14 @@ static ritz_status combine_columns(double a, const ritz_dense *X, double b,
 static ritz_status load_reached(const ritz_low_rank_model *model,
                                 double _Complex p, double _Complex *x)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *W = model->W[RITZ_REACHED];
-    ritz_dense MW = {0}, DW = {0};
+    RITZ_OWN(ritz_dense) MW = {0}, DW = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&model->M, &W[RITZ_ABOVE], &MW));
-    RITZ_TRY(ritz_sparse_mul(&model->D, &W[RITZ_ABOVE], &DW));
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &W[RITZ_ABOVE], &MW));
+    RITZ_CHECK(ritz_sparse_mul(&model->D, &W[RITZ_ABOVE], &DW));
     for (int64_t k = 0; k < MW.nrow * MW.ncol; k++)
         x[k] = p * MW.val[k] - DW.val[k] - W[RITZ_BELOW].val[k];
-done:
-    ritz_dense_free(&MW);
-    ritz_dense_free(&DW);
-    return status;
+    return RITZ_OK;
 }
 
 static void load_seen(const ritz_low_rank_model *model, double _Complex p,
@@ -147,29 +143,23 @@ static ritz_status finish_reached(const ritz_low_rank_model *model,
 static ritz_status finish_seen(const ritz_low_rank_model *model,
                                double _Complex p, half_block *v)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *Dt = model->Dt.colptr ? &model->Dt : &model->D;
     const ritz_dense *W = &model->W[RITZ_SEEN][RITZ_BELOW];
-    ritz_dense Mre = {0}, Mim = {0}, Dre = {0}, Dim = {0};
+    RITZ_OWN(ritz_dense) Mre = {0}, Mim = {0}, Dre = {0}, Dim = {0};
     ritz_dense *re = &v->re[RITZ_ABOVE];
     ritz_dense *im = &v->im[RITZ_ABOVE];
 
-    RITZ_TRY(ritz_sparse_mul(&model->M, &v->re[RITZ_BELOW], &Mre));
-    RITZ_TRY(ritz_sparse_mul(&model->M, &v->im[RITZ_BELOW], &Mim));
-    RITZ_TRY(ritz_sparse_mul(Dt, &v->re[RITZ_BELOW], &Dre));
-    RITZ_TRY(ritz_sparse_mul(Dt, &v->im[RITZ_BELOW], &Dim));
-    RITZ_TRY(combine_columns(-creal(p), &Mre, cimag(p), &Mim, re));
-    RITZ_TRY(combine_columns(-creal(p), &Mim, -cimag(p), &Mre, im));
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &v->re[RITZ_BELOW], &Mre));
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &v->im[RITZ_BELOW], &Mim));
+    RITZ_CHECK(ritz_sparse_mul(Dt, &v->re[RITZ_BELOW], &Dre));
+    RITZ_CHECK(ritz_sparse_mul(Dt, &v->im[RITZ_BELOW], &Dim));
+    RITZ_CHECK(combine_columns(-creal(p), &Mre, cimag(p), &Mim, re));
+    RITZ_CHECK(combine_columns(-creal(p), &Mim, -cimag(p), &Mre, im));
     for (int64_t k = 0; k < W->nrow * W->ncol; k++) {
         re->val[k] += W->val[k] + Dre.val[k];
         im->val[k] += Dim.val[k];
     }
-done:
-    ritz_dense_free(&Mre);
-    ritz_dense_free(&Mim);
-    ritz_dense_free(&Dre);
-    ritz_dense_free(&Dim);
-    return status;
+    return RITZ_OK;
 }
 
 /* Factor, and v of both sides that are open. */
@@ -224,18 +214,15 @@ static ritz_status shrink_residual(ritz_low_rank_model *model, int side,
                                    double f,
                                    const ritz_dense v[static RITZ_HALVES])
 {
-    ritz_status status = RITZ_OK;
     ritz_dense *W = model->W[side];
-    ritz_dense Mv = {0};
+    RITZ_OWN(ritz_dense) Mv = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&model->M, &v[RITZ_BELOW], &Mv));
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &v[RITZ_BELOW], &Mv));
     for (int64_t k = 0; k < Mv.nrow * Mv.ncol; k++) {
         W[RITZ_ABOVE].val[k] += f * v[RITZ_ABOVE].val[k];
         W[RITZ_BELOW].val[k] += f * Mv.val[k];
     }
-done:
-    ritz_dense_free(&Mv);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status append_columns(ritz_low_rank_sweep *sweep, int side,
@@ -467,20 +454,16 @@ static void put_rows(const ritz_dense *X, int64_t first, int64_t from,
 static ritz_status by_mass(const ritz_low_rank_model *model,
                            const ritz_dense *Z, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense below = {0}, MZ = {0};
+    RITZ_OWN(ritz_dense) below = {0}, MZ = {0};
 
-    RITZ_TRY(ritz_dense_new(model->n, Z->ncol, &below));
+    RITZ_CHECK(ritz_dense_new(model->n, Z->ncol, &below));
     for (int64_t j = 0; j < Z->ncol; j++)
         for (int64_t i = 0; i < model->n; i++)
             ritz_dense_col(&below, j)[i] = ritz_dense_col(Z, j)[model->n + i];
-    RITZ_TRY(ritz_sparse_mul(&model->M, &below, &MZ));
-    RITZ_TRY(ritz_dense_copy(Z, out));
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &below, &MZ));
+    RITZ_CHECK(ritz_dense_copy(Z, out));
     put_rows(&MZ, model->n, 0, out);
-done:
-    ritz_dense_free(&below);
-    ritz_dense_free(&MZ);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status finish_gramians(ritz_low_rank_sweep *sweep,

@@ -104,14 +104,13 @@ done:
 static ritz_status triangle_of(const ritz_low_rank_model *model, int side,
                                const ritz_low_rank_columns *Z, ritz_dense *R)
 {
-    ritz_status status = RITZ_OK;
     int64_t rows = 2 * model->n;
     int64_t k = Z->count;
-    double *S = NULL, *tau = NULL;
+    RITZ_OWN_ARRAY double *S = NULL, *tau = NULL;
     int info = 0;
 
-    RITZ_NEW(S, rows * k);
-    RITZ_NEW(tau, k);
+    RITZ_CHECK_NEW(S, rows * k);
+    RITZ_CHECK_NEW(tau, k);
     for (int64_t i = 0; i < rows; i++) {
         double by = i < model->n ? unit_above(model, side, i)
                                  : unit_below(model, i - model->n);
@@ -121,66 +120,54 @@ static ritz_status triangle_of(const ritz_low_rank_model *model, int side,
     }
     info =
         LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)rows, (int)k, S, (int)rows, tau);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "a factor could not be compressed");
-    RITZ_TRY(ritz_dense_new(rows < k ? rows : k, k, R));
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "a factor could not be compressed");
+    RITZ_CHECK(ritz_dense_new(rows < k ? rows : k, k, R));
     for (int64_t j = 0; j < k; j++)
         for (int64_t i = 0; i <= j && i < R->nrow; i++)
             ritz_dense_col(R, j)[i] = S[i + j * rows];
-done:
-    free(S);
-    free(tau);
-    return status;
+    return RITZ_OK;
 }
 
 /* V of the long columns, k x r, from R, which is overwritten. */
 static ritz_status find_long_columns(ritz_dense *R, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int m = (int)R->nrow;
     int k = (int)R->ncol;
     int64_t r = 0;
-    double *s = NULL, *super = NULL;
+    RITZ_OWN_ARRAY double *s = NULL, *super = NULL;
     int info = 0;
 
-    RITZ_NEW(s, m);
-    RITZ_NEW(super, m);
+    RITZ_CHECK_NEW(s, m);
+    RITZ_CHECK_NEW(super, m);
     info = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'O', m, k, R->val, m, s, NULL,
                           1, NULL, 1, super);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "a factor could not be compressed");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "a factor could not be compressed");
     while (r < m && s[r] > RITZ_SHORT_COLUMN * s[0])
         r++;
-    RITZ_TRY(ritz_dense_new(k, r, out));
+    RITZ_CHECK(ritz_dense_new(k, r, out));
     for (int64_t j = 0; j < r; j++)
         for (int64_t i = 0; i < k; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(R, i)[j];
-done:
-    free(s);
-    free(super);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_low_rank_compress(const ritz_low_rank_model *model, int side,
                                    ritz_low_rank_columns *Z)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense all = {
         .nrow = 2 * model->n, .ncol = Z->count, .val = Z->val};
-    ritz_dense R = {0}, V = {0}, turned = {0};
+    RITZ_OWN(ritz_dense) R = {0}, V = {0}, turned = {0};
 
     if (Z->count == 0)
         return RITZ_OK;
-    RITZ_TRY(triangle_of(model, side, Z, &R));
-    RITZ_TRY(find_long_columns(&R, &V));
-    RITZ_TRY(ritz_dense_mul(&all, &V, &turned));
+    RITZ_CHECK(triangle_of(model, side, Z, &R));
+    RITZ_CHECK(find_long_columns(&R, &V));
+    RITZ_CHECK(ritz_dense_mul(&all, &V, &turned));
     free(Z->val);
     Z->val = turned.val;
     Z->count = Z->room = Z->settled = turned.ncol;
     turned.val = NULL;
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&V);
-    ritz_dense_free(&turned);
-    return status;
+    return RITZ_OK;
 }

@@ -69,33 +69,25 @@ static ritz_status condense_massless(const ritz_low_rank_model *model,
                                      const ritz_sparse *K_rm, ritz_factor *F,
                                      ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
 
-    RITZ_TRY(solve_held(model, F, A, &X));
-    RITZ_TRY(ritz_sparse_mul(K_rm, &X, &Y));
+    RITZ_CHECK(solve_held(model, F, A, &X));
+    RITZ_CHECK(ritz_sparse_mul(K_rm, &X, &Y));
     add_rows(&model->massive, -1.0, &Y, A);
     clear_rows(&model->massless, A);
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /* A := T A, whose rows m are zero. */
 static ritz_status follow_rows(const ritz_low_rank_model *model, ritz_factor *F,
                                ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense KA = {0}, X = {0};
+    RITZ_OWN(ritz_dense) KA = {0}, X = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&model->K, A, &KA));
-    RITZ_TRY(solve_held(model, F, &KA, &X));
+    RITZ_CHECK(ritz_sparse_mul(&model->K, A, &KA));
+    RITZ_CHECK(solve_held(model, F, &KA, &X));
     add_rows(&model->massless, -1.0, &X, A);
-done:
-    ritz_dense_free(&KA);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether outputs C' see what inputs move at once. */
@@ -103,25 +95,20 @@ static ritz_status refuse_improper(const ritz_low_rank_model *model,
                                    ritz_factor *F, const ritz_dense *B,
                                    const ritz_dense *Ct, const char *what)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, C_m = {0}, seen = {0};
+    RITZ_OWN(ritz_dense) X = {0}, C_m = {0}, seen = {0};
 
-    RITZ_TRY(solve_held(model, F, B, &X));
-    RITZ_TRY(
+    RITZ_CHECK(solve_held(model, F, B, &X));
+    RITZ_CHECK(
         ritz_dense_rows(Ct, model->massless.count, model->massless.at, &C_m));
-    RITZ_TRY(ritz_dense_mul_tn(&C_m, &X, &seen));
-    RITZ_FAIL_IF(ritz_dense_max(&seen) > RITZ_RIGID_LOAD *
-                                             ritz_dense_max(&C_m) *
-                                             ritz_dense_max(&X),
-                 RITZ_ERR_ARGUMENT,
-                 "an output is the %s of a dof without mass that an input "
-                 "drives: no states can give it",
-                 what);
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&C_m);
-    ritz_dense_free(&seen);
-    return status;
+    RITZ_CHECK(ritz_dense_mul_tn(&C_m, &X, &seen));
+    RITZ_REFUSE_IF(ritz_dense_max(&seen) > RITZ_RIGID_LOAD *
+                                               ritz_dense_max(&C_m) *
+                                               ritz_dense_max(&X),
+                   RITZ_ERR_ARGUMENT,
+                   "an output is the %s of a dof without mass that an input "
+                   "drives: no states can give it",
+                   what);
+    return RITZ_OK;
 }
 
 /* B, C', Cv', Ca' of dofs with mass alone; F holds the others. */
@@ -129,27 +116,23 @@ static ritz_status condense_all(const ritz_low_rank_model *model,
                                 ritz_dense *const parts[static 4],
                                 ritz_factor **F)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *m = &model->massless;
     const ritz_dofs *r = &model->massive;
-    ritz_sparse K_mm = {0}, K_rm = {0};
+    RITZ_OWN(ritz_sparse) K_mm = {0}, K_rm = {0};
 
     if (m->count == 0)
-        goto done;
-    RITZ_TRY(ritz_sparse_extract(&model->K, m->count, m->at, m->count, m->at,
-                                 &K_mm));
-    RITZ_TRY(ritz_sparse_extract(&model->K, r->count, r->at, m->count, m->at,
-                                 &K_rm));
-    RITZ_TRY_IN("stiffness that holds the dofs without mass",
-                ritz_factor_spd(&K_mm, F));
-    RITZ_TRY(refuse_improper(model, *F, parts[0], parts[2], "velocity"));
-    RITZ_TRY(refuse_improper(model, *F, parts[0], parts[3], "acceleration"));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_extract(&model->K, m->count, m->at, m->count, m->at,
+                                   &K_mm));
+    RITZ_CHECK(ritz_sparse_extract(&model->K, r->count, r->at, m->count, m->at,
+                                   &K_rm));
+    RITZ_CHECK_IN("stiffness that holds the dofs without mass",
+                  ritz_factor_spd(&K_mm, F));
+    RITZ_CHECK(refuse_improper(model, *F, parts[0], parts[2], "velocity"));
+    RITZ_CHECK(refuse_improper(model, *F, parts[0], parts[3], "acceleration"));
     for (int k = 0; k < 4; k++)
-        RITZ_TRY(condense_massless(model, &K_rm, *F, parts[k]));
-done:
-    ritz_sparse_free(&K_mm);
-    ritz_sparse_free(&K_rm);
-    return status;
+        RITZ_CHECK(condense_massless(model, &K_rm, *F, parts[k]));
+    return RITZ_OK;
 }
 
 /* X := T M_rr^-1 X; M_rr must be definite in any case. */
@@ -189,111 +172,100 @@ done:
 static ritz_status subtract_product(const ritz_sparse *A, const ritz_dense *X,
                                     ritz_dense *from)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AX = {0};
+    RITZ_OWN(ritz_dense) AX = {0};
 
-    RITZ_TRY(ritz_sparse_mul(A, X, &AX));
+    RITZ_CHECK(ritz_sparse_mul(A, X, &AX));
     for (int64_t k = 0; k < AX.nrow * AX.ncol; k++)
         from->val[k] -= AX.val[k];
-done:
-    ritz_dense_free(&AX);
-    return status;
+    return RITZ_OK;
 }
 
 /* W of both sides, whose dofs and modes are known. */
 static ritz_status find_loads(const ritz_io *io, ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense *B = &model->W[RITZ_REACHED][RITZ_BELOW];
     ritz_dense *C = &model->W[RITZ_SEEN][RITZ_ABOVE];
     ritz_dense *Cv = &model->W[RITZ_SEEN][RITZ_BELOW];
-    ritz_dense X = {0};
-    ritz_factor *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
 
-    RITZ_TRY(ritz_dense_new(model->n, io->num_inputs,
-                            &model->W[RITZ_REACHED][RITZ_ABOVE]));
-    RITZ_TRY(ritz_dense_copy(&io->B, B));
-    RITZ_TRY(turn_outputs(io, &io->C, C));
-    RITZ_TRY(turn_outputs(io, &io->Cv, Cv));
-    RITZ_TRY(turn_outputs(io, &io->Ca, &X));
-    RITZ_TRY(condense_all(model, (ritz_dense *[]){B, C, Cv, &X}, &F));
-    RITZ_TRY(solve_free(model, F, &X));
-    RITZ_TRY(subtract_product(&model->K, &X, C));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_dense_new(model->n, io->num_inputs,
+                              &model->W[RITZ_REACHED][RITZ_ABOVE]));
+    RITZ_CHECK(ritz_dense_copy(&io->B, B));
+    RITZ_CHECK(turn_outputs(io, &io->C, C));
+    RITZ_CHECK(turn_outputs(io, &io->Cv, Cv));
+    RITZ_CHECK(turn_outputs(io, &io->Ca, &X));
+    RITZ_CHECK(condense_all(model, (ritz_dense *[]){B, C, Cv, &X}, &F));
+    RITZ_CHECK(solve_free(model, F, &X));
+    RITZ_CHECK(subtract_product(&model->K, &X, C));
+    RITZ_CHECK(
         subtract_product(model->Dt.colptr ? &model->Dt : &model->D, &X, Cv));
     if (model->massless.count > 0) { /* K X has rounding there */
         clear_rows(&model->massless, C);
         clear_rows(&model->massless, Cv);
     }
     for (int side = 0; side < RITZ_SIDES; side++)
-        RITZ_TRY(ritz_low_rank_size(model, side, &model->whole[side]));
+        RITZ_CHECK(ritz_low_rank_size(model, side, &model->whole[side]));
     for (int k = 0; k < 2; k++) { /* once leaves rounding */
-        RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, B));
-        RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, C));
-        RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, Cv));
+        RITZ_CHECK(ritz_dense_take_out(&model->MPhi, &model->Phi, B));
+        RITZ_CHECK(ritz_dense_take_out(&model->MPhi, &model->Phi, C));
+        RITZ_CHECK(ritz_dense_take_out(&model->MPhi, &model->Phi, Cv));
     }
-done:
-    ritz_dense_free(&X);
-    ritz_factor_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 /* D := D + a M + b K */
 static ritz_status add_rayleigh(const ritz_sparse *M, const ritz_sparse *K,
                                 const ritz_damping *damping, ritz_sparse *D)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse C = {0}, sum = {0};
+    RITZ_OWN(ritz_sparse) C = {0};
+    ritz_sparse sum = {0};
 
-    RITZ_TRY(ritz_sparse_add(damping->a, M, damping->b, K, &C));
+    RITZ_CHECK(ritz_sparse_add(damping->a, M, damping->b, K, &C));
     if (D->colptr) {
-        RITZ_TRY(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
+        RITZ_CHECK(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
         ritz_sparse_free(D);
         *D = sum;
     } else {
         *D = C;
         C = (ritz_sparse){0};
     }
-done:
-    ritz_sparse_free(&C);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status collect_matrices(const ritz_gramians_request *request,
                                     ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
     const ritz_damping *damping = &request->damping;
-    ritz_dampers dampers = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
 
-    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no states, "
-                 "give it as a modal ratio");
-    RITZ_FAIL_IF(damping->kind != RITZ_DAMPING_NONE &&
-                     !ritz_damping_is_rayleigh(damping),
-                 RITZ_ERR_ARGUMENT,
-                 "ratios of modes make no sparse matrix D, which engine "
-                 "'low-rank' needs: give rayleigh damping or a fit, or take "
-                 "engine 'modal'");
+    RITZ_REFUSE_IF(
+        component->K4.colptr, RITZ_ERR_ARGUMENT,
+        "structural damping is of harmonic motion and has no states, "
+        "give it as a modal ratio");
+    RITZ_REFUSE_IF(damping->kind != RITZ_DAMPING_NONE &&
+                       !ritz_damping_is_rayleigh(damping),
+                   RITZ_ERR_ARGUMENT,
+                   "ratios of modes make no sparse matrix D, which engine "
+                   "'low-rank' needs: give rayleigh damping or a fit, or take "
+                   "engine 'modal'");
     model->n = component->num_dofs;
     model->M = component->M;
-    RITZ_TRY(ritz_sparse_copy(&component->K, &model->K));
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &model->K));
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_copy(&component->D, &model->D));
-    RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install_sparse(&dampers, &model->K, &model->D));
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &model->D));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
+    RITZ_CHECK(ritz_dampers_install_sparse(&dampers, &model->K, &model->D));
     if (damping->kind != RITZ_DAMPING_NONE)
-        RITZ_TRY(add_rayleigh(&model->M, &model->K, damping, &model->D));
-    RITZ_FAIL_IF(!model->D.colptr || ritz_sparse_max(&model->D) == 0.0,
-                 RITZ_ERR_ARGUMENT,
-                 "there is no damping, without which no motion decays and no "
-                 "Gramian is finite");
+        RITZ_CHECK(add_rayleigh(&model->M, &model->K, damping, &model->D));
+    RITZ_REFUSE_IF(!model->D.colptr || ritz_sparse_max(&model->D) == 0.0,
+                   RITZ_ERR_ARGUMENT,
+                   "there is no damping, without which no motion decays and no "
+                   "Gramian is finite");
     if (ritz_sparse_asymmetry(&model->D) > 0.0)
-        RITZ_TRY(ritz_sparse_transpose(&model->D, &model->Dt));
-done:
-    ritz_dampers_free(&dampers);
-    return status;
+        RITZ_CHECK(ritz_sparse_transpose(&model->D, &model->Dt));
+    return RITZ_OK;
 }
 
 static bool is_zero_column(const ritz_sparse *A, int64_t j)
@@ -344,42 +316,40 @@ static ritz_status weigh_dofs(double lambda, ritz_low_rank_model *model)
 static ritz_status check_apart(const ritz_sparse *D,
                                const ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense DPhi = {0};
+    RITZ_OWN(ritz_dense) DPhi = {0};
 
-    RITZ_TRY(ritz_sparse_mul(D, &model->Phi, &DPhi));
-    RITZ_TRY(ritz_dense_take_out(&model->MPhi, &model->Phi, &DPhi));
-    RITZ_FAIL_IF(ritz_dense_max(&DPhi) > RITZ_RIGID_LOAD * ritz_sparse_max(D) *
-                                             ritz_dense_max(&model->Phi),
-                 RITZ_ERR_ARGUMENT,
-                 "damping couples rigid motion to deformation, which engine "
-                 "'low-rank' cannot set apart: hold the component, or take "
-                 "engine 'dense'");
-done:
-    ritz_dense_free(&DPhi);
-    return status;
+    RITZ_CHECK(ritz_sparse_mul(D, &model->Phi, &DPhi));
+    RITZ_CHECK(ritz_dense_take_out(&model->MPhi, &model->Phi, &DPhi));
+    RITZ_REFUSE_IF(ritz_dense_max(&DPhi) > RITZ_RIGID_LOAD *
+                                               ritz_sparse_max(D) *
+                                               ritz_dense_max(&model->Phi),
+                   RITZ_ERR_ARGUMENT,
+                   "damping couples rigid motion to deformation, which engine "
+                   "'low-rank' cannot set apart: hold the component, or take "
+                   "engine 'dense'");
+    return RITZ_OK;
 }
 
 /* Poles of the lowest flexible modes, one of a pair, the slower real one. */
 static ritz_status find_starts(const ritz_pairs *pairs,
                                ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Phi = {0}, DPhi = {0};
+    RITZ_OWN(ritz_dense) DPhi = {0};
+    ritz_dense Phi = {0};
     int64_t flexible = pairs->Phi.ncol - pairs->num_rigid;
 
     model->num_starts =
         flexible < RITZ_LOW_RANK_STARTS ? flexible : RITZ_LOW_RANK_STARTS;
     Phi = ritz_dense_part(&pairs->Phi, pairs->num_rigid, model->num_starts);
-    RITZ_TRY(ritz_sparse_mul(&model->D, &Phi, &DPhi));
+    RITZ_CHECK(ritz_sparse_mul(&model->D, &Phi, &DPhi));
     for (int64_t k = 0; k < model->num_starts; k++) {
         double lambda = pairs->lambda[pairs->num_rigid + k];
         double d = ritz_dense_dot(&Phi, k, &DPhi, k) / 2.0;
 
-        RITZ_FAIL_IF(!(lambda > 0.0), RITZ_ERR_ARGUMENT,
-                     "K is not positive semidefinite, an eigenvalue is %.3g: "
-                     "the component is not stable",
-                     lambda);
+        RITZ_REFUSE_IF(!(lambda > 0.0), RITZ_ERR_ARGUMENT,
+                       "K is not positive semidefinite, an eigenvalue is %.3g: "
+                       "the component is not stable",
+                       lambda);
         d = fmax(d, 16.0 * DBL_EPSILON * sqrt(lambda));
         if (d * d < lambda)
             model->start[k] =
@@ -387,51 +357,42 @@ static ritz_status find_starts(const ritz_pairs *pairs,
         else
             model->start[k] = -lambda / (d + sqrt(d * d - lambda));
     }
-done:
-    ritz_dense_free(&DPhi);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find_modes(ritz_low_rank_model *model)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span span = {.modes = RITZ_LOW_RANK_STARTS};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     double lambda = 1.0;
 
-    RITZ_TRY_IN("modes to begin with",
-                ritz_eigen_sparse(&model->K, &model->M, &span, &pairs));
-    RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &model->Phi));
-    RITZ_TRY(ritz_sparse_mul(&model->M, &model->Phi, &model->MPhi));
-    RITZ_TRY(check_apart(&model->D, model));
+    RITZ_CHECK_IN("modes to begin with",
+                  ritz_eigen_sparse(&model->K, &model->M, &span, &pairs));
+    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &model->Phi));
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &model->Phi, &model->MPhi));
+    RITZ_CHECK(check_apart(&model->D, model));
     if (model->Dt.colptr)
-        RITZ_TRY(check_apart(&model->Dt, model));
-    RITZ_TRY(find_starts(&pairs, model));
+        RITZ_CHECK(check_apart(&model->Dt, model));
+    RITZ_CHECK(find_starts(&pairs, model));
     if (model->num_starts > 0)
         lambda = pairs.lambda[pairs.num_rigid];
-    RITZ_TRY(weigh_dofs(lambda, model));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return weigh_dofs(lambda, model);
 }
 
 ritz_status ritz_low_rank_model_new(const ritz_gramians_request *request,
                                     ritz_low_rank_model *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_low_rank_model model = {0};
+    RITZ_OWN(ritz_low_rank_model) model = {0};
 
-    RITZ_FAIL_IF(request->component->num_dofs == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no dofs");
-    RITZ_TRY(collect_matrices(request, &model));
-    RITZ_TRY(split_dofs(request->component, &model));
-    RITZ_TRY(find_modes(&model));
-    RITZ_TRY(find_loads(&request->component->io, &model));
+    RITZ_REFUSE_IF(request->component->num_dofs == 0, RITZ_ERR_ARGUMENT,
+                   "the component has no dofs");
+    RITZ_CHECK(collect_matrices(request, &model));
+    RITZ_CHECK(split_dofs(request->component, &model));
+    RITZ_CHECK(find_modes(&model));
+    RITZ_CHECK(find_loads(&request->component->io, &model));
     *out = model;
     model = (ritz_low_rank_model){0};
-done:
-    ritz_low_rank_model_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_low_rank_model_free(ritz_low_rank_model *model)

@@ -34,20 +34,17 @@ enum { COLUMNS = 96 };
 ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
                                      ritz_low_rank_window *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_low_rank_window window = {0};
+    RITZ_OWN(ritz_low_rank_window) window = {0};
     int64_t step = 2 * (model->W[RITZ_REACHED][RITZ_BELOW].ncol +
                         model->W[RITZ_SEEN][RITZ_BELOW].ncol);
 
     window.room = 2 * step > COLUMNS ? 2 * step : COLUMNS;
-    RITZ_TRY(ritz_dense_new(model->n, window.room, &window.X));
+    RITZ_CHECK(ritz_dense_new(model->n, window.room, &window.X));
     for (int k = 0; k < 3; k++)
-        RITZ_TRY(ritz_dense_new(window.room, window.room, &window.G[k]));
+        RITZ_CHECK(ritz_dense_new(window.room, window.room, &window.G[k]));
     *out = window;
     window = (ritz_low_rank_window){0};
-done:
-    ritz_low_rank_window_free(&window);
-    return status;
+    return RITZ_OK;
 }
 
 /* g := X'y, count entries. */
@@ -133,15 +130,14 @@ static ritz_status symmetric_modes(ritz_dense *A, double *e)
 static ritz_status orthonormal_window(const ritz_low_rank_window *window,
                                       ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t c = window->count;
     int64_t first = 0;
-    ritz_dense G = {0};
-    double *size = NULL, *e = NULL;
+    RITZ_OWN(ritz_dense) G = {0};
+    RITZ_OWN_ARRAY double *size = NULL, *e = NULL;
 
-    RITZ_NEW(size, c);
-    RITZ_NEW(e, c);
-    RITZ_TRY(ritz_dense_new(c, c, &G));
+    RITZ_CHECK_NEW(size, c);
+    RITZ_CHECK_NEW(e, c);
+    RITZ_CHECK(ritz_dense_new(c, c, &G));
     for (int64_t j = 0; j < c; j++) {
         double g = ritz_dense_col(&window->G[0], j)[j];
 
@@ -151,18 +147,14 @@ static ritz_status orthonormal_window(const ritz_low_rank_window *window,
         for (int64_t i = 0; i < c; i++)
             ritz_dense_col(&G, j)[i] =
                 size[i] * ritz_dense_col(&window->G[0], j)[i] * size[j];
-    RITZ_TRY(symmetric_modes(&G, e));
+    RITZ_CHECK(symmetric_modes(&G, e));
     while (first < c && !(e[first] > RITZ_WINDOW_DEPENDENT * e[c - 1]))
         first++;
-    RITZ_TRY(ritz_dense_columns(&G, first, c - first, out));
+    RITZ_CHECK(ritz_dense_columns(&G, first, c - first, out));
     for (int64_t j = 0; j < out->ncol; j++)
         for (int64_t i = 0; i < c; i++)
             ritz_dense_col(out, j)[i] *= size[i] / sqrt(e[first + j]);
-done:
-    ritz_dense_free(&G);
-    free(size);
-    free(e);
-    return status;
+    return RITZ_OK;
 }
 
 /* F'GF of the columns that are there. */
@@ -170,18 +162,14 @@ static ritz_status product_between(const ritz_low_rank_window *window,
                                    int which, const ritz_dense *F,
                                    ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t c = window->count;
-    ritz_dense G = {0};
+    RITZ_OWN(ritz_dense) G = {0};
 
-    RITZ_TRY(ritz_dense_new(c, c, &G));
+    RITZ_CHECK(ritz_dense_new(c, c, &G));
     for (int64_t j = 0; j < c; j++)
         memcpy(ritz_dense_col(&G, j), ritz_dense_col(&window->G[which], j),
                (size_t)c * sizeof *G.val);
-    RITZ_TRY(ritz_dense_project(&G, F, out));
-done:
-    ritz_dense_free(&G);
-    return status;
+    return ritz_dense_project(&G, F, out);
 }
 
 /*
@@ -194,29 +182,23 @@ static ritz_status find_window_modes(const ritz_low_rank_window *window,
                                      ritz_dense *F, double **omega,
                                      ritz_dense *Delta)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense V = {0}, K = {0}, modes = {0};
-    double *w = NULL;
+    RITZ_OWN(ritz_dense) V = {0}, K = {0}, modes = {0};
+    RITZ_OWN_ARRAY double *w = NULL;
 
-    RITZ_TRY(orthonormal_window(window, &V));
-    RITZ_TRY(product_between(window, 1, &V, &K));
-    RITZ_NEW(w, K.nrow);
+    RITZ_CHECK(orthonormal_window(window, &V));
+    RITZ_CHECK(product_between(window, 1, &V, &K));
+    RITZ_CHECK_NEW(w, K.nrow);
     ritz_dense_symmetrise(&K);
-    RITZ_TRY(symmetric_modes(&K, w));
-    RITZ_TRY(ritz_dense_mul(&V, &K, &modes));
-    RITZ_TRY(product_between(window, 2, &modes, Delta));
+    RITZ_CHECK(symmetric_modes(&K, w));
+    RITZ_CHECK(ritz_dense_mul(&V, &K, &modes));
+    RITZ_CHECK(product_between(window, 2, &modes, Delta));
     for (int64_t k = 0; k < K.nrow; k++) /* the last one is exact enough */
         w[k] = sqrt(fmax(w[k], DBL_EPSILON * w[K.nrow - 1]));
     *F = modes;
     *omega = w;
     modes = (ritz_dense){0};
     w = NULL;
-done:
-    ritz_dense_free(&V);
-    ritz_dense_free(&K);
-    ritz_dense_free(&modes);
-    free(w);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_low_rank_window_free(ritz_low_rank_window *window)
@@ -255,20 +237,19 @@ static void free_small(small *s)
 /* A, its poles and both kinds of vectors. */
 static ritz_status find_poles(const ritz_low_rank_window *window, small *s)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Delta = {0};
+    RITZ_OWN(ritz_dense) Delta = {0};
     int64_t r = 0;
     int n = 0;
     int info = 0;
 
-    RITZ_TRY(find_window_modes(window, &s->F, &s->omega, &Delta));
+    RITZ_CHECK(find_window_modes(window, &s->F, &s->omega, &Delta));
     r = s->F.ncol;
     n = (int)(2 * r);
-    RITZ_TRY(ritz_dense_new(n, n, &s->A));
-    RITZ_TRY(ritz_dense_new(n, n, &s->left));
-    RITZ_TRY(ritz_dense_new(n, n, &s->right));
-    RITZ_NEW(s->re, n);
-    RITZ_NEW(s->im, n);
+    RITZ_CHECK(ritz_dense_new(n, n, &s->A));
+    RITZ_CHECK(ritz_dense_new(n, n, &s->left));
+    RITZ_CHECK(ritz_dense_new(n, n, &s->right));
+    RITZ_CHECK_NEW(s->re, n);
+    RITZ_CHECK_NEW(s->im, n);
     for (int64_t j = 0; j < r; j++) {
         ritz_dense_col(&s->A, r + j)[j] = s->omega[j];
         ritz_dense_col(&s->A, j)[r + j] = -s->omega[j];
@@ -278,11 +259,9 @@ static ritz_status find_poles(const ritz_low_rank_window *window, small *s)
     if (n > 0)
         info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n, s->A.val, n, s->re,
                              s->im, s->left.val, n, s->right.val, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "no poles were found for shifts");
-done:
-    ritz_dense_free(&Delta);
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "no poles were found for shifts");
+    return RITZ_OK;
 }
 
 /* rows first.. of w := diag(omega^power) F'X'A */
@@ -290,42 +269,35 @@ static ritz_status put_half(const ritz_low_rank_window *window,
                             const ritz_dense *A, double power, int64_t first,
                             small *s, ritz_dense *w)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense X = ritz_dense_part(&window->X, 0, window->count);
-    ritz_dense XA = {0}, q = {0};
+    RITZ_OWN(ritz_dense) XA = {0}, q = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(&X, A, &XA));
-    RITZ_TRY(ritz_dense_mul_tn(&s->F, &XA, &q));
+    RITZ_CHECK(ritz_dense_mul_tn(&X, A, &XA));
+    RITZ_CHECK(ritz_dense_mul_tn(&s->F, &XA, &q));
     for (int64_t j = 0; j < q.ncol; j++)
         for (int64_t i = 0; i < q.nrow; i++)
             ritz_dense_col(w, j)[first + i] =
                 pow(s->omega[i], power) * ritz_dense_col(&q, j)[i];
-done:
-    ritz_dense_free(&XA);
-    ritz_dense_free(&q);
-    return status;
+    return RITZ_OK;
 }
 
 /* What is left of W: velocities w Phi'M W_1 and forces; outputs w^-1, 1. */
 static ritz_status project_loads(const ritz_low_rank_model *model,
                                  const ritz_low_rank_window *window, small *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = s->F.ncol;
     const ritz_dense *U = model->W[RITZ_REACHED];
     const ritz_dense *Y = model->W[RITZ_SEEN];
-    ritz_dense MU = {0};
+    RITZ_OWN(ritz_dense) MU = {0};
 
-    RITZ_TRY(ritz_sparse_mul(&model->M, &U[RITZ_ABOVE], &MU));
-    RITZ_TRY(ritz_dense_new(2 * r, MU.ncol, &s->w[RITZ_REACHED]));
-    RITZ_TRY(ritz_dense_new(2 * r, Y[0].ncol, &s->w[RITZ_SEEN]));
-    RITZ_TRY(put_half(window, &MU, 1.0, 0, s, &s->w[RITZ_REACHED]));
-    RITZ_TRY(put_half(window, &U[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_REACHED]));
-    RITZ_TRY(put_half(window, &Y[RITZ_ABOVE], -1.0, 0, s, &s->w[RITZ_SEEN]));
-    RITZ_TRY(put_half(window, &Y[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_SEEN]));
-done:
-    ritz_dense_free(&MU);
-    return status;
+    RITZ_CHECK(ritz_sparse_mul(&model->M, &U[RITZ_ABOVE], &MU));
+    RITZ_CHECK(ritz_dense_new(2 * r, MU.ncol, &s->w[RITZ_REACHED]));
+    RITZ_CHECK(ritz_dense_new(2 * r, Y[0].ncol, &s->w[RITZ_SEEN]));
+    RITZ_CHECK(put_half(window, &MU, 1.0, 0, s, &s->w[RITZ_REACHED]));
+    RITZ_CHECK(
+        put_half(window, &U[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_REACHED]));
+    RITZ_CHECK(put_half(window, &Y[RITZ_ABOVE], -1.0, 0, s, &s->w[RITZ_SEEN]));
+    return put_half(window, &Y[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_SEEN]);
 }
 
 /* |x'w|^2 of a vector whose imaginary part is y, NULL if real. */
@@ -365,13 +337,12 @@ static double cosine_of(int64_t n, const double *y, const double *y_im,
 /* Squares of both shares, each of the largest, added. */
 static ritz_status weigh_poles(const bool open[static RITZ_SIDES], small *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = s->A.nrow;
     double most[RITZ_SIDES] = {0.0, 0.0};
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_NEW(s->share, n);
-    RITZ_TRY(ritz_dense_new(n, RITZ_SIDES, &part));
+    RITZ_CHECK_NEW(s->share, n);
+    RITZ_CHECK(ritz_dense_new(n, RITZ_SIDES, &part));
     for (int64_t k = 0; k < n; k += s->im[k] != 0.0 ? 2 : 1) {
         bool pair = s->im[k] != 0.0;
         const double *x = ritz_dense_col(&s->right, k);
@@ -390,9 +361,7 @@ static ritz_status weigh_poles(const bool open[static RITZ_SIDES], small *s)
     for (int side = 0; side < RITZ_SIDES; side++)
         for (int64_t k = 0; k < n && open[side] && most[side] > 0.0; k++)
             s->share[k] += ritz_dense_col(&part, side)[k] / most[side];
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* The poles with the largest shares, of a pair the first. */

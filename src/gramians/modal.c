@@ -41,52 +41,45 @@ static int64_t end_of_cluster(const ritz_modal_model *modes, int64_t first)
 static ritz_status turn_columns(ritz_dense *A, int64_t first,
                                 const ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, turned = {0};
+    RITZ_OWN(ritz_dense) turned = {0};
+    ritz_dense part = {0};
 
     if (A->nrow == 0 || A->ncol == 0)
-        goto done;
+        return RITZ_OK;
     part = ritz_dense_part(A, first, V->nrow);
-    RITZ_TRY(ritz_dense_mul(&part, V, &turned));
+    RITZ_CHECK(ritz_dense_mul(&part, V, &turned));
     memcpy(part.val, turned.val,
            (size_t)(turned.nrow * turned.ncol) * sizeof *turned.val);
-done:
-    ritz_dense_free(&turned);
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows first, first + 1, ... of A := V' times those. */
 static ritz_status turn_rows(ritz_dense *A, int64_t first, const ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, turned = {0};
+    RITZ_OWN(ritz_dense) part = {0}, turned = {0};
     int64_t n = V->nrow;
 
-    RITZ_TRY(ritz_dense_new(n, A->ncol, &part));
+    RITZ_CHECK(ritz_dense_new(n, A->ncol, &part));
     for (int64_t j = 0; j < A->ncol; j++)
         memcpy(ritz_dense_col(&part, j), ritz_dense_col(A, j) + first,
                (size_t)n * sizeof *part.val);
-    RITZ_TRY(ritz_dense_mul_tn(V, &part, &turned));
+    RITZ_CHECK(ritz_dense_mul_tn(V, &part, &turned));
     for (int64_t j = 0; j < A->ncol; j++)
         memcpy(ritz_dense_col(A, j) + first, ritz_dense_col(&turned, j),
                (size_t)n * sizeof *part.val);
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&turned);
-    return status;
+    return RITZ_OK;
 }
 
 /* Eigenvectors of a block of Delta; *needed: it is not diagonal yet. */
 static ritz_status axes_of(const ritz_dense *Delta, int64_t first, int64_t last,
                            ritz_dense *V, bool *needed)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = last - first;
-    double *d = NULL;
+    RITZ_OWN_ARRAY double *d = NULL;
     int info = 0;
 
-    RITZ_NEW(d, n);
-    RITZ_TRY(ritz_dense_new(n, n, V));
+    RITZ_CHECK_NEW(d, n);
+    RITZ_CHECK(ritz_dense_new(n, n, V));
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++) {
             double x = ritz_dense_col(Delta, first + j)[first + i];
@@ -95,21 +88,18 @@ static ritz_status axes_of(const ritz_dense *Delta, int64_t first, int64_t last,
             *needed = *needed || (i != j && x != 0.0);
         }
     if (!*needed)
-        goto done;
+        return RITZ_OK;
     ritz_dense_symmetrise(V);
     info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (int)n, V->val, (int)n, d);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "damping of a cluster of modes cannot be made diagonal");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "damping of a cluster of modes cannot be made diagonal");
     ritz_dense_orient(V);
-done:
-    free(d);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_modes_turn(ritz_modal_model *modes)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_dense) V = {0};
     int64_t last = 0;
 
     for (int64_t k = modes->num_rigid; k < modes->count; k = last) {
@@ -118,21 +108,19 @@ ritz_status ritz_modes_turn(ritz_modal_model *modes)
         last = end_of_cluster(modes, k);
         if (last == k + 1)
             continue;
-        RITZ_TRY(axes_of(&modes->Delta, k, last, &V, &needed));
+        RITZ_CHECK(axes_of(&modes->Delta, k, last, &V, &needed));
         if (needed) {
-            RITZ_TRY(turn_columns(&modes->Phi, k, &V));
-            RITZ_TRY(turn_columns(&modes->MPhi, k, &V));
-            RITZ_TRY(turn_columns(&modes->C, k, &V));
-            RITZ_TRY(turn_columns(&modes->Cv, k, &V));
-            RITZ_TRY(turn_columns(&modes->Delta, k, &V));
-            RITZ_TRY(turn_rows(&modes->Delta, k, &V));
-            RITZ_TRY(turn_rows(&modes->B, k, &V));
+            RITZ_CHECK(turn_columns(&modes->Phi, k, &V));
+            RITZ_CHECK(turn_columns(&modes->MPhi, k, &V));
+            RITZ_CHECK(turn_columns(&modes->C, k, &V));
+            RITZ_CHECK(turn_columns(&modes->Cv, k, &V));
+            RITZ_CHECK(turn_columns(&modes->Delta, k, &V));
+            RITZ_CHECK(turn_rows(&modes->Delta, k, &V));
+            RITZ_CHECK(turn_rows(&modes->B, k, &V));
         }
         ritz_dense_free(&V);
     }
-done:
-    ritz_dense_free(&V);
-    return status;
+    return RITZ_OK;
 }
 
 bool ritz_modes_coupled(const ritz_modal_model *modes, ritz_coupling *out)
@@ -176,19 +164,16 @@ ritz_status ritz_coupling_refuse(const ritz_coupling *coupling, const char *why)
 static ritz_status modal_empty(int64_t count, int64_t inputs, int64_t outputs,
                                ritz_modal *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal modal = {.count = count};
+    RITZ_OWN(ritz_modal) modal = {.count = count};
 
-    RITZ_NEW(modal.omega, count);
-    RITZ_NEW(modal.zeta, count);
-    RITZ_TRY(ritz_dense_new(count, inputs, &modal.B));
-    RITZ_TRY(ritz_dense_new(outputs, count, &modal.C));
-    RITZ_TRY(ritz_dense_new(outputs, count, &modal.Cv));
+    RITZ_CHECK_NEW(modal.omega, count);
+    RITZ_CHECK_NEW(modal.zeta, count);
+    RITZ_CHECK(ritz_dense_new(count, inputs, &modal.B));
+    RITZ_CHECK(ritz_dense_new(outputs, count, &modal.C));
+    RITZ_CHECK(ritz_dense_new(outputs, count, &modal.Cv));
     *out = modal;
     modal = (ritz_modal){0};
-done:
-    ritz_modal_free(&modal);
-    return status;
+    return RITZ_OK;
 }
 
 /* Inputs and outputs of flexible mode k, which is mode `at`. */
@@ -209,32 +194,30 @@ static void put_mode(const ritz_modal_model *modes, int64_t at,
 ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, ritz_modal *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     int64_t r = modes->num_rigid;
 
     for (int64_t i = 0; i < io->num_outputs; i++)
-        RITZ_FAIL_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
-                     "output '%s' has the limit %g, which is not positive",
-                     io->output[i], io->limit[i]);
-    RITZ_TRY(
+        RITZ_REFUSE_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
+                       "output '%s' has the limit %g, which is not positive",
+                       io->output[i], io->limit[i]);
+    RITZ_CHECK(
         modal_empty(modes->count - r, modes->B.ncol, modes->C.nrow, &modal));
     for (int64_t k = 0; k < modal.count; k++) {
         modal.omega[k] = sqrt(modes->lambda[r + k]);
         modal.zeta[k] = ritz_dense_col(&modes->Delta, r + k)[r + k] /
                         (2.0 * modal.omega[k]);
-        RITZ_FAIL_IF(!(modal.zeta[k] > 0.0), RITZ_ERR_ARGUMENT,
-                     "the mode at %.6g Hz has %s damping: every flexible mode "
-                     "needs a positive ratio",
-                     ritz_eigen_hertz(modes->lambda[r + k]),
-                     modal.zeta[k] < 0.0 ? "negative" : "no");
+        RITZ_REFUSE_IF(
+            !(modal.zeta[k] > 0.0), RITZ_ERR_ARGUMENT,
+            "the mode at %.6g Hz has %s damping: every flexible mode "
+            "needs a positive ratio",
+            ritz_eigen_hertz(modes->lambda[r + k]),
+            modal.zeta[k] < 0.0 ? "negative" : "no");
         put_mode(modes, r + k, io->limit, &modal, k);
     }
     *out = modal;
     modal = (ritz_modal){0};
-done:
-    ritz_modal_free(&modal);
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first)
@@ -250,11 +233,10 @@ int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first)
 ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
                             int64_t last, ritz_modal *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t outputs = modal->C.nrow;
-    ritz_modal part = {0};
+    RITZ_OWN(ritz_modal) part = {0};
 
-    RITZ_TRY(modal_empty(last - first, modal->B.ncol, outputs, &part));
+    RITZ_CHECK(modal_empty(last - first, modal->B.ncol, outputs, &part));
     for (int64_t k = first; k < last; k++) {
         part.omega[k - first] = modal->omega[k];
         part.zeta[k - first] = modal->zeta[k];
@@ -270,9 +252,7 @@ ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
     }
     *out = part;
     part = (ritz_modal){0};
-done:
-    ritz_modal_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_sizes(const ritz_dense *K, const ritz_dense *D,
@@ -292,38 +272,30 @@ static ritz_status find_modes(const ritz_dense *K, const ritz_dense *M,
                               const ritz_damping *damping,
                               ritz_modal_model *modes)
 {
-    ritz_status status = RITZ_OK;
     const ritz_damping none = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
+    RITZ_CHECK(ritz_eigen_dense(K, M, &pairs));
     ritz_modal_model_take(&pairs, K->nrow, modes);
     if (D && D->val)
-        RITZ_TRY(ritz_dense_project(D, &modes->Phi, &modes->Delta));
-    RITZ_TRY(ritz_modal_model_drive(io, damping ? damping : &none, modes));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+        RITZ_CHECK(ritz_dense_project(D, &modes->Phi, &modes->Delta));
+    return ritz_modal_model_drive(io, damping ? damping : &none, modes);
 }
 
 ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
                            const ritz_dense *D, const ritz_io *io,
                            const ritz_damping *damping, ritz_modal *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal_model modes = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
     ritz_coupling coupling = {0};
 
-    RITZ_TRY(check_sizes(K, D, io));
-    RITZ_TRY(find_modes(K, M, D, io, damping, &modes));
-    RITZ_TRY(ritz_modes_turn(&modes));
+    RITZ_CHECK(check_sizes(K, D, io));
+    RITZ_CHECK(find_modes(K, M, D, io, damping, &modes));
+    RITZ_CHECK(ritz_modes_turn(&modes));
     if (ritz_modes_coupled(&modes, &coupling))
-        RITZ_TRY(ritz_coupling_refuse(&coupling,
-                                      "a ranking needs damping mode by mode"));
-    RITZ_TRY(ritz_modal_of_modes(&modes, io, out));
-done:
-    ritz_modal_model_free(&modes);
-    return status;
+        RITZ_CHECK(ritz_coupling_refuse(
+            &coupling, "a ranking needs damping mode by mode"));
+    return ritz_modal_of_modes(&modes, io, out);
 }
 
 void ritz_modal_free(ritz_modal *modal)

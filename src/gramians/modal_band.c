@@ -120,15 +120,11 @@ static ritz_status filter_both(const response *S, const response *size,
                                bool transposed, const ritz_dense *W,
                                filtered *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense magnitude = {0};
+    RITZ_OWN(ritz_dense) magnitude = {0};
 
-    RITZ_TRY(ritz_dense_abs(W, &magnitude));
-    RITZ_TRY(filter_gramian(S, transposed, W, &out->W));
-    RITZ_TRY(filter_gramian(size, transposed, &magnitude, &out->terms));
-done:
-    ritz_dense_free(&magnitude);
-    return status;
+    RITZ_CHECK(ritz_dense_abs(W, &magnitude));
+    RITZ_CHECK(filter_gramian(S, transposed, W, &out->W));
+    return filter_gramian(size, transposed, &magnitude, &out->terms);
 }
 
 static ritz_status check_band(const double band_hz[static 2])
@@ -145,29 +141,22 @@ static ritz_status band_gramians(const ritz_modal *modal,
                                  const double band_hz[static 2],
                                  filtered out[static 2])
 {
-    ritz_status status = RITZ_OK;
     const double w[2] = {2.0 * RITZ_PI * band_hz[0],
                          2.0 * RITZ_PI * band_hz[1]};
-    ritz_dense Wc = {0}, Wo = {0};
-    response *S = NULL, *size = NULL;
+    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0};
+    RITZ_OWN_ARRAY response *S = NULL, *size = NULL;
 
-    RITZ_TRY(check_band(band_hz));
-    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
-    RITZ_NEW(S, modal->count);
-    RITZ_NEW(size, modal->count);
+    RITZ_CHECK(check_band(band_hz));
+    RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
+    RITZ_CHECK_NEW(S, modal->count);
+    RITZ_CHECK_NEW(size, modal->count);
     for (int64_t k = 0; k < modal->count; k++) {
         S[k] = response_of(modal->omega[k], modal->zeta[k], w);
         for (int i = 0; i < 4; i++)
             size[k].s[i / 2][i % 2] = fabs(S[k].s[i / 2][i % 2]);
     }
-    RITZ_TRY(filter_both(S, size, false, &Wc, &out[0]));
-    RITZ_TRY(filter_both(S, size, true, &Wo, &out[1]));
-done:
-    free(S);
-    free(size);
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    return status;
+    RITZ_CHECK(filter_both(S, size, false, &Wc, &out[0]));
+    return filter_both(S, size, true, &Wo, &out[1]);
 }
 
 ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
@@ -244,30 +233,25 @@ static ritz_status put_factor(const ritz_dense *V, const double *s,
 /* Overwrites both matrices. */
 static ritz_status factor_filtered(filtered *f, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)f->W.nrow;
-    double *root = NULL, *s = NULL;
+    RITZ_OWN_ARRAY double *root = NULL, *s = NULL;
     double rounding = 0.0;
     int info = 0;
 
-    RITZ_NEW(root, n);
-    RITZ_NEW(s, n);
-    RITZ_TRY(find_roots(f, root));
+    RITZ_CHECK_NEW(root, n);
+    RITZ_CHECK_NEW(s, n);
+    RITZ_CHECK(find_roots(f, root));
     (void)scale_matrix(&f->W, root);
     rounding = RITZ_BAND_ROUNDING * scale_matrix(&f->terms, root);
     if (n > 0)
         info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, f->W.val, n, s);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "eigenvalues of the Gramian of a band were not found");
-    RITZ_FAIL_IF(n > 0 && s[0] < -rounding, RITZ_ERR_CONVERGENCE,
-                 "the Gramian of a band has an eigenvalue of %.1e of its "
-                 "diagonal, beyond rounding (%.1e)",
-                 s[0], rounding);
-    RITZ_TRY(put_factor(&f->W, s, root, out));
-done:
-    free(root);
-    free(s);
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "eigenvalues of the Gramian of a band were not found");
+    RITZ_REFUSE_IF(n > 0 && s[0] < -rounding, RITZ_ERR_CONVERGENCE,
+                   "the Gramian of a band has an eigenvalue of %.1e of its "
+                   "diagonal, beyond rounding (%.1e)",
+                   s[0], rounding);
+    return put_factor(&f->W, s, root, out);
 }
 
 ritz_status ritz_modal_factors_band(const ritz_modal *modal,
@@ -302,42 +286,29 @@ done:
 static ritz_status hankel_values(const ritz_dense *Zo, const ritz_dense *Zc,
                                  double *sigma)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense H = {0};
+    RITZ_OWN(ritz_dense) H = {0};
 
     for (int64_t k = 0; k < Zc->nrow; k++)
         sigma[k] = 0.0;
-    RITZ_TRY(ritz_dense_mul_tn(Zo, Zc, &H));
-    RITZ_TRY_IN("Hankel values", ritz_general_singular(&H, sigma));
-done:
-    ritz_dense_free(&H);
-    return status;
+    RITZ_CHECK(ritz_dense_mul_tn(Zo, Zc, &H));
+    RITZ_CHECK_IN("Hankel values", ritz_general_singular(&H, sigma));
+    return RITZ_OK;
 }
 
 ritz_status ritz_modal_hankel(const ritz_modal *modal, double *sigma)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Zc = {0}, Zo = {0};
+    RITZ_OWN(ritz_dense) Zc = {0}, Zo = {0};
 
-    RITZ_TRY(ritz_modal_factors(modal, &Zc, &Zo));
-    RITZ_TRY(hankel_values(&Zo, &Zc, sigma));
-done:
-    ritz_dense_free(&Zc);
-    ritz_dense_free(&Zo);
-    return status;
+    RITZ_CHECK(ritz_modal_factors(modal, &Zc, &Zo));
+    return hankel_values(&Zo, &Zc, sigma);
 }
 
 ritz_status ritz_modal_hankel_band(const ritz_modal *modal,
                                    const double band_hz[static 2],
                                    double *sigma)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Zc = {0}, Zo = {0};
+    RITZ_OWN(ritz_dense) Zc = {0}, Zo = {0};
 
-    RITZ_TRY(ritz_modal_factors_band(modal, band_hz, &Zc, &Zo));
-    RITZ_TRY(hankel_values(&Zo, &Zc, sigma));
-done:
-    ritz_dense_free(&Zc);
-    ritz_dense_free(&Zo);
-    return status;
+    RITZ_CHECK(ritz_modal_factors_band(modal, band_hz, &Zc, &Zo));
+    return hankel_values(&Zo, &Zc, sigma);
 }

@@ -45,19 +45,18 @@ static void energy_free(energy_model *model)
 /* @return RITZ_ERR_ARGUMENT if a mode has no damping or no stiffness */
 static ritz_status energy_new(const ritz_modal *modal, energy_model *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = modal->count;
-    energy_model model = {.count = m};
+    [[gnu::cleanup(energy_free)]] energy_model model = {.count = m};
 
-    RITZ_NEW(model.w, m);
-    RITZ_NEW(model.d, m);
-    RITZ_TRY(ritz_dense_new(2 * m, modal->B.ncol, &model.F[0]));
-    RITZ_TRY(ritz_dense_new(2 * m, modal->C.nrow, &model.F[1]));
+    RITZ_CHECK_NEW(model.w, m);
+    RITZ_CHECK_NEW(model.d, m);
+    RITZ_CHECK(ritz_dense_new(2 * m, modal->B.ncol, &model.F[0]));
+    RITZ_CHECK(ritz_dense_new(2 * m, modal->C.nrow, &model.F[1]));
     for (int64_t k = 0; k < m; k++) {
         double w = modal->omega[k];
 
-        RITZ_FAIL_IF(!(modal->zeta[k] > 0.0 && w > 0.0), RITZ_ERR_ARGUMENT,
-                     "a mode without damping or stiffness has no Gramian");
+        RITZ_REFUSE_IF(!(modal->zeta[k] > 0.0 && w > 0.0), RITZ_ERR_ARGUMENT,
+                       "a mode without damping or stiffness has no Gramian");
         model.w[k] = w;
         model.d[k] = 2.0 * modal->zeta[k] * w;
         for (int64_t j = 0; j < modal->B.ncol; j++)
@@ -72,9 +71,7 @@ static ritz_status energy_new(const ritz_modal *modal, energy_model *out)
     }
     *out = model;
     model = (energy_model){0};
-done:
-    energy_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 /* * Blocks X_ij of A_i X_ij + X_ij A_j' + G_ij = 0 for modes i = 0 .. upto - 1
@@ -160,13 +157,12 @@ static void mirror_upper(ritz_dense *W)
 static ritz_status find_gramian(const energy_model *model, const ritz_dense *F,
                                 const double *t, double sign, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = model->count;
-    ritz_dense G = {0}, X = {0}, W = {0};
+    RITZ_OWN(ritz_dense) G = {0}, X = {0}, W = {0};
 
-    RITZ_TRY(ritz_dense_mul_nt(F, F, &G));
-    RITZ_TRY(ritz_dense_new(2 * m, 2, &X));
-    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &W));
+    RITZ_CHECK(ritz_dense_mul_nt(F, F, &G));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2, &X));
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &W));
     for (int64_t j = 0; j < m; j++) {
         const double *const g[2] = {ritz_dense_col(&G, j),
                                     ritz_dense_col(&G, m + j)};
@@ -178,37 +174,27 @@ static ritz_status find_gramian(const energy_model *model, const ritz_dense *F,
     mirror_upper(&W);
     *out = W;
     W = (ritz_dense){0};
-done:
-    ritz_dense_free(&G);
-    ritz_dense_free(&X);
-    ritz_dense_free(&W);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_modal_gramians(const ritz_modal *modal, ritz_dense *Wc,
                                 ritz_dense *Wo)
 {
-    ritz_status status = RITZ_OK;
-    energy_model model = {0};
-    ritz_dense X = {0}, Y = {0};
-    double *inverse = NULL;
+    [[gnu::cleanup(energy_free)]] energy_model model = {0};
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
+    RITZ_OWN_ARRAY double *inverse = NULL;
 
-    RITZ_TRY(energy_new(modal, &model));
-    RITZ_NEW(inverse, modal->count);
+    RITZ_CHECK(energy_new(modal, &model));
+    RITZ_CHECK_NEW(inverse, modal->count);
     for (int64_t k = 0; k < modal->count; k++)
         inverse[k] = 1.0 / modal->omega[k];
-    RITZ_TRY(find_gramian(&model, &model.F[0], inverse, 1.0, &X));
-    RITZ_TRY(find_gramian(&model, &model.F[1], modal->omega, -1.0, &Y));
+    RITZ_CHECK(find_gramian(&model, &model.F[0], inverse, 1.0, &X));
+    RITZ_CHECK(find_gramian(&model, &model.F[1], modal->omega, -1.0, &Y));
     *Wc = X;
     *Wo = Y;
     X = (ritz_dense){0};
     Y = (ritz_dense){0};
-done:
-    free(inverse);
-    energy_free(&model);
-    ritz_dense_free(&X);
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -440,13 +426,12 @@ static void eliminate_pole(unit *at, elimination *e, double *row)
 static ritz_status find_factor(const energy_model *model, const ritz_dense *F,
                                ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    elimination e = {0};
-    double *row = NULL;
+    RITZ_OWN(elimination) e = {0};
+    RITZ_OWN_ARRAY double *row = NULL;
     unit *next = NULL;
 
-    RITZ_NEW(row, F->ncol);
-    RITZ_TRY(start_elimination(model, F, &e));
+    RITZ_CHECK_NEW(row, F->ncol);
+    RITZ_CHECK(start_elimination(model, F, &e));
     for (next = choose_unit(&e); next; next = choose_unit(&e)) {
         if (next->pole < 0.0)
             eliminate_pole(next, &e, row);
@@ -456,10 +441,7 @@ static ritz_status find_factor(const energy_model *model, const ritz_dense *F,
     *out = e.Z;
     out->ncol = e.rank;
     e.Z = (ritz_dense){0};
-done:
-    free(row);
-    elimination_free(&e);
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows (q_1, q_1', ...) of t Z and of sign Z. */
@@ -484,28 +466,20 @@ static ritz_status spread_rows(const ritz_dense *Z, const double *t,
 ritz_status ritz_modal_factors(const ritz_modal *modal, ritz_dense *Zc,
                                ritz_dense *Zo)
 {
-    ritz_status status = RITZ_OK;
-    energy_model model = {0};
-    ritz_dense L = {0}, R = {0}, C = {0}, O = {0};
-    double *inverse = NULL;
+    [[gnu::cleanup(energy_free)]] energy_model model = {0};
+    RITZ_OWN(ritz_dense) L = {0}, R = {0}, C = {0}, O = {0};
+    RITZ_OWN_ARRAY double *inverse = NULL;
 
-    RITZ_TRY(energy_new(modal, &model));
-    RITZ_NEW(inverse, modal->count);
+    RITZ_CHECK(energy_new(modal, &model));
+    RITZ_CHECK_NEW(inverse, modal->count);
     for (int64_t k = 0; k < modal->count; k++)
         inverse[k] = 1.0 / modal->omega[k];
-    RITZ_TRY(find_factor(&model, &model.F[0], &L));
-    RITZ_TRY(find_factor(&model, &model.F[1], &R));
-    RITZ_TRY(spread_rows(&L, inverse, 1.0, &C));
-    RITZ_TRY(spread_rows(&R, modal->omega, -1.0, &O));
+    RITZ_CHECK(find_factor(&model, &model.F[0], &L));
+    RITZ_CHECK(find_factor(&model, &model.F[1], &R));
+    RITZ_CHECK(spread_rows(&L, inverse, 1.0, &C));
+    RITZ_CHECK(spread_rows(&R, modal->omega, -1.0, &O));
     *Zc = C;
     *Zo = O;
     C = O = (ritz_dense){0};
-done:
-    free(inverse);
-    energy_free(&model);
-    ritz_dense_free(&L);
-    ritz_dense_free(&R);
-    ritz_dense_free(&C);
-    ritz_dense_free(&O);
-    return status;
+    return RITZ_OK;
 }

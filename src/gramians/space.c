@@ -35,53 +35,43 @@ static ritz_status check_space(const ritz_state_space *model)
 static ritz_status observed_by(const ritz_state_space *model,
                                const ritz_dense *X, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Ct = {0};
+    RITZ_OWN(ritz_dense) Ct = {0};
 
-    RITZ_TRY(ritz_general_transpose(&model->C, &Ct));
+    RITZ_CHECK(ritz_general_transpose(&model->C, &Ct));
     for (int64_t i = 0; i < model->num_outputs; i++)
         if (!isnan(model->limit[i]))
             for (int64_t k = 0; k < Ct.nrow; k++)
                 ritz_dense_col(&Ct, i)[k] /= model->limit[i];
-    RITZ_TRY(ritz_dense_mul_tn(X, &Ct, out));
-done:
-    ritz_dense_free(&Ct);
-    return status;
+    return ritz_dense_mul_tn(X, &Ct, out);
 }
 
 /* Z_c and Z_o of the stable part. */
 static ritz_status factor_stable(const ritz_state_space *model,
                                  const ritz_split *split, ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense B = {0}, C = {0}, F = {0};
+    RITZ_OWN(ritz_dense) B = {0}, C = {0}, F = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(&split->Y, &model->B, &B));
-    RITZ_TRY(observed_by(model, &split->X, &C));
-    RITZ_TRY(ritz_general_hammarling(&split->S, &split->P, false, &B, &F));
-    RITZ_TRY(ritz_dense_mul(&split->X, &F, &out->Zc));
+    RITZ_CHECK(ritz_dense_mul_tn(&split->Y, &model->B, &B));
+    RITZ_CHECK(observed_by(model, &split->X, &C));
+    RITZ_CHECK(ritz_general_hammarling(&split->S, &split->P, false, &B, &F));
+    RITZ_CHECK(ritz_dense_mul(&split->X, &F, &out->Zc));
     ritz_dense_free(&F);
-    RITZ_TRY(ritz_general_hammarling(&split->S, &split->P, true, &C, &F));
-    RITZ_TRY(ritz_dense_mul(&split->Y, &F, &out->Zo));
+    RITZ_CHECK(ritz_general_hammarling(&split->S, &split->P, true, &C, &F));
+    RITZ_CHECK(ritz_dense_mul(&split->Y, &F, &out->Zo));
     if (model->E.val)
-        RITZ_TRY(ritz_dense_mul(&model->E, &out->Zc, &out->EZc));
-done:
-    ritz_dense_free(&B);
-    ritz_dense_free(&C);
-    ritz_dense_free(&F);
-    return status;
+        RITZ_CHECK(ritz_dense_mul(&model->E, &out->Zc, &out->EZc));
+    return RITZ_OK;
 }
 
 ritz_status ritz_gramians_of_space(const ritz_state_space *model,
                                    ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_split split = {0};
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_split) split = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_TRY(check_space(model));
-    RITZ_TRY(ritz_split_new(&model->A, &model->E, &split));
-    RITZ_TRY(factor_stable(model, &split, &gramians));
+    RITZ_CHECK(check_space(model));
+    RITZ_CHECK(ritz_split_new(&model->A, &model->E, &split));
+    RITZ_CHECK(factor_stable(model, &split, &gramians));
     gramians.T = split.T;
     gramians.W = split.W;
     split.T = (ritz_dense){0};
@@ -91,8 +81,5 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
     snprintf(gramians.damping, sizeof gramians.damping, "%s", model->damping);
     *out = gramians;
     gramians = (ritz_gramians){0};
-done:
-    ritz_split_free(&split);
-    ritz_gramians_free(&gramians);
-    return status;
+    return RITZ_OK;
 }

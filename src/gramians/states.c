@@ -60,26 +60,22 @@ ritz_status ritz_states_new(const ritz_component *component,
                             const ritz_damping *damping, double alpha,
                             ritz_states *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_states states = {.alpha = alpha};
-    ritz_structure structure = {0};
+    RITZ_OWN(ritz_states) states = {.alpha = alpha};
+    RITZ_OWN(ritz_structure) structure = {0};
 
-    RITZ_TRY(ritz_structure_of_component(component, &structure));
-    RITZ_TRY(ritz_modal_model_new(&structure, &component->io, damping,
-                                  &states.modes));
+    RITZ_CHECK(ritz_structure_of_component(component, &structure));
+    RITZ_CHECK(ritz_modal_model_new(&structure, &component->io, damping,
+                                    &states.modes));
     ritz_damping_print(damping, states.damping);
     states.num_apart = count_apart(&states.modes);
-    RITZ_TRY(choose_scale(&states));
-    RITZ_TRY(fill_states(&states));
-    RITZ_FAIL_IF(states.count == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no flexible states: its rigid modes are "
-                 "all there is");
+    RITZ_CHECK(choose_scale(&states));
+    RITZ_CHECK(fill_states(&states));
+    RITZ_REFUSE_IF(states.count == 0, RITZ_ERR_ARGUMENT,
+                   "the component has no flexible states: its rigid modes are "
+                   "all there is");
     *out = states;
     states = (ritz_states){0};
-done:
-    ritz_states_free(&states);
-    ritz_structure_free(&structure);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_states_operator(const ritz_dense *A, bool inverse,
@@ -110,23 +106,19 @@ static ritz_status lift_states(const ritz_dense *A, const double *s,
                                const ritz_dense *Z, int64_t row, int64_t first,
                                int64_t column, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, lifted = {0};
+    RITZ_OWN(ritz_dense) part = {0}, lifted = {0};
 
-    RITZ_TRY(ritz_dense_new(A->ncol, Z->ncol, &part));
+    RITZ_CHECK(ritz_dense_new(A->ncol, Z->ncol, &part));
     for (int64_t j = 0; j < Z->ncol; j++)
         for (int64_t i = 0; i < A->ncol; i++)
             ritz_dense_col(&part, j)[i] =
                 (s ? s[i] : 1.0) * ritz_dense_col(Z, j)[row + i];
-    RITZ_TRY(ritz_dense_mul(A, &part, &lifted));
+    RITZ_CHECK(ritz_dense_mul(A, &part, &lifted));
     for (int64_t j = 0; j < Z->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(out, column + j)[first + i] =
                 ritz_dense_col(&lifted, j)[i];
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&lifted);
-    return status;
+    return RITZ_OK;
 }
 
 /* T = [Phi 0; 0 Phi], W = [M Phi 0; 0 Phi] of rigid modes. */
@@ -154,53 +146,44 @@ static void put_rigid(const ritz_states *states, ritz_basis *basis)
 static ritz_status put_states(const ritz_states *states, const ritz_dense *T,
                               const ritz_dense *W, ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal_model *modes = &states->modes;
     int64_t n = modes->num_dofs;
     int64_t r = states->num_apart;
     int64_t m = states->count / 2;
-    ritz_dense Phi = {0}, MPhi = {0};
-    double *inverse = NULL;
+    RITZ_OWN(ritz_dense) Phi = {0}, MPhi = {0};
+    RITZ_OWN_ARRAY double *inverse = NULL;
 
-    RITZ_NEW(inverse, m);
+    RITZ_CHECK_NEW(inverse, m);
     for (int64_t k = 0; k < m; k++)
         inverse[k] = 1.0 / states->scale[k];
-    RITZ_TRY(ritz_dense_columns(&modes->Phi, r, m, &Phi));
-    RITZ_TRY(ritz_dense_columns(&modes->MPhi, r, m, &MPhi));
-    RITZ_TRY(lift_states(&Phi, inverse, T, 0, 0, 2 * r, &basis->T));
-    RITZ_TRY(lift_states(&Phi, NULL, T, m, n, 2 * r, &basis->T));
-    RITZ_TRY(lift_states(&MPhi, states->scale, W, 0, 0, 2 * r, &basis->W));
-    RITZ_TRY(lift_states(&Phi, NULL, W, m, n, 2 * r, &basis->W));
-done:
-    ritz_dense_free(&Phi);
-    ritz_dense_free(&MPhi);
-    free(inverse);
-    return status;
+    RITZ_CHECK(ritz_dense_columns(&modes->Phi, r, m, &Phi));
+    RITZ_CHECK(ritz_dense_columns(&modes->MPhi, r, m, &MPhi));
+    RITZ_CHECK(lift_states(&Phi, inverse, T, 0, 0, 2 * r, &basis->T));
+    RITZ_CHECK(lift_states(&Phi, NULL, T, m, n, 2 * r, &basis->T));
+    RITZ_CHECK(lift_states(&MPhi, states->scale, W, 0, 0, 2 * r, &basis->W));
+    return lift_states(&Phi, NULL, W, m, n, 2 * r, &basis->W);
 }
 
 ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
                               const ritz_dense *W, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = states->modes.num_dofs;
     int64_t r = states->num_apart;
     int64_t k = 2 * r + T->ncol;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_basis_new(2 * n, k, &basis));
-    RITZ_TRY(ritz_dense_new(2 * n, k, &basis.W));
+    RITZ_CHECK(ritz_basis_new(2 * n, k, &basis));
+    RITZ_CHECK(ritz_dense_new(2 * n, k, &basis.W));
     basis.states = true;
     memcpy(basis.damping, states->damping, sizeof basis.damping);
     for (int64_t j = 2 * r; j < k; j++)
         basis.columns.kind[j] = RITZ_COLUMN_STATE;
     put_rigid(states, &basis);
-    RITZ_TRY(put_states(states, T, W, &basis));
+    RITZ_CHECK(put_states(states, T, W, &basis));
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "dense LAPACK");
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_states_free(ritz_states *states)

@@ -24,17 +24,16 @@
 static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
                                 int64_t n, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *A = &part->matrix.A;
     int64_t nnz = A->colptr[A->ncol];
     int64_t kept = 0;
-    int64_t *row = NULL;
-    int64_t *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL;
+    RITZ_OWN_ARRAY int64_t *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
 
-    RITZ_NEW(row, nnz);
-    RITZ_NEW(col, nnz);
-    RITZ_NEW(val, nnz);
+    RITZ_CHECK_NEW(row, nnz);
+    RITZ_CHECK_NEW(col, nnz);
+    RITZ_CHECK_NEW(val, nnz);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             row[kept] = stays[part->place[A->rowind[p]]];
@@ -42,12 +41,7 @@ static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
             val[kept] = A->val[p];
             kept += A->val[p] != 0.0 && row[kept] >= 0 && col[kept] >= 0;
         }
-    RITZ_TRY(ritz_sparse_from_triplets(n, n, kept, row, col, val, out));
-done:
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(n, n, kept, row, col, val, out);
 }
 
 /* Rows with stiffness, with mass, with other entries, and fixed ones. */
@@ -117,14 +111,13 @@ static ritz_status sort_rows(const presence *at, const ritz_names *names,
 static ritz_status keep_grids(const ritz_grids *all, const ritz_roster *roster,
                               ritz_grids *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_grids grids = {.num_frames = all->num_frames};
+    RITZ_OWN(ritz_grids) grids = {.num_frames = all->num_frames};
     int64_t count = 0;
 
-    RITZ_NEW(grids.id, all->count);
-    RITZ_NEW(grids.position, 3 * all->count);
-    RITZ_NEW(grids.frame, all->count);
-    RITZ_NEW(grids.axes, 9 * all->num_frames);
+    RITZ_CHECK_NEW(grids.id, all->count);
+    RITZ_CHECK_NEW(grids.position, 3 * all->count);
+    RITZ_CHECK_NEW(grids.frame, all->count);
+    RITZ_CHECK_NEW(grids.axes, 9 * all->num_frames);
     if (all->num_frames > 0)
         memcpy(grids.axes, all->axes,
                9 * (size_t)all->num_frames * sizeof *all->axes);
@@ -142,33 +135,28 @@ static ritz_status keep_grids(const ritz_grids *all, const ritz_roster *roster,
     grids.count = count;
     *out = grids;
     grids = (ritz_grids){0};
-done:
-    ritz_grids_free(&grids);
-    return status;
+    return RITZ_OK;
 }
 
 /* One grid and no deck: wherever it is, that is the origin. */
 static ritz_status place_alone(const ritz_names *names, ritz_grids *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_grids grids = {.count = 1, .num_frames = 1};
+    RITZ_OWN(ritz_grids) grids = {.count = 1, .num_frames = 1};
 
     for (int64_t k = 0; k < names->count; k++)
         if (names->dof[k].grid != names->dof[0].grid ||
             names->dof[k].component == 0)
-            goto done;
-    RITZ_NEW(grids.id, 1);
-    RITZ_NEW(grids.position, 3);
-    RITZ_NEW(grids.frame, 1);
-    RITZ_NEW(grids.axes, 9);
+            return RITZ_OK;
+    RITZ_CHECK_NEW(grids.id, 1);
+    RITZ_CHECK_NEW(grids.position, 3);
+    RITZ_CHECK_NEW(grids.frame, 1);
+    RITZ_CHECK_NEW(grids.axes, 9);
     grids.id[0] = names->dof[0].grid;
     for (int64_t i = 0; i < 3; i++)
         grids.axes[4 * i] = 1.0;
     *out = grids;
     grids = (ritz_grids){0};
-done:
-    ritz_grids_free(&grids);
-    return status;
+    return RITZ_OK;
 }
 
 /* Positions and frames of the grids that are named; the origin for a single
@@ -177,16 +165,12 @@ static ritz_status ritz_import_place(const ritz_deck *deck,
                                      const ritz_names *names,
                                      ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
-    ritz_roster roster = {0};
+    RITZ_OWN(ritz_roster) roster = {0};
 
     if (deck->grids.count == 0)
         return place_alone(names, &component->grids);
-    RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
-    RITZ_TRY(keep_grids(&deck->grids, &roster, &component->grids));
-done:
-    ritz_roster_free(&roster);
-    return status;
+    RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
+    return keep_grids(&deck->grids, &roster, &component->grids);
 }
 
 /* Put the parts into the component but for its grids, without rows that are
@@ -257,21 +241,18 @@ static void add_part(const char *spec, const char *what, ritz_sparse *becomes,
 /* Read the matrices of all parts: each file once. */
 static ritz_status read_parts(ritz_parts *parts, ritz_file_sums *sums)
 {
-    ritz_status status = RITZ_OK;
-    ritz_wanted *wanted = NULL;
+    RITZ_OWN_ARRAY ritz_wanted *wanted = NULL;
 
-    RITZ_NEW(wanted, parts->count);
+    RITZ_CHECK_NEW(wanted, parts->count);
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_part *part = &parts->part[k];
 
         wanted[k] = (ritz_wanted){part->spec, part->what, &part->matrix};
     }
-    RITZ_TRY(ritz_foreign_collect(parts->count, wanted, sums));
+    RITZ_CHECK(ritz_foreign_collect(parts->count, wanted, sums));
     for (int64_t k = 0; k < parts->count; k++)
-        RITZ_TRY_IN(parts->part[k].what, check_matrix(&parts->part[k]));
-done:
-    free(wanted);
-    return status;
+        RITZ_CHECK_IN(parts->part[k].what, check_matrix(&parts->part[k]));
+    return RITZ_OK;
 }
 
 /* "F@LOAD": geometric stiffness of a unit load. */
@@ -348,16 +329,12 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 static ritz_status place_grids(const ritz_deck *deck, const ritz_names *kept,
                                ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
     const ritz_recovery *recovery = &component->recovery;
-    ritz_names all = {.count = kept->count + recovery->count};
+    RITZ_OWN(ritz_names) all = {.count = kept->count + recovery->count};
 
-    RITZ_TRY(ritz_recovery_extend(recovery, kept->count, kept->dof, NULL,
-                                  &all.dof, NULL));
-    RITZ_TRY(ritz_import_place(deck, &all, component));
-done:
-    ritz_names_free(&all);
-    return status;
+    RITZ_CHECK(ritz_recovery_extend(recovery, kept->count, kept->dof, NULL,
+                                    &all.dof, NULL));
+    return ritz_import_place(deck, &all, component);
 }
 
 /* Rows, with the dofs eliminated that constraints make depend on others. */
@@ -366,20 +343,15 @@ static ritz_status settle_rows(const ritz_import_request *request,
                                ritz_names *names, ritz_component *component,
                                ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_names kept = {0};
-    ritz_tying tying = {0};
+    RITZ_OWN(ritz_names) kept = {0};
+    RITZ_OWN(ritz_tying) tying = {0};
 
-    RITZ_TRY(ritz_tying_new(deck, parts, names, component, report, &tying));
-    RITZ_TRY(ritz_tying_ports(request, deck, &tying, report));
-    RITZ_TRY(ritz_tying_apply(&tying, parts, &kept, report));
-    RITZ_TRY(ritz_parts_settle(parts, deck, &kept, component, report));
-    RITZ_TRY(ritz_tying_recover(&tying, component, report));
-    RITZ_TRY(place_grids(deck, &kept, component));
-done:
-    ritz_names_free(&kept);
-    ritz_tying_free(&tying);
-    return status;
+    RITZ_CHECK(ritz_tying_new(deck, parts, names, component, report, &tying));
+    RITZ_CHECK(ritz_tying_ports(request, deck, &tying, report));
+    RITZ_CHECK(ritz_tying_apply(&tying, parts, &kept, report));
+    RITZ_CHECK(ritz_parts_settle(parts, deck, &kept, component, report));
+    RITZ_CHECK(ritz_tying_recover(&tying, component, report));
+    return place_grids(deck, &kept, component);
 }
 
 static bool has_ties(const ritz_import_request *request, const ritz_deck *deck)
@@ -407,27 +379,25 @@ static ritz_status make_component(const ritz_import_request *request,
                                   ritz_component *component,
                                   ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_names names = {0};
+    RITZ_OWN(ritz_names) names = {0};
 
     if (request->bulk)
-        RITZ_TRY(ritz_deck_read(request->bulk, deck));
-    RITZ_FAIL_IF(deck->imposed, RITZ_ERR_FORMAT, "%s", deck->imposed);
-    RITZ_TRY(ritz_names_find(request, deck, parts, &names));
+        RITZ_CHECK(ritz_deck_read(request->bulk, deck));
+    RITZ_REFUSE_IF(deck->imposed, RITZ_ERR_FORMAT, "%s", deck->imposed);
+    RITZ_CHECK(ritz_names_find(request, deck, parts, &names));
     if (has_ties(request, deck)) {
-        RITZ_TRY(settle_rows(request, parts, deck, &names, component, report));
+        RITZ_CHECK(
+            settle_rows(request, parts, deck, &names, component, report));
     } else {
-        RITZ_TRY(ritz_parts_settle(parts, deck, &names, component, report));
-        RITZ_TRY(place_grids(deck, &names, component));
+        RITZ_CHECK(ritz_parts_settle(parts, deck, &names, component, report));
+        RITZ_CHECK(place_grids(deck, &names, component));
     }
     take_elements(deck, component, report);
     component->digits = source_digits(parts);
     if (request->units)
-        RITZ_TRY_IN("--units",
-                    ritz_import_units(request->units, component->units));
-done:
-    ritz_names_free(&names);
-    return status;
+        RITZ_CHECK_IN("--units",
+                      ritz_import_units(request->units, component->units));
+    return RITZ_OK;
 }
 
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,

@@ -20,24 +20,21 @@ static int compare_places(const void *left, const void *right)
 ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
                             ritz_roster *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_roster roster = {.count = count};
+    RITZ_OWN(ritz_roster) roster = {.count = count};
     char name[RITZ_DOF_NAME_SIZE];
 
-    RITZ_NEW(roster.place, count);
+    RITZ_CHECK_NEW(roster.place, count);
     for (int64_t k = 0; k < count; k++)
         roster.place[k] = (ritz_place){dof[k], k};
     qsort(roster.place, (size_t)count, sizeof *roster.place, compare_places);
     for (int64_t k = 1; k < count; k++)
-        RITZ_FAIL_IF(compare_places(&roster.place[k - 1], &roster.place[k]) ==
-                         0,
-                     RITZ_ERR_FORMAT, "%s has two rows",
-                     ritz_dof_name(roster.place[k].dof, name));
+        RITZ_REFUSE_IF(compare_places(&roster.place[k - 1], &roster.place[k]) ==
+                           0,
+                       RITZ_ERR_FORMAT, "%s has two rows",
+                       ritz_dof_name(roster.place[k].dof, name));
     *out = roster;
     roster = (ritz_roster){0};
-done:
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof)
@@ -154,23 +151,20 @@ static void leave_out(int64_t count, const ritz_dof *sorted, ritz_names *names)
 static ritz_status list_less(const ritz_deck *deck, bool fixed, bool dependents,
                              ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dof *tied = NULL;
+    RITZ_OWN_ARRAY ritz_dof *tied = NULL;
 
-    RITZ_TRY(list_all(deck, out));
+    RITZ_CHECK(list_all(deck, out));
     out->whole = !dependents;
     if (fixed)
         leave_out(deck->num_fixed, deck->fixed, out);
     if (dependents) {
-        RITZ_TRY(list_dependents(deck, &tied));
+        RITZ_CHECK(list_dependents(deck, &tied));
         leave_out(deck->equations.count, tied, out);
     }
     snprintf(out->map, sizeof out->map, "grids less %s%s%s",
              fixed ? "SPCs" : "", fixed && dependents ? " and " : "",
              dependents ? "dependents" : "");
-done:
-    free(tied);
-    return status;
+    return RITZ_OK;
 }
 
 /* The union of the sets that the deck states; empty if it states none. */
@@ -315,13 +309,12 @@ static ritz_status take_line(const char *path, int64_t number, char *line,
 static ritz_status check_distinct(const char *path, const ritz_names *names,
                                   const int64_t *line)
 {
-    ritz_status status = RITZ_OK;
-    ritz_place *sorted = NULL;
+    RITZ_OWN_ARRAY ritz_place *sorted = NULL;
     int64_t again = -1;
     int64_t first = -1;
     char name[RITZ_DOF_NAME_SIZE];
 
-    RITZ_NEW(sorted, names->count);
+    RITZ_CHECK_NEW(sorted, names->count);
     for (int64_t k = 0; k < names->count; k++)
         sorted[k] = (ritz_place){names->dof[k], line[k]};
     qsort(sorted, (size_t)names->count, sizeof *sorted, ritz_dof_compare);
@@ -333,49 +326,42 @@ static ritz_status check_distinct(const char *path, const ritz_names *names,
             again = sorted[swap ? k - 1 : k].row;
             ritz_dof_name(sorted[k].dof, name);
         }
-    RITZ_FAIL_IF(again >= 0, RITZ_ERR_FORMAT,
-                 "'%s', line %" PRId64 ": '%s' was named at line %" PRId64
-                 " already",
-                 path, again, name, first);
-done:
-    free(sorted);
-    return status;
+    RITZ_REFUSE_IF(again >= 0, RITZ_ERR_FORMAT,
+                   "'%s', line %" PRId64 ": '%s' was named at line %" PRId64
+                   " already",
+                   path, again, name, first);
+    return RITZ_OK;
 }
 
 ritz_status ritz_names_of_file(const char *path, ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_names names = {0};
-    char *text = NULL;
-    int64_t *line = NULL;
+    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN_ARRAY char *text = NULL;
+    RITZ_OWN_ARRAY int64_t *line = NULL;
     int64_t lines = 1;
     int64_t number = 0;
 
-    RITZ_TRY(ritz_text_read(path, &text));
+    RITZ_CHECK(ritz_text_read(path, &text));
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
-    RITZ_NEW(names.dof, lines);
-    RITZ_NEW(line, lines);
+    RITZ_CHECK_NEW(names.dof, lines);
+    RITZ_CHECK_NEW(line, lines);
     for (char *at = text; at;) {
         char *end = strchr(at, '\n');
         int64_t before = names.count;
 
         if (end)
             *end = '\0';
-        RITZ_TRY(take_line(path, ++number, at, &names));
+        RITZ_CHECK(take_line(path, ++number, at, &names));
         if (names.count > before)
             line[before] = number;
         at = end ? end + 1 : NULL;
     }
-    RITZ_TRY(check_distinct(path, &names, line));
+    RITZ_CHECK(check_distinct(path, &names, line));
     snprintf(names.map, sizeof names.map, "--dofs");
     *out = names;
     names = (ritz_names){0};
-done:
-    free(text);
-    free(line);
-    ritz_names_free(&names);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_names_free(ritz_names *names)
@@ -506,29 +492,25 @@ ritz_status ritz_names_find(const ritz_import_request *request,
                             const ritz_deck *deck, ritz_parts *parts,
                             ritz_names *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_names names = {0};
-    ritz_roster roster = {0};
+    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN(ritz_roster) roster = {0};
     const ritz_part *unnamed = first_unnamed(parts);
 
     for (int64_t k = 0; unnamed && k < parts->count; k++)
         if (!parts->part[k].matrix.row)
-            RITZ_TRY(check_size(&parts->part[k], unnamed->matrix.A.nrow,
-                                unnamed->spec));
-    RITZ_TRY(choose_names(request, deck, parts, &names));
-    RITZ_TRY(ritz_roster_new(names.count, names.dof, &roster));
+            RITZ_CHECK(check_size(&parts->part[k], unnamed->matrix.A.nrow,
+                                  unnamed->spec));
+    RITZ_CHECK(choose_names(request, deck, parts, &names));
+    RITZ_CHECK(ritz_roster_new(names.count, names.dof, &roster));
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_part *part = &parts->part[k];
 
-        RITZ_TRY(place_rows(part, &names, &roster,
-                            request->dofs ? NULL : part->matrix.row));
+        RITZ_CHECK(place_rows(part, &names, &roster,
+                              request->dofs ? NULL : part->matrix.row));
     }
     *out = names;
     names = (ritz_names){0};
-done:
-    ritz_names_free(&names);
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows of the component-to-be where a matrix has an entry that is not zero. */

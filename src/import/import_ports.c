@@ -164,16 +164,12 @@ static void add_position(int64_t grid, draft *it)
 /* Axes of its own need all three translations or rotations, or none. */
 static ritz_status check_turn(int64_t first, const draft *it)
 {
-    ritz_status status = RITZ_OK;
     ritz_port alone = {
         .dofs = {it->port.dofs.count - first, it->port.dofs.at + first}};
-    ritz_dense turn = {0};
+    RITZ_OWN(ritz_dense) turn = {0};
 
     memcpy(alone.name, it->port.name, sizeof alone.name);
-    RITZ_TRY(ritz_port_turn(&it->extended->view, &alone, &turn, NULL));
-done:
-    ritz_dense_free(&turn);
-    return status;
+    return ritz_port_turn(&it->extended->view, &alone, &turn, NULL);
 }
 
 static ritz_status add_grid(int64_t grid, draft *it)
@@ -668,14 +664,11 @@ ritz_status ritz_import_attach(const ritz_import_request *request,
                                const ritz_import_report *report,
                                ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
-    ritz_extended extended = {0};
+    RITZ_OWN(ritz_extended) extended = {0};
 
-    RITZ_TRY(extend_rows(component, equations, &extended));
-    RITZ_TRY_IN("port", add_ports(request, report, &extended, component));
-    RITZ_TRY(add_io(request, &extended, component));
-    RITZ_TRY_IN("damper", add_dampers(request, &extended, component));
-done:
-    ritz_extended_free(&extended);
-    return status;
+    RITZ_CHECK(extend_rows(component, equations, &extended));
+    RITZ_CHECK_IN("port", add_ports(request, report, &extended, component));
+    RITZ_CHECK(add_io(request, &extended, component));
+    RITZ_CHECK_IN("damper", add_dampers(request, &extended, component));
+    return RITZ_OK;
 }

@@ -94,17 +94,13 @@ static ritz_status list_specs(const char *text, char *specs, parts *out,
 static ritz_status take_listed(const char *text, ritz_file_sums *sums,
                                parts *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_wanted wanted[NUM_PARTS];
-    char *specs = NULL;
+    RITZ_OWN_ARRAY char *specs = NULL;
     int count = 0;
 
-    RITZ_NEW(specs, (int64_t)strlen(text) + 1);
-    RITZ_TRY(list_specs(text, specs, out, &count, wanted));
-    RITZ_TRY(ritz_foreign_collect(count, wanted, sums));
-done:
-    free(specs);
-    return status;
+    RITZ_CHECK_NEW(specs, (int64_t)strlen(text) + 1);
+    RITZ_CHECK(list_specs(text, specs, out, &count, wanted));
+    return ritz_foreign_collect(count, wanted, sums);
 }
 
 static char fold_case(char c)
@@ -339,44 +335,37 @@ static ritz_status fill_matrices(const parts *p, ritz_state_space *model)
 static ritz_status make_space(const ritz_import_space_request *request,
                               const parts *p, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = p->matrix[PART_A].A.nrow;
-    ritz_io io = {0};
+    RITZ_OWN(ritz_io) io = {0};
 
-    RITZ_TRY(ritz_io_new(0, p->matrix[PART_B].A.ncol, p->matrix[PART_C].A.nrow,
-                         &io));
-    RITZ_TRY_IN("--input-names",
-                name_ends(request->inputs, 'u', io.num_inputs, io.input, NULL));
-    RITZ_TRY_IN(
+    RITZ_CHECK(ritz_io_new(0, p->matrix[PART_B].A.ncol,
+                           p->matrix[PART_C].A.nrow, &io));
+    RITZ_CHECK_IN("--input-names", name_ends(request->inputs, 'u',
+                                             io.num_inputs, io.input, NULL));
+    RITZ_CHECK_IN(
         "--output-names",
         name_ends(request->outputs, 'y', io.num_outputs, io.output, io.limit));
-    RITZ_TRY(ritz_state_space_new(n, &io, out));
-    RITZ_TRY(fill_matrices(p, out));
-    RITZ_TRY(ritz_state_space_check(out));
+    RITZ_CHECK(ritz_state_space_new(n, &io, out));
+    RITZ_CHECK(fill_matrices(p, out));
+    RITZ_CHECK(ritz_state_space_check(out));
     if (request->units)
-        RITZ_TRY_IN("--units", ritz_import_units(request->units, out->units));
-done:
-    ritz_io_free(&io);
-    return status;
+        RITZ_CHECK_IN("--units", ritz_import_units(request->units, out->units));
+    return RITZ_OK;
 }
 
 ritz_status ritz_import_state_space(const ritz_import_space_request *request,
                                     ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space model = {0};
-    parts p = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(parts) p = {0};
 
     if (letter_of(request->matrices) >= 0)
-        RITZ_TRY(take_listed(request->matrices, request->sums, &p));
+        RITZ_CHECK(take_listed(request->matrices, request->sums, &p));
     else
-        RITZ_TRY(take_file(request->matrices, request->sums, &p));
-    RITZ_TRY(check_parts(&p));
-    RITZ_TRY(make_space(request, &p, &model));
+        RITZ_CHECK(take_file(request->matrices, request->sums, &p));
+    RITZ_CHECK(check_parts(&p));
+    RITZ_CHECK(make_space(request, &p, &model));
     *out = model;
     model = (ritz_state_space){0};
-done:
-    parts_free(&p);
-    ritz_state_space_free(&model);
-    return status;
+    return RITZ_OK;
 }

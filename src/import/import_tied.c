@@ -121,30 +121,25 @@ static void spread_average(const ritz_tied *it, const ritz_sparse *turned,
 static ritz_status substitute_dependents(const ritz_tied *it,
                                          const ritz_sparse *turned, reach *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_tying *tying = it->tying;
     int64_t count = it->average.A.ncol;
-    int64_t *row = NULL, *place = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL, *place = NULL;
     int64_t found = 0;
-    ritz_roster roster = {0};
+    RITZ_OWN(ritz_roster) roster = {0};
 
-    RITZ_NEW(row, count);
-    RITZ_NEW(place, tying->by.kept.count);
-    RITZ_TRY(ritz_roster_new(tying->names.count, tying->names.dof, &roster));
+    RITZ_CHECK_NEW(row, count);
+    RITZ_CHECK_NEW(place, tying->by.kept.count);
+    RITZ_CHECK(ritz_roster_new(tying->names.count, tying->names.dof, &roster));
     for (int64_t i = 0; i < count; i++)
         row[i] = ritz_roster_row(&roster, it->average.dof[i]);
     for (int64_t j = 0; j < tying->by.kept.count; j++)
         place[j] = -1;
     out->num_free = place_columns(it, turned, row, false, 0, place);
     found = place_columns(it, turned, row, true, out->num_free, place);
-    RITZ_NEW(out->dof, found);
-    RITZ_TRY(ritz_dense_new(SIX, found, &out->A));
+    RITZ_CHECK_NEW(out->dof, found);
+    RITZ_CHECK(ritz_dense_new(SIX, found, &out->A));
     spread_average(it, turned, row, place, out);
-done:
-    free(row);
-    free(place);
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 /* Motions that the first columns of A leave open, by its triangular factor. */
@@ -294,11 +289,10 @@ static bool is_known(const ritz_tying *tying, const ritz_sparse *turned,
 static ritz_status find_present(const ritz_tying *tying,
                                 const ritz_sparse *turned, bool *present)
 {
-    ritz_status status = RITZ_OK;
     const ritz_elimination *by = &tying->by;
-    bool *gone = NULL;
+    RITZ_OWN_ARRAY bool *gone = NULL;
 
-    RITZ_NEW(gone, tying->names.count);
+    RITZ_CHECK_NEW(gone, tying->names.count);
     for (int64_t k = 0; k < by->gone.count; k++)
         gone[by->gone.at[k]] = true;
     for (int64_t k = 0; k < tying->names.count; k++) {
@@ -309,34 +303,28 @@ static ritz_status find_present(const ritz_tying *tying,
         for (int64_t p = turned->colptr[k]; p < turned->colptr[k + 1]; p++)
             present[by->kept.at[turned->rowind[p]]] = true;
     }
-done:
-    free(gone);
-    return status;
+    return RITZ_OK;
 }
 
 /* These dofs as a component, on which ports can be defined. */
 static ritz_status list_present(const ritz_tying *tying,
                                 const ritz_sparse *turned, ritz_extended *out)
 {
-    ritz_status status = RITZ_OK;
-    bool *present = NULL;
-    ritz_extended new = {0};
+    RITZ_OWN_ARRAY bool *present = NULL;
+    RITZ_OWN(ritz_extended) new = {0};
 
     new.view.grids = tying->deck->grids;
-    RITZ_NEW(present, tying->names.count);
-    RITZ_NEW(new.view.dof, tying->names.count);
-    RITZ_TRY(find_present(tying, turned, present));
+    RITZ_CHECK_NEW(present, tying->names.count);
+    RITZ_CHECK_NEW(new.view.dof, tying->names.count);
+    RITZ_CHECK(find_present(tying, turned, present));
     for (int64_t k = 0; k < tying->names.count; k++)
         if (present[k])
             new.view.dof[new.view.num_dofs++] = tying->names.dof[k];
     new.num_rows = new.view.num_dofs;
-    RITZ_TRY(ritz_roster_new(new.num_rows, new.view.dof, &new.roster));
+    RITZ_CHECK(ritz_roster_new(new.num_rows, new.view.dof, &new.roster));
     *out = new;
     new = (ritz_extended){0};
-done:
-    free(present);
-    ritz_extended_free(&new);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
@@ -382,20 +370,19 @@ static int64_t largest_id(const ritz_deck *deck, const ritz_names *names)
 /* Its id is above all others, so that grids still ascend. */
 static ritz_status add_grid(ritz_tied *it)
 {
-    ritz_status status = RITZ_OK;
     ritz_grids *grids = &it->deck->grids;
     int64_t n = grids->count;
-    int64_t *id = NULL, *frame = NULL;
-    double *position = NULL;
+    RITZ_OWN_ARRAY int64_t *id = NULL, *frame = NULL;
+    RITZ_OWN_ARRAY double *position = NULL;
     ritz_dof dof[SIX];
 
     it->id = largest_id(it->deck, &it->tying->names);
-    RITZ_FAIL_IF(it->id >= INT64_MAX - 1, RITZ_ERR_ARGUMENT,
-                 "no id is left for its grid");
+    RITZ_REFUSE_IF(it->id >= INT64_MAX - 1, RITZ_ERR_ARGUMENT,
+                   "no id is left for its grid");
     it->id++;
-    RITZ_NEW(id, n + 1);
-    RITZ_NEW(frame, n + 1);
-    RITZ_NEW(position, 3 * (n + 1));
+    RITZ_CHECK_NEW(id, n + 1);
+    RITZ_CHECK_NEW(frame, n + 1);
+    RITZ_CHECK_NEW(position, 3 * (n + 1));
     memcpy(id, grids->id, (size_t)n * sizeof *id);
     memcpy(frame, grids->frame, (size_t)n * sizeof *frame);
     memcpy(position, grids->position, 3 * (size_t)n * sizeof *position);
@@ -403,7 +390,7 @@ static ritz_status add_grid(ritz_tied *it)
     memcpy(position + 3 * n, it->port.origin, sizeof it->port.origin);
     for (int64_t c = 1; c <= SIX; c++)
         dof[c - 1] = (ritz_dof){it->id, c};
-    RITZ_TRY(ritz_tying_append(SIX, dof, it->tying));
+    RITZ_CHECK(ritz_tying_append(SIX, dof, it->tying));
     free(grids->id);
     free(grids->frame);
     free(grids->position);
@@ -413,26 +400,18 @@ static ritz_status add_grid(ritz_tied *it)
     grids->count = n + 1;
     id = frame = NULL;
     position = NULL;
-done:
-    free(id);
-    free(frame);
-    free(position);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status tie_rigid(ritz_tied *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_tie whole = {it->deck->grids.count - 1, 0x7e, 1.0};
-    ritz_ties from = {0};
+    RITZ_OWN(ritz_ties) from = {0};
 
-    RITZ_TRY(ritz_ties_add(&from, whole));
-    RITZ_TRY(cite_port(it));
-    RITZ_TRY(ritz_tie_rigid(&it->deck->grids, &from, &it->over,
-                            &it->deck->equations));
-done:
-    ritz_ties_free(&from);
-    return status;
+    RITZ_CHECK(ritz_ties_add(&from, whole));
+    RITZ_CHECK(cite_port(it));
+    return ritz_tie_rigid(&it->deck->grids, &from, &it->over,
+                          &it->deck->equations);
 }
 
 /* ---- one after the other ------------------------------------------------ */
@@ -442,15 +421,14 @@ done:
 static ritz_status find_held(const ritz_extended *present,
                              const ritz_import_report *report, ritz_tied *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_names *names = &it->tying->names;
     ritz_port port = {0};
-    ritz_roster roster = {0};
+    RITZ_OWN(ritz_roster) roster = {0};
 
-    RITZ_NEW(it->held, names->count + SIX);
-    RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
+    RITZ_CHECK_NEW(it->held, names->count + SIX);
+    RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
     for (int64_t k = 0; k < it->request->num_ports; k++) {
-        RITZ_TRY_IN(
+        RITZ_CHECK_IN(
             it->request->port[k],
             ritz_import_port(it->request->port[k], false, present, &port));
         for (int64_t i = 0; i < port.dofs.count; i++)
@@ -462,35 +440,29 @@ static ritz_status find_held(const ritz_extended *present,
         for (int64_t c = 1; c <= SIX; c++)
             it->held[ritz_roster_row(&roster,
                                      (ritz_dof){report->grid[k].id, c})] = true;
-done:
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status tie_port(ritz_tied *it, const ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_extended present = {0};
-    ritz_sparse turned = {0};
+    RITZ_OWN(ritz_extended) present = {0};
+    RITZ_OWN(ritz_sparse) turned = {0};
 
-    RITZ_FAIL_IF(it->deck->grids.count == 0, RITZ_ERR_ARGUMENT,
-                 "positions of its grids are known from a deck alone: --bulk");
-    RITZ_TRY(ritz_sparse_transpose(&it->tying->by.G, &turned));
-    RITZ_TRY(list_present(it->tying, &turned, &present));
-    RITZ_TRY(ritz_import_port(it->text, false, &present, &it->port));
-    RITZ_TRY(find_held(&present, report, it));
-    RITZ_TRY(group_dofs(&present, it));
-    RITZ_TRY(ritz_average_new(&it->deck->grids, &it->over, it->port.origin,
-                              &it->average));
+    RITZ_REFUSE_IF(
+        it->deck->grids.count == 0, RITZ_ERR_ARGUMENT,
+        "positions of its grids are known from a deck alone: --bulk");
+    RITZ_CHECK(ritz_sparse_transpose(&it->tying->by.G, &turned));
+    RITZ_CHECK(list_present(it->tying, &turned, &present));
+    RITZ_CHECK(ritz_import_port(it->text, false, &present, &it->port));
+    RITZ_CHECK(find_held(&present, report, it));
+    RITZ_CHECK(group_dofs(&present, it));
+    RITZ_CHECK(ritz_average_new(&it->deck->grids, &it->over, it->port.origin,
+                                &it->average));
     if (it->average.num_loose > 0)
-        RITZ_TRY(refuse_open(it->average.num_loose));
-    RITZ_TRY(add_grid(it));
-    RITZ_TRY(it->rigid ? tie_rigid(it) : tie_average(it, &turned));
-    RITZ_TRY(ritz_tying_solve(it->tying));
-done:
-    ritz_extended_free(&present);
-    ritz_sparse_free(&turned);
-    return status;
+        RITZ_CHECK(refuse_open(it->average.num_loose));
+    RITZ_CHECK(add_grid(it));
+    RITZ_CHECK(it->rigid ? tie_rigid(it) : tie_average(it, &turned));
+    return ritz_tying_solve(it->tying);
 }
 
 static ritz_status add_port(ritz_tied *it, ritz_import_report *report)

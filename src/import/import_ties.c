@@ -84,43 +84,38 @@ static bool is_ascending(const ritz_names *names)
 /* Names that ascend go on doing so: the rows of parts are placed anew. */
 static ritz_status sort_names(ritz_names *names, ritz_parts *parts)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dof *before = NULL;
-    ritz_roster roster = {0};
+    RITZ_OWN_ARRAY ritz_dof *before = NULL;
+    RITZ_OWN(ritz_roster) roster = {0};
 
-    RITZ_NEW(before, names->count);
+    RITZ_CHECK_NEW(before, names->count);
     if (names->count > 0)
         memcpy(before, names->dof, (size_t)names->count * sizeof *before);
     names->count = ritz_dof_distinct(names->count, names->dof);
-    RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
+    RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
     for (int64_t k = 0; k < parts->count; k++)
         for (int64_t i = 0; i < parts->part[k].matrix.A.nrow; i++) {
             int64_t *place = &parts->part[k].place[i];
 
             *place = ritz_roster_row(&roster, before[*place]);
         }
-done:
-    free(before);
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 /* Rows for dofs that only equations name; what is fixed and what is alive. */
 static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
                              const ritz_component *component, ritz_tying *it)
 {
-    ritz_status status = RITZ_OK;
     ritz_names *names = &it->names;
     bool sorted = is_ascending(names);
-    ritz_roster roster = {0};
-    ritz_dof *missing = NULL;
+    RITZ_OWN(ritz_roster) roster = {0};
+    RITZ_OWN_ARRAY ritz_dof *missing = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_roster_new(names->count, names->dof, &roster));
-    RITZ_TRY(list_missing(deck, &roster, &count, &missing));
-    RITZ_TRY(ritz_tying_append(count, missing, it));
+    RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
+    RITZ_CHECK(list_missing(deck, &roster, &count, &missing));
+    RITZ_CHECK(ritz_tying_append(count, missing, it));
     if (sorted)
-        RITZ_TRY(sort_names(names, parts));
+        RITZ_CHECK(sort_names(names, parts));
     for (int64_t k = 0; k < parts->count; k++)
         if (parts->part[k].becomes == &component->K ||
             parts->part[k].becomes == &component->M)
@@ -134,27 +129,21 @@ static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
                     sizeof *deck->fixed, ritz_dof_compare) != NULL;
         it->outside[k] = !row && !it->acts;
     }
-done:
-    ritz_roster_free(&roster);
-    free(missing);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- whether constraints act -------------------------------------------- */
 
 static ritz_status find_action(const ritz_deck *deck, ritz_tying *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = &deck->equations;
-    ritz_roster roster = {0};
+    RITZ_OWN(ritz_roster) roster = {0};
 
     it->acts = deck->num_constraints > 0 && it->names.whole;
-    RITZ_TRY(ritz_roster_new(it->names.count, it->names.dof, &roster));
+    RITZ_CHECK(ritz_roster_new(it->names.count, it->names.dof, &roster));
     for (int64_t e = 0; e < eq->count && !it->acts; e++)
         it->acts = ritz_roster_row(&roster, eq->dependent[e]) >= 0;
-done:
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 /* A constraint that is not understood is refused only if the matrices still
@@ -228,25 +217,22 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
                            ritz_names *names, const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_tying new = {.deck = deck, .names = *names};
+    RITZ_OWN(ritz_tying) new = {.deck = deck, .names = *names};
 
     *names = (ritz_names){0};
-    RITZ_TRY(find_action(deck, &new));
-    RITZ_TRY(pass_refusal(deck, &new, report));
-    RITZ_NEW(new.fixed, new.names.count);
-    RITZ_NEW(new.alive, new.names.count);
-    RITZ_NEW(new.outside, new.names.count);
-    RITZ_TRY(find_rows(deck, parts, component, &new));
+    RITZ_CHECK(find_action(deck, &new));
+    RITZ_CHECK(pass_refusal(deck, &new, report));
+    RITZ_CHECK_NEW(new.fixed, new.names.count);
+    RITZ_CHECK_NEW(new.alive, new.names.count);
+    RITZ_CHECK_NEW(new.outside, new.names.count);
+    RITZ_CHECK(find_rows(deck, parts, component, &new));
     if (new.acts)
-        RITZ_TRY(check_sets(deck));
-    RITZ_TRY(name_constraints(deck, report));
-    RITZ_TRY(ritz_tying_solve(&new));
+        RITZ_CHECK(check_sets(deck));
+    RITZ_CHECK(name_constraints(deck, report));
+    RITZ_CHECK(ritz_tying_solve(&new));
     *out = new;
     new = (ritz_tying){0};
-done:
-    ritz_tying_free(&new);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_tying_free(ritz_tying *tying)
@@ -265,18 +251,17 @@ void ritz_tying_free(ritz_tying *tying)
 static ritz_status rows_of(const ritz_sparse *G_turned, const ritz_part *part,
                            const int64_t *column, int64_t n, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t rows = part->matrix.A.nrow;
     int64_t count = 0;
-    int64_t *row = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
 
     for (int64_t i = 0; i < rows; i++)
         count += G_turned->colptr[part->place[i] + 1] -
                  G_turned->colptr[part->place[i]];
-    RITZ_NEW(row, count);
-    RITZ_NEW(col, count);
-    RITZ_NEW(val, count);
+    RITZ_CHECK_NEW(row, count);
+    RITZ_CHECK_NEW(col, count);
+    RITZ_CHECK_NEW(val, count);
     count = 0;
     for (int64_t i = 0; i < rows; i++) {
         int64_t from = part->place[i];
@@ -288,31 +273,21 @@ static ritz_status rows_of(const ritz_sparse *G_turned, const ritz_part *part,
             val[count++] = G_turned->val[p];
         }
     }
-    RITZ_TRY(ritz_sparse_from_triplets(rows, n, count, row, col, val, out));
-done:
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(rows, n, count, row, col, val, out);
 }
 
 /* A := G'AG, unsymmetric as it was: what is averaged away is to be reported. */
 static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse AG = {0}, turned = {0}, C = {0};
+    RITZ_OWN(ritz_sparse) AG = {0}, turned = {0}, C = {0};
 
-    RITZ_TRY(ritz_sparse_product(A, G, &AG));
-    RITZ_TRY(ritz_sparse_transpose(G, &turned));
-    RITZ_TRY(ritz_sparse_product(&turned, &AG, &C));
+    RITZ_CHECK(ritz_sparse_product(A, G, &AG));
+    RITZ_CHECK(ritz_sparse_transpose(G, &turned));
+    RITZ_CHECK(ritz_sparse_product(&turned, &AG, &C));
     ritz_sparse_free(A);
     *A = C;
     C = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&AG);
-    ritz_sparse_free(&turned);
-    ritz_sparse_free(&C);
-    return status;
+    return RITZ_OK;
 }
 
 /* Columns of G that become rows; -1: dofs that the matrices have not. */
@@ -348,8 +323,7 @@ static ritz_status apply_part(const ritz_tying *tying,
                               const ritz_sparse *turned, const int64_t *column,
                               int64_t n, ritz_part *part)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse G = {0};
+    RITZ_OWN(ritz_sparse) G = {0};
 
     if (is_kept(tying, part)) {
         for (int64_t i = 0; i < part->matrix.A.nrow; i++) {
@@ -357,59 +331,49 @@ static ritz_status apply_part(const ritz_tying *tying,
 
             *place = column[turned->rowind[turned->colptr[*place]]];
         }
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(rows_of(turned, part, column, n, &G));
-    RITZ_TRY(project_matrix(&G, &part->matrix.A));
+    RITZ_CHECK(rows_of(turned, part, column, n, &G));
+    RITZ_CHECK(project_matrix(&G, &part->matrix.A));
     free(part->place);
-    RITZ_NEW(part->place, n);
+    RITZ_CHECK_NEW(part->place, n);
     for (int64_t j = 0; j < n; j++)
         part->place[j] = j;
-done:
-    ritz_sparse_free(&G);
-    return status;
+    return RITZ_OK;
 }
 
 /* Dependent dofs of which a matrix has a row. */
 static ritz_status count_eliminated(const ritz_tying *tying,
                                     const ritz_parts *parts, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-    bool *row = NULL;
+    RITZ_OWN_ARRAY bool *row = NULL;
 
-    RITZ_NEW(row, tying->names.count);
+    RITZ_CHECK_NEW(row, tying->names.count);
     for (int64_t k = 0; k < parts->count; k++)
         for (int64_t i = 0; i < parts->part[k].matrix.A.nrow; i++)
             row[parts->part[k].place[i]] = true;
     for (int64_t k = 0; k < tying->by.gone.count; k++)
         *out += row[tying->by.gone.at[k]];
-done:
-    free(row);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
                              ritz_names *kept, ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_names names = {0};
-    ritz_sparse turned = {0};
-    int64_t *column = NULL;
+    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN(ritz_sparse) turned = {0};
+    RITZ_OWN_ARRAY int64_t *column = NULL;
 
-    RITZ_NEW(column, tying->by.kept.count);
-    RITZ_TRY(list_kept(tying, column, &names));
-    RITZ_TRY(count_eliminated(tying, parts, &report->num_eliminated));
-    RITZ_TRY(ritz_sparse_transpose(&tying->by.G, &turned));
+    RITZ_CHECK_NEW(column, tying->by.kept.count);
+    RITZ_CHECK(list_kept(tying, column, &names));
+    RITZ_CHECK(count_eliminated(tying, parts, &report->num_eliminated));
+    RITZ_CHECK(ritz_sparse_transpose(&tying->by.G, &turned));
     for (int64_t k = 0; k < parts->count; k++)
-        RITZ_TRY(
+        RITZ_CHECK(
             apply_part(tying, &turned, column, names.count, &parts->part[k]));
     *kept = names;
     names = (ritz_names){0};
-done:
-    free(column);
-    ritz_names_free(&names);
-    ritz_sparse_free(&turned);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- recovery ----------------------------------------------------------- */
@@ -419,11 +383,10 @@ done:
 static ritz_status list_rows(const ritz_tying *tying,
                              const ritz_component *component, int64_t *row)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *kept = &tying->by.kept;
-    ritz_roster roster = {0};
+    RITZ_OWN(ritz_roster) roster = {0};
 
-    RITZ_TRY(ritz_roster_new(component->num_dofs, component->dof, &roster));
+    RITZ_CHECK(ritz_roster_new(component->num_dofs, component->dof, &roster));
     for (int64_t j = 0; j < kept->count; j++) {
         int64_t k = kept->at[j];
 
@@ -431,9 +394,7 @@ static ritz_status list_rows(const ritz_tying *tying,
         if (tying->outside[k] && !tying->fixed[k])
             row[j] = -2;
     }
-done:
-    ritz_roster_free(&roster);
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_known(const ritz_sparse *turned, int64_t of, const int64_t *row)
@@ -449,17 +410,16 @@ static ritz_status gather_rows(const ritz_tying *tying,
                                const ritz_sparse *turned, const int64_t *row,
                                int64_t n, ritz_recovery *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *gone = &tying->by.gone;
     int64_t most = tying->by.G.colptr[tying->by.G.ncol];
-    int64_t *line = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *line = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t count = 0;
 
-    RITZ_NEW(line, most);
-    RITZ_NEW(col, most);
-    RITZ_NEW(val, most);
-    RITZ_NEW(out->dof, gone->count);
+    RITZ_CHECK_NEW(line, most);
+    RITZ_CHECK_NEW(col, most);
+    RITZ_CHECK_NEW(val, most);
+    RITZ_CHECK_NEW(out->dof, gone->count);
     for (int64_t k = 0; k < gone->count; k++) {
         int64_t of = gone->at[k];
 
@@ -474,39 +434,30 @@ static ritz_status gather_rows(const ritz_tying *tying,
         }
         out->dof[out->count++] = tying->names.dof[of];
     }
-    RITZ_TRY(ritz_sparse_from_triplets(out->count, n, count, line, col, val,
-                                       &out->G));
-done:
-    free(line);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(out->count, n, count, line, col, val,
+                                     &out->G);
 }
 
 ritz_status ritz_tying_recover(const ritz_tying *tying,
                                ritz_component *component,
                                ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_recovery recovery = {0};
-    ritz_sparse turned = {0};
-    int64_t *row = NULL;
+    RITZ_OWN(ritz_recovery) recovery = {0};
+    RITZ_OWN(ritz_sparse) turned = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL;
 
     if (tying->by.gone.count == 0)
-        goto done;
-    RITZ_NEW(row, tying->by.kept.count);
-    RITZ_TRY(list_rows(tying, component, row));
-    RITZ_TRY(ritz_sparse_transpose(&tying->by.G, &turned));
-    RITZ_TRY(gather_rows(tying, &turned, row, component->num_dofs, &recovery));
+        return RITZ_OK;
+    RITZ_CHECK_NEW(row, tying->by.kept.count);
+    RITZ_CHECK(list_rows(tying, component, row));
+    RITZ_CHECK(ritz_sparse_transpose(&tying->by.G, &turned));
+    RITZ_CHECK(
+        gather_rows(tying, &turned, row, component->num_dofs, &recovery));
     report->num_recovered = recovery.count;
     report->num_lost = tying->by.gone.count - recovery.count;
     if (recovery.count == 0)
-        goto done;
+        return RITZ_OK;
     component->recovery = recovery;
     recovery = (ritz_recovery){0};
-done:
-    free(row);
-    ritz_sparse_free(&turned);
-    ritz_recovery_free(&recovery);
-    return status;
+    return RITZ_OK;
 }

@@ -44,14 +44,11 @@ static double next_noise(uint64_t *state)
 static ritz_status multiply_mass(const ritz_sparse *M, const ritz_dense *X,
                                  double *y)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Y = {0};
+    RITZ_OWN(ritz_dense) Y = {0};
 
-    RITZ_TRY(ritz_sparse_mul(M, X, &Y));
+    RITZ_CHECK(ritz_sparse_mul(M, X, &Y));
     memcpy(y, Y.val, (size_t)M->nrow * sizeof *y);
-done:
-    ritz_dense_free(&Y);
-    return status;
+    return RITZ_OK;
 }
 
 /* y := A^-1 x, which may be one and the same. */
@@ -166,27 +163,24 @@ static ritz_status extract_pairs(const ritz_shifted *S, lanczos *L)
 ritz_status ritz_lanczos_lowest(const ritz_shifted *S, int64_t k, ritz_dense *X,
                                 double *reach, ritz_lanczos_end *end)
 {
-    ritz_status status = RITZ_OK;
-    lanczos L = {0};
+    RITZ_OWN(lanczos) L = {0};
 
-    RITZ_TRY(allocate_lanczos(S, k, &L));
-    RITZ_TRY(iterate_lanczos(S, &L));
+    RITZ_CHECK(allocate_lanczos(S, k, &L));
+    RITZ_CHECK(iterate_lanczos(S, &L));
     if (L.info == INVARIANT) {
         *end = RITZ_LANCZOS_EXHAUSTED;
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_FAIL_IF(L.info < 0, RITZ_ERR_CONVERGENCE,
-                 "the iteration for eigenvectors failed, ARPACK says %d",
-                 (int)L.info);
+    RITZ_REFUSE_IF(L.info < 0, RITZ_ERR_CONVERGENCE,
+                   "the iteration for eigenvectors failed, ARPACK says %d",
+                   (int)L.info);
     *reach = reach_of(&L, S->sigma);
     *end = L.info == 0 ? RITZ_LANCZOS_FOUND : RITZ_LANCZOS_SLOW;
     if (*end != RITZ_LANCZOS_FOUND)
-        goto done;
-    RITZ_TRY(extract_pairs(S, &L));
+        return RITZ_OK;
+    RITZ_CHECK(extract_pairs(S, &L));
     *X = L.V;
     X->ncol = L.nev;
     L.V = (ritz_dense){0};
-done:
-    lanczos_free(&L);
-    return status;
+    return RITZ_OK;
 }

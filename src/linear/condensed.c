@@ -33,43 +33,32 @@ static ritz_status invert_matrix(ritz_dense *G)
 static ritz_status pick_mass(const ritz_sparse *M, int64_t count,
                              const int64_t *h, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse M_hh = {0};
+    RITZ_OWN(ritz_sparse) M_hh = {0};
 
-    RITZ_TRY(ritz_sparse_extract(M, count, h, count, h, &M_hh));
-    RITZ_TRY(ritz_sparse_dense(&M_hh, out));
-done:
-    ritz_sparse_free(&M_hh);
-    return status;
+    RITZ_CHECK(ritz_sparse_extract(M, count, h, count, h, &M_hh));
+    return ritz_sparse_dense(&M_hh, out);
 }
 
 ritz_status ritz_condensed_all(const ritz_shifted *S, int64_t count,
                                const int64_t *heavy, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense W = {0}, G = {0}, M_hh = {0}, MX_h = {0};
-    ritz_pairs small = {0};
+    RITZ_OWN(ritz_dense) W = {0}, G = {0}, M_hh = {0}, MX_h = {0};
+    RITZ_OWN(ritz_pairs) small = {0};
 
-    RITZ_TRY(ritz_dense_new(S->K->nrow, count, &W));
+    RITZ_CHECK(ritz_dense_new(S->K->nrow, count, &W));
     if (count > 0) {
         for (int64_t j = 0; j < count; j++)
             ritz_dense_col(&W, j)[heavy[j]] = 1.0;
-        RITZ_TRY(ritz_factor_solve(S->A, &W));
-        RITZ_TRY(ritz_dense_rows(&W, count, heavy, &G));
-        RITZ_TRY(invert_matrix(&G));
+        RITZ_CHECK(ritz_factor_solve(S->A, &W));
+        RITZ_CHECK(ritz_dense_rows(&W, count, heavy, &G));
+        RITZ_CHECK(invert_matrix(&G));
     }
-    RITZ_TRY(pick_mass(S->M, count, heavy, &M_hh));
-    RITZ_TRY(ritz_eigen_dense(&G, &M_hh, &small));
-    RITZ_TRY(ritz_dense_mul(&M_hh, &small.Phi, &MX_h));
-    RITZ_TRY(ritz_dense_mul(&W, &MX_h, X));
+    RITZ_CHECK(pick_mass(S->M, count, heavy, &M_hh));
+    RITZ_CHECK(ritz_eigen_dense(&G, &M_hh, &small));
+    RITZ_CHECK(ritz_dense_mul(&M_hh, &small.Phi, &MX_h));
+    RITZ_CHECK(ritz_dense_mul(&W, &MX_h, X));
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < X->nrow; i++)
             ritz_dense_col(X, j)[i] *= small.lambda[j];
-done:
-    ritz_dense_free(&W);
-    ritz_dense_free(&G);
-    ritz_dense_free(&M_hh);
-    ritz_dense_free(&MX_h);
-    ritz_pairs_free(&small);
-    return status;
+    return RITZ_OK;
 }

@@ -200,59 +200,44 @@ double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
 ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
                                 ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0}, gone = {0};
+    RITZ_OWN(ritz_dense) part = {0}, gone = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(right, X, &part));
-    RITZ_TRY(ritz_dense_mul(left, &part, &gone));
+    RITZ_CHECK(ritz_dense_mul_tn(right, X, &part));
+    RITZ_CHECK(ritz_dense_mul(left, &part, &gone));
     for (int64_t k = 0; k < X->nrow * X->ncol; k++)
         X->val[k] -= gone.val[k];
-done:
-    ritz_dense_free(&part);
-    ritz_dense_free(&gone);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
                                   ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AB = {0};
+    RITZ_OWN(ritz_dense) AB = {0};
 
-    RITZ_TRY(ritz_dense_mul(A, B, &AB));
-    RITZ_TRY(ritz_dense_mul_tn(B, &AB, out));
+    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
+    RITZ_CHECK(ritz_dense_mul_tn(B, &AB, out));
     ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&AB);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
                                ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AB = {0};
+    RITZ_OWN(ritz_dense) AB = {0};
 
-    RITZ_TRY(ritz_dense_mul(A, B, &AB));
-    RITZ_TRY(ritz_dense_mul_tn(B, &AB, out));
+    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
+    RITZ_CHECK(ritz_dense_mul_tn(B, &AB, out));
     if (ritz_dense_asymmetry(A) == 0.0)
         ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&AB);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dense_terms(const ritz_dense *A, const ritz_dense *B,
                              ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense size = {0}, columns = {0};
+    RITZ_OWN(ritz_dense) size = {0}, columns = {0};
 
-    RITZ_TRY(ritz_dense_abs(A, &size));
-    RITZ_TRY(ritz_dense_abs(B, &columns));
-    RITZ_TRY(ritz_dense_project(&size, &columns, out));
-done:
-    ritz_dense_free(&size);
-    ritz_dense_free(&columns);
-    return status;
+    RITZ_CHECK(ritz_dense_abs(A, &size));
+    RITZ_CHECK(ritz_dense_abs(B, &columns));
+    return ritz_dense_project(&size, &columns, out);
 }

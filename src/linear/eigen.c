@@ -13,24 +13,20 @@
 ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
                              double tau, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
-    ritz_ldl *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_ldl) *F = NULL;
 
-    RITZ_FAIL_IF(K->nrow != K->ncol || M->nrow != K->nrow || M->ncol != K->nrow,
-                 RITZ_ERR_ARGUMENT,
-                 "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                 " x %" PRId64,
-                 K->nrow, K->ncol, M->nrow, M->ncol);
-    RITZ_FAIL_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
-                 "modes below %g cannot be counted", tau);
-    RITZ_TRY(ritz_sparse_add(1.0, K, -tau, M, &A));
+    RITZ_REFUSE_IF(K->nrow != K->ncol || M->nrow != K->nrow ||
+                       M->ncol != K->nrow,
+                   RITZ_ERR_ARGUMENT,
+                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                   " x %" PRId64,
+                   K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_REFUSE_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
+                   "modes below %g cannot be counted", tau);
+    RITZ_CHECK(ritz_sparse_add(1.0, K, -tau, M, &A));
     ritz_monitor_step("count of modes", 0, 0);
-    RITZ_TRY(ritz_ldl_new(&A, out, &F));
-done:
-    ritz_sparse_free(&A);
-    ritz_ldl_free(&F);
-    return status;
+    return ritz_ldl_new(&A, out, &F);
 }
 
 /*

@@ -132,36 +132,31 @@ static ritz_status by_cholesky(const ritz_dense *C, ritz_dense *K,
 static ritz_status condense_massless(const ritz_dense *K, ritz_dense *N,
                                      ritz_dense *Q_r)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense KN = {0}, NKN = {0}, NKQ = {0}, fall = {0};
+    RITZ_OWN(ritz_dense) KN = {0}, NKN = {0}, NKQ = {0}, fall = {0};
     int k = (int)N->ncol;
     int r = (int)Q_r->ncol;
     double rcond = 0.0;
     double norm = 0.0;
 
-    RITZ_TRY(ritz_dense_mul(K, N, &KN));
-    RITZ_TRY(ritz_dense_mul_tn(N, &KN, &NKN));
+    RITZ_CHECK(ritz_dense_mul(K, N, &KN));
+    RITZ_CHECK(ritz_dense_mul_tn(N, &KN, &NKN));
     norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', k, NKN.val, k);
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', k, NKN.val, k) == 0)
-        RITZ_TRY(lapack_status(LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', k, NKN.val,
-                                              k, norm, &rcond)));
-    RITZ_FAIL_IF(!(rcond > k * DBL_EPSILON), RITZ_ERR_SINGULAR,
-                 "mass is not positive definite, and neither is the stiffness "
-                 "of the motions without mass");
+        RITZ_CHECK(lapack_status(LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', k,
+                                                NKN.val, k, norm, &rcond)));
+    RITZ_REFUSE_IF(
+        !(rcond > k * DBL_EPSILON), RITZ_ERR_SINGULAR,
+        "mass is not positive definite, and neither is the stiffness "
+        "of the motions without mass");
     if (r == 0)
-        goto done;
-    RITZ_TRY(ritz_dense_mul_tn(&KN, Q_r, &NKQ));
-    RITZ_TRY(lapack_status(
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_mul_tn(&KN, Q_r, &NKQ));
+    RITZ_CHECK(lapack_status(
         LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', k, r, NKN.val, k, NKQ.val, k)));
-    RITZ_TRY(ritz_dense_mul(N, &NKQ, &fall));
+    RITZ_CHECK(ritz_dense_mul(N, &NKQ, &fall));
     for (int64_t i = 0; i < fall.nrow * fall.ncol; i++)
         Q_r->val[i] -= fall.val[i];
-done:
-    ritz_dense_free(&KN);
-    ritz_dense_free(&NKN);
-    ritz_dense_free(&NKQ);
-    ritz_dense_free(&fall);
-    return status;
+    return RITZ_OK;
 }
 
 /* X := T diag(m)^-1/2 y, with y the eigenvectors of what is condensed. */
@@ -169,82 +164,67 @@ static ritz_status solve_condensed(const ritz_dense *K, ritz_dense *T,
                                    const double *m, double *lambda,
                                    ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense KT = {0}, K_r = {0};
+    RITZ_OWN(ritz_dense) KT = {0}, K_r = {0};
 
     for (int64_t j = 0; j < T->ncol; j++)
         for (int64_t i = 0; i < T->nrow; i++)
             ritz_dense_col(T, j)[i] /= sqrt(m[j]);
-    RITZ_TRY(ritz_dense_mul(K, T, &KT));
-    RITZ_TRY(ritz_dense_mul_tn(T, &KT, &K_r));
-    RITZ_TRY(solve_standard(&K_r, lambda));
-    RITZ_TRY(ritz_dense_mul(T, &K_r, X));
-done:
-    ritz_dense_free(&KT);
-    ritz_dense_free(&K_r);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(K, T, &KT));
+    RITZ_CHECK(ritz_dense_mul_tn(T, &KT, &K_r));
+    RITZ_CHECK(solve_standard(&K_r, lambda));
+    return ritz_dense_mul(T, &K_r, X);
 }
 
 /* X from K and M, of which M is only semidefinite; M is lost. */
 static ritz_status by_condensing(const ritz_dense *K, ritz_dense *M,
                                  double *lambda, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense N = {0};
     ritz_dense Q_r = {0};
     int64_t n = M->nrow;
     int64_t null = 0;
-    double *m = NULL;
+    RITZ_OWN_ARRAY double *m = NULL;
     double limit = 0.0;
 
-    RITZ_NEW(m, n);
-    RITZ_TRY(solve_standard(M, m));
+    RITZ_CHECK_NEW(m, n);
+    RITZ_CHECK(solve_standard(M, m));
     limit = 4.0 * (double)n * DBL_EPSILON * fmax(m[n - 1], 0.0);
-    RITZ_FAIL_IF(m[0] < -limit, RITZ_ERR_SINGULAR,
-                 "mass is not positive definite: it has the eigenvalue %.3e "
-                 "of %.3e",
-                 m[0], m[n - 1]);
+    RITZ_REFUSE_IF(m[0] < -limit, RITZ_ERR_SINGULAR,
+                   "mass is not positive definite: it has the eigenvalue %.3e "
+                   "of %.3e",
+                   m[0], m[n - 1]);
     while (null < n && m[null] <= limit)
         null++;
     N = ritz_dense_part(M, 0, null);
     Q_r = ritz_dense_part(M, null, n - null);
     if (null > 0)
-        RITZ_TRY(condense_massless(K, &N, &Q_r));
-    RITZ_TRY(solve_condensed(K, &Q_r, m + null, lambda, X));
-done:
-    free(m);
-    return status;
+        RITZ_CHECK(condense_massless(K, &N, &Q_r));
+    return solve_condensed(K, &Q_r, m + null, lambda, X);
 }
 
 ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
                                   double *lambda, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense K_s = {0}, M_s = {0}, C = {0};
-    double *s = NULL;
+    RITZ_OWN(ritz_dense) K_s = {0}, M_s = {0}, C = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
     bool definite = false;
 
-    RITZ_NEW(s, K->nrow);
-    RITZ_TRY(choose_scale(K, M, s));
-    RITZ_TRY(scale_pencil(K, s, &K_s));
-    RITZ_TRY(scale_pencil(M, s, &M_s));
-    RITZ_TRY(is_definite(&M_s, &C, &definite));
+    RITZ_CHECK_NEW(s, K->nrow);
+    RITZ_CHECK(choose_scale(K, M, s));
+    RITZ_CHECK(scale_pencil(K, s, &K_s));
+    RITZ_CHECK(scale_pencil(M, s, &M_s));
+    RITZ_CHECK(is_definite(&M_s, &C, &definite));
     if (definite) {
-        RITZ_TRY(by_cholesky(&C, &K_s, lambda));
+        RITZ_CHECK(by_cholesky(&C, &K_s, lambda));
         *X = K_s;
         K_s = (ritz_dense){0};
     } else {
-        RITZ_TRY(by_condensing(&K_s, &M_s, lambda, X));
+        RITZ_CHECK(by_condensing(&K_s, &M_s, lambda, X));
     }
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < X->nrow; i++)
             ritz_dense_col(X, j)[i] *= s[i];
-done:
-    free(s);
-    ritz_dense_free(&K_s);
-    ritz_dense_free(&M_s);
-    ritz_dense_free(&C);
-    return status;
+    return RITZ_OK;
 }
 
 /* |a + t b| of columns j. */
@@ -305,21 +285,15 @@ static int64_t count_low(int64_t count, const double *lambda)
 static ritz_status project_pairs(const ritz_dense *K, const ritz_dense *M,
                                  int64_t count, double *lambda, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     ritz_dense first = ritz_dense_part(X, 0, count);
-    ritz_dense K_x = {0}, M_x = {0}, Y = {0}, XY = {0};
+    RITZ_OWN(ritz_dense) K_x = {0}, M_x = {0}, Y = {0}, XY = {0};
 
-    RITZ_TRY(ritz_dense_congruence(K, &first, &K_x));
-    RITZ_TRY(ritz_dense_congruence(M, &first, &M_x));
-    RITZ_TRY(ritz_eigen_dense_once(&K_x, &M_x, lambda, &Y));
-    RITZ_TRY(ritz_dense_mul(&first, &Y, &XY));
+    RITZ_CHECK(ritz_dense_congruence(K, &first, &K_x));
+    RITZ_CHECK(ritz_dense_congruence(M, &first, &M_x));
+    RITZ_CHECK(ritz_eigen_dense_once(&K_x, &M_x, lambda, &Y));
+    RITZ_CHECK(ritz_dense_mul(&first, &Y, &XY));
     memcpy(first.val, XY.val, (size_t)(XY.nrow * XY.ncol) * sizeof *first.val);
-done:
-    ritz_dense_free(&K_x);
-    ritz_dense_free(&M_x);
-    ritz_dense_free(&Y);
-    ritz_dense_free(&XY);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
@@ -340,30 +314,27 @@ static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
 ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
                              ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {.proven_to = HUGE_VAL};
+    RITZ_OWN(ritz_pairs) pairs = {.proven_to = HUGE_VAL};
     int64_t n = K->nrow;
 
-    RITZ_FAIL_IF(K->ncol != n || M->nrow != n || M->ncol != n,
-                 RITZ_ERR_ARGUMENT,
-                 "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                 " x %" PRId64,
-                 K->nrow, K->ncol, M->nrow, M->ncol);
-    RITZ_NEW(pairs.lambda, n);
-    RITZ_NEW(pairs.residual, n);
+    RITZ_REFUSE_IF(K->ncol != n || M->nrow != n || M->ncol != n,
+                   RITZ_ERR_ARGUMENT,
+                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                   " x %" PRId64,
+                   K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_CHECK_NEW(pairs.lambda, n);
+    RITZ_CHECK_NEW(pairs.residual, n);
     if (n > 0)
-        RITZ_TRY(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
+        RITZ_CHECK(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
     else
-        RITZ_TRY(ritz_dense_new(0, 0, &pairs.Phi));
+        RITZ_CHECK(ritz_dense_new(0, 0, &pairs.Phi));
     n = pairs.Phi.ncol;
     ritz_dense_orient(&pairs.Phi);
-    RITZ_TRY(find_residuals(K, M, &pairs));
+    RITZ_CHECK(find_residuals(K, M, &pairs));
     pairs.num_rigid = ritz_eigen_rigid(
         n, pairs.lambda, n > 0 ? fmax(pairs.lambda[n - 1], 0.0) : 0.0);
     snprintf(pairs.engine, sizeof pairs.engine, "dense LAPACK");
     *out = pairs;
     pairs = (ritz_pairs){0};
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }

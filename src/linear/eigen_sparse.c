@@ -150,28 +150,25 @@ static ritz_status shift_elsewhere(search *s, double reach)
 /* Fill s->found; it is empty if sigma or the number asked had to change. */
 static ritz_status find_pairs(search *s)
 {
-    ritz_status status = RITZ_OK;
     ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
     double reach = 0.0;
 
     ritz_pairs_free(&s->found);
     s->all =
         s->all || s->seen.num_heavy <= SMALL || s->ask + 21 > s->seen.num_heavy;
     if (s->all)
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_condensed_all(&s->S, s->seen.num_heavy, s->seen.heavy, &X));
     else
-        RITZ_TRY(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
+        RITZ_CHECK(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
-        RITZ_TRY(refine_pairs(s, &X));
+        RITZ_CHECK(refine_pairs(s, &X));
     if (end == RITZ_LANCZOS_SLOW)
-        RITZ_TRY(shift_elsewhere(s, reach));
+        RITZ_CHECK(shift_elsewhere(s, reach));
     if (end == RITZ_LANCZOS_EXHAUSTED)
         s->all = true;
-done:
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -373,15 +370,14 @@ done:
 static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
                              const ritz_span *span, ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs P = {0};
-    ritz_dense K_d = {0}, M_d = {0};
+    RITZ_OWN(ritz_pairs) P = {0};
+    RITZ_OWN(ritz_dense) K_d = {0}, M_d = {0};
     double limit = 0.0;
     int64_t end = 0;
 
-    RITZ_TRY(ritz_sparse_dense(K, &K_d));
-    RITZ_TRY(ritz_sparse_dense(M, &M_d));
-    RITZ_TRY(ritz_eigen_dense(&K_d, &M_d, &P));
+    RITZ_CHECK(ritz_sparse_dense(K, &K_d));
+    RITZ_CHECK(ritz_sparse_dense(M, &M_d));
+    RITZ_CHECK(ritz_eigen_dense(&K_d, &M_d, &P));
     if (span->modes < 0)
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
     end = wanted(&P, span, limit);
@@ -390,11 +386,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     truncate_pairs(&P, end);
     *out = P;
     P = (ritz_pairs){0};
-done:
-    ritz_dense_free(&K_d);
-    ritz_dense_free(&M_d);
-    ritz_pairs_free(&P);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,

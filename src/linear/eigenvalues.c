@@ -42,52 +42,42 @@ static ritz_status check_matrix(const ritz_dense *A)
 
 static ritz_status find_eigenvalues(const ritz_dense *A, value *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
-    ritz_dense H = {0}, left = {0}, right = {0};
-    double *re = NULL, *im = NULL, *scale = NULL, *cosine = NULL;
+    RITZ_OWN(ritz_dense) H = {0}, left = {0}, right = {0};
+    RITZ_OWN_ARRAY double *re = NULL, *im = NULL, *scale = NULL, *cosine = NULL;
     double norm = 0.0;
     lapack_int low = 0, high = 0;
     int info = 0;
 
-    RITZ_TRY(ritz_dense_copy(A, &H));
-    RITZ_TRY(ritz_dense_new(n, n, &left));
-    RITZ_TRY(ritz_dense_new(n, n, &right));
-    RITZ_NEW(re, n);
-    RITZ_NEW(im, n);
-    RITZ_NEW(scale, n);
-    RITZ_NEW(cosine, n);
+    RITZ_CHECK(ritz_dense_copy(A, &H));
+    RITZ_CHECK(ritz_dense_new(n, n, &left));
+    RITZ_CHECK(ritz_dense_new(n, n, &right));
+    RITZ_CHECK_NEW(re, n);
+    RITZ_CHECK_NEW(im, n);
+    RITZ_CHECK_NEW(scale, n);
+    RITZ_CHECK_NEW(cosine, n);
     info = LAPACKE_dgeevx(LAPACK_COL_MAJOR, 'B', 'V', 'V', 'E', n, H.val, n, re,
                           im, left.val, n, right.val, n, &low, &high, scale,
                           &norm, cosine, NULL);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
     for (int64_t k = 0; k < n; k++)
         out[k] = (value){re[k], im[k],
                          DBL_EPSILON * norm / fmax(cosine[k], DBL_EPSILON)};
-done:
-    ritz_dense_free(&H);
-    ritz_dense_free(&left);
-    ritz_dense_free(&right);
-    free(re);
-    free(im);
-    free(scale);
-    free(cosine);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_eigenvalues_of(const ritz_dense *A, ritz_eigenvalues *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_eigenvalues eigenvalues = {.count = A->nrow};
-    value *values = NULL;
+    RITZ_OWN(ritz_eigenvalues) eigenvalues = {.count = A->nrow};
+    RITZ_OWN_ARRAY value *values = NULL;
 
-    RITZ_TRY(check_matrix(A));
-    RITZ_NEW(values, A->nrow);
-    RITZ_NEW(eigenvalues.re, A->nrow);
-    RITZ_NEW(eigenvalues.im, A->nrow);
-    RITZ_NEW(eigenvalues.error, A->nrow);
+    RITZ_CHECK(check_matrix(A));
+    RITZ_CHECK_NEW(values, A->nrow);
+    RITZ_CHECK_NEW(eigenvalues.re, A->nrow);
+    RITZ_CHECK_NEW(eigenvalues.im, A->nrow);
+    RITZ_CHECK_NEW(eigenvalues.error, A->nrow);
     if (A->nrow > 0)
-        RITZ_TRY(find_eigenvalues(A, values));
+        RITZ_CHECK(find_eigenvalues(A, values));
     qsort(values, (size_t)A->nrow, sizeof *values, by_magnitude);
     for (int64_t k = 0; k < A->nrow; k++) {
         eigenvalues.re[k] = values[k].re;
@@ -98,10 +88,7 @@ ritz_status ritz_eigenvalues_of(const ritz_dense *A, ritz_eigenvalues *out)
     }
     *out = eigenvalues;
     eigenvalues = (ritz_eigenvalues){0};
-done:
-    free(values);
-    ritz_eigenvalues_free(&eigenvalues);
-    return status;
+    return RITZ_OK;
 }
 
 int64_t ritz_eigenvalues_worst(const ritz_eigenvalues *eigenvalues,

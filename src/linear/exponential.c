@@ -66,58 +66,48 @@ static void turn_matrix(const double *d, int row, int col, ritz_dense *A)
 /* E = I + A (I + A / 2 (I + A / 3 (...))) */
 static ritz_status sum_series(const ritz_dense *A, ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AE = {0};
+    RITZ_OWN(ritz_dense) AE = {0};
 
-    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, E));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, E));
     for (int64_t j = 0; j < A->nrow; j++)
         ritz_dense_col(E, j)[j] = 1.0;
     for (int k = TERMS; k > 0; k--) {
-        RITZ_TRY(ritz_dense_mul(A, E, &AE));
+        RITZ_CHECK(ritz_dense_mul(A, E, &AE));
         scale_matrix(1.0 / k, &AE);
         for (int64_t j = 0; j < A->nrow; j++)
             ritz_dense_col(&AE, j)[j] += 1.0;
         replace_matrix(E, &AE);
     }
-done:
-    ritz_dense_free(&AE);
-    return status;
+    return RITZ_OK;
 }
 
 /* The integral over t of A t = `A`. */
 static ritz_status sum_integral(const ritz_dense *A, double t,
                                 const ritz_dense *Q, ritz_dense *W)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, XA = {0};
+    RITZ_OWN(ritz_dense) X = {0}, XA = {0};
 
-    RITZ_TRY(ritz_dense_copy(Q, &X));
+    RITZ_CHECK(ritz_dense_copy(Q, &X));
     scale_matrix(t, &X);
-    RITZ_TRY(ritz_dense_copy(&X, W));
+    RITZ_CHECK(ritz_dense_copy(&X, W));
     for (int k = 2; k <= INTEGRAL_TERMS; k++) {
-        RITZ_TRY(ritz_dense_mul(&X, A, &XA));
+        RITZ_CHECK(ritz_dense_mul(&X, A, &XA));
         ritz_dense_symmetrise(&XA); /* half of X A + A'X */
         scale_matrix(2.0 / k, &XA);
         replace_matrix(&X, &XA);
         add_scaled(1.0, &X, W);
     }
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&XA);
-    return status;
+    return RITZ_OK;
 }
 
 /* W += E'W E */
 static ritz_status double_integral(const ritz_dense *E, ritz_dense *W)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense more = {0};
+    RITZ_OWN(ritz_dense) more = {0};
 
-    RITZ_TRY(ritz_dense_congruence(W, E, &more));
+    RITZ_CHECK(ritz_dense_congruence(W, E, &more));
     add_scaled(1.0, &more, W);
-done:
-    ritz_dense_free(&more);
-    return status;
+    return RITZ_OK;
 }
 
 /* Over t first, then doubled; A is scaled to A t. */
@@ -125,33 +115,30 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
                                       ritz_dense *Q, ritz_dense *E,
                                       ritz_dense *W)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
     double size =
         n > 0 ? h * LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, A->val, n)
               : 0.0;
-    ritz_dense square = {0};
+    RITZ_OWN(ritz_dense) square = {0};
     int doublings = 0;
 
     (void)frexp(2.0 * size, &doublings);
     doublings = size > 0.5 ? doublings : 0;
-    RITZ_FAIL_IF(!isfinite(size) || doublings > MOST_DOUBLINGS,
-                 RITZ_ERR_ARGUMENT,
-                 "a step of %g s is too long for the fastest of its states", h);
+    RITZ_REFUSE_IF(
+        !isfinite(size) || doublings > MOST_DOUBLINGS, RITZ_ERR_ARGUMENT,
+        "a step of %g s is too long for the fastest of its states", h);
     h = ldexp(h, -doublings);
     scale_matrix(h, A);
-    RITZ_TRY(sum_series(A, E));
+    RITZ_CHECK(sum_series(A, E));
     for (int k = 0; k < count; k++)
-        RITZ_TRY(sum_integral(A, h, &Q[k], &W[k]));
+        RITZ_CHECK(sum_integral(A, h, &Q[k], &W[k]));
     for (int j = 0; j < doublings; j++) {
         for (int k = 0; k < count; k++)
-            RITZ_TRY(double_integral(E, &W[k]));
-        RITZ_TRY(ritz_dense_mul(E, E, &square));
+            RITZ_CHECK(double_integral(E, &W[k]));
+        RITZ_CHECK(ritz_dense_mul(E, E, &square));
         replace_matrix(E, &square);
     }
-done:
-    ritz_dense_free(&square);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_exponential(const ritz_dense *A, double h, int count,

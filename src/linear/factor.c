@@ -109,11 +109,10 @@ static void simplicial_diagonal(const cholmod_factor *L, double *d)
 static ritz_status weakest_pivot(const cholmod_factor *L, const double *a,
                                  double *ratio, int64_t *row)
 {
-    ritz_status status = RITZ_OK;
     const int64_t *perm = L->Perm;
-    double *d = NULL;
+    RITZ_OWN_ARRAY double *d = NULL;
 
-    RITZ_NEW(d, (int64_t)L->n);
+    RITZ_CHECK_NEW(d, (int64_t)L->n);
     (L->is_super ? supernodal_diagonal : simplicial_diagonal)(L, d);
     for (size_t k = 0; k < L->n; k++) {
         double r = d[k] * d[k] / a[perm[k]];
@@ -123,9 +122,7 @@ static ritz_status weakest_pivot(const cholmod_factor *L, const double *a,
         *ratio = r;
         *row = perm[k];
     }
-done:
-    free(d);
-    return status;
+    return RITZ_OK;
 }
 
 /* y := y / |y|, and |y|; an infinite one stays as it is. */
@@ -148,23 +145,20 @@ static double normalise_vector(int64_t n, double *y)
 static ritz_status smallest_eigenvalue(ritz_factor *F, const double *a,
                                        int64_t row, double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = (int64_t)F->L->n;
-    ritz_dense y = {0};
+    RITZ_OWN(ritz_dense) y = {0};
 
-    RITZ_TRY(ritz_dense_new(n, 1, &y));
+    RITZ_CHECK(ritz_dense_new(n, 1, &y));
     y.val[row] = 1.0;
     for (int s = 0; s < SWEEPS; s++) {
         for (int64_t i = 0; i < n; i++)
             y.val[i] *= sqrt(a[i]);
-        RITZ_TRY(ritz_factor_solve(F, &y));
+        RITZ_CHECK(ritz_factor_solve(F, &y));
         for (int64_t i = 0; i < n; i++)
             y.val[i] *= sqrt(a[i]);
         *out = 1.0 / normalise_vector(n, y.val);
     }
-done:
-    ritz_dense_free(&y);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status judge_pivots(ritz_factor *F, const double *a, int64_t *weak)
@@ -217,26 +211,22 @@ done:
 ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
                                  int64_t *weak)
 {
-    ritz_status status = RITZ_OK;
-    ritz_factor *F = NULL;
-    double *a = NULL;
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN_ARRAY double *a = NULL;
 
     if (weak)
         *weak = -1;
-    RITZ_FAIL_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
-                 "a %" PRId64 " x %" PRId64 " matrix is not square", A->nrow,
-                 A->ncol);
-    RITZ_NEW(a, A->nrow);
-    RITZ_TRY(copy_diagonal(A, a));
-    RITZ_NEW(F, 1);
-    RITZ_TRY(factorise_sparse(F, A));
-    RITZ_TRY(judge_pivots(F, a, weak));
+    RITZ_REFUSE_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
+                   "a %" PRId64 " x %" PRId64 " matrix is not square", A->nrow,
+                   A->ncol);
+    RITZ_CHECK_NEW(a, A->nrow);
+    RITZ_CHECK(copy_diagonal(A, a));
+    RITZ_CHECK_NEW(F, 1);
+    RITZ_CHECK(factorise_sparse(F, A));
+    RITZ_CHECK(judge_pivots(F, a, weak));
     *out = F;
     F = NULL;
-done:
-    free(a);
-    ritz_factor_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)

@@ -19,49 +19,45 @@
 /* E = L L' in place, its lower triangle; false if it cannot be trusted. */
 static ritz_status factor_cholesky(ritz_dense *E, bool *good)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)E->nrow;
-    double *root = NULL;
+    RITZ_OWN_ARRAY double *root = NULL;
     double norm = 0.0, rcond = 0.0;
 
     *good = false;
-    RITZ_NEW(root, n);
+    RITZ_CHECK_NEW(root, n);
     for (int64_t i = 0; i < n; i++) {
         root[i] = sqrt(ritz_dense_col(E, i)[i]);
         if (!(root[i] > 0.0))
-            goto done;
+            return RITZ_OK;
     }
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(E, j)[i] /= root[i] * root[j];
     norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', n, E->val, n);
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, E->val, n) != 0)
-        goto done;
+        return RITZ_OK;
     (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, E->val, n, norm, &rcond);
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = j; i < n; i++)
             ritz_dense_col(E, j)[i] *= root[i];
     *good = rcond > RITZ_FRAME_CONDITION;
-done:
-    free(root);
-    return status;
+    return RITZ_OK;
 }
 
 /* A := L^-1 A L^-T, symmetric if A is, if E is symmetric and definite. */
 static ritz_status reduce_pencil(const ritz_dense *A, const ritz_dense *E,
                                  ritz_frame *f, bool *reduced)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense L = {0};
+    RITZ_OWN(ritz_dense) L = {0};
     int n = (int)E->nrow;
 
     *reduced = false;
     if (ritz_dense_asymmetry(E) > RITZ_SYMMETRIC_SUMS)
-        goto done;
-    RITZ_TRY(ritz_dense_copy(E, &L));
-    RITZ_TRY(factor_cholesky(&L, reduced));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_copy(E, &L));
+    RITZ_CHECK(factor_cholesky(&L, reduced));
     if (!*reduced)
-        goto done;
+        return RITZ_OK;
     cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans,
                 CblasNonUnit, n, n, 1.0, L.val, n, f->A.val, n);
     cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
@@ -70,9 +66,7 @@ static ritz_status reduce_pencil(const ritz_dense *A, const ritz_dense *E,
         ritz_dense_symmetrise(&f->A);
     f->L = L;
     L = (ritz_dense){0};
-done:
-    ritz_dense_free(&L);
-    return status;
+    return RITZ_OK;
 }
 
 static double size_of(const ritz_dense *A)
@@ -116,18 +110,17 @@ static ritz_status scale_frame(ritz_frame *f)
  */
 static ritz_status balance_frame(ritz_frame *f)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = f->A.nrow;
-    ritz_dense A = {0}, E = {0};
+    RITZ_OWN(ritz_dense) A = {0}, E = {0};
     double most = 0.0;
 
-    RITZ_NEW(f->right, n);
-    RITZ_NEW(f->left, n);
-    RITZ_TRY(ritz_dense_copy(&f->A, &A));
+    RITZ_CHECK_NEW(f->right, n);
+    RITZ_CHECK_NEW(f->left, n);
+    RITZ_CHECK(ritz_dense_copy(&f->A, &A));
     if (f->E.val)
-        RITZ_TRY(ritz_dense_copy(&f->E, &E));
+        RITZ_CHECK(ritz_dense_copy(&f->E, &E));
     if (n > 0)
-        RITZ_TRY(scale_frame(f));
+        RITZ_CHECK(scale_frame(f));
     most = RITZ_FRAME_GROWTH * least_of(n, f->left) * least_of(n, f->right);
     if (n > 0 && (size_of(&f->A) > most * size_of(&A) ||
                   (E.val && size_of(&f->E) > most * size_of(&E)))) {
@@ -137,30 +130,24 @@ static ritz_status balance_frame(ritz_frame *f)
         for (int64_t i = 0; i < n; i++)
             f->left[i] = f->right[i] = 1.0;
     }
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&E);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_frame_new(const ritz_dense *A, const ritz_dense *E,
                            ritz_frame *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_frame f = {0};
+    RITZ_OWN(ritz_frame) f = {0};
     bool reduced = true;
 
-    RITZ_TRY(ritz_dense_copy(A, &f.A));
+    RITZ_CHECK(ritz_dense_copy(A, &f.A));
     if (E->val)
-        RITZ_TRY(reduce_pencil(A, E, &f, &reduced));
+        RITZ_CHECK(reduce_pencil(A, E, &f, &reduced));
     if (!reduced)
-        RITZ_TRY(ritz_dense_copy(E, &f.E));
-    RITZ_TRY(balance_frame(&f));
+        RITZ_CHECK(ritz_dense_copy(E, &f.E));
+    RITZ_CHECK(balance_frame(&f));
     *out = f;
     f = (ritz_frame){0};
-done:
-    ritz_frame_free(&f);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_frame_turn_back(const ritz_frame *f, const double *scale,
@@ -194,25 +181,20 @@ ritz_status ritz_frame_system(const ritz_dense *A, const ritz_dense *E,
                               ritz_dense *out_A, ritz_dense *out_B,
                               ritz_dense *out_C)
 {
-    ritz_status status = RITZ_OK;
-    ritz_frame frame = {0};
-    ritz_dense one = {0}, back = {0};
+    RITZ_OWN(ritz_frame) frame = {0};
+    RITZ_OWN(ritz_dense) one = {0}, back = {0};
 
-    RITZ_TRY(ritz_frame_new(A, E, &frame));
-    RITZ_TRY(ritz_dense_copy(&frame.A, out_A));
-    RITZ_TRY(ritz_frame_forward(&frame, frame.left, B, out_B));
-    RITZ_TRY(ritz_general_transpose(C, &one));
-    RITZ_TRY(ritz_frame_forward(&frame, frame.right, &one, &back));
-    RITZ_TRY(ritz_general_transpose(&back, out_C));
+    RITZ_CHECK(ritz_frame_new(A, E, &frame));
+    RITZ_CHECK(ritz_dense_copy(&frame.A, out_A));
+    RITZ_CHECK(ritz_frame_forward(&frame, frame.left, B, out_B));
+    RITZ_CHECK(ritz_general_transpose(C, &one));
+    RITZ_CHECK(ritz_frame_forward(&frame, frame.right, &one, &back));
+    RITZ_CHECK(ritz_general_transpose(&back, out_C));
     if (frame.E.val && A->nrow > 0) {
-        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, out_A));
-        RITZ_TRY_IN("E", ritz_general_solve(&frame.E, false, out_B));
+        RITZ_CHECK_IN("E", ritz_general_solve(&frame.E, false, out_A));
+        RITZ_CHECK_IN("E", ritz_general_solve(&frame.E, false, out_B));
     }
-done:
-    ritz_frame_free(&frame);
-    ritz_dense_free(&one);
-    ritz_dense_free(&back);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_frame_free(ritz_frame *f)

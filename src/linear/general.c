@@ -24,30 +24,26 @@ static int larger_of(int64_t a, int64_t b)
 ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
-    ritz_dense LU = {0};
-    lapack_int *pivot = NULL;
+    RITZ_OWN(ritz_dense) LU = {0};
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     double norm = 0.0;
     double rcond = 0.0;
 
-    RITZ_FAIL_IF(A->nrow != A->ncol || X->nrow != A->nrow, RITZ_ERR_ARGUMENT,
-                 "a system of equations is not square");
+    RITZ_REFUSE_IF(A->nrow != A->ncol || X->nrow != A->nrow, RITZ_ERR_ARGUMENT,
+                   "a system of equations is not square");
     if (n == 0 || X->ncol == 0)
-        goto done;
-    RITZ_TRY(ritz_dense_copy(A, &LU));
-    RITZ_NEW(pivot, n);
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_copy(A, &LU));
+    RITZ_CHECK_NEW(pivot, n);
     norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, LU.val, n);
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, LU.val, n, pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, LU.val, n, norm, &rcond);
-    RITZ_FAIL_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
-                 "a matrix is singular to working accuracy");
+    RITZ_REFUSE_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
+                   "a matrix is singular to working accuracy");
     (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, transposed ? 'T' : 'N', n,
                          (int)X->ncol, LU.val, n, pivot, X->val, n);
-done:
-    ritz_dense_free(&LU);
-    free(pivot);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out)
@@ -62,36 +58,30 @@ ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out)
 ritz_status ritz_general_svd(const ritz_dense *A, ritz_dense *U, double **s,
                              ritz_dense *V)
 {
-    ritz_status status = RITZ_OK;
     int m = (int)A->nrow;
     int n = (int)A->ncol;
     int p = m < n ? m : n;
-    ritz_dense copy = {0}, left = {0}, right = {0};
-    double *values = NULL;
+    RITZ_OWN(ritz_dense) copy = {0}, left = {0}, right = {0};
+    RITZ_OWN_ARRAY double *values = NULL;
     int info = 0;
 
-    RITZ_NEW(values, p);
-    RITZ_TRY(ritz_dense_copy(A, &copy));
-    RITZ_TRY(ritz_dense_new(m, V ? m : p, &left));
-    RITZ_TRY(ritz_dense_new(V ? n : p, n, &right));
+    RITZ_CHECK_NEW(values, p);
+    RITZ_CHECK(ritz_dense_copy(A, &copy));
+    RITZ_CHECK(ritz_dense_new(m, V ? m : p, &left));
+    RITZ_CHECK(ritz_dense_new(V ? n : p, n, &right));
     if (p > 0)
         info =
             LAPACKE_dgesdd(LAPACK_COL_MAJOR, V ? 'A' : 'S', m, n, copy.val, m,
                            values, left.val, m, right.val, (int)right.nrow);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values did not converge");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "singular values did not converge");
     if (V)
-        RITZ_TRY(ritz_general_transpose(&right, V));
+        RITZ_CHECK(ritz_general_transpose(&right, V));
     *U = left;
     *s = values;
     left = (ritz_dense){0};
     values = NULL;
-done:
-    ritz_dense_free(&copy);
-    ritz_dense_free(&left);
-    ritz_dense_free(&right);
-    free(values);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_general_singular(ritz_dense *A, double *sigma)
@@ -108,58 +98,47 @@ ritz_status ritz_general_singular(ritz_dense *A, double *sigma)
 
 ritz_status ritz_general_norm(ritz_dense *A, double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t k = A->nrow < A->ncol ? A->nrow : A->ncol;
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
-    RITZ_NEW(sigma, k);
-    RITZ_TRY(ritz_general_singular(A, sigma));
+    RITZ_CHECK_NEW(sigma, k);
+    RITZ_CHECK(ritz_general_singular(A, sigma));
     *out = k > 0 ? sigma[0] : 0.0;
-done:
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
                                  ritz_dense *U)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)A->nrow;
     int m = (int)B->ncol;
     int room = larger_of(1, 4 * A->nrow * 32 + B->ncol);
     int info = 0;
     double scale = 1.0;
-    ritz_dense S = {0}, Q = {0}, X = {0}, factor = {0};
-    double *work = NULL, *re = NULL, *im = NULL;
+    RITZ_OWN(ritz_dense) S = {0}, Q = {0}, X = {0}, factor = {0};
+    RITZ_OWN_ARRAY double *work = NULL, *re = NULL, *im = NULL;
 
-    RITZ_NEW(work, room);
-    RITZ_NEW(re, n);
-    RITZ_NEW(im, n);
-    RITZ_TRY(ritz_dense_copy(A, &S));
-    RITZ_TRY(ritz_dense_new(n, n, &Q));
-    RITZ_TRY(ritz_dense_new(n, larger_of(m, n), &X));
-    RITZ_TRY(ritz_dense_new(n, n, &factor));
+    RITZ_CHECK_NEW(work, room);
+    RITZ_CHECK_NEW(re, n);
+    RITZ_CHECK_NEW(im, n);
+    RITZ_CHECK(ritz_dense_copy(A, &S));
+    RITZ_CHECK(ritz_dense_new(n, n, &Q));
+    RITZ_CHECK(ritz_dense_new(n, larger_of(m, n), &X));
+    RITZ_CHECK(ritz_dense_new(n, n, &factor));
     for (int64_t k = 0; k < B->nrow * B->ncol; k++)
         X.val[k] = B->val[k];
     if (n > 0)
         sb03od_("C", "N", "T", &n, &m, S.val, &n, Q.val, &n, X.val, &n, &scale,
                 re, im, work, &room, &info, 1, 1, 1);
-    RITZ_FAIL_IF(info < 0 || info > 3, RITZ_ERR_CONVERGENCE,
-                 "the Lyapunov equation was not solved, SLICOT says %d", info);
-    RITZ_FAIL_IF(info > 1, RITZ_ERR_ARGUMENT,
-                 "a Gramian is infinite: a pole is not stable");
+    RITZ_REFUSE_IF(info < 0 || info > 3, RITZ_ERR_CONVERGENCE,
+                   "the Lyapunov equation was not solved, SLICOT says %d",
+                   info);
+    RITZ_REFUSE_IF(info > 1, RITZ_ERR_ARGUMENT,
+                   "a Gramian is infinite: a pole is not stable");
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i <= j; i++)
             ritz_dense_col(&factor, j)[i] = ritz_dense_col(&X, j)[i] / scale;
     *U = factor;
     factor = (ritz_dense){0};
-done:
-    free(work);
-    free(re);
-    free(im);
-    ritz_dense_free(&S);
-    ritz_dense_free(&Q);
-    ritz_dense_free(&X);
-    ritz_dense_free(&factor);
-    return status;
+    return RITZ_OK;
 }

@@ -131,15 +131,11 @@ ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
                                     bool transposed, const ritz_dense *B,
                                     ritz_dense *F)
 {
-    ritz_status status = RITZ_OK;
-    equation e = {.transposed = transposed, .scale = 1.0};
+    RITZ_OWN(equation) e = {.transposed = transposed, .scale = 1.0};
 
     if (S->nrow == 0 || B->ncol == 0)
         return ritz_dense_new(S->nrow, S->nrow, F);
-    RITZ_TRY(prepare_equation(S, P, B, &e));
-    RITZ_TRY(solve_equation(&e));
-    RITZ_TRY(take_triangle(&e, F));
-done:
-    equation_free(&e);
-    return status;
+    RITZ_CHECK(prepare_equation(S, P, B, &e));
+    RITZ_CHECK(solve_equation(&e));
+    return take_triangle(&e, F);
 }

@@ -81,21 +81,18 @@ static ritz_status factorise_mumps(ritz_ldl *F)
 ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
                          ritz_ldl **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ldl *F = NULL;
+    RITZ_OWN(ritz_ldl) *F = NULL;
 
-    RITZ_NEW(F, 1);
-    RITZ_TRY(ritz_mumps_unite(1, &A, false, &F->pattern));
-    RITZ_TRY(copy_values(A, F->pattern.nnz, &F->val));
+    RITZ_CHECK_NEW(F, 1);
+    RITZ_CHECK(ritz_mumps_unite(1, &A, false, &F->pattern));
+    RITZ_CHECK(copy_values(A, F->pattern.nnz, &F->val));
     if (A->nrow > 0)
-        RITZ_TRY(factorise_mumps(F));
+        RITZ_CHECK(factorise_mumps(F));
     if (negative)
         *negative = A->nrow > 0 ? F->id.infog[NEGATIVE_PIVOTS] : 0;
     *out = F;
     F = NULL;
-done:
-    ritz_ldl_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)

@@ -74,25 +74,21 @@ static ritz_status unite_column(const ritz_sparse *A, int64_t j, bool whole,
 ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
                              bool whole, ritz_mumps_pattern *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_mumps_pattern P = {0};
-    int64_t *mark = NULL;
+    RITZ_OWN(ritz_mumps_pattern) P = {0};
+    RITZ_OWN_ARRAY int64_t *mark = NULL;
     int64_t room = 0;
 
-    RITZ_TRY(check_sizes(count, A, &room));
+    RITZ_CHECK(check_sizes(count, A, &room));
     P.n = A[0]->nrow;
-    RITZ_NEW(mark, P.n);
-    RITZ_NEW(P.row, room);
-    RITZ_NEW(P.col, room);
+    RITZ_CHECK_NEW(mark, P.n);
+    RITZ_CHECK_NEW(P.row, room);
+    RITZ_CHECK_NEW(P.col, room);
     for (int64_t j = 0; j < P.n; j++)
         for (int64_t k = 0; k < count; k++)
-            RITZ_TRY(unite_column(A[k], j, whole, mark, &P));
+            RITZ_CHECK(unite_column(A[k], j, whole, mark, &P));
     *out = P;
     P = (ritz_mumps_pattern){0};
-done:
-    free(mark);
-    ritz_mumps_pattern_free(&P);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_mumps_pattern_free(ritz_mumps_pattern *P)
@@ -180,10 +176,9 @@ static double magnitude_of(const double *val, int64_t k, int width)
 static ritz_status equilibrate_rows(const ritz_mumps_pattern *P,
                                     const double *val, int width, double *s)
 {
-    ritz_status status = RITZ_OK;
-    double *largest = NULL;
+    RITZ_OWN_ARRAY double *largest = NULL;
 
-    RITZ_NEW(largest, P->n);
+    RITZ_CHECK_NEW(largest, P->n);
     for (int64_t i = 0; i < P->n; i++)
         s[i] = 1.0;
     for (int e = 0; e < EQUILIBRATIONS; e++) {
@@ -200,9 +195,7 @@ static ritz_status equilibrate_rows(const ritz_mumps_pattern *P,
         for (int64_t i = 0; i < P->n; i++)
             s[i] /= largest[i] > 0.0 ? sqrt(largest[i]) : 1.0;
     }
-done:
-    free(largest);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_mumps_solve(const ritz_mumps *mumps, int64_t n, int64_t k,
@@ -243,27 +236,23 @@ static void divide_rows(const double *s, int64_t count, int width, double *y)
 ritz_status ritz_mumps_judge(const ritz_mumps *mumps,
                              const ritz_mumps_pattern *P, const double *val)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = P->n * mumps->width;
     double smallest = HUGE_VAL;
-    double *s = NULL;
-    double *y = NULL;
+    RITZ_OWN_ARRAY double *s = NULL;
+    RITZ_OWN_ARRAY double *y = NULL;
 
-    RITZ_NEW(s, P->n);
-    RITZ_NEW(y, count);
-    RITZ_TRY(equilibrate_rows(P, val, mumps->width, s));
+    RITZ_CHECK_NEW(s, P->n);
+    RITZ_CHECK_NEW(y, count);
+    RITZ_CHECK(equilibrate_rows(P, val, mumps->width, s));
     start_vector(count, y);
     normalise_vector(count, y);
     for (int k = 0; k < SWEEPS && P->n > 0; k++) {
         divide_rows(s, count, mumps->width, y);
-        RITZ_TRY(ritz_mumps_solve(mumps, P->n, 1, y));
+        RITZ_CHECK(ritz_mumps_solve(mumps, P->n, 1, y));
         divide_rows(s, count, mumps->width, y);
         smallest = 1.0 / normalise_vector(count, y);
     }
-    RITZ_FAIL_IF(!(smallest > RITZ_SINGULAR_LDL), RITZ_ERR_SINGULAR,
-                 "the matrix is singular to working accuracy");
-done:
-    free(s);
-    free(y);
-    return status;
+    RITZ_REFUSE_IF(!(smallest > RITZ_SINGULAR_LDL), RITZ_ERR_SINGULAR,
+                   "the matrix is singular to working accuracy");
+    return RITZ_OK;
 }

@@ -27,18 +27,15 @@
 static ritz_status weigh_columns(const ritz_sparse *W, const ritz_dense *R,
                                  ritz_dense *WR)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense product = {0};
+    RITZ_OWN(ritz_dense) product = {0};
 
     if (R->nrow * R->ncol == 0)
         return RITZ_OK;
     if (W)
-        RITZ_TRY(ritz_sparse_mul(W, R, &product));
+        RITZ_CHECK(ritz_sparse_mul(W, R, &product));
     memcpy(WR->val, W ? product.val : R->val,
            (size_t)(R->nrow * R->ncol) * sizeof *R->val);
-done:
-    ritz_dense_free(&product);
-    return status;
+    return RITZ_OK;
 }
 
 /* * Pivoted Cholesky of G, which it destroys, diagonal one: order[] are its
@@ -101,23 +98,20 @@ static ritz_status factor_cholesky(ritz_dense *G)
 static ritz_status normalise_columns(const ritz_sparse *W, ritz_dense *Q,
                                      ritz_dense *WQ)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense G = {0};
+    RITZ_OWN(ritz_dense) G = {0};
     int n = (int)Q->nrow;
     int p = (int)Q->ncol;
 
     for (int pass = 0; pass < 2; pass++) {
-        RITZ_TRY(ritz_dense_mul_tn(Q, WQ, &G));
+        RITZ_CHECK(ritz_dense_mul_tn(Q, WQ, &G));
         ritz_dense_symmetrise(&G);
-        RITZ_TRY(factor_cholesky(&G));
+        RITZ_CHECK(factor_cholesky(&G));
         cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans,
                     CblasNonUnit, n, p, 1.0, G.val, p, Q->val, n);
-        RITZ_TRY(weigh_columns(W, Q, WQ));
+        RITZ_CHECK(weigh_columns(W, Q, WQ));
         ritz_dense_free(&G);
     }
-done:
-    ritz_dense_free(&G);
-    return status;
+    return RITZ_OK;
 }
 
 enum { MOST_PASSES = 8 };
@@ -158,17 +152,13 @@ static void subtract_product(const ritz_dense *B, const ritz_dense *H,
 /* R := R - V (WV)' R */
 static ritz_status project_out(const ritz_orthonormal *set, column_block *b)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense V = ritz_dense_part(&set->V, 0, set->count);
     const ritz_dense WV = ritz_dense_part(&set->WV, 0, set->count);
-    ritz_dense H = {0};
+    RITZ_OWN(ritz_dense) H = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(&WV, &b->R, &H));
+    RITZ_CHECK(ritz_dense_mul_tn(&WV, &b->R, &H));
     subtract_product(&V, &H, &b->R);
-    RITZ_TRY(weigh_columns(set->W, &b->R, &b->WR));
-done:
-    ritz_dense_free(&H);
-    return status;
+    return weigh_columns(set->W, &b->R, &b->WR);
 }
 
 /* Whether a column that is not nothing yet has lost half its energy. */
@@ -190,20 +180,17 @@ static bool still_falls(const column_block *b, const double *before,
 static ritz_status orthogonalise_block(const ritz_orthonormal *set,
                                        column_block *b)
 {
-    ritz_status status = RITZ_OK;
-    double *before = NULL;
+    RITZ_OWN_ARRAY double *before = NULL;
     bool falls = set->count > 0 && b->R.ncol > 0;
 
-    RITZ_NEW(before, b->R.ncol);
+    RITZ_CHECK_NEW(before, b->R.ncol);
     for (int pass = 0; pass < MOST_PASSES && falls; pass++) {
         for (int64_t j = 0; j < b->R.ncol; j++)
             before[j] = ritz_dense_dot(&b->R, j, &b->WR, j);
-        RITZ_TRY(project_out(set, b));
+        RITZ_CHECK(project_out(set, b));
         falls = pass == 0 || still_falls(b, before, set->tolerance);
     }
-done:
-    free(before);
-    return status;
+    return RITZ_OK;
 }
 
 /* Scale what is left to one; columns of which nothing is left are dropped. */
@@ -326,19 +313,15 @@ static ritz_status take_columns(ritz_orthonormal *set, column_block *b,
 static ritz_status go_round(ritz_orthonormal *set, column_block *b,
                             int64_t most, int64_t *order, bool *taken)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense G = {0};
+    RITZ_OWN(ritz_dense) G = {0};
 
-    RITZ_TRY(orthogonalise_block(set, b));
+    RITZ_CHECK(orthogonalise_block(set, b));
     drop_columns(b, set->tolerance);
     if (b->R.ncol == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_mul_tn(&b->R, &b->WR, &G));
+    RITZ_CHECK(ritz_dense_mul_tn(&b->R, &b->WR, &G));
     ritz_dense_symmetrise(&G);
-    RITZ_TRY(take_columns(set, b, find_pivots(&G, most, order), order, taken));
-done:
-    ritz_dense_free(&G);
-    return status;
+    return take_columns(set, b, find_pivots(&G, most, order), order, taken);
 }
 
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
@@ -381,16 +364,13 @@ done:
 ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
                                  double tolerance, ritz_orthonormal *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_orthonormal set = {.W = W, .tolerance = tolerance};
+    RITZ_OWN(ritz_orthonormal) set = {.W = W, .tolerance = tolerance};
 
-    RITZ_TRY(ritz_dense_new(n, 0, &set.V));
-    RITZ_TRY(ritz_dense_new(n, 0, &set.WV));
+    RITZ_CHECK(ritz_dense_new(n, 0, &set.V));
+    RITZ_CHECK(ritz_dense_new(n, 0, &set.WV));
     *out = set;
     set = (ritz_orthonormal){0};
-done:
-    ritz_orthonormal_free(&set);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_orthonormal_free(ritz_orthonormal *set)

@@ -83,18 +83,15 @@ static ritz_status turn_columns(const pivoted *f, const ritz_dense *V,
 /* D of X */
 static ritz_status row_lengths(const ritz_dense *X, double **out)
 {
-    ritz_status status = RITZ_OK;
-    double *length = NULL;
+    RITZ_OWN_ARRAY double *length = NULL;
 
-    RITZ_NEW(length, X->nrow);
+    RITZ_CHECK_NEW(length, X->nrow);
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < X->nrow; i++)
             length[i] = hypot(length[i], ritz_dense_col(X, j)[i]);
     *out = length;
     length = NULL;
-done:
-    free(length);
-    return status;
+    return RITZ_OK;
 }
 
 /* (D Y)' */
@@ -181,52 +178,43 @@ static ritz_status rotate_columns(ritz_dense *G, bool vectors, double *s,
 static ritz_status find_svd(const ritz_dense *X, const ritz_dense *Y,
                             bool vectors, ritz_product_svd *out)
 {
-    ritz_status status = RITZ_OK;
-    pivoted of_Y = {0}, of_F = {0};
-    ritz_dense G = {0}, U = {0}, V = {0};
-    double *length = NULL;
+    RITZ_OWN(pivoted) of_Y = {0}, of_F = {0};
+    RITZ_OWN(ritz_dense) G = {0}, U = {0}, V = {0};
+    RITZ_OWN_ARRAY double *length = NULL;
 
     if (Y->ncol == 0 || Y->nrow == 0) { /* there is nothing to factor */
-        RITZ_TRY(ritz_dense_new(X->ncol, 0, &out->U));
+        RITZ_CHECK(ritz_dense_new(X->ncol, 0, &out->U));
         return ritz_dense_new(Y->ncol, 0, &out->V);
     }
-    RITZ_TRY(row_lengths(X, &length));
-    RITZ_TRY(scale_rows(Y, length, &of_Y.A));
-    RITZ_TRY(factor_pivoted(&of_Y));
+    RITZ_CHECK(row_lengths(X, &length));
+    RITZ_CHECK(scale_rows(Y, length, &of_Y.A));
+    RITZ_CHECK(factor_pivoted(&of_Y));
     out->count = of_Y.rank;
-    RITZ_NEW(out->s, out->count);
-    RITZ_TRY(multiply_scaled(X, length, &of_Y, &of_F.A));
-    RITZ_TRY(factor_pivoted(&of_F));
-    RITZ_TRY(compress_factor(&of_F, &G));
+    RITZ_CHECK_NEW(out->s, out->count);
+    RITZ_CHECK(multiply_scaled(X, length, &of_Y, &of_F.A));
+    RITZ_CHECK(factor_pivoted(&of_F));
+    RITZ_CHECK(compress_factor(&of_F, &G));
     out->rank = of_F.rank;
-    RITZ_TRY(rotate_columns(&G, vectors, out->s, &U, &V));
+    RITZ_CHECK(rotate_columns(&G, vectors, out->s, &U, &V));
     if (vectors) {
-        RITZ_TRY(turn_columns(&of_F, &V, &out->U));
-        RITZ_TRY(turn_columns(&of_Y, &U, &out->V));
+        RITZ_CHECK(turn_columns(&of_F, &V, &out->U));
+        RITZ_CHECK(turn_columns(&of_Y, &U, &out->V));
     }
-done:
-    pivoted_free(&of_Y);
-    pivoted_free(&of_F);
-    ritz_dense_free(&G);
-    ritz_dense_free(&U);
-    ritz_dense_free(&V);
-    free(length);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_product_svd_new(const ritz_dense *X, const ritz_dense *Y,
                                  bool vectors, ritz_product_svd *out)
 {
-    ritz_status status = RITZ_OK;
     bool swap = X->ncol < Y->ncol;
-    ritz_product_svd svd = {0};
+    RITZ_OWN(ritz_product_svd) svd = {0};
     ritz_dense U = {0};
 
-    RITZ_FAIL_IF(X->nrow != Y->nrow, RITZ_ERR_ARGUMENT,
-                 "the factors of a product do not fit each other");
-    RITZ_TRY(check_factor(X));
-    RITZ_TRY(check_factor(Y));
-    RITZ_TRY(find_svd(swap ? Y : X, swap ? X : Y, vectors, &svd));
+    RITZ_REFUSE_IF(X->nrow != Y->nrow, RITZ_ERR_ARGUMENT,
+                   "the factors of a product do not fit each other");
+    RITZ_CHECK(check_factor(X));
+    RITZ_CHECK(check_factor(Y));
+    RITZ_CHECK(find_svd(swap ? Y : X, swap ? X : Y, vectors, &svd));
     if (swap) {
         U = svd.U;
         svd.U = svd.V;
@@ -234,9 +222,7 @@ ritz_status ritz_product_svd_new(const ritz_dense *X, const ritz_dense *Y,
     }
     *out = svd;
     svd = (ritz_product_svd){0};
-done:
-    ritz_product_svd_free(&svd);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_product_svd_free(ritz_product_svd *svd)

@@ -70,24 +70,21 @@ ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
                                const ritz_dense *B, const ritz_dense *C,
                                ritz_resolvent *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_resolvent r = {
-        .n = (int)A->nrow, .m = (int)B->ncol, .p = (int)C->nrow};
+    RITZ_OWN(ritz_resolvent)
+    r = {.n = (int)A->nrow, .m = (int)B->ncol, .p = (int)C->nrow};
 
-    RITZ_TRY(widen_matrix(A, &r.S));
+    RITZ_CHECK(widen_matrix(A, &r.S));
     if (P->val)
-        RITZ_TRY(widen_matrix(P, &r.P));
-    RITZ_TRY(widen_matrix(B, &r.B));
-    RITZ_TRY(widen_matrix(C, &r.C));
-    RITZ_NEW(r.T, (int64_t)r.n * r.n);
-    RITZ_NEW(r.X, (int64_t)r.n * r.m);
+        RITZ_CHECK(widen_matrix(P, &r.P));
+    RITZ_CHECK(widen_matrix(B, &r.B));
+    RITZ_CHECK(widen_matrix(C, &r.C));
+    RITZ_CHECK_NEW(r.T, (int64_t)r.n * r.n);
+    RITZ_CHECK_NEW(r.X, (int64_t)r.n * r.m);
     if (r.n > 0)
-        RITZ_TRY(triangularise_pencil(&r));
+        RITZ_CHECK(triangularise_pencil(&r));
     *out = r;
     r = (ritz_resolvent){0};
-done:
-    ritz_resolvent_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 double _Complex ritz_resolvent_pole(const ritz_resolvent *resolvent, int64_t k)

@@ -79,13 +79,12 @@ static double cosine_of(const vectors *v, int64_t k, bool pair)
 
 static ritz_status find_errors(ritz_schur *schur)
 {
-    ritz_status status = RITZ_OK;
-    vectors v = {0};
+    RITZ_OWN(vectors) v = {0};
     double size = frobenius_norm(&schur->S);
     double size_of_E = schur->T.val ? frobenius_norm(&schur->T) : 0.0;
     int64_t step = 1;
 
-    RITZ_TRY(find_vectors(schur, &v));
+    RITZ_CHECK(find_vectors(schur, &v));
     for (int64_t k = 0; k < schur->count; k += step) {
         bool pair = k + 1 < schur->count && schur->im[k] != 0.0;
         double lambda = hypot(schur->re[k], schur->im[k]);
@@ -98,9 +97,7 @@ static ritz_status find_errors(ritz_schur *schur)
         for (int64_t i = k; i < k + step; i++)
             schur->error[i] = DBL_EPSILON * moves / fmax(s, least);
     }
-done:
-    vectors_free(&v);
-    return status;
+    return RITZ_OK;
 }
 
 /* A symmetric matrix has its eigenvectors for Schur vectors. */
@@ -153,46 +150,39 @@ static ritz_status divide_eigenvalues(ritz_schur *schur, const double *beta)
 
 static ritz_status factor_pair(const ritz_dense *E, ritz_schur *schur)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)schur->count;
     lapack_int none = 0;
-    double *beta = NULL;
+    RITZ_OWN_ARRAY double *beta = NULL;
 
-    RITZ_NEW(beta, n);
-    RITZ_TRY(ritz_dense_copy(E, &schur->T));
-    RITZ_TRY(ritz_dense_new(n, n, &schur->Z));
-    RITZ_FAIL_IF(LAPACKE_dgges(LAPACK_COL_MAJOR, 'V', 'V', 'N', NULL, n,
-                               schur->S.val, n, schur->T.val, n, &none,
-                               schur->re, schur->im, beta, schur->Q.val, n,
-                               schur->Z.val, n) != 0,
-                 RITZ_ERR_CONVERGENCE, "poles were not found");
-    RITZ_TRY(divide_eigenvalues(schur, beta));
-    RITZ_TRY(find_errors(schur));
-done:
-    free(beta);
-    return status;
+    RITZ_CHECK_NEW(beta, n);
+    RITZ_CHECK(ritz_dense_copy(E, &schur->T));
+    RITZ_CHECK(ritz_dense_new(n, n, &schur->Z));
+    RITZ_REFUSE_IF(LAPACKE_dgges(LAPACK_COL_MAJOR, 'V', 'V', 'N', NULL, n,
+                                 schur->S.val, n, schur->T.val, n, &none,
+                                 schur->re, schur->im, beta, schur->Q.val, n,
+                                 schur->Z.val, n) != 0,
+                   RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_CHECK(divide_eigenvalues(schur, beta));
+    return find_errors(schur);
 }
 
 ritz_status ritz_schur_new(const ritz_dense *A, const ritz_dense *E,
                            ritz_schur *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_schur schur = {.count = A->nrow};
+    RITZ_OWN(ritz_schur) schur = {.count = A->nrow};
 
-    RITZ_TRY(ritz_dense_copy(A, &schur.S));
-    RITZ_TRY(ritz_dense_new(A->nrow, A->nrow, &schur.Q));
-    RITZ_NEW(schur.re, A->nrow);
-    RITZ_NEW(schur.im, A->nrow);
-    RITZ_NEW(schur.error, A->nrow);
+    RITZ_CHECK(ritz_dense_copy(A, &schur.S));
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, &schur.Q));
+    RITZ_CHECK_NEW(schur.re, A->nrow);
+    RITZ_CHECK_NEW(schur.im, A->nrow);
+    RITZ_CHECK_NEW(schur.error, A->nrow);
     if (A->nrow > 0 && E && E->val)
-        RITZ_TRY(factor_pair(E, &schur));
+        RITZ_CHECK(factor_pair(E, &schur));
     else if (A->nrow > 0)
-        RITZ_TRY(factor_schur(&schur));
+        RITZ_CHECK(factor_schur(&schur));
     *out = schur;
     schur = (ritz_schur){0};
-done:
-    ritz_schur_free(&schur);
-    return status;
+    return RITZ_OK;
 }
 
 /* Work space is ours: LAPACKE gives none where LAPACK reports its size. */

@@ -46,18 +46,15 @@ static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
 static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
                                   double *theta)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AQ = {0};
+    RITZ_OWN(ritz_dense) AQ = {0};
 
-    RITZ_TRY(ritz_dense_mul(A_r, Q, &AQ));
+    RITZ_CHECK(ritz_dense_mul(A_r, Q, &AQ));
     for (int64_t j = 0; j < Q->ncol; j++) {
         theta[j] = 0.0;
         for (int64_t i = 0; i < Q->nrow; i++)
             theta[j] += ritz_dense_col(Q, j)[i] * ritz_dense_col(&AQ, j)[i];
     }
-done:
-    ritz_dense_free(&AQ);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -69,30 +66,23 @@ done:
 ritz_status ritz_shifted_polish(const ritz_shifted *S, ritz_dense *X,
                                 double *lambda)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense MX = {0}, MY = {0}, A_r = {0}, M_r = {0};
-    ritz_pairs small = {0};
+    RITZ_OWN(ritz_dense) MX = {0}, MY = {0}, A_r = {0}, M_r = {0};
+    RITZ_OWN(ritz_pairs) small = {0};
 
-    RITZ_TRY(ritz_sparse_mul(S->M, X, &MX));
+    RITZ_CHECK(ritz_sparse_mul(S->M, X, &MX));
     memcpy(X->val, MX.val, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
-    RITZ_TRY(ritz_factor_solve(S->A, X)); /* X is Y now */
-    RITZ_TRY(ritz_dense_mul_tn(X, &MX, &A_r));
-    RITZ_TRY(ritz_sparse_mul(S->M, X, &MY));
-    RITZ_TRY(ritz_dense_mul_tn(X, &MY, &M_r));
+    RITZ_CHECK(ritz_factor_solve(S->A, X)); /* X is Y now */
+    RITZ_CHECK(ritz_dense_mul_tn(X, &MX, &A_r));
+    RITZ_CHECK(ritz_sparse_mul(S->M, X, &MY));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &MY, &M_r));
     balance_projection(&A_r, &M_r, X);
-    RITZ_TRY(ritz_eigen_dense(&A_r, &M_r, &small));
-    RITZ_FAIL_IF(small.Phi.ncol < X->ncol, RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " eigenvectors depend on each other",
-                 X->ncol - small.Phi.ncol);
-    RITZ_TRY(rotate_vectors(&small.Phi, X));
-    RITZ_TRY(find_quotients(&A_r, &small.Phi, lambda));
+    RITZ_CHECK(ritz_eigen_dense(&A_r, &M_r, &small));
+    RITZ_REFUSE_IF(small.Phi.ncol < X->ncol, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " eigenvectors depend on each other",
+                   X->ncol - small.Phi.ncol);
+    RITZ_CHECK(rotate_vectors(&small.Phi, X));
+    RITZ_CHECK(find_quotients(&A_r, &small.Phi, lambda));
     for (int64_t j = 0; j < X->ncol; j++)
         lambda[j] += S->sigma;
-done:
-    ritz_dense_free(&MX);
-    ritz_dense_free(&MY);
-    ritz_dense_free(&A_r);
-    ritz_dense_free(&M_r);
-    ritz_pairs_free(&small);
-    return status;
+    return RITZ_OK;
 }

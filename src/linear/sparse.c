@@ -14,19 +14,16 @@
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
                             ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {.nrow = nrow, .ncol = ncol};
+    RITZ_OWN(ritz_sparse) A = {.nrow = nrow, .ncol = ncol};
 
-    RITZ_FAIL_IF(nrow < 0 || ncol < 0 || nnz < 0, RITZ_ERR_ARGUMENT,
-                 "a matrix cannot be %" PRId64 " x %" PRId64, nrow, ncol);
-    RITZ_NEW(A.colptr, ncol + 1);
-    RITZ_NEW(A.rowind, nnz);
-    RITZ_NEW(A.val, nnz);
+    RITZ_REFUSE_IF(nrow < 0 || ncol < 0 || nnz < 0, RITZ_ERR_ARGUMENT,
+                   "a matrix cannot be %" PRId64 " x %" PRId64, nrow, ncol);
+    RITZ_CHECK_NEW(A.colptr, ncol + 1);
+    RITZ_CHECK_NEW(A.rowind, nnz);
+    RITZ_CHECK_NEW(A.val, nnz);
     *out = A;
     A = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 /* Turn counts kept in start[1..n] into offsets start[0..n]. */
@@ -40,18 +37,15 @@ static void accumulate_counts(int64_t n, int64_t *start)
 static ritz_status sort_by_row(int64_t nrow, int64_t count, const int64_t *row,
                                int64_t *order)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *start = NULL;
+    RITZ_OWN_ARRAY int64_t *start = NULL;
 
-    RITZ_NEW(start, nrow + 1);
+    RITZ_CHECK_NEW(start, nrow + 1);
     for (int64_t k = 0; k < count; k++)
         start[row[k] + 1]++;
     accumulate_counts(nrow, start);
     for (int64_t k = 0; k < count; k++)
         order[start[row[k]]++] = k;
-done:
-    free(start);
-    return status;
+    return RITZ_OK;
 }
 
 /* Close the gaps that summing left: column j holds entries up to end[j]. */
@@ -75,28 +69,27 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
                                       const int64_t *row, const int64_t *col,
                                       const double *val, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
-    int64_t *order = NULL;
-    int64_t *end = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN_ARRAY int64_t *order = NULL;
+    RITZ_OWN_ARRAY int64_t *end = NULL;
 
     for (int64_t k = 0; k < count; k++)
-        RITZ_FAIL_IF(row[k] < 0 || row[k] >= nrow || col[k] < 0 ||
-                         col[k] >= ncol,
-                     RITZ_ERR_ARGUMENT,
-                     "entry (%" PRId64 ", %" PRId64 ") lies outside a %" PRId64
-                     " x %" PRId64 " matrix",
-                     row[k], col[k], nrow, ncol);
+        RITZ_REFUSE_IF(row[k] < 0 || row[k] >= nrow || col[k] < 0 ||
+                           col[k] >= ncol,
+                       RITZ_ERR_ARGUMENT,
+                       "entry (%" PRId64 ", %" PRId64
+                       ") lies outside a %" PRId64 " x %" PRId64 " matrix",
+                       row[k], col[k], nrow, ncol);
 
-    RITZ_NEW(order, count);
-    RITZ_TRY(sort_by_row(nrow, count, row, order));
-    RITZ_TRY(ritz_sparse_new(nrow, ncol, count, &A));
+    RITZ_CHECK_NEW(order, count);
+    RITZ_CHECK(sort_by_row(nrow, count, row, order));
+    RITZ_CHECK(ritz_sparse_new(nrow, ncol, count, &A));
     for (int64_t k = 0; k < count; k++)
         A.colptr[col[k] + 1]++;
     accumulate_counts(ncol, A.colptr);
 
     /* Rows arrive ascending, so entries to be summed meet as neighbours. */
-    RITZ_NEW(end, ncol);
+    RITZ_CHECK_NEW(end, ncol);
     memcpy(end, A.colptr, (size_t)ncol * sizeof *end);
     for (int64_t n = 0; n < count; n++) {
         int64_t k = order[n];
@@ -113,11 +106,7 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
     squeeze_zeros(&A, end);
     *out = A;
     A = (ritz_sparse){0};
-done:
-    free(order);
-    free(end);
-    ritz_sparse_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
@@ -248,11 +237,10 @@ static void add_product(double a, double x, double *y, double *low)
 ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
                                     ritz_dense *Y)
 {
-    ritz_status status = RITZ_OK;
-    double *low = NULL;
+    RITZ_OWN_ARRAY double *low = NULL;
 
-    RITZ_NEW(low, A->nrow);
-    RITZ_TRY(ritz_dense_new(A->nrow, X->ncol, Y));
+    RITZ_CHECK_NEW(low, A->nrow);
+    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
     for (int64_t k = 0; k < X->ncol; k++) {
         double *y = ritz_dense_col(Y, k);
 
@@ -265,9 +253,7 @@ ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
             low[i] = 0.0;
         }
     }
-done:
-    free(low);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_column(const ritz_sparse *A, int64_t j)
@@ -365,31 +351,26 @@ double ritz_sparse_skew(const ritz_sparse *A)
 
 ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
     ritz_sparse mean = {0};
     int64_t nnz = A->colptr[A->ncol];
-    int64_t *row = NULL;
-    int64_t *col = NULL;
-    double *half = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL;
+    RITZ_OWN_ARRAY int64_t *col = NULL;
+    RITZ_OWN_ARRAY double *half = NULL;
 
-    RITZ_NEW(row, 2 * nnz);
-    RITZ_NEW(col, 2 * nnz);
-    RITZ_NEW(half, 2 * nnz);
+    RITZ_CHECK_NEW(row, 2 * nnz);
+    RITZ_CHECK_NEW(col, 2 * nnz);
+    RITZ_CHECK_NEW(half, 2 * nnz);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             row[p] = col[nnz + p] = A->rowind[p];
             col[p] = row[nnz + p] = j;
             half[p] = half[nnz + p] = A->val[p] / 2.0;
         }
-    RITZ_TRY(ritz_sparse_from_triplets(A->nrow, A->ncol, 2 * nnz, row, col,
-                                       half, &mean));
+    RITZ_CHECK(ritz_sparse_from_triplets(A->nrow, A->ncol, 2 * nnz, row, col,
+                                         half, &mean));
     ritz_sparse_free(A);
     *A = mean;
-done:
-    free(row);
-    free(col);
-    free(half);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_sparse_free(ritz_sparse *A)
@@ -404,13 +385,12 @@ void ritz_sparse_free(ritz_sparse *A)
 
 ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t nnz = A->colptr[A->ncol];
-    ritz_sparse B = {0};
-    int64_t *next = NULL;
+    RITZ_OWN(ritz_sparse) B = {0};
+    RITZ_OWN_ARRAY int64_t *next = NULL;
 
-    RITZ_TRY(ritz_sparse_new(A->ncol, A->nrow, nnz, &B));
-    RITZ_NEW(next, A->nrow);
+    RITZ_CHECK(ritz_sparse_new(A->ncol, A->nrow, nnz, &B));
+    RITZ_CHECK_NEW(next, A->nrow);
     for (int64_t p = 0; p < nnz; p++)
         B.colptr[A->rowind[p] + 1]++;
     for (int64_t i = 0; i < A->nrow; i++) {
@@ -426,10 +406,7 @@ ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
         }
     *out = B;
     B = (ritz_sparse){0};
-done:
-    free(next);
-    ritz_sparse_free(&B);
-    return status;
+    return RITZ_OK;
 }
 
 /* Entries of A B, each place of a column counted once. */
@@ -478,61 +455,46 @@ static void multiply_column(const ritz_sparse *A, const ritz_sparse *B,
 ritz_status ritz_sparse_product(const ritz_sparse *A, const ritz_sparse *B,
                                 ritz_sparse *C)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse raw = {0}, turned = {0};
-    int64_t *mark = NULL;
-    int64_t *place = NULL;
+    RITZ_OWN(ritz_sparse) raw = {0}, turned = {0};
+    RITZ_OWN_ARRAY int64_t *mark = NULL;
+    RITZ_OWN_ARRAY int64_t *place = NULL;
 
-    RITZ_FAIL_IF(A->ncol != B->nrow, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " columns meet %" PRId64 " rows", A->ncol, B->nrow);
-    RITZ_NEW(mark, A->nrow);
-    RITZ_NEW(place, A->nrow);
-    RITZ_TRY(
+    RITZ_REFUSE_IF(A->ncol != B->nrow, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " columns meet %" PRId64 " rows", A->ncol,
+                   B->nrow);
+    RITZ_CHECK_NEW(mark, A->nrow);
+    RITZ_CHECK_NEW(place, A->nrow);
+    RITZ_CHECK(
         ritz_sparse_new(A->nrow, B->ncol, count_product(A, B, mark), &raw));
     for (int64_t j = 0; j < B->ncol; j++)
         multiply_column(A, B, j, place, &raw);
-    RITZ_TRY(ritz_sparse_transpose(&raw, &turned));
-    RITZ_TRY(ritz_sparse_transpose(&turned, C));
-done:
-    free(mark);
-    free(place);
-    ritz_sparse_free(&raw);
-    ritz_sparse_free(&turned);
-    return status;
+    RITZ_CHECK(ritz_sparse_transpose(&raw, &turned));
+    return ritz_sparse_transpose(&turned, C);
 }
 
 ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
                                    ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse AT = {0}, turned = {0}, C = {0};
+    RITZ_OWN(ritz_sparse) AT = {0}, turned = {0}, C = {0};
 
-    RITZ_TRY(ritz_sparse_product(A, T, &AT));
-    RITZ_TRY(ritz_sparse_transpose(T, &turned));
-    RITZ_TRY(ritz_sparse_product(&turned, &AT, &C));
+    RITZ_CHECK(ritz_sparse_product(A, T, &AT));
+    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
+    RITZ_CHECK(ritz_sparse_product(&turned, &AT, &C));
     if (ritz_sparse_asymmetry(A) == 0.0)
-        RITZ_TRY(ritz_sparse_symmetrise(&C));
+        RITZ_CHECK(ritz_sparse_symmetrise(&C));
     *out = C;
     C = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&AT);
-    ritz_sparse_free(&turned);
-    ritz_sparse_free(&C);
-    return status;
+    return RITZ_OK;
 }
 
 /* T'AT as it comes. */
 static ritz_status condense_block(const ritz_sparse *A, const ritz_dense *T,
                                   ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AT = {0};
+    RITZ_OWN(ritz_dense) AT = {0};
 
-    RITZ_TRY(ritz_sparse_mul(A, T, &AT));
-    RITZ_TRY(ritz_dense_mul_tn(T, &AT, out));
-done:
-    ritz_dense_free(&AT);
-    return status;
+    RITZ_CHECK(ritz_sparse_mul(A, T, &AT));
+    return ritz_dense_mul_tn(T, &AT, out);
 }
 
 ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
@@ -557,19 +519,14 @@ ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse size = {0};
-    ritz_dense columns = {0};
+    RITZ_OWN(ritz_sparse) size = {0};
+    RITZ_OWN(ritz_dense) columns = {0};
 
-    RITZ_TRY(ritz_sparse_copy(A, &size));
+    RITZ_CHECK(ritz_sparse_copy(A, &size));
     for (int64_t k = 0; k < size.colptr[size.ncol]; k++)
         size.val[k] = fabs(size.val[k]);
-    RITZ_TRY(ritz_dense_abs(T, &columns));
-    RITZ_TRY(ritz_sparse_condense(&size, &columns, out));
-done:
-    ritz_sparse_free(&size);
-    ritz_dense_free(&columns);
-    return status;
+    RITZ_CHECK(ritz_dense_abs(T, &columns));
+    return ritz_sparse_condense(&size, &columns, out);
 }
 
 /* Between sparse and dense. */
@@ -585,13 +542,12 @@ ritz_status ritz_sparse_dense(const ritz_sparse *A, ritz_dense *out)
 
 ritz_status ritz_sparse_from_dense(const ritz_dense *A, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse made = {0};
+    RITZ_OWN(ritz_sparse) made = {0};
     int64_t count = 0;
 
     for (int64_t k = 0; k < A->nrow * A->ncol; k++)
         count += A->val[k] != 0.0;
-    RITZ_TRY(ritz_sparse_new(A->nrow, A->ncol, count, &made));
+    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, count, &made));
     count = 0;
     for (int64_t j = 0; j < A->ncol; j++) {
         for (int64_t i = 0; i < A->nrow; i++)
@@ -603,7 +559,5 @@ ritz_status ritz_sparse_from_dense(const ritz_dense *A, ritz_sparse *out)
     }
     *out = made;
     made = (ritz_sparse){0};
-done:
-    ritz_sparse_free(&made);
-    return status;
+    return RITZ_OK;
 }

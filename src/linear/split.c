@@ -31,25 +31,21 @@
 /* Whether no rounding of the matrices makes a pole unstable; all are left. */
 static ritz_status prove_stable(const ritz_schur *schur, bool *proven)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)schur->count;
-    ritz_dense one = {0}, F = {0};
+    RITZ_OWN(ritz_dense) one = {0}, F = {0};
     double change = RITZ_POLE_BOUND_FACTOR * DBL_EPSILON * 2.0;
 
-    RITZ_TRY(ritz_dense_new(n, n, &one));
+    RITZ_CHECK(ritz_dense_new(n, n, &one));
     for (int64_t i = 0; i < n; i++)
         ritz_dense_col(&one, i)[i] = 1.0;
-    RITZ_TRY(ritz_general_hammarling(&schur->S, &schur->T, false, &one, &F));
+    RITZ_CHECK(ritz_general_hammarling(&schur->S, &schur->T, false, &one, &F));
     change *= LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, schur->S.val, n);
     change *= pow(LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, F.val, n), 2.0);
     if (schur->T.val)
         change *=
             2.0 * LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, schur->T.val, n);
     *proven = change < 1.0;
-done:
-    ritz_dense_free(&one);
-    ritz_dense_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status choose_stable(const ritz_schur *schur, bool *stable)
@@ -113,32 +109,26 @@ static void add_scaled(double sign, const ritz_dense *term, ritz_dense *out)
 static ritz_status assemble_split(const ritz_schur *schur, int64_t m,
                                   ritz_split *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = schur->count, a = n - m;
     const ritz_dense *Z = schur->Z.val ? &schur->Z : &schur->Q;
     ritz_dense Z1 = ritz_dense_part(Z, 0, m);
     ritz_dense Q2 = ritz_dense_part(&schur->Q, m, a);
-    ritz_dense R = {0}, G = {0}, Z1R = {0}, Q2G = {0};
+    RITZ_OWN(ritz_dense) R = {0}, G = {0}, Z1R = {0}, Q2G = {0};
 
-    RITZ_TRY(decouple_blocks(schur, m, &R, &G));
-    RITZ_TRY(ritz_dense_mul(&Z1, &R, &Z1R));
-    RITZ_TRY(ritz_dense_mul_nt(&Q2, &G, &Q2G));
-    RITZ_TRY(ritz_dense_columns(Z, 0, m, &out->X));
-    RITZ_TRY(ritz_dense_columns(&schur->Q, 0, m, &out->Y));
-    RITZ_TRY(ritz_dense_columns(Z, m, a, &out->T));
-    RITZ_TRY(ritz_dense_columns(&schur->Q, m, a, &out->W));
+    RITZ_CHECK(decouple_blocks(schur, m, &R, &G));
+    RITZ_CHECK(ritz_dense_mul(&Z1, &R, &Z1R));
+    RITZ_CHECK(ritz_dense_mul_nt(&Q2, &G, &Q2G));
+    RITZ_CHECK(ritz_dense_columns(Z, 0, m, &out->X));
+    RITZ_CHECK(ritz_dense_columns(&schur->Q, 0, m, &out->Y));
+    RITZ_CHECK(ritz_dense_columns(Z, m, a, &out->T));
+    RITZ_CHECK(ritz_dense_columns(&schur->Q, m, a, &out->W));
     add_scaled(1.0, &Z1R, &out->T);
     add_scaled(-1.0, &Q2G, &out->Y);
     if (schur->T.val && a > 0)
         cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasTrans,
                     CblasNonUnit, (int)n, (int)a, 1.0, schur->T.val + m * n + m,
                     (int)n, out->W.val, (int)n);
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&G);
-    ritz_dense_free(&Z1R);
-    ritz_dense_free(&Q2G);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
@@ -153,34 +143,28 @@ static ritz_status take_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
 ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
                            ritz_split *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_frame f = {0};
-    ritz_schur schur = {0};
-    ritz_split split = {0};
-    bool *stable = NULL;
+    RITZ_OWN(ritz_frame) f = {0};
+    RITZ_OWN(ritz_schur) schur = {0};
+    RITZ_OWN(ritz_split) split = {0};
+    RITZ_OWN_ARRAY bool *stable = NULL;
     int64_t m = 0;
 
-    RITZ_TRY(ritz_frame_new(A, E, &f));
-    RITZ_TRY(ritz_schur_new(&f.A, &f.E, &schur));
-    RITZ_NEW(stable, A->nrow);
-    RITZ_TRY(choose_stable(&schur, stable));
-    RITZ_TRY(ritz_schur_order(&schur, stable, &m));
-    RITZ_TRY(take_leading(&schur.S, m, &split.S));
+    RITZ_CHECK(ritz_frame_new(A, E, &f));
+    RITZ_CHECK(ritz_schur_new(&f.A, &f.E, &schur));
+    RITZ_CHECK_NEW(stable, A->nrow);
+    RITZ_CHECK(choose_stable(&schur, stable));
+    RITZ_CHECK(ritz_schur_order(&schur, stable, &m));
+    RITZ_CHECK(take_leading(&schur.S, m, &split.S));
     if (schur.T.val)
-        RITZ_TRY(take_leading(&schur.T, m, &split.P));
-    RITZ_TRY(assemble_split(&schur, m, &split));
+        RITZ_CHECK(take_leading(&schur.T, m, &split.P));
+    RITZ_CHECK(assemble_split(&schur, m, &split));
     ritz_frame_turn_back(&f, f.right, &split.X);
     ritz_frame_turn_back(&f, f.right, &split.T);
     ritz_frame_turn_back(&f, f.left, &split.Y);
     ritz_frame_turn_back(&f, f.left, &split.W);
     *out = split;
     split = (ritz_split){0};
-done:
-    ritz_frame_free(&f);
-    ritz_schur_free(&schur);
-    ritz_split_free(&split);
-    free(stable);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_split_free(ritz_split *split)

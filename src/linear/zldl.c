@@ -75,27 +75,24 @@ static ritz_status analyse_pattern(ritz_zldl *F)
 ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
                           ritz_zldl **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_zldl *F = NULL;
+    RITZ_OWN(ritz_zldl) *F = NULL;
 
-    RITZ_NEW(F, 1);
+    RITZ_CHECK_NEW(F, 1);
     for (int64_t k = 0; k < count; k++)
         F->whole = F->whole || (A[k]->nrow == A[k]->ncol &&
                                 ritz_sparse_asymmetry(A[k]) > 0.0);
-    RITZ_TRY(ritz_mumps_unite(count, A, F->whole, &F->pattern));
-    RITZ_NEW(F->val, F->pattern.nnz);
-    RITZ_NEW(F->place, F->pattern.n);
-    RITZ_NEW(F->A, count);
+    RITZ_CHECK(ritz_mumps_unite(count, A, F->whole, &F->pattern));
+    RITZ_CHECK_NEW(F->val, F->pattern.nnz);
+    RITZ_CHECK_NEW(F->place, F->pattern.n);
+    RITZ_CHECK_NEW(F->A, count);
     for (int64_t k = 0; k < count; k++)
         F->A[k] = *A[k];
     F->count = count;
     if (F->pattern.n > 0)
-        RITZ_TRY(analyse_pattern(F));
+        RITZ_CHECK(analyse_pattern(F));
     *out = F;
     F = NULL;
-done:
-    ritz_zldl_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_zldl_definite(ritz_zldl *F)

@@ -25,13 +25,12 @@ static const char *const names[] = {
 
 ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_columns columns = {.count = r};
+    RITZ_OWN(ritz_columns) columns = {.count = r};
 
-    RITZ_NEW(columns.kind, r);
-    RITZ_NEW(columns.dof, r);
-    RITZ_NEW(columns.hertz, r);
-    RITZ_NEW(columns.residual, r);
+    RITZ_CHECK_NEW(columns.kind, r);
+    RITZ_CHECK_NEW(columns.dof, r);
+    RITZ_CHECK_NEW(columns.hertz, r);
+    RITZ_CHECK_NEW(columns.residual, r);
     for (int64_t j = 0; j < r; j++) {
         columns.kind[j] = RITZ_COLUMN_NORMAL;
         columns.dof[j] = -1;
@@ -39,9 +38,7 @@ ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
     }
     *out = columns;
     columns = (ritz_columns){0};
-done:
-    ritz_columns_free(&columns);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out)
@@ -62,16 +59,13 @@ ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out)
 
 ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_dense_new(n, r, &basis.T));
-    RITZ_TRY(ritz_columns_new(r, &basis.columns));
+    RITZ_CHECK(ritz_dense_new(n, r, &basis.T));
+    RITZ_CHECK(ritz_columns_new(r, &basis.columns));
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const char *ritz_column_name(ritz_column_kind kind)

@@ -11,20 +11,17 @@
 
 ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dampers dampers = {.count = count};
+    RITZ_OWN(ritz_dampers) dampers = {.count = count};
 
-    RITZ_NEW(dampers.name, count);
-    RITZ_NEW(dampers.c, count);
-    RITZ_NEW(dampers.k, count);
-    RITZ_NEW(dampers.held_c, count);
-    RITZ_NEW(dampers.held_k, count);
-    RITZ_TRY(ritz_dense_new(n, count, &dampers.B));
+    RITZ_CHECK_NEW(dampers.name, count);
+    RITZ_CHECK_NEW(dampers.c, count);
+    RITZ_CHECK_NEW(dampers.k, count);
+    RITZ_CHECK_NEW(dampers.held_c, count);
+    RITZ_CHECK_NEW(dampers.held_k, count);
+    RITZ_CHECK(ritz_dense_new(n, count, &dampers.B));
     *out = dampers;
     dampers = (ritz_dampers){0};
-done:
-    ritz_dampers_free(&dampers);
-    return status;
+    return RITZ_OK;
 }
 
 /* Copy names and numbers of `from` to places first, first + 1, ... */
@@ -44,35 +41,29 @@ static void put_damper(const ritz_dampers *from, int64_t first,
 ritz_status ritz_dampers_project(const ritz_dampers *dampers,
                                  const ritz_dense *T, ritz_dampers *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dampers projected = {0};
+    RITZ_OWN(ritz_dampers) projected = {0};
 
     if (dampers->count == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dampers_new(0, dampers->count, &projected));
+    RITZ_CHECK(ritz_dampers_new(0, dampers->count, &projected));
     put_damper(dampers, 0, &projected);
     ritz_dense_free(&projected.B);
-    RITZ_TRY(ritz_dense_mul_tn(T, &dampers->B, &projected.B));
+    RITZ_CHECK(ritz_dense_mul_tn(T, &dampers->B, &projected.B));
     *out = projected;
     projected = (ritz_dampers){0};
-done:
-    ritz_dampers_free(&projected);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dampers_copy(const ritz_dampers *dampers, ritz_dampers *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dampers copy = {0};
+    RITZ_OWN(ritz_dampers) copy = {0};
 
     if (dampers->count == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dampers_append(dampers, NULL, dampers->B.nrow, 0, &copy));
+    RITZ_CHECK(ritz_dampers_append(dampers, NULL, dampers->B.nrow, 0, &copy));
     *out = copy;
     copy = (ritz_dampers){0};
-done:
-    ritz_dampers_free(&copy);
-    return status;
+    return RITZ_OK;
 }
 
 /* "owner/name" */
@@ -92,13 +83,12 @@ static ritz_status own_name(const char *owner, char name[RITZ_NAME_SIZE])
 ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
                                 int64_t n, int64_t first, ritz_dampers *dampers)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = dampers->count;
-    ritz_dampers all = {0};
+    RITZ_OWN(ritz_dampers) all = {0};
 
     if (more->count == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dampers_new(n, count + more->count, &all));
+    RITZ_CHECK(ritz_dampers_new(n, count + more->count, &all));
     if (count > 0) {
         put_damper(dampers, 0, &all);
         memcpy(all.B.val, dampers->B.val,
@@ -111,14 +101,12 @@ ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
                    ritz_dense_col(&more->B, k),
                    (size_t)more->B.nrow * sizeof *all.B.val);
         if (owner)
-            RITZ_TRY(own_name(owner, all.name[count + k]));
+            RITZ_CHECK(own_name(owner, all.name[count + k]));
     }
     ritz_dampers_free(dampers);
     *dampers = all;
     all = (ritz_dampers){0};
-done:
-    ritz_dampers_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dampers_check(const ritz_dampers *dampers, int64_t n)
@@ -300,26 +288,25 @@ static ritz_status outer_product(const ritz_dampers *dampers,
                                  double (*more)(const ritz_dampers *, int64_t),
                                  ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = dampers->B.nrow;
     int64_t room = 0;
     int64_t count = 0;
-    int64_t *row = NULL;
-    int64_t *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL;
+    RITZ_OWN_ARRAY int64_t *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
 
     for (int64_t j = 0; j < dampers->count; j++) {
         int64_t m = count_entries(&dampers->B, j);
 
-        RITZ_FAIL_IF(m * m > most_entries, RITZ_ERR_ARGUMENT,
-                     "damper '%s' moves with %" PRId64
-                     " dofs: as a sparse matrix that is too many",
-                     dampers->name[j], m);
+        RITZ_REFUSE_IF(m * m > most_entries, RITZ_ERR_ARGUMENT,
+                       "damper '%s' moves with %" PRId64
+                       " dofs: as a sparse matrix that is too many",
+                       dampers->name[j], m);
         room += m * m;
     }
-    RITZ_NEW(row, room);
-    RITZ_NEW(col, room);
-    RITZ_NEW(val, room);
+    RITZ_CHECK_NEW(row, room);
+    RITZ_CHECK_NEW(col, room);
+    RITZ_CHECK_NEW(val, room);
     for (int64_t j = 0; j < dampers->count; j++) {
         const double *b = ritz_dense_col(&dampers->B, j);
 
@@ -331,12 +318,7 @@ static ritz_status outer_product(const ritz_dampers *dampers,
                     val[count++] = more(dampers, j) * (b[r] * b[c]);
                 }
     }
-    RITZ_TRY(ritz_sparse_from_triplets(n, n, count, row, col, val, out));
-done:
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(n, n, count, row, col, val, out);
 }
 
 /* A := A + sum more_j b_j b_j'. */
@@ -344,15 +326,14 @@ static ritz_status add_sparse(const ritz_dampers *dampers,
                               double (*more)(const ritz_dampers *, int64_t),
                               ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse part = {0};
-    ritz_sparse sum = {0};
+    RITZ_OWN(ritz_sparse) part = {0};
+    RITZ_OWN(ritz_sparse) sum = {0};
 
     if (!has_any(dampers, more))
         return RITZ_OK;
-    RITZ_TRY(outer_product(dampers, more, &part));
+    RITZ_CHECK(outer_product(dampers, more, &part));
     if (A->colptr) {
-        RITZ_TRY(ritz_sparse_add(1.0, A, 1.0, &part, &sum));
+        RITZ_CHECK(ritz_sparse_add(1.0, A, 1.0, &part, &sum));
         ritz_sparse_free(A);
         *A = sum;
         sum = (ritz_sparse){0};
@@ -360,10 +341,7 @@ static ritz_status add_sparse(const ritz_dampers *dampers,
         *A = part;
         part = (ritz_sparse){0};
     }
-done:
-    ritz_sparse_free(&part);
-    ritz_sparse_free(&sum);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,

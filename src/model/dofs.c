@@ -11,30 +11,27 @@
 ritz_status ritz_dofs_complement(const ritz_dofs *set, int64_t n,
                                  ritz_dofs *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_dofs rest = {0};
-    bool *taken = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_NEW(taken, n);
+    RITZ_CHECK_NEW(taken, n);
     for (int64_t k = 0; k < set->count; k++) {
         int64_t dof = set->at[k];
 
-        RITZ_FAIL_IF(dof < 0 || dof >= n, RITZ_ERR_ARGUMENT,
-                     "dof %" PRId64 " is not among the %" PRId64
-                     " of the component",
-                     dof, n);
-        RITZ_FAIL_IF(taken[dof], RITZ_ERR_ARGUMENT,
-                     "dof %" PRId64 " is listed twice", dof);
+        RITZ_REFUSE_IF(dof < 0 || dof >= n, RITZ_ERR_ARGUMENT,
+                       "dof %" PRId64 " is not among the %" PRId64
+                       " of the component",
+                       dof, n);
+        RITZ_REFUSE_IF(taken[dof], RITZ_ERR_ARGUMENT,
+                       "dof %" PRId64 " is listed twice", dof);
         taken[dof] = true;
     }
-    RITZ_NEW(rest.at, n - set->count);
+    RITZ_CHECK_NEW(rest.at, n - set->count);
     for (int64_t dof = 0; dof < n; dof++)
         if (!taken[dof])
             rest.at[rest.count++] = dof;
     *out = rest;
-done:
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dofs_copy(const ritz_dofs *set, ritz_dofs *out)

@@ -59,25 +59,22 @@ int64_t ritz_cell_linear(int64_t kind)
 ritz_status ritz_elements_copy(const ritz_elements *elements,
                                ritz_elements *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_elements copy = {.count = elements->count};
+    RITZ_OWN(ritz_elements) copy = {.count = elements->count};
     size_t n = (size_t)elements->count;
     int64_t grids = 0;
 
     if (n == 0)
         return RITZ_OK;
     grids = elements->first[n];
-    RITZ_NEW(copy.kind, copy.count);
-    RITZ_NEW(copy.first, copy.count + 1);
-    RITZ_NEW(copy.grid, grids);
+    RITZ_CHECK_NEW(copy.kind, copy.count);
+    RITZ_CHECK_NEW(copy.first, copy.count + 1);
+    RITZ_CHECK_NEW(copy.grid, grids);
     memcpy(copy.kind, elements->kind, n * sizeof *copy.kind);
     memcpy(copy.first, elements->first, (n + 1) * sizeof *copy.first);
     memcpy(copy.grid, elements->grid, (size_t)grids * sizeof *copy.grid);
     *out = copy;
     copy = (ritz_elements){0};
-done:
-    ritz_elements_free(&copy);
-    return status;
+    return RITZ_OK;
 }
 
 static bool all_there(const ritz_elements *elements, int64_t k, int64_t count,

@@ -127,35 +127,32 @@ done:
 static ritz_status solve_dense(const eliminator *s, const int64_t *circle,
                                ritz_dense *A, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
     lapack_int n = (lapack_int)A->nrow;
-    lapack_int *pivot = NULL;
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     double size = 0.0;
     double rcond = 0.0;
     char name[RITZ_DOF_NAME_SIZE];
     char cited[RITZ_CITATION_SIZE];
 
-    RITZ_NEW(pivot, n);
+    RITZ_CHECK_NEW(pivot, n);
     size = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, A->val, n);
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, A->val, n, pivot) == 0)
-        RITZ_FAIL_IF(LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, A->val, n, size,
-                                    &rcond) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
-    RITZ_FAIL_IF(!(rcond > RITZ_UNDETERMINED), RITZ_ERR_SINGULAR,
-                 "%s leaves '%s' undetermined%s",
-                 ritz_equations_cite(eq, eq->source[circle[0]], cited),
-                 ritz_dof_name(eq->dependent[circle[0]], name),
-                 n > 1 ? ", together with the constraints that depend on it"
-                       : ": it depends on itself alone");
+        RITZ_REFUSE_IF(LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, A->val, n, size,
+                                      &rcond) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the constraints");
+    RITZ_REFUSE_IF(!(rcond > RITZ_UNDETERMINED), RITZ_ERR_SINGULAR,
+                   "%s leaves '%s' undetermined%s",
+                   ritz_equations_cite(eq, eq->source[circle[0]], cited),
+                   ritz_dof_name(eq->dependent[circle[0]], name),
+                   n > 1 ? ", together with the constraints that depend on it"
+                         : ": it depends on itself alone");
     if (X->ncol > 0)
-        RITZ_FAIL_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', n,
-                                    (lapack_int)X->ncol, A->val, n, pivot,
-                                    X->val, n) != 0,
-                     RITZ_ERR_MEMORY, "no memory for the constraints");
-done:
-    free(pivot);
-    return status;
+        RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', n,
+                                      (lapack_int)X->ncol, A->val, n, pivot,
+                                      X->val, n) != 0,
+                       RITZ_ERR_MEMORY, "no memory for the constraints");
+    return RITZ_OK;
 }
 
 /* Right-hand sides of a circle, a column for each place in use. */
@@ -320,24 +317,21 @@ static ritz_status name_dependents(eliminator *s, const place *sorted,
 
 static ritz_status name_terms(eliminator *s, const bool *fixed)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
-    place *sorted = NULL;
+    RITZ_OWN_ARRAY place *sorted = NULL;
 
-    RITZ_NEW(sorted, s->num_all);
+    RITZ_CHECK_NEW(sorted, s->num_all);
     for (int64_t k = 0; k < s->num_all; k++) {
         sorted[k] = (place){s->dof[k], k};
         s->equation[k] = -1;
     }
     qsort(sorted, (size_t)s->num_all, sizeof *sorted, compare_places);
-    RITZ_TRY(name_dependents(s, sorted, fixed));
+    RITZ_CHECK(name_dependents(s, sorted, fixed));
     for (int64_t e = 0; e < eq->count; e++)
         for (int64_t k = eq->first[e]; k < eq->first[e + 1]; k++)
-            RITZ_TRY(
+            RITZ_CHECK(
                 find_place(s, sorted, eq->dof[k], eq->source[e], &s->at[k]));
-done:
-    free(sorted);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- the order --------------------------------------------------------- */
@@ -455,18 +449,17 @@ static ritz_status split_dofs(const eliminator *s, int64_t *column,
 
 static ritz_status build_elimination(const eliminator *s, ritz_elimination *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *column = NULL, *line = NULL, *col = NULL;
-    double *val = NULL;
+    RITZ_OWN_ARRAY int64_t *column = NULL, *line = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t count = s->num_all - s->equations->count;
 
     for (int64_t e = 0; e < s->equations->count; e++)
         count += s->found[e].count;
-    RITZ_NEW(column, s->num_all);
-    RITZ_NEW(line, count);
-    RITZ_NEW(col, count);
-    RITZ_NEW(val, count);
-    RITZ_TRY(split_dofs(s, column, out));
+    RITZ_CHECK_NEW(column, s->num_all);
+    RITZ_CHECK_NEW(line, count);
+    RITZ_CHECK_NEW(col, count);
+    RITZ_CHECK_NEW(val, count);
+    RITZ_CHECK(split_dofs(s, column, out));
     count = 0;
     for (int64_t k = 0; k < s->num_all; k++) {
         const elimination_row *known =
@@ -478,14 +471,8 @@ static ritz_status build_elimination(const eliminator *s, ritz_elimination *out)
             val[count++] = known ? known->val[j] : 1.0;
         }
     }
-    RITZ_TRY(ritz_sparse_from_triplets(s->num_all, out->kept.count, count, line,
-                                       col, val, &out->G));
-done:
-    free(column);
-    free(line);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(s->num_all, out->kept.count, count, line,
+                                     col, val, &out->G);
 }
 
 ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,

@@ -93,17 +93,16 @@ ritz_status ritz_port_turn(const ritz_component *component,
                            const ritz_port *port, ritz_dense *turn,
                            ritz_dof **label)
 {
-    ritz_status status = RITZ_OK;
     int64_t p = port->dofs.count;
     int64_t row = 0;
     int64_t count = 0;
-    member *list = NULL;
-    ritz_dense U = {0};
-    ritz_dof *names = NULL;
+    RITZ_OWN_ARRAY member *list = NULL;
+    RITZ_OWN(ritz_dense) U = {0};
+    RITZ_OWN_ARRAY ritz_dof *names = NULL;
 
-    RITZ_NEW(list, p);
-    RITZ_NEW(names, p);
-    RITZ_TRY(ritz_dense_new(p, p, &U));
+    RITZ_CHECK_NEW(list, p);
+    RITZ_CHECK_NEW(names, p);
+    RITZ_CHECK(ritz_dense_new(p, p, &U));
     count = list_port_grids(component, port, list);
     for (int64_t k = 0; k < count; k++) {
         const double *axes = axes_of(&component->grids, list[k].grid);
@@ -112,10 +111,10 @@ ritz_status ritz_port_turn(const ritz_component *component,
             ritz_dense_col(&U, list[k].point)[row] = 1.0;
             names[row++] = (ritz_dof){list[k].grid, 0};
         }
-        RITZ_TRY_IN(port->name,
-                    turn_triple(&list[k], 0, axes, &U, &row, names));
-        RITZ_TRY_IN(port->name,
-                    turn_triple(&list[k], 3, axes, &U, &row, names));
+        RITZ_CHECK_IN(port->name,
+                      turn_triple(&list[k], 0, axes, &U, &row, names));
+        RITZ_CHECK_IN(port->name,
+                      turn_triple(&list[k], 3, axes, &U, &row, names));
     }
     *turn = U;
     U = (ritz_dense){0};
@@ -123,11 +122,7 @@ ritz_status ritz_port_turn(const ritz_component *component,
         *label = names;
         names = NULL;
     }
-done:
-    free(list);
-    free(names);
-    ritz_dense_free(&U);
-    return status;
+    return RITZ_OK;
 }
 
 /*

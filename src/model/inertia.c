@@ -18,15 +18,11 @@
 static ritz_status condense_mass(const ritz_component *component,
                                  ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const double origin[3] = {0.0, 0.0, 0.0};
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
-    RITZ_TRY(ritz_rigid_geometry(component, origin, &R));
-    RITZ_TRY(ritz_sparse_condense(&component->M, &R, out));
-done:
-    ritz_dense_free(&R);
-    return status;
+    RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
+    return ritz_sparse_condense(&component->M, &R, out);
 }
 
 /* Mean over the translations of the model: a plane model has two. */
@@ -93,17 +89,14 @@ static void read_off(const ritz_dense *A, ritz_inertia *inertia)
 
 ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
     *out = (ritz_inertia){0};
     if (component->grids.count > 0) {
-        RITZ_TRY(condense_mass(component, &A));
+        RITZ_CHECK(condense_mass(component, &A));
         read_off(&A, out);
     }
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -209,21 +202,15 @@ done:
 static ritz_status find_momenta(const ritz_component *component,
                                 const ritz_dense *T, ritz_invariants *out)
 {
-    ritz_status status = RITZ_OK;
     const double origin[3] = {0.0, 0.0, 0.0};
-    ritz_dense R = {0}, MR = {0}, A = {0};
+    RITZ_OWN(ritz_dense) R = {0}, MR = {0}, A = {0};
 
-    RITZ_TRY(ritz_rigid_geometry(component, origin, &R));
-    RITZ_TRY(ritz_sparse_mul(&component->M, &R, &MR));
-    RITZ_TRY(ritz_dense_mul_tn(&R, &MR, &A));
+    RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &R, &MR));
+    RITZ_CHECK(ritz_dense_mul_tn(&R, &MR, &A));
     ritz_dense_symmetrise(&A);
     memcpy(out->rigid, A.val, sizeof out->rigid);
-    RITZ_TRY(ritz_dense_mul_tn(&MR, T, &out->momentum));
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&MR);
-    ritz_dense_free(&A);
-    return status;
+    return ritz_dense_mul_tn(&MR, T, &out->momentum);
 }
 
 static ritz_status list_positions(const ritz_nodes *nodes, ritz_dense *out)
@@ -255,62 +242,50 @@ static ritz_status find_products(const ritz_nodes *nodes, const ritz_sparse *m,
                                  const ritz_dense *T, int b,
                                  ritz_invariants *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = T->ncol;
-    ritz_dense X = {0}, T_b = {0}, mT = {0}, T_a = {0}, P = {0};
+    RITZ_OWN(ritz_dense) X = {0}, T_b = {0}, mT = {0}, T_a = {0}, P = {0};
 
-    RITZ_TRY(ritz_nodes_along(nodes, T, b, &T_b));
-    RITZ_TRY(ritz_sparse_mul(m, &T_b, &mT));
-    RITZ_TRY(list_positions(nodes, &X));
-    RITZ_TRY(ritz_dense_mul_tn(&X, &mT, &P));
+    RITZ_CHECK(ritz_nodes_along(nodes, T, b, &T_b));
+    RITZ_CHECK(ritz_sparse_mul(m, &T_b, &mT));
+    RITZ_CHECK(list_positions(nodes, &X));
+    RITZ_CHECK(ritz_dense_mul_tn(&X, &mT, &P));
     put_block(&P, 0, b * r, false, &out->position);
     ritz_dense_free(&P);
-    RITZ_TRY(ritz_dense_mul_tn(&T_b, &mT, &P));
+    RITZ_CHECK(ritz_dense_mul_tn(&T_b, &mT, &P));
     ritz_dense_symmetrise(&P);
     put_block(&P, b * r, b * r, false, &out->product);
     ritz_dense_free(&T_b);
     for (int a = 0; a < b; a++) {
         ritz_dense_free(&P);
-        RITZ_TRY(ritz_nodes_along(nodes, T, a, &T_a));
-        RITZ_TRY(ritz_dense_mul_tn(&T_a, &mT, &P));
+        RITZ_CHECK(ritz_nodes_along(nodes, T, a, &T_a));
+        RITZ_CHECK(ritz_dense_mul_tn(&T_a, &mT, &P));
         put_block(&P, a * r, b * r, true, &out->product);
         ritz_dense_free(&T_a);
     }
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&T_b);
-    ritz_dense_free(&mT);
-    ritz_dense_free(&T_a);
-    ritz_dense_free(&P);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_invariants_of(const ritz_component *component,
                                const ritz_dense *T, ritz_invariants *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = T->ncol;
-    ritz_nodes nodes = {0};
-    ritz_sparse m = {0};
-    ritz_invariants found = {0};
+    RITZ_OWN(ritz_nodes) nodes = {0};
+    RITZ_OWN(ritz_sparse) m = {0};
+    RITZ_OWN(ritz_invariants) found = {0};
 
     if (component->grids.count == 0 || r > RITZ_INVARIANT_COLUMNS)
         return RITZ_OK;
-    RITZ_TRY(ritz_nodes_of(component->num_dofs, component->dof,
-                           &component->grids, &nodes));
-    RITZ_TRY(nodal_mass(component, &nodes, &m));
-    RITZ_TRY(find_momenta(component, T, &found));
-    RITZ_TRY(ritz_dense_new(3, 3 * r, &found.position));
-    RITZ_TRY(ritz_dense_new(3 * r, 3 * r, &found.product));
+    RITZ_CHECK(ritz_nodes_of(component->num_dofs, component->dof,
+                             &component->grids, &nodes));
+    RITZ_CHECK(nodal_mass(component, &nodes, &m));
+    RITZ_CHECK(find_momenta(component, T, &found));
+    RITZ_CHECK(ritz_dense_new(3, 3 * r, &found.position));
+    RITZ_CHECK(ritz_dense_new(3 * r, 3 * r, &found.product));
     for (int b = 0; b < 3; b++)
-        RITZ_TRY(find_products(&nodes, &m, T, b, &found));
+        RITZ_CHECK(find_products(&nodes, &m, T, b, &found));
     *out = found;
     found = (ritz_invariants){0};
-done:
-    ritz_nodes_free(&nodes);
-    ritz_sparse_free(&m);
-    ritz_invariants_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 /* I3 (x) V: T V transforms each of the three blocks of columns by V. */
@@ -325,23 +300,20 @@ static ritz_status repeat_blocks(const ritz_dense *V, ritz_dense *out)
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_invariants second = {0};
-    ritz_dense V3 = {0};
+    RITZ_OWN(ritz_invariants) second = {0};
+    RITZ_OWN(ritz_dense) V3 = {0};
 
     if (!invariants->momentum.val)
         return RITZ_OK;
     memcpy(second.rigid, invariants->rigid, sizeof second.rigid);
-    RITZ_TRY(repeat_blocks(V, &V3));
-    RITZ_TRY(ritz_dense_mul(&invariants->momentum, V, &second.momentum));
-    RITZ_TRY(ritz_dense_mul(&invariants->position, &V3, &second.position));
-    RITZ_TRY(ritz_dense_congruence(&invariants->product, &V3, &second.product));
+    RITZ_CHECK(repeat_blocks(V, &V3));
+    RITZ_CHECK(ritz_dense_mul(&invariants->momentum, V, &second.momentum));
+    RITZ_CHECK(ritz_dense_mul(&invariants->position, &V3, &second.position));
+    RITZ_CHECK(
+        ritz_dense_congruence(&invariants->product, &V3, &second.product));
     *out = second;
     second = (ritz_invariants){0};
-done:
-    ritz_dense_free(&V3);
-    ritz_invariants_free(&second);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_invariants_free(ritz_invariants *invariants)

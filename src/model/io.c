@@ -14,23 +14,21 @@
 ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
                         ritz_io *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_io io = {.num_inputs = num_inputs, .num_outputs = num_outputs};
+    RITZ_OWN(ritz_io)
+    io = {.num_inputs = num_inputs, .num_outputs = num_outputs};
 
-    RITZ_NEW(io.input, num_inputs);
-    RITZ_NEW(io.output, num_outputs);
-    RITZ_NEW(io.limit, num_outputs);
+    RITZ_CHECK_NEW(io.input, num_inputs);
+    RITZ_CHECK_NEW(io.output, num_outputs);
+    RITZ_CHECK_NEW(io.limit, num_outputs);
     for (int64_t k = 0; k < num_outputs; k++)
         io.limit[k] = nan("");
-    RITZ_TRY(ritz_dense_new(n, num_inputs, &io.B));
-    RITZ_TRY(ritz_dense_new(num_outputs, n, &io.C));
-    RITZ_TRY(ritz_dense_new(num_outputs, n, &io.Cv));
-    RITZ_TRY(ritz_dense_new(num_outputs, n, &io.Ca));
+    RITZ_CHECK(ritz_dense_new(n, num_inputs, &io.B));
+    RITZ_CHECK(ritz_dense_new(num_outputs, n, &io.C));
+    RITZ_CHECK(ritz_dense_new(num_outputs, n, &io.Cv));
+    RITZ_CHECK(ritz_dense_new(num_outputs, n, &io.Ca));
     *out = io;
     io = (ritz_io){0};
-done:
-    ritz_io_free(&io);
-    return status;
+    return RITZ_OK;
 }
 
 /* Names and limits. */
@@ -47,24 +45,21 @@ static void copy_names(const ritz_io *from, ritz_io *to)
 ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
                             ritz_io *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_io part = {0};
+    RITZ_OWN(ritz_io) part = {0};
 
-    RITZ_TRY(ritz_io_new(0, io->num_inputs, io->num_outputs, &part));
+    RITZ_CHECK(ritz_io_new(0, io->num_inputs, io->num_outputs, &part));
     copy_names(io, &part);
     ritz_dense_free(&part.B);
     ritz_dense_free(&part.C);
     ritz_dense_free(&part.Cv);
     ritz_dense_free(&part.Ca);
-    RITZ_TRY_IN("inputs", ritz_dense_mul_tn(T, &io->B, &part.B));
-    RITZ_TRY_IN("outputs", ritz_dense_mul(&io->C, T, &part.C));
-    RITZ_TRY_IN("outputs", ritz_dense_mul(&io->Cv, T, &part.Cv));
-    RITZ_TRY_IN("outputs", ritz_dense_mul(&io->Ca, T, &part.Ca));
+    RITZ_CHECK_IN("inputs", ritz_dense_mul_tn(T, &io->B, &part.B));
+    RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->C, T, &part.C));
+    RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->Cv, T, &part.Cv));
+    RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->Ca, T, &part.Ca));
     *out = part;
     part = (ritz_io){0};
-done:
-    ritz_io_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_io_free(ritz_io *io)

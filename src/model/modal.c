@@ -36,55 +36,46 @@ ritz_status ritz_structure_refuse(bool structural)
 static ritz_status install_dampers(const ritz_dampers *apart,
                                    ritz_structure *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dampers dampers = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
 
-    RITZ_TRY(ritz_dampers_copy(apart, &dampers));
-    RITZ_TRY(ritz_dampers_install(&dampers, &model->K, &model->D));
-done:
-    ritz_dampers_free(&dampers);
-    return status;
+    RITZ_CHECK(ritz_dampers_copy(apart, &dampers));
+    return ritz_dampers_install(&dampers, &model->K, &model->D);
 }
 
 ritz_status ritz_structure_of_component(const ritz_component *component,
                                         ritz_structure *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
+    RITZ_OWN(ritz_structure) model = {0};
 
-    RITZ_FAIL_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
-                 "%" PRId64 " dofs are too many for dense matrices of states, "
-                 "there can be %d: reduce it by another method first",
-                 component->num_dofs, RITZ_STATE_DOFS);
-    RITZ_TRY(ritz_structure_refuse(component->K4.colptr != NULL));
-    RITZ_TRY(ritz_sparse_dense(&component->K, &model.K));
-    RITZ_TRY(ritz_sparse_dense(&component->M, &model.M));
+    RITZ_REFUSE_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
+                   "%" PRId64
+                   " dofs are too many for dense matrices of states, "
+                   "there can be %d: reduce it by another method first",
+                   component->num_dofs, RITZ_STATE_DOFS);
+    RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
+    RITZ_CHECK(ritz_sparse_dense(&component->K, &model.K));
+    RITZ_CHECK(ritz_sparse_dense(&component->M, &model.M));
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_dense(&component->D, &model.D));
-    RITZ_TRY(install_dampers(&component->dampers, &model));
+        RITZ_CHECK(ritz_sparse_dense(&component->D, &model.D));
+    RITZ_CHECK(install_dampers(&component->dampers, &model));
     *out = model;
     model = (ritz_structure){0};
-done:
-    ritz_structure_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
                                       ritz_structure *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
+    RITZ_OWN(ritz_structure) model = {0};
 
-    RITZ_TRY(ritz_dense_copy(&reduced->K, &model.K));
-    RITZ_TRY(ritz_dense_copy(&reduced->M, &model.M));
+    RITZ_CHECK(ritz_dense_copy(&reduced->K, &model.K));
+    RITZ_CHECK(ritz_dense_copy(&reduced->M, &model.M));
     if (reduced->D.val)
-        RITZ_TRY(ritz_dense_copy(&reduced->D, &model.D));
-    RITZ_TRY(install_dampers(&reduced->dampers, &model));
+        RITZ_CHECK(ritz_dense_copy(&reduced->D, &model.D));
+    RITZ_CHECK(install_dampers(&reduced->dampers, &model));
     *out = model;
     model = (ritz_structure){0};
-done:
-    ritz_structure_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_structure_free(ritz_structure *model)
@@ -97,20 +88,17 @@ void ritz_structure_free(ritz_structure *model)
 /* Phi'D Phi; what of a rigid motion is no more than rounding is zero. */
 static ritz_status project_damping(const ritz_dense *D, ritz_modal_model *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense most = {0};
+    RITZ_OWN(ritz_dense) most = {0};
 
-    RITZ_TRY(ritz_dense_project(D, &model->Phi, &model->Delta));
-    RITZ_TRY(ritz_dense_terms(D, &model->Phi, &most));
+    RITZ_CHECK(ritz_dense_project(D, &model->Phi, &model->Delta));
+    RITZ_CHECK(ritz_dense_terms(D, &model->Phi, &most));
     for (int64_t j = 0; j < model->count; j++)
         for (int64_t i = 0; i < model->count; i++)
             if ((i < model->num_rigid || j < model->num_rigid) &&
                 fabs(ritz_dense_col(&model->Delta, j)[i]) <=
                     RITZ_SUM_ROUNDING * ritz_dense_col(&most, j)[i])
                 ritz_dense_col(&model->Delta, j)[i] = 0.0;
-done:
-    ritz_dense_free(&most);
-    return status;
+    return RITZ_OK;
 }
 
 double ritz_modal_rate(const ritz_damping *damping, int64_t flexible,
@@ -139,47 +127,38 @@ static ritz_status massless_share(const ritz_structure *model,
                                   const ritz_dense *X, ritz_dense *RX,
                                   double *size)
 {
-    ritz_status status = RITZ_OK;
     int64_t r = modes->num_rigid;
     double s = r < modes->count ? fabs(modes->lambda[r]) : 1.0;
-    ritz_dense A = {0}, Y = {0}, q = {0}, part = {0};
+    RITZ_OWN(ritz_dense) A = {0}, Y = {0}, q = {0}, part = {0};
 
-    RITZ_TRY(ritz_dense_copy(&model->K, &A));
+    RITZ_CHECK(ritz_dense_copy(&model->K, &A));
     for (int64_t k = 0; k < A.nrow * A.ncol; k++)
         A.val[k] += s * model->M.val[k];
-    RITZ_TRY(ritz_dense_copy(X, &Y));
-    RITZ_TRY_IN("motion without mass", ritz_general_solve(&A, false, &Y));
+    RITZ_CHECK(ritz_dense_copy(X, &Y));
+    RITZ_CHECK_IN("motion without mass", ritz_general_solve(&A, false, &Y));
     *size = ritz_dense_max(&Y);
-    RITZ_TRY(ritz_dense_mul_tn(&modes->Phi, X, &q));
+    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, X, &q));
     for (int64_t j = 0; j < q.ncol; j++)
         for (int64_t i = 0; i < q.nrow; i++)
             ritz_dense_col(&q, j)[i] /= modes->lambda[i] + s;
-    RITZ_TRY(ritz_dense_mul(&modes->Phi, &q, &part));
+    RITZ_CHECK(ritz_dense_mul(&modes->Phi, &q, &part));
     for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
         Y.val[k] -= part.val[k];
     *RX = Y;
     Y = (ritz_dense){0};
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&Y);
-    ritz_dense_free(&q);
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether outputs see a derivative of what massless dofs answer at once. */
 static ritz_status is_improper(const ritz_dense *C, const ritz_dense *RB,
                                double size, bool *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense seen = {0};
+    RITZ_OWN(ritz_dense) seen = {0};
 
-    RITZ_TRY(ritz_dense_mul(C, RB, &seen));
+    RITZ_CHECK(ritz_dense_mul(C, RB, &seen));
     *out =
         ritz_dense_max(&seen) > RITZ_MASSLESS_SHARE * ritz_dense_max(C) * size;
-done:
-    ritz_dense_free(&seen);
-    return status;
+    return RITZ_OK;
 }
 
 /* feed += C R B, once nothing else depends on R. */
@@ -187,48 +166,42 @@ static ritz_status add_massless(const ritz_structure *model, const ritz_io *io,
                                 const ritz_damping *damping,
                                 ritz_modal_model *modes)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense RB = {0}, RD = {0}, feed = {0};
+    RITZ_OWN(ritz_dense) RB = {0}, RD = {0}, feed = {0};
     bool damped = ritz_damping_is_rayleigh(damping) && damping->b > 0.0;
     bool improper[2] = {false, false};
     double size = 0.0;
 
     if (model->D.val && !damped) {
-        RITZ_TRY(massless_share(model, modes, &model->D, &RD, &size));
+        RITZ_CHECK(massless_share(model, modes, &model->D, &RD, &size));
         damped = ritz_dense_max(&RD) > RITZ_MASSLESS_SHARE * size;
     }
-    RITZ_FAIL_IF(damped, RITZ_ERR_ARGUMENT,
-                 "dofs without mass are damped, and have no state of their "
-                 "own: condense them first");
-    RITZ_TRY(massless_share(model, modes, &io->B, &RB, &size));
-    RITZ_TRY(is_improper(&io->Cv, &RB, size, &improper[0]));
-    RITZ_TRY(is_improper(&io->Ca, &RB, size, &improper[1]));
-    RITZ_FAIL_IF(improper[0] || improper[1], RITZ_ERR_ARGUMENT,
-                 "an output is the %s of a dof without mass that an input "
-                 "drives: no states can give it",
-                 improper[0] ? "velocity" : "acceleration");
-    RITZ_TRY(ritz_dense_mul(&io->C, &RB, &feed));
+    RITZ_REFUSE_IF(damped, RITZ_ERR_ARGUMENT,
+                   "dofs without mass are damped, and have no state of their "
+                   "own: condense them first");
+    RITZ_CHECK(massless_share(model, modes, &io->B, &RB, &size));
+    RITZ_CHECK(is_improper(&io->Cv, &RB, size, &improper[0]));
+    RITZ_CHECK(is_improper(&io->Ca, &RB, size, &improper[1]));
+    RITZ_REFUSE_IF(improper[0] || improper[1], RITZ_ERR_ARGUMENT,
+                   "an output is the %s of a dof without mass that an input "
+                   "drives: no states can give it",
+                   improper[0] ? "velocity" : "acceleration");
+    RITZ_CHECK(ritz_dense_mul(&io->C, &RB, &feed));
     for (int64_t k = 0; k < feed.nrow * feed.ncol; k++)
         if (fabs(feed.val[k]) >
             RITZ_MASSLESS_SHARE * ritz_dense_max(&io->C) * size)
             modes->feed.val[k] += feed.val[k];
-done:
-    ritz_dense_free(&RB);
-    ritz_dense_free(&RD);
-    ritz_dense_free(&feed);
-    return status;
+    return RITZ_OK;
 }
 
 /* C - Ca Phi Lambda, Cv - Ca Phi Delta, Ca Phi B. */
 static ritz_status project_io(const ritz_io *io, ritz_modal_model *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_io part = {0};
-    ritz_dense CaDelta = {0};
+    RITZ_OWN(ritz_io) part = {0};
+    RITZ_OWN(ritz_dense) CaDelta = {0};
 
-    RITZ_TRY(ritz_io_project(io, &model->Phi, &part));
-    RITZ_TRY(ritz_dense_mul(&part.Ca, &model->Delta, &CaDelta));
-    RITZ_TRY(ritz_dense_mul(&part.Ca, &part.B, &model->feed));
+    RITZ_CHECK(ritz_io_project(io, &model->Phi, &part));
+    RITZ_CHECK(ritz_dense_mul(&part.Ca, &model->Delta, &CaDelta));
+    RITZ_CHECK(ritz_dense_mul(&part.Ca, &part.B, &model->feed));
     for (int64_t k = 0; k < model->count; k++)
         for (int64_t i = 0; i < io->num_outputs; i++) {
             double ca = ritz_dense_col(&part.Ca, k)[i];
@@ -240,10 +213,7 @@ static ritz_status project_io(const ritz_io *io, ritz_modal_model *model)
     model->C = part.C;
     model->Cv = part.Cv;
     part.B = part.C = part.Cv = (ritz_dense){0};
-done:
-    ritz_io_free(&part);
-    ritz_dense_free(&CaDelta);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_modal_model_take(ritz_pairs *pairs, int64_t num_dofs,
@@ -263,15 +233,11 @@ void ritz_modal_model_take(ritz_pairs *pairs, int64_t num_dofs,
 static ritz_status find_modes(const ritz_structure *model,
                               ritz_modal_model *modes)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_eigen_dense(&model->K, &model->M, &pairs));
+    RITZ_CHECK(ritz_eigen_dense(&model->K, &model->M, &pairs));
     ritz_modal_model_take(&pairs, model->K.nrow, modes);
-    RITZ_TRY(ritz_dense_mul(&model->M, &modes->Phi, &modes->MPhi));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return ritz_dense_mul(&model->M, &modes->Phi, &modes->MPhi);
 }
 
 ritz_status ritz_modal_model_drive(const ritz_io *io,
@@ -288,56 +254,46 @@ ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
                                  const ritz_damping *damping,
                                  ritz_modal_model *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal_model modes = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
 
-    RITZ_TRY(find_modes(model, &modes));
+    RITZ_CHECK(find_modes(model, &modes));
     if (model->D.val)
-        RITZ_TRY(project_damping(&model->D, &modes));
-    RITZ_TRY(ritz_modal_model_drive(io, damping, &modes));
+        RITZ_CHECK(project_damping(&model->D, &modes));
+    RITZ_CHECK(ritz_modal_model_drive(io, damping, &modes));
     if (modes.count < modes.num_dofs && io->num_inputs + io->num_outputs > 0)
-        RITZ_TRY(add_massless(model, io, damping, &modes));
+        RITZ_CHECK(add_massless(model, io, damping, &modes));
     *out = modes;
     modes = (ritz_modal_model){0};
-done:
-    ritz_modal_model_free(&modes);
-    return status;
+    return RITZ_OK;
 }
 
 /* M Phi Delta Phi'M of ratios alone. */
 static ritz_status spread_ratios(const ritz_structure *model,
                                  const ritz_damping *damping, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_structure bare = {model->K, model->M, {0}};
-    ritz_modal_model modes = {0};
-    ritz_io io = {0};
-    ritz_dense MPhiDelta = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_dense) MPhiDelta = {0};
 
-    RITZ_TRY(ritz_io_new(model->K.nrow, 0, 0, &io));
-    RITZ_TRY(ritz_modal_model_new(&bare, &io, damping, &modes));
-    RITZ_TRY(ritz_dense_mul(&modes.MPhi, &modes.Delta, &MPhiDelta));
-    RITZ_TRY(ritz_dense_mul_nt(&MPhiDelta, &modes.MPhi, out));
-done:
-    ritz_modal_model_free(&modes);
-    ritz_io_free(&io);
-    ritz_dense_free(&MPhiDelta);
-    return status;
+    RITZ_CHECK(ritz_io_new(model->K.nrow, 0, 0, &io));
+    RITZ_CHECK(ritz_modal_model_new(&bare, &io, damping, &modes));
+    RITZ_CHECK(ritz_dense_mul(&modes.MPhi, &modes.Delta, &MPhiDelta));
+    return ritz_dense_mul_nt(&MPhiDelta, &modes.MPhi, out);
 }
 
 ritz_status ritz_modal_damping(const ritz_structure *model,
                                const ritz_damping *damping, ritz_dense *D)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = model->K.nrow;
-    ritz_dense more = {0};
+    RITZ_OWN(ritz_dense) more = {0};
 
     if (damping->kind == RITZ_DAMPING_NONE)
         return RITZ_OK;
     if (!ritz_damping_is_rayleigh(damping)) {
-        RITZ_TRY(spread_ratios(model, damping, &more));
+        RITZ_CHECK(spread_ratios(model, damping, &more));
     } else {
-        RITZ_TRY(ritz_dense_new(n, n, &more));
+        RITZ_CHECK(ritz_dense_new(n, n, &more));
         for (int64_t k = 0; k < n * n; k++)
             more.val[k] =
                 damping->a * model->M.val[k] + damping->b * model->K.val[k];
@@ -347,9 +303,7 @@ ritz_status ritz_modal_damping(const ritz_structure *model,
     ritz_dense_free(D);
     *D = more;
     more = (ritz_dense){0};
-done:
-    ritz_dense_free(&more);
-    return status;
+    return RITZ_OK;
 }
 
 double ritz_modal_scale(double lambda)

@@ -27,20 +27,17 @@ void ritz_nested_free(ritz_nested *nested)
 static ritz_status new_nested(int64_t smallest, int64_t count, int64_t errors,
                               ritz_nested *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_nested made = {
-        .smallest = smallest, .count = count, .num_errors = errors};
+    RITZ_OWN(ritz_nested)
+    made = {.smallest = smallest, .count = count, .num_errors = errors};
 
-    RITZ_NEW(made.order, count);
-    RITZ_NEW(made.error, errors);
-    RITZ_TRY(ritz_dense_new(count, errors, &made.value));
+    RITZ_CHECK_NEW(made.order, count);
+    RITZ_CHECK_NEW(made.error, errors);
+    RITZ_CHECK(ritz_dense_new(count, errors, &made.value));
     for (int64_t k = 0; k < count * errors; k++)
         made.value.val[k] = nan("");
     *out = made;
     made = (ritz_nested){0};
-done:
-    ritz_nested_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_order(const ritz_reduced *in, int64_t order)
@@ -79,22 +76,21 @@ static ritz_status widen_table(const ritz_nested *in, int64_t row, bool new_row,
 ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
                              const char *name, double value)
 {
-    ritz_status status = RITZ_OK;
     ritz_nested *n = &reduced->nested;
-    ritz_nested wide = {0};
+    RITZ_OWN(ritz_nested) wide = {0};
     char copy[RITZ_NAME_SIZE] = "";
     int64_t row = 0, col = 0;
 
-    RITZ_TRY(check_order(reduced, order));
-    RITZ_TRY(ritz_name_copy(name, copy));
-    RITZ_FAIL_IF(!isfinite(value), RITZ_ERR_ARGUMENT,
-                 "'%s' of %" PRId64 " columns is %g, which is no measure", name,
-                 order, value);
+    RITZ_CHECK(check_order(reduced, order));
+    RITZ_CHECK(ritz_name_copy(name, copy));
+    RITZ_REFUSE_IF(!isfinite(value), RITZ_ERR_ARGUMENT,
+                   "'%s' of %" PRId64 " columns is %g, which is no measure",
+                   name, order, value);
     while (row < n->count && n->order[row] < order)
         row++;
     while (col < n->num_errors && strcmp(n->error[col], copy) < 0)
         col++;
-    RITZ_TRY(widen_table(
+    RITZ_CHECK(widen_table(
         n, row, row == n->count || n->order[row] != order, col,
         col == n->num_errors || strcmp(n->error[col], copy) != 0, &wide));
     wide.order[row] = order;
@@ -103,9 +99,7 @@ ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
     ritz_nested_free(n);
     *n = wide;
     wide = (ritz_nested){0};
-done:
-    ritz_nested_free(&wide);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status pick_columns(const ritz_dense *A, int64_t count,
@@ -123,24 +117,19 @@ static ritz_status pick_invariants(const ritz_invariants *in, int64_t r,
                                    int64_t count, const int64_t *at,
                                    ritz_invariants *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense rows = {0};
-    int64_t *thrice = NULL;
+    RITZ_OWN(ritz_dense) rows = {0};
+    RITZ_OWN_ARRAY int64_t *thrice = NULL;
 
     if (!in->momentum.val)
         return RITZ_OK;
-    RITZ_NEW(thrice, 3 * count);
+    RITZ_CHECK_NEW(thrice, 3 * count);
     for (int64_t k = 0; k < 3 * count; k++)
         thrice[k] = k / count * r + at[k % count];
     memcpy(out->rigid, in->rigid, sizeof out->rigid);
-    RITZ_TRY(pick_columns(&in->momentum, count, at, &out->momentum));
-    RITZ_TRY(pick_columns(&in->position, 3 * count, thrice, &out->position));
-    RITZ_TRY(ritz_dense_rows(&in->product, 3 * count, thrice, &rows));
-    RITZ_TRY(pick_columns(&rows, 3 * count, thrice, &out->product));
-done:
-    free(thrice);
-    ritz_dense_free(&rows);
-    return status;
+    RITZ_CHECK(pick_columns(&in->momentum, count, at, &out->momentum));
+    RITZ_CHECK(pick_columns(&in->position, 3 * count, thrice, &out->position));
+    RITZ_CHECK(ritz_dense_rows(&in->product, 3 * count, thrice, &rows));
+    return pick_columns(&rows, 3 * count, thrice, &out->product);
 }
 
 static void pick_kinds(const ritz_columns *in, const int64_t *at,
@@ -187,46 +176,40 @@ done:
 static ritz_status check_columns(int64_t r, int64_t count, const int64_t *at,
                                  int64_t smallest)
 {
-    ritz_status status = RITZ_OK;
-    bool *taken = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_FAIL_IF(smallest < 1 || smallest > count, RITZ_ERR_ARGUMENT,
-                 "a smallest prefix of %" PRId64
-                 " columns is not in 1..%" PRId64,
-                 smallest, count);
-    RITZ_NEW(taken, r);
+    RITZ_REFUSE_IF(smallest < 1 || smallest > count, RITZ_ERR_ARGUMENT,
+                   "a smallest prefix of %" PRId64
+                   " columns is not in 1..%" PRId64,
+                   smallest, count);
+    RITZ_CHECK_NEW(taken, r);
     for (int64_t j = 0; j < count; j++) {
-        RITZ_FAIL_IF(at[j] < 0 || at[j] >= r, RITZ_ERR_ARGUMENT,
-                     "there is no column %" PRId64 ", there are %" PRId64,
-                     at[j] + 1, r);
-        RITZ_FAIL_IF(taken[at[j]], RITZ_ERR_ARGUMENT,
-                     "column %" PRId64 " is named twice", at[j] + 1);
+        RITZ_REFUSE_IF(at[j] < 0 || at[j] >= r, RITZ_ERR_ARGUMENT,
+                       "there is no column %" PRId64 ", there are %" PRId64,
+                       at[j] + 1, r);
+        RITZ_REFUSE_IF(taken[at[j]], RITZ_ERR_ARGUMENT,
+                       "column %" PRId64 " is named twice", at[j] + 1);
         taken[at[j]] = true;
     }
-done:
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
                               const int64_t *order_of_columns, int64_t smallest,
                               ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced made = {0};
+    RITZ_OWN(ritz_reduced) made = {0};
 
-    RITZ_TRY(check_columns(in->K.ncol, count, order_of_columns, smallest));
-    RITZ_TRY(select_columns(in, count, order_of_columns, &made));
-    RITZ_TRY(new_nested(smallest, 0, 0, &made.nested));
+    RITZ_CHECK(check_columns(in->K.ncol, count, order_of_columns, smallest));
+    RITZ_CHECK(select_columns(in, count, order_of_columns, &made));
+    RITZ_CHECK(new_nested(smallest, 0, 0, &made.nested));
     if (count == in->K.ncol) {
-        RITZ_TRY(ritz_measures_copy(&in->estimates, &made.estimates));
-        RITZ_TRY(ritz_measures_copy(&in->errors, &made.errors));
+        RITZ_CHECK(ritz_measures_copy(&in->estimates, &made.estimates));
+        RITZ_CHECK(ritz_measures_copy(&in->errors, &made.errors));
     }
     *out = made;
     made = (ritz_reduced){0};
-done:
-    ritz_reduced_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /* The rows of the table that a prefix keeps: orders up to its own. */
@@ -283,23 +266,19 @@ static ritz_status note_measures(int64_t order, ritz_reduced *reduced)
 ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
                                 ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced made = {0};
-    int64_t *first = NULL;
+    RITZ_OWN(ritz_reduced) made = {0};
+    RITZ_OWN_ARRAY int64_t *first = NULL;
 
-    RITZ_TRY(check_order(in, order));
-    RITZ_NEW(first, order);
+    RITZ_CHECK(check_order(in, order));
+    RITZ_CHECK_NEW(first, order);
     for (int64_t j = 0; j < order; j++)
         first[j] = j;
-    RITZ_TRY(ritz_reduced_nest(in, order, first, in->nested.smallest, &made));
+    RITZ_CHECK(ritz_reduced_nest(in, order, first, in->nested.smallest, &made));
     ritz_nested_free(&made.nested);
-    RITZ_TRY(shorten_table(&in->nested, order, &made.nested));
+    RITZ_CHECK(shorten_table(&in->nested, order, &made.nested));
     if (order < in->K.ncol)
-        RITZ_TRY(note_measures(order, &made));
+        RITZ_CHECK(note_measures(order, &made));
     *out = made;
     made = (ritz_reduced){0};
-done:
-    free(first);
-    ritz_reduced_free(&made);
-    return status;
+    return RITZ_OK;
 }

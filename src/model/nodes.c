@@ -34,17 +34,14 @@ static void place_rows(int64_t n, const ritz_dof *dof, ritz_nodes *nodes)
 ritz_status ritz_nodes_of(int64_t n, const ritz_dof *dof,
                           const ritz_grids *grids, ritz_nodes *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_nodes nodes = {.grids = grids, .count = grids->count};
+    RITZ_OWN(ritz_nodes) nodes = {.grids = grids, .count = grids->count};
 
-    RITZ_NEW(nodes.grid, grids->count);
-    RITZ_NEW(nodes.row, 3 * grids->count);
+    RITZ_CHECK_NEW(nodes.grid, grids->count);
+    RITZ_CHECK_NEW(nodes.row, 3 * grids->count);
     place_rows(n, dof, &nodes);
     *out = nodes;
     nodes = (ritz_nodes){0};
-done:
-    ritz_nodes_free(&nodes);
-    return status;
+    return RITZ_OK;
 }
 
 const double *ritz_nodes_axes(const ritz_nodes *nodes, int64_t node)
@@ -65,10 +62,9 @@ bool ritz_nodes_basic(const ritz_nodes *nodes, int64_t node)
 ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
                              int b, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense along = {0};
+    RITZ_OWN(ritz_dense) along = {0};
 
-    RITZ_TRY(ritz_dense_new(nodes->count, T->ncol, &along));
+    RITZ_CHECK(ritz_dense_new(nodes->count, T->ncol, &along));
     for (int64_t k = 0; k < T->ncol; k++) {
         const double *from = ritz_dense_col(T, k);
         double *to = ritz_dense_col(&along, k);
@@ -83,9 +79,7 @@ ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
     }
     *out = along;
     along = (ritz_dense){0};
-done:
-    ritz_dense_free(&along);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_nodes_free(ritz_nodes *nodes)

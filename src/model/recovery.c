@@ -25,28 +25,25 @@ static ritz_status join_names(const ritz_recovery *recovery, int64_t n,
 static ritz_status check_names(const ritz_recovery *recovery, int64_t n,
                                const ritz_dof *dof)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dof *all = NULL;
+    RITZ_OWN_ARRAY ritz_dof *all = NULL;
     int64_t count = n + recovery->count;
     char name[RITZ_DOF_NAME_SIZE];
 
     for (int64_t k = 0; k < recovery->count; k++)
-        RITZ_FAIL_IF(recovery->dof[k].component < 0 ||
-                         recovery->dof[k].component > 6,
-                     RITZ_ERR_FORMAT,
-                     "a recovered dof has direction %" PRId64
-                     ", which is not among 0 to 6",
-                     recovery->dof[k].component);
-    RITZ_TRY(join_names(recovery, n, dof, &all));
+        RITZ_REFUSE_IF(recovery->dof[k].component < 0 ||
+                           recovery->dof[k].component > 6,
+                       RITZ_ERR_FORMAT,
+                       "a recovered dof has direction %" PRId64
+                       ", which is not among 0 to 6",
+                       recovery->dof[k].component);
+    RITZ_CHECK(join_names(recovery, n, dof, &all));
     qsort(all, (size_t)count, sizeof *all, ritz_dof_compare);
     for (int64_t k = 1; k < count; k++)
-        RITZ_FAIL_IF(ritz_dof_compare(&all[k - 1], &all[k]) == 0,
-                     RITZ_ERR_FORMAT,
-                     "'%s' is recovered and has a row, or is recovered twice",
-                     ritz_dof_name(all[k], name));
-done:
-    free(all);
-    return status;
+        RITZ_REFUSE_IF(ritz_dof_compare(&all[k - 1], &all[k]) == 0,
+                       RITZ_ERR_FORMAT,
+                       "'%s' is recovered and has a row, or is recovered twice",
+                       ritz_dof_name(all[k], name));
+    return RITZ_OK;
 }
 
 ritz_status ritz_recovery_check(const ritz_recovery *recovery, int64_t n,
@@ -68,32 +65,28 @@ ritz_status ritz_recovery_check(const ritz_recovery *recovery, int64_t n,
 ritz_status ritz_recovery_copy(const ritz_recovery *recovery,
                                ritz_recovery *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_recovery copy = {.count = recovery->count};
+    RITZ_OWN(ritz_recovery) copy = {.count = recovery->count};
 
     if (recovery->count == 0)
-        goto done;
-    RITZ_TRY(join_names(recovery, 0, NULL, &copy.dof));
-    RITZ_TRY(ritz_sparse_copy(&recovery->G, &copy.G));
+        return RITZ_OK;
+    RITZ_CHECK(join_names(recovery, 0, NULL, &copy.dof));
+    RITZ_CHECK(ritz_sparse_copy(&recovery->G, &copy.G));
     *out = copy;
     copy = (ritz_recovery){0};
-done:
-    ritz_recovery_free(&copy);
-    return status;
+    return RITZ_OK;
 }
 
 /* [T; G T] */
 static ritz_status stack_rows(const ritz_recovery *recovery,
                               const ritz_dense *T, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = T->nrow;
     int64_t m = recovery->count;
-    ritz_dense GT = {0}, all = {0};
+    RITZ_OWN(ritz_dense) GT = {0}, all = {0};
 
     if (m > 0)
-        RITZ_TRY(ritz_sparse_mul(&recovery->G, T, &GT));
-    RITZ_TRY(ritz_dense_new(n + m, T->ncol, &all));
+        RITZ_CHECK(ritz_sparse_mul(&recovery->G, T, &GT));
+    RITZ_CHECK(ritz_dense_new(n + m, T->ncol, &all));
     for (int64_t j = 0; j < T->ncol; j++) {
         double *to = ritz_dense_col(&all, j);
 
@@ -104,27 +97,21 @@ static ritz_status stack_rows(const ritz_recovery *recovery,
     }
     *out = all;
     all = (ritz_dense){0};
-done:
-    ritz_dense_free(&GT);
-    ritz_dense_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
                                  const ritz_dof *dof, const ritz_dense *T,
                                  ritz_dof **names, ritz_dense *shape)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dof *all = NULL;
+    RITZ_OWN_ARRAY ritz_dof *all = NULL;
 
-    RITZ_TRY(join_names(recovery, n, dof, &all));
+    RITZ_CHECK(join_names(recovery, n, dof, &all));
     if (shape)
-        RITZ_TRY(stack_rows(recovery, T, shape));
+        RITZ_CHECK(stack_rows(recovery, T, shape));
     *names = all;
     all = NULL;
-done:
-    free(all);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_recovery_free(ritz_recovery *recovery)

@@ -112,10 +112,9 @@ static bool may_be_rigid(ritz_column_kind kind)
 static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense most = {0};
+    RITZ_OWN(ritz_dense) most = {0};
 
-    RITZ_TRY(ritz_sparse_terms(K, &basis->T, &most));
+    RITZ_CHECK(ritz_sparse_terms(K, &basis->T, &most));
     for (int64_t j = 0; j < Kr->ncol; j++)
         for (int64_t i = 0; i < Kr->nrow; i++)
             if ((may_be_rigid(basis->columns.kind[i]) ||
@@ -124,24 +123,21 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                     RITZ_SUM_ROUNDING * ritz_dense_col(&most, j)[i])
                 ritz_dense_col(Kr, j)[i] = 0.0;
     ritz_dense_symmetrise(Kr);
-done:
-    ritz_dense_free(&most);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether columns of T depend on each other to six digits or more. */
 static ritz_status nearly_depend(const ritz_dense *T, bool *out)
 {
-    ritz_status status = RITZ_OK;
     int r = (int)T->ncol;
     double rcond = 0.0, norm = 0.0;
-    ritz_dense G = {0}, scaled = {0};
+    RITZ_OWN(ritz_dense) G = {0}, scaled = {0};
 
     *out = false;
     if (r == 0 || T->nrow == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_mul_tn(T, T, &G));
-    RITZ_TRY(ritz_dense_copy(&G, &scaled));
+    RITZ_CHECK(ritz_dense_mul_tn(T, T, &G));
+    RITZ_CHECK(ritz_dense_copy(&G, &scaled));
     for (int64_t j = 0; j < r; j++)
         for (int64_t i = 0; i < r; i++)
             ritz_dense_col(&scaled, j)[i] /=
@@ -151,10 +147,7 @@ static ritz_status nearly_depend(const ritz_dense *T, bool *out)
         (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, scaled.val, r, norm,
                              &rcond);
     *out = !(rcond > RITZ_SQUARED_DEPENDENT);
-done:
-    ritz_dense_free(&G);
-    ritz_dense_free(&scaled);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -166,32 +159,29 @@ done:
 static ritz_status project_stiffness(const ritz_sparse *K, const ritz_dense *T,
                                      ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense KT = {0};
+    RITZ_OWN(ritz_dense) KT = {0};
     bool twofold = false;
 
-    RITZ_TRY(nearly_depend(T, &twofold));
+    RITZ_CHECK(nearly_depend(T, &twofold));
     if (!twofold)
         return ritz_sparse_project(K, T, out);
-    RITZ_TRY(ritz_sparse_mul_twofold(K, T, &KT));
-    RITZ_TRY(ritz_dense_mul_tn(T, &KT, out));
+    RITZ_CHECK(ritz_sparse_mul_twofold(K, T, &KT));
+    RITZ_CHECK(ritz_dense_mul_tn(T, &KT, out));
     if (ritz_sparse_asymmetry(K) == 0.0)
         ritz_dense_symmetrise(out);
-done:
-    ritz_dense_free(&KT);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_grids copy = {.count = grids->count, .num_frames = grids->num_frames};
+    RITZ_OWN(ritz_grids)
+    copy = {.count = grids->count, .num_frames = grids->num_frames};
     size_t n = (size_t)grids->count;
 
-    RITZ_NEW(copy.id, grids->count);
-    RITZ_NEW(copy.position, 3 * grids->count);
-    RITZ_NEW(copy.frame, grids->count);
-    RITZ_NEW(copy.axes, 9 * grids->num_frames);
+    RITZ_CHECK_NEW(copy.id, grids->count);
+    RITZ_CHECK_NEW(copy.position, 3 * grids->count);
+    RITZ_CHECK_NEW(copy.frame, grids->count);
+    RITZ_CHECK_NEW(copy.axes, 9 * grids->num_frames);
     if (n > 0) {
         memcpy(copy.id, grids->id, n * sizeof *copy.id);
         memcpy(copy.position, grids->position, 3 * n * sizeof *copy.position);
@@ -201,9 +191,7 @@ static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
     }
     *out = copy;
     copy = (ritz_grids){0};
-done:
-    ritz_grids_free(&copy);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status copy_dofs(int64_t n, const ritz_dof *dof, ritz_dof **out)
@@ -223,18 +211,17 @@ static ritz_status map_port(const ritz_component *component,
                             const ritz_port *port, const ritz_dense *T,
                             ritz_port_map *map)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &component->grids;
-    ritz_dense turn = {0}, rows = {0};
+    RITZ_OWN(ritz_dense) turn = {0}, rows = {0};
 
     memcpy(map->name, port->name, sizeof map->name);
     memcpy(map->origin, port->origin, sizeof map->origin);
     memcpy(map->axes, port->axes, sizeof map->axes);
     map->count = port->dofs.count;
-    RITZ_TRY(ritz_port_turn(component, port, &turn, &map->dof));
-    RITZ_TRY(ritz_dense_rows(T, port->dofs.count, port->dofs.at, &rows));
-    RITZ_TRY(ritz_dense_mul(&turn, &rows, &map->map));
-    RITZ_NEW(map->position, 3 * map->count);
+    RITZ_CHECK(ritz_port_turn(component, port, &turn, &map->dof));
+    RITZ_CHECK(ritz_dense_rows(T, port->dofs.count, port->dofs.at, &rows));
+    RITZ_CHECK(ritz_dense_mul(&turn, &rows, &map->map));
+    RITZ_CHECK_NEW(map->position, 3 * map->count);
     for (int64_t i = 0; i < map->count; i++) {
         int64_t k = ritz_grids_find(grids, map->dof[i].grid);
 
@@ -242,10 +229,7 @@ static ritz_status map_port(const ritz_component *component,
             memcpy(map->position + 3 * i, grids->position + 3 * k,
                    3 * sizeof *map->position);
     }
-done:
-    ritz_dense_free(&turn);
-    ritz_dense_free(&rows);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status map_ports(const ritz_component *component,
@@ -263,60 +247,53 @@ static ritz_status map_ports(const ritz_component *component,
 static ritz_status keep_names(const ritz_component *component,
                               const ritz_basis *basis, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_dense) T = {0};
 
     reduced->origin = basis->origin;
     reduced->num_dofs = component->num_dofs;
     memcpy(reduced->units, component->units, sizeof reduced->units);
     memcpy(reduced->damping, component->damping, sizeof reduced->damping);
-    RITZ_TRY(ritz_columns_copy(&basis->columns, &reduced->columns));
-    RITZ_TRY(ritz_dense_copy(&basis->T, &reduced->T));
-    RITZ_TRY(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
-    RITZ_TRY(copy_grids(&component->grids, &reduced->grids));
-    RITZ_TRY(ritz_elements_copy(&component->elements, &reduced->elements));
-    RITZ_TRY(ritz_recovery_copy(&component->recovery, &reduced->recovery));
-    RITZ_TRY(ritz_inertia_of(component, &reduced->inertia));
-    RITZ_TRY(copy_mass_columns(basis, &T));
-    RITZ_TRY(ritz_invariants_of(component, &T, &reduced->invariants));
-done:
-    ritz_dense_free(&T);
-    return status;
+    RITZ_CHECK(ritz_columns_copy(&basis->columns, &reduced->columns));
+    RITZ_CHECK(ritz_dense_copy(&basis->T, &reduced->T));
+    RITZ_CHECK(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
+    RITZ_CHECK(copy_grids(&component->grids, &reduced->grids));
+    RITZ_CHECK(ritz_elements_copy(&component->elements, &reduced->elements));
+    RITZ_CHECK(ritz_recovery_copy(&component->recovery, &reduced->recovery));
+    RITZ_CHECK(ritz_inertia_of(component, &reduced->inertia));
+    RITZ_CHECK(copy_mass_columns(basis, &T));
+    return ritz_invariants_of(component, &T, &reduced->invariants);
 }
 
 ritz_status ritz_reduce(const ritz_component *component,
                         const ritz_basis *basis, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *T = &basis->T;
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
-    RITZ_FAIL_IF(basis->states, RITZ_ERR_ARGUMENT,
-                 "the basis of '%s' is of states, it makes a state space and "
-                 "no masses and stiffnesses",
-                 basis->origin.method);
-    RITZ_FAIL_IF(basis->W.val, RITZ_ERR_ARGUMENT,
-                 "the basis of '%s' has left vectors of its own, it makes a "
-                 "state space and no symmetric masses and stiffnesses",
-                 basis->origin.method);
-    RITZ_FAIL_IF(T->nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
-                 "the basis is for %lld dofs, the component has %lld",
-                 (long long)T->nrow, (long long)component->num_dofs);
-    RITZ_TRY(keep_names(component, basis, &reduced));
-    RITZ_TRY(project_stiffness(&component->K, T, &reduced.K));
-    RITZ_TRY(settle_rigid(&component->K, basis, &reduced.K));
-    RITZ_TRY(ritz_sparse_project(&component->M, T, &reduced.M));
-    RITZ_TRY(ritz_sparse_project(&component->D, T, &reduced.D));
+    RITZ_REFUSE_IF(basis->states, RITZ_ERR_ARGUMENT,
+                   "the basis of '%s' is of states, it makes a state space and "
+                   "no masses and stiffnesses",
+                   basis->origin.method);
+    RITZ_REFUSE_IF(basis->W.val, RITZ_ERR_ARGUMENT,
+                   "the basis of '%s' has left vectors of its own, it makes a "
+                   "state space and no symmetric masses and stiffnesses",
+                   basis->origin.method);
+    RITZ_REFUSE_IF(T->nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
+                   "the basis is for %lld dofs, the component has %lld",
+                   (long long)T->nrow, (long long)component->num_dofs);
+    RITZ_CHECK(keep_names(component, basis, &reduced));
+    RITZ_CHECK(project_stiffness(&component->K, T, &reduced.K));
+    RITZ_CHECK(settle_rigid(&component->K, basis, &reduced.K));
+    RITZ_CHECK(ritz_sparse_project(&component->M, T, &reduced.M));
+    RITZ_CHECK(ritz_sparse_project(&component->D, T, &reduced.D));
     settle_mass(component, &basis->columns, &reduced);
-    RITZ_TRY(ritz_sparse_project(&component->K4, T, &reduced.K4));
-    RITZ_TRY(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
-    RITZ_TRY(map_ports(component, T, &reduced));
-    RITZ_TRY(ritz_io_project(&component->io, T, &reduced.io));
+    RITZ_CHECK(ritz_sparse_project(&component->K4, T, &reduced.K4));
+    RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
+    RITZ_CHECK(map_ports(component, T, &reduced));
+    RITZ_CHECK(ritz_io_project(&component->io, T, &reduced.io));
     *out = reduced;
     reduced = (ritz_reduced){0};
-done:
-    ritz_reduced_free(&reduced);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
@@ -345,40 +322,38 @@ static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
 ritz_status ritz_reduced_project(const ritz_reduced *reduced,
                                  const ritz_dense *V, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced second = {.origin = reduced->origin,
-                           .inertia = reduced->inertia,
-                           .num_dofs = reduced->num_dofs};
+    RITZ_OWN(ritz_reduced)
+    second = {.origin = reduced->origin,
+              .inertia = reduced->inertia,
+              .num_dofs = reduced->num_dofs};
 
     memcpy(second.units, reduced->units, sizeof second.units);
     memcpy(second.damping, reduced->damping, sizeof second.damping);
-    RITZ_TRY(ritz_columns_new(V->ncol, &second.columns));
+    RITZ_CHECK(ritz_columns_new(V->ncol, &second.columns));
     for (int64_t j = 0; j < V->ncol; j++)
         second.columns.kind[j] = RITZ_COLUMN_SYSTEM;
-    RITZ_TRY(ritz_dense_congruence(&reduced->K, V, &second.K));
-    RITZ_TRY(ritz_dense_congruence(&reduced->M, V, &second.M));
+    RITZ_CHECK(ritz_dense_congruence(&reduced->K, V, &second.K));
+    RITZ_CHECK(ritz_dense_congruence(&reduced->M, V, &second.M));
     settle_mass_again(reduced, &second);
     if (reduced->D.val)
-        RITZ_TRY(ritz_dense_project(&reduced->D, V, &second.D));
+        RITZ_CHECK(ritz_dense_project(&reduced->D, V, &second.D));
     if (reduced->K4.val)
-        RITZ_TRY(ritz_dense_congruence(&reduced->K4, V, &second.K4));
-    RITZ_TRY(ritz_dampers_project(&reduced->dampers, V, &second.dampers));
-    RITZ_TRY(project_ports(reduced, V, &second));
-    RITZ_TRY(ritz_io_project(&reduced->io, V, &second.io));
-    RITZ_TRY(
+        RITZ_CHECK(ritz_dense_congruence(&reduced->K4, V, &second.K4));
+    RITZ_CHECK(ritz_dampers_project(&reduced->dampers, V, &second.dampers));
+    RITZ_CHECK(project_ports(reduced, V, &second));
+    RITZ_CHECK(ritz_io_project(&reduced->io, V, &second.io));
+    RITZ_CHECK(
         ritz_invariants_project(&reduced->invariants, V, &second.invariants));
     if (reduced->T.val) {
-        RITZ_TRY(ritz_dense_mul(&reduced->T, V, &second.T));
-        RITZ_TRY(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
-        RITZ_TRY(copy_grids(&reduced->grids, &second.grids));
-        RITZ_TRY(ritz_elements_copy(&reduced->elements, &second.elements));
-        RITZ_TRY(ritz_recovery_copy(&reduced->recovery, &second.recovery));
+        RITZ_CHECK(ritz_dense_mul(&reduced->T, V, &second.T));
+        RITZ_CHECK(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
+        RITZ_CHECK(copy_grids(&reduced->grids, &second.grids));
+        RITZ_CHECK(ritz_elements_copy(&reduced->elements, &second.elements));
+        RITZ_CHECK(ritz_recovery_copy(&reduced->recovery, &second.recovery));
     }
     *out = second;
     second = (ritz_reduced){0};
-done:
-    ritz_reduced_free(&second);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_reduced_install(ritz_reduced *reduced)

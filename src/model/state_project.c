@@ -58,20 +58,17 @@ static ritz_status take_half(const ritz_dense *T, int64_t first,
 
 static ritz_status install_dampers(const ritz_component *component, large *m)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dampers dampers = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
 
-    RITZ_FAIL_IF(component->K4.colptr, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no states, "
-                 "give it as a modal ratio");
-    RITZ_TRY(ritz_sparse_copy(&component->K, &m->K));
+    RITZ_REFUSE_IF(
+        component->K4.colptr, RITZ_ERR_ARGUMENT,
+        "structural damping is of harmonic motion and has no states, "
+        "give it as a modal ratio");
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &m->K));
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_copy(&component->D, &m->D));
-    RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install_sparse(&dampers, &m->K, &m->D));
-done:
-    ritz_dampers_free(&dampers);
-    return status;
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &m->D));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
+    return ritz_dampers_install_sparse(&dampers, &m->K, &m->D);
 }
 
 static bool is_rigid(const large *m, int64_t j)
@@ -101,73 +98,59 @@ static void add_scaled(double factor, const ritz_dense *B, ritz_dense *A)
 static ritz_status add_ratios(const ritz_damping *damping, double among_hz,
                               const ritz_dense *MT, large *m)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *M = &m->component->M;
     const ritz_span span = {-1, among_hz};
-    ritz_pairs modes = {0};
-    ritz_dense q = {0}, rate = {0}, force = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
+    RITZ_OWN(ritz_dense) q = {0}, rate = {0}, force = {0};
 
-    RITZ_FAIL_IF(!(among_hz > 0.0), RITZ_ERR_ARGUMENT,
-                 "damping ratios need all modes of %" PRId64
-                 " dofs: state damping as rayleigh or fit, or choose modes "
-                 "up to a frequency",
-                 m->component->num_dofs);
-    RITZ_TRY_IN("damping ratios", ritz_eigen_sparse(&m->K, M, &span, &modes));
-    RITZ_TRY(ritz_dense_mul_tn(&modes.Phi, MT, &q));
+    RITZ_REFUSE_IF(!(among_hz > 0.0), RITZ_ERR_ARGUMENT,
+                   "damping ratios need all modes of %" PRId64
+                   " dofs: state damping as rayleigh or fit, or choose modes "
+                   "up to a frequency",
+                   m->component->num_dofs);
+    RITZ_CHECK_IN("damping ratios", ritz_eigen_sparse(&m->K, M, &span, &modes));
+    RITZ_CHECK(ritz_dense_mul_tn(&modes.Phi, MT, &q));
     for (int64_t j = 0; j < q.ncol; j++)
         for (int64_t k = 0; k < q.nrow; k++)
             ritz_dense_col(&q, j)[k] *=
                 ritz_modal_rate(damping, k - modes.num_rigid, modes.lambda[k]);
-    RITZ_TRY(ritz_dense_mul(&modes.Phi, &q, &rate));
-    RITZ_TRY(ritz_sparse_mul(M, &rate, &force));
+    RITZ_CHECK(ritz_dense_mul(&modes.Phi, &q, &rate));
+    RITZ_CHECK(ritz_sparse_mul(M, &rate, &force));
     add_scaled(1.0, &force, &m->F);
-done:
-    ritz_pairs_free(&modes);
-    ritz_dense_free(&q);
-    ritz_dense_free(&rate);
-    ritz_dense_free(&force);
-    return status;
+    return RITZ_OK;
 }
 
 /* F, once K T_q is there. */
 static ritz_status add_damping(const ritz_damping *damping, double among_hz,
                                const ritz_dense *MT, large *m)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_TRY(ritz_dense_copy(&m->KT, &m->F));
+    RITZ_CHECK(ritz_dense_copy(&m->KT, &m->F));
     if (m->D.colptr) {
-        RITZ_TRY(ritz_sparse_mul(&m->D, &m->T_v, &part));
+        RITZ_CHECK(ritz_sparse_mul(&m->D, &m->T_v, &part));
         add_scaled(1.0, &part, &m->F);
     }
     if (ritz_damping_is_rayleigh(damping)) {
         ritz_dense_free(&part);
-        RITZ_TRY(stiffness_times(m, &m->T_v, &part));
+        RITZ_CHECK(stiffness_times(m, &m->T_v, &part));
         add_scaled(damping->b, &part, &m->F);
         add_scaled(damping->a, MT, &m->F);
     } else if (damping->kind != RITZ_DAMPING_NONE) {
-        RITZ_TRY(add_ratios(damping, among_hz, MT, m));
+        RITZ_CHECK(add_ratios(damping, among_hz, MT, m));
     }
-done:
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* S := |X|'|Y| */
 static ritz_status multiply_magnitudes(const ritz_dense *X, const ritz_dense *Y,
                                        ritz_dense *S)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense x = {0}, y = {0};
+    RITZ_OWN(ritz_dense) x = {0}, y = {0};
 
-    RITZ_TRY(ritz_dense_abs(X, &x));
-    RITZ_TRY(ritz_dense_abs(Y, &y));
-    RITZ_TRY(ritz_dense_mul_tn(&x, &y, S));
-done:
-    ritz_dense_free(&x);
-    ritz_dense_free(&y);
-    return status;
+    RITZ_CHECK(ritz_dense_abs(X, &x));
+    RITZ_CHECK(ritz_dense_abs(Y, &y));
+    return ritz_dense_mul_tn(&x, &y, S);
 }
 
 /*
@@ -177,12 +160,11 @@ done:
 static ritz_status settle_rigid(const large *m, const ritz_dense *const left[2],
                                 const ritz_dense *const right[2], ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
     double rounding = (double)(left[0]->nrow + 64) * DBL_EPSILON;
-    ritz_dense first = {0}, second = {0};
+    RITZ_OWN(ritz_dense) first = {0}, second = {0};
 
-    RITZ_TRY(multiply_magnitudes(left[0], right[0], &first));
-    RITZ_TRY(multiply_magnitudes(left[1], right[1], &second));
+    RITZ_CHECK(multiply_magnitudes(left[0], right[0], &first));
+    RITZ_CHECK(multiply_magnitudes(left[1], right[1], &second));
     add_scaled(1.0, &second, &first);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
@@ -190,33 +172,25 @@ static ritz_status settle_rigid(const large *m, const ritz_dense *const left[2],
                 fabs(ritz_dense_col(A, j)[i]) <=
                     rounding * ritz_dense_col(&first, j)[i])
                 ritz_dense_col(A, j)[i] = 0.0;
-done:
-    ritz_dense_free(&first);
-    ritz_dense_free(&second);
-    return status;
+    return RITZ_OK;
 }
 
 /* A := W_q'T_v - W_v'F, where rigid rows see nothing of K. */
 static ritz_status project_forces(const large *m, ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense WF = {0}, WK = {0};
+    RITZ_OWN(ritz_dense) WF = {0}, WK = {0};
 
     ritz_dense_free(A);
-    RITZ_TRY(ritz_dense_mul_tn(&m->W_q, &m->T_v, A));
-    RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &m->F, &WF));
-    RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &m->KT, &WK));
+    RITZ_CHECK(ritz_dense_mul_tn(&m->W_q, &m->T_v, A));
+    RITZ_CHECK(ritz_dense_mul_tn(&m->W_v, &m->F, &WF));
+    RITZ_CHECK(ritz_dense_mul_tn(&m->W_v, &m->KT, &WK));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(A, j)[i] -=
                 ritz_dense_col(&WF, j)[i] -
                 (is_rigid(m, i) ? ritz_dense_col(&WK, j)[i] : 0.0);
-    RITZ_TRY(settle_rigid(m, (const ritz_dense *[]){&m->W_q, &m->W_v},
-                          (const ritz_dense *[]){&m->T_v, &m->F}, A));
-done:
-    ritz_dense_free(&WF);
-    ritz_dense_free(&WK);
-    return status;
+    return settle_rigid(m, (const ritz_dense *[]){&m->W_q, &m->W_v},
+                        (const ritz_dense *[]){&m->T_v, &m->F}, A);
 }
 
 /* C := C - Y'F, D := Y'B; M Y = Ca' */
@@ -250,20 +224,16 @@ done:
 
 static ritz_status fill_outputs(const large *m, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &m->component->io;
-    ritz_dense rate = {0};
+    RITZ_OWN(ritz_dense) rate = {0};
 
     ritz_dense_free(&out->B);
     ritz_dense_free(&out->C);
-    RITZ_TRY(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
-    RITZ_TRY(ritz_dense_mul(&io->C, &m->T_q, &out->C));
-    RITZ_TRY(ritz_dense_mul(&io->Cv, &m->T_v, &rate));
+    RITZ_CHECK(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
+    RITZ_CHECK(ritz_dense_mul(&io->C, &m->T_q, &out->C));
+    RITZ_CHECK(ritz_dense_mul(&io->Cv, &m->T_v, &rate));
     add_scaled(1.0, &rate, &out->C);
-    RITZ_TRY(fill_accelerations(m, out));
-done:
-    ritz_dense_free(&rate);
-    return status;
+    return fill_accelerations(m, out);
 }
 
 /* What massless dofs answer at once would need more than the vectors. */
@@ -289,32 +259,26 @@ ritz_status ritz_states_project(const ritz_component *component,
                                 const ritz_basis *basis, ritz_state_space *out,
                                 ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = component->num_dofs;
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = basis->W.val ? &basis->W : T;
-    large m = {.component = component, .columns = &basis->columns};
-    ritz_dense MT = {0}, inertia = {0};
+    RITZ_OWN(large) m = {.component = component, .columns = &basis->columns};
+    RITZ_OWN(ritz_dense) MT = {0}, inertia = {0};
 
-    RITZ_TRY(refuse_massless_inputs(component));
-    RITZ_TRY(install_dampers(component, &m));
-    RITZ_TRY(take_half(T, 0, &m.T_q));
-    RITZ_TRY(take_half(T, n, &m.T_v));
-    RITZ_TRY(take_half(W, 0, &m.W_q));
-    RITZ_TRY(take_half(W, n, &m.W_v));
-    RITZ_TRY(ritz_sparse_mul(&component->M, &m.T_v, &MT));
-    RITZ_TRY(stiffness_times(&m, &m.T_q, &m.KT));
-    RITZ_TRY(add_damping(damping, basis->among_hz, &MT, &m));
-    RITZ_TRY(project_forces(&m, &out->A));
-    RITZ_TRY(fill_outputs(&m, out));
-    RITZ_TRY(ritz_dense_mul_tn(&m.W_q, &m.T_q, E));
-    RITZ_TRY(ritz_dense_mul_tn(&m.W_v, &MT, &inertia));
+    RITZ_CHECK(refuse_massless_inputs(component));
+    RITZ_CHECK(install_dampers(component, &m));
+    RITZ_CHECK(take_half(T, 0, &m.T_q));
+    RITZ_CHECK(take_half(T, n, &m.T_v));
+    RITZ_CHECK(take_half(W, 0, &m.W_q));
+    RITZ_CHECK(take_half(W, n, &m.W_v));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &m.T_v, &MT));
+    RITZ_CHECK(stiffness_times(&m, &m.T_q, &m.KT));
+    RITZ_CHECK(add_damping(damping, basis->among_hz, &MT, &m));
+    RITZ_CHECK(project_forces(&m, &out->A));
+    RITZ_CHECK(fill_outputs(&m, out));
+    RITZ_CHECK(ritz_dense_mul_tn(&m.W_q, &m.T_q, E));
+    RITZ_CHECK(ritz_dense_mul_tn(&m.W_v, &MT, &inertia));
     add_scaled(1.0, &inertia, E);
-    RITZ_TRY(settle_rigid(&m, (const ritz_dense *[]){&m.W_q, &m.W_v},
-                          (const ritz_dense *[]){&m.T_q, &MT}, E));
-done:
-    large_free(&m);
-    ritz_dense_free(&MT);
-    ritz_dense_free(&inertia);
-    return status;
+    return settle_rigid(&m, (const ritz_dense *[]){&m.W_q, &m.W_v},
+                        (const ritz_dense *[]){&m.T_q, &MT}, E);
 }

@@ -28,17 +28,13 @@
 static ritz_status take_rows(const ritz_dense *A, const ritz_dense *X,
                              int64_t first, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense part = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_TRY(ritz_dense_new(A->nrow, X->ncol, &part));
+    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, &part));
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(&part, j)[i] = ritz_dense_col(X, j)[first + i];
-    RITZ_TRY(ritz_dense_mul_tn(A, &part, out));
-done:
-    ritz_dense_free(&part);
-    return status;
+    return ritz_dense_mul_tn(A, &part, out);
 }
 
 /* A := A + sign B */
@@ -53,15 +49,12 @@ static ritz_status two_products(const ritz_dense *A, const ritz_dense *B,
                                 double sign, const ritz_dense *C,
                                 const ritz_dense *D, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense second = {0};
+    RITZ_OWN(ritz_dense) second = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(A, B, out));
-    RITZ_TRY(ritz_dense_mul_tn(C, D, &second));
+    RITZ_CHECK(ritz_dense_mul_tn(A, B, out));
+    RITZ_CHECK(ritz_dense_mul_tn(C, D, &second));
     add_scaled(sign, &second, out);
-done:
-    ritz_dense_free(&second);
-    return status;
+    return RITZ_OK;
 }
 
 /* Lambda T_q + Delta T_v */
@@ -82,20 +75,16 @@ static ritz_status project_outputs(const ritz_modal_model *modes,
                                    const ritz_dense *T_q, const ritz_dense *T_v,
                                    ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense C = {0}, rate = {0};
+    RITZ_OWN(ritz_dense) C = {0}, rate = {0};
 
-    RITZ_TRY(ritz_dense_mul(&modes->C, T_q, &C));
-    RITZ_TRY(ritz_dense_mul(&modes->Cv, T_v, &rate));
+    RITZ_CHECK(ritz_dense_mul(&modes->C, T_q, &C));
+    RITZ_CHECK(ritz_dense_mul(&modes->Cv, T_v, &rate));
     add_scaled(1.0, &rate, &C);
     ritz_dense_free(&out->C);
     out->C = C;
     C = (ritz_dense){0};
     add_scaled(1.0, &modes->feed, &out->D);
-done:
-    ritz_dense_free(&C);
-    ritz_dense_free(&rate);
-    return status;
+    return RITZ_OK;
 }
 
 /* Sum of |A(k,i) X(first + k,j)|: n eps of it is rounding of what they add to. */
@@ -147,31 +136,23 @@ static ritz_status project(const ritz_modal_model *modes,
                            const ritz_basis *basis, ritz_state_space *out,
                            ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = modes->num_dofs;
     bool own = basis->W.val != NULL;
     const ritz_dense *W = own ? &basis->W : &basis->T;
-    ritz_dense T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0}, F = {0};
+    RITZ_OWN(ritz_dense) T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0}, F = {0};
     const ritz_columns *columns = &basis->columns;
 
     ritz_dense_free(&out->A);
     ritz_dense_free(&out->B);
-    RITZ_TRY(take_settled(modes, columns, &modes->MPhi, &basis->T, 0, &T_q));
-    RITZ_TRY(take_settled(modes, columns, &modes->MPhi, &basis->T, n, &T_v));
-    RITZ_TRY(take_settled(modes, columns, &modes->Phi, W, 0, &W_q));
-    RITZ_TRY(take_settled(modes, columns, &modes->MPhi, W, n, &W_v));
-    RITZ_TRY(find_restoring(modes, &T_q, &T_v, &F));
-    RITZ_TRY(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
-    RITZ_TRY(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
-    RITZ_TRY(ritz_dense_mul_tn(&W_v, &modes->B, &out->B));
-    RITZ_TRY(project_outputs(modes, &T_q, &T_v, out));
-done:
-    ritz_dense_free(&T_q);
-    ritz_dense_free(&T_v);
-    ritz_dense_free(&W_q);
-    ritz_dense_free(&W_v);
-    ritz_dense_free(&F);
-    return status;
+    RITZ_CHECK(take_settled(modes, columns, &modes->MPhi, &basis->T, 0, &T_q));
+    RITZ_CHECK(take_settled(modes, columns, &modes->MPhi, &basis->T, n, &T_v));
+    RITZ_CHECK(take_settled(modes, columns, &modes->Phi, W, 0, &W_q));
+    RITZ_CHECK(take_settled(modes, columns, &modes->MPhi, W, n, &W_v));
+    RITZ_CHECK(find_restoring(modes, &T_q, &T_v, &F));
+    RITZ_CHECK(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
+    RITZ_CHECK(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
+    RITZ_CHECK(ritz_dense_mul_tn(&W_v, &modes->B, &out->B));
+    return project_outputs(modes, &T_q, &T_v, out);
 }
 
 /* By all modes, of which there can be so many. */
@@ -180,17 +161,12 @@ static ritz_status project_modes(const ritz_component *component,
                                  const ritz_basis *basis, ritz_state_space *out,
                                  ritz_dense *E)
 {
-    ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
-    ritz_modal_model modes = {0};
+    RITZ_OWN(ritz_structure) model = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
 
-    RITZ_TRY(ritz_structure_of_component(component, &model));
-    RITZ_TRY(ritz_modal_model_new(&model, &component->io, damping, &modes));
-    RITZ_TRY(project(&modes, basis, out, E));
-done:
-    ritz_structure_free(&model);
-    ritz_modal_model_free(&modes);
-    return status;
+    RITZ_CHECK(ritz_structure_of_component(component, &model));
+    RITZ_CHECK(ritz_modal_model_new(&model, &component->io, damping, &modes));
+    return project(&modes, basis, out, E);
 }
 
 static ritz_status check_basis(const ritz_component *component,
@@ -217,26 +193,23 @@ ritz_status ritz_reduce_states(const ritz_component *component,
                                const ritz_damping *damping,
                                const ritz_basis *basis, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     bool small = component->num_dofs <= RITZ_STATE_DOFS;
-    ritz_state_space reduced = {0};
-    ritz_dense E = {0};
+    RITZ_OWN(ritz_state_space) reduced = {0};
+    RITZ_OWN(ritz_dense) E = {0};
 
-    RITZ_TRY(check_basis(component, basis));
-    RITZ_TRY(ritz_state_space_new(basis->T.ncol, &component->io, &reduced));
+    RITZ_CHECK(check_basis(component, basis));
+    RITZ_CHECK(ritz_state_space_new(basis->T.ncol, &component->io, &reduced));
     if (small)
-        RITZ_TRY(project_modes(component, damping, basis, &reduced, &E));
+        RITZ_CHECK(project_modes(component, damping, basis, &reduced, &E));
     else
-        RITZ_TRY(ritz_states_project(component, damping, basis, &reduced, &E));
-    RITZ_TRY(ritz_states_settle(basis, &E, &reduced));
+        RITZ_CHECK(
+            ritz_states_project(component, damping, basis, &reduced, &E));
+    RITZ_CHECK(ritz_states_settle(basis, &E, &reduced));
     memcpy(reduced.units, component->units, sizeof reduced.units);
     ritz_damping_print(damping, reduced.damping);
     *out = reduced;
     reduced = (ritz_state_space){0};
-done:
-    ritz_dense_free(&E);
-    ritz_state_space_free(&reduced);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -286,17 +259,16 @@ static ritz_status stack_halves(const ritz_dense *upper,
 static ritz_status to_states(const ritz_component *component,
                              const ritz_basis *basis, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_columns *columns = &basis->columns;
     int64_t r = basis->T.ncol;
-    ritz_basis states = {.states = true, .among_hz = basis->among_hz};
-    ritz_dense MW = {0};
+    RITZ_OWN(ritz_basis) states = {.states = true, .among_hz = basis->among_hz};
+    RITZ_OWN(ritz_dense) MW = {0};
 
     states.origin = basis->origin;
-    RITZ_TRY(ritz_sparse_mul(&component->M, &basis->W, &MW));
-    RITZ_TRY(stack_halves(&basis->T, &basis->T, &states.T));
-    RITZ_TRY(stack_halves(&MW, &basis->W, &states.W));
-    RITZ_TRY(ritz_columns_new(2 * r, &states.columns));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &basis->W, &MW));
+    RITZ_CHECK(stack_halves(&basis->T, &basis->T, &states.T));
+    RITZ_CHECK(stack_halves(&MW, &basis->W, &states.W));
+    RITZ_CHECK(ritz_columns_new(2 * r, &states.columns));
     for (int64_t j = 0; j < 2 * r; j++) {
         states.columns.kind[j] = columns->kind[j % r];
         states.columns.dof[j] = columns->dof[j % r];
@@ -304,10 +276,7 @@ static ritz_status to_states(const ritz_component *component,
     }
     *out = states;
     states = (ritz_basis){0};
-done:
-    ritz_dense_free(&MW);
-    ritz_basis_free(&states);
-    return status;
+    return RITZ_OK;
 }
 
 /* q' is q', without the rounding of a division. */
@@ -328,16 +297,13 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
                                   const ritz_basis *basis,
                                   ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_basis states = {0};
+    RITZ_OWN(ritz_basis) states = {0};
 
-    RITZ_TRY(check(component, basis));
-    RITZ_TRY(to_states(component, basis, &states));
-    RITZ_TRY(ritz_reduce_states(component, damping, &states, out));
+    RITZ_CHECK(check(component, basis));
+    RITZ_CHECK(to_states(component, basis, &states));
+    RITZ_CHECK(ritz_reduce_states(component, damping, &states, out));
     settle(out);
-done:
-    ritz_basis_free(&states);
-    return status;
+    return RITZ_OK;
 }
 
 /* A state space in a basis of its states: see ritz_reduce_states. */
@@ -366,23 +332,18 @@ static ritz_status check_space_basis(const ritz_state_space *full,
 static ritz_status product_between(const ritz_dense *W, const ritz_dense *A,
                                    const ritz_dense *T, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AT = {0};
+    RITZ_OWN(ritz_dense) AT = {0};
 
     ritz_dense_free(out);
     if (A->val == NULL)
         return ritz_dense_mul_tn(W, T, out);
-    RITZ_TRY(ritz_dense_mul(A, T, &AT));
-    RITZ_TRY(ritz_dense_mul_tn(W, &AT, out));
-done:
-    ritz_dense_free(&AT);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(A, T, &AT));
+    return ritz_dense_mul_tn(W, &AT, out);
 }
 
 ritz_status ritz_reduce_space(const ritz_state_space *full,
                               const ritz_basis *basis, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = basis->W.val ? &basis->W : T;
     const ritz_io io = {.num_inputs = full->num_inputs,
@@ -390,26 +351,23 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
                         .input = full->input,
                         .output = full->output,
                         .limit = full->limit};
-    ritz_state_space reduced = {0};
-    ritz_dense E = {0};
+    RITZ_OWN(ritz_state_space) reduced = {0};
+    RITZ_OWN(ritz_dense) E = {0};
 
-    RITZ_TRY(check_space_basis(full, basis));
-    RITZ_TRY(ritz_state_space_new(T->ncol, &io, &reduced));
-    RITZ_TRY(product_between(W, &full->A, T, &reduced.A));
-    RITZ_TRY(product_between(W, &full->E, T, &E));
+    RITZ_CHECK(check_space_basis(full, basis));
+    RITZ_CHECK(ritz_state_space_new(T->ncol, &io, &reduced));
+    RITZ_CHECK(product_between(W, &full->A, T, &reduced.A));
+    RITZ_CHECK(product_between(W, &full->E, T, &E));
     ritz_dense_free(&reduced.B);
-    RITZ_TRY(ritz_dense_mul_tn(W, &full->B, &reduced.B));
+    RITZ_CHECK(ritz_dense_mul_tn(W, &full->B, &reduced.B));
     ritz_dense_free(&reduced.C);
-    RITZ_TRY(ritz_dense_mul(&full->C, T, &reduced.C));
+    RITZ_CHECK(ritz_dense_mul(&full->C, T, &reduced.C));
     ritz_dense_free(&reduced.D);
-    RITZ_TRY(ritz_dense_copy(&full->D, &reduced.D));
-    RITZ_TRY(ritz_states_settle(basis, &E, &reduced));
+    RITZ_CHECK(ritz_dense_copy(&full->D, &reduced.D));
+    RITZ_CHECK(ritz_states_settle(basis, &E, &reduced));
     memcpy(reduced.units, full->units, sizeof reduced.units);
     memcpy(reduced.damping, full->damping, sizeof reduced.damping);
     *out = reduced;
     reduced = (ritz_state_space){0};
-done:
-    ritz_dense_free(&E);
-    ritz_state_space_free(&reduced);
-    return status;
+    return RITZ_OK;
 }

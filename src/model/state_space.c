@@ -156,26 +156,22 @@ static ritz_status keep_columns(const ritz_columns *columns, int64_t kept,
 static ritz_status perturb_states(const ritz_columns *columns,
                                   ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense G = {0};
+    RITZ_OWN(ritz_dense) G = {0};
     int64_t r = 0;
 
-    RITZ_TRY(eliminate_static(model, columns, &G));
+    RITZ_CHECK(eliminate_static(model, columns, &G));
     r = G.nrow - model->num_outputs;
     ritz_dense_free(&model->A);
     ritz_dense_free(&model->B);
     ritz_dense_free(&model->C);
-    RITZ_TRY(ritz_dense_new(r, r, &model->A));
-    RITZ_TRY(ritz_dense_new(r, model->num_inputs, &model->B));
-    RITZ_TRY(ritz_dense_new(model->num_outputs, r, &model->C));
+    RITZ_CHECK(ritz_dense_new(r, r, &model->A));
+    RITZ_CHECK(ritz_dense_new(r, model->num_inputs, &model->B));
+    RITZ_CHECK(ritz_dense_new(model->num_outputs, r, &model->C));
     paste_block(&G, 0, 0, &model->A);
     paste_block(&G, 0, r, &model->B);
     paste_block(&G, r, 0, &model->C);
     paste_block(&G, r, r, &model->D);
-    RITZ_TRY(keep_columns(columns, r, &model->columns));
-done:
-    ritz_dense_free(&G);
-    return status;
+    return keep_columns(columns, r, &model->columns);
 }
 
 static ritz_status note_bound(const ritz_basis *basis, ritz_state_space *model)
@@ -224,27 +220,24 @@ static ritz_status copy_names(int64_t count, const char (*from)[RITZ_NAME_SIZE],
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
                                  ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space model = {.num_inputs = io->num_inputs,
-                              .num_outputs = io->num_outputs};
+    RITZ_OWN(ritz_state_space)
+    model = {.num_inputs = io->num_inputs, .num_outputs = io->num_outputs};
 
-    RITZ_TRY(ritz_dense_new(states, states, &model.A));
-    RITZ_TRY(ritz_dense_new(states, io->num_inputs, &model.B));
-    RITZ_TRY(ritz_dense_new(io->num_outputs, states, &model.C));
-    RITZ_TRY(ritz_dense_new(io->num_outputs, io->num_inputs, &model.D));
-    RITZ_TRY(copy_names(io->num_inputs, io->input, &model.input));
-    RITZ_TRY(copy_names(io->num_outputs, io->output, &model.output));
-    RITZ_NEW(model.limit, io->num_outputs);
+    RITZ_CHECK(ritz_dense_new(states, states, &model.A));
+    RITZ_CHECK(ritz_dense_new(states, io->num_inputs, &model.B));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, states, &model.C));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &model.D));
+    RITZ_CHECK(copy_names(io->num_inputs, io->input, &model.input));
+    RITZ_CHECK(copy_names(io->num_outputs, io->output, &model.output));
+    RITZ_CHECK_NEW(model.limit, io->num_outputs);
     for (int64_t k = 0; k < io->num_outputs; k++)
         model.limit[k] = io->limit[k];
-    RITZ_TRY(ritz_columns_new(states, &model.columns));
+    RITZ_CHECK(ritz_columns_new(states, &model.columns));
     for (int64_t k = 0; k < states; k++)
         model.columns.kind[k] = RITZ_COLUMN_STATE;
     *out = model;
     model = (ritz_state_space){0};
-done:
-    ritz_state_space_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_matrix(const char *name, const ritz_dense *A,
@@ -262,28 +255,25 @@ static ritz_status check_matrix(const char *name, const ritz_dense *A,
 
 ritz_status ritz_state_space_check(const ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = model->A.nrow;
-    ritz_dense one = {0};
+    RITZ_OWN(ritz_dense) one = {0};
 
-    RITZ_TRY(check_matrix("A", &model->A, n, n));
-    RITZ_TRY(check_matrix("B", &model->B, n, model->num_inputs));
-    RITZ_TRY(check_matrix("C", &model->C, model->num_outputs, n));
-    RITZ_TRY(
+    RITZ_CHECK(check_matrix("A", &model->A, n, n));
+    RITZ_CHECK(check_matrix("B", &model->B, n, model->num_inputs));
+    RITZ_CHECK(check_matrix("C", &model->C, model->num_outputs, n));
+    RITZ_CHECK(
         check_matrix("D", &model->D, model->num_outputs, model->num_inputs));
-    RITZ_FAIL_IF(model->columns.count != n, RITZ_ERR_FORMAT,
-                 "%" PRId64 " states are described of %" PRId64,
-                 model->columns.count, n);
+    RITZ_REFUSE_IF(model->columns.count != n, RITZ_ERR_FORMAT,
+                   "%" PRId64 " states are described of %" PRId64,
+                   model->columns.count, n);
     if (model->E.val) {
-        RITZ_TRY(check_matrix("E", &model->E, n, n));
-        RITZ_TRY(ritz_dense_new(n, n > 0, &one));
-        RITZ_FAIL_IF(ritz_general_solve(&model->E, false, &one) ==
-                         RITZ_ERR_SINGULAR,
-                     RITZ_ERR_FORMAT, "'E' is singular");
+        RITZ_CHECK(check_matrix("E", &model->E, n, n));
+        RITZ_CHECK(ritz_dense_new(n, n > 0, &one));
+        RITZ_REFUSE_IF(ritz_general_solve(&model->E, false, &one) ==
+                           RITZ_ERR_SINGULAR,
+                       RITZ_ERR_FORMAT, "'E' is singular");
     }
-done:
-    ritz_dense_free(&one);
-    return status;
+    return RITZ_OK;
 }
 
 /* C(:, first..) += sign A B */
@@ -291,15 +281,12 @@ static ritz_status add_product(double sign, const ritz_dense *A,
                                const ritz_dense *B, int64_t first,
                                ritz_dense *C)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AB = {0};
+    RITZ_OWN(ritz_dense) AB = {0};
 
-    RITZ_TRY(ritz_dense_mul(A, B, &AB));
+    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
     for (int64_t k = 0; k < AB.nrow * AB.ncol; k++)
         C->val[k + first * C->nrow] += sign * AB.val[k];
-done:
-    ritz_dense_free(&AB);
-    return status;
+    return RITZ_OK;
 }
 
 /* K, D and B are M^-1 K and so on here. */
@@ -358,33 +345,28 @@ done:
 static ritz_status by_modes(const ritz_structure *model, const ritz_io *io,
                             const ritz_damping *damping, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_modal_model modes = {0};
-    ritz_state_space made = {0};
-    double *ones = NULL;
+    RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_state_space) made = {0};
+    RITZ_OWN_ARRAY double *ones = NULL;
     int64_t m = 0;
 
-    RITZ_TRY(ritz_modal_model_new(model, io, damping, &modes));
+    RITZ_CHECK(ritz_modal_model_new(model, io, damping, &modes));
     m = modes.count;
-    RITZ_TRY(ritz_state_space_new(2 * m, io, &made));
-    RITZ_NEW(ones, m);
+    RITZ_CHECK(ritz_state_space_new(2 * m, io, &made));
+    RITZ_CHECK_NEW(ones, m);
     for (int64_t k = 0; k < m; k++)
         ones[k] = 1.0;
     ritz_dense_free(&made.A);
     ritz_dense_free(&made.B);
     ritz_dense_free(&made.C);
-    RITZ_TRY(ritz_modal_states(&modes, &(ritz_modal_layout){.scale = ones},
-                               &made.A, &made.B, &made.C));
+    RITZ_CHECK(ritz_modal_states(&modes, &(ritz_modal_layout){.scale = ones},
+                                 &made.A, &made.B, &made.C));
     ritz_dense_free(&made.D);
     made.D = modes.feed;
     modes.feed = (ritz_dense){0};
     *out = made;
     made = (ritz_state_space){0};
-done:
-    free(ones);
-    ritz_modal_model_free(&modes);
-    ritz_state_space_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status convert_structure(const ritz_structure *model,
@@ -414,32 +396,26 @@ ritz_status ritz_state_space_of_component(const ritz_component *component,
                                           const ritz_damping *damping,
                                           ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
+    RITZ_OWN(ritz_structure) model = {0};
 
-    RITZ_TRY(ritz_structure_of_component(component, &model));
-    RITZ_TRY(convert_structure(&model, &component->io, damping, out));
+    RITZ_CHECK(ritz_structure_of_component(component, &model));
+    RITZ_CHECK(convert_structure(&model, &component->io, damping, out));
     memcpy(out->units, component->units, sizeof out->units);
-done:
-    ritz_structure_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
                                         const ritz_damping *damping,
                                         ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_structure model = {0};
+    RITZ_OWN(ritz_structure) model = {0};
 
-    RITZ_TRY(ritz_structure_refuse(reduced->K4.val != NULL));
-    RITZ_TRY(ritz_structure_of_reduced(reduced, &model));
-    RITZ_TRY(convert_structure(&model, &reduced->io, damping, out));
+    RITZ_CHECK(ritz_structure_refuse(reduced->K4.val != NULL));
+    RITZ_CHECK(ritz_structure_of_reduced(reduced, &model));
+    RITZ_CHECK(convert_structure(&model, &reduced->io, damping, out));
     memcpy(out->units, reduced->units, sizeof out->units);
     out->origin = reduced->origin;
-done:
-    ritz_structure_free(&model);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_state_space_free(ritz_state_space *model)

@@ -80,35 +80,33 @@ static ritz_status read_wanted(const ritz_system *system, const char *at,
 ritz_status ritz_system_find(const ritz_system *system, const char *at,
                              const ritz_configuration **out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_configuration *found = NULL;
-    double *wanted = NULL;
+    RITZ_OWN_ARRAY double *wanted = NULL;
 
-    RITZ_FAIL_IF(system->num_configurations < 1, RITZ_ERR_ARGUMENT,
-                 "the system has no configuration");
-    RITZ_NEW(wanted, system->num_sweeps);
-    RITZ_TRY(read_wanted(system, at, wanted));
+    RITZ_REFUSE_IF(system->num_configurations < 1, RITZ_ERR_ARGUMENT,
+                   "the system has no configuration");
+    RITZ_CHECK_NEW(wanted, system->num_sweeps);
+    RITZ_CHECK(read_wanted(system, at, wanted));
     for (int64_t k = 0; k < system->num_configurations; k++) {
         const ritz_configuration *c = &system->configuration[k];
 
         if (!has_settings(c, wanted))
             continue;
-        RITZ_FAIL_IF(found, RITZ_ERR_ARGUMENT,
-                     "there are %" PRId64 " configurations, from '%s' to "
-                     "'%s': name one with --at",
-                     system->num_configurations, system->configuration[0].at,
-                     system->configuration[system->num_configurations - 1].at);
+        RITZ_REFUSE_IF(
+            found, RITZ_ERR_ARGUMENT,
+            "there are %" PRId64 " configurations, from '%s' to "
+            "'%s': name one with --at",
+            system->num_configurations, system->configuration[0].at,
+            system->configuration[system->num_configurations - 1].at);
         found = c;
     }
-    RITZ_FAIL_IF(
+    RITZ_REFUSE_IF(
         !found, RITZ_ERR_ARGUMENT,
         "no configuration is at '%s', there are %" PRId64 " from '%s' to '%s'",
         at ? at : "", system->num_configurations, system->configuration[0].at,
         system->configuration[system->num_configurations - 1].at);
     *out = found;
-done:
-    free(wanted);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_configuration_install(ritz_configuration *configuration)

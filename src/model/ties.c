@@ -65,12 +65,11 @@ static int compare_ties(const void *left, const void *right)
 static ritz_status mean_distance(const ritz_grids *grids, const ritz_ties *list,
                                  const double origin[static 3], double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_tie *sorted = NULL;
+    RITZ_OWN_ARRAY ritz_tie *sorted = NULL;
     double sum = 0.0;
     int64_t count = 0;
 
-    RITZ_NEW(sorted, list->count);
+    RITZ_CHECK_NEW(sorted, list->count);
     for (int64_t k = 0; k < list->count; k++)
         sorted[k] = list->tie[k];
     qsort(sorted, (size_t)list->count, sizeof *sorted, compare_ties);
@@ -84,9 +83,7 @@ static ritz_status mean_distance(const ritz_grids *grids, const ritz_ties *list,
         count++;
     }
     *out = sum > 0.0 ? sum / (double)count : 1.0;
-done:
-    free(sorted);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- rigid bodies ------------------------------------------------------ */
@@ -198,30 +195,23 @@ static ritz_status put_rows(const ritz_dense *X, double length,
 ritz_status ritz_tie_rigid(const ritz_grids *grids, const ritz_ties *from,
                            const ritz_ties *to, ritz_equations *equations)
 {
-    ritz_status status = RITZ_OK;
     const double *origin = grids->position + 3 * from->tie[0].grid;
     double length = 0.0;
     int64_t count = ritz_ties_dofs(to);
-    ritz_dense S_n = {0}, S_m = {0}, X = {0};
+    RITZ_OWN(ritz_dense) S_n = {0}, S_m = {0}, X = {0};
     ritz_dof leaders[6];
-    ritz_dof *names = NULL;
+    RITZ_OWN_ARRAY ritz_dof *names = NULL;
 
     if (is_whole(from))
         return follow_grid(grids, from->tie[0].grid, to, equations);
-    RITZ_TRY(mean_distance(grids, from, origin, &length));
-    RITZ_NEW(names, count);
-    RITZ_TRY(ritz_dense_new(6, 6, &S_n));
-    RITZ_TRY(ritz_dense_new(count, 6, &S_m));
+    RITZ_CHECK(mean_distance(grids, from, origin, &length));
+    RITZ_CHECK_NEW(names, count);
+    RITZ_CHECK(ritz_dense_new(6, 6, &S_n));
+    RITZ_CHECK(ritz_dense_new(count, 6, &S_m));
     scale_rows(grids, from, origin, length, &S_n, leaders);
     scale_rows(grids, to, origin, length, &S_m, names);
-    RITZ_TRY(solve_rigid(&S_n, &S_m, &X));
-    RITZ_TRY(put_rows(&X, length, leaders, names, equations));
-done:
-    free(names);
-    ritz_dense_free(&S_n);
-    ritz_dense_free(&S_m);
-    ritz_dense_free(&X);
-    return status;
+    RITZ_CHECK(solve_rigid(&S_n, &S_m, &X));
+    return put_rows(&X, length, leaders, names, equations);
 }
 
 /*
@@ -289,40 +279,35 @@ static ritz_status multiply_average(const ritz_ties *over, const ritz_dense *U,
 ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
                              const double origin[static 3], ritz_average *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_average new = {0};
+    RITZ_OWN(ritz_average) new = {0};
     int64_t count = ritz_ties_dofs(over);
     lapack_int least = (lapack_int)(count < SIX ? count : SIX);
     int64_t rank = 0;
-    ritz_dense S = {0}, U = {0};
+    RITZ_OWN(ritz_dense) S = {0}, U = {0};
     double sigma[SIX], Vt[SIX * SIX] = {0}, work[SIX];
 
-    RITZ_NEW(new.dof, count);
-    RITZ_TRY(mean_distance(grids, over, origin, &new.length));
-    RITZ_TRY(ritz_dense_new(count, SIX, &S));
-    RITZ_TRY(ritz_dense_new(count, SIX, &U));
+    RITZ_CHECK_NEW(new.dof, count);
+    RITZ_CHECK(mean_distance(grids, over, origin, &new.length));
+    RITZ_CHECK(ritz_dense_new(count, SIX, &S));
+    RITZ_CHECK(ritz_dense_new(count, SIX, &U));
     scale_rows(grids, over, origin, new.length, &S, new.dof);
     weigh_rows(over, &S);
     for (int k = 0; k < SIX * SIX; k += SIX + 1)
         Vt[k] = 1.0;
     if (least > 0)
-        RITZ_FAIL_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'A',
-                                    (lapack_int)count, SIX, S.val,
-                                    (lapack_int)count, sigma, U.val,
-                                    (lapack_int)count, Vt, SIX, work) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "singular values of the average do not converge");
+        RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'A',
+                                      (lapack_int)count, SIX, S.val,
+                                      (lapack_int)count, sigma, U.val,
+                                      (lapack_int)count, Vt, SIX, work) != 0,
+                       RITZ_ERR_CONVERGENCE,
+                       "singular values of the average do not converge");
     while (rank < least && sigma[rank] > RITZ_LOOSE_MOTION * sigma[0])
         rank++;
     list_loose(rank, Vt, &new);
-    RITZ_TRY(multiply_average(over, &U, rank, sigma, Vt, &new));
+    RITZ_CHECK(multiply_average(over, &U, rank, sigma, Vt, &new));
     *out = new;
     new = (ritz_average){0};
-done:
-    ritz_dense_free(&S);
-    ritz_dense_free(&U);
-    ritz_average_free(&new);
-    return status;
+    return RITZ_OK;
 }
 
 bool ritz_average_tells(const ritz_average *average, const double row[static 6])

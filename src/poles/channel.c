@@ -1,6 +1,7 @@
 /* A channel of a first-order model. */
 #include "poles/channel.h"
 
+#include "base/alloc.h"
 #include "linear/frame.h"
 #include "poles/channel_modes.h"
 
@@ -32,31 +33,27 @@ static ritz_status channel_check(int64_t outputs, int64_t inputs,
 ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
                                 int64_t input, ritz_channel *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_channel all = {0}, made = {0};
+    RITZ_OWN(ritz_channel) all = {0}, made = {0};
 
-    RITZ_TRY(
+    RITZ_CHECK(
         channel_check(model->num_outputs, model->num_inputs, output, input));
-    RITZ_TRY(ritz_frame_system(&model->A, &model->E, &model->B, &model->C,
-                               &all.A, &all.B, &all.C));
-    RITZ_TRY(ritz_dense_copy(&model->D, &all.D));
+    RITZ_CHECK(ritz_frame_system(&model->A, &model->E, &model->B, &model->C,
+                                 &all.A, &all.B, &all.C));
+    RITZ_CHECK(ritz_dense_copy(&model->D, &all.D));
     if (output == RITZ_ALL_CHANNELS) {
         *out = all;
         all = (ritz_channel){0};
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_dense_columns(&all.B, input, 1, &made.B));
-    RITZ_TRY(ritz_dense_rows(&all.C, 1, &output, &made.C));
-    RITZ_TRY(ritz_dense_new(1, 1, &made.D));
+    RITZ_CHECK(ritz_dense_columns(&all.B, input, 1, &made.B));
+    RITZ_CHECK(ritz_dense_rows(&all.C, 1, &output, &made.C));
+    RITZ_CHECK(ritz_dense_new(1, 1, &made.D));
     made.D.val[0] = ritz_dense_col(&all.D, input)[output];
     made.A = all.A;
     all.A = (ritz_dense){0};
     *out = made;
     made = (ritz_channel){0};
-done:
-    ritz_channel_free(&all);
-    ritz_channel_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /* A = -Lambda, or blocks of two. */
@@ -127,26 +124,22 @@ static ritz_status channel_of_modes(const ritz_modal_model *modes,
                                     const ritz_dense *D, const ritz_io *io,
                                     bool single, ritz_channel *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_channel_row *rows = NULL;
-    ritz_modal_model moved = {0};
+    RITZ_OWN_ARRAY ritz_channel_row *rows = NULL;
+    RITZ_OWN(ritz_modal_model) moved = {0};
     int64_t count = -1;
 
     if (single)
-        RITZ_TRY(ritz_channel_rows(modes, D, io, &count, &rows));
+        RITZ_CHECK(ritz_channel_rows(modes, D, io, &count, &rows));
     if (count >= 0) {
-        RITZ_TRY(channel_of_rows(count, rows, modes->feed.val[0], out));
-        goto done;
+        RITZ_CHECK(channel_of_rows(count, rows, modes->feed.val[0], out));
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_channel_moved(modes, D, io, &moved));
+    RITZ_CHECK(ritz_channel_moved(modes, D, io, &moved));
     if (ritz_dense_max(&moved.Delta) == 0.0 && ritz_dense_max(&moved.Cv) == 0.0)
-        RITZ_TRY(channel_of_undamped(&moved, out));
+        RITZ_CHECK(channel_of_undamped(&moved, out));
     else
-        RITZ_TRY(channel_of_coupled(&moved, out));
-done:
-    free(rows);
-    ritz_modal_model_free(&moved);
-    return status;
+        RITZ_CHECK(channel_of_coupled(&moved, out));
+    return RITZ_OK;
 }
 
 /*
@@ -213,33 +206,28 @@ ritz_status ritz_channel_dense(const ritz_second_order *model,
                                int64_t input, ritz_channel *out)
 {
     static const ritz_damping none = {0};
-    ritz_status status = RITZ_OK;
     ritz_structure structure = {*model->K, *model->M, {0}};
-    ritz_modal_model modes = {0};
-    ritz_channel made = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_channel) made = {0};
+    RITZ_OWN(ritz_io) io = {0};
     bool single = output != RITZ_ALL_CHANNELS;
 
-    RITZ_TRY(channel_check(model->io->num_outputs, model->io->num_inputs,
-                           output, input));
-    RITZ_FAIL_IF(model->K4 && model->K4->val, RITZ_ERR_ARGUMENT,
-                 "structural damping is of harmonic motion and has no zeros, "
-                 "give it as a modal ratio");
+    RITZ_CHECK(channel_check(model->io->num_outputs, model->io->num_inputs,
+                             output, input));
+    RITZ_REFUSE_IF(model->K4 && model->K4->val, RITZ_ERR_ARGUMENT,
+                   "structural damping is of harmonic motion and has no zeros, "
+                   "give it as a modal ratio");
     if (model->D)
         structure.D = *model->D;
-    RITZ_TRY(take_channel(model->io, output, input, &io));
+    RITZ_CHECK(take_channel(model->io, output, input, &io));
     if (single)
         made.derivative = integrate_outputs(&io);
-    RITZ_TRY(ritz_modal_model_new(&structure, &io, damping ? damping : &none,
-                                  &modes));
-    RITZ_TRY(channel_of_modes(&modes, &structure.D, &io, single, &made));
+    RITZ_CHECK(ritz_modal_model_new(&structure, &io, damping ? damping : &none,
+                                    &modes));
+    RITZ_CHECK(channel_of_modes(&modes, &structure.D, &io, single, &made));
     *out = made;
     made = (ritz_channel){0};
-done:
-    ritz_modal_model_free(&modes);
-    ritz_channel_free(&made);
-    ritz_io_free(&io);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_channel_free(ritz_channel *channel)

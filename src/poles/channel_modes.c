@@ -253,23 +253,18 @@ static ritz_status split_range(const ritz_dense *A, double least,
                                ritz_dense *range, ritz_dense *rest,
                                double *smallest)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense U = {0}, V = {0};
-    double *s = NULL;
+    RITZ_OWN(ritz_dense) U = {0}, V = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
     int64_t most = A->nrow < A->ncol ? A->nrow : A->ncol, rank = 0;
 
-    RITZ_TRY(ritz_general_svd(A, &U, &s, &V));
+    RITZ_CHECK(ritz_general_svd(A, &U, &s, &V));
     while (rank < most && s[rank] > least)
         rank++;
     *smallest = rank > 0 ? s[rank - 1] : HUGE_VAL;
-    RITZ_TRY(ritz_dense_columns(&U, 0, rank, range));
+    RITZ_CHECK(ritz_dense_columns(&U, 0, rank, range));
     if (rest)
-        RITZ_TRY(ritz_dense_columns(&U, rank, A->nrow - rank, rest));
-done:
-    ritz_dense_free(&U);
-    ritz_dense_free(&V);
-    free(s);
-    return status;
+        RITZ_CHECK(ritz_dense_columns(&U, rank, A->nrow - rank, rest));
+    return RITZ_OK;
 }
 
 /* Rounding error of Delta_ik and Delta_ki, i rigid: of the product itself,
@@ -292,39 +287,33 @@ static double doubt_of_damping(const sieve *s, const ritz_dense *most,
    are compared with their rounding error. */
 static ritz_status set_apart(const ritz_dense *D, sieve *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal_model *f = s->modes;
     int64_t m = f->count;
     double noise = 0.0, smallest = 0.0;
-    ritz_dense G = {0}, most = {0};
+    RITZ_OWN(ritz_dense) G = {0}, most = {0};
 
-    RITZ_TRY(ritz_dense_new(s->r, 2 * m, &G));
+    RITZ_CHECK(ritz_dense_new(s->r, 2 * m, &G));
     if (D->val)
-        RITZ_TRY(ritz_dense_terms(D, &f->Phi, &most));
+        RITZ_CHECK(ritz_dense_terms(D, &f->Phi, &most));
     else
-        RITZ_TRY(ritz_dense_new(m, m, &most));
+        RITZ_CHECK(ritz_dense_new(m, m, &most));
     for (int64_t i = 0; i < s->r; i++)
         for (int64_t k = 0; k < m; k++) {
             ritz_dense_col(&G, k)[i] = ritz_dense_col(&f->Delta, k)[i];
             ritz_dense_col(&G, m + k)[i] = ritz_dense_col(&f->Delta, i)[k];
             noise = hypot(noise, doubt_of_damping(s, &most, i, k));
         }
-    RITZ_TRY(split_range(&G, noise, &s->loaded, &s->left, &smallest));
-done:
-    ritz_dense_free(&G);
-    ritz_dense_free(&most);
-    return status;
+    return split_range(&G, noise, &s->loaded, &s->left, &smallest);
 }
 
 /* A column of rigid shares a'phi_k over its own doubt. */
 static ritz_status weigh_rigid(const sieve *s, const double *a, double *out)
 {
-    ritz_status status = RITZ_OK;
-    double *value = NULL, *doubt = NULL;
+    RITZ_OWN_ARRAY double *value = NULL, *doubt = NULL;
     double size = 0.0, unsure = 0.0;
 
-    RITZ_NEW(value, s->modes->count);
-    RITZ_NEW(doubt, s->modes->count);
+    RITZ_CHECK_NEW(value, s->modes->count);
+    RITZ_CHECK_NEW(doubt, s->modes->count);
     channel_see(s->modes, a, value, doubt);
     for (int64_t k = 0; k < s->r; k++) {
         size = hypot(size, value[k]);
@@ -333,69 +322,52 @@ static ritz_status weigh_rigid(const sieve *s, const double *a, double *out)
     unsure += s->uncertainty * size;
     for (int64_t k = 0; k < s->r && unsure > 0.0; k++)
         out[k] = value[k] / unsure;
-done:
-    free(value);
-    free(doubt);
-    return status;
+    return RITZ_OK;
 }
 
 /* Restrict `left` to what the columns of A, r x ., reach; each entry of A is
    known up to 1. */
 static ritz_status keep_reached(const ritz_dense *A, sieve *s)
 {
-    ritz_status status = RITZ_OK;
     double least = sqrt((double)A->ncol), smallest = 0.0;
-    ritz_dense within = {0}, range = {0}, kept = {0};
+    RITZ_OWN(ritz_dense) within = {0}, range = {0}, kept = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(&s->left, A, &within));
-    RITZ_TRY(split_range(&within, least, &range, NULL, &smallest));
-    RITZ_TRY(ritz_dense_mul(&s->left, &range, &kept));
+    RITZ_CHECK(ritz_dense_mul_tn(&s->left, A, &within));
+    RITZ_CHECK(split_range(&within, least, &range, NULL, &smallest));
+    RITZ_CHECK(ritz_dense_mul(&s->left, &range, &kept));
     s->uncertainty += least / smallest;
     ritz_dense_free(&s->left);
     s->left = kept;
     kept = (ritz_dense){0};
-done:
-    ritz_dense_free(&within);
-    ritz_dense_free(&range);
-    ritz_dense_free(&kept);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status keep_driven(const ritz_io *io, sieve *s)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
-    RITZ_TRY(ritz_dense_new(s->r, io->num_inputs, &A));
+    RITZ_CHECK(ritz_dense_new(s->r, io->num_inputs, &A));
     for (int64_t j = 0; j < io->num_inputs; j++)
-        RITZ_TRY(
+        RITZ_CHECK(
             weigh_rigid(s, ritz_dense_col(&io->B, j), ritz_dense_col(&A, j)));
-    RITZ_TRY(keep_reached(&A, s));
-done:
-    ritz_dense_free(&A);
-    return status;
+    return keep_reached(&A, s);
 }
 
 static ritz_status keep_seen(const ritz_io *io, sieve *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t outs = io->num_outputs;
     const ritz_dense *by[] = {&io->C, &io->Cv};
-    ritz_dense A = {0}, row = {0};
+    RITZ_OWN(ritz_dense) A = {0}, row = {0};
 
-    RITZ_TRY(ritz_dense_new(s->r, 2 * outs, &A));
+    RITZ_CHECK(ritz_dense_new(s->r, 2 * outs, &A));
     for (int64_t i = 0; i < 2 * outs; i++) {
         int64_t at = i % outs;
 
         ritz_dense_free(&row);
-        RITZ_TRY(ritz_dense_rows(by[i / outs], 1, &at, &row));
-        RITZ_TRY(weigh_rigid(s, row.val, ritz_dense_col(&A, i)));
+        RITZ_CHECK(ritz_dense_rows(by[i / outs], 1, &at, &row));
+        RITZ_CHECK(weigh_rigid(s, row.val, ritz_dense_col(&A, i)));
     }
-    RITZ_TRY(keep_reached(&A, s));
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&row);
-    return status;
+    return keep_reached(&A, s);
 }
 
 /* [L N 0; 0 0 I] */
@@ -428,31 +400,27 @@ static void set_free(const sieve *s, ritz_modal_model *f)
 
 static ritz_status change_basis(const sieve *s, ritz_modal_model *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_modal_model *f = s->modes;
-    ritz_modal_model made = {.num_dofs = f->num_dofs};
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_modal_model) made = {.num_dofs = f->num_dofs};
+    RITZ_OWN(ritz_dense) T = {0};
 
-    RITZ_TRY(basis_of(s, &T));
+    RITZ_CHECK(basis_of(s, &T));
     made.count = T.ncol;
     made.num_rigid = T.ncol - (f->count - s->r);
-    RITZ_NEW(made.lambda, made.count);
+    RITZ_CHECK_NEW(made.lambda, made.count);
     for (int64_t k = made.num_rigid; k < made.count; k++)
         made.lambda[k] = f->lambda[k - made.num_rigid + s->r];
-    RITZ_TRY(ritz_dense_mul(&f->Phi, &T, &made.Phi));
-    RITZ_TRY(ritz_dense_mul(&f->MPhi, &T, &made.MPhi));
-    RITZ_TRY(ritz_dense_project(&f->Delta, &T, &made.Delta));
-    RITZ_TRY(ritz_dense_mul_tn(&T, &f->B, &made.B));
-    RITZ_TRY(ritz_dense_mul(&f->C, &T, &made.C));
-    RITZ_TRY(ritz_dense_mul(&f->Cv, &T, &made.Cv));
-    RITZ_TRY(ritz_dense_copy(&f->feed, &made.feed));
+    RITZ_CHECK(ritz_dense_mul(&f->Phi, &T, &made.Phi));
+    RITZ_CHECK(ritz_dense_mul(&f->MPhi, &T, &made.MPhi));
+    RITZ_CHECK(ritz_dense_project(&f->Delta, &T, &made.Delta));
+    RITZ_CHECK(ritz_dense_mul_tn(&T, &f->B, &made.B));
+    RITZ_CHECK(ritz_dense_mul(&f->C, &T, &made.C));
+    RITZ_CHECK(ritz_dense_mul(&f->Cv, &T, &made.Cv));
+    RITZ_CHECK(ritz_dense_copy(&f->feed, &made.feed));
     set_free(s, &made);
     *out = made;
     made = (ritz_modal_model){0};
-done:
-    ritz_dense_free(&T);
-    ritz_modal_model_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_channel_moved(const ritz_modal_model *modes,

@@ -74,10 +74,9 @@ static double share_of(const ritz_spectrum *spectrum, int64_t k, int64_t j)
 static ritz_status assign_poles(const ritz_poles *poles,
                                 const ritz_spectrum *spectrum, int64_t *of)
 {
-    ritz_status status = RITZ_OK;
-    bool *taken = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_NEW(taken, spectrum->count);
+    RITZ_CHECK_NEW(taken, spectrum->count);
     for (int64_t k = 0; k < poles->count; k++)
         of[k] = -1;
     for (int64_t t = poles->num_rigid; t < poles->count; t++) {
@@ -97,9 +96,7 @@ static ritz_status assign_poles(const ritz_poles *poles,
         of[mode] = pole;
         taken[pole] = true;
     }
-done:
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 /* Damping ratio stated beside D: `rate` holds both, `own` that of D alone. */
@@ -112,22 +109,18 @@ static double given_ratio(const ritz_poles *poles, const double *own, int64_t k)
 static ritz_status own_rates(const ritz_sparse *D, const ritz_dense *Phi,
                              double **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense DPhi = {0};
-    double *own = NULL;
+    RITZ_OWN(ritz_dense) DPhi = {0};
+    RITZ_OWN_ARRAY double *own = NULL;
 
-    RITZ_NEW(own, Phi->ncol);
+    RITZ_CHECK_NEW(own, Phi->ncol);
     if (D->colptr)
-        RITZ_TRY(ritz_sparse_mul(D, Phi, &DPhi));
+        RITZ_CHECK(ritz_sparse_mul(D, Phi, &DPhi));
     for (int64_t k = 0; DPhi.val && k < Phi->ncol; k++)
         for (int64_t i = 0; i < Phi->nrow; i++)
             own[k] += ritz_dense_col(Phi, k)[i] * ritz_dense_col(&DPhi, k)[i];
     *out = own;
     own = NULL;
-done:
-    ritz_dense_free(&DPhi);
-    free(own);
-    return status;
+    return RITZ_OK;
 }
 
 /* x = Phi q, n x 2, of modal shape j. */
@@ -135,18 +128,14 @@ static ritz_status shape_of(const ritz_dense *Phi,
                             const ritz_spectrum *spectrum, int64_t j,
                             ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = Phi->ncol;
-    ritz_dense q = {0};
+    RITZ_OWN(ritz_dense) q = {0};
 
-    RITZ_TRY(ritz_dense_new(m, 2, &q));
+    RITZ_CHECK(ritz_dense_new(m, 2, &q));
     memcpy(q.val, ritz_dense_col(&spectrum->re, j), (size_t)m * sizeof *q.val);
     memcpy(q.val + m, ritz_dense_col(&spectrum->im, j),
            (size_t)m * sizeof *q.val);
-    RITZ_TRY(ritz_dense_mul(Phi, &q, out));
-done:
-    ritz_dense_free(&q);
-    return status;
+    return ritz_dense_mul(Phi, &q, out);
 }
 
 static bool in_band(const ritz_poles *poles, int64_t k, const double band_hz[2])
@@ -170,13 +159,12 @@ static ritz_status refine_band(const ritz_poles *poles,
                                const ritz_pairs *pairs, const double band_hz[2],
                                const int64_t *of, ritz_damped *damped)
 {
-    ritz_status status = RITZ_OK;
-    ritz_refiner refiner = {0};
-    ritz_dense x = {0};
-    double *own = NULL;
+    RITZ_OWN(ritz_refiner) refiner = {0};
+    RITZ_OWN(ritz_dense) x = {0};
+    RITZ_OWN_ARRAY double *own = NULL;
 
-    RITZ_TRY(own_rates(&component->D, &pairs->Phi, &own));
-    RITZ_TRY(ritz_refiner_new(component, true, &refiner));
+    RITZ_CHECK(own_rates(&component->D, &pairs->Phi, &own));
+    RITZ_CHECK(ritz_refiner_new(component, true, &refiner));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {
         double _Complex s = 0.0;
         double zeta = 0.0;
@@ -184,19 +172,15 @@ static ritz_status refine_band(const ritz_poles *poles,
         if (of[k] < 0 || !in_band(poles, k, band_hz))
             continue;
         s = damped->listing.s[of[k]];
-        RITZ_TRY(shape_of(&pairs->Phi, &damped->listing, of[k], &x));
-        RITZ_TRY(ritz_refine(&refiner, &x, &s));
+        RITZ_CHECK(shape_of(&pairs->Phi, &damped->listing, of[k], &x));
+        RITZ_CHECK(ritz_refine(&refiner, &x, &s));
         ritz_dense_free(&x);
         zeta = ritz_spectrum_ratio(s) + given_ratio(poles, own, k);
         damped->zeta[k] = zeta;
         damped->s[k] = pole_of(cabs(s), zeta);
         ritz_monitor_step("damped modes", k + 1, poles->count);
     }
-done:
-    ritz_refiner_free(&refiner);
-    ritz_dense_free(&x);
-    free(own);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_coupled(const ritz_poles *poles,
@@ -204,15 +188,14 @@ static ritz_status take_coupled(const ritz_poles *poles,
                                 const ritz_pairs *pairs,
                                 const double band_hz[2], ritz_damped *damped)
 {
-    ritz_status status = RITZ_OK;
-    damped_modal m = {0};
+    [[gnu::cleanup(modal_free)]] damped_modal m = {0};
     const ritz_second_order model = {&m.K, &m.M, &m.D, &m.K4, NULL};
-    int64_t *of = NULL;
+    RITZ_OWN_ARRAY int64_t *of = NULL;
 
-    RITZ_NEW(of, poles->count);
-    RITZ_TRY(modal_new(poles, &m));
-    RITZ_TRY(ritz_spectrum_dense(&model, NULL, &damped->listing));
-    RITZ_TRY(assign_poles(poles, &damped->listing, of));
+    RITZ_CHECK_NEW(of, poles->count);
+    RITZ_CHECK(modal_new(poles, &m));
+    RITZ_CHECK(ritz_spectrum_dense(&model, NULL, &damped->listing));
+    RITZ_CHECK(assign_poles(poles, &damped->listing, of));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {
         damped->s[k] =
             of[k] < 0 ? ritz_complex(nan(""), 0.0) : damped->listing.s[of[k]];
@@ -220,11 +203,8 @@ static ritz_status take_coupled(const ritz_poles *poles,
             of[k] < 0 ? nan("") : ritz_spectrum_ratio(damped->s[k]);
     }
     if (component && poles->count < component->num_dofs)
-        RITZ_TRY(refine_band(poles, component, pairs, band_hz, of, damped));
-done:
-    modal_free(&m);
-    free(of);
-    return status;
+        RITZ_CHECK(refine_band(poles, component, pairs, band_hz, of, damped));
+    return RITZ_OK;
 }
 
 ritz_status ritz_damped_new(const ritz_poles *poles,
@@ -232,23 +212,19 @@ ritz_status ritz_damped_new(const ritz_poles *poles,
                             const ritz_pairs *pairs, const double band_hz[2],
                             ritz_damped *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_damped damped = {0};
-    double *omega = NULL;
+    RITZ_OWN(ritz_damped) damped = {0};
+    RITZ_OWN_ARRAY double *omega = NULL;
 
-    RITZ_TRY(ritz_poles_ratios(poles, &omega, &damped.zeta));
-    RITZ_NEW(damped.s, poles->count);
+    RITZ_CHECK(ritz_poles_ratios(poles, &omega, &damped.zeta));
+    RITZ_CHECK_NEW(damped.s, poles->count);
     for (int64_t k = 0; k < poles->count; k++)
         damped.s[k] = omega[k] > 0.0 ? pole_of(omega[k], damped.zeta[k])
                                      : ritz_complex(nan(""), 0.0);
     if (poles->coupled && poles->D.val)
-        RITZ_TRY(take_coupled(poles, component, pairs, band_hz, &damped));
+        RITZ_CHECK(take_coupled(poles, component, pairs, band_hz, &damped));
     *out = damped;
     damped = (ritz_damped){0};
-done:
-    free(omega);
-    ritz_damped_free(&damped);
-    return status;
+    return RITZ_OK;
 }
 
 double _Complex ritz_damped_nearest(const ritz_damped *damped, int64_t count,

@@ -43,14 +43,13 @@ static ritz_status factor_shifted(const ritz_second_order *model, int64_t m,
 /* The last n - m columns of an orthonormal basis whose first span B's. */
 static ritz_status complete_basis(ritz_dense *B, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)B->nrow;
     int m = (int)B->ncol;
-    double *tau = NULL;
+    RITZ_OWN_ARRAY double *tau = NULL;
     int info = 0;
 
-    RITZ_NEW(tau, m);
-    RITZ_TRY(ritz_dense_new(n, n - m, out));
+    RITZ_CHECK_NEW(tau, m);
+    RITZ_CHECK(ritz_dense_new(n, n - m, out));
     for (int64_t j = 0; j < n - m; j++)
         ritz_dense_col(out, j)[m + j] = 1.0;
     if (m > 0)
@@ -58,84 +57,69 @@ static ritz_status complete_basis(ritz_dense *B, ritz_dense *out)
     if (m > 0 && info == 0)
         info = LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', n, n - m, m, B->val,
                               n, tau, out->val, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "the motions without mass were not found");
-done:
-    free(tau);
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "the motions without mass were not found");
+    return RITZ_OK;
 }
 
 ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
                           const double *lambda, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int n = (int)Phi->nrow;
     int m = (int)Phi->ncol;
-    ritz_dense C = {0}, B = {0}, N = {0};
+    RITZ_OWN(ritz_dense) C = {0}, B = {0}, N = {0};
 
-    RITZ_TRY(factor_shifted(model, m, lambda, &C));
-    RITZ_TRY(ritz_dense_copy(Phi, &B));
+    RITZ_CHECK(factor_shifted(model, m, lambda, &C));
+    RITZ_CHECK(ritz_dense_copy(Phi, &B));
     if (m > 0)
         cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, n, m, 1.0, C.val, n, B.val, n);
-    RITZ_TRY(complete_basis(&B, &N));
+    RITZ_CHECK(complete_basis(&B, &N));
     if (n > m)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, n, n - m, 1.0, C.val, n, N.val, n);
     *out = N;
     N = (ritz_dense){0};
-done:
-    ritz_dense_free(&C);
-    ritz_dense_free(&B);
-    ritz_dense_free(&N);
-    return status;
+    return RITZ_OK;
 }
 
 /* out = C N (N'B), num_outputs x num_inputs. */
 static ritz_status put_static(const ritz_dense *C, const ritz_dense *N,
                               const ritz_dense *NB, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense CN = {0}, H = {0};
+    RITZ_OWN(ritz_dense) CN = {0}, H = {0};
 
-    RITZ_TRY(ritz_dense_mul(C, N, &CN));
-    RITZ_TRY(ritz_dense_mul(&CN, NB, &H));
+    RITZ_CHECK(ritz_dense_mul(C, N, &CN));
+    RITZ_CHECK(ritz_dense_mul(&CN, NB, &H));
     memcpy(out, H.val, (size_t)(H.nrow * H.ncol) * sizeof *out);
-done:
-    ritz_dense_free(&CN);
-    ritz_dense_free(&H);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_static_rest(const ritz_second_order *model,
                              const ritz_pairs *pairs, ritz_residual *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = model->io;
     int64_t size = io->num_outputs * io->num_inputs;
-    ritz_residual found = {.num_outputs = io->num_outputs,
-                           .num_inputs = io->num_inputs,
-                           .known = true};
-    ritz_dense N = {0}, NB = {0};
+    RITZ_OWN(ritz_residual)
+    found = {.num_outputs = io->num_outputs,
+             .num_inputs = io->num_inputs,
+             .known = true};
+    RITZ_OWN(ritz_dense) N = {0}, NB = {0};
 
     if (pairs->Phi.ncol == model->K->ncol || size == 0)
         return RITZ_OK;
     found.count = 1;
-    RITZ_NEW(found.C, size);
-    RITZ_NEW(found.Cv, size);
-    RITZ_NEW(found.Ca, size);
-    RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
-    RITZ_TRY(ritz_dense_mul_tn(&N, &io->B, &NB));
-    RITZ_TRY(put_static(&io->C, &N, &NB, found.C));
-    RITZ_TRY(put_static(&io->Cv, &N, &NB, found.Cv));
-    RITZ_TRY(put_static(&io->Ca, &N, &NB, found.Ca));
+    RITZ_CHECK_NEW(found.C, size);
+    RITZ_CHECK_NEW(found.Cv, size);
+    RITZ_CHECK_NEW(found.Ca, size);
+    RITZ_CHECK(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    RITZ_CHECK(ritz_dense_mul_tn(&N, &io->B, &NB));
+    RITZ_CHECK(put_static(&io->C, &N, &NB, found.C));
+    RITZ_CHECK(put_static(&io->Cv, &N, &NB, found.Cv));
+    RITZ_CHECK(put_static(&io->Ca, &N, &NB, found.Ca));
     *out = found;
     found = (ritz_residual){0};
-done:
-    ritz_dense_free(&N);
-    ritz_dense_free(&NB);
-    ritz_residual_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -150,50 +134,41 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
                              const ritz_io *io, int64_t num_rigid,
                              ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_second_order model = {.K = K, .M = M, .io = io};
-    ritz_pairs pairs = {0};
-    ritz_io modes = {0};
-    ritz_residual rest = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_io) modes = {0};
+    RITZ_OWN(ritz_residual) rest = {0};
 
-    RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
+    RITZ_CHECK(ritz_eigen_dense(K, M, &pairs));
     if (num_rigid < pairs.num_rigid)
         num_rigid = pairs.num_rigid;
-    RITZ_TRY(ritz_io_project(io, &pairs.Phi, &modes));
+    RITZ_CHECK(ritz_io_project(io, &pairs.Phi, &modes));
     for (int64_t j = 0; j < modes.num_inputs; j++)
         for (int64_t k = 0; k < pairs.Phi.ncol; k++)
             ritz_dense_col(&modes.B, j)[k] *=
                 k < num_rigid ? 0.0 : 1.0 / pairs.lambda[k];
-    RITZ_TRY(ritz_static_rest(&model, &pairs, &rest));
-    RITZ_TRY(ritz_dense_mul(&modes.C, &modes.B, out));
+    RITZ_CHECK(ritz_static_rest(&model, &pairs, &rest));
+    RITZ_CHECK(ritz_dense_mul(&modes.C, &modes.B, out));
     for (int64_t k = 0; rest.count > 0 && k < out->nrow * out->ncol; k++)
         out->val[k] += rest.C[k];
-done:
-    ritz_residual_free(&rest);
-    ritz_pairs_free(&pairs);
-    ritz_io_free(&modes);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense G = {0}, apart = {0};
+    RITZ_OWN(ritz_dense) G = {0}, apart = {0};
     double size = 0.0;
     double error = 0.0;
 
-    RITZ_TRY(ritz_dense_copy(full, &G));
-    RITZ_TRY(ritz_dense_copy(reduced, &apart));
+    RITZ_CHECK(ritz_dense_copy(full, &G));
+    RITZ_CHECK(ritz_dense_copy(reduced, &apart));
     for (int64_t k = 0; k < G.nrow * G.ncol; k++)
         apart.val[k] -= G.val[k];
-    RITZ_TRY_IN("static gain", ritz_general_norm(&G, &size));
-    RITZ_TRY_IN("static gain", ritz_general_norm(&apart, &error));
+    RITZ_CHECK_IN("static gain", ritz_general_norm(&G, &size));
+    RITZ_CHECK_IN("static gain", ritz_general_norm(&apart, &error));
     *out = error == 0.0                  ? 0.0
            : size > RITZ_NO_GAIN * error ? error / size
                                          : nan("");
-done:
-    ritz_dense_free(&G);
-    ritz_dense_free(&apart);
-    return status;
+    return RITZ_OK;
 }

@@ -58,19 +58,16 @@ static void peak_free(peak *s)
 static ritz_status peak_new(const ritz_split *split, const ritz_dense *B,
                             const ritz_dense *C, const ritz_dense *D, peak *out)
 {
-    ritz_status status = RITZ_OK;
-    peak s = {.D = *D};
+    RITZ_OWN(peak) s = {.D = *D};
     int64_t least = B->ncol < C->nrow ? B->ncol : C->nrow;
 
-    RITZ_TRY(ritz_resolvent_new(&split->S, &split->P, B, C, &s.resolvent));
-    RITZ_NEW(s.H, B->ncol * C->nrow);
-    RITZ_NEW(s.sigma, least);
-    RITZ_NEW(s.spare, least);
+    RITZ_CHECK(ritz_resolvent_new(&split->S, &split->P, B, C, &s.resolvent));
+    RITZ_CHECK_NEW(s.H, B->ncol * C->nrow);
+    RITZ_CHECK_NEW(s.sigma, least);
+    RITZ_CHECK_NEW(s.spare, least);
     *out = s;
     s = (peak){0};
-done:
-    peak_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status peak_at(peak *s, double w, double *value)
@@ -102,11 +99,10 @@ static ritz_status peak_at(peak *s, double w, double *value)
 static ritz_status choose_frequencies(const peak *s, int64_t *count,
                                       double **out)
 {
-    ritz_status status = RITZ_OK;
-    double *w = NULL;
+    RITZ_OWN_ARRAY double *w = NULL;
     int64_t n = s->resolvent.n, kept = 0;
 
-    RITZ_NEW(w, n + 2);
+    RITZ_CHECK_NEW(w, n + 2);
     for (int64_t k = 0; k < n; k++) {
         double _Complex pole = ritz_resolvent_pole(&s->resolvent, k);
         double gap = cimag(pole) * cimag(pole) - creal(pole) * creal(pole);
@@ -121,9 +117,7 @@ static ritz_status choose_frequencies(const peak *s, int64_t *count,
     *count = kept;
     *out = w;
     w = NULL;
-done:
-    free(w);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status value_at(void *state, double w, double *value)
@@ -169,28 +163,24 @@ static ritz_status climb_around(peak *s, const double *w, int64_t k)
 
 static ritz_status peak_search(peak *s)
 {
-    ritz_status status = RITZ_OK;
-    double *w = NULL, *value = NULL;
+    RITZ_OWN_ARRAY double *w = NULL, *value = NULL;
     double at_infinity = 0.0;
     int64_t count = 0;
 
-    RITZ_TRY(choose_frequencies(s, &count, &w));
-    RITZ_NEW(value, count);
+    RITZ_CHECK(choose_frequencies(s, &count, &w));
+    RITZ_CHECK_NEW(value, count);
     for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(peak_at(s, w[k], &value[k]));
-    RITZ_TRY(peak_at(s, HUGE_VAL, &at_infinity));
+        RITZ_CHECK(peak_at(s, w[k], &value[k]));
+    RITZ_CHECK(peak_at(s, HUGE_VAL, &at_infinity));
     for (int t = 0; t < MOST_PEAKS; t++) {
         int64_t k = next_highest_point(count, value);
 
         if (k < 0 || value[k] < RITZ_PEAK_WORTH * s->value)
             break;
         value[k] = -1.0;
-        RITZ_TRY(climb_around(s, w, k));
+        RITZ_CHECK(climb_around(s, w, k));
     }
-done:
-    free(w);
-    free(value);
-    return status;
+    return RITZ_OK;
 }
 
 /* Beyond this many states no Hamiltonian is made. */
@@ -294,8 +284,7 @@ static ritz_status hamiltonian_new(const stable *s, hamiltonian *h)
 static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
                                double *value, bool *found)
 {
-    ritz_status status = RITZ_OK;
-    hamiltonian h = {0};
+    RITZ_OWN(hamiltonian) h = {0};
     int n = (int)s->B.nrow, m = (int)s->B.ncol, p = (int)s->C.nrow;
     int lde = s->split.P.val ? n : 1;
     int room = 15 * n * n + p * p + m * m + (6 * n + 3) * (p + m) + 4 * p * m +
@@ -305,10 +294,10 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
     double gain[2] = {0.0, 1.0};
     int info = 0;
 
-    RITZ_TRY(hamiltonian_new(s, &h));
-    RITZ_NEW(h.iwork, n);
-    RITZ_NEW(h.work, room);
-    RITZ_NEW(h.cwork, croom);
+    RITZ_CHECK(hamiltonian_new(s, &h));
+    RITZ_CHECK_NEW(h.iwork, n);
+    RITZ_CHECK_NEW(h.work, room);
+    RITZ_CHECK_NEW(h.cwork, croom);
     ab13dd_("C", s->split.P.val ? "G" : "I", "N", "D", &n, &m, &p, frequency,
             h.S.val, &n, h.P.val, &lde, h.B.val, &n, h.C.val, &p, h.D.val, &p,
             gain, &tolerance, h.iwork, h.work, &room, h.cwork, &croom, &info, 1,
@@ -316,25 +305,22 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
     *found = info == 0 && gain[1] > 0.0;
     *w = frequency[1] > 0.0 ? frequency[0] : HUGE_VAL;
     *value = gain[0];
-done:
-    hamiltonian_free(&h);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
 {
-    ritz_status status = RITZ_OK;
-    peak p = {0};
+    RITZ_OWN(peak) p = {0};
     double direct = 0.0, w = 0.0, value = 0.0;
     bool found = false;
 
-    RITZ_TRY(peak_new(&s->split, &s->B, &s->C, &s->D, &p));
-    RITZ_TRY(peak_search(&p));
+    RITZ_CHECK(peak_new(&s->split, &s->B, &s->C, &s->D, &p));
+    RITZ_CHECK(peak_search(&p));
     w = p.w;
     if (p.resolvent.n > 0 && p.resolvent.n <= MOST_STATES && p.value > 0.0)
-        RITZ_TRY(bisect_peak(s, tolerance, &w, &value, &found));
+        RITZ_CHECK(bisect_peak(s, tolerance, &w, &value, &found));
     if (found && isfinite(w))
-        RITZ_TRY(peak_at(&p, w, &direct));
+        RITZ_CHECK(peak_at(&p, w, &direct));
     snprintf(out->engine, sizeof out->engine,
              found ? "SLICOT AB13DD" : "search at poles, a lower bound");
     out->lower = s->size * p.value;
@@ -344,49 +330,40 @@ static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
         out->value = s->size * value;
         out->hertz = w / (2.0 * RITZ_PI);
     }
-done:
-    peak_free(&p);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_norm_infinity(const ritz_state_space *model, double tolerance,
                                ritz_norm *out)
 {
-    ritz_status status = RITZ_OK;
-    stable s = {0};
+    RITZ_OWN(stable) s = {0};
     ritz_norm norm = {0};
 
-    RITZ_FAIL_IF(!(tolerance > 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
-                 "the tolerance of a norm is %g, it must be between 0 and 1",
-                 tolerance);
-    RITZ_TRY_IN("H-infinity norm", take_stable(model, &s));
-    RITZ_TRY_IN("H-infinity norm", find_peak(&s, tolerance, &norm));
+    RITZ_REFUSE_IF(!(tolerance > 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                   "the tolerance of a norm is %g, it must be between 0 and 1",
+                   tolerance);
+    RITZ_CHECK_IN("H-infinity norm", take_stable(model, &s));
+    RITZ_CHECK_IN("H-infinity norm", find_peak(&s, tolerance, &norm));
     *out = norm;
-done:
-    stable_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out)
 {
-    ritz_status status = RITZ_OK;
-    stable s = {0};
-    ritz_dense F = {0}, CF = {0};
+    RITZ_OWN(stable) s = {0};
+    RITZ_OWN(ritz_dense) F = {0}, CF = {0};
 
-    RITZ_TRY_IN("H2 norm", take_stable(model, &s));
-    RITZ_FAIL_IF(ritz_dense_max(&model->D) > 0.0, RITZ_ERR_ARGUMENT,
-                 "H2 norm: it is infinite, an input reaches an output at once "
-                 "(D is not 0)");
-    RITZ_TRY_IN("H2 norm", ritz_general_hammarling(&s.split.S, &s.split.P,
-                                                   false, &s.B, &F));
-    RITZ_TRY(ritz_dense_mul(&s.C, &F, &CF));
+    RITZ_CHECK_IN("H2 norm", take_stable(model, &s));
+    RITZ_REFUSE_IF(
+        ritz_dense_max(&model->D) > 0.0, RITZ_ERR_ARGUMENT,
+        "H2 norm: it is infinite, an input reaches an output at once "
+        "(D is not 0)");
+    RITZ_CHECK_IN("H2 norm", ritz_general_hammarling(&s.split.S, &s.split.P,
+                                                     false, &s.B, &F));
+    RITZ_CHECK(ritz_dense_mul(&s.C, &F, &CF));
     *out = (ritz_norm){.value = s.size * norm_of(&CF)};
     out->lower = out->value;
     snprintf(out->engine, sizeof out->engine, "SLICOT %s",
              s.split.P.val ? "SG03BD" : "SB03OD");
-done:
-    stable_free(&s);
-    ritz_dense_free(&F);
-    ritz_dense_free(&CF);
-    return status;
+    return RITZ_OK;
 }

@@ -153,12 +153,11 @@ static ritz_status poles_new(const ritz_pairs *pairs, const ritz_dense *D,
                              const ritz_dense *K4, const ritz_io *io,
                              const ritz_damping *damping, ritz_poles *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_poles poles = {.count = pairs->Phi.ncol,
-                        .num_rigid = pairs->num_rigid};
+    RITZ_OWN(ritz_poles)
+    poles = {.count = pairs->Phi.ncol, .num_rigid = pairs->num_rigid};
 
-    RITZ_NEW(poles.lambda, poles.count);
-    RITZ_NEW(poles.rate, poles.count);
+    RITZ_CHECK_NEW(poles.lambda, poles.count);
+    RITZ_CHECK_NEW(poles.rate, poles.count);
     for (int64_t k = 0; k < poles.count; k++) {
         bool rigid = k < poles.num_rigid;
         double w = rigid ? 0.0 : sqrt(fmax(pairs->lambda[k], 0.0));
@@ -167,14 +166,12 @@ static ritz_status poles_new(const ritz_pairs *pairs, const ritz_dense *D,
         poles.rate[k] =
             ritz_modal_rate(damping, k - poles.num_rigid, poles.lambda[k]);
     }
-    RITZ_TRY(add_matrices(D, K4, &poles));
-    RITZ_TRY(ritz_io_project(io, &pairs->Phi, &poles.io));
-    RITZ_NEW(poles.q, poles.count * io->num_inputs);
+    RITZ_CHECK(add_matrices(D, K4, &poles));
+    RITZ_CHECK(ritz_io_project(io, &pairs->Phi, &poles.io));
+    RITZ_CHECK_NEW(poles.q, poles.count * io->num_inputs);
     *out = poles;
     poles = (ritz_poles){0};
-done:
-    ritz_poles_free(&poles);
-    return status;
+    return RITZ_OK;
 }
 
 /* Participation of mode k in output i; an acceleration of a rigid mode has
@@ -289,12 +286,11 @@ ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
 ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
                               double **zeta)
 {
-    ritz_status status = RITZ_OK;
-    double *w = NULL;
-    double *z = NULL;
+    RITZ_OWN_ARRAY double *w = NULL;
+    RITZ_OWN_ARRAY double *z = NULL;
 
-    RITZ_NEW(w, poles->count);
-    RITZ_NEW(z, poles->count);
+    RITZ_CHECK_NEW(w, poles->count);
+    RITZ_CHECK_NEW(z, poles->count);
     for (int64_t k = 0; k < poles->count; k++) {
         double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, k)[k] : 0.0;
 
@@ -306,10 +302,7 @@ ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
     *zeta = z;
     w = NULL;
     z = NULL;
-done:
-    free(w);
-    free(z);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_poles_free(ritz_poles *poles)
@@ -329,25 +322,20 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
                                     double up_to_hz, ritz_pairs *pairs,
                                     ritz_poles *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span span = {.modes = -1, .up_to_hz = up_to_hz};
-    ritz_pairs found = {0};
-    ritz_dense D = {0};
-    ritz_dense K4 = {0};
+    RITZ_OWN(ritz_pairs) found = {0};
+    RITZ_OWN(ritz_dense) D = {0};
+    RITZ_OWN(ritz_dense) K4 = {0};
 
-    RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, &span, &found));
-    RITZ_TRY(ritz_sparse_project(&component->D, &found.Phi, &D));
-    RITZ_TRY(ritz_sparse_project(&component->K4, &found.Phi, &K4));
-    RITZ_TRY(poles_new(&found, &D, &K4, &component->io, damping, out));
+    RITZ_CHECK(ritz_eigen_sparse(&component->K, &component->M, &span, &found));
+    RITZ_CHECK(ritz_sparse_project(&component->D, &found.Phi, &D));
+    RITZ_CHECK(ritz_sparse_project(&component->K4, &found.Phi, &K4));
+    RITZ_CHECK(poles_new(&found, &D, &K4, &component->io, damping, out));
     if (pairs) {
         *pairs = found;
         found = (ritz_pairs){0};
     }
-done:
-    ritz_pairs_free(&found);
-    ritz_dense_free(&D);
-    ritz_dense_free(&K4);
-    return status;
+    return RITZ_OK;
 }
 
 /* Phi'A Phi; {0} of an absent one. */
@@ -381,20 +369,16 @@ static ritz_status refuse_unstable(const ritz_pairs *pairs, double to_hz)
 /* Whether A moves with any of N, beyond rounding. */
 static ritz_status acts_on(const ritz_dense *A, const ritz_dense *N, bool *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AN = {0}, NA = {0};
+    RITZ_OWN(ritz_dense) AN = {0}, NA = {0};
 
     if (!A || !A->val || N->ncol == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_mul(A, N, &AN));
-    RITZ_TRY(ritz_dense_mul_tn(A, N, &NA));
+    RITZ_CHECK(ritz_dense_mul(A, N, &AN));
+    RITZ_CHECK(ritz_dense_mul_tn(A, N, &NA));
     if (fmax(ritz_dense_max(&AN), ritz_dense_max(&NA)) >
         RITZ_NO_COUPLING * ritz_dense_max(A) * ritz_dense_max(N))
         *out = true;
-done:
-    ritz_dense_free(&AN);
-    ritz_dense_free(&NA);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -404,28 +388,26 @@ done:
 static ritz_status take_massless(const ritz_second_order *model, bool beside,
                                  ritz_pairs *pairs, int64_t *count)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense N = {0}, X = {0};
+    RITZ_OWN(ritz_dense) N = {0};
+    ritz_dense X = {0};
     int64_t m = pairs->Phi.ncol;
     bool damped = beside;
 
     *count = 0;
     if (m == pairs->Phi.nrow)
         return RITZ_OK;
-    RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
-    RITZ_TRY(acts_on(model->D, &N, &damped));
-    RITZ_TRY(acts_on(model->K4, &N, &damped));
+    RITZ_CHECK(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+    RITZ_CHECK(acts_on(model->D, &N, &damped));
+    RITZ_CHECK(acts_on(model->K4, &N, &damped));
     if (!damped)
-        goto done;
-    RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &X));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_beside(&pairs->Phi, &N, &X));
     ritz_dense_free(&pairs->Phi);
     pairs->Phi = X;
     *count = N.ncol;
     for (int64_t j = m; j < X.ncol; j++) /* lambda has room for all rows */
         pairs->lambda[j] = 1.0;
-done:
-    ritz_dense_free(&N);
-    return status;
+    return RITZ_OK;
 }
 
 /* The last coordinates are no modes: no ratio acts on them. */
@@ -455,42 +437,33 @@ ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
                                 const ritz_damping *damping, bool beside,
                                 ritz_pairs *pairs, ritz_poles *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense D = {0};
-    ritz_dense K4 = {0};
-    ritz_residual rest = {0};
+    RITZ_OWN(ritz_dense) D = {0};
+    RITZ_OWN(ritz_dense) K4 = {0};
+    RITZ_OWN(ritz_residual) rest = {0};
     int64_t massless = 0;
 
-    RITZ_TRY(ritz_static_rest(model, pairs, &rest));
-    RITZ_TRY(take_massless(model, beside, pairs, &massless));
-    RITZ_TRY_IN("D", project_if(model->D, &pairs->Phi, &D));
-    RITZ_TRY_IN("K4", project_if(model->K4, &pairs->Phi, &K4));
-    RITZ_TRY(poles_new(pairs, &D, &K4, model->io, damping, out));
-    RITZ_TRY(mark_massless(massless, &D, damping, out));
+    RITZ_CHECK(ritz_static_rest(model, pairs, &rest));
+    RITZ_CHECK(take_massless(model, beside, pairs, &massless));
+    RITZ_CHECK_IN("D", project_if(model->D, &pairs->Phi, &D));
+    RITZ_CHECK_IN("K4", project_if(model->K4, &pairs->Phi, &K4));
+    RITZ_CHECK(poles_new(pairs, &D, &K4, model->io, damping, out));
+    RITZ_CHECK(mark_massless(massless, &D, damping, out));
     if (massless == 0) {
         out->rest = rest;
         if (damping && ritz_damping_is_rayleigh(damping))
             out->rest.b = damping->b;
         rest = (ritz_residual){0};
     }
-done:
-    ritz_dense_free(&D);
-    ritz_dense_free(&K4);
-    ritz_residual_free(&rest);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_poles_of_dense(const ritz_second_order *model,
                                 const ritz_damping *damping, double to_hz,
                                 ritz_poles *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_eigen_dense(model->K, model->M, &pairs));
-    RITZ_TRY(refuse_unstable(&pairs, to_hz));
-    RITZ_TRY(ritz_poles_of_pairs(model, damping, false, &pairs, out));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    RITZ_CHECK(ritz_eigen_dense(model->K, model->M, &pairs));
+    RITZ_CHECK(refuse_unstable(&pairs, to_hz));
+    return ritz_poles_of_pairs(model, damping, false, &pairs, out);
 }

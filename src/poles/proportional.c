@@ -34,22 +34,18 @@ done:
 static ritz_status residual_of(const ritz_component *c, double a, double b,
                                double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse sum = {0}, rest = {0};
+    RITZ_OWN(ritz_sparse) sum = {0}, rest = {0};
     double size = 0.0;
 
-    RITZ_TRY(ritz_sparse_add(a, &c->M, b, &c->K, &sum));
-    RITZ_TRY(ritz_sparse_add(1.0, &c->D, -1.0, &sum, &rest));
+    RITZ_CHECK(ritz_sparse_add(a, &c->M, b, &c->K, &sum));
+    RITZ_CHECK(ritz_sparse_add(1.0, &c->D, -1.0, &sum, &rest));
     *out = 0.0;
     for (int64_t p = 0; p < rest.colptr[rest.ncol]; p++)
         *out = hypot(*out, rest.val[p]);
     for (int64_t p = 0; p < c->D.colptr[c->D.ncol]; p++)
         size = hypot(size, c->D.val[p]);
     *out = size > 0.0 ? *out / size : 0.0;
-done:
-    ritz_sparse_free(&sum);
-    ritz_sparse_free(&rest);
-    return status;
+    return RITZ_OK;
 }
 
 /* a and b; b = 0 without stiffness, or where K is a multiple of M. */

@@ -40,18 +40,15 @@ static double norm_of(const ritz_dense *x)
 static ritz_status add_product(const ritz_sparse *A, double _Complex c,
                                const ritz_dense *x, double _Complex *u)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Ax = {0};
+    RITZ_OWN(ritz_dense) Ax = {0};
     int64_t n = x->nrow;
 
     if (!A || !A->colptr)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_mul(A, x, &Ax));
+    RITZ_CHECK(ritz_sparse_mul(A, x, &Ax));
     for (int64_t i = 0; i < n; i++)
         u[i] += c * ritz_complex(Ax.val[i], Ax.val[n + i]);
-done:
-    ritz_dense_free(&Ax);
-    return status;
+    return RITZ_OK;
 }
 
 /* most += |c||A||x|, entry by entry. */

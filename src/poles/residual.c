@@ -89,11 +89,10 @@ static double rigid_shift(const ritz_component *component,
 static ritz_status size_modes(const ritz_pairs *pairs, const ritz_dense *B,
                               double to_hz, double *out)
 {
-    ritz_status status = RITZ_OK;
     double w2 = ritz_eigen_lambda(to_hz);
-    ritz_dense share = {0};
+    RITZ_OWN(ritz_dense) share = {0};
 
-    RITZ_TRY(ritz_dense_mul_tn(&pairs->Phi, B, &share));
+    RITZ_CHECK(ritz_dense_mul_tn(&pairs->Phi, B, &share));
     for (int64_t j = 0; j < B->ncol; j++)
         for (int64_t i = 0; i < B->nrow; i++) {
             double sum = 0.0;
@@ -108,19 +107,16 @@ static ritz_status size_modes(const ritz_pairs *pairs, const ritz_dense *B,
             }
             out[j] = fmax(out[j], sum);
         }
-done:
-    ritz_dense_free(&share);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rest_solver_new(const ritz_component *component,
                                    const ritz_pairs *pairs, double to_hz,
                                    double out_hz, ritz_rest_solver *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *B = &component->io.B;
     int64_t m = pairs->Phi.ncol;
-    ritz_sparse A = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
 
     s->M = &component->M;
     s->Phi = &pairs->Phi;
@@ -129,14 +125,12 @@ static ritz_status rest_solver_new(const ritz_component *component,
         s->sigma = -RITZ_SERIES_SHIFT * pairs->lambda[m - 1];
     else if (m == 0) /* nothing moves freely: K is definite */
         s->sigma = 0.0;
-    RITZ_TRY(ritz_sparse_mul(s->M, s->Phi, &s->MPhi));
-    RITZ_TRY(ritz_sparse_add(1.0, &component->K, -s->sigma, &component->M, &A));
-    RITZ_TRY_IN("static answer", ritz_factor_spd(&A, &s->F));
-    RITZ_NEW(s->whole, B->ncol);
-    RITZ_TRY(size_modes(pairs, B, to_hz, s->whole));
-done:
-    ritz_sparse_free(&A);
-    return status;
+    RITZ_CHECK(ritz_sparse_mul(s->M, s->Phi, &s->MPhi));
+    RITZ_CHECK(
+        ritz_sparse_add(1.0, &component->K, -s->sigma, &component->M, &A));
+    RITZ_CHECK_IN("static answer", ritz_factor_spd(&A, &s->F));
+    RITZ_CHECK_NEW(s->whole, B->ncol);
+    return size_modes(pairs, B, to_hz, s->whole);
 }
 
 /*
@@ -177,37 +171,34 @@ static ritz_status take_out_twice(const ritz_dense *left,
 static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
                               ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense R = {0};
-    ritz_dense next = {0};
+    RITZ_OWN(ritz_dense) R = {0};
+    RITZ_OWN(ritz_dense) next = {0};
     double change = HUGE_VAL, apart = HUGE_VAL;
 
-    RITZ_TRY(take_out_twice(&s->MPhi, s->Phi, f));
-    RITZ_TRY(ritz_dense_new(f->nrow, f->ncol, &R));
+    RITZ_CHECK(take_out_twice(&s->MPhi, s->Phi, f));
+    RITZ_CHECK(ritz_dense_new(f->nrow, f->ncol, &R));
     for (int step = 0; step < MOST_STEPS && change > 1.0; step++) {
-        RITZ_TRY(ritz_sparse_mul(s->M, &R, &next));
+        RITZ_CHECK(ritz_sparse_mul(s->M, &R, &next));
         for (int64_t k = 0; k < f->nrow * f->ncol; k++)
             next.val[k] = f->val[k] - s->sigma * next.val[k];
-        RITZ_TRY(ritz_factor_solve(s->F, &next));
-        RITZ_TRY(take_out_twice(s->Phi, &s->MPhi, &next));
+        RITZ_CHECK(ritz_factor_solve(s->F, &next));
+        RITZ_CHECK(take_out_twice(s->Phi, &s->MPhi, &next));
         measure_change(s, &next, &R, &change, &apart);
         ritz_dense_free(&R);
         R = next;
         next = (ritz_dense){0};
     }
-    RITZ_FAIL_IF(!(apart <= 1.0), RITZ_ERR_CONVERGENCE,
-                 "what modes above the band answer did not settle in %d steps: "
-                 "the last one changed it by %.1e",
-                 (int)MOST_STEPS, apart * RITZ_SERIES_UNSETTLED);
+    RITZ_REFUSE_IF(
+        !(apart <= 1.0), RITZ_ERR_CONVERGENCE,
+        "what modes above the band answer did not settle in %d steps: "
+        "the last one changed it by %.1e",
+        (int)MOST_STEPS, apart * RITZ_SERIES_UNSETTLED);
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)
         s->whole[j] = fmax(s->whole[j], ritz_dense_col_max(&R, j));
     s->begun = true;
     *out = R;
     R = (ritz_dense){0};
-done:
-    ritz_dense_free(&R);
-    ritz_dense_free(&next);
-    return status;
+    return RITZ_OK;
 }
 
 enum { MOST_TERMS = 40 };
@@ -216,42 +207,35 @@ enum { MOST_TERMS = 40 };
 static ritz_status put_term(const ritz_dense *C, const ritz_dense *R, int64_t j,
                             double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense CR = {0};
+    RITZ_OWN(ritz_dense) CR = {0};
 
-    RITZ_TRY(ritz_dense_mul(C, R, &CR));
+    RITZ_CHECK(ritz_dense_mul(C, R, &CR));
     memcpy(out + j * CR.nrow * CR.ncol, CR.val,
            (size_t)(CR.nrow * CR.ncol) * sizeof *out);
-done:
-    ritz_dense_free(&CR);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status add_terms(const ritz_component *component,
                              ritz_rest_solver *s, ritz_residual *r)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
-    ritz_dense f = {0};
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_dense) f = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
-    RITZ_TRY(ritz_dense_new(io->B.nrow, io->B.ncol, &f));
+    RITZ_CHECK(ritz_dense_new(io->B.nrow, io->B.ncol, &f));
     memcpy(f.val, io->B.val, (size_t)(f.nrow * f.ncol) * sizeof *f.val);
     for (int64_t j = 0; j < r->count; j++) {
-        RITZ_TRY(rest_solve(s, &f, &R));
-        RITZ_TRY(put_term(&io->C, &R, j, r->C));
-        RITZ_TRY(put_term(&io->Cv, &R, j, r->Cv));
-        RITZ_TRY(put_term(&io->Ca, &R, j, r->Ca));
+        RITZ_CHECK(rest_solve(s, &f, &R));
+        RITZ_CHECK(put_term(&io->C, &R, j, r->C));
+        RITZ_CHECK(put_term(&io->Cv, &R, j, r->Cv));
+        RITZ_CHECK(put_term(&io->Ca, &R, j, r->Ca));
         ritz_dense_free(&f);
-        RITZ_TRY(ritz_sparse_mul(&component->M, &R, &f));
+        RITZ_CHECK(ritz_sparse_mul(&component->M, &R, &f));
         for (int64_t k = 0; k < f.nrow * f.ncol; k++)
             f.val[k] *= r->unit;
         ritz_dense_free(&R);
     }
-done:
-    ritz_dense_free(&f);
-    ritz_dense_free(&R);
-    return status;
+    return RITZ_OK;
 }
 
 /* a and b of given damping, and of D if it has any; what else D and K4 do to
@@ -302,32 +286,29 @@ ritz_status ritz_residual_new(const ritz_component *component,
                               const ritz_pairs *pairs, double to_hz,
                               double out_hz, ritz_residual *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
     int64_t pm = io->num_outputs * io->num_inputs;
-    ritz_residual r = {.num_outputs = io->num_outputs,
-                       .num_inputs = io->num_inputs,
-                       .known = true,
-                       .unit = 1.0};
-    ritz_rest_solver s = {0};
+    RITZ_OWN(ritz_residual)
+    r = {.num_outputs = io->num_outputs,
+         .num_inputs = io->num_inputs,
+         .known = true,
+         .unit = 1.0};
+    [[gnu::cleanup(rest_solver_free)]] ritz_rest_solver s = {0};
 
     if (pairs->Phi.ncol < component->num_dofs && pm > 0) {
-        RITZ_TRY(take_damping(component, damping, &r));
+        RITZ_CHECK(take_damping(component, damping, &r));
         r.count = count_terms(to_hz, out_hz, &r);
     }
-    RITZ_NEW(r.C, r.count * pm);
-    RITZ_NEW(r.Cv, r.count * pm);
-    RITZ_NEW(r.Ca, r.count * pm);
+    RITZ_CHECK_NEW(r.C, r.count * pm);
+    RITZ_CHECK_NEW(r.Cv, r.count * pm);
+    RITZ_CHECK_NEW(r.Ca, r.count * pm);
     if (r.count > 0) {
-        RITZ_TRY(rest_solver_new(component, pairs, to_hz, out_hz, &s));
-        RITZ_TRY(add_terms(component, &s, &r));
+        RITZ_CHECK(rest_solver_new(component, pairs, to_hz, out_hz, &s));
+        RITZ_CHECK(add_terms(component, &s, &r));
     }
     *out = r;
     r = (ritz_residual){0};
-done:
-    rest_solver_free(&s);
-    ritz_residual_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_residual_add(const ritz_residual *residual, double hertz,

@@ -71,23 +71,22 @@ static ritz_status solve_diagonal(const ritz_state *state, found *out)
 
 static ritz_status solve_real(const ritz_state *state, found *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t size = 2 * state->m + state->k;
     int n = (int)size;
-    ritz_dense A = {0}, V = {0};
-    double *re = NULL, *im = NULL;
+    RITZ_OWN(ritz_dense) A = {0}, V = {0};
+    RITZ_OWN_ARRAY double *re = NULL, *im = NULL;
     int info = 0;
 
-    RITZ_TRY(found_new(size, out));
-    RITZ_TRY(ritz_state_matrix(state, &A));
-    RITZ_TRY(ritz_dense_new(size, size, &V));
-    RITZ_NEW(re, size);
-    RITZ_NEW(im, size);
+    RITZ_CHECK(found_new(size, out));
+    RITZ_CHECK(ritz_state_matrix(state, &A));
+    RITZ_CHECK(ritz_dense_new(size, size, &V));
+    RITZ_CHECK_NEW(re, size);
+    RITZ_CHECK_NEW(im, size);
     if (n > 0)
         info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A.val, n, re, im,
                              NULL, 1, V.val, n);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "damped modes were not found");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "damped modes were not found");
     for (int64_t j = 0; j < size; j++) {
         bool second = im[j] < 0.0; /* its vector is that of the one before */
         const double *x = ritz_dense_col(&V, second ? j - 1 : j);
@@ -99,12 +98,7 @@ static ritz_status solve_real(const ritz_state *state, found *out)
                     ? x[i]
                     : ritz_complex(x[i], second ? -x[i + n] : x[i + n]);
     }
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&V);
-    free(re);
-    free(im);
-    return status;
+    return RITZ_OK;
 }
 
 /* Poles with K4: those with Im s < 0 belong to the conjugate problem and are
@@ -162,8 +156,7 @@ static int ascending(const void *left, const void *right)
  */
 static ritz_status find_zero(const ritz_state *state, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
     bool rigid = false;
     double size = 0.0;
 
@@ -172,13 +165,11 @@ static ritz_status find_zero(const ritz_state *state, double *out)
     *out = 0.0;
     if (!rigid || state->diagonal)
         return RITZ_OK;
-    RITZ_TRY(ritz_state_matrix(state, &A));
+    RITZ_CHECK(ritz_state_matrix(state, &A));
     for (int64_t i = 0; i < A.nrow * A.ncol; i++)
         size = hypot(size, A.val[i]);
     *out = 10.0 * DBL_EPSILON * size;
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 /* Which are listed, in order; those up to `zero` are counted. */
@@ -256,17 +247,16 @@ static void add_structural(const ritz_state *state, const ritz_dense *y,
 static ritz_status find_residuals(const ritz_state *state, const found *f,
                                   const listed_pole *order, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0}, re = {0}, im = {0}, Are = {0}, Aim = {0};
+    RITZ_OWN(ritz_dense) A = {0}, re = {0}, im = {0}, Are = {0}, Aim = {0};
     double size = 0.0;
 
-    RITZ_TRY(ritz_state_matrix(state, &A));
+    RITZ_CHECK(ritz_state_matrix(state, &A));
     for (int64_t i = 0; i < A.nrow * A.ncol; i++)
         size = hypot(size, A.val[i]);
-    RITZ_TRY(pick_columns(f, out->count, order, creal, &re));
-    RITZ_TRY(pick_columns(f, out->count, order, cimag, &im));
-    RITZ_TRY(ritz_dense_mul(&A, &re, &Are));
-    RITZ_TRY(ritz_dense_mul(&A, &im, &Aim));
+    RITZ_CHECK(pick_columns(f, out->count, order, creal, &re));
+    RITZ_CHECK(pick_columns(f, out->count, order, cimag, &im));
+    RITZ_CHECK(ritz_dense_mul(&A, &re, &Are));
+    RITZ_CHECK(ritz_dense_mul(&A, &im, &Aim));
     add_structural(state, &im, -1.0, &Are);
     add_structural(state, &re, 1.0, &Aim);
     for (int64_t j = 0; j < out->count; j++) {
@@ -283,66 +273,51 @@ static ritz_status find_residuals(const ritz_state *state, const found *f,
         }
         out->residual[j] = gap / ((size + cabs(s)) * y);
     }
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&re);
-    ritz_dense_free(&im);
-    ritz_dense_free(&Are);
-    ritz_dense_free(&Aim);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status list_poles(const ritz_state *state, const found *f,
                               ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = state->X.nrow;
-    listed_pole *order = NULL;
+    RITZ_OWN_ARRAY listed_pole *order = NULL;
     double zero = 0.0;
 
-    RITZ_NEW(order, f->count);
+    RITZ_CHECK_NEW(order, f->count);
     out->num_zero = 2 * state->num_free;
-    RITZ_TRY(find_zero(state, &zero));
+    RITZ_CHECK(find_zero(state, &zero));
     out->count = choose_listed(f, state->K4.val, zero, order, &out->num_zero);
-    RITZ_NEW(out->s, out->count);
-    RITZ_NEW(out->residual, out->count);
-    RITZ_TRY(ritz_dense_new(n, out->count, &out->re));
-    RITZ_TRY(ritz_dense_new(n, out->count, &out->im));
+    RITZ_CHECK_NEW(out->s, out->count);
+    RITZ_CHECK_NEW(out->residual, out->count);
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->re));
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->im));
     for (int64_t j = 0; j < out->count; j++) {
         out->s[j] = f->s[order[j].index];
         put_shape(state, f->y + order[j].index * f->size,
                   ritz_dense_col(&out->re, j), ritz_dense_col(&out->im, j));
     }
-    RITZ_TRY(find_residuals(state, f, order, out));
-done:
-    free(order);
-    return status;
+    return find_residuals(state, f, order, out);
 }
 
 ritz_status ritz_spectrum_dense(const ritz_second_order *model,
                                 const ritz_damping *damping, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_spectrum spectrum = {0};
-    ritz_state state = {0};
-    found f = {0};
+    RITZ_OWN(ritz_spectrum) spectrum = {0};
+    RITZ_OWN(ritz_state) state = {0};
+    RITZ_OWN(found) f = {0};
 
-    RITZ_TRY(ritz_state_new(model, damping, &state));
+    RITZ_CHECK(ritz_state_new(model, damping, &state));
     if (state.diagonal)
-        RITZ_TRY(solve_diagonal(&state, &f));
+        RITZ_CHECK(solve_diagonal(&state, &f));
     else if (state.K4.val)
-        RITZ_TRY(solve_complex(&state, &f));
+        RITZ_CHECK(solve_complex(&state, &f));
     else
-        RITZ_TRY(solve_real(&state, &f));
-    RITZ_TRY(list_poles(&state, &f, &spectrum));
+        RITZ_CHECK(solve_real(&state, &f));
+    RITZ_CHECK(list_poles(&state, &f, &spectrum));
     (void)snprintf(spectrum.engine, sizeof spectrum.engine, "dense LAPACK");
     *out = spectrum;
     spectrum = (ritz_spectrum){0};
-done:
-    ritz_state_free(&state);
-    found_free(&f);
-    ritz_spectrum_free(&spectrum);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_spectrum_free(ritz_spectrum *spectrum)

@@ -113,20 +113,19 @@ ritz_status ritz_scan_dampers(const ritz_second_order *model,
                               const ritz_damping *damping,
                               const ritz_scan_request *request, ritz_scan *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_scan scan = {0};
-    ritz_spectrum spectrum = {0};
-    bench b = {0};
+    RITZ_OWN(ritz_scan) scan = {0};
+    RITZ_OWN(ritz_spectrum) spectrum = {0};
+    RITZ_OWN(bench) b = {0};
 
-    RITZ_TRY(check_range(request, &scan.count));
-    RITZ_TRY(bench_new(model, dampers, &b));
-    RITZ_NEW(scan.c, scan.count);
-    RITZ_NEW(scan.s, scan.count);
+    RITZ_CHECK(check_range(request, &scan.count));
+    RITZ_CHECK(bench_new(model, dampers, &b));
+    RITZ_CHECK_NEW(scan.c, scan.count);
+    RITZ_CHECK_NEW(scan.s, scan.count);
     for (int64_t k = 0; k < scan.count; k++) {
         scan.c[k] = request->from + (double)k * request->step;
-        RITZ_TRY(poles_at(&b, request, damping, scan.c[k], &spectrum));
+        RITZ_CHECK(poles_at(&b, request, damping, scan.c[k], &spectrum));
         if (k == 0)
-            RITZ_TRY(begin_scan(&spectrum, request->mode, &scan.s[0]));
+            RITZ_CHECK(begin_scan(&spectrum, request->mode, &scan.s[0]));
         else
             scan.s[k] = nearest_pole(&spectrum, k == 1 ? scan.s[0]
                                                        : 2.0 * scan.s[k - 1] -
@@ -138,11 +137,7 @@ ritz_status ritz_scan_dampers(const ritz_second_order *model,
     }
     *out = scan;
     scan = (ritz_scan){0};
-done:
-    ritz_spectrum_free(&spectrum);
-    ritz_scan_free(&scan);
-    bench_free(&b);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_scan_free(ritz_scan *scan)
@@ -170,27 +165,26 @@ enum { LEAST_MODES = 20, EACH_MODE = 2 };
 static ritz_status span_space(const ritz_component *component,
                               const ritz_pairs *pairs, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = component->num_dofs;
     double sigma = pairs->sigma < 0.0 ? pairs->sigma : -1.0;
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
-    ritz_dense X = {0};
-    ritz_orthonormal set = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_sparse_add(1.0, &component->K, -sigma, &component->M, &A));
-    RITZ_TRY(ritz_orthonormal_new(n, &A, RITZ_STATIC_DEPENDENT, &set));
-    RITZ_TRY(ritz_dense_copy(&pairs->Phi, &X));
-    RITZ_TRY(ritz_orthonormal_append(&set, &X, n, NULL));
+    RITZ_CHECK(ritz_sparse_add(1.0, &component->K, -sigma, &component->M, &A));
+    RITZ_CHECK(ritz_orthonormal_new(n, &A, RITZ_STATIC_DEPENDENT, &set));
+    RITZ_CHECK(ritz_dense_copy(&pairs->Phi, &X));
+    RITZ_CHECK(ritz_orthonormal_append(&set, &X, n, NULL));
     if (component->dampers.count > 0) {
         ritz_dense_free(&X);
-        RITZ_TRY(ritz_dense_copy(&component->dampers.B, &X));
-        RITZ_TRY_IN("static answer", ritz_factor_spd(&A, &F));
-        RITZ_TRY(ritz_factor_solve(F, &X));
-        RITZ_TRY(ritz_orthonormal_append(&set, &X, n - set.count, NULL));
+        RITZ_CHECK(ritz_dense_copy(&component->dampers.B, &X));
+        RITZ_CHECK_IN("static answer", ritz_factor_spd(&A, &F));
+        RITZ_CHECK(ritz_factor_solve(F, &X));
+        RITZ_CHECK(ritz_orthonormal_append(&set, &X, n - set.count, NULL));
     }
-    RITZ_TRY(ritz_basis_new(n, set.count, &basis));
+    RITZ_CHECK(ritz_basis_new(n, set.count, &basis));
     ritz_dense_free(&basis.T);
     basis.T = set.V;
     basis.T.ncol = set.count;
@@ -199,29 +193,18 @@ static ritz_status span_space(const ritz_component *component,
         basis.columns.kind[j] = RITZ_COLUMN_RIGID;
     *out = basis;
     basis = (ritz_basis){0};
-done:
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
-    ritz_dense_free(&X);
-    ritz_orthonormal_free(&set);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_spectrum_space(const ritz_component *component,
                                 const ritz_span *span, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, span, &pairs));
-    RITZ_TRY(span_space(component, &pairs, &basis));
-    RITZ_TRY(ritz_reduce(component, &basis, out));
-done:
-    ritz_pairs_free(&pairs);
-    ritz_basis_free(&basis);
-    return status;
+    RITZ_CHECK(ritz_eigen_sparse(&component->K, &component->M, span, &pairs));
+    RITZ_CHECK(span_space(component, &pairs, &basis));
+    return ritz_reduce(component, &basis, out);
 }
 
 ritz_status ritz_whole_new(const ritz_component *component, ritz_whole *out)
@@ -249,25 +232,20 @@ ritz_status ritz_scan_component(const ritz_component *component,
                                 const ritz_scan_request *request,
                                 ritz_scan *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_span span = {.modes = EACH_MODE * (request->mode + 1) + LEAST_MODES};
-    ritz_whole w = {0};
-    ritz_reduced small = {0};
+    RITZ_OWN(ritz_whole) w = {0};
+    RITZ_OWN(ritz_reduced) small = {0};
     const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,
                                      NULL};
 
     if (component->num_dofs <= RITZ_WHOLE_DOFS) {
-        RITZ_TRY(ritz_whole_new(component, &w));
-        RITZ_TRY(ritz_scan_dampers(&w.model, &component->dampers, damping,
-                                   request, out));
-        goto done;
+        RITZ_CHECK(ritz_whole_new(component, &w));
+        RITZ_CHECK(ritz_scan_dampers(&w.model, &component->dampers, damping,
+                                     request, out));
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_spectrum_space(component, &span, &small));
-    RITZ_TRY(ritz_scan_dampers(&model, &small.dampers, damping, request, out));
-done:
-    ritz_whole_free(&w);
-    ritz_reduced_free(&small);
-    return status;
+    RITZ_CHECK(ritz_spectrum_space(component, &span, &small));
+    return ritz_scan_dampers(&model, &small.dampers, damping, request, out);
 }
 
 /* Beyond what is wanted, of modes and of frequencies. */
@@ -367,14 +345,10 @@ static void keep_first(const ritz_span *span, ritz_spectrum *spectrum)
 static ritz_status solve_whole(const ritz_component *component,
                                const ritz_damping *damping, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_whole w = {0};
+    RITZ_OWN(ritz_whole) w = {0};
 
-    RITZ_TRY(ritz_whole_new(component, &w));
-    RITZ_TRY(ritz_spectrum_dense(&w.model, damping, out));
-done:
-    ritz_whole_free(&w);
-    return status;
+    RITZ_CHECK(ritz_whole_new(component, &w));
+    return ritz_spectrum_dense(&w.model, damping, out);
 }
 
 /* Shapes of the small model become those of the component. */
@@ -392,7 +366,6 @@ static ritz_status expand_shapes(const ritz_dense *T, ritz_dense *shapes)
 static ritz_status solve_projected(const ritz_component *component,
                                    const ritz_span *span, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span wide = {
         .modes = span->modes < 0
                      ? -1
@@ -400,27 +373,24 @@ static ritz_status solve_projected(const ritz_component *component,
                            MORE_MODES,
         .up_to_hz = RITZ_SPECTRUM_BEYOND * span->up_to_hz,
     };
-    ritz_reduced small = {0};
+    RITZ_OWN(ritz_reduced) small = {0};
     const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,
                                      NULL};
-    ritz_refiner refiner = {0};
+    RITZ_OWN(ritz_refiner) refiner = {0};
 
-    RITZ_TRY(ritz_spectrum_space(component, &wide, &small));
-    RITZ_TRY(ritz_spectrum_dense(&model, NULL, out));
+    RITZ_CHECK(ritz_spectrum_space(component, &wide, &small));
+    RITZ_CHECK(ritz_spectrum_dense(&model, NULL, out));
     keep_first(span, out);
-    RITZ_TRY(expand_shapes(&small.T, &out->re));
-    RITZ_TRY(expand_shapes(&small.T, &out->im));
-    RITZ_TRY(ritz_refiner_new(component, true, &refiner));
+    RITZ_CHECK(expand_shapes(&small.T, &out->re));
+    RITZ_CHECK(expand_shapes(&small.T, &out->im));
+    RITZ_CHECK(ritz_refiner_new(component, true, &refiner));
     for (int64_t j = 0; j < out->count; j++) {
-        RITZ_TRY(refine_pole(&refiner, j, out));
+        RITZ_CHECK(refine_pole(&refiner, j, out));
         ritz_monitor_step("damped modes", j + 1, out->count);
     }
     (void)snprintf(out->engine, sizeof out->engine,
                    "CHOLMOD + ARPACK + inverse iteration");
-done:
-    ritz_refiner_free(&refiner);
-    ritz_reduced_free(&small);
-    return status;
+    return RITZ_OK;
 }
 
 /* D := D + a M + b K: `seen` borrows all of the component but D, which it
@@ -429,22 +399,19 @@ static ritz_status add_rayleigh(const ritz_component *component,
                                 const ritz_damping *damping,
                                 ritz_component *seen)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse given = {0};
+    RITZ_OWN(ritz_sparse) given = {0};
 
     *seen = *component;
     seen->D = (ritz_sparse){0};
-    RITZ_TRY(ritz_sparse_add(damping->a, &component->M, damping->b,
-                             &component->K, &given));
+    RITZ_CHECK(ritz_sparse_add(damping->a, &component->M, damping->b,
+                               &component->K, &given));
     if (component->D.colptr) {
-        RITZ_TRY(ritz_sparse_add(1.0, &component->D, 1.0, &given, &seen->D));
+        RITZ_CHECK(ritz_sparse_add(1.0, &component->D, 1.0, &given, &seen->D));
     } else {
         seen->D = given;
         given = (ritz_sparse){0};
     }
-done:
-    ritz_sparse_free(&given);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_spectrum_large(const ritz_component *component,
@@ -477,18 +444,15 @@ ritz_status ritz_spectrum_component(const ritz_component *component,
                                     const ritz_damping *damping,
                                     const ritz_span *span, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_spectrum spectrum = {0};
+    RITZ_OWN(ritz_spectrum) spectrum = {0};
 
     if (component->num_dofs <= RITZ_WHOLE_DOFS) {
-        RITZ_TRY(solve_whole(component, damping, &spectrum));
+        RITZ_CHECK(solve_whole(component, damping, &spectrum));
         keep_first(span, &spectrum);
     } else {
-        RITZ_TRY(ritz_spectrum_large(component, damping, span, &spectrum));
+        RITZ_CHECK(ritz_spectrum_large(component, damping, span, &spectrum));
     }
     *out = spectrum;
     spectrum = (ritz_spectrum){0};
-done:
-    ritz_spectrum_free(&spectrum);
-    return status;
+    return RITZ_OK;
 }

@@ -21,15 +21,14 @@ double ritz_state_weight(const ritz_state *state, int64_t j)
 /* G = D_aa^-1 [D_ap I], k x (m + k). */
 static ritz_status solve_massless(const ritz_state *s, ritz_dense *G)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = s->m, k = s->k;
-    ritz_dense A = {0};
-    lapack_int *pivot = NULL;
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     int info = 0;
 
-    RITZ_NEW(pivot, k);
-    RITZ_TRY(ritz_dense_new(k, k, &A));
-    RITZ_TRY(ritz_dense_new(k, m + k, G));
+    RITZ_CHECK_NEW(pivot, k);
+    RITZ_CHECK(ritz_dense_new(k, k, &A));
+    RITZ_CHECK(ritz_dense_new(k, m + k, G));
     for (int64_t i = 0; i < k; i++) {
         for (int64_t j = 0; j < k; j++)
             ritz_dense_col(&A, j)[i] = ritz_dense_col(&s->D, m + j)[m + i];
@@ -40,22 +39,18 @@ static ritz_status solve_massless(const ritz_state *s, ritz_dense *G)
     if (k > 0)
         info = LAPACKE_dgesv(LAPACK_COL_MAJOR, (int)k, (int)(m + k), A.val,
                              (int)k, pivot, G->val, (int)k);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
-                 "damping of the motions without mass is singular");
-done:
-    free(pivot);
-    ritz_dense_free(&A);
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_SINGULAR,
+                   "damping of the motions without mass is singular");
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_matrix(const ritz_state *s, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = s->m, k = s->k;
-    ritz_dense A = {0}, G = {0};
+    RITZ_OWN(ritz_dense) A = {0}, G = {0};
 
-    RITZ_TRY(ritz_dense_new(2 * m + k, 2 * m + k, &A));
-    RITZ_TRY(solve_massless(s, &G));
+    RITZ_CHECK(ritz_dense_new(2 * m + k, 2 * m + k, &A));
+    RITZ_CHECK(solve_massless(s, &G));
     for (int64_t j = 0; j < m; j++) {
         double w = ritz_state_weight(s, j);
 
@@ -77,27 +72,21 @@ ritz_status ritz_state_matrix(const ritz_state *s, ritz_dense *out)
         }
     *out = A;
     A = (ritz_dense){0};
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&G);
-    return status;
+    return RITZ_OK;
 }
 
 /* X'AX whose entries are 0 where they are rounding alone. */
 static ritz_status project_above_rounding(const ritz_dense *A,
                                           const ritz_dense *X, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense most = {0};
+    RITZ_OWN(ritz_dense) most = {0};
 
-    RITZ_TRY(ritz_dense_project(A, X, out));
-    RITZ_TRY(ritz_dense_terms(A, X, &most));
+    RITZ_CHECK(ritz_dense_project(A, X, out));
+    RITZ_CHECK(ritz_dense_terms(A, X, &most));
     for (int64_t i = 0; i < out->nrow * out->ncol; i++)
         if (fabs(out->val[i]) <= RITZ_SUM_ROUNDING * most.val[i])
             out->val[i] = 0.0;
-done:
-    ritz_dense_free(&most);
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_present(const ritz_dense *A)
@@ -156,38 +145,33 @@ static void add_given(const ritz_damping *damping, const ritz_pairs *pairs,
 static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
                                  ritz_dense *N, int64_t *count)
 {
-    ritz_status status = RITZ_OK;
     int64_t k = N->ncol;
-    ritz_dense V = {0}, turned = {0};
-    double *delta = NULL;
+    RITZ_OWN(ritz_dense) V = {0}, turned = {0};
+    RITZ_OWN_ARRAY double *delta = NULL;
     double largest = 0.0;
     int info = 0;
 
-    RITZ_NEW(delta, k);
-    RITZ_TRY(ritz_dense_new(k, k, &V));
+    RITZ_CHECK_NEW(delta, k);
+    RITZ_CHECK(ritz_dense_new(k, k, &V));
     for (int64_t j = 0; j < k; j++)
         for (int64_t i = 0; i < k; i++) /* negative: descending */
             ritz_dense_col(&V, j)[i] = -0.5 * (ritz_dense_col(D, m + j)[m + i] +
                                                ritz_dense_col(D, m + i)[m + j]);
     info =
         LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (int)k, V.val, (int)k, delta);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "damping of the motions without mass was not found");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "damping of the motions without mass was not found");
     for (int64_t j = 0; j < k; j++)
         largest = fmax(largest, fabs(delta[j]));
     *count = 0;
     for (int64_t j = 0; j < k; j++)
         *count +=
             -delta[j] > fmax(floor, (double)k * RITZ_SUM_ROUNDING * largest);
-    RITZ_TRY(ritz_dense_mul(N, &V, &turned));
+    RITZ_CHECK(ritz_dense_mul(N, &V, &turned));
     ritz_dense_free(N);
     *N = turned;
     turned = (ritz_dense){0};
-done:
-    free(delta);
-    ritz_dense_free(&V);
-    ritz_dense_free(&turned);
-    return status;
+    return RITZ_OK;
 }
 
 /* The rest of N, columns `from` on of D, must be left alone. */
@@ -227,46 +211,43 @@ static ritz_status take_massless(const ritz_second_order *model,
                                  const ritz_damping *damping,
                                  const ritz_pairs *pairs, ritz_state *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = pairs->Phi.ncol;
-    ritz_dense N = {0};
+    RITZ_OWN(ritz_dense) N = {0};
 
     if (m < pairs->Phi.nrow)
-        RITZ_TRY(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
+        RITZ_CHECK(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
     for (int pass = 0; pass < 2; pass++) {
         ritz_dense_free(&s->X);
         ritz_dense_free(&s->D);
-        RITZ_TRY(ritz_dense_beside(&pairs->Phi, &N, &s->X));
+        RITZ_CHECK(ritz_dense_beside(&pairs->Phi, &N, &s->X));
         if (is_present(model->D))
-            RITZ_TRY(project_above_rounding(model->D, &s->X, &s->D));
+            RITZ_CHECK(project_above_rounding(model->D, &s->X, &s->D));
         else
-            RITZ_TRY(ritz_dense_new(s->X.ncol, s->X.ncol, &s->D));
+            RITZ_CHECK(ritz_dense_new(s->X.ncol, s->X.ncol, &s->D));
         add_given(damping, pairs, &s->D);
         if (N.ncol == 0)
             break;
         if (pass == 0)
-            RITZ_TRY(turn_massless(&s->D, m,
-                                   is_present(model->D)
-                                       ? RITZ_MASSLESS_VECTOR *
-                                             ritz_dense_max(model->D) *
-                                             pow(ritz_dense_max(&N), 2.0)
-                                       : 0.0,
-                                   &N, &s->k));
+            RITZ_CHECK(turn_massless(&s->D, m,
+                                     is_present(model->D)
+                                         ? RITZ_MASSLESS_VECTOR *
+                                               ritz_dense_max(model->D) *
+                                               pow(ritz_dense_max(&N), 2.0)
+                                         : 0.0,
+                                     &N, &s->k));
     }
-    RITZ_TRY(check_rest(&s->D, m + s->k));
-    RITZ_TRY(keep_leading(&s->D, m + s->k));
+    RITZ_CHECK(check_rest(&s->D, m + s->k));
+    RITZ_CHECK(keep_leading(&s->D, m + s->k));
     if (is_present(model->K4)) {
-        RITZ_TRY(project_above_rounding(model->K4, &s->X, &s->K4));
-        RITZ_FAIL_IF(
+        RITZ_CHECK(project_above_rounding(model->K4, &s->X, &s->K4));
+        RITZ_REFUSE_IF(
             N.ncol > 0 && ritz_dense_max(&s->K4) > 0.0, RITZ_ERR_ARGUMENT,
             "there are motions without mass beside structural damping: "
             "give it as a modal ratio");
         if (N.ncol > 0)
             ritz_dense_free(&s->K4);
     }
-done:
-    ritz_dense_free(&N);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether D and K4 leave coordinate j alone. */
@@ -302,13 +283,12 @@ static void keep_square(int64_t n, const bool *kept, ritz_dense *A)
 /* Leave out rigid motions that nothing damps. */
 static ritz_status drop_free(ritz_state *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t all = s->m + s->k;
     int64_t n = s->X.nrow;
     int64_t at = 0;
-    bool *kept = NULL;
+    RITZ_OWN_ARRAY bool *kept = NULL;
 
-    RITZ_NEW(kept, all);
+    RITZ_CHECK_NEW(kept, all);
     for (int64_t j = 0; j < all; j++)
         kept[j] = j >= s->m || !is_free(s, j);
     for (int64_t j = 0; j < all; j++) {
@@ -326,9 +306,7 @@ static ritz_status drop_free(ritz_state *s)
     s->num_free = all - at;
     s->m -= s->num_free;
     s->X.ncol = at;
-done:
-    free(kept);
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_diagonal(const ritz_dense *D)
@@ -343,23 +321,19 @@ static bool is_diagonal(const ritz_dense *D)
 ritz_status ritz_state_new(const ritz_second_order *model,
                            const ritz_damping *damping, ritz_state *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state s = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_state) s = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(take_modes(model, &pairs));
+    RITZ_CHECK(take_modes(model, &pairs));
     s.m = pairs.Phi.ncol;
-    RITZ_TRY(take_massless(model, damping, &pairs, &s));
+    RITZ_CHECK(take_massless(model, damping, &pairs, &s));
     s.lambda = pairs.lambda;
     pairs.lambda = NULL;
-    RITZ_TRY(drop_free(&s));
+    RITZ_CHECK(drop_free(&s));
     s.diagonal = s.k == 0 && !s.K4.val && is_diagonal(&s.D);
     *out = s;
     s = (ritz_state){0};
-done:
-    ritz_pairs_free(&pairs);
-    ritz_state_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_state_free(ritz_state *state)

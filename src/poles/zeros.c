@@ -255,17 +255,16 @@ static void triangle_free(triangle *t)
 /* @return RITZ_ERR_CONVERGENCE */
 static ritz_status triangle_new(const ritz_channel *channel, triangle *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = channel->A.nrow;
-    triangle t = {.n = n, .d = channel->D.val[0]};
+    RITZ_OWN(triangle) t = {.n = n, .d = channel->D.val[0]};
 
-    RITZ_NEW(t.T, n * n);
-    RITZ_NEW(t.b, n);
-    RITZ_NEW(t.c, n);
-    RITZ_NEW(t.cancelled, n);
-    RITZ_NEW(t.x, n);
-    RITZ_NEW(t.w, n);
-    RITZ_NEW(t.two, n);
+    RITZ_CHECK_NEW(t.T, n * n);
+    RITZ_CHECK_NEW(t.b, n);
+    RITZ_CHECK_NEW(t.c, n);
+    RITZ_CHECK_NEW(t.cancelled, n);
+    RITZ_CHECK_NEW(t.x, n);
+    RITZ_CHECK_NEW(t.w, n);
+    RITZ_CHECK_NEW(t.two, n);
     if (channel->squared) {
         fill_diagonal(channel, &t);
     } else if (channel->blocks) {
@@ -274,13 +273,11 @@ static ritz_status triangle_new(const ritz_channel *channel, triangle *out)
             fill_block(channel, k, &t);
     } else {
         t.band = n;
-        RITZ_TRY(fill_schur(channel, &t));
+        RITZ_CHECK(fill_schur(channel, &t));
     }
     *out = t;
     t = (triangle){0};
-done:
-    triangle_free(&t);
-    return status;
+    return RITZ_OK;
 }
 
 /* (z I - T) x = b, from the last row up. */
@@ -600,14 +597,10 @@ ritz_status ritz_zeros_dense(const ritz_second_order *model,
                              int64_t input, int64_t *count,
                              double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_channel channel = {0};
+    RITZ_OWN(ritz_channel) channel = {0};
 
-    RITZ_TRY(ritz_channel_dense(model, damping, output, input, &channel));
-    RITZ_TRY(find_zeros(&channel, output != RITZ_ALL_CHANNELS, count, out));
-done:
-    ritz_channel_free(&channel);
-    return status;
+    RITZ_CHECK(ritz_channel_dense(model, damping, output, input, &channel));
+    return find_zeros(&channel, output != RITZ_ALL_CHANNELS, count, out);
 }
 
 ritz_status ritz_zeros_component(const ritz_component *component,
@@ -615,28 +608,20 @@ ritz_status ritz_zeros_component(const ritz_component *component,
                                  int64_t input, int64_t *count,
                                  double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_structure dense = {0};
+    RITZ_OWN(ritz_structure) dense = {0};
     ritz_second_order model = {
         .K = &dense.K, .M = &dense.M, .D = &dense.D, .io = &component->io};
 
-    RITZ_TRY(ritz_structure_of_component(component, &dense));
-    RITZ_TRY(ritz_zeros_dense(&model, damping, output, input, count, out));
-done:
-    ritz_structure_free(&dense);
-    return status;
+    RITZ_CHECK(ritz_structure_of_component(component, &dense));
+    return ritz_zeros_dense(&model, damping, output, input, count, out);
 }
 
 ritz_status ritz_zeros_states(const ritz_state_space *model, int64_t output,
                               int64_t input, int64_t *count,
                               double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_channel channel = {0};
+    RITZ_OWN(ritz_channel) channel = {0};
 
-    RITZ_TRY(ritz_channel_states(model, output, input, &channel));
-    RITZ_TRY(find_zeros(&channel, output != RITZ_ALL_CHANNELS, count, out));
-done:
-    ritz_channel_free(&channel);
-    return status;
+    RITZ_CHECK(ritz_channel_states(model, output, input, &channel));
+    return find_zeros(&channel, output != RITZ_ALL_CHANNELS, count, out);
 }

@@ -110,23 +110,20 @@ static ritz_status set_part(const ritz_scene *scene, const char *part,
 ritz_status ritz_scene_settings(const ritz_scene *scene, const char *at,
                                 double *setting)
 {
-    ritz_status status = RITZ_OK;
-    double *row = NULL;
+    RITZ_OWN_ARRAY double *row = NULL;
 
-    RITZ_NEW(row, scene->num_sweeps);
+    RITZ_CHECK_NEW(row, scene->num_sweeps);
     clear_row(scene, row);
     for (const char *part = *at ? at : NULL; part;) {
         size_t length = strcspn(part, ",");
 
-        RITZ_TRY(set_part(scene, part, length, row));
+        RITZ_CHECK(set_part(scene, part, length, row));
         part = part[length] ? part + length + 1 : NULL;
     }
-    RITZ_TRY(fill_row(scene, row));
+    RITZ_CHECK(fill_row(scene, row));
     if (scene->num_sweeps > 0)
         memcpy(setting, row, (size_t)scene->num_sweeps * sizeof *row);
-done:
-    free(row);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- configurations ------------------------------------------------------ */
@@ -157,11 +154,10 @@ static int compare_rows(const void *left, const void *right)
 ritz_status ritz_rows_repeated(int64_t count, int64_t n, const double *val,
                                int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-    sorted_row *row = NULL;
+    RITZ_OWN_ARRAY sorted_row *row = NULL;
     int64_t first = -1;
 
-    RITZ_NEW(row, count);
+    RITZ_CHECK_NEW(row, count);
     for (int64_t k = 0; k < count; k++)
         row[k] = (sorted_row){val + k * n, n, k};
     qsort(row, (size_t)count, sizeof *row, compare_rows);
@@ -170,9 +166,7 @@ ritz_status ritz_rows_repeated(int64_t count, int64_t n, const double *val,
             (first < 0 || row[k].index < first))
             first = row[k].index;
     *out = first;
-done:
-    free(row);
-    return status;
+    return RITZ_OK;
 }
 
 /* Allocate `count` rows, if that is not too many. */
@@ -271,22 +265,19 @@ static ritz_status find_reference(const ritz_yaml *yaml,
 static ritz_status read_reference(const ritz_yaml *yaml,
                                   const yaml_node_t *node, ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
-    double *row = NULL;
+    RITZ_OWN_ARRAY double *row = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_YAML_FAIL_IF(count == 0 || count > RITZ_MOST_REFERENCES, yaml, node,
-                      "1 to %d references can be listed, not %" PRId64,
-                      RITZ_MOST_REFERENCES, count);
-    RITZ_NEW(row, scene->num_sweeps);
-    RITZ_NEW(scene->reference, count);
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0 || count > RITZ_MOST_REFERENCES, yaml, node,
+                   "1 to %d references can be listed, not %" PRId64,
+                   RITZ_MOST_REFERENCES, count);
+    RITZ_CHECK_NEW(row, scene->num_sweeps);
+    RITZ_CHECK_NEW(scene->reference, count);
     for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(
+        RITZ_CHECK(
             find_reference(yaml, ritz_yaml_item(yaml, node, k), row, scene));
-done:
-    free(row);
-    return status;
+    return RITZ_OK;
 }
 
 enum { TOLERANCE, REFERENCE, NUM_KEYS };

@@ -179,28 +179,25 @@ static const struct {
 ritz_status ritz_scene_parse(const char *path, const char *text,
                              ritz_scene *out)
 {
-    ritz_status status = RITZ_OK;
     const yaml_node_t *value[NUM_KEYS];
-    ritz_yaml yaml = {0};
-    ritz_scene scene = {.source = &ritz_container_source,
-                        .select_by = "hankel",
-                        .select_tolerance = 1e-3,
-                        .composite_tolerance = 1e-12,
-                        .attached_tolerance = 1e-3};
+    RITZ_OWN(ritz_yaml) yaml = {0};
+    RITZ_OWN(ritz_scene)
+    scene = {.source = &ritz_container_source,
+             .select_by = "hankel",
+             .select_tolerance = 1e-3,
+             .composite_tolerance = 1e-12,
+             .attached_tolerance = 1e-3};
 
-    RITZ_NEW(scene.path, (int64_t)strlen(path) + 1);
+    RITZ_CHECK_NEW(scene.path, (int64_t)strlen(path) + 1);
     memcpy(scene.path, path, strlen(path));
-    RITZ_TRY(ritz_yaml_load(path, text, &yaml));
-    RITZ_TRY(ritz_yaml_mapping(&yaml, ritz_yaml_root(&yaml), NUM_KEYS, keys,
-                               &scene, value));
+    RITZ_CHECK(ritz_yaml_load(path, text, &yaml));
+    RITZ_CHECK(ritz_yaml_mapping(&yaml, ritz_yaml_root(&yaml), NUM_KEYS, keys,
+                                 &scene, value));
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        RITZ_TRY(parts[k].read(&yaml, value[parts[k].key], &scene));
+        RITZ_CHECK(parts[k].read(&yaml, value[parts[k].key], &scene));
     *out = scene;
     scene = (ritz_scene){0};
-done:
-    ritz_scene_free(&scene);
-    ritz_yaml_free(&yaml);
-    return status;
+    return RITZ_OK;
 }
 
 /* A relative path of a model begins at the folder of the scene. */
@@ -221,22 +218,18 @@ static ritz_status place_model(const char *path, size_t folder, char **model)
 
 ritz_status ritz_scene_read(const char *path, ritz_scene *out)
 {
-    ritz_status status = RITZ_OK;
     const char *slash = strrchr(path, '/');
     size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
-    ritz_scene scene = {0};
-    char *text = NULL;
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN_ARRAY char *text = NULL;
 
-    RITZ_TRY(ritz_text_read(path, &text));
-    RITZ_TRY(ritz_scene_parse(path, text, &scene));
+    RITZ_CHECK(ritz_text_read(path, &text));
+    RITZ_CHECK(ritz_scene_parse(path, text, &scene));
     for (int64_t k = 0; k < scene.num_components; k++)
-        RITZ_TRY(place_model(path, folder, &scene.component[k].model));
+        RITZ_CHECK(place_model(path, folder, &scene.component[k].model));
     *out = scene;
     scene = (ritz_scene){0};
-done:
-    ritz_scene_free(&scene);
-    free(text);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_context(const ritz_scene *scene, ritz_status status,

@@ -99,24 +99,19 @@ static ritz_status measure_errors(const ritz_simulated *subject,
                                   const ritz_simulation_request *request,
                                   double tolerance, halving_trial *t)
 {
-    ritz_status status = RITZ_OK;
     ritz_simulation_request coarse = *request, fine = *request;
-    ritz_simulation made = {0}, exact = {0};
-    ritz_reach reach = {0};
+    RITZ_OWN(ritz_simulation) made = {0}, exact = {0};
+    RITZ_OWN(ritz_reach) reach = {0};
 
     coarse.every = 1;
     fine.step = 0.5 * request->step;
     fine.every = 2;
     if (!subject->component)
         fine.integrator = &ritz_integrator_modal;
-    RITZ_TRY(ritz_simulate_noting(subject, &coarse, false, NULL, &made));
-    RITZ_TRY(ritz_simulate_noting(subject, &fine, false, &reach, &exact));
+    RITZ_CHECK(ritz_simulate_noting(subject, &coarse, false, NULL, &made));
+    RITZ_CHECK(ritz_simulate_noting(subject, &fine, false, &reach, &exact));
     judge_outputs(&exact, &made, &reach, tolerance, t);
-done:
-    ritz_simulation_free(&made);
-    ritz_simulation_free(&exact);
-    ritz_reach_free(&reach);
-    return status;
+    return RITZ_OK;
 }
 
 /* Not at multiples of a period, where a sine is 0. */

@@ -38,10 +38,9 @@ static double processor_seconds(void)
 /* s, of modes. */
 static ritz_status find_fastest(const ritz_motion *modes, double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = modes->n;
-    ritz_dense A = {0};
-    double *w = NULL;
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN_ARRAY double *w = NULL;
     double top = sqrt(modes->highest);
 
     for (int64_t j = 0; j < m; j++) {
@@ -53,22 +52,19 @@ static ritz_status find_fastest(const ritz_motion *modes, double *out)
     *out = top;
     if (m == 0)
         return RITZ_OK;
-    RITZ_NEW(w, 2 * m);
-    RITZ_TRY(ritz_dense_new(2 * m, 2 * m, &A));
+    RITZ_CHECK_NEW(w, 2 * m);
+    RITZ_CHECK(ritz_dense_new(2 * m, 2 * m, &A));
     for (int64_t j = 0; j < m; j++) {
         for (int64_t i = 0; i < m; i++)
             ritz_dense_col(&A, j)[i] = 0.5 * (ritz_dense_col(&modes->D, j)[i] +
                                               ritz_dense_col(&modes->D, i)[j]);
         ritz_dense_col(&A, j)[m + j] = sqrt(fmax(modes->lambda[j], 0.0));
     }
-    RITZ_FAIL_IF(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', (int)(2 * m), A.val,
-                               (int)(2 * m), w) != 0,
-                 RITZ_ERR_CONVERGENCE, "the fastest motion was not found");
+    RITZ_REFUSE_IF(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', (int)(2 * m),
+                                 A.val, (int)(2 * m), w) != 0,
+                   RITZ_ERR_CONVERGENCE, "the fastest motion was not found");
     *out = fmax(sqrt(modes->highest), w[2 * m - 1]);
-done:
-    ritz_dense_free(&A);
-    free(w);
-    return status;
+    return RITZ_OK;
 }
 
 /* Some steps; how much processor time they took. */
@@ -109,41 +105,34 @@ ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
                                     const ritz_integrator *integrator,
                                     double step, double *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_simulation_request request = {
         .integrator = integrator, .step = step, .rho = 0.8};
     const ritz_simulated subject = {.model = model, .damping = damping};
-    ritz_motion motion = {0};
-    ritz_march march = {0};
-    double *u = NULL;
+    RITZ_OWN(ritz_motion) motion = {0};
+    RITZ_OWN(ritz_march) march = {0};
+    RITZ_OWN_ARRAY double *u = NULL;
 
-    RITZ_FAIL_IF(!(step > 0.0) || !isfinite(step), RITZ_ERR_ARGUMENT,
-                 "%g s is no step", step);
-    RITZ_TRY(ritz_motion_new(&subject, &request, &motion));
-    RITZ_NEW(u, motion.B.ncol);
-    RITZ_TRY(ritz_march_new(&motion, integrator, step, request.rho, &march));
-    RITZ_TRY(measure_march(&march, u, out));
-done:
-    free(u);
-    ritz_march_free(&march);
-    ritz_motion_free(&motion);
-    return status;
+    RITZ_REFUSE_IF(!(step > 0.0) || !isfinite(step), RITZ_ERR_ARGUMENT,
+                   "%g s is no step", step);
+    RITZ_CHECK(ritz_motion_new(&subject, &request, &motion));
+    RITZ_CHECK_NEW(u, motion.B.ncol);
+    RITZ_CHECK(ritz_march_new(&motion, integrator, step, request.rho, &march));
+    return measure_march(&march, u, out);
 }
 
 ritz_status ritz_simulate_cost(const ritz_second_order *model,
                                const ritz_damping *damping,
                                const double band_hz[2], ritz_cost *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_cost cost = {.order = model->K->nrow};
-    ritz_motion modes = {0};
+    RITZ_OWN(ritz_motion) modes = {0};
     double end = band_hz ? band_hz[1] : 0.0;
     double root = 0.0;
 
-    RITZ_FAIL_IF(!isfinite(end) || end < 0.0, RITZ_ERR_ARGUMENT,
-                 "a band to %g Hz makes no sense", end);
-    RITZ_TRY(ritz_motion_dense(model, damping, true, &modes));
-    RITZ_TRY(find_fastest(&modes, &root));
+    RITZ_REFUSE_IF(!isfinite(end) || end < 0.0, RITZ_ERR_ARGUMENT,
+                   "a band to %g Hz makes no sense", end);
+    RITZ_CHECK(ritz_motion_dense(model, damping, true, &modes));
+    RITZ_CHECK(find_fastest(&modes, &root));
     cost.highest_hz = sqrt(modes.highest) / (2.0 * RITZ_PI);
     cost.step_explicit = root > 0.0 ? 2.0 / root : HUGE_VAL;
     if (end <= 0.0)
@@ -152,14 +141,12 @@ ritz_status ritz_simulate_cost(const ritz_second_order *model,
     cost.step = cost.step_accurate;
     (void)snprintf(cost.integrator, sizeof cost.integrator, "%s",
                    ritz_integrator_trapezoidal.name);
-    RITZ_TRY(ritz_simulate_step_cost(model, damping,
-                                     &ritz_integrator_trapezoidal, cost.step,
-                                     &cost.seconds_per_second));
+    RITZ_CHECK(ritz_simulate_step_cost(model, damping,
+                                       &ritz_integrator_trapezoidal, cost.step,
+                                       &cost.seconds_per_second));
     cost.seconds_per_second /= cost.step;
     *out = cost;
-done:
-    ritz_motion_free(&modes);
-    return status;
+    return RITZ_OK;
 }
 
 /* Cholesky factors of a well-conditioned matrix until they take long enough. */
@@ -182,31 +169,27 @@ static ritz_status measure_factors(const ritz_dense *A, int64_t count,
 
 ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0}, work = {0};
+    RITZ_OWN(ritz_dense) A = {0}, work = {0};
     double spent = 0.0, least = HUGE_VAL;
     int64_t count = 1;
 
-    RITZ_FAIL_IF(order < 1, RITZ_ERR_ARGUMENT, "%" PRId64 " is no order",
-                 order);
-    RITZ_TRY(ritz_dense_new(order, order, &A));
-    RITZ_TRY(ritz_dense_new(order, order, &work));
+    RITZ_REFUSE_IF(order < 1, RITZ_ERR_ARGUMENT, "%" PRId64 " is no order",
+                   order);
+    RITZ_CHECK(ritz_dense_new(order, order, &A));
+    RITZ_CHECK(ritz_dense_new(order, order, &work));
     for (int64_t j = 0; j < order; j++)
         for (int64_t i = 0; i < order; i++)
             ritz_dense_col(&A, j)[i] = i == j ? 2.0 : 1.0 / (double)order;
-    RITZ_TRY(measure_factors(&A, count, &work, &spent));
+    RITZ_CHECK(measure_factors(&A, count, &work, &spent));
     while (spent < RITZ_MEASURED_SECONDS) {
         count *= 2;
-        RITZ_TRY(measure_factors(&A, count, &work, &spent));
+        RITZ_CHECK(measure_factors(&A, count, &work, &spent));
     }
     least = spent;
     for (int k = 1; k < MEASUREMENTS; k++) {
-        RITZ_TRY(measure_factors(&A, count, &work, &spent));
+        RITZ_CHECK(measure_factors(&A, count, &work, &spent));
         least = fmin(least, spent);
     }
     *out = least / (double)count;
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&work);
-    return status;
+    return RITZ_OK;
 }

@@ -93,32 +93,28 @@ static ritz_status combine_matrices(const ritz_motion *motion,
                                     const double c[3], bool fill,
                                     ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse sum = {0}, more = {0};
+    RITZ_OWN(ritz_sparse) sum = {0}, more = {0};
 
-    RITZ_TRY(ritz_sparse_add(c[0], &motion->sM, c[2], &motion->sK, &sum));
+    RITZ_CHECK(ritz_sparse_add(c[0], &motion->sM, c[2], &motion->sK, &sum));
     if (motion->sD.colptr && c[1] != 0.0) {
-        RITZ_TRY(ritz_sparse_add(1.0, &sum, c[1], &motion->sD, &more));
+        RITZ_CHECK(ritz_sparse_add(1.0, &sum, c[1], &motion->sD, &more));
         ritz_sparse_free(&sum);
         sum = more;
         more = (ritz_sparse){0};
     }
     if (fill) {
-        RITZ_TRY(ritz_sparse_new(motion->n, motion->n, motion->n, &more));
+        RITZ_CHECK(ritz_sparse_new(motion->n, motion->n, motion->n, &more));
         for (int64_t j = 0; j < motion->n; j++) {
             more.colptr[j + 1] = j + 1;
             more.rowind[j] = j;
             more.val[j] = motion->massless[j] ? 1.0 : 0.0;
         }
-        RITZ_TRY(ritz_sparse_add(1.0, &sum, 1.0, &more, out));
+        RITZ_CHECK(ritz_sparse_add(1.0, &sum, 1.0, &more, out));
     } else {
         *out = sum;
         sum = (ritz_sparse){0};
     }
-done:
-    ritz_sparse_free(&sum);
-    ritz_sparse_free(&more);
-    return status;
+    return RITZ_OK;
 }
 
 /* CHOLMOD, MUMPS if K is indefinite, MUMPS's LU if D is not symmetric. */
@@ -151,18 +147,15 @@ ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
                                double k, bool fill, ritz_effective *out)
 {
     const double c[3] = {m, d, k};
-    ritz_status status = RITZ_OK;
-    ritz_effective F = {.n = motion->n};
+    RITZ_OWN(ritz_effective) F = {.n = motion->n};
 
     if (motion->form == RITZ_FORM_SPARSE)
-        RITZ_TRY(factor_sparse(motion, c, fill, &F));
+        RITZ_CHECK(factor_sparse(motion, c, fill, &F));
     else
-        RITZ_TRY(factor_dense(motion, m, d, k, &F));
+        RITZ_CHECK(factor_dense(motion, m, d, k, &F));
     *out = F;
     F = (ritz_effective){0};
-done:
-    ritz_effective_free(&F);
-    return status;
+    return RITZ_OK;
 }
 
 /* A real right side of the complex factor. */

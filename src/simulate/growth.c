@@ -97,25 +97,22 @@ static ritz_status free_motion(growth_trial *t, ritz_march *march,
 static ritz_status run_all(growth_trial *t, const ritz_integrator *integrator,
                            double step, const int64_t count[2], double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_march march = {0};
+    RITZ_OWN(ritz_march) march = {0};
     uint64_t seed = 1993;
     double worst = 0.0;
 
-    RITZ_NEW(t->q, t->modes->n);
-    RITZ_NEW(t->v, t->modes->n);
-    RITZ_NEW(t->u, t->motion->B.ncol);
+    RITZ_CHECK_NEW(t->q, t->modes->n);
+    RITZ_CHECK_NEW(t->v, t->modes->n);
+    RITZ_CHECK_NEW(t->u, t->motion->B.ncol);
     if (t->motion->form == RITZ_FORM_DENSE)
-        RITZ_TRY_IN(
+        RITZ_CHECK_IN(
             "M", ritz_effective_new(t->motion, 1.0, 0.0, 0.0, false, &t->mass));
-    RITZ_TRY(ritz_march_new(t->motion, integrator, step, 0.8, &march));
+    RITZ_CHECK(ritz_march_new(t->motion, integrator, step, 0.8, &march));
     for (int64_t k = 0;
          t->modes->n > 0 && k < count[1] && worst < RITZ_GROWN_ENOUGH; k++)
-        RITZ_TRY(free_motion(t, &march, count[0], &seed, &worst));
+        RITZ_CHECK(free_motion(t, &march, count[0], &seed, &worst));
     *out = worst;
-done:
-    ritz_march_free(&march);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_simulate_growth(const ritz_second_order *model,

@@ -50,16 +50,15 @@ static void groups_free(groups *g)
 /* Entries below 64 eps of the largest couple nothing. */
 static ritz_status groups_new(const ritz_dense *D, groups *out)
 {
-    ritz_status status = RITZ_OK;
-    groups g = {0};
-    bool *seen = NULL;
+    RITZ_OWN(groups) g = {0};
+    RITZ_OWN_ARRAY bool *seen = NULL;
     int64_t n = D->nrow;
     int64_t end = 0; /* of members */
     double floor = RITZ_SUM_ROUNDING * ritz_dense_max(D);
 
-    RITZ_NEW(g.first, n + 1);
-    RITZ_NEW(g.member, n);
-    RITZ_NEW(seen, n);
+    RITZ_CHECK_NEW(g.first, n + 1);
+    RITZ_CHECK_NEW(g.member, n);
+    RITZ_CHECK_NEW(seen, n);
     for (int64_t j = 0; j < n; j++) {
         if (seen[j])
             continue;
@@ -75,10 +74,7 @@ static ritz_status groups_new(const ritz_dense *D, groups *out)
     }
     *out = g;
     g = (groups){0};
-done:
-    free(seen);
-    groups_free(&g);
-    return status;
+    return RITZ_OK;
 }
 
 /* Modes that D couples; one alone if `o` is to be used. */
@@ -121,12 +117,11 @@ static void release_modal(void *own)
 static ritz_status group_matrix(const ritz_motion *m, const coupled_modes *part,
                                 ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t g = part->count;
     int64_t p = g == 1 ? 1 : m->B.ncol;
-    ritz_dense A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
-    RITZ_TRY(ritz_dense_new(2 * g + 2 * p, 2 * g + 2 * p, &A));
+    RITZ_CHECK(ritz_dense_new(2 * g + 2 * p, 2 * g + 2 * p, &A));
     for (int64_t j = 0; j < g; j++) {
         const double *d = ritz_dense_col(&m->D, part->mode[j]);
 
@@ -146,9 +141,7 @@ static ritz_status group_matrix(const ritz_motion *m, const coupled_modes *part,
     }
     *out = A;
     A = (ritz_dense){0};
-done:
-    ritz_dense_free(&A);
-    return status;
+    return RITZ_OK;
 }
 
 /* q'D q' and q'B u as forms of z. */

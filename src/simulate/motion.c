@@ -68,38 +68,32 @@ static ritz_status motion_of_modes(const ritz_component *component,
                                    ritz_motion *out)
 {
     static const ritz_damping none = {0};
-    ritz_status status = RITZ_OK;
     const ritz_span span = {.modes = -1, .up_to_hz = up_to_hz};
-    ritz_pairs pairs = {0};
-    ritz_modal_model modes = {0};
-    ritz_residual rest = {0};
-    ritz_motion m = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_residual) rest = {0};
+    RITZ_OWN(ritz_motion) m = {0};
 
-    RITZ_FAIL_IF(!(up_to_hz > 0.0), RITZ_ERR_ARGUMENT,
-                 "no frequency is given up to which modes are to be found");
-    RITZ_TRY(refuse_structural(component->K4.colptr &&
-                               ritz_sparse_max(&component->K4) > 0.0));
-    RITZ_TRY(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));
-    RITZ_TRY(ritz_sparse_mul(&component->M, &pairs.Phi, &modes.MPhi));
-    RITZ_TRY(ritz_sparse_project(&component->D, &pairs.Phi, &modes.Delta));
-    RITZ_TRY_IN("what lies above the modes",
-                find_rest(component, up_to_hz, &pairs, &rest));
+    RITZ_REFUSE_IF(!(up_to_hz > 0.0), RITZ_ERR_ARGUMENT,
+                   "no frequency is given up to which modes are to be found");
+    RITZ_CHECK(refuse_structural(component->K4.colptr &&
+                                 ritz_sparse_max(&component->K4) > 0.0));
+    RITZ_CHECK(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &pairs.Phi, &modes.MPhi));
+    RITZ_CHECK(ritz_sparse_project(&component->D, &pairs.Phi, &modes.Delta));
+    RITZ_CHECK_IN("what lies above the modes",
+                  find_rest(component, up_to_hz, &pairs, &rest));
     ritz_modal_model_take(&pairs, component->num_dofs, &modes);
-    RITZ_TRY(ritz_modal_model_drive(&component->io, damping ? damping : &none,
-                                    &modes));
+    RITZ_CHECK(ritz_modal_model_drive(&component->io, damping ? damping : &none,
+                                      &modes));
     for (int64_t k = 0;
          rest.count > 0 && k < rest.num_outputs * rest.num_inputs; k++)
         modes.feed.val[k] += rest.C[k];
-    RITZ_TRY(take_modes(&modes, &m));
+    RITZ_CHECK(take_modes(&modes, &m));
     m.highest = nan("");
     *out = m;
     m = (ritz_motion){0};
-done:
-    ritz_residual_free(&rest);
-    ritz_pairs_free(&pairs);
-    ritz_modal_model_free(&modes);
-    ritz_motion_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -156,18 +150,17 @@ static ritz_status check_sparse(const ritz_component *component,
 static ritz_status write_out_sparse(const ritz_io *io, ritz_effective *mass,
                                     ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense z = {0};
-    double *row = NULL;
+    RITZ_OWN(ritz_dense) z = {0};
+    RITZ_OWN_ARRAY double *row = NULL;
 
-    RITZ_NEW(row, m->n);
-    RITZ_TRY(ritz_dense_new(m->n, 1, &z));
+    RITZ_CHECK_NEW(row, m->n);
+    RITZ_CHECK(ritz_dense_new(m->n, 1, &z));
     for (int64_t i = 0; i < io->num_outputs; i++) {
         for (int64_t k = 0; k < m->n; k++)
             z.val[k] = ritz_dense_col(&io->Ca, k)[i];
         if (ritz_dense_max(&z) == 0.0)
             continue;
-        RITZ_TRY(ritz_effective_solve(mass, 1, z.val));
+        RITZ_CHECK(ritz_effective_solve(mass, 1, z.val));
         for (int64_t j = 0; j < io->num_inputs; j++)
             ritz_dense_col(&m->feed, j)[i] +=
                 ritz_motion_dot(m->n, z.val, ritz_dense_col(&m->B, j));
@@ -181,10 +174,7 @@ static ritz_status write_out_sparse(const ritz_io *io, ritz_effective *mass,
                 ritz_dense_col(&m->Cv, k)[i] -=
                     z.val[m->sD.rowind[e]] * m->sD.val[e];
     }
-done:
-    free(row);
-    ritz_dense_free(&z);
-    return status;
+    return RITZ_OK;
 }
 
 /* Dofs without mass do not jump by an impulse. */
@@ -201,23 +191,22 @@ static ritz_status find_push(ritz_effective *mass, ritz_motion *m)
 static ritz_status fill_sparse(const ritz_component *component,
                                const ritz_damping *damping, ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &component->io;
-    ritz_sparse D = {0};
+    RITZ_OWN(ritz_sparse) D = {0};
 
     m->n = m->original = component->num_dofs;
-    RITZ_NEW(m->massless, m->n);
-    RITZ_TRY(ritz_sparse_copy(&component->K, &m->sK));
-    RITZ_TRY(ritz_sparse_copy(&component->M, &m->sM));
+    RITZ_CHECK_NEW(m->massless, m->n);
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &m->sK));
+    RITZ_CHECK(ritz_sparse_copy(&component->M, &m->sM));
     find_empty(&m->sM, m->massless);
     if (component->D.colptr)
-        RITZ_TRY(ritz_sparse_copy(&component->D, &m->sD));
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &m->sD));
     if (ritz_damping_is_rayleigh(damping)) {
-        RITZ_TRY(ritz_sparse_add(damping->a, &m->sM, damping->b, &m->sK, &D));
+        RITZ_CHECK(ritz_sparse_add(damping->a, &m->sM, damping->b, &m->sK, &D));
         if (m->sD.colptr) {
             ritz_sparse sum = {0};
 
-            RITZ_TRY(ritz_sparse_add(1.0, &D, 1.0, &m->sD, &sum));
+            RITZ_CHECK(ritz_sparse_add(1.0, &D, 1.0, &m->sD, &sum));
             ritz_sparse_free(&m->sD);
             m->sD = sum;
         } else {
@@ -225,14 +214,11 @@ static ritz_status fill_sparse(const ritz_component *component,
             D = (ritz_sparse){0};
         }
     }
-    RITZ_TRY(check_sparse(component, damping, m->massless, &m->sD));
-    RITZ_TRY(ritz_dense_copy(&io->B, &m->B));
-    RITZ_TRY(ritz_dense_copy(&io->C, &m->C));
-    RITZ_TRY(ritz_dense_copy(&io->Cv, &m->Cv));
-    RITZ_TRY(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
-done:
-    ritz_sparse_free(&D);
-    return status;
+    RITZ_CHECK(check_sparse(component, damping, m->massless, &m->sD));
+    RITZ_CHECK(ritz_dense_copy(&io->B, &m->B));
+    RITZ_CHECK(ritz_dense_copy(&io->C, &m->C));
+    RITZ_CHECK(ritz_dense_copy(&io->Cv, &m->Cv));
+    return ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed);
 }
 
 static ritz_status motion_of_sparse(const ritz_component *component,
@@ -240,20 +226,16 @@ static ritz_status motion_of_sparse(const ritz_component *component,
                                     ritz_motion *out)
 {
     static const ritz_damping none = {0};
-    ritz_status status = RITZ_OK;
-    ritz_motion m = {.form = RITZ_FORM_SPARSE, .highest = nan("")};
-    ritz_effective mass = {0};
+    RITZ_OWN(ritz_motion) m = {.form = RITZ_FORM_SPARSE, .highest = nan("")};
+    RITZ_OWN(ritz_effective) mass = {0};
 
-    RITZ_TRY(fill_sparse(component, damping ? damping : &none, &m));
-    RITZ_TRY_IN("M", ritz_effective_new(&m, 1.0, 0.0, 0.0, true, &mass));
-    RITZ_TRY(find_push(&mass, &m));
-    RITZ_TRY(write_out_sparse(&component->io, &mass, &m));
+    RITZ_CHECK(fill_sparse(component, damping ? damping : &none, &m));
+    RITZ_CHECK_IN("M", ritz_effective_new(&m, 1.0, 0.0, 0.0, true, &mass));
+    RITZ_CHECK(find_push(&mass, &m));
+    RITZ_CHECK(write_out_sparse(&component->io, &mass, &m));
     *out = m;
     m = (ritz_motion){0};
-done:
-    ritz_effective_free(&mass);
-    ritz_motion_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 static bool is_present(const ritz_dense *A)
@@ -275,38 +257,28 @@ static ritz_status add_scaled(double alpha, const ritz_dense *X, ritz_dense *A)
 static ritz_status subtract_product(const ritz_dense *A, const ritz_dense *X,
                                     ritz_dense *C)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense AX = {0};
+    RITZ_OWN(ritz_dense) AX = {0};
 
     if (!X->val)
         return RITZ_OK;
-    RITZ_TRY(ritz_dense_mul(A, X, &AX));
-    RITZ_TRY(add_scaled(-1.0, &AX, C));
-done:
-    ritz_dense_free(&AX);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(A, X, &AX));
+    return add_scaled(-1.0, &AX, C);
 }
 
 /* Accelerations out of the outputs, by W = Ca M^-1. */
 static ritz_status write_out(const ritz_dense *Ca, ritz_motion *m)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, W = {0}, feed = {0};
+    RITZ_OWN(ritz_dense) X = {0}, W = {0}, feed = {0};
 
     if (ritz_dense_max(Ca) == 0.0)
         return RITZ_OK;
-    RITZ_TRY(ritz_general_transpose(Ca, &X));
-    RITZ_TRY_IN("M", ritz_general_solve(&m->M, true, &X));
-    RITZ_TRY(ritz_general_transpose(&X, &W));
-    RITZ_TRY(subtract_product(&W, &m->K, &m->C));
-    RITZ_TRY(subtract_product(&W, &m->D, &m->Cv));
-    RITZ_TRY(ritz_dense_mul(&W, &m->B, &feed));
-    RITZ_TRY(add_scaled(1.0, &feed, &m->feed));
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&W);
-    ritz_dense_free(&feed);
-    return status;
+    RITZ_CHECK(ritz_general_transpose(Ca, &X));
+    RITZ_CHECK_IN("M", ritz_general_solve(&m->M, true, &X));
+    RITZ_CHECK(ritz_general_transpose(&X, &W));
+    RITZ_CHECK(subtract_product(&W, &m->K, &m->C));
+    RITZ_CHECK(subtract_product(&W, &m->D, &m->Cv));
+    RITZ_CHECK(ritz_dense_mul(&W, &m->B, &feed));
+    return add_scaled(1.0, &feed, &m->feed);
 }
 
 /* B, C, Cv, feed and push of full matrices. */
@@ -354,57 +326,50 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
                               ritz_motion *out)
 {
     static const ritz_damping none = {0};
-    ritz_status status = RITZ_OK;
     /* borrowed */
     const ritz_structure s = {*model->K, *model->M,
                               is_present(model->D) ? *model->D
                                                    : (ritz_dense){0}};
-    ritz_modal_model modes = {0};
-    ritz_motion m = {0};
+    RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_motion) m = {0};
     double highest = 0.0;
 
     damping = damping ? damping : &none;
-    RITZ_TRY(refuse_structural(is_present(model->K4) &&
-                               ritz_dense_max(model->K4) > 0.0));
-    RITZ_TRY(ritz_modal_model_new(&s, model->io, damping, &modes));
+    RITZ_CHECK(refuse_structural(is_present(model->K4) &&
+                                 ritz_dense_max(model->K4) > 0.0));
+    RITZ_CHECK(ritz_modal_model_new(&s, model->io, damping, &modes));
     for (int64_t j = 0; j < modes.count; j++)
         highest = fmax(highest, fabs(modes.lambda[j]));
     if (modal || modes.count < modes.num_dofs) {
-        RITZ_TRY(take_modes(&modes, &m));
+        RITZ_CHECK(take_modes(&modes, &m));
         if (!modal)
-            RITZ_TRY(fill_out(&m));
+            RITZ_CHECK(fill_out(&m));
     } else {
-        RITZ_TRY(fill_dense(&s, model->io, damping, &m));
+        RITZ_CHECK(fill_dense(&s, model->io, damping, &m));
     }
     m.highest = highest;
     *out = m;
     m = (ritz_motion){0};
-done:
-    ritz_modal_model_free(&modes);
-    ritz_motion_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_motion m = {.form = RITZ_FORM_STATES, .highest = nan("")};
+    RITZ_OWN(ritz_motion) m = {.form = RITZ_FORM_STATES, .highest = nan("")};
 
     m.n = m.original = model->A.nrow;
-    RITZ_TRY(ritz_dense_copy(&model->A, &m.A));
-    RITZ_TRY(ritz_dense_copy(&model->B, &m.B));
-    RITZ_TRY(ritz_dense_copy(&model->C, &m.C));
-    RITZ_TRY(ritz_dense_copy(&model->D, &m.feed));
+    RITZ_CHECK(ritz_dense_copy(&model->A, &m.A));
+    RITZ_CHECK(ritz_dense_copy(&model->B, &m.B));
+    RITZ_CHECK(ritz_dense_copy(&model->C, &m.C));
+    RITZ_CHECK(ritz_dense_copy(&model->D, &m.feed));
     if (model->E.val) {
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &m.A));
-        RITZ_TRY_IN("E", ritz_general_solve(&model->E, false, &m.B));
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &m.A));
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &m.B));
     }
-    RITZ_TRY(ritz_dense_copy(&m.B, &m.push));
+    RITZ_CHECK(ritz_dense_copy(&m.B, &m.push));
     *out = m;
     m = (ritz_motion){0};
-done:
-    ritz_motion_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_motion_new(const ritz_simulated *subject,

@@ -53,10 +53,9 @@ static void release(void *own)
 /* a from equilibrium; dofs without mass have none. */
 static ritz_status settle_start(ritz_march *march, const double *u)
 {
-    ritz_status status = RITZ_OK;
     const ritz_motion *m = march->motion;
     newmark *s = march->own;
-    ritz_effective mass = {0};
+    RITZ_OWN(ritz_effective) mass = {0};
 
     memset(s->a, 0, (size_t)m->n * sizeof *s->a);
     ritz_motion_gemv(&m->B, 1.0, u, s->a);
@@ -64,13 +63,11 @@ static ritz_status settle_start(ritz_march *march, const double *u)
     ritz_motion_damping(m, -1.0, march->v, s->a);
     for (int64_t k = 0; m->massless && k < m->n; k++)
         s->a[k] = m->massless[k] ? 0.0 : s->a[k];
-    RITZ_TRY_IN(
+    RITZ_CHECK_IN(
         "M", ritz_effective_new(m, 1.0, 0.0, 0.0, m->massless != NULL, &mass));
-    RITZ_TRY(ritz_effective_solve(&mass, 1, s->a));
+    RITZ_CHECK(ritz_effective_solve(&mass, 1, s->a));
     memcpy(s->last, u, (size_t)m->B.ncol * sizeof *u);
-done:
-    ritz_effective_free(&mass);
-    return status;
+    return RITZ_OK;
 }
 
 static void follow_jumps(const ritz_motion *m, const double *u, newmark *s)

@@ -22,18 +22,16 @@ ritz_status ritz_march_new(const ritz_motion *motion,
                            const ritz_integrator *integrator, double step,
                            double rho, ritz_march *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_march march = {.motion = motion, .step = step};
+    RITZ_OWN(ritz_march) march = {.motion = motion, .step = step};
 
-    RITZ_NEW(march.x, motion->n);
+    RITZ_CHECK_NEW(march.x, motion->n);
     if (motion->form != RITZ_FORM_STATES)
-        RITZ_NEW(march.v, motion->n);
-    RITZ_TRY_IN(integrator->name, integrator->start(motion, step, rho, &march));
+        RITZ_CHECK_NEW(march.v, motion->n);
+    RITZ_CHECK_IN(integrator->name,
+                  integrator->start(motion, step, rho, &march));
     *out = march;
     march = (ritz_march){0};
-done:
-    ritz_march_free(&march);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_march_free(ritz_march *march)
@@ -155,14 +153,13 @@ static void weigh_outputs(const ritz_simulated *s, const ritz_io *io,
 ritz_status ritz_reach_new(const ritz_simulated *subject,
                            const ritz_motion *motion, ritz_reach *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reach reach = {.count = motion->feed.nrow};
+    RITZ_OWN(ritz_reach) reach = {.count = motion->feed.nrow};
 
-    RITZ_NEW(reach.size, reach.count);
+    RITZ_CHECK_NEW(reach.size, reach.count);
     if (subject->model || subject->component) {
-        RITZ_NEW(reach.weight, WAYS * reach.count);
-        RITZ_NEW(reach.last, motion->n);
-        RITZ_NEW(reach.work, motion->n);
+        RITZ_CHECK_NEW(reach.weight, WAYS * reach.count);
+        RITZ_CHECK_NEW(reach.last, motion->n);
+        RITZ_CHECK_NEW(reach.work, motion->n);
         weigh_outputs(subject,
                       subject->model ? subject->model->io
                                      : &subject->component->io,
@@ -170,9 +167,7 @@ ritz_status ritz_reach_new(const ritz_simulated *subject,
     }
     *out = reach;
     reach = (ritz_reach){0};
-done:
-    ritz_reach_free(&reach);
-    return status;
+    return RITZ_OK;
 }
 
 /* sqrt(x'M x) */
@@ -336,38 +331,31 @@ static void transform_start(const ritz_motion *motion, const double *from,
 static ritz_status balance_massless(const ritz_motion *motion, const double *u,
                                     double *x)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
-    int64_t *row = NULL;
-    double *r = NULL;
-    ritz_sparse K = {0};
-    ritz_factor *F = NULL;
-    ritz_dense part = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL;
+    RITZ_OWN_ARRAY double *r = NULL;
+    RITZ_OWN(ritz_sparse) K = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_NEW(row, motion->n);
-    RITZ_NEW(r, motion->n);
+    RITZ_CHECK_NEW(row, motion->n);
+    RITZ_CHECK_NEW(r, motion->n);
     for (int64_t k = 0; motion->massless && k < motion->n; k++)
         if (motion->massless[k])
             row[count++] = k;
     if (count == 0)
-        goto done;
+        return RITZ_OK;
     ritz_motion_gemv(&motion->B, 1.0, u, r);
     ritz_motion_stiffness(motion, -1.0, x, r);
-    RITZ_TRY(ritz_sparse_extract(&motion->sK, count, row, count, row, &K));
-    RITZ_TRY_IN("dofs without mass", ritz_factor_spd(&K, &F));
-    RITZ_TRY(ritz_dense_new(count, 1, &part));
+    RITZ_CHECK(ritz_sparse_extract(&motion->sK, count, row, count, row, &K));
+    RITZ_CHECK_IN("dofs without mass", ritz_factor_spd(&K, &F));
+    RITZ_CHECK(ritz_dense_new(count, 1, &part));
     for (int64_t k = 0; k < count; k++)
         part.val[k] = r[row[k]];
-    RITZ_TRY(ritz_factor_solve(F, &part));
+    RITZ_CHECK(ritz_factor_solve(F, &part));
     for (int64_t k = 0; k < count; k++)
         x[row[k]] += part.val[k];
-done:
-    free(row);
-    free(r);
-    ritz_sparse_free(&K);
-    ritz_factor_free(&F);
-    ritz_dense_free(&part);
-    return status;
+    return RITZ_OK;
 }
 
 /* Impulses: a jump of x' (of x of states), and the work it takes. */
@@ -444,22 +432,21 @@ static ritz_status run_march(const ritz_motion *motion,
                              const ritz_simulation_request *request,
                              ritz_reach *reach, ritz_simulation *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_simulation s = {0};
-    ritz_march march = {0};
-    double *u0 = NULL, *u1 = NULL;
+    RITZ_OWN(ritz_simulation) s = {0};
+    RITZ_OWN(ritz_march) march = {0};
+    RITZ_OWN_ARRAY double *u0 = NULL, *u1 = NULL;
     int64_t steps = 0;
     int64_t every = request->every > 0 ? request->every : 1;
     double energy = 0.0;
 
-    RITZ_TRY(ritz_request_steps(request, &steps));
-    RITZ_TRY(make_room(motion, request, steps, &s));
-    RITZ_NEW(u0, s.num_inputs);
-    RITZ_NEW(u1, s.num_inputs);
-    RITZ_TRY(ritz_march_new(motion, request->integrator, request->step,
-                            request->rho, &march));
+    RITZ_CHECK(ritz_request_steps(request, &steps));
+    RITZ_CHECK(make_room(motion, request, steps, &s));
+    RITZ_CHECK_NEW(u0, s.num_inputs);
+    RITZ_CHECK_NEW(u1, s.num_inputs);
+    RITZ_CHECK(ritz_march_new(motion, request->integrator, request->step,
+                              request->rho, &march));
     inputs_at(request, 0, s.num_inputs, u1);
-    RITZ_TRY(begin_run(motion, request, u1, &march, &energy));
+    RITZ_CHECK(begin_run(motion, request, u1, &march, &energy));
     note_energy(&march, energy, 0, u1, &s);
     if (reach)
         note_reach(reach, &march, 0.0);
@@ -468,14 +455,15 @@ static ritz_status run_march(const ritz_motion *motion,
 
         memcpy(u0, u1, (size_t)s.num_inputs * sizeof *u0);
         inputs_at(request, k, s.num_inputs, u1);
-        RITZ_TRY(march.advance(&march, u0,
-                               request->hold == RITZ_HOLD_ZERO ? u0 : u1));
+        RITZ_CHECK(march.advance(&march, u0,
+                                 request->hold == RITZ_HOLD_ZERO ? u0 : u1));
         if (k % every != 0)
             continue;
-        RITZ_FAIL_IF(!is_finite(&march), RITZ_ERR_CONVERGENCE,
-                     "the motion has left all bounds after %g s: is the model "
-                     "stable?",
-                     t);
+        RITZ_REFUSE_IF(
+            !is_finite(&march), RITZ_ERR_CONVERGENCE,
+            "the motion has left all bounds after %g s: is the model "
+            "stable?",
+            t);
         s.seconds[k / every] = t;
         note_energy(&march, energy, k / every, u1, &s);
         if (reach)
@@ -484,12 +472,7 @@ static ritz_status run_march(const ritz_motion *motion,
     }
     *out = s;
     s = (ritz_simulation){0};
-done:
-    free(u0);
-    free(u1);
-    ritz_march_free(&march);
-    ritz_simulation_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_integrator *ritz_integrator_find(const char *name)
@@ -536,16 +519,15 @@ ritz_status ritz_simulate_noting(const ritz_simulated *subject,
                                  bool energies, ritz_reach *reach,
                                  ritz_simulation *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_motion motion = {0};
-    ritz_reach found = {0};
+    RITZ_OWN(ritz_motion) motion = {0};
+    RITZ_OWN(ritz_reach) found = {0};
 
-    RITZ_TRY(check_subject(subject, request));
-    RITZ_TRY(ritz_motion_new(subject, request, &motion));
+    RITZ_CHECK(check_subject(subject, request));
+    RITZ_CHECK(ritz_motion_new(subject, request, &motion));
     motion.energies = energies && motion.form != RITZ_FORM_STATES;
     if (reach)
-        RITZ_TRY(ritz_reach_new(subject, &motion, &found));
-    RITZ_TRY(run_march(&motion, request, reach ? &found : NULL, out));
+        RITZ_CHECK(ritz_reach_new(subject, &motion, &found));
+    RITZ_CHECK(run_march(&motion, request, reach ? &found : NULL, out));
     take_names(subject, out);
     if (subject->damping)
         ritz_damping_print(subject->damping, out->damping);
@@ -554,10 +536,7 @@ ritz_status ritz_simulate_noting(const ritz_simulated *subject,
     if (reach)
         *reach = found;
     found = (ritz_reach){0};
-done:
-    ritz_motion_free(&motion);
-    ritz_reach_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_simulate(const ritz_simulated *subject,

@@ -38,23 +38,19 @@ static ritz_status subspace_mac(const ritz_dense *Q, int64_t first,
                                 int64_t last, const int64_t *partner,
                                 double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t s = last - first;
-    ritz_dense block = {0};
-    double *sigma = NULL;
+    RITZ_OWN(ritz_dense) block = {0};
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
-    RITZ_TRY(ritz_dense_new(s, s, &block));
-    RITZ_NEW(sigma, s);
+    RITZ_CHECK(ritz_dense_new(s, s, &block));
+    RITZ_CHECK_NEW(sigma, s);
     for (int64_t j = 0; j < s; j++)
         for (int64_t i = 0; i < s; i++)
             ritz_dense_col(&block, j)[i] =
                 ritz_dense_col(Q, partner[first + j])[first + i];
-    RITZ_TRY_IN("shapes of a cluster", ritz_general_singular(&block, sigma));
+    RITZ_CHECK_IN("shapes of a cluster", ritz_general_singular(&block, sigma));
     *out = sigma[s - 1] * sigma[s - 1];
-done:
-    ritz_dense_free(&block);
-    free(sigma);
-    return status;
+    return RITZ_OK;
 }
 
 /* The best free reduced mode for a cluster, -1 if none has half of it. */
@@ -110,24 +106,21 @@ static ritz_status match_cluster(const ritz_dense *Q, const ritz_poles *reduced,
 ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
                               const ritz_dense *Q, ritz_match *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_match match = {0};
+    RITZ_OWN(ritz_match) match = {0};
     int64_t last = 0;
 
-    RITZ_TRY(ritz_match_new(full, reduced, &match));
+    RITZ_CHECK(ritz_match_new(full, reduced, &match));
     for (int64_t first = full->num_rigid; first < full->count; first = last) {
         last = first + 1;
         while (last < full->count &&
                sqrt(full->lambda[last]) * (1.0 - RITZ_CLOSE) <=
                    sqrt(full->lambda[last - 1]))
             last++;
-        RITZ_TRY(match_cluster(Q, reduced, first, last, &match));
+        RITZ_CHECK(match_cluster(Q, reduced, first, last, &match));
     }
     *out = match;
     match = (ritz_match){0};
-done:
-    ritz_match_free(&match);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_match_free(ritz_match *match)
@@ -304,19 +297,15 @@ ritz_status ritz_match_outputs(const ritz_poles *full,
                                const ritz_poles *reduced, const ritz_seen *seen,
                                ritz_match *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_match match = {0};
-    pairing p = {0};
+    RITZ_OWN(ritz_match) match = {0};
+    RITZ_OWN(pairing) p = {0};
 
-    RITZ_TRY(ritz_match_new(full, reduced, &match));
-    RITZ_TRY(pairing_new(seen, full, reduced, &p));
+    RITZ_CHECK(ritz_match_new(full, reduced, &match));
+    RITZ_CHECK(pairing_new(seen, full, reduced, &p));
     align(&p);
     untangle(&p);
     take(&p, seen, full, reduced, &match);
     *out = match;
     match = (ritz_match){0};
-done:
-    ritz_match_free(&match);
-    pairing_free(&p);
-    return status;
+    return RITZ_OK;
 }

@@ -39,12 +39,11 @@ static void shares_of(const ritz_io *io, int64_t k, double share[SHARES])
 static ritz_status ritz_sweep_hear(const ritz_poles *poles,
                                    ritz_reference_sweep *s)
 {
-    ritz_status status = RITZ_OK;
     double most[SHARES] = {0.0};
-    double *share = NULL;
+    RITZ_OWN_ARRAY double *share = NULL;
 
     s->heard = false;
-    RITZ_NEW(share, SHARES * poles->count);
+    RITZ_CHECK_NEW(share, SHARES * poles->count);
     for (int64_t k = 0; k < poles->count; k++) {
         shares_of(&poles->io, k, &share[SHARES * k]);
         for (int t = 0; t < SHARES; t++)
@@ -66,9 +65,7 @@ static ritz_status ritz_sweep_hear(const ritz_poles *poles,
         for (int64_t e = p * s->values; e < (p + 1) * s->values; e++)
             s->heard = s->heard || cabs(s->full[e]) > RITZ_HEARD_ROUNDING * sum;
     }
-done:
-    free(share);
-    return status;
+    return RITZ_OK;
 }
 
 /* Measures between the responses and static gains of two models. */
@@ -85,8 +82,7 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_damped *damped, int64_t even,
                               ritz_reference_sweep *out)
 {
-    ritz_status status = RITZ_OK;
-    double *omega = NULL;
+    RITZ_OWN_ARRAY double *omega = NULL;
     ritz_grid grid = {.from_hz = reference->band_hz[0],
                       .to_hz = reference->band_hz[1],
                       .count = even,
@@ -94,14 +90,11 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
 
     if (poles->num_rigid + reference->poles.num_rigid > 0)
         grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
-    RITZ_NEW(omega, poles->count);
+    RITZ_CHECK_NEW(omega, poles->count);
     for (int64_t k = 0; k < poles->count; k++)
         omega[k] = sqrt(poles->lambda[k]);
-    RITZ_TRY(ritz_grid_points(&grid, poles->count, omega, damped->zeta,
-                              &out->count, &out->hertz));
-done:
-    free(omega);
-    return status;
+    return ritz_grid_points(&grid, poles->count, omega, damped->zeta,
+                            &out->count, &out->hertz);
 }
 
 /* The largest of what is no rigid motion: y = (C + i w Cv - w^2 Ca) q less the
@@ -292,18 +285,17 @@ static int64_t count_nonzero(int64_t points, int64_t most, const double *sigma)
 static ritz_status compare_singular(const ritz_sides *sides,
                                     const sweep_pair *s, ritz_gap *gap)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &sides->full->component->io;
     const int64_t points = s->full->count;
     const int64_t most =
         io->num_inputs < io->num_outputs ? io->num_inputs : io->num_outputs;
-    double *sigma = NULL, *reduced = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL, *reduced = NULL;
     int64_t rank = 0;
 
-    RITZ_NEW(sigma, points * most);
-    RITZ_NEW(reduced, points * most);
-    RITZ_TRY(take_singular(io, s->full, s->full->full, most, sigma));
-    RITZ_TRY(take_singular(io, s->full, s->reduced, most, reduced));
+    RITZ_CHECK_NEW(sigma, points * most);
+    RITZ_CHECK_NEW(reduced, points * most);
+    RITZ_CHECK(take_singular(io, s->full, s->full->full, most, sigma));
+    RITZ_CHECK(take_singular(io, s->full, s->reduced, most, reduced));
     rank = count_nonzero(points, most, sigma);
     for (int64_t k = 0; k < points && rank > 0; k++) {
         double full = sigma[k * most + rank - 1];
@@ -315,10 +307,7 @@ static ritz_status compare_singular(const ritz_sides *sides,
             gap->singular_hz = s->full->hertz[k];
         }
     }
-done:
-    free(sigma);
-    free(reduced);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whatever is found at the points of all sweeps. */

@@ -138,23 +138,21 @@ ritz_status ritz_seen_new(const ritz_component *component,
                           const ritz_pairs *pairs, const ritz_poles *poles,
                           const double band_hz[2], ritz_seen *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_seen seen = {.num_modes = poles->count,
-                      .num_inputs = poles->io.num_inputs,
-                      .num_outputs = poles->io.num_outputs};
+    RITZ_OWN(ritz_seen)
+    seen = {.num_modes = poles->count,
+            .num_inputs = poles->io.num_inputs,
+            .num_outputs = poles->io.num_outputs};
 
-    RITZ_NEW(seen.input, seen.num_inputs);
-    RITZ_NEW(seen.output, KINDS * seen.num_outputs);
-    RITZ_NEW(seen.mode, seen.num_modes);
+    RITZ_CHECK_NEW(seen.input, seen.num_inputs);
+    RITZ_CHECK_NEW(seen.output, KINDS * seen.num_outputs);
+    RITZ_CHECK_NEW(seen.mode, seen.num_modes);
     take_scales(component, pairs, poles, band_hz, &seen);
     if (seen.num_inputs + seen.num_outputs > 0)
         for (int64_t k = poles->num_rigid; k < seen.num_modes; k++)
             seen.mode[k] = is_seen(&seen, poles, band_hz, k);
     *out = seen;
     seen = (ritz_seen){0};
-done:
-    ritz_seen_free(&seen);
-    return status;
+    return RITZ_OK;
 }
 
 double ritz_seen_mac(const ritz_seen *seen, const ritz_poles *full, int64_t k,

@@ -98,13 +98,12 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
                                         const ritz_state_space *b,
                                         ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space both = {0};
+    RITZ_OWN(ritz_state_space) both = {0};
     int64_t n = a->A.nrow;
     int64_t m = b->A.nrow;
 
-    RITZ_TRY(check_signals(a, b));
-    RITZ_TRY(make_states(a, n + m, &both));
+    RITZ_CHECK(check_signals(a, b));
+    RITZ_CHECK(make_states(a, n + m, &both));
     memcpy(both.damping, a->damping, sizeof both.damping);
     memcpy(both.units, a->units, sizeof both.units);
     place_block(1.0, &a->A, 0, 0, &both.A);
@@ -116,15 +115,13 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
     for (int64_t k = 0; k < a->D.nrow * a->D.ncol; k++)
         both.D.val[k] = a->D.val[k] - b->D.val[k];
     if (a->E.val || b->E.val) {
-        RITZ_TRY(ritz_dense_new(n + m, n + m, &both.E));
+        RITZ_CHECK(ritz_dense_new(n + m, n + m, &both.E));
         place_descriptor(&a->E, n, 0, &both.E);
         place_descriptor(&b->E, m, n, &both.E);
     }
     *out = both;
     both = (ritz_state_space){0};
-done:
-    ritz_state_space_free(&both);
-    return status;
+    return RITZ_OK;
 }
 
 /* In the place of a matrix of zeros. */
@@ -161,38 +158,31 @@ static ritz_status divide_outputs(const ritz_state_space *model,
 static ritz_status take_stable(const ritz_state_space *model,
                                ritz_state_space *out, int64_t *num_unstable)
 {
-    ritz_status status = RITZ_OK;
-    ritz_split split = {0};
+    RITZ_OWN(ritz_split) split = {0};
 
-    RITZ_TRY(ritz_split_new(&model->A, &model->E, &split));
+    RITZ_CHECK(ritz_split_new(&model->A, &model->E, &split));
     *num_unstable = split.T.ncol;
-    RITZ_TRY(make_states(model, split.X.ncol, out));
-    RITZ_TRY(copy_matrix(&split.S, &out->A));
-    RITZ_TRY(copy_matrix(&split.P, &out->E));
-    RITZ_TRY(copy_matrix(&model->D, &out->D));
+    RITZ_CHECK(make_states(model, split.X.ncol, out));
+    RITZ_CHECK(copy_matrix(&split.S, &out->A));
+    RITZ_CHECK(copy_matrix(&split.P, &out->E));
+    RITZ_CHECK(copy_matrix(&model->D, &out->D));
     ritz_dense_free(&out->B);
     ritz_dense_free(&out->C);
-    RITZ_TRY(ritz_dense_mul_tn(&split.Y, &model->B, &out->B));
-    RITZ_TRY(ritz_dense_mul(&model->C, &split.X, &out->C));
-done:
-    ritz_split_free(&split);
-    return status;
+    RITZ_CHECK(ritz_dense_mul_tn(&split.Y, &model->B, &out->B));
+    return ritz_dense_mul(&model->C, &split.X, &out->C);
 }
 
 /* D - C A^-1 B; RITZ_ERR_SINGULAR if there is a pole at 0. */
 static ritz_status static_gain(const ritz_state_space *model, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_dense_copy(&model->B, &X));
-    RITZ_TRY(ritz_general_solve(&model->A, false, &X));
-    RITZ_TRY(ritz_dense_mul(&model->C, &X, out));
+    RITZ_CHECK(ritz_dense_copy(&model->B, &X));
+    RITZ_CHECK(ritz_general_solve(&model->A, false, &X));
+    RITZ_CHECK(ritz_dense_mul(&model->C, &X, out));
     for (int64_t k = 0; k < out->nrow * out->ncol; k++)
         out->val[k] = model->D.val[k] - out->val[k];
-done:
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status take_gains(ritz_state_pair *p)
@@ -265,17 +255,14 @@ ritz_status ritz_state_pair_new(const ritz_state_space *full,
                                 const ritz_verify_request *request,
                                 ritz_state_pair *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_pair p = {0};
+    RITZ_OWN(ritz_state_pair) p = {0};
 
-    RITZ_TRY(open_pair(full, reduced, request, &p));
-    RITZ_TRY(take_gains(&p));
-    RITZ_TRY(take_norms(&p));
+    RITZ_CHECK(open_pair(full, reduced, request, &p));
+    RITZ_CHECK(take_gains(&p));
+    RITZ_CHECK(take_norms(&p));
     *out = p;
     p = (ritz_state_pair){0};
-done:
-    ritz_state_pair_free(&p);
-    return status;
+    return RITZ_OK;
 }
 
 /* "0.83 Hz, less 6 poles not left of axis" */
@@ -354,27 +341,21 @@ ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
 /* Second-order models in first-order form. */
 ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_verify_request request = RITZ_VERIFY_NONE;
     const ritz_second_order *m = sides->model;
     const ritz_reduced lent = {
         .K = *m->K, .M = *m->M, .D = *m->D, .K4 = *m->K4, .io = *m->io};
-    ritz_state_space full = {0}, reduced = {0};
-    ritz_state_pair p = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
+    RITZ_OWN(ritz_state_pair) p = {0};
 
-    RITZ_TRY_IN("full model",
-                ritz_state_space_of_component(sides->full->component,
-                                              &sides->full->damping, &full));
-    RITZ_TRY_IN("reduced model", ritz_state_space_of_reduced(
-                                     &lent, &sides->full->damping, &reduced));
-    RITZ_TRY(open_pair(&full, &reduced, &request, &p));
-    RITZ_TRY(check_norms(&p));
-    RITZ_TRY(ritz_states_h2(&p, out));
-done:
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
-    ritz_state_pair_free(&p);
-    return status;
+    RITZ_CHECK_IN("full model",
+                  ritz_state_space_of_component(sides->full->component,
+                                                &sides->full->damping, &full));
+    RITZ_CHECK_IN("reduced model", ritz_state_space_of_reduced(
+                                       &lent, &sides->full->damping, &reduced));
+    RITZ_CHECK(open_pair(&full, &reduced, &request, &p));
+    RITZ_CHECK(check_norms(&p));
+    return ritz_states_h2(&p, out);
 }
 
 /* The largest difference, and the largest response of the full model. */
@@ -446,17 +427,14 @@ ritz_status ritz_states_gain(const ritz_state_pair *p, ritz_measure *out)
 /* Growth is held to rounding unless the full model grows too. */
 ritz_status ritz_states_growth(const ritz_state_pair *p, ritz_measure *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_probe probe[2] = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_TRY_IN("full model", ritz_probe_states(p->given[0], &probe[0]));
-    RITZ_TRY_IN("reduced model", ritz_probe_states(p->given[1], &probe[1]));
-    RITZ_TRY(ritz_probe_record(&probe[1], &found));
+    RITZ_CHECK_IN("full model", ritz_probe_states(p->given[0], &probe[0]));
+    RITZ_CHECK_IN("reduced model", ritz_probe_states(p->given[1], &probe[1]));
+    RITZ_CHECK(ritz_probe_record(&probe[1], &found));
     *out = found.item[0];
     if (probe[0].verdict == RITZ_UNSTABLE)
         out->limit = nan("");
-done:
-    ritz_measures_free(&found);
-    return status;
+    return RITZ_OK;
 }

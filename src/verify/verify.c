@@ -126,22 +126,19 @@ static ritz_status open_reference(const ritz_component *full,
                                   const ritz_reference_request *request,
                                   bool assumed, ritz_reference **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reference *r = NULL;
+    RITZ_OWN(ritz_reference) *r = NULL;
 
-    RITZ_NEW(r, 1);
+    RITZ_CHECK_NEW(r, 1);
     r->component = full;
     r->band_hz[0] = request->band_hz[0];
     r->band_hz[1] = request->band_hz[1];
     r->damping = request->damping;
     r->assumed = assumed;
-    RITZ_TRY(open_modes(r));
-    RITZ_TRY(open_sweeps(request, r));
+    RITZ_CHECK(open_modes(r));
+    RITZ_CHECK(open_sweeps(request, r));
     *out = r;
     r = NULL;
-done:
-    ritz_reference_free(&r);
-    return status;
+    return RITZ_OK;
 }
 
 /* Damping of both models: as asked, as the full one says, as the other does. */
@@ -300,36 +297,26 @@ static ritz_status open_sides(const ritz_second_order *model,
 static ritz_status multiply_shapes(const ritz_sides *sides, const ritz_dense *T,
                                    ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense shapes = {0};
-    ritz_dense MS = {0};
+    RITZ_OWN(ritz_dense) shapes = {0};
+    RITZ_OWN(ritz_dense) MS = {0};
 
-    RITZ_TRY(ritz_dense_mul(T, &sides->small.Phi, &shapes));
-    RITZ_TRY(ritz_sparse_mul(&sides->full->component->M, &shapes, &MS));
-    RITZ_TRY(ritz_dense_mul_tn(&sides->full->pairs.Phi, &MS, out));
-done:
-    ritz_dense_free(&shapes);
-    ritz_dense_free(&MS);
-    return status;
+    RITZ_CHECK(ritz_dense_mul(T, &sides->small.Phi, &shapes));
+    RITZ_CHECK(ritz_sparse_mul(&sides->full->component->M, &shapes, &MS));
+    return ritz_dense_mul_tn(&sides->full->pairs.Phi, &MS, out);
 }
 
 /* Which mode of the full model is which of the reduced one. */
 static ritz_status match_modes(const ritz_dense *T, ritz_sides *sides)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reference *full = sides->full;
-    ritz_dense Q = {0};
+    RITZ_OWN(ritz_dense) Q = {0};
 
     sides->shapes = T && T->val && T->nrow == full->component->num_dofs;
     if (!sides->shapes)
         return ritz_match_outputs(&full->poles, &sides->reduced, &full->seen,
                                   &sides->match);
-    RITZ_TRY(multiply_shapes(sides, T, &Q));
-    RITZ_TRY(
-        ritz_match_shapes(&full->poles, &sides->reduced, &Q, &sides->match));
-done:
-    ritz_dense_free(&Q);
-    return status;
+    RITZ_CHECK(multiply_shapes(sides, T, &Q));
+    return ritz_match_shapes(&full->poles, &sides->reduced, &Q, &sides->match);
 }
 
 /* Every row of the table that exists for these models. */
@@ -366,26 +353,24 @@ static ritz_status measure_sides(const ritz_second_order *model,
                                  const ritz_verify_request *limits,
                                  ritz_sides *sides, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reference *full = sides->full;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     sides->limit = limits->limit;
     sides->model = model;
-    RITZ_TRY_IN("reduced model",
-                ritz_damped_new(&sides->reduced, NULL, NULL, full->band_hz,
-                                &sides->damped_reduced));
-    RITZ_TRY_IN("reduced model",
-                ritz_static_gain(model->K, model->M, model->io,
-                                 full->pairs.num_rigid, &sides->gain_reduced));
-    RITZ_TRY(match_modes(T, sides));
-    RITZ_TRY(ritz_sides_respond(sides));
-    RITZ_TRY(measure_rows(sides, &found));
+    RITZ_CHECK_IN("reduced model",
+                  ritz_damped_new(&sides->reduced, NULL, NULL, full->band_hz,
+                                  &sides->damped_reduced));
+    RITZ_CHECK_IN("reduced model",
+                  ritz_static_gain(model->K, model->M, model->io,
+                                   full->pairs.num_rigid,
+                                   &sides->gain_reduced));
+    RITZ_CHECK(match_modes(T, sides));
+    RITZ_CHECK(ritz_sides_respond(sides));
+    RITZ_CHECK(measure_rows(sides, &found));
     *out = found;
     found = (ritz_measures){0};
-done:
-    ritz_measures_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 static void free_sides(ritz_sides *sides)
@@ -561,26 +546,22 @@ ritz_status ritz_verify_states(const ritz_state_space *full,
                                const ritz_verify_request *request,
                                ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_measures found = {0};
-    ritz_state_pair p = {0};
+    RITZ_OWN(ritz_measures) found = {0};
+    RITZ_OWN(ritz_state_pair) p = {0};
 
-    RITZ_TRY(check_states(full, request));
-    RITZ_TRY(ritz_state_pair_new(full, reduced, request, &p));
+    RITZ_CHECK(check_states(full, request));
+    RITZ_CHECK(ritz_state_pair_new(full, reduced, request, &p));
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
         ritz_measure m = {.value = nan(""), .limit = request->limit[k]};
 
         if (kind->of_states)
-            RITZ_TRY(kind->of_states(&p, &m));
+            RITZ_CHECK(kind->of_states(&p, &m));
         if (!isnan(m.value))
-            RITZ_TRY(ritz_measures_add(&found, kind->name, m.value, m.limit,
-                                       m.where));
+            RITZ_CHECK(ritz_measures_add(&found, kind->name, m.value, m.limit,
+                                         m.where));
     }
     *out = found;
     found = (ritz_measures){0};
-done:
-    ritz_measures_free(&found);
-    ritz_state_pair_free(&p);
-    return status;
+    return RITZ_OK;
 }

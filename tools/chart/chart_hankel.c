@@ -156,14 +156,10 @@ static ritz_status draw_rankings(picture *p, const char *title,
 ritz_status chart_rankings(const char *path, const char *title,
                            const contest *all, int64_t most)
 {
-    ritz_status status = RITZ_OK;
-    picture p = {0};
+    RITZ_OWN(picture) p = {0};
 
-    RITZ_TRY(picture_new(path, true, &p));
-    RITZ_TRY(draw_rankings(&p, title, all, most));
-done:
-    picture_free(&p);
-    return status;
+    RITZ_CHECK(picture_new(path, true, &p));
+    return draw_rankings(&p, title, all, most);
 }
 
 /* Rankings of all files as ritz-rank holds them, borrowed from the sources. */
@@ -189,18 +185,14 @@ static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
 ritz_status chart_hankel(const chart_sources *sources,
                          const chart_request *request, picture *out)
 {
-    ritz_status status = RITZ_OK;
     rank_result result = {0};
-    contest all = {0};
+    [[gnu::cleanup(rank_contest_free)]] contest all = {0};
     char title[256];
 
-    RITZ_TRY(picture_new(request->path, request->keep, out));
-    RITZ_TRY(borrow_rankings(sources, out, &result));
-    RITZ_TRY(rank_contest(&result, true, &all));
+    RITZ_CHECK(picture_new(request->path, request->keep, out));
+    RITZ_CHECK(borrow_rankings(sources, out, &result));
+    RITZ_CHECK(rank_contest(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,
              rankings_damping(all.ranking[0]));
-    RITZ_TRY(draw_rankings(out, title, &all, request->top));
-done:
-    rank_contest_free(&all);
-    return status;
+    return draw_rankings(out, title, &all, request->top);
 }

@@ -77,11 +77,10 @@ static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
 /* Modes in the coordinates of the model; a configuration is in modal ones. */
 static ritz_status find_modes(const mac_side *side, mac_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span span = {.modes = MOST_MODES};
     const ritz_configuration *at = side->at;
     const model *m = &side->file->model;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     if (at) {
         RITZ_CHECK(count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
@@ -91,16 +90,12 @@ static ritz_status find_modes(const mac_side *side, mac_shapes *out)
         return RITZ_OK;
     }
     if (m->kind == MODEL_REDUCED)
-        RITZ_TRY(ritz_eigen_dense(&m->reduced.K, &m->reduced.M, &pairs));
+        RITZ_CHECK(ritz_eigen_dense(&m->reduced.K, &m->reduced.M, &pairs));
     else
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_eigen_sparse(&m->component.K, &m->component.M, &span, &pairs));
-    RITZ_TRY(count_modes(pairs.Phi.ncol, pairs.num_rigid, pairs.lambda, out));
-    RITZ_TRY(
-        ritz_dense_columns(&pairs.Phi, pairs.num_rigid, out->count, &out->U));
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    RITZ_CHECK(count_modes(pairs.Phi.ncol, pairs.num_rigid, pairs.lambda, out));
+    return ritz_dense_columns(&pairs.Phi, pairs.num_rigid, out->count, &out->U);
 }
 
 /* Shapes at the dofs of a component, a reduced component or a basis. */
@@ -162,25 +157,22 @@ static ritz_status stack_channels(const ritz_io *io, mac_shapes *out)
    basis. */
 static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     const model *m = &side->file->model;
     const ritz_io *io = side->at                   ? &side->at->io
                         : m->kind == MODEL_REDUCED ? &m->reduced.io
                                                    : &m->component.io;
-    ritz_io own = {0};
+    RITZ_OWN(ritz_io) own = {0};
 
     name_side(side, out);
-    RITZ_FAIL_IF(m->kind == MODEL_BASIS || io->num_inputs + io->num_outputs < 1,
-                 RITZ_ERR_ARGUMENT,
-                 "it has no inputs and outputs, by which its modes could be "
-                 "compared with those of a system");
-    RITZ_TRY(find_modes(side, out));
-    RITZ_TRY(ritz_io_project(io, &out->U, &own));
+    RITZ_REFUSE_IF(m->kind == MODEL_BASIS ||
+                       io->num_inputs + io->num_outputs < 1,
+                   RITZ_ERR_ARGUMENT,
+                   "it has no inputs and outputs, by which its modes could be "
+                   "compared with those of a system");
+    RITZ_CHECK(find_modes(side, out));
+    RITZ_CHECK(ritz_io_project(io, &out->U, &own));
     ritz_dense_free(&out->U);
-    RITZ_TRY(stack_channels(&own, out));
-done:
-    ritz_io_free(&own);
-    return status;
+    return stack_channels(&own, out);
 }
 
 /* --- by masses ------------------------------------------------------------ */
@@ -244,19 +236,16 @@ static ritz_status assign_bodies(const mac_side *side, int64_t count,
 static ritz_status put_block(const ritz_dense *P, const ritz_dense *M,
                              int64_t rigid, int64_t first, mac_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense part = ritz_dense_part(P, rigid, out->count);
-    ritz_dense MP = {0};
+    RITZ_OWN(ritz_dense) MP = {0};
 
-    RITZ_TRY(ritz_dense_mul(M, &part, &MP));
+    RITZ_CHECK(ritz_dense_mul(M, &part, &MP));
     for (int64_t k = 0; k < out->count; k++)
         for (int64_t i = 0; i < P->nrow; i++) {
             ritz_dense_col(&out->U, k)[first + i] = ritz_dense_col(&part, k)[i];
             ritz_dense_col(&out->MU, k)[first + i] = ritz_dense_col(&MP, k)[i];
         }
-done:
-    ritz_dense_free(&MP);
-    return status;
+    return RITZ_OK;
 }
 
 /* Whether U'MU, with the masses of the files, is M of the configuration. */

@@ -338,16 +338,12 @@ static ritz_status put_beside(const picture *p, cli_table *table,
 
 static ritz_status publish(const picture *p)
 {
-    ritz_status status = RITZ_OK;
     const svg_names names = {p->title, p->summary, NULL};
-    cli_table table = {0};
+    RITZ_OWN(cli_table) table = {0};
 
-    RITZ_TRY(cli_table_new(&table));
+    RITZ_CHECK(cli_table_new(&table));
     svg_copy(table.file, p->drawn, &names);
-    RITZ_TRY(cli_table_save(&table, p->path));
-done:
-    cli_table_free(&table);
-    return status;
+    return cli_table_save(&table, p->path);
 }
 
 ritz_status picture_draw(picture *p, const char *template, const char *title,

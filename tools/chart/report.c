@@ -1,5 +1,6 @@
 #include "chart/report.h"
 
+#include "base/alloc.h"
 #include "chart/html.h"
 #include "chart/text.h"
 
@@ -123,18 +124,14 @@ static ritz_status put_part(report_page *p, const struct part *part,
 
 static ritz_status put_pictures(report_page *p)
 {
-    ritz_status status = RITZ_OK;
     size_t count = (size_t)p->sources->count + 1;
-    bool *taken = calloc(count, sizeof *taken);
-    chart_file *room = calloc(count, sizeof *room);
+    RITZ_OWN_ARRAY bool *taken = calloc(count, sizeof *taken);
+    RITZ_OWN_ARRAY chart_file *room = calloc(count, sizeof *room);
 
-    RITZ_FAIL_IF(!taken || !room, RITZ_ERR_MEMORY, "no memory for files");
+    RITZ_REFUSE_IF(!taken || !room, RITZ_ERR_MEMORY, "no memory for files");
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        RITZ_TRY(put_part(p, &parts[k], taken, room));
-done:
-    free(taken);
-    free(room);
-    return status;
+        RITZ_CHECK(put_part(p, &parts[k], taken, room));
+    return RITZ_OK;
 }
 
 /* --- the page ------------------------------------------------------------- */

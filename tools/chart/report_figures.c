@@ -139,16 +139,15 @@ ritz_status report_figure(report_page *p, const char *kind,
                           const chart_sources *sources,
                           const chart_request *request, const char *caption)
 {
-    ritz_status status = RITZ_OK;
     chart_request own = *request;
     FILE *file = p->figures.file;
-    picture drawn = {0};
+    RITZ_OWN(picture) drawn = {0};
     char prefix[32];
 
     own.keep = false;
-    RITZ_TRY(find_kind(kind)->draw(sources, &own, &drawn));
-    RITZ_FAIL_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
-                 "no memory for a table");
+    RITZ_CHECK(find_kind(kind)->draw(sources, &own, &drawn));
+    RITZ_REFUSE_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
+                   "no memory for a table");
     add_signs(p, &drawn);
     snprintf(prefix, sizeof prefix, "p%lld-", (long long)++p->num_pictures);
     fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",
@@ -159,7 +158,5 @@ ritz_status report_figure(report_page *p, const char *kind,
                *drawn.note ? ". " : "", drawn.note);
     put_table(file, drawn.table.text, caption);
     fprintf(file, "</figure>\n");
-done:
-    picture_free(&drawn);
-    return status;
+    return RITZ_OK;
 }

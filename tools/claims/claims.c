@@ -1,6 +1,8 @@
 /* Claims files: a table of statements, each one line, run in order. */
 #include "claims/claims.h"
 
+#include "base/alloc.h"
+
 #include <ritz/text.h>
 
 #include <errno.h>
@@ -56,13 +58,12 @@ static _Noreturn void become(const claims_state *state, const char *tool,
 /* The JSON object that the tool printed, after any warnings. */
 static ritz_status read_answer(claims_state *state)
 {
-    ritz_status status = RITZ_OK;
     char path[PATH_MAX + sizeof answer_name + 1];
-    char *text = NULL;
+    RITZ_OWN_ARRAY char *text = NULL;
     const char *object = NULL;
 
     snprintf(path, sizeof path, "%s/%s", state->folder, answer_name);
-    RITZ_TRY(ritz_text_read(path, &text));
+    RITZ_CHECK(ritz_text_read(path, &text));
     object = text[0] == '{' ? text : strstr(text, "\n{");
     if (object)
         state->answer = json_loads(object, JSON_REJECT_DUPLICATES, NULL);
@@ -70,9 +71,7 @@ static ritz_status read_answer(claims_state *state)
         state->answer = json_pack("{s:s}", "error", text);
     if (!state->answer)
         state->answer = json_object();
-done:
-    free(text);
-    return status;
+    return RITZ_OK;
 }
 
 static void remember_command(claims_state *state, const claims_line *line)
@@ -251,20 +250,16 @@ done:
 
 ritz_status claims_file(claims_state *state, const char *path)
 {
-    ritz_status status = RITZ_OK;
     const char *slash = strrchr(path, '/');
     char folder[PATH_MAX] = ".";
-    char *text = NULL;
+    RITZ_OWN_ARRAY char *text = NULL;
 
     if (slash)
         snprintf(folder, sizeof folder, "%.*s", (int)(slash - path + 1), path);
-    RITZ_FAIL_IF(!realpath(folder, state->here), RITZ_ERR_FILE,
-                 "there is no folder '%s'", folder);
+    RITZ_REFUSE_IF(!realpath(folder, state->here), RITZ_ERR_FILE,
+                   "there is no folder '%s'", folder);
     state->source[0] = '\0';
     state->skipping = false;
-    RITZ_TRY(ritz_text_read(path, &text));
-    RITZ_TRY(run_text(state, path, text));
-done:
-    free(text);
-    return status;
+    RITZ_CHECK(ritz_text_read(path, &text));
+    return run_text(state, path, text);
 }

@@ -1,6 +1,7 @@
 /* Files that a run reads: their sums, and whether the work is large. */
 #include "cli/cli.h"
 
+#include "base/alloc.h"
 #include "base/draft.h"
 
 #include <ritz/text.h>
@@ -91,9 +92,8 @@ static char **find_input(const cli_run *run, const char *path)
 
 static ritz_status add_input(cli_run *run, const char *path, bool sum)
 {
-    ritz_status status = RITZ_OK;
     char digest[RITZ_DIGEST_SIZE] = "-";
-    char *line = NULL;
+    RITZ_OWN_ARRAY char *line = NULL;
     char **more = NULL;
     struct stat there = {0};
 
@@ -102,25 +102,23 @@ static ritz_status add_input(cli_run *run, const char *path, bool sum)
     if (stat(path, &there) == 0)
         limit_threads(run, &there);
     if ((S_ISREG(there.st_mode) && sum) || there.st_mode == 0)
-        RITZ_TRY(ritz_digest_file(path, digest));
+        RITZ_CHECK(ritz_digest_file(path, digest));
     else if (S_ISREG(there.st_mode))
-        RITZ_TRY(check_opens(path));
-    RITZ_FAIL_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
-                 path);
+        RITZ_CHECK(check_opens(path));
+    RITZ_REFUSE_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
+                   path);
     line = malloc(strlen(digest) + strlen(path) + 3);
     more =
         realloc(run->input, (size_t)(run->num_inputs + 1) * sizeof *run->input);
     if (more)
         run->input = more;
-    RITZ_FAIL_IF(!line || !more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    RITZ_REFUSE_IF(!line || !more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
     snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
     run->input[run->num_inputs++] = line;
     line = NULL;
     if (run->output && run->program->threads && run->num_inputs == 1)
-        RITZ_TRY(cli_can_write(run->output));
-done:
-    free(line);
-    return status;
+        RITZ_CHECK(cli_can_write(run->output));
+    return RITZ_OK;
 }
 
 ritz_status cli_input(cli_run *run, const char *path)

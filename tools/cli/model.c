@@ -126,15 +126,14 @@ static ritz_status spectrum_of_states(const model *m,
                                       const ritz_damping *damping,
                                       const ritz_span *span, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_spectrum found = {.engine = "dense LAPACK"};
+    RITZ_OWN(ritz_spectrum) found = {.engine = "dense LAPACK"};
     int64_t count = 0;
 
     (void)damping;
     (void)span;
-    RITZ_TRY(ritz_state_space_poles(&m->states, &count, &found.s));
+    RITZ_CHECK(ritz_state_space_poles(&m->states, &count, &found.s));
     found.residual = calloc((size_t)count + 1, sizeof *found.residual);
-    RITZ_FAIL_IF(!found.residual, RITZ_ERR_MEMORY, "no memory for poles");
+    RITZ_REFUSE_IF(!found.residual, RITZ_ERR_MEMORY, "no memory for poles");
     for (int64_t k = 0; k < count; k++) {
         if (cimag(found.s[k]) < 0.0)
             continue;
@@ -143,9 +142,7 @@ static ritz_status spectrum_of_states(const model *m,
     }
     *out = found;
     found = (ritz_spectrum){0};
-done:
-    ritz_spectrum_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 /* Second-order models as they are: their modes tell more than states. */
@@ -358,38 +355,34 @@ static int find_kind(const ritz_summary *summary)
 
 ritz_status model_peek(const char *path, model_kind *kind, const char **noun)
 {
-    ritz_status status = RITZ_OK;
-    ritz_summary summary = {0};
+    RITZ_OWN(ritz_summary) summary = {0};
     int k = 0;
 
-    RITZ_TRY(ritz_container_summary(path, &summary));
+    RITZ_CHECK(ritz_container_summary(path, &summary));
     k = find_kind(&summary);
-    RITZ_FAIL_IF(k == NUM_KINDS, RITZ_ERR_FORMAT,
-                 "'%s' holds '%s', which is no kind of container", path,
-                 summary.kind);
+    RITZ_REFUSE_IF(k == NUM_KINDS, RITZ_ERR_FORMAT,
+                   "'%s' holds '%s', which is no kind of container", path,
+                   summary.kind);
     *kind = kinds[k].kind;
     *noun = kinds[k].noun;
-done:
-    ritz_summary_free(&summary);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_summary summary = {0};
+    RITZ_OWN(ritz_summary) summary = {0};
     char list[160];
     int k = 0;
 
-    RITZ_TRY(cli_input(run, path));
-    RITZ_TRY(ritz_container_summary(path, &summary));
+    RITZ_CHECK(cli_input(run, path));
+    RITZ_CHECK(ritz_container_summary(path, &summary));
     k = find_kind(&summary);
     list_kinds(wanted, list, sizeof list);
-    RITZ_FAIL_IF(k == NUM_KINDS, RITZ_ERR_FORMAT, "'%s' holds '%s', not %s",
-                 path, summary.kind, list);
-    RITZ_FAIL_IF(!(wanted & (int)kinds[k].kind), RITZ_ERR_FORMAT,
-                 "'%s' holds %s, not %s", path, kinds[k].noun, list);
-    RITZ_TRY(kinds[k].read(path, out));
+    RITZ_REFUSE_IF(k == NUM_KINDS, RITZ_ERR_FORMAT, "'%s' holds '%s', not %s",
+                   path, summary.kind, list);
+    RITZ_REFUSE_IF(!(wanted & (int)kinds[k].kind), RITZ_ERR_FORMAT,
+                   "'%s' holds %s, not %s", path, kinds[k].noun, list);
+    RITZ_CHECK(kinds[k].read(path, out));
     out->kind = kinds[k].kind;
     if (out->kind == MODEL_COMPONENT &&
         out->component.asymmetry > MODEL_ROUNDING)
@@ -397,25 +390,20 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
                  "'%s': unsymmetric by %.1e of its largest entry, "
                  "averaged away",
                  path, out->component.asymmetry);
-done:
-    ritz_summary_free(&summary);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
-    RITZ_TRY(cli_input(run, path));
-    RITZ_TRY(ritz_scene_read(path, &scene));
+    RITZ_CHECK(cli_input(run, path));
+    RITZ_CHECK(ritz_scene_read(path, &scene));
     for (int64_t k = 0; k < scene.num_components; k++)
-        RITZ_TRY_IN(path, cli_input(run, scene.component[k].model));
+        RITZ_CHECK_IN(path, cli_input(run, scene.component[k].model));
     *out = scene;
     scene = (ritz_scene){0};
-done:
-    ritz_scene_free(&scene);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status model_at(model *m, const char *path, const char *at)
@@ -524,21 +512,18 @@ ritz_status model_damping(const model *m, const char *asked, ritz_damping *out)
 ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
                         int64_t *num_rigid, int64_t *count, double **out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     double *hertz = NULL;
 
-    RITZ_TRY(ritz_eigen_dense(K, M, &pairs));
+    RITZ_CHECK(ritz_eigen_dense(K, M, &pairs));
     hertz = calloc((size_t)pairs.Phi.ncol + 1, sizeof *hertz);
-    RITZ_FAIL_IF(!hertz, RITZ_ERR_MEMORY, "no memory for frequencies");
+    RITZ_REFUSE_IF(!hertz, RITZ_ERR_MEMORY, "no memory for frequencies");
     for (int64_t k = pairs.num_rigid; k < pairs.Phi.ncol; k++)
         hertz[k] = ritz_eigen_hertz(pairs.lambda[k]);
     *num_rigid = pairs.num_rigid;
     *count = pairs.Phi.ncol;
     *out = hertz;
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status model_hertz_at(const ritz_configuration *at, double **out)

@@ -1,5 +1,7 @@
 #include "cli/records.h"
 
+#include "base/alloc.h"
+
 #include <ritz/measures.h>
 
 #include <errno.h>
@@ -167,28 +169,25 @@ static ritz_status take_line(const char *text, size_t length, const char *path,
 
 ritz_status records_read(const char *path, records *all)
 {
-    ritz_status status = RITZ_OK;
     struct stat file = {0};
-    char *text = NULL;
+    RITZ_OWN_ARRAY char *text = NULL;
     int64_t number = 0;
 
-    RITZ_FAIL_IF(stat(path, &file) != 0, RITZ_ERR_FILE, "cannot open '%s': %s",
-                 path, strerror(errno));
-    RITZ_FAIL_IF(file.st_size > MOST_BYTES, RITZ_ERR_FORMAT,
-                 "'%s' is too large for records: %lld bytes, the most is %d",
-                 path, (long long)file.st_size, (int)MOST_BYTES);
-    RITZ_TRY(ritz_text_read(path, &text));
+    RITZ_REFUSE_IF(stat(path, &file) != 0, RITZ_ERR_FILE,
+                   "cannot open '%s': %s", path, strerror(errno));
+    RITZ_REFUSE_IF(file.st_size > MOST_BYTES, RITZ_ERR_FORMAT,
+                   "'%s' is too large for records: %lld bytes, the most is %d",
+                   path, (long long)file.st_size, (int)MOST_BYTES);
+    RITZ_CHECK(ritz_text_read(path, &text));
     for (const char *line = text; *line;) {
         size_t length = strcspn(line, "\n");
 
         number++;
         if (strspn(line, " \t\r") < length)
-            RITZ_TRY(take_line(line, length, path, number, all));
+            RITZ_CHECK(take_line(line, length, path, number, all));
         line += length + (line[length] == '\n');
     }
-done:
-    free(text);
-    return status;
+    return RITZ_OK;
 }
 
 void records_free(records *all)

@@ -40,23 +40,19 @@ static ritz_status add_neighbour(cli_run *run, const char *text,
                                  const ritz_component *component,
                                  const ritz_dofs *attached, ritz_neighbour *sum)
 {
-    ritz_status status = RITZ_OK;
     typed_neighbour of = {0};
-    model far = {0};
+    RITZ_OWN(model) far = {0};
     ritz_joint joint = {.type = RITZ_JOINT_FIXED, .name = "neighbour"};
     ritz_joined side[2] = {{run->operand[1], component}, {0}};
 
-    RITZ_TRY(split_neighbour(text, &of));
-    RITZ_TRY(model_read(run, of.path, MODEL_COMPONENT, &far));
+    RITZ_CHECK(split_neighbour(text, &of));
+    RITZ_CHECK(model_read(run, of.path, MODEL_COMPONENT, &far));
     side[1] = (ritz_joined){of.path, &far.component};
     snprintf(joint.between[0].port, sizeof joint.between[0].port, "%s",
              of.port);
     snprintf(joint.between[1].port, sizeof joint.between[1].port, "%s",
              of.other);
-    RITZ_TRY(ritz_joint_neighbour(&joint, NULL, side, 0, attached, sum));
-done:
-    model_free(&far);
-    return status;
+    return ritz_joint_neighbour(&joint, NULL, side, 0, attached, sum);
 }
 
 static ritz_status read_neighbours(cli_run *run, const cli_list *given,
@@ -64,18 +60,15 @@ static ritz_status read_neighbours(cli_run *run, const cli_list *given,
                                    const ritz_dofs *attached,
                                    ritz_neighbour *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_neighbour sum = {0};
+    RITZ_OWN(ritz_neighbour) sum = {0};
 
-    RITZ_TRY(ritz_neighbour_new(attached->count, &sum));
+    RITZ_CHECK(ritz_neighbour_new(attached->count, &sum));
     for (int k = 0; k < given->count; k++)
-        RITZ_TRY_IN("--neighbour", add_neighbour(run, given->text[k], component,
-                                                 attached, &sum));
+        RITZ_CHECK_IN("--neighbour", add_neighbour(run, given->text[k],
+                                                   component, attached, &sum));
     *out = sum;
     sum = (ritz_neighbour){0};
-done:
-    ritz_neighbour_free(&sum);
-    return status;
+    return RITZ_OK;
 }
 
 /* Frequencies and residuals stand side by side: one of each for each mode. */
@@ -186,21 +179,17 @@ static ritz_status reduce_to_matrices(cli_run *run, const ritz_component *full,
                                       const ritz_basis *basis,
                                       const reduce_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_stamp stamp = {0};
 
-    RITZ_TRY_IN(what, ritz_reduce(full, basis, &reduced));
-    RITZ_TRY_IN(what, ritz_estimate(full, basis, &asked->estimate, &reduced));
+    RITZ_CHECK_IN(what, ritz_reduce(full, basis, &reduced));
+    RITZ_CHECK_IN(what, ritz_estimate(full, basis, &asked->estimate, &reduced));
     if (asked->without_basis)
         drop_basis(&reduced);
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_reduced(run->output, &reduced, &stamp));
-    RITZ_TRY(say_reduced(run, &reduced));
-done:
-    ritz_reduced_free(&reduced);
-    return status;
+    RITZ_CHECK(ritz_container_write_reduced(run->output, &reduced, &stamp));
+    return say_reduced(run, &reduced);
 }
 
 /* A model of either kind, in a basis that makes states of it. */
@@ -225,29 +214,26 @@ static ritz_status project_model(const model *full, const ritz_basis *basis,
 static ritz_status reduce_to_states(cli_run *run, const model *full,
                                     const ritz_basis *basis)
 {
-    ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
-    ritz_state_space states = {0};
+    RITZ_OWN(ritz_state_space) states = {0};
     ritz_probe probe = {0};
     ritz_stamp stamp = {0};
     char text[2 * RITZ_NAME_SIZE];
 
-    RITZ_TRY_IN(what, project_model(full, basis, &states));
-    RITZ_TRY_IN(what, ritz_probe_states(&states, &probe));
-    RITZ_TRY(ritz_probe_record(&probe, &states.estimates));
+    RITZ_CHECK_IN(what, project_model(full, basis, &states));
+    RITZ_CHECK_IN(what, ritz_probe_states(&states, &probe));
+    RITZ_CHECK(ritz_probe_record(&probe, &states.estimates));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_state_space(run->output, &states, &stamp));
+    RITZ_CHECK(ritz_container_write_state_space(run->output, &states, &stamp));
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_states(run, &states));
+    RITZ_CHECK(describe_states(run, &states));
     sink_set(run, "vectors", "%ld", states.columns.count);
     cli_record(run, states.origin.method, states.A.nrow);
     record_errors(run, &states.estimates);
     ritz_probe_print(&probe, text);
     if (probe.verdict == RITZ_UNSTABLE)
         cli_warn(run, "'%s' is unstable: %s", run->output, text);
-done:
-    ritz_state_space_free(&states);
-    return status;
+    return RITZ_OK;
 }
 
 /* Refuse a basis that was made for another number of dofs or states. */
@@ -269,26 +255,23 @@ static ritz_status check_rows(const cli_run *run, const model *full,
 
 ritz_status reduce_run(cli_run *run, reduce_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *what = run->operand[1];
-    model full = {0};
-    model basis = {0};
+    RITZ_OWN(model) full = {0};
+    RITZ_OWN(model) basis = {0};
 
-    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
-                        &full));
-    RITZ_TRY(model_read(run, what, MODEL_BASIS, &basis));
-    RITZ_TRY(check_rows(run, &full, &basis.basis));
-    RITZ_TRY(model_damping(&full, asked->damping, &asked->estimate.damping));
-    RITZ_FAIL_IF(asked->without_basis && full.kind == MODEL_STATES,
-                 RITZ_ERR_ARGUMENT,
-                 "a reduced state space keeps no basis, --without-basis is for "
-                 "components");
+    RITZ_CHECK(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
+                          &full));
+    RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
+    RITZ_CHECK(check_rows(run, &full, &basis.basis));
+    RITZ_CHECK(model_damping(&full, asked->damping, &asked->estimate.damping));
+    RITZ_REFUSE_IF(
+        asked->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+        "a reduced state space keeps no basis, --without-basis is for "
+        "components");
     if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
-        RITZ_TRY(reduce_to_states(run, &full, &basis.basis));
+        RITZ_CHECK(reduce_to_states(run, &full, &basis.basis));
     else
-        RITZ_TRY(reduce_to_matrices(run, &full.component, &basis.basis, asked));
-done:
-    model_free(&basis);
-    model_free(&full);
-    return status;
+        RITZ_CHECK(
+            reduce_to_matrices(run, &full.component, &basis.basis, asked));
+    return RITZ_OK;
 }

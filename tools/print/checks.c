@@ -42,29 +42,25 @@ const ritz_check *checks_first(const ritz_audit *audit)
 
 ritz_status checks_run(cli_run *run)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     const ritz_check *first = NULL;
-    model m = {0};
-    ritz_audit audit = {0};
+    RITZ_OWN(model) m = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
 
-    RITZ_TRY(model_read(run, path,
-                        MODEL_COMPONENT | MODEL_REDUCED | MODEL_STATES, &m));
+    RITZ_CHECK(model_read(run, path,
+                          MODEL_COMPONENT | MODEL_REDUCED | MODEL_STATES, &m));
     cli_record(run, m.kind == MODEL_COMPONENT ? "audit" : "probe",
                model_order(&m));
-    RITZ_TRY_IN(path, model_audit(&m, &audit));
+    RITZ_CHECK_IN(path, model_audit(&m, &audit));
     checks_say(run, "checks", &audit);
     for (int64_t k = 0; k < audit.count; k++)
         cli_record_error(run, audit.check[k].name, audit.check[k].value);
     if (run->output)
-        RITZ_TRY(cli_save(run, run->output));
+        RITZ_CHECK(cli_save(run, run->output));
     first = checks_first(&audit);
-    RITZ_FAIL_IF(first, RITZ_ERR_FORMAT,
-                 "'%s': %ld of %ld checks fail, first '%s'%s%s", path,
-                 count_checks(&audit, RITZ_FAIL), audit.count, first->name,
-                 *first->where ? " at " : "", first->where);
-done:
-    ritz_audit_free(&audit);
-    model_free(&m);
-    return status;
+    RITZ_REFUSE_IF(first, RITZ_ERR_FORMAT,
+                   "'%s': %ld of %ld checks fail, first '%s'%s%s", path,
+                   count_checks(&audit, RITZ_FAIL), audit.count, first->name,
+                   *first->where ? " at " : "", first->where);
+    return RITZ_OK;
 }

@@ -1,6 +1,7 @@
 /* The report of ritz-compare: what was reduced, how far, how wrong it is. */
 #include "print/comparison.h"
 
+#include "base/alloc.h"
 #include "cli/cli_table.h"
 #include "print/tracks.h"
 
@@ -444,18 +445,15 @@ static ritz_status new_column(const char *title, int64_t count,
 static ritz_status find_body_column(const char *name, const ritz_reduced *body,
                                     mode_column *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t rigid = 0;
     int64_t count = 0;
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
 
-    RITZ_TRY(model_hertz(&body->K, &body->M, &rigid, &count, &hertz));
-    RITZ_TRY(new_column(name, count - rigid, out));
+    RITZ_CHECK(model_hertz(&body->K, &body->M, &rigid, &count, &hertz));
+    RITZ_CHECK(new_column(name, count - rigid, out));
     for (int64_t k = 0; k < count - rigid; k++)
         out->hertz[k] = hertz[rigid + k];
-done:
-    free(hertz);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status find_system_column(int64_t number, const ritz_comparison *c,
@@ -587,10 +585,9 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
                                     int64_t count,
                                     const ritz_tolerance_row *rows)
 {
-    ritz_status status = RITZ_OK;
-    cli_table table = {0};
+    RITZ_OWN(cli_table) table = {0};
 
-    RITZ_TRY(cli_table_new(&table));
+    RITZ_CHECK(cli_table_new(&table));
     fprintf(table.file, "tolerance\ttotal\tsystem\tremoved\tfrequency\tgain\t"
                         "response");
     for (int64_t b = 0; b < first->count; b++)
@@ -606,10 +603,7 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
             fprintf(table.file, "\t%ld", row->order[b]);
     }
     fprintf(table.file, "\n");
-    RITZ_TRY(cli_table_save(&table, path));
-done:
-    cli_table_free(&table);
-    return status;
+    return cli_table_save(&table, path);
 }
 
 /* The chart of the composite tolerance. */
@@ -635,30 +629,25 @@ done:
 
 ritz_status comparison_run(cli_run *run, const comparison_wish *asked)
 {
-    ritz_status status = RITZ_OK;
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_comparison c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_comparison) c = {0};
     ritz_stamp stamp = {0};
 
-    RITZ_TRY(model_scene(run, run->operand[0], &scene));
+    RITZ_CHECK(model_scene(run, run->operand[0], &scene));
     if (asked->extraneous)
-        RITZ_TRY_IN("--extraneous",
-                    ritz_scene_set_extraneous(&scene, asked->extraneous));
-    RITZ_TRY(ritz_stage_new(&scene, &stage));
-    RITZ_TRY(ritz_compare(&stage, &c));
-    RITZ_TRY(model_write_bodies(run, asked->prefix, &scene, c.second.body));
+        RITZ_CHECK_IN("--extraneous",
+                      ritz_scene_set_extraneous(&scene, asked->extraneous));
+    RITZ_CHECK(ritz_stage_new(&scene, &stage));
+    RITZ_CHECK(ritz_compare(&stage, &c));
+    RITZ_CHECK(model_write_bodies(run, asked->prefix, &scene, c.second.body));
     stamp = cli_stamp(run);
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_container_write_system(run->output, &c.second_system, &stamp));
-    RITZ_TRY(say_comparison(run, &stage, &c));
-    RITZ_TRY(tracks_report(run, &stage, &c.first_system, asked->tracks));
-    RITZ_TRY(chart_tolerances(run, asked, &stage, &c));
+    RITZ_CHECK(say_comparison(run, &stage, &c));
+    RITZ_CHECK(tracks_report(run, &stage, &c.first_system, asked->tracks));
+    RITZ_CHECK(chart_tolerances(run, asked, &stage, &c));
     if (asked->report)
-        RITZ_TRY(cli_save(run, asked->report));
-done:
-    ritz_comparison_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    return status;
+        RITZ_CHECK(cli_save(run, asked->report));
+    return RITZ_OK;
 }

@@ -1,5 +1,6 @@
 #include "print/describe.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 #include "print/checksum.h"
 
@@ -423,13 +424,12 @@ static void describe_nested(cli_run *run, const ritz_nested *nested,
 
 ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
 {
-    ritz_status status = RITZ_OK;
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
     int64_t rigid = 0;
     int64_t count = 0;
 
     sink_set(run, "kind", "%s", "reduced");
-    RITZ_TRY(model_hertz(&r->K, &r->M, &rigid, &count, &hertz));
+    RITZ_CHECK(model_hertz(&r->K, &r->M, &rigid, &count, &hertz));
     sink_field(run, "kind", "dofs,dofs_full",
                "reduced component, %ld coordinates for %ld dofs", r->K.nrow,
                r->num_dofs);
@@ -455,9 +455,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_measures(run, "estimates", &r->estimates, "estimated");
     describe_measures(run, "errors", &r->errors, "measured");
     describe_nested(run, &r->nested, r->K.ncol);
-done:
-    free(hertz);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status describe_configuration(cli_run *run,

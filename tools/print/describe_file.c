@@ -184,15 +184,14 @@ static void describe_member(const ritz_container_row *row, void *data)
 static ritz_status describe_container(cli_run *run, const char *path,
                                       bool members)
 {
-    ritz_status status = RITZ_OK;
-    ritz_summary summary = {0};
-    model m = {0};
+    RITZ_OWN(ritz_summary) summary = {0};
+    RITZ_OWN(model) m = {0};
 
     sink_list(run, "made_from");
     sink_end(run);
-    RITZ_TRY(model_read(run, path, MODEL_ANY, &m));
-    RITZ_TRY(ritz_container_summary(path, &summary));
-    RITZ_TRY_IN(path, describe_model(run, &m));
+    RITZ_CHECK(model_read(run, path, MODEL_ANY, &m));
+    RITZ_CHECK(ritz_container_summary(path, &summary));
+    RITZ_CHECK_IN(path, describe_model(run, &m));
     if (members) {
         sink_list(run, "members");
         ritz_container_members(summary.kind, model_object(&m), describe_member,
@@ -207,36 +206,31 @@ static ritz_status describe_container(cli_run *run, const char *path,
         sink_add(run, "%s", summary.input[k]);
     }
     sink_end(run);
-done:
-    model_free(&m);
-    ritz_summary_free(&summary);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status describe_text(cli_run *run, const ritz_foreign *file)
 {
-    ritz_status status = RITZ_OK;
-    ritz_deck deck = {0};
+    RITZ_OWN(ritz_deck) deck = {0};
 
-    RITZ_FAIL_IF(file->size == 0, RITZ_ERR_FORMAT, "'%s' is empty", file->path);
-    RITZ_FAIL_IF(!ritz_deck_recognise(file->bytes, file->size), RITZ_ERR_FORMAT,
-                 "'%s' is neither a container nor a matrix file nor text",
-                 file->path);
-    RITZ_TRY(ritz_deck_parse(file->path, file->bytes, file->size, file->folder,
-                             &deck));
-    RITZ_FAIL_IF(deck.grids.count + deck.num_points + deck.num_fixed +
-                         deck.num_constraints + deck.num_sets[RITZ_SET_A] +
-                         deck.num_sets[RITZ_SET_B] +
-                         deck.num_sets[RITZ_SET_Q] ==
-                     0,
-                 RITZ_ERR_FORMAT,
-                 "'%s' is no container, no matrix file that Ritz knows, and "
-                 "no bulk data with grids",
-                 file->path);
+    RITZ_REFUSE_IF(file->size == 0, RITZ_ERR_FORMAT, "'%s' is empty",
+                   file->path);
+    RITZ_REFUSE_IF(
+        !ritz_deck_recognise(file->bytes, file->size), RITZ_ERR_FORMAT,
+        "'%s' is neither a container nor a matrix file nor text", file->path);
+    RITZ_CHECK(ritz_deck_parse(file->path, file->bytes, file->size,
+                               file->folder, &deck));
+    RITZ_REFUSE_IF(deck.grids.count + deck.num_points + deck.num_fixed +
+                           deck.num_constraints + deck.num_sets[RITZ_SET_A] +
+                           deck.num_sets[RITZ_SET_B] +
+                           deck.num_sets[RITZ_SET_Q] ==
+                       0,
+                   RITZ_ERR_FORMAT,
+                   "'%s' is no container, no matrix file that Ritz knows, and "
+                   "no bulk data with grids",
+                   file->path);
     describe_deck(run, &deck);
-done:
-    ritz_deck_free(&deck);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status describe_foreign(cli_run *run, const char *path,

@@ -187,23 +187,19 @@ static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
                                   const export_wish *asked,
                                   ritz_export_report *done)
 {
-    ritz_status status = RITZ_OK;
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
     bool force = asked->force;
 
     for (int64_t j = 0; j < reduced->dampers.count; j++)
         cli_say(run, "damper '%s' installed: c = %g, k = %g",
                 reduced->dampers.name[j], reduced->dampers.c[j],
                 reduced->dampers.k[j]);
-    RITZ_TRY(say_errors(run, &reduced->errors, &reduced->estimates, force));
-    RITZ_TRY(check_forces(run, &reduced->columns, force));
-    RITZ_TRY_IN(run->operand[0],
-                audit_reduced(reduced, &asked->request, &audit));
-    RITZ_TRY(check_stability(run, &audit, reduced->origin.method, force));
-    RITZ_TRY(asked->exporter->write_reduced(reduced, &asked->request, done));
-done:
-    ritz_audit_free(&audit);
-    return status;
+    RITZ_CHECK(say_errors(run, &reduced->errors, &reduced->estimates, force));
+    RITZ_CHECK(check_forces(run, &reduced->columns, force));
+    RITZ_CHECK_IN(run->operand[0],
+                  audit_reduced(reduced, &asked->request, &audit));
+    RITZ_CHECK(check_stability(run, &audit, reduced->origin.method, force));
+    return asked->exporter->write_reduced(reduced, &asked->request, done);
 }
 
 /* An imported state space is no reduction and has no errors; some reductions
@@ -229,34 +225,28 @@ static ritz_status export_states(cli_run *run, const ritz_state_space *states,
                                  const export_wish *asked,
                                  ritz_export_report *done)
 {
-    ritz_status status = RITZ_OK;
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
 
-    RITZ_TRY_IN(run->operand[0], audit_states(states, &asked->request, &audit));
-    RITZ_TRY(check_stability(run, &audit, states->origin.method, asked->force));
-    RITZ_TRY(say_state_errors(run, states, asked->force));
-    RITZ_TRY(asked->exporter->write_states(states, &asked->request, done));
-done:
-    ritz_audit_free(&audit);
-    return status;
+    RITZ_CHECK_IN(run->operand[0],
+                  audit_states(states, &asked->request, &audit));
+    RITZ_CHECK(
+        check_stability(run, &audit, states->origin.method, asked->force));
+    RITZ_CHECK(say_state_errors(run, states, asked->force));
+    return asked->exporter->write_states(states, &asked->request, done);
 }
 
 static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
                                      const export_wish *asked, ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-    model of = {0};
+    RITZ_OWN(model) of = {0};
 
-    RITZ_FAIL_IF(!asked->component, RITZ_ERR_ARGUMENT,
-                 "'%s' is a basis, which knows no places: name its component "
-                 "with --component",
-                 run->operand[0]);
-    RITZ_TRY(model_read(run, asked->component, MODEL_COMPONENT, &of));
-    RITZ_TRY(
-        ritz_shapes_of_basis(basis, &of.component, asked->request.modes, out));
-done:
-    model_free(&of);
-    return status;
+    RITZ_REFUSE_IF(!asked->component, RITZ_ERR_ARGUMENT,
+                   "'%s' is a basis, which knows no places: name its component "
+                   "with --component",
+                   run->operand[0]);
+    RITZ_CHECK(model_read(run, asked->component, MODEL_COMPONENT, &of));
+    return ritz_shapes_of_basis(basis, &of.component, asked->request.modes,
+                                out);
 }
 
 /* Modes of a reduced component or of a component, or columns of a basis. */
@@ -279,19 +269,15 @@ static ritz_status export_shapes(cli_run *run, const model *m,
                                  const export_wish *asked,
                                  ritz_export_report *done)
 {
-    ritz_status status = RITZ_OK;
-    ritz_shapes shapes = {0};
+    RITZ_OWN(ritz_shapes) shapes = {0};
 
     sink_list(run, "shapes");
-    RITZ_TRY_IN(run->operand[0], find_shapes(run, m, asked, &shapes));
+    RITZ_CHECK_IN(run->operand[0], find_shapes(run, m, asked, &shapes));
     cli_record(run, asked->exporter->name, shapes.count);
     for (int64_t k = 0; k < shapes.count; k++)
         sink_add(run, "%s", shapes.name[k]);
     sink_end(run);
-    RITZ_TRY(asked->exporter->write_shapes(&shapes, &asked->request, done));
-done:
-    ritz_shapes_free(&shapes);
-    return status;
+    return asked->exporter->write_shapes(&shapes, &asked->request, done);
 }
 
 /* Kinds of model that an exporter takes, summed. */
@@ -329,18 +315,17 @@ static ritz_status export_model(cli_run *run, model *m,
 
 ritz_status export_run(cli_run *run, const export_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
-    model m = {0};
-    ritz_export_report done = {0};
+    RITZ_OWN(model) m = {0};
+    RITZ_OWN(ritz_export_report) done = {0};
 
     sink_set(run, "format", "%s", asked->exporter->name);
     sink_list(run, "said");
     sink_end(run);
     cli_record(run, asked->exporter->name, -1);
-    RITZ_TRY(model_read(run, path, kinds_of(asked->exporter), &m));
-    RITZ_TRY(model_prefix(&m, path, asked->order));
-    RITZ_TRY(export_model(run, &m, asked, &done));
+    RITZ_CHECK(model_read(run, path, kinds_of(asked->exporter), &m));
+    RITZ_CHECK(model_prefix(&m, path, asked->order));
+    RITZ_CHECK(export_model(run, &m, asked, &done));
     cli_say(run, "%s: %s", run->output, asked->exporter->summary);
     sink_list(run, "said");
     for (int64_t k = 0; k < done.count; k++) {
@@ -348,8 +333,5 @@ ritz_status export_run(cli_run *run, const export_wish *asked)
         sink_add(run, "%s", done.line[k]);
     }
     sink_end(run);
-done:
-    ritz_export_report_free(&done);
-    model_free(&m);
-    return status;
+    return RITZ_OK;
 }

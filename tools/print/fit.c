@@ -1,5 +1,7 @@
 #include "print/fit.h"
 
+#include "base/alloc.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -515,38 +517,31 @@ done:
 static ritz_status compare_methods(cli_run *run, const fit_wish *a,
                                    ritz_fitter *fitter, ritz_fit *fit)
 {
-    ritz_status status = RITZ_OK;
     int64_t order = a->order;
-    int64_t *equal = NULL;
+    RITZ_OWN_ARRAY int64_t *equal = NULL;
 
     if (!a->all)
         return RITZ_OK;
-    RITZ_FAIL_IF(order == 0 && fit->chosen < 0, RITZ_ERR_ARGUMENT,
-                 "%s: say at which --order methods are to be compared",
-                 fit->why);
+    RITZ_REFUSE_IF(order == 0 && fit->chosen < 0, RITZ_ERR_ARGUMENT,
+                   "%s: say at which --order methods are to be compared",
+                   fit->why);
     if (order == 0)
         order = fit->candidate[fit->chosen].order;
     equal = calloc((size_t)fit->num_methods + 1, sizeof *equal);
-    RITZ_FAIL_IF(!equal, RITZ_ERR_MEMORY, "no memory for a table");
-    RITZ_TRY(ritz_fitter_equal(fitter, order, fit, equal));
+    RITZ_REFUSE_IF(!equal, RITZ_ERR_MEMORY, "no memory for a table");
+    RITZ_CHECK(ritz_fitter_equal(fitter, order, fit, equal));
     say_equal(run, fit, order, equal);
-done:
-    free(equal);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status write_component(cli_run *run, ritz_fitter *fitter,
                                    const ritz_fit_candidate *chosen)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_stamp stamp = cli_stamp(run);
 
-    RITZ_TRY(ritz_fitter_reduced(fitter, chosen, &reduced));
-    RITZ_TRY(ritz_container_write_reduced(run->output, &reduced, &stamp));
-done:
-    ritz_reduced_free(&reduced);
-    return status;
+    RITZ_CHECK(ritz_fitter_reduced(fitter, chosen, &reduced));
+    return ritz_container_write_reduced(run->output, &reduced, &stamp);
 }
 
 /* The tolerance was held from inputs to outputs. Forces and motions at ports were
@@ -610,44 +605,34 @@ static void name_subject(const char *path, char out[RITZ_NAME_SIZE])
 
 static ritz_status fit_component(fit_run *f, const fit_wish *a)
 {
-    ritz_status status = RITZ_OK;
     const char *path = f->run->operand[0];
-    ritz_fitter *fitter = NULL;
-    model full = {0};
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(model) full = {0};
 
-    RITZ_FAIL_IF(a->prefix, RITZ_ERR_ARGUMENT,
-                 "'%s' is a component: --components is for scenes", path);
-    RITZ_TRY(model_read(f->run, path, MODEL_COMPONENT, &full));
-    RITZ_TRY_IN(path, model_tune(&full, &a->damper));
-    RITZ_TRY(foresee_files(f->run, NULL, a->report, NULL, &f->files));
-    RITZ_TRY_IN(path, ritz_fitter_new(&full.component, &a->request, &fitter));
-    RITZ_TRY(find_answer(f, a, NULL, &full, fitter));
-done:
-    ritz_fitter_free(&fitter);
-    model_free(&full);
-    return status;
+    RITZ_REFUSE_IF(a->prefix, RITZ_ERR_ARGUMENT,
+                   "'%s' is a component: --components is for scenes", path);
+    RITZ_CHECK(model_read(f->run, path, MODEL_COMPONENT, &full));
+    RITZ_CHECK_IN(path, model_tune(&full, &a->damper));
+    RITZ_CHECK(foresee_files(f->run, NULL, a->report, NULL, &f->files));
+    RITZ_CHECK_IN(path, ritz_fitter_new(&full.component, &a->request, &fitter));
+    return find_answer(f, a, NULL, &full, fitter);
 }
 
 static ritz_status fit_scene(fit_run *f, const fit_wish *a)
 {
-    ritz_status status = RITZ_OK;
     const char *path = f->run->operand[0];
-    ritz_fitter *fitter = NULL;
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_scene) scene = {0};
 
-    RITZ_FAIL_IF(a->damper.count > 0 || a->request.attach, RITZ_ERR_ARGUMENT,
-                 "'%s' is a scene: --damper and --attach are for components",
-                 path);
-    RITZ_TRY(model_scene(f->run, path, &scene));
-    RITZ_TRY(foresee_files(f->run, a->prefix, a->report, &scene, &f->files));
+    RITZ_REFUSE_IF(a->damper.count > 0 || a->request.attach, RITZ_ERR_ARGUMENT,
+                   "'%s' is a scene: --damper and --attach are for components",
+                   path);
+    RITZ_CHECK(model_scene(f->run, path, &scene));
+    RITZ_CHECK(foresee_files(f->run, a->prefix, a->report, &scene, &f->files));
     if (*scene.name)
         snprintf(f->subject, sizeof f->subject, "%s", scene.name);
-    RITZ_TRY_IN(path, ritz_fitter_scene(&scene, &a->request, &fitter));
-    RITZ_TRY(find_answer(f, a, &scene, NULL, fitter));
-done:
-    ritz_fitter_free(&fitter);
-    ritz_scene_free(&scene);
-    return status;
+    RITZ_CHECK_IN(path, ritz_fitter_scene(&scene, &a->request, &fitter));
+    return find_answer(f, a, &scene, NULL, fitter);
 }
 
 ritz_status fit_search(cli_run *run, fit_wish *asked)

@@ -1,5 +1,6 @@
 #include "print/import.h"
 
+#include "base/alloc.h"
 #include "print/describe.h"
 
 #include <ritz/foreign.h>
@@ -10,33 +11,25 @@
 /* Remember the file of "FILE[:NAME[#K]]"; NULL: none was given. */
 static ritz_status take_matrix(cli_run *run, const char *spec)
 {
-    ritz_status status = RITZ_OK;
-    char *path = NULL;
+    RITZ_OWN_ARRAY char *path = NULL;
 
     if (!spec)
         return RITZ_OK;
-    RITZ_TRY(ritz_foreign_path(spec, &path));
-    RITZ_TRY(cli_input_unread(run, path));
-done:
-    free(path);
-    return status;
+    RITZ_CHECK(ritz_foreign_path(spec, &path));
+    return cli_input_unread(run, path);
 }
 
 /* Remember the file of "FILE@LOAD". */
 static ritz_status take_load(cli_run *run, const char *spec)
 {
-    ritz_status status = RITZ_OK;
     const char *at = strrchr(spec, '@');
-    char *file = NULL;
+    RITZ_OWN_ARRAY char *file = NULL;
 
-    RITZ_FAIL_IF(!at || at == spec || !at[1], RITZ_ERR_ARGUMENT,
-                 "--geometric-stiffness '%s' is not FILE@LOAD", spec);
+    RITZ_REFUSE_IF(!at || at == spec || !at[1], RITZ_ERR_ARGUMENT,
+                   "--geometric-stiffness '%s' is not FILE@LOAD", spec);
     file = strndup(spec, (size_t)(at - spec));
-    RITZ_FAIL_IF(!file, RITZ_ERR_MEMORY, "no memory for '%s'", spec);
-    RITZ_TRY(take_matrix(run, file));
-done:
-    free(file);
-    return status;
+    RITZ_REFUSE_IF(!file, RITZ_ERR_MEMORY, "no memory for '%s'", spec);
+    return take_matrix(run, file);
 }
 
 static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
@@ -181,60 +174,48 @@ static void take_lists(import_wish *lists)
 
 ritz_status import_component(cli_run *run, import_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     ritz_import_request *request = &asked->request;
-    ritz_file_sums sums = {0};
-    ritz_component component = {0};
-    ritz_import_report done = {0};
+    RITZ_OWN(ritz_file_sums) sums = {0};
+    RITZ_OWN(ritz_component) component = {0};
+    RITZ_OWN(ritz_import_report) done = {0};
     ritz_stamp stamp = {0};
 
     take_lists(asked);
-    RITZ_TRY(take_inputs(run, request));
+    RITZ_CHECK(take_inputs(run, request));
     request->sums = &sums;
-    RITZ_TRY(ritz_import(request, &component, &done));
-    RITZ_TRY(take_sums(run, &sums));
+    RITZ_CHECK(ritz_import(request, &component, &done));
+    RITZ_CHECK(take_sums(run, &sums));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_component(run->output, &component, &stamp));
+    RITZ_CHECK(ritz_container_write_component(run->output, &component, &stamp));
     say_import(run, &component, &done);
-done:
-    ritz_import_report_free(&done);
-    ritz_file_sums_free(&sums);
-    ritz_component_free(&component);
-    return status;
+    return RITZ_OK;
 }
 
 /* Files of "A=F,B=F,..." or one file. */
 static ritz_status take_space_inputs(cli_run *run, const char *matrices)
 {
-    ritz_status status = RITZ_OK;
-    char *spec = malloc(strlen(matrices) + 1);
+    RITZ_OWN_ARRAY char *spec = malloc(strlen(matrices) + 1);
 
-    RITZ_FAIL_IF(!spec, RITZ_ERR_MEMORY, "no memory for '%s'", matrices);
+    RITZ_REFUSE_IF(!spec, RITZ_ERR_MEMORY, "no memory for '%s'", matrices);
     while (ritz_import_space_next(&matrices, spec))
-        RITZ_TRY(take_matrix(run, spec));
-done:
-    free(spec);
-    return status;
+        RITZ_CHECK(take_matrix(run, spec));
+    return RITZ_OK;
 }
 
 ritz_status import_states(cli_run *run, ritz_import_space_request *request)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space space = {0};
-    ritz_file_sums sums = {0};
+    RITZ_OWN(ritz_state_space) space = {0};
+    RITZ_OWN(ritz_file_sums) sums = {0};
     ritz_stamp stamp = {0};
 
-    RITZ_TRY(take_space_inputs(run, request->matrices));
+    RITZ_CHECK(take_space_inputs(run, request->matrices));
     request->sums = &sums;
-    RITZ_TRY_IN("--state-space", ritz_import_state_space(request, &space));
-    RITZ_TRY(take_sums(run, &sums));
+    RITZ_CHECK_IN("--state-space", ritz_import_state_space(request, &space));
+    RITZ_CHECK(take_sums(run, &sums));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_state_space(run->output, &space, &stamp));
+    RITZ_CHECK(ritz_container_write_state_space(run->output, &space, &stamp));
     cli_say(run, "%s:", run->output);
-    RITZ_TRY(describe_states(run, &space));
+    RITZ_CHECK(describe_states(run, &space));
     cli_record(run, "import", space.A.nrow);
-done:
-    ritz_file_sums_free(&sums);
-    ritz_state_space_free(&space);
-    return status;
+    return RITZ_OK;
 }

@@ -86,37 +86,33 @@ static ritz_status find_poles(cli_run *run, const loops_wish *asked,
                               const loop_run *loop, int64_t *count,
                               double _Complex **pole)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space made = {0}, closed = {0};
+    RITZ_OWN(ritz_state_space) made = {0}, closed = {0};
     const ritz_state_space *plant = NULL;
     ritz_stamp stamp = {0};
 
-    RITZ_TRY(model_states(m, damping, &made, &plant));
-    RITZ_FAIL_IF(!plant && asked->states, RITZ_ERR_ARGUMENT,
-                 "--closed-loop: the plant is too large for states, or has "
-                 "structural damping: reduce it");
+    RITZ_CHECK(model_states(m, damping, &made, &plant));
+    RITZ_REFUSE_IF(!plant && asked->states, RITZ_ERR_ARGUMENT,
+                   "--closed-loop: the plant is too large for states, or has "
+                   "structural damping: reduce it");
     if (!plant) {
         cli_warn(run, "whether the loop is stable is not known: the plant is "
                       "too large for that, or has structural damping; reduce "
                       "it");
         sink_set(run, "stability", "%s", "unknown");
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
-                              &closed));
-    RITZ_TRY(say_stability(run, &closed, asked->force));
-    RITZ_TRY(ritz_state_space_poles(&closed, count, pole));
+    RITZ_CHECK(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
+                                &closed));
+    RITZ_CHECK(say_stability(run, &closed, asked->force));
+    RITZ_CHECK(ritz_state_space_poles(&closed, count, pole));
     if (asked->states) {
         stamp = cli_stamp(run);
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_container_write_state_space(asked->states, &closed, &stamp));
         cli_say(run, "%s: the closed loop, %ld states", asked->states,
                 closed.A.nrow);
     }
-done:
-    ritz_state_space_free(&made);
-    ritz_state_space_free(&closed);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status loops_close(cli_run *run, const loops_wish *asked, const model *m,

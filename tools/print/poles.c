@@ -1,5 +1,6 @@
 #include "print/poles.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 #include "print/describe.h"
 
@@ -176,19 +177,15 @@ done:
 static ritz_status scan_dampers(cli_run *run, model *m, const poles_wish *asked,
                                 const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
     ritz_scan_request request = {0};
-    int64_t *damper = NULL;
-    ritz_scan found = {0};
+    RITZ_OWN_ARRAY int64_t *damper = NULL;
+    RITZ_OWN(ritz_scan) found = {0};
 
-    RITZ_TRY(parse_scan(asked->scan, model_dampers(m), &request, &damper));
+    RITZ_CHECK(parse_scan(asked->scan, model_dampers(m), &request, &damper));
     request.mode = asked->mode - 1;
-    RITZ_TRY(model_scan(m, damping, &request, &found));
+    RITZ_CHECK(model_scan(m, damping, &request, &found));
     say_scan(run, &found, asked->tsv);
-done:
-    free(damper);
-    ritz_scan_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 /* Those that are asked for, of what a small model gives. */
@@ -196,24 +193,21 @@ static ritz_status find_poles(cli_run *run, const model *m,
                               const poles_wish *asked,
                               const ritz_damping *damping)
 {
-    ritz_status status = RITZ_OK;
-    ritz_spectrum found = {0};
+    RITZ_OWN(ritz_spectrum) found = {0};
     bool by_hertz = !isnan(asked->up_to_hz);
     double limit = 2.0 * RITZ_PI * asked->up_to_hz * (1.0 + 1e-9);
     ritz_span span = {.modes = asked->modes > 0 ? asked->modes : SOME_MODES};
 
     if (by_hertz)
         span = (ritz_span){.modes = -1, .up_to_hz = asked->up_to_hz};
-    RITZ_TRY(model_spectrum(m, damping, &span, &found));
+    RITZ_CHECK(model_spectrum(m, damping, &span, &found));
     while (m->kind != MODEL_COMPONENT && found.count > 0 &&
            ((asked->modes > 0 && found.count > asked->modes) ||
             (by_hertz && cabs(found.s[found.count - 1]) > limit)))
         found.count--;
     say_poles(run, &found, asked->tsv);
     cli_record(run, "poles", found.count);
-done:
-    ritz_spectrum_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 /* The damping that poles are of. */
@@ -230,29 +224,26 @@ static void say_damping(cli_run *run, model *m, const ritz_damping *damping)
 
 ritz_status poles_report(cli_run *run, const poles_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
-    model m = {0};
+    RITZ_OWN(model) m = {0};
     ritz_damping damping = {0};
 
-    RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_FAIL_IF(m.kind == MODEL_STATES &&
-                     (asked->model.damping || asked->scan ||
-                      asked->model.damper.count > 0),
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is a state space, damped as it is: --damping, --damper "
-                 "and --scan are not for it",
-                 path);
-    RITZ_TRY(model_settle(&m, path, &asked->model, &damping));
+    RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_REFUSE_IF(
+        m.kind == MODEL_STATES && (asked->model.damping || asked->scan ||
+                                   asked->model.damper.count > 0),
+        RITZ_ERR_ARGUMENT,
+        "'%s' is a state space, damped as it is: --damping, --damper "
+        "and --scan are not for it",
+        path);
+    RITZ_CHECK(model_settle(&m, path, &asked->model, &damping));
     if (!asked->tsv)
         say_damping(run, &m, &damping);
     if (asked->scan)
-        RITZ_TRY_IN(path, scan_dampers(run, &m, asked, &damping));
+        RITZ_CHECK_IN(path, scan_dampers(run, &m, asked, &damping));
     else
-        RITZ_TRY_IN(path, find_poles(run, &m, asked, &damping));
+        RITZ_CHECK_IN(path, find_poles(run, &m, asked, &damping));
     if (run->output)
-        RITZ_TRY(cli_save(run, run->output));
-done:
-    model_free(&m);
-    return status;
+        RITZ_CHECK(cli_save(run, run->output));
+    return RITZ_OK;
 }

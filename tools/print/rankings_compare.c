@@ -66,15 +66,14 @@ static void name_all(contest *c)
 
 ritz_status rank_contest(const rank_result *result, bool all, contest *out)
 {
-    ritz_status status = RITZ_OK;
-    contest c = {0};
+    [[gnu::cleanup(rank_contest_free)]] contest c = {0};
     int64_t count = 0;
     bool files = result->file != NULL;
     bool one = result->count == 1;
 
     for (int64_t g = 0; g < result->count; g++)
         count += result->group[g].all.count;
-    RITZ_TRY(contest_new(count, &c));
+    RITZ_CHECK(contest_new(count, &c));
     for (int64_t g = 0; g < result->count; g++) {
         const ranked *group = &result->group[g];
         const ritz_rankings *r = &group->all;
@@ -91,9 +90,7 @@ ritz_status rank_contest(const rank_result *result, bool all, contest *out)
     name_all(&c);
     *out = c;
     c = (contest){0};
-done:
-    rank_contest_free(&c);
-    return status;
+    return RITZ_OK;
 }
 
 void rank_contest_free(contest *all)
@@ -333,11 +330,10 @@ static void write_ranking(FILE *file, const contest *all, int64_t which,
 
 ritz_status rankings_write_table(const char *path, const contest *all)
 {
-    ritz_status status = RITZ_OK;
     bool parts = share_parts(all);
-    cli_table table = {0};
+    RITZ_OWN(cli_table) table = {0};
 
-    RITZ_TRY(cli_table_new(&table));
+    RITZ_CHECK(cli_table_new(&table));
     fprintf(table.file, "by\tat\tdamping\trank\tmode\ttrack\tcluster\thertz\t"
                         "zeta\tvalue\texact_1\texact_2");
     for (int64_t j = 0; parts && j < all->ranking[0]->num_parts; j++)
@@ -345,8 +341,5 @@ ritz_status rankings_write_table(const char *path, const contest *all)
     fprintf(table.file, "\n");
     for (int64_t k = 0; k < all->count; k++)
         write_ranking(table.file, all, k, parts);
-    RITZ_TRY(cli_table_save(&table, path));
-done:
-    cli_table_free(&table);
-    return status;
+    return cli_table_save(&table, path);
 }

@@ -186,24 +186,20 @@ done:
 /* At one configuration: at several, each would want weights of its own. */
 static ritz_status reweigh_outputs(const subject *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_system *system = &s->m->system;
     const ritz_configuration *at = s->m->at;
-    ritz_rank_request request = {0};
-    ritz_reweighing found = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_reweighing) found = {0};
     const rank_wish *asked = s->asked;
 
-    RITZ_FAIL_IF(!at && system->num_configurations > 1, RITZ_ERR_ARGUMENT,
-                 "weights are found at one configuration, --at says which");
+    RITZ_REFUSE_IF(!at && system->num_configurations > 1, RITZ_ERR_ARGUMENT,
+                   "weights are found at one configuration, --at says which");
     if (!at && system->num_configurations == 1)
         at = system->configuration;
-    RITZ_TRY(request_of(s, &ritz_ranker_modal_cost, at, &request));
-    RITZ_TRY(ritz_reweigh(&request, asked->keep, &found));
+    RITZ_CHECK(request_of(s, &ritz_ranker_modal_cost, at, &request));
+    RITZ_CHECK(ritz_reweigh(&request, asked->keep, &found));
     rankings_say_weights(s->run, &request, &found, asked->keep);
-done:
-    ritz_rank_request_free(&request);
-    ritz_reweighing_free(&found);
-    return status;
+    return RITZ_OK;
 }
 
 static void say_group(const subject *s, const ranked *group)
@@ -422,17 +418,16 @@ static ritz_status check_values(const rank_wish *asked, const model *m)
 static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
                                rank_result *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
     ritz_ranking *r = NULL;
 
-    RITZ_TRY_IN(run->operand[0], check_values(asked, m));
-    RITZ_TRY(make_gramians(run, asked, m, &gramians));
+    RITZ_CHECK_IN(run->operand[0], check_values(asked, m));
+    RITZ_CHECK(make_gramians(run, asked, m, &gramians));
     out->group = calloc(1, sizeof *out->group);
-    RITZ_FAIL_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_REFUSE_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
     out->count = 1;
     out->group->all.item = r = calloc(1, sizeof *r);
-    RITZ_FAIL_IF(!r, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_REFUSE_IF(!r, RITZ_ERR_MEMORY, "no memory for rankings");
     out->group->all.count = 1;
     snprintf(r->by, sizeof r->by, "%s", ritz_ranker_hankel.name);
     snprintf(r->reference, sizeof r->reference, "%s",
@@ -441,7 +436,8 @@ static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
              m->kind == MODEL_STATES ? m->states.damping : gramians.damping);
     r->total = nan("");
     r->coupling = nan("");
-    RITZ_TRY(ritz_gramians_hankel(&gramians, &r->num_system, &r->system_value));
+    RITZ_CHECK(
+        ritz_gramians_hankel(&gramians, &r->num_system, &r->system_value));
     cli_say(run, "%ld Hankel values of '%s', %s, damping %s", r->num_system,
             run->operand[0], gramians.engine, rankings_damping(r));
     if (gramians.T.ncol > 0)
@@ -455,56 +451,47 @@ static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
     rankings_say_values(run, r, 40);
     set_groups(run, out);
     sink_set(run, "engine", "%s", gramians.engine);
-done:
-    ritz_gramians_free(&gramians);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank_model(cli_run *run, const rank_wish *asked,
                               rank_result *out)
 {
-    ritz_status status = RITZ_OK;
-    model m = {0};
+    RITZ_OWN(model) m = {0};
 
-    RITZ_TRY(model_read(
+    RITZ_CHECK(model_read(
         run, run->operand[0],
         MODEL_REDUCED | MODEL_SYSTEM | MODEL_COMPONENT | MODEL_STATES, &m));
-    RITZ_TRY(model_prefix(&m, run->operand[0], asked->order));
-    RITZ_TRY(m.kind == MODEL_REDUCED || m.kind == MODEL_SYSTEM
-                 ? rank_modes(run, asked, &m, out)
-                 : rank_values(run, asked, &m, out));
-done:
-    model_free(&m);
-    return status;
+    RITZ_CHECK(model_prefix(&m, run->operand[0], asked->order));
+    return m.kind == MODEL_REDUCED || m.kind == MODEL_SYSTEM
+               ? rank_modes(run, asked, &m, out)
+               : rank_values(run, asked, &m, out);
 }
 
 /* Rankings of --compare. */
 static ritz_status read_rankings(cli_run *run, rank_result *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = run->num_operands;
-    model m = {0};
+    RITZ_OWN(model) m = {0};
 
     out->group = calloc((size_t)count, sizeof *out->group);
     out->file = calloc((size_t)count, sizeof *out->file);
-    RITZ_FAIL_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
-                 "no memory for rankings");
+    RITZ_REFUSE_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
+                   "no memory for rankings");
     for (int64_t k = 0; k < count; k++) {
-        RITZ_TRY(model_read(run, run->operand[k], MODEL_RANKING, &m));
-        RITZ_FAIL_IF(m.rankings.count == 0, RITZ_ERR_FORMAT,
-                     "'%s' holds no ranking", run->operand[k]);
+        RITZ_CHECK(model_read(run, run->operand[k], MODEL_RANKING, &m));
+        RITZ_REFUSE_IF(m.rankings.count == 0, RITZ_ERR_FORMAT,
+                       "'%s' holds no ranking", run->operand[k]);
         out->group[k].all = m.rankings;
         m.rankings = (ritz_rankings){0};
         snprintf(out->file[k], RITZ_NAME_SIZE, "%.63s", run->operand[k]);
         out->count++;
     }
-    RITZ_FAIL_IF(count == 1 && out->group->all.count == 1, RITZ_ERR_ARGUMENT,
-                 "'%s' holds one ranking: name another to compare it with",
-                 run->operand[0]);
+    RITZ_REFUSE_IF(count == 1 && out->group->all.count == 1, RITZ_ERR_ARGUMENT,
+                   "'%s' holds one ranking: name another to compare it with",
+                   run->operand[0]);
     set_groups(run, out);
-done:
-    model_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 void rank_result_free(rank_result *result)
@@ -520,45 +507,38 @@ void rank_result_free(rank_result *result)
 static ritz_status report_rankings(cli_run *run, const rank_wish *asked,
                                    const rank_result *result)
 {
-    ritz_status status = RITZ_OK;
-    contest all = {0};
+    [[gnu::cleanup(rank_contest_free)]] contest all = {0};
     char title[256];
     const ritz_ranking *first = ranked_whole(result->group);
 
     if (run->output) {
         ritz_stamp stamp = cli_stamp(run);
 
-        RITZ_TRY(rank_write(run->output, result, &stamp));
+        RITZ_CHECK(rank_write(run->output, result, &stamp));
     }
-    RITZ_TRY(rank_contest(result, true, &all));
+    RITZ_CHECK(rank_contest(result, true, &all));
     if (asked->table)
-        RITZ_TRY(rankings_write_table(asked->table, &all));
+        RITZ_CHECK(rankings_write_table(asked->table, &all));
     rank_contest_free(&all);
-    RITZ_TRY(rank_contest(result, false, &all));
+    RITZ_CHECK(rank_contest(result, false, &all));
     if (all.count > 1)
-        RITZ_TRY(rankings_compare(run, &all, asked->top));
+        RITZ_CHECK(rankings_compare(run, &all, asked->top));
     snprintf(title, sizeof title, "%.100s, damping %.100s", run->operand[0],
              rankings_damping(first));
     if (asked->chart)
-        RITZ_TRY(asked->draw(asked->chart, title, &all, asked->top));
+        RITZ_CHECK(asked->draw(asked->chart, title, &all, asked->top));
     cli_record(run, first->by,
                first->count > 0 ? first->count : first->num_system);
-done:
-    rank_contest_free(&all);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status rank_run(cli_run *run, const rank_wish *asked)
 {
-    ritz_status status = RITZ_OK;
-    rank_result result = {0};
+    RITZ_OWN(rank_result) result = {0};
 
     if (asked->compare)
-        RITZ_TRY(read_rankings(run, &result));
+        RITZ_CHECK(read_rankings(run, &result));
     else
-        RITZ_TRY(rank_model(run, asked, &result));
-    RITZ_TRY(report_rankings(run, asked, &result));
-done:
-    rank_result_free(&result);
-    return status;
+        RITZ_CHECK(rank_model(run, asked, &result));
+    return report_rankings(run, asked, &result);
 }

@@ -1,5 +1,6 @@
 #include "print/responses.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 
 #include <ritz/singular.h>
@@ -233,27 +234,25 @@ static ritz_status find_singular(cli_run *run, const responses_wish *asked,
                                  const model *m, ritz_responder *responder,
                                  ritz_response *response)
 {
-    ritz_status status = RITZ_OK;
     ritz_scales scales = {0};
-    double *size = NULL;
+    RITZ_OWN_ARRAY double *size = NULL;
     double hertz = 0.0, value = 0.0;
 
     if (!asked->singular)
         return RITZ_OK;
     size = calloc((size_t)response->num_inputs + 1, sizeof *size);
-    RITZ_FAIL_IF(!size, RITZ_ERR_MEMORY, "no memory for sizes of inputs");
-    RITZ_TRY(find_scales(asked, m, response, size, &scales));
-    RITZ_TRY(ritz_singular_of(&scales, response));
-    RITZ_TRY(ritz_singular_peak(response, &scales, responder, &hertz, &value));
+    RITZ_REFUSE_IF(!size, RITZ_ERR_MEMORY, "no memory for sizes of inputs");
+    RITZ_CHECK(find_scales(asked, m, response, size, &scales));
+    RITZ_CHECK(ritz_singular_of(&scales, response));
+    RITZ_CHECK(
+        ritz_singular_peak(response, &scales, responder, &hertz, &value));
     response->singular_peak[0] = hertz;
     response->singular_peak[1] = value;
     cli_say(run, "%-41s %14.6e %14.7g", "largest singular value", value, hertz);
     if (isinf(value))
         cli_warn(run, "it is infinite: a pole at %.7g Hz is not damped", hertz);
     set_measure(run, "largest singular value", value, hertz);
-done:
-    free(size);
-    return status;
+    return RITZ_OK;
 }
 
 static void say_zeros(cli_run *run, int64_t count, const double _Complex *zero)
@@ -383,36 +382,29 @@ done:
 
 ritz_status responses_run(cli_run *run, const responses_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
-    model m = {0};
-    model other = {0};
+    RITZ_OWN(model) m = {0};
+    RITZ_OWN(model) other = {0};
     ritz_damping damping = {0};
     ritz_grid grid = {0};
-    ritz_response response = {0};
-    loop_run loop = {0};
+    RITZ_OWN(ritz_response) response = {0};
+    RITZ_OWN(loop_run) loop = {0};
     ritz_stamp stamp = {0};
     ritz_io ends; /* borrowed */
 
-    RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_TRY(loops_read(run, &asked->loops, &loop));
-    RITZ_TRY(model_settle(&m, path, &asked->model, &damping));
+    RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_CHECK(loops_read(run, &asked->loops, &loop));
+    RITZ_CHECK(model_settle(&m, path, &asked->model, &damping));
     if (asked->points_of)
-        RITZ_TRY(borrow_points(run, asked, &other, &grid));
+        RITZ_CHECK(borrow_points(run, asked, &other, &grid));
     else
-        RITZ_TRY_IN(path, place_points(&m, asked, &grid));
+        RITZ_CHECK_IN(path, place_points(&m, asked, &grid));
     ends = model_io(&m);
-    RITZ_FAIL_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
-                 RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
-                 path, ends.num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_TRY_IN(
+    RITZ_REFUSE_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
+                   RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
+                   path, ends.num_inputs == 0 ? "inputs" : "outputs");
+    RITZ_CHECK_IN(
         path, find_response(run, &m, asked, &damping, &grid, &loop, &response));
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_response(run->output, &response, &stamp));
-done:
-    ritz_response_free(&response);
-    loop_run_free(&loop);
-    model_free(&m);
-    model_free(&other);
-    return status;
+    return ritz_container_write_response(run->output, &response, &stamp);
 }

@@ -109,31 +109,28 @@ static ritz_status parse_mode(const char *text, int64_t *mode, double *amount)
 
 static ritz_status take_mode(const char *text, drive *d)
 {
-    ritz_status status = RITZ_OK;
     const ritz_simulated *s = &d->subject;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t mode = 0;
     double amount = 1.0;
 
-    RITZ_FAIL_IF(s->states, RITZ_ERR_ARGUMENT,
-                 "a state space has no modes: give a file");
-    RITZ_TRY(parse_mode(text, &mode, &amount));
+    RITZ_REFUSE_IF(s->states, RITZ_ERR_ARGUMENT,
+                   "a state space has no modes: give a file");
+    RITZ_CHECK(parse_mode(text, &mode, &amount));
     if (s->component) {
         const ritz_span span = {.modes = mode};
 
-        RITZ_TRY(ritz_eigen_sparse(&s->component->K, &s->component->M, &span,
-                                   &pairs));
+        RITZ_CHECK(ritz_eigen_sparse(&s->component->K, &s->component->M, &span,
+                                     &pairs));
     } else {
-        RITZ_TRY(ritz_eigen_dense(s->model->K, s->model->M, &pairs));
+        RITZ_CHECK(ritz_eigen_dense(s->model->K, s->model->M, &pairs));
     }
-    RITZ_FAIL_IF(mode > pairs.Phi.ncol, RITZ_ERR_ARGUMENT,
-                 "there are %" PRId64 " modes, not %" PRId64, pairs.Phi.ncol,
-                 mode);
+    RITZ_REFUSE_IF(mode > pairs.Phi.ncol, RITZ_ERR_ARGUMENT,
+                   "there are %" PRId64 " modes, not %" PRId64, pairs.Phi.ncol,
+                   mode);
     for (int64_t k = 0; k < pairs.Phi.nrow; k++)
         d->x0[k] = amount * ritz_dense_col(&pairs.Phi, mode - 1)[k];
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    return RITZ_OK;
 }
 
 /* A value, and its rate if there is one, a row. */
@@ -204,17 +201,12 @@ static ritz_status measure_difference(const ritz_simulated *subject,
                                       ritz_simulation_request request,
                                       double *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_simulation made = {0}, exact = {0};
+    RITZ_OWN(ritz_simulation) made = {0}, exact = {0};
 
-    RITZ_TRY(ritz_simulate(subject, &request, &made));
+    RITZ_CHECK(ritz_simulate(subject, &request, &made));
     request.integrator = &ritz_integrator_modal;
-    RITZ_TRY(ritz_simulate(subject, &request, &exact));
-    RITZ_TRY(ritz_simulation_difference(&exact, &made, out));
-done:
-    ritz_simulation_free(&made);
-    ritz_simulation_free(&exact);
-    return status;
+    RITZ_CHECK(ritz_simulate(subject, &request, &exact));
+    return ritz_simulation_difference(&exact, &made, out);
 }
 
 static ritz_status say_integrator(cli_run *run, const ritz_simulated *subject,
@@ -344,7 +336,6 @@ static void warn_of_rounding(cli_run *run, double accuracy,
 static ritz_status simulate_response(cli_run *run, const simulation_wish *asked,
                                      const drive *d)
 {
-    ritz_status status = RITZ_OK;
     ritz_simulation_request request = {
         .integrator = asked->integrator,
         .seconds = asked->seconds,
@@ -357,22 +348,23 @@ static ritz_status simulate_response(cli_run *run, const simulation_wish *asked,
         .x0 = d->x0,
         .v0 = d->v0,
     };
-    ritz_simulation s = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
     ritz_stamp stamp = {0};
     ritz_accuracy reached = {.left = -1};
 
-    RITZ_FAIL_IF(asked->input.count == 0 && !asked->initial, RITZ_ERR_ARGUMENT,
-                 "nothing moves it: give --input NAME=SIGNAL or --initial");
+    RITZ_REFUSE_IF(asked->input.count == 0 && !asked->initial,
+                   RITZ_ERR_ARGUMENT,
+                   "nothing moves it: give --input NAME=SIGNAL or --initial");
     if (isnan(asked->step)) {
-        RITZ_TRY(ritz_simulate_accurate(&d->subject, &request, asked->accuracy,
-                                        &reached, &s));
+        RITZ_CHECK(ritz_simulate_accurate(&d->subject, &request,
+                                          asked->accuracy, &reached, &s));
         cli_record_error(run, "integration", reached.error);
         warn_of_rounding(run, asked->accuracy, &reached, &s);
     } else {
-        RITZ_TRY(ritz_simulate(&d->subject, &request, &s));
+        RITZ_CHECK(ritz_simulate(&d->subject, &request, &s));
     }
     stamp = cli_stamp(run);
-    RITZ_TRY(ritz_container_write_simulation(run->output, &s, &stamp));
+    RITZ_CHECK(ritz_container_write_simulation(run->output, &s, &stamp));
     cli_say(run, "%s:", run->output);
     describe_simulation(run, &s);
     if (isnan(asked->step))
@@ -380,9 +372,7 @@ static ritz_status simulate_response(cli_run *run, const simulation_wish *asked,
                    "%.1e of each output's largest, by half the step",
                    reached.error);
     cli_record(run, s.integrator, s.order);
-done:
-    ritz_simulation_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_simulated find_subject(const model *m,

@@ -155,33 +155,28 @@ static void say_kind(cli_run *run, const ritz_system *system,
 static ritz_status write_table(const char *path, const ritz_system *system,
                                const ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
-    cli_table table = {0};
+    RITZ_OWN(cli_table) table = {0};
 
-    RITZ_TRY(cli_table_new(&table));
+    RITZ_CHECK(cli_table_new(&table));
     fprintf(table.file, "track\tconfiguration\tmode\thertz\tmac\n");
     for (int64_t k = 0; k < t->num_configurations; k++)
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
             fprintf(table.file, "%ld\t%s\t%ld\t%.12g\t%.6g\n", t->track[i] + 1,
                     at_of(system, k), (i - t->first[k]) + 1, t->hertz[i],
                     t->mac[i]);
-    RITZ_TRY(cli_table_save(&table, path));
-done:
-    cli_table_free(&table);
-    return status;
+    return cli_table_save(&table, path);
 }
 
 ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
                           const ritz_system *system, const char *path)
 {
-    ritz_status status = RITZ_OK;
-    ritz_tracking t = {0};
+    RITZ_OWN(ritz_tracking) t = {0};
 
     sink_object(run, "tracking");
-    RITZ_TRY_IN("tracks", ritz_track(stage, system, system->band_hz[1], &t));
+    RITZ_CHECK_IN("tracks", ritz_track(stage, system, system->band_hz[1], &t));
     sink_set(run, "tracks", "%ld", t.num_tracks);
     if (path)
-        RITZ_TRY(write_table(path, system, &t));
+        RITZ_CHECK(write_table(path, system, &t));
     if (t.num_configurations > 1)
         cli_say(run,
                 "\nFlexible modes over %ld configurations: %ld tracks by "
@@ -193,7 +188,5 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
     for (int k = 0; k < NUM_KINDS; k++)
         say_kind(run, system, &t, k);
     sink_end(run);
-done:
-    ritz_tracking_free(&t);
-    return status;
+    return RITZ_OK;
 }

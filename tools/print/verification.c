@@ -107,18 +107,14 @@ static ritz_status find_states(const cli_run *run, model *full,
 static ritz_status verify_states(cli_run *run, model *full, model *reduced,
                                  const verify_wish *asked)
 {
-    ritz_status status = RITZ_OK;
-    ritz_measures measures = {0};
+    RITZ_OWN(ritz_measures) measures = {0};
 
     cli_record(run, reduced->states.origin.method, model_order(reduced));
-    RITZ_TRY(find_states(run, full, reduced, asked));
-    RITZ_TRY_IN(run->operand[1],
-                ritz_verify_states(&full->states, &reduced->states,
-                                   &asked->verify, &measures));
-    RITZ_TRY(keep_measures(run, asked, &measures, reduced));
-done:
-    ritz_measures_free(&measures);
-    return status;
+    RITZ_CHECK(find_states(run, full, reduced, asked));
+    RITZ_CHECK_IN(run->operand[1],
+                  ritz_verify_states(&full->states, &reduced->states,
+                                     &asked->verify, &measures));
+    return keep_measures(run, asked, &measures, reduced);
 }
 
 /* A reduced component is written with its dampers apart, as it was read. */
@@ -138,55 +134,47 @@ static ritz_status take_apart(cli_run *run, const verify_wish *asked,
 static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
                                    verify_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     ritz_verify_request *request = &asked->verify;
     const cli_list *damper = &asked->model.damper;
-    ritz_measures measures = {0};
+    RITZ_OWN(ritz_measures) measures = {0};
 
-    RITZ_FAIL_IF(full->kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
-                 "'%s' is a state space and '%s' is none: there is nothing to "
-                 "compare by",
-                 run->operand[0], run->operand[1]);
-    RITZ_TRY(model_damping(reduced, asked->model.damping, &request->damping));
+    RITZ_REFUSE_IF(
+        full->kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+        "'%s' is a state space and '%s' is none: there is nothing to "
+        "compare by",
+        run->operand[0], run->operand[1]);
+    RITZ_CHECK(model_damping(reduced, asked->model.damping, &request->damping));
     if (reduced->at && !(request->band_hz[1] > 0.0))
         memcpy(request->band_hz, reduced->system.band_hz,
                sizeof request->band_hz);
     cli_record(run, reduced->at ? "system" : reduced->reduced.origin.method,
                model_order(reduced));
-    RITZ_TRY_IN(run->operand[0], model_install(full, damper));
-    RITZ_TRY_IN(run->operand[1], model_install(reduced, damper));
-    RITZ_TRY_IN(run->operand[1],
-                reduced->at
-                    ? ritz_verify_system(&full->component, reduced->at, request,
-                                         &measures)
-                    : ritz_verify_reduced(&full->component, &reduced->reduced,
-                                          request, &measures));
-    RITZ_TRY(take_apart(run, asked, reduced));
-    RITZ_TRY(keep_measures(run, asked, &measures, reduced));
-done:
-    ritz_measures_free(&measures);
-    return status;
+    RITZ_CHECK_IN(run->operand[0], model_install(full, damper));
+    RITZ_CHECK_IN(run->operand[1], model_install(reduced, damper));
+    RITZ_CHECK_IN(run->operand[1],
+                  reduced->at
+                      ? ritz_verify_system(&full->component, reduced->at,
+                                           request, &measures)
+                      : ritz_verify_reduced(&full->component, &reduced->reduced,
+                                            request, &measures));
+    RITZ_CHECK(take_apart(run, asked, reduced));
+    return keep_measures(run, asked, &measures, reduced);
 }
 
 ritz_status verify_run(cli_run *run, verify_wish *asked)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[1];
-    model full = {0};
-    model reduced = {0};
+    RITZ_OWN(model) full = {0};
+    RITZ_OWN(model) reduced = {0};
 
-    RITZ_TRY(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
-                        &full));
-    RITZ_TRY(model_read(run, path, MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES,
-                        &reduced));
-    RITZ_TRY(model_prefix(&reduced, path, asked->model.order));
-    RITZ_TRY(model_at(&reduced, path, asked->model.at));
-    RITZ_TRY(check_limits(run, asked, reduced.kind == MODEL_STATES));
-    RITZ_TRY(reduced.kind == MODEL_STATES
-                 ? verify_states(run, &full, &reduced, asked)
-                 : verify_matrices(run, &full, &reduced, asked));
-done:
-    model_free(&reduced);
-    model_free(&full);
-    return status;
+    RITZ_CHECK(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
+                          &full));
+    RITZ_CHECK(model_read(
+        run, path, MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &reduced));
+    RITZ_CHECK(model_prefix(&reduced, path, asked->model.order));
+    RITZ_CHECK(model_at(&reduced, path, asked->model.at));
+    RITZ_CHECK(check_limits(run, asked, reduced.kind == MODEL_STATES));
+    return reduced.kind == MODEL_STATES
+               ? verify_states(run, &full, &reduced, asked)
+               : verify_matrices(run, &full, &reduced, asked);
 }
