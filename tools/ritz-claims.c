@@ -33,22 +33,19 @@ static ritz_status find_tools(claims_state *state)
 /* An empty folder in which commands run; a data folder that moves with them. */
 static ritz_status make_folder(claims_state *state, const char *data)
 {
-    ritz_status status = RITZ_OK;
     const char *parent = getenv("TMPDIR");
 
-    RITZ_TRY(find_tools(state));
+    RITZ_CHECK(find_tools(state));
     if (data && !realpath(data, state->data))
         snprintf(state->data, sizeof state->data, "%s", data);
     snprintf(state->folder, sizeof state->folder, "%s/ritz-claims-XXXXXX",
              parent && *parent ? parent : "/tmp");
-    if (!mkdtemp(state->folder)) {
-        ritz_record("cannot make a folder '%s': %s", state->folder,
-                    strerror(errno));
-        state->folder[0] = '\0';
-        status = RITZ_ERR_FILE;
-    }
-done:
-    return status;
+    if (mkdtemp(state->folder))
+        return RITZ_OK;
+    ritz_record("cannot make a folder '%s': %s", state->folder,
+                strerror(errno));
+    state->folder[0] = '\0';
+    return RITZ_ERR_FILE;
 }
 
 static ritz_status run_files(cli_run *run, const char *data)
