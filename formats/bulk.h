@@ -5,7 +5,7 @@
 #include "formats/cards.h"
 #include "model/ties.h"
 
-#include <ritz/deck.h>
+#include <ritz/import.h>
 
 /* GRID as it is written. */
 typedef struct ritz_bulk_grid {

@@ -11,7 +11,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/elements.h>
+#include <ritz/model.h>
 
 enum { MOST_GRIDS = 20 };
 

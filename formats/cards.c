@@ -10,7 +10,7 @@
 #include "base/path.h"
 #include "formats/cards_lines.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -10,7 +10,7 @@
 
 #include "base/array.h"
 
-#include <ritz/status.h>
+#include <ritz/base.h>
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -7,7 +7,7 @@
 #include "formats/cards_lines.h"
 #include "formats/decimal.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/deck.h>
+#include <ritz/import.h>
 
 #include <stdlib.h>
 #include <string.h>

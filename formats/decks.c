@@ -1,5 +1,5 @@
 /* The table of decks. NASTRAN stays last: it takes any text. */
-#include <ritz/deck.h>
+#include <ritz/import.h>
 
 const ritz_deck_format *const ritz_decks[] = {
     &ritz_deck_nastran,

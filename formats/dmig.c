@@ -20,7 +20,7 @@
 #include "formats/cards.h"
 #include "formats/matrix.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <ctype.h>
 #include <math.h>

@@ -12,7 +12,7 @@
 #include "base/letter.h"
 #include "formats/reduced_matrices.h"
 
-#include <ritz/version.h>
+#include <ritz/base.h>
 
 #include <math.h>
 #include <matio.h>

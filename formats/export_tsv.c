@@ -7,6 +7,7 @@
 
 #include <ritz/export.h>
 
+#include <complex.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

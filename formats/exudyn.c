@@ -3,7 +3,7 @@
 #include "base/tolerances.h"
 #include "linear/orthonormal.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <string.h>

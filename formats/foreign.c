@@ -3,7 +3,7 @@
 #include "base/array.h"
 #include "base/path.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* The table of formats of matrices. */
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 const ritz_format *const ritz_formats[] = {
     &ritz_format_output4,

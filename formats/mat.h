@@ -2,7 +2,7 @@
 #ifndef RITZ_FORMATS_MAT_H
 #define RITZ_FORMATS_MAT_H
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 /* Numbers of the format for types of values. */
 enum {

@@ -2,7 +2,7 @@
 #ifndef RITZ_FORMATS_MATRIX_H
 #define RITZ_FORMATS_MATRIX_H
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 /* No place occurs twice. */
 typedef struct ritz_triplets {

@@ -15,7 +15,7 @@
 #include "formats/lines.h"
 #include "formats/matrix.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -10,7 +10,7 @@
 #include "formats/reduced_matrices.h"
 #include "formats/sink.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <inttypes.h>
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_FORMATS_OUTPUT4_H
 #define RITZ_FORMATS_OUTPUT4_H
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <math.h>
 

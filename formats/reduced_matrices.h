@@ -3,7 +3,7 @@
 #define RITZ_FORMATS_REDUCED_MATRICES_H
 
 #include <ritz/export.h>
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 /**
  * The matrices that `names` lists: K, M, D, T, B (inputs), C, Cv, Ca (outputs).

@@ -2,8 +2,8 @@
 #include "base/alloc.h"
 #include "base/search.h"
 
-#include <ritz/eigen.h>
-#include <ritz/shapes.h>
+#include <ritz/export.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #define RITZ_FORMATS_SINK_H
 
 #include <ritz/export.h>
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <stdio.h>
 

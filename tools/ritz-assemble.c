@@ -3,7 +3,7 @@
 #include "print/describe.h"
 #include "print/tracks.h"
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* ritz-compare - two-stage reduction of a scene over all configurations. */
 #include "print/comparison.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 /* "1e-12,1e-6" */
 static void read_tolerances(const cli_program *program, const char *list,

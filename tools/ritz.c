@@ -1,6 +1,5 @@
 /* ritz - list the tools, and start one: `ritz basis ...` is `ritz-basis ...` */
-#include <ritz/text.h>
-#include <ritz/version.h>
+#include <ritz/base.h>
 
 #include <errno.h>
 #include <stdio.h>

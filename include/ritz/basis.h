@@ -1,89 +1,214 @@
-/*
- * A basis: the subspace in which a component is reduced, u = T q or, of states,
- * [u; u'] = T z.
- */
+/* Methods that make a basis: what they are asked, how to find one. */
 #ifndef RITZ_BASIS_H
 #define RITZ_BASIS_H
 
-#include <ritz/damping.h>
-#include <ritz/dense.h>
-#include <ritz/text.h>
-
-#include <stdbool.h>
+#include <ritz/model.h>
 
 #pragma GCC visibility push(default)
 
-/* A method that makes another kind adds it here, and its name in basis.c. */
-typedef enum ritz_column_kind {
-    RITZ_COLUMN_RIGID,      /* free rigid-body motion */
-    RITZ_COLUMN_CONSTRAINT, /* answers unit motion of one attached dof */
-    RITZ_COLUMN_NORMAL,     /* eigenvector, interface clamped or free */
-    RITZ_COLUMN_RESIDUAL,   /* answers a unit force, less what is kept */
-    RITZ_COLUMN_SYSTEM,     /* part of system modes, from the second stage */
-    RITZ_COLUMN_KRYLOV, /* of a block Krylov sequence, any expansion point */
-    RITZ_COLUMN_STATIC, /* static Ritz vector: answers a load */
-    RITZ_COLUMN_ATTACHMENT, /* inertia-relief attachment mode */
-    RITZ_COLUMN_INTERFACE,  /* characteristic constraint mode */
-    RITZ_COLUMN_MASSLESS,   /* residual flexibility, its mass left out */
-    RITZ_COLUMN_FORCE,      /* residual flexibility of a dual interface force */
-    RITZ_COLUMN_STATE,      /* of a first-order basis */
-    RITZ_COLUMN_PERTURBED,  /* a state that answers statically */
-    RITZ_COLUMN_BALANCED,   /* balanced, of second order */
-} ritz_column_kind;
-
-/* What each of r columns is. */
-typedef struct ritz_columns {
-    int64_t count;
-    ritz_column_kind *kind;
-    int64_t *dof;     /* row of the full component it attaches; -1 where none */
-    double *hertz;    /* NaN where none */
-    double *residual; /* relative, of the eigenpair; NaN where none */
-} ritz_columns;
-
-/* How it was made. */
-typedef struct ritz_origin {
-    char method[RITZ_NAME_SIZE];
-    char options[RITZ_NAME_SIZE];   /* as asked: "modes 12" */
-    char reference[RITZ_NAME_SIZE]; /* key in docs/references.bib */
-    char engine[RITZ_NAME_SIZE];    /* "dense LAPACK", "CHOLMOD + ARPACK" */
-} ritz_origin;
+/* What hangs on the attached dofs while modes are found, of their order. */
+typedef struct ritz_neighbour {
+    ritz_dense K, M; /* attached x attached, condensed [N/m], [kg]; {0}: none */
+} ritz_neighbour;
 
 /*
- * T, n x r, and of each of its columns what it is. Of states T has 2n rows, n
- * displacements and then n velocities, or the states of a state space; left
- * vectors W may stand beside: see ritz_reduce_states.
+ * What is asked of a method. A method that needs more gets a field here, which
+ * is zero for all others; its signature stays.
  */
-typedef struct ritz_basis {
-    ritz_dense T;
-    ritz_dense W; /* as T; {0}: T itself */
-    bool states;
-    int64_t num_hankel; /* values of the model that was balanced; 0: none */
-    double *hankel;     /* descending */
-    double bound; /* of the H-infinity error, outputs over their limits, where
-                     there are Hankel values; NaN: they bound nothing */
-    char damping[RITZ_DAMPING_SIZE]; /* of states, or with a W: what they were
-                                        made with, as ritz_damping_parse reads */
-    double among_hz; /* they are made of modes up to here alone; 0: of all */
-    ritz_columns columns;
-    ritz_origin origin;
-    char remark[4 * RITZ_NAME_SIZE]; /* what a user should know; not stored */
-} ritz_basis;
+typedef struct ritz_request {
+    const ritz_component *component; /* borrowed */
+    const ritz_state_space *space; /* in its place, RITZ_USES_SPACE; borrowed */
+    ritz_dofs attached; /* kept as they are, in this order; borrowed */
+    int64_t modes;      /* how many flexible ones; -1: as up_to_hz says */
+    double up_to_hz;    /* every mode up to this frequency; 0: modes decides */
+    double tolerance;   /* relative, below which a column is dependent */
+    ritz_choice choice; /* shifts, loads, inner product and so on */
+    const ritz_neighbour *neighbour; /* loaded interface; NULL: none */
+} ritz_request;
 
-/** @p r columns of kind normal, with neither dof nor hertz nor residual. */
-ritz_status ritz_columns_new(int64_t r, ritz_columns *out);
-ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out);
+/* A request that asks for nothing yet. */
+#define RITZ_REQUEST_NONE                                                      \
+    {                                                                          \
+        .modes = -1, .tolerance = 1e-10                                        \
+    }
 
-/** Basis of @p r zero columns for @p n dofs. */
-ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out);
+enum { RITZ_NAMED_FOR_COMPONENTS = 1, RITZ_NAMED_FOR_SCENES = 2 };
 
-/** Name of a kind, as files hold it: "normal". */
-const char *ritz_column_name(ritz_column_kind kind);
+typedef struct ritz_method {
+    const char *name;      /* as typed on the command line */
+    const char *summary;   /* one line for --list */
+    const char *reference; /* key in docs/references.bib */
+    /* what a newcomer chooses by, a line of --list each: for which components,
+       at what cost, what is guaranteed, where it fails */
+    const char *when, *cost, *holds, *fails;
+    int uses;       /* RITZ_USES_... */
+    int only_named; /* ritz-fit tries it only where it is named: sum of
+                       RITZ_NAMED_FOR_... */
+    /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
+    ritz_status (*make)(const ritz_request *request, ritz_basis *out);
+} ritz_method;
 
-/** Kind of that name; false if there is none. */
-bool ritz_column_find(const char *name, ritz_column_kind *out);
+/** All methods, ended by NULL. */
+extern const ritz_method *const ritz_methods[];
 
-void ritz_columns_free(ritz_columns *columns);
-void ritz_basis_free(ritz_basis *basis);
+extern const ritz_method ritz_method_balanced;
+extern const ritz_method ritz_method_balanced_band;
+extern const ritz_method ritz_method_balanced_position;
+extern const ritz_method ritz_method_balanced_velocity;
+extern const ritz_method ritz_method_craig_bampton;
+extern const ritz_method ritz_method_dual_craig_bampton;
+extern const ritz_method ritz_method_full;
+extern const ritz_method ritz_method_guyan;
+extern const ritz_method ritz_method_inertia_relief;
+extern const ritz_method ritz_method_irs;
+extern const ritz_method ritz_method_krylov;
+extern const ritz_method ritz_method_krylov_cms_fixed;
+extern const ritz_method ritz_method_krylov_cms_free;
+extern const ritz_method ritz_method_krylov_damped;
+extern const ritz_method ritz_method_lanczos_one_sided;
+extern const ritz_method ritz_method_lanczos_two_sided;
+extern const ritz_method ritz_method_loaded_interface;
+extern const ritz_method ritz_method_macneal;
+extern const ritz_method ritz_method_macneal_rubin;
+extern const ritz_method ritz_method_modal_balanced;
+extern const ritz_method ritz_method_normal_modes;
+extern const ritz_method ritz_method_rigid;
+extern const ritz_method ritz_method_rubin;
+extern const ritz_method ritz_method_serep;
+extern const ritz_method ritz_method_tangential;
+
+/** Method called @p name; NULL and a sentence with the nearest if none. */
+const ritz_method *ritz_method_find(const char *name);
+
+/**
+ * Say whether a request makes sense to a method, before there is a component.
+ *
+ * @return RITZ_ERR_ARGUMENT if it names both a number of modes and a frequency,
+ *         neither, or what the method does not use
+ */
+ritz_status ritz_request_check(const ritz_method *method,
+                               const ritz_request *request);
+
+/** Make a basis and sign it with method, options and reference. */
+ritz_status ritz_basis_make(const ritz_method *method,
+                            const ritz_request *request, ritz_basis *out);
+
+/*
+ * Gramians, Hankel singular values and balancing. With
+ *
+ *     A W_c E' + E W_c A' + B B' = 0,    A' W_o E + E' W_o A + C' C = 0,
+ *
+ * W_c = Z_c Z_c' and W_o = Z_o Z_o', the Hankel values are the singular values
+ * of Z_o' E Z_c. Only the factors are ever formed. Outputs that have a limit
+ * are divided by it, so that values of different quantities can be compared.
+ *
+ * Three engines give them:
+ *
+ *     dense     of first-order form, by SLICOT; any damping; O(n^3)
+ *     modal     closed form in modal coordinates; modal damping; O(m^2)
+ *     low-rank  ADI on sparse M, D, K; damping that lets Gramians decay
+ *
+ * [Moore1981], [Hammarling1982]
+ */
+
+/*
+ * Of n states: those of a state space, or x = [u; u'] of a component, for which
+ * n is twice its dofs and E = [I 0; 0 M].
+ */
+typedef struct ritz_gramians {
+    ritz_dense Zc;      /* n x k */
+    ritz_dense EZc;     /* n x k; {0}: E is the identity */
+    ritz_dense Zo;      /* n x l */
+    ritz_dense T, W;    /* n x a, W'E T = I: what belongs to poles that are not
+                        left of the axis (rigid modes: positions and then
+                        velocities). It has no Gramian and stands apart */
+    double residual[2]; /* of either equation, |R| / |B B'| and |R| / |C' C|,
+                           where iterated; 0: exact to rounding */
+    char engine[RITZ_NAME_SIZE];     /* "SLICOT SB03OD", "closed form", "ADI" */
+    char damping[RITZ_DAMPING_SIZE]; /* of a component, that was used */
+} ritz_gramians;
+
+/*
+ * The order of a truncation and its bound: with sigma_1 .. sigma_m and r kept,
+ * the H-infinity norm of the error is at most 2 sum_{k > r} sigma_k, each value
+ * that repeats counted once.
+ */
+typedef struct ritz_balanced {
+    int64_t count;   /* m Hankel values, of which rounding leaves these */
+    double *sigma;   /* m, descending */
+    int64_t kept;    /* r */
+    ritz_dense T, W; /* n x r, W'E T = I, of the kept ones, best first */
+    double bound;    /* 2 sum of the rest; rank decisions are not in it */
+} ritz_balanced;
+
+/**
+ * Dense, of a state space, E or not. Poles that are right of the axis, or left
+ * of it by no more than eight times their rounding, stand apart; those of a
+ * model of which rounding provably makes none unstable do not. E that is
+ * symmetric and definite is reduced by its Cholesky factor (SLICOT SB03OD),
+ * another one is kept (SG03BD).
+ *
+ * @return RITZ_ERR_ARGUMENT if it has no states, no inputs or no outputs, or a
+ *         limit is not positive; RITZ_ERR_FORMAT as ritz_state_space_check;
+ *         RITZ_ERR_CONVERGENCE if poles that must be told apart are too close
+ * @cost   some 60 n^3, a third where A and E are symmetric, thrice with SG03BD
+ * @see    [Hammarling1982], [Penzl1998]
+ */
+ritz_status ritz_gramians_of_space(const ritz_state_space *model,
+                                   ritz_gramians *out);
+
+/* What is asked of a component's Gramians. */
+typedef struct ritz_gramians_request {
+    const ritz_component *component; /* borrowed */
+    ritz_damping damping;            /* beside its matrices and dampers */
+    ritz_engine engine;
+    double among_hz;   /* modal: all modes up to here; 0: all there are */
+    double band_hz[2]; /* modal: over this band alone; 0, 0: all frequencies */
+    double tolerance;  /* low-rank: of the residual; 0: 1e-10 */
+} ritz_gramians_request;
+
+/**
+ * Of a component, by the engine that is asked for. `auto` is: modal where all
+ * modes can be had and D couples none, dense up to RITZ_STATE_DOFS, otherwise
+ * low-rank.
+ *
+ * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
+ *         does not fit it; RITZ_ERR_CONVERGENCE if low rank is not low
+ */
+ritz_status ritz_gramians_of_component(const ritz_gramians_request *request,
+                                       ritz_gramians *out);
+
+/**
+ * Hankel values, to be freed, descending: singular values of Z_o' E Z_c, small
+ * ones as accurate as the factors are; 0 stands for what is below eps^2 of the
+ * largest.
+ *
+ * @see [Drmac1998]
+ */
+ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
+                                 double **sigma);
+
+/**
+ * Balance by square roots: Z_o'E Z_c = U S V', T = Z_c V S^-1/2,
+ * W = Z_o U S^-1/2, cut to @p order, or where values fall below @p tolerance of
+ * the largest, whichever is less (order -1: all). Equal values (relative gap
+ * below 1e-6) are kept or dropped whole: the cut moves down. Values below
+ * max(k, l) eps of the largest, and those whose directions rounding has taken,
+ * are never kept nor counted.
+ *
+ * [Moore1981], [Tombs1987]
+ */
+ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
+                                  double tolerance, ritz_balanced *out);
+
+/**
+ * 2 sum of sigma_k, k = kept.., each value that repeats (relative gap below
+ * 1e-9: no error tells such from equal ones) counted once.
+ */
+double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept);
+
+void ritz_gramians_free(ritz_gramians *gramians);
+void ritz_balanced_free(ritz_balanced *balanced);
 
 #pragma GCC visibility pop
 

@@ -1,4 +1,31 @@
 /*
+ * Where the models that a scene names come from. Assembly and reduction ask a
+ * source and open no file; ritz_container_source answers from containers, and
+ * a program may answer from memory.
+ */
+#ifndef RITZ_CONTAINER_H
+#define RITZ_CONTAINER_H
+
+#include <ritz/model.h>
+#include <ritz/ranking.h>
+#include <ritz/response.h>
+#include <ritz/simulate.h>
+
+#pragma GCC visibility push(default)
+
+typedef struct ritz_source {
+    void *state; /* given to each function */
+    /** "component" or "reduced", what the model called @p name is. */
+    ritz_status (*kind)(void *state, const char *name,
+                        char kind[static RITZ_NAME_SIZE]);
+    /** A full model, settled; the caller frees it. */
+    ritz_status (*component)(void *state, const char *name,
+                             ritz_component *out);
+    /** A reduced model with all of its columns; the caller frees it. */
+    ritz_status (*reduced)(void *state, const char *name, ritz_reduced *out);
+} ritz_source;
+
+/*
  * The HDF5 container in which tools hand their objects to each other: see
  * docs/container.md for what lies where.
  *
@@ -7,20 +34,6 @@
  * written appears under its name once it is complete, or not at all; written
  * twice it has the same bytes.
  */
-#ifndef RITZ_CONTAINER_H
-#define RITZ_CONTAINER_H
-
-#include <ritz/basis.h>
-#include <ritz/component.h>
-#include <ritz/ranking.h>
-#include <ritz/reduced.h>
-#include <ritz/response.h>
-#include <ritz/simulate.h>
-#include <ritz/source.h>
-#include <ritz/state_space.h>
-#include <ritz/system.h>
-
-#pragma GCC visibility push(default)
 
 /* What every file says about how it was made. */
 typedef struct ritz_stamp {

@@ -9,11 +9,10 @@
 #ifndef RITZ_FIT_H
 #define RITZ_FIT_H
 
-#include <ritz/method.h>
-#include <ritz/reduced.h>
+#include <ritz/basis.h>
+#include <ritz/model.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
-#include <ritz/system.h>
 #include <ritz/verify.h>
 
 #pragma GCC visibility push(default)

@@ -6,8 +6,7 @@
 #ifndef RITZ_RANKING_H
 #define RITZ_RANKING_H
 
-#include <ritz/modal.h>
-#include <ritz/system.h>
+#include <ritz/model.h>
 
 #pragma GCC visibility push(default)
 
@@ -176,6 +175,85 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
 
 void ritz_ranking_free(ritz_ranking *ranking);
 void ritz_rankings_free(ritz_rankings *rankings);
+
+/*
+ * Output weights that suit a choice of modes. Modal costs depend on weights;
+ * the weights that should decide are those of outputs that the choice serves
+ * badly. So it goes round [ZhuSkelton1992]:
+ *
+ *     keep the k modes of largest cost sum_i q_i V_ki,
+ *     d_i = |Y_i - Y_i(kept alone)|, what output i misses, in squared limits,
+ *     q_i := (1 - a) p d_i / sum d + a q_i,    a = 1/2, q_i = 1 at first
+ *
+ * until weights and choice repeat: from round to round, or after several, which
+ * is an oscillation and has no answer.
+ */
+
+typedef struct ritz_reweighing {
+    int64_t num_outputs;
+    double *weight; /* q, beside those of the request; of the best round */
+    double *cost;   /* Y, variance of each output for white inputs */
+    double *missed; /* d of the best round: its largest is the least */
+    int64_t num_kept;
+    int64_t *kept;     /* modes of the best round, ascending */
+    int64_t rounds;    /* that were made */
+    int64_t period;    /* 1: settled; more: oscillates; 0: does neither */
+    int64_t num_other; /* oscillates: modes that another round of the period
+                            would keep */
+    int64_t *other;
+} ritz_reweighing;
+
+/**
+ * @param[in] keep  k, less than there are modes; clusters stay whole
+ * @return RITZ_ERR_ARGUMENT if there is nothing to choose from
+ */
+ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
+                         ritz_reweighing *out);
+
+void ritz_reweighing_free(ritz_reweighing *reweighing);
+
+/*
+ * How far two rankings of the same modes agree.
+ *
+ * Places are compared, not values: modes are sorted by magnitude, those below
+ * 1e-12 of the largest are rounding and share the last place, as others of one
+ * value share theirs.
+ */
+
+/* The first k of either, clusters whole. */
+typedef struct ritz_overlap {
+    int64_t k;
+    double share; /* of the larger of both that the other has too */
+} ritz_overlap;
+
+typedef struct ritz_agreement {
+    int64_t common;       /* modes that both have */
+    int64_t alone[2];     /* modes that one has only */
+    double spearman;      /* correlation of places, -1 .. 1; NaN if all are
+                             equal in one */
+    double kendall;       /* tau-b: pairs in the same order less those in the
+                             other */
+    int64_t num_overlaps; /* k = 1, 2, 5, 10, 20, 50, ... */
+    ritz_overlap *overlap;
+    int64_t top; /* the k of what follows */
+    double top_share;
+    int64_t num_left, num_entered; /* of the first k: in the first ranking */
+    int64_t *left, *entered;       /* alone, in the second alone; numbers of
+                                      modes or tracks, as they rank */
+} ritz_agreement;
+
+/**
+ * Compare two rankings of one set of modes, matched by number.
+ *
+ * @param[in] track  of either, which number each mode has; NULL: its index
+ * @param[in] top    whose changes are listed
+ * @cost O(m^2)
+ */
+ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
+                                const ritz_ranking *b, const int64_t *track_b,
+                                int64_t top, ritz_agreement *out);
+
+void ritz_agreement_free(ritz_agreement *agreement);
 
 #pragma GCC visibility pop
 

@@ -6,14 +6,9 @@
 #ifndef RITZ_RESPONSE_H
 #define RITZ_RESPONSE_H
 
-#include <ritz/component.h>
-#include <ritz/damping.h>
-#include <ritz/reduced.h>
-#include <ritz/state_space.h>
+#include <ritz/model.h>
 
 #include <stdbool.h>
-
-#include <complex.h>
 
 #pragma GCC visibility push(default)
 
@@ -233,6 +228,160 @@ ritz_status ritz_response_component(const ritz_component *component,
                                     const ritz_damping *damping,
                                     double up_to_hz, double tolerance,
                                     const ritz_grid *grid, ritz_response *out);
+
+/*
+ * Singular values of a response of several inputs and outputs: the largest is
+ * the most that any unit input, in whatever direction and phase, can do.
+ */
+
+/*
+ * What signals are measured by: outputs are divided by theirs, as by the limit
+ * of each; inputs are multiplied by theirs, as by the size each may have. NULL,
+ * or NaN in place of a number: 1.
+ */
+typedef struct ritz_scales {
+    const double *output, *input;
+} ritz_scales;
+
+/** Of one H, row by row: min(outputs, inputs) of them, descending.
+ * @return RITZ_ERR_CONVERGENCE */
+ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
+                                 const double _Complex *H,
+                                 const ritz_scales *scales, double *sigma);
+
+/**
+ * At every point of a response; kept in it, in place of others.
+ *
+ * @param[in] scales  NULL: none
+ */
+ritz_status ritz_singular_of(const ritz_scales *scales,
+                             ritz_response *response);
+
+/**
+ * The largest of them and where, between the points too: around those that
+ * stand out from their neighbours it is looked for until nothing is gained.
+ * Responses that have points at every resonance, as refined ones have, leave
+ * no peak between two that are lower.
+ *
+ * @param[in] responder  of the same model; NULL: points alone
+ * @param[out] value     HUGE_VAL at a pole that nothing damps
+ */
+ritz_status ritz_singular_peak(const ritz_response *response,
+                               const ritz_scales *scales,
+                               ritz_responder *responder, double *hertz,
+                               double *value);
+
+/*
+ * A loop around a plant: with the plant y = G u and a controller v = F e,
+ *
+ *     e = some of y,   u = w - v where v acts, or w + v of positive feedback,
+ *
+ * the response from w to y is G (I + F G)^-1, found in frequency from the
+ * responses of both, whose own structure is not lost [Sirlin1992], and in
+ * states where poles are wanted.
+ *
+ * (The middle form of that paper's equation for H(s) multiplies G and F in the
+ * wrong order: G (I + F G)^-1 F is meant.)
+ */
+
+/* What goes in and comes out of a model, by name; borrowed. */
+typedef struct ritz_ends {
+    int64_t num_inputs, num_outputs;
+    const char (*input)[RITZ_NAME_SIZE];
+    const char (*output)[RITZ_NAME_SIZE];
+} ritz_ends;
+
+/* Which signal of the plant meets which of the controller. */
+typedef struct ritz_loop {
+    int64_t num_measured; /* inputs of the controller */
+    int64_t *measured;    /* the plant's output that each is */
+    int64_t num_driven;   /* outputs of the controller */
+    int64_t *driven;      /* the plant's input that each adds to */
+    bool positive;        /* feedback; else negative */
+} ritz_loop;
+
+/**
+ * Join by name: each input of the controller is called as an output of the
+ * plant, each output as an input of the plant, unless a pair says otherwise.
+ *
+ * @param[in] pair  "OUT=IN", as a signal flows: an output of the plant into the
+ *                  controller, or one of the controller into the plant
+ * @return RITZ_ERR_ARGUMENT naming what is not joined, or twice
+ */
+ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
+                            int64_t num_pairs, const char *const *pair,
+                            ritz_loop *out);
+
+/**
+ * Whether all signals of a loop exist; names are not asked.
+ *
+ * @return RITZ_ERR_ARGUMENT naming what does not
+ */
+ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
+                            const ritz_ends *controller);
+
+/**
+ * The closed loop as one model, from the plant's inputs to its outputs; states
+ * are the plant's, then the controller's.
+ *
+ * @return RITZ_ERR_ARGUMENT if the loop does not fit; RITZ_ERR_SINGULAR if the
+ *         loop has no answer: what passes through both at once makes a circle
+ */
+ritz_status ritz_closed_loop(const ritz_state_space *plant,
+                             const ritz_state_space *controller,
+                             const ritz_loop *loop, ritz_state_space *out);
+
+/* A loop at one frequency. */
+typedef struct ritz_loop_values {
+    double _Complex gain; /* F G of a loop of one signal, its sign turned by
+                             positive feedback; NaN where there are more */
+    double largest_gain;  /* singular value of F G */
+    double sensitivity;   /* largest singular value of (I + F G)^-1 */
+} ritz_loop_values;
+
+/**
+ * Close it at one frequency.
+ *
+ * @param[in]  G  of the plant, row by row, outputs x inputs
+ * @param[in]  F  of the controller, row by row, num_driven x num_measured
+ * @param[out] H  as G: G (I + F G)^-1; NULL: not wanted
+ * @return RITZ_ERR_SINGULAR if I + F G is
+ * @cost   O((num_driven + inputs)(num_driven^2 + num_driven outputs))
+ */
+ritz_status ritz_loop_at(const ritz_loop *loop, int64_t num_outputs,
+                         int64_t num_inputs, const double _Complex *G,
+                         const double _Complex *F, double _Complex *H,
+                         ritz_loop_values *values);
+
+/**
+ * The closed loop as something that responds: sampled, followed to a tolerance
+ * and searched for peaks as every other. All is borrowed until it is freed.
+ *
+ * @param[in] plant, controller  made ready for the range
+ * @param[in] pole   of the closed loop, around which a grid is refined beside
+ *                   those of both; NULL: not known
+ */
+ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
+                                ritz_responder *controller, int64_t num_poles,
+                                const double _Complex *pole,
+                                ritz_responder **out);
+
+/* How far a loop is from its end, in the range of the points that were looked
+   at. NaN: it is not of one signal, or does not cross there. */
+typedef struct ritz_margins {
+    double gain_up, gain_up_hz;         /* least factor above 1 that ends it */
+    double gain_down, gain_down_hz;     /* largest factor below 1 that does */
+    double phase, phase_hz;             /* least lag or lead  [degrees] */
+    double sensitivity, sensitivity_hz; /* largest |(I + F G)^-1| */
+    double gain, gain_hz;               /* largest |F G| */
+} ritz_margins;
+
+/** Crossings are found between points, by bisection, and peaks too. */
+ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,
+                              ritz_responder *controller, int64_t count,
+                              const double *hertz, ritz_margins *out);
+
+void ritz_loop_free(ritz_loop *loop);
 
 #pragma GCC visibility pop
 

@@ -6,11 +6,9 @@
 #ifndef RITZ_SCENE_H
 #define RITZ_SCENE_H
 
-#include <ritz/choice.h>
-#include <ritz/damping.h>
-#include <ritz/dofs.h>
-#include <ritz/source.h>
-#include <ritz/text.h>
+#include <ritz/base.h>
+#include <ritz/container.h>
+#include <ritz/model.h>
 
 #pragma GCC visibility push(default)
 

@@ -13,10 +13,8 @@
 #ifndef RITZ_SIMULATE_H
 #define RITZ_SIMULATE_H
 
-#include <ritz/component.h>
-#include <ritz/damping.h>
+#include <ritz/model.h>
 #include <ritz/response.h>
-#include <ritz/state_space.h>
 
 #include <stdbool.h>
 

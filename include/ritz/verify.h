@@ -1,14 +1,106 @@
-/* Full against reduced: every error measure, never one alone. */
+/*
+ * Every error measure between a full and a reduced model, one row each. Options,
+ * help, verification, fit, records and charts read this table; a new measure is
+ * one name in RITZ_EACH_MEASURE, one row of src/verify/measures.c, its function
+ * there, and one line in docs/methods/verify.md.
+ */
 #ifndef RITZ_VERIFY_H
 #define RITZ_VERIFY_H
 
-#include <ritz/measures.h>
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 #include <ritz/response.h>
-#include <ritz/state_space.h>
-#include <ritz/system.h>
+
+#include <math.h>
 
 #pragma GCC visibility push(default)
+
+/* In the order in which a verified file lists them. */
+#define RITZ_EACH_MEASURE(X)                                                   \
+    X(FREQUENCY)                                                               \
+    X(MAC)                                                                     \
+    X(DAMPING)                                                                 \
+    X(RIGID_HERTZ)                                                             \
+    X(MISSING_RIGID)                                                           \
+    X(MISSING)                                                                 \
+    X(EXTRA)                                                                   \
+    X(INFINITY)                                                                \
+    X(INFINITY_RELATIVE)                                                       \
+    X(INFINITY_BOUND)                                                          \
+    X(H2)                                                                      \
+    X(RESPONSE)                                                                \
+    X(FLEXIBLE)                                                                \
+    X(LEVEL)                                                                   \
+    X(GAIN)                                                                    \
+    X(SINGULAR)                                                                \
+    X(GROWTH)
+
+typedef enum ritz_measure_id {
+#define RITZ_MEASURE_ID(name) RITZ_MEASURE_##name,
+    RITZ_EACH_MEASURE(RITZ_MEASURE_ID)
+#undef RITZ_MEASURE_ID
+        RITZ_MEASURES
+} ritz_measure_id;
+
+/* What must be there before a measure can be held to a limit. */
+enum {
+    RITZ_NEEDS_CHANNELS = 1, /* inputs and outputs */
+    RITZ_NEEDS_DAMPING = 2,  /* damping that somebody has stated */
+    RITZ_NEEDS_BAND = 4,     /* a band, of state spaces too */
+    RITZ_NEEDS_LIMIT = 8,    /* costly for second-order models: measured only
+                                where a limit is given */
+};
+
+struct ritz_sides;      /* two second-order models that are compared */
+struct ritz_state_pair; /* two state spaces that are compared */
+
+typedef struct ritz_measure_kind {
+    const char *name;  /* in files, records and JSON */
+    const char *word;  /* of --tolerance and --limit-; NULL: takes no limit */
+    const char *help;  /* of --limit-; NULL if there is no word */
+    const char *label; /* on charts; NULL: not drawn unless asked for */
+    int importance;    /* charts draw 1 first; 0 if there is no label */
+    const char *unit;  /* "": relative, "modes", "Hz" or "dB" */
+    bool large_is_good;
+    int needs;         /* sum of RITZ_NEEDS_... */
+    const char *bound; /* estimate of ritz-reduce that bounds it; NULL */
+    const char *other; /* measure that is held to this limit where this one
+                              does not exist; NULL: none */
+    /* The value, its place and, where it is not the one of the request, the
+       limit; the value stays NaN where there is nothing to compare. NULL: does
+       not exist for such models. */
+    ritz_status (*of_modes)(const struct ritz_sides *sides, ritz_measure *out);
+    ritz_status (*of_states)(const struct ritz_state_pair *pair,
+                             ritz_measure *out);
+} ritz_measure_kind;
+
+/** By ritz_measure_id. */
+extern const ritz_measure_kind ritz_measure_table[RITZ_MEASURES];
+
+/** The row called @p name; NULL if there is none. */
+const ritz_measure_kind *ritz_measure_kind_find(const char *name);
+
+/** The limit of the measure called @p name; NaN if it has none. */
+double ritz_measure_limit(const double limit[RITZ_MEASURES], const char *name);
+
+/** How wrong a value is, 0 being best: 1 - MAC, all others as they are. */
+double ritz_measure_error(const char *name, double value);
+
+/**
+ * Error over tolerance, 1 or less where the limit is met. Of a limit that
+ * allows nothing: 0 where there is no error, else 1 + error.
+ */
+double ritz_measure_ratio(const char *name, double value, double limit);
+
+/** Whether a value meets a limit. */
+bool ritz_measure_meets(const char *name, double value, double limit);
+
+/** Whether a measure meets its limit; a NaN limit is always met. */
+bool ritz_measure_holds(const ritz_measure *measure);
+
+/** Whether value @p a is worse than value @p b. */
+bool ritz_measure_is_worse(const char *name, double a, double b);
+
+/* Full against reduced: every error measure, never one alone. */
 
 /* What is compared, and what it is held to. */
 typedef struct ritz_verify_request {
@@ -110,6 +202,154 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
  */
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out);
+
+/*
+ * A full model made ready once, to be compared with many reductions of it: its
+ * modes to three times the band, what lies above them as static answer, and its
+ * responses at every frequency where they are compared.
+ */
+
+typedef struct ritz_reference ritz_reference;
+
+typedef struct ritz_reference_request {
+    double band_hz[2];    /* not [0, 0] */
+    ritz_damping damping; /* none: as the model says, or else modal 0.01 */
+    int64_t num_random;   /* further frequencies, anywhere in the band */
+    uint64_t seed;        /* of those; one seed always gives the same */
+} ritz_reference_request;
+
+/* Where responses are compared, beside an even grid and the full model's own
+   poles. */
+enum {
+    RITZ_AT_OTHER_POLES = 1, /* those of the reduced model */
+    RITZ_AT_RANDOM = 2,      /* the random frequencies */
+};
+
+/**
+ * @param[in] full     borrowed until free; dampers count as far as K and D hold
+ *                     them
+ * @param[in] request  copied
+ * @return RITZ_ERR_ARGUMENT if the band is none
+ * @cost   the modes to three times the band; a factor a frequency where dampers
+ *         couple modes of a model that is not small
+ */
+ritz_status ritz_reference_new(const ritz_component *full,
+                               const ritz_reference_request *request,
+                               ritz_reference **out);
+
+/**
+ * What ritz_verify_reduced measures.
+ *
+ * @param[in] limits  its limits alone are used
+ * @param[in] where   sum of RITZ_AT_...
+ */
+ritz_status ritz_reference_measure(const ritz_reference *reference,
+                                   const ritz_reduced *reduced,
+                                   const ritz_verify_request *limits, int where,
+                                   ritz_measures *out);
+
+/** What ritz_verify_system measures. */
+ritz_status ritz_reference_measure_at(const ritz_reference *reference,
+                                      const ritz_configuration *reduced,
+                                      const ritz_verify_request *limits,
+                                      int where, ritz_measures *out);
+
+/** Flexible modes of the full model in the band; rigid ones beside them. */
+int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid);
+
+/**
+ * Whether each frequency takes a factor of the full model: dampers couple modes
+ * and not all of them are known.
+ */
+bool ritz_reference_factors(const ritz_reference *reference);
+
+void ritz_reference_free(ritz_reference **reference);
+
+/**
+ * @p count frequencies of a band, ascending and distinct, the same for one seed.
+ */
+void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
+                       double *out);
+
+/** The next number of a sequence, in [0, 1) [Steele2014]. */
+double ritz_random_next(uint64_t *state);
+
+/*
+ * How wrong a reduced component can be, without one mode of the full one: the
+ * full model is factored and its modes are counted, never computed.
+ *
+ *     mode-7, mode-8, ...         |f_r - f| / f of each reduced mode in the
+ *                                 band, f that of the full mode of its number
+ *                                 or of the one that the place names
+ *     frequency-relative-bound    what ritz-verify's frequency-relative is at
+ *                                 most: of full modes in the band and their
+ *                                 partners, wherever these lie; none without
+ *                                 such modes
+ *     frequency-relative-least    what that is at least; none if it may be 0
+ *     missing-modes-bound         what its missing-modes are at most: full modes
+ *                                 in the band of which no reduced one is proven
+ *                                 to hold half
+ *     response-relative-bound     max |H - H_r| / max |H| in the band, between
+ *                                 points too, for ratios common to all modes
+ *                                 and for D = a M + b K
+ *     response-relative-estimate  the same without proof, for other damping
+ *
+ * HUGE_VAL: nothing is known. Rounding is part of each bound.
+ */
+
+typedef struct ritz_estimate_request {
+    double band_hz[2];    /* [0, 0]: up to half of what the basis knows of */
+    ritz_damping damping; /* of responses; none: no response is bounded */
+} ritz_estimate_request;
+
+/* The factors of one full component, made once for many reductions of it. */
+typedef struct ritz_estimator ritz_estimator;
+
+/**
+ * @param[in]  full     borrowed until free; its dampers count as far as K and D
+ *                      hold them, and no response is bounded if D holds none
+ * @param[in]  request  copied
+ * @return RITZ_ERR_ARGUMENT if the band is none
+ */
+ritz_status ritz_estimator_new(const ritz_component *full,
+                               const ritz_estimate_request *request,
+                               ritz_estimator **out);
+
+/**
+ * Estimates of one reduction of that component. The factor is made for the
+ * first one, by its band; counts stay, and serve the next.
+ *
+ * @param[in]  basis  by which it was reduced; its T is used, and its hertz
+ * @param[out] out    empty on entry
+ * @return RITZ_ERR_ARGUMENT if the basis is not that of the reduction;
+ *         RITZ_ERR_SINGULAR if K - s M is definite for no s < 0
+ * @cost   a factor once, an LDL' for each count, and a solve for each mode or,
+ *         with responses, each vector; twice where that does not suffice
+ * @see    [Lehmann1963], [BeattieGoerisch1995]
+ */
+ritz_status ritz_estimator_measure(ritz_estimator *estimator,
+                                   const ritz_basis *basis,
+                                   const ritz_reduced *reduced,
+                                   ritz_measures *out);
+
+/**
+ * frequency-relative-least alone, as far as an inverse iteration of the reduced
+ * modes shows it: no mode is counted, and so it is not known whether partners
+ * are there. The worst error is so large at least, or some mode is missing.
+ *
+ * @cost a factor once, a solve for each mode up to some way beyond the band
+ */
+ritz_status ritz_estimator_least(ritz_estimator *estimator,
+                                 const ritz_basis *basis,
+                                 const ritz_reduced *reduced,
+                                 ritz_measures *out);
+
+void ritz_estimator_free(ritz_estimator **estimator);
+
+/** The three above, into @p reduced's estimates. */
+ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
+                          const ritz_estimate_request *request,
+                          ritz_reduced *reduced);
 
 #pragma GCC visibility pop
 

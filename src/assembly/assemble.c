@@ -16,9 +16,9 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
-#include <ritz/monitor.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/base.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 #include <lapacke.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_ASSEMBLY_CONSTRAINTS_H
 #define RITZ_ASSEMBLY_CONSTRAINTS_H
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 /* Spring k stretches by row k of S q: K + sum k_k s_k s_k', and so D. */
 typedef struct ritz_springs {

@@ -20,14 +20,14 @@
  *
  * X'KX has +I for mu; the constraints add -2I and C_1q N, C_1 = S_1^-1 U_1'C.
  */
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 #include "assembly/constraints.h"
 #include "assembly/dual.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <cblas.h>
 #include <float.h>

@@ -3,9 +3,9 @@
 #include "assembly/placement.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 #include <inttypes.h>
 #include <math.h>

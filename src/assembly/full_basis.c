@@ -5,7 +5,7 @@
  */
 #include "base/alloc.h"
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_ASSEMBLY_NEIGHBOUR_H
 #define RITZ_ASSEMBLY_NEIGHBOUR_H
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 /* Relations F q - G u of the far body's q and the near port's dofs u. */
 typedef struct ritz_link {

@@ -4,7 +4,7 @@
 
 #include "assembly/joints.h"
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 
 /* x_system = R x + t. */
 typedef struct ritz_placement {

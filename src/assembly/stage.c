@@ -2,10 +2,10 @@
 #include "assembly/neighbour.h"
 #include "base/alloc.h"
 
-#include <ritz/method.h>
-#include <ritz/monitor.h>
-#include <ritz/nested.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/base.h>
+#include <ritz/basis.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

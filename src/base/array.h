@@ -2,7 +2,7 @@
 #ifndef RITZ_BASE_ARRAY_H
 #define RITZ_BASE_ARRAY_H
 
-#include <ritz/status.h>
+#include <ritz/base.h>
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* SHA-256 by nettle: what was read is named by content. */
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <nettle/sha2.h>
 

@@ -7,7 +7,7 @@
 #ifndef RITZ_BASE_DRAFT_H
 #define RITZ_BASE_DRAFT_H
 
-#include <ritz/status.h>
+#include <ritz/base.h>
 
 enum { RITZ_MAX_DRAFTS = 16 };
 

@@ -1,4 +1,4 @@
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <stddef.h>
 

@@ -2,7 +2,7 @@
 #ifndef RITZ_BASE_NAMES_H
 #define RITZ_BASE_NAMES_H
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 /* Names of one sort: an array of structs that each begin with a name. */
 typedef struct ritz_names {

@@ -1,7 +1,7 @@
 #include "base/alloc.h"
 #include "base/letter.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <errno.h>
 #include <math.h>

@@ -3,8 +3,7 @@
 #define RITZ_BASES_BALANCE_ASKED_H
 
 #include "gramians/states.h"
-#include <ritz/gramians.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 /**
  * Gramians of the component or state space of a request, by its engine. With

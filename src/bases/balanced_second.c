@@ -23,14 +23,14 @@
  * Z_p, as [MeyerSrinivasan1996] do and keep T alone of, needs M^-1 to be a left
  * vector and is not symmetric where the model is.
  */
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/balance_asked.h"
 #include "linear/orthonormal.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <math.h>

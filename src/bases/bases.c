@@ -1,5 +1,5 @@
 /* The table of bases: a new one is a file with a descriptor, and a row. */
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 const ritz_method *const ritz_methods[] = {
     &ritz_method_balanced,

@@ -3,7 +3,7 @@
 
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 #include <string.h>

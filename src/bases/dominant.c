@@ -13,7 +13,7 @@
 #include "base/tolerances.h"
 #include "model/modal.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <complex.h>
 #include <float.h>

@@ -18,7 +18,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,9 +2,8 @@
 #ifndef RITZ_BASES_ELASTIC_H
 #define RITZ_BASES_ELASTIC_H
 
-#include <ritz/dofs.h>
-#include <ritz/factor.h>
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 /* Elastic answer to forces, by one factor at 0 Hz. */
 typedef struct ritz_elastic {

@@ -18,7 +18,7 @@
 #include "base/tolerances.h"
 #include "bases/loads.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -2,8 +2,8 @@
 #ifndef RITZ_BASES_FREE_MODES_H
 #define RITZ_BASES_FREE_MODES_H
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 typedef struct ritz_free_set {
     ritz_pairs modes;  /* that are kept, rigid ones first */

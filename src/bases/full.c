@@ -1,5 +1,5 @@
 /* No reduction: every dof a column. For small components and comparisons. */
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
  * [Guyan1965] R. J. Guyan, Reduction of stiffness and mass matrices,
  * AIAA Journal 3 (1965) 380.
  */
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 #include <stdio.h>
 

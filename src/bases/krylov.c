@@ -18,7 +18,7 @@
 #include "base/tolerances.h"
 #include "bases/loads.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <inttypes.h>

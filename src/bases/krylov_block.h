@@ -5,7 +5,7 @@
 #include "bases/elastic.h"
 #include "linear/orthonormal.h"
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 /* Where the response is expanded, and how far its chain of blocks has come. */
 typedef struct ritz_krylov_point {

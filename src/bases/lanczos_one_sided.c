@@ -1,4 +1,4 @@
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include "base/alloc.h"
 #include "base/tolerances.h"

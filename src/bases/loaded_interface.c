@@ -10,8 +10,8 @@
  */
 #include "base/alloc.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_BASES_LOADS_H
 #define RITZ_BASES_LOADS_H
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 /* Room for what ritz_loads_name writes. */
 enum { RITZ_LOADS_NAME_SIZE = RITZ_NAME_SIZE + 16 };

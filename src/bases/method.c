@@ -1,5 +1,5 @@
 /* How a basis is asked for by name, checked against its method, and signed. */
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 #include <inttypes.h>
 #include <stdbool.h>

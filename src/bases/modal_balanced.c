@@ -16,7 +16,7 @@
 #include "gramians/engines.h"
 #include "gramians/modal_modes.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <inttypes.h>

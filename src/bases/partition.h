@@ -2,9 +2,9 @@
 #ifndef RITZ_BASES_PARTITION_H
 #define RITZ_BASES_PARTITION_H
 
-#include <ritz/component.h>
-#include <ritz/factor.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 /* Boundary b, which other bodies push on, and interior i. */
 typedef struct ritz_partition {

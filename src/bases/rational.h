@@ -10,8 +10,8 @@
 #ifndef RITZ_BASES_RATIONAL_H
 #define RITZ_BASES_RATIONAL_H
 
-#include <ritz/factor.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 enum { RITZ_RATIONAL_GROUPS = 4 };
 

@@ -4,9 +4,9 @@
  */
 #include "base/tolerances.h"
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 #include <math.h>
 #include <stdio.h>

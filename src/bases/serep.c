@@ -17,8 +17,8 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <lapacke.h>
 

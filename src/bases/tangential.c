@@ -29,7 +29,7 @@
 #include "bases/dominant.h"
 #include "bases/loads.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <complex.h>
 #include <inttypes.h>

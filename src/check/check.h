@@ -7,9 +7,8 @@
 
 #include "model/modal.h"
 
-#include <ritz/audit.h>
-#include <ritz/eigen.h>
-#include <ritz/probe.h>
+#include <ritz/check.h>
+#include <ritz/matrix.h>
 
 /* Kinds of models a check applies to. */
 enum {

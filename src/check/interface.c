@@ -11,8 +11,9 @@
 #include "check/check.h"
 #include "linear/general.h"
 
-#include <ritz/zeros.h>
+#include <ritz/poles.h>
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

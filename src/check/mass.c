@@ -3,8 +3,8 @@
 #include "base/tolerances.h"
 #include "check/check.h"
 
-#include <ritz/eigen.h>
-#include <ritz/reduced.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <inttypes.h>

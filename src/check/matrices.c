@@ -8,7 +8,7 @@
 #include "check/check.h"
 #include "poles/proportional.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <inttypes.h>

@@ -3,7 +3,7 @@
 #include "base/tolerances.h"
 #include "check/check.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

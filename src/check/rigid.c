@@ -3,7 +3,7 @@
 #include "base/tolerances.h"
 #include "check/check.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <inttypes.h>
@@ -350,8 +350,7 @@ static ritz_status measure_angle(const ritz_checker *it, const ritz_dense *X,
 {
     const ritz_sparse *M = &it->component->M;
     RITZ_OWN(ritz_dense)
-    Phi = {0},
-    MPhi = {0}, C = {0}, E = {0}, ME = {0}, EME = {0};
+    Phi = {0}, MPhi = {0}, C = {0}, E = {0}, ME = {0}, EME = {0};
     double trace = 0.0;
 
     RITZ_CHECK(ritz_dense_new(it->Phi.nrow, it->num_free, &Phi));

@@ -6,7 +6,7 @@
  * in its modes, once M and K are known to be no worse than semidefinite: a
  * negative eigenvalue of either is itself the verdict.
  */
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include "base/alloc.h"
 #include "base/tolerances.h"

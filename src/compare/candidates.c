@@ -4,7 +4,7 @@
 
 #include "compare/compare.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <math.h>
 #include <stddef.h>

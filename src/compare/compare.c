@@ -5,7 +5,7 @@
 #include "assembly/dual.h"
 #include "compare/compare.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <math.h>
 #include <stdlib.h>

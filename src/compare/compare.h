@@ -2,7 +2,7 @@
 #ifndef RITZ_COMPARE_COMPARE_H
 #define RITZ_COMPARE_COMPARE_H
 
-#include <ritz/compare.h>
+#include <ritz/assembly.h>
 
 /* What is settled before stage two is made. */
 typedef struct ritz_plan {

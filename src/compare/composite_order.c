@@ -10,7 +10,7 @@
 #include "base/tolerances.h"
 #include "compare/directions.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <stdlib.h>

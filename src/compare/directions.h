@@ -2,7 +2,7 @@
 #ifndef RITZ_COMPARE_DIRECTIONS_H
 #define RITZ_COMPARE_DIRECTIONS_H
 
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 #include <stdbool.h>
 

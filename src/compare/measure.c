@@ -9,7 +9,7 @@
 #include "compare/compare.h"
 #include "poles/poles.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <complex.h>

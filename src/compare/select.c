@@ -8,7 +8,7 @@
 #include "base/tolerances.h"
 #include "compare/compare.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -22,7 +22,7 @@
 #include "compare/compare.h"
 #include "compare/directions.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <cblas.h>
 #include <float.h>

@@ -3,7 +3,7 @@
 #include "base/draft.h"
 #include "container/schema.h"
 
-#include <ritz/version.h>
+#include <ritz/base.h>
 
 #include <inttypes.h>
 #include <stdlib.h>

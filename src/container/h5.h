@@ -18,8 +18,8 @@
 #ifndef RITZ_CONTAINER_H5_H
 #define RITZ_CONTAINER_H5_H
 
-#include <ritz/sparse.h>
-#include <ritz/text.h>
+#include <ritz/base.h>
+#include <ritz/matrix.h>
 
 #include <hdf5.h>
 #include <stdbool.h>

@@ -9,9 +9,8 @@
 #ifndef RITZ_ESTIMATE_ESTIMATOR_H
 #define RITZ_ESTIMATE_ESTIMATOR_H
 
-#include <ritz/eigen.h>
-#include <ritz/estimate.h>
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
+#include <ritz/verify.h>
 
 #include <stdbool.h>
 

@@ -7,7 +7,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <stdlib.h>
 #include <string.h>

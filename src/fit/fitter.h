@@ -6,10 +6,9 @@
 #ifndef RITZ_FIT_FITTER_H
 #define RITZ_FIT_FITTER_H
 
-#include <ritz/estimate.h>
+#include <ritz/assembly.h>
 #include <ritz/fit.h>
-#include <ritz/reference.h>
-#include <ritz/synthesis.h>
+#include <ritz/verify.h>
 
 /* The full model at one configuration. */
 typedef struct ritz_fit_place {

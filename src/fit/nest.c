@@ -9,9 +9,9 @@
 
 #include "base/alloc.h"
 
-#include <ritz/monitor.h>
-#include <ritz/nested.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/base.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -2,8 +2,7 @@
 #ifndef RITZ_FIT_ORDER_H
 #define RITZ_FIT_ORDER_H
 
-#include <ritz/basis.h>
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 /**
  * How far a model of some columns is off, in parts of its tolerance; infinite

@@ -8,7 +8,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <math.h>
 #include <stdlib.h>

@@ -12,8 +12,8 @@
 
 #include "base/alloc.h"
 
-#include <ritz/compare.h>
-#include <ritz/nested.h>
+#include <ritz/assembly.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

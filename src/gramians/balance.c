@@ -15,7 +15,7 @@
 #include "linear/general.h"
 #include "linear/product_svd.h"
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 #include <float.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_GRAMIANS_CLUSTER_H
 #define RITZ_GRAMIANS_CLUSTER_H
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 /** One past the last mode of the cluster that begins at mode @p first. */
 int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first);

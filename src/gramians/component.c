@@ -5,7 +5,7 @@
 #include "gramians/modal_modes.h"
 #include "gramians/states.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

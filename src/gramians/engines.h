@@ -4,7 +4,7 @@
 
 #include "model/modal.h"
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 #include <stdbool.h>
 

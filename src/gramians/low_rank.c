@@ -23,8 +23,9 @@
 #include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
+#include <complex.h>
 #include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>

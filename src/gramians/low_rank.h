@@ -2,7 +2,7 @@
 #ifndef RITZ_GRAMIANS_LOW_RANK_H
 #define RITZ_GRAMIANS_LOW_RANK_H
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 /**
  * Factors of both Gramians from sparse M, D, K; first-order matrices are never

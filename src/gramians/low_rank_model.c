@@ -3,8 +3,9 @@
 #include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
+#include <complex.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>

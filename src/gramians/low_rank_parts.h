@@ -2,9 +2,9 @@
 #ifndef RITZ_GRAMIANS_LOW_RANK_PARTS_H
 #define RITZ_GRAMIANS_LOW_RANK_PARTS_H
 
-#include <ritz/dofs.h>
-#include <ritz/factor.h>
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <stdbool.h>

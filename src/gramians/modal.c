@@ -14,7 +14,7 @@
 #include "gramians/cluster.h"
 #include "gramians/modal_modes.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <lapacke.h>
 #include <math.h>

@@ -23,7 +23,7 @@
 #include "base/tolerances.h"
 #include "linear/general.h"
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <lapacke.h>

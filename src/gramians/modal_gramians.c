@@ -19,7 +19,7 @@
 #include "base/tolerances.h"
 #include "linear/general.h"
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 #include <cblas.h>
 #include <float.h>

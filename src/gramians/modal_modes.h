@@ -4,7 +4,7 @@
 
 #include "model/modal.h"
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 #include <stdbool.h>
 

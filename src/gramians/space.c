@@ -10,7 +10,7 @@
 #include "linear/general.h"
 #include "linear/split.h"
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 
 #include "model/modal.h"
 
-#include <ritz/basis.h>
+#include <ritz/model.h>
 
 /*
  * z = [S q; q'] of the modes, S = diag(w) where w > 0: A is then near skew, and

@@ -5,10 +5,8 @@
 #ifndef RITZ_IMPORT_IMPORT_H
 #define RITZ_IMPORT_IMPORT_H
 
-#include <ritz/component.h>
-#include <ritz/deck.h>
-#include <ritz/foreign.h>
 #include <ritz/import.h>
+#include <ritz/model.h>
 
 /* A matrix that was asked for, and which one of the component it becomes. */
 typedef struct ritz_part {

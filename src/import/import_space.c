@@ -12,7 +12,6 @@
 
 #include "base/alloc.h"
 
-#include <ritz/foreign.h>
 #include <ritz/import.h>
 
 #include <inttypes.h>

@@ -10,7 +10,7 @@
 #include "base/tolerances.h"
 #include "linear/shifted.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <arpack.h>
 #include <inttypes.h>

@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include <cblas.h>
 #include <inttypes.h>

@@ -13,7 +13,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <cblas.h>
 #include <float.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_EIGEN_DENSE_H
 #define RITZ_LINEAR_EIGEN_DENSE_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 /**
  * K x = lambda M x, M semidefinite; lambda ascending, in error by few eps of

@@ -18,7 +18,7 @@
 #include "base/tolerances.h"
 #include "linear/shifted.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <float.h>
 #include <inttypes.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_EIGENVALUES_H
 #define RITZ_LINEAR_EIGENVALUES_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 typedef struct ritz_eigenvalues {
     int64_t count;

@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_EXPONENTIAL_H
 #define RITZ_LINEAR_EXPONENTIAL_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 /**
  * E = exp(A h), and of each symmetric Q_k

@@ -13,7 +13,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <suitesparse/cholmod.h>
 

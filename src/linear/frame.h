@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_FRAME_H
 #define RITZ_LINEAR_FRAME_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 /* x = L^-T diag(right) z; left vectors are L^-T diag(left) times theirs. */
 typedef struct ritz_frame {

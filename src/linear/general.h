@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_GENERAL_H
 #define RITZ_LINEAR_GENERAL_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 

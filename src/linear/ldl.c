@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "linear/mumps.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <dmumps_c.h>
 #include <inttypes.h>

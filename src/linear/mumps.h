@@ -7,7 +7,7 @@
 #ifndef RITZ_LINEAR_MUMPS_H
 #define RITZ_LINEAR_MUMPS_H
 
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 
 #include <mumps_c_types.h>
 #include <stdbool.h>

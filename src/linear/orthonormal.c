@@ -15,7 +15,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 
 #include <cblas.h>
 #include <float.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_ORTHONORMAL_H
 #define RITZ_LINEAR_ORTHONORMAL_H
 
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 

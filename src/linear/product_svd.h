@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_PRODUCT_SVD_H
 #define RITZ_LINEAR_PRODUCT_SVD_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 

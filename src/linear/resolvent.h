@@ -12,7 +12,7 @@
 #ifndef RITZ_LINEAR_RESOLVENT_H
 #define RITZ_LINEAR_RESOLVENT_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 

@@ -5,7 +5,7 @@
 #ifndef RITZ_LINEAR_SCHUR_H
 #define RITZ_LINEAR_SCHUR_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 

@@ -2,7 +2,7 @@
 #ifndef RITZ_LINEAR_SEARCH_H
 #define RITZ_LINEAR_SEARCH_H
 
-#include <ritz/status.h>
+#include <ritz/base.h>
 
 #include <stdint.h>
 

@@ -5,8 +5,7 @@
 #ifndef RITZ_LINEAR_SHIFTED_H
 #define RITZ_LINEAR_SHIFTED_H
 
-#include <ritz/eigen.h>
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <stdbool.h>
 

@@ -2,8 +2,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 
-#include <ritz/dense.h>
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #ifndef RITZ_LINEAR_SPLIT_H
 #define RITZ_LINEAR_SPLIT_H
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 /* E x' = A x with x = X z + T a; n states, m of them stable. */
 typedef struct ritz_split {

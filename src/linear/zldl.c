@@ -2,8 +2,9 @@
 #include "base/alloc.h"
 #include "linear/mumps.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
+#include <complex.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>

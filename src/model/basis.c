@@ -1,6 +1,6 @@
 #include "base/alloc.h"
 
-#include <ritz/basis.h>
+#include <ritz/model.h>
 
 #include <math.h>
 #include <stdlib.h>

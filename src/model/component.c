@@ -1,7 +1,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/dampers.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

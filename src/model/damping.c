@@ -1,7 +1,7 @@
 /* Damping as stated: its text form, ratios of modes, and a fit of a M + b K. */
 #include "base/tolerances.h"
 
-#include <ritz/damping.h>
+#include <ritz/model.h>
 
 #include <assert.h>
 #include <inttypes.h>

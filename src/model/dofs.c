@@ -1,6 +1,6 @@
 #include "base/alloc.h"
 
-#include <ritz/dofs.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* Cells of a mesh. */
-#include <ritz/elements.h>
+#include <ritz/model.h>
 
 #include "base/alloc.h"
 #include "base/search.h"

@@ -11,7 +11,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/equations.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <lapacke.h>

@@ -2,7 +2,7 @@
 #include "model/equations.h"
 #include "base/array.h"
 
-#include <ritz/equations.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_MODEL_EQUATIONS_H
 #define RITZ_MODEL_EQUATIONS_H
 
-#include <ritz/equations.h>
+#include <ritz/model.h>
 
 /** What follows is stated by @p from. */
 ritz_status ritz_equations_cite_next(ritz_equations *equations,

@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -8,7 +8,7 @@
 #include "base/alloc.h"
 #include "model/nodes.h"
 
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 #include <math.h>
 #include <stdlib.h>

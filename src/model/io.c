@@ -4,7 +4,7 @@
 #include "base/complex.h"
 #include "base/tolerances.h"
 
-#include <ritz/io.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_MODEL_IO_H
 #define RITZ_MODEL_IO_H
 
-#include <ritz/io.h>
+#include <ritz/model.h>
 
 /**
  * H += (C + i w Cv - w^2 Ca) X, w = 2 pi hertz.

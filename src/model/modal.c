@@ -15,8 +15,8 @@
 #include "base/tolerances.h"
 #include "linear/general.h"
 
-#include <ritz/eigen.h>
-#include <ritz/state_space.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <inttypes.h>

@@ -7,10 +7,8 @@
 #ifndef RITZ_MODEL_MODAL_H
 #define RITZ_MODEL_MODAL_H
 
-#include <ritz/component.h>
-#include <ritz/damping.h>
-#include <ritz/eigen.h>
-#include <ritz/reduced.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 /* K, M and D with dampers installed; D {0}: none. */
 typedef struct ritz_structure {

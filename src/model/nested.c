@@ -8,7 +8,7 @@
  */
 #include "base/alloc.h"
 
-#include <ritz/nested.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_MODEL_NODES_H
 #define RITZ_MODEL_NODES_H
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 
 typedef struct ritz_nodes {
     const ritz_grids *grids; /* borrowed */

@@ -1,7 +1,7 @@
 /* Dofs that follow from those of a model: u_m = G u. */
 #include "base/alloc.h"
 
-#include <ritz/equations.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <lapacke.h>

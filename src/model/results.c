@@ -4,8 +4,8 @@
  */
 #include "base/alloc.h"
 
+#include <ritz/model.h>
 #include <ritz/ranking.h>
-#include <ritz/reduced.h>
 #include <ritz/response.h>
 #include <ritz/simulate.h>
 

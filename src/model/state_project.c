@@ -16,8 +16,7 @@
 #include "model/modal.h"
 #include "model/state_reduce.h"
 
-#include <ritz/eigen.h>
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <inttypes.h>

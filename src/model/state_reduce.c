@@ -17,7 +17,7 @@
 #include "base/alloc.h"
 #include "model/modal.h"
 
-#include <ritz/state_space.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <inttypes.h>

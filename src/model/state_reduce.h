@@ -2,7 +2,7 @@
 #ifndef RITZ_MODEL_STATE_REDUCE_H
 #define RITZ_MODEL_STATE_REDUCE_H
 
-#include <ritz/state_space.h>
+#include <ritz/model.h>
 
 /**
  * W'E T, W'A T, W'B and what is seen of T, of a component of any size whose M

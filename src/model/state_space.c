@@ -12,7 +12,7 @@
 #include "model/modal.h"
 #include "model/state_reduce.h"
 
-#include <ritz/state_space.h>
+#include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include <ritz/system.h>
+#include <ritz/model.h>
 
 #include "base/alloc.h"
 #include "base/tolerances.h"

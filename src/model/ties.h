@@ -7,7 +7,7 @@
 
 #include "model/equations.h"
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 
 /* Some dofs of one grid that has a position. */
 typedef struct ritz_tie {

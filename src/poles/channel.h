@@ -8,9 +8,9 @@
 #ifndef RITZ_POLES_CHANNEL_H
 #define RITZ_POLES_CHANNEL_H
 
+#include <ritz/model.h>
+#include <ritz/poles.h>
 #include <ritz/response.h>
-#include <ritz/state_space.h>
-#include <ritz/zeros.h>
 
 #include <complex.h>
 

@@ -9,7 +9,7 @@
 #include "base/tolerances.h"
 #include "poles/refine.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <complex.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "poles/poles.h"
 
-#include <ritz/spectrum.h>
+#include <ritz/poles.h>
 
 typedef struct ritz_damped {
     double *zeta;          /* of each undamped mode: NaN where it does not

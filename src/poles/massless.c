@@ -10,7 +10,7 @@
 #include "base/tolerances.h"
 #include "linear/general.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <cblas.h>

@@ -19,7 +19,7 @@
 #include "linear/split.h"
 #include "poles/poles.h"
 
-#include <ritz/norms.h>
+#include <ritz/poles.h>
 
 #include <complex.h>
 #include <inttypes.h>

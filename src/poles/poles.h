@@ -10,8 +10,8 @@
 
 #include "base/complex.h"
 
-#include <ritz/damping.h>
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 #include <ritz/response.h>
 
 /*

@@ -2,7 +2,7 @@
 #ifndef RITZ_POLES_PROPORTIONAL_H
 #define RITZ_POLES_PROPORTIONAL_H
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 
 /**
  * The a and b for which |D - a M - b K| is least in the Frobenius norm.

@@ -9,8 +9,8 @@
 #ifndef RITZ_POLES_REFINE_H
 #define RITZ_POLES_REFINE_H
 
-#include <ritz/component.h>
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <stdbool.h>

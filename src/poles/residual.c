@@ -17,7 +17,7 @@
 #include "poles/poles.h"
 #include "poles/proportional.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <complex.h>
 #include <math.h>

@@ -2,12 +2,13 @@
  * Poles of a dense model, from its first-order form: see state.h. Where D
  * couples no modes each has s^2 + d s + lambda = 0 of its own.
  */
-#include <ritz/spectrum.h>
+#include <ritz/poles.h>
 
 #include "base/alloc.h"
 #include "poles/poles.h"
 #include "poles/state.h"
 
+#include <complex.h>
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>

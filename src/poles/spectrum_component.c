@@ -5,10 +5,11 @@
 #include "poles/refine.h"
 #include "poles/spectrum_parts.h"
 
-#include <ritz/factor.h>
-#include <ritz/monitor.h>
-#include <ritz/spectrum.h>
+#include <ritz/base.h>
+#include <ritz/matrix.h>
+#include <ritz/poles.h>
 
+#include <complex.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef RITZ_POLES_SPECTRUM_PARTS_H
 #define RITZ_POLES_SPECTRUM_PARTS_H
 
-#include <ritz/spectrum.h>
+#include <ritz/poles.h>
 
 /* Components of so many dofs are taken whole, as dense: some seconds. */
 enum { RITZ_WHOLE_DOFS = 300 };

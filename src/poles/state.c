@@ -5,7 +5,7 @@
 #include "model/modal.h"
 #include "poles/massless.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <lapacke.h>

@@ -6,8 +6,9 @@
 #include "poles/channel.h"
 #include "poles/poles.h"
 
-#include <ritz/zeros.h>
+#include <ritz/poles.h>
 
+#include <complex.h>
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>

@@ -9,7 +9,7 @@
  *
  * [Kendall1948]
  */
-#include "ritz/agreement.h"
+#include <ritz/ranking.h>
 
 #include "base/alloc.h"
 #include "base/tolerances.h"

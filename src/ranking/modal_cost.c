@@ -18,7 +18,7 @@
 #include "base/tolerances.h"
 #include "gramians/cluster.h"
 
-#include <ritz/reweigh.h>
+#include <ritz/ranking.h>
 
 #include <math.h>
 #include <stdlib.h>

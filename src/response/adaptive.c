@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <complex.h>
 #include <inttypes.h>

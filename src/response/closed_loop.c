@@ -12,7 +12,7 @@
 #include "base/alloc.h"
 #include "linear/general.h"
 
-#include <ritz/closed_loop.h>
+#include <ritz/response.h>
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 
 #include "poles/poles.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 typedef struct ritz_direct {
     const ritz_component *component; /* borrowed */

@@ -6,7 +6,7 @@
 #include "poles/damped.h"
 #include "response/responder.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <complex.h>
 #include <inttypes.h>

@@ -5,9 +5,9 @@
 #include "linear/search.h"
 #include "response/responder.h"
 
-#include <ritz/closed_loop.h>
-#include <ritz/singular.h>
+#include <ritz/response.h>
 
+#include <complex.h>
 #include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>

@@ -7,11 +7,10 @@
 #include "response/direct.h"
 #include "response/responder.h"
 #include <complex.h>
-#include <ritz/status.h>
+#include <ritz/base.h>
 #include <stdint.h>
 
-#include <ritz/monitor.h>
-#include <ritz/zeros.h>
+#include <ritz/poles.h>
 
 #include <inttypes.h>
 #include <math.h>

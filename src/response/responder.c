@@ -4,7 +4,7 @@
 #include "base/tolerances.h"
 #include "poles/damped.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <complex.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/singular.h>
+#include <ritz/response.h>
 
 #include <lapacke.h>
 #include <math.h>

@@ -13,7 +13,7 @@
 #include "linear/general.h"
 #include "response/responder.h"
 
-#include <ritz/state_space.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <math.h>

@@ -14,7 +14,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <lapacke.h>

@@ -17,7 +17,7 @@
 #include "simulate/oscillator.h"
 #include "simulate/states.h"
 
-#include <ritz/dense.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <math.h>

@@ -15,7 +15,7 @@
 #include "linear/general.h"
 #include "poles/poles.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <stdlib.h>

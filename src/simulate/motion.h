@@ -13,7 +13,7 @@
 
 #include "model/modal.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 #include <ritz/simulate.h>
 
 typedef enum ritz_form {

@@ -6,9 +6,8 @@
 #include "simulate/motion.h"
 #include "simulate/reach.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 #include <ritz/simulate.h>
-#include <ritz/text.h>
 
 #include <inttypes.h>
 #include <math.h>

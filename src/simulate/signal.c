@@ -4,7 +4,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <float.h>
 #include <inttypes.h>

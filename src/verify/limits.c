@@ -4,7 +4,7 @@
  */
 #include "base/tolerances.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 #include <ritz/verify.h>
 
 #include <stdio.h>

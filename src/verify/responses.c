@@ -3,7 +3,7 @@
 #include "base/tolerances.h"
 #include "verify/sides.h"
 
-#include <ritz/singular.h>
+#include <ritz/response.h>
 
 #include <complex.h>
 #include <math.h>

@@ -7,7 +7,7 @@
 
 #include "poles/poles.h"
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 
 /** The edge of a band belongs to it, and rounding of the edge too. */
 bool ritz_in_band(const double band_hz[2], double lambda);

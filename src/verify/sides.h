@@ -5,7 +5,7 @@
 #include "poles/damped.h"
 #include "verify/match.h"
 
-#include <ritz/reference.h>
+#include <ritz/verify.h>
 
 /* The full model's responses at some frequencies. */
 typedef struct ritz_reference_sweep {

@@ -13,8 +13,8 @@
 #include "linear/split.h"
 #include "verify/sides.h"
 
-#include <ritz/norms.h>
-#include <ritz/probe.h>
+#include <ritz/check.h>
+#include <ritz/poles.h>
 #include <ritz/verify.h>
 
 #include <complex.h>

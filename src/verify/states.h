@@ -2,7 +2,7 @@
 #ifndef RITZ_VERIFY_STATES_H
 #define RITZ_VERIFY_STATES_H
 
-#include <ritz/norms.h>
+#include <ritz/poles.h>
 #include <ritz/verify.h>
 
 /* Outputs are divided by their limits; 0 is the full model, 1 the reduced. */

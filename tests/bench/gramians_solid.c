@@ -3,9 +3,9 @@
  * the low-rank engine on one component, and its leading Hankel values beside
  * those of the modal engine, of modes up to a frequency. A table, no verdict.
  */
+#include <ritz/base.h>
+#include <ritz/basis.h>
 #include <ritz/container.h>
-#include <ritz/gramians.h>
-#include <ritz/monitor.h>
 
 #include <inttypes.h>
 #include <stdio.h>

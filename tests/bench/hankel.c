@@ -11,7 +11,7 @@
 #include "base/alloc.h"
 #include "linear/general.h"
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 #include <math.h>
 #include <stdio.h>

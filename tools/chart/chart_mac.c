@@ -11,7 +11,7 @@
 #include "chart/chart.h"
 #include "chart/html.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "chart/html.h"
 #include "chart/text.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <errno.h>
 #include <math.h>

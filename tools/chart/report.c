@@ -4,7 +4,7 @@
 #include "chart/html.h"
 #include "chart/text.h"
 
-#include <ritz/version.h>
+#include <ritz/base.h>
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "chart/html.h"
 #include "chart/report.h"
 
-#include <ritz/measures.h>
+#include <ritz/verify.h>
 
 #include <math.h>
 #include <stdlib.h>

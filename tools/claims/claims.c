@@ -3,7 +3,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <errno.h>
 #include <fcntl.h>

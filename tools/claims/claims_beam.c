@@ -5,7 +5,7 @@
  */
 #include "claims/claims.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <inttypes.h>
 #include <stdlib.h>

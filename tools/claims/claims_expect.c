@@ -3,7 +3,7 @@
 
 #include "base/tolerances.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <inttypes.h>
 #include <math.h>

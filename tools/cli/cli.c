@@ -2,8 +2,7 @@
 
 #include "cli/cli_watch.h"
 
-#include <ritz/text.h>
-#include <ritz/version.h>
+#include <ritz/base.h>
 
 #include <fcntl.h>
 #include <inttypes.h>

@@ -8,8 +8,8 @@
 #ifndef RITZ_TOOLS_CLI_CLI_H
 #define RITZ_TOOLS_CLI_CLI_H
 
+#include <ritz/base.h>
 #include <ritz/container.h>
-#include <ritz/status.h>
 
 #include <jansson.h>
 

@@ -4,7 +4,7 @@
 #include "base/alloc.h"
 #include "base/draft.h"
 
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <cblas.h>
 

@@ -4,7 +4,7 @@
 #include "base/draft.h"
 #include "cli/cli_watch.h"
 
-#include <ritz/version.h>
+#include <ritz/base.h>
 
 #include <errno.h>
 #include <fcntl.h>

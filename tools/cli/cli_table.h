@@ -2,7 +2,7 @@
 #ifndef RITZ_TOOLS_CLI_CLI_TABLE_H
 #define RITZ_TOOLS_CLI_CLI_TABLE_H
 
-#include <ritz/status.h>
+#include <ritz/base.h>
 
 #include <stddef.h>
 #include <stdio.h>

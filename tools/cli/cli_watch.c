@@ -2,7 +2,7 @@
 
 #include "base/draft.h"
 
-#include <ritz/monitor.h>
+#include <ritz/base.h>
 
 #include <inttypes.h>
 #include <signal.h>

@@ -1,9 +1,9 @@
 #include "cli/model.h"
 
-#include <ritz/eigen.h>
-#include <ritz/nested.h>
-#include <ritz/probe.h>
-#include <ritz/zeros.h>
+#include <ritz/check.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
+#include <ritz/poles.h>
 
 #include <complex.h>
 #include <math.h>

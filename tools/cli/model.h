@@ -4,11 +4,11 @@
 
 #include "cli/sink.h"
 
-#include <ritz/audit.h>
+#include <ritz/check.h>
 #include <ritz/container.h>
+#include <ritz/poles.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
-#include <ritz/spectrum.h>
 #include <ritz/verify.h>
 
 /* Up to here two triangles differ by rounding, which is no cause to warn. */

@@ -4,7 +4,7 @@
 
 #include "cli/model.h"
 
-#include <ritz/choice.h>
+#include <ritz/model.h>
 
 #define AT_OPTION(place)                                                       \
     CLI_TEXT("at", place, "JOINT=SETTING[,JOINT=SETTING]",                     \

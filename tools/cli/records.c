@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 
-#include <ritz/measures.h>
+#include <ritz/verify.h>
 
 #include <errno.h>
 #include <math.h>

@@ -6,8 +6,7 @@
 #ifndef RITZ_TOOLS_CLI_RECORDS_H
 #define RITZ_TOOLS_CLI_RECORDS_H
 
-#include <ritz/status.h>
-#include <ritz/text.h>
+#include <ritz/base.h>
 
 #include <jansson.h>
 

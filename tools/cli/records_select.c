@@ -1,7 +1,7 @@
 /* Which records, which measures and which methods a chart shows. */
 #include "cli/records.h"
 
-#include <ritz/measures.h>
+#include <ritz/verify.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -18,8 +18,8 @@
 
 #include "cli/cli.h"
 
-#include <ritz/sparse.h>
-#include <ritz/text.h>
+#include <ritz/base.h>
+#include <ritz/matrix.h>
 
 /** A line, and its values. */
 [[gnu::format(printf, 3, 4)]] void sink_say(cli_run *run, const char *keys,

@@ -2,8 +2,8 @@
 
 #include "print/describe.h"
 
-#include <ritz/probe.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/check.h>
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 
 #include "cli/model.h"
 
-#include <ritz/estimate.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/verify.h>
 
 typedef struct basis_wish {
     const ritz_method *method;

@@ -5,7 +5,7 @@
 #include "cli/cli_table.h"
 #include "print/tracks.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <math.h>

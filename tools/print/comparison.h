@@ -4,7 +4,7 @@
 
 #include "cli/model.h"
 
-#include <ritz/compare.h>
+#include <ritz/assembly.h>
 
 enum { COMPARISON_MOST_TOLERANCES = 64 };
 

@@ -4,8 +4,8 @@
 #include "base/tolerances.h"
 #include "print/checksum.h"
 
-#include <ritz/nested.h>
-#include <ritz/probe.h>
+#include <ritz/check.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <inttypes.h>

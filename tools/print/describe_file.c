@@ -3,8 +3,7 @@
 #include "print/describe.h"
 #include "print/rankings.h"
 
-#include <ritz/deck.h>
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <math.h>
 #include <stdlib.h>

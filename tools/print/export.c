@@ -2,7 +2,7 @@
 
 #include "print/checks.h"
 
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "print/describe.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "print/loops.h"
 
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include <math.h>
 #include <stdlib.h>

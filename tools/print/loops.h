@@ -4,7 +4,7 @@
 
 #include "cli/model.h"
 
-#include <ritz/closed_loop.h>
+#include <ritz/response.h>
 
 typedef struct loops_wish {
     const char *controller, *feedback, *states; /* NULL: not said */

@@ -2,7 +2,7 @@
 
 #include "cli/cli_table.h"
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 #include <math.h>
 #include <stdlib.h>

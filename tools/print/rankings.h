@@ -4,8 +4,7 @@
 
 #include "cli/sink.h"
 
-#include <ritz/agreement.h>
-#include <ritz/reweigh.h>
+#include <ritz/ranking.h>
 
 /* Rankings of one kind over configurations, and the largest of each mode. */
 typedef struct ranked {

@@ -1,7 +1,7 @@
 #include "print/rankings_make.h"
 
-#include <ritz/gramians.h>
-#include <ritz/text.h>
+#include <ritz/base.h>
+#include <ritz/basis.h>
 
 #include <inttypes.h>
 #include <limits.h>

@@ -5,7 +5,7 @@
 #include "cli/model.h"
 #include "print/rankings.h"
 
-#include <ritz/choice.h>
+#include <ritz/model.h>
 
 enum { RANK_MOST = 16 };
 

@@ -2,7 +2,7 @@
 
 #include "print/describe.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>

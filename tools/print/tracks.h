@@ -4,7 +4,7 @@
 
 #include "cli/sink.h"
 
-#include <ritz/tracking.h>
+#include <ritz/assembly.h>
 
 /**
  * Follow the modes of a system, say what happened to them up to the end of the

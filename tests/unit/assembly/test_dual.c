@@ -8,11 +8,10 @@
 #include "scenes.h"
 #include "spring_chain.h"
 
-#include <ritz/compare.h>
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 #include <ritz/response.h>
-#include <ritz/synthesis.h>
 
 #include <float.h>
 #include <stdlib.h>

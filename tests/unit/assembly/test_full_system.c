@@ -8,10 +8,10 @@
 #include "frame.h"
 #include "scenes.h"
 
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
 #include <ritz/container.h>
-#include <ritz/eigen.h>
-#include <ritz/method.h>
-#include <ritz/synthesis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -7,8 +7,8 @@
 #include "bodies.h"
 #include "scenes.h"
 
-#include <ritz/eigen.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

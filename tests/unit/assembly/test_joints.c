@@ -9,8 +9,8 @@
 #include "folder.h"
 #include "scenes.h"
 
-#include <ritz/eigen.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -2,9 +2,9 @@
 #include "bodies.h"
 #include "testing.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
-#include <ritz/nested.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <stdlib.h>
 

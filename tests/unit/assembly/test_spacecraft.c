@@ -7,11 +7,11 @@
 #include "folder.h"
 #include "scenes.h"
 
-#include <ritz/eigen.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
 #include <ritz/import.h>
-#include <ritz/method.h>
-#include <ritz/reduced.h>
-#include <ritz/synthesis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -8,9 +8,9 @@
 #include "frame.h"
 #include "scenes.h"
 
-#include <ritz/method.h>
-#include <ritz/sparse.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "masses.h"
 #include "states.h"
 
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include <complex.h>
 #include <float.h>

@@ -5,10 +5,10 @@
 #include "matrices.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/gramians.h>
-#include <ritz/probe.h>
-#include <ritz/reduced.h>
+#include <ritz/basis.h>
+#include <ritz/check.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <float.h>

@@ -3,8 +3,8 @@
 #include "bar.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 

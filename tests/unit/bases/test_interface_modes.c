@@ -4,9 +4,9 @@
 #include "project.h"
 #include "scenes.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -4,9 +4,8 @@
 #include "frame.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/factor.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdlib.h>

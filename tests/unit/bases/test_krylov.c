@@ -7,9 +7,8 @@
 #include "project.h"
 #include "truss.h"
 
-#include <ritz/eigen.h>
-#include <ritz/factor.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <lapacke.h>

@@ -6,9 +6,9 @@
 #include "project.h"
 #include "truss.h"
 
-#include <ritz/eigen.h>
+#include <ritz/basis.h>
 #include <ritz/import.h>
-#include <ritz/method.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

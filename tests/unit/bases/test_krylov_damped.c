@@ -6,8 +6,8 @@
 #include "project.h"
 #include "truss.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <complex.h>
 #include <float.h>

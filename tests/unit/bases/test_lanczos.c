@@ -8,6 +8,7 @@
 
 #include <ritz/response.h>
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

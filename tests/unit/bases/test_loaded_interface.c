@@ -6,9 +6,9 @@
 #include "scenes.h"
 #include "spring_chain.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

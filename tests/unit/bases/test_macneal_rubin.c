@@ -4,10 +4,9 @@
 #include "masses.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/factor.h>
-#include <ritz/method.h>
-#include <ritz/reduced.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 #include <ritz/verify.h>
 
 #include <float.h>

@@ -4,8 +4,8 @@
 #include "masses.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/reduced.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 #include "scenes.h"
 #include "solvers.h"
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
 
 #include <float.h>
 

@@ -5,9 +5,9 @@
 #include "project.h"
 #include "spring_chain.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
-#include <ritz/reduced.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <lapacke.h>
 

@@ -7,11 +7,10 @@
 #include "scenes.h"
 #include "spring_chain.h"
 
-#include <ritz/compare.h>
-#include <ritz/eigen.h>
-#include <ritz/estimate.h>
-#include <ritz/method.h>
-#include <ritz/reduced.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 #include <ritz/response.h>
 #include <ritz/verify.h>
 

@@ -5,8 +5,8 @@
 #include "masses.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 
 #include <complex.h>
 #include <float.h>

@@ -5,7 +5,7 @@
 #include "frame.h"
 #include "testing.h"
 
-#include <ritz/audit.h>
+#include <ritz/check.h>
 #include <ritz/import.h>
 
 #include <stdio.h>

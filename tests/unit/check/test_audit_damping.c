@@ -2,7 +2,7 @@
 
 #include "spring_chain.h"
 
-#include <ritz/audit.h>
+#include <ritz/check.h>
 #include <ritz/import.h>
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "masses.h"
 #include "testing.h"
 
-#include <ritz/audit.h>
+#include <ritz/check.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "masses.h"
 #include "spring_chain.h"
 
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include <float.h>
 #include <math.h>

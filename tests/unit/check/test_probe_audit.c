@@ -13,8 +13,8 @@
 
 #include "check/check.h"
 
-#include <ritz/method.h>
-#include <ritz/probe.h>
+#include <ritz/basis.h>
+#include <ritz/check.h>
 
 #include <float.h>
 #include <math.h>

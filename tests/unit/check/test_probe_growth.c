@@ -6,7 +6,7 @@
 #include "base/alloc.h"
 #include "check/check.h"
 
-#include <ritz/probe.h>
+#include <ritz/check.h>
 
 #include <float.h>
 #include <math.h>

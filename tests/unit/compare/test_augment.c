@@ -12,7 +12,7 @@
 
 #include "compare/compare.h"
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
 #include <ritz/verify.h>
 
 #include <complex.h>

@@ -3,8 +3,8 @@
 
 #include "dualspin.h"
 
-#include <ritz/compare.h>
-#include <ritz/eigen.h>
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #include "dualspin.h"
 #include "scenes.h"
 
-#include <ritz/compare.h>
-#include <ritz/eigen.h>
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

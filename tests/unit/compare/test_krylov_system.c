@@ -8,7 +8,7 @@
 
 #include "compare/compare.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -10,8 +10,8 @@
 
 #include "compare/directions.h"
 
-#include <ritz/compare.h>
-#include <ritz/method.h>
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
 
 #include <stdlib.h>
 

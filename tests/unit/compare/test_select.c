@@ -7,7 +7,7 @@
 #include "beams.h"
 #include "project.h"
 
-#include <ritz/compare.h>
+#include <ritz/assembly.h>
 #include <ritz/verify.h>
 
 #include <float.h>

@@ -7,8 +7,8 @@
 
 #include "dualspin.h"
 
-#include <ritz/eigen.h>
-#include <ritz/tracking.h>
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 
 #include "samples.h"
 
+#include <ritz/base.h>
 #include <ritz/container.h>
-#include <ritz/version.h>
 
 #include <hdf5.h>
 

@@ -7,9 +7,8 @@
 #include "project.h"
 #include "spring_chain.h"
 
-#include <ritz/eigen.h>
-#include <ritz/estimate.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <float.h>

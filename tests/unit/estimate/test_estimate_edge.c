@@ -8,8 +8,7 @@
 #include "masses.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/estimate.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <float.h>

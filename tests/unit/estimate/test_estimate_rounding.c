@@ -6,9 +6,9 @@
 #include "project.h"
 #include "spring_chain.h"
 
-#include <ritz/eigen.h>
-#include <ritz/estimate.h>
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/verify.h>
 
 #include <complex.h>
 #include <math.h>

@@ -8,10 +8,10 @@
 #include "spring_chain.h"
 #include "truss.h"
 
-#include <ritz/eigen.h>
 #include <ritz/fit.h>
-#include <ritz/nested.h>
-#include <ritz/reference.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
+#include <ritz/verify.h>
 
 #include <stdlib.h>
 

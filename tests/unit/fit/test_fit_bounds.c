@@ -9,7 +9,7 @@
 #include "project.h"
 #include "scenes.h"
 
-#include <ritz/estimate.h>
+#include <ritz/verify.h>
 
 #include <math.h>
 #include <stdlib.h>

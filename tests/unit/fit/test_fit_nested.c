@@ -9,7 +9,7 @@
 #include "folder.h"
 #include "project.h"
 
-#include <ritz/nested.h>
+#include <ritz/model.h>
 
 #include <stdio.h>
 #include <stdlib.h>

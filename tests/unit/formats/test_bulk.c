@@ -1,7 +1,7 @@
 /* Bulk data: positions and axes by hand, sets, includes, refusals. */
 #include "testing.h"
 
-#include <ritz/deck.h>
+#include <ritz/import.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,7 @@
 /* Constraint elements of bulk data as equations. */
 #include "testing.h"
 
-#include <ritz/deck.h>
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <stdio.h>
 #include <stdlib.h>

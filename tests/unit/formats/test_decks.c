@@ -1,7 +1,7 @@
 /* Decks as the rest of the house sees them, whatever format they are in. */
 #include "testing.h"
 
-#include <ritz/deck.h>
+#include <ritz/import.h>
 
 #include <stdio.h>
 #include <unistd.h>

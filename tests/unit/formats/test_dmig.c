@@ -1,7 +1,7 @@
 /* DMIG cards: matrices of every form, and what cannot be one. */
 #include "testing.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <lapacke.h>
 #include <stdio.h>

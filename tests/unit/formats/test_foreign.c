@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <stdio.h>
 #include <stdlib.h>

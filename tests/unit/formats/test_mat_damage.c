@@ -3,7 +3,7 @@
 #include "folder.h"
 #include "mat_samples.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <stdlib.h>
 

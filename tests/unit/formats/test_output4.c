@@ -1,7 +1,7 @@
 #include "formats/decimal.h"
 #include "testing.h"
 
-#include <ritz/foreign.h>
+#include <ritz/import.h>
 
 #include <dirent.h>
 #include <float.h>

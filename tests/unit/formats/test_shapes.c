@@ -7,10 +7,9 @@
 #include "bodies.h"
 #include "folder.h"
 
-#include <ritz/deck.h>
+#include <ritz/basis.h>
 #include <ritz/export.h>
-#include <ritz/method.h>
-#include <ritz/shapes.h>
+#include <ritz/import.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 
 #include "linear/general.h"
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 #include <stdlib.h>
 

@@ -3,9 +3,9 @@
 #include "frame.h"
 #include "masses.h"
 
-#include <ritz/eigen.h>
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 #include <ritz/import.h>
+#include <ritz/matrix.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 
 #include "spaces.h"
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,9 +7,9 @@
 
 #include "linear/general.h"
 
-#include <ritz/gramians.h>
-#include <ritz/modal.h>
-#include <ritz/norms.h>
+#include <ritz/basis.h>
+#include <ritz/model.h>
+#include <ritz/poles.h>
 
 #include <complex.h>
 #include <float.h>

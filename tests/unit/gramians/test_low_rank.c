@@ -4,11 +4,12 @@
 #include "mass_row.h"
 #include "masses.h"
 
-#include <ritz/factor.h>
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 #include <ritz/import.h>
-#include <ritz/modal.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
+#include <complex.h>
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/modal.h>
+#include <ritz/model.h>
 
 #include <complex.h>
 #include <stdbool.h>

@@ -3,8 +3,8 @@
 
 #include "folder.h"
 
-#include <ritz/eigen.h>
 #include <ritz/import.h>
+#include <ritz/matrix.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,10 +4,9 @@
 #include "folder.h"
 #include "matrices.h"
 
-#include <ritz/deck.h>
-#include <ritz/eigen.h>
 #include <ritz/import.h>
-#include <ritz/reduced.h>
+#include <ritz/matrix.h>
+#include <ritz/model.h>
 
 #include <stdio.h>
 #include <stdlib.h>

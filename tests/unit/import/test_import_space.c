@@ -2,7 +2,6 @@
 
 #include "folder.h"
 
-#include <ritz/foreign.h>
 #include <ritz/import.h>
 
 #include <matio.h>

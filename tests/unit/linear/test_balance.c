@@ -2,7 +2,7 @@
 
 #include "linear/product_svd.h"
 
-#include <ritz/gramians.h>
+#include <ritz/basis.h>
 
 #include <float.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

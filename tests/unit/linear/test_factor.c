@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
 #include "testing.h"
 
-#include <ritz/factor.h>
+#include <ritz/matrix.h>
 
+#include <complex.h>
 #include <float.h>
 
 typedef struct pencil {

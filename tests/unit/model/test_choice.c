@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/choice.h>
+#include <ritz/model.h>
 
 #include <string.h>
 

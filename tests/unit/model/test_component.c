@@ -7,8 +7,8 @@
 #include "project.h"
 #include "scenes.h"
 
-#include <ritz/method.h>
-#include <ritz/reduced.h>
+#include <ritz/basis.h>
+#include <ritz/model.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -3,9 +3,8 @@
 #include "matrices.h"
 #include "spring_chain.h"
 
-#include <ritz/basis.h>
 #include <ritz/import.h>
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/damping.h>
+#include <ritz/model.h>
 
 #include <stdio.h>
 

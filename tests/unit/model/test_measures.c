@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/reduced.h>
+#include <ritz/model.h>
 
 #include <math.h>
 

@@ -6,8 +6,8 @@
 #include "spaces.h"
 #include "spring_chain.h"
 
-#include <ritz/eigen.h>
-#include <ritz/probe.h>
+#include <ritz/check.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <stdio.h>

@@ -2,9 +2,9 @@
 
 #include "masses.h"
 
-#include <ritz/method.h>
+#include <ritz/basis.h>
+#include <ritz/model.h>
 #include <ritz/response.h>
-#include <ritz/state_space.h>
 
 #include <complex.h>
 #include <float.h>

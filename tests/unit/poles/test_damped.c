@@ -9,7 +9,7 @@
 #include "scenes.h"
 #include "spring_chain.h"
 
-#include <ritz/synthesis.h>
+#include <ritz/assembly.h>
 #include <ritz/verify.h>
 
 #include <complex.h>

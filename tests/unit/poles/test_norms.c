@@ -4,10 +4,11 @@
 
 #include "poles/poles.h"
 
-#include <ritz/gramians.h>
-#include <ritz/norms.h>
+#include <ritz/basis.h>
+#include <ritz/poles.h>
 #include <ritz/response.h>
 
+#include <complex.h>
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>

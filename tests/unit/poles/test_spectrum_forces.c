@@ -1,7 +1,7 @@
 /* Poles of models with negative eigenvalues, as joints by forces make them. */
 #include "testing.h"
 
-#include <ritz/spectrum.h>
+#include <ritz/poles.h>
 
 #include <complex.h>
 #include <float.h>

@@ -5,8 +5,8 @@
 #include "spaces.h"
 #include "testing.h"
 
-#include <ritz/eigen.h>
-#include <ritz/zeros.h>
+#include <ritz/matrix.h>
+#include <ritz/poles.h>
 
 #include <complex.h>
 #include <float.h>

@@ -3,7 +3,7 @@
 #include "masses.h"
 #include "testing.h"
 
-#include <ritz/zeros.h>
+#include <ritz/poles.h>
 
 #include <complex.h>
 #include <float.h>

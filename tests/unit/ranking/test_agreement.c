@@ -1,9 +1,8 @@
 /* Rankings compared, over configurations, and weights that go round. */
 #include "testing.h"
 
-#include <ritz/agreement.h>
 #include <ritz/container.h>
-#include <ritz/reweigh.h>
+#include <ritz/ranking.h>
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,9 +5,9 @@
 #include "frame.h"
 #include "scenes.h"
 
-#include <ritz/compare.h>
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 #include <ritz/ranking.h>
-#include <ritz/sparse.h>
 
 #include <lapacke.h>
 #include <stdlib.h>

@@ -2,9 +2,8 @@
 
 #include "frame.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 #include <ritz/ranking.h>
-#include <ritz/sparse.h>
 #include <ritz/verify.h>
 
 #include <lapacke.h>

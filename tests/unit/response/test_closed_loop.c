@@ -2,10 +2,9 @@
 #include "spaces.h"
 #include "testing.h"
 
-#include <ritz/closed_loop.h>
-#include <ritz/norms.h>
-#include <ritz/probe.h>
-#include <ritz/singular.h>
+#include <ritz/check.h>
+#include <ritz/poles.h>
+#include <ritz/response.h>
 
 #include <complex.h>
 #include <float.h>

@@ -4,10 +4,9 @@
  */
 #include "testing.h"
 
-#include <ritz/eigen.h>
-#include <ritz/foreign.h>
+#include <ritz/basis.h>
 #include <ritz/import.h>
-#include <ritz/method.h>
+#include <ritz/matrix.h>
 #include <ritz/response.h>
 
 #include <complex.h>

@@ -2,9 +2,8 @@
 
 #include "frame.h"
 
-#include <ritz/eigen.h>
+#include <ritz/matrix.h>
 #include <ritz/response.h>
-#include <ritz/sparse.h>
 
 #include <complex.h>
 #include <stdlib.h>

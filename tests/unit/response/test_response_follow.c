@@ -2,8 +2,8 @@
 
 #include "frame.h"
 
+#include <ritz/matrix.h>
 #include <ritz/response.h>
-#include <ritz/sparse.h>
 
 #include <complex.h>
 #include <stdlib.h>

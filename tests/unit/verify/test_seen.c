@@ -7,7 +7,7 @@
 #include "project.h"
 #include "verify/match.h"
 
-#include <ritz/component.h>
+#include <ritz/model.h>
 #include <ritz/verify.h>
 
 #include <string.h>

@@ -3,9 +3,7 @@
 #include "frame.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/estimate.h>
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <stdlib.h>

@@ -6,8 +6,7 @@
 #include "masses.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <math.h>

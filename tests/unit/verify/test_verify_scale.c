@@ -7,8 +7,7 @@
 #include "frame.h"
 #include "project.h"
 
-#include <ritz/eigen.h>
-#include <ritz/sparse.h>
+#include <ritz/matrix.h>
 #include <ritz/verify.h>
 
 #include <stdlib.h>

@@ -1,0 +1,368 @@
+/*
+ * Synthesis: components joined at a configuration, C(alpha) q = 0.
+ *
+ * At settings 0 the basic axes of both bodies of a joint are parallel and their
+ * port origins coincide; a positive angle turns the second body right-handed
+ * about the axis, given in the basic frame of the first, and a positive
+ * position moves it along the axis. A setting is degrees or a length.
+ */
+#ifndef RITZ_ASSEMBLY_H
+#define RITZ_ASSEMBLY_H
+
+#include <ritz/basis.h>
+#include <ritz/model.h>
+#include <ritz/ranking.h>
+#include <ritz/scene.h>
+
+#pragma GCC visibility push(default)
+
+/* A scene with its models loaded and reduced: what stage one has made. */
+typedef struct ritz_stage {
+    const ritz_scene *scene; /* borrowed */
+    int64_t count;
+    ritz_reduced *body;      /* one for each component of the scene */
+    int64_t num_coordinates; /* Q, of all bodies side by side */
+    int64_t *first;          /* of each body's coordinates among them */
+    ritz_io io;              /* the scene's inputs and outputs, for Q */
+    ritz_dampers
+        dampers; /* "body/name", for Q; the bodies' D and K hold them */
+} ritz_stage;
+
+/**
+ * Load the models of a scene and reduce each as it says. A model that is
+ * reduced already is taken as it is, and then the scene names no basis.
+ *
+ * Attached are the ports that the scene names, or else those of every joint
+ * and input.
+ */
+ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out);
+
+/**
+ * The model of component @p k of a scene, its ports checked: a full one, or one
+ * that is reduced already; the other stays empty.
+ */
+ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
+                            ritz_component *full, ritz_reduced *reduced);
+
+/**
+ * Reduce that full model as @p item says, which may be the scene's own or
+ * another: its basis, modes, up_to_hz, attach and choice are used.
+ */
+ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
+                              const ritz_scene_component *item,
+                              const ritz_component *component,
+                              ritz_reduced *out);
+
+/**
+ * A stage of bodies that are there already, in the order of the scene.
+ *
+ * @param[in,out] body  scene->num_components, moved into the stage: on success
+ *                      left empty, on failure still the caller's; their
+ *                      dampers are installed
+ */
+ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
+                            ritz_stage *out);
+
+/** 1 / sqrt(M_jj) of each coordinate, or 1 / sqrt(K_jj) if it has no mass. */
+void ritz_stage_scale(const ritz_stage *stage, double *scale);
+
+/**
+ * Constraint rows C q = 0 of all that joints lock at some settings, c x Q.
+ *
+ * Columns are those of scaled coordinates, rows of one joint and kind
+ * (translations, rotations) are divided by the largest norm among them, so that
+ * singular values tell rank apart from rounding.
+ *
+ * @param[in] setting  one for each sweep of the scene
+ * @param[in] scale      Q, as ritz_stage_scale gives it
+ */
+ritz_status ritz_stage_constraints(const ritz_stage *stage,
+                                   const double *setting, const double *scale,
+                                   ritz_dense *out);
+
+/**
+ * The system at some settings: null space P of the constraints, their rank by
+ * singular values above 1e-9 of the largest, then its modes as coordinates.
+ *
+ * @cost O(Q^2 c + e^3)
+ */
+ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
+                                ritz_configuration *out);
+
+/** The system at every configuration of the scene, or at @p at alone. */
+ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
+                          ritz_system *out);
+
+/**
+ * The full-order system at some settings as one component: constraints
+ * eliminated sparsely, dofs of all bodies side by side, in the basic frame of
+ * the first body. Grids are renumbered where two bodies use one number: those
+ * of body k, from 0, by k times the next power of ten.
+ *
+ * Whatever basis the scene names, the full model is taken.
+ *
+ * @return RITZ_ERR_ARGUMENT if a model is reduced already
+ */
+ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
+                               ritz_component *out);
+
+/* Which dof of which body a dof of the full-order system is. */
+typedef struct ritz_master {
+    int64_t body, dof;
+} ritz_master;
+
+/**
+ * The same, and where its dofs are; bodies ascend, and dofs of each.
+ *
+ * @param[out] where  out->num_dofs; the caller's to free
+ */
+ritz_status ritz_assemble_masters(const ritz_scene *scene,
+                                  const double *setting, ritz_component *out,
+                                  ritz_master **where);
+
+/**
+ * T of the system at a configuration, n x e, over the dofs of the full-order
+ * system there: rows of T_c P_c of each body. With it the system's matrices are
+ * those of the full one condensed, since ports move in both as T says.
+ *
+ * @return RITZ_ERR_ARGUMENT if a body has no T, or one of other dofs
+ */
+ritz_status ritz_stage_basis(const ritz_stage *stage,
+                             const ritz_configuration *at, int64_t n,
+                             const ritz_master *master, ritz_dense *out);
+
+/* A component at one side of a joint, and what messages call it. */
+typedef struct ritz_joined {
+    const char *name;
+    const ritz_component *component;
+} ritz_joined;
+
+/** Nothing hangs on @p attached dofs yet. */
+ritz_status ritz_neighbour_new(int64_t attached, ritz_neighbour *out);
+
+/**
+ * Add what the body at the other side of a joint hangs on a component: its mass
+ * and stiffness condensed to its port, as the joint lets the component feel
+ * them. A motion that the joint frees is not loaded.
+ *
+ * @param[in]     setting   of all sweeps of the scene; NULL if it has none
+ * @param[in]     near      which side is the component that is loaded
+ * @param[in]     attached  its dofs, those of the joint's port among them
+ * @param[in,out] sum       attached x attached
+ * @return RITZ_ERR_ARGUMENT if ports do not fit or are not attached,
+ *         RITZ_ERR_SINGULAR if the other body moves while its port is held
+ */
+ritz_status ritz_joint_neighbour(const ritz_joint *joint, const double *setting,
+                                 const ritz_joined side[static 2], int near,
+                                 const ritz_dofs *attached,
+                                 ritz_neighbour *sum);
+
+void ritz_neighbour_free(ritz_neighbour *neighbour);
+
+void ritz_stage_free(ritz_stage *stage);
+
+/*
+ * COMPARE: component modes projection and assembly model reduction over all
+ * configurations of an articulated system [LeeTsuha1992], and its relatives:
+ * P&A (no augmentation), EP&A and Krylov P&A [McDaniel2000, chapter 3].
+ */
+
+/* A flexible mode of the second system that stands for no kept mode. */
+typedef struct ritz_stray {
+    int64_t mode; /* flexible mode of stage 2, as assembled */
+    double hertz;
+    int64_t like; /* flexible mode of stage 1 that it is most like; -1: none */
+    double mac;   /* how like */
+    bool removed; /* from the second system; the bodies still contain it */
+} ritz_stray;
+
+/* What stage two did at one configuration. */
+typedef struct ritz_compare_row {
+    double *setting; /* one for each sweep */
+    bool listed;     /* false: between listed angles, for checking only */
+    int64_t num_rigid, num_flexible; /* of the stage-1 system */
+    int64_t num_kept; /* flexible modes that matter: listed, they are kept;
+                               between, they would have been */
+    int64_t *kept;    /* num_kept indices into the flexible modes, ascending */
+    int64_t num_completed; /* of those, kept only as a cluster is never split */
+    int64_t num_vectors;   /* Krylov vectors in their place */
+    int64_t order;         /* of the stage-2 system, strays removed */
+    double frequency_error; /* worst relative, of those modes; NaN: no mode */
+    double allowed;         /* what rounding allows it, c eps lambda_max /
+                               lambda_k with c = 20 e; NaN between */
+    double rigid_error;     /* largest |omega| of a rigid mode of stage 2, Hz */
+    double gain_error;      /* relative, of the flexible static gain */
+    double response_error;  /* relative to the largest |H|, in the band */
+    double mac;             /* smallest, of those modes; NaN: no mode */
+    int64_t num_moments;    /* Krylov: the first of them are kept, */
+    double moment_error;    /* and this is the worst, relative; NaN: none */
+    int64_t num_strays;
+    ritz_stray *stray;
+} ritz_compare_row;
+
+/* Static corrections for one set of forces, and what they are worth. */
+typedef struct ritz_candidate {
+    ritz_augment level;
+    int attached;              /* sum of RITZ_ATTACHED_... */
+    bool inputs_too;           /* and those that the scene names alone */
+    char name[RITZ_NAME_SIZE]; /* "inputs, interface" */
+    int64_t *order;            /* of each body */
+    int64_t total;             /* of all bodies */
+    int64_t largest;           /* order of a system, at any configuration */
+    double gain_listed, gain_between; /* worst relative errors; NaN: none */
+    double deviation; /* of the largest singular value of H(i w), relative, the
+                         worst over the band at all listed configurations; NaN
+                         where there is no response */
+    double hertz;     /* where */
+    char at[RITZ_NAME_SIZE]; /* and at which configuration */
+    bool chosen;
+} ritz_candidate;
+
+/* What errors between listed angles there are, and whether one is to be added:
+ * if it is above 1e-3 and ten times the worst of its kind at listed ones. */
+typedef struct ritz_suggestion {
+    int64_t row; /* between listed angles, with the worst error; -1: none */
+    const char *measure;  /* "response", "frequency" or "gain" */
+    double error, listed; /* there, and worst at listed configurations */
+    bool worth;           /* add it */
+} ritz_suggestion;
+
+typedef struct ritz_comparison {
+    ritz_stage second;                       /* bodies after stage two */
+    ritz_system first_system, second_system; /* listed configurations */
+    int64_t num_rows;
+    ritz_compare_row *row; /* listed ones first, then those between */
+    int64_t num_bodies;
+    int64_t composite;      /* vectors before dependent ones were removed */
+    bool removed;           /* whether stage two removed anything at all */
+    ritz_dense *V;          /* num_bodies, r_c x s_c */
+    int64_t num_candidates; /* where components are augmented, or by choice */
+    ritz_candidate *candidate;
+    ritz_suggestion suggestion;
+} ritz_comparison;
+
+/** Both stages. @cost an eigenproblem of the stage-1 order a configuration */
+ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out);
+
+/* The second stage at one composite tolerance. */
+typedef struct ritz_tolerance_row {
+    double tolerance;
+    int64_t *order;  /* of each body */
+    int64_t total;   /* of all bodies */
+    int64_t largest; /* order of a system, at any configuration */
+    bool removed;    /* whether stage two removed anything */
+    double frequency_error, gain_error, response_error; /* worst over all
+                                                          listed; NaN: none */
+} ritz_tolerance_row;
+
+/**
+ * What the composite tolerance trades: orders and worst errors at each of
+ * @p count tolerances, everything else as the scene says.
+ *
+ * @param[out] out  count rows, to be freed by ritz_tolerances_free
+ * @return RITZ_ERR_ARGUMENT if a tolerance is not between 0 and 1
+ */
+ritz_status ritz_compare_tolerances(const ritz_stage *stage,
+                                    const ritz_comparison *comparison,
+                                    int64_t count, const double *tolerance,
+                                    ritz_tolerance_row **out);
+
+/*
+ * The composite set of each body with its directions in the order in which they
+ * matter: any number of the first is a subspace for stage two.
+ */
+typedef struct ritz_composite {
+    int64_t num_bodies;
+    ritz_dense *V;     /* of each, r_c x s_c: rigid motions, then directions */
+    int64_t *rigid;    /* of each, how many are rigid motions */
+    int64_t num_steps; /* directions of all bodies */
+    int64_t *step;     /* num_steps: the body whose next direction matters most
+                          of those that are left */
+} ritz_composite;
+
+/**
+ * Of the modes up to the end of the scene's band at all its configurations,
+ * then of static answers to inputs and outputs, then of all that stage one has.
+ *
+ * Modes that are to be ranked (scene.select) weigh as much as their value in
+ * the ranking, others all the same. Where the scene augments, static answers
+ * come with the modes, not behind them. A body that does not move rigidly with
+ * the system has its first direction before any other.
+ *
+ * What is cut keeps no mode exactly; it is for searches that measure each cut.
+ *
+ * @return RITZ_ERR_ARGUMENT if there is no band or no configuration, or as
+ *         ritz_compare
+ * @cost   an eigenproblem of the stage-1 order a configuration, and of each
+ *         body a singular value decomposition, r_c rows and a column for each
+ *         mode and configuration
+ */
+ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out);
+void ritz_composite_free(ritz_composite *composite);
+
+void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows);
+void ritz_comparison_free(ritz_comparison *comparison);
+
+/* Modes followed from configuration to configuration by their shapes. */
+
+typedef enum ritz_track_kind {
+    RITZ_TRACK_SWAP,    /* two tracks change places in frequency */
+    RITZ_TRACK_TIE,     /* a second mode is nearly as like */
+    RITZ_TRACK_AVOIDED, /* two modes turn into mixtures of each other */
+    RITZ_TRACK_LOST,    /* none is like it: MAC below 0.5 */
+} ritz_track_kind;
+
+/* What happened on the way from one configuration to another. */
+typedef struct ritz_track_event {
+    ritz_track_kind kind;
+    int64_t from, to; /* configurations */
+    int64_t mode[2];  /* flexible modes of `from`; [1] -1: one is concerned */
+    int64_t other[2]; /* what they become, or for a tie the two candidates; -1:
+                         none */
+    double mac[2];    /* of mode[0] with other[0], and of the second pair: swap
+                         and avoided mode[1] with other[1], tie mode[0] with
+                         other[1] */
+    double shared;    /* avoided: of the two planes; else NaN */
+    double hertz;     /* of mode[0] */
+} ritz_track_event;
+
+/*
+ * Flexible modes only. Those of one cluster, relative gap below 1e-6, at any
+ * configuration share one track: what is repeated is followed as one subspace.
+ */
+typedef struct ritz_tracking {
+    int64_t num_configurations;
+    int64_t *before;  /* the configuration that each is followed from; -1 */
+    int64_t *first;   /* num_configurations + 1, where modes of each begin */
+    int64_t *track;   /* from 0, ascending as they first appear */
+    int64_t *cluster; /* of each mode, the first mode of its cluster */
+    double *hertz;
+    double *mac; /* with its like in `before`; NaN where it has none */
+    int64_t num_tracks;
+    int64_t num_events;
+    ritz_track_event *event;
+} ritz_tracking;
+
+/**
+ * Follow the flexible modes of a system over its configurations. Modes are
+ * vectors of the coordinates of all bodies, each fixed in its own, so that
+ *
+ *     MAC_ij = (sum_c (P_c' M_c P'_c)_ij)^2 <= 1
+ *
+ * needs no turning back; between clusters it is the mean squared cosine of the
+ * angles of their spaces. Each configuration is followed from the nearest of
+ * the thousand listed before it: that which differs in the fewest sweeps, then
+ * by least.
+ *
+ * @param[in] stage     whose coordinates the system's are
+ * @param[in] up_to_hz  events above are passed over; 0: none is
+ * @cost O(Q^2 e) a configuration
+ */
+ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
+                       double up_to_hz, ritz_tracking *out);
+
+void ritz_tracking_free(ritz_tracking *tracking);
+
+#pragma GCC visibility pop
+
+#endif

@@ -1,0 +1,1183 @@
+/*
+ * Degrees of freedom: what a row of a component is, and sets of rows.
+ *
+ * Rows are counted from 0 inside the library. Users never see row numbers:
+ * messages name grid and direction, "grid 101 T3".
+ */
+#ifndef RITZ_MODEL_H
+#define RITZ_MODEL_H
+
+#include <ritz/base.h>
+#include <ritz/matrix.h>
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#pragma GCC visibility push(default)
+
+/* Directions of a grid: 1-3 translations, 4-6 rotations, 0 a scalar point. */
+typedef struct ritz_dof {
+    int64_t grid;
+    int64_t component;
+} ritz_dof;
+
+typedef struct ritz_dofs {
+    int64_t count;
+    int64_t *at; /* count distinct row numbers, from 0, in the owner's order */
+} ritz_dofs;
+
+/**
+ * The rows of 0..n-1 that are not in @p set, ascending.
+ *
+ * @return RITZ_ERR_ARGUMENT if a member of @p set is out of range or repeated
+ */
+ritz_status ritz_dofs_complement(const ritz_dofs *set, int64_t n,
+                                 ritz_dofs *out);
+
+/** Copy of @p set. */
+ritz_status ritz_dofs_copy(const ritz_dofs *set, ritz_dofs *out);
+
+/** Room for the text that ritz_dof_name writes. */
+enum { RITZ_DOF_NAME_SIZE = 40 };
+
+/** "grid 101 T3", "grid 101 R1", "point 2001"; returns @p text. */
+const char *ritz_dof_name(ritz_dof dof, char text[RITZ_DOF_NAME_SIZE]);
+
+/** Order of two ritz_dof, for qsort and bsearch: by grid, then direction. */
+int ritz_dof_compare(const void *left, const void *right);
+
+/**
+ * Sort a list and keep each dof once.
+ *
+ * @return how many are left
+ * @cost   O(n log n)
+ */
+int64_t ritz_dof_distinct(int64_t count, ritz_dof *dof);
+
+void ritz_dofs_free(ritz_dofs *set);
+
+/*
+ * Damping as scenes and options state it, beside what matrices carry.
+ *
+ * Text form, one word and numbers: "modal 0.002"; "modes 0.01 0.02" (of the
+ * first flexible mode, the second, ...; the last for all above); "bands 0 5
+ * 0.002 5 20 0.005" (from Hz, to Hz, ratio; ...); "rayleigh a b" (D = a M +
+ * b K); "fit 1 0.01 10 0.02" (Hz, ratio; ...: the a and b that come nearest).
+ */
+
+enum {
+    RITZ_MAX_BANDS = 8,
+    RITZ_MOST_RATIOS = 40,
+    RITZ_MOST_POINTS = 20,
+    RITZ_DAMPING_SIZE = 1024, /* room for the longest text and its NUL */
+};
+
+typedef enum ritz_damping_kind {
+    RITZ_DAMPING_NONE,
+    RITZ_DAMPING_MODAL,
+    RITZ_DAMPING_BANDS,
+    RITZ_DAMPING_RAYLEIGH,
+    RITZ_DAMPING_MODES,
+    RITZ_DAMPING_FIT,
+} ritz_damping_kind;
+
+typedef struct ritz_damping {
+    ritz_damping_kind kind;
+    double zeta;                       /* modal */
+    int64_t count;                     /* bands, modes, points of a fit */
+    double band[RITZ_MAX_BANDS][3];    /* from Hz, to Hz, zeta */
+    double ratio[RITZ_MOST_RATIOS];    /* modes */
+    double point[RITZ_MOST_POINTS][2]; /* fit: Hz, zeta */
+    double a, b;                       /* rayleigh, and what a fit came to */
+} ritz_damping;
+
+/**
+ * Whether a damping makes sense: ratios above 0 and below 1; bands that ascend
+ * from 0 Hz and do not overlap; a and b not negative nor both 0; two different
+ * frequencies at least in a fit.
+ *
+ * @return RITZ_ERR_ARGUMENT with what is wrong
+ */
+ritz_status ritz_damping_check(const ritz_damping *damping);
+
+/** @return RITZ_ERR_ARGUMENT with what is wrong; "" is none */
+ritz_status ritz_damping_parse(const char *text, ritz_damping *out);
+
+/** The text form of a checked damping, shortest digits that read back the
+ * same. */
+void ritz_damping_print(const ritz_damping *damping,
+                        char text[RITZ_DAMPING_SIZE]);
+
+/**
+ * Put a and b of a fit whose points are checked where
+ *
+ *     sum_k ((a / w_k + b w_k) / 2 - zeta_k)^2
+ *
+ * is least for a, b >= 0.
+ */
+void ritz_damping_fit(ritz_damping *damping);
+
+/** Whether it is a M + b K, as stated or as fitted. */
+bool ritz_damping_is_rayleigh(const ritz_damping *damping);
+
+/**
+ * Largest |ratio of the fit - ratio asked| of its points; 0 of another kind.
+ *
+ * @param[out] at  index of that point, 0 if there is none
+ */
+double ritz_damping_misfit(const ritz_damping *damping, int64_t *at);
+
+/**
+ * Damping ratio at @p omega rad/s; 0 outside all bands. An edge that two bands
+ * share belongs to the upper one. Rayleigh: (a / omega + b omega) / 2 or, where
+ * omega is 0 and no ratio stands for a, 0. Of modes: that of all above.
+ */
+double ritz_damping_ratio(const ritz_damping *damping, double omega);
+
+/** The same of flexible mode @p mode, 0 being the first. */
+double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
+                            double omega);
+
+/*
+ * Discrete dampers (and springs) kept apart from D and K, so that they can be
+ * retuned after reduction: damper j adds c_j b_j b_j' to D and k_j b_j b_j' to
+ * K, b_j being its influence vector, +1 and -1 at the dofs it lies between.
+ *
+ * D and K of a component and of its reduction hold nothing of them, and bases
+ * are made without them; who answers for the model (a response, poles, errors,
+ * assembly, export) installs them first. What D and K hold already is kept
+ * beside c and k, so that installing twice adds nothing, and installing after a
+ * change of c or k adds the difference.
+ */
+
+typedef struct ritz_dampers {
+    int64_t count;
+    char (*name)[RITZ_NAME_SIZE]; /* distinct; "body/name" in a system */
+    double *c, *k;                /* either sign of k, c >= 0 */
+    double *held_c, *held_k;      /* what D and K hold of them already */
+    ritz_dense B;                 /* n x count */
+} ritz_dampers;
+
+/** @p count dampers without name, c and k, for @p n coordinates. */
+ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out);
+
+/** What the subspace x = T q sees of them: T'B; names, c and k kept. */
+ritz_status ritz_dampers_project(const ritz_dampers *dampers,
+                                 const ritz_dense *T, ritz_dampers *out);
+
+ritz_status ritz_dampers_copy(const ritz_dampers *dampers, ritz_dampers *out);
+
+/**
+ * Append @p more, whose coordinates are rows first, first + 1, ... of the @p n
+ * that all have; with @p owner each is called "owner/name".
+ *
+ * @return RITZ_ERR_ARGUMENT if a name becomes too long
+ */
+ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
+                                int64_t n, int64_t first,
+                                ritz_dampers *dampers);
+
+/**
+ * Whether dampers make sense for a model of @p n coordinates: names there and
+ * distinct, values finite, c not negative.
+ *
+ * @return RITZ_ERR_FORMAT with what is wrong
+ */
+ritz_status ritz_dampers_check(const ritz_dampers *dampers, int64_t n);
+
+/** Index of a name; -1 and a sentence naming the nearest if there is none. */
+int64_t ritz_dampers_find(const ritz_dampers *dampers, const char *name);
+
+/**
+ * Take "NAME=C" or "NAME=C*K" as new values; without K it stays.
+ *
+ * @return RITZ_ERR_ARGUMENT if the name is unknown, or no numbers follow
+ */
+ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text);
+
+/**
+ * Install: D += sum (c - held_c) b b' and K likewise. An absent D, {0}, is made
+ * if there is anything to add.
+ *
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree
+ */
+ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
+                                 ritz_dense *D);
+
+/** The same of sparse matrices; b has few entries. */
+ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
+                                        ritz_sparse *D);
+
+void ritz_dampers_free(ritz_dampers *dampers);
+
+/*
+ * Inputs and outputs of a second-order model with n coordinates x:
+ *
+ *     M x'' + D x' + K x = B u,    y = C x + Cv x' + Ca x''
+ *
+ * The same object serves components (n dofs), reduced components and systems
+ * (n reduced coordinates): a basis T turns B into T'B and C into C T.
+ */
+
+typedef struct ritz_io {
+    int64_t num_inputs, num_outputs;
+    char (*input)[RITZ_NAME_SIZE];  /* num_inputs names */
+    char (*output)[RITZ_NAME_SIZE]; /* num_outputs names */
+    ritz_dense B;                   /* n x num_inputs */
+    ritz_dense C, Cv, Ca;           /* num_outputs x n; all three allocated */
+    double *limit; /* num_outputs, largest tolerated |y|; NaN where none */
+} ritz_io;
+
+/** All names empty, all matrices zero, all limits NaN, for n coordinates. */
+ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
+                        ritz_io *out);
+
+/**
+ * What the subspace x = T q sees: T'B, C T, Cv T, Ca T; names and limits kept.
+ *
+ * @param[in]  T    n x r
+ */
+ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
+                            ritz_io *out);
+
+void ritz_io_free(ritz_io *io);
+
+/*
+ * Which grids belong together, for pictures: cells of a mesh and no mechanics.
+ *
+ * Kinds and the order of grids in a cell are those of VTK, which most viewers
+ * share.
+ */
+
+typedef enum ritz_cell {
+    RITZ_CELL_POINT = 1, /* of pictures alone: where there is no element */
+    RITZ_CELL_LINE = 3,
+    RITZ_CELL_TRIANGLE = 5,
+    RITZ_CELL_QUAD = 9,
+    RITZ_CELL_TETRA = 10,
+    RITZ_CELL_HEXA = 12,
+    RITZ_CELL_WEDGE = 13,
+    RITZ_CELL_TRIANGLE6 = 22, /* from here on with nodes between corners */
+    RITZ_CELL_QUAD8 = 23,
+    RITZ_CELL_TETRA10 = 24,
+    RITZ_CELL_HEXA20 = 25,
+    RITZ_CELL_WEDGE15 = 26,
+} ritz_cell;
+
+/* Cell k has grids grid[first[k]] to grid[first[k + 1] - 1]. */
+typedef struct ritz_elements {
+    int64_t count;
+    int64_t *kind;  /* count, of ritz_cell */
+    int64_t *first; /* count + 1; NULL if count is 0 */
+    int64_t *grid;  /* first[count], ids */
+} ritz_elements;
+
+/** Grids of a kind of cell, and those at its corners; 0 if it is none. */
+int64_t ritz_cell_size(int64_t kind);
+int64_t ritz_cell_corners(int64_t kind);
+
+/** The kind that has its corners alone: QUAD of QUAD8. */
+int64_t ritz_cell_linear(int64_t kind);
+
+ritz_status ritz_elements_copy(const ritz_elements *elements,
+                               ritz_elements *out);
+
+/**
+ * Leave out cells with a grid that is not among some.
+ *
+ * @param[in] count,id  ids that there are, ascending
+ * @return how many were left out
+ */
+int64_t ritz_elements_keep(ritz_elements *elements, int64_t count,
+                           const int64_t *id);
+
+/**
+ * Whether kinds are known and sizes fit them, and all grids are there.
+ *
+ * @return RITZ_ERR_FORMAT with what is wrong
+ */
+ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
+                                const int64_t *id);
+
+void ritz_elements_free(ritz_elements *elements);
+
+/*
+ * Linear equations between dofs, as constraint elements state them, and their
+ * elimination: with the dependent dofs u_m and all others u_n
+ *
+ *     u_m = R_mm u_m + R_mn u_n,    u = G u_n,   G_m = (I - R_mm)^-1 R_mn
+ */
+
+/* What states equations: a card of a deck, or a port. */
+typedef struct ritz_equation_source {
+    char name[RITZ_NAME_SIZE]; /* "RBE2 600" */
+    int64_t file;              /* index in `file`, -1: none */
+    int64_t line;
+} ritz_equation_source;
+
+/* Equation e: u(dependent[e]) = sum share[k] u(dof[k]), k from first[e] to
+ * first[e + 1] - 1. A dof may occur more than once, its shares add up. */
+typedef struct ritz_equations {
+    int64_t count;
+    ritz_dof *dependent; /* count */
+    int64_t *first;      /* count + 1; NULL if count is 0 */
+    ritz_dof *dof;
+    double *share;
+    int64_t *source; /* count, index of what states it */
+    int64_t num_sources;
+    ritz_equation_source *from;
+    int64_t num_files;
+    char **file;   /* paths that sources are in */
+    char *refused; /* why there are no more of them; NULL: these are all */
+    int64_t room[6];
+} ritz_equations;
+
+/** Room for what ritz_equations_cite writes. */
+enum { RITZ_CITATION_SIZE = 200 };
+
+/** "RBE2 600 ('deck.bdf', line 12)"; returns @p text. */
+const char *ritz_equations_cite(const ritz_equations *equations, int64_t source,
+                                char text[static RITZ_CITATION_SIZE]);
+
+/** The equation that eliminates @p dof, -1 if none does. @cost O(count) */
+int64_t ritz_equations_find(const ritz_equations *equations, ritz_dof dof);
+
+void ritz_equations_free(ritz_equations *equations);
+
+/* All dofs in terms of those that stay. */
+typedef struct ritz_elimination {
+    ritz_dofs kept; /* n of all, ascending */
+    ritz_dofs gone; /* the others, ascending */
+    ritz_sparse G;  /* all x n; row kept.at[j] is that of the identity */
+} ritz_elimination;
+
+/**
+ * Solve the equations for their dependent dofs. Dependents may depend on each
+ * other, in chains or in circles.
+ *
+ * @param[in] dof    count distinct names; every dof of the equations is there
+ * @param[in] fixed  count, u = 0 there: none of these may be dependent; NULL
+ * @return RITZ_ERR_FORMAT if a dof is dependent twice, dependent and fixed, or
+ *         not there; RITZ_ERR_SINGULAR if a circle leaves its dofs undetermined
+ * @cost   O(count + entries of G), and the cube of the longest circle
+ */
+ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
+                                 const ritz_dof *dof, const bool *fixed,
+                                 ritz_elimination *out);
+
+void ritz_elimination_free(ritz_elimination *elimination);
+
+/*
+ * Dofs that are not among the coordinates of a model, but follow from them:
+ * u(dof[k]) = G(k,:) u.
+ */
+typedef struct ritz_recovery {
+    int64_t count;
+    ritz_dof *dof;
+    ritz_sparse G; /* count x n; {0} if count is 0 */
+} ritz_recovery;
+
+/** Whether these can be recovered from @p n dofs. @return RITZ_ERR_FORMAT */
+ritz_status ritz_recovery_check(const ritz_recovery *recovery, int64_t n,
+                                const ritz_dof *dof);
+
+ritz_status ritz_recovery_copy(const ritz_recovery *recovery,
+                               ritz_recovery *out);
+
+/**
+ * The dofs of a model and behind them those recovered, and how all of them
+ * move: [T; G T].
+ *
+ * @param[in]  T      n x r; NULL if @p shape is
+ * @param[out] names  n + count
+ * @param[out] shape  (n + count) x r; NULL: not wanted
+ */
+ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
+                                 const ritz_dof *dof, const ritz_dense *T,
+                                 ritz_dof **names, ritz_dense *shape);
+
+void ritz_recovery_free(ritz_recovery *recovery);
+
+/*
+ * A component: the finite-element model of one body,
+ *
+ *     M u'' + D u' + (K + i K4) u = B f,    y = C u + Cv u' + Ca u''
+ *
+ * with rows named by grid and direction. Displacements of a grid are along the
+ * axes of its displacement frame; positions, port origins and port axes are in
+ * the component's basic frame.
+ */
+
+/* Where the grids are. Scalar points are not listed. */
+typedef struct ritz_grids {
+    int64_t count;
+    int64_t *id;        /* count, ascending */
+    double *position;   /* count x 3, row by row, basic frame */
+    int64_t *frame;     /* count, row of `axes`; 0 is the basic frame */
+    int64_t num_frames; /* at least 1 once anything is there */
+    double *axes; /* num_frames x 3 x 3, row by row: axes[9 f + 3 i + j] is
+                     component j (basic) of displacement axis i; frame 0 is I */
+} ritz_grids;
+
+/* A named set of dofs by which other bodies hold this one. */
+typedef struct ritz_port {
+    char name[RITZ_NAME_SIZE];
+    ritz_dofs dofs;
+    double origin[3]; /* mean position of its grids, basic frame */
+    double axes[9];   /* row by row as above; identity */
+} ritz_port;
+
+/* Geometric stiffness of one unit load. */
+typedef struct ritz_load {
+    char name[RITZ_NAME_SIZE];
+    ritz_sparse KG;
+} ritz_load;
+
+typedef struct ritz_component {
+    int64_t num_dofs;  /* n */
+    ritz_dof *dof;     /* n, what each row is */
+    ritz_sparse K, M;  /* n x n, symmetric; K has no entries if rigid */
+    ritz_sparse D, K4; /* n x n; {0}: there is none. D may be unsymmetric */
+    int64_t num_loads;
+    ritz_load *load;
+    ritz_grids grids;
+    ritz_elements elements; /* for pictures; {0}: none are known */
+    int64_t num_ports;
+    ritz_port *port;
+    ritz_io io;             /* for n coordinates */
+    ritz_recovery recovery; /* dofs that constraints eliminated */
+    ritz_dampers dampers;   /* beside K and D, which hold none of them */
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
+    char units[RITZ_NAME_SIZE];      /* "kg m s" */
+    double asymmetry; /* relative, that was found and averaged away */
+    double digits;    /* significant digits of the source; 0 if not known */
+} ritz_component;
+
+/**
+ * Make what was read into a component: all sizes agree, ports lie in it, dofs
+ * are distinct, values are finite, and an asymmetry up to 1e-6 of a matrix'
+ * largest entry is averaged away (any asymmetry if @p symmetrise). More is
+ * refused, but kept in D, where it is a gyroscopic or circulatory part.
+ *
+ * Missing parts are completed: K with no entries, an empty io.
+ *
+ * @param[in,out] component  its asymmetry says what was averaged, 0 if nothing
+ * @return RITZ_ERR_FORMAT if it is no component, or is less symmetric
+ */
+ritz_status ritz_component_settle(ritz_component *component, bool symmetrise);
+
+/** Add the component's dampers to its D and K: see ritz_dampers_install. */
+ritz_status ritz_component_install(ritz_component *component);
+
+/**
+ * The dofs of some ports, each once, in the order of the ports.
+ *
+ * @param[in] ports  names with commas between them, NULL for all, "" for none
+ * @return RITZ_ERR_ARGUMENT if there is no such port
+ */
+ritz_status ritz_component_attached(const ritz_component *component,
+                                    const char *ports, ritz_dofs *out);
+
+/** Port called @p name; NULL and a sentence naming the nearest if none. */
+const ritz_port *ritz_component_port(const ritz_component *component,
+                                     const char *name);
+
+/** Row of a dof, -1 if there is none. @cost O(n) */
+int64_t ritz_component_row(const ritz_component *component, ritz_dof dof);
+
+/** Index of grid @p id in @p grids, -1 if it has no position. O(log n) */
+int64_t ritz_grids_find(const ritz_grids *grids, int64_t id);
+
+/**
+ * Displacements of a port's grids along basic axes, from the component's dofs.
+ *
+ * For each grid of the port in order of first appearance, its present
+ * directions ascending; row k of @p turn combines the port's dofs:
+ * u_basic = turn * u(port->dofs).
+ *
+ * A grid whose displacement axes are not the basic ones must bring all three
+ * translations, or none, and the same of rotations.
+ *
+ * @param[out] turn   p x p, p = port->dofs.count
+ * @param[out] label  p, grid and basic direction of each row; NULL: not wanted
+ * @return RITZ_ERR_ARGUMENT if directions are missing, naming the grid
+ */
+ritz_status ritz_port_turn(const ritz_component *component,
+                           const ritz_port *port, ritz_dense *turn,
+                           ritz_dof **label);
+
+/**
+ * Rigid-body motions about @p origin by geometry: columns are unit
+ * translations along and unit rotations about the basic axes.
+ *
+ * Rows of scalar points, and of grids without a position, are zero.
+ *
+ * @param[out] out  n x 6
+ */
+ritz_status ritz_rigid_geometry(const ritz_component *component,
+                                const double origin[static 3], ritz_dense *out);
+
+void ritz_grids_free(ritz_grids *grids);
+void ritz_component_free(ritz_component *component);
+
+/*
+ * What a method is told beside how many vectors it makes: one table of words
+ * that options (--shift-hz 0,5) and scenes (shift_hz: [0, 5]) share.
+ */
+
+enum { RITZ_MOST_SHIFTS = 16 };
+
+/* What a method heeds of a request; the rest must be left alone. */
+enum {
+    RITZ_USES_MODES = 1,
+    RITZ_USES_ATTACHED = 2,
+    RITZ_USES_SHIFTS = 4,
+    RITZ_USES_LOADS = 8,
+    RITZ_USES_INNER = 16,
+    RITZ_USES_INTERFACE = 32,
+    RITZ_USES_GRAMIAN = 64,
+    RITZ_USES_OPERATOR = 128,
+    RITZ_USES_DAMPING = 256,
+    RITZ_USES_NEIGHBOUR = 512,
+    RITZ_USES_ENGINE = 1024,
+    RITZ_USES_AMONG = 2048,
+    RITZ_USES_BAND = 4096,
+    RITZ_USES_REMAINDER = 8192,
+    RITZ_USES_SIDES = 16384,
+    RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
+};
+
+/* Forces that vectors answer; what is read gives as many: H K^-1 F. */
+enum {
+    RITZ_LOADS_ATTACHED = 1, /* unit forces at the attached dofs */
+    RITZ_LOADS_INPUTS = 2,
+    RITZ_LOADS_OUTPUTS = 4, /* rows of C, Cv and Ca */
+    RITZ_LOADS_DAMPERS = 8, /* influence vectors of discrete dampers */
+};
+
+typedef enum ritz_inner {
+    RITZ_INNER_STIFFNESS, /* v' K v = 1, or K - sigma M with a shift */
+    RITZ_INNER_MASS,      /* v' M v = 1 */
+} ritz_inner;
+
+typedef enum ritz_gramian {
+    RITZ_GRAMIAN_INPUTS,  /* controllability */
+    RITZ_GRAMIAN_OUTPUTS, /* observability */
+} ritz_gramian;
+
+/* How Gramians are found: see gramians.h. */
+typedef enum ritz_engine {
+    RITZ_ENGINE_AUTO,
+    RITZ_ENGINE_DENSE,
+    RITZ_ENGINE_MODAL,
+    RITZ_ENGINE_LOW_RANK,
+} ritz_engine;
+
+typedef struct ritz_choice {
+    int given; /* RITZ_USES_... of the words that were given */
+    int64_t num_shifts;
+    double shift_hz[RITZ_MOST_SHIFTS]; /* expansion points, each once */
+    int loads;                         /* sum of RITZ_LOADS_... */
+    ritz_inner inner;
+    int64_t interface_modes; /* instead of all attached dofs */
+    ritz_gramian gramian;
+    bool inverse;         /* Lanczos on A^-1 instead of A */
+    ritz_damping damping; /* instead of the component's own */
+    ritz_engine engine;
+    double among_hz;   /* modal engine: modes up to here */
+    double band_hz[2]; /* where the response matters */
+    bool perturb;      /* the remainder answers statically, it is not dropped */
+    bool one_sided;    /* of second order: W = T, which keeps symmetry */
+} ritz_choice;
+
+/* What the value of a word is. */
+typedef enum ritz_choice_kind {
+    RITZ_CHOICE_SHIFTS,
+    RITZ_CHOICE_SET,   /* some of its words, as bits of an int */
+    RITZ_CHOICE_ENUM,  /* one of its words, as an int */
+    RITZ_CHOICE_FLAG,  /* the first of two words is false */
+    RITZ_CHOICE_COUNT, /* int64_t, 1 or more */
+    RITZ_CHOICE_HERTZ, /* above 0 */
+    RITZ_CHOICE_BAND,
+    RITZ_CHOICE_DAMPING,
+} ritz_choice_kind;
+
+/* A word, and what it sets. */
+typedef struct ritz_choice_word {
+    const char *key;      /* "shift_hz" in scenes, --shift-hz as option */
+    const char *argument; /* of the option: "F[,F]" */
+    const char *help;
+    int uses; /* bit of a method that heeds it */
+    ritz_choice_kind kind;
+    size_t offset;           /* of the field in ritz_choice */
+    const char *what;        /* what sentences call a value */
+    const char (*value)[16]; /* words that it can be */
+    int64_t num_values;
+} ritz_choice_word;
+
+/* All words, ended by one without a key. */
+extern const ritz_choice_word ritz_choice_words[];
+
+/**
+ * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
+ * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
+ * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
+ * "dense", "modal" or "low-rank" for engine, "50" for among_hz, "0,10" for
+ * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
+ *
+ * @return RITZ_ERR_ARGUMENT with what is wrong
+ */
+ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
+                             ritz_choice *choice);
+
+/** Words that were given, as "shift-hz 0,5 inner mass"; cut to fit. */
+void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out);
+
+/*
+ * A basis: the subspace in which a component is reduced, u = T q or, of states,
+ * [u; u'] = T z.
+ */
+
+/* A method that makes another kind adds it here, and its name in basis.c. */
+typedef enum ritz_column_kind {
+    RITZ_COLUMN_RIGID,      /* free rigid-body motion */
+    RITZ_COLUMN_CONSTRAINT, /* answers unit motion of one attached dof */
+    RITZ_COLUMN_NORMAL,     /* eigenvector, interface clamped or free */
+    RITZ_COLUMN_RESIDUAL,   /* answers a unit force, less what is kept */
+    RITZ_COLUMN_SYSTEM,     /* part of system modes, from the second stage */
+    RITZ_COLUMN_KRYLOV, /* of a block Krylov sequence, any expansion point */
+    RITZ_COLUMN_STATIC, /* static Ritz vector: answers a load */
+    RITZ_COLUMN_ATTACHMENT, /* inertia-relief attachment mode */
+    RITZ_COLUMN_INTERFACE,  /* characteristic constraint mode */
+    RITZ_COLUMN_MASSLESS,   /* residual flexibility, its mass left out */
+    RITZ_COLUMN_FORCE,      /* residual flexibility of a dual interface force */
+    RITZ_COLUMN_STATE,      /* of a first-order basis */
+    RITZ_COLUMN_PERTURBED,  /* a state that answers statically */
+    RITZ_COLUMN_BALANCED,   /* balanced, of second order */
+} ritz_column_kind;
+
+/* What each of r columns is. */
+typedef struct ritz_columns {
+    int64_t count;
+    ritz_column_kind *kind;
+    int64_t *dof;     /* row of the full component it attaches; -1 where none */
+    double *hertz;    /* NaN where none */
+    double *residual; /* relative, of the eigenpair; NaN where none */
+} ritz_columns;
+
+/* How it was made. */
+typedef struct ritz_origin {
+    char method[RITZ_NAME_SIZE];
+    char options[RITZ_NAME_SIZE];   /* as asked: "modes 12" */
+    char reference[RITZ_NAME_SIZE]; /* key in docs/references.bib */
+    char engine[RITZ_NAME_SIZE];    /* "dense LAPACK", "CHOLMOD + ARPACK" */
+} ritz_origin;
+
+/*
+ * T, n x r, and of each of its columns what it is. Of states T has 2n rows, n
+ * displacements and then n velocities, or the states of a state space; left
+ * vectors W may stand beside: see ritz_reduce_states.
+ */
+typedef struct ritz_basis {
+    ritz_dense T;
+    ritz_dense W; /* as T; {0}: T itself */
+    bool states;
+    int64_t num_hankel; /* values of the model that was balanced; 0: none */
+    double *hankel;     /* descending */
+    double bound; /* of the H-infinity error, outputs over their limits, where
+                     there are Hankel values; NaN: they bound nothing */
+    char damping[RITZ_DAMPING_SIZE]; /* of states, or with a W: what they were
+                                        made with, as ritz_damping_parse reads */
+    double among_hz; /* they are made of modes up to here alone; 0: of all */
+    ritz_columns columns;
+    ritz_origin origin;
+    char remark[4 * RITZ_NAME_SIZE]; /* what a user should know; not stored */
+} ritz_basis;
+
+/** @p r columns of kind normal, with neither dof nor hertz nor residual. */
+ritz_status ritz_columns_new(int64_t r, ritz_columns *out);
+ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out);
+
+/** Basis of @p r zero columns for @p n dofs. */
+ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out);
+
+/** Name of a kind, as files hold it: "normal". */
+const char *ritz_column_name(ritz_column_kind kind);
+
+/** Kind of that name; false if there is none. */
+bool ritz_column_find(const char *name, ritz_column_kind *out);
+
+void ritz_columns_free(ritz_columns *columns);
+void ritz_basis_free(ritz_basis *basis);
+
+/*
+ * A reduced component: M q'' + D q' + (K + i K4) q = B f, u = T q, small and
+ * dense.
+ *
+ * It carries all that assembly and export need without the full matrices:
+ * where its ports are and how they move with q, inputs and outputs, mass
+ * properties, and what is known of its errors.
+ */
+
+/* How a port moves: along basic axes, displacement = map q. */
+typedef struct ritz_port_map {
+    char name[RITZ_NAME_SIZE];
+    double origin[3], axes[9];
+    int64_t count;    /* p */
+    ritz_dof *dof;    /* p, grid and basic direction of each row */
+    double *position; /* p x 3, of that grid; zero for scalar points */
+    ritz_dense map;   /* p x r */
+} ritz_port_map;
+
+/* One named number: an estimate or a measured error, and what it is held to. */
+typedef struct ritz_measure {
+    char name[RITZ_NAME_SIZE]; /* "frequency-relative" */
+    double value;
+    double limit;               /* NaN: none was asked */
+    char where[RITZ_NAME_SIZE]; /* "mode 7, 3.41 Hz"; "" if nowhere special */
+} ritz_measure;
+
+typedef struct ritz_measures {
+    int64_t count;
+    ritz_measure *item;
+} ritz_measures;
+
+/* Mass properties about the basic origin, from M and rigid geometry. */
+typedef struct ritz_inertia {
+    double mass;      /* mean of the three translations */
+    double centre[3]; /* of mass */
+    double tensor[9]; /* about the centre, row by row */
+    bool known;
+} ritz_inertia;
+
+/*
+ * What the inertia of the body in a moving frame needs beyond M_r, in terms of
+ * no code in particular. R (n x 6) holds unit rigid motions about the basic
+ * origin; T_b (g x r) the translations of the g grids along basic axis b; X_b
+ * (g) their positions; m (g x g) is the nodal mass, a third of the trace of
+ * each 3 x 3 block of M that joins translations.
+ *
+ * The first two are of all of M. The others are exact where those blocks are
+ * multiples of I3, as of solids and of lumped masses, and where no constraint
+ * has moved mass to the rotations of what its dofs follow.
+ */
+typedef struct ritz_invariants {
+    double rigid[36];    /* R'MR, symmetric */
+    ritz_dense momentum; /* 6 x r, R'MT; {0}: none of this is known */
+    ritz_dense position; /* 3 x 3r, (a, b r + k) is X_a' m T_b(:,k) */
+    ritz_dense product;  /* 3r x 3r, (a r + j, b r + k) T_a(:,j)' m T_b(:,k) */
+} ritz_invariants;
+
+/* Nine r x r matrices: of more columns than this they are not kept. */
+enum { RITZ_INVARIANT_COLUMNS = 400 };
+
+/*
+ * Columns so ordered that the first of them are a model too, and what is known
+ * of such prefixes: see nested.h.
+ */
+typedef struct ritz_nested {
+    int64_t smallest; /* columns of the smallest prefix; 0: it is not nested */
+    int64_t count;    /* orders of which something is known */
+    int64_t *order;   /* count, ascending */
+    int64_t num_errors;
+    char (*error)[RITZ_NAME_SIZE]; /* distinct names of measures */
+    ritz_dense value; /* count x num_errors; NaN where not measured */
+} ritz_nested;
+
+typedef struct ritz_reduced {
+    ritz_dense K, M, D, K4; /* r x r; D, K4 {0}: none. D may be unsymmetric */
+    ritz_dampers dampers;   /* as of a component, for r coordinates */
+    ritz_columns columns;
+    ritz_origin origin;
+    int64_t num_ports;
+    ritz_port_map *port;
+    ritz_io io; /* for r coordinates */
+    ritz_inertia inertia;
+    ritz_invariants invariants;
+    ritz_dense T;           /* n x r; {0} without basis */
+    int64_t num_dofs;       /* n, of the full component */
+    ritz_dof *dof;          /* n; NULL without basis */
+    ritz_grids grids;       /* of the full component; {0} without basis */
+    ritz_elements elements; /* the same */
+    ritz_recovery recovery; /* the same, from its n dofs */
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
+    ritz_measures estimates;         /* by ritz-reduce */
+    ritz_measures errors;            /* by ritz-verify */
+    ritz_nested nested;
+    char units[RITZ_NAME_SIZE];
+} ritz_reduced;
+
+/**
+ * Project a component on a basis: K_r = T'KT and so on, all ports and io.
+ *
+ * Columns of kind massless have no mass, no damping and no part in the
+ * invariants: their rows and columns of M and D are zero.
+ *
+ * @param[in] T  n x r, columns independent
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree, or the basis is of states or
+ *         has left vectors: see ritz_reduce_states and ritz_reduce_companion
+ * @cost   O(r nnz + n r^2)
+ */
+ritz_status ritz_reduce(const ritz_component *component,
+                        const ritz_basis *basis, ritz_reduced *out);
+
+/**
+ * Project once more: q = V p with V r x s (the second stage of COMPARE).
+ * T becomes T V; columns are all of kind system.
+ */
+ritz_status ritz_reduced_project(const ritz_reduced *reduced,
+                                 const ritz_dense *V, ritz_reduced *out);
+
+/** Add its dampers to its D and K: see ritz_dampers_install. */
+ritz_status ritz_reduced_install(ritz_reduced *reduced);
+
+/** Port called @p name; NULL and a sentence if there is none. */
+const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
+                                       const char *name);
+
+/** Mass, centre and inertia of a component by geometry: R'MR. */
+ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out);
+
+/**
+ * Invariants of a component that moves by @p T; none, which is no failure, if
+ * no grid has a position or there are more than RITZ_INVARIANT_COLUMNS.
+ *
+ * @param[in] T  n x r
+ * @cost   O(r nnz + 4 n r^2), as much memory as T
+ */
+ritz_status ritz_invariants_of(const ritz_component *component,
+                               const ritz_dense *T, ritz_invariants *out);
+
+/** Those of T V, with V r x s; none of none. */
+ritz_status ritz_invariants_project(const ritz_invariants *invariants,
+                                    const ritz_dense *V, ritz_invariants *out);
+
+/** Append a measure; @p where may be NULL. */
+ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
+                              double value, double limit, const char *where);
+
+/** The one called @p name; NULL if there is none. */
+ritz_measure *ritz_measures_find(const ritz_measures *measures,
+                                 const char *name);
+
+/** Its value; NaN if there is none. */
+double ritz_measures_value(const ritz_measures *measures, const char *name);
+
+/** All of @p from in place of what @p out has. */
+ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out);
+
+void ritz_nested_free(ritz_nested *nested);
+void ritz_invariants_free(ritz_invariants *invariants);
+void ritz_measures_free(ritz_measures *measures);
+void ritz_port_map_free(ritz_port_map *port);
+void ritz_reduced_free(ritz_reduced *reduced);
+
+/*
+ * Nested reduced components: columns in an order in which the first of them,
+ * if they are not fewer than some, are a reduced component too. How many are
+ * used is then a matter of use, and no new reduction.
+ *
+ * A prefix is Galerkin's model in the subspace of its columns: its matrices are
+ * the leading blocks, so it is as stable as the whole, and its frequencies lie
+ * above those of the whole.
+ */
+
+/**
+ * The columns in another order, and with them all that has columns: matrices,
+ * dampers, ports, inputs and outputs, invariants, T.
+ *
+ * If all columns are there, what is known of the errors stays as it is; if some
+ * are left out, none of that is true of the result, and it is left out too.
+ *
+ * @param[in] order_of_columns  count of them, from 0 and distinct: the one that
+ *                              becomes first, ...
+ * @param[in] smallest          1 .. count: no prefix shorter than that
+ * @return RITZ_ERR_ARGUMENT if a column is not there, or there twice
+ */
+ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
+                              const int64_t *order_of_columns, int64_t smallest,
+                              ritz_reduced *out);
+
+/**
+ * Its first columns alone. Of its errors what was noted of that order when it
+ * was made becomes known: names that end in "-bound" as estimates, others as
+ * errors. Errors of more columns are none of fewer.
+ *
+ * @param[in] order  smallest .. columns; of all columns it is a copy
+ * @return RITZ_ERR_ARGUMENT if it is not nested or has no such prefix
+ */
+ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
+                                ritz_reduced *out);
+
+/**
+ * Note what a measure of a prefix came to; a second value replaces the first.
+ *
+ * @return RITZ_ERR_ARGUMENT as above, or if the name cannot be one
+ */
+ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
+                             const char *name, double value);
+
+/*
+ * A system: components joined at one or several configurations.
+ *
+ * At a configuration the coordinates q of all components, one block after the
+ * other, are q = P x with the joints' constraints C P = 0; x are the system's
+ * own coordinates: its mass-normalised modes, rigid ones first, so that M = I
+ * and K = diag(lambda).
+ */
+
+typedef struct ritz_configuration {
+    char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
+    int64_t num_settings;
+    double *setting;  /* one for each sweep of the scene, in its order */
+    int64_t rank;     /* of the constraints */
+    ritz_dense K, M;  /* e x e */
+    ritz_dense D, K4; /* e x e; {0}: none beside the damping of the system */
+    ritz_dampers dampers; /* of all bodies; K and D hold them */
+    double *lambda; /* e, ascending; by size where a dual assembly has negative
+                       ones  [rad^2/s^2] */
+    int64_t num_rigid;
+    ritz_io io;           /* for e coordinates */
+    int64_t num_blocks;   /* as many as there are components */
+    ritz_dense *P;        /* num_blocks, r_c x e */
+    ritz_dense momentum;  /* 6 x e, R'M P of all bodies, R the rigid motions
+                             about the origin of the first body's basic frame;
+                             {0}: not known of every body */
+    double rigid[36];     /* R'MR, symmetric */
+    ritz_measures errors; /* by ritz-verify or ritz-compare */
+} ritz_configuration;
+
+typedef struct ritz_system {
+    char name[RITZ_NAME_SIZE];
+    int64_t num_components;
+    char (*component)[RITZ_NAME_SIZE];
+    int64_t *order;      /* r_c of each */
+    int64_t *order_full; /* n of each full component */
+    int64_t num_sweeps;
+    char (*sweep)[RITZ_NAME_SIZE];
+    int64_t num_configurations;
+    ritz_configuration *configuration;
+    double band_hz[2];
+    char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads */
+    char units[RITZ_NAME_SIZE];
+} ritz_system;
+
+/**
+ * The configuration that @p at names: "clock=60,slide=0.5", settings compared
+ * within 1e-9; joints that are not named must have one setting only.
+ * NULL @p at: the only configuration.
+ *
+ * @return RITZ_ERR_ARGUMENT listing what there is
+ */
+ritz_status ritz_system_find(const ritz_system *system, const char *at,
+                             const ritz_configuration **out);
+
+/** "clock=60,slide=0.5" from names and settings. */
+void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
+                             const double *setting, char out[RITZ_NAME_SIZE]);
+
+/**
+ * Change K and D to what the dampers are now: see ritz_dampers_install. lambda
+ * stays what it was.
+ */
+ritz_status ritz_configuration_install(ritz_configuration *configuration);
+
+void ritz_configuration_free(ritz_configuration *configuration);
+void ritz_system_free(ritz_system *system);
+
+/*
+ * A modal model: each flexible mode by itself, with modal damping.
+ *
+ *     q_k'' + 2 zeta_k omega_k q_k' + omega_k^2 q_k = b_k u,
+ *     y = sum_k c_k q_k + cv_k q_k' + ca_k q_k''
+ */
+
+/* Flexible modes of a model, with their own share of inputs and outputs. */
+typedef struct ritz_modal {
+    int64_t count;    /* m */
+    double *omega;    /* m, ascending, positive  [rad/s] */
+    double *zeta;     /* m, positive where a ranking needs damping */
+    ritz_dense B;     /* m x inputs, inputs scaled by their weights */
+    ritz_dense C, Cv; /* outputs x m, divided by limits; acceleration outputs
+                          are folded into both, their feedthrough left out */
+} ritz_modal;
+
+/**
+ * Modal model of symmetric dense matrices or of a configuration in modal form.
+ *
+ * @param[in] damping  ratio of each mode, added to what D says on the diagonal
+ * @return RITZ_ERR_ARGUMENT if a flexible mode has no damping
+ */
+ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
+                           const ritz_dense *D, const ritz_io *io,
+                           const ritz_damping *damping, ritz_modal *out);
+
+/**
+ * Exact controllability and observability Gramians of the modal model in the
+ * states (q_1, q_1', q_2, ...), 2m x 2m, closed form, O(m^2).
+ */
+ritz_status ritz_modal_gramians(const ritz_modal *modal, ritz_dense *Wc,
+                                ritz_dense *Wo);
+
+/** Exact Hankel singular values, 2m, descending. @cost O(m^3) */
+ritz_status ritz_modal_hankel(const ritz_modal *modal, double *sigma);
+
+/**
+ * Factors of both, W_c = Z_c Z_c' and W_o = Z_o Z_o', in the same states and of
+ * as many columns as there is rank.
+ */
+ritz_status ritz_modal_factors(const ritz_modal *modal, ritz_dense *Zc,
+                               ritz_dense *Zo);
+
+/**
+ * The same of a band alone, closed form:
+ *
+ *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
+ *
+ * and W_o likewise. From 0 to infinity they are those above. They are
+ * semidefinite, rounding apart.
+ *
+ * @param[in] band_hz  from and to; HUGE_VAL is infinity
+ * @return RITZ_ERR_ARGUMENT if it is no band, or a mode has no damping
+ */
+ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
+                                     const double band_hz[static 2],
+                                     ritz_dense *Wc, ritz_dense *Wo);
+
+/** @return RITZ_ERR_CONVERGENCE if one is indefinite beyond rounding */
+ritz_status ritz_modal_factors_band(const ritz_modal *modal,
+                                    const double band_hz[static 2],
+                                    ritz_dense *Zc, ritz_dense *Zo);
+
+/** Hankel values over a band, 2m, descending. @return as the factors */
+ritz_status ritz_modal_hankel_band(const ritz_modal *modal,
+                                   const double band_hz[static 2],
+                                   double *sigma);
+
+void ritz_modal_free(ritz_modal *modal);
+
+/*
+ * A linear model in first-order form:
+ *
+ *     E x' = A x + B u,    y = C x + D u
+ *
+ * small and dense. Second-order models are brought into it by x = [u; u'].
+ */
+
+/* Of more dofs than this no dense first-order model is made. */
+enum { RITZ_STATE_DOFS = 1500 };
+
+typedef struct ritz_state_space {
+    ritz_dense A, B, C, D; /* D is always there */
+    ritz_dense E;          /* invertible; {0}: the identity */
+    int64_t num_inputs, num_outputs;
+    char (*input)[RITZ_NAME_SIZE];
+    char (*output)[RITZ_NAME_SIZE];
+    double *limit;        /* num_outputs, largest tolerated |y|; NaN: none */
+    ritz_columns columns; /* what each state is */
+    ritz_origin origin;
+    char
+        damping[RITZ_DAMPING_SIZE]; /* beside matrices, that is in A; "" none */
+    ritz_measures estimates;        /* by ritz-reduce: stability, a bound */
+    ritz_measures errors;           /* by ritz-verify */
+    char units[RITZ_NAME_SIZE];
+} ritz_state_space;
+
+/** Zero matrices (E the identity), names and limits taken from @p io. */
+ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
+                                 ritz_state_space *out);
+
+/**
+ * Whether all parts fit each other, values are finite and E, if there is one,
+ * is not singular.
+ *
+ * @return RITZ_ERR_FORMAT with what does not
+ */
+ritz_status ritz_state_space_check(const ritz_state_space *model);
+
+/**
+ * A component with its damping: that of its matrices and dampers, and
+ * @p damping beside them, ratios by all its modes, a M + b K exactly.
+ *
+ * x = [u; u'] where M is definite. Where it is not, x = [q; q'] of the modes
+ * that have mass, and what massless dofs answer at once is in D.
+ *
+ * @return RITZ_ERR_ARGUMENT if there are more than RITZ_STATE_DOFS dofs, if
+ *         there is structural damping, which is of harmonic motion alone, or if
+ *         a massless dof is damped, or driven and seen by its velocity;
+ *         RITZ_ERR_SINGULAR if K + M is
+ * @cost   O(n^3), n dofs
+ */
+ritz_status ritz_state_space_of_component(const ritz_component *component,
+                                          const ritz_damping *damping,
+                                          ritz_state_space *out);
+
+/** The same of a reduced component. */
+ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
+                                        const ritz_damping *damping,
+                                        ritz_state_space *out);
+
+/**
+ * A component in a basis of states: with E = [I 0; 0 M] of its first-order form
+ *
+ *     W'E T x' = W'A T x + W'B u
+ *
+ * solved for x'. Massless dofs answer as above. Columns of kind perturbed
+ * answer statically and are eliminated, and what bounds the error is noted as
+ * estimate "h-infinity-bound".
+ *
+ * Of more than RITZ_STATE_DOFS dofs nothing dense is made; damping ratios then
+ * need basis->among_hz, and dofs without mass must be without input.
+ *
+ * @param[in] basis  of states, W {0}: T itself
+ * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree, or as
+ *         above; RITZ_ERR_SINGULAR if W'E T is, or the columns that are to be
+ *         eliminated have no static answer
+ */
+ritz_status ritz_reduce_states(const ritz_component *component,
+                               const ritz_damping *damping,
+                               const ritz_basis *basis, ritz_state_space *out);
+
+/**
+ * A state space in a basis of its states: W'E T z' = W'A T z + W'B u, y = C T z
+ * + D u, solved for z'; columns of kind perturbed, and the bound, as above.
+ *
+ * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree;
+ *         RITZ_ERR_SINGULAR as above
+ */
+ritz_status ritz_reduce_space(const ritz_state_space *full,
+                              const ritz_basis *basis, ritz_state_space *out);
+
+/**
+ * A component in a basis of displacements u = T q with left vectors W of its
+ * own, in companion form x = [q; q'], which is still of second order:
+ *
+ *     A = [0 I; -M_r^-1 K_r, -M_r^-1 D_r],   B = [0; M_r^-1 W'B],
+ *     M_r = W'M T,   K_r = W'K T,   D_r = W'D T
+ *
+ * K_r and D_r need not be symmetric, which is why this is no ritz_reduced.
+ * Rigid columns, which must be M-orthogonal to all others, have no part in K_r.
+ *
+ * @return RITZ_ERR_ARGUMENT if the basis is of states, or has no W, or as
+ *         ritz_reduce_states; RITZ_ERR_SINGULAR if M_r is
+ */
+ritz_status ritz_reduce_companion(const ritz_component *component,
+                                  const ritz_damping *damping,
+                                  const ritz_basis *basis,
+                                  ritz_state_space *out);
+
+/**
+ * Poles: eigenvalues of A, or of E^-1 A, by magnitude ascending; of a pair the
+ * one above the axis first. To be freed.
+ *
+ * @return RITZ_ERR_CONVERGENCE
+ */
+ritz_status ritz_state_space_poles(const ritz_state_space *model,
+                                   int64_t *count, double _Complex **out);
+
+void ritz_state_space_free(ritz_state_space *model);
+
+#pragma GCC visibility pop
+
+#endif

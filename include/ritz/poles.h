@@ -1,0 +1,215 @@
+/* Damped poles: the s for which (s^2 M + s D + K + i K4) x = 0. */
+#ifndef RITZ_POLES_H
+#define RITZ_POLES_H
+
+#include <ritz/matrix.h>
+#include <ritz/model.h>
+#include <ritz/response.h>
+
+#pragma GCC visibility push(default)
+
+/*
+ * Of each pair of poles the one with Im s > 0, and every real one, by ascending
+ * |s|. With K4, which says what loss a motion of positive frequency has, all
+ * poles are of the first kind.
+ */
+typedef struct ritz_spectrum {
+    int64_t count;
+    double _Complex *s; /* count  [rad/s] */
+    double *residual;   /* count, of the matrix whose eigenvalues they are */
+    ritz_dense re, im;  /* n x count, shapes x */
+    int64_t num_zero;   /* poles at 0, not listed: rigid motion nothing holds */
+    char engine[RITZ_NAME_SIZE];
+} ritz_spectrum;
+
+/**
+ * All poles of a dense model; io may be NULL. M may be singular: coordinates
+ * without mass answer at once, or with a real pole where D acts on them.
+ *
+ * Ratios of @p damping act on its undamped modes, beside D.
+ *
+ * @return RITZ_ERR_SINGULAR if neither mass nor stiffness holds a motion;
+ *         RITZ_ERR_ARGUMENT if K4, or a skew part of D, acts on coordinates
+ *         without mass
+ * @cost   O((2 n)^3)
+ */
+ritz_status ritz_spectrum_dense(const ritz_second_order *model,
+                                const ritz_damping *damping,
+                                ritz_spectrum *out);
+
+/**
+ * The lowest poles of a component as K and D stand: dampers count as far as
+ * they are installed.
+ *
+ * Small ones are solved as dense. Of large ones the poles are sought in the
+ * space of twice as many undamped modes as are wanted and of the static answers
+ * to forces along each damper's influence vector [ChuMilman1992], then made
+ * exact on the full matrices by inverse iteration; the residual says how exact.
+ * Ratios of @p damping are then added to what matrices give.
+ *
+ * @param[in] span  so many poles beside those at 0, or those up to |s| / (2 pi)
+ */
+ritz_status ritz_spectrum_component(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    const ritz_span *span, ritz_spectrum *out);
+
+/**
+ * That space as a model of its own, with its dampers projected: T is kept.
+ *
+ * @param[in] span  of undamped modes
+ */
+ritz_status ritz_spectrum_space(const ritz_component *component,
+                                const ritz_span *span, ritz_reduced *out);
+
+/** Damping ratio -Re s / |s|: 1 of real poles that decay. */
+double ritz_spectrum_ratio(double _Complex s);
+
+/* One value of c for some dampers at once, through a range. */
+typedef struct ritz_scan_request {
+    int64_t count;
+    const int64_t *damper; /* indices of those that take the value */
+    double from, to, step; /* 0 <= from < to */
+    int64_t mode;          /* which oscillating pole at `from`, 0 the lowest */
+} ritz_scan_request;
+
+typedef struct ritz_scan {
+    int64_t count;
+    double *c;
+    double _Complex *s; /* of the mode that is followed */
+    int64_t best;       /* where its damping ratio is largest */
+} ritz_scan;
+
+/**
+ * Follow one mode while dampers change. The pole nearest to where the last two
+ * steps point is taken for the same mode, as frequencies swap places: the step
+ * must be small against the way between poles.
+ *
+ * @param[in] model    K and D as they stand
+ * @param[in] dampers  for its coordinates, with what K and D hold of them
+ * @return RITZ_ERR_ARGUMENT if the range is none, or has no such mode
+ */
+ritz_status ritz_scan_dampers(const ritz_second_order *model,
+                              const ritz_dampers *dampers,
+                              const ritz_damping *damping,
+                              const ritz_scan_request *request, ritz_scan *out);
+
+/**
+ * The same of a component. A large one is scanned in the space of some modes
+ * and static answers: at what the scan finds, ask ritz_spectrum_component.
+ */
+ritz_status ritz_scan_component(const ritz_component *component,
+                                const ritz_damping *damping,
+                                const ritz_scan_request *request,
+                                ritz_scan *out);
+
+void ritz_spectrum_free(ritz_spectrum *spectrum);
+void ritz_scan_free(ritz_scan *scan);
+
+/*
+ * Zeros: the complex frequencies s at which a model passes nothing on. With the
+ * system pencil [Rosenbrock1970]
+ *
+ *     P(s) = [ s E - A   -B ]
+ *            [   C        D ]
+ *
+ * they are where P loses rank, and the finite ones are found by a reduction of
+ * orthogonal transformations [EmamiNaeiniVanDooren1982].
+ */
+
+/* For `output` and `input` together: all channels at once. */
+enum { RITZ_ALL_CHANNELS = -1 };
+
+/**
+ * Finite zeros of a small dense model, rad/s, by magnitude ascending, of a pair
+ * the one above the axis first.
+ *
+ * Of one channel they are transmission zeros: what poles cancel, as those of
+ * modes that are not driven or not seen, is not among them. Of all channels at
+ * once they are invariant zeros, such modes among them, but for free rigid
+ * motions that no input drives or no output sees.
+ *
+ * A zero that rounding of the model could move by its own magnitude cannot be
+ * told from one at infinity, and is taken for that. Without damping, and with
+ * outputs that are displacements and accelerations or velocities alone, zeros
+ * are +- pairs exactly, and those on the axis lie on it exactly; collocated
+ * ones are all there, between the poles.
+ *
+ * @param[in] damping  as of responses; NULL: that of the matrices alone
+ * @param[in] output, input  indices from 0, or both RITZ_ALL_CHANNELS: as many
+ *                           outputs as inputs
+ * @param[out] out     count of them, to be freed
+ * @return RITZ_ERR_ARGUMENT if there is no such channel, outputs are not as
+ *         many as inputs, there is structural damping, or massless dofs are
+ *         damped or seen by velocities; RITZ_ERR_SINGULAR if nothing passes,
+ *         or of all channels less than all, at any frequency
+ * @cost   O(n^3), n coordinates
+ */
+ritz_status ritz_zeros_dense(const ritz_second_order *model,
+                             const ritz_damping *damping, int64_t output,
+                             int64_t input, int64_t *count,
+                             double _Complex **out);
+
+/**
+ * The same of a component, its dampers at work.
+ *
+ * @return RITZ_ERR_ARGUMENT also if it has too many dofs for dense matrices
+ */
+ritz_status ritz_zeros_component(const ritz_component *component,
+                                 const ritz_damping *damping, int64_t output,
+                                 int64_t input, int64_t *count,
+                                 double _Complex **out);
+
+/** The same of a model in first-order form. */
+ritz_status ritz_zeros_states(const ritz_state_space *model, int64_t output,
+                              int64_t input, int64_t *count,
+                              double _Complex **out);
+
+/* Norms of systems: how large a model, or the difference of two, can answer. */
+
+typedef struct ritz_norm {
+    double value;
+    double hertz; /* H-infinity: where it stands; HUGE_VAL: far out */
+    double lower; /* value is at least this, proven */
+    char engine[RITZ_NAME_SIZE];
+} ritz_norm;
+
+/**
+ * H-infinity norm: the largest singular value of H(i w) over all w, to @p
+ * tolerance relative.
+ *
+ * First values are met: at 0, far out, at every pole, and between them where
+ * they are high; the largest is `lower`. Up to 600 states SLICOT AB13DD then
+ * decides by eigenvalues of Hamiltonian matrices whether there is a larger one.
+ * Of more states, whose Hamiltonians would cost 100 n^3 each, and where AB13DD
+ * does not come to an end, `value` is `lower`, and `engine` says so: a peak
+ * between poles that none of them shows can be missed.
+ *
+ * @return RITZ_ERR_ARGUMENT if a pole is not left of the axis, as
+ *         ritz_gramians_of_space decides: it is infinite
+ * @cost   O(n^3), some hundred times; beyond 600 states O(n^2) for each pole
+ * @see    [Bruinsma1990]
+ */
+ritz_status ritz_norm_infinity(const ritz_state_space *model, double tolerance,
+                               ritz_norm *out);
+
+/**
+ * H2 norm, sqrt(trace(C W_c C')), by the factor of W_c.
+ *
+ * @return RITZ_ERR_ARGUMENT if a pole is not left of the axis, or D is not 0:
+ *         it is infinite
+ * @cost   O(n^3)
+ */
+ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out);
+
+/**
+ * a - b as one state space, of the same inputs and outputs in the same order.
+ *
+ * @return RITZ_ERR_ARGUMENT if they differ by name or number
+ */
+ritz_status ritz_state_space_difference(const ritz_state_space *a,
+                                        const ritz_state_space *b,
+                                        ritz_state_space *out);
+
+#pragma GCC visibility pop
+
+#endif
