@@ -19,18 +19,18 @@
 enum { RITZ_CARDS_DEEPEST = 16 };
 
 /* A file that is being gone through. */
-typedef struct ritz_source {
+typedef struct card_text {
     ritz_lines text;
     int64_t file;
     char *folder; /* to which its INCLUDEs are relative; NULL: not followed */
-} ritz_source;
+} card_text;
 
 /* The file on top, below it those whose INCLUDE led there. */
 typedef struct ritz_scanner {
     ritz_cards *cards;
     bool ended; /* by ENDDATA */
     int depth;
-    ritz_source open[RITZ_CARDS_DEEPEST + 1];
+    card_text open[RITZ_CARDS_DEEPEST + 1];
 } ritz_scanner;
 
 /* ---- files and their control sections ----------------------------------- */
@@ -185,7 +185,7 @@ static const char *path_of(const ritz_scanner *scan, int level)
 static ritz_status open_file(ritz_scanner *scan, const char *path, char *bytes)
 {
     ritz_status status = RITZ_OK;
-    ritz_source new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
+    card_text new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
                        .file = scan->cards->num_files};
 
     status = add_file(scan->cards, path, bytes);
@@ -218,7 +218,7 @@ static ritz_status include_file(ritz_scanner *scan, const char *path)
 static ritz_status follow_include(ritz_scanner *scan, const char *rest)
 {
     enum { LONGEST = 4096 };
-    ritz_source *top = &scan->open[scan->depth - 1];
+    card_text *top = &scan->open[scan->depth - 1];
     const char *including = path_of(scan, scan->depth - 1);
     int64_t number = top->text.number;
     char name[LONGEST] = "";
@@ -260,7 +260,7 @@ static ritz_status add_line(ritz_cards *cards, int64_t file,
 
 static ritz_status take_line(ritz_scanner *scan)
 {
-    const ritz_source *top = &scan->open[scan->depth - 1];
+    const card_text *top = &scan->open[scan->depth - 1];
     const char *line = top->text.line;
     const char *rest = NULL;
     int64_t length = top->text.line_end - line;
@@ -291,7 +291,7 @@ static ritz_status scan_text(const char *path, const char *folder,
     RITZ_TRY(skip_control(path, &text, cards));
     if (folder)
         RITZ_TRY(copy_text(folder, &copy));
-    scan.open[scan.depth++] = (ritz_source){.text = text, .folder = copy};
+    scan.open[scan.depth++] = (card_text){.text = text, .folder = copy};
     while (scan.depth > 0 && !scan.ended) {
         if (ritz_lines_next(&scan.open[scan.depth - 1].text))
             RITZ_TRY(take_line(&scan));

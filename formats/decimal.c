@@ -10,6 +10,8 @@
  */
 #include "formats/decimal.h"
 
+#include "base/tolerances.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -88,7 +90,7 @@ static bool round_fast(uint64_t m, int64_t e, double *out)
         x = multiply(x, power[e < STEP ? e : STEP]);
     for (; e < 0; e += -e < STEP ? -e : STEP)
         x = divide(x, power[-e < STEP ? -e : STEP]);
-    doubt = x.hi * 0x1p-96;
+    doubt = x.hi * RITZ_DOUBLE_DOUBLE;
     *out = x.hi + (x.lo + doubt);
     return *out == x.hi + (x.lo - doubt);
 }

@@ -33,12 +33,12 @@ typedef struct group {
 } group;
 
 /* Groups in the order in which they are met, structs behind their group. */
-typedef struct walk {
+typedef struct hdf5_walk {
     ritz_mat_list *list;
     int64_t members;
     int64_t count, room;
     group *group;
-} walk;
+} hdf5_walk;
 
 bool ritz_mat_is_hdf5(const char *bytes, int64_t size)
 {
@@ -229,7 +229,7 @@ static double read_attribute(hid_t at, const char *name)
     return value;
 }
 
-static ritz_status add_sparse(walk *w, hid_t at, const char *name)
+static ritz_status add_sparse(hdf5_walk *w, hid_t at, const char *name)
 {
     ritz_status status = RITZ_OK;
     double *row[2] = {0}, *start[2] = {0}, *value[2] = {0};
@@ -291,7 +291,7 @@ static const char *why_none(hid_t set, const ritz_h5_shape *shape)
     return NULL;
 }
 
-static ritz_status add_set(walk *w, hid_t set, const char *name)
+static ritz_status add_set(hdf5_walk *w, hid_t set, const char *name)
 {
     ritz_status status = RITZ_OK;
     ritz_h5_shape shape = {0};
@@ -326,7 +326,7 @@ done:
 }
 
 /* A struct waits, and keeps its object open. */
-static ritz_status add_group(walk *w, hid_t object, const char *whole,
+static ritz_status add_group(hdf5_walk *w, hid_t object, const char *whole,
                              int depth)
 {
     group *g = NULL;
@@ -339,7 +339,7 @@ static ritz_status add_group(walk *w, hid_t object, const char *whole,
     return RITZ_OK;
 }
 
-static ritz_status add_member(walk *w, const group *in, const char *name)
+static ritz_status add_member(hdf5_walk *w, const group *in, const char *name)
 {
     ritz_status status = RITZ_OK;
     hid_t object = H5Oopen(in->id, name, H5P_DEFAULT);
@@ -365,7 +365,7 @@ done:
     return status;
 }
 
-static ritz_status add_members(walk *w, const group *in)
+static ritz_status add_members(hdf5_walk *w, const group *in)
 {
     ritz_status status = RITZ_OK;
     char(*names)[RITZ_NAME_SIZE] = NULL;
@@ -388,7 +388,7 @@ ritz_status ritz_mat_read_hdf5(const char *bytes, int64_t size,
                                ritz_mat_list *list)
 {
     ritz_status status = RITZ_OK;
-    walk w = {.list = list};
+    hdf5_walk w = {.list = list};
     hid_t file = 0;
 
     RITZ_TRY(open_image(bytes, size, &file));

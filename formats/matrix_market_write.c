@@ -18,10 +18,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct job {
+typedef struct market_job {
     const ritz_matrix *matrix;
     const char *comment;
-} job;
+} market_job;
 
 /* Place of A(i,j) among the entries; -1 if nothing is stored there. */
 static int64_t find_entry(const ritz_sparse *A, int64_t i, int64_t j)
@@ -59,7 +59,7 @@ static void write_comment(FILE *file, const char *comment)
 
 static ritz_status write_market(FILE *file, const void *what)
 {
-    const job *all = what;
+    const market_job *all = what;
     const ritz_matrix *m = all->matrix;
     const ritz_sparse *A = &m->A;
     int64_t nnz = A->colptr[A->ncol];
@@ -99,7 +99,7 @@ ritz_status ritz_matrix_market_write(const char *path,
                                      const ritz_matrix *matrix,
                                      const char *comment)
 {
-    job all = {matrix, comment};
+    market_job all = {matrix, comment};
 
     return ritz_sink_write(path, write_market, &all);
 }

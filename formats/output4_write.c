@@ -5,6 +5,7 @@
  * exponent has three digits, as many numbers as fit 80 letters. Sparse is
  * bigmat: it has no limit of rows. Binary has 4-byte integers in native order.
  */
+#include "base/tolerances.h"
 #include "formats/reduced_matrices.h"
 #include "formats/sink.h"
 
@@ -247,7 +248,7 @@ static ritz_status check_matrix(const ritz_matrix *m,
 static bool is_long(double x)
 {
     x = fabs(x);
-    return x > 0.0 && (x < 1e-98 || x > 9e98);
+    return x > 0.0 && (x < RITZ_TWO_DIGIT_EXPONENT || x > 9e98);
 }
 
 static int number_width(const ritz_matrix *m, int64_t digits)

@@ -275,14 +275,14 @@ static void append(const ritz_grids *from, const ritz_placement *place,
 }
 
 /* One grid of the sorted order. */
-typedef struct entry {
+typedef struct grid_entry {
     int64_t id, at;
-} entry;
+} grid_entry;
 
 static int compare(const void *left, const void *right)
 {
-    const entry *a = left;
-    const entry *b = right;
+    const grid_entry *a = left;
+    const grid_entry *b = right;
 
     return (a->id > b->id) - (a->id < b->id);
 }
@@ -291,7 +291,7 @@ static int compare(const void *left, const void *right)
 static ritz_status sort(ritz_grids *grids)
 {
     size_t n = (size_t)grids->count;
-    RITZ_OWN_ARRAY entry *order = NULL;
+    RITZ_OWN_ARRAY grid_entry *order = NULL;
     RITZ_OWN_ARRAY double *position = NULL;
     RITZ_OWN_ARRAY int64_t *frame = NULL;
 
@@ -299,7 +299,7 @@ static ritz_status sort(ritz_grids *grids)
     RITZ_CHECK_NEW(position, 3 * grids->count);
     RITZ_CHECK_NEW(frame, grids->count);
     for (int64_t k = 0; k < grids->count; k++)
-        order[k] = (entry){grids->id[k], k};
+        order[k] = (grid_entry){grids->id[k], k};
     qsort(order, n, sizeof *order, compare);
     for (int64_t k = 0; k < grids->count; k++) {
         memcpy(position + 3 * k, grids->position + 3 * order[k].at,

@@ -759,5 +759,23 @@
 /* Of two ratios of error to tolerance the smaller one is nearer, but for
    rounding. */
 #define RITZ_SAME_RATIO 1e-6
+/* A pivot of Gram-Schmidt columns must exceed another by this factor: of
+   those that are equal to six digits the first is taken. */
+#define RITZ_PIVOT_TIE (1.0 + 1e-6)
+/* Default of `select: {tolerance}`: modes below this part of the largest
+   value of all configurations do not matter. */
+#define RITZ_SCENE_SELECT 1e-3
+/* Default of the composite set: directions below this part of the largest
+   are rounding, so that nothing else is removed. */
+#define RITZ_SCENE_COMPOSITE 1e-12
+/* Default of `attached: auto`: static gain to this part of its largest
+   singular value. */
+#define RITZ_SCENE_ATTACHED 1e-3
+/* Numbers below this, or above 9e98, may take an exponent of three digits
+   once they are rounded. */
+#define RITZ_TWO_DIGIT_EXPONENT 1e-98
+/* Rounding of a few products of double-doubles, each within 2^-102: a
+   decimal that is nearer to a tie goes to strtod. */
+#define RITZ_DOUBLE_DOUBLE 0x1p-96
 
 #endif

@@ -202,7 +202,6 @@ static double kept_flexibility(const residual_problem *p, int64_t j)
  */
 static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 {
-    const double more = 1.0 + 1e-6;
     int64_t a = R->ncol;
 
     for (;;) {
@@ -211,8 +210,8 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
         double d = tolerance;
 
         for (int64_t j = 0; j < a; j++)
-            if (!keep[j] &&
-                ritz_dense_col(R, j)[j] > (pivot < 0 ? d : more * d)) {
+            if (!keep[j] && ritz_dense_col(R, j)[j] >
+                                (pivot < 0 ? d : RITZ_PIVOT_TIE * d)) {
                 pivot = j;
                 d = ritz_dense_col(R, j)[j];
             }

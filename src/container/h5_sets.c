@@ -32,11 +32,6 @@ enum {
     SMALLEST_CHUNK = 4096, /* mean values of a chunk where there are more */
 };
 
-ritz_h5_shape ritz_h5_scalar(void)
-{
-    return (ritz_h5_shape){0, {1}};
-}
-
 ritz_h5_shape ritz_h5_vector(int64_t n)
 {
     return (ritz_h5_shape){1, {(hsize_t)n}};

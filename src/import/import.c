@@ -50,7 +50,7 @@ typedef struct presence {
 } presence;
 
 static ritz_status find_presence(const ritz_parts *parts, const ritz_deck *deck,
-                                 const ritz_names *names,
+                                 const ritz_row_names *names,
                                  const ritz_component *component, presence *at)
 {
     RITZ_CHECK_NEW(at->K, names->count);
@@ -75,7 +75,7 @@ static ritz_status find_presence(const ritz_parts *parts, const ritz_deck *deck,
 }
 
 /* Sort the rows: stays[k] is the new row, -1 if it is left out. */
-static ritz_status sort_rows(const presence *at, const ritz_names *names,
+static ritz_status sort_rows(const presence *at, const ritz_row_names *names,
                              bool rigid, int64_t *stays,
                              ritz_import_report *report, ritz_component *to)
 {
@@ -139,7 +139,7 @@ static ritz_status keep_grids(const ritz_grids *all, const ritz_roster *roster,
 }
 
 /* One grid and no deck: wherever it is, that is the origin. */
-static ritz_status place_alone(const ritz_names *names, ritz_grids *out)
+static ritz_status place_alone(const ritz_row_names *names, ritz_grids *out)
 {
     RITZ_OWN(ritz_grids) grids = {.count = 1, .num_frames = 1};
 
@@ -162,7 +162,7 @@ static ritz_status place_alone(const ritz_names *names, ritz_grids *out)
 /* Positions and frames of the grids that are named; the origin for a single
  * grid without a deck. */
 static ritz_status ritz_import_place(const ritz_deck *deck,
-                                     const ritz_names *names,
+                                     const ritz_row_names *names,
                                      ritz_component *component)
 {
     RITZ_OWN(ritz_roster) roster = {0};
@@ -176,7 +176,7 @@ static ritz_status ritz_import_place(const ritz_deck *deck,
 /* Put the parts into the component but for its grids, without rows that are
  * empty in K and M. */
 static ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_deck *deck,
-                                     const ritz_names *names,
+                                     const ritz_row_names *names,
                                      ritz_component *component,
                                      ritz_import_report *report)
 {
@@ -326,11 +326,12 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 }
 
 /* Grids of rows and of recovered dofs are placed. */
-static ritz_status place_grids(const ritz_deck *deck, const ritz_names *kept,
+static ritz_status place_grids(const ritz_deck *deck,
+                               const ritz_row_names *kept,
                                ritz_component *component)
 {
     const ritz_recovery *recovery = &component->recovery;
-    RITZ_OWN(ritz_names) all = {.count = kept->count + recovery->count};
+    RITZ_OWN(ritz_row_names) all = {.count = kept->count + recovery->count};
 
     RITZ_CHECK(ritz_recovery_extend(recovery, kept->count, kept->dof, NULL,
                                     &all.dof, NULL));
@@ -340,10 +341,10 @@ static ritz_status place_grids(const ritz_deck *deck, const ritz_names *kept,
 /* Rows, with the dofs eliminated that constraints make depend on others. */
 static ritz_status settle_rows(const ritz_import_request *request,
                                ritz_parts *parts, ritz_deck *deck,
-                               ritz_names *names, ritz_component *component,
+                               ritz_row_names *names, ritz_component *component,
                                ritz_import_report *report)
 {
-    RITZ_OWN(ritz_names) kept = {0};
+    RITZ_OWN(ritz_row_names) kept = {0};
     RITZ_OWN(ritz_tying) tying = {0};
 
     RITZ_CHECK(ritz_tying_new(deck, parts, names, component, report, &tying));
@@ -379,7 +380,7 @@ static ritz_status make_component(const ritz_import_request *request,
                                   ritz_component *component,
                                   ritz_import_report *report)
 {
-    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN(ritz_row_names) names = {0};
 
     if (request->bulk)
         RITZ_CHECK(ritz_deck_read(request->bulk, deck));

@@ -23,22 +23,22 @@ typedef struct ritz_parts {
 } ritz_parts;
 
 /* The dofs of all rows, before empty rows are left out. */
-typedef struct ritz_names {
+typedef struct ritz_row_names {
     int64_t count;
     ritz_dof *dof;
     char map[RITZ_NAME_SIZE]; /* where they come from */
     bool whole; /* all that the deck has, and so its dependent dofs too */
-} ritz_names;
+} ritz_row_names;
 
 /* Rows by name: sorted, so that a name is found in O(log n). */
-typedef struct ritz_place {
+typedef struct ritz_row_place {
     ritz_dof dof;
     int64_t row;
-} ritz_place;
+} ritz_row_place;
 
 typedef struct ritz_roster {
     int64_t count;
-    ritz_place *place;
+    ritz_row_place *place;
 } ritz_roster;
 
 /** Roster of @p count dofs; a repeated one is refused. */
@@ -58,11 +58,11 @@ void ritz_roster_free(ritz_roster *roster);
 /** Name the rows of all parts, and give each part its places. */
 ritz_status ritz_names_find(const ritz_import_request *request,
                             const ritz_deck *deck, ritz_parts *parts,
-                            ritz_names *out);
+                            ritz_row_names *out);
 
 /** Names in a file of `GRID COMP` rows. */
-ritz_status ritz_names_of_file(const char *path, ritz_names *out);
-void ritz_names_free(ritz_names *names);
+ritz_status ritz_names_of_file(const char *path, ritz_row_names *out);
+void ritz_row_names_free(ritz_row_names *names);
 
 /** Rows that have an entry other than zero. */
 void ritz_part_mark(const ritz_part *part, bool *taken);
@@ -70,12 +70,12 @@ void ritz_part_mark(const ritz_part *part, bool *taken);
 /* Constraints between the rows, and what becomes of the dofs by them. */
 typedef struct ritz_tying {
     const ritz_deck *deck;
-    ritz_names names;    /* all rows of the matrices and dofs of equations */
-    bool *fixed;         /* of each: u = 0 */
-    bool *alive;         /* has stiffness or mass of its own */
-    bool *outside;       /* is no row, as matrices are without dependents */
-    bool acts;           /* matrices have dependent dofs of the deck */
-    ritz_elimination by; /* the equations of the deck solved */
+    ritz_row_names names; /* all rows of the matrices and dofs of equations */
+    bool *fixed;          /* of each: u = 0 */
+    bool *alive;          /* has stiffness or mass of its own */
+    bool *outside;        /* is no row, as matrices are without dependents */
+    bool acts;            /* matrices have dependent dofs of the deck */
+    ritz_elimination by;  /* the equations of the deck solved */
 } ritz_tying;
 
 /**
@@ -85,7 +85,8 @@ typedef struct ritz_tying {
  * @param[in,out] names  moved into @p out; those of parts are placed anew
  */
 ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
-                           ritz_names *names, const ritz_component *component,
+                           ritz_row_names *names,
+                           const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out);
 
 /** Solve the equations of the deck and of the ports so far. */
@@ -106,7 +107,7 @@ ritz_status ritz_tying_ports(const ritz_import_request *request,
  * @param[out] kept  names of the rows that stay
  */
 ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
-                             ritz_names *kept, ritz_import_report *report);
+                             ritz_row_names *kept, ritz_import_report *report);
 
 /** Set the recovery: eliminated dofs as combinations of the rows. */
 ritz_status ritz_tying_recover(const ritz_tying *tying,

@@ -11,8 +11,8 @@
 
 static int compare_places(const void *left, const void *right)
 {
-    const ritz_place *a = left;
-    const ritz_place *b = right;
+    const ritz_row_place *a = left;
+    const ritz_row_place *b = right;
 
     return ritz_dof_compare(&a->dof, &b->dof);
 }
@@ -25,7 +25,7 @@ ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
 
     RITZ_CHECK_NEW(roster.place, count);
     for (int64_t k = 0; k < count; k++)
-        roster.place[k] = (ritz_place){dof[k], k};
+        roster.place[k] = (ritz_row_place){dof[k], k};
     qsort(roster.place, (size_t)count, sizeof *roster.place, compare_places);
     for (int64_t k = 1; k < count; k++)
         RITZ_REFUSE_IF(compare_places(&roster.place[k - 1], &roster.place[k]) ==
@@ -39,8 +39,8 @@ ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
 
 int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof)
 {
-    const ritz_place wanted = {.dof = dof};
-    const ritz_place *found =
+    const ritz_row_place wanted = {.dof = dof};
+    const ritz_row_place *found =
         bsearch(&wanted, roster->place, (size_t)roster->count,
                 sizeof *roster->place, compare_places);
 
@@ -108,7 +108,7 @@ void ritz_roster_free(ritz_roster *roster)
  */
 
 /* All dofs of the deck, in its own order. */
-static ritz_status list_all(const ritz_deck *deck, ritz_names *out)
+static ritz_status list_all(const ritz_deck *deck, ritz_row_names *out)
 {
     RITZ_CHECK_NEW(out->dof, deck->num_dofs);
     if (deck->num_dofs > 0)
@@ -138,7 +138,8 @@ static bool is_in(ritz_dof dof, int64_t count, const ritz_dof *sorted)
 }
 
 /* All but those of a sorted list. */
-static void leave_out(int64_t count, const ritz_dof *sorted, ritz_names *names)
+static void leave_out(int64_t count, const ritz_dof *sorted,
+                      ritz_row_names *names)
 {
     int64_t kept = 0;
 
@@ -149,7 +150,7 @@ static void leave_out(int64_t count, const ritz_dof *sorted, ritz_names *names)
 }
 
 static ritz_status list_less(const ritz_deck *deck, bool fixed, bool dependents,
-                             ritz_names *out)
+                             ritz_row_names *out)
 {
     RITZ_OWN_ARRAY ritz_dof *tied = NULL;
 
@@ -168,7 +169,7 @@ static ritz_status list_less(const ritz_deck *deck, bool fixed, bool dependents,
 }
 
 /* The union of the sets that the deck states; empty if it states none. */
-static ritz_status list_sets(const ritz_deck *deck, ritz_names *out)
+static ritz_status list_sets(const ritz_deck *deck, ritz_row_names *out)
 {
     int64_t total = 0;
 
@@ -183,7 +184,7 @@ static ritz_status list_sets(const ritz_deck *deck, ritz_names *out)
     return RITZ_OK;
 }
 
-static bool same_names(const ritz_names *a, const ritz_names *b)
+static bool same_names(const ritz_row_names *a, const ritz_row_names *b)
 {
     return a->count == b->count &&
            (a->count == 0 ||
@@ -198,7 +199,7 @@ static const char *const WORDS[KINDS] = {"", "a-set", "grids less SPCs",
                                          "grids less SPCs and dependents"};
 
 /* "156 (26 grids)"; sizes that say nothing new are left out. */
-static void explain_sizes(const ritz_deck *deck, const ritz_names *list,
+static void explain_sizes(const ritz_deck *deck, const ritz_row_names *list,
                           size_t size, char *text)
 {
     int used = snprintf(text, size, "%" PRId64 " (%" PRId64 " grids",
@@ -220,7 +221,7 @@ static void explain_sizes(const ritz_deck *deck, const ritz_names *list,
 }
 
 static ritz_status choose_list(const ritz_deck *deck, int64_t n,
-                               const char *spec, const ritz_names *list,
+                               const char *spec, const ritz_row_names *list,
                                int *chosen)
 {
     char sizes[320];
@@ -249,10 +250,10 @@ static ritz_status choose_list(const ritz_deck *deck, int64_t n,
 
 /* Names that a deck has for @p spec, n rows. @return RITZ_ERR_FORMAT */
 static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
-                                   const char *spec, ritz_names *out)
+                                   const char *spec, ritz_row_names *out)
 {
     ritz_status status = RITZ_OK;
-    ritz_names list[KINDS] = {0};
+    ritz_row_names list[KINDS] = {0};
     int chosen = -1;
 
     RITZ_TRY(list_all(deck, &list[ALL]));
@@ -262,16 +263,16 @@ static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
     RITZ_TRY(list_less(deck, true, true, &list[LEAST]));
     RITZ_TRY(choose_list(deck, n, spec, list, &chosen));
     *out = list[chosen];
-    list[chosen] = (ritz_names){0};
+    list[chosen] = (ritz_row_names){0};
 done:
     for (int k = 0; k < KINDS; k++)
-        ritz_names_free(&list[k]);
+        ritz_row_names_free(&list[k]);
     return status;
 }
 
 /* `GRID COMP` of one line, which may be blank or end in a comment. */
 static ritz_status take_line(const char *path, int64_t number, char *line,
-                             ritz_names *names)
+                             ritz_row_names *names)
 {
     const char *const blanks = " \t\r";
     const char *field[3] = {NULL, NULL, NULL};
@@ -306,17 +307,17 @@ static ritz_status take_line(const char *path, int64_t number, char *line,
 }
 
 /* Say at which lines a dof stands twice: lines hold the places of names. */
-static ritz_status check_distinct(const char *path, const ritz_names *names,
+static ritz_status check_distinct(const char *path, const ritz_row_names *names,
                                   const int64_t *line)
 {
-    RITZ_OWN_ARRAY ritz_place *sorted = NULL;
+    RITZ_OWN_ARRAY ritz_row_place *sorted = NULL;
     int64_t again = -1;
     int64_t first = -1;
     char name[RITZ_DOF_NAME_SIZE];
 
     RITZ_CHECK_NEW(sorted, names->count);
     for (int64_t k = 0; k < names->count; k++)
-        sorted[k] = (ritz_place){names->dof[k], line[k]};
+        sorted[k] = (ritz_row_place){names->dof[k], line[k]};
     qsort(sorted, (size_t)names->count, sizeof *sorted, ritz_dof_compare);
     for (int64_t k = 1; k < names->count && again < 0; k++)
         if (ritz_dof_compare(&sorted[k - 1].dof, &sorted[k].dof) == 0) {
@@ -333,9 +334,9 @@ static ritz_status check_distinct(const char *path, const ritz_names *names,
     return RITZ_OK;
 }
 
-ritz_status ritz_names_of_file(const char *path, ritz_names *out)
+ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
 {
-    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN(ritz_row_names) names = {0};
     RITZ_OWN_ARRAY char *text = NULL;
     RITZ_OWN_ARRAY int64_t *line = NULL;
     int64_t lines = 1;
@@ -360,20 +361,21 @@ ritz_status ritz_names_of_file(const char *path, ritz_names *out)
     RITZ_CHECK(check_distinct(path, &names, line));
     snprintf(names.map, sizeof names.map, "--dofs");
     *out = names;
-    names = (ritz_names){0};
+    names = (ritz_row_names){0};
     return RITZ_OK;
 }
 
-void ritz_names_free(ritz_names *names)
+void ritz_row_names_free(ritz_row_names *names)
 {
     free(names->dof);
-    *names = (ritz_names){0};
+    *names = (ritz_row_names){0};
 }
 
 /* ---- one list for all matrices ------------------------------------------ */
 
 /* Without a deck: grids 1, 2, ... with six rows each. */
-static ritz_status number_grids(int64_t n, const char *spec, ritz_names *out)
+static ritz_status number_grids(int64_t n, const char *spec,
+                                ritz_row_names *out)
 {
     RITZ_REFUSE_IF(n == 0 || n % 6 != 0, RITZ_ERR_FORMAT,
                    "'%s' has %" PRId64 " rows, which is not six for each grid: "
@@ -397,7 +399,7 @@ static const ritz_part *first_unnamed(const ritz_parts *parts)
 }
 
 /* All rows that any file names, ascending by grid and direction. */
-static ritz_status unite_rows(const ritz_parts *parts, ritz_names *out)
+static ritz_status unite_rows(const ritz_parts *parts, ritz_row_names *out)
 {
     int64_t total = 0;
 
@@ -414,7 +416,7 @@ static ritz_status unite_rows(const ritz_parts *parts, ritz_names *out)
 
 /* Rows that --dofs names: files that name theirs otherwise must agree. */
 static ritz_status name_by_file(const char *path, ritz_parts *parts,
-                                ritz_names *out)
+                                ritz_row_names *out)
 {
     const ritz_part *first = NULL;
 
@@ -451,7 +453,7 @@ static ritz_status check_size(const ritz_part *part, int64_t due,
 }
 
 /* Parts whose files name the rows are placed by name, others as they are. */
-static ritz_status place_rows(ritz_part *part, const ritz_names *names,
+static ritz_status place_rows(ritz_part *part, const ritz_row_names *names,
                               const ritz_roster *roster, const ritz_dof *row)
 {
     int64_t n = part->matrix.A.nrow;
@@ -470,7 +472,7 @@ static ritz_status place_rows(ritz_part *part, const ritz_names *names,
 
 static ritz_status choose_names(const ritz_import_request *request,
                                 const ritz_deck *deck, ritz_parts *parts,
-                                ritz_names *out)
+                                ritz_row_names *out)
 {
     const ritz_part *unnamed = first_unnamed(parts);
     int64_t n = unnamed ? unnamed->matrix.A.nrow : 0;
@@ -490,9 +492,9 @@ static ritz_status choose_names(const ritz_import_request *request,
 
 ritz_status ritz_names_find(const ritz_import_request *request,
                             const ritz_deck *deck, ritz_parts *parts,
-                            ritz_names *out)
+                            ritz_row_names *out)
 {
-    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN(ritz_row_names) names = {0};
     RITZ_OWN(ritz_roster) roster = {0};
     const ritz_part *unnamed = first_unnamed(parts);
 
@@ -509,7 +511,7 @@ ritz_status ritz_names_find(const ritz_import_request *request,
                               request->dofs ? NULL : part->matrix.row));
     }
     *out = names;
-    names = (ritz_names){0};
+    names = (ritz_row_names){0};
     return RITZ_OK;
 }
 

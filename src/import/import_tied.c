@@ -353,7 +353,7 @@ static ritz_status group_dofs(const ritz_extended *extended, ritz_tied *it)
 
 /* ---- the new grid ------------------------------------------------------- */
 
-static int64_t largest_id(const ritz_deck *deck, const ritz_names *names)
+static int64_t largest_id(const ritz_deck *deck, const ritz_row_names *names)
 {
     int64_t most = 0;
 
@@ -421,7 +421,7 @@ static ritz_status tie_rigid(ritz_tied *it)
 static ritz_status find_held(const ritz_extended *present,
                              const ritz_import_report *report, ritz_tied *it)
 {
-    const ritz_names *names = &it->tying->names;
+    const ritz_row_names *names = &it->tying->names;
     ritz_port port = {0};
     RITZ_OWN(ritz_roster) roster = {0};
 

@@ -73,7 +73,7 @@ static ritz_status list_missing(const ritz_deck *deck,
     return RITZ_OK;
 }
 
-static bool is_ascending(const ritz_names *names)
+static bool is_ascending(const ritz_row_names *names)
 {
     for (int64_t k = 1; k < names->count; k++)
         if (ritz_dof_compare(&names->dof[k - 1], &names->dof[k]) >= 0)
@@ -82,7 +82,7 @@ static bool is_ascending(const ritz_names *names)
 }
 
 /* Names that ascend go on doing so: the rows of parts are placed anew. */
-static ritz_status sort_names(ritz_names *names, ritz_parts *parts)
+static ritz_status sort_names(ritz_row_names *names, ritz_parts *parts)
 {
     RITZ_OWN_ARRAY ritz_dof *before = NULL;
     RITZ_OWN(ritz_roster) roster = {0};
@@ -105,7 +105,7 @@ static ritz_status sort_names(ritz_names *names, ritz_parts *parts)
 static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
                              const ritz_component *component, ritz_tying *it)
 {
-    ritz_names *names = &it->names;
+    ritz_row_names *names = &it->names;
     bool sorted = is_ascending(names);
     RITZ_OWN(ritz_roster) roster = {0};
     RITZ_OWN_ARRAY ritz_dof *missing = NULL;
@@ -214,12 +214,13 @@ ritz_status ritz_tying_solve(ritz_tying *tying)
 }
 
 ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
-                           ritz_names *names, const ritz_component *component,
+                           ritz_row_names *names,
+                           const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out)
 {
     RITZ_OWN(ritz_tying) new = {.deck = deck, .names = *names};
 
-    *names = (ritz_names){0};
+    *names = (ritz_row_names){0};
     RITZ_CHECK(find_action(deck, &new));
     RITZ_CHECK(pass_refusal(deck, &new, report));
     RITZ_CHECK_NEW(new.fixed, new.names.count);
@@ -237,7 +238,7 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
 
 void ritz_tying_free(ritz_tying *tying)
 {
-    ritz_names_free(&tying->names);
+    ritz_row_names_free(&tying->names);
     free(tying->fixed);
     free(tying->alive);
     free(tying->outside);
@@ -292,7 +293,7 @@ static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
 
 /* Columns of G that become rows; -1: dofs that the matrices have not. */
 static ritz_status list_kept(const ritz_tying *tying, int64_t *column,
-                             ritz_names *kept)
+                             ritz_row_names *kept)
 {
     const ritz_dofs *by = &tying->by.kept;
 
@@ -358,9 +359,9 @@ static ritz_status count_eliminated(const ritz_tying *tying,
 }
 
 ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
-                             ritz_names *kept, ritz_import_report *report)
+                             ritz_row_names *kept, ritz_import_report *report)
 {
-    RITZ_OWN(ritz_names) names = {0};
+    RITZ_OWN(ritz_row_names) names = {0};
     RITZ_OWN(ritz_sparse) turned = {0};
     RITZ_OWN_ARRAY int64_t *column = NULL;
 
@@ -372,7 +373,7 @@ ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
         RITZ_CHECK(
             apply_part(tying, &turned, column, names.count, &parts->part[k]));
     *kept = names;
-    names = (ritz_names){0};
+    names = (ritz_row_names){0};
     return RITZ_OK;
 }
 

@@ -16,14 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void ritz_nested_free(ritz_nested *nested)
-{
-    free(nested->order);
-    free(nested->error);
-    ritz_dense_free(&nested->value);
-    *nested = (ritz_nested){0};
-}
-
 static ritz_status new_nested(int64_t smallest, int64_t count, int64_t errors,
                               ritz_nested *out)
 {

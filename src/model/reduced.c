@@ -410,3 +410,11 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_nested_free(&reduced->nested);
     *reduced = (ritz_reduced){0};
 }
+
+void ritz_nested_free(ritz_nested *nested)
+{
+    free(nested->order);
+    free(nested->error);
+    ritz_dense_free(&nested->value);
+    *nested = (ritz_nested){0};
+}

@@ -3,6 +3,7 @@
  * which they name each other.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "scene/scene_parts.h"
 
 #include <ritz/container.h>
@@ -184,9 +185,9 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
     RITZ_OWN(ritz_scene)
     scene = {.source = &ritz_container_source,
              .select_by = "hankel",
-             .select_tolerance = 1e-3,
-             .composite_tolerance = 1e-12,
-             .attached_tolerance = 1e-3};
+             .select_tolerance = RITZ_SCENE_SELECT,
+             .composite_tolerance = RITZ_SCENE_COMPOSITE,
+             .attached_tolerance = RITZ_SCENE_ATTACHED};
 
     RITZ_CHECK_NEW(scene.path, (int64_t)strlen(path) + 1);
     memcpy(scene.path, path, strlen(path));

@@ -16,7 +16,7 @@ static void write_file(const char *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
-static ritz_status read_text(const char *text, ritz_names *out)
+static ritz_status read_text(const char *text, ritz_row_names *out)
 {
     write_file(text, strlen(text));
     return ritz_names_of_file(path, out);
@@ -32,14 +32,14 @@ static const char *const samples[] = {
 static void rows_are_named_in_the_order_of_the_file(void **state)
 {
     static const ritz_dof due[] = {{7, 6}, {2001, 0}, {7, 1}};
-    ritz_names names = {0};
+    ritz_row_names names = {0};
 
     (void)state;
     assert_ok(read_text(samples[1], &names));
     assert_int_equal(names.count, 3);
     for (int k = 0; k < 3; k++)
         assert_int_equal(ritz_dof_compare(&names.dof[k], &due[k]), 0);
-    ritz_names_free(&names);
+    ritz_row_names_free(&names);
     remove(path);
 }
 
@@ -62,7 +62,7 @@ static void what_is_wrong_is_said_with_its_line(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        ritz_names names = {0};
+        ritz_row_names names = {0};
 
         assert_fails(read_text(cases[k].text, &names), RITZ_ERR_FORMAT,
                      cases[k].words);
@@ -75,7 +75,7 @@ static void what_is_wrong_is_said_with_its_line(void **state)
 /* In names that are accepted there is no dof twice, and none that is none. */
 static void assert_answered(const char *bytes, size_t size)
 {
-    ritz_names names = {0};
+    ritz_row_names names = {0};
     ritz_status status = RITZ_OK;
 
     write_file(bytes, size);
@@ -92,7 +92,7 @@ static void assert_answered(const char *bytes, size_t size)
         assert_in_range(names.dof[k].component, 0, 6);
     }
     assert_int_equal(ritz_dof_distinct(names.count, names.dof), names.count);
-    ritz_names_free(&names);
+    ritz_row_names_free(&names);
 }
 
 static void a_file_cut_or_corrupted_anywhere_is_answered(void **state)
@@ -123,10 +123,10 @@ static void a_file_cut_or_corrupted_anywhere_is_answered(void **state)
 
 static ritz_status read_and_drop(void)
 {
-    ritz_names names = {0};
+    ritz_row_names names = {0};
     ritz_status status = ritz_names_of_file(path, &names);
 
-    ritz_names_free(&names);
+    ritz_row_names_free(&names);
     return status;
 }
 
