@@ -86,9 +86,8 @@ ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
                                              id));
             point[num++] = id;
         }
-    out->point = point;
+    RITZ_MOVE(out->point, point);
     out->num_points = num;
-    point = NULL;
     return RITZ_OK;
 }
 

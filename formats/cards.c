@@ -186,7 +186,7 @@ static ritz_status open_file(ritz_scanner *scan, const char *path, char *bytes)
 {
     ritz_status status = RITZ_OK;
     card_text new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
-                       .file = scan->cards->num_files};
+                     .file = scan->cards->num_files};
 
     status = add_file(scan->cards, path, bytes);
     if (status != RITZ_OK)
@@ -539,8 +539,7 @@ ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
 
     RITZ_CHECK(scan_text(path, folder, whole, &cards));
     RITZ_CHECK(join_lines(&cards));
-    *out = cards;
-    cards = (ritz_cards){0};
+    RITZ_MOVE(*out, cards);
     return RITZ_OK;
 }
 

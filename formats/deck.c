@@ -27,8 +27,7 @@ ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
                    path ? path : "the deck");
     RITZ_CHECK(format->parse(path, bytes, size, folder, &deck));
     deck.format = format;
-    *out = deck;
-    deck = (ritz_deck){0};
+    RITZ_MOVE(*out, deck);
     return RITZ_OK;
 }
 

@@ -301,8 +301,7 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     RITZ_CHECK(list_terms(owner, terms, nrow, new.row, ncol,
                           square ? new.row : new.col, &list));
     RITZ_CHECK(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
-    *out = new;
-    new = (ritz_matrix){0};
+    RITZ_MOVE(*out, new);
     return RITZ_OK;
 }
 

@@ -169,8 +169,7 @@ ritz_status exudyn_body_of(const ritz_reduced *reduced, exudyn_body *out)
     RITZ_CHECK(ritz_invariants_project(&reduced->invariants, &b.modes.V,
                                        &b.invariants));
     RITZ_CHECK(exudyn_terms_of(&b.invariants, &reduced->inertia, &b.terms));
-    *out = b;
-    b = (exudyn_body){0};
+    RITZ_MOVE(*out, b);
     return RITZ_OK;
 }
 

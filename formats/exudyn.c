@@ -122,8 +122,7 @@ static ritz_status keep_columns(const ritz_reduced *reduced,
     RITZ_CHECK(demand_rigid(reduced, &Z));
     kept.num_rigid = Z.ncol;
     note_band(&pairs, &kept);
-    *modes = kept;
-    kept = (exudyn_modes){0};
+    RITZ_MOVE(*modes, kept);
     return RITZ_OK;
 }
 
@@ -154,8 +153,7 @@ ritz_status exudyn_modes_of(const ritz_reduced *reduced, exudyn_modes *out)
     RITZ_CHECK(keep_columns(reduced, &modes));
     if (!modes.V.val)
         RITZ_CHECK(diagonalise_body(reduced, &modes));
-    *out = modes;
-    modes = (exudyn_modes){0};
+    RITZ_MOVE(*out, modes);
     return RITZ_OK;
 }
 
@@ -299,8 +297,7 @@ ritz_status exudyn_terms_of(const ritz_invariants *invariants,
     for (int64_t l = 0; l < m; l++)
         for (int64_t k = 0; k < m; k++)
             put_pair(&invariants->product, m, k, l, &t);
-    *out = t;
-    t = (exudyn_terms){0};
+    RITZ_MOVE(*out, t);
     return RITZ_OK;
 }
 

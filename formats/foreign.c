@@ -41,8 +41,7 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
     file.bytes = file.owned;
     ritz_digest_bytes(file.bytes, (size_t)file.size, file.digest);
     file.format = recognise_bytes(file.bytes, file.size);
-    *out = file;
-    file = (ritz_foreign){0};
+    RITZ_MOVE(*out, file);
 done:
     ritz_foreign_close(&file);
     return status;
@@ -100,8 +99,7 @@ static ritz_status take_all(ritz_foreign *file, ritz_matrices *out)
     for (; all.count < file->listing.count; all.count++)
         RITZ_CHECK(ritz_foreign_take(file, all.count, &all.matrix[all.count]));
     snprintf(all.format, sizeof all.format, "%s", file->format->name);
-    *out = all;
-    all = (ritz_matrices){0};
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 

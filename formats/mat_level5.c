@@ -415,8 +415,7 @@ static ritz_status inflate_element(const mat_element *packed, bool swap,
     memcpy(bytes, tag, sizeof tag);
     RITZ_TRY(inflate_rest(&stream, bytes + sizeof tag,
                           *size + 1 - (int64_t)sizeof tag));
-    *out = bytes;
-    bytes = NULL;
+    RITZ_MOVE(*out, bytes);
 done:
     if (begun)
         inflateEnd(&stream);

@@ -14,8 +14,7 @@ ritz_status ritz_triplets_new(int64_t most, ritz_triplets *out)
     RITZ_CHECK_NEW(list.col, most);
     RITZ_CHECK_NEW(list.re, most);
     RITZ_CHECK_NEW(list.im, most);
-    *out = list;
-    list = (ritz_triplets){0};
+    RITZ_MOVE(*out, list);
     return RITZ_OK;
 }
 
@@ -35,8 +34,7 @@ ritz_status ritz_triplets_compress(const ritz_triplets *list, int64_t nrow,
         imaginary.val = NULL;
     }
     ritz_sparse_free(&m->A);
-    m->A = real;
-    real = (ritz_sparse){0};
+    RITZ_MOVE(m->A, real);
     return RITZ_OK;
 }
 

@@ -98,8 +98,7 @@ static ritz_status sort_by(ritz_market *m, bool by_row)
         sorted[start[by_row ? m->entry[k].row : m->entry[k].col]++] =
             m->entry[k];
     free(m->entry);
-    m->entry = sorted;
-    sorted = NULL;
+    RITZ_MOVE(m->entry, sorted);
     return RITZ_OK;
 }
 
@@ -181,10 +180,8 @@ static ritz_status compress_columns(const ritz_market *m, ritz_matrix *out)
                 imaginary[p] = e.im;
         }
     }
-    out->A = A;
-    out->imaginary = imaginary;
-    A = (ritz_sparse){0};
-    imaginary = NULL;
+    RITZ_MOVE(out->A, A);
+    RITZ_MOVE(out->imaginary, imaginary);
     return RITZ_OK;
 }
 

@@ -166,11 +166,10 @@ static ritz_status grow_entries(ritz_output4_build *build, int64_t need)
     free(m->A.rowind);
     free(m->A.val);
     free(m->imaginary);
-    m->A.rowind = rowind;
+    RITZ_MOVE(m->A.rowind, rowind);
     m->A.val = val;
     m->imaginary = imaginary;
     build->room = room;
-    rowind = NULL;
     val = imaginary = NULL;
     return RITZ_OK;
 }
@@ -218,8 +217,7 @@ ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
     memcpy(build.matrix.name, header->name, sizeof build.matrix.name);
     RITZ_TRY(grow_entries(&build, nnz > 0 ? nnz : 1));
     RITZ_TRY(grow_pointers(&build, -1));
-    *out = build;
-    build = (ritz_output4_build){0};
+    RITZ_MOVE(*out, build);
 done:
     ritz_matrix_free(&build.matrix);
     return status;

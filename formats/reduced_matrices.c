@@ -101,8 +101,7 @@ static ritz_status list_matrices(const matrix_kind *kind, const void *object,
         list.count++;
         at += length + (at[length] != '\0');
     }
-    *out = list;
-    list = (ritz_matrices){0};
+    RITZ_MOVE(*out, list);
     return RITZ_OK;
 }
 

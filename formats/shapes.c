@@ -200,8 +200,7 @@ static ritz_status list_cells(const shapes_motion *m, ritz_shapes *out)
             cells.first[k + 1] = k + 1;
         }
     }
-    out->cells = cells;
-    cells = (ritz_elements){0};
+    RITZ_MOVE(out->cells, cells);
     return RITZ_OK;
 }
 
@@ -304,8 +303,7 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
     RITZ_TRY(ritz_dense_mul(&reduced->T, &Phi, &T));
     RITZ_TRY(finish_shapes(&whole, &T, &shapes));
-    *out = shapes;
-    shapes = (ritz_shapes){0};
+    RITZ_MOVE(*out, shapes);
 done:
     ritz_shapes_free(&shapes);
     ritz_dampers_free(&dampers);
@@ -347,8 +345,7 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
         which.count = pairs.Phi.ncol;
     RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
     RITZ_TRY(finish_shapes(&whole, &Phi, &shapes));
-    *out = shapes;
-    shapes = (ritz_shapes){0};
+    RITZ_MOVE(*out, shapes);
 done:
     ritz_shapes_free(&shapes);
     ritz_dampers_free(&dampers);
@@ -400,8 +397,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
     RITZ_TRY(choose_modes(list, "column", basis->T.ncol, &which));
     RITZ_TRY(pick_columns(basis, &which, &T, &shapes));
     RITZ_TRY(finish_shapes(&whole, &T, &shapes));
-    *out = shapes;
-    shapes = (ritz_shapes){0};
+    RITZ_MOVE(*out, shapes);
 done:
     ritz_shapes_free(&shapes);
     ritz_dense_free(&T);

@@ -169,8 +169,7 @@ static ritz_status make_modal(const ritz_stage *stage,
     }
     c->num_rigid = pairs.num_rigid;
     ritz_dense_free(P);
-    *P = Q;
-    Q = (ritz_dense){0};
+    RITZ_MOVE(*P, Q);
     return RITZ_OK;
 }
 
@@ -227,8 +226,7 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
         RITZ_CHECK(make_modal(stage, &springs, &P, &c));
     }
     RITZ_CHECK(finish(stage, setting, &P, &c));
-    *out = c;
-    c = (ritz_configuration){0};
+    RITZ_MOVE(*out, c);
     return RITZ_OK;
 }
 
@@ -286,7 +284,6 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
         RITZ_CHECK(ritz_stage_assemble(stage, row, &system.configuration[k]));
         system.num_configurations++;
     }
-    *out = system;
-    system = (ritz_system){0};
+    RITZ_MOVE(*out, system);
     return RITZ_OK;
 }

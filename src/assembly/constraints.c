@@ -405,7 +405,6 @@ ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
                                       (int)N.ncol, (int)c, F.val, (int)n, tau,
                                       N.val, (int)n) != 0,
                        RITZ_ERR_MEMORY, "no memory for the constraints");
-    *out = N;
-    N = (ritz_dense){0};
+    RITZ_MOVE(*out, N);
     return RITZ_OK;
 }

@@ -229,8 +229,7 @@ static ritz_status new_dual(const ritz_dense *K, const ritz_dense *C,
     RITZ_TRY(add_joint(&s, &C_q, &N, &dual.joint));
     dual.rank += s.rank;
     dual.num_forces = s.rank;
-    *out = dual;
-    dual = (ritz_dual){0};
+    RITZ_MOVE(*out, dual);
 done:
     split_free(&s);
     free_dual(&dual);
@@ -335,8 +334,7 @@ static ritz_status change(const ritz_dense *Z, dual_pencil *of)
     RITZ_CHECK(ritz_dense_congruence(&of->M, Z, &to.M));
     RITZ_CHECK(ritz_dense_mul(&of->P, Z, &to.P));
     pencil_free(of);
-    *of = to;
-    to = (dual_pencil){0};
+    RITZ_MOVE(*of, to);
     return RITZ_OK;
 }
 
@@ -472,8 +470,7 @@ static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
     c->num_rigid = ritz_eigen_rigid(e, size, e > 0 ? size[e - 1] : 0.0);
     RITZ_CHECK(ritz_dense_mul(P, &Phi, &Q));
     ritz_dense_free(P);
-    *P = Q;
-    Q = (ritz_dense){0};
+    RITZ_MOVE(*P, Q);
     return RITZ_OK;
 }
 

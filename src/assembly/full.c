@@ -81,8 +81,7 @@ static ritz_status hold_body(const ritz_component *component,
         RITZ_CHECK(
             hold_port(component, &component->port[k], held, &body.port[k]));
     }
-    *out = body;
-    body = (ritz_reduced){0};
+    RITZ_MOVE(*out, body);
     return RITZ_OK;
 }
 
@@ -160,8 +159,7 @@ static ritz_status load_held(const ritz_scene *scene, ritz_held *out)
 
     RITZ_TRY(load(scene, &held));
     RITZ_TRY(hold(&held));
-    *out = held;
-    held = (ritz_held){0};
+    RITZ_MOVE(*out, held);
 done:
     free_held(&held);
     return status;
@@ -317,8 +315,7 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
             A.colptr[p->first[k] + j + 1] = at;
         }
     }
-    *out = A;
-    A = (ritz_sparse){0};
+    RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
 
@@ -389,10 +386,8 @@ static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
     RITZ_CHECK(ritz_sparse_transpose(T, &turned));
     RITZ_CHECK(ritz_sparse_mul(&turned, &all.B, &B));
     ritz_dense_free(&all.B);
-    all.B = B;
-    B = (ritz_dense){0};
-    *out = all;
-    all = (ritz_dampers){0};
+    RITZ_MOVE(all.B, B);
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 
@@ -450,10 +445,8 @@ static ritz_status held_recovery(const ritz_held *p, const int64_t *add,
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_product(&all.G, T, &GT));
     ritz_sparse_free(&all.G);
-    all.G = GT;
-    GT = (ritz_sparse){0};
-    *out = all;
-    all = (ritz_recovery){0};
+    RITZ_MOVE(all.G, GT);
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 

@@ -50,7 +50,6 @@ ritz_status ritz_stage_basis(const ritz_stage *stage,
         RITZ_CHECK(
             add_body(body, &at->P[k], first, last - first, row + first, &T));
     }
-    *out = T;
-    T = (ritz_dense){0};
+    RITZ_MOVE(*out, T);
     return RITZ_OK;
 }

@@ -496,8 +496,7 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
         RITZ_TRY(relate_six(joint, end, pose, &list));
     RITZ_FAIL_IF(list.count == 0, RITZ_ERR_ARGUMENT,
                  "its ports have no direction in common");
-    *out = list;
-    list = (ritz_relations){0};
+    RITZ_MOVE(*out, list);
 done:
     ritz_relations_free(&list);
     if (status != RITZ_OK) {

@@ -405,8 +405,7 @@ ritz_status ritz_neighbour_new(int64_t attached, ritz_neighbour *out)
 
     RITZ_CHECK(ritz_dense_new(attached, attached, &neighbour.K));
     RITZ_CHECK(ritz_dense_new(attached, attached, &neighbour.M));
-    *out = neighbour;
-    neighbour = (ritz_neighbour){0};
+    RITZ_MOVE(*out, neighbour);
     return RITZ_OK;
 }
 
@@ -475,7 +474,6 @@ ritz_status ritz_scene_neighbour(const ritz_scene *scene, int64_t k,
     RITZ_CHECK(ritz_neighbour_new(attached->count, &sum));
     for (int64_t other = 0; other < scene->num_components; other++)
         RITZ_CHECK(add_body(scene, k, other, component, attached, &sum));
-    *out = sum;
-    sum = (ritz_neighbour){0};
+    RITZ_MOVE(*out, sum);
     return RITZ_OK;
 }

@@ -309,10 +309,8 @@ static ritz_status sort(ritz_grids *grids)
     }
     free(grids->position);
     free(grids->frame);
-    grids->position = position;
-    grids->frame = frame;
-    position = NULL;
-    frame = NULL;
+    RITZ_MOVE(grids->position, position);
+    RITZ_MOVE(grids->frame, frame);
     return RITZ_OK;
 }
 
@@ -346,8 +344,7 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
     for (int64_t k = 0; k < count; k++)
         append(&body[k].grids, &place[k], add[k], &all);
     RITZ_CHECK(sort(&all));
-    *out = all;
-    all = (ritz_grids){0};
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 

@@ -54,8 +54,7 @@ static ritz_status used_ports(const ritz_scene *scene, int64_t k, char **out)
             if (at->component == k && *at->port)
                 RITZ_CHECK(append_port(&list, at->port));
         }
-    *out = list;
-    list = NULL;
+    RITZ_MOVE(*out, list);
     return RITZ_OK;
 }
 
@@ -145,8 +144,7 @@ static ritz_status load_columns(const ritz_source *source,
         RITZ_CHECK_IN(item->model,
                       ritz_reduced_prefix(&whole, item->order, out));
     } else {
-        *out = whole;
-        whole = (ritz_reduced){0};
+        RITZ_MOVE(*out, whole);
     }
     return RITZ_OK;
 }
@@ -175,8 +173,7 @@ ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
     status = check_ports(scene, k, &component);
     known = status != RITZ_OK; /* said where the port is named */
     RITZ_TRY(status);
-    *full = component;
-    component = (ritz_component){0};
+    RITZ_MOVE(*full, component);
 done:
     ritz_component_free(&component);
     return known ? status
@@ -337,8 +334,7 @@ ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
         stage.count++;
     }
     RITZ_CHECK(complete(&stage));
-    *out = stage;
-    stage = (ritz_stage){0};
+    RITZ_MOVE(*out, stage);
     return RITZ_OK;
 }
 
@@ -353,8 +349,7 @@ ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
     memcpy(stage.body, body, (size_t)stage.count * sizeof *body);
     RITZ_TRY(complete(&stage));
     memset(body, 0, (size_t)stage.count * sizeof *body);
-    *out = stage;
-    stage = (ritz_stage){0};
+    RITZ_MOVE(*out, stage);
 done:
     if (stage.body && stage.count > 0) { /* given back, dampers in or not */
         memcpy(body, stage.body, (size_t)stage.count * sizeof *body);

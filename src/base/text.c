@@ -57,8 +57,7 @@ ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
     RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot read '%s': %s", path,
                  strerror(errno));
     *size = used;
-    *out = bytes;
-    bytes = NULL;
+    RITZ_MOVE(*out, bytes);
 done:
     if (file)
         fclose(file);
@@ -74,8 +73,7 @@ ritz_status ritz_text_read(const char *path, char **out)
     RITZ_CHECK(ritz_bytes_read(path, &size, &text));
     RITZ_REFUSE_IF(strlen(text) != (size_t)size, RITZ_ERR_FORMAT,
                    "'%s' is not a text file", path);
-    *out = text;
-    text = NULL;
+    RITZ_MOVE(*out, text);
     return RITZ_OK;
 }
 

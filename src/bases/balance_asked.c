@@ -99,8 +99,7 @@ ritz_status ritz_balance_asked(const ritz_request *request,
                    "the first values are equal, and are kept whole or not at "
                    "all: ask for more than %" PRId64,
                    request->modes);
-    *out = balanced;
-    balanced = (ritz_balanced){0};
+    RITZ_MOVE(*out, balanced);
     return RITZ_OK;
 }
 
@@ -223,7 +222,6 @@ ritz_status ritz_balanced_states(const ritz_request *request,
     name_columns(request, gramians, kept.kept, &basis.columns);
     RITZ_CHECK(ritz_balanced_note(request, gramians, &kept, bounded, "states",
                                   &basis));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

@@ -246,8 +246,7 @@ static ritz_status balanced_second(const ritz_request *request, ritz_half half,
         ritz_remark_append(&basis, "left and right vectors agree");
     RITZ_TRY(ritz_balanced_note(request, &s.states, &s.balanced, false,
                                 "vectors", &basis));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
 done:
     release(&s);
     ritz_basis_free(&basis);

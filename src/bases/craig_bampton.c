@@ -50,10 +50,8 @@ static ritz_status condense_interface(const ritz_request *request,
         &modes.Phi, 0, count_kept(&modes, request->choice.interface_modes),
         &Phi));
     ritz_dense_free(&modes.Phi);
-    modes.Phi = Phi;
-    Phi = (ritz_dense){0};
-    *out = modes;
-    modes = (ritz_pairs){0};
+    RITZ_MOVE(modes.Phi, Phi);
+    RITZ_MOVE(*out, modes);
 done:
     ritz_dense_free(&K);
     ritz_dense_free(&M);
@@ -114,8 +112,7 @@ static ritz_status find_boundary(const ritz_partition *s, ritz_basis *out)
         basis.columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
         basis.columns.dof[j] = b->at[j];
     }
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 
@@ -139,8 +136,7 @@ static ritz_status reduce_boundary(const ritz_request *request,
         basis.columns.residual[j] = modes.residual[j];
     }
     ritz_basis_free(boundary);
-    *boundary = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*boundary, basis);
     return RITZ_OK;
 }
 

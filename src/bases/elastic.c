@@ -146,8 +146,7 @@ ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_CHECK(find_rigid(&E));
     RITZ_CHECK(choose_support(&E));
     RITZ_CHECK(factor(&E));
-    *out = E;
-    E = (ritz_elastic){0};
+    RITZ_MOVE(*out, E);
     return RITZ_OK;
 }
 

@@ -110,8 +110,7 @@ static ritz_status sweep(ritz_factor *A, const ritz_sparse *M, double s,
             *change = fmax(*change, moved / size);
     }
     ritz_dense_free(Psi);
-    *Psi = next;
-    next = (ritz_dense){0};
+    RITZ_MOVE(*Psi, next);
     return RITZ_OK;
 }
 
@@ -317,8 +316,7 @@ ritz_status ritz_free_set_find(const ritz_request *request, int loads,
         RITZ_CHECK(
             residual_modes(request, &set.modes, &set.F, &set.Psi, set.keep));
     }
-    *out = set;
-    set = (ritz_free_set){0};
+    RITZ_MOVE(*out, set);
     return RITZ_OK;
 }
 

@@ -162,8 +162,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
         basis.columns.dof[j] = b->at[j];
     }
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "CHOLMOD");
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

@@ -96,8 +96,7 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
     RITZ_CHECK(ritz_orthonormal_new(
         body->K->nrow, S.inner == RITZ_INNER_MASS ? body->M : body->K,
         request->tolerance, &S.set));
-    *out = S;
-    S = (ritz_krylov){0};
+    RITZ_MOVE(*out, S);
     return RITZ_OK;
 }
 
@@ -168,8 +167,7 @@ ritz_status ritz_krylov_answer(const ritz_krylov *S,
     else
         RITZ_CHECK(ritz_elastic_answer(S->body, &X));
     clear_rounding(&PG, &size, &X);
-    *R = X;
-    X = (ritz_dense){0};
+    RITZ_MOVE(*R, X);
     return RITZ_OK;
 }
 
@@ -418,8 +416,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(ritz_krylov_join(&S, &basis));
     ritz_krylov_say_blocks(&S, request->modes, &basis);
     RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

@@ -112,8 +112,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(join(&s, &Psi, &S, &basis));
     ritz_krylov_say_blocks(&S, request->modes, &basis);
     RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

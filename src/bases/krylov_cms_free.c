@@ -90,8 +90,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(ritz_krylov_seed(&S, &F_a, taken));
     RITZ_CHECK(ritz_krylov_run(&S, &F, F_a.ncol));
     RITZ_CHECK(join(request, &S, &F_a, taken, &basis));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

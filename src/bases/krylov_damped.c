@@ -123,8 +123,7 @@ static ritz_status start_krylov_states(ritz_krylov *S, const ritz_sparse *D,
     RITZ_TRY(ritz_orthonormal_new(2 * chain.room, NULL, S->set.tolerance,
                                   &chain.kept));
     RITZ_TRY(append(S, forces, &at_rest, &chain));
-    *out = chain;
-    chain = (ritz_krylov_states){0};
+    RITZ_MOVE(*out, chain);
 done:
     free_krylov_states(&chain);
     return status;
@@ -206,12 +205,10 @@ static ritz_status add_rayleigh(const ritz_sparse *K, const ritz_sparse *M,
     if (D->colptr)
         RITZ_CHECK(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
     else {
-        sum = C;
-        C = (ritz_sparse){0};
+        RITZ_MOVE(sum, C);
     }
     ritz_sparse_free(D);
-    *D = sum;
-    sum = (ritz_sparse){0};
+    RITZ_MOVE(*D, sum);
     return RITZ_OK;
 }
 
@@ -375,8 +372,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     ritz_basis basis = {0};
 
     RITZ_TRY(find_basis(&r, &basis));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
 done:
     free_recurrence(&r);
     ritz_basis_free(&basis);

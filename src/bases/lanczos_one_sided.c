@@ -101,8 +101,7 @@ static ritz_status transform(const ritz_dense *A, const ritz_dense *B,
     RITZ_TRY(ritz_dense_mul_tn(&made.V, &AQ, &made.A));
     RITZ_TRY(ritz_dense_mul_tn(&made.V, B, &made.B));
     free_gramian_range(range);
-    *range = made;
-    made = (ritz_gramian_range){0};
+    RITZ_MOVE(*range, made);
 done:
     free_gramian_range(&made);
     ritz_dense_free(&AQ);
@@ -141,8 +140,7 @@ static ritz_status new_gramian_range(const ritz_dense *A, const ritz_dense *B,
                  "rounding of the Gramian is as large as the least damping");
     if (r < range.reached)
         RITZ_TRY(transform(A, B, &Z, s, r, &range));
-    *out = range;
-    range = (ritz_gramian_range){0};
+    RITZ_MOVE(*out, range);
 done:
     free_gramian_range(&range);
     ritz_dense_free(&U);

@@ -226,8 +226,7 @@ static ritz_status invert(two_sided *t)
     RITZ_TRY(status);
     RITZ_TRY(ritz_general_transpose(&WG, &W));
     ritz_dense_free(&t->left.vectors);
-    t->left.vectors = W;
-    W = (ritz_dense){0};
+    RITZ_MOVE(t->left.vectors, W);
 done:
     ritz_dense_free(&WG);
     ritz_dense_free(&Gr);

@@ -170,10 +170,8 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(&columns, k)[i] = from->entry(request, j, i);
     }
-    *F = columns;
-    *dof = row;
-    columns = (ritz_dense){0};
-    row = NULL;
+    RITZ_MOVE(*F, columns);
+    RITZ_MOVE(*dof, row);
     return RITZ_OK;
 }
 

@@ -216,8 +216,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
             put(&s, s.modes.num_rigid + j, column++, &basis);
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "closed form");
     remark(request, &s, &basis);
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
 done:
     release(&s);
     ritz_basis_free(&basis);

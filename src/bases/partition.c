@@ -120,8 +120,7 @@ ritz_status ritz_partition_new(const ritz_request *request, ritz_partition *out)
         ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
     RITZ_CHECK(
         ritz_sparse_extract(M, i->count, i->at, i->count, i->at, &s.M_ii));
-    *out = s;
-    s = (ritz_partition){0};
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -159,8 +158,7 @@ ritz_status ritz_partition_constraint_modes(const ritz_partition *s,
     RITZ_CHECK(negate(&s->K_ib, &X));
     if (s->i.count > 0)
         RITZ_CHECK(ritz_factor_solve(L, &X));
-    *Psi = X;
-    X = (ritz_dense){0};
+    RITZ_MOVE(*Psi, X);
     return RITZ_OK;
 }
 

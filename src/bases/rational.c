@@ -108,8 +108,7 @@ ritz_status ritz_rational_new(const ritz_request *request, int loads,
     RITZ_CHECK(
         ritz_sparse_add(1.0, &component->M, 1.0 / scale, &component->K, &R.P));
     RITZ_CHECK(start(&R));
-    *out = R;
-    R = (ritz_rational){0};
+    RITZ_MOVE(*out, R);
     return RITZ_OK;
 }
 
@@ -305,8 +304,7 @@ ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
     RITZ_CHECK_NEW(probes.item, count);
     for (int64_t k = 0; k < count; k++)
         RITZ_CHECK_NEW(probes.item[k].b, width);
-    *out = probes;
-    probes = (ritz_probes){0};
+    RITZ_MOVE(*out, probes);
     return RITZ_OK;
 }
 

@@ -167,8 +167,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(shape(&set.modes.Phi, b, &G, &basis.T));
     label(&set, b, G.ncol, &basis);
     remark(request, &set, &basis);
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

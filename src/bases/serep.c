@@ -271,8 +271,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     }
     remark(&c, &basis);
     memcpy(basis.origin.engine, modes.engine, sizeof basis.origin.engine);
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
 done:
     ritz_pairs_free(&modes);
     ritz_dofs_free(&rest);

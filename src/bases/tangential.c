@@ -340,8 +340,7 @@ static ritz_status describe(const irka_search *s, ritz_basis *out)
     }
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "MUMPS LDL'");
     remark(s, &basis);
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

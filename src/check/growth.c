@@ -73,8 +73,7 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
         }
         RITZ_CHECK(ritz_dense_mul(&E, &E, &next));
         ritz_dense_free(&E);
-        E = next;
-        next = (ritz_dense){0};
+        RITZ_MOVE(E, next);
     }
     return RITZ_OK;
 }

@@ -72,8 +72,7 @@ static ritz_status attach_to_pairs(const ritz_collocated *pairs, int64_t only,
     RITZ_CHECK(ritz_dense_copy(&pairs->A, &A));
     for (int64_t k = 0; k < A.nrow * A.ncol; k++)
         A.val[k] -= part.val[k];
-    *out = A;
-    A = (ritz_dense){0};
+    RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
 
@@ -263,8 +262,7 @@ static ritz_status all_damping(const ritz_checker *it, ritz_dense *out)
     RITZ_CHECK(ritz_dense_mul_nt(&part, &modes->MPhi, &sum));
     for (int64_t k = 0; it->model.D.val && k < sum.nrow * sum.ncol; k++)
         sum.val[k] += it->model.D.val[k];
-    *out = sum;
-    sum = (ritz_dense){0};
+    RITZ_MOVE(*out, sum);
     return RITZ_OK;
 }
 

@@ -36,8 +36,7 @@ ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
     RITZ_CHECK(ritz_resolvent_new(&model->A, &none, &model->B, &model->C,
                                   &s->resolvent));
     RITZ_CHECK_NEW(s->H, model->B.ncol * model->B.ncol);
-    *out = s;
-    s = NULL;
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -144,8 +143,7 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
     for (int64_t k = 1; k < alone; k++)
         w[n++] = sqrt(w[k - 1] * w[k]);
     *count = sort_frequencies(n, w);
-    *out = w;
-    w = NULL;
+    RITZ_MOVE(*out, w);
     return RITZ_OK;
 }
 
@@ -348,8 +346,7 @@ ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
             isfinite(im[k] / beta[k]))
             w[found++] = im[k] / beta[k];
     *count = sort_frequencies(found, w);
-    *out = w;
-    w = NULL;
+    RITZ_MOVE(*out, w);
     return RITZ_OK;
 }
 
@@ -455,8 +452,7 @@ ritz_status ritz_collocated_of_space(const ritz_state_space *model,
     RITZ_CHECK(take_pairs(model, &pairs));
     for (int64_t i = 0; i < pairs.B.ncol; i++)
         RITZ_CHECK(guess_quantity(&pairs, i));
-    *out = pairs;
-    pairs = (ritz_collocated){0};
+    RITZ_MOVE(*out, pairs);
     return RITZ_OK;
 }
 
@@ -492,8 +488,7 @@ static ritz_status collocated_of_modes(const ritz_checker *it,
     RITZ_CHECK_NEW(model.power, p);
     RITZ_CHECK(ritz_general_transpose(&model.B, &model.C));
     RITZ_CHECK(ritz_dense_new(p, p, &model.D));
-    *out = model;
-    model = (ritz_collocated){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }
 

@@ -53,8 +53,7 @@ static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
             ritz_dense_col(&S, j)[k] = ritz_dense_col(&R, j)[port->dofs.at[k]] /
                                        (j >= 3 && !turns ? size : 1.0);
         }
-    *out = S;
-    S = (ritz_dense){0};
+    RITZ_MOVE(*out, S);
     return RITZ_OK;
 }
 

@@ -85,8 +85,7 @@ ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
         ritz_compare_composite(rows, plan, trial.V, massless, &trial.vectors));
     RITZ_CHECK_IN("stage 2", project(rows->stage, massless, &trial));
     RITZ_CHECK_IN("stage 2", ritz_assemble(&trial.second, NULL, &trial.system));
-    *out = trial;
-    trial = (ritz_trial){0};
+    RITZ_MOVE(*out, trial);
     return RITZ_OK;
 }
 
@@ -174,8 +173,7 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
         RITZ_TRY(sum_up(&rows, &trial, &made[k]));
         ritz_trial_free(&trial);
     }
-    *out = made;
-    made = NULL;
+    RITZ_MOVE(*out, made);
 done:
     ritz_trial_free(&trial);
     ritz_tolerances_free(count, &made);

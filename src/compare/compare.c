@@ -243,7 +243,7 @@ static ritz_status reduce(const ritz_rows *rows, ritz_comparison *c)
     c->removed = trial.removed;
     c->second = trial.second;
     c->second_system = trial.system;
-    trial = (ritz_trial){0};
+    memset(&trial, 0, sizeof trial);
     return RITZ_OK;
 }
 
@@ -264,8 +264,7 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
     RITZ_TRY_IN("errors", measure(&rows, &c));
     ritz_compare_suggest(&c, &c.suggestion);
     RITZ_TRY(record_compare(&c));
-    *out = c;
-    c = (ritz_comparison){0};
+    RITZ_MOVE(*out, c);
 done:
     free_between(&rows);
     ritz_comparison_free(&c);

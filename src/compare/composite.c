@@ -292,8 +292,7 @@ static ritz_status append(ritz_dense *more, ritz_dense *W)
         memcpy(ritz_dense_col(&both, before), more->val,
                (size_t)(n * more->ncol) * sizeof *both.val);
     ritz_dense_free(W);
-    *W = both;
-    both = (ritz_dense){0};
+    RITZ_MOVE(*W, both);
 done:
     ritz_dense_free(more);
     ritz_dense_free(&both);
@@ -390,8 +389,7 @@ static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
     for (int64_t j = 0; j < U.ncol; j++)
         for (int64_t i = 0; i < r; i++)
             ritz_dense_col(&U, j)[i] *= scale[i];
-    *V = U;
-    U = (ritz_dense){0};
+    RITZ_MOVE(*V, U);
     return RITZ_OK;
 }
 

@@ -159,8 +159,7 @@ static ritz_status new_givens(const ritz_stage *stage, ritz_givens *out)
     RITZ_TRY_IN("selection", weigh(&g));
     for (int64_t k = 0; k < g.system.num_configurations; k++)
         RITZ_TRY(give(&g, &g.each[k]));
-    *out = g;
-    g = (ritz_givens){0};
+    RITZ_MOVE(*out, g);
 done:
     free_givens(&g);
     return status;
@@ -265,8 +264,7 @@ static ritz_status add_group(const ritz_givens *g, int group, frame *f)
         more.ncol = f->U.nrow - f->U.ncol;
     RITZ_CHECK(ritz_dense_beside(&f->U, &more, &both));
     ritz_dense_free(&f->U);
-    f->U = both;
-    both = (ritz_dense){0};
+    RITZ_MOVE(f->U, both);
     return RITZ_OK;
 }
 
@@ -340,8 +338,7 @@ ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out)
     RITZ_TRY(ritz_dual_refuse(stage));
     RITZ_TRY(new_givens(stage, &givens));
     RITZ_TRY_IN("composite modes", order_bodies(&givens, &made));
-    *out = made;
-    made = (ritz_composite){0};
+    RITZ_MOVE(*out, made);
 done:
     free_givens(&givens);
     ritz_composite_free(&made);

@@ -217,8 +217,7 @@ static ritz_status take_columns(int64_t count, const int64_t *keep,
         memcpy(ritz_dense_col(&less, j), ritz_dense_col(A, keep[j]),
                (size_t)A->nrow * sizeof *A->val);
     ritz_dense_free(A);
-    *A = less;
-    less = (ritz_dense){0};
+    RITZ_MOVE(*A, less);
     return RITZ_OK;
 }
 
@@ -232,8 +231,7 @@ static ritz_status take_rows(int64_t count, const int64_t *keep, bool square,
         RITZ_CHECK(take_columns(count, keep, A));
     RITZ_CHECK(ritz_dense_rows(A, count, keep, &less));
     ritz_dense_free(A);
-    *A = less;
-    less = (ritz_dense){0};
+    RITZ_MOVE(*A, less);
     return RITZ_OK;
 }
 

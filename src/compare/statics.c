@@ -144,8 +144,7 @@ static ritz_status relieve(const ritz_dense *R, const ritz_dense *MR,
     }
     RITZ_CHECK(ritz_dense_columns(F, 0, m, &kept));
     ritz_dense_free(F);
-    *F = kept;
-    kept = (ritz_dense){0};
+    RITZ_MOVE(*F, kept);
     return RITZ_OK;
 }
 

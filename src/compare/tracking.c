@@ -455,8 +455,7 @@ ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
     }
     RITZ_CHECK(settle(&t));
     sift(&t);
-    *out = t;
-    t = (ritz_tracking){0};
+    RITZ_MOVE(*out, t);
     return RITZ_OK;
 }
 

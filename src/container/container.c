@@ -56,8 +56,7 @@ static ritz_status new_writer(const char *path, const char *kind,
     RITZ_TRY(ritz_h5_set_texts(writer.file, "inputs", stamp->num_inputs,
                                stamp->input));
     RITZ_TRY(ritz_h5_set_text(writer.file, "units", units));
-    *out = writer;
-    writer = (container_writer){0};
+    RITZ_MOVE(*out, writer);
 done:
     free_writer(&writer);
     return status;
@@ -164,8 +163,7 @@ ritz_status ritz_container_summary(const char *path, ritz_summary *out)
     command[0] = NULL;
     RITZ_TRY(
         ritz_h5_get_texts(file, "inputs", &summary.num_inputs, &summary.input));
-    *out = summary;
-    summary = (ritz_summary){0};
+    RITZ_MOVE(*out, summary);
 done:
     ritz_h5_free_texts(count, command);
     ritz_summary_free(&summary);

@@ -134,8 +134,7 @@ static ritz_status list_by_name(hid_t group, listing *out)
         H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, take_link, &list);
     RITZ_FAIL_IF(result < 0 || list.count != list.room, RITZ_ERR_FORMAT,
                  "a member has no proper name");
-    *out = list;
-    list = (listing){0};
+    RITZ_MOVE(*out, list);
 done:
     free(list.name);
     return status;

@@ -558,8 +558,7 @@ ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
     RITZ_TRY(status);
     RITZ_TRY(verify_values(set, name, matrix_bytes(&A), A.val));
     RITZ_TRY_IN(name, check_dense(&A));
-    *out = A;
-    A = (ritz_dense){0};
+    RITZ_MOVE(*out, A);
 done:
     ritz_dense_free(&A);
     ritz_h5_close(memory);
@@ -622,8 +621,7 @@ ritz_status ritz_h5_read_sparse(hid_t at, const char *name, ritz_sparse *out)
                  RITZ_ERR_FORMAT, "shape and column pointers disagree");
     RITZ_TRY(ritz_sparse_new(shape[0], shape[1], nnz, &A));
     RITZ_TRY(read_columns(group, nnz, &A));
-    *out = A;
-    A = (ritz_sparse){0};
+    RITZ_MOVE(*out, A);
 done:
     ritz_sparse_free(&A);
     ritz_h5_close(group);

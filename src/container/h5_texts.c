@@ -99,8 +99,7 @@ static ritz_status cut_texts(const char *block, size_t size, int64_t count,
         RITZ_NEW(text[k], (int64_t)length + 1);
         memcpy(text[k], from, length);
     }
-    *out = text;
-    text = NULL;
+    RITZ_MOVE(*out, text);
 done:
     ritz_h5_free_texts(count, text);
     return status;

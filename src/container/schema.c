@@ -521,8 +521,7 @@ ritz_status ritz_schema_items(const ritz_place *place, const ritz_member *row,
             snprintf(name[k], sizeof *name, "%" PRId64, k);
         else
             RITZ_CHECK(ritz_name_copy(item, name[k]));
-    *out = name;
-    name = NULL;
+    RITZ_MOVE(*out, name);
     return RITZ_OK;
 }
 

@@ -202,8 +202,7 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
     RITZ_CHECK(take_residuals(estimator->component, &trial));
     RITZ_CHECK(round_reduced(reduced, pairs, &trial));
     RITZ_CHECK(solve_residuals(estimator, &trial));
-    *out = trial;
-    trial = (ritz_lehmann){0};
+    RITZ_MOVE(*out, trial);
     return RITZ_OK;
 }
 
@@ -223,8 +222,7 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
     RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &polished));
     RITZ_CHECK(take_residuals(estimator->component, &polished));
     RITZ_CHECK(solve_residuals(estimator, &polished));
-    *out = polished;
-    polished = (ritz_lehmann){0};
+    RITZ_MOVE(*out, polished);
     return RITZ_OK;
 }
 
@@ -552,8 +550,7 @@ ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
     RITZ_CHECK(add_trial(estimator, trial, &e));
     RITZ_CHECK(add_trial(estimator, polished, &e));
     settle_ends(estimator, trial, &e);
-    *out = e;
-    e = (ritz_enclosure){0};
+    RITZ_MOVE(*out, e);
     return RITZ_OK;
 }
 

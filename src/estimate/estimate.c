@@ -496,8 +496,7 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
         if (response)
             RITZ_CHECK(ritz_bound_response(estimator, &m, reduced, &found));
     }
-    *out = found;
-    found = (ritz_measures){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 
@@ -531,7 +530,6 @@ ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
     RITZ_CHECK(ritz_estimator_new(full, request, &estimator));
     RITZ_CHECK(ritz_estimator_measure(estimator, basis, reduced, &found));
     ritz_measures_free(&reduced->estimates);
-    reduced->estimates = found;
-    found = (ritz_measures){0};
+    RITZ_MOVE(reduced->estimates, found);
     return RITZ_OK;
 }

@@ -338,8 +338,7 @@ static ritz_status group_modes(const ritz_estimator *estimator,
     }
     RITZ_TRY(take_overlap(estimator, m, &m->trial, &p.Q[0]));
     RITZ_TRY(take_overlap(estimator, m, &m->polished, &p.Q[1]));
-    *out = p;
-    p = (ritz_partners){0};
+    RITZ_MOVE(*out, p);
 done:
     free_partners(&p);
     return status;

@@ -77,8 +77,7 @@ static ritz_status load_bodies(ritz_fitter *f)
             continue;
         }
         f->body[f->num_bodies] = k;
-        f->model[f->num_bodies++] = full;
-        full = (ritz_component){0};
+        RITZ_MOVE(f->model[f->num_bodies++], full);
     }
     RITZ_REFUSE_IF(f->num_bodies == 0, RITZ_ERR_ARGUMENT,
                    "no component of the scene is reduced by a number of modes: "
@@ -151,11 +150,9 @@ static ritz_status set_ladder(body_modes *r, ritz_fitter *f)
     }
     free(f->step);
     free(f->step_hz);
-    f->step = step;
-    f->step_hz = hertz;
+    RITZ_MOVE(f->step, step);
+    RITZ_MOVE(f->step_hz, hertz);
     f->num_steps = count;
-    step = NULL;
-    hertz = NULL;
     return RITZ_OK;
 }
 

@@ -224,8 +224,7 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
         memcpy(more, f->made, (size_t)f->num_made * sizeof *more);
     free(f->made);
     f->made = more;
-    f->made[f->num_made++] = made;
-    made = (ritz_fit_made){0};
+    RITZ_MOVE(f->made[f->num_made++], made);
     status = RITZ_OK;
 done:
     free_made(&made);
@@ -653,8 +652,7 @@ ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
     RITZ_CHECK(ritz_fit_try(fitter, &candidate));
     if (fitter->request.observe)
         fitter->request.observe(&candidate, fitter->request.context);
-    *out = candidate;
-    candidate = (ritz_fit_candidate){0};
+    RITZ_MOVE(*out, candidate);
     return RITZ_OK;
 }
 

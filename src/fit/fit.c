@@ -132,8 +132,7 @@ ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
     RITZ_CHECK(trim(fitter, &fit));
     RITZ_CHECK(bound(fitter, &fit));
     RITZ_CHECK(ritz_fit_explain(fitter, &fit));
-    *out = fit;
-    fit = (ritz_fit){0};
+    RITZ_MOVE(*out, fit);
     return RITZ_OK;
 }
 

@@ -70,8 +70,7 @@ static ritz_status install_copy(const ritz_component *component,
             ritz_sparse_add(1.0, &component->D, 0.0, &component->D, &copy.D));
     RITZ_TRY(ritz_dampers_copy(&component->dampers, &copy.dampers));
     RITZ_TRY(ritz_component_install(&copy));
-    *out = copy;
-    copy = (ritz_component){0};
+    RITZ_MOVE(*out, copy);
 done:
     free_copy(&copy);
     return status;
@@ -234,8 +233,7 @@ static ritz_status as_component(const ritz_configuration *from,
         made.dof[j] = (ritz_dof){.grid = j + 1};
     ritz_damping_print(&scene->damping, made.damping);
     RITZ_CHECK(ritz_component_settle(&made, false));
-    *out = made;
-    made = (ritz_component){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 
@@ -356,8 +354,7 @@ ritz_status ritz_fitter_new(const ritz_component *component,
     f->component = component;
     RITZ_CHECK(open_component(component, f));
     settle_limits(f->place[0].reference, &f->request.tolerance);
-    *out = f;
-    f = NULL;
+    RITZ_MOVE(*out, f);
     return RITZ_OK;
 }
 
@@ -372,8 +369,7 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
     f->scene = scene;
     RITZ_CHECK(open_scene(scene, f));
     settle_limits(f->place[0].reference, &f->request.tolerance);
-    *out = f;
-    f = NULL;
+    RITZ_MOVE(*out, f);
     return RITZ_OK;
 }
 

@@ -283,8 +283,7 @@ static ritz_status walk_path(const nesting *n, int64_t patience,
         RITZ_CHECK(add_row(n, count, &path));
         failed = path.row[path.count - 1].feasible ? 0 : failed + 1;
     }
-    *out = path;
-    path = (ritz_fit_path){0};
+    RITZ_MOVE(*out, path);
     return RITZ_OK;
 }
 
@@ -511,8 +510,7 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
     less.left_out = from->columns - row->columns;
     RITZ_TRY(measure_cut(f, part, &less));
     if (less.feasible) {
-        *out = less;
-        less = (ritz_fit_candidate){0};
+        RITZ_MOVE(*out, less);
     }
 done:
     free_bodies(f->num_bodies, &part);
@@ -542,8 +540,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
     RITZ_TRY(note_prefixes(&n, 0, &path, &nested));
     RITZ_TRY(ritz_measures_copy(&candidate->errors, &nested.errors));
     RITZ_TRY(ritz_measures_copy(&candidate->estimates, &nested.estimates));
-    *out = nested;
-    nested = (ritz_reduced){0};
+    RITZ_MOVE(*out, nested);
 done:
     ritz_reduced_free(&whole);
     ritz_reduced_free(&nested);

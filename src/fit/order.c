@@ -75,8 +75,7 @@ ritz_status ritz_fit_order_new(int64_t count, const ritz_column_kind *kind,
                 made.column[at++] = k;
                 made.fixed += pass == 0;
             }
-    *out = made;
-    made = (ritz_fit_order){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 

@@ -172,8 +172,7 @@ ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
     RITZ_CHECK(project_balanced(gramians, &svd, order, tolerance, &balanced));
     balanced.sigma = svd.s;
     svd.s = NULL;
-    *out = balanced;
-    balanced = (ritz_balanced){0};
+    RITZ_MOVE(*out, balanced);
     return RITZ_OK;
 }
 

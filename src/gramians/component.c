@@ -54,8 +54,7 @@ static ritz_status stack_halves(const ritz_mode_states *states,
         ritz_dense_free(&part);
         ritz_dense_free(&x);
     }
-    *out = made;
-    made = (ritz_dense){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 
@@ -79,8 +78,7 @@ static ritz_status put_behind_rigid(const ritz_mode_states *states,
         memcpy(ritz_dense_col(&all, 2 * r + j), ritz_dense_col(own, j),
                2 * column);
     ritz_dense_free(own);
-    *own = all;
-    all = (ritz_dense){0};
+    RITZ_MOVE(*own, all);
     return RITZ_OK;
 }
 
@@ -111,8 +109,7 @@ static ritz_status lift_gramians(const ritz_mode_states *states,
     RITZ_CHECK(put_behind_rigid(states, &modes->Phi, &modes->Phi, &made.T));
     RITZ_CHECK(put_behind_rigid(states, &modes->MPhi, &modes->Phi, &made.W));
     ritz_gramians_free(gramians);
-    *gramians = made;
-    made = (ritz_gramians){0};
+    RITZ_MOVE(*gramians, made);
     return RITZ_OK;
 }
 
@@ -136,8 +133,7 @@ static ritz_status space_of(const ritz_io *io, ritz_states *states,
     space.B = states->B;
     space.C = states->C;
     states->A = states->B = states->C = (ritz_dense){0};
-    *out = space;
-    space = (ritz_state_space){0};
+    RITZ_MOVE(*out, space);
     return RITZ_OK;
 }
 
@@ -162,8 +158,7 @@ static ritz_status find_dense(const ritz_gramians_request *request,
     layout.scale = states.scale;
     RITZ_CHECK(lift_gramians(&layout, &gramians));
     snprintf(gramians.damping, sizeof gramians.damping, "%s", states.damping);
-    *out = gramians;
-    gramians = (ritz_gramians){0};
+    RITZ_MOVE(*out, gramians);
     return RITZ_OK;
 }
 
@@ -228,8 +223,7 @@ static ritz_status modes_up_to(const ritz_gramians_request *request,
         RITZ_CHECK(ritz_sparse_project(&s.D, &modes.Phi, &modes.Delta));
     RITZ_CHECK(
         ritz_modal_model_drive(&component->io, &request->damping, &modes));
-    *out = modes;
-    modes = (ritz_modal_model){0};
+    RITZ_MOVE(*out, modes);
     return RITZ_OK;
 }
 
@@ -262,8 +256,7 @@ static ritz_status closed_form(const ritz_gramians_request *request,
                    : ritz_modal_factors(&modal, &gramians.Zc, &gramians.Zo));
     RITZ_CHECK(lift_gramians(&layout, &gramians));
     ritz_damping_print(&request->damping, gramians.damping);
-    *out = gramians;
-    gramians = (ritz_gramians){0};
+    RITZ_MOVE(*out, gramians);
     return RITZ_OK;
 }
 

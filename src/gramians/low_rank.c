@@ -503,8 +503,7 @@ ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
     RITZ_TRY(finish_gramians(&sweep, &gramians));
     if (request->damping.kind != RITZ_DAMPING_NONE)
         ritz_damping_print(&request->damping, gramians.damping);
-    *out = gramians;
-    gramians = (ritz_gramians){0};
+    RITZ_MOVE(*out, gramians);
 done:
     free_sweep(&sweep);
     ritz_gramians_free(&gramians);

@@ -228,8 +228,7 @@ static ritz_status add_rayleigh(const ritz_sparse *M, const ritz_sparse *K,
         ritz_sparse_free(D);
         *D = sum;
     } else {
-        *D = C;
-        C = (ritz_sparse){0};
+        RITZ_MOVE(*D, C);
     }
     return RITZ_OK;
 }
@@ -391,8 +390,7 @@ ritz_status ritz_low_rank_model_new(const ritz_gramians_request *request,
     RITZ_CHECK(split_dofs(request->component, &model));
     RITZ_CHECK(find_modes(&model));
     RITZ_CHECK(find_loads(&request->component->io, &model));
-    *out = model;
-    model = (ritz_low_rank_model){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }
 

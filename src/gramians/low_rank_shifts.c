@@ -42,8 +42,7 @@ ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
     RITZ_CHECK(ritz_dense_new(model->n, window.room, &window.X));
     for (int k = 0; k < 3; k++)
         RITZ_CHECK(ritz_dense_new(window.room, window.room, &window.G[k]));
-    *out = window;
-    window = (ritz_low_rank_window){0};
+    RITZ_MOVE(*out, window);
     return RITZ_OK;
 }
 
@@ -194,10 +193,8 @@ static ritz_status find_window_modes(const ritz_low_rank_window *window,
     RITZ_CHECK(product_between(window, 2, &modes, Delta));
     for (int64_t k = 0; k < K.nrow; k++) /* the last one is exact enough */
         w[k] = sqrt(fmax(w[k], DBL_EPSILON * w[K.nrow - 1]));
-    *F = modes;
-    *omega = w;
-    modes = (ritz_dense){0};
-    w = NULL;
+    RITZ_MOVE(*F, modes);
+    RITZ_MOVE(*omega, w);
     return RITZ_OK;
 }
 

@@ -171,8 +171,7 @@ static ritz_status modal_empty(int64_t count, int64_t inputs, int64_t outputs,
     RITZ_CHECK(ritz_dense_new(count, inputs, &modal.B));
     RITZ_CHECK(ritz_dense_new(outputs, count, &modal.C));
     RITZ_CHECK(ritz_dense_new(outputs, count, &modal.Cv));
-    *out = modal;
-    modal = (ritz_modal){0};
+    RITZ_MOVE(*out, modal);
     return RITZ_OK;
 }
 
@@ -215,8 +214,7 @@ ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
             modal.zeta[k] < 0.0 ? "negative" : "no");
         put_mode(modes, r + k, io->limit, &modal, k);
     }
-    *out = modal;
-    modal = (ritz_modal){0};
+    RITZ_MOVE(*out, modal);
     return RITZ_OK;
 }
 
@@ -250,8 +248,7 @@ ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
                 ritz_dense_col(&modal->Cv, k)[i];
         }
     }
-    *out = part;
-    part = (ritz_modal){0};
+    RITZ_MOVE(*out, part);
     return RITZ_OK;
 }
 

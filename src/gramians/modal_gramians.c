@@ -69,8 +69,7 @@ static ritz_status energy_new(const ritz_modal *modal, energy_model *out)
                 -ritz_dense_col(&modal->Cv, k)[i];
         }
     }
-    *out = model;
-    model = (energy_model){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }
 
@@ -172,8 +171,7 @@ static ritz_status find_gramian(const energy_model *model, const ritz_dense *F,
         put_blocks(t, sign, j, m, x, &W);
     }
     mirror_upper(&W);
-    *out = W;
-    W = (ritz_dense){0};
+    RITZ_MOVE(*out, W);
     return RITZ_OK;
 }
 
@@ -190,10 +188,8 @@ ritz_status ritz_modal_gramians(const ritz_modal *modal, ritz_dense *Wc,
         inverse[k] = 1.0 / modal->omega[k];
     RITZ_CHECK(find_gramian(&model, &model.F[0], inverse, 1.0, &X));
     RITZ_CHECK(find_gramian(&model, &model.F[1], modal->omega, -1.0, &Y));
-    *Wc = X;
-    *Wo = Y;
-    X = (ritz_dense){0};
-    Y = (ritz_dense){0};
+    RITZ_MOVE(*Wc, X);
+    RITZ_MOVE(*Wo, Y);
     return RITZ_OK;
 }
 

@@ -79,7 +79,6 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
     snprintf(gramians.engine, sizeof gramians.engine, "SLICOT %s",
              split.P.val ? "SG03BD" : "SB03OD");
     snprintf(gramians.damping, sizeof gramians.damping, "%s", model->damping);
-    *out = gramians;
-    gramians = (ritz_gramians){0};
+    RITZ_MOVE(*out, gramians);
     return RITZ_OK;
 }

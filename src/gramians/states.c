@@ -73,8 +73,7 @@ ritz_status ritz_states_new(const ritz_component *component,
     RITZ_REFUSE_IF(states.count == 0, RITZ_ERR_ARGUMENT,
                    "the component has no flexible states: its rigid modes are "
                    "all there is");
-    *out = states;
-    states = (ritz_states){0};
+    RITZ_MOVE(*out, states);
     return RITZ_OK;
 }
 
@@ -94,8 +93,7 @@ ritz_status ritz_states_operator(const ritz_dense *A, bool inverse,
                  "the matrix of states has no inverse: a motion that nothing "
                  "holds, give a shift above 0 Hz");
     RITZ_TRY(status);
-    *out = G;
-    G = (ritz_dense){0};
+    RITZ_MOVE(*out, G);
 done:
     ritz_dense_free(&G);
     return status;
@@ -181,8 +179,7 @@ ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
     put_rigid(states, &basis);
     RITZ_CHECK(put_states(states, T, W, &basis));
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "dense LAPACK");
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

@@ -133,8 +133,7 @@ static ritz_status keep_grids(const ritz_grids *all, const ritz_roster *roster,
         count++;
     }
     grids.count = count;
-    *out = grids;
-    grids = (ritz_grids){0};
+    RITZ_MOVE(*out, grids);
     return RITZ_OK;
 }
 
@@ -154,8 +153,7 @@ static ritz_status place_alone(const ritz_row_names *names, ritz_grids *out)
     grids.id[0] = names->dof[0].grid;
     for (int64_t i = 0; i < 3; i++)
         grids.axes[4 * i] = 1.0;
-    *out = grids;
-    grids = (ritz_grids){0};
+    RITZ_MOVE(*out, grids);
     return RITZ_OK;
 }
 
@@ -418,10 +416,8 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     RITZ_TRY(
         ritz_import_attach(request, &deck.equations, &done_what, &component));
     RITZ_TRY(ritz_component_settle(&component, request->symmetrise));
-    *out = component;
-    component = (ritz_component){0};
-    *report = done_what;
-    done_what = (ritz_import_report){0};
+    RITZ_MOVE(*out, component);
+    RITZ_MOVE(*report, done_what);
 done:
     for (int64_t k = 0; specs && k < request->num_loads; k++)
         free(specs[k]);

@@ -32,8 +32,7 @@ ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
                            0,
                        RITZ_ERR_FORMAT, "%s has two rows",
                        ritz_dof_name(roster.place[k].dof, name));
-    *out = roster;
-    roster = (ritz_roster){0};
+    RITZ_MOVE(*out, roster);
     return RITZ_OK;
 }
 
@@ -360,8 +359,7 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
     }
     RITZ_CHECK(check_distinct(path, &names, line));
     snprintf(names.map, sizeof names.map, "--dofs");
-    *out = names;
-    names = (ritz_row_names){0};
+    RITZ_MOVE(*out, names);
     return RITZ_OK;
 }
 
@@ -510,8 +508,7 @@ ritz_status ritz_names_find(const ritz_import_request *request,
         RITZ_CHECK(place_rows(part, &names, &roster,
                               request->dofs ? NULL : part->matrix.row));
     }
-    *out = names;
-    names = (ritz_row_names){0};
+    RITZ_MOVE(*out, names);
     return RITZ_OK;
 }
 

@@ -28,8 +28,7 @@ static ritz_status extend_rows(const ritz_component *component,
     RITZ_TRY(ritz_roster_new(new.view.num_dofs, all, &new.roster));
     if (recovery->count > 0)
         RITZ_TRY(ritz_sparse_transpose(&recovery->G, &new.from));
-    *out = new;
-    new = (ritz_extended){0};
+    RITZ_MOVE(*out, new);
     all = NULL;
 done:
     ritz_roster_free(&new.roster);

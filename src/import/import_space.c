@@ -364,7 +364,6 @@ ritz_status ritz_import_state_space(const ritz_import_space_request *request,
         RITZ_CHECK(take_file(request->matrices, request->sums, &p));
     RITZ_CHECK(check_parts(&p));
     RITZ_CHECK(make_space(request, &p, &model));
-    *out = model;
-    model = (ritz_state_space){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }

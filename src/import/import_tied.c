@@ -322,8 +322,7 @@ static ritz_status list_present(const ritz_tying *tying,
             new.view.dof[new.view.num_dofs++] = tying->names.dof[k];
     new.num_rows = new.view.num_dofs;
     RITZ_CHECK(ritz_roster_new(new.num_rows, new.view.dof, &new.roster));
-    *out = new;
-    new = (ritz_extended){0};
+    RITZ_MOVE(*out, new);
     return RITZ_OK;
 }
 
@@ -396,10 +395,9 @@ static ritz_status add_grid(ritz_tied *it)
     free(grids->position);
     grids->id = id;
     grids->frame = frame;
-    grids->position = position;
+    RITZ_MOVE(grids->position, position);
     grids->count = n + 1;
     id = frame = NULL;
-    position = NULL;
     return RITZ_OK;
 }
 

@@ -231,8 +231,7 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
         RITZ_CHECK(check_sets(deck));
     RITZ_CHECK(name_constraints(deck, report));
     RITZ_CHECK(ritz_tying_solve(&new));
-    *out = new;
-    new = (ritz_tying){0};
+    RITZ_MOVE(*out, new);
     return RITZ_OK;
 }
 
@@ -286,8 +285,7 @@ static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
     RITZ_CHECK(ritz_sparse_transpose(G, &turned));
     RITZ_CHECK(ritz_sparse_product(&turned, &AG, &C));
     ritz_sparse_free(A);
-    *A = C;
-    C = (ritz_sparse){0};
+    RITZ_MOVE(*A, C);
     return RITZ_OK;
 }
 
@@ -372,8 +370,7 @@ ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
     for (int64_t k = 0; k < parts->count; k++)
         RITZ_CHECK(
             apply_part(tying, &turned, column, names.count, &parts->part[k]));
-    *kept = names;
-    names = (ritz_row_names){0};
+    RITZ_MOVE(*kept, names);
     return RITZ_OK;
 }
 
@@ -458,7 +455,6 @@ ritz_status ritz_tying_recover(const ritz_tying *tying,
     report->num_lost = tying->by.gone.count - recovery.count;
     if (recovery.count == 0)
         return RITZ_OK;
-    component->recovery = recovery;
-    recovery = (ritz_recovery){0};
+    RITZ_MOVE(component->recovery, recovery);
     return RITZ_OK;
 }

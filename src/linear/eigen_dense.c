@@ -216,8 +216,7 @@ ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
     RITZ_CHECK(is_definite(&M_s, &C, &definite));
     if (definite) {
         RITZ_CHECK(by_cholesky(&C, &K_s, lambda));
-        *X = K_s;
-        K_s = (ritz_dense){0};
+        RITZ_MOVE(*X, K_s);
     } else {
         RITZ_CHECK(by_condensing(&K_s, &M_s, lambda, X));
     }
@@ -334,7 +333,6 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     pairs.num_rigid = ritz_eigen_rigid(
         n, pairs.lambda, n > 0 ? fmax(pairs.lambda[n - 1], 0.0) : 0.0);
     snprintf(pairs.engine, sizeof pairs.engine, "dense LAPACK");
-    *out = pairs;
-    pairs = (ritz_pairs){0};
+    RITZ_MOVE(*out, pairs);
     return RITZ_OK;
 }

@@ -384,8 +384,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
         P.proven_to = fmax(limit, place_between(&P, end, RITZ_COUNT_PLACE));
     truncate_pairs(&P, end);
-    *out = P;
-    P = (ritz_pairs){0};
+    RITZ_MOVE(*out, P);
     return RITZ_OK;
 }
 

@@ -86,8 +86,7 @@ ritz_status ritz_eigenvalues_of(const ritz_dense *A, ritz_eigenvalues *out)
         eigenvalues.radius =
             fmax(eigenvalues.radius, hypot(values[k].re, values[k].im));
     }
-    *out = eigenvalues;
-    eigenvalues = (ritz_eigenvalues){0};
+    RITZ_MOVE(*out, eigenvalues);
     return RITZ_OK;
 }
 

@@ -165,8 +165,7 @@ ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
         W[k] = whole[k];
         whole[k] = (ritz_dense){0};
     }
-    *E = made;
-    made = (ritz_dense){0};
+    RITZ_MOVE(*E, made);
 done:
     free(d);
     ritz_dense_free(&scaled);

@@ -224,8 +224,7 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
     RITZ_CHECK_NEW(F, 1);
     RITZ_CHECK(factorise_sparse(F, A));
     RITZ_CHECK(judge_pivots(F, a, weak));
-    *out = F;
-    F = NULL;
+    RITZ_MOVE(*out, F);
     return RITZ_OK;
 }
 

@@ -64,8 +64,7 @@ static ritz_status reduce_pencil(const ritz_dense *A, const ritz_dense *E,
                 n, n, 1.0, L.val, n, f->A.val, n);
     if (ritz_dense_asymmetry(A) == 0.0)
         ritz_dense_symmetrise(&f->A);
-    f->L = L;
-    L = (ritz_dense){0};
+    RITZ_MOVE(f->L, L);
     return RITZ_OK;
 }
 
@@ -145,8 +144,7 @@ ritz_status ritz_frame_new(const ritz_dense *A, const ritz_dense *E,
     if (!reduced)
         RITZ_CHECK(ritz_dense_copy(E, &f.E));
     RITZ_CHECK(balance_frame(&f));
-    *out = f;
-    f = (ritz_frame){0};
+    RITZ_MOVE(*out, f);
     return RITZ_OK;
 }
 

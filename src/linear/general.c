@@ -77,10 +77,8 @@ ritz_status ritz_general_svd(const ritz_dense *A, ritz_dense *U, double **s,
                    "singular values did not converge");
     if (V)
         RITZ_CHECK(ritz_general_transpose(&right, V));
-    *U = left;
-    *s = values;
-    left = (ritz_dense){0};
-    values = NULL;
+    RITZ_MOVE(*U, left);
+    RITZ_MOVE(*s, values);
     return RITZ_OK;
 }
 
@@ -138,7 +136,6 @@ ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i <= j; i++)
             ritz_dense_col(&factor, j)[i] = ritz_dense_col(&X, j)[i] / scale;
-    *U = factor;
-    factor = (ritz_dense){0};
+    RITZ_MOVE(*U, factor);
     return RITZ_OK;
 }

@@ -90,8 +90,7 @@ ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
         RITZ_CHECK(factorise_mumps(F));
     if (negative)
         *negative = A->nrow > 0 ? F->id.infog[NEGATIVE_PIVOTS] : 0;
-    *out = F;
-    F = NULL;
+    RITZ_MOVE(*out, F);
     return RITZ_OK;
 }
 

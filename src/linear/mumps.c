@@ -86,8 +86,7 @@ ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
     for (int64_t j = 0; j < P.n; j++)
         for (int64_t k = 0; k < count; k++)
             RITZ_CHECK(unite_column(A[k], j, whole, mark, &P));
-    *out = P;
-    P = (ritz_mumps_pattern){0};
+    RITZ_MOVE(*out, P);
     return RITZ_OK;
 }
 

@@ -368,8 +368,7 @@ ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
 
     RITZ_CHECK(ritz_dense_new(n, 0, &set.V));
     RITZ_CHECK(ritz_dense_new(n, 0, &set.WV));
-    *out = set;
-    set = (ritz_orthonormal){0};
+    RITZ_MOVE(*out, set);
     return RITZ_OK;
 }
 

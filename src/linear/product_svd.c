@@ -89,8 +89,7 @@ static ritz_status row_lengths(const ritz_dense *X, double **out)
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < X->nrow; i++)
             length[i] = hypot(length[i], ritz_dense_col(X, j)[i]);
-    *out = length;
-    length = NULL;
+    RITZ_MOVE(*out, length);
     return RITZ_OK;
 }
 
@@ -220,8 +219,7 @@ ritz_status ritz_product_svd_new(const ritz_dense *X, const ritz_dense *Y,
         svd.U = svd.V;
         svd.V = U;
     }
-    *out = svd;
-    svd = (ritz_product_svd){0};
+    RITZ_MOVE(*out, svd);
     return RITZ_OK;
 }
 

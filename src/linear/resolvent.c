@@ -82,8 +82,7 @@ ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
     RITZ_CHECK_NEW(r.X, (int64_t)r.n * r.m);
     if (r.n > 0)
         RITZ_CHECK(triangularise_pencil(&r));
-    *out = r;
-    r = (ritz_resolvent){0};
+    RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
 

@@ -180,8 +180,7 @@ ritz_status ritz_schur_new(const ritz_dense *A, const ritz_dense *E,
         RITZ_CHECK(factor_pair(E, &schur));
     else if (A->nrow > 0)
         RITZ_CHECK(factor_schur(&schur));
-    *out = schur;
-    schur = (ritz_schur){0};
+    RITZ_MOVE(*out, schur);
     return RITZ_OK;
 }
 

@@ -20,8 +20,7 @@ ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
     RITZ_CHECK_NEW(A.colptr, ncol + 1);
     RITZ_CHECK_NEW(A.rowind, nnz);
     RITZ_CHECK_NEW(A.val, nnz);
-    *out = A;
-    A = (ritz_sparse){0};
+    RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
 
@@ -103,8 +102,7 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
         }
     }
     squeeze_zeros(&A, end);
-    *out = A;
-    A = (ritz_sparse){0};
+    RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
 
@@ -403,8 +401,7 @@ ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
             B.rowind[q] = j;
             B.val[q] = A->val[p];
         }
-    *out = B;
-    B = (ritz_sparse){0};
+    RITZ_MOVE(*out, B);
     return RITZ_OK;
 }
 
@@ -481,8 +478,7 @@ ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
     RITZ_CHECK(ritz_sparse_product(&turned, &AT, &C));
     if (ritz_sparse_asymmetry(A) == 0.0)
         RITZ_CHECK(ritz_sparse_symmetrise(&C));
-    *out = C;
-    C = (ritz_sparse){0};
+    RITZ_MOVE(*out, C);
     return RITZ_OK;
 }
 
@@ -556,7 +552,6 @@ ritz_status ritz_sparse_from_dense(const ritz_dense *A, ritz_sparse *out)
             }
         made.colptr[j + 1] = count;
     }
-    *out = made;
-    made = (ritz_sparse){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }

@@ -162,8 +162,7 @@ ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
     ritz_frame_turn_back(&f, f.right, &split.T);
     ritz_frame_turn_back(&f, f.left, &split.Y);
     ritz_frame_turn_back(&f, f.left, &split.W);
-    *out = split;
-    split = (ritz_split){0};
+    RITZ_MOVE(*out, split);
     return RITZ_OK;
 }
 

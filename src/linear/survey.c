@@ -31,8 +31,7 @@ ritz_status ritz_shifted_survey(const ritz_sparse *K, const ritz_sparse *M,
     }
     qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s.typical = count > 0 ? ratio[count / 2] : 1.0;
-    *out = s;
-    s = (ritz_survey){0};
+    RITZ_MOVE(*out, s);
 done:
     free(s.heavy);
     free(ratio);

@@ -91,8 +91,7 @@ ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
     F->count = count;
     if (F->pattern.n > 0)
         RITZ_CHECK(analyse_pattern(F));
-    *out = F;
-    F = NULL;
+    RITZ_MOVE(*out, F);
     return RITZ_OK;
 }
 

@@ -36,8 +36,7 @@ ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
         columns.dof[j] = -1;
         columns.hertz[j] = columns.residual[j] = nan("");
     }
-    *out = columns;
-    columns = (ritz_columns){0};
+    RITZ_MOVE(*out, columns);
     return RITZ_OK;
 }
 
@@ -63,8 +62,7 @@ ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out)
 
     RITZ_CHECK(ritz_dense_new(n, r, &basis.T));
     RITZ_CHECK(ritz_columns_new(r, &basis.columns));
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 

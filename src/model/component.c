@@ -236,8 +236,7 @@ ritz_status ritz_component_attached(const ritz_component *component,
         attach_port(port, taken, &set);
         ports += length + (ports[length] != '\0');
     }
-    *out = set;
-    set = (ritz_dofs){0};
+    RITZ_MOVE(*out, set);
 done:
     free(taken);
     ritz_dofs_free(&set);

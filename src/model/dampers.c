@@ -19,8 +19,7 @@ ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out)
     RITZ_CHECK_NEW(dampers.held_c, count);
     RITZ_CHECK_NEW(dampers.held_k, count);
     RITZ_CHECK(ritz_dense_new(n, count, &dampers.B));
-    *out = dampers;
-    dampers = (ritz_dampers){0};
+    RITZ_MOVE(*out, dampers);
     return RITZ_OK;
 }
 
@@ -49,8 +48,7 @@ ritz_status ritz_dampers_project(const ritz_dampers *dampers,
     put_damper(dampers, 0, &projected);
     ritz_dense_free(&projected.B);
     RITZ_CHECK(ritz_dense_mul_tn(T, &dampers->B, &projected.B));
-    *out = projected;
-    projected = (ritz_dampers){0};
+    RITZ_MOVE(*out, projected);
     return RITZ_OK;
 }
 
@@ -61,8 +59,7 @@ ritz_status ritz_dampers_copy(const ritz_dampers *dampers, ritz_dampers *out)
     if (dampers->count == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_dampers_append(dampers, NULL, dampers->B.nrow, 0, &copy));
-    *out = copy;
-    copy = (ritz_dampers){0};
+    RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }
 
@@ -104,8 +101,7 @@ ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
             RITZ_CHECK(own_name(owner, all.name[count + k]));
     }
     ritz_dampers_free(dampers);
-    *dampers = all;
-    all = (ritz_dampers){0};
+    RITZ_MOVE(*dampers, all);
     return RITZ_OK;
 }
 
@@ -335,11 +331,9 @@ static ritz_status add_sparse(const ritz_dampers *dampers,
     if (A->colptr) {
         RITZ_CHECK(ritz_sparse_add(1.0, A, 1.0, &part, &sum));
         ritz_sparse_free(A);
-        *A = sum;
-        sum = (ritz_sparse){0};
+        RITZ_MOVE(*A, sum);
     } else {
-        *A = part;
-        part = (ritz_sparse){0};
+        RITZ_MOVE(*A, part);
     }
     return RITZ_OK;
 }

@@ -72,8 +72,7 @@ ritz_status ritz_elements_copy(const ritz_elements *elements,
     memcpy(copy.kind, elements->kind, n * sizeof *copy.kind);
     memcpy(copy.first, elements->first, (n + 1) * sizeof *copy.first);
     memcpy(copy.grid, elements->grid, (size_t)grids * sizeof *copy.grid);
-    *out = copy;
-    copy = (ritz_elements){0};
+    RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }
 

@@ -115,8 +115,7 @@ static ritz_status keep_row(eliminator *s, const ritz_dense *X, int64_t i,
         new.col[new.count] = s->list[k];
         new.val[new.count++] = value;
     }
-    *out = new;
-    new = (elimination_row){0};
+    RITZ_MOVE(*out, new);
 done:
     free(new.col);
     free(new.val);
@@ -497,8 +496,7 @@ ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
     RITZ_TRY(name_terms(&s, fixed));
     RITZ_TRY(settle_all(&s));
     RITZ_TRY(build_elimination(&s, &new));
-    *out = new;
-    new = (ritz_elimination){0};
+    RITZ_MOVE(*out, new);
 done:
     for (int64_t e = 0; s.found && e < equations->count; e++) {
         free(s.found[e].col);

@@ -116,11 +116,9 @@ ritz_status ritz_port_turn(const ritz_component *component,
         RITZ_CHECK_IN(port->name,
                       turn_triple(&list[k], 3, axes, &U, &row, names));
     }
-    *turn = U;
-    U = (ritz_dense){0};
+    RITZ_MOVE(*turn, U);
     if (label) {
-        *label = names;
-        names = NULL;
+        RITZ_MOVE(*label, names);
     }
     return RITZ_OK;
 }

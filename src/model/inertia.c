@@ -283,8 +283,7 @@ ritz_status ritz_invariants_of(const ritz_component *component,
     RITZ_CHECK(ritz_dense_new(3 * r, 3 * r, &found.product));
     for (int b = 0; b < 3; b++)
         RITZ_CHECK(find_products(&nodes, &m, T, b, &found));
-    *out = found;
-    found = (ritz_invariants){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 
@@ -311,8 +310,7 @@ ritz_status ritz_invariants_project(const ritz_invariants *invariants,
     RITZ_CHECK(ritz_dense_mul(&invariants->position, &V3, &second.position));
     RITZ_CHECK(
         ritz_dense_congruence(&invariants->product, &V3, &second.product));
-    *out = second;
-    second = (ritz_invariants){0};
+    RITZ_MOVE(*out, second);
     return RITZ_OK;
 }
 

@@ -26,8 +26,7 @@ ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
     RITZ_CHECK(ritz_dense_new(num_outputs, n, &io.C));
     RITZ_CHECK(ritz_dense_new(num_outputs, n, &io.Cv));
     RITZ_CHECK(ritz_dense_new(num_outputs, n, &io.Ca));
-    *out = io;
-    io = (ritz_io){0};
+    RITZ_MOVE(*out, io);
     return RITZ_OK;
 }
 
@@ -57,8 +56,7 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
     RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->C, T, &part.C));
     RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->Cv, T, &part.Cv));
     RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->Ca, T, &part.Ca));
-    *out = part;
-    part = (ritz_io){0};
+    RITZ_MOVE(*out, part);
     return RITZ_OK;
 }
 

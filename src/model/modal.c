@@ -58,8 +58,7 @@ ritz_status ritz_structure_of_component(const ritz_component *component,
     if (component->D.colptr)
         RITZ_CHECK(ritz_sparse_dense(&component->D, &model.D));
     RITZ_CHECK(install_dampers(&component->dampers, &model));
-    *out = model;
-    model = (ritz_structure){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }
 
@@ -73,8 +72,7 @@ ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
     if (reduced->D.val)
         RITZ_CHECK(ritz_dense_copy(&reduced->D, &model.D));
     RITZ_CHECK(install_dampers(&reduced->dampers, &model));
-    *out = model;
-    model = (ritz_structure){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }
 
@@ -144,8 +142,7 @@ static ritz_status massless_share(const ritz_structure *model,
     RITZ_CHECK(ritz_dense_mul(&modes->Phi, &q, &part));
     for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
         Y.val[k] -= part.val[k];
-    *RX = Y;
-    Y = (ritz_dense){0};
+    RITZ_MOVE(*RX, Y);
     return RITZ_OK;
 }
 
@@ -262,8 +259,7 @@ ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
     RITZ_CHECK(ritz_modal_model_drive(io, damping, &modes));
     if (modes.count < modes.num_dofs && io->num_inputs + io->num_outputs > 0)
         RITZ_CHECK(add_massless(model, io, damping, &modes));
-    *out = modes;
-    modes = (ritz_modal_model){0};
+    RITZ_MOVE(*out, modes);
     return RITZ_OK;
 }
 
@@ -301,8 +297,7 @@ ritz_status ritz_modal_damping(const ritz_structure *model,
     for (int64_t k = 0; D->val && k < n * n; k++)
         more.val[k] += D->val[k];
     ritz_dense_free(D);
-    *D = more;
-    more = (ritz_dense){0};
+    RITZ_MOVE(*D, more);
     return RITZ_OK;
 }
 

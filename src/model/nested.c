@@ -27,8 +27,7 @@ static ritz_status new_nested(int64_t smallest, int64_t count, int64_t errors,
     RITZ_CHECK(ritz_dense_new(count, errors, &made.value));
     for (int64_t k = 0; k < count * errors; k++)
         made.value.val[k] = nan("");
-    *out = made;
-    made = (ritz_nested){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 
@@ -89,8 +88,7 @@ ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
     memcpy(wide.error[col], copy, sizeof copy);
     ritz_dense_col(&wide.value, col)[row] = value;
     ritz_nested_free(n);
-    *n = wide;
-    wide = (ritz_nested){0};
+    RITZ_MOVE(*n, wide);
     return RITZ_OK;
 }
 
@@ -157,8 +155,7 @@ static ritz_status select_columns(const ritz_reduced *in, int64_t count,
         RITZ_TRY(pick_columns(&in->T, count, at, &made.T));
     RITZ_TRY(pick_invariants(&in->invariants, in->K.ncol, count, at,
                              &made.invariants));
-    *out = made;
-    made = (ritz_reduced){0};
+    RITZ_MOVE(*out, made);
 done:
     ritz_reduced_free(&made);
     ritz_dense_free(&S);
@@ -199,8 +196,7 @@ ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
         RITZ_CHECK(ritz_measures_copy(&in->estimates, &made.estimates));
         RITZ_CHECK(ritz_measures_copy(&in->errors, &made.errors));
     }
-    *out = made;
-    made = (ritz_reduced){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 
@@ -270,7 +266,6 @@ ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
     RITZ_CHECK(shorten_table(&in->nested, order, &made.nested));
     if (order < in->K.ncol)
         RITZ_CHECK(note_measures(order, &made));
-    *out = made;
-    made = (ritz_reduced){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }

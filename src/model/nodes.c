@@ -39,8 +39,7 @@ ritz_status ritz_nodes_of(int64_t n, const ritz_dof *dof,
     RITZ_CHECK_NEW(nodes.grid, grids->count);
     RITZ_CHECK_NEW(nodes.row, 3 * grids->count);
     place_rows(n, dof, &nodes);
-    *out = nodes;
-    nodes = (ritz_nodes){0};
+    RITZ_MOVE(*out, nodes);
     return RITZ_OK;
 }
 
@@ -77,8 +76,7 @@ ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
                     to[i] += axes[3 * p + b] * from[nodes->row[3 * i + p]];
         }
     }
-    *out = along;
-    along = (ritz_dense){0};
+    RITZ_MOVE(*out, along);
     return RITZ_OK;
 }
 

@@ -71,8 +71,7 @@ ritz_status ritz_recovery_copy(const ritz_recovery *recovery,
         return RITZ_OK;
     RITZ_CHECK(join_names(recovery, 0, NULL, &copy.dof));
     RITZ_CHECK(ritz_sparse_copy(&recovery->G, &copy.G));
-    *out = copy;
-    copy = (ritz_recovery){0};
+    RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }
 
@@ -95,8 +94,7 @@ static ritz_status stack_rows(const ritz_recovery *recovery,
         if (m > 0)
             memcpy(to + n, ritz_dense_col(&GT, j), (size_t)m * sizeof *to);
     }
-    *out = all;
-    all = (ritz_dense){0};
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 
@@ -109,8 +107,7 @@ ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
     RITZ_CHECK(join_names(recovery, n, dof, &all));
     if (shape)
         RITZ_CHECK(stack_rows(recovery, T, shape));
-    *names = all;
-    all = NULL;
+    RITZ_MOVE(*names, all);
     return RITZ_OK;
 }
 

@@ -189,8 +189,7 @@ static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
         memcpy(copy.axes, grids->axes,
                9 * (size_t)grids->num_frames * sizeof *copy.axes);
     }
-    *out = copy;
-    copy = (ritz_grids){0};
+    RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }
 
@@ -291,8 +290,7 @@ ritz_status ritz_reduce(const ritz_component *component,
     RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_CHECK(map_ports(component, T, &reduced));
     RITZ_CHECK(ritz_io_project(&component->io, T, &reduced.io));
-    *out = reduced;
-    reduced = (ritz_reduced){0};
+    RITZ_MOVE(*out, reduced);
     return RITZ_OK;
 }
 
@@ -351,8 +349,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         RITZ_CHECK(ritz_elements_copy(&reduced->elements, &second.elements));
         RITZ_CHECK(ritz_recovery_copy(&reduced->recovery, &second.recovery));
     }
-    *out = second;
-    second = (ritz_reduced){0};
+    RITZ_MOVE(*out, second);
     return RITZ_OK;
 }
 

@@ -81,8 +81,7 @@ static ritz_status project_outputs(const ritz_modal_model *modes,
     RITZ_CHECK(ritz_dense_mul(&modes->Cv, T_v, &rate));
     add_scaled(1.0, &rate, &C);
     ritz_dense_free(&out->C);
-    out->C = C;
-    C = (ritz_dense){0};
+    RITZ_MOVE(out->C, C);
     add_scaled(1.0, &modes->feed, &out->D);
     return RITZ_OK;
 }
@@ -207,8 +206,7 @@ ritz_status ritz_reduce_states(const ritz_component *component,
     RITZ_CHECK(ritz_states_settle(basis, &E, &reduced));
     memcpy(reduced.units, component->units, sizeof reduced.units);
     ritz_damping_print(damping, reduced.damping);
-    *out = reduced;
-    reduced = (ritz_state_space){0};
+    RITZ_MOVE(*out, reduced);
     return RITZ_OK;
 }
 
@@ -274,8 +272,7 @@ static ritz_status to_states(const ritz_component *component,
         states.columns.dof[j] = columns->dof[j % r];
         states.columns.hertz[j] = columns->hertz[j % r];
     }
-    *out = states;
-    states = (ritz_basis){0};
+    RITZ_MOVE(*out, states);
     return RITZ_OK;
 }
 
@@ -367,7 +364,6 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
     RITZ_CHECK(ritz_states_settle(basis, &E, &reduced));
     memcpy(reduced.units, full->units, sizeof reduced.units);
     memcpy(reduced.damping, full->damping, sizeof reduced.damping);
-    *out = reduced;
-    reduced = (ritz_state_space){0};
+    RITZ_MOVE(*out, reduced);
     return RITZ_OK;
 }

@@ -235,8 +235,7 @@ ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
     RITZ_CHECK(ritz_columns_new(states, &model.columns));
     for (int64_t k = 0; k < states; k++)
         model.columns.kind[k] = RITZ_COLUMN_STATE;
-    *out = model;
-    model = (ritz_state_space){0};
+    RITZ_MOVE(*out, model);
     return RITZ_OK;
 }
 
@@ -332,8 +331,7 @@ static ritz_status by_dofs(const ritz_structure *model, const ritz_dense *D,
     }
     RITZ_TRY(ritz_state_space_new(2 * D->nrow, io, &made));
     RITZ_TRY(fill_dofs(&solved[0], &solved[1], &solved[2], io, &made));
-    *out = made;
-    made = (ritz_state_space){0};
+    RITZ_MOVE(*out, made);
 done:
     for (int k = 0; k < 3; k++)
         ritz_dense_free(&solved[k]);
@@ -364,8 +362,7 @@ static ritz_status by_modes(const ritz_structure *model, const ritz_io *io,
     ritz_dense_free(&made.D);
     made.D = modes.feed;
     modes.feed = (ritz_dense){0};
-    *out = made;
-    made = (ritz_state_space){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 

@@ -305,8 +305,7 @@ ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
         rank++;
     list_loose(rank, Vt, &new);
     RITZ_CHECK(multiply_average(over, &U, rank, sigma, Vt, &new));
-    *out = new;
-    new = (ritz_average){0};
+    RITZ_MOVE(*out, new);
     return RITZ_OK;
 }
 

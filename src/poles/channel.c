@@ -41,8 +41,7 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
                                  &all.A, &all.B, &all.C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &all.D));
     if (output == RITZ_ALL_CHANNELS) {
-        *out = all;
-        all = (ritz_channel){0};
+        RITZ_MOVE(*out, all);
         return RITZ_OK;
     }
     RITZ_CHECK(ritz_dense_columns(&all.B, input, 1, &made.B));
@@ -51,8 +50,7 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
     made.D.val[0] = ritz_dense_col(&all.D, input)[output];
     made.A = all.A;
     all.A = (ritz_dense){0};
-    *out = made;
-    made = (ritz_channel){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 
@@ -225,8 +223,7 @@ ritz_status ritz_channel_dense(const ritz_second_order *model,
     RITZ_CHECK(ritz_modal_model_new(&structure, &io, damping ? damping : &none,
                                     &modes));
     RITZ_CHECK(channel_of_modes(&modes, &structure.D, &io, single, &made));
-    *out = made;
-    made = (ritz_channel){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 

@@ -217,8 +217,7 @@ ritz_status ritz_channel_rows(const ritz_modal_model *modes,
     RITZ_TRY(open_eyes(modes, D, io, &s));
     RITZ_NEW(rows, modes->count);
     *count = is_coupled(&s) ? -1 : drop_silent(collect(&s, rows), rows);
-    *out = rows;
-    rows = NULL;
+    RITZ_MOVE(*out, rows);
 done:
     free(rows);
     ritz_dense_free(&s.value);
@@ -337,8 +336,7 @@ static ritz_status keep_reached(const ritz_dense *A, sieve *s)
     RITZ_CHECK(ritz_dense_mul(&s->left, &range, &kept));
     s->uncertainty += least / smallest;
     ritz_dense_free(&s->left);
-    s->left = kept;
-    kept = (ritz_dense){0};
+    RITZ_MOVE(s->left, kept);
     return RITZ_OK;
 }
 
@@ -418,8 +416,7 @@ static ritz_status change_basis(const sieve *s, ritz_modal_model *out)
     RITZ_CHECK(ritz_dense_mul(&f->Cv, &T, &made.Cv));
     RITZ_CHECK(ritz_dense_copy(&f->feed, &made.feed));
     set_free(s, &made);
-    *out = made;
-    made = (ritz_modal_model){0};
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
 

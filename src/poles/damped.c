@@ -118,8 +118,7 @@ static ritz_status own_rates(const ritz_sparse *D, const ritz_dense *Phi,
     for (int64_t k = 0; DPhi.val && k < Phi->ncol; k++)
         for (int64_t i = 0; i < Phi->nrow; i++)
             own[k] += ritz_dense_col(Phi, k)[i] * ritz_dense_col(&DPhi, k)[i];
-    *out = own;
-    own = NULL;
+    RITZ_MOVE(*out, own);
     return RITZ_OK;
 }
 
@@ -222,8 +221,7 @@ ritz_status ritz_damped_new(const ritz_poles *poles,
                                      : ritz_complex(nan(""), 0.0);
     if (poles->coupled && poles->D.val)
         RITZ_CHECK(take_coupled(poles, component, pairs, band_hz, &damped));
-    *out = damped;
-    damped = (ritz_damped){0};
+    RITZ_MOVE(*out, damped);
     return RITZ_OK;
 }
 

@@ -78,8 +78,7 @@ ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
     if (n > m)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, n, n - m, 1.0, C.val, n, N.val, n);
-    *out = N;
-    N = (ritz_dense){0};
+    RITZ_MOVE(*out, N);
     return RITZ_OK;
 }
 
@@ -117,8 +116,7 @@ ritz_status ritz_static_rest(const ritz_second_order *model,
     RITZ_CHECK(put_static(&io->C, &N, &NB, found.C));
     RITZ_CHECK(put_static(&io->Cv, &N, &NB, found.Cv));
     RITZ_CHECK(put_static(&io->Ca, &N, &NB, found.Ca));
-    *out = found;
-    found = (ritz_residual){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 

@@ -65,8 +65,7 @@ static ritz_status peak_new(const ritz_split *split, const ritz_dense *B,
     RITZ_CHECK_NEW(s.H, B->ncol * C->nrow);
     RITZ_CHECK_NEW(s.sigma, least);
     RITZ_CHECK_NEW(s.spare, least);
-    *out = s;
-    s = (peak){0};
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -115,8 +114,7 @@ static ritz_status choose_frequencies(const peak *s, int64_t *count,
             w[kept++] = w[k];
     w[kept] = 2.0 * w[kept - 1] + 1.0; /* the last bracket ends there */
     *count = kept;
-    *out = w;
-    w = NULL;
+    RITZ_MOVE(*out, w);
     return RITZ_OK;
 }
 

@@ -169,8 +169,7 @@ static ritz_status poles_new(const ritz_pairs *pairs, const ritz_dense *D,
     RITZ_CHECK(add_matrices(D, K4, &poles));
     RITZ_CHECK(ritz_io_project(io, &pairs->Phi, &poles.io));
     RITZ_CHECK_NEW(poles.q, poles.count * io->num_inputs);
-    *out = poles;
-    poles = (ritz_poles){0};
+    RITZ_MOVE(*out, poles);
     return RITZ_OK;
 }
 
@@ -298,10 +297,8 @@ ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
         if (w[k] > 0.0)
             z[k] = (poles->rate[k] + k4 / w[k]) / (2.0 * w[k]);
     }
-    *omega = w;
-    *zeta = z;
-    w = NULL;
-    z = NULL;
+    RITZ_MOVE(*omega, w);
+    RITZ_MOVE(*zeta, z);
     return RITZ_OK;
 }
 
@@ -332,8 +329,7 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
     RITZ_CHECK(ritz_sparse_project(&component->K4, &found.Phi, &K4));
     RITZ_CHECK(poles_new(&found, &D, &K4, &component->io, damping, out));
     if (pairs) {
-        *pairs = found;
-        found = (ritz_pairs){0};
+        RITZ_MOVE(*pairs, found);
     }
     return RITZ_OK;
 }
@@ -449,10 +445,9 @@ ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
     RITZ_CHECK(poles_new(pairs, &D, &K4, model->io, damping, out));
     RITZ_CHECK(mark_massless(massless, &D, damping, out));
     if (massless == 0) {
-        out->rest = rest;
+        RITZ_MOVE(out->rest, rest);
         if (damping && ritz_damping_is_rayleigh(damping))
             out->rest.b = damping->b;
-        rest = (ritz_residual){0};
     }
     return RITZ_OK;
 }

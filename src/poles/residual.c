@@ -185,8 +185,7 @@ static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
         RITZ_CHECK(take_out_twice(s->Phi, &s->MPhi, &next));
         measure_change(s, &next, &R, &change, &apart);
         ritz_dense_free(&R);
-        R = next;
-        next = (ritz_dense){0};
+        RITZ_MOVE(R, next);
     }
     RITZ_REFUSE_IF(
         !(apart <= 1.0), RITZ_ERR_CONVERGENCE,
@@ -196,8 +195,7 @@ static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)
         s->whole[j] = fmax(s->whole[j], ritz_dense_col_max(&R, j));
     s->begun = true;
-    *out = R;
-    R = (ritz_dense){0};
+    RITZ_MOVE(*out, R);
     return RITZ_OK;
 }
 
@@ -306,8 +304,7 @@ ritz_status ritz_residual_new(const ritz_component *component,
         RITZ_CHECK(rest_solver_new(component, pairs, to_hz, out_hz, &s));
         RITZ_CHECK(add_terms(component, &s, &r));
     }
-    *out = r;
-    r = (ritz_residual){0};
+    RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
 

@@ -316,8 +316,7 @@ ritz_status ritz_spectrum_dense(const ritz_second_order *model,
         RITZ_CHECK(solve_real(&state, &f));
     RITZ_CHECK(list_poles(&state, &f, &spectrum));
     (void)snprintf(spectrum.engine, sizeof spectrum.engine, "dense LAPACK");
-    *out = spectrum;
-    spectrum = (ritz_spectrum){0};
+    RITZ_MOVE(*out, spectrum);
     return RITZ_OK;
 }
 

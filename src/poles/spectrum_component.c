@@ -136,8 +136,7 @@ ritz_status ritz_scan_dampers(const ritz_second_order *model,
             scan.best = k;
         ritz_spectrum_free(&spectrum);
     }
-    *out = scan;
-    scan = (ritz_scan){0};
+    RITZ_MOVE(*out, scan);
     return RITZ_OK;
 }
 
@@ -192,8 +191,7 @@ static ritz_status span_space(const ritz_component *component,
     set.V = (ritz_dense){0};
     for (int64_t j = 0; j < pairs->num_rigid && j < set.count; j++)
         basis.columns.kind[j] = RITZ_COLUMN_RIGID;
-    *out = basis;
-    basis = (ritz_basis){0};
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 
@@ -409,8 +407,7 @@ static ritz_status add_rayleigh(const ritz_component *component,
     if (component->D.colptr) {
         RITZ_CHECK(ritz_sparse_add(1.0, &component->D, 1.0, &given, &seen->D));
     } else {
-        seen->D = given;
-        given = (ritz_sparse){0};
+        RITZ_MOVE(seen->D, given);
     }
     return RITZ_OK;
 }
@@ -453,7 +450,6 @@ ritz_status ritz_spectrum_component(const ritz_component *component,
     } else {
         RITZ_CHECK(ritz_spectrum_large(component, damping, span, &spectrum));
     }
-    *out = spectrum;
-    spectrum = (ritz_spectrum){0};
+    RITZ_MOVE(*out, spectrum);
     return RITZ_OK;
 }

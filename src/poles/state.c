@@ -70,8 +70,7 @@ ritz_status ritz_state_matrix(const ritz_state *s, ritz_dense *out)
                 *a +=
                     ritz_dense_col(&s->D, m + t)[i] * ritz_dense_col(&G, j)[t];
         }
-    *out = A;
-    A = (ritz_dense){0};
+    RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
 
@@ -169,8 +168,7 @@ static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
             -delta[j] > fmax(floor, (double)k * RITZ_SUM_ROUNDING * largest);
     RITZ_CHECK(ritz_dense_mul(N, &V, &turned));
     ritz_dense_free(N);
-    *N = turned;
-    turned = (ritz_dense){0};
+    RITZ_MOVE(*N, turned);
     return RITZ_OK;
 }
 
@@ -331,8 +329,7 @@ ritz_status ritz_state_new(const ritz_second_order *model,
     pairs.lambda = NULL;
     RITZ_CHECK(drop_free(&s));
     s.diagonal = s.k == 0 && !s.K4.val && is_diagonal(&s.D);
-    *out = s;
-    s = (ritz_state){0};
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 

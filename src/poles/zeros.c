@@ -167,8 +167,7 @@ static ritz_status find_pencil_zeros(const ritz_channel *channel,
         kept++;
     }
     *count = kept;
-    *out = zero;
-    zero = NULL;
+    RITZ_MOVE(*out, zero);
 done:
     free(zero);
     pencil_free(&s);
@@ -276,8 +275,7 @@ static ritz_status triangle_new(const ritz_channel *channel, triangle *out)
         t.band = n;
         RITZ_CHECK(fill_schur(channel, &t));
     }
-    *out = t;
-    t = (triangle){0};
+    RITZ_MOVE(*out, t);
     return RITZ_OK;
 }
 
@@ -584,8 +582,7 @@ static ritz_status find_zeros(const ritz_channel *c, bool single,
         zero[kept++] = 0.0;
     qsort(zero, (size_t)kept, sizeof *zero, ascending);
     *count = kept;
-    *out = zero;
-    zero = NULL;
+    RITZ_MOVE(*out, zero);
 done:
     free(found);
     free(zero);

@@ -231,8 +231,7 @@ ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
     agreement.num_left = difference(&s[0], &s[1], top, agreement.left);
     agreement.num_entered = difference(&s[1], &s[0], top, agreement.entered);
     agreement.top_share = share(s, top);
-    *out = agreement;
-    agreement = (ritz_agreement){0};
+    RITZ_MOVE(*out, agreement);
     return RITZ_OK;
 }
 

@@ -128,11 +128,8 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
     }
     take_clusters(rankings, item, mode, &largest);
     RITZ_CHECK(ritz_ranking_sort(count, largest.value, largest.order));
-    *out = largest;
-    largest = (ritz_ranking){0};
-    *where = item;
-    item = NULL;
-    *track = number;
-    number = NULL;
+    RITZ_MOVE(*out, largest);
+    RITZ_MOVE(*where, item);
+    RITZ_MOVE(*track, number);
     return RITZ_OK;
 }

@@ -55,8 +55,7 @@ ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out)
         for (int64_t a = 0; a < X.nrow; a++)
             ritz_dense_col(&V, i)[a / 2] +=
                 ritz_dense_col(&C, i)[a] * ritz_dense_col(&X, i)[a];
-    *out = V;
-    V = (ritz_dense){0};
+    RITZ_MOVE(*out, V);
     return RITZ_OK;
 }
 
@@ -209,8 +208,7 @@ static ritz_status part_of(const ritz_modal *modal, const bool *taken,
         memcpy(ritz_dense_col(&part.Cv, k), ritz_dense_col(&modal->Cv, mode[k]),
                size);
     }
-    *out = part;
-    part = (ritz_modal){0};
+    RITZ_MOVE(*out, part);
     return RITZ_OK;
 }
 
@@ -352,8 +350,7 @@ ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
         weigh(&l, t, at_round(&l, round)->q);
     }
     RITZ_CHECK(report(&l, round, period, &found));
-    *out = found;
-    found = (ritz_reweighing){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 

@@ -153,7 +153,6 @@ ritz_status ritz_rank(const ritz_ranker *ranker,
     join(ranker, &request->modal, &ranking);
     RITZ_CHECK(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
     RITZ_CHECK(stand_beside(request, &ranking));
-    *out = ranking;
-    ranking = (ritz_ranking){0};
+    RITZ_MOVE(*out, ranking);
     return RITZ_OK;
 }

@@ -52,8 +52,7 @@ static ritz_status take_all(const char *text, int64_t *count, ritz_weight **out)
         c = end + 1;
     }
     *count = n;
-    *out = list;
-    list = NULL;
+    RITZ_MOVE(*out, list);
     return RITZ_OK;
 }
 
@@ -68,8 +67,7 @@ ritz_status ritz_weights_parse(const char *inputs, const char *outputs,
     if (outputs)
         RITZ_CHECK_IN("weights of outputs",
                       take_all(outputs, &weights.num_outputs, &weights.output));
-    *out = weights;
-    weights = (ritz_weights){0};
+    RITZ_MOVE(*out, weights);
     return RITZ_OK;
 }
 
@@ -174,8 +172,7 @@ static ritz_status extend(const ranked_model *s, const ritz_weights *weights,
     }
     if (weights)
         RITZ_CHECK(apply_weights(weights, &all));
-    *out = all;
-    all = (ritz_io){0};
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 
@@ -193,8 +190,7 @@ static ritz_status split(ritz_dense *C, int64_t first, ritz_dense *rest)
             ritz_dense_col(rest, j)[i - first] = ritz_dense_col(C, j)[i];
     }
     ritz_dense_free(C);
-    *C = head;
-    head = (ritz_dense){0};
+    RITZ_MOVE(*C, head);
     return RITZ_OK;
 }
 
@@ -248,8 +244,7 @@ static ritz_status make(const ranked_model *s, const ritz_rank_choice *choice,
     RITZ_CHECK(copy_names(s->io->num_inputs, s->io->input, &request.input));
     RITZ_CHECK(copy_names(s->io->num_outputs, s->io->output, &request.output));
     memcpy(request.band_hz, choice->band_hz, sizeof request.band_hz);
-    *out = request;
-    request = (ritz_rank_request){0};
+    RITZ_MOVE(*out, request);
     return RITZ_OK;
 }
 
@@ -358,8 +353,7 @@ ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
         RITZ_CHECK(make_held(reduced, choice, needs, &request));
     else
         RITZ_CHECK(make(&s, choice, needs, &request));
-    *out = request;
-    request = (ritz_rank_request){0};
+    RITZ_MOVE(*out, request);
     return RITZ_OK;
 }
 

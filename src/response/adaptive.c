@@ -143,8 +143,7 @@ static ritz_status new_mesh(ritz_responder *responder, int64_t count,
     }
     mesh.count = count;
     close_up(&mesh);
-    *out = mesh;
-    mesh = (ritz_mesh){0};
+    RITZ_MOVE(*out, mesh);
 done:
     free_mesh(&mesh);
     return status;
@@ -205,8 +204,7 @@ static ritz_status keep(finds *f, double hertz, const double _Complex *H)
         }
         free(f->hertz);
         free(f->H);
-        *f = more;
-        more = (finds){0};
+        RITZ_MOVE(*f, more);
     }
     f->hertz[f->count] = hertz;
     memcpy(f->H + f->count * f->values, H, (size_t)f->values * sizeof *H);

@@ -191,8 +191,7 @@ ritz_status ritz_closed_loop(const ritz_state_space *plant,
     RITZ_TRY(ritz_dense_columns(&seen, 0, states, &made.C));
     RITZ_TRY(ritz_dense_columns(&seen, states, plant->num_inputs, &made.D));
     RITZ_TRY(join_masses(plant, controller, &made.E));
-    *out = made;
-    made = (ritz_state_space){0};
+    RITZ_MOVE(*out, made);
 done:
     ritz_state_space_free(&made);
     ritz_dense_free(&rates);

@@ -66,8 +66,7 @@ ritz_status ritz_direct_new(const ritz_component *component,
     s.m = s.pairs.Phi.ncol;
     RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
     RITZ_CHECK(start(&s));
-    *out = s;
-    s = (ritz_direct){0};
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -356,8 +355,7 @@ static ritz_status make(const ritz_response_request *request,
     out->pairs = &s->pairs;
     out->at = at;
     out->free = finish;
-    out->state = s;
-    s = NULL;
+    RITZ_MOVE(out->state, s);
     return RITZ_OK;
 }
 

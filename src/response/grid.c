@@ -110,7 +110,6 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                 f[n++] = extra[a];
     }
     *count = grid->hertz ? n : distinct(n, f);
-    *out = f;
-    f = NULL;
+    RITZ_MOVE(*out, f);
     return RITZ_OK;
 }

@@ -589,8 +589,7 @@ static ritz_status make(const ritz_response_request *request,
     out->poles = &k->small.poles;
     out->at = at;
     out->free = finish;
-    out->state = k;
-    k = NULL;
+    RITZ_MOVE(out->state, k);
 done:
     if (k)
         finish(k);

@@ -133,8 +133,7 @@ ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
     RITZ_CHECK(add_loads(&s));
     RITZ_CHECK(add_damping(&s, 0, s.Phi));
     RITZ_CHECK(weigh(&s));
-    *out = s;
-    s = (ritz_krylov_space){0};
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -330,8 +329,7 @@ static ritz_status turn_over(const ritz_poles *poles, ritz_poles *out)
             for (int64_t i = 0; i < p; i++)
                 ritz_dense_col(&dual.io.B, k * p + i)[j] =
                     ritz_dense_col(rows[k], j)[i];
-    *out = dual;
-    dual = (ritz_poles){0};
+    RITZ_MOVE(*out, dual);
     return RITZ_OK;
 }
 
@@ -360,8 +358,7 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
     RITZ_CHECK_NEW(small.q, small.r * small.inputs);
     RITZ_CHECK_NEW(small.p, small.r * small.outputs);
     RITZ_CHECK_NEW(small.z, small.r * (3 * small.outputs + small.inputs));
-    *out = small;
-    small = (ritz_krylov_small){0};
+    RITZ_MOVE(*out, small);
     return RITZ_OK;
 }
 

@@ -143,8 +143,7 @@ ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
                     plant->output, "output", loop.measured));
     RITZ_CHECK(fill(loop.num_driven, controller->output, plant->num_inputs,
                     plant->input, "input", loop.driven));
-    *out = loop;
-    loop = (ritz_loop){0};
+    RITZ_MOVE(*out, loop);
     return RITZ_OK;
 }
 
@@ -568,8 +567,7 @@ ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
     r->to_hz = fmin(plant->to_hz, controller->to_hz);
     memcpy(r->damping, plant->damping, sizeof r->damping);
     r->at = at;
-    *out = r;
-    r = NULL;
+    RITZ_MOVE(*out, r);
 done:
     ritz_responder_free(&r); /* and with it s */
     return status;

@@ -66,8 +66,7 @@ static ritz_status make(const ritz_response_request *request,
     out->poles = &m->poles;
     out->at = at;
     out->free = finish;
-    out->state = m;
-    m = NULL;
+    RITZ_MOVE(out->state, m);
 done:
     if (m)
         finish(m);

@@ -98,8 +98,7 @@ static ritz_status new_interpolant(int64_t values, double unit,
         f.pole[k] = pole[k] / unit;
     RITZ_NEW(f.num_zeros, values);
     RITZ_NEW(f.zero, values);
-    *out = f;
-    f = (ritz_interpolant){0};
+    RITZ_MOVE(*out, f);
 done:
     free_interpolant(&f);
     return status;
@@ -642,8 +641,7 @@ static ritz_status make(const ritz_response_request *request,
                    s->nodes, s->num_poles);
     out->at = at;
     out->free = finish;
-    out->state = s;
-    s = NULL;
+    RITZ_MOVE(out->state, s);
 done:
     if (s)
         finish(s);

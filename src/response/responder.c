@@ -71,8 +71,7 @@ static ritz_status new_noise(const ritz_response_request *request,
     RITZ_NEW(noise.output, KINDS * io->num_outputs);
     RITZ_NEW(noise.input, io->num_inputs);
     take_sizes(request, io, &noise);
-    *out = noise;
-    noise = (ritz_noise){0};
+    RITZ_MOVE(*out, noise);
 done:
     free_noise(&noise);
     return status;
@@ -176,8 +175,7 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
     ritz_damping_print(&r->given, r->damping);
     RITZ_CHECK(new_noise(request, &r->noise));
     RITZ_CHECK(engine->make(request, r));
-    *out = r;
-    r = NULL;
+    RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
 
@@ -226,8 +224,7 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
                                      r.H + k * r.num_outputs * r.num_inputs));
         ritz_monitor_step("response", k + 1, r.count);
     }
-    *out = r;
-    r = (ritz_response){0};
+    RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
 
@@ -284,8 +281,7 @@ static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
     for (int64_t k = 0; k < all->num_zero; k++)
         s[n++] = 0.0;
     *count = n;
-    *out = s;
-    s = NULL;
+    RITZ_MOVE(*out, s);
 done:
     free(s);
     ritz_spectrum_free(&own);

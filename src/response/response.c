@@ -44,7 +44,6 @@ ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
     RITZ_CHECK_NEW(r.H, r.count * r.num_inputs * r.num_outputs);
     (void)snprintf(r.method, RITZ_NAME_SIZE, "%s", method);
     ritz_damping_print(damping ? damping : &none, r.damping);
-    *out = r;
-    r = (ritz_response){0};
+    RITZ_MOVE(*out, r);
     return RITZ_OK;
 }

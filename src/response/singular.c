@@ -60,9 +60,8 @@ ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)
                                         r->H + k * size, scales,
                                         sigma + k * width));
     free(r->singular);
-    r->singular = sigma;
+    RITZ_MOVE(r->singular, sigma);
     r->num_singular = width;
-    sigma = NULL;
     return RITZ_OK;
 }
 

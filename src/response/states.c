@@ -149,8 +149,7 @@ static ritz_status find_poles(const ritz_state_space *model, ritz_poles *out)
     if (model->num_outputs > 0)
         memcpy(poles.io.output, model->output,
                (size_t)model->num_outputs * RITZ_NAME_SIZE);
-    *out = poles;
-    poles = (ritz_poles){0};
+    RITZ_MOVE(*out, poles);
 done:
     free(s);
     ritz_poles_free(&poles);
@@ -199,8 +198,7 @@ static ritz_status make(const ritz_response_request *request,
     out->poles = &s->poles;
     out->at = at;
     out->free = free_states;
-    out->state = s;
-    s = NULL;
+    RITZ_MOVE(out->state, s);
 done:
     if (s)
         free_states(s);

@@ -196,8 +196,7 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
                                  &scene, value));
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         RITZ_CHECK(parts[k].read(&yaml, value[parts[k].key], &scene));
-    *out = scene;
-    scene = (ritz_scene){0};
+    RITZ_MOVE(*out, scene);
     return RITZ_OK;
 }
 
@@ -228,8 +227,7 @@ ritz_status ritz_scene_read(const char *path, ritz_scene *out)
     RITZ_CHECK(ritz_scene_parse(path, text, &scene));
     for (int64_t k = 0; k < scene.num_components; k++)
         RITZ_CHECK(place_model(path, folder, &scene.component[k].model));
-    *out = scene;
-    scene = (ritz_scene){0};
+    RITZ_MOVE(*out, scene);
     return RITZ_OK;
 }
 

@@ -123,8 +123,7 @@ ritz_status ritz_yaml_load(const char *path, const char *text, ritz_yaml *out)
     RITZ_TRY(load_document(&parser, text, &second));
     RITZ_YAML_FAIL_IF(ritz_yaml_root(&second), &second, ritz_yaml_root(&second),
                       "a second document begins here, a scene is one");
-    *out = yaml;
-    yaml = (ritz_yaml){0};
+    RITZ_MOVE(*out, yaml);
 done:
     ritz_yaml_free(&second);
     ritz_yaml_free(&yaml);

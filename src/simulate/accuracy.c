@@ -40,8 +40,7 @@ static ritz_status trial_new(int64_t num_outputs, halving_trial *out)
     RITZ_NEW(t.in_vain, num_outputs);
     for (int64_t i = 0; i < num_outputs; i++)
         t.before[i] = HUGE_VAL;
-    *out = t;
-    t = (halving_trial){0};
+    RITZ_MOVE(*out, t);
 done:
     free(t.before);
     free(t.in_vain);

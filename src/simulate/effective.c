@@ -99,8 +99,7 @@ static ritz_status combine_matrices(const ritz_motion *motion,
     if (motion->sD.colptr && c[1] != 0.0) {
         RITZ_CHECK(ritz_sparse_add(1.0, &sum, c[1], &motion->sD, &more));
         ritz_sparse_free(&sum);
-        sum = more;
-        more = (ritz_sparse){0};
+        RITZ_MOVE(sum, more);
     }
     if (fill) {
         RITZ_CHECK(ritz_sparse_new(motion->n, motion->n, motion->n, &more));
@@ -111,8 +110,7 @@ static ritz_status combine_matrices(const ritz_motion *motion,
         }
         RITZ_CHECK(ritz_sparse_add(1.0, &sum, 1.0, &more, out));
     } else {
-        *out = sum;
-        sum = (ritz_sparse){0};
+        RITZ_MOVE(*out, sum);
     }
     return RITZ_OK;
 }
@@ -153,8 +151,7 @@ ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
         RITZ_CHECK(factor_sparse(motion, c, fill, &F));
     else
         RITZ_CHECK(factor_dense(motion, m, d, k, &F));
-    *out = F;
-    F = (ritz_effective){0};
+    RITZ_MOVE(*out, F);
     return RITZ_OK;
 }
 

@@ -72,8 +72,7 @@ static ritz_status groups_new(const ritz_dense *D, groups *out)
                 }
         g.first[++g.count] = end;
     }
-    *out = g;
-    g = (groups){0};
+    RITZ_MOVE(*out, g);
     return RITZ_OK;
 }
 
@@ -139,8 +138,7 @@ static ritz_status group_matrix(const ritz_motion *m, const coupled_modes *part,
                        : ritz_dense_col(&m->B, j)[part->mode[i]] / part->scale;
         ritz_dense_col(&A, 2 * g + p + j)[2 * g + j] = 1.0;
     }
-    *out = A;
-    A = (ritz_dense){0};
+    RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
 

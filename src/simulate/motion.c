@@ -91,8 +91,7 @@ static ritz_status motion_of_modes(const ritz_component *component,
         modes.feed.val[k] += rest.C[k];
     RITZ_CHECK(take_modes(&modes, &m));
     m.highest = nan("");
-    *out = m;
-    m = (ritz_motion){0};
+    RITZ_MOVE(*out, m);
     return RITZ_OK;
 }
 
@@ -210,8 +209,7 @@ static ritz_status fill_sparse(const ritz_component *component,
             ritz_sparse_free(&m->sD);
             m->sD = sum;
         } else {
-            m->sD = D;
-            D = (ritz_sparse){0};
+            RITZ_MOVE(m->sD, D);
         }
     }
     RITZ_CHECK(check_sparse(component, damping, m->massless, &m->sD));
@@ -233,8 +231,7 @@ static ritz_status motion_of_sparse(const ritz_component *component,
     RITZ_CHECK_IN("M", ritz_effective_new(&m, 1.0, 0.0, 0.0, true, &mass));
     RITZ_CHECK(find_push(&mass, &m));
     RITZ_CHECK(write_out_sparse(&component->io, &mass, &m));
-    *out = m;
-    m = (ritz_motion){0};
+    RITZ_MOVE(*out, m);
     return RITZ_OK;
 }
 
@@ -348,8 +345,7 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
         RITZ_CHECK(fill_dense(&s, model->io, damping, &m));
     }
     m.highest = highest;
-    *out = m;
-    m = (ritz_motion){0};
+    RITZ_MOVE(*out, m);
     return RITZ_OK;
 }
 
@@ -367,8 +363,7 @@ ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out)
         RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &m.B));
     }
     RITZ_CHECK(ritz_dense_copy(&m.B, &m.push));
-    *out = m;
-    m = (ritz_motion){0};
+    RITZ_MOVE(*out, m);
     return RITZ_OK;
 }
 

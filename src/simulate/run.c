@@ -28,8 +28,7 @@ ritz_status ritz_march_new(const ritz_motion *motion,
         RITZ_CHECK_NEW(march.v, motion->n);
     RITZ_CHECK_IN(integrator->name,
                   integrator->start(motion, step, rho, &march));
-    *out = march;
-    march = (ritz_march){0};
+    RITZ_MOVE(*out, march);
     return RITZ_OK;
 }
 
@@ -164,8 +163,7 @@ ritz_status ritz_reach_new(const ritz_simulated *subject,
                                      : &subject->component->io,
                       &reach);
     }
-    *out = reach;
-    reach = (ritz_reach){0};
+    RITZ_MOVE(*out, reach);
     return RITZ_OK;
 }
 
@@ -469,8 +467,7 @@ static ritz_status run_march(const ritz_motion *motion,
             note_reach(reach, &march, t);
         ritz_monitor_step("simulation", k, steps);
     }
-    *out = s;
-    s = (ritz_simulation){0};
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -533,8 +530,7 @@ ritz_status ritz_simulate_noting(const ritz_simulated *subject,
     else if (subject->states)
         memcpy(out->damping, subject->states->damping, sizeof out->damping);
     if (reach)
-        *reach = found;
-    found = (ritz_reach){0};
+        RITZ_MOVE(*reach, found);
     return RITZ_OK;
 }
 

@@ -151,8 +151,7 @@ static ritz_status read_table(const char *path, ritz_signal *out)
     }
     RITZ_FAIL_IF(signal.count == 0, RITZ_ERR_FORMAT,
                  "there is no line of a time and a value");
-    *out = signal;
-    signal = (ritz_signal){0};
+    RITZ_MOVE(*out, signal);
 done:
     free(text);
     ritz_signal_free(&signal);

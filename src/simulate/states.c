@@ -60,8 +60,7 @@ static ritz_status states_new(const ritz_motion *motion, states **out)
     RITZ_NEW(s, 1);
     RITZ_NEW(s->x, motion->n);
     RITZ_NEW(s->rise, motion->B.ncol);
-    *out = s;
-    s = NULL;
+    RITZ_MOVE(*out, s);
 done:
     if (s)
         release(s);

@@ -118,8 +118,7 @@ ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
             last++;
         RITZ_CHECK(match_cluster(Q, reduced, first, last, &match));
     }
-    *out = match;
-    match = (ritz_match){0};
+    RITZ_MOVE(*out, match);
     return RITZ_OK;
 }
 
@@ -305,7 +304,6 @@ ritz_status ritz_match_outputs(const ritz_poles *full,
     align(&p);
     untangle(&p);
     take(&p, seen, full, reduced, &match);
-    *out = match;
-    match = (ritz_match){0};
+    RITZ_MOVE(*out, match);
     return RITZ_OK;
 }

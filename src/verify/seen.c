@@ -150,8 +150,7 @@ ritz_status ritz_seen_new(const ritz_component *component,
     if (seen.num_inputs + seen.num_outputs > 0)
         for (int64_t k = poles->num_rigid; k < seen.num_modes; k++)
             seen.mode[k] = is_seen(&seen, poles, band_hz, k);
-    *out = seen;
-    seen = (ritz_seen){0};
+    RITZ_MOVE(*out, seen);
     return RITZ_OK;
 }
 

@@ -119,8 +119,7 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
         place_descriptor(&a->E, n, 0, &both.E);
         place_descriptor(&b->E, m, n, &both.E);
     }
-    *out = both;
-    both = (ritz_state_space){0};
+    RITZ_MOVE(*out, both);
     return RITZ_OK;
 }
 
@@ -260,8 +259,7 @@ ritz_status ritz_state_pair_new(const ritz_state_space *full,
     RITZ_CHECK(open_pair(full, reduced, request, &p));
     RITZ_CHECK(take_gains(&p));
     RITZ_CHECK(take_norms(&p));
-    *out = p;
-    p = (ritz_state_pair){0};
+    RITZ_MOVE(*out, p);
     return RITZ_OK;
 }
 

@@ -136,8 +136,7 @@ static ritz_status open_reference(const ritz_component *full,
     r->assumed = assumed;
     RITZ_CHECK(open_modes(r));
     RITZ_CHECK(open_sweeps(request, r));
-    *out = r;
-    r = NULL;
+    RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
 
@@ -368,8 +367,7 @@ static ritz_status measure_sides(const ritz_second_order *model,
     RITZ_CHECK(match_modes(T, sides));
     RITZ_CHECK(ritz_sides_respond(sides));
     RITZ_CHECK(measure_rows(sides, &found));
-    *out = found;
-    found = (ritz_measures){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 
@@ -561,7 +559,6 @@ ritz_status ritz_verify_states(const ritz_state_space *full,
             RITZ_CHECK(ritz_measures_add(&found, kind->name, m.value, m.limit,
                                          m.where));
     }
-    *out = found;
-    found = (ritz_measures){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }

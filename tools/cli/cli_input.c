@@ -114,8 +114,7 @@ static ritz_status add_input(cli_run *run, const char *path, bool sum)
         run->input = more;
     RITZ_REFUSE_IF(!line || !more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
     snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
-    run->input[run->num_inputs++] = line;
-    line = NULL;
+    RITZ_MOVE(run->input[run->num_inputs++], line);
     if (run->output && run->program->threads && run->num_inputs == 1)
         RITZ_CHECK(cli_can_write(run->output));
     return RITZ_OK;

@@ -140,8 +140,7 @@ static ritz_status spectrum_of_states(const model *m,
         found.residual[found.count] = (double)NAN;
         found.s[found.count++] = found.s[k];
     }
-    *out = found;
-    found = (ritz_spectrum){0};
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 
@@ -401,8 +400,7 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
     RITZ_CHECK(ritz_scene_read(path, &scene));
     for (int64_t k = 0; k < scene.num_components; k++)
         RITZ_CHECK_IN(path, cli_input(run, scene.component[k].model));
-    *out = scene;
-    scene = (ritz_scene){0};
+    RITZ_MOVE(*out, scene);
     return RITZ_OK;
 }
 

@@ -66,8 +66,7 @@ static ritz_status read_neighbours(cli_run *run, const cli_list *given,
     for (int k = 0; k < given->count; k++)
         RITZ_CHECK_IN("--neighbour", add_neighbour(run, given->text[k],
                                                    component, attached, &sum));
-    *out = sum;
-    sum = (ritz_neighbour){0};
+    RITZ_MOVE(*out, sum);
     return RITZ_OK;
 }
 

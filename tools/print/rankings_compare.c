@@ -88,8 +88,7 @@ ritz_status rank_contest(const rank_result *result, bool all, contest *out)
     }
     c.chain = one && !files;
     name_all(&c);
-    *out = c;
-    c = (contest){0};
+    RITZ_MOVE(*out, c);
     return RITZ_OK;
 }
 
