@@ -124,11 +124,11 @@ static ritz_status put_part(report_page *p, const struct part *part,
 
 static ritz_status put_pictures(report_page *p)
 {
-    size_t count = (size_t)p->sources->count + 1;
-    RITZ_OWN_ARRAY bool *taken = calloc(count, sizeof *taken);
-    RITZ_OWN_ARRAY chart_file *room = calloc(count, sizeof *room);
+    RITZ_OWN_ARRAY bool *taken = NULL;
+    RITZ_OWN_ARRAY chart_file *room = NULL;
 
-    RITZ_REFUSE_IF(!taken || !room, RITZ_ERR_MEMORY, "no memory for files");
+    RITZ_CHECK_NEW(taken, p->sources->count + 1);
+    RITZ_CHECK_NEW(room, p->sources->count + 1);
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         RITZ_CHECK(put_part(p, &parts[k], taken, room));
     return RITZ_OK;

@@ -107,12 +107,11 @@ static ritz_status add_input(cli_run *run, const char *path, bool sum)
         RITZ_CHECK(check_opens(path));
     RITZ_REFUSE_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
                    path);
-    line = malloc(strlen(digest) + strlen(path) + 3);
     more =
         realloc(run->input, (size_t)(run->num_inputs + 1) * sizeof *run->input);
-    if (more)
-        run->input = more;
-    RITZ_REFUSE_IF(!line || !more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    RITZ_REFUSE_IF(!more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
+    run->input = more;
+    RITZ_CHECK_NEW(line, (int64_t)(strlen(digest) + strlen(path) + 3));
     snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
     RITZ_MOVE(run->input[run->num_inputs++], line);
     if (run->output && run->program->threads && run->num_inputs == 1)
