@@ -22,7 +22,8 @@ static const ritz_schema *const shared[] = {
     &ritz_schema_origin,  &ritz_schema_measures, NULL,
 };
 
-static const char *const types[] = {
+/* NULL of a part, a list and what is read by hand: a row that says so itself. */
+static const char *const types[BY_HAND + 1] = {
     [ATTRIBUTE_TEXT] = "text, attribute",
     [ATTRIBUTE_FLAG] = "i64, attribute",
     [ATTRIBUTE_WHOLE] = "i64, attribute",
