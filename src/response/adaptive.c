@@ -30,8 +30,8 @@ typedef struct ritz_mesh {
 /* H of more values than this is a mistake in the request. */
 static const int64_t most_values = INT64_C(1) << 28;
 
-/* H into mesh->row, the peaks heeded. */
-static ritz_status mesh_ask(ritz_mesh *mesh, double hertz)
+/* Evaluate H into mesh->row and raise the peaks and levels to it. */
+static ritz_status evaluate_mesh(ritz_mesh *mesh, double hertz)
 {
     RITZ_CHECK(ritz_responder_at(mesh->responder, hertz, mesh->row));
     for (int64_t v = 0; v < mesh->values; v++)
@@ -40,7 +40,7 @@ static ritz_status mesh_ask(ritz_mesh *mesh, double hertz)
     return RITZ_OK;
 }
 
-static ritz_status make_room(ritz_mesh *mesh, int64_t room)
+static ritz_status reserve_mesh(ritz_mesh *mesh, int64_t room)
 {
     ritz_status status = RITZ_OK;
     double *hertz = NULL;
@@ -89,8 +89,10 @@ static void set_point(ritz_mesh *mesh, int64_t to, double hertz, bool open,
     memmove(mesh->H + to * mesh->values, H, (size_t)mesh->values * sizeof *H);
 }
 
-/* Those that are at a point, or beside it by rounding, are taken out. */
-static void close_up(ritz_mesh *mesh)
+/*
+ * Remove the points that repeat another, or differ from it by rounding alone.
+ */
+static void remove_duplicates(ritz_mesh *mesh)
 {
     int64_t kept = 0;
 
@@ -119,7 +121,7 @@ static void free_mesh(ritz_mesh *mesh)
     *mesh = (ritz_mesh){0};
 }
 
-/* Of given points, which ascend; all is open. */
+/* A mesh of given points, which ascend; every interval is still open. */
 static ritz_status new_mesh(ritz_responder *responder, int64_t count,
                             const double *hertz, ritz_mesh *out)
 {
@@ -133,16 +135,16 @@ static ritz_status new_mesh(ritz_responder *responder, int64_t count,
     RITZ_NEW(mesh.scale, mesh.values);
     RITZ_NEW(mesh.row, mesh.values);
     RITZ_NEW(mesh.between, mesh.values);
-    RITZ_TRY(make_room(&mesh, count));
+    RITZ_TRY(reserve_mesh(&mesh, count));
     for (int64_t k = 0; k < count; k++) {
-        RITZ_TRY(mesh_ask(&mesh, hertz[k]));
+        RITZ_TRY(evaluate_mesh(&mesh, hertz[k]));
         mesh.hertz[k] = hertz[k];
         mesh.open[k] = true;
         memcpy(mesh.H + k * mesh.values, mesh.row,
                (size_t)mesh.values * sizeof *mesh.row);
     }
     mesh.count = count;
-    close_up(&mesh);
+    remove_duplicates(&mesh);
     RITZ_MOVE(*out, mesh);
 done:
     free_mesh(&mesh);
@@ -150,18 +152,18 @@ done:
 }
 
 /*
- * Put points among the others, those that are there already left out.
+ * Insert points into the mesh, except those that it has already.
  *
  * @param[in] hertz  ascending
  * @param[in] H      count x values
  */
-static ritz_status mesh_insert(ritz_mesh *mesh, int64_t count,
-                               const double *hertz, const double _Complex *H)
+static ritz_status insert_points(ritz_mesh *mesh, int64_t count,
+                                 const double *hertz, const double _Complex *H)
 {
     int64_t from = mesh->count - 1;
     int64_t add = count - 1;
 
-    RITZ_CHECK(make_room(mesh, mesh->count + count));
+    RITZ_CHECK(reserve_mesh(mesh, mesh->count + count));
     for (int64_t to = mesh->count + count - 1; add >= 0; to--) {
         if (from >= 0 && mesh->hertz[from] > hertz[add]) {
             set_point(mesh, to, mesh->hertz[from], mesh->open[from],
@@ -174,11 +176,13 @@ static ritz_status mesh_insert(ritz_mesh *mesh, int64_t count,
         }
     }
     mesh->count += count;
-    close_up(mesh);
+    remove_duplicates(mesh);
     return RITZ_OK;
 }
 
-/* Zeros of each channel that are near enough to the axis to make it dip. */
+/*
+ * Zeros of each channel that are close enough to the axis for |H| to dip there.
+ */
 
 enum { PARTS = 8, MOST_STEPS = 5 };
 
@@ -189,7 +193,7 @@ typedef struct finds {
     double _Complex *H;
 } finds;
 
-static ritz_status keep(finds *f, double hertz, const double _Complex *H)
+static ritz_status keep_found(finds *f, double hertz, const double _Complex *H)
 {
     ritz_status status = RITZ_OK;
     finds more = {
@@ -215,7 +219,7 @@ done:
     return status;
 }
 
-/* What a response says between its points: see ritz_response_at. */
+/* Interpolation of a response between its points: see ritz_response_at. */
 
 enum { CUBIC = 4 };
 
@@ -225,8 +229,8 @@ enum { CUBIC = 4 };
  *
  * @return how many, 4 or fewer
  */
-static int cubic(int64_t count, const double *x, int64_t k, double at,
-                 int64_t *first, double weight[static 4])
+static int set_cubic_weights(int64_t count, const double *x, int64_t k,
+                             double at, int64_t *first, double weight[static 4])
 {
     int points = count < CUBIC ? (int)count : CUBIC;
     int64_t from = k - 1;
@@ -245,14 +249,15 @@ static int cubic(int64_t count, const double *x, int64_t k, double at,
     return points;
 }
 
-/* Channel v of the cubics at a point of interval k. */
-static double _Complex cubic_at(const ritz_mesh *mesh, int64_t v, int64_t k,
-                                double hertz)
+/* The cubic of channel v at a frequency in interval k. */
+static double _Complex interpolate_channel(const ritz_mesh *mesh, int64_t v,
+                                           int64_t k, double hertz)
 {
     double _Complex sum = 0.0;
     double weight[4];
     int64_t first = 0;
-    int points = cubic(mesh->count, mesh->hertz, k, hertz, &first, weight);
+    int points =
+        set_cubic_weights(mesh->count, mesh->hertz, k, hertz, &first, weight);
 
     for (int i = 0; i < points; i++)
         sum += weight[i] * mesh->H[(first + i) * mesh->values + v];
@@ -260,11 +265,12 @@ static double _Complex cubic_at(const ritz_mesh *mesh, int64_t v, int64_t k,
 }
 
 /*
- * From a dip in (low, high): where H is a (w - z), one step is at Re z. A zero
- * farther off the axis than the dip is wide makes none.
+ * Newton's method from a dip in (low, high): where H is a (w - z), one step is
+ * at Re z. A zero that is farther from the axis than the dip is wide leads to
+ * none.
  */
-static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
-                          double _Complex slope, finds *f)
+static ritz_status pursue_zero(ritz_mesh *mesh, int64_t v, double low,
+                               double high, double _Complex slope, finds *f)
 {
     double w = 0.5 * (low + high);
     double before = 0.0;
@@ -274,7 +280,7 @@ static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
     for (int t = 0; t < MOST_STEPS && !still; t++) {
         double _Complex last = H;
 
-        RITZ_CHECK(mesh_ask(mesh, w));
+        RITZ_CHECK(evaluate_mesh(mesh, w));
         H = mesh->row[v];
         if (t > 0 && w != before)
             slope = (H - last) / (w - before);
@@ -289,14 +295,17 @@ static ritz_status pursue(ritz_mesh *mesh, int64_t v, double low, double high,
             return RITZ_OK;
     }
     if (!still)
-        RITZ_CHECK(mesh_ask(mesh, w));
+        RITZ_CHECK(evaluate_mesh(mesh, w));
     if (fabs(cimag(z)) <= high - low)
-        RITZ_CHECK(keep(f, w, mesh->row));
+        RITZ_CHECK(keep_found(f, w, mesh->row));
     return RITZ_OK;
 }
 
-/* Where the cubics of one channel are least among their neighbours. */
-static ritz_status search(ritz_mesh *mesh, int64_t v, finds *f)
+/*
+ * Find the dips of one channel: where its cubics are smaller than at the
+ * neighbours.
+ */
+static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, finds *f)
 {
     double w[3] = {0.0, 0.0, 0.0};
     double size[3] = {0.0, 0.0, 0.0};
@@ -310,12 +319,12 @@ static ritz_status search(ritz_mesh *mesh, int64_t v, finds *f)
             w[0] = w[1], H[0] = H[1], size[0] = size[1];
             w[1] = w[2], H[1] = H[2], size[1] = size[2];
             w[2] = mesh->hertz[k] + part * step;
-            H[2] = cubic_at(mesh, v, k, w[2]);
+            H[2] = interpolate_channel(mesh, v, k, w[2]);
             size[2] = cabs(H[2]);
             if (n < 2 || size[1] > size[0] || size[1] > size[2])
                 continue;
-            RITZ_CHECK(
-                pursue(mesh, v, w[0], w[2], (H[2] - H[0]) / (w[2] - w[0]), f));
+            RITZ_CHECK(pursue_zero(mesh, v, w[0], w[2],
+                                   (H[2] - H[0]) / (w[2] - w[0]), f));
         }
     }
     return RITZ_OK;
@@ -326,7 +335,7 @@ typedef struct point_within {
     int64_t at;
 } point_within;
 
-static int ascending(const void *left, const void *right)
+static int compare_hertz(const void *left, const void *right)
 {
     const point_within *a = left;
     const point_within *b = right;
@@ -334,8 +343,8 @@ static int ascending(const void *left, const void *right)
     return (a->hertz > b->hertz) - (a->hertz < b->hertz);
 }
 
-/* Into the mesh, in order. */
-static ritz_status merge(ritz_mesh *mesh, const finds *f)
+/* Insert what was found into the mesh, in ascending order. */
+static ritz_status merge_found(ritz_mesh *mesh, const finds *f)
 {
     ritz_status status = RITZ_OK;
     point_within *order = NULL;
@@ -347,13 +356,13 @@ static ritz_status merge(ritz_mesh *mesh, const finds *f)
     RITZ_NEW(H, f->count * f->values);
     for (int64_t k = 0; k < f->count; k++)
         order[k] = (point_within){f->hertz[k], k};
-    qsort(order, (size_t)f->count, sizeof *order, ascending);
+    qsort(order, (size_t)f->count, sizeof *order, compare_hertz);
     for (int64_t k = 0; k < f->count; k++) {
         hertz[k] = order[k].hertz;
         memcpy(H + k * f->values, f->H + order[k].at * f->values,
                (size_t)f->values * sizeof *H);
     }
-    RITZ_TRY(mesh_insert(mesh, f->count, hertz, H));
+    RITZ_TRY(insert_points(mesh, f->count, hertz, H));
 done:
     free(order);
     free(hertz);
@@ -362,18 +371,19 @@ done:
 }
 
 /*
- * Add the points where a channel has a zero near the axis: where the cubics
- * dip, and from there by w := Re(w - H / H') [each step one response].
+ * Add the points where a channel has a zero near the axis: the search begins
+ * where the cubics dip and iterates w := Re(w - H / H'), each step costing one
+ * response.
  */
-static ritz_status mesh_add_dips(ritz_mesh *mesh)
+static ritz_status add_dips(ritz_mesh *mesh)
 {
     ritz_status status = RITZ_OK;
     finds f = {.values = mesh->values};
 
     for (int64_t v = 0; v < mesh->values; v++)
         if (mesh->peak[v] > RITZ_CHANNEL_HEARD * mesh->scale[v])
-            RITZ_TRY(search(mesh, v, &f));
-    RITZ_TRY(merge(mesh, &f));
+            RITZ_TRY(find_channel_dips(mesh, v, &f));
+    RITZ_TRY(merge_found(mesh, &f));
 done:
     free(f.hertz);
     free(f.H);
@@ -381,8 +391,8 @@ done:
 }
 
 /* out = sum of weighted rows. */
-static void cubic_mix(int points, const double *weight, int64_t values,
-                      const double _Complex *H, double _Complex *out)
+static void mix_rows(int points, const double *weight, int64_t values,
+                     const double _Complex *H, double _Complex *out)
 {
     for (int64_t v = 0; v < values; v++) {
         out[v] = 0.0;
@@ -391,8 +401,11 @@ static void cubic_mix(int points, const double *weight, int64_t values,
     }
 }
 
-/* The last point at or before `hertz`, but for that at the end. */
-static int64_t interval(const ritz_response *r, double hertz)
+/*
+ * The interval of `hertz`: its last point at or before it, the last interval
+ * for the end.
+ */
+static int64_t find_interval(const ritz_response *r, double hertz)
 {
     int64_t low = 0;
     int64_t high = r->count - 1;
@@ -426,30 +439,31 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
                    RITZ_ERR_ARGUMENT,
                    "%g Hz is outside the response, which is from %g to %g Hz",
                    hertz, r->hertz[0], r->hertz[r->count - 1]);
-    points =
-        cubic(r->count, r->hertz, interval(r, hertz), hertz, &first, weight);
+    points = set_cubic_weights(r->count, r->hertz, find_interval(r, hertz),
+                               hertz, &first, weight);
     for (int i = 0; i < points; i++)
         RITZ_REFUSE_IF(!isfinite(weight[i]), RITZ_ERR_ARGUMENT,
                        "the response has %g Hz twice", hertz);
-    cubic_mix(points, weight, values, r->H + first * values, out);
+    mix_rows(points, weight, values, r->H + first * values, out);
     return RITZ_OK;
 }
 
 /*
- * Points chosen until the cubics between them keep a tolerance. Where poles are
- * is known, so that none is passed over: each adds its peak and points beside
- * it, and from there intervals are halved,
+ * Points are added until the cubics between them are within a tolerance. As the
+ * poles are known, no resonance is missed: each adds its peak and points on
+ * both sides of it, and from there intervals are halved until
  *
  *     |H - cubic| <= half the tolerance x the channel's largest |H|
  *
- * at their middle and at a quarter of them.
+ * holds at the middle of each interval and at a quarter of it.
  */
 
 enum { MOST_ROUNDS = 60 };
 
-/* The points of a grid, of all peaks and beside them. */
-static ritz_status begin(const ritz_responder *responder, const ritz_grid *grid,
-                         int64_t *count, double **out)
+/* A mesh of the points of a grid refined around all peaks. */
+static ritz_status begin_mesh(const ritz_responder *responder,
+                              const ritz_grid *grid, int64_t *count,
+                              double **out)
 {
     ritz_status status = RITZ_OK;
     int64_t n = 0, num_modes = 0;
@@ -477,15 +491,16 @@ done:
     return status;
 }
 
-/* Whether the cubics of interval k say what mesh->row is. */
-static bool agrees(ritz_mesh *mesh, int64_t k, double hertz, double allowed)
+/* Whether the cubics of interval k agree with H in mesh->row. */
+static bool is_within(ritz_mesh *mesh, int64_t k, double hertz, double allowed)
 {
     double weight[4];
     int64_t first = 0;
-    int points = cubic(mesh->count, mesh->hertz, k, hertz, &first, weight);
+    int points =
+        set_cubic_weights(mesh->count, mesh->hertz, k, hertz, &first, weight);
 
-    cubic_mix(points, weight, mesh->values, mesh->H + first * mesh->values,
-              mesh->between);
+    mix_rows(points, weight, mesh->values, mesh->H + first * mesh->values,
+             mesh->between);
     for (int64_t v = 0; v < mesh->values; v++)
         if (!(cabs(mesh->between[v] - mesh->row[v]) <=
               allowed * mesh->scale[v]))
@@ -493,20 +508,24 @@ static bool agrees(ritz_mesh *mesh, int64_t k, double hertz, double allowed)
     return true;
 }
 
-/* Interval k: its middle in hertz and H, and whether that is needed. */
-static ritz_status test(ritz_mesh *mesh, int64_t k, double allowed,
-                        double *hertz, double _Complex *H, bool *needed)
+/*
+ * Evaluate H at the middle of interval k and decide whether that point is
+ * needed.
+ */
+static ritz_status test_interval(ritz_mesh *mesh, int64_t k, double allowed,
+                                 double *hertz, double _Complex *H,
+                                 bool *needed)
 {
     double low = mesh->hertz[k];
     double step = mesh->hertz[k + 1] - low;
 
     *hertz = low + 0.5 * step;
-    RITZ_CHECK(mesh_ask(mesh, *hertz));
+    RITZ_CHECK(evaluate_mesh(mesh, *hertz));
     memcpy(H, mesh->row, (size_t)mesh->values * sizeof *H);
-    *needed = !agrees(mesh, k, *hertz, allowed);
+    *needed = !is_within(mesh, k, *hertz, allowed);
     if (!*needed) {
-        RITZ_CHECK(mesh_ask(mesh, low + RITZ_SAMPLED_AT * step));
-        *needed = !agrees(mesh, k, low + RITZ_SAMPLED_AT * step, allowed);
+        RITZ_CHECK(evaluate_mesh(mesh, low + RITZ_SAMPLED_AT * step));
+        *needed = !is_within(mesh, k, low + RITZ_SAMPLED_AT * step, allowed);
     }
     RITZ_REFUSE_IF(*needed &&
                        step <= RITZ_SHORTEST_INTERVAL * mesh->hertz[k + 1],
@@ -517,8 +536,11 @@ static ritz_status test(ritz_mesh *mesh, int64_t k, double allowed,
     return RITZ_OK;
 }
 
-/* Halve what is open and does not hold; *added how many. */
-static ritz_status halve(ritz_mesh *mesh, double allowed, int64_t *added)
+/*
+ * Halve each open interval whose cubics are not within the tolerance; *added
+ * counts the new points.
+ */
+static ritz_status halve_open(ritz_mesh *mesh, double allowed, int64_t *added)
 {
     ritz_status status = RITZ_OK;
     double *hertz = NULL;
@@ -534,13 +556,13 @@ static ritz_status halve(ritz_mesh *mesh, double allowed, int64_t *added)
 
         if (!mesh->open[k])
             continue;
-        RITZ_TRY(
-            test(mesh, k, allowed, &hertz[n], H + n * mesh->values, &needed));
+        RITZ_TRY(test_interval(mesh, k, allowed, &hertz[n],
+                               H + n * mesh->values, &needed));
         mesh->open[k] = needed;
         n += needed;
         ritz_monitor_step("points", mesh->count + n, 0);
     }
-    RITZ_TRY(mesh_insert(mesh, n, hertz, H));
+    RITZ_TRY(insert_points(mesh, n, hertz, H));
     *added = n;
 done:
     free(hertz);
@@ -548,9 +570,12 @@ done:
     return status;
 }
 
-/* A response of no points, then those of the mesh. */
-static ritz_status hand_over(ritz_mesh *mesh, const ritz_grid *grid,
-                             double tolerance, ritz_response *out)
+/*
+ * Build the response: names and poles without points, then the points of the
+ * mesh.
+ */
+static ritz_status build_response(ritz_mesh *mesh, const ritz_grid *grid,
+                                  double tolerance, ritz_response *out)
 {
     const ritz_responder *responder = mesh->responder;
     const ritz_grid ends = {
@@ -587,16 +612,16 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
                  "a tolerance of %g is not between 0 and 1", tolerance);
     RITZ_FAIL_IF(grid->hertz, RITZ_ERR_ARGUMENT,
                  "points that are given cannot be chosen by a tolerance");
-    RITZ_TRY(begin(responder, grid, &count, &hertz));
+    RITZ_TRY(begin_mesh(responder, grid, &count, &hertz));
     RITZ_TRY(new_mesh(responder, count, hertz, &mesh));
     for (int round = 0; round < MOST_ROUNDS && added > 0; round++) {
         ritz_noise_scales(io->num_outputs, io->num_inputs,
                           RITZ_SAMPLED_MARGIN * tolerance, mesh.peak,
                           mesh.level, mesh.scale);
-        RITZ_TRY(halve(&mesh, RITZ_SAMPLED_MARGIN * tolerance, &added));
+        RITZ_TRY(halve_open(&mesh, RITZ_SAMPLED_MARGIN * tolerance, &added));
     }
-    RITZ_TRY(mesh_add_dips(&mesh));
-    RITZ_TRY(hand_over(&mesh, grid, tolerance, out));
+    RITZ_TRY(add_dips(&mesh));
+    RITZ_TRY(build_response(&mesh, grid, tolerance, out));
 done:
     free(hertz);
     free_mesh(&mesh);

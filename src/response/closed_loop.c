@@ -18,14 +18,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* e and v as rows of what [x; w; r] makes of them. */
+/* e and v as linear functions of [x; w; r], one row each. */
 typedef struct signals {
     ritz_dense e, v;
 } signals;
 
 /* A(:, at) */
-static ritz_status pick(const ritz_dense *A, int64_t count, const int64_t *at,
-                        ritz_dense *out)
+static ritz_status copy_columns(const ritz_dense *A, int64_t count,
+                                const int64_t *at, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
     for (int64_t j = 0; j < count && A->nrow > 0; j++)
@@ -55,9 +55,9 @@ static ritz_status add_product(double factor, const ritz_dense *A,
     return RITZ_OK;
 }
 
-/* e := Q e, and the status says if Q is there. */
-static ritz_status solve_circle(double sign, const ritz_dense *D_yu,
-                                const ritz_dense *D_c, ritz_dense *e)
+/* e := Q e; the status says whether Q exists. */
+static ritz_status multiply_q(double sign, const ritz_dense *D_yu,
+                              const ritz_dense *D_c, ritz_dense *e)
 {
     ritz_status status = RITZ_OK;
     ritz_dense circle = {0};
@@ -90,29 +90,30 @@ static ritz_status find_signals(const ritz_state_space *p,
         ritz_dense_rows(&p->C, loop->num_measured, loop->measured, &C_y));
     RITZ_CHECK(
         ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
-    RITZ_CHECK(pick(&D_y, loop->num_driven, loop->driven, &D_yu));
+    RITZ_CHECK(copy_columns(&D_y, loop->num_driven, loop->driven, &D_yu));
     RITZ_CHECK(ritz_dense_mul(&D_yu, &c->C, &DC));
     RITZ_CHECK(ritz_dense_new(loop->num_measured, width, &out->e));
     add_block(1.0, &C_y, 0, 0, &out->e);
     add_block(sign, &DC, 0, n, &out->e);
     add_block(1.0, &D_y, 0, n + c->A.nrow, &out->e);
-    RITZ_CHECK(solve_circle(sign, &D_yu, &c->D, &out->e));
+    RITZ_CHECK(multiply_q(sign, &D_yu, &c->D, &out->e));
     RITZ_CHECK(ritz_dense_mul(&c->D, &out->e, &out->v));
     add_block(1.0, &c->C, 0, n, &out->v);
     return RITZ_OK;
 }
 
-/* [A B] of both, their own and what they make each other do. */
-static ritz_status fill(const ritz_state_space *p, const ritz_state_space *c,
-                        const ritz_loop *loop, const signals *s,
-                        ritz_dense *rates, ritz_dense *seen)
+/* [A B] of plant and controller, their own terms and those that couple them. */
+static ritz_status fill_first_order(const ritz_state_space *p,
+                                    const ritz_state_space *c,
+                                    const ritz_loop *loop, const signals *s,
+                                    ritz_dense *rates, ritz_dense *seen)
 {
     double sign = loop->positive ? 1.0 : -1.0;
     int64_t n = p->A.nrow, m = c->A.nrow;
     RITZ_OWN(ritz_dense) B_u = {0}, D_u = {0};
 
-    RITZ_CHECK(pick(&p->B, loop->num_driven, loop->driven, &B_u));
-    RITZ_CHECK(pick(&p->D, loop->num_driven, loop->driven, &D_u));
+    RITZ_CHECK(copy_columns(&p->B, loop->num_driven, loop->driven, &B_u));
+    RITZ_CHECK(copy_columns(&p->D, loop->num_driven, loop->driven, &D_u));
     RITZ_CHECK(ritz_dense_new(n + m, n + m + p->num_inputs, rates));
     RITZ_CHECK(ritz_dense_new(p->num_outputs, n + m + p->num_inputs, seen));
     add_block(1.0, &p->A, 0, 0, rates);
@@ -144,8 +145,9 @@ static ritz_status join_masses(const ritz_state_space *p,
     return RITZ_OK;
 }
 
-static ritz_status name(const ritz_state_space *p, const ritz_state_space *c,
-                        ritz_state_space *out)
+static ritz_status name_signals(const ritz_state_space *p,
+                                const ritz_state_space *c,
+                                ritz_state_space *out)
 {
     int64_t n = p->A.nrow, m = c->A.nrow;
 
@@ -184,8 +186,8 @@ ritz_status ritz_closed_loop(const ritz_state_space *plant,
         &(ritz_ends){controller->num_inputs, controller->num_outputs, NULL,
                      NULL}));
     RITZ_TRY(find_signals(plant, controller, loop, &s));
-    RITZ_TRY(fill(plant, controller, loop, &s, &rates, &seen));
-    RITZ_TRY(name(plant, controller, &made));
+    RITZ_TRY(fill_first_order(plant, controller, loop, &s, &rates, &seen));
+    RITZ_TRY(name_signals(plant, controller, &made));
     RITZ_TRY(ritz_dense_columns(&rates, 0, states, &made.A));
     RITZ_TRY(ritz_dense_columns(&rates, states, plant->num_inputs, &made.B));
     RITZ_TRY(ritz_dense_columns(&seen, 0, states, &made.C));

@@ -1,18 +1,19 @@
 /*
- * Response of a full component, one complex symmetric factor a frequency:
+ * Response of a full component by one complex symmetric factorization for each
+ * frequency:
  *
  *     Z_0 = K + i K4 + i w D - w^2 M,    Rayleigh: (1 + i w b) K, a M too
  *
- * Damping ratios act on modes Phi: Z = Z_0 + M Phi E Phi'M with
- * E = i w diag(2 zeta w_k).
+ * Damping ratios act on modes Phi: Z = Z_0 + M Phi E Phi'M with E = i w diag(2
+ * zeta w_k).
  *
- * Without D and K4 the modes come apart from the rest exactly,
+ * Without D and K4 the modes decouple from the rest exactly,
  *
  *     x = Phi (Lambda - w^2 I + E)^-1 Phi'f + P Z_0^-1 P'f,
  *     P = I - Phi Phi'M,
  *
- * and Z_0 may be near a pole as P'f does not reach it. With them, and
- * U = M Phi,
+ * and Z_0 may be nearly singular at a pole, as P'f has no part along that mode.
+ * With D or K4, and U = M Phi,
  *
  *     x = (I - Y (I + E U'Y)^-1 E U') Z_0^-1 f,    Y = Z_0^-1 U
  */
@@ -33,7 +34,7 @@
 
 enum { MOST_MATRICES = 4, MOST_NUDGES = 100 };
 
-static ritz_status start(ritz_direct *s)
+static ritz_status find_damped_modes(ritz_direct *s)
 {
     const ritz_component *c = s->component;
     const ritz_sparse *A[MOST_MATRICES] = {&c->K, &c->M};
@@ -65,7 +66,7 @@ ritz_status ritz_direct_new(const ritz_component *component,
                                        &s.poles));
     s.m = s.pairs.Phi.ncol;
     RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
-    RITZ_CHECK(start(&s));
+    RITZ_CHECK(find_damped_modes(&s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
@@ -80,7 +81,7 @@ void ritz_direct_free(ritz_direct *direct)
     *direct = (ritz_direct){0};
 }
 
-static ritz_status make_room(ritz_direct *s, int64_t columns)
+static ritz_status reserve_columns(ritz_direct *s, int64_t columns)
 {
     if (columns <= s->room)
         return RITZ_OK;
@@ -91,7 +92,7 @@ static ritz_status make_room(ritz_direct *s, int64_t columns)
     return RITZ_OK;
 }
 
-static ritz_status factor(ritz_direct *s, double w, double w2)
+static ritz_status factor_impedance(ritz_direct *s, double w, double w2)
 {
     ritz_status status = RITZ_OK;
     double a = 0.0;
@@ -135,8 +136,8 @@ static void remove_modes(const ritz_dense *A, const ritz_dense *B,
     }
 }
 
-/* w^2, or next to it, where no removed mode has its pole. */
-static double beside_poles(const ritz_direct *s, double w2)
+/* w^2, moved away from the poles of the modes that are projected out. */
+static double avoid_poles(const ritz_direct *s, double w2)
 {
     int64_t r = s->poles.num_rigid;
     double first = r < s->m ? s->poles.lambda[r] : fabs(s->pairs.sigma);
@@ -155,9 +156,12 @@ static double beside_poles(const ritz_direct *s, double w2)
     return w2;
 }
 
-/* The rest with the modes' share of the load taken away, and of the answer. */
-static ritz_status solve_apart(ritz_direct *s, double w, int64_t k,
-                               double _Complex *X)
+/*
+ * Response of the decoupled rest: the modes' part is projected out of the load
+ * before the solution, and out of the solution after it.
+ */
+static ritz_status solve_decoupled(ritz_direct *s, double w, int64_t k,
+                                   double _Complex *X)
 {
     if (s->m >= s->n) {
         memset(X, 0, (size_t)(s->n * k) * sizeof *X);
@@ -165,7 +169,7 @@ static ritz_status solve_apart(ritz_direct *s, double w, int64_t k,
     }
     for (int64_t j = 0; j < k; j++)
         remove_modes(&s->MPhi, &s->pairs.Phi, X + j * s->n);
-    RITZ_CHECK(factor(s, w, beside_poles(s, w * w)));
+    RITZ_CHECK(factor_impedance(s, w, avoid_poles(s, w * w)));
     RITZ_CHECK(ritz_zldl_solve(s->Z, k, X));
     for (int64_t j = 0; j < k; j++)
         remove_modes(&s->pairs.Phi, &s->MPhi, X + j * s->n);
@@ -173,8 +177,8 @@ static ritz_status solve_apart(ritz_direct *s, double w, int64_t k,
 }
 
 /* out = E U'X, m x columns. */
-static void rates(const ritz_direct *s, double w, int64_t columns,
-                  const double _Complex *X, double _Complex *out)
+static void apply_ratios(const ritz_direct *s, double w, int64_t columns,
+                         const double _Complex *X, double _Complex *out)
 {
     for (int64_t j = 0; j < columns; j++)
         for (int64_t k = 0; k < s->m; k++) {
@@ -191,8 +195,9 @@ static void rates(const ritz_direct *s, double w, int64_t columns,
 }
 
 /* X := X - Y (I + E U'Y)^-1 E U'X, n x columns; Y n x m. */
-static ritz_status correct(const ritz_direct *s, double w, int64_t columns,
-                           const double _Complex *Y, double _Complex *X)
+static ritz_status correct_ratios(const ritz_direct *s, double w,
+                                  int64_t columns, const double _Complex *Y,
+                                  double _Complex *X)
 {
     ritz_status status = RITZ_OK;
     int64_t m = s->m;
@@ -204,8 +209,8 @@ static ritz_status correct(const ritz_direct *s, double w, int64_t columns,
     RITZ_NEW(S, m * m);
     RITZ_NEW(q, m * columns);
     RITZ_NEW(pivot, m);
-    rates(s, w, m, Y, S);
-    rates(s, w, columns, X, q);
+    apply_ratios(s, w, m, Y, S);
+    apply_ratios(s, w, columns, X, q);
     for (int64_t k = 0; k < m; k++)
         S[k + k * m] += 1.0;
     if (m > 0)
@@ -224,9 +229,12 @@ done:
     return status;
 }
 
-/* The answers to k loads, and to M Phi if ratios act beside the matrices. */
-static ritz_status solve_together(ritz_direct *s, double hertz, bool transposed,
-                                  int64_t k, double _Complex *X)
+/*
+ * Responses to k load vectors, and to M Phi if damping ratios act in addition
+ * to the matrices.
+ */
+static ritz_status solve_coupled(ritz_direct *s, double hertz, bool transposed,
+                                 int64_t k, double _Complex *X)
 {
     ritz_status (*solve)(ritz_zldl *, int64_t, double _Complex *) =
         transposed ? ritz_zldl_solve_transposed : ritz_zldl_solve;
@@ -237,7 +245,7 @@ static ritz_status solve_together(ritz_direct *s, double hertz, bool transposed,
     RITZ_FAIL_IF(hertz == 0.0 && s->poles.num_rigid > 0, RITZ_ERR_SINGULAR,
                  "at 0 Hz the response is infinite: the body is free, begin "
                  "above 0 Hz");
-    RITZ_TRY(factor(s, w, w * w));
+    RITZ_TRY(factor_impedance(s, w, w * w));
     RITZ_TRY(solve(s->Z, k, X));
     if (!s->ratios)
         goto done;
@@ -245,7 +253,7 @@ static ritz_status solve_together(ritz_direct *s, double hertz, bool transposed,
     for (int64_t i = 0; i < s->n * s->m; i++)
         Y[i] = s->MPhi.val[i];
     RITZ_TRY(solve(s->Z, s->m, Y));
-    RITZ_TRY(correct(s, w, k, Y, X));
+    RITZ_TRY(correct_ratios(s, w, k, Y, X));
 done:
     free(Y);
     return status;
@@ -255,8 +263,8 @@ ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
                               bool transposed, int64_t k, double _Complex *X)
 {
     if (direct->apart)
-        return solve_apart(direct, 2.0 * RITZ_PI * hertz, k, X);
-    return solve_together(direct, hertz, transposed, k, X);
+        return solve_decoupled(direct, 2.0 * RITZ_PI * hertz, k, X);
+    return solve_coupled(direct, hertz, transposed, k, X);
 }
 
 ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
@@ -266,7 +274,7 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
 
     if (direct->inputs == 0)
         return RITZ_OK;
-    RITZ_CHECK(make_room(direct, direct->inputs));
+    RITZ_CHECK(reserve_columns(direct, direct->inputs));
     for (int64_t i = 0; i < direct->n * direct->inputs; i++)
         direct->X[i] = io->B.val[i];
     if (direct->apart)
@@ -278,15 +286,16 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
 }
 
 /*
- * What rounding leaves of full answers. A factor is exact for a matrix that is
- * some eps |Z| off, entry by entry, so that with x = Z^-1 b and y = Z^-T c
+ * The rounding error of the full response. The computed factors are exact for a
+ * matrix that differs from Z by some eps |Z|, entry by entry, so that with x =
+ * Z^-1 b and y = Z^-T c
  *
  *     |c'Z^-1 b - computed| <= some eps |y|'|Z||x|
  */
 
 /* t += factor |A||x| */
-static void add(const ritz_sparse *A, double factor, const double _Complex *x,
-                double *t)
+static void add_magnitudes(const ritz_sparse *A, double factor,
+                           const double _Complex *x, double *t)
 {
     for (int64_t j = 0; A->colptr && j < A->ncol; j++) {
         double size = factor * cabs(x[j]);
@@ -314,10 +323,10 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
 
         for (int64_t k = 0; k < n; k++)
             t[k] = 0.0;
-        add(&c->K, 1.0 + w * b, x, t);
-        add(&c->M, w * w + w * a, x, t);
-        add(&c->D, w, x, t);
-        add(&c->K4, 1.0, x, t);
+        add_magnitudes(&c->K, 1.0 + w * b, x, t);
+        add_magnitudes(&c->M, w * w + w * a, x, t);
+        add_magnitudes(&c->D, w, x, t);
+        add_magnitudes(&c->K4, 1.0, x, t);
         for (int64_t i = 0; i < outputs; i++) {
             double sum = 0.0;
 
@@ -330,21 +339,21 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
     return RITZ_OK;
 }
 
-/* The direct engine: a factor of the full matrices at each point. */
+/* The direct engine: the full matrices are factored at each point. */
 
-static ritz_status at(void *state, double hertz, double _Complex *H)
+static ritz_status direct_at(void *state, double hertz, double _Complex *H)
 {
     return ritz_direct_at(state, hertz, H);
 }
 
-static void finish(void *state)
+static void free_direct(void *state)
 {
     ritz_direct_free(state);
     free(state);
 }
 
-static ritz_status make(const ritz_response_request *request,
-                        ritz_responder *out)
+static ritz_status make_direct(const ritz_response_request *request,
+                               ritz_responder *out)
 {
     RITZ_OWN_ARRAY ritz_direct *s = NULL;
 
@@ -353,8 +362,8 @@ static ritz_status make(const ritz_response_request *request,
                                ritz_response_highest(request), s));
     out->poles = &s->poles;
     out->pairs = &s->pairs;
-    out->at = at;
-    out->free = finish;
+    out->at = direct_at;
+    out->free = free_direct;
     RITZ_MOVE(out->state, s);
     return RITZ_OK;
 }
@@ -368,7 +377,7 @@ const ritz_response_engine ritz_response_engine_direct = {
              "--up-to-hz",
     .fails = "many points of a large model take hours",
     .takes = RITZ_RESPONDS_COMPONENT,
-    .make = make,
+    .make = make_direct,
 };
 
 ritz_status ritz_response_direct(const ritz_component *component,

@@ -1,6 +1,6 @@
 /*
- * Full matrices of a component, factored at any frequency: what the direct
- * engine samples, krylov projects and rational interpolates.
+ * Full matrices of a component, factored at any frequency: the direct engine
+ * samples them, krylov projects them and rational interpolates them.
  */
 #ifndef RITZ_RESPONSE_DIRECT_H
 #define RITZ_RESPONSE_DIRECT_H
@@ -14,35 +14,38 @@ typedef struct ritz_direct {
     ritz_damping damping;
     ritz_zldl *Z;
     ritz_pairs pairs;
-    ritz_poles poles; /* of the modes; their response is complete if `apart` */
+    ritz_poles poles; /* of modes; with their response if `apart` */
     ritz_dense MPhi;  /* n x m */
     int64_t n, m, inputs;
     bool apart; /* neither D nor K4 nor Rayleigh damping */
     bool ratios;
-    double _Complex *X; /* n x room, to work in */
+    double _Complex *X; /* n x room, work space */
     int64_t room;
-    int64_t factors; /* how many were made */
+    int64_t factors; /* how many were computed */
 } ritz_direct;
 
-/** @param[in] up_to_hz  of the modes on which ratios act */
+/** @param[in] up_to_hz  bound of the modes on which damping ratios act */
 ritz_status ritz_direct_new(const ritz_component *component,
                             const ritz_damping *damping, double up_to_hz,
                             ritz_direct *out);
 
-/** H at one frequency, which is zero before. @cost a complex factor */
+/**
+ * Add H at one frequency to an array of zeros. @cost a complex factorization
+ */
 ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
                            double _Complex *H);
 
 /**
- * X := Z(i w)^-1 X, n x k, one factor; if @p transposed by Z'. Where modes come
- * apart, this is what the rest answers: without the modes' share.
+ * X := Z(i w)^-1 X, n x k, by one factorization; with Z' if @p transposed.
+ * Where the modes are decoupled this is the response of the rest alone, without
+ * the modes' part.
  */
 ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
                               bool transposed, int64_t k, double _Complex *X);
 
 /**
- * What rounding may be of the full answers of all inputs, X, and of the outputs
- * in the transposed system, Y.
+ * Estimate of the rounding error of H, from the full responses X to all inputs
+ * and Y of the transposed system to all outputs.
  *
  * @param[out] out  outputs x inputs, row by row, of H
  */

@@ -1,8 +1,8 @@
 /*
- * Where a response is computed. A resonance of ratio zeta at frequency f is
- * 2 zeta f wide at half its power: an even grid steps over it as soon as its
- * own step is wider. With `refine` each gets its peak and points on both sides
- * that lie 1/4 to 8 widths away.
+ * The frequencies at which a response is computed. A resonance of ratio zeta at
+ * frequency f is 2 zeta f wide at half its power: an even grid steps over it as
+ * soon as its own step is wider. With `refine` each gets its peak and points on
+ * both sides that lie 1/4 to 8 widths away.
  */
 #include "base/search.h"
 #include "poles/poles.h"
@@ -19,7 +19,7 @@ static const double beside[] = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 enum { BESIDE = sizeof beside / sizeof *beside, AROUND = 2 * BESIDE + 1 };
 static const int64_t most_points = 100000000;
 
-/* Points that are given ascend, and none is negative. */
+/* Given points must ascend, and none may be negative. */
 static ritz_status check_points(const ritz_grid *grid)
 {
     RITZ_REFUSE_IF(grid->count < 1, RITZ_ERR_ARGUMENT,
@@ -51,7 +51,7 @@ ritz_status ritz_grid_check(const ritz_grid *grid)
     return RITZ_OK;
 }
 
-static double even_point(const ritz_grid *grid, int64_t k)
+static double place_even(const ritz_grid *grid, int64_t k)
 {
     double t = (double)k / (double)(grid->count - 1);
 
@@ -65,8 +65,8 @@ static double even_point(const ritz_grid *grid, int64_t k)
                      : grid->from_hz + t * (grid->to_hz - grid->from_hz);
 }
 
-/* Peak of 1/|w^2 - x^2 + 2 i zeta w x|, then the points beside it. */
-static void around(double omega, double zeta, double out[static AROUND])
+/* Peak of 1/|w^2 - x^2 + 2 i zeta w x|, then the points on both sides of it. */
+static void place_around(double omega, double zeta, double out[static AROUND])
 {
     double f = omega / (2.0 * RITZ_PI);
     double peak = zeta < sqrt(0.5) ? f * sqrt(1.0 - 2.0 * zeta * zeta) : f;
@@ -78,7 +78,7 @@ static void around(double omega, double zeta, double out[static AROUND])
     }
 }
 
-static int64_t distinct(int64_t count, double *f)
+static int64_t remove_equal(int64_t count, double *f)
 {
     int64_t kept = 0;
 
@@ -100,16 +100,16 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
     RITZ_CHECK(ritz_grid_check(grid));
     RITZ_CHECK_NEW(f, grid->count + (grid->refine ? num_modes * AROUND : 0));
     for (n = 0; n < grid->count; n++)
-        f[n] = even_point(grid, n);
+        f[n] = place_even(grid, n);
     for (int64_t k = 0; grid->refine && !grid->hertz && k < num_modes; k++) {
         if (!(omega[k] > 0.0 && zeta[k] > 0.0)) /* no width to resolve */
             continue;
-        around(omega[k], zeta[k], extra);
+        place_around(omega[k], zeta[k], extra);
         for (int a = 0; a < AROUND; a++)
             if (extra[a] >= grid->from_hz && extra[a] <= grid->to_hz)
                 f[n++] = extra[a];
     }
-    *count = grid->hertz ? n : distinct(n, f);
+    *count = grid->hertz ? n : remove_equal(n, f);
     RITZ_MOVE(*out, f);
     return RITZ_OK;
 }

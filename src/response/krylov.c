@@ -16,45 +16,45 @@
 #include <string.h>
 
 /*
- * The krylov engine while its space grows: errors at some points, and what is
- * added where they are largest. See response_krylov.c for the equations.
+ * The krylov engine while its space grows: errors at some points, and the
+ * vectors that are added where errors are largest. The equations follow below.
  */
 
 typedef struct krylov_responder {
     ritz_direct full;
     ritz_krylov_space space;
     ritz_krylov_small small;
-    double lambda_h;  /* every mode beneath is in the space */
+    double lambda_h;  /* every mode below is in the space */
     double tolerance; /* of the largest |H| of a channel */
-    double amplify;   /* of errors, where full answers showed larger ones */
+    double amplify;   /* of errors that full responses showed */
     int64_t outputs, inputs, values;
-    int64_t count, num_even; /* of points; the first measure H too */
+    int64_t count, num_even; /* of points; at the even ones H too */
     double *hertz;
     double *size;  /* inputs, then outputs: of residuals at one point */
-    double *load;  /* the same of the loads */
+    double *load;  /* norms of the load vectors */
     double *error; /* count x values */
-    double *trial; /* values: errors at one point more */
-    double *noise; /* values: rounding of the full answers met last */
+    double *trial; /* values: errors at one more point */
+    double *noise; /* values: rounding of the last full H */
     double *peak, *allowed; /* values */
     double _Complex *y, *H;
     double worst;                /* largest error / allowed */
-    double unmet;                /* that, or what full answers showed */
+    double unmet;                /* that, or what full responses showed */
     int64_t at;                  /* the point where it is */
-    int64_t points, corrections; /* that were made */
+    int64_t points, corrections; /* counts */
 } krylov_responder;
 
 enum { EVEN = 12, MOST_MODES = 60 };
 
 /* Whether D or K4 couples modes with the rest. */
-static bool krylov_couples(const krylov_responder *k)
+static bool has_coupling(const krylov_responder *k)
 {
     const ritz_component *c = k->full.component;
 
     return c->D.colptr || c->K4.colptr;
 }
 
-/* f, or beside it where a mode is. */
-static double clear(const krylov_responder *k, double f)
+/* f, or a frequency next to it if f is that of a mode. */
+static double avoid_modes(const krylov_responder *k, double f)
 {
     for (int64_t j = 0; j < k->full.m; j++) {
         double mode = ritz_eigen_hertz(k->full.poles.lambda[j]);
@@ -65,8 +65,11 @@ static double clear(const krylov_responder *k, double f)
     return f;
 }
 
-/* Even ones; where modes are coupled, each resonance and between them too. */
-static ritz_status place(krylov_responder *k, double low, double high)
+/*
+ * Place points evenly; where modes are coupled, also at each resonance and
+ * between neighbouring ones.
+ */
+static ritz_status place_points(krylov_responder *k, double low, double high)
 {
     double before = low;
     int64_t m = k->full.m;
@@ -74,21 +77,22 @@ static ritz_status place(krylov_responder *k, double low, double high)
 
     RITZ_CHECK_NEW(k->hertz, EVEN + 2 * m);
     for (int j = 0; j < EVEN; j++)
-        k->hertz[k->count++] = clear(k, low + (high - low) * j / (EVEN - 1));
+        k->hertz[k->count++] =
+            avoid_modes(k, low + (high - low) * j / (EVEN - 1));
     k->num_even = k->count;
-    for (int64_t j = 0; j < m && krylov_couples(k); j += stride) {
+    for (int64_t j = 0; j < m && has_coupling(k); j += stride) {
         double mode = ritz_eigen_hertz(k->full.poles.lambda[j]);
 
         if (mode <= low || mode >= high)
             continue;
         k->hertz[k->count++] = mode * (1.0 + RITZ_BESIDE_MODE);
-        k->hertz[k->count++] = clear(k, 0.5 * (before + mode));
+        k->hertz[k->count++] = avoid_modes(k, 0.5 * (before + mode));
         before = mode;
     }
     return RITZ_OK;
 }
 
-static ritz_status make_room(krylov_responder *k)
+static ritz_status reserve_points(krylov_responder *k)
 {
     RITZ_CHECK_NEW(k->size, k->inputs + k->outputs);
     RITZ_CHECK_NEW(k->load, k->inputs + k->outputs);
@@ -101,16 +105,16 @@ static ritz_status make_room(krylov_responder *k)
     return RITZ_OK;
 }
 
-/* Points and arrays for a range. */
-static ritz_status place_krylov(krylov_responder *k, double from_hz,
-                                double to_hz)
+/* Place the points of a range and allocate the arrays. */
+static ritz_status prepare_points(krylov_responder *k, double from_hz,
+                                  double to_hz)
 {
-    RITZ_CHECK(place(k, fmax(from_hz, RITZ_ABOVE_REST * to_hz), to_hz));
-    return make_room(k);
+    RITZ_CHECK(place_points(k, fmax(from_hz, RITZ_ABOVE_REST * to_hz), to_hz));
+    return reserve_points(k);
 }
 
-/* Residual `index`, inputs before outputs, of what was solved last. */
-static void take_krylov(krylov_responder *k, double hertz, int64_t index)
+/* The residual `index`, inputs before outputs, of the last solution. */
+static void find_residual(krylov_responder *k, double hertz, int64_t index)
 {
     bool dual = index >= k->inputs;
 
@@ -118,9 +122,9 @@ static void take_krylov(krylov_responder *k, double hertz, int64_t index)
                          dual ? index - k->inputs : index, k->y);
 }
 
-/* Sizes of all residuals at a point; of loads, of which they are the rest. */
-static ritz_status judge_krylov(krylov_responder *k, double hertz,
-                                double *error)
+/* Norms of all residuals at a point, and of the load vectors they belong to. */
+static ritz_status measure_residuals(krylov_responder *k, double hertz,
+                                     double *error)
 {
     double w2 = ritz_eigen_lambda(hertz);
     double gap = fmax(k->lambda_h - w2, RITZ_LEAST_GAP * k->lambda_h);
@@ -128,7 +132,7 @@ static ritz_status judge_krylov(krylov_responder *k, double hertz,
 
     RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
     for (int64_t j = 0; j < k->inputs + k->outputs; j++) {
-        take_krylov(k, hertz, j);
+        find_residual(k, hertz, j);
         k->size[j] = ritz_krylov_space_norm(&k->space, k->y);
         for (int64_t c = 0; c < k->space.W.ncol; c++)
             if (k->space.column[c].kind > RITZ_KRYLOV_CA)
@@ -142,7 +146,7 @@ static ritz_status judge_krylov(krylov_responder *k, double hertz,
     return RITZ_OK;
 }
 
-static ritz_status see_peaks(krylov_responder *k, double hertz)
+static ritz_status raise_peaks(krylov_responder *k, double hertz)
 {
     memset(k->H, 0, (size_t)k->values * sizeof *k->H);
     RITZ_CHECK(ritz_poles_add(&k->small.poles, hertz, k->H));
@@ -151,8 +155,8 @@ static ritz_status see_peaks(krylov_responder *k, double hertz)
     return RITZ_OK;
 }
 
-/* What each channel may err. */
-static void allow(krylov_responder *k)
+/* Set the error that each channel may have. */
+static void set_allowed(krylov_responder *k)
 {
     ritz_channel_scales(k->outputs, k->inputs, k->peak, k->allowed);
     for (int64_t i = 0; i < k->outputs; i++)
@@ -166,22 +170,22 @@ static void allow(krylov_responder *k)
         }
 }
 
-static ritz_status at(void *state, double hertz, double _Complex *H)
+static ritz_status krylov_at(void *state, double hertz, double _Complex *H)
 {
     return ritz_poles_add(&((krylov_responder *)state)->small.poles, hertz, H);
 }
 
-/* Every point: the worst of them, against what is allowed. */
-static ritz_status measure_krylov(krylov_responder *k)
+/* Measure all points and find the largest ratio of error to allowed error. */
+static ritz_status measure_points(krylov_responder *k)
 {
     free(k->y);
     RITZ_CHECK_NEW(k->y, k->space.W.ncol);
     for (int64_t c = 0; c < k->count; c++) {
-        RITZ_CHECK(judge_krylov(k, k->hertz[c], k->error + c * k->values));
+        RITZ_CHECK(measure_residuals(k, k->hertz[c], k->error + c * k->values));
         if (c < k->num_even)
-            RITZ_CHECK(see_peaks(k, k->hertz[c]));
+            RITZ_CHECK(raise_peaks(k, k->hertz[c]));
     }
-    allow(k);
+    set_allowed(k);
     k->worst = 0.0;
     for (int64_t c = 0; c < k->count; c++)
         for (int64_t v = 0; v < k->values; v++) {
@@ -196,8 +200,8 @@ static ritz_status measure_krylov(krylov_responder *k)
     return RITZ_OK;
 }
 
-/* Whether residual `index` has a part in an error that is too large. */
-static bool takes_part(const krylov_responder *k, int64_t index)
+/* Whether residual `index` contributes to an error that is too large. */
+static bool is_responsible(const krylov_responder *k, int64_t index)
 {
     const double *error = k->error + k->at * k->values;
 
@@ -209,17 +213,18 @@ static bool takes_part(const krylov_responder *k, int64_t index)
     return false;
 }
 
-/* Project anew and measure. */
-static ritz_status renew(krylov_responder *k, ritz_dense *X, int64_t *added)
+/* Extend the space by X, project again and measure. */
+static ritz_status renew_projection(krylov_responder *k, ritz_dense *X,
+                                    int64_t *added)
 {
     RITZ_CHECK(ritz_krylov_space_add(&k->space, X, added));
     ritz_krylov_small_free(&k->small);
     RITZ_CHECK(ritz_krylov_small_new(&k->full, &k->space, &k->small));
-    return measure_krylov(k);
+    return measure_points(k);
 }
 
-/* X += real and imaginary part of S y, as columns. */
-static void correction(const krylov_responder *k, ritz_dense *X)
+/* Append the real and the imaginary part of S y to X, as columns. */
+static void append_correction(const krylov_responder *k, ritz_dense *X)
 {
     int64_t n = k->space.S.nrow;
     double *re = X->val + n * X->ncol;
@@ -238,8 +243,8 @@ static void correction(const krylov_responder *k, ritz_dense *X)
     X->ncol += 2;
 }
 
-/* The first: A^-1 of all loads. */
-static ritz_status begin_krylov(krylov_responder *k)
+/* The first vectors: A^-1 of all load vectors. */
+static ritz_status begin_space(krylov_responder *k)
 {
     RITZ_OWN(ritz_dense) X = {0};
     int64_t added = 0;
@@ -249,12 +254,12 @@ static ritz_status begin_krylov(krylov_responder *k)
     X.nrow = k->full.n;
     for (int64_t c = 0; c < k->space.W.ncol; c++)
         if (k->space.column[c].kind > RITZ_KRYLOV_CA && X.ncol > c)
-            X.ncol = c; /* loads are in front */
-    return renew(k, &X, &added);
+            X.ncol = c; /* loads come first */
+    return renew_projection(k, &X, &added);
 }
 
-/* A^-1 of the residuals at the worst point. */
-static ritz_status krylov_correct(krylov_responder *k, int64_t *added)
+/* Extend the space by A^-1 of the residuals at the worst point. */
+static ritz_status correct_worst(krylov_responder *k, int64_t *added)
 {
     int64_t loads = k->inputs + k->outputs;
     double hertz = k->hertz[k->at];
@@ -264,17 +269,17 @@ static ritz_status krylov_correct(krylov_responder *k, int64_t *added)
     X.ncol = 0;
     RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
     for (int64_t j = 0; j < loads; j++)
-        if (takes_part(k, j)) {
-            take_krylov(k, hertz, j);
-            correction(k, &X);
+        if (is_responsible(k, j)) {
+            find_residual(k, hertz, j);
+            append_correction(k, &X);
         }
-    RITZ_CHECK(renew(k, &X, added));
+    RITZ_CHECK(renew_projection(k, &X, added));
     k->corrections++;
     return RITZ_OK;
 }
 
-/* b of the inputs, then c of the outputs, n each. */
-static void put_loads(const krylov_responder *k, double w, double _Complex *X)
+/* Fill in b of the inputs, then c of the outputs, n entries each. */
+static void fill_loads(const krylov_responder *k, double w, double _Complex *X)
 {
     const ritz_io *io = &k->full.component->io;
     int64_t n = k->full.n;
@@ -289,9 +294,9 @@ static void put_loads(const krylov_responder *k, double w, double _Complex *X)
                              w * ritz_dense_col(&io->Cv, i)[o]);
 }
 
-/* Real and imaginary parts side by side. */
-static ritz_status split(int64_t n, int64_t columns, const double _Complex *Z,
-                         ritz_dense *X)
+/* Real and imaginary parts as columns next to each other. */
+static ritz_status split_complex(int64_t n, int64_t columns,
+                                 const double _Complex *Z, ritz_dense *X)
 {
     RITZ_CHECK(ritz_dense_new(n, 2 * columns, X));
     for (int64_t j = 0; j < columns; j++)
@@ -303,13 +308,14 @@ static ritz_status split(int64_t n, int64_t columns, const double _Complex *Z,
 }
 
 /*
- * Largest error of the projection beside full answers, over what is allowed;
- * where it is more than was thought, all errors are from now on. Neither is
- * what rounding makes of those answers: Y are the outputs' own.
+ * Largest error of the projection relative to the allowed one, from the full
+ * response. If it is larger than estimated, all estimates are amplified from
+ * now on. Rounding of the full response is not counted as error; Y holds the
+ * responses of the transposed system to the outputs.
  */
-static ritz_status compare(krylov_responder *k, double hertz,
-                           const double _Complex *X, const double _Complex *Y,
-                           double *out)
+static ritz_status compare_full(krylov_responder *k, double hertz,
+                                const double _Complex *X,
+                                const double _Complex *Y, double *out)
 {
     ritz_status status = RITZ_OK;
     double more = 1.0;
@@ -320,7 +326,7 @@ static ritz_status compare(krylov_responder *k, double hertz,
     ritz_io_respond(&k->full.component->io, hertz, X, H);
     if (k->full.apart)
         RITZ_TRY(ritz_poles_add(&k->full.poles, hertz, H));
-    RITZ_TRY(judge_krylov(k, hertz, k->trial));
+    RITZ_TRY(measure_residuals(k, hertz, k->trial));
     memset(k->H, 0, (size_t)k->values * sizeof *k->H);
     RITZ_TRY(ritz_poles_add(&k->small.poles, hertz, k->H));
     *out = 0.0;
@@ -340,18 +346,20 @@ done:
     return status;
 }
 
-/* Answers to all inputs at a frequency, or beside it where there is none; and
-   to all outputs, of the transposed system. */
-static ritz_status answer(krylov_responder *k, double *hertz,
-                          double _Complex *Z)
+/*
+ * Full responses to all inputs at a frequency, or next to it if the matrix is
+ * singular there; and those of the transposed system to all outputs.
+ */
+static ritz_status solve_full(krylov_responder *k, double *hertz,
+                              double _Complex *Z)
 {
     ritz_status status = RITZ_OK;
 
-    put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
+    fill_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
     status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
     if (status == RITZ_ERR_SINGULAR) {
         *hertz *= 1.0 + RITZ_BESIDE_POLE;
-        put_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
+        fill_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
         status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
     }
     if (status != RITZ_OK)
@@ -363,14 +371,14 @@ done:
 }
 
 /*
- * Full answers at one frequency, and into the space unless what the projection
- * errs there is within what is allowed of the largest |H|, this one included,
- * and within what rounding makes of the full answers themselves.
+ * Compute the full responses at one frequency. They join the space unless the
+ * error of the projection there is within the allowed fraction of the largest
+ * |H|, this one included, or within the rounding of the full responses.
  *
  * @param[out] was  that error over what is allowed
  */
-static ritz_status krylov_expand(krylov_responder *k, double hertz,
-                                 int64_t *added, double *was)
+static ritz_status expand_at(krylov_responder *k, double hertz, int64_t *added,
+                             double *was)
 {
     ritz_status status = RITZ_OK;
     int64_t n = k->full.n;
@@ -379,14 +387,14 @@ static ritz_status krylov_expand(krylov_responder *k, double hertz,
     ritz_dense X = {0};
 
     RITZ_NEW(Z, n * loads);
-    RITZ_TRY(answer(k, &hertz, Z));
-    RITZ_TRY(compare(k, hertz, Z, Z + n * k->inputs, was));
+    RITZ_TRY(solve_full(k, &hertz, Z));
+    RITZ_TRY(compare_full(k, hertz, Z, Z + n * k->inputs, was));
     k->points++;
     *added = 0;
     if (*was <= 1.0)
         goto done;
-    RITZ_TRY(split(n, loads, Z, &X));
-    RITZ_TRY(renew(k, &X, added));
+    RITZ_TRY(split_complex(n, loads, Z, &X));
+    RITZ_TRY(renew_projection(k, &X, added));
     k->unmet = fmax(k->unmet, *was);
 done:
     free(Z);
@@ -395,29 +403,29 @@ done:
 }
 
 /*
- * Response by projection: the full damped matrices in a space of modes and of
- * answers, one V on both sides, so that symmetric stays symmetric and what
- * dissipates still does. The error of Galerkin's H is
+ * Response by projection: the full damped matrices are projected on a space of
+ * modes and static solutions, with the same V on both sides, which keeps
+ * symmetry and dissipation. The error of Galerkin's H is
  *
  *     c'Z^-1 b - c'V q = r_c'Z^-1 r_b,    r_b = b - Z V q,  r_c = c - Z'V p,
  *
- * and both residuals are free of modes below lambda_h. So with |r| in A^-1,
- * A = K + tau M,
+ * and both residuals have no part along modes below lambda_h. So with |r| in
+ * the norm of A^-1, A = K + tau M,
  *
  *     |error| <= (lambda_h + tau) / (lambda_h - w^2) |r_c| |r_b|,
  *
- * a bound if no D or K4 couples modes with the rest, an indicator if one does:
- * then the worst point is answered by the full matrices before it is believed.
+ * which is a bound if no D or K4 couples modes with the rest. Otherwise it is
+ * an indicator, and the full response at the worst point has to confirm it.
  *
- * Where it is largest the space gets A^-1 of both residuals, which is another
- * moment at the expansion point s = sqrt(tau), with a factor that is there; if
- * that pays no more, Z(i w)^-1 B and Z(i w)^-T C', an expansion point of its
- * own [Grimme1997].
+ * Where the error is largest, A^-1 of both residuals joins the space: another
+ * moment at the expansion point s = sqrt(tau), from a factor that exists
+ * already. When such corrections no longer reduce the error, Z(i w)^-1 B and
+ * Z(i w)^-T C' join it, which is a new expansion point [Grimme1997].
  */
 
 enum { MOST_ROUNDS = 60, MOST_CONFIRMED = 12 };
 
-static void krylov_free(krylov_responder *k)
+static void free_krylov(krylov_responder *k)
 {
     ritz_direct_free(&k->full);
     ritz_krylov_space_free(&k->space);
@@ -435,10 +443,11 @@ static void krylov_free(krylov_responder *k)
 }
 
 /*
- * Until the error is small everywhere. An expansion point at which it is,
- * beside the full answers, says that the bound is not sharp: *held.
+ * Grow the space until the error is small everywhere. *held says that the full
+ * response at an expansion point found the error within the limit although the
+ * estimate did not: the bound is not sharp there.
  */
-static ritz_status grow(krylov_responder *k, bool *held)
+static ritz_status grow_space(krylov_responder *k, bool *held)
 {
     bool pay = true;
     int64_t added = 1;
@@ -449,11 +458,11 @@ static ritz_status grow(krylov_responder *k, bool *held)
         double was = HUGE_VAL;
 
         if (pay) {
-            RITZ_CHECK(krylov_correct(k, &added));
+            RITZ_CHECK(correct_worst(k, &added));
             pay = added > 0 && k->worst <= RITZ_CORRECTION_PAYS * before;
             added = 1;
         } else {
-            RITZ_CHECK(krylov_expand(k, k->hertz[k->at], &added, &was));
+            RITZ_CHECK(expand_at(k, k->hertz[k->at], &added, &was));
             pay = added > 0;
         }
         *held = k->worst <= 1.0 || was <= 1.0;
@@ -462,11 +471,13 @@ static ritz_status grow(krylov_responder *k, bool *held)
     return RITZ_OK;
 }
 
-/* The frequency of the pole that is damped least, or beside it where that has
-   no response; 0 if none is in the range. */
-static ritz_status find_quietest(const krylov_responder *k,
-                                 const ritz_response_request *request,
-                                 double *out)
+/*
+ * The frequency of the least damped pole, or one next to it where the undamped
+ * system has no response; 0 if no pole is in the range.
+ */
+static ritz_status find_least_damped(const krylov_responder *k,
+                                     const ritz_response_request *request,
+                                     double *out)
 {
     const double band_hz[2] = {request->from_hz, request->to_hz};
     RITZ_OWN(ritz_damped) damped = {0};
@@ -489,36 +500,39 @@ static ritz_status find_quietest(const krylov_responder *k,
     return RITZ_OK;
 }
 
-/* Full answers at the worst point, and at the pole that is damped least. */
-static ritz_status confirm(krylov_responder *k,
-                           const ritz_response_request *request, bool *held)
+/*
+ * Compare with full responses at the worst point and at the least damped pole.
+ */
+static ritz_status confirm_errors(krylov_responder *k,
+                                  const ritz_response_request *request,
+                                  bool *held)
 {
     double hertz = k->hertz[k->at];
     double was = 0.0;
     int64_t added = 0;
 
     for (int t = 0; t < 2 && hertz > 0.0; t++) {
-        RITZ_CHECK(krylov_expand(k, hertz, &added, &was));
+        RITZ_CHECK(expand_at(k, hertz, &added, &was));
         *held = was <= 1.0;
         if (!*held)
             break;
-        RITZ_CHECK(find_quietest(k, request, &hertz));
+        RITZ_CHECK(find_least_damped(k, request, &hertz));
     }
     return RITZ_OK;
 }
 
-static ritz_status converge(krylov_responder *k,
-                            const ritz_response_request *request)
+static ritz_status converge_errors(krylov_responder *k,
+                                   const ritz_response_request *request)
 {
     bool held = false;
 
-    RITZ_CHECK(begin_krylov(k));
+    RITZ_CHECK(begin_space(k));
     for (int t = 0; t < MOST_CONFIRMED && !held; t++) {
-        RITZ_CHECK(grow(k, &held));
+        RITZ_CHECK(grow_space(k, &held));
         if (!held)
             break;
-        if (krylov_couples(k))
-            RITZ_CHECK(confirm(k, request, &held));
+        if (has_coupling(k))
+            RITZ_CHECK(confirm_errors(k, request, &held));
     }
     RITZ_REFUSE_IF(!held, RITZ_ERR_CONVERGENCE,
                    "a space of %" PRId64
@@ -527,8 +541,11 @@ static ritz_status converge(krylov_responder *k,
     return RITZ_OK;
 }
 
-/* Ratios act on the modes that all engines give them; else fewer are found. */
-static double highest_of(const ritz_response_request *request)
+/*
+ * Damping ratios act on the modes that every engine is given; without ratios
+ * fewer modes are computed.
+ */
+static double highest_mode(const ritz_response_request *request)
 {
     const ritz_damping *damping = request->damping;
 
@@ -539,11 +556,11 @@ static double highest_of(const ritz_response_request *request)
     return RITZ_POLES_BEYOND * request->to_hz;
 }
 
-static ritz_status start(const ritz_response_request *request,
-                         krylov_responder *k)
+static ritz_status start_krylov(const ritz_response_request *request,
+                                krylov_responder *k)
 {
     const ritz_io *io = &request->component->io;
-    double highest = highest_of(request);
+    double highest = highest_mode(request);
 
     RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
                    "modes up to %g Hz cannot give a response up to %g Hz",
@@ -560,39 +577,39 @@ static ritz_status start(const ritz_response_request *request,
                                &k->full));
     RITZ_CHECK(ritz_krylov_space_new(
         &k->full, ritz_eigen_lambda(request->to_hz), &k->space));
-    RITZ_CHECK(place_krylov(k, request->from_hz, request->to_hz));
-    return converge(k, request);
+    RITZ_CHECK(prepare_points(k, request->from_hz, request->to_hz));
+    return converge_errors(k, request);
 }
 
-static void finish(void *state)
+static void finish_krylov(void *state)
 {
-    krylov_free(state);
+    free_krylov(state);
     free(state);
 }
 
-static ritz_status make(const ritz_response_request *request,
-                        ritz_responder *out)
+static ritz_status make_krylov(const ritz_response_request *request,
+                               ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
     krylov_responder *k = NULL;
 
     RITZ_NEW(k, 1);
-    RITZ_TRY(start(request, k));
+    RITZ_TRY(start_krylov(request, k));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " modes and %" PRId64 " vectors more, of %" PRId64
                    " corrections and %" PRId64
                    " full answers; error below %.1e",
                    k->full.m, k->space.V.ncol - k->full.m, k->corrections + 1,
                    k->points, k->worst * k->tolerance);
-    ritz_krylov_space_free(&k->space); /* of length n, and needed no more */
+    ritz_krylov_space_free(&k->space); /* frees arrays of length n */
     ritz_direct_free(&k->full);
     out->poles = &k->small.poles;
-    out->at = at;
-    out->free = finish;
+    out->at = krylov_at;
+    out->free = finish_krylov;
     RITZ_MOVE(out->state, k);
 done:
     if (k)
-        finish(k);
+        finish_krylov(k);
     return status;
 }
 
@@ -607,5 +624,5 @@ const ritz_response_engine ritz_response_engine_krylov = {
              "that full answers confirm",
     .fails = "hundreds of inputs or outputs: each adds vectors",
     .takes = RITZ_RESPONDS_COMPONENT,
-    .make = make,
+    .make = make_krylov,
 };

@@ -10,8 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A gets `more` behind its columns; room is doubled where there is none. */
-static ritz_status append(ritz_dense *A, int64_t *room, const ritz_dense *more)
+/* Append the columns of `more` to A; the room is doubled when it is used up. */
+static ritz_status append_columns(ritz_dense *A, int64_t *room,
+                                  const ritz_dense *more)
 {
     int64_t ncol = A->ncol + more->ncol;
     double *val = NULL;
@@ -32,7 +33,10 @@ static ritz_status append(ritz_dense *A, int64_t *room, const ritz_dense *more)
     return RITZ_OK;
 }
 
-/* Columns of one kind into W, their modal part taken out, and into S. */
+/*
+ * Append columns of one kind to W, their modal part projected out, and A^-1 of
+ * them to S.
+ */
 static ritz_status add_columns(ritz_krylov_space *s, ritz_krylov_kind kind,
                                int64_t first, ritz_dense *W)
 {
@@ -45,8 +49,8 @@ static ritz_status add_columns(ritz_krylov_space *s, ritz_krylov_kind kind,
     RITZ_CHECK(ritz_dense_take_out(s->MPhi, s->Phi, W));
     RITZ_CHECK(ritz_dense_copy(W, &S));
     RITZ_CHECK(ritz_factor_solve(s->F, &S));
-    RITZ_CHECK(append(&s->S, &S_room, &S));
-    RITZ_CHECK(append(&s->W, &s->W_room, W));
+    RITZ_CHECK(append_columns(&s->S, &S_room, &S));
+    RITZ_CHECK(append_columns(&s->W, &s->W_room, W));
     if (s->W_room > old) {
         RITZ_CHECK_NEW(column, s->W_room);
         if (before > 0)
@@ -85,7 +89,7 @@ static ritz_status add_loads(ritz_krylov_space *s)
     return RITZ_OK;
 }
 
-/* One kind's matrix times columns of V, from `first` on. */
+/* Append the matrix of one kind times the columns of V from `first` on. */
 static ritz_status add_product(ritz_krylov_space *s, ritz_krylov_kind kind,
                                const ritz_sparse *A, int64_t first,
                                const ritz_dense *X)
@@ -98,7 +102,7 @@ static ritz_status add_product(ritz_krylov_space *s, ritz_krylov_kind kind,
     return add_columns(s, kind, first, &W);
 }
 
-/* What damping matrices do with columns of V. */
+/* Append the products of the damping matrices with columns of V. */
 static ritz_status add_damping(ritz_krylov_space *s, int64_t first,
                                const ritz_dense *X)
 {
@@ -107,7 +111,7 @@ static ritz_status add_damping(ritz_krylov_space *s, int64_t first,
     return add_product(s, RITZ_KRYLOV_K4, &s->component->K4, first, X);
 }
 
-static ritz_status weigh(ritz_krylov_space *s)
+static ritz_status form_gram(ritz_krylov_space *s)
 {
     ritz_dense_free(&s->G);
     RITZ_CHECK(ritz_dense_mul_tn(&s->W, &s->S, &s->G));
@@ -129,17 +133,18 @@ ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
     RITZ_CHECK_IN("static answer", ritz_factor_spd(&s.A, &s.F));
     if (c->D.colptr && ritz_sparse_asymmetry(&c->D) > 0.0)
         RITZ_CHECK(ritz_sparse_transpose(&c->D, &s.DT));
-    RITZ_CHECK(append(&s.V, &s.V_room, s.Phi));
+    RITZ_CHECK(append_columns(&s.V, &s.V_room, s.Phi));
     RITZ_CHECK(add_loads(&s));
     RITZ_CHECK(add_damping(&s, 0, s.Phi));
-    RITZ_CHECK(weigh(&s));
+    RITZ_CHECK(form_gram(&s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
-/* x := x - X X'A x for the columns of X, and its length in A. */
-static ritz_status turn(const ritz_krylov_space *s, const ritz_dense *X,
-                        ritz_dense *x, double *length)
+/* x := x - X X'A x for the columns of X, and the norm of the result in A. */
+static ritz_status orthogonalise(const ritz_krylov_space *s,
+                                 const ritz_dense *X, ritz_dense *x,
+                                 double *length)
 {
     RITZ_OWN(ritz_dense) Ax = {0}, share = {0}, part = {0};
 
@@ -155,8 +160,8 @@ static ritz_status turn(const ritz_krylov_space *s, const ritz_dense *X,
     return RITZ_OK;
 }
 
-/* One vector; twice is enough for orthogonality. */
-static ritz_status add_one(ritz_krylov_space *s, ritz_dense *x, bool *added)
+/* Append one vector; orthogonalised twice, which is enough. */
+static ritz_status add_vector(ritz_krylov_space *s, ritz_dense *x, bool *added)
 {
     int64_t m = s->Phi->ncol;
     const ritz_dense none = {.nrow = x->nrow};
@@ -166,15 +171,15 @@ static ritz_status add_one(ritz_krylov_space *s, ritz_dense *x, bool *added)
     *added = false;
     if (s->V.ncol >= x->nrow)
         return RITZ_OK;
-    RITZ_CHECK(turn(s, &none, x, &before));
+    RITZ_CHECK(orthogonalise(s, &none, x, &before));
     for (int pass = 0; pass < 2; pass++) {
-        RITZ_CHECK(turn(s, &X, x, &length));
+        RITZ_CHECK(orthogonalise(s, &X, x, &length));
         if (!(length > RITZ_DEPENDENT * before) || !isfinite(length))
             return RITZ_OK;
     }
     for (int64_t i = 0; i < x->nrow; i++)
         x->val[i] /= length;
-    RITZ_CHECK(append(&s->V, &s->V_room, x));
+    RITZ_CHECK(append_columns(&s->V, &s->V_room, x));
     *added = true;
     return RITZ_OK;
 }
@@ -189,7 +194,7 @@ ritz_status ritz_krylov_space_add(ritz_krylov_space *space, ritz_dense *X,
         ritz_dense x = ritz_dense_part(X, k, 1);
         bool one = false;
 
-        RITZ_CHECK(add_one(space, &x, &one));
+        RITZ_CHECK(add_vector(space, &x, &one));
     }
     *added = space->V.ncol - first;
     fresh = ritz_dense_part(&space->V, first, *added);
@@ -198,7 +203,7 @@ ritz_status ritz_krylov_space_add(ritz_krylov_space *space, ritz_dense *X,
     RITZ_CHECK(
         add_product(space, RITZ_KRYLOV_M, &space->component->M, first, &fresh));
     RITZ_CHECK(add_damping(space, first, &fresh));
-    return weigh(space);
+    return form_gram(space);
 }
 
 void ritz_krylov_space_free(ritz_krylov_space *space)
@@ -230,8 +235,8 @@ static void matrices_free(matrices *a)
 }
 
 /* diag(leading, block). */
-static ritz_status beneath(int64_t m, const double *leading,
-                           const ritz_dense *block, ritz_dense *out)
+static ritz_status join_diagonal(int64_t m, const double *leading,
+                                 const ritz_dense *block, ritz_dense *out)
 {
     int64_t r = m + block->nrow;
 
@@ -244,10 +249,10 @@ static ritz_status beneath(int64_t m, const double *leading,
     return RITZ_OK;
 }
 
-/* Modes keep their own numbers, so that resonances keep their digits. */
-static ritz_status project(const ritz_direct *direct,
-                           const ritz_krylov_space *space, matrices *out,
-                           ritz_dense *K_x, ritz_dense *M_x)
+/* Modes keep their own eigenvalues, so that resonances lose no digits. */
+static ritz_status project_block(const ritz_direct *direct,
+                                 const ritz_krylov_space *space, matrices *out,
+                                 ritz_dense *K_x, ritz_dense *M_x)
 {
     const ritz_component *c = space->component;
     int64_t m = direct->m;
@@ -255,16 +260,19 @@ static ritz_status project(const ritz_direct *direct,
 
     RITZ_CHECK(ritz_sparse_condense(&c->K, &X, K_x));
     RITZ_CHECK(ritz_sparse_condense(&c->M, &X, M_x));
-    RITZ_CHECK(beneath(m, direct->poles.lambda, K_x, &out->K));
-    RITZ_CHECK(beneath(m, NULL, M_x, &out->M));
+    RITZ_CHECK(join_diagonal(m, direct->poles.lambda, K_x, &out->K));
+    RITZ_CHECK(join_diagonal(m, NULL, M_x, &out->M));
     RITZ_CHECK(ritz_sparse_project(&c->D, &space->V, &out->D));
     RITZ_CHECK(ritz_sparse_project(&c->K4, &space->V, &out->K4));
     return ritz_io_project(&c->io, &space->V, &out->io);
 }
 
-/* Pairs of the whole: modes as they are, and those of (K_x, M_x). */
-static ritz_status pair(const ritz_direct *direct, const ritz_dense *K_x,
-                        const ritz_dense *M_x, ritz_pairs *out)
+/*
+ * Eigenpairs of the projected component: its modes unchanged, and those of
+ * (K_x, M_x).
+ */
+static ritz_status solve_pairs(const ritz_direct *direct, const ritz_dense *K_x,
+                               const ritz_dense *M_x, ritz_pairs *out)
 {
     RITZ_OWN(ritz_pairs) rest = {0};
     int64_t m = direct->m;
@@ -276,11 +284,11 @@ static ritz_status pair(const ritz_direct *direct, const ritz_dense *K_x,
     memcpy(out->lambda, direct->poles.lambda, (size_t)m * sizeof *out->lambda);
     for (int64_t k = 0; k < rest.Phi.ncol; k++)
         out->lambda[m + k] = rest.lambda[k];
-    return beneath(m, NULL, &rest.Phi, &out->Phi);
+    return join_diagonal(m, NULL, &rest.Phi, &out->Phi);
 }
 
-/* Ratios belong to modes: what was given to other coordinates goes. */
-static void take_ratios(const ritz_direct *direct, ritz_poles *poles)
+/* Damping ratios belong to modes: the other coordinates lose theirs. */
+static void remove_ratios(const ritz_direct *direct, ritz_poles *poles)
 {
     for (int64_t k = direct->m; direct->ratios && k < poles->count; k++) {
         double given = ritz_modal_rate(&direct->damping, k - poles->num_rigid,
@@ -292,7 +300,7 @@ static void take_ratios(const ritz_direct *direct, ritz_poles *poles)
     }
 }
 
-static ritz_status transpose(const ritz_dense *A, ritz_dense *out)
+static ritz_status transpose_dense(const ritz_dense *A, ritz_dense *out)
 {
     if (!A->val)
         return RITZ_OK;
@@ -303,8 +311,8 @@ static ritz_status transpose(const ritz_dense *A, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* The transposed system, loaded by what the outputs see. */
-static ritz_status turn_over(const ritz_poles *poles, ritz_poles *out)
+/* The transposed system, with the outputs' rows as its load vectors. */
+static ritz_status transpose_poles(const ritz_poles *poles, ritz_poles *out)
 {
     const ritz_io *io = &poles->io;
     const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
@@ -321,8 +329,8 @@ static ritz_status turn_over(const ritz_poles *poles, ritz_poles *out)
     RITZ_CHECK_NEW(dual.rate, r);
     memcpy(dual.lambda, poles->lambda, (size_t)r * sizeof *dual.lambda);
     memcpy(dual.rate, poles->rate, (size_t)r * sizeof *dual.rate);
-    RITZ_CHECK(transpose(&poles->D, &dual.D));
-    RITZ_CHECK(transpose(&poles->K4, &dual.K4));
+    RITZ_CHECK(transpose_dense(&poles->D, &dual.D));
+    RITZ_CHECK(transpose_dense(&poles->K4, &dual.K4));
     RITZ_CHECK(ritz_io_new(r, 3 * p, 0, &dual.io));
     for (int k = 0; k < 3; k++)
         for (int64_t j = 0; j < r; j++)
@@ -347,12 +355,12 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
     RITZ_OWN(matrices) a = {0};
     const ritz_second_order model = {&a.K, &a.M, &a.D, &a.K4, &a.io};
 
-    RITZ_CHECK(project(direct, space, &a, &K_x, &M_x));
-    RITZ_CHECK(pair(direct, &K_x, &M_x, &pairs));
+    RITZ_CHECK(project_block(direct, space, &a, &K_x, &M_x));
+    RITZ_CHECK(solve_pairs(direct, &K_x, &M_x, &pairs));
     RITZ_CHECK(ritz_poles_of_pairs(&model, &direct->damping, true, &pairs,
                                    &small.poles));
-    take_ratios(direct, &small.poles);
-    RITZ_CHECK(turn_over(&small.poles, &small.dual));
+    remove_ratios(direct, &small.poles);
+    RITZ_CHECK(transpose_poles(&small.poles, &small.dual));
     small.T = pairs.Phi;
     pairs.Phi = (ritz_dense){0};
     RITZ_CHECK_NEW(small.q, small.r * small.inputs);
@@ -363,8 +371,8 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
 }
 
 /* out = T z, columns of complex numbers. */
-static void back(const ritz_dense *T, int64_t columns, const double _Complex *z,
-                 double _Complex *out)
+static void transform_back(const ritz_dense *T, int64_t columns,
+                           const double _Complex *z, double _Complex *out)
 {
     int64_t r = T->nrow;
 
@@ -387,17 +395,21 @@ ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz)
     double _Complex *z = small->z;
 
     RITZ_CHECK(ritz_poles_solve(&small->poles, hertz, z));
-    back(&small->T, small->inputs, z, small->q);
+    transform_back(&small->T, small->inputs, z, small->q);
     RITZ_CHECK(ritz_poles_solve(&small->dual, hertz, z));
     for (int64_t k = 0; k < rp; k++)
         z[k] += ritz_complex(0.0, w) * z[rp + k] - w * w * z[2 * rp + k];
-    back(&small->T, small->outputs, z, small->p);
+    transform_back(&small->T, small->outputs, z, small->p);
     return RITZ_OK;
 }
 
-/* Factors of the kinds of W: of loads in c's residual, of terms in Z. */
-static void factors(const ritz_direct *direct, const ritz_krylov_space *space,
-                    double w, bool dual, double _Complex *f)
+/*
+ * Coefficients of the columns of W by kind: of output rows in the residual of
+ * c, of each matrix in Z.
+ */
+static void set_coefficients(const ritz_direct *direct,
+                             const ritz_krylov_space *space, double w,
+                             bool dual, double _Complex *f)
 {
     bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
     double a = rayleigh ? direct->damping.a : 0.0;
@@ -423,7 +435,7 @@ void ritz_krylov_residual(const ritz_direct *direct,
     const double _Complex *x = (dual ? small->p : small->q) + index * small->r;
     double _Complex f[RITZ_KRYLOV_K4 + 1];
 
-    factors(direct, space, 2.0 * RITZ_PI * hertz, dual, f);
+    set_coefficients(direct, space, 2.0 * RITZ_PI * hertz, dual, f);
     for (int64_t k = 0; k < space->W.ncol; k++) {
         ritz_krylov_column c = space->column[k];
         bool load = c.kind <= RITZ_KRYLOV_CA;

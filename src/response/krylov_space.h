@@ -1,5 +1,6 @@
 /*
- * A space in which a component responds, and what its residuals are made of.
+ * The space on which a component is projected, and the vectors that span its
+ * residuals.
  *
  * V = [Phi X]: modes, and X with Phi'M X = 0, X'A X = I, A = K + tau M being
  * definite. With P = I - Phi Phi'M and Galerkin's V'r = 0 a residual has no
@@ -8,16 +9,15 @@
  *     r = P'(b - Z V q) = W y,
  *     W = P'[B, C', Cv', Ca', K X, M X, D V, D'V, K4 V],
  *
- * and its size |r|^2 = r^H A^-1 r = y^H G y costs nothing of length n once
- * G = W'S, S = A^-1 W is known; nor does a correction of the space, A^-1 r =
- * S y.
+ * and its size |r|^2 = r^H A^-1 r = y^H G y costs nothing of length n once G =
+ * W'S, S = A^-1 W is known; nor does a correction of the space, A^-1 r = S y.
  */
 #ifndef RITZ_RESPONSE_KRYLOV_SPACE_H
 #define RITZ_RESPONSE_KRYLOV_SPACE_H
 
 #include "response/direct.h"
 
-/* What a column of W is. */
+/* Kind of a column of W. */
 typedef enum ritz_krylov_kind {
     RITZ_KRYLOV_B,
     RITZ_KRYLOV_C,
@@ -44,45 +44,57 @@ typedef struct ritz_krylov_space {
     double tau;
     ritz_dense V;               /* n x r, with room for V_room */
     ritz_dense W, S;            /* n x w, with room for W_room */
-    ritz_dense G;               /* w x w */
+    ritz_dense G;               /* w x w, W'S */
     ritz_krylov_column *column; /* W_room */
     int64_t V_room, W_room;
 } ritz_krylov_space;
 
-/** Phi alone, and the loads in W. @param[in] tau  above 0  [rad^2/s^2] */
+/**
+ * The space of Phi alone, with the load vectors in W. @param[in] tau  above 0
+ * [rad^2/s^2]
+ */
 ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
                                   ritz_krylov_space *out);
 
 /**
- * Append what is new in some vectors; *added counts it. G is made anew.
+ * Append the independent part of some vectors; *added counts its columns. G is
+ * computed again.
  *
- * @param[in,out] X  n x k, is used up
+ * @param[in,out] X  n x k, destroyed
  */
 ritz_status ritz_krylov_space_add(ritz_krylov_space *space, ritz_dense *X,
                                   int64_t *added);
 
 void ritz_krylov_space_free(ritz_krylov_space *space);
 
-/* What a component is in a krylov space, solved and judged at a frequency. */
+/*
+ * A component projected on a Krylov space, solved at one frequency at a time.
+ */
 typedef struct ritz_krylov_small {
-    ritz_poles poles; /* V'Z V q = V'B in coordinates of its own */
+    ritz_poles poles; /* V'Z V q = V'B in modal coordinates */
     ritz_poles dual;  /* its transpose; loads C', Cv', Ca' */
-    ritz_dense T;     /* r x r: from those to coordinates of V */
+    ritz_dense T;     /* r x r: from modal coordinates to V's */
     int64_t outputs, inputs, r;
     double _Complex *q, *p, *z; /* r x inputs, r x outputs, 3 of those */
 } ritz_krylov_small;
 
-/** Project; given ratios act on the modes alone, a M + b K on all. */
+/**
+ * Project; given damping ratios act on the modes alone, a M + b K on all
+ * coordinates.
+ */
 ritz_status ritz_krylov_small_new(const ritz_direct *direct,
                                   const ritz_krylov_space *space,
                                   ritz_krylov_small *out);
 
-/** q and p of V at one frequency. @return RITZ_ERR_SINGULAR */
+/**
+ * Solve for q and p in coordinates of V at one frequency. @return
+ * RITZ_ERR_SINGULAR at an undamped pole
+ */
 ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz);
 
 /**
- * y of the residual of input @p index, or of output @p index if @p dual, by the
- * q and p that were found last.
+ * y of the residual of input @p index, or of output @p index if @p dual, from
+ * the q and p of the last solution.
  */
 void ritz_krylov_residual(const ritz_direct *direct,
                           const ritz_krylov_space *space,

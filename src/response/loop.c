@@ -1,4 +1,4 @@
-/* Which signals of a plant and a controller meet. */
+/* Which signals of a plant and of a controller are connected. */
 #include "base/alloc.h"
 
 #include "base/tolerances.h"
@@ -15,8 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int64_t find(int64_t count, const char (*name)[RITZ_NAME_SIZE],
-                    const char *word)
+static int64_t find_signal(int64_t count, const char (*name)[RITZ_NAME_SIZE],
+                           const char *word)
 {
     for (int64_t k = 0; k < count; k++)
         if (strcmp(name[k], word) == 0)
@@ -46,8 +46,9 @@ ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
     return RITZ_OK;
 }
 
-/* One place is taken once. */
-static ritz_status put(int64_t *place, int64_t index, const char *name)
+/* Connect a signal, which is possible once only. */
+static ritz_status connect_signal(int64_t *place, int64_t index,
+                                  const char *name)
 {
     RITZ_REFUSE_IF(*place >= 0, RITZ_ERR_ARGUMENT,
                    "'%s' of the controller is connected twice", name);
@@ -55,9 +56,13 @@ static ritz_status put(int64_t *place, int64_t index, const char *name)
     return RITZ_OK;
 }
 
-/* "OUT=IN", in whichever direction there are such names. */
-static ritz_status take_pair(const ritz_ends *plant, const ritz_ends *control,
-                             const char *pair, ritz_loop *loop)
+/*
+ * "OUT=IN", from plant to controller or from controller to plant, whichever has
+ * such names.
+ */
+static ritz_status connect_pair(const ritz_ends *plant,
+                                const ritz_ends *control, const char *pair,
+                                ritz_loop *loop)
 {
     ritz_status status = RITZ_OK;
     const char *equals = strchr(pair, '=');
@@ -69,20 +74,20 @@ static ritz_status take_pair(const ritz_ends *plant, const ritz_ends *control,
                      equals - pair >= RITZ_NAME_SIZE,
                  RITZ_ERR_ARGUMENT, "'%.80s' is not of the form OUT=IN", pair);
     memcpy(out, pair, (size_t)(equals - pair));
-    from = find(plant->num_outputs, plant->output, out);
-    to = find(control->num_inputs, control->input, in);
-    back_from = find(control->num_outputs, control->output, out);
-    back_to = find(plant->num_inputs, plant->input, in);
+    from = find_signal(plant->num_outputs, plant->output, out);
+    to = find_signal(control->num_inputs, control->input, in);
+    back_from = find_signal(control->num_outputs, control->output, out);
+    back_to = find_signal(plant->num_inputs, plant->input, in);
     RITZ_FAIL_IF(from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0,
                  RITZ_ERR_ARGUMENT,
                  "'%s' can be read both ways: plant and controller have both "
                  "names",
                  pair);
     if (from >= 0 && to >= 0)
-        RITZ_TRY(put(&loop->measured[to], from, control->input[to]));
+        RITZ_TRY(connect_signal(&loop->measured[to], from, control->input[to]));
     else if (back_from >= 0 && back_to >= 0)
-        RITZ_TRY(
-            put(&loop->driven[back_from], back_to, control->output[back_from]));
+        RITZ_TRY(connect_signal(&loop->driven[back_from], back_to,
+                                control->output[back_from]));
     else
         status = ritz_fail(
             RITZ_ERR_ARGUMENT,
@@ -93,17 +98,19 @@ done:
     return status;
 }
 
-/* What no pair named, by its own name. */
-static ritz_status fill(int64_t count, const char (*name)[RITZ_NAME_SIZE],
-                        int64_t others, const char (*other)[RITZ_NAME_SIZE],
-                        const char *what, int64_t *place)
+/* Connect the signals that no pair names by equal names. */
+static ritz_status connect_equal_names(int64_t count,
+                                       const char (*name)[RITZ_NAME_SIZE],
+                                       int64_t others,
+                                       const char (*other)[RITZ_NAME_SIZE],
+                                       const char *what, int64_t *place)
 {
     const char *near = NULL;
 
     for (int64_t k = 0; k < count; k++) {
         if (place[k] >= 0)
             continue;
-        place[k] = find(others, other, name[k]);
+        place[k] = find_signal(others, other, name[k]);
         if (place[k] >= 0)
             continue;
         near = others > 0 ? ritz_text_nearest(name[k], others, other[0],
@@ -138,11 +145,13 @@ ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
     for (int64_t k = 0; k < loop.num_driven; k++)
         loop.driven[k] = -1;
     for (int64_t k = 0; k < num_pairs; k++)
-        RITZ_CHECK(take_pair(plant, controller, pair[k], &loop));
-    RITZ_CHECK(fill(loop.num_measured, controller->input, plant->num_outputs,
-                    plant->output, "output", loop.measured));
-    RITZ_CHECK(fill(loop.num_driven, controller->output, plant->num_inputs,
-                    plant->input, "input", loop.driven));
+        RITZ_CHECK(connect_pair(plant, controller, pair[k], &loop));
+    RITZ_CHECK(connect_equal_names(loop.num_measured, controller->input,
+                                   plant->num_outputs, plant->output, "output",
+                                   loop.measured));
+    RITZ_CHECK(connect_equal_names(loop.num_driven, controller->output,
+                                   plant->num_inputs, plant->input, "input",
+                                   loop.driven));
     RITZ_MOVE(*out, loop);
     return RITZ_OK;
 }
@@ -155,9 +164,9 @@ void ritz_loop_free(ritz_loop *loop)
 }
 
 /*
- * Margins of a loop: for L = F G of one signal, factors -1 / L where L is real
- * and negative, and the angle from L to -1 where |L| = 1; of every
- * loop the most of |L| and of |(I + L)^-1|.
+ * Margins of a loop: for L = F G of one signal, the gain factors -1 / L where L
+ * is real and negative, and the angle from L to -1 where |L| = 1; for any loop
+ * the largest |L| and the largest |(I + L)^-1|.
  */
 
 enum { MOST_HALVES = 60 };
@@ -173,7 +182,8 @@ typedef struct prober {
     double _Complex *gain;
 } prober;
 
-static ritz_status probe(prober *s, double hertz, ritz_loop_values *values)
+static ritz_status evaluate_loop(prober *s, double hertz,
+                                 ritz_loop_values *values)
 {
     const ritz_io *io = &s->plant->poles->io;
 
@@ -183,30 +193,31 @@ static ritz_status probe(prober *s, double hertz, ritz_loop_values *values)
                         NULL, values);
 }
 
-static ritz_status value_at(void *state, double hertz, double *value)
+static ritz_status evaluate_size(void *state, double hertz, double *value)
 {
     prober *s = state;
     ritz_loop_values values = {0};
 
-    RITZ_CHECK(probe(s, hertz, &values));
+    RITZ_CHECK(evaluate_loop(s, hertz, &values));
     *value = s->want == GAIN ? values.largest_gain : values.sensitivity;
     return RITZ_OK;
 }
 
-/* What is zero at a crossing: Im L, or |L| - 1. */
-static double of_phase(double _Complex L)
+/* A gain margin is at a zero of Im L, a phase margin at a zero of |L| - 1. */
+static double phase_crossing(double _Complex L)
 {
     return cimag(L);
 }
 
-static double of_size(double _Complex L)
+static double size_crossing(double _Complex L)
 {
     return cabs(L) - 1.0;
 }
 
-static ritz_status bisect(prober *s, double (*zero)(double _Complex),
-                          double low, double high, double _Complex at_low,
-                          double *hertz, double _Complex *L)
+static ritz_status bisect_crossing(prober *s, double (*zero)(double _Complex),
+                                   double low, double high,
+                                   double _Complex at_low, double *hertz,
+                                   double _Complex *L)
 {
     ritz_loop_values values = {.gain = at_low};
     double middle = low;
@@ -214,7 +225,7 @@ static ritz_status bisect(prober *s, double (*zero)(double _Complex),
     for (int k = 0; k < MOST_HALVES && high - low > RITZ_BISECTION_END * high;
          k++) {
         middle = low + (high - low) / 2.0;
-        RITZ_CHECK(probe(s, middle, &values));
+        RITZ_CHECK(evaluate_loop(s, middle, &values));
         if (zero(values.gain) * zero(at_low) > 0.0)
             low = middle;
         else
@@ -225,7 +236,8 @@ static ritz_status bisect(prober *s, double (*zero)(double _Complex),
     return RITZ_OK;
 }
 
-static void heed_gain(double hertz, double _Complex L, ritz_margins *out)
+static void update_gain_margin(double hertz, double _Complex L,
+                               ritz_margins *out)
 {
     double factor = -1.0 / creal(L);
 
@@ -242,7 +254,8 @@ static void heed_gain(double hertz, double _Complex L, ritz_margins *out)
     }
 }
 
-static void heed_phase(double hertz, double _Complex L, ritz_margins *out)
+static void update_phase_margin(double hertz, double _Complex L,
+                                ritz_margins *out)
 {
     double angle = fabs(carg(-L)) * 180.0 / RITZ_PI;
 
@@ -252,7 +265,7 @@ static void heed_phase(double hertz, double _Complex L, ritz_margins *out)
     out->phase_hz = hertz;
 }
 
-/* The closed loop that responds. */
+/* The closed loop as a responder. */
 typedef struct closed {
     const ritz_loop *loop;
     ritz_responder *plant, *controller;
@@ -260,7 +273,7 @@ typedef struct closed {
     double _Complex *G, *F;
 } closed;
 
-static ritz_status at(void *state, double hertz, double _Complex *H)
+static ritz_status closed_at(void *state, double hertz, double _Complex *H)
 {
     closed *s = state;
     const ritz_io *io = &s->poles.io;
@@ -272,8 +285,8 @@ static ritz_status at(void *state, double hertz, double _Complex *H)
                         &values);
 }
 
-static ritz_status cross(prober *s, int64_t count, const double *hertz,
-                         ritz_margins *out)
+static ritz_status find_crossings(prober *s, int64_t count, const double *hertz,
+                                  ritz_margins *out)
 {
     double at = 0.0;
     double _Complex L = 0.0;
@@ -281,13 +294,15 @@ static ritz_status cross(prober *s, int64_t count, const double *hertz,
     for (int64_t k = 0; k + 1 < count; k++) {
         double _Complex a = s->gain[k], b = s->gain[k + 1];
 
-        if (of_phase(a) * of_phase(b) < 0.0) {
-            RITZ_CHECK(bisect(s, of_phase, hertz[k], hertz[k + 1], a, &at, &L));
-            heed_gain(at, L, out);
+        if (phase_crossing(a) * phase_crossing(b) < 0.0) {
+            RITZ_CHECK(bisect_crossing(s, phase_crossing, hertz[k],
+                                       hertz[k + 1], a, &at, &L));
+            update_gain_margin(at, L, out);
         }
-        if (of_size(a) * of_size(b) < 0.0) {
-            RITZ_CHECK(bisect(s, of_size, hertz[k], hertz[k + 1], a, &at, &L));
-            heed_phase(at, L, out);
+        if (size_crossing(a) * size_crossing(b) < 0.0) {
+            RITZ_CHECK(bisect_crossing(s, size_crossing, hertz[k], hertz[k + 1],
+                                       a, &at, &L));
+            update_phase_margin(at, L, out);
         }
     }
     return RITZ_OK;
@@ -296,7 +311,7 @@ static ritz_status cross(prober *s, int64_t count, const double *hertz,
 static ritz_status find_peaks(prober *s, int64_t count, const double *hertz,
                               ritz_margins *out)
 {
-    const ritz_curve curve = {value_at, s};
+    const ritz_curve curve = {evaluate_size, s};
 
     s->want = GAIN;
     RITZ_CHECK(ritz_curve_peak(count, hertz, s->largest, &curve, &out->gain_hz,
@@ -325,7 +340,7 @@ ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,
     for (int64_t k = 0; k < count; k++) {
         ritz_loop_values values = {0};
 
-        RITZ_TRY(probe(&s, hertz[k], &values));
+        RITZ_TRY(evaluate_loop(&s, hertz[k], &values));
         s.gain[k] = values.gain;
         s.largest[k] = values.largest_gain;
         s.sensitivity[k] = values.sensitivity;
@@ -333,7 +348,7 @@ ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,
     if (count > 0)
         RITZ_TRY(find_peaks(&s, count, hertz, &m));
     if (loop->num_driven == 1 && loop->num_measured == 1)
-        RITZ_TRY(cross(&s, count, hertz, &m));
+        RITZ_TRY(find_crossings(&s, count, hertz, &m));
     if (isinf(m.phase))
         m.phase = none;
     *out = m;
@@ -347,15 +362,15 @@ done:
 }
 
 /*
- * A loop closed in frequency. With G_yu what the controller sees of what it
- * drives, L = F G_yu (its sign turned by positive feedback), and F_u, F_y wider
- * by rows and columns of zeros,
+ * A loop closed in frequency. With G_yu from the inputs that the controller
+ * drives to the outputs that it measures, L = F G_yu (its sign turned by
+ * positive feedback), and F_u, F_y wider by rows and columns of zeros,
  *
  *     y = G w + G_u v',   v' = -F e,   e = G_y w + G_yu v',
  *
  *     H = G - G_u (I + L)^-1 F G_y
  *
- * which costs no more than the signals of the loop do [Sirlin1992].
+ * which solves only a system of the size of the loop's signals [Sirlin1992].
  */
 
 /* Matrices of one frequency, by columns; c signals are driven, m measured. */
@@ -367,7 +382,7 @@ typedef struct room {
     lapack_int *pivot;
 } room;
 
-static void discard(room *r)
+static void free_room(room *r)
 {
     free(r->L);
     free(r->X);
@@ -375,8 +390,8 @@ static void discard(room *r)
     free(r->pivot);
 }
 
-static ritz_status make_room(const ritz_loop *loop, int64_t p, int64_t q,
-                             room *r)
+static ritz_status allocate_room(const ritz_loop *loop, int64_t p, int64_t q,
+                                 room *r)
 {
     *r = (room){.c = loop->num_driven, .m = loop->num_measured, .p = p, .q = q};
     RITZ_CHECK_NEW(r->L, r->c * r->c);
@@ -387,9 +402,10 @@ static ritz_status make_room(const ritz_loop *loop, int64_t p, int64_t q,
 }
 
 /* (F S_y G)(i, j) with the sign of negative feedback. */
-static double _Complex around(const ritz_loop *loop, const room *r,
-                              const double _Complex *G,
-                              const double _Complex *F, int64_t i, int64_t j)
+static double _Complex filter_entry(const ritz_loop *loop, const room *r,
+                                    const double _Complex *G,
+                                    const double _Complex *F, int64_t i,
+                                    int64_t j)
 {
     double _Complex sum = 0.0;
 
@@ -417,10 +433,10 @@ ritz_status ritz_loop_at(const ritz_loop *loop, int64_t num_outputs,
     room r = {0};
     int info = 0;
 
-    RITZ_TRY(make_room(loop, num_outputs, num_inputs, &r));
+    RITZ_TRY(allocate_room(loop, num_outputs, num_inputs, &r));
     for (int64_t i = 0; i < r.c; i++) {
         for (int64_t j = 0; j < q; j++)
-            r.X[i + j * r.c] = around(loop, &r, G, F, i, j);
+            r.X[i + j * r.c] = filter_entry(loop, &r, G, F, i, j);
         for (int64_t j = 0; j < r.c; j++)
             r.L[i + j * r.c] = r.X[i + loop->driven[j] * r.c];
         r.X[i + (q + i) * r.c] = 1.0;
@@ -443,7 +459,7 @@ ritz_status ritz_loop_at(const ritz_loop *loop, int64_t num_outputs,
             H[i * q + j] = sum;
         }
 done:
-    discard(&r);
+    free_room(&r);
     return status;
 }
 
@@ -457,8 +473,10 @@ static void free_closed(void *state)
     free(s);
 }
 
-/* Poles above the axis or on it, as s^2 + rate s + lambda; those of the open
-   loop that nothing damps are none of the closed one. */
+/*
+ * Append the poles on or above the axis, as s^2 + rate s + lambda. Undamped
+ * poles of the open loops are not poles of the closed one.
+ */
 static void add_poles(int64_t count, const double _Complex *pole,
                       ritz_poles *out)
 {
@@ -471,8 +489,8 @@ static void add_poles(int64_t count, const double _Complex *pole,
     }
 }
 
-static ritz_status open_poles(const ritz_responder *of, int64_t *count,
-                              double _Complex **out)
+static ritz_status list_open_poles(const ritz_responder *of, int64_t *count,
+                                   double _Complex **out)
 {
     const ritz_poles *p = of->poles;
     double _Complex *s = NULL;
@@ -493,7 +511,10 @@ static ritz_status open_poles(const ritz_responder *of, int64_t *count,
     return RITZ_OK;
 }
 
-/* Every pole is driven and seen, as far as is known. */
+/*
+ * Every pole counts as controllable and observable, for nothing else is known
+ * of it.
+ */
 static ritz_status name_ends(const ritz_io *io, ritz_poles *poles)
 {
     int64_t n = poles->count;
@@ -510,15 +531,15 @@ static ritz_status name_ends(const ritz_io *io, ritz_poles *poles)
     return RITZ_OK;
 }
 
-static ritz_status gather(closed *s, int64_t num_poles,
-                          const double _Complex *pole)
+static ritz_status gather_ends(closed *s, int64_t num_poles,
+                               const double _Complex *pole)
 {
     ritz_status status = RITZ_OK;
     double _Complex *plant = NULL, *controller = NULL;
     int64_t n = 0, m = 0;
 
-    RITZ_TRY(open_poles(s->plant, &n, &plant));
-    RITZ_TRY(open_poles(s->controller, &m, &controller));
+    RITZ_TRY(list_open_poles(s->plant, &n, &plant));
+    RITZ_TRY(list_open_poles(s->controller, &m, &controller));
     RITZ_NEW(s->poles.lambda, num_poles + n + m);
     RITZ_NEW(s->poles.rate, num_poles + n + m);
     add_poles(num_poles, pole, &s->poles);
@@ -560,15 +581,15 @@ ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
     s->controller = controller;
     RITZ_NEW(s->G, io->num_outputs * io->num_inputs);
     RITZ_NEW(s->F, loop->num_driven * loop->num_measured);
-    RITZ_TRY(gather(s, num_poles, pole));
+    RITZ_TRY(gather_ends(s, num_poles, pole));
     r->engine = &engine;
     r->poles = &s->poles;
     r->from_hz = fmax(plant->from_hz, controller->from_hz);
     r->to_hz = fmin(plant->to_hz, controller->to_hz);
     memcpy(r->damping, plant->damping, sizeof r->damping);
-    r->at = at;
+    r->at = closed_at;
     RITZ_MOVE(*out, r);
 done:
-    ritz_responder_free(&r); /* and with it s */
+    ritz_responder_free(&r); /* which frees s too */
     return status;
 }

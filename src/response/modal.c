@@ -1,6 +1,6 @@
 /*
- * Response by modes: all of a small dense model; of a full component its lowest
- * ones and the residual of the rest.
+ * Response by modes: all modes of a small dense model; the lowest modes of a
+ * full component, with the residual of the others.
  */
 #include "base/alloc.h"
 #include "response/responder.h"
@@ -8,27 +8,27 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* `pairs` and `residual` of a component alone. */
+/* `pairs` and `residual` are those of a component, else empty. */
 typedef struct modal_responder {
     ritz_pairs pairs;
     ritz_poles poles;
     ritz_residual residual;
 } modal_responder;
 
-static void modal_free(modal_responder *m)
+static void free_modal(modal_responder *m)
 {
     ritz_pairs_free(&m->pairs);
     ritz_poles_free(&m->poles);
     ritz_residual_free(&m->residual);
 }
 
-static void finish(void *state)
+static void finish_modal(void *state)
 {
-    modal_free(state);
+    free_modal(state);
     free(state);
 }
 
-static ritz_status at(void *state, double hertz, double _Complex *H)
+static ritz_status modal_at(void *state, double hertz, double _Complex *H)
 {
     const modal_responder *m = state;
 
@@ -37,8 +37,8 @@ static ritz_status at(void *state, double hertz, double _Complex *H)
     return RITZ_OK;
 }
 
-static ritz_status of_component(const ritz_response_request *request,
-                                modal_responder *m)
+static ritz_status set_component(const ritz_response_request *request,
+                                 modal_responder *m)
 {
     double highest = ritz_response_highest(request);
 
@@ -51,25 +51,25 @@ static ritz_status of_component(const ritz_response_request *request,
                              request->to_hz, highest, &m->residual);
 }
 
-static ritz_status make(const ritz_response_request *request,
-                        ritz_responder *out)
+static ritz_status make_modal(const ritz_response_request *request,
+                              ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
     modal_responder *m = NULL;
 
     RITZ_NEW(m, 1);
     if (request->component)
-        RITZ_TRY(of_component(request, m));
+        RITZ_TRY(set_component(request, m));
     else
         RITZ_TRY(ritz_poles_of_dense(request->matrices, request->damping,
                                      request->to_hz, &m->poles));
     out->poles = &m->poles;
-    out->at = at;
-    out->free = finish;
+    out->at = modal_at;
+    out->free = finish_modal;
     RITZ_MOVE(out->state, m);
 done:
     if (m)
-        finish(m);
+        finish_modal(m);
     return status;
 }
 
@@ -85,7 +85,7 @@ const ritz_response_engine ritz_response_engine_modal = {
     .fails = "of components, K4 and any other D act on the modes that are "
              "summed alone",
     .takes = RITZ_RESPONDS_COMPONENT | RITZ_RESPONDS_MATRICES,
-    .make = make,
+    .make = make_modal,
 };
 
 ritz_status ritz_response_modal(const ritz_component *component,

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The rational engine while its nodes are chosen: see response_rational.c. */
+/* The rational engine while its nodes are chosen: see the equations below. */
 
 /*
  * Rational interpolation with poles and zeros cancelled: through nodes s_m,
@@ -27,16 +27,16 @@
  *                      prod_(l != m) (s - s_l)/(s_m - s_l)
  *     D(s) = prod (s - pole),    Z(s) = prod (s - zero) of the channel
  *
- * [KenneyStubberudLaub1992, (40)] in Lagrange's form: one polynomial through
- * the same values, but where Newton's coefficients of many cancelled poles are
- * differences of what is large, here every term is of the size of H.
+ * [KenneyStubberudLaub1992, (40)] in Lagrange's form. It is the same polynomial
+ * as Newton's, whose coefficients are differences of large numbers when many
+ * poles are cancelled; here every term is of the size of H.
  */
 
 typedef struct ritz_interpolant {
     int64_t values; /* channels */
-    double unit;    /* rad/s that count as one, against overflow */
+    double unit;    /* of frequency, against overflow  [rad/s] */
     int64_t num_poles;
-    double _Complex *pole; /* in units, as all that follow */
+    double _Complex *pole; /* in units, like all that follow */
     int64_t *num_zeros;    /* of each channel */
     double _Complex **zero;
     int64_t count, room;
@@ -45,13 +45,15 @@ typedef struct ritz_interpolant {
     double _Complex *H;      /* room x values */
 } ritz_interpolant;
 
-/* So many nodes in a row are within the tolerance at the end. */
+/*
+ * The number of successive nodes that must be within the tolerance at the end.
+ */
 enum { RITZ_RATIONAL_ENOUGH = 3 };
 
 typedef struct rational_nodes {
     ritz_direct full;
-    ritz_interpolant poles; /* those alone are cancelled */
-    ritz_interpolant both;  /* and zeros, where there are any */
+    ritz_interpolant poles; /* cancels the poles alone */
+    ritz_interpolant both;  /* cancels the zeros too, if any */
     int64_t num_poles;
     double _Complex *pole; /* all, conjugates too */
     bool mirror;           /* nodes count at -i w too */
@@ -59,14 +61,14 @@ typedef struct rational_nodes {
     int64_t count; /* of candidates */
     double *hertz;
     bool *used;
-    bool *with_zeros;        /* values: which of the two is nearer */
-    double *missed;          /* 2 x values: most by either at the last nodes */
-    double *miss;            /* 2 x values of each of those */
+    bool *with_zeros;        /* values: which of the two errs less */
+    double *missed;          /* 2 x values: largest error at last nodes */
+    double *miss;            /* 2 x values, for each of those */
     const ritz_noise *noise; /* of the responder */
     double *peak, *level, *scale;
     double _Complex *H, *guess, *other;
     int64_t nodes;
-    bool small; /* `whole` is there */
+    bool small; /* `whole` holds the model */
     ritz_whole whole;
 } rational_nodes;
 
@@ -84,10 +86,10 @@ static void free_interpolant(ritz_interpolant *interpolant)
 }
 
 /* @param[in] pole  all, conjugates too  [rad/s] */
-static ritz_status new_interpolant(int64_t values, double unit,
-                                   int64_t num_poles,
-                                   const double _Complex *pole,
-                                   ritz_interpolant *out)
+static ritz_status create_interpolant(int64_t values, double unit,
+                                      int64_t num_poles,
+                                      const double _Complex *pole,
+                                      ritz_interpolant *out)
 {
     ritz_status status = RITZ_OK;
     ritz_interpolant f = {
@@ -104,10 +106,12 @@ done:
     return status;
 }
 
-/* Zeros of a channel, conjugates too; before there are nodes. */
-static ritz_status cancel_interpolant(ritz_interpolant *interpolant,
-                                      int64_t channel, int64_t num_zeros,
-                                      const double _Complex *zero)
+/*
+ * Cancel the zeros of a channel, conjugates included; to be called before there
+ * are nodes.
+ */
+static ritz_status cancel_zeros(ritz_interpolant *interpolant, int64_t channel,
+                                int64_t num_zeros, const double _Complex *zero)
 {
     double _Complex *z = NULL;
 
@@ -120,7 +124,7 @@ static ritz_status cancel_interpolant(ritz_interpolant *interpolant,
     return RITZ_OK;
 }
 
-static ritz_status make_room(ritz_interpolant *f)
+static ritz_status reserve_nodes(ritz_interpolant *f)
 {
     ritz_status status = RITZ_OK;
     int64_t room = 2 * f->room + 16;
@@ -152,10 +156,14 @@ done:
     return status;
 }
 
-/* Factors above and below the line in turn, so that nothing overflows. */
-static double _Complex quotient(double _Complex s, int64_t above,
-                                const double _Complex *top, int64_t below,
-                                const double _Complex *bottom)
+/*
+ * A quotient of products, factors multiplied and divided in turn against
+ * overflow.
+ */
+static double _Complex divide_products(double _Complex s, int64_t above,
+                                       const double _Complex *top,
+                                       int64_t below,
+                                       const double _Complex *bottom)
 {
     double _Complex value = 1.0;
 
@@ -168,15 +176,17 @@ static double _Complex quotient(double _Complex s, int64_t above,
     return value;
 }
 
-/* One node more, on neither a pole nor a zero, nor at another node. */
-static ritz_status add_interpolant(ritz_interpolant *interpolant,
-                                   double _Complex s, const double _Complex *H)
+/* Append a node, which is no pole, no zero and no other node. */
+static ritz_status add_interpolation_node(ritz_interpolant *interpolant,
+                                          double _Complex s,
+                                          const double _Complex *H)
 {
     ritz_interpolant *f = interpolant;
     double _Complex x = s / f->unit;
 
-    RITZ_CHECK(make_room(f));
-    f->weight[f->count] = quotient(x, f->num_poles, f->pole, f->count, f->node);
+    RITZ_CHECK(reserve_nodes(f));
+    f->weight[f->count] =
+        divide_products(x, f->num_poles, f->pole, f->count, f->node);
     for (int64_t k = 0; k < f->count; k++)
         f->weight[k] /= f->node[k] - x;
     f->node[f->count] = x;
@@ -185,13 +195,14 @@ static ritz_status add_interpolant(ritz_interpolant *interpolant,
     return RITZ_OK;
 }
 
-/* H at s; on an undamped pole not finite. @cost O(nodes + poles) a channel */
-static void interpolant_at(const ritz_interpolant *interpolant,
-                           double _Complex s, double _Complex *H)
+/* H at s; not finite at an undamped pole. @cost O(nodes + poles) a channel */
+static void evaluate_interpolant(const ritz_interpolant *interpolant,
+                                 double _Complex s, double _Complex *H)
 {
     const ritz_interpolant *f = interpolant;
     double _Complex x = s / f->unit;
-    double _Complex all = quotient(x, f->count, f->node, f->num_poles, f->pole);
+    double _Complex all =
+        divide_products(x, f->count, f->node, f->num_poles, f->pole);
 
     for (int64_t v = 0; v < f->values; v++)
         H[v] = 0.0;
@@ -212,9 +223,9 @@ static void interpolant_at(const ritz_interpolant *interpolant,
     }
 }
 
-/* log |prod (s - s_m) / D(s)|: where it is largest a node helps most. */
-static double need_interpolant(const ritz_interpolant *interpolant,
-                               double _Complex s)
+/* log |prod (s - s_m) / D(s)|: a node helps most where this is largest. */
+static double log_node_weight(const ritz_interpolant *interpolant,
+                              double _Complex s)
 {
     double _Complex x = s / interpolant->unit;
     double need = 0.0;
@@ -226,14 +237,17 @@ static double need_interpolant(const ritz_interpolant *interpolant,
     return need;
 }
 
-/* Where nodes may be, which comes next, and when there are enough. */
+/*
+ * The frequencies where nodes may be, the choice of the next, and the end of
+ * the search.
+ */
 
 enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
 
-/* Beside a pole, in half-power widths. */
+/* Distance of a candidate from its pole, in half-power widths. */
 static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
 
-/* An undamped pole that was cancelled has no response. */
+/* At an undamped pole that was cancelled there is no response. */
 static ritz_status refuse_pole(const rational_nodes *s, double hertz)
 {
     double w = 2.0 * RITZ_PI * hertz;
@@ -254,22 +268,22 @@ static ritz_status refuse_pole(const rational_nodes *s, double hertz)
     return RITZ_OK;
 }
 
-static ritz_status at(void *state, double hertz, double _Complex *H)
+static ritz_status rational_at(void *state, double hertz, double _Complex *H)
 {
     rational_nodes *s = state;
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
     RITZ_CHECK(refuse_pole(s, hertz));
-    interpolant_at(&s->poles, at, s->guess);
-    interpolant_at(&s->both, at, s->other);
+    evaluate_interpolant(&s->poles, at, s->guess);
+    evaluate_interpolant(&s->both, at, s->other);
     for (int64_t v = 0; v < s->values; v++)
         H[v] = s->with_zeros[v] ? s->other[v] : s->guess[v];
     return RITZ_OK;
 }
 
-/* Whether s is on, or by rounding beside, one of some points. */
-static bool is_on(double _Complex s, int64_t count, const double _Complex *at,
-                  double unit)
+/* Whether s is one of some points, up to rounding. */
+static bool is_near(double _Complex s, int64_t count, const double _Complex *at,
+                    double unit)
 {
     for (int64_t k = 0; k < count; k++)
         if (cabs(s - at[k] * unit) <= RITZ_NODE_CLEAR * cabs(s))
@@ -277,23 +291,25 @@ static bool is_on(double _Complex s, int64_t count, const double _Complex *at,
     return false;
 }
 
-/* A frequency where a node may be: on no pole and on no zero. */
+/* A frequency where a node may be: at no pole and no zero. */
 static void add_candidate(rational_nodes *s, double hertz, double low,
                           double high)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     bool on = !(hertz >= low && hertz <= high) ||
-              is_on(at, s->num_poles, s->pole, 1.0);
+              is_near(at, s->num_poles, s->pole, 1.0);
 
     for (int64_t v = 0; v < s->values; v++)
         on = on ||
-             is_on(at, s->both.num_zeros[v], s->both.zero[v], s->both.unit);
+             is_near(at, s->both.num_zeros[v], s->both.zero[v], s->both.unit);
     if (!on)
         s->hertz[s->count++] = hertz;
 }
 
-/* Beside resonances, between them, and so many towards both ends that among
- * them are Leja points, which gather there. */
+/*
+ * Candidates next to resonances and between them, and so many towards both ends
+ * of the range that they contain Leja points, which gather there.
+ */
 static ritz_status place_nodes(rational_nodes *s, double low, double high)
 {
     RITZ_OWN_ARRAY double *at = NULL;
@@ -331,8 +347,8 @@ static ritz_status place_nodes(rational_nodes *s, double low, double high)
     return RITZ_OK;
 }
 
-/* The candidate that helps most, -1 if none is left. */
-static int64_t next(const rational_nodes *s)
+/* The candidate where a node helps most, -1 if none is left. */
+static int64_t find_next(const rational_nodes *s)
 {
     double most = -HUGE_VAL;
     int64_t best = -1;
@@ -341,7 +357,7 @@ static int64_t next(const rational_nodes *s)
         double w = 2.0 * RITZ_PI * s->hertz[k];
         double need = s->used[k]
                           ? -HUGE_VAL
-                          : need_interpolant(&s->poles, ritz_complex(0.0, w));
+                          : log_node_weight(&s->poles, ritz_complex(0.0, w));
 
         if (need > most) {
             most = need;
@@ -355,27 +371,30 @@ static ritz_status add_node(rational_nodes *s, double hertz)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
-    RITZ_CHECK(add_interpolant(&s->poles, at, s->H));
-    RITZ_CHECK(add_interpolant(&s->both, at, s->H));
+    RITZ_CHECK(add_interpolation_node(&s->poles, at, s->H));
+    RITZ_CHECK(add_interpolation_node(&s->both, at, s->H));
     s->nodes++;
     if (!s->mirror || hertz == 0.0)
         return RITZ_OK;
     for (int64_t v = 0; v < s->values; v++)
         s->H[v] = conj(s->H[v]);
-    RITZ_CHECK(add_interpolant(&s->poles, -at, s->H));
-    return add_interpolant(&s->both, -at, s->H);
+    RITZ_CHECK(add_interpolation_node(&s->poles, -at, s->H));
+    return add_interpolation_node(&s->both, -at, s->H);
 }
 
-/* What either interpolant missed at a new node; whether one did not. */
-static bool judge(rational_nodes *s, double hertz, double tolerance)
+/*
+ * Errors of both interpolants at a new node; whether one is within the
+ * tolerance.
+ */
+static bool measure_node(rational_nodes *s, double hertz, double tolerance)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     const ritz_io *io = &s->full.component->io;
     double *miss = s->miss + s->nodes % RITZ_RATIONAL_ENOUGH * 2 * s->values;
     bool near = s->nodes >= RITZ_RATIONAL_ENOUGH;
 
-    interpolant_at(&s->poles, at, s->guess);
-    interpolant_at(&s->both, at, s->other);
+    evaluate_interpolant(&s->poles, at, s->guess);
+    evaluate_interpolant(&s->both, at, s->other);
     for (int64_t v = 0; v < s->values; v++)
         s->peak[v] = fmax(s->peak[v], cabs(s->H[v]));
     ritz_noise_heed(s->noise, hertz, s->H, s->level);
@@ -398,13 +417,13 @@ static bool judge(rational_nodes *s, double hertz, double tolerance)
     return near;
 }
 
-/* Nodes until the last were within the tolerance. */
+/* Add nodes until the last ones were within the tolerance. */
 static ritz_status converge_nodes(rational_nodes *s, double tolerance)
 {
     bool near = false;
 
     while (!near) {
-        int64_t k = next(s);
+        int64_t k = find_next(s);
 
         RITZ_REFUSE_IF(k < 0 || s->nodes >= MOST_NODES, RITZ_ERR_CONVERGENCE,
                        "%" PRId64 " nodes do not interpolate to %.1e of the "
@@ -413,17 +432,20 @@ static ritz_status converge_nodes(rational_nodes *s, double tolerance)
         s->used[k] = true;
         memset(s->H, 0, (size_t)s->values * sizeof *s->H);
         RITZ_CHECK(ritz_direct_at(&s->full, s->hertz[k], s->H));
-        near = judge(s, s->hertz[k], tolerance);
+        near = measure_node(s, s->hertz[k], tolerance);
         RITZ_CHECK(add_node(s, s->hertz[k]));
         ritz_monitor_step("nodes", s->nodes, 0);
     }
     return RITZ_OK;
 }
 
-/* What is cancelled: poles and, of small components, zeros. */
+/* Poles and, for small components, zeros to cancel. */
 
-/* A pole that is there is added once more, and then not again: 0 is double, and
-   what couples two equal modes a little is seen through both. */
+/*
+ * A pole that is in the list already is added once more, but not a third time:
+ * 0 is a double pole, and two equal modes that are slightly coupled are
+ * observable through both.
+ */
 static void add_pole(rational_nodes *s, double _Complex pole)
 {
     int64_t there = 0;
@@ -434,8 +456,10 @@ static void add_pole(rational_nodes *s, double _Complex pole)
         s->pole[s->num_poles++] = pole;
 }
 
-/* A small component as a dense model, ratios in D as the modes have them. */
-static ritz_status take_whole(rational_nodes *s)
+/*
+ * A small component as a dense model; damping ratios enter D through the modes.
+ */
+static ritz_status project_whole(rational_nodes *s)
 {
     const ritz_direct *full = &s->full;
     ritz_dense *D = &s->whole.D;
@@ -462,13 +486,16 @@ static ritz_status take_whole(rational_nodes *s)
     return RITZ_OK;
 }
 
-/* What acts beside that model's D. */
-static const ritz_damping *rest_of(const rational_nodes *s)
+/* Damping that acts in addition to that model's D. */
+static const ritz_damping *remaining_damping(const rational_nodes *s)
 {
     return s->full.ratios ? NULL : &s->full.damping;
 }
 
-/* Poles as the responder knows them; of a small coupled one by itself. */
+/*
+ * The poles as the responder knows them; those of a small coupled component by
+ * its dense model.
+ */
 static ritz_status list_poles(const rational_nodes *s,
                               const ritz_responder *responder, int64_t *count,
                               double _Complex **out)
@@ -478,7 +505,8 @@ static ritz_status list_poles(const rational_nodes *s,
 
     if (!s->small || !s->full.poles.coupled)
         return ritz_responder_poles(responder, count, out);
-    RITZ_CHECK(ritz_spectrum_dense(&s->whole.model, rest_of(s), &all));
+    RITZ_CHECK(
+        ritz_spectrum_dense(&s->whole.model, remaining_damping(s), &all));
     RITZ_CHECK_NEW(found, all.count + all.num_zero);
     for (int64_t k = 0; k < all.count; k++)
         found[k] = all.s[k];
@@ -488,12 +516,12 @@ static ritz_status list_poles(const rational_nodes *s,
 }
 
 /*
- * Those that any channel shows, and their conjugates; with K4 their partners
- * below the axis, which are - s but for damping by D, and far enough away for
- * that to do.
+ * The poles that are observable in a channel, and their conjugates. With K4
+ * their counterparts below the axis are taken as -s, which is exact but for
+ * damping by D and accurate enough at their distance.
  */
-static ritz_status nodes_find_poles(rational_nodes *s,
-                                    const ritz_responder *responder)
+static ritz_status find_poles(rational_nodes *s,
+                              const ritz_responder *responder)
 {
     ritz_status status = RITZ_OK;
     double most = 2.0 * RITZ_PI * RITZ_POLES_BEYOND * responder->to_hz;
@@ -501,7 +529,7 @@ static ritz_status nodes_find_poles(rational_nodes *s,
     int64_t count = 0;
 
     if (s->full.n <= RITZ_WHOLE_DOFS)
-        RITZ_TRY(take_whole(s));
+        RITZ_TRY(project_whole(s));
     RITZ_TRY(list_poles(s, responder, &count, &found));
     RITZ_NEW(s->pole, 2 * count);
     for (int64_t k = 0; k < count; k++) {
@@ -516,8 +544,8 @@ done:
     return status;
 }
 
-/* Zeros of each channel of that model. */
-static ritz_status nodes_find_zeros(rational_nodes *s)
+/* Zeros of each channel of the dense model. */
+static ritz_status find_zeros(rational_nodes *s)
 {
     ritz_status status = RITZ_OK;
     int64_t inputs = s->full.component->io.num_inputs;
@@ -526,17 +554,17 @@ static ritz_status nodes_find_zeros(rational_nodes *s)
     for (int64_t v = 0; v < s->values; v++) {
         int64_t count = 0, n = 0;
 
-        status = ritz_zeros_dense(&s->whole.model, rest_of(s), v / inputs,
-                                  v % inputs, &count, &z);
+        status = ritz_zeros_dense(&s->whole.model, remaining_damping(s),
+                                  v / inputs, v % inputs, &count, &z);
         if (status == RITZ_ERR_MEMORY)
             goto done;
-        if (status != RITZ_OK) /* nothing passes, or they are not to be had */
+        if (status != RITZ_OK) /* H is zero, or no zeros were found */
             continue;
         RITZ_NEW(all, 2 * count);
         for (int64_t k = 0; k < count; k++)
             if (cabs(z[k]) <= RITZ_POLES_BEYOND * s->both.unit)
                 all[n++] = z[k];
-        RITZ_TRY(cancel_interpolant(&s->both, v, n, all));
+        RITZ_TRY(cancel_zeros(&s->both, v, n, all));
         free(z);
         free(all);
         z = all = NULL;
@@ -549,23 +577,25 @@ done:
 }
 
 /*
- * Response by rational interpolation [KenneyStubberudLaub1992]: a factor of the
- * full matrices at a few nodes, and between them a polynomial for what is left
- * of H once the poles that the eigensolver found, in the range and half as far
- * again, are cancelled; of small components the zeros too, in those channels
- * that they help. As H(-i w) is the conjugate of H(i w), unless there is K4,
- * each node counts twice.
+ * Response by rational interpolation [KenneyStubberudLaub1992]: the full
+ * matrices are factored at a few nodes. Between them a polynomial interpolates
+ * H divided by its poles, which the eigensolver found up to 1.5 times the
+ * range; for small components the zeros are cancelled too, in the channels
+ * where that reduces the error. As H(-i w) is the conjugate of H(i w), unless
+ * there is K4, each node counts twice.
  *
  * The next node is where prod |s - s_m| / prod |s - pole| is largest: near
- * resonances, but never on a pole or zero, beside which candidates begin at a
- * half-power width. What the interpolant errs there is known before it is
- * added; three nodes in a row within the tolerance are the end.
+ * resonances, but never at a pole or zero: candidates keep a half-power width
+ * from them. The interpolant's error at a node is measured before the node is
+ * added; three successive nodes within the tolerance end the search.
  */
 
-/* Of channels: of more, zeros take longer than nodes. */
+/*
+ * Largest number of channels: for more, finding zeros takes longer than nodes.
+ */
 static const int64_t most_channels = 9;
 
-static void rational_free(rational_nodes *s)
+static void free_rational(rational_nodes *s)
 {
     ritz_direct_free(&s->full);
     ritz_whole_free(&s->whole);
@@ -585,8 +615,8 @@ static void rational_free(rational_nodes *s)
     free(s->other);
 }
 
-static ritz_status start(const ritz_response_request *request,
-                         const ritz_responder *out, rational_nodes *s)
+static ritz_status start_rational(const ritz_response_request *request,
+                                  const ritz_responder *out, rational_nodes *s)
 {
     const ritz_io *io = &request->component->io;
     double unit = 2.0 * RITZ_PI * request->to_hz;
@@ -597,11 +627,11 @@ static ritz_status start(const ritz_response_request *request,
     s->mirror = !request->component->K4.colptr;
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = RITZ_ABOVE_REST * request->to_hz;
-    RITZ_CHECK(nodes_find_poles(s, out));
+    RITZ_CHECK(find_poles(s, out));
     RITZ_CHECK(
-        new_interpolant(s->values, unit, s->num_poles, s->pole, &s->poles));
+        create_interpolant(s->values, unit, s->num_poles, s->pole, &s->poles));
     RITZ_CHECK(
-        new_interpolant(s->values, unit, s->num_poles, s->pole, &s->both));
+        create_interpolant(s->values, unit, s->num_poles, s->pole, &s->both));
     RITZ_CHECK_NEW(s->with_zeros, s->values);
     RITZ_CHECK_NEW(s->missed, 2 * s->values);
     RITZ_CHECK_NEW(s->miss, 2 * s->values * RITZ_RATIONAL_ENOUGH);
@@ -612,20 +642,20 @@ static ritz_status start(const ritz_response_request *request,
     RITZ_CHECK_NEW(s->guess, s->values);
     RITZ_CHECK_NEW(s->other, s->values);
     if (s->mirror && s->small && s->values <= most_channels)
-        RITZ_CHECK(nodes_find_zeros(s));
+        RITZ_CHECK(find_zeros(s));
     RITZ_CHECK(place_nodes(s, low, request->to_hz));
     return converge_nodes(s, request->tolerance > 0.0 ? request->tolerance
                                                       : RITZ_ENGINE_TOLERANCE);
 }
 
-static void finish(void *state)
+static void finish_rational(void *state)
 {
-    rational_free(state);
+    free_rational(state);
     free(state);
 }
 
-static ritz_status make(const ritz_response_request *request,
-                        ritz_responder *out)
+static ritz_status make_rational(const ritz_response_request *request,
+                                 ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
     rational_nodes *s = NULL;
@@ -635,16 +665,16 @@ static ritz_status make(const ritz_response_request *request,
                              ritz_response_highest(request), &s->full));
     out->poles = &s->full.poles;
     out->pairs = &s->full.pairs;
-    RITZ_TRY(start(request, out, s));
+    RITZ_TRY(start_rational(request, out, s));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " factors at nodes, %" PRId64 " poles cancelled",
                    s->nodes, s->num_poles);
-    out->at = at;
-    out->free = finish;
+    out->at = rational_at;
+    out->free = finish_rational;
     RITZ_MOVE(out->state, s);
 done:
     if (s)
-        finish(s);
+        finish_rational(s);
     return status;
 }
 
@@ -659,5 +689,5 @@ const ritz_response_engine ritz_response_engine_rational = {
     .fails = "many modes: krylov needs fewer factors; D or K4 of a large "
              "component, whose poles take factors too",
     .takes = RITZ_RESPONDS_COMPONENT,
-    .make = make,
+    .make = make_rational,
 };

@@ -1,4 +1,7 @@
-/* Which engine answers: the one that is named, or the one that suits. */
+/*
+ * Choice of the engine: the one that is named, or the one that suits the
+ * component.
+ */
 #include "response/responder.h"
 
 #include <stdio.h>

@@ -15,8 +15,8 @@
 enum { KINDS = 3 };
 
 /* (K + tau M)_kk */
-static double diagonal(const ritz_response_request *request, double tau,
-                       int64_t k)
+static double shifted_diagonal(const ritz_response_request *request, double tau,
+                               int64_t k)
 {
     const ritz_component *c = request->component;
     const ritz_second_order *m = request->matrices;
@@ -27,15 +27,15 @@ static double diagonal(const ritz_response_request *request, double tau,
     return ritz_dense_col(m->K, k)[k] + tau * ritz_dense_col(m->M, k)[k];
 }
 
-static void take_sizes(const ritz_response_request *request, const ritz_io *io,
-                       ritz_noise *noise)
+static void measure_loads(const ritz_response_request *request,
+                          const ritz_io *io, ritz_noise *noise)
 {
     const ritz_dense *const rows[KINDS] = {&io->C, &io->Cv, &io->Ca};
     double tau = ritz_eigen_lambda(request->to_hz);
     int64_t p = io->num_outputs;
 
     for (int64_t k = 0; k < io->B.nrow; k++) {
-        double d = diagonal(request, tau, k);
+        double d = shifted_diagonal(request, tau, k);
         double unit = d > 0.0 ? 1.0 / sqrt(d) : 0.0;
 
         for (int64_t i = 0; i < KINDS * p; i++)
@@ -54,7 +54,10 @@ static void free_noise(ritz_noise *noise)
     *noise = (ritz_noise){0};
 }
 
-/* Of a component or a small dense model; else {0}, of which all is heard. */
+/*
+ * Of a component or a small dense model; otherwise {0}, with which no channel
+ * counts as rounding.
+ */
 static ritz_status new_noise(const ritz_response_request *request,
                              ritz_noise *out)
 {
@@ -70,15 +73,15 @@ static ritz_status new_noise(const ritz_response_request *request,
     noise.num_inputs = io->num_inputs;
     RITZ_NEW(noise.output, KINDS * io->num_outputs);
     RITZ_NEW(noise.input, io->num_inputs);
-    take_sizes(request, io, &noise);
+    measure_loads(request, io, &noise);
     RITZ_MOVE(*out, noise);
 done:
     free_noise(&noise);
     return status;
 }
 
-/* |c_i + i w cv_i - w^2 ca_i|, or a little more. */
-static double output_of(const ritz_noise *noise, double w, int64_t i)
+/* |c_i + i w cv_i - w^2 ca_i|, or an upper bound that is a little larger. */
+static double output_size(const ritz_noise *noise, double w, int64_t i)
 {
     const double *size = noise->output;
     int64_t p = noise->num_outputs;
@@ -98,7 +101,7 @@ void ritz_noise_heed(const ritz_noise *noise, double hertz,
         return;
     for (int64_t i = 0; i < p; i++)
         for (int64_t j = 0; j < m; j++) {
-            double size = output_of(noise, w, i) * noise->input[j];
+            double size = output_size(noise, w, i) * noise->input[j];
 
             if (size > 0.0)
                 gain = fmax(gain, cabs(H[i * m + j]) / size);
@@ -107,7 +110,7 @@ void ritz_noise_heed(const ritz_noise *noise, double hertz,
         for (int64_t j = 0; j < m; j++)
             level[i * m + j] =
                 fmax(level[i * m + j],
-                     gain * output_of(noise, w, i) * noise->input[j]);
+                     gain * output_size(noise, w, i) * noise->input[j]);
 }
 
 void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
@@ -127,22 +130,22 @@ void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
     }
 }
 
-/* What all engines share: points of a grid, names, damped poles. */
+/* What all engines share: the points of a grid, names, damped poles. */
 
 double ritz_response_highest(const ritz_response_request *request)
 {
     return request->up_to_hz > 0.0 ? request->up_to_hz : 3.0 * request->to_hz;
 }
 
-/* Where a grid ends, whatever it is made of. */
+/* The highest frequency of a grid of any kind. */
 double ritz_grid_end(const ritz_grid *grid)
 {
     return grid->hertz && grid->count > 0 ? grid->hertz[grid->count - 1]
                                           : grid->to_hz;
 }
 
-static ritz_status check(const ritz_response_engine *engine,
-                         const ritz_response_request *request)
+static ritz_status check_needs(const ritz_response_engine *engine,
+                               const ritz_response_request *request)
 {
     static const char *const nouns[] = {"a component", "a small dense model",
                                         "a state space"};
@@ -164,7 +167,7 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
 {
     RITZ_OWN(ritz_responder) *r = NULL;
 
-    RITZ_CHECK(check(engine, request));
+    RITZ_CHECK(check_needs(engine, request));
     RITZ_CHECK_NEW(r, 1);
     r->engine = engine;
     r->component = request->component;

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static double scale_of(const double *scale, int64_t k)
+static double channel_scale(const double *scale, int64_t k)
 {
     return scale && !isnan(scale[k]) ? scale[k] : 1.0;
 }
@@ -36,8 +36,8 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
     RITZ_NEW(spare, smaller(num_outputs, num_inputs));
     for (int64_t i = 0; i < p; i++)
         for (int64_t j = 0; j < m; j++)
-            A[i + j * p] = H[i * m + j] * scale_of(scales->input, j) /
-                           scale_of(scales->output, i);
+            A[i + j * p] = H[i * m + j] * channel_scale(scales->input, j) /
+                           channel_scale(scales->output, i);
     info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', p, m, A, p, sigma, NULL,
                           1, NULL, 1, spare);
     RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
@@ -65,7 +65,7 @@ ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)
     return RITZ_OK;
 }
 
-/* What the search asks. */
+/* The state of the search for the peak. */
 typedef struct sampler {
     const ritz_response *response;
     const ritz_scales *scales;

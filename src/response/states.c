@@ -32,7 +32,9 @@ void tb05ad_(/* NOLINT: its name */ const char *baleig, const char *inita,
              const int *lzwork, int *info, size_t baleig_length,
              size_t inita_length);
 
-/* The model as SLICOT leaves it between points, and its work space. */
+/*
+ * The model in the form that SLICOT keeps between points, and its work space.
+ */
 typedef struct hessenberg {
     int n, m, p;
     bool begun;
@@ -48,7 +50,8 @@ static int at_least_one(int n)
     return n > 1 ? n : 1;
 }
 
-static ritz_status start(const ritz_state_space *model, hessenberg *h)
+static ritz_status start_hessenberg(const ritz_state_space *model,
+                                    hessenberg *h)
 {
     int n = (int)model->A.nrow;
 
@@ -69,7 +72,7 @@ static ritz_status start(const ritz_state_space *model, hessenberg *h)
     return RITZ_OK;
 }
 
-static void finish(hessenberg *h)
+static void free_hessenberg(hessenberg *h)
 {
     ritz_dense_free(&h->A);
     ritz_dense_free(&h->B);
@@ -83,7 +86,7 @@ static void finish(hessenberg *h)
     free(h->zwork);
 }
 
-static ritz_status solve(hessenberg *h, double hertz)
+static ritz_status solve_hessenberg(hessenberg *h, double hertz)
 {
     const double _Complex s = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     int ldn = at_least_one(h->n);
@@ -167,16 +170,16 @@ static void free_states(void *state)
     state_responder *s = state;
 
     ritz_poles_free(&s->poles);
-    finish(&s->h);
+    free_hessenberg(&s->h);
     free(s);
 }
 
-static ritz_status at(void *state, double hertz, double _Complex *H)
+static ritz_status states_at(void *state, double hertz, double _Complex *H)
 {
     state_responder *s = state;
     hessenberg *h = &s->h;
 
-    RITZ_CHECK(solve(h, hertz));
+    RITZ_CHECK(solve_hessenberg(h, hertz));
     for (int i = 0; i < h->p; i++)
         for (int j = 0; j < h->m; j++)
             H[i * h->m + j] =
@@ -184,8 +187,8 @@ static ritz_status at(void *state, double hertz, double _Complex *H)
     return RITZ_OK;
 }
 
-static ritz_status make(const ritz_response_request *request,
-                        ritz_responder *out)
+static ritz_status make_states(const ritz_response_request *request,
+                               ritz_responder *out)
 {
     ritz_status status = RITZ_OK;
     state_responder *s = NULL;
@@ -193,10 +196,10 @@ static ritz_status make(const ritz_response_request *request,
     RITZ_NEW(s, 1);
     s->model = request->states;
     RITZ_TRY(find_poles(s->model, &s->poles));
-    RITZ_TRY(start(s->model, &s->h));
+    RITZ_TRY(start_hessenberg(s->model, &s->h));
     memcpy(out->damping, s->model->damping, sizeof out->damping);
     out->poles = &s->poles;
-    out->at = at;
+    out->at = states_at;
     out->free = free_states;
     RITZ_MOVE(out->state, s);
 done:
@@ -214,7 +217,7 @@ const ritz_response_engine ritz_response_engine_states = {
     .holds = "exact to rounding",
     .fails = "a point on a pole is refused",
     .takes = RITZ_RESPONDS_STATES,
-    .make = make,
+    .make = make_states,
 };
 
 ritz_status ritz_response_states(const ritz_state_space *model,
