@@ -25,8 +25,8 @@
 #include <string.h>
 
 /* Rows first..first+count-1 of P. */
-static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
-                              ritz_dense *out)
+static ritz_status copy_rows(const ritz_dense *P, int64_t first, int64_t count,
+                             ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(count, P->ncol, out));
     for (int64_t j = 0; j < P->ncol && count > 0; j++)
@@ -36,8 +36,8 @@ static ritz_status take_block(const ritz_dense *P, int64_t first, int64_t count,
 }
 
 /* A_e += P_k' A_k P_k. */
-static ritz_status add_block(const ritz_dense *A, const ritz_dense *P,
-                             ritz_dense *sum)
+static ritz_status add_projected(const ritz_dense *A, const ritz_dense *P,
+                                 ritz_dense *sum)
 {
     RITZ_OWN(ritz_dense) part = {0};
 
@@ -64,11 +64,11 @@ static ritz_status project_all(const ritz_stage *stage,
     for (int64_t k = 0; k < stage->count; k++) {
         const ritz_reduced *body = &stage->body[k];
 
-        RITZ_CHECK(take_block(P, stage->first[k], body->K.ncol, &block));
-        RITZ_CHECK(add_block(&body->K, &block, K));
-        RITZ_CHECK(add_block(&body->M, &block, M));
+        RITZ_CHECK(copy_rows(P, stage->first[k], body->K.ncol, &block));
+        RITZ_CHECK(add_projected(&body->K, &block, K));
+        RITZ_CHECK(add_projected(&body->M, &block, M));
         if (body->D.val)
-            RITZ_CHECK(add_block(&body->D, &block, D));
+            RITZ_CHECK(add_projected(&body->D, &block, D));
         ritz_dense_free(&block);
     }
     return ritz_springs_add(springs, P, K, D);
@@ -87,15 +87,19 @@ static ritz_status project_structural(const ritz_stage *stage,
             continue;
         if (!K4->val)
             RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, K4));
-        RITZ_CHECK(take_block(P, stage->first[k], own->ncol, &block));
-        RITZ_CHECK(add_block(own, &block, K4));
+        RITZ_CHECK(copy_rows(P, stage->first[k], own->ncol, &block));
+        RITZ_CHECK(add_projected(own, &block, K4));
         ritz_dense_free(&block);
     }
     return RITZ_OK;
 }
 
-/* Whether modes i and j lie apart; rigid ones do not, nor do clusters. */
-static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
+/*
+ * Whether modes i and j have separate frequencies: not both rigid, nor of one
+ * cluster.
+ */
+static bool are_separate(const double *lambda, int64_t rigid, int64_t i,
+                         int64_t j)
 {
 
     return (i >= rigid || j >= rigid) &&
@@ -104,18 +108,20 @@ static bool lie_apart(const double *lambda, int64_t rigid, int64_t i, int64_t j)
 }
 
 /*
- * The eigensolver errs by eps lambda_max in every mode, which is much for the
- * low ones and mixes flexible motion into the rigid ones. In modal coordinates
- * K and M can be had again, each entry to its own rounding; what they lack of
- * diag(lambda) and I corrects P to first order, P <- P (I + E):
+ * The eigensolver has an error of eps lambda_max in every mode, which is large
+ * for the low ones and mixes flexible motion into the rigid ones. K and M are
+ * therefore projected again on the modes, each entry with its own rounding
+ * only. Their differences from diag(lambda) and I correct P to first order, P
+ * <- P (I + E):
  *
  *     E_ij = (K_ij - lambda_j M_ij) / (lambda_j - lambda_i),  modes apart,
  *     E_ij = -M_ij / 2 within a cluster,  E_jj = (1 - M_jj) / 2
  *
  * [OgitaAishima2018]. On return lambda holds the Rayleigh quotients.
  */
-static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
-                          int64_t rigid, double *lambda, ritz_dense *P)
+static ritz_status refine_modes(const ritz_stage *stage,
+                                const ritz_springs *springs, int64_t rigid,
+                                double *lambda, ritz_dense *P)
 {
     int64_t e = P->ncol;
     RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
@@ -131,7 +137,7 @@ static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
 
             ritz_dense_col(&E, j)[i] =
                 i == j ? 0.5 * (1.0 - m)
-                : lie_apart(lambda, rigid, i, j)
+                : are_separate(lambda, rigid, i, j)
                     ? (k - lambda[j] * m) / (lambda[j] - lambda[i])
                     : -0.5 * m;
         }
@@ -141,7 +147,7 @@ static ritz_status refine(const ritz_stage *stage, const ritz_springs *springs,
     return RITZ_OK;
 }
 
-/* The system in coordinates P becomes that in its modes; P becomes P Phi. */
+/* Transform the system from coordinates P to its modes; P becomes P Phi. */
 static ritz_status make_modal(const ritz_stage *stage,
                               const ritz_springs *springs, ritz_dense *P,
                               ritz_configuration *c)
@@ -155,7 +161,8 @@ static ritz_status make_modal(const ritz_stage *stage,
     e = pairs.Phi.ncol;
     RITZ_CHECK(ritz_dense_mul(P, &pairs.Phi, &Q));
     for (int pass = 0; pass < 2; pass++)
-        RITZ_CHECK(refine(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
+        RITZ_CHECK(
+            refine_modes(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
     ritz_dense_free(&K);
     ritz_dense_free(&M);
     ritz_dense_free(&D);
@@ -174,8 +181,10 @@ static ritz_status make_modal(const ritz_stage *stage,
 }
 
 /* Name, settings, blocks and io of a configuration with modal P. */
-static ritz_status finish(const ritz_stage *stage, const double *setting,
-                          const ritz_dense *P, ritz_configuration *c)
+static ritz_status fill_configuration(const ritz_stage *stage,
+                                      const double *setting,
+                                      const ritz_dense *P,
+                                      ritz_configuration *c)
 {
     ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
@@ -193,7 +202,7 @@ static ritz_status finish(const ritz_stage *stage, const double *setting,
     for (int64_t k = 0; k < stage->count; k++) {
         c->num_blocks++;
         RITZ_TRY(
-            take_block(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
+            copy_rows(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
     }
     RITZ_TRY(ritz_io_project(&stage->io, P, &c->io));
     RITZ_TRY(ritz_dampers_project(&stage->dampers, P, &c->dampers));
@@ -225,7 +234,7 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
                 ritz_dense_col(&P, j)[i] *= scale[i];
         RITZ_CHECK(make_modal(stage, &springs, &P, &c));
     }
-    RITZ_CHECK(finish(stage, setting, &P, &c));
+    RITZ_CHECK(fill_configuration(stage, setting, &P, &c));
     RITZ_MOVE(*out, c);
     return RITZ_OK;
 }
@@ -233,7 +242,7 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
 /* A system over all configurations of a scene. */
 
 /* Names, orders, band and damping of the scene. */
-static ritz_status label(const ritz_stage *stage, ritz_system *system)
+static ritz_status label_system(const ritz_stage *stage, ritz_system *system)
 {
     const ritz_scene *scene = stage->scene;
 
@@ -271,7 +280,7 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
     RITZ_OWN_ARRAY double *setting = NULL;
 
     RITZ_CHECK_NEW(setting, scene->num_sweeps);
-    RITZ_CHECK(label(stage, &system));
+    RITZ_CHECK(label_system(stage, &system));
     RITZ_CHECK_NEW(system.configuration, count);
     for (int64_t k = 0; k < count; k++) {
         const double *row = setting;

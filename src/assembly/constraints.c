@@ -49,7 +49,7 @@ ritz_status ritz_springs_add(const ritz_springs *springs, const ritz_dense *P,
     return RITZ_OK;
 }
 
-/* The coordinates that a row has. */
+/* The columns of the entries of a row that are not zero. */
 static int64_t list_entries(const ritz_dense *S, int64_t row, int64_t *column)
 {
     int64_t count = 0;
@@ -122,10 +122,10 @@ void ritz_springs_free(ritz_springs *springs)
 }
 
 /*
- * The rows of C q = 0, all that joints lock, and those of S, S q being how far
- * the springs of joints are stretched. In C coordinates are scaled to unit mass
- * and the rows of one joint and kind by the largest among them, so that
- * rounding stays small beside what is a constraint.
+ * The rows of C q = 0, one for each direction that a joint locks, and the rows
+ * of S, with S q the elongations of the joints' springs. In C coordinates are
+ * scaled to unit mass and the rows of one joint and kind by the largest among
+ * them, so that rounding stays small relative to a constraint.
  */
 
 static ritz_joint_end describe_end(const ritz_stage *stage,
@@ -157,7 +157,7 @@ static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
     return RITZ_OK;
 }
 
-/* A relation as a row over all coordinates, each times its scale. */
+/* Write a relation as a row over all coordinates, each times its scale. */
 static void fill_row(const ritz_stage *stage, const ritz_joint *joint,
                      const ritz_port_map *const port[2], const ritz_relation *r,
                      const double *scale, int64_t row, ritz_dense *C)
@@ -191,8 +191,8 @@ static double row_norm(const ritz_dense *C, int64_t row)
 }
 
 /* Divide `count` rows of each kind by the largest norm among them. */
-static void level(const bool *rotation, int64_t first, int64_t count,
-                  ritz_dense *C)
+static void scale_rows(const bool *rotation, int64_t first, int64_t count,
+                       ritz_dense *C)
 {
     double most[2] = {0.0, 0.0};
 
@@ -205,8 +205,8 @@ static void level(const bool *rotation, int64_t first, int64_t count,
 }
 
 /* The relations of every joint at some settings. */
-static ritz_status relate_all(const ritz_stage *stage, const double *setting,
-                              ritz_relations *list)
+static ritz_status list_relations(const ritz_stage *stage,
+                                  const double *setting, ritz_relations *list)
 {
     const ritz_scene *scene = stage->scene;
     RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
@@ -238,8 +238,8 @@ static int64_t count_state(const ritz_relations *list, ritz_freedom_state state)
 /* Relations of one state of all joints, as rows of a matrix. */
 typedef struct rows {
     ritz_dense C;
-    int64_t *of_joint; /* how many rows are of each joint */
-    bool *rotation;    /* what each row is */
+    int64_t *of_joint; /* number of rows of each joint */
+    bool *rotation;    /* whether a row is a rotation */
     ritz_freedom *freedom;
 } rows;
 
@@ -252,7 +252,7 @@ static void free_rows(rows *r)
     *r = (rows){0};
 }
 
-/* Room for the rows of one state. */
+/* Count the rows of one state and allocate them. */
 static ritz_status count_rows(const ritz_stage *stage,
                               const ritz_relations *list,
                               ritz_freedom_state state, rows *out)
@@ -279,7 +279,7 @@ static ritz_status make_rows(const ritz_stage *stage, const double *setting,
     int64_t row = 0;
 
     RITZ_NEW(list, scene->num_joints);
-    RITZ_TRY(relate_all(stage, setting, list));
+    RITZ_TRY(list_relations(stage, setting, list));
     RITZ_TRY(count_rows(stage, list, state, out));
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_port_map *port[2] = {NULL, NULL};
@@ -312,7 +312,7 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
 
     RITZ_TRY(make_rows(stage, setting, RITZ_LOCKED, scale, &r));
     for (int64_t j = 0; j < stage->scene->num_joints; j++) {
-        level(r.rotation, first, r.of_joint[j], &r.C);
+        scale_rows(r.rotation, first, r.of_joint[j], &r.C);
         first += r.of_joint[j];
     }
     *out = r.C;
@@ -343,12 +343,12 @@ done:
 }
 
 /*
- * The rank of constraints is what counts: a row that is rounding and no
- * constraint would give a wrong system [McDaniel2000, table 3.3]. C' = Q_1 R
- * and a singular value decomposition of the small R show what is which.
+ * The rank of the constraints has to be right: a row of rounding that is taken
+ * for a constraint gives a wrong system [McDaniel2000, table 3.3]. The rank is
+ * found from C' = Q_1 R and the singular values of the small R.
  */
 
-/* How many singular values are more than rounding. */
+/* Number of singular values above rounding. */
 static int64_t count_rank(int64_t count, const double *sigma)
 {
     int64_t rank = 0;
@@ -359,8 +359,9 @@ static int64_t count_rank(int64_t count, const double *sigma)
 }
 
 /*
- * N = Q_1 [U_2, 0; 0, I] with C' = Q_1 [R; 0], R = U S W', U_2 the left vectors
- * of no singular value: orthonormal, spans the null space of C.
+ * N = Q_1 [U_2, 0; 0, I] with C' = Q_1 [R; 0], R = U S W', U_2 the left
+ * singular vectors of the value 0. N is orthonormal and spans the null space of
+ * C.
  */
 ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
 {

@@ -1,20 +1,27 @@
-/* What joints lock, and the springs and dampers of those that they hold. */
+/*
+ * The constraints of joints, and the springs and dampers of caged directions.
+ */
 #ifndef RITZ_ASSEMBLY_CONSTRAINTS_H
 #define RITZ_ASSEMBLY_CONSTRAINTS_H
 
 #include <ritz/assembly.h>
 
-/* Spring k stretches by row k of S q: K + sum k_k s_k s_k', and so D. */
+/*
+ * Spring k is stretched by row k of S q: it adds k_k s_k s_k' to K, and its
+ * damper c_k s_k s_k' to D.
+ */
 typedef struct ritz_springs {
     ritz_dense S; /* springs x Q */
     ritz_freedom *hold;
 } ritz_springs;
 
-/** Those of all joints at some settings, in the coordinates of the stage. */
+/**
+ * The springs of all joints at some settings, in the coordinates of the stage.
+ */
 ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
                                ritz_springs *out);
 
-/** Whether one of them damps. */
+/** Whether one of the springs has damping. */
 bool ritz_springs_damp(const ritz_springs *springs);
 
 /** K += P'S' k S P and, where D is not empty, D += P'S' c S P. */
@@ -22,10 +29,10 @@ ritz_status ritz_springs_add(const ritz_springs *springs, const ritz_dense *P,
                              ritz_dense *K, ritz_dense *D);
 
 /**
- * A += S' k S, or with @p damping S' c S, of coordinates that are some of the n
- * of a full model. {0} stays so where there is nothing to add.
+ * A += S' k S, or with @p damping S' c S, where the coordinates are some of the
+ * n of a full model. An empty A stays {0} if there is nothing to add.
  *
- * @param[in] at  Q, where each coordinate is among the n
+ * @param[in] at  Q, the index of each coordinate among the n
  */
 ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
                                     int64_t n, const int64_t *at,

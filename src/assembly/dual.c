@@ -1,20 +1,21 @@
 /*
- * Constraints of bodies whose residual columns answer interface forces
- * [Rixen2004]. With multipliers lambda the forces of the joints are -C' lambda,
- * to which the columns p, of which K_pp is the flexibility F'Psi, answer
+ * Constraints of bodies whose residual columns are responses to interface
+ * forces [Rixen2004]. With multipliers lambda the forces of the joints are -C'
+ * lambda. The residual coordinates p, whose K_pp is the flexibility F'Psi,
+ * respond by
  *
  *     p = -K_pp^-1 C_p' lambda.
  *
- * Put into q'Kq/2 + p'K_pp p/2 + lambda'(C_q q + C_p p) this gives, with
- * H = C_p K_pp^-1,
+ * Inserted into q'Kq/2 + p'K_pp p/2 + lambda'(C_q q + C_p p) this gives, with H
+ * = C_p K_pp^-1,
  *
  *     K = [ Lambda   C_q'    ]    M = [ I   0         ]
  *         [ C_q     -H C_p'  ],       [ 0   H M_pp H' ]
  *
  * Here K_pp = L L' and C_p L'^-1 = U S V'. Of the rows of U'C those with a
  * singular value are taken as forces mu, lambda = U_1 S_1^-1 mu, so that their
- * block of K is -I; the others do not see p and hold q as joints hold any
- * coordinates, q = N y:
+ * block of K is -I; the others have no part in p and constrain q as in any
+ * assembly, q = N y:
  *
  *     p = -L'^-1 V_1 mu,   X = [N, 0; 0, -L'^-1 V_1]
  *
@@ -38,12 +39,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps of a dual assembly: coordinates in which constraints are forces. */
+/*
+ * Dual assembly: a transformation to coordinates in which constraints are
+ * forces.
+ */
 
 /*
  * With the constraints C_q q + C_p p = 0 of modal coordinates q and force
- * coordinates p, x = [q; p] = X [y; mu], and what the constraints add to
- * X'KX: see dual_forces.c.
+ * coordinates p, x = [q; p] = X [y; mu], and the matrix that the constraints
+ * add to X'KX, as above.
  */
 typedef struct ritz_dual {
     int64_t rank;       /* of the constraints */
@@ -52,9 +56,9 @@ typedef struct ritz_dual {
     int64_t num_forces; /* mu, the last of the columns */
 } ritz_dual;
 
-/* Columns of A whose flag is as wanted. */
-static ritz_status pick(const ritz_dense *A, const bool *flag, bool wanted,
-                        ritz_dense *out)
+/* The columns of A whose flag is `wanted`. */
+static ritz_status select_columns(const ritz_dense *A, const bool *flag,
+                                  bool wanted, ritz_dense *out)
 {
     int64_t count = 0;
 
@@ -69,14 +73,14 @@ static ritz_status pick(const ritz_dense *A, const bool *flag, bool wanted,
     return RITZ_OK;
 }
 
-/* L of K_pp. */
-static ritz_status factor(const ritz_dense *K, const bool *is_force,
-                          ritz_dense *L)
+/* The Cholesky factor L of K_pp. */
+static ritz_status factor_flexibility(const ritz_dense *K, const bool *is_force,
+                                      ritz_dense *L)
 {
     RITZ_OWN(ritz_dense) columns = {0};
     int64_t p = 0;
 
-    RITZ_CHECK(pick(K, is_force, true, &columns));
+    RITZ_CHECK(select_columns(K, is_force, true, &columns));
     RITZ_CHECK(ritz_dense_new(columns.ncol, columns.ncol, L));
     for (int64_t j = 0; j < L->ncol; j++) {
         p = 0;
@@ -93,23 +97,23 @@ static ritz_status factor(const ritz_dense *K, const bool *is_force,
     return RITZ_OK;
 }
 
-/* What the constraints make of p: W = C_p L'^-1 = U S V'. */
+/* The singular value decomposition W = C_p L'^-1 = U S V'. */
 typedef struct split {
-    int64_t rank;     /* singular values that count */
+    int64_t rank;     /* singular values above rounding */
     ritz_dense L;     /* p x p, lower */
     ritz_dense U, Vt; /* c x c, p x p */
     double *sigma;    /* the lesser of c and p */
 } split;
 
-static ritz_status decompose(const ritz_dense *C, const bool *is_force,
-                             split *s)
+static ritz_status decompose_constraints(const ritz_dense *C,
+                                         const bool *is_force, split *s)
 {
     RITZ_OWN(ritz_dense) W = {0};
     int c = (int)C->nrow;
     int p = (int)s->L.ncol;
     int least = c < p ? c : p;
 
-    RITZ_CHECK(pick(C, is_force, true, &W));
+    RITZ_CHECK(select_columns(C, is_force, true, &W));
     RITZ_CHECK(ritz_dense_new(c, c, &s->U));
     RITZ_CHECK(ritz_dense_new(p, p, &s->Vt));
     RITZ_CHECK_NEW(s->sigma, least);
@@ -126,9 +130,9 @@ static ritz_status decompose(const ritz_dense *C, const bool *is_force,
     return RITZ_OK;
 }
 
-/* N: what the constraints that do not see p leave to q. */
-static ritz_status hold(const split *s, const ritz_dense *C_q, int64_t *rank,
-                        ritz_dense *N)
+/* N, the null space for q of the constraints that have no part in p. */
+static ritz_status constrain_modal(const split *s, const ritz_dense *C_q,
+                                   int64_t *rank, ritz_dense *N)
 {
     double most = ritz_dense_max(C_q);
     RITZ_OWN(ritz_dense) U_0 = {0}, C_0 = {0};
@@ -146,9 +150,9 @@ static ritz_status hold(const split *s, const ritz_dense *C_q, int64_t *rank,
     return ritz_null_space(&C_0, rank, N);
 }
 
-/* X = [N, 0; 0, -L'^-1 V_1], its rows where they belong. */
-static ritz_status build(split *s, const bool *is_force, const ritz_dense *N,
-                         ritz_dense *X)
+/* X = [N, 0; 0, -L'^-1 V_1], its rows in the order of the coordinates. */
+static ritz_status build_transformation(split *s, const bool *is_force,
+                                        const ritz_dense *N, ritz_dense *X)
 {
     int p = (int)s->L.ncol;
     int64_t rows[2] = {0, 0};
@@ -193,7 +197,7 @@ static ritz_status add_joint(const split *s, const ritz_dense *C_q,
     return RITZ_OK;
 }
 
-static void split_free(split *s)
+static void free_split(split *s)
 {
     ritz_dense_free(&s->L);
     ritz_dense_free(&s->U);
@@ -221,17 +225,17 @@ static ritz_status new_dual(const ritz_dense *K, const ritz_dense *C,
     split s = {0};
     ritz_dense C_q = {0}, N = {0};
 
-    RITZ_TRY(factor(K, is_force, &s.L));
-    RITZ_TRY(decompose(C, is_force, &s));
-    RITZ_TRY(pick(C, is_force, false, &C_q));
-    RITZ_TRY(hold(&s, &C_q, &dual.rank, &N));
-    RITZ_TRY(build(&s, is_force, &N, &dual.X));
+    RITZ_TRY(factor_flexibility(K, is_force, &s.L));
+    RITZ_TRY(decompose_constraints(C, is_force, &s));
+    RITZ_TRY(select_columns(C, is_force, false, &C_q));
+    RITZ_TRY(constrain_modal(&s, &C_q, &dual.rank, &N));
+    RITZ_TRY(build_transformation(&s, is_force, &N, &dual.X));
     RITZ_TRY(add_joint(&s, &C_q, &N, &dual.joint));
     dual.rank += s.rank;
     dual.num_forces = s.rank;
     RITZ_MOVE(*out, dual);
 done:
-    split_free(&s);
+    free_split(&s);
     free_dual(&dual);
     ritz_dense_free(&C_q);
     ritz_dense_free(&N);
@@ -239,16 +243,16 @@ done:
 }
 
 /*
- * Dual assembly [Rixen2004]: the system of modal coordinates and interface
- * forces that dual_forces.c states,
+ * Dual assembly [Rixen2004]: the system in modal coordinates and interface
+ * forces, with X and joint as above,
  *
  *     K_z = X'KX + joint,   M_z = X'MX,   z = [y; mu].
  *
- * K_z is indefinite, for a joint that is held by forces in a few static shapes
- * gives way: there are about as many negative eigenvalues as forces, -1/m of
- * the order of the residual frequencies squared. They are kept and counted.
+ * K_z is indefinite, for the forces of a few static shapes hold a joint only
+ * approximately: there are about as many negative eigenvalues as forces, -1/m
+ * of the order of the residual frequencies squared. They are kept and counted.
  * Forces without mass are condensed, mu_0 = -K_00^-1 K_0z z, before the modes
- * are found; those are put in order of |lambda|, rigid ones first.
+ * are computed. The modes are sorted by |lambda|, rigid ones first.
  */
 
 /* The first body with force columns, -1 if there is none. */
@@ -278,9 +282,12 @@ ritz_status ritz_dual_refuse(const ritz_stage *stage)
     return RITZ_OK;
 }
 
-/* diag(A_1, A_2, ...), bodies without one giving nothing; {0} if none has. */
-static ritz_status stack(const ritz_stage *stage, size_t offset,
-                         const double *scale, ritz_dense *out)
+/*
+ * diag(A_1, A_2, ...), with a zero block for a body without the matrix; {0} if
+ * no body has it.
+ */
+static ritz_status stack_blocks(const ritz_stage *stage, size_t offset,
+                                const double *scale, ritz_dense *out)
 {
     bool any = false;
 
@@ -313,27 +320,30 @@ static void mark_forces(const ritz_stage *stage, bool *is_force)
                 stage->body[k].columns.kind[j] == RITZ_COLUMN_FORCE;
 }
 
-/* K, M of the system and P, from scaled coordinates to those of the bodies. */
+/*
+ * K and M of the system, and P from its coordinates, first scaled, to those of
+ * the bodies.
+ */
 typedef struct dual_pencil {
     ritz_dense K, M, P;
 } dual_pencil;
 
-static void pencil_free(dual_pencil *of)
+static void free_pencil(dual_pencil *of)
 {
     ritz_dense_free(&of->K);
     ritz_dense_free(&of->M);
     ritz_dense_free(&of->P);
 }
 
-/* All of it in new coordinates, z = Z w. */
-static ritz_status change(const ritz_dense *Z, dual_pencil *of)
+/* Transform K, M and P to new coordinates, z = Z w. */
+static ritz_status transform_pencil(const ritz_dense *Z, dual_pencil *of)
 {
-    [[gnu::cleanup(pencil_free)]] dual_pencil to = {0};
+    [[gnu::cleanup(free_pencil)]] dual_pencil to = {0};
 
     RITZ_CHECK(ritz_dense_congruence(&of->K, Z, &to.K));
     RITZ_CHECK(ritz_dense_congruence(&of->M, Z, &to.M));
     RITZ_CHECK(ritz_dense_mul(&of->P, Z, &to.P));
-    pencil_free(of);
+    free_pencil(of);
     RITZ_MOVE(*of, to);
     return RITZ_OK;
 }
@@ -346,8 +356,8 @@ static ritz_status make_pencil(const ritz_stage *stage,
     RITZ_OWN(ritz_dense) K = {0}, M = {0};
     ritz_dense none = {0};
 
-    RITZ_CHECK(stack(stage, offsetof(ritz_reduced, K), scale, &K));
-    RITZ_CHECK(stack(stage, offsetof(ritz_reduced, M), scale, &M));
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, K), scale, &K));
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, M), scale, &M));
     RITZ_CHECK(ritz_dense_congruence(&K, &dual->X, &out->K));
     RITZ_CHECK(ritz_dense_congruence(&M, &dual->X, &out->M));
     RITZ_CHECK(ritz_dense_copy(&dual->X, &out->P));
@@ -360,11 +370,12 @@ static ritz_status make_pencil(const ritz_stage *stage,
 }
 
 /*
- * Z = diag(I, Y): forces by the eigenvectors of their mass, those without any
- * last; how many these are. Their eigenvalue is rounding of the largest.
+ * Z = diag(I, Y) with Y the eigenvectors of the forces' mass, forces without
+ * mass last. Their eigenvalue is rounding relative to the largest. Their number
+ * is the result.
  */
-static ritz_status turn_forces(const ritz_dense *M, int64_t forces,
-                               ritz_dense *Z, int64_t *massless)
+static ritz_status diagonalise_forces(const ritz_dense *M, int64_t forces,
+                                      ritz_dense *Z, int64_t *massless)
 {
     int64_t y = M->ncol - forces;
     RITZ_OWN(ritz_dense) Y = {0};
@@ -394,8 +405,8 @@ static ritz_status turn_forces(const ritz_dense *M, int64_t forces,
     return RITZ_OK;
 }
 
-/* Z = [I; -K_00^-1 K_0z]: the last coordinates, without mass, condensed. */
-static ritz_status condense(int64_t massless, dual_pencil *of)
+/* Z = [I; -K_00^-1 K_0z]: condense the last coordinates, which have no mass. */
+static ritz_status condense_massless(int64_t massless, dual_pencil *of)
 {
     int64_t rest = of->K.ncol - massless;
     RITZ_OWN(ritz_dense) K_00 = {0}, K_0 = {0}, Z = {0};
@@ -422,16 +433,16 @@ static ritz_status condense(int64_t massless, dual_pencil *of)
         for (int64_t i = 0; i < massless; i++)
             ritz_dense_col(&Z, j)[rest + i] = -ritz_dense_col(&K_0, j)[i];
     }
-    return change(&Z, of);
+    return transform_pencil(&Z, of);
 }
 
-/* Modes that are found, and where they go: by |lambda|. */
+/* The modes found, and their order, by |lambda|. */
 typedef struct force_place {
     double size;
     int64_t from;
 } force_place;
 
-static int by_size(const void *left, const void *right)
+static int compare_magnitude(const void *left, const void *right)
 {
     const force_place *a = left;
     const force_place *b = right;
@@ -440,9 +451,9 @@ static int by_size(const void *left, const void *right)
                               : (a->from > b->from) - (a->from < b->from);
 }
 
-/* lambda, num_rigid, K and M of the configuration; P becomes P Phi. */
-static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
-                         ritz_configuration *c)
+/* Fill lambda, num_rigid, K and M of the configuration; P becomes P Phi. */
+static ritz_status order_modes(const ritz_pairs *pairs, ritz_dense *P,
+                               ritz_configuration *c)
 {
     int64_t e = pairs->Phi.ncol;
     RITZ_OWN(ritz_dense) Phi = {0}, Q = {0};
@@ -458,7 +469,7 @@ static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
     for (int64_t j = 0; j < e; j++)
         at[j] = (force_place){fabs(pairs->lambda[j]), j};
     if (e > 0)
-        qsort(at, (size_t)e, sizeof *at, by_size);
+        qsort(at, (size_t)e, sizeof *at, compare_magnitude);
     for (int64_t j = 0; j < e; j++) {
         size[j] = at[j].size;
         c->lambda[j] = pairs->lambda[at[j].from];
@@ -474,8 +485,8 @@ static ritz_status order(const ritz_pairs *pairs, ritz_dense *P,
     return RITZ_OK;
 }
 
-/* How many eigenvalues are negative, and the one that is nearest to 0. */
-static ritz_status report(ritz_configuration *c)
+/* Report the number of negative eigenvalues and the one nearest to 0. */
+static ritz_status report_negative(ritz_configuration *c)
 {
     int64_t count = 0;
     int64_t first = -1;
@@ -493,9 +504,10 @@ static ritz_status report(ritz_configuration *c)
                              0.0, where);
 }
 
-/* P'DP, and what springs add; {0} if nothing damps. */
-static ritz_status damp(const ritz_stage *stage, const ritz_springs *springs,
-                        const ritz_dense *P, ritz_configuration *c)
+/* P'DP and the damping of the springs; {0} without damping. */
+static ritz_status add_damping(const ritz_stage *stage,
+                               const ritz_springs *springs, const ritz_dense *P,
+                               ritz_configuration *c)
 {
     RITZ_OWN(ritz_dense) D = {0}, none = {0};
     RITZ_OWN_ARRAY double *one = NULL;
@@ -503,7 +515,7 @@ static ritz_status damp(const ritz_stage *stage, const ritz_springs *springs,
     RITZ_CHECK_NEW(one, stage->num_coordinates);
     for (int64_t i = 0; i < stage->num_coordinates; i++)
         one[i] = 1.0;
-    RITZ_CHECK(stack(stage, offsetof(ritz_reduced, D), one, &D));
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, D), one, &D));
     if (D.val)
         RITZ_CHECK(ritz_dense_project(&D, P, &c->D));
     else if (ritz_springs_damp(springs))
@@ -515,10 +527,11 @@ static ritz_status damp(const ritz_stage *stage, const ritz_springs *springs,
     return RITZ_OK;
 }
 
-/* The pencil with its forces turned, and those without mass condensed. */
-static ritz_status prepare(const ritz_stage *stage, const ritz_springs *springs,
-                           const ritz_dense *C, const double *scale,
-                           dual_pencil *of, int64_t *rank)
+/* The pencil with its forces diagonalised, and those without mass condensed. */
+static ritz_status prepare_pencil(const ritz_stage *stage,
+                                  const ritz_springs *springs,
+                                  const ritz_dense *C, const double *scale,
+                                  dual_pencil *of, int64_t *rank)
 {
     ritz_status status = RITZ_OK;
     ritz_dual dual = {0};
@@ -528,13 +541,13 @@ static ritz_status prepare(const ritz_stage *stage, const ritz_springs *springs,
 
     RITZ_NEW(is_force, stage->num_coordinates);
     mark_forces(stage, is_force);
-    RITZ_TRY(stack(stage, offsetof(ritz_reduced, K), scale, &K));
+    RITZ_TRY(stack_blocks(stage, offsetof(ritz_reduced, K), scale, &K));
     RITZ_TRY(new_dual(&K, C, is_force, &dual));
     RITZ_TRY(make_pencil(stage, springs, &dual, scale, of));
-    RITZ_TRY(turn_forces(&of->M, dual.num_forces, &Z, &massless));
-    RITZ_TRY(change(&Z, of));
+    RITZ_TRY(diagonalise_forces(&of->M, dual.num_forces, &Z, &massless));
+    RITZ_TRY(transform_pencil(&Z, of));
     if (massless > 0)
-        RITZ_TRY(condense(massless, of));
+        RITZ_TRY(condense_massless(massless, of));
     *rank = dual.rank;
 done:
     free(is_force);
@@ -549,14 +562,14 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const double *scale, ritz_dense *P,
                                ritz_configuration *c)
 {
-    [[gnu::cleanup(pencil_free)]] dual_pencil of = {0};
+    [[gnu::cleanup(free_pencil)]] dual_pencil of = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_CHECK(prepare(stage, springs, C, scale, &of, &c->rank));
+    RITZ_CHECK(prepare_pencil(stage, springs, C, scale, &of, &c->rank));
     RITZ_CHECK_IN("system modes", ritz_eigen_dense(&of.K, &of.M, &pairs));
-    RITZ_CHECK(order(&pairs, &of.P, c));
-    RITZ_CHECK(damp(stage, springs, &of.P, c));
-    RITZ_CHECK(report(c));
+    RITZ_CHECK(order_modes(&pairs, &of.P, c));
+    RITZ_CHECK(add_damping(stage, springs, &of.P, c));
+    RITZ_CHECK(report_negative(c));
     *P = of.P;
     of.P = (ritz_dense){0};
     return RITZ_OK;

@@ -1,4 +1,6 @@
-/* Bodies with force columns are joined by interface forces. */
+/*
+ * Assembly of bodies with force columns, which are joined by interface forces.
+ */
 #ifndef RITZ_ASSEMBLY_DUAL_H
 #define RITZ_ASSEMBLY_DUAL_H
 
@@ -7,12 +9,15 @@
 /** Whether a body of the stage has columns of kind force. */
 bool ritz_dual_is_due(const ritz_stage *stage);
 
-/** RITZ_ERR_ARGUMENT naming the body if there is one; where modes are chosen. */
+/**
+ * RITZ_ERR_ARGUMENT naming the first body with force columns; for methods that
+ * choose modes.
+ */
 ritz_status ritz_dual_refuse(const ritz_stage *stage);
 
 /**
- * The modes of such a system as its coordinates: rank, K, M, D, K4, lambda,
- * num_rigid and how many eigenvalues are negative, among the errors.
+ * A system with force columns in its modal coordinates: rank, K, M, D, K4,
+ * lambda, num_rigid and, among the errors, the number of negative eigenvalues.
  *
  * @param[in]  C      constraints, columns of scaled coordinates
  * @param[in]  scale  of the coordinates

@@ -14,10 +14,11 @@
 #include <string.h>
 
 /*
- * Full models of a scene of which synthesis sees only the dofs of their ports.
+ * Full models of a scene, restricted to the dofs of their ports for the
+ * assembly.
  */
 
-/* The bodies, and the dofs at which they may meet. */
+/* The bodies, and the dofs at which joints, inputs and outputs may act. */
 typedef struct ritz_held {
     const ritz_scene *scene;
     int64_t count;
@@ -31,7 +32,7 @@ typedef struct ritz_held {
 
 /* Slaves and masters of constraints. */
 
-/* Where held dof `dof` of a body comes among those held. */
+/* Index of dof `dof` of a body among the held ones, those of its ports. */
 static int64_t find_held(const ritz_dofs *held, int64_t dof)
 {
     int64_t k = 0;
@@ -41,10 +42,10 @@ static int64_t find_held(const ritz_dofs *held, int64_t dof)
     return k;
 }
 
-/* A port's rows from the held dofs alone. */
-static ritz_status hold_port(const ritz_component *component,
-                             const ritz_port *port, const ritz_dofs *held,
-                             ritz_port_map *map)
+/* A port's rows as combinations of the held dofs alone. */
+static ritz_status restrict_port(const ritz_component *component,
+                                 const ritz_port *port, const ritz_dofs *held,
+                                 ritz_port_map *map)
 {
     RITZ_OWN(ritz_dense) turn = {0};
 
@@ -67,9 +68,9 @@ static ritz_status hold_port(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* A body of which only the held dofs are seen. */
-static ritz_status hold_body(const ritz_component *component,
-                             const ritz_dofs *held, ritz_reduced *out)
+/* A body restricted to its held dofs. */
+static ritz_status restrict_body(const ritz_component *component,
+                                 const ritz_dofs *held, ritz_reduced *out)
 {
     RITZ_OWN(ritz_reduced) body = {.num_dofs = component->num_dofs};
 
@@ -79,7 +80,7 @@ static ritz_status hold_body(const ritz_component *component,
     for (int64_t k = 0; k < component->num_ports; k++) {
         body.num_ports++;
         RITZ_CHECK(
-            hold_port(component, &component->port[k], held, &body.port[k]));
+            restrict_port(component, &component->port[k], held, &body.port[k]));
     }
     RITZ_MOVE(*out, body);
     return RITZ_OK;
@@ -96,7 +97,7 @@ static ritz_status load_body(const ritz_source *source, const char *model,
     return source->component(source->state, model, out);
 }
 
-static ritz_status load(const ritz_scene *scene, ritz_held *p)
+static ritz_status load_bodies(const ritz_scene *scene, ritz_held *p)
 {
     p->scene = scene;
     RITZ_CHECK_NEW(p->body, scene->num_components);
@@ -114,8 +115,8 @@ static ritz_status load(const ritz_scene *scene, ritz_held *p)
     return RITZ_OK;
 }
 
-/* The stage of held dofs, and where its coordinates are among all. */
-static ritz_status hold(ritz_held *p)
+/* Build the stage of held dofs, and list their indices among all dofs. */
+static ritz_status build_stage(ritz_held *p)
 {
     ritz_status status = RITZ_OK;
     ritz_reduced *body = NULL;
@@ -123,7 +124,7 @@ static ritz_status hold(ritz_held *p)
     RITZ_NEW(body, p->count);
     for (int64_t k = 0; k < p->count; k++)
         RITZ_TRY_IN(p->scene->component[k].name,
-                    hold_body(&p->body[k], &p->held[k], &body[k]));
+                    restrict_body(&p->body[k], &p->held[k], &body[k]));
     RITZ_TRY(ritz_stage_from(p->scene, body, &p->stage));
     RITZ_NEW(p->row, p->stage.num_coordinates);
     for (int64_t k = 0; k < p->count; k++)
@@ -151,14 +152,14 @@ static void free_held(ritz_held *p)
     ritz_stage_free(&p->stage);
 }
 
-/* Load the full models and find where they are held. */
+/* Load the full models and list the dofs of their ports. */
 static ritz_status load_held(const ritz_scene *scene, ritz_held *out)
 {
     ritz_status status = RITZ_OK;
     ritz_held held = {0};
 
-    RITZ_TRY(load(scene, &held));
-    RITZ_TRY(hold(&held));
+    RITZ_TRY(load_bodies(scene, &held));
+    RITZ_TRY(build_stage(&held));
     RITZ_MOVE(*out, held);
 done:
     free_held(&held);
@@ -194,14 +195,15 @@ static void swap_rows(ritz_dense *C, int64_t a, int64_t b)
 
 /*
  * Gauss-Jordan elimination with complete pivoting: C becomes rows with one
- * slave each, u_s + sum_m C_sm u_m = 0. Rows that depend on others are left
- * without a slave; among equal pivots later columns become slaves.
+ * slave (an eliminated dof) each, u_s + sum_m C_sm u_m = 0. Dependent rows have
+ * no slave; among equal pivots later columns become slaves.
  *
- * @param[in]  C         rows of largest norm 1, for what is rounding
+ * @param[in]  C         rows of largest norm 1, relative to which entries
+ *                       are rounding
  * @param[out] pivot_of  C->ncol: the row in which a column is the slave, -1 for
  *                       masters
  */
-static void eliminate(ritz_dense *C, int64_t *pivot_of)
+static void eliminate_slaves(ritz_dense *C, int64_t *pivot_of)
 {
     int64_t row = 0;
     int64_t col = 0;
@@ -229,7 +231,7 @@ static void eliminate(ritz_dense *C, int64_t *pivot_of)
 }
 
 /*
- * The full-order system as one component. Bodies meet at few dofs: with the
+ * The full-order system as one component. Bodies are joined at few dofs: with the
  * constraints C u = 0 over the dofs of all ports, Gauss-Jordan elimination with
  * complete pivoting picks as many of them as slaves as C has rank,
  *
@@ -238,7 +240,7 @@ static void eliminate(ritz_dense *C, int64_t *pivot_of)
  * and T is the identity but for the rows of the slaves, so K stays sparse.
  */
 
-/* T from the reduced constraints, and what the masters are. */
+/* T from the reduced constraints, and the list of the masters. */
 static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
                               const int64_t *pivot_of, ritz_master *master,
                               ritz_sparse *T)
@@ -280,13 +282,16 @@ static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
                                      T);
 }
 
-/* One matrix of every body, by where it lies in a component. */
-static const ritz_sparse *matrix_of(const ritz_component *body, size_t offset)
+/* One matrix of a body, by its offset in the component. */
+static const ritz_sparse *body_matrix(const ritz_component *body, size_t offset)
 {
     return (const ritz_sparse *)(const void *)((const char *)body + offset);
 }
 
-/* diag(A_1, A_2, ...), bodies without one giving nothing; {0} if none has. */
+/*
+ * diag(A_1, A_2, ...), with a zero block for a body without the matrix; {0} if
+ * no body has it.
+ */
 static ritz_status stack_matrices(const ritz_held *p, size_t offset,
                                   ritz_sparse *out)
 {
@@ -295,7 +300,7 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
     bool any = false;
 
     for (int64_t k = 0; k < p->count; k++) {
-        const ritz_sparse *part = matrix_of(&p->body[k], offset);
+        const ritz_sparse *part = body_matrix(&p->body[k], offset);
 
         any = any || part->colptr;
         nnz += part->colptr ? part->colptr[part->ncol] : 0;
@@ -304,7 +309,7 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_new(p->num_dofs, p->num_dofs, nnz, &A));
     for (int64_t k = 0; k < p->count; k++) {
-        const ritz_sparse *part = matrix_of(&p->body[k], offset);
+        const ritz_sparse *part = body_matrix(&p->body[k], offset);
 
         for (int64_t j = 0; j < p->body[k].num_dofs; j++) {
             for (int64_t e = part->colptr ? part->colptr[j] : 0;
@@ -349,7 +354,10 @@ static ritz_status project_matrices(const ritz_held *p, const double *setting,
     return RITZ_OK;
 }
 
-/* Scatter held coordinates to all dofs, then to masters: B = T' B. */
+/*
+ * Expand B from held coordinates to all dofs, then project on the masters: B =
+ * T' B.
+ */
 static ritz_status project_io(const ritz_held *p, const ritz_sparse *T,
                               ritz_io *out)
 {
@@ -369,7 +377,10 @@ static ritz_status project_io(const ritz_held *p, const ritz_sparse *T,
     return ritz_io_project(&p->stage.io, &S, out);
 }
 
-/* Influence vectors of all bodies' dampers, scattered and brought to masters. */
+/*
+ * Influence vectors of all bodies' dampers, expanded to all dofs and projected
+ * on the masters.
+ */
 static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
                                    ritz_dampers *out)
 {
@@ -391,7 +402,10 @@ static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
     return RITZ_OK;
 }
 
-/* Dofs that constraints eliminated from the bodies of a full-order system. */
+/*
+ * Recovery of dofs that constraints eliminated in the bodies, in the full-order
+ * system.
+ */
 
 /* diag(G_1, G_2, ...), and the names of its rows in the system. */
 static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
@@ -428,14 +442,9 @@ static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
                                      &out->G);
 }
 
-/*
- * What the bodies' eliminated dofs follow: diag(G_k) T.
- *
- * @param[in] add  by how much the grid numbers of each body grow
- * @param[in] T    all dofs of all bodies x those of the system
- */
-static ritz_status held_recovery(const ritz_held *p, const int64_t *add,
-                                 const ritz_sparse *T, ritz_recovery *out)
+/* Project the recovery of the bodies' eliminated dofs: diag(G_k) T. */
+static ritz_status project_recovery(const ritz_held *p, const int64_t *add,
+                                    const ritz_sparse *T, ritz_recovery *out)
 {
     RITZ_OWN(ritz_recovery) all = {0};
     RITZ_OWN(ritz_sparse) GT = {0};
@@ -450,7 +459,10 @@ static ritz_status held_recovery(const ritz_held *p, const int64_t *add,
     return RITZ_OK;
 }
 
-/* Names of the masters; grids of all bodies where the angles put them. */
+/*
+ * Names of the masters, and the grids of all bodies at their positions for
+ * these settings.
+ */
 static ritz_status name_dofs(const ritz_held *p, const double *setting,
                              const ritz_master *master, const ritz_sparse *T,
                              ritz_component *system)
@@ -465,7 +477,7 @@ static ritz_status name_dofs(const ritz_held *p, const double *setting,
         system->dof[j] = p->body[master[j].body].dof[master[j].dof];
         system->dof[j].grid += add[master[j].body];
     }
-    return held_recovery(p, add, T, &system->recovery);
+    return project_recovery(p, add, T, &system->recovery);
 }
 
 static ritz_status check_units(const ritz_scene *scene, const ritz_held *p)
@@ -499,7 +511,7 @@ ritz_status ritz_assemble_masters(const ritz_scene *scene,
     RITZ_TRY(ritz_stage_constraints(&p.stage, setting, scale, &C));
     RITZ_NEW(pivot_of, C.ncol);
     RITZ_NEW(master, p.num_dofs);
-    eliminate(&C, pivot_of);
+    eliminate_slaves(&C, pivot_of);
     RITZ_TRY(make_basis(&p, &C, pivot_of, master, &T));
     system.num_dofs = T.ncol;
     RITZ_TRY(project_matrices(&p, setting, &T, &system));

@@ -1,7 +1,8 @@
 /*
- * T of an assembled system. Bodies move as u_c = T_c q_c with q_c = P_c x, and
- * C P = 0 holds in their ports' maps, which are rows of T_c: so (u_1, u_2, ...)
- * meets the full-order constraints too, and its masters say all of it.
+ * The basis T of an assembled system. Bodies move as u_c = T_c q_c with q_c =
+ * P_c x. C P = 0 holds in their ports' maps, which are rows of T_c, so that
+ * (u_1, u_2, ...) satisfies the full-order constraints too and follows from its
+ * masters.
  */
 #include "base/alloc.h"
 
@@ -11,7 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows of body k, which are first .. first + count - 1 of the system. */
+/*
+ * Append the rows of body k, whose coordinates are rows first .. first + count
+ * - 1 of P.
+ */
 static ritz_status add_body(const ritz_reduced *body, const ritz_dense *P,
                             int64_t first, int64_t count, const int64_t *row,
                             ritz_dense *T)

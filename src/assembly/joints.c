@@ -90,7 +90,7 @@ static void normalise(double x[static 3])
 }
 
 /* Two unit vectors normal to a unit axis and to each other. */
-static void normals(const double axis[static 3], double e[static 2][3])
+static void find_normals(const double axis[static 3], double e[static 2][3])
 {
     double start[3] = {0.0, 0.0, 0.0};
     int least = 0;
@@ -105,12 +105,12 @@ static void normals(const double axis[static 3], double e[static 2][3])
 }
 
 /*
- * What joints demand of the displacements u and rotations theta of two ports,
- * each along the basic axes of its own body. At rest a point x_B of the second
- * body stands at o_A + d + R (x_B - o_B) in the axes of the first, o being the
- * ports' origins. The two meet where the second body's origin is, to which
- * either grid has an arm, p_A = o_A + d - x_A and p_B = o_B - x_B, so that
- * there they part and turn against each other by
+ * The relations of joints between the displacements u and rotations theta of
+ * two ports, each along the basic axes of its own body. At rest a point x_B of
+ * the second body is at o_A + d + R (x_B - o_B) in the axes of the first, o
+ * being the ports' origins. Their relative motion is taken at the second port's
+ * origin, to which the grids have the arms p_A = o_A + d - x_A and p_B = o_B -
+ * x_B:
  *
  *     delta = R (u_B + theta_B x p_B) - (u_A + theta_A x p_A)
  *     phi   = R theta_B - theta_A
@@ -118,7 +118,7 @@ static void normals(const double axis[static 3], double e[static 2][3])
  * A joint is six directions e in the first body's axes, three for e'delta and
  * three for e'phi, each of them locked, free or caged: on a spring and damper.
  *
- *     type        R                   d         left are
+ *     type        R                   d         free are
  *     hinge       R(a, angle)         0         a'phi
  *     slider      I                   s a       a'delta
  *     universal   R(a, one) R(b, two) 0         g_1'phi, g_2'phi
@@ -126,7 +126,7 @@ static void normals(const double axis[static 3], double e[static 2][3])
  *     bushing     I                   0         delta and phi, caged
  *     rigid       I                   offset    none
  *
- * In a loop R and d are what the other joints leave (placement.c).
+ * In a loop R and d follow from the other joints (placement.c).
  *
  * The axes of a universal joint now point along a and c = R b, as b is fixed in
  * the second body. n = a x c / |a x c| is the direction about which it locks;
@@ -160,7 +160,7 @@ static void point_hinge(const ritz_joint *joint, const ritz_joint_pose *pose,
     (void)pose;
     fill_basic(e);
     memcpy(e[3], joint->axis[0], sizeof e[3]);
-    normals(e[3], e + 4);
+    find_normals(e[3], e + 4);
 }
 
 static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
@@ -168,7 +168,7 @@ static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
 {
     (void)pose;
     memcpy(e[0], joint->axis[0], sizeof e[0]);
-    normals(e[0], e + 1);
+    find_normals(e[0], e + 1);
     fill_basic(e + 3);
 }
 
@@ -207,7 +207,7 @@ static void point_bushing(const ritz_joint *joint, const ritz_joint_pose *pose,
     memcpy(e + 3, e, 3 * sizeof e[0]);
 }
 
-/* Which of the directions are freedoms of the joint: the first of them, ... */
+/* The directions that are freedoms of the joint: the first of them, ... */
 static const struct {
     const char *called;
     point *point;
@@ -242,7 +242,7 @@ static int64_t joint_direction(const ritz_joint_end *end, int64_t first,
     return -1;
 }
 
-/* Words for what a port lacks to be one six-dof grid. */
+/* Words for the dofs that a port lacks to be one six-dof grid. */
 static void list_missing(const ritz_joint_end *end, char text[64])
 {
     static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
@@ -281,7 +281,7 @@ static ritz_status find_six(const ritz_joint_end *end, const char *called,
     return RITZ_OK;
 }
 
-/* sum += v'x, x at three port rows; rows that count nothing are left out. */
+/* sum += v'x, x at three port rows; rows with coefficient zero are left out. */
 static void add_terms(ritz_relation *r, int end, const int64_t *row,
                       const double *v)
 {
@@ -297,8 +297,9 @@ static void add_terms(ritz_relation *r, int end, const int64_t *row,
  *
  * e'delta = (R'e)'u_B + (p_B x R'e)'theta_B - e'u_A - (p_A x e)'theta_A
  */
-static ritz_relation project(const double *e, bool rotation, const double *R,
-                             const double arm[2][3], const int64_t row[2][6])
+static ritz_relation project_motion(const double *e, bool rotation,
+                                    const double *R, const double arm[2][3],
+                                    const int64_t row[2][6])
 {
     ritz_relation r = {.rotation = rotation};
     double turned[3], lever[3];
@@ -315,7 +316,7 @@ static ritz_relation project(const double *e, bool rotation, const double *R,
     return r;
 }
 
-/* Arms p from the grids to the place where the bodies meet. */
+/* Arms p from the grids to the point where the bodies are joined. */
 static void find_arms(const ritz_joint_end end[static 2],
                       const ritz_joint_pose *pose, double arm[2][3])
 {
@@ -388,13 +389,17 @@ static ritz_status relate_six(const ritz_joint *joint,
 
         if (freedom.state == RITZ_FREE)
             continue;
-        list->item[list->count] = project(e[k], k >= 3, pose->R, arm, row);
+        list->item[list->count] =
+            project_motion(e[k], k >= 3, pose->R, arm, row);
         list->item[list->count++].freedom = freedom;
     }
     return RITZ_OK;
 }
 
-/* Rows at which a new grid begins, scalar points left out; how many. */
+/*
+ * List the rows at which a new grid begins, scalar points left out; returns
+ * their number.
+ */
 static int64_t list_grids(const ritz_joint_end *end, int64_t *first)
 {
     int64_t count = 0;
@@ -406,7 +411,7 @@ static int64_t list_grids(const ritz_joint_end *end, int64_t *first)
     return count;
 }
 
-/* Six equalities at most, of the directions that both grids have. */
+/* Append up to six equalities, for the directions that both grids have. */
 static void pair_grids(const ritz_joint_end end[static 2], int64_t a, int64_t b,
                        ritz_relations *list)
 {
@@ -425,7 +430,7 @@ static void pair_grids(const ritz_joint_end end[static 2], int64_t a, int64_t b,
     }
 }
 
-/* The grid nearest to `grid` that is not taken, -1 if all are. */
+/* The nearest free grid to `grid`, -1 if all are taken. */
 static int64_t find_nearest(const ritz_joint_end end[static 2], int64_t grid,
                             int64_t count, const int64_t *first,
                             const bool *taken)
@@ -440,7 +445,10 @@ static int64_t find_nearest(const ritz_joint_end end[static 2], int64_t grid,
     return near;
 }
 
-/* Those of a fixed joint: grids in pairs; room is that of the first port. */
+/*
+ * The relations of a fixed joint: its grids are paired; there is room for those
+ * of the first port.
+ */
 static ritz_status pair_joint(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               ritz_relations *list)
@@ -514,7 +522,10 @@ void ritz_relations_free(ritz_relations *relations)
     *relations = (ritz_relations){0};
 }
 
-/* Where the settings of a joint put its second body: joints.c has the table. */
+/*
+ * The pose of the second body at the settings of a joint, as in the table
+ * above.
+ */
 
 void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
                         ritz_joint_pose *out)

@@ -1,22 +1,24 @@
-/* What joints say of the motions of two port grids. */
+/* The relations of a joint between the motions of two port grids. */
 #ifndef RITZ_ASSEMBLY_JOINTS_H
 #define RITZ_ASSEMBLY_JOINTS_H
 
 #include <ritz/scene.h>
 
-/* One end of a joint: where its port's rows are, whatever they map from. */
+/*
+ * One end of a joint: the rows of its port, whatever coordinates they map from.
+ */
 typedef struct ritz_joint_end {
     const char *component; /* names, for messages */
     const char *port;
     const double *origin;   /* 3, of the port */
     int64_t count;          /* p rows of displacement along basic axes */
-    const ritz_dof *dof;    /* p, what they are */
+    const ritz_dof *dof;    /* p, grid and direction of each */
     const double *position; /* p x 3, of their grids */
 } ritz_joint_end;
 
 /*
- * Where the second body stands: a point x_B of it is at o_A + d + R (x_B - o_B)
- * in the basic axes of the first, o being the origins of the ports.
+ * The position of the second body: a point x_B of it is at o_A + d + R (x_B -
+ * o_B) in the basic axes of the first, o being the origins of the ports.
  */
 typedef struct ritz_joint_pose {
     double R[9]; /* row by row */
@@ -25,7 +27,7 @@ typedef struct ritz_joint_pose {
 
 /*
  * A relative motion, r = sum_k b[k] u_B[k] - sum_k a[k] u_A[k] over the port
- * rows: nought where locked, on a spring where caged.
+ * rows: zero where locked, the elongation of a spring where caged.
  */
 typedef struct ritz_relation {
     bool rotation;
@@ -47,8 +49,9 @@ void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
 /**
  * The relative motions that a joint locks or holds on springs.
  *
- * @return RITZ_ERR_ARGUMENT if the ports do not fit: grids without a partner
- *         within the tolerance, other than one six-dof grid where one is due
+ * @return RITZ_ERR_ARGUMENT if the ports do not fit: a grid has no counterpart
+ *         within the tolerance, or a port is not the one six-dof grid that the
+ *         joint needs
  */
 ritz_status ritz_joint_relate(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],

@@ -1,13 +1,14 @@
 /*
- * A neighbour as the component feels it through a joint. Its own motion is
- * u_f = A q (neighbour.c); the relations of the joint (joints.c) are rows
+ * A neighbour's mass and stiffness, condensed through a joint to the
+ * component's port. Its own motion is u_f = A q with few coordinates q; the
+ * relations of the joint (joints.c) are rows
  *
  *     F q - G u = 0 where locked,    a spring of k_s where caged,
  *
  * u being the dofs of the component's port. With L those rows of F that are
- * locked, q = S u + Z z, S = L^+ G, L Z = 0; z is what the joint leaves free:
- * it goes where the energy is least, and if it costs none where inertia takes
- * it,
+ * locked, q = S u + Z z, S = L^+ G, L Z = 0; z is the motion that the joint
+ * leaves free. It minimises the strain energy, and where it causes none it
+ * follows from inertia,
  *
  *     Z'H Z z = -Z'(H S - sum k_s f g') u,     H = K + sum k_s f f'
  *     (ZN)'M (S u + Z z) = 0,                  Z'HZ N = 0
@@ -25,8 +26,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static ritz_status pick(const ritz_dense *A, const ritz_link *of,
-                        ritz_freedom_state state, ritz_dense *out);
+static ritz_status select_rows(const ritz_dense *A, const ritz_link *of,
+                               ritz_freedom_state state, ritz_dense *out);
 
 /* K + f f' of the springs' rows, each times the root of its stiffness. */
 static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
@@ -41,14 +42,15 @@ static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
     return RITZ_OK;
 }
 
-/* K_n of the near port's dofs. */
-static ritz_status stiffness(const ritz_reduced *far, const ritz_link *of,
-                             const ritz_dense *Y, ritz_dense *out)
+/* The stiffness K_n, condensed to the near port's dofs. */
+static ritz_status condense_stiffness(const ritz_reduced *far,
+                                      const ritz_link *of, const ritz_dense *Y,
+                                      ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) f = {0}, g = {0}, K = {0}, gap = {0};
 
-    RITZ_CHECK(pick(&of->F, of, RITZ_CAGED, &f));
-    RITZ_CHECK(pick(&of->G, of, RITZ_CAGED, &g));
+    RITZ_CHECK(select_rows(&of->F, of, RITZ_CAGED, &f));
+    RITZ_CHECK(select_rows(&of->G, of, RITZ_CAGED, &g));
     RITZ_CHECK(ritz_dense_congruence(&far->K, Y, &K));
     RITZ_CHECK(ritz_dense_mul(&f, Y, &gap));
     for (int64_t k = 0; k < gap.nrow * gap.ncol; k++)
@@ -56,9 +58,11 @@ static ritz_status stiffness(const ritz_reduced *far, const ritz_link *of,
     return add_springs(&K, &gap, out);
 }
 
-/* Rows of one state, those of springs each times the root of its stiffness. */
-static ritz_status pick(const ritz_dense *A, const ritz_link *of,
-                        ritz_freedom_state state, ritz_dense *out)
+/*
+ * Rows of one state; a spring's row is multiplied by the root of its stiffness.
+ */
+static ritz_status select_rows(const ritz_dense *A, const ritz_link *of,
+                               ritz_freedom_state state, ritz_dense *out)
 {
     int64_t count = 0;
 
@@ -79,8 +83,12 @@ static ritz_status pick(const ritz_dense *A, const ritz_link *of,
     return RITZ_OK;
 }
 
-/* S = L^+ G and Z: what the locked rows demand of q, and what they leave. */
-static ritz_status hold(const ritz_link *of, ritz_dense *S, ritz_dense *Z)
+/*
+ * S = L^+ G and Z: the motion q that the locked rows prescribe, and their null
+ * space.
+ */
+static ritz_status solve_locked(const ritz_link *of, ritz_dense *S,
+                                ritz_dense *Z)
 {
     RITZ_OWN(ritz_dense) L = {0}, G = {0}, U = {0}, Vt = {0}, UG = {0};
     RITZ_OWN_ARRAY double *sigma = NULL;
@@ -88,8 +96,8 @@ static ritz_status hold(const ritz_link *of, ritz_dense *S, ritz_dense *Z)
     int r = (int)of->F.ncol;
     int64_t rank = 0;
 
-    RITZ_CHECK(pick(&of->F, of, RITZ_LOCKED, &L));
-    RITZ_CHECK(pick(&of->G, of, RITZ_LOCKED, &G));
+    RITZ_CHECK(select_rows(&of->F, of, RITZ_LOCKED, &L));
+    RITZ_CHECK(select_rows(&of->G, of, RITZ_LOCKED, &G));
     c = (int)L.nrow;
     RITZ_CHECK(ritz_dense_new(c, c, &U));
     RITZ_CHECK(ritz_dense_new(r, r, &Vt));
@@ -116,11 +124,11 @@ static ritz_status hold(const ritz_link *of, ritz_dense *S, ritz_dense *Z)
 }
 
 /*
- * X = -A^+ B of a semidefinite A, and N whose columns A does not see; both by
- * the eigenvectors of A scaled to unit diagonal. N may be NULL.
+ * X = -A^+ B of a semidefinite A, and N, the null space of A; both by the
+ * eigenvectors of A scaled to unit diagonal. N may be NULL.
  */
-static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
-                         ritz_dense *X, ritz_dense *N)
+static ritz_status minimise_energy(ritz_dense *A, const ritz_dense *B,
+                                   double largest, ritz_dense *X, ritz_dense *N)
 {
     int64_t n = A->ncol;
     int64_t unseen = 0;
@@ -164,54 +172,50 @@ static ritz_status relax(ritz_dense *A, const ritz_dense *B, double largest,
 }
 
 /* S += Z X with X = -(Z'HZ)^+ Z'R; N as above. */
-static ritz_status move(const ritz_dense *H, const ritz_dense *R,
-                        const ritz_dense *Z, ritz_dense *S, ritz_dense *N)
+static ritz_status reduce_energy(const ritz_dense *H, const ritz_dense *R,
+                                 const ritz_dense *Z, ritz_dense *S,
+                                 ritz_dense *N)
 {
     RITZ_OWN(ritz_dense) A = {0}, B = {0}, X = {0}, more = {0};
 
     RITZ_CHECK(ritz_dense_congruence(H, Z, &A));
     RITZ_CHECK(ritz_dense_mul_tn(Z, R, &B));
-    RITZ_CHECK(relax(&A, &B, ritz_dense_max(H), &X, N));
+    RITZ_CHECK(minimise_energy(&A, &B, ritz_dense_max(H), &X, N));
     RITZ_CHECK(ritz_dense_mul(Z, &X, &more));
     for (int64_t k = 0; k < S->nrow * S->ncol; k++)
         S->val[k] += more.val[k];
     return RITZ_OK;
 }
 
-/* Y: how the far body follows the near port. */
-static ritz_status follow(const ritz_reduced *far, const ritz_link *of,
-                          ritz_dense *Y)
+/* Y: the motion of the far body due to the near port's. */
+static ritz_status map_far_body(const ritz_reduced *far, const ritz_link *of,
+                                ritz_dense *Y)
 {
     RITZ_OWN(ritz_dense) Z = {0}, N = {0}, ZN = {0}, f = {0}, g = {0};
     RITZ_OWN(ritz_dense) H = {0}, R = {0}, cross = {0}, MS = {0};
 
-    RITZ_CHECK(hold(of, Y, &Z));
-    RITZ_CHECK(pick(&of->F, of, RITZ_CAGED, &f));
-    RITZ_CHECK(pick(&of->G, of, RITZ_CAGED, &g));
+    RITZ_CHECK(solve_locked(of, Y, &Z));
+    RITZ_CHECK(select_rows(&of->F, of, RITZ_CAGED, &f));
+    RITZ_CHECK(select_rows(&of->G, of, RITZ_CAGED, &g));
     RITZ_CHECK(add_springs(&far->K, &f, &H));
     RITZ_CHECK(ritz_dense_mul(&H, Y, &R));
     RITZ_CHECK(ritz_dense_mul_tn(&f, &g, &cross));
     for (int64_t k = 0; k < R.nrow * R.ncol; k++)
         R.val[k] -= cross.val[k];
-    RITZ_CHECK(move(&H, &R, &Z, Y, &N));
+    RITZ_CHECK(reduce_energy(&H, &R, &Z, Y, &N));
     RITZ_CHECK(ritz_dense_mul(&Z, &N, &ZN));
     RITZ_CHECK(ritz_dense_mul(&far->M, Y, &MS));
-    return move(&far->M, &MS, &ZN, Y, NULL);
+    return reduce_energy(&far->M, &MS, &ZN, Y, NULL);
 }
 
-/*
- * The far body's stiffness and mass as the near port feels them.
- *
- * @param[in]  far   in coordinates q
- * @param[out] K,M   p x p
- */
+/* The far body's stiffness and mass, condensed to the near port. */
 static ritz_status condense_link(const ritz_reduced *far, const ritz_link *link,
                                  ritz_dense *K, ritz_dense *M)
 {
     RITZ_OWN(ritz_dense) Y = {0};
 
-    RITZ_CHECK(follow(far, link, &Y));
-    RITZ_CHECK(stiffness(far, link, &Y, K));
+    RITZ_CHECK(map_far_body(far, link, &Y));
+    RITZ_CHECK(condense_stiffness(far, link, &Y, K));
     return ritz_dense_congruence(&far->M, &Y, M);
 }
 
@@ -224,14 +228,15 @@ static void free_link(ritz_link *link)
 }
 
 /*
- * What hangs on a component: the body beyond a joint, condensed to its port by
- * Guyan's reduction, or, if it has no stiffness, its six rigid motions; both
- * are few coordinates q. link.c says how they follow the component's port.
+ * The neighbours of a component: the body beyond a joint, condensed to its own
+ * port by Guyan's reduction, or, if it has no stiffness, to its six rigid
+ * motions; both have few coordinates q. The link above relates them to the
+ * component's port.
  */
 
 /* The far body in few coordinates. */
-static ritz_status condense(const ritz_component *far, const ritz_port *port,
-                            ritz_reduced *out)
+static ritz_status condense_body(const ritz_component *far,
+                                 const ritz_port *port, ritz_reduced *out)
 {
     ritz_request request = RITZ_REQUEST_NONE;
     RITZ_OWN(ritz_basis) basis = {0};
@@ -246,15 +251,18 @@ static ritz_status condense(const ritz_component *far, const ritz_port *port,
     return ritz_reduce(far, &basis, out);
 }
 
-/* The rows of a port: what they are and where; turn * dofs along basic axes. */
+/*
+ * The rows of a port: their dofs and positions; turn * dofs are along basic
+ * axes.
+ */
 typedef struct near_port {
     ritz_dense turn;
     ritz_dof *dof;
     double *position;
 } near_port;
 
-static ritz_status look(const ritz_component *component, const ritz_port *port,
-                        near_port *out)
+static ritz_status describe_port(const ritz_component *component,
+                                 const ritz_port *port, near_port *out)
 {
     const ritz_grids *grids = &component->grids;
 
@@ -301,9 +309,9 @@ static ritz_status fill_rows(const ritz_relations *list, int near,
     return RITZ_OK;
 }
 
-static ritz_status relate(const ritz_joint *joint, const double *setting,
-                          const ritz_joined side[2], int near,
-                          const ritz_reduced *far, ritz_link *out)
+static ritz_status link_bodies(const ritz_joint *joint, const double *setting,
+                               const ritz_joined side[2], int near,
+                               const ritz_reduced *far, ritz_link *out)
 {
     ritz_status status = RITZ_OK;
     const char *name = joint->between[near].port;
@@ -317,7 +325,7 @@ static ritz_status relate(const ritz_joint *joint, const double *setting,
 
     if (!port || !map)
         return RITZ_ERR_ARGUMENT;
-    RITZ_TRY(look(side[near].component, port, &at));
+    RITZ_TRY(describe_port(side[near].component, port, &at));
     end[near] = (ritz_joint_end){side[near].name,  name,   port->origin,
                                  port->dofs.count, at.dof, at.position};
     end[1 - near] =
@@ -334,10 +342,10 @@ done:
     return status;
 }
 
-/* Where a port's dofs are among the attached ones. */
-static ritz_status locate(const ritz_component *component,
-                          const ritz_port *port, const ritz_dofs *attached,
-                          int64_t *at)
+/* Indices of a port's dofs among the attached ones. */
+static ritz_status locate_port(const ritz_component *component,
+                               const ritz_port *port, const ritz_dofs *attached,
+                               int64_t *at)
 {
     char name[RITZ_DOF_NAME_SIZE];
 
@@ -356,7 +364,8 @@ static ritz_status locate(const ritz_component *component,
 }
 
 /* sum(at, at) += A. */
-static void scatter(const ritz_dense *A, const int64_t *at, ritz_dense *sum)
+static void add_scattered(const ritz_dense *A, const int64_t *at,
+                          ritz_dense *sum)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
@@ -383,13 +392,13 @@ ritz_status ritz_joint_neighbour(const ritz_joint *joint, const double *setting,
         return ritz_context(RITZ_ERR_ARGUMENT,
                             side[port ? 1 - near : near].name);
     RITZ_NEW(at, port->dofs.count);
-    RITZ_TRY(locate(side[near].component, port, attached, at));
+    RITZ_TRY(locate_port(side[near].component, port, attached, at));
     RITZ_TRY_IN(side[1 - near].name,
-                condense(side[1 - near].component, other, &far));
-    RITZ_TRY(relate(joint, setting, side, near, &far, &link));
+                condense_body(side[1 - near].component, other, &far));
+    RITZ_TRY(link_bodies(joint, setting, side, near, &far, &link));
     RITZ_TRY(condense_link(&far, &link, &K, &M));
-    scatter(&K, at, &sum->K);
-    scatter(&M, at, &sum->M);
+    add_scattered(&K, at, &sum->K);
+    add_scattered(&M, at, &sum->M);
 done:
     free(at);
     ritz_reduced_free(&far);
@@ -431,8 +440,10 @@ static ritz_status load_far_body(const ritz_source *source,
     return source->component(source->state, item->model, out);
 }
 
-/* Which end of a joint is on body k if the other is on `far`; -1: neither. */
-static int near_end(const ritz_joint *joint, int64_t k, int64_t far)
+/*
+ * The end of a joint that is on body k if the other is on `far`; -1: neither.
+ */
+static int find_near_end(const ritz_joint *joint, int64_t k, int64_t far)
 {
     for (int near = 0; near < 2; near++)
         if (joint->between[near].component == k &&
@@ -441,7 +452,10 @@ static int near_end(const ritz_joint *joint, int64_t k, int64_t far)
     return -1;
 }
 
-/* What all joints with one other body hang on component k: read once. */
+/*
+ * Add the condensed neighbour for all joints with one other body, which is read
+ * once.
+ */
 static ritz_status add_body(const ritz_scene *scene, int64_t k, int64_t other,
                             const ritz_component *component,
                             const ritz_dofs *attached, ritz_neighbour *sum)
@@ -450,7 +464,7 @@ static ritz_status add_body(const ritz_scene *scene, int64_t k, int64_t other,
     ritz_joined side[2];
 
     for (int64_t j = 0; j < scene->num_joints; j++) {
-        int near = near_end(&scene->joint[j], k, other);
+        int near = find_near_end(&scene->joint[j], k, other);
 
         if (near < 0)
             continue;

@@ -1,4 +1,4 @@
-/* What hangs on a component through a joint, condensed to its port. */
+/* The neighbours of a component, condensed through joints to its ports. */
 #ifndef RITZ_ASSEMBLY_NEIGHBOUR_H
 #define RITZ_ASSEMBLY_NEIGHBOUR_H
 

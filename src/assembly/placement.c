@@ -1,12 +1,12 @@
 /*
- * Bodies follow each other through the joints: a point x_B of the second body
- * stands, in the axes of the first, at o_A + d + R (x_B - o_B), the origins
- * being those of the ports.
+ * Bodies are placed one after the other through the joints: a point x_B of the
+ * second body is, in the axes of the first, at o_A + d + R (x_B - o_B), the
+ * origins being those of the ports.
  *
- * The joint that closes a loop finds both bodies placed. Its settings are
- * written with a few digits and fit as well as that; what it states must hold
- * where the bodies are, lest a gap of rounded digits take a rigid motion from
- * the system. So it gets R and d of the placements.
+ * When the joint that closes a loop is reached, both its bodies are placed
+ * already. Its settings are written with a few digits and fit to that accuracy
+ * only, and a gap of rounded digits would take a rigid motion from the system.
+ * Its R and d are therefore those of the placements.
  */
 #include "assembly/placement.h"
 
@@ -19,7 +19,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a joint says of its two bodies: x - near of the first is R (x - far). */
+/*
+ * A joint's relation of its two bodies: x - near of the first is R (x - far).
+ */
 typedef struct link {
     int64_t body[2];
     double near[3]; /* o_A + d */
@@ -28,7 +30,9 @@ typedef struct link {
     bool turns_freely;
 } link;
 
-/* Whether a joint's ports are there; where not, its making refuses it. */
+/*
+ * Whether a joint's ports exist; if not, the joint itself refuses them later.
+ */
 static bool find_link(const ritz_stage *stage, int64_t j,
                       const ritz_joint_pose *pose, link *out)
 {
@@ -55,8 +59,9 @@ static bool find_link(const ritz_stage *stage, int64_t j,
  * With R_A, t_A known: R_B = R_A R and t_B = R_A (o_A + d - R o_B) + t_A; with
  * the second body known the same holds with R' and the ends exchanged.
  */
-static void follow(const ritz_placement *known, const double *R,
-                   const double *near, const double *far, ritz_placement *out)
+static void place_neighbour(const ritz_placement *known, const double *R,
+                            const double *near, const double *far,
+                            ritz_placement *out)
 {
     double turned[3], gap[3];
 
@@ -70,7 +75,7 @@ static void follow(const ritz_placement *known, const double *R,
     out->known = true;
 }
 
-static void transpose(const double *R, double *out)
+static void transpose_rotation(const double *R, double *out)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -78,11 +83,13 @@ static void transpose(const double *R, double *out)
 }
 
 /*
- * Go once through the joints; whether a body found its place. With
- * `turns_freely` one body does, through a joint that cannot turn it.
+ * Go once through the joints; returns whether a body was placed. With
+ * `turns_freely` one body is placed through a joint that does not prescribe its
+ * rotation.
  */
-static bool spread(const ritz_stage *stage, const ritz_joint_pose *pose,
-                   bool turns_freely, ritz_placement *place)
+static bool place_through_joints(const ritz_stage *stage,
+                                 const ritz_joint_pose *pose, bool turns_freely,
+                                 ritz_placement *place)
 {
     bool found = false;
 
@@ -97,11 +104,11 @@ static bool spread(const ritz_stage *stage, const ritz_joint_pose *pose,
         b = &place[at.body[1]];
         if (a->known == b->known)
             continue;
-        transpose(at.R, back);
+        transpose_rotation(at.R, back);
         if (a->known)
-            follow(a, at.R, at.near, at.far, b);
+            place_neighbour(a, at.R, at.near, at.far, b);
         else
-            follow(b, back, at.far, at.near, a);
+            place_neighbour(b, back, at.far, at.near, a);
         found = true;
         if (turns_freely)
             return true;
@@ -110,11 +117,9 @@ static bool spread(const ritz_stage *stage, const ritz_joint_pose *pose,
 }
 
 /*
- * Every body placed through the joints, those that nothing holds staying where
- * they are; a spherical joint turns a body only if no other joint does.
- *
- * @param[in]     pose   of each joint
- * @param[in,out] place  of each body, zero on entry
+ * Place every body through the joints; bodies without joints stay where they
+ * are. A spherical joint prescribes a body's rotation only if no other joint
+ * does.
  */
 static void place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
                          ritz_placement *place)
@@ -123,45 +128,51 @@ static void place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
         if (place[k].known)
             continue;
         place[k] = (ritz_placement){true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}};
-        while (spread(stage, pose, false, place) ||
-               spread(stage, pose, true, place))
+        while (place_through_joints(stage, pose, false, place) ||
+               place_through_joints(stage, pose, true, place))
             ;
     }
 }
 
-static double length(const double *x)
+static double vector_norm(const double *x)
 {
     return sqrt(ritz_dot(x, x));
 }
 
-/* How badly a loop closes: apart, beside the size of bodies there; turned. */
+/*
+ * Misfit of a loop: its gap, relative to the size of its bodies, and its angle.
+ */
 typedef struct misfit {
     double gap, size, turn;
 } misfit;
 
-/* Where the joint puts the second body against where it stands. */
-static misfit measure(const link *at, const ritz_placement *place)
+/* The second body as placed by this joint, compared with its placement. */
+static misfit measure_misfit(const link *at, const ritz_placement *place)
 {
     const ritz_placement *b = &place[at->body[1]];
-    misfit found = {0.0, length(at->near) + length(at->far) + length(b->t),
-                    0.0};
+    misfit found = {
+        0.0, vector_norm(at->near) + vector_norm(at->far) + vector_norm(b->t),
+        0.0};
     ritz_placement due = {0};
     double here[3], there[3];
 
-    follow(&place[at->body[0]], at->R, at->near, at->far, &due);
+    place_neighbour(&place[at->body[0]], at->R, at->near, at->far, &due);
     ritz_turn_apply(due.R, at->far, here);
     ritz_turn_apply(b->R, at->far, there);
     for (int i = 0; i < 3; i++)
         here[i] += due.t[i] - there[i] - b->t[i];
-    found.gap = length(here);
+    found.gap = vector_norm(here);
     for (int i = 0; i < 9; i++)
         found.turn = fmax(found.turn, fabs(due.R[i] - b->R[i]));
     return found;
 }
 
-/* R = R_A'R_B, d = R_A'(R_B o_B + t_B - t_A) - o_A: what the bodies have. */
-static void take_pose(const link *at, const ritz_placement *place,
-                      ritz_joint_pose *pose)
+/*
+ * R = R_A'R_B, d = R_A'(R_B o_B + t_B - t_A) - o_A, from the bodies'
+ * placements.
+ */
+static void derive_pose(const link *at, const ritz_placement *place,
+                        ritz_joint_pose *pose)
 {
     const ritz_placement *a = &place[at->body[0]];
     const ritz_placement *b = &place[at->body[1]];
@@ -183,7 +194,7 @@ static ritz_status close_joint(const ritz_stage *stage, int64_t j,
     ritz_status status = RITZ_OK;
     const ritz_joint *joint = &stage->scene->joint[j];
     const ritz_scene_component *component = stage->scene->component;
-    const misfit found = measure(at, place);
+    const misfit found = measure_misfit(at, place);
 
     if (found.gap <= RITZ_PLACEMENT_ROUNDING * found.size &&
         found.turn <= RITZ_PLACEMENT_ROUNDING)
@@ -199,7 +210,7 @@ static ritz_status close_joint(const ritz_stage *stage, int64_t j,
                  "closes a loop of joints whose angles do not agree: '%s' is "
                  "turned otherwise against '%s' by the other joints",
                  component[at->body[1]].name, component[at->body[0]].name);
-    take_pose(at, place, pose);
+    derive_pose(at, place, pose);
 done:
     return ritz_scene_context(stage->scene, status, joint->line, joint->column,
                               "joint", joint->name);
@@ -224,9 +235,12 @@ ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
     return RITZ_OK;
 }
 
-/* Grids of all bodies side by side, where a configuration puts them. */
+/* The grids of all bodies, at their positions in a configuration. */
 
-/* Numbers stay where ranges do not overlap; else body k adds k 10^p. */
+/*
+ * Numbers are kept where the bodies' ranges do not overlap; else body k adds k
+ * 10^p.
+ */
 static void renumber(int64_t count, const ritz_component *body, int64_t *add)
 {
     int64_t power = 1;
@@ -255,8 +269,8 @@ static void renumber(int64_t count, const ritz_component *body, int64_t *add)
 }
 
 /* Append the grids of one body. */
-static void append(const ritz_grids *from, const ritz_placement *place,
-                   int64_t add, ritz_grids *to)
+static void append_grids(const ritz_grids *from, const ritz_placement *place,
+                         int64_t add, ritz_grids *to)
 {
     for (int64_t i = 0; i < from->count; i++) {
         double *x = to->position + 3 * to->count;
@@ -274,12 +288,12 @@ static void append(const ritz_grids *from, const ritz_placement *place,
     to->num_frames += from->num_frames;
 }
 
-/* One grid of the sorted order. */
+/* A grid and its index, to be sorted. */
 typedef struct grid_entry {
     int64_t id, at;
 } grid_entry;
 
-static int compare(const void *left, const void *right)
+static int compare_numbers(const void *left, const void *right)
 {
     const grid_entry *a = left;
     const grid_entry *b = right;
@@ -288,7 +302,7 @@ static int compare(const void *left, const void *right)
 }
 
 /* Put grids in ascending order of number. */
-static ritz_status sort(ritz_grids *grids)
+static ritz_status sort_grids(ritz_grids *grids)
 {
     size_t n = (size_t)grids->count;
     RITZ_OWN_ARRAY grid_entry *order = NULL;
@@ -300,7 +314,7 @@ static ritz_status sort(ritz_grids *grids)
     RITZ_CHECK_NEW(frame, grids->count);
     for (int64_t k = 0; k < grids->count; k++)
         order[k] = (grid_entry){grids->id[k], k};
-    qsort(order, n, sizeof *order, compare);
+    qsort(order, n, sizeof *order, compare_numbers);
     for (int64_t k = 0; k < grids->count; k++) {
         memcpy(position + 3 * k, grids->position + 3 * order[k].at,
                3 * sizeof *position);
@@ -342,15 +356,15 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
     for (int64_t k = 0; k < 3; k++)
         all.axes[4 * k] = 1.0;
     for (int64_t k = 0; k < count; k++)
-        append(&body[k].grids, &place[k], add[k], &all);
-    RITZ_CHECK(sort(&all));
+        append_grids(&body[k].grids, &place[k], add[k], &all);
+    RITZ_CHECK(sort_grids(&all));
     RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 
 /*
- * Mass and momentum of all bodies where a configuration puts them. A body at
- * x = R x_b + t moves by its own rigid motions r_b as the whole does by
+ * Mass and momentum of all bodies at their positions in a configuration. For a
+ * body at x = R x_b + t the rigid motions of the whole are, by its own r_b,
  *
  *     r = r_b X',    X = [R  0; [t]x R  R],
  *
@@ -369,7 +383,7 @@ static bool is_known(const ritz_stage *stage)
 }
 
 /* X of a placement, 6 x 6. */
-static void carry(const ritz_placement *place, ritz_dense *X)
+static void fill_transport(const ritz_placement *place, ritz_dense *X)
 {
     for (int64_t j = 0; j < 3; j++) {
         const double axis[3] = {place->R[j], place->R[3 + j], place->R[6 + j]};
@@ -421,7 +435,7 @@ ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
                               &configuration->momentum));
     for (int64_t k = 0; k < stage->count; k++) {
-        carry(&place[k], &X);
+        fill_transport(&place[k], &X);
         RITZ_CHECK(add_body(&stage->body[k].invariants, &X,
                             &configuration->P[k], configuration));
     }

@@ -1,4 +1,4 @@
-/* Where bodies stand at a configuration. */
+/* Positions of bodies at a configuration. */
 #ifndef RITZ_ASSEMBLY_PLACEMENT_H
 #define RITZ_ASSEMBLY_PLACEMENT_H
 
@@ -15,13 +15,13 @@ typedef struct ritz_placement {
 
 /**
  * The pose of each joint of the scene at some settings; that of a joint which
- * closes a loop is what the other joints leave it.
+ * closes a loop follows from the other joints.
  *
- * Refused are joints that form a loop which does not close: bodies that one way
- * around puts elsewhere than the other.
+ * A loop that does not close is refused: its two ways around place a body
+ * differently.
  *
  * @param[out] pose  one for each joint
- * @return RITZ_ERR_ARGUMENT naming the joint that closes it, and how far from
+ * @return RITZ_ERR_ARGUMENT naming the joint that closes it, and the gap
  */
 ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
                               ritz_joint_pose *pose);
@@ -38,8 +38,8 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t *add, ritz_grids *out);
 
 /**
- * Momentum and mass of rigid motion of all bodies where they stand, for a
- * configuration that has its P; nothing where a body does not know its own.
+ * Momentum and mass of rigid motion of all bodies at their positions, for a
+ * configuration that has its P; empty where a body's own are unknown.
  */
 ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
                             ritz_configuration *configuration);

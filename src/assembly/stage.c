@@ -1,4 +1,4 @@
-/* A scene's models, loaded and reduced: the bodies that synthesis joins. */
+/* A scene's models, loaded and reduced: the bodies that are assembled. */
 #include "assembly/neighbour.h"
 #include "base/alloc.h"
 
@@ -36,7 +36,8 @@ static ritz_status append_port(char **list, const char *port)
 }
 
 /* The ports of body k that a joint holds or an input drives. */
-static ritz_status used_ports(const ritz_scene *scene, int64_t k, char **out)
+static ritz_status list_used_ports(const ritz_scene *scene, int64_t k,
+                                   char **out)
 {
     RITZ_OWN_ARRAY char *list = NULL;
 
@@ -79,7 +80,7 @@ ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
     request.up_to_hz = item->up_to_hz;
     request.choice = item->choice;
     if (!item->attach)
-        RITZ_TRY(used_ports(scene, k, &ports));
+        RITZ_TRY(list_used_ports(scene, k, &ports));
     RITZ_TRY(ritz_component_attached(
         component, item->attach ? item->attach : ports, &request.attached));
     if (method->uses & RITZ_USES_NEIGHBOUR) {
@@ -113,7 +114,7 @@ static ritz_status check_io(const ritz_scene *scene, int64_t k,
     return RITZ_OK;
 }
 
-/* The ports that joints, inputs and outputs name are there: said where not. */
+/* Check that the ports exist that joints, inputs and outputs name. */
 static ritz_status check_ports(const ritz_scene *scene, int64_t k,
                                const ritz_component *component)
 {
@@ -171,7 +172,7 @@ ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
                  "'%s' is a full model, so a basis is due", item->model);
     RITZ_TRY(source->component(source->state, item->model, &component));
     status = check_ports(scene, k, &component);
-    known = status != RITZ_OK; /* said where the port is named */
+    known = status != RITZ_OK; /* refused where the port is named */
     RITZ_TRY(status);
     RITZ_MOVE(*full, component);
 done:
@@ -199,8 +200,8 @@ done:
 }
 
 /*
- * The port whose row an input or output of the scene stands for; NULL and a
- * sentence if there is none, or more than one.
+ * The port whose row an input or output of the scene names; NULL and a message
+ * if there is none, or more than one.
  */
 static const ritz_port_map *find_row(const ritz_scene_io *io,
                                      const ritz_reduced *body, int64_t *row)
@@ -226,7 +227,7 @@ static const ritz_port_map *find_row(const ritz_scene_io *io,
     return NULL;
 }
 
-/* Add a force in one direction at one place, `sign` times its scale. */
+/* Add a unit force in one direction at a port, times `sign` and its scale. */
 static ritz_status add_force(ritz_stage *stage, int64_t j,
                              const ritz_scene_place *at, int64_t direction,
                              double sign)
@@ -285,11 +286,11 @@ static ritz_status set_output(ritz_stage *stage, int64_t j)
 }
 
 /*
- * Bodies meet with their dampers in them; the influence vectors are kept, so
- * that a system can be retuned. Installing comes last, as what fails before it
- * leaves the bodies as they were.
+ * Bodies are assembled with their dampers installed; the influence vectors are
+ * kept, so that dampers of the system can be changed. This step is last, so
+ * that an earlier failure leaves the bodies as they were.
  */
-static ritz_status install(ritz_stage *stage)
+static ritz_status install_dampers(ritz_stage *stage)
 {
     for (int64_t k = 0; k < stage->count; k++)
         RITZ_CHECK(ritz_dampers_append(
@@ -305,7 +306,7 @@ static ritz_status install(ritz_stage *stage)
 }
 
 /* Count coordinates and set up the scene's inputs and outputs. */
-static ritz_status complete(ritz_stage *stage)
+static ritz_status complete_stage(ritz_stage *stage)
 {
     const ritz_scene *scene = stage->scene;
 
@@ -320,7 +321,7 @@ static ritz_status complete(ritz_stage *stage)
         RITZ_CHECK(set_input(stage, j));
     for (int64_t j = 0; j < scene->num_outputs; j++)
         RITZ_CHECK(set_output(stage, j));
-    return install(stage);
+    return install_dampers(stage);
 }
 
 ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
@@ -333,7 +334,7 @@ ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
         RITZ_CHECK(load_body(scene, k, &stage.body[k]));
         stage.count++;
     }
-    RITZ_CHECK(complete(&stage));
+    RITZ_CHECK(complete_stage(&stage));
     RITZ_MOVE(*out, stage);
     return RITZ_OK;
 }
@@ -347,11 +348,11 @@ ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
     RITZ_NEW(stage.body, scene->num_components);
     stage.count = scene->num_components;
     memcpy(stage.body, body, (size_t)stage.count * sizeof *body);
-    RITZ_TRY(complete(&stage));
+    RITZ_TRY(complete_stage(&stage));
     memset(body, 0, (size_t)stage.count * sizeof *body);
     RITZ_MOVE(*out, stage);
 done:
-    if (stage.body && stage.count > 0) { /* given back, dampers in or not */
+    if (stage.body && stage.count > 0) { /* return the bodies to the caller */
         memcpy(body, stage.body, (size_t)stage.count * sizeof *body);
         memset(stage.body, 0, (size_t)stage.count * sizeof *stage.body);
     }

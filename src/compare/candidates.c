@@ -1,4 +1,4 @@
-/* Stage two by one plan, and by one composite tolerance after the other. */
+/* Stage two by one plan, and by each composite tolerance in turn. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -30,26 +30,28 @@ ritz_plan ritz_compare_plan(const ritz_scene *scene)
     };
 }
 
-/* Rows and columns of A are zero that rounding alone keeps from it. */
-static void clear(ritz_range range, ritz_dense *A)
+/* Set to zero the rows and columns of A that are zero but for rounding. */
+static void zero_entries(ritz_range range, ritz_dense *A)
 {
     for (int64_t j = range.first; j < range.last && A->val; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(A, j)[i] = ritz_dense_col(A, i)[j] = 0.0;
 }
 
-/* Columns of V that are motions without mass have none, and no damping. */
-static void settle(ritz_range massless, ritz_reduced *body)
+/*
+ * The columns of V that are motions without mass have neither mass nor damping.
+ */
+static void remove_mass(ritz_range massless, ritz_reduced *body)
 {
-    clear(massless, &body->M);
-    clear(massless, &body->D);
+    zero_entries(massless, &body->M);
+    zero_entries(massless, &body->D);
     for (int64_t j = massless.first; j < massless.last; j++)
         body->columns.kind[j] = RITZ_COLUMN_MASSLESS;
 }
 
-/* The bodies in the subspaces V. */
-static ritz_status project(const ritz_stage *stage, const ritz_range *massless,
-                           ritz_trial *out)
+/* Project the bodies on the subspaces V. */
+static ritz_status project_bodies(const ritz_stage *stage,
+                                  const ritz_range *massless, ritz_trial *out)
 {
     ritz_status status = RITZ_OK;
     ritz_reduced *body = NULL;
@@ -59,7 +61,7 @@ static ritz_status project(const ritz_stage *stage, const ritz_range *massless,
         ritz_origin *origin = &body[c].origin;
 
         RITZ_TRY(ritz_reduced_project(&stage->body[c], &out->V[c], &body[c]));
-        settle(massless[c], &body[c]);
+        remove_mass(massless[c], &body[c]);
         snprintf(origin->method, sizeof origin->method, "compare");
         snprintf(origin->reference, sizeof origin->reference, "LeeTsuha1992");
         out->removed = out->removed || out->V[c].ncol < out->V[c].nrow;
@@ -83,7 +85,7 @@ ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
     RITZ_CHECK_IN(
         "composite modes",
         ritz_compare_composite(rows, plan, trial.V, massless, &trial.vectors));
-    RITZ_CHECK_IN("stage 2", project(rows->stage, massless, &trial));
+    RITZ_CHECK_IN("stage 2", project_bodies(rows->stage, massless, &trial));
     RITZ_CHECK_IN("stage 2", ritz_assemble(&trial.second, NULL, &trial.system));
     RITZ_MOVE(*out, trial);
     return RITZ_OK;
@@ -99,9 +101,9 @@ void ritz_trial_free(ritz_trial *trial)
     *trial = (ritz_trial){0};
 }
 
-/* Orders of a trial, and its worst errors at listed configurations. */
-static ritz_status sum_up(const ritz_rows *rows, ritz_trial *trial,
-                          ritz_tolerance_row *out)
+/* Orders of a trial, and its largest errors at listed configurations. */
+static ritz_status measure_trial(const ritz_rows *rows, ritz_trial *trial,
+                                 ritz_tolerance_row *out)
 {
     ritz_status status = RITZ_OK;
     ritz_compare_row row = {0};
@@ -114,7 +116,7 @@ static ritz_status sum_up(const ritz_rows *rows, ritz_trial *trial,
     for (int64_t k = 0; k < rows->num_rows; k++) {
         ritz_configuration *second = &trial->system.configuration[k];
 
-        row = rows->row[k]; /* its own strays; the rest is borrowed */
+        row = rows->row[k]; /* strays are its own; others are borrowed */
         row.num_strays = 0;
         row.stray = NULL;
         RITZ_TRY(ritz_compare_measure(rows->stage, trial->V,
@@ -131,7 +133,7 @@ done:
     return status;
 }
 
-/* What the scene plans, with the attached dofs that were chosen. */
+/* The scene's plan, with the attached dofs that were chosen. */
 static ritz_plan chosen_plan(const ritz_stage *stage,
                              const ritz_comparison *comparison)
 {
@@ -170,7 +172,7 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
         ritz_monitor_step("tolerances", k, count);
         made[k].tolerance = plan.tolerance = tolerance[k];
         RITZ_TRY(ritz_compare_try(&rows, &plan, &trial));
-        RITZ_TRY(sum_up(&rows, &trial, &made[k]));
+        RITZ_TRY(measure_trial(&rows, &trial, &made[k]));
         ritz_trial_free(&trial);
     }
     RITZ_MOVE(*out, made);
@@ -189,13 +191,13 @@ void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows)
 }
 
 /*
- * Which dofs to attach [McDaniel2000, sec. 3.2.2]: stage two with the static
- * corrections of one set of forces after the other, each held against stage one
- * by static gain, at and between listed angles, and by the largest singular
- * value of the frequency response over the band.
+ * Which dofs to attach [McDaniel2000, sec. 3.2.2]: stage two is built with the
+ * static corrections of each set of forces in turn. Each is compared with stage
+ * one by the static gain, at listed angles and between them, and by the largest
+ * singular value of the frequency response over the band.
  */
 
-/* Sets that are tried, fewest forces first. */
+/* The sets that are tried, fewest forces first. */
 static const int of_system[] = {0, RITZ_ATTACHED_INPUTS,
                                 RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_OUTPUTS};
 
@@ -263,7 +265,7 @@ static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
     return RITZ_OK;
 }
 
-/* Static gain between them. */
+/* Errors of the static gain between listed configurations. */
 static ritz_status measure_between(const ritz_rows *rows, ritz_trial *trial,
                                    ritz_candidate *out)
 {
@@ -307,12 +309,12 @@ done:
 }
 
 /*
- * The smallest of those within the tolerance, or else the nearest of all. Of
- * equal sizes the first is taken, which has fewer forces; one that is nearer by
- * rounding is no nearer.
+ * The smallest set within the tolerance, or else the one with the smallest
+ * error. Of equal sizes the first is chosen, which has fewer forces;
+ * differences within rounding do not count.
  */
-static int64_t pick(const ritz_scene *scene, int64_t count,
-                    const ritz_candidate *candidate)
+static int64_t choose_set(const ritz_scene *scene, int64_t count,
+                          const ritz_candidate *candidate)
 {
     const double nearer = 0.9;
     int64_t best = 0;
@@ -331,7 +333,9 @@ static int64_t pick(const ritz_scene *scene, int64_t count,
     return best;
 }
 
-/* Sets to try: those of the level, and the one asked if it is another. */
+/*
+ * The sets to try: those of the level, and the requested one if it is another.
+ */
 static int64_t list_sets(const ritz_plan *plan, ritz_plan sets[MOST_SETS])
 {
     bool system = plan->augment == RITZ_AUGMENT_SYSTEM;
@@ -352,7 +356,7 @@ static int64_t list_sets(const ritz_plan *plan, ritz_plan sets[MOST_SETS])
     return count;
 }
 
-/* Which of the sets is the one asked. */
+/* Index of the requested set. */
 static int64_t find_set(int64_t count, const ritz_plan *sets,
                         const ritz_plan *plan)
 {
@@ -384,7 +388,7 @@ ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
         ritz_monitor_step("attached dofs", k, most);
         RITZ_CHECK(try_set(rows, &sets[k], &(*out)[k]));
     }
-    chosen = open ? pick(scene, most, *out) : find_set(most, sets, plan);
+    chosen = open ? choose_set(scene, most, *out) : find_set(most, sets, plan);
     (*out)[chosen].chosen = true;
     *plan = sets[chosen];
     return RITZ_OK;
@@ -399,10 +403,10 @@ void ritz_candidates_free(int64_t count, ritz_candidate **candidates)
 }
 
 /*
- * Which angle to add: where an error between listed angles stands out of those
- * at listed ones. Errors that nobody would see in a plot ask for nothing, and
- * neither do those that are as large at listed angles, where another angle
- * would change nothing.
+ * Which angle to add: one where an error between listed angles is large
+ * relative to those at listed angles. Errors that would be invisible in a plot
+ * suggest nothing, nor do errors that are as large at listed angles, where
+ * another angle would not help.
  */
 
 static const struct measure {
@@ -414,22 +418,22 @@ static const struct measure {
     {"gain", offsetof(ritz_compare_row, gain_error)},
 };
 
-static double error_of(const ritz_compare_row *row, const struct measure *m)
+static double read_error(const ritz_compare_row *row, const struct measure *m)
 {
     return *(const double *)((const char *)row + m->offset);
 }
 
-/* The worst of one measure between angles; row -1 if there is none. */
+/* The largest error of one measure between angles; row -1 if there is none. */
 static ritz_suggestion find_worst(const ritz_comparison *c,
                                   const struct measure *m)
 {
     ritz_suggestion worst = {.row = -1, .measure = m->name};
 
     for (int64_t k = 0; k < c->num_rows; k++) {
-        double error = error_of(&c->row[k], m);
+        double error = read_error(&c->row[k], m);
 
         if (c->row[k].listed)
-            worst.listed = fmax(worst.listed, error); /* NaN passes by */
+            worst.listed = fmax(worst.listed, error); /* fmax ignores NaN */
         else if (!isnan(error) && (worst.row < 0 || error > worst.error)) {
             worst.row = k;
             worst.error = error;
@@ -438,8 +442,8 @@ static ritz_suggestion find_worst(const ritz_comparison *c,
     return worst;
 }
 
-/* How far an error stands out: one or less asks for nothing. */
-static double stands_out(const ritz_suggestion *s)
+/* How prominent an error is: at one or less no angle is suggested. */
+static double rate_prominence(const ritz_suggestion *s)
 {
     return s->row < 0 ? 0.0
                       : s->error / fmax(RITZ_SUGGEST_VISIBLE,
@@ -454,10 +458,10 @@ void ritz_compare_suggest(const ritz_comparison *comparison,
     for (size_t k = 0; k < sizeof measures / sizeof *measures; k++) {
         ritz_suggestion one = find_worst(comparison, &measures[k]);
 
-        one.worth = stands_out(&one) > 1.0;
+        one.worth = rate_prominence(&one) > 1.0;
         if (one.row >= 0 &&
             (best.row < 0 ||
-             (one.worth && stands_out(&one) > stands_out(&best))))
+             (one.worth && rate_prominence(&one) > rate_prominence(&best))))
             best = one;
     }
     *out = best;

@@ -1,4 +1,6 @@
-/* The rows of a comparison: configurations that are listed, and between. */
+/*
+ * The rows of a comparison: listed configurations, and those half way between.
+ */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -11,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The sweep in which two configurations differ, -1 if not in one alone. */
-static int64_t differs_by(int64_t sweeps, const double *a, const double *b)
+/* The sweep in which alone two configurations differ, -1 if there is none. */
+static int64_t find_sweep(int64_t sweeps, const double *a, const double *b)
 {
     int64_t one = -1;
 
@@ -41,10 +43,10 @@ static ritz_status add_between(const ritz_scene *scene, const double *from,
 }
 
 /*
- * Rows between neighbours of the list, and, where the turning of one joint goes
- * on round the circle by the same step, between its last and its first.
+ * Rows half way between neighbours of the list. Where a joint turns on by the
+ * same step round the full circle, also between its last and first angle.
  */
-static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
+static ritz_status list_halfway(const ritz_scene *scene, int64_t *rows,
                                 ritz_compare_row *row)
 {
     int64_t h = scene->num_sweeps;
@@ -56,11 +58,11 @@ static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
     for (int64_t k = 0; k + 1 < count; k++) {
         const double *a = scene->setting + k * h;
 
-        sweep = differs_by(h, a, a + h);
+        sweep = find_sweep(h, a, a + h);
         if (sweep >= 0)
             RITZ_CHECK(add_between(scene, a, sweep, a[h + sweep], rows, row));
     }
-    sweep = count > 2 ? differs_by(h, first, last) : -1;
+    sweep = count > 2 ? find_sweep(h, first, last) : -1;
     if (sweep >= 0 && scene->sweep[sweep].turns) {
         double step = first[h + sweep] - first[sweep];
 
@@ -72,8 +74,8 @@ static ritz_status list_between(const ritz_scene *scene, int64_t *rows,
 }
 
 /* Listed configurations, then those half way between neighbours. */
-static ritz_status list_compare(const ritz_scene *scene, int64_t *count,
-                                ritz_compare_row **out)
+static ritz_status list_rows(const ritz_scene *scene, int64_t *count,
+                             ritz_compare_row **out)
 {
     int64_t h = scene->num_sweeps;
 
@@ -89,41 +91,41 @@ static ritz_status list_compare(const ritz_scene *scene, int64_t *count,
             memcpy(row->setting, scene->setting + k * h,
                    (size_t)h * sizeof *row->setting);
     }
-    return list_between(scene, count, *out);
+    return list_halfway(scene, count, *out);
 }
 
-/* What was measured, into the files of stage two. */
+/* Errors, recorded in the files of stage two. */
 
-/* A measure that was taken; NaN stands for none. */
-static ritz_status add(ritz_measures *errors, const char *name, double value,
-                       double limit, const char *where)
+/* Append a measure, unless it is NaN, which means that it was not computed. */
+static ritz_status add_measure(ritz_measures *errors, const char *name,
+                               double value, double limit, const char *where)
 {
     return isnan(value) ? RITZ_OK
                         : ritz_measures_add(errors, name, value, limit, where);
 }
 
-/* Of one configuration. */
+/* Record the errors of one configuration. */
 static ritz_status record_row(const ritz_compare_row *row,
                               ritz_measures *errors)
 {
     static const char against[] = "kept modes against the stage-1 system";
 
-    RITZ_CHECK(add(errors, "stage1-frequency-relative", row->frequency_error,
-                   row->allowed, against));
-    RITZ_CHECK(add(errors, "stage1-mac", row->mac, nan(""), against));
-    RITZ_CHECK(
-        add(errors, "stage1-rigid-hertz", row->rigid_error, nan(""), ""));
-    RITZ_CHECK(add(errors, "stage1-static-gain-relative", row->gain_error,
-                   nan(""), ""));
-    RITZ_CHECK(
-        add(errors, "stage1-moments-relative", row->moment_error, nan(""), ""));
-    return add(errors, "stage1-response-relative", row->response_error, nan(""),
-               "");
+    RITZ_CHECK(add_measure(errors, "stage1-frequency-relative",
+                           row->frequency_error, row->allowed, against));
+    RITZ_CHECK(add_measure(errors, "stage1-mac", row->mac, nan(""), against));
+    RITZ_CHECK(add_measure(errors, "stage1-rigid-hertz", row->rigid_error,
+                           nan(""), ""));
+    RITZ_CHECK(add_measure(errors, "stage1-static-gain-relative",
+                           row->gain_error, nan(""), ""));
+    RITZ_CHECK(add_measure(errors, "stage1-moments-relative", row->moment_error,
+                           nan(""), ""));
+    return add_measure(errors, "stage1-response-relative", row->response_error,
+                       nan(""), "");
 }
 
 /*
- * The worst of all listed configurations, into the file of every body. What no
- * configuration measured is NaN, and stays so: fmax passes NaN over.
+ * Record the largest errors over all listed configurations for every body. A
+ * measure that no configuration has is NaN and stays NaN: fmax ignores NaN.
  */
 static ritz_status record_bodies(ritz_comparison *out)
 {
@@ -142,18 +144,18 @@ static ritz_status record_bodies(ritz_comparison *out)
     for (int64_t c = 0; c < out->second.count; c++) {
         ritz_measures *errors = &out->second.body[c].errors;
 
-        RITZ_CHECK(add(errors, "stage1-frequency-relative", frequency, nan(""),
-                       worst));
-        RITZ_CHECK(
-            add(errors, "stage1-static-gain-relative", gain, nan(""), worst));
-        RITZ_CHECK(
-            add(errors, "stage1-response-relative", response, nan(""), worst));
+        RITZ_CHECK(add_measure(errors, "stage1-frequency-relative", frequency,
+                               nan(""), worst));
+        RITZ_CHECK(add_measure(errors, "stage1-static-gain-relative", gain,
+                               nan(""), worst));
+        RITZ_CHECK(add_measure(errors, "stage1-response-relative", response,
+                               nan(""), worst));
     }
     return RITZ_OK;
 }
 
-/* Into the files of the second system and of every body. */
-static ritz_status record_compare(ritz_comparison *comparison)
+/* Record errors with the second system and with every body. */
+static ritz_status record_comparison(ritz_comparison *comparison)
 {
     for (int64_t k = 0; k < comparison->second_system.num_configurations; k++)
         RITZ_CHECK(
@@ -168,12 +170,13 @@ static ritz_status record_compare(ritz_comparison *comparison)
  * composite of those modes over all configurations, augmented by static
  * corrections, projected on each body; the bodies reassembled.
  *
- * A mode Phi_k kept at an angle is a vector of the second system at that angle,
- * for its projections on the bodies fit each other, and Rayleigh-Ritz returns
- * it to rounding; tests/unit/compare/test_compare.c holds the code to it.
+ * A mode Phi_k kept at an angle is in the space of the second system at that
+ * angle, for its projections on the bodies are compatible, so that
+ * Rayleigh-Ritz returns it up to rounding; tests/unit/compare/test_compare.c
+ * holds the code to it.
  */
 
-/* The stage-1 system between listed configurations. */
+/* Assemble the stage-1 system between listed configurations. */
 static ritz_status assemble_between(ritz_rows *rows)
 {
     int64_t listed = rows->listed->num_configurations;
@@ -195,8 +198,11 @@ static void free_between(ritz_rows *rows)
     rows->between = NULL;
 }
 
-/* Choose the modes that matter, between angles those that would. */
-static ritz_status choose(const ritz_rows *rows)
+/*
+ * Choose the modes that matter; between listed angles those that would be
+ * chosen there.
+ */
+static ritz_status choose_modes(const ritz_rows *rows)
 {
     const ritz_scene *scene = rows->stage->scene;
     double least = 0.0;
@@ -208,8 +214,11 @@ static ritz_status choose(const ritz_rows *rows)
     return RITZ_OK;
 }
 
-/* Errors at every row; between angles the second system is made for it. */
-static ritz_status measure(const ritz_rows *rows, ritz_comparison *c)
+/*
+ * Measure the errors of every row; between angles the second system is
+ * assembled for it.
+ */
+static ritz_status measure_rows(const ritz_rows *rows, ritz_comparison *c)
 {
     RITZ_OWN(ritz_configuration) second = {0};
 
@@ -227,8 +236,8 @@ static ritz_status measure(const ritz_rows *rows, ritz_comparison *c)
     return RITZ_OK;
 }
 
-/* Stage two as planned, and its place in the result. */
-static ritz_status reduce(const ritz_rows *rows, ritz_comparison *c)
+/* Build stage two as planned and move it into the result. */
+static ritz_status reduce_bodies(const ritz_rows *rows, ritz_comparison *c)
 {
     ritz_plan plan = ritz_compare_plan(rows->stage->scene);
     RITZ_OWN(ritz_trial) trial = {0};
@@ -254,16 +263,16 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
     ritz_rows rows = {.stage = stage, .listed = &c.first_system};
 
     RITZ_TRY(ritz_dual_refuse(stage));
-    RITZ_TRY(list_compare(stage->scene, &c.num_rows, &c.row));
+    RITZ_TRY(list_rows(stage->scene, &c.num_rows, &c.row));
     rows.num_rows = c.num_rows;
     rows.row = c.row;
     RITZ_TRY_IN("stage 1", ritz_assemble(stage, NULL, &c.first_system));
     RITZ_TRY_IN("stage 1", assemble_between(&rows));
-    RITZ_TRY_IN("selection", choose(&rows));
-    RITZ_TRY(reduce(&rows, &c));
-    RITZ_TRY_IN("errors", measure(&rows, &c));
+    RITZ_TRY_IN("selection", choose_modes(&rows));
+    RITZ_TRY(reduce_bodies(&rows, &c));
+    RITZ_TRY_IN("errors", measure_rows(&rows, &c));
     ritz_compare_suggest(&c, &c.suggestion);
-    RITZ_TRY(record_compare(&c));
+    RITZ_TRY(record_comparison(&c));
     RITZ_MOVE(*out, c);
 done:
     free_between(&rows);

@@ -4,25 +4,27 @@
 
 #include <ritz/assembly.h>
 
-/* What is settled before stage two is made. */
+/* What is decided before stage two is built. */
 typedef struct ritz_plan {
     double tolerance;     /* of the composite set */
     ritz_augment augment; /* level of static corrections */
     int attached;         /* sum of RITZ_ATTACHED_... */
-    bool inputs_too;      /* and those inputs that the scene names alone */
+    bool inputs_too;      /* and inputs that only the scene names */
 } ritz_plan;
 
-/* Stage two by one plan: bodies, and the system at listed configurations. */
+/*
+ * Stage two by one plan: its bodies, and the system at listed configurations.
+ */
 typedef struct ritz_trial {
     int64_t count;   /* of bodies */
-    ritz_dense *V;   /* of each */
+    ritz_dense *V;   /* of each body */
     int64_t vectors; /* before dependent ones were removed */
     bool removed;
     ritz_stage second;
     ritz_system system;
 } ritz_trial;
 
-/* Stage one at all rows: listed configurations, and those between. */
+/* Stage one at all rows: listed configurations, and those between them. */
 typedef struct ritz_rows {
     const ritz_stage *stage;
     const ritz_system *listed;
@@ -35,10 +37,10 @@ typedef struct ritz_rows {
 /** The stage-1 configuration of row @p k, borrowed. */
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
 
-/** Plan that the scene asks for; `attached` may hold AUTO still. */
+/** The plan that the scene requests; `attached` may still be AUTO. */
 ritz_plan ritz_compare_plan(const ritz_scene *scene);
 
-/** Stage two. */
+/** Build stage two by a plan. */
 ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
                              ritz_trial *out);
 void ritz_trial_free(ritz_trial *trial);
@@ -59,7 +61,10 @@ ritz_status ritz_compare_values(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double *value);
 
-/** Choose the modes of one configuration that matter, or count its vectors. */
+/**
+ * Choose the modes of one configuration that matter, or count the Krylov
+ * vectors that replace them.
+ */
 ritz_status ritz_compare_select(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double least, ritz_compare_row *row);
@@ -69,9 +74,9 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
  * span of Lambda^-1 R, Lambda^-2 R, ... with R = B, or [B, C'] for @p both;
  * K-orthonormal, dependent ones deflated.
  *
- * @param[in]  vectors  so many at most; fewer if the sequence ends
+ * @param[in]  vectors  largest number; fewer if the sequence ends
  * @param[out] out      e x k, rows of rigid modes zero
- * @param[out] moments  so many of C Lambda^-i-1 B are kept by the span
+ * @param[out] moments  number of moments C Lambda^-i-1 B that the span keeps
  */
 ritz_status ritz_system_krylov(const ritz_configuration *configuration,
                                int64_t vectors, bool both, ritz_dense *out,
@@ -83,8 +88,8 @@ typedef struct ritz_range {
 } ritz_range;
 
 /*
- * What all configurations give to one body, r_c rows, in the order in which
- * columns are made orthogonal: see composite.c.
+ * The groups of vectors that all configurations contribute to one body, r_c
+ * rows, in the order in which they are made orthogonal: see composite.c.
  */
 enum {
     RITZ_GIVEN_MASSLESS,
@@ -94,7 +99,9 @@ enum {
     RITZ_GIVEN
 };
 
-/** Modal coordinates of what a configuration gives to one group. */
+/**
+ * Modal coordinates of the vectors that a configuration contributes to a group.
+ */
 ritz_status ritz_composite_choose(const ritz_scene *scene,
                                   const ritz_configuration *configuration,
                                   const ritz_compare_row *row, int group,
@@ -107,25 +114,25 @@ ritz_status ritz_composite_choose(const ritz_scene *scene,
  *
  * @param[out] V      stage->count matrices, r_c x s_c, M-orthonormal where M is
  *                    definite; the identity where s_c would be r_c
- * @param[out] massless  of each, its columns without mass
+ * @param[out] massless  of each body, its columns without mass
  * @param[out] count     vectors before dependent ones were removed
  */
 ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
                                    ritz_dense *V, ritz_range *massless,
                                    int64_t *count);
 
-/* What a body adds of its own, r rows each. */
+/* The body's own contributions, r rows each. */
 typedef struct ritz_statics {
     ritz_dense rigid;    /* its rigid modes, M-orthonormal */
     ritz_dense massless; /* null space of M */
-    ritz_dense answers;  /* to unit forces, inertia relieved */
+    ritz_dense answers;  /* static, to unit forces, with inertia relief */
 } ritz_statics;
 
 /**
- * Static corrections of body @p k: its rigid modes and what it answers to unit
- * forces of the planned sets; those that are rounding are left out.
+ * Static corrections of body @p k: its rigid modes and its static solutions for
+ * unit forces of the planned sets; solutions that are rounding are left out.
  *
- * @return RITZ_ERR_SINGULAR if its stiffness is not definite beside its rigid
+ * @return RITZ_ERR_SINGULAR if its stiffness is not definite but for its rigid
  *         modes
  */
 ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
@@ -137,13 +144,14 @@ ritz_status ritz_body_massless(const ritz_reduced *body, const double *scale,
 
 void ritz_statics_free(ritz_statics *statics);
 
-/** Whether static corrections answer input @p j. */
+/** Whether the plan has static corrections for input @p j. */
 bool ritz_plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
                         int64_t j);
 
 /**
- * Hold the second system against the first at one configuration: strays are
- * found and, as the scene says, removed from @p second; errors measured.
+ * Compare the second system with the first at one configuration: stray modes
+ * are found and, if the scene says so, removed from @p second; then errors are
+ * measured.
  *
  * @param[in]     V    of every body
  * @param[in,out] row  kept modes; errors are filled in
@@ -160,7 +168,7 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
 /** Whether a scene has a response: inputs, outputs, a band and damping. */
 bool ritz_compare_responds(const ritz_scene *scene);
 
-/* Responses of two systems at the points of the first. */
+/* Responses of two systems at the frequencies of the first. */
 typedef struct ritz_two_responses {
     int64_t count, num_inputs, num_outputs;
     double *hertz;
@@ -175,21 +183,23 @@ void ritz_two_responses_free(ritz_two_responses *responses);
 
 /**
  * Worst deviation of the largest singular value of H(i w), relative to it at
- * each point; points more than 60 dB below the mean level of the plot are held
- * to that level.
+ * each point; at points more than 60 dB below the mean level of the plot it is
+ * relative to that level.
  */
 ritz_status ritz_compare_bode(const ritz_two_responses *responses,
                               double *deviation, double *hertz);
 
 /**
- * What each set of attached dofs is worth, where the scene augments components
- * or leaves the set open; then plan->attached is the one chosen.
+ * Errors for each set of attached dofs, where the scene augments components or
+ * leaves the set open; plan->attached becomes the chosen set.
  */
 ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
                                     int64_t *count, ritz_candidate **out);
 void ritz_candidates_free(int64_t count, ritz_candidate **candidates);
 
-/** Where errors between listed angles are worst, and by which measure. */
+/**
+ * The angle where errors between listed angles are largest, and the measure.
+ */
 void ritz_compare_suggest(const ritz_comparison *comparison,
                           ritz_suggestion *out);
 

@@ -12,8 +12,8 @@
 #include <string.h>
 
 /* L = lower triangle of S (M + stiffness K) S. */
-static void fill(const ritz_reduced *body, const double *scale,
-                 double stiffness, ritz_dense *L)
+static void fill_mixed(const ritz_reduced *body, const double *scale,
+                       double stiffness, ritz_dense *L)
 {
     for (int64_t j = 0; j < L->ncol; j++)
         for (int64_t i = 0; i < L->nrow; i++)
@@ -24,8 +24,11 @@ static void fill(const ritz_reduced *body, const double *scale,
                              stiffness * ritz_dense_col(&body->K, j)[i]);
 }
 
-/* Factor L in place; false if it is not definite, or conditioned worse. */
-static bool factor(ritz_dense *L, double least)
+/*
+ * Factor L in place; false if it is not definite, or its condition exceeds the
+ * limit.
+ */
+static bool factor_checked(ritz_dense *L, double least)
 {
     int r = (int)L->ncol;
     double norm = 0.0, rcond = 1.0;
@@ -44,9 +47,9 @@ ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
                               double lambda, ritz_dense *L)
 {
     RITZ_CHECK(ritz_dense_new(body->M.ncol, body->M.ncol, L));
-    fill(body, scale, 1.0 / lambda, L);
+    fill_mixed(body, scale, 1.0 / lambda, L);
     RITZ_REFUSE_IF(
-        !factor(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
+        !factor_checked(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
         "a motion has neither mass nor stiffness, or the reduced mass "
         "is not positive");
     return RITZ_OK;
@@ -59,8 +62,8 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
 
     *mixed = false;
     RITZ_CHECK(ritz_dense_new(r, r, L));
-    fill(body, scale, 0.0, L);
-    if (factor(L, RITZ_MASS_CONDITION))
+    fill_mixed(body, scale, 0.0, L);
+    if (factor_checked(L, RITZ_MASS_CONDITION))
         return RITZ_OK;
     *mixed = true;
     ritz_dense_free(L);
@@ -128,9 +131,9 @@ ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
 }
 
 /*
- * What one configuration gives to the composite set, in its modal coordinates:
- * rigid modes, static answers of the system, kept modes or Krylov vectors. See
- * composite.c for what becomes of them.
+ * The vectors that one configuration contributes to the composite set, in its
+ * modal coordinates: rigid modes, static solutions of the system, kept modes or
+ * Krylov vectors. Their projection on the bodies is described below.
  */
 
 /* Scale the flexible part of x to unit norm; false if there is none. */
@@ -145,25 +148,28 @@ static bool normalise(const ritz_configuration *c, double *x)
     return norm > 0.0;
 }
 
-/* Modal coordinates of the static answer to input j. */
-static bool answer_input(const ritz_configuration *c, int64_t j, double *x)
+/* Modal coordinates of the static solution for input j. */
+static bool solve_input(const ritz_configuration *c, int64_t j, double *x)
 {
     for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
         x[k] = ritz_dense_col(&c->io.B, j)[k] / c->lambda[k];
     return normalise(c, x);
 }
 
-/* The same to a force that does work where row i of an output reads. */
-static bool answer_output(const ritz_configuration *c, const ritz_dense *C,
-                          int64_t i, double *x)
+/*
+ * Modal coordinates of the static solution for a unit force that acts where row
+ * i of an output measures.
+ */
+static bool solve_output(const ritz_configuration *c, const ritz_dense *C,
+                         int64_t i, double *x)
 {
     for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
         x[k] = ritz_dense_col(C, k)[i] / c->lambda[k];
     return normalise(c, x);
 }
 
-/* Modal coordinates of the system's static answers. */
-static ritz_status choose_answers(const ritz_scene *scene,
+/* Modal coordinates of the system's static solutions. */
+static ritz_status choose_statics(const ritz_scene *scene,
                                   const ritz_configuration *c,
                                   const ritz_plan *plan, ritz_dense *out)
 {
@@ -175,15 +181,15 @@ static ritz_status choose_answers(const ritz_scene *scene,
                               c->io.num_inputs + 3 * c->io.num_outputs, &X));
     for (int64_t j = 0; j < c->io.num_inputs; j++)
         if (ritz_plan_attaches(scene, plan, j))
-            m += answer_input(c, j, ritz_dense_col(&X, m));
+            m += solve_input(c, j, ritz_dense_col(&X, m));
     for (int kind = 0; kind < 3; kind++)
         for (int64_t i = 0; i < c->io.num_outputs; i++)
             if (plan->attached & RITZ_ATTACHED_OUTPUTS)
-                m += answer_output(c, C[kind], i, ritz_dense_col(&X, m));
+                m += solve_output(c, C[kind], i, ritz_dense_col(&X, m));
     return ritz_dense_columns(&X, 0, m, out);
 }
 
-/* Unit columns of some modes. */
+/* Unit vectors of `count` modes from `first` on. */
 static ritz_status unit_vectors(int64_t e, int64_t count, int64_t first,
                                 const int64_t *which, ritz_dense *out)
 {
@@ -206,32 +212,32 @@ static ritz_status choose_krylov(const ritz_scene *scene,
 }
 
 /*
- * The composite set, projected on each body. At a configuration the
- * coordinates of body c are q_c = P_c x with x modal, so that its columns are
+ * The composite set, projected on each body. At a configuration the coordinates
+ * of body c are q_c = P_c x with x modal, so that its columns are
  *
  *     P_c Phi_r                        rigid modes
- *     P_c Phi_f Lambda_f^-1 Phi_f' F   what all flexible modes answer to each
- *                                      force statically [LeeTsuha1992, eq. 37]
+ *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solution in all flexible modes
+ *                                      for each force [LeeTsuha1992, eq. 37]
  *     P_c Phi_k                        kept modes, or
  *     P_c Phi_f W                      Krylov vectors [McDaniel2000, 3.2.3]
  *
- * over all configurations. The static answer of all flexible modes spans, with
- * the kept ones, what that of the truncated ones does. Augmented at component
- * level the second are instead, once for all angles, the body's own: see
- * statics.c.
+ * over all configurations. With the kept modes, the static solution in all
+ * flexible modes spans the same space as that in the truncated ones. If
+ * components are augmented, the second group consists of the body's own static
+ * solutions, once for all angles: see statics.c.
  *
  * With M_c = L L' and Y = L' W, columns are made orthogonal in this order:
- * motions without mass, rigid modes and static answers whole, so that no
- * tolerance costs rigidity or static gain; then what is left of the kept modes,
- * whose singular values below the tolerance are dropped. V_c = L'^-1 U. What is
- * scaled to unit mass of the system, as modes are, is static answers of the
- * system and Krylov vectors; those of a body are scaled to its own.
+ * motions without mass, rigid modes and static solutions completely, so that no
+ * tolerance impairs rigid motion or static gain; then the rest of the kept
+ * modes, of which singular values below the tolerance are dropped. V_c = L'^-1
+ * U. Static solutions of the system and Krylov vectors are scaled to unit mass
+ * of the system, as modes are; those of a body are scaled to the body's mass.
  *
  * Where M_c is singular, M_c + K_c / lambda takes its place. Motions without
- * mass, M_c N = 0, come first: made orthogonal to any column that stores energy
- * they would take some of it, and its mass, over. Rigid modes do by rounding,
- * most of all in N, where all motion is stiff; what is left of that after N is
- * of the order of eps.
+ * mass, M_c N = 0, come first: if they were made orthogonal to a column that
+ * stores energy, they would acquire part of that column and of its mass. Rigid
+ * modes store energy by rounding, most of all in N, where every motion is
+ * stiff; after N is projected out of them, that is of the order of eps.
  */
 
 enum {
@@ -253,7 +259,7 @@ ritz_status ritz_composite_choose(const ritz_scene *scene,
     if (group == RITZ_GIVEN_RIGID)
         return unit_vectors(e, c->num_rigid, 0, NULL, out);
     if (group == RITZ_GIVEN_STATIC && plan->augment == RITZ_AUGMENT_SYSTEM)
-        return choose_answers(scene, c, plan, out);
+        return choose_statics(scene, c, plan, out);
     if (group == RITZ_GIVEN_KEPT && scene->select == RITZ_SELECT_KRYLOV)
         return choose_krylov(scene, c, out);
     if (group == RITZ_GIVEN_KEPT)
@@ -262,11 +268,12 @@ ritz_status ritz_composite_choose(const ritz_scene *scene,
 }
 
 /*
- * Below this, relative to the largest, a direction is rounding. Rigid modes
- * hold flexible motion of eps |P|'|K||P| / lambda, 1e-11 measured on frames of
- * bars, while the least rigid motion of a body is of the order of its size over
- * its distance from the centre of the system. Answers of a body to forces that
- * depend on each other differ by its solver's eps cond(K).
+ * A direction whose singular value is below this, relative to the largest, is
+ * rounding. Rigid modes hold flexible motion of eps |P|'|K||P| / lambda, 1e-11
+ * measured on frames of bars, while the least rigid motion of a body is of the
+ * order of its size over its distance from the centre of the system. Static
+ * solutions of a body for linearly dependent forces differ by eps cond(K) of
+ * the solver.
  */
 static const double tightest[GROUPS] = {
     RITZ_TIGHTEST_RIGID, RITZ_TIGHTEST_RIGID, RITZ_TIGHTEST_STATIC,
@@ -277,8 +284,8 @@ typedef struct columns {
     ritz_range massless; /* columns of V without mass */
 } columns;
 
-/* W = [W, more]; `more` is freed. */
-static ritz_status append(ritz_dense *more, ritz_dense *W)
+/* W = [W, more]; frees `more`. */
+static ritz_status append_columns(ritz_dense *more, ritz_dense *W)
 {
     ritz_status status = RITZ_OK;
     int64_t n = more->nrow;
@@ -299,7 +306,7 @@ done:
     return status;
 }
 
-static ritz_status identity(int64_t r, ritz_dense *out)
+static ritz_status set_identity(int64_t r, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(r, r, out));
     for (int64_t j = 0; j < r; j++)
@@ -307,8 +314,8 @@ static ritz_status identity(int64_t r, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Columns of unit norm; those of none are left as they are. */
-static void make_unit(ritz_dense *Y)
+/* Scale columns to unit norm; zero columns are left as they are. */
+static void scale_to_unit(ritz_dense *Y)
 {
     for (int64_t j = 0; j < Y->ncol; j++) {
         double norm = cblas_dnrm2((int)Y->nrow, ritz_dense_col(Y, j), 1);
@@ -319,10 +326,10 @@ static void make_unit(ritz_dense *Y)
 }
 
 /*
- * Columns no longer than one: what has little mass is long where M-norms are
- * one, and its rounding would be a mass that it has not.
+ * Limit columns to length one: with unit M-norm a motion of little mass is
+ * long, and its rounding would act as mass that it does not have.
  */
-static void make_small(ritz_dense *U)
+static void limit_length(ritz_dense *U)
 {
     for (int64_t j = 0; j < U->ncol; j++) {
         double norm = cblas_dnrm2((int)U->nrow, ritz_dense_col(U, j), 1);
@@ -332,7 +339,7 @@ static void make_small(ritz_dense *U)
     }
 }
 
-/* U: the groups in turn, each without what those before it span. */
+/* U: the groups in turn, each orthogonal to those before it. */
 static ritz_status choose_directions(const ritz_dense *L, const double *scale,
                                      columns *of, const ritz_plan *plan,
                                      ritz_dense *U)
@@ -351,20 +358,20 @@ static ritz_status choose_directions(const ritz_dense *L, const double *scale,
             least = RITZ_TIGHTEST_BODY;
         RITZ_CHECK(ritz_mass_transform(L, scale, &of->group[g], &Y));
         if (g == MASSLESS || (g == STATIC && own))
-            make_unit(&Y);
+            scale_to_unit(&Y);
         RITZ_CHECK(ritz_dense_take_out(U, U, &Y));
         RITZ_CHECK(ritz_dense_take_out(U, U, &Y)); /* twice is enough */
         RITZ_CHECK(ritz_span_of(&Y, least, &largest, &more));
         if (g == MASSLESS) {
             of->massless = (ritz_range){U->ncol, U->ncol + more.ncol};
         }
-        RITZ_CHECK(append(&more, U));
+        RITZ_CHECK(append_columns(&more, U));
         ritz_dense_free(&Y);
     }
     return RITZ_OK;
 }
 
-/* V of one body from the columns that all configurations gave it. */
+/* V of one body from the columns that all configurations contributed. */
 static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
                                   columns *of, const ritz_plan *plan,
                                   ritz_dense *V)
@@ -377,7 +384,7 @@ static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
     RITZ_CHECK(choose_directions(&L, scale, of, plan, &U));
     if (U.ncol == r) { /* nothing to remove: leave the body as it is */
         of->massless = (ritz_range){0, 0};
-        RITZ_CHECK(identity(r, V));
+        RITZ_CHECK(set_identity(r, V));
         return RITZ_OK;
     }
     if (U.ncol > 0)
@@ -385,7 +392,7 @@ static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
                     CblasNonUnit, (int)r, (int)U.ncol, 1.0, L.val, (int)r,
                     U.val, (int)r);
     if (mixed)
-        make_small(&U);
+        limit_length(&U);
     for (int64_t j = 0; j < U.ncol; j++)
         for (int64_t i = 0; i < r; i++)
             ritz_dense_col(&U, j)[i] *= scale[i];
@@ -393,8 +400,8 @@ static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
     return RITZ_OK;
 }
 
-/* Whether configuration k of the scene adds to the composite set. */
-static bool counts(const ritz_scene *scene, int64_t k)
+/* Whether configuration k of the scene contributes to the composite set. */
+static bool contributes(const ritz_scene *scene, int64_t k)
 {
     for (int64_t j = 0; j < scene->num_reference; j++)
         if (scene->reference[j] == k)
@@ -402,9 +409,13 @@ static bool counts(const ritz_scene *scene, int64_t k)
     return scene->num_reference == 0;
 }
 
-/* Append what one configuration gives to every body; count its vectors. */
-static ritz_status collect(const ritz_rows *rows, int64_t k,
-                           const ritz_plan *plan, columns *of, int64_t *count)
+/*
+ * Append the contributions of one configuration to every body; count its
+ * vectors.
+ */
+static ritz_status collect_configuration(const ritz_rows *rows, int64_t k,
+                                         const ritz_plan *plan, columns *of,
+                                         int64_t *count)
 {
     const ritz_stage *stage = rows->stage;
     const ritz_configuration *c = ritz_rows_first(rows, k);
@@ -416,14 +427,14 @@ static ritz_status collect(const ritz_rows *rows, int64_t k,
         *count += X.ncol;
         for (int64_t b = 0; b < stage->count; b++) {
             RITZ_CHECK(ritz_dense_mul(&c->P[b], &X, &more));
-            RITZ_CHECK(append(&more, &of[b].group[g]));
+            RITZ_CHECK(append_columns(&more, &of[b].group[g]));
         }
         ritz_dense_free(&X);
     }
     return RITZ_OK;
 }
 
-/* Append what each body has of its own, once for all configurations. */
+/* Append each body's own contributions, once for all configurations. */
 static ritz_status collect_own(const ritz_stage *stage, const double *scale,
                                const ritz_plan *plan, columns *of,
                                int64_t *count)
@@ -437,13 +448,13 @@ static ritz_status collect_own(const ritz_stage *stage, const double *scale,
         RITZ_CHECK_IN(item->name, ritz_body_massless(&stage->body[b],
                                                      scale + stage->first[b],
                                                      &own.massless));
-        RITZ_CHECK(append(&own.massless, &of[b].group[MASSLESS]));
+        RITZ_CHECK(append_columns(&own.massless, &of[b].group[MASSLESS]));
         if (plan->augment != RITZ_AUGMENT_COMPONENT)
             continue;
         RITZ_CHECK_IN(item->name, ritz_body_statics(stage, b, plan, &own));
         *count += own.answers.ncol;
-        RITZ_CHECK(append(&own.rigid, &of[b].group[RIGID]));
-        RITZ_CHECK(append(&own.answers, &of[b].group[STATIC]));
+        RITZ_CHECK(append_columns(&own.rigid, &of[b].group[RIGID]));
+        RITZ_CHECK(append_columns(&own.answers, &of[b].group[STATIC]));
     }
     return RITZ_OK;
 }
@@ -463,8 +474,8 @@ ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
     RITZ_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
     for (int64_t k = 0; k < rows->listed->num_configurations; k++)
-        if (counts(scene, k))
-            RITZ_TRY(collect(rows, k, plan, of, count));
+        if (contributes(scene, k))
+            RITZ_TRY(collect_configuration(rows, k, plan, of, count));
     RITZ_TRY(collect_own(stage, scale, plan, of, count));
     for (int64_t c = 0; c < stage->count; c++) {
         RITZ_TRY_IN(scene->component[c].name,

@@ -1,7 +1,7 @@
 /*
- * What configurations give to the composite set, in modal coordinates: modes as
- * long as they matter, static answers, and all that stage one has. See
- * composite_order.c for what becomes of it.
+ * The contributions of configurations to the composite set, in modal
+ * coordinates: modes weighted by their value, static solutions, and all that
+ * stage one has. Their order is described below.
  */
 #include "compare/compare.h"
 
@@ -16,7 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What all configurations of a stage give to its composite set, in groups. */
+/*
+ * The contributions of all configurations of a stage to its composite set, in
+ * groups.
+ */
 
 /* In order of right. */
 enum {
@@ -27,7 +30,7 @@ enum {
     RITZ_GROUPS
 };
 
-/* What one configuration gives, in its modal coordinates. */
+/* The contributions of one configuration, in its modal coordinates. */
 typedef struct ritz_given {
     const ritz_configuration *at;
     double *value; /* of each flexible mode */
@@ -42,8 +45,8 @@ typedef struct ritz_givens {
     ritz_given *each; /* of each configuration */
 } ritz_givens;
 
-/* Values of all modes, the largest of all is 1. */
-static ritz_status weigh(ritz_givens *g)
+/* The value of each mode, relative to the largest of all. */
+static ritz_status weigh_modes(ritz_givens *g)
 {
     double largest = 0.0;
 
@@ -65,7 +68,7 @@ static ritz_status weigh(ritz_givens *g)
     return RITZ_OK;
 }
 
-/* Columns of flexible modes up to some lambda, so long. */
+/* Columns of flexible modes up to some lambda, scaled by the modes' values. */
 static ritz_status choose_modes(const ritz_configuration *at, double highest,
                                 const double *length, ritz_dense *out)
 {
@@ -80,7 +83,7 @@ static ritz_status choose_modes(const ritz_configuration *at, double highest,
     return RITZ_OK;
 }
 
-static ritz_status give(const ritz_givens *g, ritz_given *to)
+static ritz_status list_contributions(const ritz_givens *g, ritz_given *to)
 {
     const ritz_scene *scene = g->stage->scene;
     const ritz_plan plan = {.augment = RITZ_AUGMENT_SYSTEM,
@@ -106,8 +109,8 @@ static ritz_status give(const ritz_givens *g, ritz_given *to)
 }
 
 /* P_c X of one body and group, all configurations side by side. */
-static ritz_status givens_gather(const ritz_givens *g, int64_t body, int group,
-                                 ritz_dense *out)
+static ritz_status gather_contributions(const ritz_givens *g, int64_t body,
+                                        int group, ritz_dense *out)
 {
     int64_t r = g->stage->body[body].K.ncol;
     int64_t used = 0;
@@ -129,7 +132,7 @@ static ritz_status givens_gather(const ritz_givens *g, int64_t body, int group,
     return RITZ_OK;
 }
 
-/* P_c X of one body and group, all configurations side by side. */
+/* Free what all configurations contribute. */
 static void free_givens(ritz_givens *g)
 {
     for (int64_t k = 0; g->each && k < g->system.num_configurations; k++) {
@@ -143,8 +146,8 @@ static void free_givens(ritz_givens *g)
     *g = (ritz_givens){0};
 }
 
-/* Assemble all configurations and choose what each gives. */
-static ritz_status new_givens(const ritz_stage *stage, ritz_givens *out)
+/* Assemble all configurations and list the contributions of each. */
+static ritz_status create_givens(const ritz_stage *stage, ritz_givens *out)
 {
     ritz_status status = RITZ_OK;
     ritz_givens g = {.stage = stage,
@@ -156,9 +159,9 @@ static ritz_status new_givens(const ritz_stage *stage, ritz_givens *out)
     RITZ_NEW(g.each, g.system.num_configurations);
     RITZ_NEW(g.scale, stage->num_coordinates);
     ritz_stage_scale(stage, g.scale);
-    RITZ_TRY_IN("selection", weigh(&g));
+    RITZ_TRY_IN("selection", weigh_modes(&g));
     for (int64_t k = 0; k < g.system.num_configurations; k++)
-        RITZ_TRY(give(&g, &g.each[k]));
+        RITZ_TRY(list_contributions(&g, &g.each[k]));
     RITZ_MOVE(*out, g);
 done:
     free_givens(&g);
@@ -167,31 +170,32 @@ done:
 
 /*
  * The composite set of all configurations, its directions in order. With P_c
- * the rows of body c at a configuration, a body is given
+ * the rows of body c at a configuration, a body receives
  *
  *     P_c Phi_r                        rigid modes, always there; and then
  *     P_c Phi_k v_k                    modes up to the end of the band, v_k the
  *                                      value of mode k in the ranking over the
  *                                      largest at any configuration, or 1,
- *     P_c Phi_f Lambda_f^-1 Phi_f' F   static answers to inputs, and to forces
+ *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solutions for inputs, and for forces
  *                                      where outputs read,
  *     P_c Phi_f                        all flexible modes of stage one
  *
- * in groups, each without what those before it span. Within a group directions
- * stand in the order of their singular values in the inner product
+ * in groups, each orthogonal to those before it. Within a group directions are
+ * in the order of their singular values in the inner product
  *
  *     E_c = M_c + K_c / lambda,        lambda of the end of the band,
  *
- * since a system has to make up for what a direction had: by energy the few
- * that let bodies follow each other at a joint come before many that move more
- * and store little. In M_c alone the spacecraft of the demo takes 28 columns
- * for a response within 1e-2, in E_c 23 (measured).
+ * since the system has to store the energy of a direction that is left out
+ * elsewhere: by energy the few directions that make bodies compatible at a
+ * joint precede many with larger motion and little energy. In M_c alone the
+ * spacecraft of the demo takes 28 columns for a response within 1e-2, in E_c 23
+ * (measured).
  *
- * composite.c, which keeps modes exactly, has the rest of the theory
+ * The rest of the theory is in composite.c, which keeps modes exactly
  * [LeeTsuha1992].
  */
 
-/* A direction of a body, while they are put in order. */
+/* A direction of a body, while directions are sorted. */
 typedef struct direction {
     int group;
     double value;
@@ -199,8 +203,8 @@ typedef struct direction {
 } direction;
 
 /*
- * Independent rigid motions of a body: by mass, since by energy what rounding
- * leaves of stiffness in them would count.
+ * Independent rigid motions of a body, by mass: by energy, stiffness that is
+ * rounding would count.
  */
 static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
                                  ritz_dense *out)
@@ -210,7 +214,7 @@ static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
     double largest = 0.0;
     bool mixed = false;
 
-    RITZ_CHECK(givens_gather(g, body, RITZ_GROUP_RIGID, &W));
+    RITZ_CHECK(gather_contributions(g, body, RITZ_GROUP_RIGID, &W));
     RITZ_CHECK(ritz_mass_factor(&g->stage->body[body], scale, &L, &mixed));
     RITZ_CHECK(ritz_mass_transform(&L, scale, &W, &Y));
     RITZ_CHECK(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, out));
@@ -218,8 +222,10 @@ static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
     return RITZ_OK;
 }
 
-/* A body while its directions are found, in coordinates in which E = L L' has a
-   diagonal of ones. */
+/*
+ * A body while its directions are found, in coordinates that make the diagonal
+ * of E = L L' one.
+ */
 typedef struct frame {
     int64_t body;
     double *scale;
@@ -229,7 +235,7 @@ typedef struct frame {
     double *value;  /* of the directions of a group */
 } frame;
 
-static ritz_status start(const ritz_givens *g, frame *f)
+static ritz_status start_body(const ritz_givens *g, frame *f)
 {
     const ritz_reduced *body = &g->stage->body[f->body];
     RITZ_OWN(ritz_dense) R = {0}, Y = {0};
@@ -249,12 +255,14 @@ static ritz_status start(const ritz_givens *g, frame *f)
     return ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, &f->U);
 }
 
-/* What a group adds to U, no more than there are directions at all. */
+/*
+ * Append the independent part of a group to U, up to the number of coordinates.
+ */
 static ritz_status add_group(const ritz_givens *g, int group, frame *f)
 {
     RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0}, both = {0};
 
-    RITZ_CHECK(givens_gather(g, f->body, group, &W));
+    RITZ_CHECK(gather_contributions(g, f->body, group, &W));
     RITZ_CHECK(ritz_mass_transform(&f->L, f->scale, &W, &Y));
     RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y));
     RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y)); /* twice is enough */
@@ -268,14 +276,14 @@ static ritz_status add_group(const ritz_givens *g, int group, frame *f)
     return RITZ_OK;
 }
 
-/* V of one body; its directions join those of all others. */
+/* V of one body; its directions join those of all others in the list. */
 static ritz_status order_body(const ritz_givens *g, int64_t body,
                               ritz_composite *out, direction *all)
 {
     ritz_status status = RITZ_OK;
     frame f = {.body = body};
 
-    RITZ_TRY(start(g, &f));
+    RITZ_TRY(start_body(g, &f));
     out->rigid[body] = f.U.ncol;
     for (int group = RITZ_GROUP_BAND; group < RITZ_GROUPS; group++) {
         int64_t before = f.U.ncol;
@@ -299,7 +307,7 @@ done:
     return ritz_context(status, g->stage->scene->component[body].name);
 }
 
-static int by_right(const void *left, const void *right)
+static int compare_right(const void *left, const void *right)
 {
     const direction *a = left;
     const direction *b = right;
@@ -323,7 +331,7 @@ static ritz_status order_bodies(const ritz_givens *g, ritz_composite *out)
     RITZ_CHECK_NEW(all, stage->num_coordinates);
     for (int64_t c = 0; c < stage->count; c++)
         RITZ_CHECK(order_body(g, c, out, all));
-    qsort(all, (size_t)out->num_steps, sizeof *all, by_right);
+    qsort(all, (size_t)out->num_steps, sizeof *all, compare_right);
     for (int64_t k = 0; k < out->num_steps; k++)
         out->step[k] = all[k].body;
     return RITZ_OK;
@@ -336,7 +344,7 @@ ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out)
     ritz_composite made = {0};
 
     RITZ_TRY(ritz_dual_refuse(stage));
-    RITZ_TRY(new_givens(stage, &givens));
+    RITZ_TRY(create_givens(stage, &givens));
     RITZ_TRY_IN("composite modes", order_bodies(&givens, &made));
     RITZ_MOVE(*out, made);
 done:

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 /**
- * A lambda of the body's own, the geometric mean of K_jj / M_jj: of stiffness
- * and mass added by it, neither is rounding.
+ * A lambda of the body's own, the geometric mean of K_jj / M_jj: in K + lambda
+ * M neither term is rounding relative to the other.
  */
 double ritz_typical_lambda(const ritz_reduced *body);
 
@@ -23,18 +23,20 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
                              ritz_dense *L, bool *mixed);
 
 /**
- * The same of mass plus stiffness over a lambda, the norm of an energy.
- *
- * @return RITZ_ERR_SINGULAR if it is not definite
+ * Lower Cholesky factor of mass plus stiffness over a given lambda, the norm of
+ * an energy.
  */
 ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
                               double lambda, ritz_dense *L);
 
-/** Y = L' W, W brought to scaled coordinates: M-products become plain ones. */
+/**
+ * Y = L' W with W in scaled coordinates: M-inner products become Euclidean
+ * ones.
+ */
 ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
                                 const ritz_dense *W, ritz_dense *Y);
 
-/** U becomes the W whose Y it is. */
+/** Replace U by the W with Y = U. */
 void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U);
 
 /**
@@ -44,8 +46,10 @@ void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U);
 ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
                          ritz_dense *out);
 
-/** The same with their singular values, descending: @p value has room for as
- * many as @p Y has rows. */
+/**
+ * ritz_span_of with singular values, descending: @p value has room for as many
+ * as @p Y has rows.
+ */
 ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
                              double *value, ritz_dense *out);
 

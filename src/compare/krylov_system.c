@@ -1,7 +1,7 @@
 /*
  * Krylov vectors of a system at one configuration [McDaniel2000, eq. 3.2.15 to
- * 3.2.17]. In its modal coordinates M = I and K = diag(lambda), so that of the
- * flexible part
+ * 3.2.17]. In its modal coordinates M = I and K = diag(lambda), so that the
+ * flexible part has the blocks
  *
  *     V_1 = Lambda^-1 R,    V_{j+1} = Lambda^-1 V_j,    R = B or [B, C']
  *
@@ -10,23 +10,23 @@
  * C Lambda^-i-1 B, and the first 2j if outputs start the block too, since then
  * C Lambda^-i and Lambda^-i B are both spanned.
  *
- * An output of velocity or acceleration adds its own rows to those that start.
+ * An output of velocity or acceleration adds its own rows to the first block.
  */
 #include "base/tolerances.h"
 #include "compare/compare.h"
 #include "linear/orthonormal.h"
 
-/* v = Lambda^-1 r, r a column, or row i of a matrix with a stride. */
-static void solve(const ritz_configuration *c, const double *r, int64_t stride,
-                  double *v)
+/* v = Lambda^-1 r, where r is a column, or a row of a matrix with a stride. */
+static void divide_by_lambda(const ritz_configuration *c, const double *r,
+                             int64_t stride, double *v)
 {
     for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
         v[k] = r[k * stride] / c->lambda[k];
 }
 
-/* The block that starts: B, and rows of C, Cv and Ca. */
-static ritz_status start(const ritz_configuration *c, bool both,
-                         ritz_dense *out)
+/* The first block: B, and for `both` the rows of C, Cv and Ca. */
+static ritz_status start_block(const ritz_configuration *c, bool both,
+                               ritz_dense *out)
 {
     const ritz_io *io = &c->io;
     const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
@@ -35,15 +35,17 @@ static ritz_status start(const ritz_configuration *c, bool both,
     RITZ_CHECK(ritz_dense_new(
         c->K.ncol, io->num_inputs + (both ? 3 * io->num_outputs : 0), out));
     for (int64_t j = 0; j < io->num_inputs; j++)
-        solve(c, ritz_dense_col(&io->B, j), 1, ritz_dense_col(out, m++));
+        divide_by_lambda(c, ritz_dense_col(&io->B, j), 1,
+                         ritz_dense_col(out, m++));
     for (int k = 0; k < 3 && both; k++)
         for (int64_t i = 0; i < io->num_outputs; i++)
-            solve(c, C[k]->val + i, io->num_outputs, ritz_dense_col(out, m++));
+            divide_by_lambda(c, C[k]->val + i, io->num_outputs,
+                             ritz_dense_col(out, m++));
     return RITZ_OK;
 }
 
-/* diag(Lambda), 0 where motion is rigid: the inner product of the vectors. */
-static ritz_status take_weights(const ritz_configuration *c, ritz_sparse *out)
+/* diag(Lambda), 0 for rigid modes: the inner product of the vectors. */
+static ritz_status fill_weights(const ritz_configuration *c, ritz_sparse *out)
 {
     int64_t n = c->K.ncol;
 
@@ -56,7 +58,9 @@ static ritz_status take_weights(const ritz_configuration *c, ritz_sparse *out)
     return RITZ_OK;
 }
 
-/* Append one block, up to so many vectors; whether all that is new fits. */
+/*
+ * Append one block, up to `vectors` in all; says whether all new vectors fit.
+ */
 static ritz_status append_block(ritz_dense *W, int64_t vectors,
                                 ritz_orthonormal *set, bool *fits)
 {
@@ -84,18 +88,19 @@ ritz_status ritz_system_krylov(const ritz_configuration *configuration,
     RITZ_OWN(ritz_dense) W = {0};
     bool fits = false;
 
-    RITZ_CHECK(take_weights(c, &weights));
+    RITZ_CHECK(fill_weights(c, &weights));
     RITZ_CHECK(ritz_orthonormal_new(c->K.ncol, &weights, RITZ_DEPENDENT, &set));
-    RITZ_CHECK(start(c, both, &W));
+    RITZ_CHECK(start_block(c, both, &W));
     RITZ_CHECK(append_block(&W, most, &set, &fits));
     while (fits) {
         blocks++;
-        if (set.count == first) /* every further moment is kept as well */
+        if (set.count == first) /* all further moments are kept as well */
             break;
         ritz_dense_free(&W);
         RITZ_CHECK(ritz_dense_columns(&set.V, first, set.count - first, &W));
         for (int64_t j = 0; j < W.ncol; j++)
-            solve(c, ritz_dense_col(&W, j), 1, ritz_dense_col(&W, j));
+            divide_by_lambda(c, ritz_dense_col(&W, j), 1,
+                             ritz_dense_col(&W, j));
         first = set.count;
         RITZ_CHECK(append_block(&W, most, &set, &fits));
     }

@@ -1,6 +1,6 @@
 /*
  * Responses of two systems, and the MIMO Bode plot of both: the magnitude of a
- * transfer matrix at a frequency is bounded by its largest singular value, in
+ * transfer matrix at a frequency is bounded by its largest singular value, by
  * which attachment modes are compared [McDaniel2000, sec. 3.2.2].
  */
 #include "base/alloc.h"
@@ -75,7 +75,7 @@ void ritz_two_responses_free(ritz_two_responses *responses)
     *responses = (ritz_two_responses){0};
 }
 
-/* Largest singular value of each of some matrices, m x n. */
+/* Largest singular value of each of several m x n matrices. */
 static ritz_status largest_singular(int64_t count, int64_t m, int64_t n,
                                     const double _Complex *H, double *out)
 {
@@ -138,20 +138,21 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
 }
 
 /*
- * Modes of the second system that stand for no mode that was kept. With modes
- * of unit mass and X_kj their products, mode j holds of the kept modes' space
+ * Stray modes: those of the second system that represent no kept mode. With
+ * modes of unit mass and X_kj their M-products, the part of mode j in the kept
+ * modes' space is
  *
  *     s_j = sum over kept k of X_kj^2,    0 <= s_j <= 1
  *
- * which does not depend on the basis of a cluster. It stands for kept modes if
- * that is half or more; the sum over all j is at most their number. What is
- * left comes of the projection: bodies have more coordinates than the system
- * had modes [McDaniel2000, table 3.3]. Static corrections are among them.
+ * which does not depend on the basis of a cluster. It represents kept modes if
+ * that is half or more; the sum over all j is at most their number. The others
+ * are due to the projection: bodies have more coordinates than the system had
+ * modes [McDaniel2000, table 3.3]. Static corrections are among them.
  */
 
-/* Share of mode j in the space of the kept modes. */
-static double share(const ritz_configuration *first,
-                    const ritz_compare_row *row, const double *x)
+/* Part s_j of mode j in the space of the kept modes. */
+static double find_participation(const ritz_configuration *first,
+                                 const ritz_compare_row *row, const double *x)
 {
     double sum = 0.0;
 
@@ -163,10 +164,13 @@ static double share(const ritz_configuration *first,
     return sum;
 }
 
-/* What a stray mode is, and which mode of the first system it is most like. */
-static ritz_stray describe(const ritz_scene *scene,
-                           const ritz_configuration *first, double lambda,
-                           const double *x)
+/*
+ * Describe a stray mode, and find the mode of the first system with the largest
+ * MAC.
+ */
+static ritz_stray describe_stray(const ritz_scene *scene,
+                                 const ritz_configuration *first, double lambda,
+                                 const double *x)
 {
     ritz_stray stray = {.hertz = ritz_eigen_hertz(lambda), .like = -1};
     bool outside =
@@ -183,31 +187,31 @@ static ritz_stray describe(const ritz_scene *scene,
     return stray;
 }
 
-/* Flexible modes of stage 2 that stand for no kept mode. */
-static ritz_status compare_strays(const ritz_scene *scene,
-                                  const ritz_configuration *first,
-                                  const ritz_configuration *second,
-                                  const ritz_dense *X, ritz_compare_row *row)
+/* Flexible modes of stage 2 that represent no kept mode. */
+static ritz_status find_strays(const ritz_scene *scene,
+                               const ritz_configuration *first,
+                               const ritz_configuration *second,
+                               const ritz_dense *X, ritz_compare_row *row)
 {
     const double half = 0.5;
 
     RITZ_CHECK_NEW(row->stray, second->K.ncol);
     if (scene->select == RITZ_SELECT_KRYLOV)
-        return RITZ_OK; /* no mode was kept, so none is beside them */
+        return RITZ_OK; /* no mode was kept, so none is stray */
     for (int64_t j = second->num_rigid; j < second->K.ncol; j++) {
         const double *x = ritz_dense_col(X, j);
 
-        if (share(first, row, x) >= half)
+        if (find_participation(first, row, x) >= half)
             continue;
         row->stray[row->num_strays] =
-            describe(scene, first, second->lambda[j], x);
+            describe_stray(scene, first, second->lambda[j], x);
         row->stray[row->num_strays++].mode = j - second->num_rigid;
     }
     return RITZ_OK;
 }
 
 /* Columns `keep` of A. */
-static ritz_status take_columns(int64_t count, const int64_t *keep,
+static ritz_status copy_columns(int64_t count, const int64_t *keep,
                                 ritz_dense *A)
 {
     RITZ_OWN(ritz_dense) less = {0};
@@ -222,47 +226,47 @@ static ritz_status take_columns(int64_t count, const int64_t *keep,
 }
 
 /* Rows and columns `keep` of a square A, or rows alone. */
-static ritz_status take_rows(int64_t count, const int64_t *keep, bool square,
+static ritz_status copy_rows(int64_t count, const int64_t *keep, bool square,
                              ritz_dense *A)
 {
     RITZ_OWN(ritz_dense) less = {0};
 
     if (square)
-        RITZ_CHECK(take_columns(count, keep, A));
+        RITZ_CHECK(copy_columns(count, keep, A));
     RITZ_CHECK(ritz_dense_rows(A, count, keep, &less));
     ritz_dense_free(A);
     RITZ_MOVE(*A, less);
     return RITZ_OK;
 }
 
-/* The modes `keep` of a configuration, and no other. */
-static ritz_status truncate(int64_t count, const int64_t *keep,
-                            ritz_configuration *c)
+/* Keep the modes `keep` of a configuration and no others. */
+static ritz_status truncate_modes(int64_t count, const int64_t *keep,
+                                  ritz_configuration *c)
 {
     for (int64_t k = 0; k < c->num_blocks; k++)
-        RITZ_CHECK(take_columns(count, keep, &c->P[k]));
-    RITZ_CHECK(take_columns(count, keep, &c->io.C));
-    RITZ_CHECK(take_columns(count, keep, &c->io.Cv));
-    RITZ_CHECK(take_columns(count, keep, &c->io.Ca));
+        RITZ_CHECK(copy_columns(count, keep, &c->P[k]));
+    RITZ_CHECK(copy_columns(count, keep, &c->io.C));
+    RITZ_CHECK(copy_columns(count, keep, &c->io.Cv));
+    RITZ_CHECK(copy_columns(count, keep, &c->io.Ca));
     if (c->momentum.val)
-        RITZ_CHECK(take_columns(count, keep, &c->momentum));
-    RITZ_CHECK(take_rows(count, keep, false, &c->io.B));
-    RITZ_CHECK(take_rows(count, keep, true, &c->K));
-    RITZ_CHECK(take_rows(count, keep, true, &c->M));
+        RITZ_CHECK(copy_columns(count, keep, &c->momentum));
+    RITZ_CHECK(copy_rows(count, keep, false, &c->io.B));
+    RITZ_CHECK(copy_rows(count, keep, true, &c->K));
+    RITZ_CHECK(copy_rows(count, keep, true, &c->M));
     if (c->D.val)
-        RITZ_CHECK(take_rows(count, keep, true, &c->D));
+        RITZ_CHECK(copy_rows(count, keep, true, &c->D));
     if (c->K4.val)
-        RITZ_CHECK(take_rows(count, keep, true, &c->K4));
+        RITZ_CHECK(copy_rows(count, keep, true, &c->K4));
     if (c->dampers.B.val)
-        RITZ_CHECK(take_rows(count, keep, false, &c->dampers.B));
+        RITZ_CHECK(copy_rows(count, keep, false, &c->dampers.B));
     for (int64_t j = 0; j < count; j++) /* keep[j] >= j */
         c->lambda[j] = c->lambda[keep[j]];
     return RITZ_OK;
 }
 
-/* Take those marked `removed` out of the second system. */
-static ritz_status compare_remove(const ritz_compare_row *row,
-                                  ritz_configuration *second)
+/* Remove the modes marked `removed` from the second system. */
+static ritz_status remove_strays(const ritz_compare_row *row,
+                                 ritz_configuration *second)
 {
     RITZ_OWN_ARRAY int64_t *keep = NULL;
     int64_t count = 0;
@@ -280,23 +284,22 @@ static ritz_status compare_remove(const ritz_compare_row *row,
         keep[count++] = j;
     }
     if (count < second->K.ncol)
-        RITZ_CHECK(truncate(count, keep, second));
+        RITZ_CHECK(truncate_modes(count, keep, second));
     return RITZ_OK;
 }
 
 /*
- * The second system against the first. Both have modal coordinates of unit
- * mass, so that with q_c = P_c x and q_c = V_c P2_c z
+ * Comparison of the second system with the first. Both have modal coordinates
+ * of unit mass, so that with q_c = P_c x and q_c = V_c P2_c z
  *
  *     X = sum_c P_c' M_c V_c P2_c,    X_kj^2 = MAC of mode k and mode j
  */
 
 /* X = sum_c P_c' M_c V_c P2_c, modes of the first by modes of the second. */
-static ritz_status compare_correlate(const ritz_stage *stage,
-                                     const ritz_dense *V,
-                                     const ritz_configuration *first,
-                                     const ritz_configuration *second,
-                                     ritz_dense *X)
+static ritz_status correlate_modes(const ritz_stage *stage, const ritz_dense *V,
+                                   const ritz_configuration *first,
+                                   const ritz_configuration *second,
+                                   ritz_dense *X)
 {
     RITZ_OWN(ritz_dense) VP = {0}, MVP = {0}, part = {0};
 
@@ -314,9 +317,11 @@ static ritz_status compare_correlate(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* The mode of the second system that is most like mode k, and how like. */
-static int64_t find_partner(const ritz_configuration *second,
-                            const ritz_dense *X, int64_t k, double *mac)
+/*
+ * The mode of the second system with the largest MAC with mode k, and that MAC.
+ */
+static int64_t find_paired_mode(const ritz_configuration *second,
+                                const ritz_dense *X, int64_t k, double *mac)
 {
     int64_t best = second->num_rigid;
     double sum = 0.0;
@@ -333,9 +338,9 @@ static int64_t find_partner(const ritz_configuration *second,
 }
 
 /*
- * Of the modes that matter the smallest MAC and the largest error in frequency.
- * Where they were kept, a mode beyond what rounding allows it comes before any
- * that is within, lest a larger error that is allowed hide it.
+ * The smallest MAC and the largest error in frequency of the modes that matter.
+ * Where modes were kept, one whose error exceeds its rounding limit precedes
+ * any that is within it, lest a larger error that is allowed hide it.
  */
 static void measure_modes(const ritz_configuration *first,
                           const ritz_configuration *second, const ritz_dense *X,
@@ -354,10 +359,10 @@ static void measure_modes(const ritz_configuration *first,
 
         if (second->K.ncol <= second->num_rigid)
             continue;
-        j = find_partner(second, X, k, &mac);
+        j = find_paired_mode(second, X, k, &mac);
         error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
         allowed = c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k];
-        row->mac = fmin(row->mac, mac); /* which passes NaN over */
+        row->mac = fmin(row->mac, mac); /* fmin ignores NaN */
         beyond = row->listed && error > allowed;
         if (!any || beyond > broken ||
             (beyond == broken && error > row->frequency_error)) {
@@ -379,7 +384,7 @@ static void measure_rigid(const ritz_configuration *second,
 }
 
 /* Largest difference of two matrices, relative to the first. */
-static double relative(const ritz_dense *one, const ritz_dense *two)
+static double relative_difference(const ritz_dense *one, const ritz_dense *two)
 {
     double largest = ritz_dense_max(one);
     double apart = 0.0;
@@ -401,9 +406,9 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
     return ritz_gain_error(&one, &two, out);
 }
 
-/* C Lambda^-i-1 B of the flexible part. */
-static ritz_status moment(const ritz_configuration *c, int64_t i,
-                          ritz_dense *out)
+/* The moment C Lambda^-i-1 B of the flexible part. */
+static ritz_status compute_moment(const ritz_configuration *c, int64_t i,
+                                  ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) X = {0};
 
@@ -417,7 +422,7 @@ static ritz_status moment(const ritz_configuration *c, int64_t i,
 
 /* Worst error of the kept moments, relative to the largest entry of each; NaN
     if there are none. */
-static ritz_status compare_moments(const ritz_configuration *first,
+static ritz_status measure_moments(const ritz_configuration *first,
                                    const ritz_configuration *second,
                                    int64_t count, double *out)
 {
@@ -425,16 +430,19 @@ static ritz_status compare_moments(const ritz_configuration *first,
 
     *out = nan("");
     for (int64_t i = 0; i < count && first->io.num_outputs > 0; i++) {
-        RITZ_CHECK(moment(first, i, &one));
-        RITZ_CHECK(moment(second, i, &two));
-        *out = fmax(*out, relative(&one, &two));
+        RITZ_CHECK(compute_moment(first, i, &one));
+        RITZ_CHECK(compute_moment(second, i, &two));
+        *out = fmax(*out, relative_difference(&one, &two));
         ritz_dense_free(&one);
         ritz_dense_free(&two);
     }
     return RITZ_OK;
 }
 
-/* Largest difference over largest magnitude, on the first system's points. */
+/*
+ * Largest difference relative to the largest magnitude, at the first system's
+ * points.
+ */
 static ritz_status measure_response(const ritz_scene *scene,
                                     const ritz_configuration *first,
                                     const ritz_configuration *second,
@@ -463,16 +471,16 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     row->num_rigid = first->num_rigid;
     row->num_flexible = first->K.ncol - first->num_rigid;
     row->gain_error = row->response_error = nan("");
-    RITZ_CHECK(compare_correlate(stage, V, first, second, &X));
+    RITZ_CHECK(correlate_modes(stage, V, first, second, &X));
     measure_modes(first, second, &X, row);
     measure_rigid(second, row);
-    RITZ_CHECK(compare_strays(scene, first, second, &X, row));
-    RITZ_CHECK(compare_remove(row, second));
+    RITZ_CHECK(find_strays(scene, first, second, &X, row));
+    RITZ_CHECK(remove_strays(row, second));
     row->order = second->K.ncol;
     if (scene->num_inputs > 0 && scene->num_outputs > 0)
         RITZ_CHECK(ritz_compare_gain(first, second, &row->gain_error));
     RITZ_CHECK(
-        compare_moments(first, second, row->num_moments, &row->moment_error));
+        measure_moments(first, second, row->num_moments, &row->moment_error));
     if (ritz_compare_responds(scene))
         RITZ_CHECK(measure_response(scene, first, second, row));
     return RITZ_OK;

@@ -1,8 +1,9 @@
 /*
- * Which system modes matter. Values of all configurations are held against one
- * largest value, so that a mode that matters at one angle alone is kept for it.
- * A cluster is kept whole, however its members were chosen: within it modes are
- * any basis of one space, and a part of them is none of the system's.
+ * Which system modes matter. Values of all configurations are relative to one
+ * largest value, so that a mode that matters at a single angle is kept for it.
+ * A cluster is kept whole, however its members were chosen: its modes are an
+ * arbitrary basis of one space, and a subset of them is no property of the
+ * system.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -43,7 +44,7 @@ done:
     return ritz_context(status, c->at);
 }
 
-/* Whether there is what its ranking needs. */
+/* Whether a configuration has what the ranking needs. */
 static bool is_ranked(const ritz_scene *scene)
 {
     const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
@@ -99,7 +100,7 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-/* Modes whose value is not below the least. */
+/* Mark the modes whose value is at least the threshold. */
 static ritz_status mark_ranked(const ritz_scene *scene,
                                const ritz_configuration *c, double least,
                                bool *taken)
@@ -143,8 +144,11 @@ static ritz_status mark_listed(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-/* Take the rest of each cluster that has a mode taken; count what that adds. */
-static int64_t complete(const ritz_configuration *c, bool *taken)
+/*
+ * Take the rest of each cluster that has a mode taken; returns the number
+ * added.
+ */
+static int64_t complete_clusters(const ritz_configuration *c, bool *taken)
 {
     const double *lambda = c->lambda + c->num_rigid;
     int64_t flexible = c->K.ncol - c->num_rigid;
@@ -169,7 +173,9 @@ static int64_t complete(const ritz_configuration *c, bool *taken)
     return added;
 }
 
-/* No modes: how many vectors stand for them, and moments are kept. */
+/*
+ * Without modes: count the vectors that replace them and the moments they keep.
+ */
 static ritz_status count_vectors(const ritz_scene *scene,
                                  const ritz_configuration *c,
                                  ritz_compare_row *row)
@@ -205,7 +211,7 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
         RITZ_CHECK(mark_listed(scene, c, taken));
     else
         mark_band(scene, c, taken);
-    row->num_completed = complete(c, taken);
+    row->num_completed = complete_clusters(c, taken);
     for (int64_t k = 0; k < flexible; k++)
         if (taken[k])
             row->kept[row->num_kept++] = k;

@@ -9,13 +9,14 @@
  * attachment modes P'S P F of [LeeTsuha1992, eq. 14]. Together with R and the
  * projected modes they span what the residual modes of that equation do.
  *
- * Where a system answers statically, its accelerations are rigid and each body
+ * In the static response of a system accelerations are rigid and each body
  * obeys K q = F g + B u - M R a with g the forces at its interface; since R'
  * times the right side is 0, q = A [g; u] + R b. So with all of them and R in
  * the subspace the flexible static gain is exact at every angle.
  *
- * Without mass no mode is: where M is singular its null space is kept, lest
- * what was massless in the first system have some in the second.
+ * Modes have no part in motions without mass: where M is singular its null
+ * space is kept, lest a massless motion of the first system have mass in the
+ * second.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -53,9 +54,9 @@ static bool is_held(const ritz_scene *scene, int64_t k, const char *port)
     return false;
 }
 
-/* Rows of A, of the coordinates of one body, as columns m.. of F. */
-static int64_t take_rows(const ritz_dense *A, int64_t first, ritz_dense *F,
-                         int64_t m)
+/* Append rows of A, for the coordinates of one body, as columns m.. of F. */
+static int64_t append_rows(const ritz_dense *A, int64_t first, ritz_dense *F,
+                           int64_t m)
 {
     for (int64_t i = 0; i < A->nrow; i++)
         for (int64_t q = 0; q < F->nrow; q++)
@@ -85,15 +86,16 @@ static ritz_status list_forces(const ritz_stage *stage, int64_t k,
     for (int64_t p = 0; p < body->num_ports; p++)
         if ((plan->attached & RITZ_ATTACHED_INTERFACE) &&
             is_held(stage->scene, k, body->port[p].name))
-            m = take_rows(&body->port[p].map, 0, &F, m);
+            m = append_rows(&body->port[p].map, 0, &F, m);
     for (int c = 0; c < 3 && (plan->attached & RITZ_ATTACHED_OUTPUTS); c++)
-        m = take_rows(C[c], first, &F, m);
+        m = append_rows(C[c], first, &F, m);
     return ritz_dense_columns(&F, 0, m, out);
 }
 
-/* K + s M R R' M, scaled to a unit diagonal by *scale, factored in place. */
-static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
-                          double *scale, ritz_dense *L)
+/* Factor K + s M R R' M in place, scaled to a unit diagonal by *scale. */
+static ritz_status factor_shifted(const ritz_reduced *body,
+                                  const ritz_dense *MR, double *scale,
+                                  ritz_dense *L)
 {
     int r = (int)body->K.ncol;
 
@@ -118,11 +120,11 @@ static ritz_status factor(const ritz_reduced *body, const ritz_dense *MR,
 }
 
 /*
- * F := F - M R R' F, columns that are rounding left out: those of a force that
- * does nothing but push the body as a whole.
+ * F := F - M R R' F. Columns that become rounding are left out: those of a
+ * force that accelerates the body as a rigid one and does not deform it.
  */
-static ritz_status relieve(const ritz_dense *R, const ritz_dense *MR,
-                           const double *scale, ritz_dense *F)
+static ritz_status relieve_inertia(const ritz_dense *R, const ritz_dense *MR,
+                                   const double *scale, ritz_dense *F)
 {
     RITZ_OWN(ritz_dense) share = {0}, gone = {0}, kept = {0};
     int64_t m = 0;
@@ -161,9 +163,9 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
     RITZ_CHECK(ritz_eigen_dense(&body->K, &body->M, &pairs));
     RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &R));
     RITZ_CHECK(ritz_dense_mul(&body->M, &R, &MR));
-    RITZ_CHECK(factor(body, &MR, scale, &L));
+    RITZ_CHECK(factor_shifted(body, &MR, scale, &L));
     RITZ_CHECK(list_forces(stage, k, plan, &F));
-    RITZ_CHECK(relieve(&R, &MR, scale, &F));
+    RITZ_CHECK(relieve_inertia(&R, &MR, scale, &F));
     if (F.ncol > 0 && r > 0)
         (void)LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', r, (int)F.ncol, L.val, r,
                              F.val, r);

@@ -1,11 +1,5 @@
 /*
- * One step: likenesses, partners, and what happened on the way.
- *
- *     X_ij = sum_c (P_c' M_c P'_c)_ij
- *
- * Between clusters A and B of p and q modes the likeness of each pair is
- * ||X_AB||_F^2 / min(p, q), the mean squared cosine of the angles of their
- * spaces: 1 where one contains the other, whatever their bases are.
+ * One step: the MAC of modes, the pairs of modes, and the events of the step.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -40,8 +34,8 @@ static int64_t cluster_end(const int64_t *cluster, int64_t count, int64_t i)
     return last;
 }
 
-/* Squares of X, those of a pair of clusters replaced by their likeness. */
-static void level(ritz_track_step *step)
+/* Squares of X; within a pair of clusters all become that of the clusters. */
+static void average_clusters(ritz_track_step *step)
 {
     ritz_dense *X = &step->mac;
     int64_t i1 = 0, j1 = 0;
@@ -65,10 +59,10 @@ static void level(ritz_track_step *step)
     }
 }
 
-/* X of flexible modes. */
-static ritz_status correlate(const ritz_stage *stage,
-                             const ritz_configuration *from,
-                             const ritz_configuration *to, ritz_dense *X)
+/* X of the flexible modes. */
+static ritz_status correlate_modes(const ritz_stage *stage,
+                                   const ritz_configuration *from,
+                                   const ritz_configuration *to, ritz_dense *X)
 {
     RITZ_OWN(ritz_dense) A = {0}, B = {0}, MB = {0}, part = {0};
     int64_t m = from->K.ncol - from->num_rigid;
@@ -90,9 +84,12 @@ static ritz_status correlate(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* The free mode of `to` that is most like mode i; -1 if none is like it. */
-static int64_t find_partner(const ritz_track_step *step, const bool *taken,
-                            int64_t i)
+/*
+ * The unpaired mode of `to` with the largest MAC with mode i; -1 if none has
+ * any.
+ */
+static int64_t find_paired_mode(const ritz_track_step *step, const bool *taken,
+                                int64_t i)
 {
     int64_t best = -1;
 
@@ -106,8 +103,8 @@ static int64_t find_partner(const ritz_track_step *step, const bool *taken,
     return best;
 }
 
-/* Likenesses and partners of one step; cluster and hertz are set. */
-static ritz_status match_track(const ritz_stage *stage,
+/* MAC values and pairs of one step; cluster and hertz are set. */
+static ritz_status match_modes(const ritz_stage *stage,
                                const ritz_configuration *from,
                                const ritz_configuration *to,
                                ritz_track_step *step)
@@ -116,18 +113,18 @@ static ritz_status match_track(const ritz_stage *stage,
 
     RITZ_CHECK_NEW(taken, step->num_to);
     RITZ_CHECK_NEW(step->partner, step->num_from);
-    RITZ_CHECK(correlate(stage, from, to, &step->mac));
-    level(step);
+    RITZ_CHECK(correlate_modes(stage, from, to, &step->mac));
+    average_clusters(step);
     for (int64_t i = 0; i < step->num_from; i++) {
-        step->partner[i] = find_partner(step, taken, i);
+        step->partner[i] = find_paired_mode(step, taken, i);
         if (step->partner[i] >= 0)
             taken[step->partner[i]] = true;
     }
     return RITZ_OK;
 }
 
-/* Likeness of mode i with j; 0 for none. */
-static double mac_of(const ritz_track_step *step, int64_t i, int64_t j)
+/* The MAC of mode i and mode j; 0 if j is -1. */
+static double read_mac(const ritz_track_step *step, int64_t i, int64_t j)
 {
     return j < 0 ? 0.0 : ritz_dense_col(&step->mac, j)[i];
 }
@@ -152,8 +149,8 @@ static ritz_status add_event(const ritz_track_step *step,
     return RITZ_OK;
 }
 
-/* Whether mode j is what a mode of i's cluster becomes. */
-static bool is_of_mate(const ritz_track_step *step, int64_t i, int64_t j)
+/* Whether mode j is paired with a mode of i's cluster. */
+static bool is_of_pair(const ritz_track_step *step, int64_t i, int64_t j)
 {
     const int64_t *cluster = step->cluster[0];
 
@@ -165,34 +162,38 @@ static bool is_of_mate(const ritz_track_step *step, int64_t i, int64_t j)
 }
 
 /*
- * What mode i is most like, which is its partner if it has one, and the next of
- * another cluster that is not what its own cluster becomes.
+ * The two modes that mode i is most like: its paired mode if it has one, and
+ * the best one of another cluster that is not paired with i's own cluster.
  */
-static void find_best(const ritz_track_step *step, int64_t i, int64_t best[2])
+static void find_two_best(const ritz_track_step *step, int64_t i,
+                          int64_t best[2])
 {
     best[0] = step->partner[i];
     best[1] = -1;
     for (int64_t j = 0; j < step->num_to && step->partner[i] < 0; j++)
-        if (mac_of(step, i, j) > mac_of(step, i, best[0]))
+        if (read_mac(step, i, j) > read_mac(step, i, best[0]))
             best[0] = j;
     for (int64_t j = 0; j < step->num_to; j++)
         if (best[0] >= 0 && step->cluster[1][j] != step->cluster[1][best[0]] &&
-            !is_of_mate(step, i, j) &&
-            mac_of(step, i, j) > mac_of(step, i, best[1]))
+            !is_of_pair(step, i, j) &&
+            read_mac(step, i, j) > read_mac(step, i, best[1]))
             best[1] = j;
 }
 
-/* A mode that is lost, or nearly as like a second as the first. */
-static ritz_status judge_one(const ritz_track_step *step, int64_t i,
-                             ritz_tracking *t)
+/*
+ * Record a mode that is lost, or whose second MAC is nearly as large as its
+ * first.
+ */
+static ritz_status classify_mode(const ritz_track_step *step, int64_t i,
+                                 ritz_tracking *t)
 {
     int64_t best[2] = {-1, -1};
     ritz_track_event event = {.mode = {i, -1}, .shared = nan("")};
 
-    find_best(step, i, best);
+    find_two_best(step, i, best);
     for (int k = 0; k < 2; k++) {
         event.other[k] = best[k];
-        event.mac[k] = mac_of(step, i, best[k]);
+        event.mac[k] = read_mac(step, i, best[k]);
     }
     if (step->partner[i] < 0) {
         event.kind = RITZ_TRACK_LOST;
@@ -205,16 +206,16 @@ static ritz_status judge_one(const ritz_track_step *step, int64_t i,
 }
 
 /*
- * Two modes of different clusters that have partners: do they change places, or
- * turn within their plane? The latter are neighbours in frequency.
+ * Two modes of different clusters that are both paired: whether they change
+ * their order, or rotate in their plane, which only neighbours in frequency do.
  */
-static ritz_status judge_two(const ritz_track_step *step, int64_t i, int64_t j,
-                             ritz_tracking *t)
+static ritz_status classify_pair(const ritz_track_step *step, int64_t i,
+                                 int64_t j, ritz_tracking *t)
 {
     int64_t p = step->partner[i];
     int64_t q = step->partner[j];
-    double own[2] = {mac_of(step, i, p), mac_of(step, j, q)};
-    double crossed[2] = {mac_of(step, i, q), mac_of(step, j, p)};
+    double own[2] = {read_mac(step, i, p), read_mac(step, j, q)};
+    double crossed[2] = {read_mac(step, i, q), read_mac(step, j, p)};
     double shared = 0.5 * (own[0] + own[1] + crossed[0] + crossed[1]);
     ritz_track_event event = {.mode = {i, j},
                               .other = {p, q},
@@ -234,8 +235,8 @@ static ritz_status judge_two(const ritz_track_step *step, int64_t i, int64_t j,
     return RITZ_OK;
 }
 
-/* Whether two modes, or what they became, are of one cluster. */
-static bool are_one(const ritz_track_step *step, int64_t i, int64_t j)
+/* Whether two modes, or the modes paired with them, are of one cluster. */
+static bool are_clustered(const ritz_track_step *step, int64_t i, int64_t j)
 {
     int64_t p = step->partner[i];
     int64_t q = step->partner[j];
@@ -244,35 +245,35 @@ static bool are_one(const ritz_track_step *step, int64_t i, int64_t j)
            step->cluster[1][p] == step->cluster[1][q];
 }
 
-/* Append what happened in one step, up to a frequency, 0 for all. */
-static ritz_status track_events(const ritz_track_step *step, double up_to_hz,
-                                ritz_tracking *tracking)
+/* Append the events of one step, up to a frequency; 0 for all. */
+static ritz_status append_events(const ritz_track_step *step, double up_to_hz,
+                                 ritz_tracking *tracking)
 {
     double most = up_to_hz > 0.0 ? up_to_hz : HUGE_VAL;
 
     for (int64_t i = 0; i < step->num_from; i++) {
         if (step->hertz[0][i] > most)
             break;
-        RITZ_CHECK(judge_one(step, i, tracking));
+        RITZ_CHECK(classify_mode(step, i, tracking));
         for (int64_t j = i + 1; j < step->num_from; j++)
             if (step->partner[i] >= 0 && step->partner[j] >= 0 &&
-                !are_one(step, i, j))
-                RITZ_CHECK(judge_two(step, i, j, tracking));
+                !are_clustered(step, i, j))
+                RITZ_CHECK(classify_pair(step, i, j, tracking));
     }
     return RITZ_OK;
 }
 
 /*
- * Tracks: a mode goes on as the one that is most like it, if the MAC is half or
+ * Tracks: a mode continues as the mode with the largest MAC, if that is half or
  * more. As the modes of both configurations are orthonormal, squared products
- * in a row or column sum to at most one, so that above one half there is no
- * second claimant and no assignment problem is left.
+ * in a row or column sum to at most one, so that above one half no second mode
+ * qualifies and no assignment problem is left.
  *
  * Modes that are in one cluster at any configuration get one track throughout,
- * by joining their tracks: which of them went on as which is not defined.
+ * by joining their tracks: which of them continues as which is not defined.
  */
 
-/* The nearest configuration among those before k, not looking for ever. */
+/* The nearest configuration among those before k; the search is limited. */
 static int64_t find_before(const ritz_system *system, int64_t k)
 {
     enum { FURTHEST = 1000 };
@@ -298,8 +299,9 @@ static int64_t find_before(const ritz_system *system, int64_t k)
     return best;
 }
 
-/* Room for all modes, their frequencies and clusters. */
-static ritz_status lay_out(const ritz_system *system, ritz_tracking *t)
+/* Allocate room for all modes, their frequencies and clusters. */
+static ritz_status allocate_tracking(const ritz_system *system,
+                                     ritz_tracking *t)
 {
     int64_t count = system->num_configurations;
     int64_t total = 0;
@@ -334,7 +336,7 @@ static ritz_status lay_out(const ritz_system *system, ritz_tracking *t)
     return RITZ_OK;
 }
 
-/* The track that stands for one that was joined to it. */
+/* The track that represents one that was joined to it. */
 static int64_t find_root(const int64_t *joined, int64_t track)
 {
     while (joined[track] != track)
@@ -342,8 +344,8 @@ static int64_t find_root(const int64_t *joined, int64_t track)
     return track;
 }
 
-/* Make one track of two; the older one stays. */
-static void join(int64_t *joined, int64_t a, int64_t b)
+/* Join two tracks; the older one remains. */
+static void join_tracks(int64_t *joined, int64_t a, int64_t b)
 {
     int64_t p = find_root(joined, a);
     int64_t q = find_root(joined, b);
@@ -351,8 +353,8 @@ static void join(int64_t *joined, int64_t a, int64_t b)
     joined[p > q ? p : q] = p < q ? p : q;
 }
 
-/* Tracks of configuration `to`: those of partners, and new ones. */
-static void carry_on(const ritz_track_step *step, ritz_tracking *t)
+/* Tracks of configuration `to`: those of paired modes, and new ones. */
+static void continue_tracks(const ritz_track_step *step, ritz_tracking *t)
 {
     const int64_t *from =
         step->from < 0 ? NULL : t->track + t->first[step->from];
@@ -374,8 +376,10 @@ static void carry_on(const ritz_track_step *step, ritz_tracking *t)
             to[j] = t->num_tracks++;
 }
 
-/* Join what shares a cluster, and number what is left in order. */
-static ritz_status settle(ritz_tracking *t)
+/*
+ * Join the tracks that share a cluster, and number the remaining ones in order.
+ */
+static ritz_status number_tracks(ritz_tracking *t)
 {
     RITZ_OWN_ARRAY int64_t *joined = NULL;
     RITZ_OWN_ARRAY int64_t *number = NULL;
@@ -389,7 +393,8 @@ static ritz_status settle(ritz_tracking *t)
     }
     for (int64_t k = 0; k < t->num_configurations; k++)
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
-            join(joined, t->track[i], t->track[t->first[k] + t->cluster[i]]);
+            join_tracks(joined, t->track[i],
+                        t->track[t->first[k] + t->cluster[i]]);
     for (int64_t i = 0; i < t->first[t->num_configurations]; i++) {
         int64_t root = find_root(joined, t->track[i]);
 
@@ -401,8 +406,8 @@ static ritz_status settle(ritz_tracking *t)
     return RITZ_OK;
 }
 
-/* Leave out what happened between two modes that share a track after all. */
-static void sift(ritz_tracking *t)
+/* Remove events between two modes that share a track after joining. */
+static void remove_events(ritz_tracking *t)
 {
     int64_t kept = 0;
 
@@ -417,9 +422,10 @@ static void sift(ritz_tracking *t)
     t->num_events = kept;
 }
 
-/* Modes of configuration k, from those of the one before it. */
-static ritz_status follow(const ritz_stage *stage, const ritz_system *system,
-                          int64_t k, double up_to_hz, ritz_tracking *t)
+/* Track the modes of configuration k from the configuration before it. */
+static ritz_status track_step(const ritz_stage *stage,
+                              const ritz_system *system, int64_t k,
+                              double up_to_hz, ritz_tracking *t)
 {
     ritz_status status = RITZ_OK;
     int64_t before = t->before[k];
@@ -432,11 +438,11 @@ static ritz_status follow(const ritz_stage *stage, const ritz_system *system,
         step.hertz[1] = t->hertz + t->first[k];
         step.cluster[0] = t->cluster + t->first[before];
         step.cluster[1] = t->cluster + t->first[k];
-        RITZ_TRY(match_track(stage, &system->configuration[before],
+        RITZ_TRY(match_modes(stage, &system->configuration[before],
                              &system->configuration[k], &step));
-        RITZ_TRY(track_events(&step, up_to_hz, t));
+        RITZ_TRY(append_events(&step, up_to_hz, t));
     }
-    carry_on(&step, t);
+    continue_tracks(&step, t);
 done:
     free(step.partner);
     ritz_dense_free(&step.mac);
@@ -448,13 +454,13 @@ ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
 {
     RITZ_OWN(ritz_tracking) t = {0};
 
-    RITZ_CHECK(lay_out(system, &t));
+    RITZ_CHECK(allocate_tracking(system, &t));
     for (int64_t k = 0; k < t.num_configurations; k++) {
         ritz_monitor_step("tracks", k, t.num_configurations);
-        RITZ_CHECK(follow(stage, system, k, up_to_hz, &t));
+        RITZ_CHECK(track_step(stage, system, k, up_to_hz, &t));
     }
-    RITZ_CHECK(settle(&t));
-    sift(&t);
+    RITZ_CHECK(number_tracks(&t));
+    remove_events(&t);
     RITZ_MOVE(*out, t);
     return RITZ_OK;
 }
