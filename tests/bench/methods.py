@@ -291,17 +291,30 @@ def measure(bin_, case, method, how, more):
 
 HEAD = """# How wrong each method is
 
-Every method on every data set that it fits, reduced to as many columns as it can have of those asked for and measured by `ritz-verify` against the full model up to its fifth flexible mode (damping `modal 0.01` where the model states none). Made by
+The tables have the errors of every method on every data set to which it applies. Each model is reduced to the number of columns requested, or to as many as the method can have, and `ritz-verify` compares it with the full model up to its fifth flexible mode (damping `modal 0.01` where the model states none). The page is made by
 
     /usr/bin/python3 -s tests/bench/methods.py build/release/bin --solid 25 >docs/methods/errors.md
 
-*missing*: modes of the band that no reduced mode is like (MAC below one half); *frequency*, *1 - MAC* and *damping*: the worst of the others; *response*: from an input inside to an output inside, largest error over the largest response in the band, which of a free body is that of its rigid motion; *static gain*: of the flexible part, relative. An error of 1 - MAC of 1 is a mode that is missing.
+| column | meaning |
+|---|---|
+| missing | modes of the band without a pair in the reduced model (MAC below one half) |
+| frequency, 1 - MAC, damping | the worst of the other modes; an error of 1 - MAC of 1 is a mode that is missing |
+| response | from an input inside to an output inside: largest error over the largest response in the band, which for a free body is that of its rigid motion |
+| static gain | of the flexible part, relative |
 
-What to read from it. Modes of a free body are best kept by modes: macneal-rubin, rubin, macneal and inertia-relief span one subspace and have them to rounding. They answer at their port; an input elsewhere costs them the static gain, which normal-modes and krylov, told of the inputs, have to rounding. Craig-Bampton at equal order is behind by some digits wherever the interface is not held by anything, which is how components are measured here, and ahead once neighbours are stiff. Krylov methods have responses and gains right where modes of the same number do not, and lose high modes that no load reaches: on a driven model that is a virtue. guyan, irs and serep have no more columns than the port has dofs. The static gain leaves out as many of the lowest modes as the full model has rigid ones, so that a rigid motion which guyan or irs hold badly is no compliance; where nothing stands, nothing could be compared.
+An empty field means that nothing could be compared.
 
-On the solid of 52 728 dofs tangential is given its points, 50 to 800 Hz by fifties, and 38 columns: it takes a complex factor for each, in four minutes of processor. Its own search for points factors one for every other column in each round, up to 50 rounds, and was stopped there after 52 minutes of processor with 10 columns asked for: no way to reduce such a body.
+What the tables show:
 
-Not here: `loaded-interface`, which needs neighbours; `dual-craig-bampton`, which by itself is macneal-rubin; the Lanczos methods, whose models are of states; `rigid` and `full`."""
+- Free-interface modes are best for the modes of a free body: macneal-rubin, rubin, macneal and inertia-relief span the same subspace and have these modes to rounding. Their static responses are exact at the port only: for an input elsewhere the static gain is inaccurate. normal-modes and krylov, which are given the inputs, have it to rounding.
+- Craig-Bampton at equal order is less accurate by some digits where nothing holds the interface, as is the case for all components here. It is more accurate when neighbours are stiff.
+- Krylov methods have accurate responses and gains where the same number of modes has not. They lose high modes that are not controllable from any load; for responses to these loads that is an advantage.
+- guyan, irs and serep have no more columns than the port has dofs.
+- The static gain leaves out as many of the lowest modes as the full model has rigid ones. A rigid motion that guyan or irs represent badly is therefore not taken for a compliance.
+
+On the solid of 52 728 dofs tangential is given its expansion points, 50 to 800 Hz in steps of 50 Hz, and 38 columns. It needs a complex factor for each point, four minutes of processor time. Its own search for points factors one matrix for every other column in each of up to 50 rounds. It was stopped after 52 minutes of processor time with 10 columns requested, so it is not practical for such a body.
+
+Methods that are not in the tables: `loaded-interface`, which needs neighbours; `dual-craig-bampton`, which for a single body is macneal-rubin; the Lanczos methods, whose models are state spaces; `rigid` and `full`."""
 
 COLUMNS = [("missing-modes", "missing"), ("frequency-relative", "frequency"),
            ("mac", "1 - MAC"),
