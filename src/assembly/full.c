@@ -231,9 +231,9 @@ static void eliminate_slaves(ritz_dense *C, int64_t *pivot_of)
 }
 
 /*
- * The full-order system as one component. Bodies are joined at few dofs: with the
- * constraints C u = 0 over the dofs of all ports, Gauss-Jordan elimination with
- * complete pivoting picks as many of them as slaves as C has rank,
+ * The full-order system as one component. Bodies are joined at few dofs: with
+ * the constraints C u = 0 over the dofs of all ports, Gauss-Jordan elimination
+ * with complete pivoting picks as many of them as slaves as C has rank,
  *
  *     u_s = -C_m u_m,    u = T u_m,    K = T' diag(K_1, K_2, ...) T
  *

@@ -41,7 +41,7 @@ ritz_status ritz_states_asked(const ritz_request *request, ritz_states *out)
     return ritz_states_new(request->component, &damping, alpha, out);
 }
 
-static ritz_status check(const ritz_request *request)
+static ritz_status check_request(const ritz_request *request)
 {
     const int of_components = RITZ_USES_DAMPING | RITZ_USES_AMONG;
     int given = request->choice.given;
@@ -75,7 +75,7 @@ ritz_status ritz_gramians_asked(const ritz_request *request, ritz_gramians *out)
         .among_hz = choice->among_hz,
         .band_hz = {choice->band_hz[0], choice->band_hz[1]}};
 
-    RITZ_CHECK(check(request));
+    RITZ_CHECK(check_request(request));
     if (request->space)
         return ritz_gramians_of_space(request->space, out);
     RITZ_CHECK(ritz_request_damping(request, &asked.damping));
@@ -104,14 +104,14 @@ ritz_status ritz_balance_asked(const ritz_request *request,
 }
 
 /* [A B], of which A may be {0}. */
-static ritz_status beside(const ritz_dense *A, const ritz_dense *B,
-                          ritz_dense *out)
+static ritz_status join_columns(const ritz_dense *A, const ritz_dense *B,
+                                ritz_dense *out)
 {
     return A->ncol == 0 ? ritz_dense_copy(B, out)
                         : ritz_dense_beside(A, B, out);
 }
 
-/* Rigid modes stand in T as positions or as velocities; other poles as both. */
+/* T contains rigid modes as positions or as velocities; other poles as both. */
 static bool is_rigid(const ritz_dense *T, int64_t j)
 {
     const double *x = ritz_dense_col(T, j);
@@ -139,9 +139,10 @@ static void name_columns(const ritz_request *request,
         }
 }
 
-static void remark(const ritz_request *request, const ritz_gramians *gramians,
-                   const ritz_balanced *balanced, const char *what,
-                   ritz_basis *basis)
+static void add_remark(const ritz_request *request,
+                       const ritz_gramians *gramians,
+                       const ritz_balanced *balanced, const char *what,
+                       ritz_basis *basis)
 {
     char text[2 * RITZ_DAMPING_SIZE];
     const double *residual = gramians->residual;
@@ -198,7 +199,7 @@ ritz_status ritz_balanced_note(const ritz_request *request,
     memcpy(basis->damping, gramians->damping, sizeof basis->damping);
     snprintf(basis->origin.engine, sizeof basis->origin.engine, "%s",
              gramians->engine);
-    remark(request, gramians, balanced, what, basis);
+    add_remark(request, gramians, balanced, what, basis);
     return RITZ_OK;
 }
 
@@ -216,8 +217,8 @@ ritz_status ritz_balanced_states(const ritz_request *request,
             ritz_gramians_balance(gramians, -1, request->tolerance, &all));
         used = &all;
     }
-    RITZ_CHECK(beside(&gramians->T, &used->T, &basis.T));
-    RITZ_CHECK(beside(&gramians->W, &used->W, &basis.W));
+    RITZ_CHECK(join_columns(&gramians->T, &used->T, &basis.T));
+    RITZ_CHECK(join_columns(&gramians->W, &used->W, &basis.W));
     RITZ_CHECK(ritz_columns_new(basis.T.ncol, &basis.columns));
     name_columns(request, gramians, kept.kept, &basis.columns);
     RITZ_CHECK(ritz_balanced_note(request, gramians, &kept, bounded, "states",

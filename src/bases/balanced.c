@@ -1,20 +1,20 @@
 /*
- * Balanced truncation: the states that inputs reach best and outputs see best,
- * both being measured by the same values. With factors of the Gramians,
+ * Balanced truncation: states are made equally controllable and observable, and
+ * those with the largest Hankel values are kept. With factors of the Gramians,
  *
  *     Z_o'E Z_c = U S V',   T = Z_c V_1 S_1^-1/2,   W = Z_o U_1 S_1^-1/2,
  *
  * W'E T = I, and of the reduced model W'A T both Gramians are S_1. It is stable
  * and its error is at most twice the sum of the values in S_2 [Moore1981]. The
- * states of S_2 can be kept as columns that answer statically: then the answer
- * at 0 Hz is exact, and the bound the same [LiuAnderson1989].
+ * states of S_2 can be kept as columns that respond statically: then the
+ * response at 0 Hz is exact, and the bound is the same [LiuAnderson1989].
  *
- * Rigid modes, and unstable poles of a state space, have no Gramian: they stand
- * apart and are always kept.
+ * Rigid modes, and unstable poles of a state space, have no Gramian: they are
+ * decoupled and always kept.
  */
 #include "bases/balance_asked.h"
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_balanced(const ritz_request *request, ritz_basis *out)
 {
     RITZ_OWN(ritz_gramians) gramians = {0};
 
@@ -32,5 +32,5 @@ const ritz_method ritz_method_balanced = {
     .fails = "light damping: no value is small; interfaces of other bodies",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
             RITZ_USES_AMONG | RITZ_USES_REMAINDER | RITZ_USES_SPACE,
-    .make = make,
+    .make = make_balanced,
 };

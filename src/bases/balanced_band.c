@@ -4,15 +4,16 @@
  *
  *     W_c = 1/2pi int (i w - A)^-1 B B' (i w - A)^-* dw,
  *
- * tell which states matter there. They solve Lyapunov equations whose right
- * side is not definite, so that nothing holds the poles of the reduced model
- * left of the axis, and no sum of the values bounds its error: ritz-reduce
- * probes it. In modal coordinates they have closed forms.
+ * show which states matter in the band. They solve Lyapunov equations whose
+ * right side is indefinite, so that the reduced model may be unstable, and no
+ * sum of the values bounds its error: ritz-reduce checks its stability. In
+ * modal coordinates they have closed forms.
  */
 #include "base/alloc.h"
 #include "bases/balance_asked.h"
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_balanced_band(const ritz_request *request,
+                                      ritz_basis *out)
 {
     RITZ_OWN(ritz_gramians) gramians = {0};
 
@@ -34,5 +35,5 @@ const ritz_method ritz_method_balanced_band = {
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
             RITZ_USES_AMONG | RITZ_USES_BAND,
     .only_named = RITZ_NAMED_FOR_COMPONENTS,
-    .make = make,
+    .make = make_balanced_band,
 };

@@ -1,7 +1,7 @@
 /*
- * Balanced truncation of M u'' + D u' + K u = B f, y = C u + Cv u', that gives a
- * model of second order [ReisStykel2008]. The factors of both Gramians of
- * x = [u; u'] are cut in halves,
+ * Balanced truncation of M u'' + D u' + K u = B f, y = C u + Cv u', that gives
+ * a model of second order [ReisStykel2008]. The factors of both Gramians of x =
+ * [u; u'] are cut in halves,
  *
  *     Z_c = [Z_p; Z_v],   Z_o = [.; L],   U S V' = svd(L'M Z),
  *     T = Z V_1 S_1^-1/2,   W = L U_1 S_1^-1/2,   W'M T = I,
@@ -12,11 +12,11 @@
  *
  *     (s^2 M' + s D' + K') w = C' + s Cv'
  *
- * so L L' is the position Gramian of the dual model that C' drives, and its
- * velocity Gramian where Cv' does. Hence of a symmetric model whose outputs
- * are, in number and place, the displacements (Z_p) or velocities (Z_v) of its
- * inputs, W = T, and so is what is made of it: symmetric, definite and stable.
- * Otherwise nothing says so; with one side asked for, T serves on the left too,
+ * so L L' is the position Gramian of the dual model with input matrix C', and
+ * its velocity Gramian with Cv'. Hence W = T for a symmetric model whose
+ * outputs are the displacements (Z_p) or velocities (Z_v) at its inputs, and
+ * the reduced model is symmetric, definite and stable. Otherwise that is not
+ * guaranteed; if one-sided projection is requested, T serves on the left too,
  * which keeps symmetry but not the balance.
  *
  * The upper half of Z_o is the dual velocity but for D': balancing it against
@@ -36,7 +36,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Balancing that leaves a model of second order what it is. */
+/* Balancing that keeps the second-order form of a model. */
 
 /* Which half of the controllability Gramian of x = [u; u'] is balanced. */
 typedef enum ritz_half {
@@ -60,7 +60,7 @@ static void release(second *s)
     ritz_dense_free(&s->MPhi);
 }
 
-static ritz_status rows(const ritz_dense *Z, bool lower, ritz_dense *out)
+static ritz_status copy_half(const ritz_dense *Z, bool lower, ritz_dense *out)
 {
     int64_t n = Z->nrow / 2;
 
@@ -71,7 +71,7 @@ static ritz_status rows(const ritz_dense *Z, bool lower, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* What stands apart must be rigid motion, and nothing else. */
+/* The part without Gramian must be rigid motion. */
 static ritz_status refuse_unstable(const second *s)
 {
     RITZ_OWN(ritz_dense) part = {0};
@@ -79,7 +79,7 @@ static ritz_status refuse_unstable(const second *s)
     for (int lower = 0; lower < 2; lower++) {
         double size = 0.0;
 
-        RITZ_CHECK(rows(&s->states.T, lower, &part));
+        RITZ_CHECK(copy_half(&s->states.T, lower, &part));
         size = ritz_dense_max(&part);
         if (s->Phi.ncol > 0)
             RITZ_CHECK(ritz_dense_take_out(&s->Phi, &s->MPhi, &part));
@@ -106,14 +106,14 @@ static ritz_status find_rigid(const ritz_component *component, second *s)
     return refuse_unstable(s);
 }
 
-/* Halves, M-orthogonal to rigid motion. */
-static ritz_status cut(const ritz_component *component, ritz_half half,
-                       second *s)
+/* The halves of the factors, M-orthogonal to rigid motion. */
+static ritz_status cut_halves(const ritz_component *component, ritz_half half,
+                              second *s)
 {
     ritz_gramians *to = &s->half;
 
-    RITZ_CHECK(rows(&s->states.Zc, half == RITZ_HALF_VELOCITY, &to->Zc));
-    RITZ_CHECK(rows(&s->states.Zo, true, &to->Zo));
+    RITZ_CHECK(copy_half(&s->states.Zc, half == RITZ_HALF_VELOCITY, &to->Zc));
+    RITZ_CHECK(copy_half(&s->states.Zo, true, &to->Zo));
     for (int twice = 0; twice < 2 && s->Phi.ncol > 0; twice++) {
         RITZ_CHECK(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zc));
         RITZ_CHECK(ritz_dense_take_out(&s->Phi, &s->MPhi, &to->Zo));
@@ -121,8 +121,9 @@ static ritz_status cut(const ritz_component *component, ritz_half half,
     return ritz_sparse_mul(&component->M, &to->Zc, &to->EZc);
 }
 
-/* |X'Y|^2 of Frobenius. */
-static ritz_status square(const ritz_dense *X, const ritz_dense *Y, double *out)
+/* |X'Y|^2 in the Frobenius norm. */
+static ritz_status squared_norm(const ritz_dense *X, const ritz_dense *Y,
+                                double *out)
 {
     RITZ_OWN(ritz_dense) XY = {0};
 
@@ -133,9 +134,9 @@ static ritz_status square(const ritz_dense *X, const ritz_dense *Y, double *out)
     return RITZ_OK;
 }
 
-/* C over limits, transposed. */
-static ritz_status scaled(const ritz_io *io, const ritz_dense *C,
-                          ritz_dense *out)
+/* C scaled by the limits, transposed. */
+static ritz_status scale_outputs(const ritz_io *io, const ritz_dense *C,
+                                 ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
     for (int64_t i = 0; i < C->nrow; i++)
@@ -167,22 +168,26 @@ static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
         ritz_dense_max(&io->Ca) > 0.0 ||
         (component->D.colptr && ritz_sparse_asymmetry(&component->D) > 0.0))
         return RITZ_OK;
-    RITZ_CHECK(scaled(io, seen, &C));
-    RITZ_CHECK(square(&io->B, &io->B, &BB));
-    RITZ_CHECK(square(&C, &io->B, &CB));
-    RITZ_CHECK(square(&C, &C, &CC));
+    RITZ_CHECK(scale_outputs(io, seen, &C));
+    RITZ_CHECK(squared_norm(&io->B, &io->B, &BB));
+    RITZ_CHECK(squared_norm(&C, &io->B, &CB));
+    RITZ_CHECK(squared_norm(&C, &C, &CC));
     *out = CB > 0.0 && BB * CC - CB * CB <= RITZ_SQUARE_ROUNDING * BB * CC;
     return RITZ_OK;
 }
 
 /* [Phi X] */
-static ritz_status beside(const second *s, const ritz_dense *X, ritz_dense *out)
+static ritz_status join_rigid(const second *s, const ritz_dense *X,
+                              ritz_dense *out)
 {
     return s->Phi.ncol == 0 ? ritz_dense_copy(X, out)
                             : ritz_dense_beside(&s->Phi, X, out);
 }
 
-/* T made M-orthonormal, column by column, so that the first stay the best. */
+/*
+ * Make T M-orthonormal column by column, so that the first columns remain the
+ * most important.
+ */
 static ritz_status orthonormalise(const ritz_component *component,
                                   double tolerance, ritz_dense *T)
 {
@@ -199,15 +204,15 @@ static ritz_status orthonormalise(const ritz_component *component,
     return ritz_dense_columns(&set.V, 0, set.count, T);
 }
 
-static ritz_status vectors(const ritz_request *request, const second *s,
-                           bool one_sided, ritz_basis *basis)
+static ritz_status find_vectors(const ritz_request *request, const second *s,
+                                bool one_sided, ritz_basis *basis)
 {
-    RITZ_CHECK(beside(s, &s->balanced.T, &basis->T));
+    RITZ_CHECK(join_rigid(s, &s->balanced.T, &basis->T));
     if (one_sided)
         RITZ_CHECK(
             orthonormalise(request->component, request->tolerance, &basis->T));
     else
-        RITZ_CHECK(beside(s, &s->balanced.W, &basis->W));
+        RITZ_CHECK(join_rigid(s, &s->balanced.W, &basis->W));
     RITZ_CHECK(ritz_columns_new(basis->T.ncol, &basis->columns));
     for (int64_t j = 0; j < basis->T.ncol; j++) {
         bool rigid = j < s->Phi.ncol;
@@ -221,13 +226,13 @@ static ritz_status vectors(const ritz_request *request, const second *s,
 }
 
 /*
- * T = [Phi, T_b] and W = [Phi, W_b], Phi the rigid modes: see balanced_second.c.
+ * T = [Phi, T_b] and W = [Phi, W_b], Phi the rigid modes: as above.
  *
  * @return RITZ_ERR_ARGUMENT if a pole that is no rigid motion is not left of
  *         the axis, or as ritz_gramians_asked
  */
-static ritz_status balanced_second(const ritz_request *request, ritz_half half,
-                                   ritz_basis *out)
+static ritz_status balance_second_order(const ritz_request *request,
+                                        ritz_half half, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
@@ -237,11 +242,11 @@ static ritz_status balanced_second(const ritz_request *request, ritz_half half,
 
     RITZ_TRY(ritz_gramians_asked(request, &s.states));
     RITZ_TRY(find_rigid(component, &s));
-    RITZ_TRY(cut(component, half, &s));
+    RITZ_TRY(cut_halves(component, half, &s));
     RITZ_TRY(ritz_balance_asked(request, &s.half, &s.balanced));
     RITZ_TRY(is_self_dual(component, half, &self_dual));
-    RITZ_TRY(
-        vectors(request, &s, self_dual || request->choice.one_sided, &basis));
+    RITZ_TRY(find_vectors(request, &s, self_dual || request->choice.one_sided,
+                          &basis));
     if (self_dual)
         ritz_remark_append(&basis, "left and right vectors agree");
     RITZ_TRY(ritz_balanced_note(request, &s.states, &s.balanced, false,
@@ -254,13 +259,13 @@ done:
 }
 
 /*
- * Balancing of positions: displacements that inputs reach, against those that
- * outputs see in the dual model. See balanced_second.c for the equations.
+ * Balancing of positions: displacements that the inputs control, against those
+ * that the outputs of the dual model observe.
  */
 
 static ritz_status make_position(const ritz_request *request, ritz_basis *out)
 {
-    return balanced_second(request, RITZ_HALF_POSITION, out);
+    return balance_second_order(request, RITZ_HALF_POSITION, out);
 }
 
 const ritz_method ritz_method_balanced_position = {
@@ -278,12 +283,12 @@ const ritz_method ritz_method_balanced_position = {
 
 /*
  * Balancing of velocities, the half of the states in which a mode's values are
- * nearly its Hankel values. See balanced_second.c for the equations.
+ * nearly its Hankel values.
  */
 
 static ritz_status make_velocity(const ritz_request *request, ritz_basis *out)
 {
-    return balanced_second(request, RITZ_HALF_VELOCITY, out);
+    return balance_second_order(request, RITZ_HALF_VELOCITY, out);
 }
 
 const ritz_method ritz_method_balanced_velocity = {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* How many of the modes are kept: a cluster at the end is not cut. */
+/* The number of kept modes: a cluster at the end is kept whole. */
 static int64_t count_kept(const ritz_pairs *modes, int64_t wanted)
 {
     int64_t all = modes->Phi.ncol;
@@ -63,24 +63,24 @@ done:
 /*
  * Craig-Bampton reduction: constraint modes and fixed-interface normal modes.
  *
- * Split the dofs into boundary b, which other bodies push on, and interior i:
+ * Split the dofs into boundary b, on which other bodies act, and interior i:
  *
  *     | u_b |   | I    0   | | u_b |      K_ii Psi = -K_ib
  *     | u_i | = | Psi  Phi | | q   |      K_ii Phi =  M_ii Phi Lambda
  *
- * Psi is the static answer to unit boundary motion, Phi the lowest modes with
+ * Psi is the static response to unit boundary motion, Phi the lowest modes with
  * the boundary clamped, scaled to Phi' M_ii Phi = I. T' K T is then block
- * diagonal, and no eigenvalue of (T' K T, T' M T) lies below the one it stands
- * for in (K, M): tests/unit/bases/test_craig_bampton.c holds the code to both.
+ * diagonal, and no eigenvalue of (T' K T, T' M T) lies below its
+ * counterpart in (K, M): tests/unit/bases/test_craig_bampton.c tests both.
  *
  * A boundary of many dofs may move in a few characteristic constraint modes
- * instead, u_b = Phi_c q_c [CastanierTanPierre2001]: interface.h.
+ * instead, u_b = Phi_c q_c [CastanierTanPierre2001].
  *
  * [CraigBampton1968] R. R. Craig and M. C. C. Bampton, Coupling of
  * substructures for dynamic analyses, AIAA Journal 6 (1968) 1313-1319.
  */
 
-/* The number asked for, or all up to the frequency asked for. */
+/* The requested number of modes, or all up to the requested frequency. */
 static ritz_status find_normal_modes(const ritz_request *request,
                                      const ritz_partition *s, ritz_pairs *out)
 {
@@ -116,7 +116,7 @@ static ritz_status find_boundary(const ritz_partition *s, ritz_basis *out)
     return RITZ_OK;
 }
 
-/* Instead of them [I; Psi] Phi_c, Phi_c the characteristic ones. */
+/* [I; Psi] Phi_c instead, with the characteristic constraint modes Phi_c. */
 static ritz_status reduce_boundary(const ritz_request *request,
                                    ritz_basis *boundary)
 {
@@ -141,8 +141,9 @@ static ritz_status reduce_boundary(const ritz_request *request,
 }
 
 /* The boundary's columns first, then [0; Phi]. */
-static ritz_status join(const ritz_partition *s, const ritz_basis *boundary,
-                        const ritz_pairs *modes, ritz_basis *out)
+static ritz_status join_columns(const ritz_partition *s,
+                                const ritz_basis *boundary,
+                                const ritz_pairs *modes, ritz_basis *out)
 {
     const ritz_columns *first = &boundary->columns;
     const ritz_dense *T_b = &boundary->T;
@@ -169,7 +170,8 @@ static ritz_status join(const ritz_partition *s, const ritz_basis *boundary,
     return RITZ_OK;
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_craig_bampton(const ritz_request *request,
+                                      ritz_basis *out)
 {
     RITZ_OWN(ritz_partition) s = {0};
     RITZ_OWN(ritz_basis) boundary = {0};
@@ -181,7 +183,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
         RITZ_CHECK(reduce_boundary(request, &boundary));
     if (request->modes != 0)
         RITZ_CHECK(find_normal_modes(request, &s, &modes));
-    return join(&s, &boundary, &modes, out);
+    return join_columns(&s, &boundary, &modes, out);
 }
 
 const ritz_method ritz_method_craig_bampton = {
@@ -193,5 +195,5 @@ const ritz_method ritz_method_craig_bampton = {
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "an interior that moves with the interface held; loads within it",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
-    .make = make,
+    .make = make_craig_bampton,
 };

@@ -1,11 +1,11 @@
 /*
- * In coordinates that make T'MT = I and T'KT = Lambda, with what damping says
- * of each mode on the diagonal of W,
+ * In coordinates that make T'MT = I and T'KT = Lambda, with the modes' damping
+ * ratios on the diagonal of W,
  *
  *     (p^2 I + p W + Lambda + i K4) z = 0,    x = T X z.
  *
- * Without matrices each mode is by itself; with them poles are eigenvalues of
- * [0, I; -Lambda - i K4, -W].
+ * Without damping matrices the modes are decoupled; with them poles are
+ * eigenvalues of [0, I; -Lambda - i K4, -W].
  */
 #include "bases/dominant.h"
 
@@ -55,8 +55,8 @@ static void free_model(dominant_model *s)
 }
 
 /* Phi' (T'AT) Phi; zeros if there is no A. */
-static ritz_status in_modes(const ritz_sparse *A, const ritz_dense *T,
-                            const ritz_dense *Phi, ritz_dense *out)
+static ritz_status project_on_modes(const ritz_sparse *A, const ritz_dense *T,
+                                    const ritz_dense *Phi, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) small = {0};
 
@@ -81,8 +81,8 @@ static double largest_terms(const ritz_dense *F, const ritz_dense *X)
     return largest * ritz_dense_max(X);
 }
 
-/* What loads do to each mode. */
-static ritz_status see_loads(const ritz_dense *X, dominant_model *s)
+/* The participation of loads in each mode. */
+static ritz_status project_loads(const ritz_dense *X, dominant_model *s)
 {
     for (int64_t g = 0; g < s->R->num_groups; g++)
         for (int k = 0; k < 3; k++) {
@@ -96,8 +96,10 @@ static ritz_status see_loads(const ritz_dense *X, dominant_model *s)
     return RITZ_OK;
 }
 
-/* The modes here are not those of the component: of ratios that are listed mode
-   by mode the last stands for all. */
+/*
+ * These modes are not those of the component: of ratios that are listed mode by
+ * mode the last one is used for all.
+ */
 enum { BEYOND_LISTED = RITZ_MOST_RATIOS };
 
 static ritz_status make_model(const ritz_rational *R,
@@ -111,19 +113,20 @@ static ritz_status make_model(const ritz_rational *R,
     RITZ_CHECK(ritz_sparse_condense(&component->K, T, &K));
     RITZ_CHECK(ritz_sparse_condense(&component->M, T, &M));
     RITZ_CHECK(ritz_eigen_dense(&K, &M, &s->modes));
-    RITZ_CHECK(in_modes(&component->D, T, &s->modes.Phi, &s->W));
-    RITZ_CHECK(in_modes(&component->K4, T, &s->modes.Phi, &s->K4));
+    RITZ_CHECK(project_on_modes(&component->D, T, &s->modes.Phi, &s->W));
+    RITZ_CHECK(project_on_modes(&component->K4, T, &s->modes.Phi, &s->K4));
     for (int64_t k = 0; k < s->W.ncol; k++)
         ritz_dense_col(&s->W, k)[k] +=
             ritz_modal_rate(damping, BEYOND_LISTED, s->modes.lambda[k]);
     RITZ_CHECK(ritz_dense_mul(T, &s->modes.Phi, &TX));
-    RITZ_CHECK(see_loads(&TX, s));
+    RITZ_CHECK(project_loads(&TX, s));
     RITZ_CHECK_NEW(s->pole, 2 * s->W.ncol);
     RITZ_CHECK_NEW(s->vectors, 2 * s->W.ncol * s->W.ncol);
     return RITZ_OK;
 }
 
-static candidate *append(dominant_model *s, double _Complex point, double decay)
+static candidate *append_pole(dominant_model *s, double _Complex point,
+                              double decay)
 {
     candidate *pole = &s->pole[s->count];
 
@@ -135,7 +138,7 @@ static candidate *append(dominant_model *s, double _Complex point, double decay)
 }
 
 /* s^2 = -w^2 (1 - zeta) of each mode. */
-static void solve_apart(dominant_model *s)
+static void solve_decoupled(dominant_model *s)
 {
     for (int64_t k = 0; k < s->W.ncol; k++) {
         double lambda = s->modes.lambda[k];
@@ -148,7 +151,7 @@ static void solve_apart(dominant_model *s)
                     RITZ_LEAST_DECAY);
         square =
             copysign(fmax(fabs(zeta - 1.0), RITZ_LEAST_SQUARE), zeta - 1.0);
-        append(s, csqrt(lambda * square), zeta * sqrt(lambda))->z[k] = 1.0;
+        append_pole(s, csqrt(lambda * square), zeta * sqrt(lambda))->z[k] = 1.0;
     }
 }
 
@@ -172,8 +175,9 @@ static void fill_states(const dominant_model *s, double _Complex *A)
     }
 }
 
-/* A pole in the upper half plane, real ones among them; z is of length 2m. */
-static void keep(double _Complex p, const double _Complex *z, dominant_model *s)
+/* Keep a pole of the upper half plane or the real axis; z has length 2m. */
+static void keep_pole(double _Complex p, const double _Complex *z,
+                      dominant_model *s)
 {
     double decay = fmax(fabs(creal(p)), RITZ_LEAST_DECAY * cabs(p));
     double omega = cimag(p);
@@ -184,14 +188,14 @@ static void keep(double _Complex p, const double _Complex *z, dominant_model *s)
         omega = 0.0;
     if (omega < 0.0 || cabs(p) == 0.0)
         return;
-    pole = append(s, decay + (double _Complex)_Complex_I * omega, decay);
+    pole = append_pole(s, decay + (double _Complex)_Complex_I * omega, decay);
     for (int64_t i = 0; i < s->W.ncol; i++)
         length = hypot(length, cabs(z[i]));
     for (int64_t i = 0; i < s->W.ncol; i++)
         pole->z[i] = z[i] / length;
 }
 
-static ritz_status solve_together(dominant_model *s)
+static ritz_status solve_coupled(dominant_model *s)
 {
     ritz_status status = RITZ_OK;
     int64_t m = s->W.ncol;
@@ -207,7 +211,7 @@ static ritz_status solve_together(dominant_model *s)
                  RITZ_ERR_CONVERGENCE,
                  "poles of the reduced component do not converge");
     for (int64_t k = 0; k < 2 * m; k++)
-        keep(p[k], V + k * 2 * m, s);
+        keep_pole(p[k], V + k * 2 * m, s);
 done:
     free(A);
     free(p);
@@ -215,9 +219,9 @@ done:
     return status;
 }
 
-/* b = conj(F(-conj(s))'x) of one kind of loads; returns |b|. */
-static double direct(const dominant_model *s, const candidate *pole, int64_t g,
-                     double _Complex *b)
+/* b = conj(F(-conj(s))'x) for one kind of load; returns |b|. */
+static double find_direction(const dominant_model *s, const candidate *pole,
+                             int64_t g, double _Complex *b)
 {
     double _Complex power = 1.0;
     double sum = 0.0;
@@ -236,7 +240,7 @@ static double direct(const dominant_model *s, const candidate *pole, int64_t g,
 }
 
 /* |x'(2 p M + D) x| in modal coordinates, p = -conj(s). */
-static double scale_of(const dominant_model *s, const candidate *pole)
+static double pole_scale(const dominant_model *s, const candidate *pole)
 {
     double _Complex sum = 0.0;
 
@@ -250,16 +254,18 @@ static double scale_of(const dominant_model *s, const candidate *pole)
     return cabs(sum);
 }
 
-/* |C x| |x'B| of a pole; where there is only one of them, its square. */
-static double gain(const dominant_model *s, const candidate *pole,
-                   double _Complex *b)
+/*
+ * |C x| |x'B| of a pole; with only one kind of load, the square of its factor.
+ */
+static double pole_gain(const dominant_model *s, const candidate *pole,
+                        double _Complex *b)
 {
     double in = 0.0;
     double out = 0.0;
     int64_t outputs = 0;
 
     for (int64_t g = 0; g < s->R->num_groups; g++) {
-        double share = direct(s, pole, g, b);
+        double share = find_direction(s, pole, g, b);
 
         if (!(share > RITZ_LEAST_PARTICIPATION * s->most[g]))
             share = 0.0;
@@ -277,7 +283,7 @@ static double gain(const dominant_model *s, const candidate *pole,
     return in * out;
 }
 
-/* The most that a kind of loads does to a pole. */
+/* The largest participation of one kind of load in any pole. */
 static double find_most(const dominant_model *s, int64_t g, double _Complex *b)
 {
     double most = 0.0;
@@ -286,14 +292,14 @@ static double find_most(const dominant_model *s, int64_t g, double _Complex *b)
     for (int64_t k = 0; k < s->count; k++) {
         double size = cabs(s->pole[k].s);
 
-        most = fmax(most, direct(s, &s->pole[k], g, b));
+        most = fmax(most, find_direction(s, &s->pole[k], g, b));
         terms = fmax(terms, s->terms[g][0] + size * (s->terms[g][1] +
                                                      size * s->terms[g][2]));
     }
     return most > RITZ_LEAST_PARTICIPATION * terms ? most : HUGE_VAL;
 }
 
-static ritz_status weigh(dominant_model *s)
+static ritz_status weigh_poles(dominant_model *s)
 {
     ritz_status status = RITZ_OK;
     double _Complex *b = NULL;
@@ -305,7 +311,8 @@ static ritz_status weigh(dominant_model *s)
     for (int64_t k = 0; k < s->count; k++) {
         candidate *pole = &s->pole[k];
 
-        pole->value = gain(s, pole, b) / scale_of(s, pole) / sqrt(pole->decay);
+        pole->value =
+            pole_gain(s, pole, b) / pole_scale(s, pole) / sqrt(pole->decay);
         largest = fmax(largest, pole->value);
     }
     for (int64_t k = 0; k < s->count; k++)
@@ -315,8 +322,10 @@ done:
     return status;
 }
 
-/* The most dominant first; of equals the slower, then the one less damped. */
-static int compare(const void *left, const void *right)
+/*
+ * The most dominant precedes; of equal ones the slower, then the less damped.
+ */
+static int compare_dominance(const void *left, const void *right)
 {
     const candidate *a = left;
     const candidate *b = right;
@@ -328,12 +337,15 @@ static int compare(const void *left, const void *right)
     return (a->decay > b->decay) - (a->decay < b->decay);
 }
 
-/* The probe of a pole and a group: what loads do to it, over its length. */
-static void aim(const dominant_model *s, const candidate *pole, int64_t g,
-                ritz_interpolation_point *probe)
+/*
+ * The probe of a pole and a group: the direction of the loads' participation,
+ * normalised.
+ */
+static void set_probe(const dominant_model *s, const candidate *pole, int64_t g,
+                      ritz_interpolation_point *probe)
 {
     double _Complex *b = probe->b + s->R->group[g].first;
-    double share = direct(s, pole, g, b);
+    double share = find_direction(s, pole, g, b);
     bool counts = share > RITZ_LEAST_PARTICIPATION * s->most[g];
 
     probe->s = pole->s;
@@ -342,7 +354,7 @@ static void aim(const dominant_model *s, const candidate *pole, int64_t g,
         b[j] = counts ? b[j] / share : 0.0;
 }
 
-static ritz_status list(const dominant_model *s, ritz_probes *out)
+static ritz_status list_probes(const dominant_model *s, ritz_probes *out)
 {
     ritz_probes probes = {0};
     int64_t poles = 0;
@@ -357,7 +369,7 @@ static ritz_status list(const dominant_model *s, ritz_probes *out)
     for (int64_t k = 0; k < poles; k++)
         for (int64_t g = 0; g < s->R->num_groups; g++)
             if (s->R->group[g].answered)
-                aim(s, &s->pole[k], g, &probes.item[at++]);
+                set_probe(s, &s->pole[k], g, &probes.item[at++]);
     *out = probes;
     return RITZ_OK;
 }
@@ -371,13 +383,13 @@ ritz_status ritz_dominant_probes(const ritz_rational *R,
 
     RITZ_TRY(make_model(R, damping, T, &s));
     if (ritz_rational_damped(R))
-        RITZ_TRY(solve_together(&s));
+        RITZ_TRY(solve_coupled(&s));
     else
-        solve_apart(&s);
-    RITZ_TRY(weigh(&s));
+        solve_decoupled(&s);
+    RITZ_TRY(weigh_poles(&s));
     if (s.count > 0)
-        qsort(s.pole, (size_t)s.count, sizeof *s.pole, compare);
-    RITZ_TRY(list(&s, out));
+        qsort(s.pole, (size_t)s.count, sizeof *s.pole, compare_dominance);
+    RITZ_TRY(list_probes(&s, out));
 done:
     free_model(&s);
     return status;

@@ -10,15 +10,15 @@
  *
  *     (C x) (x'B) / (s - p),     of H2 norm |C x| |x'B| / sqrt(2 |Re p|),
  *
- * by which poles are ordered, the largest first; those that no load drives, or
- * no output reads, are left out. B are all loads but outputs; where there are
- * only outputs, or none, the one stands for the other. Each pole gives a probe
- * for each group that is answered, in direction conj(F(-conj(s))'x).
+ * by which poles are ordered, the largest first; uncontrollable and
+ * unobservable ones are left out. B are all loads but outputs; if there are
+ * only outputs, or none, B = C' or C = B'. Each pole gives a probe for each
+ * group to be interpolated, in direction conj(F(-conj(s))'x).
  *
  * If the component has D or K4, the point of a pole is s = -conj(p), at least
  * 1e-4 |p| off the axis. If not, s^2 = -w^2 (1 - zeta), w^2 an eigenvalue and
  * zeta its ratio: half of the half-power distance below the resonance of a
- * component without damping, whose answers there are real.
+ * component without damping, whose response there is real.
  *
  * @param[in] T  n x r, independent columns without rigid motion
  * @return RITZ_ERR_CONVERGENCE

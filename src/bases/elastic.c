@@ -1,16 +1,17 @@
 /*
- * A free body answers forces F by rigid motion and by deformation. With the
+ * A free body responds to forces F by rigid motion and by deformation. With the
  * rigid modes Phi, Phi' M Phi = I, and P = I - M Phi Phi', the deformation is
  *
  *     X = P' S P F,    S = | K_ww^-1  0 |  w: all dofs but the support r
  *                          |    0     0 |  r: as many dofs as rigid modes
  *
- * and depends on no choice of r [LeeTsuha1992, eq. 6]: P F is balanced, so the
- * support carries nothing, and P' takes out the rigid motion that S chose. One
- * definite factor and one solve a column. Away from 0 Hz, A = K - sigma M keeps
- * rigid and elastic motion apart by itself; P only clears rounding.
+ * and does not depend on r [LeeTsuha1992, eq. 6]: P F is in equilibrium, so
+ * that the support forces are zero, and P' removes the rigid motion that S
+ * implies. This costs one definite factorization and one solution a column.
+ * Away from 0 Hz, rigid and elastic motion are decoupled in A = K - sigma M; P
+ * only removes rounding.
  *
- * r is chosen so that Phi at r is far from singular, by the share that each dof
+ * r is chosen so that Phi at r is far from singular, by the part that each dof
  * has in the mass of rigid motion: rows of diag(M)^1/2 Phi, the largest first.
  */
 #include "bases/elastic.h"
@@ -102,8 +103,8 @@ static ritz_status find_rigid(ritz_elastic *E)
     return ritz_sparse_mul(E->M, &E->Phi, &E->MPhi);
 }
 
-/* Why K gave no factor, rigid modes apart. */
-static ritz_status refuse(const ritz_elastic *E)
+/* Why K has no factorization, apart from its rigid modes. */
+static ritz_status refuse_stiffness(const ritz_elastic *E)
 {
     ritz_status status = RITZ_OK;
     const ritz_span one = {.modes = 1};
@@ -120,7 +121,7 @@ done:
     return status;
 }
 
-static ritz_status factor(ritz_elastic *E)
+static ritz_status factor_stiffness(ritz_elastic *E)
 {
     ritz_status status = RITZ_OK;
     const ritz_dofs *w = &E->rest;
@@ -132,7 +133,7 @@ static ritz_status factor(ritz_elastic *E)
         ritz_sparse_extract(E->K, w->count, w->at, w->count, w->at, &K_ww));
     status = ritz_factor_spd(&K_ww, &E->L);
     if (status == RITZ_ERR_SINGULAR)
-        status = refuse(E);
+        status = refuse_stiffness(E);
 done:
     ritz_sparse_free(&K_ww);
     return status;
@@ -145,7 +146,7 @@ ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
 
     RITZ_CHECK(find_rigid(&E));
     RITZ_CHECK(choose_support(&E));
-    RITZ_CHECK(factor(&E));
+    RITZ_CHECK(factor_stiffness(&E));
     RITZ_MOVE(*out, E);
     return RITZ_OK;
 }

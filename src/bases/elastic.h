@@ -1,11 +1,11 @@
-/* What a body, free or held, answers to forces apart from its rigid motion. */
+/* The elastic response of a body, free or held, to forces. */
 #ifndef RITZ_BASES_ELASTIC_H
 #define RITZ_BASES_ELASTIC_H
 
 #include <ritz/matrix.h>
 #include <ritz/model.h>
 
-/* Elastic answer to forces, by one factor at 0 Hz. */
+/* The elastic static response to forces, by one factorization. */
 typedef struct ritz_elastic {
     const ritz_sparse *K, *M; /* borrowed */
     ritz_dense Phi;           /* rigid modes, n x r, M-orthonormal */
@@ -16,7 +16,7 @@ typedef struct ritz_elastic {
 } ritz_elastic;
 
 /**
- * Find the rigid modes and factor what a support of them leaves.
+ * Find the rigid modes, choose a support and factor K at the other dofs.
  *
  * @return RITZ_ERR_SINGULAR if K has a negative eigenvalue, or K + M is
  *         singular; RITZ_ERR_CONVERGENCE
@@ -26,18 +26,20 @@ ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
                              ritz_elastic *out);
 
 /**
- * The same where K is known to be definite and factored: takes @p L, leaves
- * NULL.
+ * ritz_elastic_new where K is known to be definite and is factored: takes @p L
+ * and leaves NULL.
  */
 void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
                        ritz_factor **L, ritz_elastic *out);
 
-/** F := P F, P = I - M Phi Phi': the forces less what moves the body. */
+/**
+ * F := P F, P = I - M Phi Phi': the forces less those that cause rigid motion.
+ */
 ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F);
 
 /**
- * X := P' S P X, S the flexibility on any determinate support: the answer that
- * is M-orthogonal to rigid motion. Without rigid modes it is K^-1 X.
+ * X := P' S P X, S the flexibility on any determinate support: the response
+ * that is M-orthogonal to rigid motion. Without rigid modes it is K^-1 X.
  */
 ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X);
 

@@ -1,6 +1,6 @@
 /*
- * What the modes that are left out answer to forces F. With the kept modes Phi,
- * Psi solves
+ * The static response of the modes that are left out to forces F. With the kept
+ * modes Phi, Psi solves
  *
  *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
  *
@@ -9,8 +9,9 @@
  *     Psi <- A^-1 (G + s M Psi),
  *
  * which contracts by s / (lambda + s) for every mode lambda that was left out.
- * F' Psi = Psi' K Psi is the residual flexibility: columns that it shows to be
- * dependent, or nothing beside the flexibility of the kept modes, are sifted.
+ * F' Psi = Psi' K Psi is the residual flexibility: columns that are dependent
+ * by it, or negligible relative to the flexibility of the kept modes, are
+ * removed.
  */
 
 #include "bases/free_modes.h"
@@ -35,16 +36,16 @@ typedef struct residual_problem {
 } residual_problem;
 
 /* K + s M. */
-static ritz_status shift(const ritz_sparse *K, const ritz_sparse *M, double s,
-                         ritz_sparse *out)
+static ritz_status shift_stiffness(const ritz_sparse *K, const ritz_sparse *M,
+                                   double s, ritz_sparse *out)
 {
     return ritz_sparse_add(1.0, K, s, M, out);
 }
 
 /*
- * A shift below the first flexible mode contracts at once and is as definite
- * as can be. If that mode is not kept, it is found for this; if there is none,
- * the shift is of the scale of the matrices.
+ * A shift below the first flexible mode contracts fast and makes A well
+ * conditioned. If that mode is not kept, it is found for this; if there is
+ * none, the shift is of the scale of the matrices.
  */
 static ritz_status choose_shift(const ritz_component *component,
                                 const ritz_pairs *modes, double *out)
@@ -68,7 +69,7 @@ static ritz_status choose_shift(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* What the kept flexible modes answer to load j, at most. */
+/* An upper bound of the kept flexible modes' static response to load j. */
 static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
                              int64_t j)
 {
@@ -82,12 +83,14 @@ static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
 }
 
 /*
- * One sweep; *change is the largest change of a column relative to its size,
- * or to least[j] where it is smaller still: then it is rounding.
+ * One step of the iteration; *change is the largest change of a column relative
+ * to its size. A column smaller than least[j] is rounding, and its change is
+ * relative to least[j].
  */
-static ritz_status sweep(ritz_factor *A, const ritz_sparse *M, double s,
-                         const ritz_dense *G, const double *least,
-                         ritz_dense *Psi, double *change)
+static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
+                                    double s, const ritz_dense *G,
+                                    const double *least, ritz_dense *Psi,
+                                    double *change)
 {
     RITZ_OWN(ritz_dense) next = {0};
 
@@ -114,7 +117,7 @@ static ritz_status sweep(ritz_factor *A, const ritz_sparse *M, double s,
     return RITZ_OK;
 }
 
-/* The loads, less what the kept modes take up. */
+/* G: the loads less those that the kept modes carry. */
 static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
                              const ritz_dense *MPhi, ritz_dense *G)
 {
@@ -125,8 +128,8 @@ static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
 }
 
 /*
- * What A answers to each load where it acts, and the size below which its
- * column is rounding.
+ * The response of A to each load at the load itself, and the size below which
+ * its column is rounding.
  */
 static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
                                double *own, double *least)
@@ -144,7 +147,7 @@ static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
     return RITZ_OK;
 }
 
-/* Psi, and what A answers to each load where it acts. */
+/* Psi, and the response of A to each load at the load itself. */
 static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
                                  double *answer)
 {
@@ -161,14 +164,15 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
 
     RITZ_CHECK_NEW(least, p->F->ncol);
     RITZ_CHECK(choose_shift(component, modes, &s));
-    RITZ_CHECK(shift(&component->K, &component->M, s, &A));
+    RITZ_CHECK(shift_stiffness(&component->K, &component->M, s, &A));
     RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
     RITZ_CHECK(find_scales(p, L, answer, least));
     RITZ_CHECK(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
     RITZ_CHECK(find_load(p->F, &modes->Phi, &MPhi, &G));
     RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
-        RITZ_CHECK(sweep(L, &component->M, s, &G, least, Psi, &change));
+        RITZ_CHECK(
+            iterate_residual(L, &component->M, s, &G, least, Psi, &change));
         RITZ_CHECK(ritz_dense_take_out(&modes->Phi, &MPhi, Psi));
         if (k > 8 && change > 0.5 * best)
             break; /* rounding, not contraction, is what is left */
@@ -179,7 +183,7 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
     return RITZ_OK;
 }
 
-/* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes to load j. */
+/* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes for load j. */
 static double kept_flexibility(const residual_problem *p, int64_t j)
 {
     const ritz_pairs *modes = p->modes;
@@ -196,8 +200,9 @@ static double kept_flexibility(const residual_problem *p, int64_t j)
 /*
  * Independent columns by pivoted Cholesky of R = F' Psi scaled to a unit
  * diagonal: the square of what is new in a column must exceed the tolerance. Of
- * those that are equal to six digits the first is taken, lest the rounding of a
- * processor choose. keep[j] says whether column j stays; R is destroyed.
+ * pivots that are equal to six digits the first is taken, so that the choice
+ * does not depend on a processor's rounding. keep[j] says whether column j
+ * stays; R is destroyed.
  */
 static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 {
@@ -227,9 +232,10 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
     }
 }
 
-/* Which residual modes are more than rounding and independent. */
-static ritz_status sift(const residual_problem *p, const ritz_dense *Psi,
-                        const double *answer, bool *keep)
+/* Mark the residual modes that are independent and more than rounding. */
+static ritz_status choose_independent(const residual_problem *p,
+                                      const ritz_dense *Psi,
+                                      const double *answer, bool *keep)
 {
     double tolerance = p->request->tolerance;
     RITZ_OWN(ritz_dense) R = {0};
@@ -262,27 +268,28 @@ static ritz_status sift(const residual_problem *p, const ritz_dense *Psi,
  * @return RITZ_ERR_CONVERGENCE, RITZ_ERR_SINGULAR
  * @cost   one factor, 3 to 10 solves a column
  */
-static ritz_status residual_modes(const ritz_request *request,
-                                  const ritz_pairs *modes, const ritz_dense *F,
-                                  ritz_dense *Psi, bool *keep)
+static ritz_status find_residual_modes(const ritz_request *request,
+                                       const ritz_pairs *modes,
+                                       const ritz_dense *F, ritz_dense *Psi,
+                                       bool *keep)
 {
     const residual_problem p = {request, modes, F};
     RITZ_OWN_ARRAY double *answer = NULL;
 
     RITZ_CHECK_NEW(answer, F->ncol);
     RITZ_CHECK(find_residual(&p, Psi, answer));
-    return sift(&p, Psi, answer, keep);
+    return choose_independent(&p, Psi, answer, keep);
 }
 
 /*
- * What free-interface methods share: with the lowest modes of (K, M), rigid
- * ones first, and residual modes of loads F (residual.c),
+ * The basis of free-interface methods: with the lowest modes of (K, M), rigid
+ * ones first, and residual modes of loads F,
  *
  *     K Phi = M Phi Lambda,   Phi' M Phi = I,
  *     K Psi = (I - M Phi Phi') F,   Phi' M Psi = 0,   T = [Phi, Psi]
  *
- * so that T'KT and T'MT are block diagonal, and the flexible static answer to F
- * where F acts is exact.
+ * so that T'KT and T'MT are block diagonal, and the flexible static response to
+ * F at the loaded dofs is exact.
  */
 
 static ritz_status find_modes(const ritz_request *request, ritz_pairs *out)
@@ -313,8 +320,8 @@ ritz_status ritz_free_set_find(const ritz_request *request, int loads,
     if (ritz_loads_count(request, loads) > 0) {
         RITZ_CHECK(ritz_loads_collect(request, loads, &set.F, &set.dof));
         RITZ_CHECK_NEW(set.keep, set.F.ncol);
-        RITZ_CHECK(
-            residual_modes(request, &set.modes, &set.F, &set.Psi, set.keep));
+        RITZ_CHECK(find_residual_modes(request, &set.modes, &set.F, &set.Psi,
+                                       set.keep));
     }
     RITZ_MOVE(*out, set);
     return RITZ_OK;
@@ -329,8 +336,8 @@ int64_t ritz_free_set_kept(const ritz_free_set *set)
     return kept;
 }
 
-static void remark(const ritz_request *request, const ritz_free_set *set,
-                   ritz_column_kind kind, ritz_basis *basis)
+static void add_remark(const ritz_request *request, const ritz_free_set *set,
+                       ritz_column_kind kind, ritz_basis *basis)
 {
     char name[RITZ_LOADS_NAME_SIZE] = "";
     int64_t left_out = 0;
@@ -374,7 +381,7 @@ ritz_status ritz_free_set_join(const ritz_request *request,
                column);
     }
     memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
-    remark(request, set, kind, out);
+    add_remark(request, set, kind, out);
     return RITZ_OK;
 }
 

@@ -1,4 +1,4 @@
-/* Free-interface modes, and what the rest answers to some loads. */
+/* Free-interface modes, and residual modes for some loads. */
 #ifndef RITZ_BASES_FREE_MODES_H
 #define RITZ_BASES_FREE_MODES_H
 
@@ -22,17 +22,19 @@ typedef struct ritz_free_set {
 ritz_status ritz_free_set_find(const ritz_request *request, int loads,
                                ritz_free_set *out);
 
-/** T = [rigid, normal, Psi]: its last columns of a kind, those left out named
- * in the remark. */
+/**
+ * T = [rigid, normal, Psi]; the Psi columns have a kind, and the remark names
+ * those left out.
+ */
 ritz_status ritz_free_set_join(const ritz_request *request,
                                const ritz_free_set *set, ritz_column_kind kind,
                                ritz_basis *out);
 
-/** Both: the basis of modes and residual columns of a kind. */
+/** Both steps: the basis of modes and of residual columns of a kind. */
 ritz_status ritz_free_basis(const ritz_request *request, int loads,
                             ritz_column_kind kind, ritz_basis *out);
 
-/** Columns of Psi that stay. */
+/** The number of columns of Psi that are kept. */
 int64_t ritz_free_set_kept(const ritz_free_set *set);
 
 void ritz_free_set_free(ritz_free_set *set);

@@ -6,7 +6,7 @@
 
 enum { MOST = 5000 }; /* 200 MB of identity, and dense matrices after it */
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_full(const ritz_request *request, ritz_basis *out)
 {
     int64_t n = request->component->num_dofs;
 
@@ -31,5 +31,5 @@ const ritz_method ritz_method_full = {
     .cost = "none; everything that follows is dense",
     .holds = "everything",
     .fails = "components that are not small",
-    .make = make,
+    .make = make_full,
 };

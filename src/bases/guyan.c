@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_guyan(const ritz_request *request, ritz_basis *out)
 {
     ritz_request without_modes = *request;
 
@@ -30,5 +30,5 @@ const ritz_method ritz_method_guyan = {
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "modes of the interior, which are not there",
     .uses = RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
-    .make = make,
+    .make = make_guyan,
 };

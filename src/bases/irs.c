@@ -1,6 +1,7 @@
 /*
- * Improved reduced system: Guyan's transformation, and what the inertia of its
- * own motion moves statically besides. With attached (measured) dofs b,
+ * Improved reduced system: Guyan's transformation, corrected by the static
+ * response to the inertia forces of its own motion. With attached (measured)
+ * dofs b,
  *
  *     u_i = Psi u_b + K_ii^-1 (M_ib + M_ii Psi) (-u_b''),
  *     -u_b'' = M_R^-1 K_R u_b,    K_R = T_G'KT_G,  M_R = T_G'MT_G
@@ -46,8 +47,8 @@ static ritz_status refuse_mass(const ritz_partition *s, int64_t j)
 }
 
 /* Rows of a matrix in another order, scaled: B(k,:) = d[p[k]] A(p[k],:). */
-static void gather(const ritz_dense *A, const int *p, const double *d,
-                   ritz_dense *B)
+static void permute_rows(const ritz_dense *A, const int *p, const double *d,
+                         ritz_dense *B)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t k = 0; k < A->nrow; k++)
@@ -55,9 +56,9 @@ static void gather(const ritz_dense *A, const int *p, const double *d,
                 d[p[k] - 1] * ritz_dense_col(A, j)[p[k] - 1];
 }
 
-/* And back: A(p[k],:) = d[p[k]] B(k,:). */
-static void spread(const ritz_dense *B, const int *p, const double *d,
-                   ritz_dense *A)
+/* The inverse: A(p[k],:) = d[p[k]] B(k,:). */
+static void restore_rows(const ritz_dense *B, const int *p, const double *d,
+                         ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t k = 0; k < A->nrow; k++)
@@ -67,7 +68,7 @@ static void spread(const ritz_dense *B, const int *p, const double *d,
 
 /*
  * X := M_R^-1 K_R by Cholesky with pivots, in coordinates that give M_R a unit
- * diagonal: what a pivot is then small against is 1.
+ * diagonal, so that pivots are small relative to 1.
  */
 static ritz_status solve_mass(const ritz_partition *s, double tolerance,
                               ritz_dense *M_R, ritz_dense *X)
@@ -99,11 +100,11 @@ static ritz_status solve_mass(const ritz_partition *s, double tolerance,
         status = refuse_mass(s, pivot[rank] - 1);
         goto done;
     }
-    gather(X, pivot, d, &Y);
+    permute_rows(X, pivot, d, &Y);
     RITZ_FAIL_IF(
         LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, n, M_R->val, n, Y.val, n) != 0,
         RITZ_ERR_MEMORY, "no memory for the condensed mass");
-    spread(&Y, pivot, d, X);
+    restore_rows(&Y, pivot, d, X);
 done:
     free(d);
     free(pivot);
@@ -130,8 +131,8 @@ static ritz_status add_inertia(const ritz_partition *s, ritz_factor *L,
     return RITZ_OK;
 }
 
-static ritz_status fill(const ritz_request *request, const ritz_partition *s,
-                        ritz_dense *T)
+static ritz_status fill_basis(const ritz_request *request,
+                              const ritz_partition *s, ritz_dense *T)
 {
     RITZ_OWN(ritz_factor) *L = NULL;
     RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0};
@@ -145,7 +146,7 @@ static ritz_status fill(const ritz_request *request, const ritz_partition *s,
     return add_inertia(s, L, &K_R, T);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
 {
     const ritz_dofs *b = &request->attached;
     RITZ_OWN(ritz_partition) s = {0};
@@ -156,7 +157,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
         "nothing is attached, so nothing would be kept: name a port");
     RITZ_CHECK(ritz_partition_new(request, &s));
     RITZ_CHECK(ritz_columns_new(b->count, &basis.columns));
-    RITZ_CHECK(fill(request, &s, &basis.T));
+    RITZ_CHECK(fill_basis(request, &s, &basis.T));
     for (int64_t j = 0; j < b->count; j++) {
         basis.columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
         basis.columns.dof[j] = b->at[j];
@@ -175,5 +176,5 @@ const ritz_method ritz_method_irs = {
     .holds = "rigid motion; shapes to first order; frequencies from above",
     .fails = "statics, which guyan has exact; attached dofs without mass",
     .uses = RITZ_USES_ATTACHED,
-    .make = make,
+    .make = make_irs,
 };

@@ -1,16 +1,15 @@
 /*
  * Block Krylov vectors. About each point sigma, with A = K - sigma M and the
- * forces F that are to be answered,
+ * load vectors F,
  *
- *     R_0 = A^-1 F,   R_j = A^-1 M Q_j,   Q_j+1 = what is new in R_j
+ *     R_0 = A^-1 F,   R_j = A^-1 M Q_j,   Q_j+1 = independent part of R_j
  *
- * orthonormal against all vectors that there are, of any point, in K or in M:
- * the Lanczos recurrence of [CraigSuKim1992, sec. 2] with full
- * reorthogonalisation, and with several points a rational Krylov sequence.
- * Points take turns, a block each. V spans A^-1 F, (A^-1 M) A^-1 F, ... of
- * every point, so that its Galerkin model keeps as many moments about that
- * point as it has whole blocks there, and twice as many where inputs and
- * outputs are both among the forces.
+ * which is made orthonormal to all vectors of all points, in K or in M: the
+ * Lanczos recurrence of [CraigSuKim1992, sec. 2] with full reorthogonalisation,
+ * and with several points a rational Krylov sequence. Points take turns, a
+ * block each. V spans A^-1 F, (A^-1 M) A^-1 F, ... of every point, so that its
+ * Galerkin model keeps as many moments about that point as it has whole blocks
+ * there, and twice as many where inputs and outputs are both among the forces.
  */
 #include "bases/krylov_block.h"
 
@@ -28,9 +27,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The points ascend, so that 0 Hz is the first; it is the only one if none is
- * chosen. */
-static void order_points(const ritz_choice *choice, ritz_krylov *S)
+/*
+ * The points ascend, so that 0 Hz is the first; it is the only one if none is
+ * requested.
+ */
+static void set_points(const ritz_choice *choice, ritz_krylov *S)
 {
     S->num_points = choice->num_shifts > 0 ? choice->num_shifts : 1;
     for (int64_t k = 0; k < choice->num_shifts; k++) {
@@ -90,7 +91,7 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
     S.vectors = request->modes < body->K->nrow ? request->modes : body->K->nrow;
     if (S.inner == RITZ_INNER_MASS && body->M->nrow > 0)
         RITZ_CHECK(check_mass(body->M));
-    order_points(choice, &S);
+    set_points(choice, &S);
     for (int64_t k = 0; k < S.num_points; k++)
         RITZ_CHECK(factor_point(body, &S.point[k]));
     RITZ_CHECK(ritz_orthonormal_new(
@@ -113,7 +114,7 @@ void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
     }
 }
 
-/* size += |M Phi| |Phi' G|: what P takes out of the forces. */
+/* size += |M Phi| |Phi' G|: the forces that P removes. */
 static ritz_status add_rigid_size(const ritz_elastic *E, const ritz_dense *G,
                                   ritz_dense *size)
 {
@@ -131,7 +132,7 @@ static ritz_status add_rigid_size(const ritz_elastic *E, const ritz_dense *G,
     return RITZ_OK;
 }
 
-/* Columns of R whose forces have cancelled are rounding: they become zero. */
+/* Columns of R whose forces cancel are rounding: they become zero. */
 static void clear_rounding(const ritz_dense *G, const ritz_dense *size,
                            ritz_dense *R)
 {
@@ -172,8 +173,8 @@ ritz_status ritz_krylov_answer(const ritz_krylov *S,
 }
 
 /* The forces F themselves, from column `first` on. */
-static ritz_status take_loads(const ritz_dense *F, int64_t first,
-                              ritz_forces *out)
+static ritz_status append_loads(const ritz_dense *F, int64_t first,
+                                ritz_forces *out)
 {
     RITZ_CHECK(ritz_dense_columns(F, first, F->ncol - first, &out->G));
     RITZ_CHECK(ritz_dense_copy(&out->G, &out->size));
@@ -183,9 +184,9 @@ static ritz_status take_loads(const ritz_dense *F, int64_t first,
 }
 
 /* Inertia forces M Q of the last block of a point. */
-static ritz_status take_inertia(const ritz_krylov *S,
-                                const ritz_krylov_point *point,
-                                ritz_forces *out)
+static ritz_status append_inertia(const ritz_krylov *S,
+                                  const ritz_krylov_point *point,
+                                  ritz_forces *out)
 {
     const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
 
@@ -195,9 +196,12 @@ static ritz_status take_inertia(const ritz_krylov *S,
     return RITZ_OK;
 }
 
-/* Append what a point answers; *added columns. */
-static ritz_status append(ritz_krylov *S, const ritz_krylov_point *point,
-                          const ritz_forces *forces, int64_t most, bool *taken)
+/*
+ * Append the response to the forces at a point; *added counts the new columns.
+ */
+static ritz_status append_block(ritz_krylov *S, const ritz_krylov_point *point,
+                                const ritz_forces *forces, int64_t most,
+                                bool *taken)
 {
     RITZ_OWN(ritz_dense) R = {0};
 
@@ -210,21 +214,22 @@ ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken)
     const ritz_krylov_point at_rest = {0};
     RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(take_loads(F, 0, &forces));
-    RITZ_CHECK(append(S, &at_rest, &forces, F->ncol, taken));
+    RITZ_CHECK(append_loads(F, 0, &forces));
+    RITZ_CHECK(append_block(S, &at_rest, &forces, F->ncol, taken));
     S->seeds = S->set.count;
     return RITZ_OK;
 }
 
-/* The first block of a point; at 0 Hz the seeds are part of it. */
-static ritz_status start(ritz_krylov *S, const ritz_dense *F, int64_t seeded,
-                         ritz_krylov_point *point)
+/* The first block of a point; at 0 Hz it includes the seeds. */
+static ritz_status start_point(ritz_krylov *S, const ritz_dense *F,
+                               int64_t seeded, ritz_krylov_point *point)
 {
     int64_t before = S->set.count;
     RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(take_loads(F, point->A ? 0 : seeded, &forces));
-    RITZ_CHECK(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    RITZ_CHECK(append_loads(F, point->A ? 0 : seeded, &forces));
+    RITZ_CHECK(
+        append_block(S, point, &forces, S->vectors + S->seeds - before, NULL));
     point->first = before;
     if (!point->A && before == S->seeds)
         point->first = 0;
@@ -232,13 +237,14 @@ static ritz_status start(ritz_krylov *S, const ritz_dense *F, int64_t seeded,
     return RITZ_OK;
 }
 
-static ritz_status advance(ritz_krylov *S, ritz_krylov_point *point)
+static ritz_status advance_point(ritz_krylov *S, ritz_krylov_point *point)
 {
     int64_t before = S->set.count;
     RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(take_inertia(S, point, &forces));
-    RITZ_CHECK(append(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    RITZ_CHECK(append_inertia(S, point, &forces));
+    RITZ_CHECK(
+        append_block(S, point, &forces, S->vectors + S->seeds - before, NULL));
     point->first = before;
     point->count = S->set.count - before;
     return RITZ_OK;
@@ -257,9 +263,9 @@ ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
             if (point->ended)
                 continue;
             if (block == 0)
-                RITZ_CHECK(start(S, F, seeded, point));
+                RITZ_CHECK(start_point(S, F, seeded, point));
             else
-                RITZ_CHECK(advance(S, point));
+                RITZ_CHECK(advance_point(S, point));
             point->ended = point->count == 0;
             point->whole += !point->ended && S->set.left == 0;
             moving = moving || !point->ended;
@@ -324,7 +330,8 @@ static double largest_sum(const ritz_dense *V, const ritz_dense *size)
     return most;
 }
 
-static ritz_status measure(const ritz_krylov *S, double *worst, double *bound)
+static ritz_status measure_orthonormality(const ritz_krylov *S, double *worst,
+                                          double *bound)
 {
     bool by_mass = S->inner == RITZ_INNER_MASS;
     const ritz_sparse *W = by_mass ? S->body->M : S->body->K;
@@ -348,7 +355,7 @@ ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S, ritz_basis *basis)
     double worst = 0.0;
     double bound = 0.0;
 
-    RITZ_CHECK(measure(S, &worst, &bound));
+    RITZ_CHECK(measure_orthonormality(S, &worst, &bound));
     ritz_krylov_say(basis, "; |V'%sV - I| is %.1e, %s %.1e", W, worst,
                     worst <= bound ? "within" : "beyond", bound);
     return RITZ_OK;
@@ -381,15 +388,15 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
 
 /*
  * Krylov reduction: rigid modes and block Krylov vectors of the undamped
- * structure, started by what it answers to its loads F,
+ * structure, started by its static response to the loads F,
  *
  *     span V = span of (A^-1 M)^j A^-1 F,  j = 0, 1, ...,   A = K - sigma M
  *
- * about every expansion point sigma [CraigSuKim1992, sec. 2; McDaniel2000,
- * sec. 3.2.3]. If the inputs B are among the loads, the moments
- * C (A^-1 M)^j A^-1 B of the first k blocks are kept, j < k; if the outputs are
- * too, those of j < 2 k. About 0 Hz a free body has moments of its elastic
- * part: krylov_block.c and elastic.c separate the rigid modes first.
+ * about every expansion point sigma [CraigSuKim1992, sec. 2; McDaniel2000, sec.
+ * 3.2.3]. If the inputs B are among the loads, the moments C (A^-1 M)^j A^-1 B
+ * of the first k blocks are kept, j < k; if the outputs are too, those of j < 2
+ * k. About 0 Hz a free body has moments of its elastic part: elastic.c
+ * decouples the rigid modes first.
  *
  * tests/unit/bases/test_krylov.c holds the code to the published example of
  * [McDaniel2000], to moments about 0 Hz and elsewhere, and to the block
@@ -399,7 +406,7 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
 static const int all_loads =
     RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
 {
     const ritz_component *component = request->component;
     int loads = request->choice.loads ? request->choice.loads : all_loads;
@@ -430,5 +437,5 @@ const ritz_method ritz_method_krylov = {
     .fails = "interfaces with many dofs: a block is as wide as they are many",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
-    .make = make,
+    .make = make_krylov,
 };

@@ -7,7 +7,10 @@
 
 #include <ritz/basis.h>
 
-/* Where the response is expanded, and how far its chain of blocks has come. */
+/*
+ * A point at which the response is expanded, and the state of its sequence of
+ * blocks.
+ */
 typedef struct ritz_krylov_point {
     double hertz, sigma;  /* sigma = (2 pi f)^2 */
     ritz_ldl *A;          /* factor of K - sigma M; NULL at 0 Hz */
@@ -26,7 +29,10 @@ typedef struct ritz_krylov {
     ritz_orthonormal set;
 } ritz_krylov;
 
-/* Forces and the size of what they were summed from, which tells rounding. */
+/*
+ * Forces, and the magnitude of the terms they are sums of, from which rounding
+ * is estimated.
+ */
 typedef struct ritz_forces {
     ritz_dense G, size; /* n x p */
 } ritz_forces;
@@ -43,18 +49,18 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
                             const ritz_request *request, ritz_krylov *out);
 
 /**
- * Answers to the forces F at 0 Hz as first columns of V, beside the vectors
- * that are asked for.
+ * The static response to the forces F becomes the first columns of V, in
+ * addition to the requested vectors.
  *
  * @param[out] taken  one for each column: false where it depends on others
  */
 ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken);
 
 /**
- * Chains from all forces F about every point in turn until there are as many
- * vectors as wanted, or no new ones.
+ * Krylov sequences of all forces F about every point in turn, until there are
+ * as many vectors as requested, or no new ones.
  *
- * @param[in] seeded  so many of the first columns of F were seeds
+ * @param[in] seeded  number of first columns of F that were seeds
  */
 ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F,
                             int64_t seeded);
@@ -66,20 +72,26 @@ ritz_status ritz_krylov_answer(const ritz_krylov *S,
                                const ritz_krylov_point *point,
                                const ritz_forces *forces, ritz_dense *R);
 
-/** Size |A| |X| of what A X sums, added to @p size times @p factor. */
+/**
+ * Add |A| |X|, the magnitude of the terms that A X sums, times @p factor to @p
+ * size.
+ */
 void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
                       ritz_dense *size);
 
 /** T = [Phi_r, V]: rigid columns, Krylov columns. */
 ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out);
 
-/** Say how many vectors and whole blocks there are, and why not more. */
+/**
+ * Append to the remark the number of vectors and whole blocks, and why there
+ * are not more.
+ */
 void ritz_krylov_say_blocks(const ritz_krylov *S, int64_t asked,
                             ritz_basis *basis);
 
 /**
- * Say how orthonormal V is: max |V'WV - I|, and 16 eps max |v|'|W||v|, as near
- * as products by W can show it.
+ * Append to the remark how orthonormal V is: max |V'WV - I|, and 16 eps max
+ * |v|'|W||v|, as near as products by W can show it.
  */
 ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S,
                                         ritz_basis *basis);

@@ -1,7 +1,7 @@
 /*
  * Fixed-interface Krylov component modes: constraint modes and block Krylov
- * vectors of the interior, whose start is the inertia that boundary motion
- * brings [CraigSuKim1992, sec. 4, eq. 24 and 25],
+ * vectors of the interior, started by the inertia forces of boundary motion
+ * [CraigSuKim1992, sec. 4, eq. 24 and 25],
  *
  *     | u_b |   | I    0 | | u_b |   K_ii Psi = -K_ib
  *     | u_i | = | Psi  V | | q   |   span V = (A_ii^-1 M_ii)^j A_ii^-1 F_i
@@ -10,7 +10,7 @@
  *
  * with A = K - sigma M. Psi and V are K-orthogonal, so that T'KT is block
  * diagonal as it is with normal modes; forces on the boundary, and the other
- * loads, have their first moments kept, the static answer before all.
+ * loads, have their first moments kept, above all the static response.
  */
 #include "base/alloc.h"
 #include "bases/krylov_block.h"
@@ -42,7 +42,7 @@ static ritz_status find_coupling(const ritz_partition *s, const ritz_dense *Psi,
     return RITZ_OK;
 }
 
-/* F_i: coupling first, if the attached dofs are among the loads. */
+/* F_i: the coupling columns first, if the attached dofs are among the loads. */
 static ritz_status find_loads(const ritz_request *request,
                               const ritz_partition *s, const ritz_dense *Psi,
                               ritz_dense *out)
@@ -70,8 +70,8 @@ static ritz_status find_loads(const ritz_request *request,
 }
 
 /* [I; Psi], a column for each boundary dof, then [0; V]. */
-static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
-                        const ritz_krylov *S, ritz_basis *out)
+static ritz_status join_columns(const ritz_partition *s, const ritz_dense *Psi,
+                                const ritz_krylov *S, ritz_basis *out)
 {
     const ritz_dofs *b = s->b;
     const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
@@ -93,7 +93,8 @@ static ritz_status join(const ritz_partition *s, const ritz_dense *Psi,
     return RITZ_OK;
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_krylov_fixed(const ritz_request *request,
+                                     ritz_basis *out)
 {
     RITZ_OWN(ritz_partition) s = {0};
     RITZ_OWN(ritz_factor) *L = NULL;
@@ -109,7 +110,7 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     ritz_elastic_held(&s.K_ii, &s.M_ii, &L, &interior);
     RITZ_CHECK(ritz_krylov_new(&interior, request, &S));
     RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
-    RITZ_CHECK(join(&s, &Psi, &S, &basis));
+    RITZ_CHECK(join_columns(&s, &Psi, &S, &basis));
     ritz_krylov_say_blocks(&S, request->modes, &basis);
     RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
     RITZ_MOVE(*out, basis);
@@ -126,5 +127,5 @@ const ritz_method ritz_method_krylov_cms_fixed = {
     .fails = "upper modes of the band: less exact than with normal modes",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
-    .make = make,
+    .make = make_krylov_fixed,
 };

@@ -1,15 +1,15 @@
 /*
- * Free-interface Krylov component modes: rigid modes, what the body answers to
- * unit forces F_a at its attached dofs, and the block Krylov vectors that
- * follow from them [CraigHale1988; CraigSuKim1992, sec. 4],
+ * Free-interface Krylov component modes: rigid modes, the elastic static
+ * response to unit forces F_a at the attached dofs, and the block Krylov
+ * vectors that follow from them [CraigHale1988; CraigSuKim1992, sec. 4],
  *
  *     T = [Phi_r, X_a, V],   X_a = P' S P F_a,
  *     span [X_a, V] = span of (A^-1 M)^j A^-1 F,   F = [F_a, other loads]
  *
- * X_a are the inertia-relief attachment modes; V is K-orthogonal to them. It is
- * to residual flexibility with free modes [Rubin1975] what fixed-interface
- * Krylov vectors are to Craig and Bampton. The elastic moments about 0 Hz
- * between attached dofs are kept, two for each whole block.
+ * X_a are the inertia-relief attachment modes; V is K-orthogonal to them. The
+ * method relates to residual flexibility with free modes [Rubin1975] as
+ * fixed-interface Krylov vectors do to Craig and Bampton's. The elastic moments
+ * about 0 Hz between attached dofs are kept, two for each whole block.
  */
 #include "base/alloc.h"
 #include "bases/krylov_block.h"
@@ -23,10 +23,13 @@ enum {
     OTHER_LOADS = RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
 };
 
-/* Columns of Krylov vectors that stand for seeds become the answers X. */
-static ritz_status put_attachment(const ritz_request *request,
-                                  const ritz_krylov *S, const ritz_dense *F_a,
-                                  const bool *taken, ritz_basis *basis)
+/*
+ * Replace the Krylov columns of the seeds by the static responses X themselves.
+ */
+static ritz_status restore_attachment(const ritz_request *request,
+                                      const ritz_krylov *S,
+                                      const ritz_dense *F_a, const bool *taken,
+                                      ritz_basis *basis)
 {
     const ritz_dofs *a = &request->attached;
     RITZ_OWN(ritz_dense) X = {0};
@@ -45,9 +48,9 @@ static ritz_status put_attachment(const ritz_request *request,
     return RITZ_OK;
 }
 
-/* The attached dofs first; nothing else is needed beside them. */
-static ritz_status collect(const ritz_request *request, ritz_dense *F_a,
-                           ritz_dense *F)
+/* The attached dofs first; other loads are optional. */
+static ritz_status collect_forces(const ritz_request *request, ritz_dense *F_a,
+                                  ritz_dense *F)
 {
     int others = request->choice.loads
                      ? request->choice.loads & ~RITZ_LOADS_ATTACHED
@@ -59,12 +62,12 @@ static ritz_status collect(const ritz_request *request, ritz_dense *F_a,
     return ritz_dense_columns(F, 0, request->attached.count, F_a);
 }
 
-static ritz_status join(const ritz_request *request, const ritz_krylov *S,
-                        const ritz_dense *F_a, const bool *taken,
-                        ritz_basis *out)
+static ritz_status join_basis(const ritz_request *request, const ritz_krylov *S,
+                              const ritz_dense *F_a, const bool *taken,
+                              ritz_basis *out)
 {
     RITZ_CHECK(ritz_krylov_join(S, out));
-    RITZ_CHECK(put_attachment(request, S, F_a, taken, out));
+    RITZ_CHECK(restore_attachment(request, S, F_a, taken, out));
     if (S->seeds < F_a->ncol)
         ritz_krylov_say(out,
                         "%" PRId64 " attachment mode(s) left out, dependent or "
@@ -74,7 +77,8 @@ static ritz_status join(const ritz_request *request, const ritz_krylov *S,
     return ritz_krylov_say_orthonormal(S, out);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_krylov_free(const ritz_request *request,
+                                    ritz_basis *out)
 {
     const ritz_component *component = request->component;
     RITZ_OWN(ritz_dense) F_a = {0}, F = {0};
@@ -83,13 +87,13 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     RITZ_OWN(ritz_krylov) S = {0};
     RITZ_OWN(ritz_basis) basis = {0};
 
-    RITZ_CHECK(collect(request, &F_a, &F));
+    RITZ_CHECK(collect_forces(request, &F_a, &F));
     RITZ_CHECK_NEW(taken, F_a.ncol);
     RITZ_CHECK(ritz_elastic_new(&component->K, &component->M, &body));
     RITZ_CHECK(ritz_krylov_new(&body, request, &S));
     RITZ_CHECK(ritz_krylov_seed(&S, &F_a, taken));
     RITZ_CHECK(ritz_krylov_run(&S, &F, F_a.ncol));
-    RITZ_CHECK(join(request, &S, &F_a, taken, &basis));
+    RITZ_CHECK(join_basis(request, &S, &F_a, taken, &basis));
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
@@ -104,5 +108,5 @@ const ritz_method ritz_method_krylov_cms_free = {
     .fails = "upper modes of the band: less exact than with normal modes",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
-    .make = make,
+    .make = make_krylov_free,
 };

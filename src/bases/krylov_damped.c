@@ -1,9 +1,9 @@
 /*
- * The recurrence of krylov_damped.c. V may gain nothing from a block of states
- * that is new all the same: without damping, every second one is
- * [0; d]. A state is therefore kept by its coordinates in V, two columns as
- * long as V is wide, orthonormal among themselves: the
- * two-level orthogonal Arnoldi procedure of [LuSuBai2016].
+ * The recurrence of the states. A block of states may be independent of the
+ * others and add nothing to V: without damping, every second one is [0; d]. A
+ * state is therefore kept by its coordinates in V, two columns as long as V is
+ * wide, orthonormal among themselves: the two-level orthogonal Arnoldi
+ * procedure of [LuSuBai2016].
  */
 #include "bases/krylov_block.h"
 
@@ -15,9 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* States [d; v] of a damped structure, by coordinates in Krylov vectors. */
+/* States [d; v] of a damped structure, as coordinates in Krylov vectors. */
 
-/* One chain of states. */
+/* One Krylov sequence of states. */
 typedef struct ritz_krylov_states {
     const ritz_sparse *D;  /* borrowed; NULL: undamped */
     int64_t room;          /* rows of d in a state, as many as V can have */
@@ -27,15 +27,15 @@ typedef struct ritz_krylov_states {
     bool ended;            /* nothing new came of the last block */
 } ritz_krylov_states;
 
-/* Put rows 0.. of A below row `at` of Z. */
-static void put_rows(const ritz_dense *A, int64_t at, ritz_dense *Z)
+/* Copy the rows of A to the rows of Z from `at` on. */
+static void copy_rows(const ritz_dense *A, int64_t at, ritz_dense *Z)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(Z, j)[at + i] = ritz_dense_col(A, j)[i];
 }
 
-/* `count` rows of the last states of a chain, from row `at` on. */
+/* Copy `count` rows of the last states of a chain, from row `at` on. */
 static ritz_status pick_rows(const ritz_krylov_states *c, int64_t at,
                              int64_t count, ritz_dense *out)
 {
@@ -49,10 +49,10 @@ static ritz_status pick_rows(const ritz_krylov_states *c, int64_t at,
 
 /*
  * Append d to V, and the states [d; v] to those of the chain: d by its
- * coordinates (WV)' d, v as it is in coordinates already.
+ * coordinates (WV)' d; v is in coordinates already.
  */
-static ritz_status append(ritz_krylov *S, const ritz_forces *forces,
-                          const ritz_dense *v, ritz_krylov_states *c)
+static ritz_status append_state(ritz_krylov *S, const ritz_forces *forces,
+                                const ritz_dense *v, ritz_krylov_states *c)
 {
     ritz_orthonormal *set = &S->set;
     RITZ_OWN(ritz_dense) R = {0}, raw = {0}, d = {0}, Z = {0};
@@ -64,8 +64,8 @@ static ritz_status append(ritz_krylov *S, const ritz_forces *forces,
     WV = ritz_dense_part(&set->WV, 0, set->count);
     RITZ_CHECK(ritz_dense_mul_tn(&WV, &raw, &d));
     RITZ_CHECK(ritz_dense_new(2 * c->room, d.ncol, &Z));
-    put_rows(&d, 0, &Z);
-    put_rows(v, c->room, &Z);
+    copy_rows(&d, 0, &Z);
+    copy_rows(v, c->room, &Z);
     c->first = c->kept.count;
     RITZ_CHECK(ritz_orthonormal_append(&c->kept, &Z, Z.ncol, NULL));
     c->count = c->kept.count - c->first;
@@ -107,7 +107,7 @@ static void free_krylov_states(ritz_krylov_states *chain)
 }
 
 /*
- * Begin a chain with the answers to forces at rest: d = P' S P G, v = 0.
+ * Begin a chain with the static response to forces: d = P' S P G, v = 0.
  *
  * @param[in]     D  borrowed until free, NULL where there is none
  * @param[in,out] S  whose V takes what is new in d
@@ -122,7 +122,7 @@ static ritz_status start_krylov_states(ritz_krylov *S, const ritz_sparse *D,
 
     RITZ_TRY(ritz_orthonormal_new(2 * chain.room, NULL, S->set.tolerance,
                                   &chain.kept));
-    RITZ_TRY(append(S, forces, &at_rest, &chain));
+    RITZ_TRY(append_state(S, forces, &at_rest, &chain));
     RITZ_MOVE(*out, chain);
 done:
     free_krylov_states(&chain);
@@ -130,7 +130,7 @@ done:
 }
 
 /*
- * One block more: d <- -omega P' S P (D d + omega M v), v <- d.
+ * Append a block: d <- -omega P' S P (D d + omega M v), v <- d.
  *
  * @param[in] omega  unit of velocities  [rad/s]
  */
@@ -143,7 +143,7 @@ static ritz_status advance_krylov_states(ritz_krylov *S, double omega,
     RITZ_CHECK(pick_rows(chain, 0, S->set.count, &d));
     RITZ_CHECK(pick_rows(chain, chain->room, S->set.count, &v));
     RITZ_CHECK(find_forces(S, chain->D, omega, &d, &v, &forces));
-    return append(S, &forces, &d, chain);
+    return append_state(S, &forces, &d, chain);
 }
 
 /*
@@ -195,7 +195,7 @@ static void free_recurrence(recurrence *r)
     ritz_sparse_free(&r->K);
 }
 
-/* D := D + a M + b K, springs of dampers being part of K as any other. */
+/* D := D + a M + b K; springs of dampers are part of K. */
 static ritz_status add_rayleigh(const ritz_sparse *K, const ritz_sparse *M,
                                 const ritz_damping *damping, ritz_sparse *D)
 {
@@ -212,7 +212,9 @@ static ritz_status add_rayleigh(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* D as the model has it, with what is stated beside it, and K with springs. */
+/*
+ * D of the model and of the requested damping, and K with the dampers' springs.
+ */
 static ritz_status collect_matrices(recurrence *r)
 {
     const ritz_component *component = r->request->component;
@@ -241,7 +243,7 @@ static ritz_status collect_matrices(recurrence *r)
 }
 
 /* Columns of A from column `first` on of the forces, |A| of their sizes. */
-static void put_columns(const ritz_dense *A, const ritz_dense *size,
+static void add_columns(const ritz_dense *A, const ritz_dense *size,
                         int64_t first, ritz_forces *out)
 {
     for (int64_t j = 0; j < A->ncol; j++)
@@ -252,7 +254,7 @@ static void put_columns(const ritz_dense *A, const ritz_dense *size,
         }
 }
 
-/* Loads of a chain, and what damping makes of rigid motion. */
+/* Loads of a chain, and the damping forces of rigid motion. */
 static ritz_status collect_loads(const recurrence *r, const ritz_sparse *D,
                                  int loads, ritz_forces *out)
 {
@@ -267,13 +269,13 @@ static ritz_status collect_loads(const recurrence *r, const ritz_sparse *D,
         RITZ_CHECK(ritz_loads_collect(r->request, loads, &F, &dof));
     RITZ_CHECK(ritz_dense_new(n, count + more, &out->G));
     RITZ_CHECK(ritz_dense_new(n, count + more, &out->size));
-    put_columns(&F, &F, 0, out);
+    add_columns(&F, &F, 0, out);
     if (more == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_mul(D, Phi, &DPhi));
     RITZ_CHECK(ritz_dense_new(n, more, &size));
     ritz_krylov_size(D, Phi, 1.0, &size);
-    put_columns(&DPhi, &size, count, out);
+    add_columns(&DPhi, &size, count, out);
     return RITZ_OK;
 }
 
@@ -312,7 +314,10 @@ static ritz_status start_chain(recurrence *r, int64_t k, const ritz_sparse *D,
     return RITZ_OK;
 }
 
-/* Of inputs with D, of outputs with D'; one chain where they are the same. */
+/*
+ * The chain of inputs with D and that of outputs with D'; one chain if both are
+ * the same.
+ */
 static ritz_status start_chains(recurrence *r, int loads)
 {
     const ritz_sparse *D = r->D[0].colptr ? &r->D[0] : NULL;
@@ -324,7 +329,7 @@ static ritz_status start_chains(recurrence *r, int loads)
     return start_chain(r, 1, &r->D[1], loads & ~RITZ_LOADS_INPUTS);
 }
 
-static ritz_status run(recurrence *r, int loads)
+static ritz_status run_chains(recurrence *r, int loads)
 {
     double omega = 1.0;
     bool moving = true;
@@ -357,7 +362,7 @@ static ritz_status find_basis(recurrence *r, ritz_basis *out)
     RITZ_CHECK(collect_matrices(r));
     RITZ_CHECK(ritz_elastic_new(&r->K, &request->component->M, &r->body));
     RITZ_CHECK(ritz_krylov_new(&r->body, request, &r->S));
-    RITZ_CHECK(run(r, loads));
+    RITZ_CHECK(run_chains(r, loads));
     RITZ_CHECK(ritz_krylov_join(&r->S, out));
     ritz_krylov_say_blocks(&r->S, request->modes, out);
     if (!r->D[0].colptr)
@@ -365,7 +370,8 @@ static ritz_status find_basis(recurrence *r, ritz_basis *out)
     return ritz_krylov_say_orthonormal(&r->S, out);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_krylov_damped(const ritz_request *request,
+                                      ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     recurrence r = {.request = request};
@@ -389,5 +395,5 @@ const ritz_method ritz_method_krylov_damped = {
     .fails = "ratios of modes, which are no matrix D: refused",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
             RITZ_USES_INNER | RITZ_USES_DAMPING,
-    .make = make,
+    .make = make_krylov_damped,
 };

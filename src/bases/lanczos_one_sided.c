@@ -14,7 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The states that a Gramian reaches, in coordinates in which it is I. */
+/*
+ * The controllable states of a Gramian, in coordinates in which the Gramian is
+ * I.
+ */
 
 /*
  * With A W + W A' + B B' = 0, W = U U' and U = Z Sigma X', cut to r values:
@@ -28,9 +31,9 @@ typedef struct ritz_gramian_range {
     double rounding; /* |A + A' + B B'| of Frobenius */
 } ritz_gramian_range;
 
-/* (A + A' + B B') in place (i, j) */
-static double defect(const ritz_dense *A, const ritz_dense *B, int64_t i,
-                     int64_t j)
+/* Entry (i, j) of A + A' + B B'. */
+static double defect_entry(const ritz_dense *A, const ritz_dense *B, int64_t i,
+                           int64_t j)
 {
     double sum = ritz_dense_col(A, j)[i] + ritz_dense_col(A, i)[j];
 
@@ -39,16 +42,19 @@ static double defect(const ritz_dense *A, const ritz_dense *B, int64_t i,
     return sum;
 }
 
-/* How many leading rows and columns keep the norm of it below the limit. */
-static int64_t good(const ritz_dense *A, const ritz_dense *B, double limit,
-                    double *norm)
+/*
+ * The number of leading rows and columns in which the defect's norm is below
+ * the limit.
+ */
+static int64_t count_accurate(const ritz_dense *A, const ritz_dense *B,
+                              double limit, double *norm)
 {
     double sum = 0.0;
 
     *norm = 0.0;
     for (int64_t j = 0; j < A->nrow; j++) {
         for (int64_t i = 0; i <= j; i++)
-            sum += (i < j ? 2.0 : 1.0) * pow(defect(A, B, i, j), 2.0);
+            sum += (i < j ? 2.0 : 1.0) * pow(defect_entry(A, B, i, j), 2.0);
         if (sqrt(sum) > limit)
             return j;
         *norm = sqrt(sum);
@@ -61,13 +67,13 @@ static double gramian_defect(const ritz_dense *A, const ritz_dense *B)
 {
     double norm = 0.0;
 
-    (void)good(A, B, HUGE_VAL, &norm);
+    (void)count_accurate(A, B, HUGE_VAL, &norm);
     return norm;
 }
 
 /* Columns k < r of Z times s^power. */
-static ritz_status scaled(const ritz_dense *Z, const double *s, int64_t r,
-                          double power, ritz_dense *out)
+static ritz_status scale_columns(const ritz_dense *Z, const double *s,
+                                 int64_t r, double power, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_columns(Z, 0, r, out));
     for (int64_t j = 0; j < r; j++)
@@ -86,17 +92,17 @@ static void free_gramian_range(ritz_gramian_range *range)
 }
 
 /* Q, V, A and B of the first r values. */
-static ritz_status transform(const ritz_dense *A, const ritz_dense *B,
-                             const ritz_dense *Z, const double *s, int64_t r,
-                             ritz_gramian_range *range)
+static ritz_status transform_system(const ritz_dense *A, const ritz_dense *B,
+                                    const ritz_dense *Z, const double *s,
+                                    int64_t r, ritz_gramian_range *range)
 {
     ritz_status status = RITZ_OK;
     ritz_gramian_range made = {.reached = range->reached,
                                .rounding = range->rounding};
     ritz_dense AQ = {0};
 
-    RITZ_TRY(scaled(Z, s, r, 1.0, &made.Q));
-    RITZ_TRY(scaled(Z, s, r, -1.0, &made.V));
+    RITZ_TRY(scale_columns(Z, s, r, 1.0, &made.Q));
+    RITZ_TRY(scale_columns(Z, s, r, -1.0, &made.V));
     RITZ_TRY(ritz_dense_mul(A, &made.Q, &AQ));
     RITZ_TRY(ritz_dense_mul_tn(&made.V, &AQ, &made.A));
     RITZ_TRY(ritz_dense_mul_tn(&made.V, B, &made.B));
@@ -114,9 +120,9 @@ done:
  * @return RITZ_ERR_ARGUMENT if the Gramian is zero, or a pole is not stable;
  *         RITZ_ERR_CONVERGENCE if nothing is left
  */
-static ritz_status new_gramian_range(const ritz_dense *A, const ritz_dense *B,
-                                     double tolerance, double limit,
-                                     ritz_gramian_range *out)
+static ritz_status find_gramian_range(const ritz_dense *A, const ritz_dense *B,
+                                      double tolerance, double limit,
+                                      ritz_gramian_range *out)
 {
     ritz_status status = RITZ_OK;
     ritz_gramian_range range = {0};
@@ -134,12 +140,12 @@ static ritz_status new_gramian_range(const ritz_dense *A, const ritz_dense *B,
                  "no flexible state is reached, the Gramian is zero: do the "
                  "inputs and outputs act on rigid motion alone?");
     range.reached = r;
-    RITZ_TRY(transform(A, B, &Z, s, r, &range));
-    r = good(&range.A, &range.B, limit, &range.rounding);
+    RITZ_TRY(transform_system(A, B, &Z, s, r, &range));
+    r = count_accurate(&range.A, &range.B, limit, &range.rounding);
     RITZ_FAIL_IF(r == 0, RITZ_ERR_CONVERGENCE,
                  "rounding of the Gramian is as large as the least damping");
     if (r < range.reached)
-        RITZ_TRY(transform(A, B, &Z, s, r, &range));
+        RITZ_TRY(transform_system(A, B, &Z, s, r, &range));
     RITZ_MOVE(*out, range);
 done:
     free_gramian_range(&range);
@@ -167,17 +173,18 @@ done:
  *
  *     A~ = Sigma^-1 Z'A Z Sigma,   B~ = Sigma^-1 Z'B,   A~ + A~' = -B~ B~'
  *
- * On A^-1 it is G = A~^-1 with b = G B~ that is so, G + G' = -b b'; then
- * A_r = (P'G P)^-1, whose moments about 0 Hz are those of A, not its Markov
- * parameters. With the observability Gramian everything is done for (A', C').
+ * For Krylov vectors of A^-1 the operator is G = A~^-1 with b = G B~, for which
+ * G + G' = -b b'; then A_r = (P'G P)^-1, whose moments about 0 Hz are those of
+ * A, not its Markov parameters. With the observability Gramian the same is
+ * applied to (A', C').
  *
- * What is left of A~ + A~' + B~ B~' is rounding, and is measured: the range is
- * cut until it is small against the least damping, and vectors whose poles it
- * could still move across the axis are left out (on A^-1, where an odd number
- * of them has one pole far out).
+ * The residual A~ + A~' + B~ B~' is rounding, and is measured: the range is cut
+ * until it is small against the least damping, and vectors whose poles it could
+ * still move across the axis are left out (on A^-1, where an odd number of them
+ * has one pole far out).
  */
 
-/* A system, or (A', C') of it as (A, B), and what becomes of it. */
+/* A system, or its dual (A', C') as (A, B), and its reduction. */
 typedef struct one_sided {
     ritz_dense A, B;
     double damping; /* least -Re s of A */
@@ -188,7 +195,7 @@ typedef struct one_sided {
     int64_t uncertain; /* vectors left out at the end */
 } one_sided;
 
-static void release(one_sided *s)
+static void release_one_sided(one_sided *s)
 {
     ritz_dense_free(&s->A);
     ritz_dense_free(&s->B);
@@ -198,8 +205,8 @@ static void release(one_sided *s)
     ritz_dense_free(&s->P);
 }
 
-static ritz_status start(const ritz_request *request, const ritz_states *states,
-                         one_sided *s)
+static ritz_status start_one_sided(const ritz_request *request,
+                                   const ritz_states *states, one_sided *s)
 {
     bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
 
@@ -243,13 +250,13 @@ static ritz_status check_poles(const ritz_states *states, one_sided *s)
     return RITZ_OK;
 }
 
-/* G and b, where the Gramian is more than rounding. */
+/* G and b, restricted to where the Gramian is more than rounding. */
 static ritz_status choose_operator(const ritz_request *request, one_sided *s)
 {
     const ritz_gramian_range *range = &s->range;
 
-    RITZ_CHECK(new_gramian_range(&s->A, &s->B, request->tolerance,
-                                 RITZ_LANCZOS_SMALL * s->damping, &s->range));
+    RITZ_CHECK(find_gramian_range(&s->A, &s->B, request->tolerance,
+                                  RITZ_LANCZOS_SMALL * s->damping, &s->range));
     RITZ_CHECK(ritz_states_operator(&range->A, request->choice.inverse, &s->G));
     if (request->choice.inverse)
         RITZ_CHECK(ritz_dense_mul(&s->G, &range->B, &s->b));
@@ -259,7 +266,7 @@ static ritz_status choose_operator(const ritz_request *request, one_sided *s)
     return RITZ_OK;
 }
 
-/* P, as many columns as asked for or as there are. */
+/* P, with the requested number of columns or as many as there are. */
 static ritz_status find_vectors(const ritz_request *request, one_sided *s)
 {
     int64_t first = 0;
@@ -282,7 +289,8 @@ static ritz_status find_vectors(const ritz_request *request, one_sided *s)
 }
 
 /* P'G P of the first columns. */
-static ritz_status reduce(const one_sided *s, int64_t columns, ritz_dense *out)
+static ritz_status reduce_operator(const one_sided *s, int64_t columns,
+                                   ritz_dense *out)
 {
     const ritz_dense P = ritz_dense_part(&s->P, 0, columns);
     RITZ_OWN(ritz_dense) GP = {0};
@@ -291,8 +299,11 @@ static ritz_status reduce(const one_sided *s, int64_t columns, ritz_dense *out)
     return ritz_dense_mul_tn(&P, &GP, out);
 }
 
-/* Leave out last vectors until rounding decides on no pole. */
-static ritz_status settle(one_sided *s, ritz_dense *Gr)
+/*
+ * Leave out last vectors until no pole can be moved across the axis by
+ * rounding.
+ */
+static ritz_status drop_uncertain(one_sided *s, ritz_dense *Gr)
 {
     RITZ_OWN(ritz_eigenvalues) poles = {0};
     bool certain = false;
@@ -302,7 +313,7 @@ static ritz_status settle(one_sided *s, ritz_dense *Gr)
 
         ritz_dense_free(Gr);
         ritz_eigenvalues_free(&poles);
-        RITZ_CHECK(reduce(s, s->P.ncol, Gr));
+        RITZ_CHECK(reduce_operator(s, s->P.ncol, Gr));
         RITZ_CHECK(ritz_eigenvalues_of(Gr, &poles));
         k = ritz_eigenvalues_worst(&poles, RITZ_POLE_BOUND_FACTOR);
         certain = poles.re[k] < -RITZ_POLE_BOUND_FACTOR * poles.error[k] &&
@@ -318,11 +329,12 @@ static ritz_status settle(one_sided *s, ritz_dense *Gr)
 }
 
 /*
- * Q = Z Sigma P, and beside it Z Sigma^-1 P; on A^-1 the latter is
- * Z Sigma^-1 G'P (P'G P)^-T, with which W'A T = (P'G P)^-1.
+ * T = Z Sigma P and W = Z Sigma^-1 P; for A^-1 the latter is Z Sigma^-1 G'P
+ * (P'G P)^-T, with which W'A T = (P'G P)^-1.
  */
-static ritz_status lift(const one_sided *s, bool inverse, const ritz_dense *Gr,
-                        ritz_dense *own, ritz_dense *other)
+static ritz_status find_bases(const one_sided *s, bool inverse,
+                              const ritz_dense *Gr, ritz_dense *own,
+                              ritz_dense *other)
 {
     RITZ_OWN(ritz_dense) GP = {0}, Y = {0};
 
@@ -337,9 +349,9 @@ static ritz_status lift(const one_sided *s, bool inverse, const ritz_dense *Gr,
     return ritz_dense_mul(&s->range.V, &Y, other);
 }
 
-/* What was asked for and is not there, and why. */
-static void remark(const ritz_request *request, const one_sided *s,
-                   ritz_basis *basis)
+/* Say which requested vectors do not exist, and why. */
+static void add_remark(const ritz_request *request, const one_sided *s,
+                       ritz_basis *basis)
 {
     const bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
     int64_t found = s->P.ncol + s->uncertain;
@@ -366,7 +378,7 @@ static void remark(const ritz_request *request, const one_sided *s,
                  s->uncertain);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_one_sided(const ritz_request *request, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     bool inverse = request->choice.inverse;
@@ -376,20 +388,20 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     ritz_dense Gr = {0}, own = {0}, other = {0};
 
     RITZ_TRY(ritz_states_asked(request, &states));
-    RITZ_TRY(start(request, &states, &s));
+    RITZ_TRY(start_one_sided(request, &states, &s));
     RITZ_TRY(check_poles(&states, &s));
     RITZ_TRY(choose_operator(request, &s));
     RITZ_TRY(find_vectors(request, &s));
-    RITZ_TRY(settle(&s, &Gr));
-    RITZ_TRY(lift(&s, inverse, &Gr, &own, &other));
+    RITZ_TRY(drop_uncertain(&s, &Gr));
+    RITZ_TRY(find_bases(&s, inverse, &Gr, &own, &other));
     RITZ_TRY(ritz_states_basis(&states, outputs ? &other : &own,
                                outputs ? &own : &other, out));
     snprintf(out->origin.engine, sizeof out->origin.engine,
              "dense LAPACK + SLICOT");
-    remark(request, &s, out);
+    add_remark(request, &s, out);
 done:
     ritz_states_free(&states);
-    release(&s);
+    release_one_sided(&s);
     ritz_dense_free(&Gr);
     ritz_dense_free(&own);
     ritz_dense_free(&other);
@@ -406,5 +418,5 @@ const ritz_method ritz_method_lanczos_one_sided = {
     .fails = "free bodies; what a Gramian does not see",
     .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_GRAMIAN |
             RITZ_USES_OPERATOR | RITZ_USES_DAMPING,
-    .make = make,
+    .make = make_one_sided,
 };

@@ -8,14 +8,14 @@
  * kept; on A^-1 the first 2k moments about 0 Hz, the reduced model being
  * (W'A^-1 V)^-1, with left vectors to that end.
  *
- * Nothing makes the result stable: that is what this method is kept to show,
- * and what the probe is for. So that failures are the method's own, vectors are
- * biorthogonalised against all others, twice.
+ * The reduced model may be unstable: this method is kept to show that, and the
+ * stability check reports it. So that failures are due to the method alone,
+ * vectors are biorthogonalised against all others, twice.
  *
  * A step joins candidates X and Y, orthonormal, by Y'X = L diag(s) R': vectors
  * are X R s^-1/2 and Y L s^-1/2 where s is above the tolerance. Directions of
- * either side that find no partner wait for the next block. With none joined
- * there is no way on: a serious breakdown, unless one side is exhausted.
+ * either side that are not paired wait for the next block. If none is paired
+ * the method ends: this is a serious breakdown, unless one side is exhausted.
  */
 #include "base/alloc.h"
 #include "bases/balance_asked.h"
@@ -27,7 +27,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How a sequence of blocks came to its end. */
+/* How a sequence of blocks ends. */
 typedef enum ending {
     COMPLETE,  /* as many vectors as were asked for */
     EXHAUSTED, /* what inputs reach, or outputs see, is spanned */
@@ -48,7 +48,7 @@ typedef struct two_sided {
     ending end;
 } two_sided;
 
-static void release(two_sided *t)
+static void release_two_sided(two_sided *t)
 {
     lanczos_side *const sides[] = {&t->right, &t->left};
 
@@ -60,8 +60,8 @@ static void release(two_sided *t)
     }
 }
 
-/* All candidates, side by side, each of unit length or zero. */
-static ritz_status gather(const lanczos_side *s, ritz_dense *out)
+/* All candidates, each of unit length or zero. */
+static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
 {
     const ritz_dense *const parts[] = {&s->next, &s->waiting};
     int64_t at = 0;
@@ -81,9 +81,13 @@ static ritz_status gather(const lanczos_side *s, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Candidates less what is spanned, orthonormal; dependent ones left out. */
-static ritz_status prepare(const lanczos_side *own, const lanczos_side *other,
-                           int64_t used, double tolerance, ritz_dense *out)
+/*
+ * Candidates, orthogonal to the vectors so far and orthonormal; dependent ones
+ * left out.
+ */
+static ritz_status prepare_candidates(const lanczos_side *own,
+                                      const lanczos_side *other, int64_t used,
+                                      double tolerance, ritz_dense *out)
 {
     const ritz_dense V = ritz_dense_part(&own->vectors, 0, used);
     const ritz_dense W = ritz_dense_part(&other->vectors, 0, used);
@@ -91,7 +95,7 @@ static ritz_status prepare(const lanczos_side *own, const lanczos_side *other,
     RITZ_OWN_ARRAY double *s = NULL;
     int64_t rank = 0;
 
-    RITZ_CHECK(gather(own, &X));
+    RITZ_CHECK(gather_candidates(own, &X));
     RITZ_CHECK(ritz_dense_take_out(&V, &W, &X));
     RITZ_CHECK(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
     RITZ_CHECK(ritz_general_svd(&X, &U, &s, NULL));
@@ -101,9 +105,9 @@ static ritz_status prepare(const lanczos_side *own, const lanczos_side *other,
 }
 
 /* X R s^-1/2 of the first columns become vectors, the others wait. */
-static ritz_status accept(const ritz_dense *X, const ritz_dense *R,
-                          const double *s, int64_t joined, int64_t used,
-                          lanczos_side *own)
+static ritz_status accept_vectors(const ritz_dense *X, const ritz_dense *R,
+                                  const double *s, int64_t joined, int64_t used,
+                                  lanczos_side *own)
 {
     RITZ_OWN(ritz_dense) turned = {0};
 
@@ -117,9 +121,10 @@ static ritz_status accept(const ritz_dense *X, const ritz_dense *R,
                               &own->waiting);
 }
 
-/* Join candidates X of the right and Y of the left; none may be joined. */
-static ritz_status join(const ritz_dense *X, const ritz_dense *Y,
-                        double tolerance, two_sided *t, int64_t *joined)
+/* Pair candidates X of the right and Y of the left; possibly none. */
+static ritz_status pair_candidates(const ritz_dense *X, const ritz_dense *Y,
+                                   double tolerance, two_sided *t,
+                                   int64_t *joined)
 {
     int64_t most = t->right.vectors.ncol - t->used;
     RITZ_OWN(ritz_dense) YX = {0}, L = {0}, R = {0};
@@ -131,12 +136,12 @@ static ritz_status join(const ritz_dense *X, const ritz_dense *Y,
     while (*joined < most && *joined < L.ncol && *joined < R.ncol &&
            s[*joined] > tolerance)
         ++*joined;
-    RITZ_CHECK(accept(X, &R, s, *joined, t->used, &t->right));
-    return accept(Y, &L, s, *joined, t->used, &t->left);
+    RITZ_CHECK(accept_vectors(X, &R, s, *joined, t->used, &t->right));
+    return accept_vectors(Y, &L, s, *joined, t->used, &t->left);
 }
 
 /* G times the last block, on either side. */
-static ritz_status advance(two_sided *t, int64_t joined)
+static ritz_status advance_blocks(two_sided *t, int64_t joined)
 {
     int64_t n = t->G.nrow;
     const ritz_dense right = {n, joined,
@@ -152,27 +157,27 @@ static ritz_status advance(two_sided *t, int64_t joined)
     return RITZ_OK;
 }
 
-static ritz_status step(double tolerance, two_sided *t, bool *going)
+static ritz_status advance_step(double tolerance, two_sided *t, bool *going)
 {
     RITZ_OWN(ritz_dense) X = {0}, Y = {0};
     int64_t joined = 0;
 
-    RITZ_CHECK(prepare(&t->right, &t->left, t->used, tolerance, &X));
-    RITZ_CHECK(prepare(&t->left, &t->right, t->used, tolerance, &Y));
+    RITZ_CHECK(prepare_candidates(&t->right, &t->left, t->used, tolerance, &X));
+    RITZ_CHECK(prepare_candidates(&t->left, &t->right, t->used, tolerance, &Y));
     *going = X.ncol > 0 && Y.ncol > 0;
     t->end = EXHAUSTED;
     if (!*going)
         return RITZ_OK;
-    RITZ_CHECK(join(&X, &Y, tolerance, t, &joined));
-    RITZ_CHECK(advance(t, joined));
+    RITZ_CHECK(pair_candidates(&X, &Y, tolerance, t, &joined));
+    RITZ_CHECK(advance_blocks(t, joined));
     t->end = joined > 0 ? COMPLETE : BREAKDOWN;
     *going = joined > 0 && t->used < t->right.vectors.ncol;
     return RITZ_OK;
 }
 
 /* Right start B, or A^-1 B; left start C'. */
-static ritz_status start(const ritz_request *request, const ritz_states *states,
-                         two_sided *t)
+static ritz_status start_blocks(const ritz_request *request,
+                                const ritz_states *states, two_sided *t)
 {
     int64_t n = states->count;
     int64_t most = request->modes < n ? request->modes : n;
@@ -192,7 +197,7 @@ static ritz_status start(const ritz_request *request, const ritz_states *states,
     return ritz_dense_new(n, most, &t->left.vectors);
 }
 
-/* Without a first block there is nothing to show. */
+/* A first block is required. */
 static ritz_status check_start(const ritz_request *request, const two_sided *t)
 {
     RITZ_REFUSE_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
@@ -210,7 +215,7 @@ static ritz_status check_start(const ritz_request *request, const two_sided *t)
 }
 
 /* On A^-1: W := G'W (W'G V)^-T, with which W'A V = (W'G V)^-1. */
-static ritz_status invert(two_sided *t)
+static ritz_status invert_left(two_sided *t)
 {
     ritz_status status = RITZ_OK;
     const ritz_dense *V = &t->right.vectors;
@@ -234,8 +239,8 @@ done:
     return status;
 }
 
-static void remark(const ritz_request *request, const two_sided *t,
-                   ritz_basis *basis)
+static void add_remark(const ritz_request *request, const two_sided *t,
+                       ritz_basis *basis)
 {
     if (t->used >= request->modes)
         return;
@@ -248,7 +253,7 @@ static void remark(const ritz_request *request, const two_sided *t,
              request->modes, t->used);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_two_sided(const ritz_request *request, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     ritz_states states = {0};
@@ -256,19 +261,19 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     bool going = true;
 
     RITZ_TRY(ritz_states_asked(request, &states));
-    RITZ_TRY(start(request, &states, &t));
+    RITZ_TRY(start_blocks(request, &states, &t));
     while (going)
-        RITZ_TRY(step(request->tolerance, &t, &going));
+        RITZ_TRY(advance_step(request->tolerance, &t, &going));
     RITZ_TRY(check_start(request, &t));
     t.right.vectors.ncol = t.left.vectors.ncol = t.used;
     if (request->choice.inverse)
-        RITZ_TRY(invert(&t));
+        RITZ_TRY(invert_left(&t));
     RITZ_TRY(
         ritz_states_basis(&states, &t.right.vectors, &t.left.vectors, out));
-    remark(request, &t, out);
+    add_remark(request, &t, out);
 done:
     ritz_states_free(&states);
-    release(&t);
+    release_two_sided(&t);
     return status;
 }
 
@@ -282,5 +287,5 @@ const ritz_method ritz_method_lanczos_two_sided = {
     .fails = "instability and breakdown, often with outputs elsewhere",
     .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_OPERATOR |
             RITZ_USES_DAMPING,
-    .make = make,
+    .make = make_two_sided,
 };

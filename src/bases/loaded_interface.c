@@ -1,12 +1,13 @@
 /*
  * Loaded-interface modes [BenfieldHruda1971]: the lowest modes of the component
  * while the neighbours' stiffness and mass, condensed to the attached dofs a,
- * hang on it,
+ * are added to it,
  *
  *     (K + E K_n E') Phi = (M + E M_n E') Phi Lambda,   E = I(:, a)
  *
- * normalised in the loaded mass. They look as the component does in the system,
- * so that few are needed; where the condensed neighbour is exact, so are they.
+ * normalised in the loaded mass. They have the shapes of the component in the
+ * system, so that few are needed; if the condensed neighbour is exact, they are
+ * too.
  */
 #include "base/alloc.h"
 
@@ -19,8 +20,8 @@
 #include <string.h>
 
 /* A + E A_n E'. */
-static ritz_status load(const ritz_sparse *A, const ritz_dense *A_n,
-                        const ritz_dofs *a, ritz_sparse *out)
+static ritz_status add_neighbour(const ritz_sparse *A, const ritz_dense *A_n,
+                                 const ritz_dofs *a, ritz_sparse *out)
 {
     RITZ_OWN(ritz_sparse) added = {0};
     RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
@@ -46,7 +47,7 @@ static ritz_status load(const ritz_sparse *A, const ritz_dense *A_n,
     return ritz_sparse_add(1.0, A, 1.0, &added, out);
 }
 
-static ritz_status check(const ritz_request *request)
+static ritz_status check_request(const ritz_request *request)
 {
     const ritz_neighbour *neighbour = request->neighbour;
     int64_t a = request->attached.count;
@@ -88,7 +89,8 @@ static ritz_status copy_modes(const ritz_pairs *pairs, ritz_basis *out)
     return RITZ_OK;
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_loaded_interface(const ritz_request *request,
+                                         ritz_basis *out)
 {
     const ritz_component *component = request->component;
     const ritz_span span = {request->modes, request->up_to_hz};
@@ -96,13 +98,13 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_dofs) rest = {0};
 
-    RITZ_CHECK(check(request));
+    RITZ_CHECK(check_request(request));
     RITZ_CHECK(
         ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
-    RITZ_CHECK(
-        load(&component->K, &request->neighbour->K, &request->attached, &K));
-    RITZ_CHECK(
-        load(&component->M, &request->neighbour->M, &request->attached, &M));
+    RITZ_CHECK(add_neighbour(&component->K, &request->neighbour->K,
+                             &request->attached, &K));
+    RITZ_CHECK(add_neighbour(&component->M, &request->neighbour->M,
+                             &request->attached, &M));
     RITZ_CHECK_IN("loaded modes", ritz_eigen_sparse(&K, &M, &span, &pairs));
     RITZ_REFUSE_IF(pairs.Phi.ncol > 0 && pairs.num_rigid == 0 &&
                        pairs.lambda[0] <= 0.0,
@@ -122,5 +124,5 @@ const ritz_method ritz_method_loaded_interface = {
     .holds = "frequencies from above",
     .fails = "other neighbours; statics of the interface",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_NEIGHBOUR,
-    .make = make,
+    .make = make_loaded_interface,
 };

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* One kind of load: how many there may be, and the entries of each. */
+/* One kind of load: the number of its columns, and the entries of each. */
 typedef struct source {
     int bit;
     const char *word;
@@ -82,7 +82,7 @@ static const source sources[] = {
     {RITZ_LOADS_DAMPERS, "damper", count_dampers, damper_entry, damper_name},
 };
 
-/* Steps through the loads that are not zero. */
+/* An iterator over the loads that are not zero. */
 typedef struct load_walk {
     const ritz_request *request;
     int loads;
@@ -99,7 +99,7 @@ static bool is_zero(const ritz_request *request, const source *from, int64_t j)
 }
 
 /* The next source and its load; false past the last. */
-static bool step(load_walk *w, const source **from, int64_t *j)
+static bool next_load(load_walk *w, const source **from, int64_t *j)
 {
     for (; w->kind < sizeof sources / sizeof *sources; w->kind++, w->at = 0) {
         const source *here = &sources[w->kind];
@@ -124,13 +124,13 @@ int64_t ritz_loads_count(const ritz_request *request, int loads)
     int64_t j = 0;
     int64_t count = 0;
 
-    while (step(&w, &from, &j))
+    while (next_load(&w, &from, &j))
         count++;
     return count;
 }
 
-/* "attached, inputs": what was looked for. */
-static const char *list(int loads, char text[64])
+/* "attached, inputs": the requested kinds. */
+static const char *list_kinds(int loads, char text[64])
 {
     size_t used = 0;
 
@@ -161,10 +161,11 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
         RITZ_CHECK(ritz_dofs_complement(&request->attached, n, &rest));
     count = ritz_loads_count(request, loads);
     RITZ_REFUSE_IF(count == 0, RITZ_ERR_ARGUMENT,
-                   "there is no load to answer, no %s", list(loads, text));
+                   "there is no load to answer, no %s",
+                   list_kinds(loads, text));
     RITZ_CHECK(ritz_dense_new(n, count, &columns));
     RITZ_CHECK_NEW(row, count);
-    for (int64_t k = 0; k < count && step(&w, &from, &j); k++) {
+    for (int64_t k = 0; k < count && next_load(&w, &from, &j); k++) {
         row[k] =
             from->bit == RITZ_LOADS_ATTACHED ? request->attached.at[j] : -1;
         for (int64_t i = 0; i < n; i++)
@@ -185,7 +186,7 @@ const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
 
     text[0] = '\0';
     for (int64_t k = 0; k <= j; k++)
-        if (!step(&w, &from, &at))
+        if (!next_load(&w, &from, &at))
             return text;
     if (!from)
         return text;

@@ -1,4 +1,4 @@
-/* The forces that vectors of a basis answer, as columns of a matrix. */
+/* The load vectors of a basis, as columns of a matrix. */
 #ifndef RITZ_BASES_LOADS_H
 #define RITZ_BASES_LOADS_H
 
@@ -8,7 +8,8 @@
 enum { RITZ_LOADS_NAME_SIZE = RITZ_NAME_SIZE + 16 };
 
 /**
- * How many columns ritz_loads_collect would give: none is no failure here.
+ * The number of columns that ritz_loads_collect would give; zero is no failure
+ * here.
  *
  * @param[in] loads  sum of RITZ_LOADS_...
  * @cost   O(n p)
@@ -16,9 +17,9 @@ enum { RITZ_LOADS_NAME_SIZE = RITZ_NAME_SIZE + 16 };
 int64_t ritz_loads_count(const ritz_request *request, int loads);
 
 /**
- * Unit forces at the attached dofs, columns of B, rows of C, then of Cv and
- * Ca, influence vectors of dampers: those that are asked for, in this order,
- * without the ones that are zero.
+ * Unit forces at the attached dofs, columns of B, rows of C, then of Cv and Ca,
+ * influence vectors of dampers: the requested ones, in this order, without zero
+ * columns.
  *
  * @param[in]  loads  sum of RITZ_LOADS_...
  * @param[out] F      n x p, p at least 1

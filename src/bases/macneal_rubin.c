@@ -2,13 +2,13 @@
  * MacNeal-Rubin reduction: free-interface modes and residual attachment modes.
  *
  * Keep the rigid modes Phi_r and the lowest flexible ones Phi_f of (K, M), and
- * add what the modes that are left out answer to unit forces F at the attached
- * dofs [LeeTsuha1992, eq. 6]:
+ * add the static response of the modes that are left out to unit forces F at
+ * the attached dofs [LeeTsuha1992, eq. 6]:
  *
  *     Psi = (P' S P - Phi_f Lambda_f^-1 Phi_f') F,    P = I - M Phi_r Phi_r'
  *
  * S is the pseudo-flexibility of any determinate support, of which Psi is
- * independent: residual.c finds it without one. Psi is M- and K-orthogonal to
+ * independent: free_modes.c finds it without one. Psi is M- and K-orthogonal to
  * the kept modes, so that T'KT and T'MT are block diagonal, and the flexible
  * static gain at the attached dofs is exact.
  * tests/unit/bases/test_macneal_rubin.c holds the code to the printed formula
@@ -38,8 +38,8 @@ const ritz_method ritz_method_macneal_rubin = {
 };
 
 /*
- * MacNeal's reduction [MacNeal1971]: free-interface modes beside residual
- * flexibility without mass. With T = [Phi, Psi] of macneal_rubin.c
+ * MacNeal's reduction [MacNeal1971]: free-interface modes and residual
+ * flexibility without mass. With T = [Phi, Psi] as above
  *
  *     K_r = diag(Lambda, F'Psi),   M_r = diag(I, 0)
  *
@@ -66,20 +66,20 @@ const ritz_method ritz_method_macneal = {
 };
 
 /*
- * Free-interface modes beside inertia-relief attachment modes: what the body
- * answers to unit forces F at its attached dofs while its rigid motion is
- * carried by its own inertia,
+ * Free-interface modes and inertia-relief attachment modes: the static response
+ * to unit forces F at the attached dofs, in equilibrium with the inertia forces
+ * of rigid motion,
  *
  *     X = P' S P F,    P = I - M Phi_r Phi_r'    [CraigChang1977]
  *
- * which is Psi of macneal_rubin.c and the share of the kept flexible modes,
+ * which is Psi as above plus the part of the kept flexible modes,
  *
  *     X = Psi + Phi_f Lambda_f^-1 Phi_f' F,
  *
- * so that both span the same. A column of which Psi is nothing is left out.
+ * so that both span the same. A column whose Psi is negligible is left out.
  */
 
-/* Psi := X; columns of T come to be as large as what is exchanged for them. */
+/* Psi := X; columns of T are scaled like those that they replace. */
 static ritz_status add_modes(ritz_free_set *set)
 {
     const ritz_pairs *modes = &set->modes;
@@ -120,9 +120,9 @@ const ritz_method ritz_method_inertia_relief = {
 };
 
 /*
- * Dual Craig-Bampton [Rixen2004]: the columns of macneal_rubin.c, of which the
- * residual ones stand for forces at the interface. A body alone is the same as
- * by macneal-rubin; synthesis/dual.c joins such bodies by forces instead of by
+ * Dual Craig-Bampton [Rixen2004]: the columns of macneal-rubin, whose residual
+ * coordinates represent interface forces. A single body is the same as by
+ * macneal-rubin; assembly/dual.c joins such bodies by forces instead of by
  * displacements.
  */
 
@@ -147,7 +147,7 @@ const ritz_method ritz_method_dual_craig_bampton = {
 
 /*
  * Normal modes and static Ritz vectors [ChuMilman1992]: the lowest modes, rigid
- * ones first, and for each load f what they lack of its static answer,
+ * ones first, and for each load f the residual of its static response,
  *
  *     psi = K^-1 f - Phi Lambda^-1 Phi' f,
  *

@@ -1,4 +1,7 @@
-/* How a basis is asked for by name, checked against its method, and signed. */
+/*
+ * A basis by the name of its method: the request is checked and the basis
+ * signed.
+ */
 #include <ritz/basis.h>
 
 #include <inttypes.h>

@@ -1,5 +1,5 @@
 /*
- * Modes, ranked by what they matter from inputs to outputs: the largest exact
+ * Modes, ranked by their importance from inputs to outputs: the largest exact
  * Hankel value that a mode has alone, or a cluster of modes closer than 1e-6 in
  * frequency [Moore1981],
  *
@@ -7,8 +7,8 @@
  *
  * with a displacement output. Of lightly damped modes far apart these are the
  * Hankel values of the whole, and the best modes its balanced states; of close
- * ones they are not. The error is at most what all that is left out can answer:
- * twice the sum of all values of each cluster alone.
+ * ones they are not. The error is at most the response of all modes that are
+ * left out: twice the sum of all values of each cluster alone.
  */
 #include "base/alloc.h"
 #include "bases/balance_asked.h"
@@ -42,14 +42,14 @@ typedef struct subset_search {
     double bound;       /* of all that is left out */
 } subset_search;
 
-static void release(subset_search *s)
+static void release_search(subset_search *s)
 {
     ritz_modal_model_free(&s->modes);
     ritz_modal_free(&s->modal);
     free(s->groups);
 }
 
-static ritz_status check(const ritz_request *request)
+static ritz_status check_request(const ritz_request *request)
 {
     const ritz_io *io = &request->component->io;
 
@@ -85,9 +85,9 @@ static ritz_status find_modes(const ritz_request *request, subset_search *s)
     return ritz_modal_of_modes(&s->modes, &request->component->io, &s->modal);
 }
 
-/* What modes first .. last - 1 are worth alone; over a band, if there is one. */
-static ritz_status weigh(const subset_search *s, const double *band,
-                         double *sigma, mode_group *at)
+/* The value of modes first .. last - 1 alone; over a band, if there is one. */
+static ritz_status weigh_modes(const subset_search *s, const double *band,
+                               double *sigma, mode_group *at)
 {
     RITZ_OWN(ritz_modal) part = {0};
 
@@ -101,7 +101,7 @@ static ritz_status weigh(const subset_search *s, const double *band,
     return RITZ_OK;
 }
 
-static ritz_status rank(const ritz_request *request, subset_search *s)
+static ritz_status rank_groups(const ritz_request *request, subset_search *s)
 {
     bool banded = request->choice.given & RITZ_USES_BAND;
     const double *band = banded ? request->choice.band_hz : NULL;
@@ -115,13 +115,15 @@ static ritz_status rank(const ritz_request *request, subset_search *s)
 
         last = ritz_modal_cluster(&s->modal, first);
         *at = (mode_group){.first = first, .last = last};
-        RITZ_CHECK(weigh(s, band, sigma, at));
+        RITZ_CHECK(weigh_modes(s, band, sigma, at));
     }
     return RITZ_OK;
 }
 
-/* Of those that are not kept yet; of equal ones the lowest in frequency. */
-static mode_group *best(subset_search *s)
+/*
+ * The best group that is not kept yet; of equal ones the lowest in frequency.
+ */
+static mode_group *find_best(subset_search *s)
 {
     mode_group *found = NULL;
 
@@ -134,10 +136,13 @@ static mode_group *best(subset_search *s)
     return found;
 }
 
-/* The best first, until the next does not fit or does nothing. */
-static ritz_status choose(const ritz_request *request, subset_search *s)
+/*
+ * Choose the best groups first, until the next one does not fit or has value
+ * zero.
+ */
+static ritz_status choose_groups(const ritz_request *request, subset_search *s)
 {
-    mode_group *next = best(s);
+    mode_group *next = find_best(s);
 
     RITZ_REFUSE_IF(!next, RITZ_ERR_ARGUMENT,
                    "inputs reach no mode that outputs see");
@@ -149,7 +154,7 @@ static ritz_status choose(const ritz_request *request, subset_search *s)
                    ritz_eigen_hertz(s->modal.omega[next->first] *
                                     s->modal.omega[next->first]));
     for (; next && s->kept + next->last - next->first <= request->modes;
-         next = best(s)) {
+         next = find_best(s)) {
         next->keep = true;
         s->kept += next->last - next->first;
     }
@@ -158,8 +163,8 @@ static ritz_status choose(const ritz_request *request, subset_search *s)
     return RITZ_OK;
 }
 
-static void put(const subset_search *s, int64_t mode, int64_t column,
-                ritz_basis *basis)
+static void copy_mode(const subset_search *s, int64_t mode, int64_t column,
+                      ritz_basis *basis)
 {
     bool rigid = mode < s->modes.num_rigid;
 
@@ -172,8 +177,8 @@ static void put(const subset_search *s, int64_t mode, int64_t column,
         rigid ? 0.0 : ritz_eigen_hertz(s->modes.lambda[mode]);
 }
 
-static void remark(const ritz_request *request, const subset_search *s,
-                   ritz_basis *basis)
+static void add_remark(const ritz_request *request, const subset_search *s,
+                       ritz_basis *basis)
 {
     char damping[RITZ_DAMPING_SIZE] = "";
     char text[2 * RITZ_DAMPING_SIZE];
@@ -195,30 +200,31 @@ static void remark(const ritz_request *request, const subset_search *s,
     ritz_remark_append(basis, text);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_modal_balanced(const ritz_request *request,
+                                       ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     subset_search s = {0};
     ritz_basis basis = {0};
     int64_t column = 0;
 
-    RITZ_TRY(check(request));
+    RITZ_TRY(check_request(request));
     RITZ_TRY(find_modes(request, &s));
-    RITZ_TRY(rank(request, &s));
-    RITZ_TRY(choose(request, &s));
+    RITZ_TRY(rank_groups(request, &s));
+    RITZ_TRY(choose_groups(request, &s));
     RITZ_TRY(
         ritz_basis_new(s.modes.num_dofs, s.modes.num_rigid + s.kept, &basis));
     for (; column < s.modes.num_rigid; column++)
-        put(&s, column, column, &basis);
+        copy_mode(&s, column, column, &basis);
     for (int64_t k = 0; k < s.count; k++)
         for (int64_t j = s.groups[k].first;
              j < s.groups[k].last && s.groups[k].keep; j++)
-            put(&s, s.modes.num_rigid + j, column++, &basis);
+            copy_mode(&s, s.modes.num_rigid + j, column++, &basis);
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "closed form");
-    remark(request, &s, &basis);
+    add_remark(request, &s, &basis);
     RITZ_MOVE(*out, basis);
 done:
-    release(&s);
+    release_search(&s);
     ritz_basis_free(&basis);
     return status;
 }
@@ -233,5 +239,5 @@ const ritz_method ritz_method_modal_balanced = {
     .fails = "close modes: their values add up or cancel; static gain",
     .uses =
         RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_AMONG | RITZ_USES_BAND,
-    .make = make,
+    .make = make_modal_balanced,
 };

@@ -13,8 +13,8 @@
 enum { NAMED = 3 };
 
 /* The largest entry of x that was not named before, the first of equals. */
-static int64_t largest(int64_t n, const double *x, int64_t count,
-                       const int64_t *before)
+static int64_t largest_unnamed(int64_t n, const double *x, int64_t count,
+                               const int64_t *before)
 {
     int64_t best = -1;
 
@@ -29,9 +29,9 @@ static int64_t largest(int64_t n, const double *x, int64_t count,
     return best;
 }
 
-/* "grid 3 R1, grid 7 R1": where a motion is largest. */
-static void describe(const ritz_component *component, const ritz_dofs *i,
-                     const double *x, char text[static 160])
+/* "grid 3 R1, grid 7 R1": the dofs where a motion is largest. */
+static void name_dofs(const ritz_component *component, const ritz_dofs *i,
+                      const double *x, char text[static 160])
 {
     int64_t named[NAMED];
     size_t used = 0;
@@ -40,7 +40,7 @@ static void describe(const ritz_component *component, const ritz_dofs *i,
     for (int64_t k = 0; k < NAMED && k < i->count; k++) {
         char name[RITZ_DOF_NAME_SIZE];
 
-        named[k] = largest(i->count, x, k, named);
+        named[k] = largest_unnamed(i->count, x, k, named);
         if (fabs(x[named[k]]) <= RITZ_NULL_VECTOR_SHARE * fabs(x[named[0]]))
             break;
         used += (size_t)snprintf(
@@ -64,7 +64,7 @@ ritz_status ritz_mechanism_refuse(const ritz_component *component,
     if (status == RITZ_ERR_MEMORY)
         goto done;
     if (status == RITZ_OK && pairs.num_rigid > 0)
-        describe(component, i, ritz_dense_col(&pairs.Phi, 0), text);
+        name_dofs(component, i, ritz_dense_col(&pairs.Phi, 0), text);
     else if (weak >= 0)
         snprintf(text, sizeof text, "%s",
                  ritz_dof_name(component->dof[i->at[weak]], name));
@@ -141,7 +141,7 @@ done:
 }
 
 /* -A as a dense matrix: the right-hand sides of the constraint modes. */
-static ritz_status negate(const ritz_sparse *A, ritz_dense *out)
+static ritz_status negate_dense(const ritz_sparse *A, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol, out));
     for (int64_t j = 0; j < A->ncol; j++)
@@ -155,7 +155,7 @@ ritz_status ritz_partition_constraint_modes(const ritz_partition *s,
 {
     RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_CHECK(negate(&s->K_ib, &X));
+    RITZ_CHECK(negate_dense(&s->K_ib, &X));
     if (s->i.count > 0)
         RITZ_CHECK(ritz_factor_solve(L, &X));
     RITZ_MOVE(*Psi, X);

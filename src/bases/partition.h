@@ -6,7 +6,7 @@
 #include <ritz/matrix.h>
 #include <ritz/model.h>
 
-/* Boundary b, which other bodies push on, and interior i. */
+/* Boundary b, on which other bodies act, and interior i. */
 typedef struct ritz_partition {
     const ritz_component *component; /* borrowed */
     const ritz_dofs *b;              /* borrowed */
@@ -53,8 +53,8 @@ ritz_status ritz_mechanism_refuse(const ritz_component *component,
                                   int64_t weak);
 
 /**
- * T_b'KT_b and T_b'MT_b. What the first shows of motions that cost no energy is
- * rounding of |T_b|'|K||T_b|, and is taken for the zero that it stands for.
+ * T_b'KT_b and T_b'MT_b. For motions that store no energy the first is rounding
+ * of |T_b|'|K||T_b|, and is set to zero.
  *
  * @param[in]  T_b  n x b, [I; Psi]: constraint modes
  * @param[out] K,M  b x b, exactly symmetric

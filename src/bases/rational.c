@@ -1,8 +1,9 @@
 /*
- * Real bases of complex answers. Z(s) is symmetric, and one analysis of its
+ * Real bases of complex responses. Z(s) is symmetric, and one analysis of its
  * pattern serves all points. V = [Re v, Im v] spans v and its conjugate, so
- * that the projected model answers as the full one does, at s and at its
- * conjugate, whatever else V holds: v = V y, and V'Z(s) V y = V'F b determines y.
+ * that the projected model has the response of the full one at s and at its
+ * conjugate, whatever else V spans: v = V y, and V'Z(s) V y = V'F b determines
+ * y.
  */
 #include "bases/rational.h"
 
@@ -78,8 +79,8 @@ static ritz_status read_groups(const ritz_request *request, int loads,
     return RITZ_OK;
 }
 
-/* M and K, then D and K4 where they are. */
-static ritz_status start(ritz_rational *R)
+/* M and K, then D and K4 if there are any. */
+static ritz_status start_impedance(ritz_rational *R)
 {
     const ritz_component *component = R->component;
     const ritz_sparse *A[4] = {&component->M, &component->K};
@@ -107,7 +108,7 @@ ritz_status ritz_rational_new(const ritz_request *request, int loads,
     RITZ_CHECK(read_groups(request, loads, &R));
     RITZ_CHECK(
         ritz_sparse_add(1.0, &component->M, 1.0 / scale, &component->K, &R.P));
-    RITZ_CHECK(start(&R));
+    RITZ_CHECK(start_impedance(&R));
     RITZ_MOVE(*out, R);
     return RITZ_OK;
 }
@@ -117,8 +118,8 @@ bool ritz_rational_damped(const ritz_rational *R)
     return R->component->D.colptr || R->component->K4.colptr;
 }
 
-/* Z(s), unless it is factored at s already. */
-static ritz_status factor(ritz_rational *R, double _Complex s)
+/* Factor Z(s), unless it is factored at s already. */
+static ritz_status factor_impedance(ritz_rational *R, double _Complex s)
 {
     ritz_status status = RITZ_OK;
     double _Complex c[4] = {s * s, 1.0};
@@ -145,8 +146,8 @@ done:
 }
 
 /* v += F(s) b of a group. */
-static void load(const ritz_rational_loads *group,
-                 const ritz_interpolation_point *probe, double _Complex *v)
+static void add_load(const ritz_rational_loads *group,
+                     const ritz_interpolation_point *probe, double _Complex *v)
 {
     double _Complex power = 1.0;
 
@@ -160,18 +161,18 @@ static void load(const ritz_rational_loads *group,
         }
 }
 
-static ritz_status answer(ritz_rational *R,
-                          const ritz_interpolation_point *probe,
-                          double _Complex *v)
+static ritz_status solve_probe(ritz_rational *R,
+                               const ritz_interpolation_point *probe,
+                               double _Complex *v)
 {
-    load(&R->group[probe->group], probe, v);
-    RITZ_CHECK(factor(R, probe->s));
+    add_load(&R->group[probe->group], probe, v);
+    RITZ_CHECK(factor_impedance(R, probe->s));
     return ritz_zldl_solve(R->Z, 1, v);
 }
 
 /* w := w / |w|, and |w| in the inner product P. */
-static ritz_status normalise(const ritz_rational *R, ritz_dense *w,
-                             double *size)
+static ritz_status normalise_vector(const ritz_rational *R, ritz_dense *w,
+                                    double *size)
 {
     RITZ_OWN(ritz_dense) Pw = {0};
 
@@ -183,8 +184,8 @@ static ritz_status normalise(const ritz_rational *R, ritz_dense *w,
 }
 
 /* w := w - Q Q' P w. */
-static ritz_status take_out(const ritz_rational *R, const ritz_dense *Q,
-                            ritz_dense *w)
+static ritz_status remove_span(const ritz_rational *R, const ritz_dense *Q,
+                               ritz_dense *w)
 {
     RITZ_OWN(ritz_dense) Pw = {0}, share = {0}, gone = {0};
 
@@ -197,18 +198,19 @@ static ritz_status take_out(const ritz_rational *R, const ritz_dense *Q,
 }
 
 /*
- * Append what is new in w, scaled so that the answer it is part of has length
- * one: less than the tolerance of that is nothing. Twice is enough for
- * orthogonality [GiraudLangouRozloznik2005].
+ * Append the independent part of w, which is scaled so that the response it is
+ * part of has length one; less than the tolerance counts as dependent. Twice is
+ * enough for orthogonality [GiraudLangouRozloznik2005].
  */
-static ritz_status append(const ritz_rational *R, ritz_dense *w, ritz_dense *Q)
+static ritz_status append_vector(const ritz_rational *R, ritz_dense *w,
+                                 ritz_dense *Q)
 {
     double size = 0.0;
     double left = 1.0;
 
     for (int pass = 0; pass < 2 && left > R->tolerance; pass++) {
-        RITZ_CHECK(take_out(R, Q, w));
-        RITZ_CHECK(normalise(R, w, &size));
+        RITZ_CHECK(remove_span(R, Q, w));
+        RITZ_CHECK(normalise_vector(R, w, &size));
         left *= size;
     }
     if (left > R->tolerance)
@@ -218,8 +220,8 @@ static ritz_status append(const ritz_rational *R, ritz_dense *w, ritz_dense *Q)
 }
 
 /* Re v and Im v over the length of v; the larger first. */
-static ritz_status split(const ritz_rational *R, const double _Complex *v,
-                         ritz_dense part[2])
+static ritz_status split_complex(const ritz_rational *R,
+                                 const double _Complex *v, ritz_dense part[2])
 {
     int64_t n = R->component->num_dofs;
     double length[2] = {0.0, 0.0};
@@ -233,7 +235,7 @@ static ritz_status split(const ritz_rational *R, const double _Complex *v,
         part[1].val[i] = cimag(v[i]) / largest;
     }
     for (int k = 0; k < 2; k++)
-        RITZ_CHECK(normalise(R, &part[k], &length[k]));
+        RITZ_CHECK(normalise_vector(R, &part[k], &length[k]));
     all = fmax(hypot(length[0], length[1]), DBL_MIN);
     for (int k = 0; k < 2; k++)
         for (int64_t i = 0; i < n; i++)
@@ -247,9 +249,10 @@ static ritz_status split(const ritz_rational *R, const double _Complex *v,
     return RITZ_OK;
 }
 
-/* Both parts, or none if there may be no room for both. */
-static ritz_status add(ritz_rational *R, const ritz_interpolation_point *probe,
-                       int64_t room, ritz_dense *Q)
+/* Append both parts, or none if there may be no room for both. */
+static ritz_status add_probe(ritz_rational *R,
+                             const ritz_interpolation_point *probe,
+                             int64_t room, ritz_dense *Q)
 {
     ritz_status status = RITZ_OK;
     int64_t n = R->component->num_dofs;
@@ -262,10 +265,10 @@ static ritz_status add(ritz_rational *R, const ritz_interpolation_point *probe,
     RITZ_NEW(v, n);
     RITZ_TRY(ritz_dense_new(n, 1, &part[0]));
     RITZ_TRY(ritz_dense_new(n, 1, &part[1]));
-    RITZ_TRY(answer(R, probe, v));
-    RITZ_TRY(split(R, v, part));
+    RITZ_TRY(solve_probe(R, probe, v));
+    RITZ_TRY(split_complex(R, v, part));
     for (int64_t k = 0; k < 2 && k < room; k++)
-        RITZ_TRY(append(R, &part[k], Q));
+        RITZ_TRY(append_vector(R, &part[k], Q));
 done:
     free(v);
     ritz_dense_free(&part[0]);
@@ -289,7 +292,7 @@ ritz_status ritz_rational_span(ritz_rational *R, const ritz_probes *probes,
     for (int64_t k = 0; k < probes->count; k++) {
         int64_t before = Q.ncol;
 
-        RITZ_CHECK(add(R, &probes->item[k], r + most - before, &Q));
+        RITZ_CHECK(add_probe(R, &probes->item[k], r + most - before, &Q));
         gave[k] = Q.ncol - before;
     }
     RITZ_CHECK(ritz_dense_columns(&Q, 0, Q.ncol, &kept));

@@ -1,11 +1,11 @@
 /*
- * Answers of a component at points of the complex plane,
+ * Responses of a component at points of the complex plane,
  *
  *     v = Z(s)^-1 F(s) b,    Z(s) = s^2 M + s D + K + i K4,
  *     F(s) = F_0 + s F_1 + s^2 F_2,
  *
- * and the real basis that holds some of them. Only matrices count: damping that
- * is stated as ratios is not in Z.
+ * and the real basis that spans some of them. Damping that is given as ratios
+ * is not in Z, which has the matrices alone.
  */
 #ifndef RITZ_BASES_RATIONAL_H
 #define RITZ_BASES_RATIONAL_H
@@ -24,7 +24,9 @@ typedef struct ritz_rational_loads {
     ritz_dense F[3]; /* n x count */
 } ritz_rational_loads;
 
-/* One answer that is wanted: where, and in which direction of which loads. */
+/*
+ * One requested response: the point s, and a direction b of one group of loads.
+ */
 typedef struct ritz_interpolation_point {
     double _Complex s; /* Im s >= 0; K4 counts above the real axis only */
     int64_t group;
@@ -50,8 +52,8 @@ typedef struct ritz_rational {
 } ritz_rational;
 
 /**
- * Each kind of load is a group. Inputs and outputs are read in any case, to
- * weigh with.
+ * Each kind of load is a group. Inputs and outputs are read in any case, since
+ * poles are weighted by them.
  *
  * @param[in] loads  to be answered, sum of RITZ_LOADS_...
  * @param[in] scale  an eigenvalue of the component  [rad^2/s^2]
@@ -60,15 +62,15 @@ typedef struct ritz_rational {
 ritz_status ritz_rational_new(const ritz_request *request, int loads,
                               double scale, ritz_rational *out);
 
-/** Whether the component has D or K4, so that answers are complex. */
+/** Whether the component has D or K4, so that responses are complex. */
 bool ritz_rational_damped(const ritz_rational *R);
 
 /**
- * Real and imaginary parts of the answers to probes, in their order, behind the
- * columns of @p first, orthonormal in M + K / scale; parts that depend on what
- * is there are left out.
+ * Real and imaginary parts of the responses to probes, in their order, after
+ * the columns of @p first, orthonormal in M + K / scale; dependent parts are
+ * left out.
  *
- * A probe whose answer takes more columns than are left is passed over.
+ * A probe whose response needs more columns than are left is skipped.
  *
  * @param[in]  first  n x r, orthonormal in the same product; may have no column
  * @param[in]  most   columns beside those of @p first

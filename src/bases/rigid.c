@@ -1,6 +1,6 @@
 /*
- * Rigid body: six motions by geometry about the centre of mass, or as many as
- * the component's dofs can show.
+ * Rigid body: six motions by geometry about the centre of mass, or as many of
+ * them as have a component along the dofs.
  */
 #include "base/tolerances.h"
 
@@ -12,13 +12,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Motions that no dof can show: a plane model, a point mass. */
+/* Whether a motion is zero at all dofs: a plane model, a point mass. */
 static bool is_nothing(const ritz_dense *R, int64_t j, double largest)
 {
     return ritz_dense_col_max(R, j) <= RITZ_NO_MOTION * largest;
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_rigid(const ritz_request *request, ritz_basis *out)
 {
     const ritz_component *component = request->component;
     int64_t n = component->num_dofs;
@@ -57,5 +57,5 @@ const ritz_method ritz_method_rigid = {
     .cost = "a product",
     .holds = "mass, centre and inertia",
     .fails = "anything flexible; grids without positions",
-    .make = make,
+    .make = make_rigid,
 };

@@ -1,16 +1,17 @@
 /*
  * Rubin's reduction [Rubin1975]: free-interface modes and residual flexibility
- * with its inertia, in coordinates that hold the attached displacements u_b as
- * they are. With Psi and Phi of macneal_rubin.c and Psi_bb = F'Psi
+ * with its inertia, in coordinates that include the attached displacements u_b.
+ * With Psi and Phi of macneal_rubin.c and Psi_bb = F'Psi
  *
  *     u = Phi q + Psi p,   u_b = Phi_b q + Psi_bb p
  *     T = [G, Phi - G Phi_b],   G = Psi Psi_bb^-1,   u = T [u_b; q]
  *
- * It spans what macneal-rubin does. The columns of q vanish at b, so that those
- * of rigid modes store energy: they are of kind normal like the others.
+ * It spans the same space as macneal-rubin. The columns of q vanish at b, so
+ * that those of rigid modes store energy: they are of kind normal like the
+ * others.
  *
- * Psi_bb has an inverse on independent columns only; the dofs of those that
- * residual.c sifts out are no coordinates, and the remark names them.
+ * Psi_bb has an inverse on independent columns only; the dofs of columns that
+ * free_modes.c removes are no coordinates, and the remark names them.
  */
 #include "base/alloc.h"
 #include "bases/free_modes.h"
@@ -28,7 +29,8 @@
 enum { NAMED = 3 };
 
 /* The columns of Psi that stay, and the rows they attach. */
-static ritz_status pick(const ritz_free_set *set, ritz_dense *Psi, int64_t *b)
+static ritz_status pick_columns(const ritz_free_set *set, ritz_dense *Psi,
+                                int64_t *b)
 {
     int64_t n = set->Psi.nrow;
     int64_t k = 0;
@@ -45,7 +47,7 @@ static ritz_status pick(const ritz_free_set *set, ritz_dense *Psi, int64_t *b)
 }
 
 /* G = Psi Psi_bb^-1, Psi_bb = S L L' S with a unit diagonal within. */
-static ritz_status divide(const int64_t *b, ritz_dense *Psi)
+static ritz_status divide_residual(const int64_t *b, ritz_dense *Psi)
 {
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY double *scale = NULL;
@@ -75,9 +77,12 @@ static ritz_status divide(const int64_t *b, ritz_dense *Psi)
     return RITZ_OK;
 }
 
-/* G with ones, and Phi - G Phi_b with zeros, where they are so exactly. */
-static ritz_status shape(const ritz_dense *Phi, const int64_t *b, ritz_dense *G,
-                         ritz_dense *T)
+/*
+ * Set the rows of G to ones and those of Phi - G Phi_b to zeros where they are
+ * so exactly.
+ */
+static ritz_status set_exact_entries(const ritz_dense *Phi, const int64_t *b,
+                                     ritz_dense *G, ritz_dense *T)
 {
     RITZ_OWN(ritz_dense) Phi_b = {0};
     int64_t n = G->nrow;
@@ -101,9 +106,9 @@ static ritz_status shape(const ritz_dense *Phi, const int64_t *b, ritz_dense *G,
     return RITZ_OK;
 }
 
-/* "grid 3 T1, grid 7 T1": dofs that are no coordinates. */
-static void remark(const ritz_request *request, const ritz_free_set *set,
-                   ritz_basis *basis)
+/* Name the dofs that are no coordinates: "grid 3 T1, grid 7 T1". */
+static void add_remark(const ritz_request *request, const ritz_free_set *set,
+                       ritz_basis *basis)
 {
     char text[NAMED * (RITZ_LOADS_NAME_SIZE + 2)] = "";
     char name[RITZ_LOADS_NAME_SIZE];
@@ -127,9 +132,9 @@ static void remark(const ritz_request *request, const ritz_free_set *set,
                  count, text, count > NAMED ? ", ..." : "");
 }
 
-/* [constraint, normal], the modes in the order that they had. */
-static void label(const ritz_free_set *set, const int64_t *b, int64_t p,
-                  ritz_basis *basis)
+/* [constraint, normal], the modes in their previous order. */
+static void label_columns(const ritz_free_set *set, const int64_t *b, int64_t p,
+                          ritz_basis *basis)
 {
     const ritz_pairs *modes = &set->modes;
     ritz_columns *columns = &basis->columns;
@@ -146,7 +151,7 @@ static void label(const ritz_free_set *set, const int64_t *b, int64_t p,
     memcpy(basis->origin.engine, modes->engine, sizeof basis->origin.engine);
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_rubin(const ritz_request *request, ritz_basis *out)
 {
     RITZ_OWN(ritz_free_set) set = {0};
     RITZ_OWN(ritz_basis) basis = {0};
@@ -157,16 +162,16 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
     if (ritz_free_set_kept(&set) == 0) { /* then the modes are all there is */
         RITZ_CHECK(
             ritz_free_set_join(request, &set, RITZ_COLUMN_RESIDUAL, out));
-        remark(request, &set, out);
+        add_remark(request, &set, out);
         return RITZ_OK;
     }
     RITZ_CHECK_NEW(b, set.Psi.ncol);
-    RITZ_CHECK(pick(&set, &G, b));
-    RITZ_CHECK(divide(b, &G));
+    RITZ_CHECK(pick_columns(&set, &G, b));
+    RITZ_CHECK(divide_residual(b, &G));
     RITZ_CHECK(ritz_basis_new(G.nrow, G.ncol + set.modes.Phi.ncol, &basis));
-    RITZ_CHECK(shape(&set.modes.Phi, b, &G, &basis.T));
-    label(&set, b, G.ncol, &basis);
-    remark(request, &set, &basis);
+    RITZ_CHECK(set_exact_entries(&set.modes.Phi, b, &G, &basis.T));
+    label_columns(&set, b, G.ncol, &basis);
+    add_remark(request, &set, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
@@ -181,5 +186,5 @@ const ritz_method ritz_method_rubin = {
     .holds = "spans what macneal-rubin spans",
     .fails = "nearly all modes kept: what is left at the interface is rounding",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
-    .make = make,
+    .make = make_rubin,
 };

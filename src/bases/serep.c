@@ -1,13 +1,13 @@
 /*
  * System equivalent reduction expansion process: the lowest modes Phi of the
- * component, seen through its attached (measured) dofs [OCallahan1989b],
+ * component, observed at its attached (measured) dofs [OCallahan1989b],
  *
  *     T = Phi Phi_a^+,    u = T u_a
  *
  * With as many modes m as attached dofs a, T has a column for each of them.
  * With fewer, T u_a has rank m only, and matrices of order a would be singular:
- * m dofs s that tell the modes apart best, by a QR factor of Phi_a' with pivots,
- * are coordinates then, and the others follow from them:
+ * m dofs s that distinguish the modes best, by a QR factor of Phi_a' with
+ * pivots, are coordinates then, and the others follow from them:
  *
  *     T = Phi Phi_s^-1,   span T = span Phi Phi_a^+ = span Phi
  *
@@ -28,7 +28,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is chosen, and how well it tells the modes apart. */
+/* The dofs that are chosen, and how well they distinguish the modes. */
 typedef struct selection {
     const ritz_request *request;
     const ritz_pairs *modes;
@@ -38,37 +38,39 @@ typedef struct selection {
     int64_t worst; /* mode that is seen least */
 } selection;
 
-static int64_t kind_of(const ritz_component *component, int64_t row)
+static int64_t dof_kind(const ritz_component *component, int64_t row)
 {
     int64_t direction = component->dof[row].component;
 
     return direction == 0 ? 0 : direction <= 3 ? 1 : 2;
 }
 
-/* Metres and radians are not of one size: each kind is measured by its own. */
+/*
+ * Metres and radians are not comparable: each kind is relative to its own size.
+ */
 static void find_sizes(selection *c)
 {
     const ritz_component *component = c->request->component;
 
     for (int64_t j = 0; j < c->modes->Phi.ncol; j++)
         for (int64_t i = 0; i < component->num_dofs; i++) {
-            double *size = &c->size[kind_of(component, i)];
+            double *size = &c->size[dof_kind(component, i)];
 
             *size = fmax(*size, fabs(ritz_dense_col(&c->modes->Phi, j)[i]));
         }
 }
 
 /* 1 / size, of an attached dof. */
-static double weight(const selection *c, int64_t k)
+static double dof_weight(const selection *c, int64_t k)
 {
     const ritz_request *request = c->request;
     int64_t row = request->attached.at[k];
-    double size = c->size[kind_of(request->component, row)];
+    double size = c->size[dof_kind(request->component, row)];
 
     return size > 0.0 ? 1.0 / size : 1.0;
 }
 
-static int compare(const void *left, const void *right)
+static int compare_dofs(const void *left, const void *right)
 {
     const int64_t *a = left;
     const int64_t *b = right;
@@ -77,7 +79,7 @@ static int compare(const void *left, const void *right)
 }
 
 /* The first m pivots of the weighted Phi_a', in the order of attachment. */
-static ritz_status choose(selection *c)
+static ritz_status choose_dofs(selection *c)
 {
     const ritz_dofs *a = &c->request->attached;
     int64_t m = c->modes->Phi.ncol;
@@ -92,19 +94,19 @@ static ritz_status choose(selection *c)
     for (int64_t k = 0; k < a->count; k++)
         for (int64_t j = 0; j < m; j++)
             ritz_dense_col(&R, k)[j] =
-                weight(c, k) * ritz_dense_col(&c->modes->Phi, j)[a->at[k]];
+                dof_weight(c, k) * ritz_dense_col(&c->modes->Phi, j)[a->at[k]];
     RITZ_REFUSE_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)m, (int)a->count,
                                   R.val, (int)m, pivot, tau) != 0,
                    RITZ_ERR_MEMORY, "no memory to choose among attached dofs");
     for (int64_t k = 0; k < m; k++)
         c->at[k] = pivot[k] - 1;
-    qsort(c->at, (size_t)m, sizeof *c->at, compare);
+    qsort(c->at, (size_t)m, sizeof *c->at, compare_dofs);
     return RITZ_OK;
 }
 
 /* U, sigma, V' of the weighted Phi_s, m x m. */
-static ritz_status decompose(const selection *c, ritz_dense *U, double *sigma,
-                             ritz_dense *Vt)
+static ritz_status decompose_modes(const selection *c, ritz_dense *U,
+                                   double *sigma, ritz_dense *Vt)
 {
     const ritz_dense *Phi = &c->modes->Phi;
     int m = (int)Phi->ncol;
@@ -118,7 +120,7 @@ static ritz_status decompose(const selection *c, ritz_dense *U, double *sigma,
     for (int64_t j = 0; j < m; j++)
         for (int64_t k = 0; k < m; k++)
             ritz_dense_col(&A, j)[k] =
-                weight(c, c->at[k]) *
+                dof_weight(c, c->at[k]) *
                 ritz_dense_col(Phi, j)[c->request->attached.at[c->at[k]]];
     RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', m, m, A.val, m,
                                   sigma, U->val, m, Vt->val, m, work) != 0,
@@ -128,11 +130,12 @@ static ritz_status decompose(const selection *c, ritz_dense *U, double *sigma,
 }
 
 /*
- * What is measured is of size 1 where it is largest, wherever that is: a mode
- * that all attached dofs see as rounding is unseen, though each relative to the
- * other were seen well. The worst mode has most in the last row of V'.
+ * Observability is relative to size 1, the largest of a mode at any dof: a mode
+ * that is rounding at all attached dofs is unobservable, even if these dofs
+ * distinguish it from others. The worst mode has the largest entry in the last
+ * row of V'.
  */
-static void judge(selection *c, const double *sigma, const ritz_dense *Vt)
+static void find_worst(selection *c, const double *sigma, const ritz_dense *Vt)
 {
     int64_t last = Vt->nrow - 1;
 
@@ -157,9 +160,9 @@ static void name_worst(const selection *c, char text[static RITZ_NAME_SIZE])
 }
 
 /* T = Phi V Sigma^-1 U' W, with rows of I at the coordinates themselves. */
-static ritz_status expand(const selection *c, const ritz_dense *U,
-                          const double *sigma, const ritz_dense *Vt,
-                          ritz_dense *T)
+static ritz_status expand_basis(const selection *c, const ritz_dense *U,
+                                const double *sigma, const ritz_dense *Vt,
+                                ritz_dense *T)
 {
     int64_t m = U->ncol;
     RITZ_OWN(ritz_dense) scaled = {0}, inverse = {0};
@@ -168,7 +171,7 @@ static ritz_status expand(const selection *c, const ritz_dense *U,
     for (int64_t j = 0; j < m; j++)
         for (int64_t k = 0; k < m; k++)
             ritz_dense_col(&scaled, k)[j] =
-                ritz_dense_col(U, j)[k] * weight(c, c->at[k]) / sigma[j];
+                ritz_dense_col(U, j)[k] * dof_weight(c, c->at[k]) / sigma[j];
     RITZ_CHECK(ritz_dense_mul_tn(Vt, &scaled, &inverse));
     RITZ_CHECK(ritz_dense_mul(&c->modes->Phi, &inverse, T));
     for (int64_t j = 0; j < m; j++)
@@ -178,17 +181,17 @@ static ritz_status expand(const selection *c, const ritz_dense *U,
     return RITZ_OK;
 }
 
-static ritz_status find(selection *c, ritz_dense *T)
+static ritz_status find_serep(selection *c, ritz_dense *T)
 {
     RITZ_OWN(ritz_dense) U = {0}, Vt = {0};
     RITZ_OWN_ARRAY double *sigma = NULL;
     char text[RITZ_NAME_SIZE];
 
     find_sizes(c);
-    RITZ_CHECK(choose(c));
+    RITZ_CHECK(choose_dofs(c));
     RITZ_CHECK_NEW(sigma, c->modes->Phi.ncol);
-    RITZ_CHECK(decompose(c, &U, sigma, &Vt));
-    judge(c, sigma, &Vt);
+    RITZ_CHECK(decompose_modes(c, &U, sigma, &Vt));
+    find_worst(c, sigma, &Vt);
     name_worst(c, text);
     RITZ_REFUSE_IF(
         !(c->condition * c->request->tolerance < 1.0), RITZ_ERR_SINGULAR,
@@ -196,12 +199,14 @@ static ritz_status find(selection *c, ritz_dense *T)
         "%.1e), they see least of %s: attach dofs where it moves, or "
         "keep fewer modes",
         c->condition, text);
-    return expand(c, &U, sigma, &Vt, T);
+    return expand_basis(c, &U, sigma, &Vt, T);
 }
 
-/* Which dofs are no coordinates, as far as there is room; what is seen badly.
+/*
+ * Name the dofs that are no coordinates, as far as there is room, and the mode
+ * that is least observable.
  */
-static void remark(const selection *c, ritz_basis *basis)
+static void add_remark(const selection *c, ritz_basis *basis)
 {
     const ritz_dofs *a = &c->request->attached;
     int64_t m = basis->T.ncol;
@@ -229,7 +234,8 @@ static void remark(const selection *c, ritz_basis *basis)
         memcpy(text + size - 4, "...", 4);
 }
 
-static ritz_status check(const ritz_request *request, const ritz_pairs *modes)
+static ritz_status check_request(const ritz_request *request,
+                                 const ritz_pairs *modes)
 {
     int64_t m = modes->Phi.ncol;
     int64_t a = request->attached.count;
@@ -245,7 +251,7 @@ static ritz_status check(const ritz_request *request, const ritz_pairs *modes)
     return RITZ_OK;
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_serep(const ritz_request *request, ritz_basis *out)
 {
     ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
@@ -262,14 +268,14 @@ static ritz_status make(const ritz_request *request, ritz_basis *out)
         ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
     RITZ_TRY_IN("free-interface modes",
                 ritz_eigen_sparse(&component->K, &component->M, &span, &modes));
-    RITZ_TRY(check(request, &modes));
+    RITZ_TRY(check_request(request, &modes));
     RITZ_TRY(ritz_columns_new(modes.Phi.ncol, &basis.columns));
-    RITZ_TRY(find(&c, &basis.T));
+    RITZ_TRY(find_serep(&c, &basis.T));
     for (int64_t k = 0; k < basis.T.ncol; k++) {
         basis.columns.kind[k] = RITZ_COLUMN_CONSTRAINT;
         basis.columns.dof[k] = request->attached.at[c.at[k]];
     }
-    remark(&c, &basis);
+    add_remark(&c, &basis);
     memcpy(basis.origin.engine, modes.engine, sizeof basis.origin.engine);
     RITZ_MOVE(*out, basis);
 done:
@@ -290,5 +296,5 @@ const ritz_method ritz_method_serep = {
     .fails = "statics; modes that the measured dofs do not tell apart",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
     .only_named = RITZ_NAMED_FOR_SCENES,
-    .make = make,
+    .make = make_serep,
 };

@@ -4,14 +4,14 @@
  *     span V = { Re, Im of v_j },   Z(s_j) v_j = F b_j,
  *     Z(s) = s^2 M + s D + K + i K4,
  *
- * F one kind of loads: inputs, say, or what outputs read. The reduced component
- * answers F b_j as the full one does at s_j, wherever it is read, so that
- * H_r(s_j) b_j = H(s_j) b_j of inputs and b_j'H_r(s_j) = b_j'H(s_j) of outputs;
- * V'KV, V'MV and V'DV are as symmetric and definite as K, M and D.
+ * F one kind of loads: inputs, say, or rows of outputs. The response of the
+ * reduced component to F b_j at s_j is that of the full one at every dof, so
+ * that H_r(s_j) b_j = H(s_j) b_j of inputs and b_j'H_r(s_j) = b_j'H(s_j) of
+ * outputs; V'KV, V'MV and V'DV are as symmetric and definite as K, M and D.
  *
  * Points that are best in H2 mirror the poles of the reduced model, and b_j are
- * its residues. So points are moved to what the poles they gave say, until they
- * stay (iterative rational Krylov):
+ * its residues. So points are moved to the mirror images of the resulting
+ * poles, until they converge (iterative rational Krylov):
  *
  * - With D or K4, v_j is complex and costs two vectors, but a reduced component
  *   of N has N pairs of poles: the more dominant half gives the points,
@@ -20,7 +20,7 @@
  *   point: beside the resonance, not mirrored, as nothing is damped there.
  *
  * The search begins at the most dominant of twice as many modes. Rigid motion,
- * which has no H2 norm, is kept beside.
+ * which has no H2 norm, is kept in addition.
  */
 #include "bases/tangential.h"
 
@@ -69,7 +69,7 @@ static void free_search(irka_search *s)
     ritz_probes_free(&s->probes);
 }
 
-/* The choice's damping, else the component's, else a usual one. */
+/* The requested damping, else the component's, else a usual value. */
 static ritz_status choose_damping(irka_search *s)
 {
     const ritz_component *component = s->request->component;
@@ -85,7 +85,7 @@ static ritz_status choose_damping(irka_search *s)
     return RITZ_OK;
 }
 
-/* Flexible modes up to the frequency that was asked for. */
+/* Flexible modes up to the requested frequency. */
 static int64_t count_modes(const ritz_pairs *modes, double up_to_hz)
 {
     int64_t k = modes->num_rigid;
@@ -96,7 +96,7 @@ static int64_t count_modes(const ritz_pairs *modes, double up_to_hz)
     return k - modes->num_rigid;
 }
 
-/* Rigid modes, and twice as many flexible ones as there shall be vectors. */
+/* Rigid modes, and twice as many flexible ones as vectors are requested. */
 static ritz_status find_modes(irka_search *s)
 {
     const ritz_request *request = s->request;
@@ -130,7 +130,7 @@ static ritz_status find_modes(irka_search *s)
     return ritz_dense_columns(&modes->Phi, 0, modes->num_rigid, &s->rigid);
 }
 
-/* Every load that is answered by itself, at every point that was given. */
+/* Each load to be interpolated, by itself, at each given point. */
 static ritz_status list_given(const irka_search *s, ritz_probes *out)
 {
     const ritz_choice *choice = &s->request->choice;
@@ -159,8 +159,8 @@ static ritz_status list_given(const irka_search *s, ritz_probes *out)
     return RITZ_OK;
 }
 
-/* T from probes, of which those that gave nothing are dropped. */
-static ritz_status answer(irka_search *s, ritz_probes *probes)
+/* T from probes; probes that gave no column are dropped. */
+static ritz_status span_probes(irka_search *s, ritz_probes *probes)
 {
     ritz_dense T = {0};
     RITZ_OWN_ARRAY int64_t *gave = NULL;
@@ -183,20 +183,20 @@ static ritz_status answer(irka_search *s, ritz_probes *probes)
     return RITZ_OK;
 }
 
-/* Distance of two points, none between groups. */
-static double distance(const ritz_interpolation_point *a,
-                       const ritz_interpolation_point *b)
+/* Distance of two points, infinite between groups. */
+static double probe_distance(const ritz_interpolation_point *a,
+                             const ritz_interpolation_point *b)
 {
     return a->group == b->group ? cabs(a->s - b->s) : HUGE_VAL;
 }
 
 /*
- * Bring the nearest counterparts of the points of before to the front, one for
- * each. As long as points are free, only among as many as there were before:
- * the most dominant. Returns the largest relative change.
+ * Move the nearest counterpart of each previous point to the front. As long as
+ * points are free, only the most dominant are considered, as many as there were
+ * before. Returns the largest relative change.
  */
-static double follow(const ritz_probes *before, bool is_free,
-                     ritz_probes *probes)
+static double match_probes(const ritz_probes *before, bool is_free,
+                           ritz_probes *probes)
 {
     double worst = 0.0;
 
@@ -209,20 +209,22 @@ static double follow(const ritz_probes *before, bool is_free,
         ritz_interpolation_point found;
 
         for (int64_t j = k + 1; j < among; j++)
-            if (distance(old, &probes->item[j]) <
-                distance(old, &probes->item[best]))
+            if (probe_distance(old, &probes->item[j]) <
+                probe_distance(old, &probes->item[best]))
                 best = j;
         found = probes->item[best];
         memmove(probes->item + k + 1, probes->item + k,
                 (size_t)(best - k) * sizeof found);
         probes->item[k] = found;
-        worst = fmax(worst, distance(old, &found) / cabs(old->s));
+        worst = fmax(worst, probe_distance(old, &found) / cabs(old->s));
     }
     return worst;
 }
 
-/* Points to where the poles that they gave say, until they stay. */
-static ritz_status iterate(irka_search *s)
+/*
+ * Move the points according to the poles that they gave, until they converge.
+ */
+static ritz_status iterate_points(irka_search *s)
 {
     int64_t r = s->rigid.ncol;
     RITZ_OWN(ritz_probes) probes = {0};
@@ -233,10 +235,11 @@ static ritz_status iterate(irka_search *s)
     for (s->rounds = 0;; s->rounds++) {
         RITZ_CHECK(ritz_dominant_probes(&s->R, &s->damping, &V, &probes));
         if (s->rounds > 0)
-            s->change = follow(&s->probes, s->rounds <= FREE_ROUNDS, &probes);
+            s->change =
+                match_probes(&s->probes, s->rounds <= FREE_ROUNDS, &probes);
         if (s->change <= RITZ_POINTS_SETTLED || s->rounds == MOST_ROUNDS)
             break;
-        RITZ_CHECK(answer(s, &probes));
+        RITZ_CHECK(span_probes(s, &probes));
         ritz_dense_free(&V);
         RITZ_CHECK(ritz_dense_columns(&s->T, r, s->T.ncol - r, &V));
     }
@@ -254,10 +257,10 @@ static ritz_status take_given(irka_search *s)
                        "the component can move freely, so that 0 Hz is a pole "
                        "of it: give an expansion point above 0");
     RITZ_CHECK(list_given(s, &probes));
-    return answer(s, &probes);
+    return span_probes(s, &probes);
 }
 
-/* Inputs, or outputs, or attached dofs: the first that is there. */
+/* The first kind of load that there is: inputs, outputs or attached dofs. */
 static int choose_loads(const ritz_request *request)
 {
     if (ritz_loads_count(request, RITZ_LOADS_INPUTS) > 0)
@@ -267,7 +270,7 @@ static int choose_loads(const ritz_request *request)
     return RITZ_LOADS_ATTACHED;
 }
 
-static ritz_status interpolate(irka_search *s)
+static ritz_status interpolate_response(irka_search *s)
 {
     const ritz_request *request = s->request;
     int loads = request->choice.loads;
@@ -278,7 +281,8 @@ static ritz_status interpolate(irka_search *s)
         loads = choose_loads(request);
     RITZ_CHECK(ritz_rational_new(request, loads,
                                  s->modes.lambda[s->modes.num_rigid], &s->R));
-    RITZ_CHECK(request->choice.num_shifts > 0 ? take_given(s) : iterate(s));
+    RITZ_CHECK(request->choice.num_shifts > 0 ? take_given(s)
+                                              : iterate_points(s));
     RITZ_REFUSE_IF(
         s->probes.count == 0 && s->left_out > 0 && s->most == 1,
         RITZ_ERR_ARGUMENT,
@@ -289,8 +293,8 @@ static ritz_status interpolate(irka_search *s)
     return RITZ_OK;
 }
 
-/* How the points were found, and what should be known of them. */
-static void remark(const irka_search *s, ritz_basis *basis)
+/* Remark on how the points were found, and on their limits. */
+static void add_remark(const irka_search *s, ritz_basis *basis)
 {
     char *text = basis->remark;
     const size_t size = sizeof basis->remark;
@@ -300,7 +304,7 @@ static void remark(const irka_search *s, ritz_basis *basis)
     if (s->most == 0)
         return;
     if (s->request->choice.num_shifts > 0)
-        used = snprintf(text, size, "%" PRId64 " answer(s) interpolated",
+        used = snprintf(text, size, "%" PRId64 " span_probes(s) interpolated",
                         s->probes.count);
     else if (s->change <= RITZ_POINTS_SETTLED)
         used =
@@ -322,7 +326,7 @@ static void remark(const irka_search *s, ritz_basis *basis)
 }
 
 /* Rigid, krylov. */
-static ritz_status describe(const irka_search *s, ritz_basis *out)
+static ritz_status label_columns(const irka_search *s, ritz_basis *out)
 {
     RITZ_OWN(ritz_basis) basis = {0};
     ritz_columns *columns = &basis.columns;
@@ -339,7 +343,7 @@ static ritz_status describe(const irka_search *s, ritz_basis *out)
         }
     }
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "MUMPS LDL'");
-    remark(s, &basis);
+    add_remark(s, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
@@ -356,8 +360,8 @@ ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
                                   request->component->num_dofs, &rest));
     RITZ_TRY(choose_damping(&s));
     RITZ_TRY(find_modes(&s));
-    RITZ_TRY(interpolate(&s));
-    RITZ_TRY(describe(&s, out));
+    RITZ_TRY(interpolate_response(&s));
+    RITZ_TRY(label_columns(&s, out));
     if (probes) {
         *probes = s.probes;
         s.probes = (ritz_probes){0};
@@ -368,7 +372,7 @@ done:
     return status;
 }
 
-static ritz_status make(const ritz_request *request, ritz_basis *out)
+static ritz_status make_tangential(const ritz_request *request, ritz_basis *out)
 {
     return ritz_tangential_find(request, out, NULL);
 }
@@ -383,5 +387,5 @@ const ritz_method ritz_method_tangential = {
     .fails = "light damping where all modes count: modes are better in H2",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_DAMPING,
-    .make = make,
+    .make = make_tangential,
 };

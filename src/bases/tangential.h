@@ -7,8 +7,8 @@
 /**
  * The basis of the method `tangential`.
  *
- * @param[out] probes  the answers that are in its span: at each point s, in
- *                     direction b of a group of loads; NULL: not wanted
+ * @param[out] probes  the responses in its span: at each point s, in direction
+ *                     b of a group of loads; may be NULL
  */
 ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
                                  ritz_probes *probes);

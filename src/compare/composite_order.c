@@ -176,7 +176,7 @@ done:
  *     P_c Phi_k v_k                    modes up to the end of the band, v_k the
  *                                      value of mode k in the ranking over the
  *                                      largest at any configuration, or 1,
- *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solutions for inputs, and for forces
+ *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solutions for inputs and forces
  *                                      where outputs read,
  *     P_c Phi_f                        all flexible modes of stage one
  *

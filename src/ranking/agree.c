@@ -1,11 +1,12 @@
 /*
- * With places p and q of the m modes that both rankings have, equal values
- * sharing the mean of their places, Spearman's coefficient is the correlation
- * of p and q, and Kendall's
+ * With the ranks p and q of the m modes that both rankings have, equal values
+ * sharing the mean of their ranks, Spearman's coefficient is the correlation of
+ * p and q, and Kendall's
  *
  *     tau_b = (C - D) / sqrt((n - t_p) (n - t_q)),    n = m (m - 1) / 2
  *
- * with C pairs in the same order in both, D in the other, t tied in one.
+ * with C pairs in the same order in both rankings, D in opposite order, and t
+ * tied in one.
  *
  * [Kendall1948]
  */
@@ -24,14 +25,15 @@ typedef struct shared {
     double place[2]; /* from 1 */
 } shared;
 
-/* One ranking, its modes' numbers and its largest value. */
+/* One ranking: the numbers of its modes and its largest value. */
 typedef struct ranked_values {
     const ritz_ranking *ranking;
     const int64_t *track;
     double largest;
 } ranked_values;
 
-static ranked_values side_of(const ritz_ranking *ranking, const int64_t *track)
+static ranked_values open_ranking(const ritz_ranking *ranking,
+                                  const int64_t *track)
 {
     ranked_values s = {ranking, track, 0.0};
 
@@ -40,20 +42,20 @@ static ranked_values side_of(const ritz_ranking *ranking, const int64_t *track)
     return s;
 }
 
-static int64_t number_of(const ranked_values *s, int64_t mode)
+static int64_t mode_number(const ranked_values *s, int64_t mode)
 {
     return s->track ? s->track[mode] : mode;
 }
 
-static double size_of(const ranked_values *s, int64_t mode)
+static double mode_size(const ranked_values *s, int64_t mode)
 {
     double size = fabs(s->ranking->value[mode]);
 
     return size > RITZ_EQUAL_VALUES * s->largest ? size : 0.0;
 }
 
-/* Mode of that number; -1: none. */
-static int64_t find(const ranked_values *s, int64_t number)
+/* The mode with a number; -1 if there is none. */
+static int64_t find_mode(const ranked_values *s, int64_t number)
 {
     if (!s->track)
         return number < s->ranking->count ? number : -1;
@@ -63,7 +65,10 @@ static int64_t find(const ranked_values *s, int64_t number)
     return -1;
 }
 
-/* Mean place of equal values: those larger, and half of those like it. */
+/*
+ * Mean rank of equal values: the number of larger ones and half of the equal
+ * ones.
+ */
 static void set_places(int64_t count, shared *all, int which)
 {
     for (int64_t i = 0; i < count; i++) {
@@ -77,7 +82,7 @@ static void set_places(int64_t count, shared *all, int which)
     }
 }
 
-static double spearman(int64_t count, const shared *all)
+static double correlate_ranks(int64_t count, const shared *all)
 {
     double mean = 0.5 * ((double)count + 1.0);
     double xy = 0.0, xx = 0.0, yy = 0.0;
@@ -93,19 +98,19 @@ static double spearman(int64_t count, const shared *all)
     return xx > 0.0 && yy > 0.0 ? xy / sqrt(xx * yy) : nan("");
 }
 
-static int sign(double x)
+static int sign_of(double x)
 {
     return (x > 0.0) - (x < 0.0);
 }
 
-static double kendall(int64_t count, const shared *all)
+static double count_pairs(int64_t count, const shared *all)
 {
     double sum = 0.0, untied[2] = {0.0, 0.0};
 
     for (int64_t i = 0; i < count; i++)
         for (int64_t j = 0; j < i; j++) {
-            int a = sign(all[i].place[0] - all[j].place[0]);
-            int b = sign(all[i].place[1] - all[j].place[1]);
+            int a = sign_of(all[i].place[0] - all[j].place[0]);
+            int b = sign_of(all[i].place[1] - all[j].place[1]);
 
             sum += a * b;
             untied[0] += a != 0;
@@ -116,8 +121,8 @@ static double kendall(int64_t count, const shared *all)
                : nan("");
 }
 
-static ritz_status correlate(const ranked_values s[static 2],
-                             ritz_agreement *out)
+static ritz_status correlate_rankings(const ranked_values s[static 2],
+                                      ritz_agreement *out)
 {
     const ritz_ranking *a = s[0].ranking;
     RITZ_OWN_ARRAY shared *all = NULL;
@@ -125,26 +130,26 @@ static ritz_status correlate(const ranked_values s[static 2],
 
     RITZ_CHECK_NEW(all, a->count);
     for (int64_t k = 0; k < a->count; k++) {
-        int64_t number = number_of(&s[0], k);
-        int64_t other = find(&s[1], number);
+        int64_t number = mode_number(&s[0], k);
+        int64_t other = find_mode(&s[1], number);
 
         if (other < 0)
             continue;
         all[n++] = (shared){
-            number, {size_of(&s[0], k), size_of(&s[1], other)}, {0.0, 0.0}};
+            number, {mode_size(&s[0], k), mode_size(&s[1], other)}, {0.0, 0.0}};
     }
     set_places(n, all, 0);
     set_places(n, all, 1);
     out->common = n;
     out->alone[0] = a->count - n;
     out->alone[1] = s[1].ranking->count - n;
-    out->spearman = spearman(n, all);
-    out->kendall = kendall(n, all);
+    out->spearman = correlate_ranks(n, all);
+    out->kendall = count_pairs(n, all);
     return RITZ_OK;
 }
 
-/* How many the first k are, with the rest of the last one's cluster. */
-static int64_t whole(const ritz_ranking *r, int64_t k)
+/* The number of the first k modes with the rest of the last one's cluster. */
+static int64_t extend_to_cluster(const ritz_ranking *r, int64_t k)
 {
     int64_t n = k < r->count ? k : r->count;
 
@@ -157,21 +162,25 @@ static int64_t whole(const ritz_ranking *r, int64_t k)
 static bool is_among(const ranked_values *s, int64_t n, int64_t number)
 {
     for (int64_t k = 0; k < n; k++)
-        if (number_of(s, s->ranking->order[k]) == number)
+        if (mode_number(s, s->ranking->order[k]) == number)
             return true;
     return false;
 }
 
-/* Numbers among the first k of `s` that are not among those of `other`. */
-static int64_t difference(const ranked_values *s, const ranked_values *other,
-                          int64_t k, int64_t *out)
+/*
+ * List the numbers among the first k of `s` that are not among those of
+ * `other`.
+ */
+static int64_t list_difference(const ranked_values *s,
+                               const ranked_values *other, int64_t k,
+                               int64_t *out)
 {
-    int64_t n = whole(s->ranking, k);
-    int64_t m = whole(other->ranking, k);
+    int64_t n = extend_to_cluster(s->ranking, k);
+    int64_t m = extend_to_cluster(other->ranking, k);
     int64_t count = 0;
 
     for (int64_t i = 0; i < n; i++) {
-        int64_t number = number_of(s, s->ranking->order[i]);
+        int64_t number = mode_number(s, s->ranking->order[i]);
 
         if (is_among(other, m, number))
             continue;
@@ -182,16 +191,16 @@ static int64_t difference(const ranked_values *s, const ranked_values *other,
     return count;
 }
 
-static double share(const ranked_values s[static 2], int64_t k)
+static double overlap_share(const ranked_values s[static 2], int64_t k)
 {
-    int64_t n = whole(s[0].ranking, k);
-    int64_t m = whole(s[1].ranking, k);
-    int64_t both = n - difference(&s[0], &s[1], k, NULL);
+    int64_t n = extend_to_cluster(s[0].ranking, k);
+    int64_t m = extend_to_cluster(s[1].ranking, k);
+    int64_t both = n - list_difference(&s[0], &s[1], k, NULL);
 
     return n > 0 || m > 0 ? (double)both / (double)(n > m ? n : m) : nan("");
 }
 
-/* 1, 2, 5, 10, 20, ... of which the last is all. */
+/* The counts 1, 2, 5, 10, 20, ...; the last one is all modes. */
 static ritz_status set_overlaps(const ranked_values s[static 2],
                                 ritz_agreement *out)
 {
@@ -207,7 +216,8 @@ static ritz_status set_overlaps(const ranked_values s[static 2],
 
         if (k > most)
             break;
-        out->overlap[out->num_overlaps++] = (ritz_overlap){k, share(s, k)};
+        out->overlap[out->num_overlaps++] =
+            (ritz_overlap){k, overlap_share(s, k)};
         ten *= i % 3 == 2 ? 10 : 1;
     }
     return RITZ_OK;
@@ -217,20 +227,22 @@ ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
                                 const ritz_ranking *b, const int64_t *track_b,
                                 int64_t top, ritz_agreement *out)
 {
-    const ranked_values s[2] = {side_of(a, track_a), side_of(b, track_b)};
+    const ranked_values s[2] = {open_ranking(a, track_a),
+                                open_ranking(b, track_b)};
     RITZ_OWN(ritz_agreement) agreement = {.top = top};
 
     RITZ_REFUSE_IF(top < 1, RITZ_ERR_ARGUMENT,
                    "at least the first mode is compared");
-    RITZ_CHECK(correlate(s, &agreement));
+    RITZ_CHECK(correlate_rankings(s, &agreement));
     RITZ_REFUSE_IF(agreement.common == 0, RITZ_ERR_ARGUMENT,
                    "the rankings have no mode in common");
     RITZ_CHECK(set_overlaps(s, &agreement));
     RITZ_CHECK_NEW(agreement.left, a->count);
     RITZ_CHECK_NEW(agreement.entered, b->count);
-    agreement.num_left = difference(&s[0], &s[1], top, agreement.left);
-    agreement.num_entered = difference(&s[1], &s[0], top, agreement.entered);
-    agreement.top_share = share(s, top);
+    agreement.num_left = list_difference(&s[0], &s[1], top, agreement.left);
+    agreement.num_entered =
+        list_difference(&s[1], &s[0], top, agreement.entered);
+    agreement.top_share = overlap_share(s, top);
     RITZ_MOVE(*out, agreement);
     return RITZ_OK;
 }

@@ -1,4 +1,4 @@
-/* What rankings share with each other. */
+/* What several rankings have in common. */
 #ifndef RITZ_RANKING_COSTS_H
 #define RITZ_RANKING_COSTS_H
 
@@ -12,19 +12,19 @@ void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
                             const char *letter, int64_t k,
                             char out[RITZ_NAME_SIZE]);
 
-/* What a cluster of modes, a model of its own, is worth. */
+/* The value of a cluster of modes that is a model of its own. */
 typedef ritz_status ritz_cluster_value(const ritz_rank_request *request,
                                        const ritz_modal *cluster, double *out);
 
-/** The value of each mode is that of its cluster. */
+/** Rank by cluster: the value of each mode is that of its cluster. */
 ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
                                     ritz_cluster_value *value,
                                     ritz_ranking *ranking);
 
-/** Mean of the values within each cluster, for all of its modes. */
+/** Replace the values within each cluster by their mean. */
 void ritz_ranking_share(const ritz_modal *modal, double *value);
 
-/** Modes by magnitude of value, of equal ones the lower. */
+/** Sort modes by magnitude of value; of equal ones the lower mode precedes. */
 ritz_status ritz_ranking_sort(int64_t count, const double *value,
                               int64_t *order);
 

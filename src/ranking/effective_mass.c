@@ -4,8 +4,8 @@
  *
  *     m_kd = (phi_k' M r_d)^2,    sum_k m_kd = r_d' M r_d
  *
- * over all modes of a model that is held. They say what mass a mode takes along
- * when its support is shaken. The value of a mode is its largest share,
+ * over all modes of a supported model. They are the mass that acts through a
+ * mode when the support is shaken. The value of a mode is its largest fraction,
  * max_d m_kd / r_d' M r_d.
  *
  * [Girard2008]
@@ -20,13 +20,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Effective masses, of which two rankings are made. */
+/* The effective masses, from which two rankings are made. */
 
 enum { RITZ_MASS_PARTS = 6 };
 
 /* Effective masses in six directions as the parts of a ranking. */
-static ritz_status mass_parts(const ritz_rank_request *request,
-                              ritz_ranking *ranking)
+static ritz_status fill_mass_parts(const ritz_rank_request *request,
+                                   ritz_ranking *ranking)
 {
     static const char *const direction[RITZ_MASS_PARTS] = {
         "x", "y", "z", "about x", "about y", "about z"};
@@ -45,8 +45,9 @@ static ritz_status mass_parts(const ritz_rank_request *request,
     return RITZ_OK;
 }
 
-/* Largest share of mode k; of a cluster the parts are summed up before. */
-static double share(const ritz_ranking *ranking, int64_t first, int64_t last)
+/* The largest fraction of mode k; the parts of a cluster are summed first. */
+static double largest_fraction(const ritz_ranking *ranking, int64_t first,
+                               int64_t last)
 {
     double largest = 0.0;
 
@@ -68,13 +69,13 @@ static ritz_status rank_masses(const ritz_rank_request *request,
     int64_t last = 0;
     double largest = 0.0;
 
-    RITZ_CHECK(mass_parts(request, ranking));
+    RITZ_CHECK(fill_mass_parts(request, ranking));
     ritz_ranking_clusters(&request->modal, ranking->cluster);
     for (int64_t first = 0; first < m; first = last) {
         for (last = first + 1; last < m && ranking->cluster[last] == first;)
             last++;
         for (int64_t k = first; k < last; k++)
-            ranking->value[k] = share(ranking, first, last);
+            ranking->value[k] = largest_fraction(ranking, first, last);
         largest = fmax(largest, ranking->value[first]);
     }
     RITZ_REFUSE_IF(
@@ -99,15 +100,16 @@ const ritz_ranker ritz_ranker_effective_mass = {
  *
  *     M = [M_s  P'; P  I],   P = Phi' M Psi,
  *
- * mode k, moved by the interface alone, answers it with the mass P_k' P_k. All
- * modes of the full component together give M_s less what the interface holds
- * by itself. As interfaces mix translations and rotations, the value is free of
- * units,
+ * the effective mass of mode k for motion of the interface is P_k' P_k. All
+ * modes of the full component together give M_s less the mass of the interface
+ * dofs themselves. As interfaces mix translations and rotations, the value is
+ * free of units,
  *
  *     s_k = trace(M_s^-1 P_k'P_k) / p = P_k M_s^-1 P_k' / p,    sum_k s_k <= 1
  *
- * p being the rank of M_s. On an interface that moves as a rigid body it weighs
- * the effective masses of the component held there, which are its parts.
+ * p being the rank of M_s. If the interface moves as a rigid body, this is a
+ * weighted sum of the effective masses of the component clamped there, which
+ * are its parts.
  *
  * [KammerTriller1996]
  */
@@ -116,7 +118,7 @@ const ritz_ranker ritz_ranker_effective_mass = {
  * X' X = M_s^-1 on the motions that have mass: with S = diag(M_s)^-1/2 and
  * S M_s S = V Lambda V', X = Lambda^-1/2 V' S.
  */
-static ritz_status invert(const ritz_dense *M_s, ritz_dense *X)
+static ritz_status invert_mass(const ritz_dense *M_s, ritz_dense *X)
 {
     int64_t p = M_s->nrow, r = 0;
     RITZ_OWN(ritz_dense) V = {0};
@@ -152,14 +154,14 @@ static ritz_status rank_interface_masses(const ritz_rank_request *request,
 {
     RITZ_OWN(ritz_dense) X = {0}, Y = {0};
 
-    RITZ_CHECK(invert(&request->interface, &X));
+    RITZ_CHECK(invert_mass(&request->interface, &X));
     RITZ_CHECK(ritz_dense_mul(&X, &request->coupling, &Y));
     for (int64_t k = 0; k < Y.ncol; k++)
         for (int64_t i = 0; i < Y.nrow; i++)
             ranking->value[k] += ritz_dense_col(&Y, k)[i] *
                                  ritz_dense_col(&Y, k)[i] / (double)Y.nrow;
     if (request->momentum.val)
-        RITZ_CHECK(mass_parts(request, ranking));
+        RITZ_CHECK(fill_mass_parts(request, ranking));
     ranking->total = 0.0;
     for (int64_t k = 0; k < Y.ncol; k++)
         ranking->total += ranking->value[k];

@@ -4,7 +4,8 @@
  *     sigma = sqrt(b b' (w^-2 c_d' c_d + c_v' c_v)) / (4 zeta w)
  *
  * with b a row, c_d and c_v columns. A cluster of modes at one frequency is
- * taken as a whole, lest the value depend on which vectors span it:
+ * ranked as a whole, so that the value does not depend on which vectors span
+ * it:
  *
  *     sigma = | [C_d/w; C_v] B |_2 / (4 zeta w),
  *
@@ -18,7 +19,7 @@
 #include <math.h>
 
 /* B / sqrt(4 zeta w) and [C_d / w; C_v] / sqrt(4 zeta w) of some modes. */
-static void scale(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
+static void scale_modes(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
 {
     int64_t p = modal->C.nrow;
 
@@ -38,8 +39,8 @@ static void scale(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
     }
 }
 
-static ritz_status value(const ritz_rank_request *request,
-                         const ritz_modal *cluster, double *out)
+static ritz_status gregory_value(const ritz_rank_request *request,
+                                 const ritz_modal *cluster, double *out)
 {
     RITZ_OWN(ritz_dense) B = {0};
     RITZ_OWN(ritz_dense) C = {0};
@@ -48,17 +49,21 @@ static ritz_status value(const ritz_rank_request *request,
     (void)request;
     RITZ_CHECK(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
     RITZ_CHECK(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
-    scale(cluster, &B, &C);
+    scale_modes(cluster, &B, &C);
     RITZ_CHECK(ritz_dense_mul(&C, &B, &CB));
     return ritz_general_norm(&CB, out);
 }
 
-static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+static ritz_status rank_gregory(const ritz_rank_request *request,
+                                ritz_ranking *ranking)
 {
-    return ritz_ranking_by_cluster(request, value, ranking);
+    return ritz_ranking_by_cluster(request, gregory_value, ranking);
 }
 
-/* Of one mode sigma (sqrt(1 + zeta^2) +- zeta), whose product is sigma^2. */
+/*
+ * The two exact values of one mode, sigma (sqrt(1 + zeta^2) +- zeta), have the
+ * product sigma^2.
+ */
 static double exact(const double pair[static 2])
 {
     return sqrt(pair[0]) * sqrt(pair[1]);
@@ -70,5 +75,5 @@ const ritz_ranker ritz_ranker_gregory = {
     .reference = "Gregory1984",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .exact = exact,
-    .rank = rank,
+    .rank = rank_gregory,
 };

@@ -51,8 +51,8 @@ const ritz_ranker ritz_ranker_hankel = {
  *
  *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
  *
- * and W_o likewise, which hold what happens between w1 and w2 alone. From 0 to
- * infinity it is `hankel`.
+ * and W_o likewise, which contain only the response between w1 and w2. From 0
+ * to infinity the value is that of `hankel`.
  *
  * [GawronskiJuang1990]
  */
@@ -90,7 +90,7 @@ const ritz_ranker ritz_ranker_hankel_band = {
  *     |b||c| / sqrt(4 zeta w^3)
  *
  * Squares of these add up to H2 squared of the whole only where modes do not
- * couple: modal-cost is that with all that they share.
+ * couple: modal-cost adds the terms that couple them.
  *
  * [Skelton1982]
  */

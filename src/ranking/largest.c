@@ -1,5 +1,5 @@
 /*
- * One ranking over several configurations: what matters at one of them matters.
+ * One ranking over several configurations, by the largest value at any of them.
  */
 #include "base/alloc.h"
 #include "ranking/costs.h"
@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int64_t number_of(const ritz_rankings *all, int64_t item, int64_t mode)
+static int64_t mode_number(const ritz_rankings *all, int64_t item, int64_t mode)
 {
     return all->track ? all->track[item][mode] : mode;
 }
 
-static ritz_status check(const ritz_rankings *all, int64_t *numbers)
+static ritz_status check_rankings(const ritz_rankings *all, int64_t *numbers)
 {
     const ritz_ranking *first = all->item;
 
@@ -32,21 +32,24 @@ static ritz_status check(const ritz_rankings *all, int64_t *numbers)
                        " at '%s': only tracks say which is which",
                        first->count, first->at, r->count, r->at);
         for (int64_t i = 0; i < r->count; i++)
-            if (number_of(all, k, i) >= *numbers)
-                *numbers = number_of(all, k, i) + 1;
+            if (mode_number(all, k, i) >= *numbers)
+                *numbers = mode_number(all, k, i) + 1;
     }
     return RITZ_OK;
 }
 
-/* Where each number has its largest value: ranking and mode, -1 if nowhere. */
-static void search(const ritz_rankings *all, int64_t numbers, int64_t *item,
-                   int64_t *mode)
+/*
+ * The ranking and the mode in which each number has its largest value, -1 if
+ * none has it.
+ */
+static void find_largest(const ritz_rankings *all, int64_t numbers,
+                         int64_t *item, int64_t *mode)
 {
     for (int64_t n = 0; n < numbers; n++)
         item[n] = -1;
     for (int64_t k = 0; k < all->count; k++)
         for (int64_t i = 0; i < all->item[k].count; i++) {
-            int64_t n = number_of(all, k, i);
+            int64_t n = mode_number(all, k, i);
             double size = fabs(all->item[k].value[i]);
 
             if (item[n] < 0 || size > fabs(all->item[item[n]].value[mode[n]])) {
@@ -56,7 +59,9 @@ static void search(const ritz_rankings *all, int64_t numbers, int64_t *item,
         }
 }
 
-/* Modes that are one cluster where the first of them is largest stay one. */
+/*
+ * Modes of one cluster where the first of them is largest remain one cluster.
+ */
 static void take_clusters(const ritz_rankings *all, const int64_t *item,
                           const int64_t *mode, ritz_ranking *out)
 {
@@ -70,8 +75,8 @@ static void take_clusters(const ritz_rankings *all, const int64_t *item,
     }
 }
 
-static ritz_status empty(const ritz_ranking *like, int64_t count,
-                         ritz_ranking *out)
+static ritz_status create_ranking(const ritz_ranking *like, int64_t count,
+                                  ritz_ranking *out)
 {
     memcpy(out->by, like->by, sizeof out->by);
     memcpy(out->reference, like->reference, sizeof out->reference);
@@ -88,8 +93,8 @@ static ritz_status empty(const ritz_ranking *like, int64_t count,
     return RITZ_OK;
 }
 
-/* Numbers that no ranking has are passed over. */
-static int64_t close_ranks(int64_t numbers, int64_t *item, int64_t *mode,
+/* Remove the numbers that no ranking has. */
+static int64_t remove_gaps(int64_t numbers, int64_t *item, int64_t *mode,
                            int64_t *track)
 {
     int64_t count = 0;
@@ -112,13 +117,13 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
     RITZ_OWN_ARRAY int64_t *item = NULL, *mode = NULL, *number = NULL;
     int64_t numbers = 0, count = 0;
 
-    RITZ_CHECK(check(rankings, &numbers));
+    RITZ_CHECK(check_rankings(rankings, &numbers));
     RITZ_CHECK_NEW(item, numbers);
     RITZ_CHECK_NEW(mode, numbers);
     RITZ_CHECK_NEW(number, numbers);
-    search(rankings, numbers, item, mode);
-    count = close_ranks(numbers, item, mode, number);
-    RITZ_CHECK(empty(rankings->item, count, &largest));
+    find_largest(rankings, numbers, item, mode);
+    count = remove_gaps(numbers, item, mode, number);
+    RITZ_CHECK(create_ranking(rankings->item, count, &largest));
     for (int64_t k = 0; k < count; k++) {
         const ritz_ranking *r = &rankings->item[item[k]];
 

@@ -1,14 +1,14 @@
 /*
- * Modal costs: the share of each mode in the variance of all outputs, in their
+ * Modal costs: the part of each mode in the variance of all outputs, in their
  * limits, for white inputs of unit intensity,
  *
  *     |H|_2^2 = trace(C W_c C') = sum_k V_k,
  *     V_k = sum_i sum_{a of mode k} c_ia (W_c c_i')_a
  *
- * with the exact W_c, so that what modes share is in it, half for either. It
- * can be negative, of a mode that takes from the variance of another; modes are
- * then ordered by magnitude, since leaving that one out is as wrong. In the
- * limit of light damping, V_k = |b_k|^2 |c_k|^2 / (4 zeta w^3).
+ * with the exact W_c, so that the term of two coupled modes is divided equally
+ * between them. A cost is negative if the mode reduces the variance of others;
+ * modes are ordered by magnitude, since leaving such a mode out is as wrong. In
+ * the limit of light damping, V_k = |b_k|^2 |c_k|^2 / (4 zeta w^3).
  *
  * [Skelton1982], [ZhuSkelton1992] eq. 1.1
  */
@@ -25,7 +25,7 @@
 #include <string.h>
 
 /* c_ia of state a = 2 k or 2 k + 1 of mode k. */
-static double seen(const ritz_modal *modal, int64_t i, int64_t a)
+static double output_entry(const ritz_modal *modal, int64_t i, int64_t a)
 {
     const ritz_dense *C = a % 2 == 0 ? &modal->C : &modal->Cv;
 
@@ -33,12 +33,12 @@ static double seen(const ritz_modal *modal, int64_t i, int64_t a)
 }
 
 /* [c_i1 c_i2 ...]' of all outputs: 2m x p. */
-static ritz_status transposed(const ritz_modal *modal, ritz_dense *out)
+static ritz_status transpose_outputs(const ritz_modal *modal, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(2 * modal->count, modal->C.nrow, out));
     for (int64_t i = 0; i < out->ncol; i++)
         for (int64_t a = 0; a < out->nrow; a++)
-            ritz_dense_col(out, i)[a] = seen(modal, i, a);
+            ritz_dense_col(out, i)[a] = output_entry(modal, i, a);
     return RITZ_OK;
 }
 
@@ -48,7 +48,7 @@ ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out)
     RITZ_OWN(ritz_dense) V = {0};
 
     RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
-    RITZ_CHECK(transposed(modal, &C));
+    RITZ_CHECK(transpose_outputs(modal, &C));
     RITZ_CHECK(ritz_dense_mul(&Wc, &C, &X));
     RITZ_CHECK(ritz_dense_new(modal->count, modal->C.nrow, &V));
     for (int64_t i = 0; i < V.ncol; i++)
@@ -59,7 +59,8 @@ ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out)
     return RITZ_OK;
 }
 
-static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+static ritz_status rank_modal_cost(const ritz_rank_request *request,
+                                   ritz_ranking *ranking)
 {
     const ritz_modal *modal = &request->modal;
     RITZ_OWN(ritz_dense) V = {0};
@@ -88,21 +89,24 @@ const ritz_ranker ritz_ranker_modal_cost = {
     .reference = "Skelton1982",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .sums = true,
-    .rank = rank,
+    .rank = rank_modal_cost,
 };
 
-/* Going round between weights and choice: include/ritz/reweigh.h. */
+/*
+ * Iteration between output weights and the choice of modes:
+ * include/ritz/reweigh.h.
+ */
 
 enum { MOST_ROUNDS = 400, LONGEST = 12 };
 
-/* What one round decided. */
+/* The choice of one round. */
 typedef struct weighting_trial {
     bool *taken; /* m */
-    double *q;   /* p, weights it went by */
-    double *d;   /* p, what its choice misses */
+    double *q;   /* p, weights of this round */
+    double *d;   /* p, cost that its choice misses */
 } weighting_trial;
 
-/* What does not change from round to round, and the last few rounds. */
+/* What all rounds have in common, and the last few rounds. */
 typedef struct loop {
     const ritz_modal *modal;
     int64_t m, p, keep;
@@ -113,13 +117,13 @@ typedef struct loop {
     weighting_trial past[LONGEST + 1]; /* round r is past[r % (LONGEST + 1)] */
 } loop;
 
-static weighting_trial *at_round(loop *l, int64_t r)
+static weighting_trial *find_round(loop *l, int64_t r)
 {
     return &l->past[r % (LONGEST + 1)];
 }
 
-static ritz_status loop_new(const ritz_rank_request *request, int64_t keep,
-                            loop *l)
+static ritz_status create_loop(const ritz_rank_request *request, int64_t keep,
+                               loop *l)
 {
     l->modal = &request->modal;
     l->m = l->modal->count;
@@ -156,8 +160,8 @@ static void loop_free(loop *l)
     }
 }
 
-/* The modes of largest cost, clusters whole. */
-static ritz_status choose(loop *l, weighting_trial *t)
+/* Choose the modes of largest cost, clusters whole. */
+static ritz_status choose_modes(loop *l, weighting_trial *t)
 {
     int64_t n = 0;
 
@@ -180,9 +184,9 @@ static ritz_status choose(loop *l, weighting_trial *t)
     return RITZ_OK;
 }
 
-/* The modes that are taken as a model of their own. */
-static ritz_status part_of(const ritz_modal *modal, const bool *taken,
-                           ritz_modal *out)
+/* The chosen modes as a model of their own. */
+static ritz_status extract_modes(const ritz_modal *modal, const bool *taken,
+                                 ritz_modal *out)
 {
     RITZ_OWN(ritz_modal) part = {0};
     RITZ_OWN_ARRAY int64_t *mode = NULL;
@@ -213,12 +217,12 @@ static ritz_status part_of(const ritz_modal *modal, const bool *taken,
 }
 
 /* d_i = |Y_i - Y_i(kept alone)|. */
-static ritz_status miss(const loop *l, weighting_trial *t)
+static ritz_status measure_misses(const loop *l, weighting_trial *t)
 {
     RITZ_OWN(ritz_modal) kept = {0};
     RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_CHECK(part_of(l->modal, t->taken, &kept));
+    RITZ_CHECK(extract_modes(l->modal, t->taken, &kept));
     RITZ_CHECK(ritz_modal_costs(&kept, &V));
     for (int64_t i = 0; i < l->p; i++) {
         double alone = 0.0;
@@ -230,8 +234,8 @@ static ritz_status miss(const loop *l, weighting_trial *t)
     return RITZ_OK;
 }
 
-/* q := (1 - a) p d / sum d + a q; where nothing is missed they stay. */
-static void weigh(const loop *l, const weighting_trial *t, double *q)
+/* q := (1 - a) p d / sum d + a q; without misses the weights stay. */
+static void update_weights(const loop *l, const weighting_trial *t, double *q)
 {
     double sum = 0.0;
 
@@ -253,16 +257,16 @@ static bool is_same(const loop *l, const weighting_trial *a,
     return memcmp(a->taken, b->taken, (size_t)l->m * sizeof *a->taken) == 0;
 }
 
-/* After how many rounds the last one comes again; 0: not yet. */
+/* The number of rounds after which the last one recurs; 0 if it has not yet. */
 static int64_t find_period(loop *l, int64_t round)
 {
     for (int64_t k = 1; k <= LONGEST && k <= round; k++)
-        if (is_same(l, at_round(l, round), at_round(l, round - k)))
+        if (is_same(l, find_round(l, round), find_round(l, round - k)))
             return k;
     return 0;
 }
 
-static double worst(const loop *l, const weighting_trial *t)
+static double worst_miss(const loop *l, const weighting_trial *t)
 {
     double largest = 0.0;
 
@@ -271,37 +275,37 @@ static double worst(const loop *l, const weighting_trial *t)
     return largest;
 }
 
-/* Of the rounds of a period, or of those remembered, that which misses least. */
-static const weighting_trial *best_of(loop *l, int64_t round, int64_t period)
+/* The round of a period, or of those remembered, with the smallest miss. */
+static const weighting_trial *find_best(loop *l, int64_t round, int64_t period)
 {
     int64_t count = period > 0 ? period : LONGEST;
-    const weighting_trial *best = at_round(l, round);
+    const weighting_trial *best = find_round(l, round);
 
     for (int64_t k = 1; k < count && k <= round; k++) {
-        const weighting_trial *t = at_round(l, round - k);
+        const weighting_trial *t = find_round(l, round - k);
 
-        if (worst(l, t) < worst(l, best))
+        if (worst_miss(l, t) < worst_miss(l, best))
             best = t;
     }
     return best;
 }
 
-/* Modes that some round of the period keeps and the best does not. */
+/* List the modes that some round of the period keeps and the best does not. */
 static void list_others(loop *l, int64_t round, const weighting_trial *best,
                         ritz_reweighing *out)
 {
     for (int64_t k = 0; k < l->m; k++)
         for (int64_t r = 0; r < out->period; r++)
-            if (at_round(l, round - r)->taken[k] && !best->taken[k]) {
+            if (find_round(l, round - r)->taken[k] && !best->taken[k]) {
                 out->other[out->num_other++] = k;
                 break;
             }
 }
 
-static ritz_status report(loop *l, int64_t round, int64_t period,
-                          ritz_reweighing *out)
+static ritz_status report_rounds(loop *l, int64_t round, int64_t period,
+                                 ritz_reweighing *out)
 {
-    const weighting_trial *best = best_of(l, round, period);
+    const weighting_trial *best = find_best(l, round, period);
     size_t size = (size_t)l->p * sizeof(double);
 
     out->num_outputs = l->p;
@@ -335,21 +339,21 @@ ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
     RITZ_REFUSE_IF(keep < 1 || keep >= request->modal.count, RITZ_ERR_ARGUMENT,
                    "weights choose at least one mode and leave one out, of %d",
                    (int)request->modal.count);
-    RITZ_CHECK(loop_new(request, keep, &l));
+    RITZ_CHECK(create_loop(request, keep, &l));
     for (int64_t i = 0; i < l.p; i++)
-        at_round(&l, 0)->q[i] = 1.0;
+        find_round(&l, 0)->q[i] = 1.0;
     while (true) {
-        weighting_trial *t = at_round(&l, round);
+        weighting_trial *t = find_round(&l, round);
 
-        RITZ_CHECK(choose(&l, t));
-        RITZ_CHECK(miss(&l, t));
+        RITZ_CHECK(choose_modes(&l, t));
+        RITZ_CHECK(measure_misses(&l, t));
         period = find_period(&l, round);
         if (period > 0 || round + 1 == MOST_ROUNDS)
             break;
         round++;
-        weigh(&l, t, at_round(&l, round)->q);
+        update_weights(&l, t, find_round(&l, round)->q);
     }
-    RITZ_CHECK(report(&l, round, period, &found));
+    RITZ_CHECK(report_rounds(&l, round, period, &found));
     RITZ_MOVE(*out, found);
     return RITZ_OK;
 }

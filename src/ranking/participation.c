@@ -1,11 +1,12 @@
 /*
- * Modal participation: how hard a mode is driven. With mass-normalised modes
+ * Modal participation: how strongly inputs excite a mode. With mass-normalised
+ * modes
  *
  *     q_k'' + 2 zeta w q_k' + w^2 q_k = b_k u
  *
- * b_kj is the factor of mode k from input j, and the value |b_k|_2. Of a
- * cluster, whose modes may be any basis of one space, it is the largest
- * singular value of its rows, and the part of an input their norm.
+ * b_kj is the factor of mode k from input j, and the value |b_k|_2. For a
+ * cluster, whose modes are an arbitrary basis of one space, it is the largest
+ * singular value of its rows, and the part of an input is their norm.
  *
  * [Girard2008]
  */
@@ -15,8 +16,8 @@
 #include <math.h>
 
 /* Rows first .. last - 1 of B, and their largest singular value. */
-static ritz_status largest(const ritz_dense *B, int64_t first, int64_t last,
-                           double *out)
+static ritz_status largest_singular(const ritz_dense *B, int64_t first,
+                                    int64_t last, double *out)
 {
     int64_t n = last - first;
     RITZ_OWN(ritz_dense) A = {0};
@@ -42,7 +43,8 @@ static void fill_parts(const ritz_dense *B, int64_t first, int64_t last,
     }
 }
 
-static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
+static ritz_status rank_participation(const ritz_rank_request *request,
+                                      ritz_ranking *ranking)
 {
     const ritz_dense *B = &request->modal.B;
     int64_t m = request->modal.count;
@@ -57,7 +59,7 @@ static ritz_status rank(const ritz_rank_request *request, ritz_ranking *ranking)
     for (int64_t first = 0; first < m; first = last) {
         for (last = first + 1; last < m && ranking->cluster[last] == first;)
             last++;
-        RITZ_CHECK(largest(B, first, last, &ranking->value[first]));
+        RITZ_CHECK(largest_singular(B, first, last, &ranking->value[first]));
         for (int64_t k = first + 1; k < last; k++)
             ranking->value[k] = ranking->value[first];
         fill_parts(B, first, last, &ranking->parts);
@@ -70,5 +72,5 @@ const ritz_ranker ritz_ranker_participation = {
     .summary = "how hard inputs drive each mode (or cluster)",
     .reference = "Girard2008",
     .needs = RITZ_RANK_INPUTS,
-    .rank = rank,
+    .rank = rank_participation,
 };

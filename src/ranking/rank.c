@@ -1,4 +1,7 @@
-/* A ranking by any of the rankers, with what stands beside it. */
+/*
+ * A ranking by any of the rankers, with coupling and the values of the whole
+ * model.
+ */
 #include "ranking/costs.h"
 
 #include "base/alloc.h"
@@ -18,8 +21,8 @@ const ritz_ranker *ritz_ranker_find(const char *name)
     return ritz_row_find(ritz_rankers, "ranking", name);
 }
 
-/* Which of a Gramian's entries are largest against their diagonals. */
-static void couple(const ritz_dense *W, ritz_ranking *ranking)
+/* Find the largest entry of a Gramian relative to the diagonal entries. */
+static void find_coupling(const ritz_dense *W, ritz_ranking *ranking)
 {
     const int64_t *cluster = ranking->cluster;
     double largest[2] = {0.0, 0.0};
@@ -45,9 +48,9 @@ static void couple(const ritz_dense *W, ritz_ranking *ranking)
 
 /*
  * The largest normalised off-diagonal |W_ab| / sqrt(W_aa W_bb) of both exact
- * Gramians, but within clusters, which are ranked whole.
+ * Gramians, except within clusters, which are ranked whole.
  */
-static ritz_status ranking_coupling(const ritz_modal *modal,
+static ritz_status measure_coupling(const ritz_modal *modal,
                                     ritz_ranking *ranking)
 {
     RITZ_OWN(ritz_dense) Wc = {0};
@@ -55,14 +58,14 @@ static ritz_status ranking_coupling(const ritz_modal *modal,
 
     RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
     ranking->coupling = 0.0;
-    couple(&Wc, ranking);
-    couple(&Wo, ranking);
+    find_coupling(&Wc, ranking);
+    find_coupling(&Wo, ranking);
     return RITZ_OK;
 }
 
-static ritz_status ranking_new(const ritz_ranker *ranker,
-                               const ritz_rank_request *request,
-                               ritz_ranking *out)
+static ritz_status create_ranking(const ritz_ranker *ranker,
+                                  const ritz_rank_request *request,
+                                  ritz_ranking *out)
 {
     const ritz_modal *modal = &request->modal;
     int64_t m = modal->count;
@@ -86,7 +89,7 @@ static ritz_status ranking_new(const ritz_ranker *ranker,
     return RITZ_OK;
 }
 
-/* What a ranker needs and a request may lack, with the sentence for it. */
+/* Check that the request has what a ranker needs; each need has its message. */
 static ritz_status check_needs(const ritz_ranker *ranker,
                                const ritz_rank_request *r)
 {
@@ -118,9 +121,9 @@ static ritz_status check_needs(const ritz_ranker *ranker,
     return RITZ_OK;
 }
 
-/* Exact values of the whole, where there is something to drive and to see. */
-static ritz_status stand_beside(const ritz_rank_request *request,
-                                ritz_ranking *ranking)
+/* The exact values of the whole model, if it has inputs and outputs. */
+static ritz_status add_whole_values(const ritz_rank_request *request,
+                                    ritz_ranking *ranking)
 {
     const ritz_modal *modal = &request->modal;
 
@@ -129,12 +132,12 @@ static ritz_status stand_beside(const ritz_rank_request *request,
         return RITZ_OK;
     RITZ_CHECK(ritz_modal_hankel(modal, ranking->system_value));
     ranking->num_system = 2 * modal->count;
-    return ranking_coupling(modal, ranking);
+    return measure_coupling(modal, ranking);
 }
 
-/* One value for each cluster; a sum is shared out evenly. */
-static void join(const ritz_ranker *ranker, const ritz_modal *modal,
-                 ritz_ranking *ranking)
+/* One value for each cluster; a sum is divided equally among its modes. */
+static void share_clusters(const ritz_ranker *ranker, const ritz_modal *modal,
+                           ritz_ranking *ranking)
 {
     if (ranker->sums)
         ritz_ranking_share(modal, ranking->value);
@@ -148,11 +151,11 @@ ritz_status ritz_rank(const ritz_ranker *ranker,
     RITZ_OWN(ritz_ranking) ranking = {0};
 
     RITZ_CHECK_IN(ranker->name, check_needs(ranker, request));
-    RITZ_CHECK(ranking_new(ranker, request, &ranking));
+    RITZ_CHECK(create_ranking(ranker, request, &ranking));
     RITZ_CHECK_IN(ranker->name, ranker->rank(request, &ranking));
-    join(ranker, &request->modal, &ranking);
+    share_clusters(ranker, &request->modal, &ranking);
     RITZ_CHECK(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
-    RITZ_CHECK(stand_beside(request, &ranking));
+    RITZ_CHECK(add_whole_values(request, &ranking));
     RITZ_MOVE(*out, ranking);
     return RITZ_OK;
 }

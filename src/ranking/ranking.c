@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places of modes by magnitude of value, and what clusters share. */
+/* Order of modes by magnitude of value, and the values of clusters. */
 
 /* A value and its mode, to be sorted. */
 typedef struct ranked_place {
@@ -20,7 +20,7 @@ typedef struct ranked_place {
 } ranked_place;
 
 /* Larger values first, of equal ones the lower frequency. */
-static int compare(const void *left, const void *right)
+static int compare_values(const void *left, const void *right)
 {
     const ranked_place *a = left;
     const ranked_place *b = right;
@@ -38,7 +38,7 @@ ritz_status ritz_ranking_sort(int64_t count, const double *value,
     RITZ_CHECK_NEW(all, count);
     for (int64_t k = 0; k < count; k++)
         all[k] = (ranked_place){fabs(value[k]), k};
-    qsort(all, (size_t)count, sizeof *all, compare);
+    qsort(all, (size_t)count, sizeof *all, compare_values);
     for (int64_t k = 0; k < count; k++)
         order[k] = all[k].mode;
     return RITZ_OK;

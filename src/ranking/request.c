@@ -1,4 +1,7 @@
-/* Weights of inputs and outputs as text, and what they make of a model's io. */
+/*
+ * Weights of inputs and outputs as text, and the inputs and outputs of a model
+ * scaled by them.
+ */
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -12,7 +15,8 @@
 #include <string.h>
 
 /* "torque=4", the text of which ends at `end`. */
-static ritz_status take_one(const char *text, const char *end, ritz_weight *out)
+static ritz_status parse_weight(const char *text, const char *end,
+                                ritz_weight *out)
 {
     const char *equal = memchr(text, '=', (size_t)(end - text));
     char name[RITZ_NAME_SIZE];
@@ -33,7 +37,8 @@ static ritz_status take_one(const char *text, const char *end, ritz_weight *out)
     return RITZ_OK;
 }
 
-static ritz_status take_all(const char *text, int64_t *count, ritz_weight **out)
+static ritz_status parse_weights(const char *text, int64_t *count,
+                                 ritz_weight **out)
 {
     RITZ_OWN_ARRAY ritz_weight *list = NULL;
     int64_t most = 1, n = 0;
@@ -44,7 +49,7 @@ static ritz_status take_all(const char *text, int64_t *count, ritz_weight **out)
     for (const char *c = text; n < most; n++) {
         const char *end = c + strcspn(c, ",");
 
-        RITZ_CHECK(take_one(c, end, &list[n]));
+        RITZ_CHECK(parse_weight(c, end, &list[n]));
         for (int64_t k = 0; k < n; k++)
             RITZ_REFUSE_IF(strcmp(list[k].name, list[n].name) == 0,
                            RITZ_ERR_ARGUMENT, "'%s' has two weights",
@@ -62,11 +67,13 @@ ritz_status ritz_weights_parse(const char *inputs, const char *outputs,
     RITZ_OWN(ritz_weights) weights = {0};
 
     if (inputs)
-        RITZ_CHECK_IN("weights of inputs",
-                      take_all(inputs, &weights.num_inputs, &weights.input));
+        RITZ_CHECK_IN(
+            "weights of inputs",
+            parse_weights(inputs, &weights.num_inputs, &weights.input));
     if (outputs)
-        RITZ_CHECK_IN("weights of outputs",
-                      take_all(outputs, &weights.num_outputs, &weights.output));
+        RITZ_CHECK_IN(
+            "weights of outputs",
+            parse_weights(outputs, &weights.num_outputs, &weights.output));
     RITZ_MOVE(*out, weights);
     return RITZ_OK;
 }
@@ -78,10 +85,10 @@ void ritz_weights_free(ritz_weights *weights)
     *weights = (ritz_weights){0};
 }
 
-/* Index of what a weight names, or a sentence that names the nearest. */
-static ritz_status find(const ritz_weight *weight, const char *kind,
-                        int64_t count, char (*name)[RITZ_NAME_SIZE],
-                        int64_t *out)
+/* Index of the name in a weight, or a message with the nearest name. */
+static ritz_status find_name(const ritz_weight *weight, const char *kind,
+                             int64_t count, char (*name)[RITZ_NAME_SIZE],
+                             int64_t *out)
 {
     const char *near = NULL;
 
@@ -100,8 +107,8 @@ static ritz_status find(const ritz_weight *weight, const char *kind,
 }
 
 /*
- * Scale inputs by the root of their weight, and put limits where output weights
- * replace them: Q = 1 / limit^2.
+ * Scale inputs by the root of their weight, and replace limits by those of the
+ * output weights: Q = 1 / limit^2.
  *
  * @return RITZ_ERR_ARGUMENT if a weight names nothing
  */
@@ -112,28 +119,31 @@ static ritz_status apply_weights(const ritz_weights *weights, ritz_io *io)
     for (int64_t k = 0; k < weights->num_inputs; k++) {
         const ritz_weight *w = &weights->input[k];
 
-        RITZ_CHECK(find(w, "input", io->num_inputs, io->input, &at));
+        RITZ_CHECK(find_name(w, "input", io->num_inputs, io->input, &at));
         for (int64_t i = 0; i < io->B.nrow; i++)
             ritz_dense_col(&io->B, at)[i] *= sqrt(w->value);
     }
     for (int64_t k = 0; k < weights->num_outputs; k++) {
         const ritz_weight *w = &weights->output[k];
 
-        RITZ_CHECK(find(w, "output", io->num_outputs, io->output, &at));
+        RITZ_CHECK(find_name(w, "output", io->num_outputs, io->output, &at));
         io->limit[at] = 1.0 / sqrt(w->value); /* of 0, infinite */
     }
     return RITZ_OK;
 }
 
 /*
- * What rankings take of a model. Momentum R'M phi of each mode comes as six
- * outputs more, which are taken off again: so it follows whichever basis of a
- * cluster the modal model chose.
+ * The data that rankings need of a model. The momentum R'M phi of each mode is
+ * computed as six additional outputs, which are removed again: so it belongs to
+ * the basis of a cluster that the modal model has chosen.
  */
 
 enum { DIRECTIONS = 6 };
 
-/* What is ranked: matrices and io of coordinates, and what is known of mass. */
+/*
+ * What is ranked: matrices, inputs and outputs in coordinates, and their
+ * momentum.
+ */
 typedef struct ranked_model {
     const ritz_dense *K, *M, *D;
     const ritz_io *io;
@@ -141,9 +151,9 @@ typedef struct ranked_model {
     const double *rigid;
 } ranked_model;
 
-/* io with weights and, where momentum is known, six outputs more. */
-static ritz_status extend(const ranked_model *s, const ritz_weights *weights,
-                          ritz_io *out)
+/* io with weights and, if momentum is known, six additional outputs. */
+static ritz_status extend_io(const ranked_model *s, const ritz_weights *weights,
+                             ritz_io *out)
 {
     const ritz_io *io = s->io;
     int64_t n = s->K->nrow;
@@ -176,8 +186,8 @@ static ritz_status extend(const ranked_model *s, const ritz_weights *weights,
     return RITZ_OK;
 }
 
-/* Rows first .. of C as a matrix of their own, and C without them. */
-static ritz_status split(ritz_dense *C, int64_t first, ritz_dense *rest)
+/* Split off the rows of C from `first` on. */
+static ritz_status split_rows(ritz_dense *C, int64_t first, ritz_dense *rest)
 {
     RITZ_OWN(ritz_dense) head = {0};
 
@@ -200,8 +210,8 @@ static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
 
     if (!s->momentum->val)
         return RITZ_OK;
-    RITZ_CHECK(split(&out->modal.C, s->io->num_outputs, &out->momentum));
-    RITZ_CHECK(split(&out->modal.Cv, s->io->num_outputs, &none));
+    RITZ_CHECK(split_rows(&out->modal.C, s->io->num_outputs, &out->momentum));
+    RITZ_CHECK(split_rows(&out->modal.Cv, s->io->num_outputs, &none));
     memcpy(out->rigid, s->rigid, sizeof out->rigid);
     return RITZ_OK;
 }
@@ -216,8 +226,9 @@ static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
 }
 
 /*
- * The modal model. Rankings of mass do without damping: where there is none,
- * any ratio gives them the modes, and `undamped` says that it means nothing.
+ * The modal model. Rankings of mass need no damping: if there is none, an
+ * arbitrary ratio is used to find the modes, and `undamped` marks it as
+ * meaningless.
  */
 static ritz_status make_modal(const ranked_model *s,
                               const ritz_rank_choice *choice, int needs,
@@ -232,13 +243,14 @@ static ritz_status make_modal(const ranked_model *s,
                           out->undamped ? &any : &choice->damping, &out->modal);
 }
 
-static ritz_status make(const ranked_model *s, const ritz_rank_choice *choice,
-                        int needs, ritz_rank_request *out)
+static ritz_status make_request(const ranked_model *s,
+                                const ritz_rank_choice *choice, int needs,
+                                ritz_rank_request *out)
 {
     RITZ_OWN(ritz_rank_request) request = {0};
     RITZ_OWN(ritz_io) io = {0};
 
-    RITZ_CHECK(extend(s, choice->weights, &io));
+    RITZ_CHECK(extend_io(s, choice->weights, &io));
     RITZ_CHECK(make_modal(s, choice, needs, &io, &request));
     RITZ_CHECK(take_momentum(s, &request));
     RITZ_CHECK(copy_names(s->io->num_inputs, s->io->input, &request.input));
@@ -274,8 +286,9 @@ static ritz_status find_columns(const ritz_columns *columns, bool interface,
 }
 
 /* A(row, col). */
-static ritz_status block(const ritz_dense *A, int64_t n, const int64_t *row,
-                         int64_t m, const int64_t *col, ritz_dense *out)
+static ritz_status copy_block(const ritz_dense *A, int64_t n,
+                              const int64_t *row, int64_t m, const int64_t *col,
+                              ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(n, m, out));
     for (int64_t j = 0; j < m; j++)
@@ -284,7 +297,7 @@ static ritz_status block(const ritz_dense *A, int64_t n, const int64_t *row,
     return RITZ_OK;
 }
 
-/* Of modes whose interface is held, K_bn is zero. */
+/* For modes with a clamped interface K_bn is zero. */
 static ritz_status check_clamped(const ritz_dense *K, int64_t p,
                                  const int64_t *b, int64_t m, const int64_t *n)
 {
@@ -303,10 +316,13 @@ static ritz_status check_clamped(const ritz_dense *K, int64_t p,
     return RITZ_OK;
 }
 
-/* The interface drives fixed-interface modes by -M_nb u_b''; none reads them.*/
-static ritz_status make_held(const ritz_reduced *r,
-                             const ritz_rank_choice *choice, int needs,
-                             ritz_rank_request *out)
+/*
+ * The interface excites fixed-interface modes by -M_nb u_b''; no output
+ * observes them.
+ */
+static ritz_status make_interface_request(const ritz_reduced *r,
+                                          const ritz_rank_choice *choice,
+                                          int needs, ritz_rank_request *out)
 {
     static const int64_t six[DIRECTIONS] = {0, 1, 2, 3, 4, 5};
     RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, momentum = {0};
@@ -319,18 +335,18 @@ static ritz_status make_held(const ritz_reduced *r,
     RITZ_CHECK(find_columns(&r->columns, true, &p, &b));
     RITZ_CHECK(find_columns(&r->columns, false, &m, &n));
     RITZ_CHECK(check_clamped(&r->K, p, b, m, n));
-    RITZ_CHECK(block(&r->K, m, n, m, n, &K));
-    RITZ_CHECK(block(&r->M, m, n, m, n, &M));
+    RITZ_CHECK(copy_block(&r->K, m, n, m, n, &K));
+    RITZ_CHECK(copy_block(&r->M, m, n, m, n, &M));
     if (r->D.val)
-        RITZ_CHECK(block(&r->D, m, n, m, n, &D));
+        RITZ_CHECK(copy_block(&r->D, m, n, m, n, &D));
     if (r->invariants.momentum.val)
-        RITZ_CHECK(
-            block(&r->invariants.momentum, DIRECTIONS, six, m, n, &momentum));
+        RITZ_CHECK(copy_block(&r->invariants.momentum, DIRECTIONS, six, m, n,
+                              &momentum));
     RITZ_CHECK(ritz_io_new(m, p, 0, &io));
     ritz_dense_free(&io.B);
-    RITZ_CHECK(block(&r->M, m, n, p, b, &io.B));
-    RITZ_CHECK(make(&s, &bare, needs, out));
-    RITZ_CHECK(block(&r->M, p, b, p, b, &out->interface));
+    RITZ_CHECK(copy_block(&r->M, m, n, p, b, &io.B));
+    RITZ_CHECK(make_request(&s, &bare, needs, out));
+    RITZ_CHECK(copy_block(&r->M, p, b, p, b, &out->interface));
     RITZ_CHECK(ritz_dense_new(p, out->modal.count, &out->coupling));
     for (int64_t k = 0; k < p * out->modal.count; k++)
         out->coupling.val[k] = ritz_dense_col(&out->modal.B, k % p)[k / p];
@@ -350,9 +366,9 @@ ritz_status ritz_rank_request_of_reduced(const ritz_reduced *reduced,
     RITZ_OWN(ritz_rank_request) request = {0};
 
     if (needs & RITZ_RANK_INTERFACE)
-        RITZ_CHECK(make_held(reduced, choice, needs, &request));
+        RITZ_CHECK(make_interface_request(reduced, choice, needs, &request));
     else
-        RITZ_CHECK(make(&s, choice, needs, &request));
+        RITZ_CHECK(make_request(&s, choice, needs, &request));
     RITZ_MOVE(*out, request);
     return RITZ_OK;
 }
@@ -368,7 +384,7 @@ ritz_rank_request_of_configuration(const ritz_configuration *configuration,
 
     RITZ_REFUSE_IF(needs & RITZ_RANK_INTERFACE, RITZ_ERR_ARGUMENT,
                    "a system has no interface to hold: rank its components");
-    return make(&s, choice, needs, out);
+    return make_request(&s, choice, needs, out);
 }
 
 void ritz_rank_request_free(ritz_rank_request *request)
