@@ -27,8 +27,8 @@ static ritz_status take_load(cli_run *run, const char *spec)
 
     RITZ_REFUSE_IF(!at || at == spec || !at[1], RITZ_ERR_ARGUMENT,
                    "--geometric-stiffness '%s' is not FILE@LOAD", spec);
-    file = strndup(spec, (size_t)(at - spec));
-    RITZ_REFUSE_IF(!file, RITZ_ERR_MEMORY, "no memory for '%s'", spec);
+    RITZ_CHECK_NEW(file, at - spec + 1);
+    memcpy(file, spec, (size_t)(at - spec));
     return take_matrix(run, file);
 }
 

@@ -126,7 +126,7 @@ static ritz_status take_names(char *names, const ritz_dampers *dampers,
 {
     char *rest = NULL;
 
-    *out = calloc(strlen(names) + 1, sizeof **out);
+    *out = ritz_zalloc((int64_t)strlen(names) + 1, sizeof **out);
     RITZ_REFUSE_IF(!*out, RITZ_ERR_MEMORY, "no memory for a scan");
     for (char *at = strtok_r(names, ",", &rest); at;
          at = strtok_r(NULL, ",", &rest)) {

@@ -1,6 +1,7 @@
 /* Several rankings side by side: correlations, overlaps, what swaps. */
 #include "print/rankings_make.h"
 
+#include "base/alloc.h"
 #include "cli/cli_table.h"
 
 #include <math.h>
@@ -14,9 +15,9 @@ static const double same_frequency = 1e-3;
 
 static ritz_status contest_new(int64_t count, contest *out)
 {
-    out->ranking = calloc((size_t)count + 1, sizeof(void *));
-    out->track = calloc((size_t)count + 1, sizeof(void *));
-    out->name = calloc((size_t)count + 1, sizeof *out->name);
+    out->ranking = ritz_zalloc(count + 1, sizeof(void *));
+    out->track = ritz_zalloc(count + 1, sizeof(void *));
+    out->name = ritz_zalloc(count + 1, sizeof *out->name);
     RITZ_REFUSE_IF(!out->ranking || !out->track || !out->name, RITZ_ERR_MEMORY,
                    "no memory for rankings");
     return RITZ_OK;
@@ -109,8 +110,8 @@ ritz_status rank_write(const char *path, const rank_result *result,
     bool tracked = true;
 
     RITZ_TRY(rank_contest(result, true, &c));
-    all.item = calloc((size_t)c.count + 1, sizeof *all.item);
-    all.track = calloc((size_t)c.count + 1, sizeof *all.track);
+    all.item = ritz_zalloc(c.count + 1, sizeof *all.item);
+    all.track = ritz_zalloc(c.count + 1, sizeof *all.track);
     RITZ_FAIL_IF(!all.item || !all.track, RITZ_ERR_MEMORY,
                  "no memory for rankings");
     for (int64_t k = 0; k < c.count; k++) {

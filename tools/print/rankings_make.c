@@ -1,5 +1,7 @@
 #include "print/rankings_make.h"
 
+#include "base/alloc.h"
+
 #include <ritz/base.h>
 #include <ritz/basis.h>
 
@@ -72,7 +74,7 @@ static ritz_status check_tracks(const ritz_rankings *all)
 
 static ritz_status make_tracks(ritz_rankings *all)
 {
-    all->track = calloc((size_t)all->count + 1, sizeof *all->track);
+    all->track = ritz_zalloc(all->count + 1, sizeof *all->track);
     RITZ_REFUSE_IF(!all->track, RITZ_ERR_MEMORY, "no memory for tracks");
     for (int64_t k = 0; k < all->count; k++) {
         size_t m = (size_t)all->item[k].count;
@@ -233,7 +235,7 @@ static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
     int64_t count = system && !m->at ? m->system.num_configurations : 1;
     ritz_rankings *all = &out->all;
 
-    all->item = calloc((size_t)count + 1, sizeof *all->item);
+    all->item = ritz_zalloc(count + 1, sizeof *all->item);
     RITZ_REFUSE_IF(!all->item, RITZ_ERR_MEMORY, "no memory for rankings");
     for (int64_t k = 0; k < count; k++) {
         const ritz_configuration *at = m->at    ? m->at
@@ -294,7 +296,7 @@ static ritz_status make_groups(subject *s, rank_result *out)
     int64_t dampings = asked->damping.count > 0 ? asked->damping.count : 1;
 
     out->group =
-        calloc((size_t)(asked->num_rankers * dampings) + 1, sizeof *out->group);
+        ritz_zalloc((asked->num_rankers * dampings) + 1, sizeof *out->group);
     RITZ_REFUSE_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
     for (int64_t d = 0; d < dampings; d++) {
         RITZ_CHECK(set_damping(
@@ -423,10 +425,10 @@ static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
 
     RITZ_CHECK_IN(run->operand[0], check_values(asked, m));
     RITZ_CHECK(make_gramians(run, asked, m, &gramians));
-    out->group = calloc(1, sizeof *out->group);
+    out->group = ritz_zalloc(1, sizeof *out->group);
     RITZ_REFUSE_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
     out->count = 1;
-    out->group->all.item = r = calloc(1, sizeof *r);
+    out->group->all.item = r = ritz_zalloc(1, sizeof *r);
     RITZ_REFUSE_IF(!r, RITZ_ERR_MEMORY, "no memory for rankings");
     out->group->all.count = 1;
     snprintf(r->by, sizeof r->by, "%s", ritz_ranker_hankel.name);
@@ -474,8 +476,8 @@ static ritz_status read_rankings(cli_run *run, rank_result *out)
     int64_t count = run->num_operands;
     RITZ_OWN(model) m = {0};
 
-    out->group = calloc((size_t)count, sizeof *out->group);
-    out->file = calloc((size_t)count, sizeof *out->file);
+    out->group = ritz_zalloc(count, sizeof *out->group);
+    out->file = ritz_zalloc(count, sizeof *out->file);
     RITZ_REFUSE_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
                    "no memory for rankings");
     for (int64_t k = 0; k < count; k++) {

@@ -240,7 +240,7 @@ static ritz_status find_singular(cli_run *run, const responses_wish *asked,
 
     if (!asked->singular)
         return RITZ_OK;
-    size = calloc((size_t)response->num_inputs + 1, sizeof *size);
+    size = ritz_zalloc(response->num_inputs + 1, sizeof *size);
     RITZ_REFUSE_IF(!size, RITZ_ERR_MEMORY, "no memory for sizes of inputs");
     RITZ_CHECK(find_scales(asked, m, response, size, &scales));
     RITZ_CHECK(ritz_singular_of(&scales, response));
