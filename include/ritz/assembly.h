@@ -1,5 +1,5 @@
 /*
- * Synthesis: components joined at a configuration, C(alpha) q = 0.
+ * Assembly: components joined at a configuration, C(alpha) q = 0.
  *
  * At settings 0 the basic axes of both bodies of a joint are parallel and their
  * port origins coincide; a positive angle turns the second body right-handed
@@ -16,7 +16,7 @@
 
 #pragma GCC visibility push(default)
 
-/* A scene with its models loaded and reduced: what stage one has made. */
+/* A scene with its models loaded and reduced: the result of stage one. */
 typedef struct ritz_stage {
     const ritz_scene *scene; /* borrowed */
     int64_t count;
@@ -112,7 +112,7 @@ typedef struct ritz_master {
 } ritz_master;
 
 /**
- * The same, and where its dofs are; bodies ascend, and dofs of each.
+ * ritz_assemble_full, and the body and dof of each of its dofs, ascending.
  *
  * @param[out] where  out->num_dofs; the caller's to free
  */
@@ -137,13 +137,13 @@ typedef struct ritz_joined {
     const ritz_component *component;
 } ritz_joined;
 
-/** Nothing hangs on @p attached dofs yet. */
+/** A neighbour without mass and stiffness, for @p attached dofs. */
 ritz_status ritz_neighbour_new(int64_t attached, ritz_neighbour *out);
 
 /**
- * Add what the body at the other side of a joint hangs on a component: its mass
- * and stiffness condensed to its port, as the joint lets the component feel
- * them. A motion that the joint frees is not loaded.
+ * Add the neighbour at the other side of a joint to those of a component: its
+ * mass and stiffness, condensed through the joint to the component's port.
+ * A motion that the joint leaves free is not loaded.
  *
  * @param[in]     setting   of all sweeps of the scene; NULL if it has none
  * @param[in]     near      which side is the component that is loaded
@@ -167,16 +167,16 @@ void ritz_stage_free(ritz_stage *stage);
  * P&A (no augmentation), EP&A and Krylov P&A [McDaniel2000, chapter 3].
  */
 
-/* A flexible mode of the second system that stands for no kept mode. */
+/* A flexible mode of the second system that represents no kept mode. */
 typedef struct ritz_stray {
     int64_t mode; /* flexible mode of stage 2, as assembled */
     double hertz;
     int64_t like; /* flexible mode of stage 1 that it is most like; -1: none */
-    double mac;   /* how like */
+    double mac;   /* with it */
     bool removed; /* from the second system; the bodies still contain it */
 } ritz_stray;
 
-/* What stage two did at one configuration. */
+/* Errors of stage two at one configuration. */
 typedef struct ritz_compare_row {
     double *setting; /* one for each sweep */
     bool listed;     /* false: between listed angles, for checking only */
@@ -200,7 +200,7 @@ typedef struct ritz_compare_row {
     ritz_stray *stray;
 } ritz_compare_row;
 
-/* Static corrections for one set of forces, and what they are worth. */
+/* Static corrections for one set of forces, and the errors with them. */
 typedef struct ritz_candidate {
     ritz_augment level;
     int attached;              /* sum of RITZ_ATTACHED_... */
@@ -218,7 +218,7 @@ typedef struct ritz_candidate {
     bool chosen;
 } ritz_candidate;
 
-/* What errors between listed angles there are, and whether one is to be added:
+/* The largest error between listed angles, and whether to add that angle:
  * if it is above 1e-3 and ten times the worst of its kind at listed ones. */
 typedef struct ritz_suggestion {
     int64_t row; /* between listed angles, with the worst error; -1: none */
@@ -256,7 +256,7 @@ typedef struct ritz_tolerance_row {
 } ritz_tolerance_row;
 
 /**
- * What the composite tolerance trades: orders and worst errors at each of
+ * The effect of the composite tolerance: orders and largest errors at each of
  * @p count tolerances, everything else as the scene says.
  *
  * @param[out] out  count rows, to be freed by ritz_tolerances_free
@@ -281,15 +281,15 @@ typedef struct ritz_composite {
 } ritz_composite;
 
 /**
- * Of the modes up to the end of the scene's band at all its configurations,
- * then of static answers to inputs and outputs, then of all that stage one has.
+ * Directions of the modes up to the band's end at all configurations, then of
+ * static solutions for inputs and outputs, then of all that stage one has.
  *
  * Modes that are to be ranked (scene.select) weigh as much as their value in
- * the ranking, others all the same. Where the scene augments, static answers
- * come with the modes, not behind them. A body that does not move rigidly with
+ * the ranking, others weigh 1. Where the scene augments, static solutions
+ * come with the modes, not after them. A body that does not move rigidly with
  * the system has its first direction before any other.
  *
- * What is cut keeps no mode exactly; it is for searches that measure each cut.
+ * A truncated set keeps no mode exactly; it is for searches that measure each.
  *
  * @return RITZ_ERR_ARGUMENT if there is no band or no configuration, or as
  *         ritz_compare
@@ -307,12 +307,12 @@ void ritz_comparison_free(ritz_comparison *comparison);
 
 typedef enum ritz_track_kind {
     RITZ_TRACK_SWAP,    /* two tracks change places in frequency */
-    RITZ_TRACK_TIE,     /* a second mode is nearly as like */
+    RITZ_TRACK_TIE,     /* a second mode has nearly the same MAC */
     RITZ_TRACK_AVOIDED, /* two modes turn into mixtures of each other */
-    RITZ_TRACK_LOST,    /* none is like it: MAC below 0.5 */
+    RITZ_TRACK_LOST,    /* no mode with MAC of 0.5 or more */
 } ritz_track_kind;
 
-/* What happened on the way from one configuration to another. */
+/* An event between one configuration and the next. */
 typedef struct ritz_track_event {
     ritz_track_kind kind;
     int64_t from, to; /* configurations */
@@ -349,7 +349,7 @@ typedef struct ritz_tracking {
  *
  *     MAC_ij = (sum_c (P_c' M_c P'_c)_ij)^2 <= 1
  *
- * needs no turning back; between clusters it is the mean squared cosine of the
+ * needs no rotation; between clusters it is the mean squared cosine of the
  * angles of their spaces. Each configuration is followed from the nearest of
  * the thousand listed before it: that which differs in the fewest sweeps, then
  * by least.

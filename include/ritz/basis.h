@@ -1,4 +1,4 @@
-/* Methods that make a basis: what they are asked, how to find one. */
+/* Methods that make a basis: their requests, and how to find a method. */
 #ifndef RITZ_BASIS_H
 #define RITZ_BASIS_H
 
@@ -6,13 +6,13 @@
 
 #pragma GCC visibility push(default)
 
-/* What hangs on the attached dofs while modes are found, of their order. */
+/* Neighbours' mass and stiffness, condensed to the attached dofs. */
 typedef struct ritz_neighbour {
     ritz_dense K, M; /* attached x attached, condensed [N/m], [kg]; {0}: none */
 } ritz_neighbour;
 
 /*
- * What is asked of a method. A method that needs more gets a field here, which
+ * The request to a method. A method that needs more gets a field here, which
  * is zero for all others; its signature stays.
  */
 typedef struct ritz_request {
@@ -26,7 +26,7 @@ typedef struct ritz_request {
     const ritz_neighbour *neighbour; /* loaded interface; NULL: none */
 } ritz_request;
 
-/* A request that asks for nothing yet. */
+/* A request without number of modes or frequency. */
 #define RITZ_REQUEST_NONE                                                      \
     {                                                                          \
         .modes = -1, .tolerance = 1e-10                                        \
@@ -81,7 +81,7 @@ extern const ritz_method ritz_method_tangential;
 const ritz_method *ritz_method_find(const char *name);
 
 /**
- * Say whether a request makes sense to a method, before there is a component.
+ * Check a request against its method, before there is a component.
  *
  * @return RITZ_ERR_ARGUMENT if it names both a number of modes and a frequency,
  *         neither, or what the method does not use
@@ -119,9 +119,9 @@ typedef struct ritz_gramians {
     ritz_dense Zc;      /* n x k */
     ritz_dense EZc;     /* n x k; {0}: E is the identity */
     ritz_dense Zo;      /* n x l */
-    ritz_dense T, W;    /* n x a, W'E T = I: what belongs to poles that are not
+    ritz_dense T, W;    /* n x a, W'E T = I: the states of poles that are not
                         left of the axis (rigid modes: positions and then
-                        velocities). It has no Gramian and stands apart */
+                        velocities), decoupled and without Gramian */
     double residual[2]; /* of either equation, |R| / |B B'| and |R| / |C' C|,
                            where iterated; 0: exact to rounding */
     char engine[RITZ_NAME_SIZE];     /* "SLICOT SB03OD", "closed form", "ADI" */
@@ -143,7 +143,7 @@ typedef struct ritz_balanced {
 
 /**
  * Dense, of a state space, E or not. Poles that are right of the axis, or left
- * of it by no more than eight times their rounding, stand apart; those of a
+ * of it by no more than eight times their rounding, are decoupled; those of a
  * model of which rounding provably makes none unstable do not. E that is
  * symmetric and definite is reduced by its Cholesky factor (SLICOT SB03OD),
  * another one is kept (SG03BD).
@@ -157,10 +157,10 @@ typedef struct ritz_balanced {
 ritz_status ritz_gramians_of_space(const ritz_state_space *model,
                                    ritz_gramians *out);
 
-/* What is asked of a component's Gramians. */
+/* The request for a component's Gramians. */
 typedef struct ritz_gramians_request {
     const ritz_component *component; /* borrowed */
-    ritz_damping damping;            /* beside its matrices and dampers */
+    ritz_damping damping;            /* added to matrices and dampers */
     ritz_engine engine;
     double among_hz;   /* modal: all modes up to here; 0: all there are */
     double band_hz[2]; /* modal: over this band alone; 0, 0: all frequencies */
@@ -173,7 +173,7 @@ typedef struct ritz_gramians_request {
  * low-rank.
  *
  * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
- *         does not fit it; RITZ_ERR_CONVERGENCE if low rank is not low
+ *         does not fit it; RITZ_ERR_CONVERGENCE if the rank grows too large
  */
 ritz_status ritz_gramians_of_component(const ritz_gramians_request *request,
                                        ritz_gramians *out);

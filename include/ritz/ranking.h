@@ -45,9 +45,9 @@ ritz_status ritz_weights_parse(const char *inputs, const char *outputs,
 
 void ritz_weights_free(ritz_weights *weights);
 
-/* How a model is to be ranked, beside the ranking itself. */
+/* Options of a ranking. */
 typedef struct ritz_rank_choice {
-    ritz_damping damping;        /* beside its matrices */
+    ritz_damping damping;        /* added to its matrices */
     double band_hz[2];           /* [0, 0]: none */
     const ritz_weights *weights; /* borrowed; NULL: none */
 } ritz_rank_choice;
@@ -125,8 +125,8 @@ extern const ritz_ranker ritz_ranker_participation;
 const ritz_ranker *ritz_ranker_find(const char *name);
 
 /**
- * What a ranking takes of a reduced component, or of a configuration: its
- * flexible modes or, for rankings that want that, those of its interface held.
+ * The request to rank a reduced component or a configuration: its flexible
+ * modes or, for rankings that need them, those with its interface clamped.
  *
  * @param[in] needs  of the ranker
  * @return RITZ_ERR_ARGUMENT if the model lacks it, or a weight names nothing
@@ -142,8 +142,8 @@ ritz_rank_request_of_configuration(const ritz_configuration *configuration,
 void ritz_rank_request_free(ritz_rank_request *request);
 
 /**
- * Rank, by magnitude of value, with exact system values and the coupling flag
- * beside where there are inputs, outputs and damping.
+ * Rank by magnitude of value, with exact system values and the coupling flag
+ * if there are inputs, outputs and damping.
  *
  * @return RITZ_ERR_ARGUMENT if the request lacks what the ranker needs
  */
@@ -153,7 +153,7 @@ ritz_status ritz_rank(const ritz_ranker *ranker,
 /** Room for parts, all zero; names and wholes are the ranker's to fill. */
 ritz_status ritz_ranking_parts(int64_t count, ritz_ranking *ranking);
 
-/** Which of several values are those of one configuration, and the largest. */
+/** Rankings of several configurations, and which modes of them correspond. */
 typedef struct ritz_rankings {
     int64_t count;
     ritz_ranking *item;
@@ -179,14 +179,14 @@ void ritz_rankings_free(ritz_rankings *rankings);
 /*
  * Output weights that suit a choice of modes. Modal costs depend on weights;
  * the weights that should decide are those of outputs that the choice serves
- * badly. So it goes round [ZhuSkelton1992]:
+ * badly. So they are iterated [ZhuSkelton1992]:
  *
  *     keep the k modes of largest cost sum_i q_i V_ki,
  *     d_i = |Y_i - Y_i(kept alone)|, what output i misses, in squared limits,
  *     q_i := (1 - a) p d_i / sum d + a q_i,    a = 1/2, q_i = 1 at first
  *
  * until weights and choice repeat: from round to round, or after several, which
- * is an oscillation and has no answer.
+ * is an oscillation and has no solution.
  */
 
 typedef struct ritz_reweighing {

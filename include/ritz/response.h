@@ -1,7 +1,7 @@
 /*
  * Frequency responses H(i omega) from inputs to outputs: on a grid, or at
- * points chosen so that whoever interpolates between them keeps a tolerance.
- * How H is found at one frequency is the business of an engine.
+ * points chosen so that interpolation between them is within a tolerance.
+ * An engine computes H at one frequency.
  */
 #ifndef RITZ_RESPONSE_H
 #define RITZ_RESPONSE_H
@@ -31,7 +31,7 @@ typedef struct ritz_response {
                                 0, 0: not looked for */
 } ritz_response;
 
-/* Where a response is wanted. */
+/* The frequencies at which a response is requested. */
 typedef struct ritz_grid {
     double from_hz, to_hz; /* 0 <= from < to */
     int64_t count;         /* evenly spaced in frequency, at least 2 */
@@ -66,7 +66,7 @@ ritz_status ritz_response_second_order(const ritz_second_order *model,
  * Phi'D Phi; where D couples modes, they are solved for together at each point.
  *
  * Rigid modes contribute 1/(-omega^2); a point at 0 Hz is refused if they
- * are driven and seen.
+ * are controllable and observable.
  *
  * @return RITZ_ERR_SINGULAR if a point lies on an undamped pole
  */
@@ -77,8 +77,8 @@ ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
 
 /**
  * Modal, on the full matrices: modes up to @p up_to_hz (0: three times the
- * highest point), and what lies above answers without damping, as a series in
- * w^2 that begins with its residual flexibility.
+ * highest point); modes above respond without damping, as a series in w^2 that
+ * begins with their residual flexibility.
  */
 ritz_status ritz_response_modal(const ritz_component *component,
                                 const ritz_damping *damping, double up_to_hz,
@@ -108,7 +108,7 @@ ritz_status ritz_response_states(const ritz_state_space *model,
 /**
  * Between stored points: each channel is the cubic through the four points
  * around, two on either side, at the ends the outermost four; of fewer points,
- * through all. This is what `tolerance` of a response is about.
+ * through all. `tolerance` of a response refers to this interpolation.
  *
  * @param[out] out  num_outputs x num_inputs, row by row
  * @return RITZ_ERR_ARGUMENT outside the range of the points
@@ -118,13 +118,13 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
 
 void ritz_response_free(ritz_response *response);
 
-/* What is to respond: one of the first three, borrowed as all of this is. */
+/* The model that responds, one of the first three; everything is borrowed. */
 typedef struct ritz_response_request {
     const ritz_component *component;
     const ritz_second_order *matrices;
     const ritz_state_space *states;
     const ritz_damping *damping; /* NULL: that of the matrices alone */
-    double from_hz, to_hz;       /* where responses will be asked for */
+    double from_hz, to_hz;       /* the range of later requests */
     double up_to_hz;  /* modes of a component; 0: three times the end */
     double tolerance; /* of engines that approximate, relative to the largest
                          |H| of a channel; 0: 1e-9 */
@@ -167,7 +167,7 @@ ritz_response_engine_choose(const ritz_response_request *request,
                             const char **why);
 
 /**
- * Make a model ready: modes, factors, interpolants, all that points share.
+ * Prepare a model: modes, factors, interpolants, all that points share.
  *
  * @return RITZ_ERR_ARGUMENT if the engine is not for such a model;
  *         RITZ_ERR_CONVERGENCE if it cannot keep the tolerance
@@ -177,8 +177,8 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
                                ritz_responder **out);
 
 /**
- * The same by the engine that `auto` stands for; or, where that cannot keep its
- * tolerance, by direct, and the remark says so.
+ * Prepare a model by the engine that `auto` chooses or, if that cannot reach
+ * its tolerance, by direct; the remark says so.
  *
  * @param[out] why  as above, of the engine that was chosen first
  */
@@ -190,13 +190,13 @@ ritz_status ritz_responder_auto(const ritz_response_request *request,
  *
  * @param[out] H  num_outputs x num_inputs, row by row
  * @return RITZ_ERR_SINGULAR on an undamped pole, or at 0 Hz where a rigid
- *         motion is driven and seen; RITZ_ERR_ARGUMENT above the range of a
+ *         motion is driven and observed; RITZ_ERR_ARGUMENT above the range of a
  *         component
  */
 ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
                               double _Complex *H);
 
-/** What was done to make it ready: "" if there is nothing to say. */
+/** Remark on the preparation of a responder: "" if there is none. */
 const char *ritz_responder_remark(const ritz_responder *responder);
 
 /** The points of a grid, which must lie in the range that was asked for. */
@@ -231,12 +231,12 @@ ritz_status ritz_response_component(const ritz_component *component,
 
 /*
  * Singular values of a response of several inputs and outputs: the largest is
- * the most that any unit input, in whatever direction and phase, can do.
+ * the largest response to a unit input of any direction and phase.
  */
 
 /*
- * What signals are measured by: outputs are divided by theirs, as by the limit
- * of each; inputs are multiplied by theirs, as by the size each may have. NULL,
+ * Scales of signals: outputs are divided by theirs, usually the limit of each;
+ * inputs are multiplied by theirs, usually the largest size of each. NULL,
  * or NaN in place of a number: 1.
  */
 typedef struct ritz_scales {
@@ -258,8 +258,8 @@ ritz_status ritz_singular_of(const ritz_scales *scales,
                              ritz_response *response);
 
 /**
- * The largest of them and where, between the points too: around those that
- * stand out from their neighbours it is looked for until nothing is gained.
+ * The largest singular value and its frequency, between the points too: around
+ * local maxima it is searched for until it no longer grows.
  * Responses that have points at every resonance, as refined ones have, leave
  * no peak between two that are lower.
  *
@@ -291,7 +291,7 @@ typedef struct ritz_ends {
     const char (*output)[RITZ_NAME_SIZE];
 } ritz_ends;
 
-/* Which signal of the plant meets which of the controller. */
+/* Which signal of the plant is connected to which of the controller. */
 typedef struct ritz_loop {
     int64_t num_measured; /* inputs of the controller */
     int64_t *measured;    /* the plant's output that each is */
@@ -313,7 +313,7 @@ ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
                             ritz_loop *out);
 
 /**
- * Whether all signals of a loop exist; names are not asked.
+ * Check that all signals of a loop exist; their names are not compared.
  *
  * @return RITZ_ERR_ARGUMENT naming what does not
  */
@@ -325,7 +325,7 @@ ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
  * are the plant's, then the controller's.
  *
  * @return RITZ_ERR_ARGUMENT if the loop does not fit; RITZ_ERR_SINGULAR if the
- *         loop has no answer: what passes through both at once makes a circle
+ *         loop has no solution: the feedthroughs of both form a singular loop
  */
 ritz_status ritz_closed_loop(const ritz_state_space *plant,
                              const ritz_state_space *controller,
@@ -340,7 +340,7 @@ typedef struct ritz_loop_values {
 } ritz_loop_values;
 
 /**
- * Close it at one frequency.
+ * Close the loop at one frequency.
  *
  * @param[in]  G  of the plant, row by row, outputs x inputs
  * @param[in]  F  of the controller, row by row, num_driven x num_measured
@@ -366,8 +366,8 @@ ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
                                 const double _Complex *pole,
                                 ritz_responder **out);
 
-/* How far a loop is from its end, in the range of the points that were looked
-   at. NaN: it is not of one signal, or does not cross there. */
+/* Stability margins of a loop, in the range of the points that were evaluated.
+   NaN: the loop has several signals, or no crossing there. */
 typedef struct ritz_margins {
     double gain_up, gain_up_hz;         /* least factor above 1 that ends it */
     double gain_down, gain_down_hz;     /* largest factor below 1 that does */
