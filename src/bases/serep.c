@@ -35,7 +35,7 @@ typedef struct selection {
     double size[3]; /* of all modes at points, translations, rotations */
     int64_t *at;    /* m, attached dofs that are coordinates, in their order */
     double condition;
-    int64_t worst; /* mode that is seen least */
+    int64_t worst; /* least observable mode */
 } selection;
 
 static int64_t dof_kind(const ritz_component *component, int64_t row)

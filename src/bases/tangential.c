@@ -17,7 +17,7 @@
  *   of N has N pairs of poles: the more dominant half gives the points,
  *   s_j = -conj(p_j), which is a choice and no optimum [Wyatt2012].
  * - With ratios alone, Z has no damping, v_j is real, and every pole has its
- *   point: beside the resonance, not mirrored, as nothing is damped there.
+ *   point: next to the resonance, not mirrored, as nothing is damped there.
  *
  * The search begins at the most dominant of twice as many modes. Rigid motion,
  * which has no H2 norm, is kept in addition.
@@ -51,11 +51,11 @@ typedef struct irka_search {
     bool assumed;     /* nobody had said how it is damped */
     ritz_pairs modes; /* where it begins */
     ritz_dense rigid;
-    int64_t most; /* vectors beside the rigid ones */
+    int64_t most; /* vectors besides the rigid ones */
     ritz_rational R;
     ritz_dense T;       /* rigid and interpolating */
-    ritz_probes probes; /* those that T answers */
-    int64_t left_out;   /* fixed points' answers without room */
+    ritz_probes probes; /* those that T interpolates */
+    int64_t left_out;   /* fixed probes without room */
     int rounds;
     double change;
 } irka_search;
@@ -304,7 +304,7 @@ static void add_remark(const irka_search *s, ritz_basis *basis)
     if (s->most == 0)
         return;
     if (s->request->choice.num_shifts > 0)
-        used = snprintf(text, size, "%" PRId64 " span_probes(s) interpolated",
+        used = snprintf(text, size, "%" PRId64 " answer(s) interpolated",
                         s->probes.count);
     else if (s->change <= RITZ_POINTS_SETTLED)
         used =
