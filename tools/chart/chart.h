@@ -1,6 +1,6 @@
 /*
  * Charts: what each is made from and who draws it. A kind is one file and one
- * line in the table of chart.c.
+ * line in the table of charts.c.
  */
 #ifndef RITZ_TOOLS_CHART_CHART_H
 #define RITZ_TOOLS_CHART_CHART_H
