@@ -137,7 +137,7 @@ ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
 /** Write all members of an object at its place, or read them to its target. */
 ritz_status ritz_schema_move(const ritz_place *place);
 
-/* What a walk over the rows of an object goes by. */
+/* Where a walk over the rows of an object stands. */
 bool ritz_schema_is_given(const ritz_place *place, const ritz_member *row);
 ritz_h5_shape ritz_schema_shape(const ritz_place *place,
                                 const ritz_member *row);

@@ -42,16 +42,6 @@ done:
     return ritz_context(status, "estimate");
 }
 
-/* Whether some count lies in (low, high). */
-static bool counted_within(const ritz_estimator *estimator, double low,
-                           double high)
-{
-    for (int64_t s = 0; s < estimator->num_counts; s++)
-        if (estimator->count[s].rho > low && estimator->count[s].rho < high)
-            return true;
-    return false;
-}
-
 /* A point of a gap, nearer to its lower end: reduced modes are too high. */
 static double within(double low, double high)
 {
@@ -73,7 +63,7 @@ static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
         double gap = (high - low) / (high - trial->sigma);
 
         if (gap > best && high > trial->rounding[i] && low >= 0.0 &&
-            !counted_within(estimator, low, high)) {
+            !ritz_counted_within(estimator, low, high)) {
             best = gap;
             rho = within(low, high);
         }
@@ -89,7 +79,7 @@ static double above_band(const ritz_estimator *estimator,
     int64_t first = 0;
     int64_t last = 0;
 
-    if (counted_within(estimator, from, to))
+    if (ritz_counted_within(estimator, from, to))
         return nan("");
     while (first < trial->count && trial->theta[first] < from)
         first++;

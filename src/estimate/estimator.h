@@ -206,4 +206,8 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
                                 const ritz_reduced *reduced,
                                 ritz_measures *out);
 
+/** Whether modes were counted at some place inside (low, high). */
+bool ritz_counted_within(const ritz_estimator *estimator, double low,
+                         double high);
+
 #endif

@@ -427,8 +427,8 @@ static int64_t keep_partner(ritz_judge *j, const ritz_mode_group *g,
     return 1;
 }
 
-static bool counted_within(const ritz_estimator *estimator, double low,
-                           double high)
+bool ritz_counted_within(const ritz_estimator *estimator, double low,
+                         double high)
 {
     const ritz_counted *c = estimator->count;
 
@@ -459,10 +459,11 @@ static void propose_count(ritz_judge *j, const ritz_mode_group *g)
         if (theta * (1.0 + off) < low || theta * (1.0 - off) > high ||
             !(off < RITZ_COUNT_TOO_FAR))
             continue;
-        if (!counted_within(j->estimator, theta, theta * (1.0 + 2.0 * off)))
+        if (!ritz_counted_within(j->estimator, theta,
+                                 theta * (1.0 + 2.0 * off)))
             j->v.count_at = theta * (1.0 + off);
-        else if (!counted_within(j->estimator, theta * (1.0 - 2.0 * off),
-                                 theta))
+        else if (!ritz_counted_within(j->estimator, theta * (1.0 - 2.0 * off),
+                                      theta))
             j->v.count_at = theta * (1.0 - off);
     }
 }
