@@ -58,9 +58,7 @@ void ritz_matrix_free(ritz_matrix *matrix)
 
 void ritz_matrices_free(ritz_matrices *matrices)
 {
-    for (int64_t k = 0; k < matrices->count; k++)
-        ritz_matrix_free(&matrices->matrix[k]);
-    free(matrices->matrix);
+    RITZ_FREE_EACH(ritz_matrix, matrices->count, matrices->matrix);
     *matrices = (ritz_matrices){0};
 }
 

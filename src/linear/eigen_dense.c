@@ -226,6 +226,8 @@ ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
+RITZ_PAIR_OF(ritz_dense);
+
 /* |a + t b| of columns j. */
 static double norm_of(double t, const ritz_dense *B, ritz_dense *A, int64_t j)
 {
@@ -240,16 +242,17 @@ static double norm_of(double t, const ritz_dense *B, ritz_dense *A, int64_t j)
 static ritz_status find_residuals(const ritz_dense *K, const ritz_dense *M,
                                   ritz_pairs *pairs)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *const matrix[] = {K, M};
-    ritz_dense gap[2] = {0}, size[2] = {0};
-    ritz_dense A = {0}, X = {0};
+    RITZ_OWN(ritz_dense_pair) gap = {0};
+    RITZ_OWN(ritz_dense_pair) size = {0};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_TRY(ritz_dense_abs(&pairs->Phi, &X));
+    RITZ_CHECK(ritz_dense_abs(&pairs->Phi, &X));
     for (int k = 0; k < 2; k++) {
-        RITZ_TRY(ritz_dense_abs(matrix[k], &A));
-        RITZ_TRY(ritz_dense_mul(matrix[k], &pairs->Phi, &gap[k]));
-        RITZ_TRY(ritz_dense_mul(&A, &X, &size[k]));
+        RITZ_CHECK(ritz_dense_abs(matrix[k], &A));
+        RITZ_CHECK(ritz_dense_mul(matrix[k], &pairs->Phi, &gap[k]));
+        RITZ_CHECK(ritz_dense_mul(&A, &X, &size[k]));
         ritz_dense_free(&A);
     }
     for (int64_t j = 0; j < X.ncol; j++) {
@@ -259,14 +262,7 @@ static ritz_status find_residuals(const ritz_dense *K, const ritz_dense *M,
         pairs->residual[j] =
             most > 0.0 ? norm_of(-lambda, &gap[1], &gap[0], j) / most : 0.0;
     }
-done:
-    for (int k = 0; k < 2; k++) {
-        ritz_dense_free(&gap[k]);
-        ritz_dense_free(&size[k]);
-    }
-    ritz_dense_free(&A);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /* How many of the first @p count are far below the last of them. */

@@ -141,38 +141,32 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
     return RITZ_OK;
 }
 
+RITZ_PAIR_OF(ritz_dense);
+
 ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
                              const ritz_dense *Q, ritz_dense *E, ritz_dense *W)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense scaled = {0}, form[2] = {{0}, {0}}, made = {0};
-    ritz_dense whole[2] = {{0}, {0}};
-    double *d = NULL;
+    RITZ_OWN(ritz_dense_pair) form = {0};
+    RITZ_OWN(ritz_dense_pair) whole = {0};
+    RITZ_OWN(ritz_dense) scaled = {0};
+    RITZ_OWN(ritz_dense) made = {0};
+    RITZ_OWN_ARRAY double *d = NULL;
 
-    RITZ_FAIL_IF(count > 2, RITZ_ERR_ARGUMENT, "two forms at most");
-    RITZ_NEW(d, A->nrow);
-    RITZ_TRY(ritz_dense_copy(A, &scaled));
+    RITZ_REFUSE_IF(count > 2, RITZ_ERR_ARGUMENT, "two forms at most");
+    RITZ_CHECK_NEW(d, A->nrow);
+    RITZ_CHECK(ritz_dense_copy(A, &scaled));
     if (A->nrow > 0)
-        RITZ_TRY(balance_matrix(&scaled, d));
+        RITZ_CHECK(balance_matrix(&scaled, d));
     for (int k = 0; k < count; k++) {
-        RITZ_TRY(ritz_dense_copy(&Q[k], &form[k]));
+        RITZ_CHECK(ritz_dense_copy(&Q[k], &form[k]));
         turn_matrix(d, 1, 1, &form[k]);
     }
-    RITZ_TRY(propagate_doubling(&scaled, h, count, form, &made, whole));
+    RITZ_CHECK(propagate_doubling(&scaled, h, count, form, &made, whole));
     turn_matrix(d, 1, -1, &made);
     for (int k = 0; k < count; k++) {
         turn_matrix(d, -1, -1, &whole[k]);
-        W[k] = whole[k];
-        whole[k] = (ritz_dense){0};
+        RITZ_MOVE(W[k], whole[k]);
     }
     RITZ_MOVE(*E, made);
-done:
-    free(d);
-    ritz_dense_free(&scaled);
-    ritz_dense_free(&made);
-    for (int k = 0; k < 2; k++) {
-        ritz_dense_free(&form[k]);
-        ritz_dense_free(&whole[k]);
-    }
-    return status;
+    return RITZ_OK;
 }

@@ -392,9 +392,7 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_dense_free(&reduced->K4);
     ritz_dampers_free(&reduced->dampers);
     ritz_columns_free(&reduced->columns);
-    for (int64_t k = 0; k < reduced->num_ports; k++)
-        ritz_port_map_free(&reduced->port[k]);
-    free(reduced->port);
+    RITZ_FREE_EACH(ritz_port_map, reduced->num_ports, reduced->port);
     ritz_io_free(&reduced->io);
     ritz_invariants_free(&reduced->invariants);
     ritz_dense_free(&reduced->T);

@@ -316,27 +316,26 @@ static ritz_status fill_dofs(const ritz_dense *K, const ritz_dense *D,
     return add_product(1.0, &io->Ca, B, 0, &out->D);
 }
 
+RITZ_ARRAY_OF(ritz_dense);
+
 /* x = [u; u']; RITZ_ERR_SINGULAR if M is. */
 static ritz_status by_dofs(const ritz_structure *model, const ritz_dense *D,
                            const ritz_io *io, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *const parts[] = {&model->K, D, &io->B};
-    ritz_dense solved[3] = {0};
-    ritz_state_space made = {0};
+    RITZ_OWN(ritz_dense_array) solved = {.count = 3};
+    RITZ_OWN(ritz_state_space) made = {0};
 
+    RITZ_CHECK_NEW(solved.at, solved.count);
     for (int k = 0; k < 3; k++) {
-        RITZ_TRY(ritz_dense_copy(parts[k], &solved[k]));
-        RITZ_TRY(ritz_general_solve(&model->M, false, &solved[k]));
+        RITZ_CHECK(ritz_dense_copy(parts[k], &solved.at[k]));
+        RITZ_CHECK(ritz_general_solve(&model->M, false, &solved.at[k]));
     }
-    RITZ_TRY(ritz_state_space_new(2 * D->nrow, io, &made));
-    RITZ_TRY(fill_dofs(&solved[0], &solved[1], &solved[2], io, &made));
+    RITZ_CHECK(ritz_state_space_new(2 * D->nrow, io, &made));
+    RITZ_CHECK(
+        fill_dofs(&solved.at[0], &solved.at[1], &solved.at[2], io, &made));
     RITZ_MOVE(*out, made);
-done:
-    for (int k = 0; k < 3; k++)
-        ritz_dense_free(&solved[k]);
-    ritz_state_space_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 /* x = [q; q'] */

@@ -135,9 +135,8 @@ void ritz_configuration_free(ritz_configuration *configuration)
 
 void ritz_system_free(ritz_system *system)
 {
-    for (int64_t k = 0; k < system->num_configurations; k++)
-        ritz_configuration_free(&system->configuration[k]);
-    free(system->configuration);
+    RITZ_FREE_EACH(ritz_configuration, system->num_configurations,
+                   system->configuration);
     free(system->component);
     free(system->order);
     free(system->order_full);
