@@ -90,8 +90,10 @@ static void files_that_are_none_are_refused(void **state)
     (void)state;
 
     for (int k = 0; ritz_formats[k]; k++) {
-        strcat(refusal, k > 0 ? ", " : "");
-        strcat(refusal, ritz_formats[k]->name);
+        size_t used = strlen(refusal);
+
+        snprintf(refusal + used, sizeof refusal - used, "%s%s",
+                 k > 0 ? ", " : "", ritz_formats[k]->name);
     }
     assert_fails(ritz_foreign_read("no_such.op4", &all), RITZ_ERR_FILE,
                  "no_such.op4");
