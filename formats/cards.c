@@ -7,7 +7,7 @@
  * the other; the line above is looked at first, then the whole deck.
  */
 #include "base/alloc.h"
-#include "base/path.h"
+#include "base/text.h"
 #include "formats/cards_lines.h"
 
 #include <ritz/base.h>

@@ -8,7 +8,7 @@
 #ifndef RITZ_FORMATS_CARDS_H
 #define RITZ_FORMATS_CARDS_H
 
-#include "base/array.h"
+#include "base/alloc.h"
 
 #include <ritz/base.h>
 

@@ -1,5 +1,5 @@
 /* Decks of any format: recognised by content, then read by their format. */
-#include "base/path.h"
+#include "base/text.h"
 
 #include "base/alloc.h"
 

@@ -9,7 +9,7 @@
  */
 #include "base/alloc.h"
 #include "base/draft.h"
-#include "base/letter.h"
+#include "base/text.h"
 #include "formats/reduced_matrices.h"
 
 #include <ritz/base.h>

@@ -1,7 +1,6 @@
 /* Files of matrices: recognised by content, and what a user may ask of them. */
 #include "base/alloc.h"
-#include "base/array.h"
-#include "base/path.h"
+#include "base/text.h"
 
 #include <ritz/import.h>
 

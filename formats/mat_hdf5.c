@@ -10,7 +10,6 @@
 #include "formats/mat.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
 #include "container/h5.h"
 
 #include <inttypes.h>

@@ -7,7 +7,6 @@
  * the top there are arrays, or arrays deflated.
  */
 #include "base/alloc.h"
-#include "base/array.h"
 #include "formats/mat.h"
 
 #include <zlib.h>
@@ -249,6 +248,11 @@ typedef struct queue {
     pending *item;
 } queue;
 
+static void queue_free(queue *fields)
+{
+    free(fields->item);
+}
+
 static ritz_status take_field(mat_reader *r, const mat_array *a,
                               const char *name, int64_t length, pending *out)
 {
@@ -343,19 +347,16 @@ static ritz_status read_one(pending *p, ritz_mat_list *list, queue *fields)
 /* The inside of an array element, and of structs in it. */
 static ritz_status read_array(const mat_reader *reader, ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
-    queue waiting = {0};
+    RITZ_OWN(queue) waiting = {0};
 
-    RITZ_ROOM(waiting.item, waiting.count, waiting.room);
+    RITZ_CHECK_ROOM(waiting.item, waiting.count, waiting.room);
     waiting.item[waiting.count++] = (pending){.inside = *reader};
     for (int64_t k = 0; k < waiting.count; k++) {
         pending turn = waiting.item[k];
 
-        RITZ_TRY(read_one(&turn, list, &waiting));
+        RITZ_CHECK(read_one(&turn, list, &waiting));
     }
-done:
-    free(waiting.item);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- arrays that are deflated ------------------------------------------- */

@@ -2,7 +2,6 @@
 #include "formats/mat.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
 #include "formats/matrix.h"
 
 #include <inttypes.h>

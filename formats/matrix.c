@@ -2,7 +2,6 @@
 #include "formats/matrix.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
 
 #include <stdlib.h>
 

@@ -12,7 +12,6 @@
  * that one is taken by which the strings of a column add up to its word count.
  */
 #include "base/alloc.h"
-#include "base/array.h"
 #include "formats/matrix.h"
 #include "formats/output4.h"
 

@@ -3,6 +3,103 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { FAR = 1000, LONGEST = 64 };
+
+/* Edit distance of two short words, FAR if one is long. */
+static int count_edits(const char *a, const char *b)
+{
+    int row[LONGEST + 1];
+    int m = (int)strlen(a);
+    int n = (int)strlen(b);
+
+    if (m > LONGEST || n > LONGEST)
+        return FAR;
+    for (int j = 0; j <= n; j++)
+        row[j] = j;
+    for (int i = 1; i <= m; i++) {
+        int diagonal = row[0];
+
+        row[0] = i;
+        for (int j = 1; j <= n; j++) {
+            int best = diagonal + (a[i - 1] != b[j - 1]);
+
+            diagonal = row[j];
+            if (row[j] + 1 < best)
+                best = row[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[n];
+}
+
+/* The name so far that is nearest to a word, and its distance. */
+typedef struct nearest {
+    const char *word, *name;
+    int edits;
+} nearest;
+
+static void try_name(nearest *near, const char *name)
+{
+    int edits = count_edits(near->word, name);
+
+    if (edits < near->edits) {
+        near->edits = edits;
+        near->name = name;
+    }
+}
+
+/* NULL if more than half of the letters differ. */
+static const char *accept_nearest(const nearest *near)
+{
+    return near->edits <= (int)(strlen(near->word) + 1) / 2 ? near->name : NULL;
+}
+
+const char *ritz_text_nearest(const char *word, int64_t count,
+                              const char *first, size_t stride)
+{
+    nearest near = {word, NULL, FAR};
+
+    for (int64_t k = 0; k < count; k++)
+        try_name(&near, first + (size_t)k * stride);
+    return accept_nearest(&near);
+}
+
+static void record_unknown(const char *kind, const char *name, const char *near,
+                           const char *otherwise)
+{
+    ritz_record("there is no %s '%.63s'%s%s%s", kind, name,
+                near ? ", is '" : "", near ? near : "",
+                near ? "' meant?" : otherwise);
+}
+
+/* Row k of a table of pointers to structs; the first member is the name. */
+static const char *name_row(const void *table, int64_t k, const void **row)
+{
+    const char *name = NULL;
+
+    memcpy(row, (const char *)table + (size_t)k * sizeof *row, sizeof *row);
+    if (*row)
+        memcpy(&name, *row, sizeof name);
+    return name;
+}
+
+const void *ritz_row_find(const void *table, const char *kind, const char *name)
+{
+    nearest near = {name, NULL, FAR};
+    const void *row = NULL;
+    const char *known = name_row(table, 0, &row);
+
+    for (int64_t k = 1; known; known = name_row(table, k++, &row)) {
+        if (strcmp(known, name) == 0)
+            return row;
+        try_name(&near, known);
+    }
+    record_unknown(kind, name, accept_nearest(&near), "");
+    return NULL;
+}
+
 static const char *name_at(const ritz_names *names, int64_t k)
 {
     return names->first + (size_t)k * names->stride;
@@ -14,6 +111,18 @@ int64_t ritz_names_index(const ritz_names *names, const char *word)
         if (strcmp(name_at(names, k), word) == 0)
             return k;
     return -1;
+}
+
+int64_t ritz_names_seek(const ritz_names *names, const char *word)
+{
+    int64_t at = ritz_names_index(names, word);
+
+    if (at < 0)
+        record_unknown(
+            names->what, word,
+            ritz_text_nearest(word, names->count, names->first, names->stride),
+            names->count > 0 ? "" : ", the model has none");
+    return at;
 }
 
 /* "model, basis, modes", as many as there is room for. */

@@ -24,6 +24,9 @@ ritz_status ritz_words_find(const ritz_names *names, const char *word,
 /** Index of @p word, without a sentence; -1 if it is not there. */
 int64_t ritz_names_index(const ritz_names *names, const char *word);
 
+/** The same with the sentence "there is no WHAT 'word', is 'ward' meant?". */
+int64_t ritz_names_seek(const ritz_names *names, const char *word);
+
 enum { RITZ_SHORT_SIZE = 48 };
 
 /** Beginning of a text on one line, for 'quotes'; returns @p out. */

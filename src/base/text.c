@@ -1,7 +1,6 @@
-#include "base/alloc.h"
-#include "base/letter.h"
+#include "base/text.h"
 
-#include <ritz/base.h>
+#include "base/alloc.h"
 
 #include <errno.h>
 #include <math.h>
@@ -128,89 +127,31 @@ ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
     return RITZ_OK;
 }
 
-enum { FAR = 1000, LONGEST = 64 };
-
-/* Edit distance of two short words, FAR if one is long. */
-static int distance(const char *a, const char *b)
+int ritz_letter_length(const char *text)
 {
-    int row[LONGEST + 1];
-    int m = (int)strlen(a);
-    int n = (int)strlen(b);
+    const unsigned char *c = (const unsigned char *)text;
+    int more = c[0] >= 0xF0 ? 3 : c[0] >= 0xE0 ? 2 : 1;
 
-    if (m > LONGEST || n > LONGEST)
-        return FAR;
-    for (int j = 0; j <= n; j++)
-        row[j] = j;
-    for (int i = 1; i <= m; i++) {
-        int diagonal = row[0];
-
-        row[0] = i;
-        for (int j = 1; j <= n; j++) {
-            int best = diagonal + (a[i - 1] != b[j - 1]);
-
-            diagonal = row[j];
-            if (row[j] + 1 < best)
-                best = row[j] + 1;
-            if (row[j - 1] + 1 < best)
-                best = row[j - 1] + 1;
-            row[j] = best;
-        }
-    }
-    return row[n];
+    if (c[0] < 0x80)
+        return c[0] >= ' ' && c[0] != 0x7F;
+    if (c[0] < 0xC2 || c[0] > 0xF4 || (c[0] == 0xC2 && c[1] < 0xA0))
+        return 0; /* no first byte, or a control character above 0x7F */
+    for (int k = 1; k <= more; k++)
+        if (c[k] >> 6 != 2)
+            return 0;
+    return 1 + more;
 }
 
-const char *ritz_text_nearest(const char *word, int64_t count,
-                              const char *first, size_t stride)
+ritz_status ritz_path_folder(const char *path, char **out)
 {
-    const char *nearest = NULL;
-    int best = FAR;
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) : 1;
+    char *folder = NULL;
 
-    for (int64_t k = 0; k < count; k++) {
-        const char *name = first + (size_t)k * stride;
-        int apart = distance(word, name);
-
-        if (apart < best) {
-            best = apart;
-            nearest = name;
-        }
-    }
-    return best <= (int)(strlen(word) + 1) / 2 ? nearest : NULL;
-}
-
-/* Row k of a table of pointers to structs; the first member is the name. */
-static const char *name_row(const void *table, int64_t k, const void **row)
-{
-    const char *name = NULL;
-
-    memcpy(row, (const char *)table + (size_t)k * sizeof *row, sizeof *row);
-    if (*row)
-        memcpy(&name, *row, sizeof name);
-    return name;
-}
-
-const void *ritz_row_find(const void *table, const char *kind, const char *name)
-{
-    const char *nearest = NULL;
-    const void *row = NULL;
-    int best = FAR;
-
-    for (int64_t k = 0;; k++) {
-        const char *known = name_row(table, k, &row);
-        int apart = known ? distance(name, known) : FAR;
-
-        if (!known)
-            break;
-        if (strcmp(known, name) == 0)
-            return row;
-        if (apart < best) {
-            best = apart;
-            nearest = known;
-        }
-    }
-    if (best > (int)(strlen(name) + 1) / 2)
-        nearest = NULL;
-    ritz_record("there is no %s '%s'%s%s%s", kind, name,
-                nearest ? ", is '" : "", nearest ? nearest : "",
-                nearest ? "' meant?" : "");
-    return NULL;
+    if (slash == path)
+        length = 1; /* the root */
+    RITZ_CHECK_NEW(folder, (int64_t)length + 1);
+    memcpy(folder, slash ? path : ".", length);
+    *out = folder;
+    return RITZ_OK;
 }

@@ -1,7 +1,7 @@
 /* ritz_import: read, name, place, and settle. */
 #include "import/import.h"
 #include "base/alloc.h"
-#include "base/letter.h"
+#include "base/text.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Constraint equations, as they are built, cited and freed. */
 #include "model/equations.h"
-#include "base/array.h"
+#include "base/alloc.h"
 
 #include <ritz/model.h>
 

@@ -6,7 +6,6 @@
  */
 #include "model/ties.h"
 #include "base/alloc.h"
-#include "base/array.h"
 #include "base/tolerances.h"
 
 #include <lapacke.h>

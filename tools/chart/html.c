@@ -1,6 +1,6 @@
 #include "chart/html.h"
 
-#include "base/letter.h"
+#include "base/text.h"
 
 #include <stdarg.h>
 #include <stddef.h>
